@@ -8,7 +8,9 @@ use anyhow::Result;
 use clap::ValueEnum;
 use fuwafuwa::law::Law;
 use fuwafuwa::pyramid::Grading;
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Rigid, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{
+    Dim, Dim2, Dim3, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
+};
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::disk::scene_at;
 use serde::Serialize;
@@ -163,7 +165,7 @@ fn element_time<D: Dim>(n: usize) -> Result<Measure> {
 /// Releases in a ball, each at a fresh place near its surface.
 fn release_time<D: Dim>(n: usize) -> Result<Measure> {
     let grid = VoxelGrid::<D>::ball(n, 1.0)?;
-    let mut body = Body::new(grid, &[Material::default()])?;
+    let mut body = SoftBody::new(grid, &[Material::default()])?;
     // Where the surface crosses every third column, counted from the lower left of the ball.
     let columns = || (n / 4..3 * n / 4).step_by(3);
     let rows = if D::N == 3 {
@@ -209,12 +211,12 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Ve
             let start = Instant::now();
             let report = world.step();
             *time = time.min(start.elapsed().as_secs_f64());
-            if report.released > 0 {
+            if report.nodes_split > 0 {
                 whole = whole.min(tick);
             }
             progress.step();
         }
-        let bodies = world.bodies().iter();
+        let bodies = world.soft_bodies().iter();
         pieces = bodies.map(|body| body.pieces().list.len()).sum();
     }
     if whole == times.len() {
@@ -234,18 +236,21 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Ve
 /// The ticks of a soft ball on the floor, which a hand pushes down by a third.
 fn pushed_ball<D: Dim>(n: usize) -> Result<Measure> {
     const TICKS: u16 = 60;
-    let mut world = World::<D>::new(Settings::default())?;
-    world.add_rigid(Rigid::fixed(
+    let mut world = World::<D>::new(WorldConfig::default())?;
+    world.add_rigid_body(RigidBody::fixed(
         Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
         0.5,
     ))?;
-    world.add_body(Body::new(VoxelGrid::ball(n, 1.0)?, &[Material::default()])?);
+    world.add_soft_body(SoftBody::new(
+        VoxelGrid::ball(n, 1.0)?,
+        &[Material::default()],
+    )?);
     let z = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = world.add_rigid(Rigid::hand([0.5, 1.2, z], 0.2))?;
+    let hand = world.add_rigid_body(RigidBody::coupled_ball([0.5, 1.2, z], 0.2))?;
     let mut times = Vec::new();
     for tick in 1..=TICKS {
         let down = 0.35 * f32::from(tick) / f32::from(TICKS);
-        world.set_goal(hand, [0.5, 1.2 - down, z])?;
+        world.set_target_position(hand, [0.5, 1.2 - down, z])?;
         let start = Instant::now();
         world.step();
         times.push(start.elapsed().as_secs_f64());
@@ -280,7 +285,7 @@ fn against_uniform_in<D: Dim>(n: usize, progress: &Progress) -> Result<Vec<Measu
     let mut graded = swinging::<D>(n, Grading::Graded)?;
     let mut uniform = swinging::<D>(n, Grading::Uniform)?;
     let duration = graded.longest_substep() as f32;
-    let tick = |body: &mut Body<D>| {
+    let tick = |body: &mut SoftBody<D>| {
         let start = Instant::now();
         for _ in 0..16 {
             body.advance(duration, [0.0; 3]);
@@ -296,7 +301,7 @@ fn against_uniform_in<D: Dim>(n: usize, progress: &Progress) -> Result<Vec<Measu
         ratios.push(other / own);
         progress.step();
     }
-    let named = |what: &str, body: &Body<D>| {
+    let named = |what: &str, body: &SoftBody<D>| {
         let elements = body.mesh().element_count();
         format!(
             "{}D ball n = {n}, {what}, {elements} elements, 16 substeps",
@@ -311,9 +316,10 @@ fn against_uniform_in<D: Dim>(n: usize, progress: &Progress) -> Result<Vec<Measu
 }
 
 /// A ball 1 m across, stretched a little so that it swings.
-fn swinging<D: Dim>(n: usize, grading: Grading) -> Result<Body<D>> {
+fn swinging<D: Dim>(n: usize, grading: Grading) -> Result<SoftBody<D>> {
     let grid = VoxelGrid::ball(n, 1.0)?;
-    let mut body = Body::with(grid, &[Material::default()], Law::PatchExact, grading)?;
+    let mut body =
+        SoftBody::with_options(grid, &[Material::default()], Law::CorotationalVem, grading)?;
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
         let ([x, y, z], ..) = body.node_state(id);

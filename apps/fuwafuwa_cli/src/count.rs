@@ -3,8 +3,8 @@
 use crate::report::{self, Progress};
 use anyhow::{Context, Result};
 use clap::ValueEnum;
-use fuwafuwa::pyramid::{Grading, Pyramid};
-use fuwafuwa::sharing::Sharing;
+use fuwafuwa::pyramid::{CellHierarchy, Grading};
+use fuwafuwa::sharing::Connectivity;
 use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
 use serde::Serialize;
 use std::process::ExitCode;
@@ -171,8 +171,8 @@ fn count_one<D: Dim>(shape: Form, n: u16, placing: Placing) -> Result<Count> {
         Form::Ball => VoxelGrid::<D>::ball(across, 1.0),
     };
     let grid = grid.with_context(|| format!("cannot count n = {n} in {}D", D::N))?;
-    let sharing = Sharing::new(&grid);
-    let pyramid = Pyramid::new(&grid, &sharing, placing.grading());
+    let sharing = Connectivity::new(&grid);
+    let pyramid = CellHierarchy::new(&grid, &sharing, placing.grading());
     let mesh = Mesh::grade(&grid, &sharing, &pyramid)?;
     Ok(Count {
         dim: D::N as u8,

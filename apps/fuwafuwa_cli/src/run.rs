@@ -149,7 +149,7 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         progress.step();
         let events = world.events().iter();
         released += events
-            .filter(|event| matches!(event, fuwafuwa::Event::Released { .. }))
+            .filter(|event| matches!(event, fuwafuwa::Event::NodeSplit { .. }))
             .count();
         if arguments.film.is_some() && tick % every == 0 {
             let painted = D::painted(world, scene, arguments.elements);
@@ -187,7 +187,12 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         let text = text.map_err(|reason| anyhow::anyhow!("{}: {reason}", path.display()))?;
         write(path, text.as_bytes())?;
     }
-    let pieces = || world.bodies().iter().flat_map(|body| body.piece_views());
+    let pieces = || {
+        world
+            .soft_bodies()
+            .iter()
+            .flat_map(|body| body.piece_views())
+    };
     let summary = Summary {
         scene: arguments.scene.clone(),
         ticks,

@@ -2,8 +2,8 @@
 
 use fuwafuwa::world::TICK;
 use fuwafuwa::{
-    Body, BodyError, BodyId, BuildError, Dim3, Elasticity, Material, NodeId, Refused, Rigid,
-    Settings, Shape, VoxelGrid, World,
+    BodyError, BuildError, Dim3, Elasticity, Material, NodeId, Refused, RigidBody, Shape, SoftBody,
+    SoftBodyHandle, VoxelGrid, World, WorldConfig,
 };
 use fuwafuwa_scan::Organ;
 
@@ -70,7 +70,7 @@ pub struct Table {
     /// The world that it lies in.
     pub world: World<Dim3>,
     /// The organ.
-    pub organ: BodyId,
+    pub organ: SoftBodyHandle,
     /// Where tools may be: the low and the high corner [m].
     pub room: [[f32; 3]; 2],
     /// Where the low corner of the organ's grid is [m], before anything moves.
@@ -147,17 +147,17 @@ impl Case {
         let corner = [-0.5 * size[0], 0.0, -0.5 * size[2]];
         let [low, _] = bounds(&body);
         // The lowest of it is at the height of the table.
-        let mut body = body.moved([corner[0], -low[1], corner[2]]);
+        let mut body = body.translated([corner[0], -low[1], corner[2]]);
         hold_below(&mut body);
-        let mut world = World::new(Settings {
+        let mut world = World::new(WorldConfig {
             gravity: [0.0, -9.81 * AFLOAT / inertia, 0.0],
             drag: DRAG,
             most_substeps: substeps,
-            ..Settings::default()
+            ..WorldConfig::default()
         })?;
         let top = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-        world.add_rigid(Rigid::fixed(top, 0.6))?;
-        let organ = world.add_body(body);
+        world.add_rigid_body(RigidBody::fixed(top, 0.6))?;
+        let organ = world.add_soft_body(body);
         let (around, above) = (0.35 * longest, 0.6 * longest);
         let room = [
             [corner[0] - around, 0.0, corner[2] - around],
@@ -177,7 +177,7 @@ impl Case {
     }
 
     /// The organ as a body that so many substeps are enough for, and by how much heavier it moves for that.
-    fn body(&self, substeps: u32) -> Result<(Body<Dim3>, f32), CaseError> {
+    fn body(&self, substeps: u32) -> Result<(SoftBody<Dim3>, f32), CaseError> {
         let wanted = f64::from(TICK) / f64::from(substeps);
         let ratio = wanted / self.longest_substep()?;
         // Of what is k times as heavy a wave is √k times as slow. A thousandth more, against rounding.
@@ -187,7 +187,7 @@ impl Case {
             ..*tissue
         };
         let heavy: Vec<Material> = self.tissues.iter().map(heavier).collect();
-        let body = Body::new(self.grid.clone(), &heavy).map_err(CaseError::Body)?;
+        let body = SoftBody::new(self.grid.clone(), &heavy).map_err(CaseError::Body)?;
         Ok((body, inertia))
     }
 
@@ -202,7 +202,7 @@ impl Case {
         let row =
             VoxelGrid::<Dim3>::from_materials([used.len(), 1, 1], self.grid.voxel_size(), used);
         let row = row.map_err(CaseError::Grid)?;
-        let row = Body::new(row, &self.tissues).map_err(CaseError::Body)?;
+        let row = SoftBody::new(row, &self.tissues).map_err(CaseError::Body)?;
         Ok(row.longest_substep())
     }
 
@@ -250,7 +250,7 @@ pub fn tissues(count: usize) -> Vec<Material> {
 }
 
 /// The least and the greatest coordinates of a body's nodes [m].
-pub(crate) fn bounds(body: &Body<Dim3>) -> [[f32; 3]; 2] {
+pub(crate) fn bounds(body: &SoftBody<Dim3>) -> [[f32; 3]; 2] {
     let mut bounds = [[f32::MAX; 3], [f32::MIN; 3]];
     for (id, _) in body.mesh().nodes() {
         let (at, ..) = body.node_state(id);
@@ -263,11 +263,11 @@ pub(crate) fn bounds(body: &Body<Dim3>) -> [[f32; 3]; 2] {
 }
 
 /// Holds what lies in the mould.
-fn hold_below(body: &mut Body<Dim3>) {
+fn hold_below(body: &mut SoftBody<Dim3>) {
     let [low, high] = bounds(body);
     let top = low[1] + HELD * (high[1] - low[1]);
     let nodes = body.mesh().nodes().map(|(id, _)| id);
     let below = nodes.filter(|&id| body.node_state(id).0[1] <= top);
     let below: Vec<NodeId> = below.collect();
-    below.into_iter().for_each(|id| body.hold(id));
+    below.into_iter().for_each(|id| body.fix_node(id));
 }

@@ -1,7 +1,7 @@
 //! What is noted of a procedure, tick by tick, and what it comes to.
 
 use crate::tools::Tool;
-use fuwafuwa::{Body, Dim3, Vector};
+use fuwafuwa::{Dim3, SoftBody, Vector};
 
 /// What was measured in a tick.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -40,7 +40,7 @@ pub struct Part {
 }
 
 /// The pieces of an organ by volume, the largest first; `voxel` is the volume of a voxel [ml].
-pub fn parts(body: &Body<Dim3>, voxel: f64) -> Vec<Part> {
+pub fn parts(body: &SoftBody<Dim3>, voxel: f64) -> Vec<Part> {
     let materials = body.materials().len();
     let none = Part {
         millilitres: 0.0,
@@ -66,7 +66,7 @@ pub fn parts(body: &Body<Dim3>, voxel: f64) -> Vec<Part> {
 }
 
 /// How many pieces an organ has: those that are not empty.
-pub fn pieces(body: &Body<Dim3>) -> u32 {
+pub fn pieces(body: &SoftBody<Dim3>) -> u32 {
     let list = &body.pieces().list;
     list.len() as u32
 }

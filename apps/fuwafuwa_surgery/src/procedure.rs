@@ -5,7 +5,7 @@ use crate::measures::{self, Sample};
 use crate::tools::{Held, Tool, clearance};
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Body, Dim3, Event, Refused, Rigid, Rotation, StepReport, Vector, World};
+use fuwafuwa::{Dim3, Event, Refused, RigidBody, Rotation, SoftBody, StepReport, Vector, World};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -156,8 +156,8 @@ impl Procedure {
     }
 
     /// The organ.
-    pub fn organ(&self) -> &Body<Dim3> {
-        &self.table.world.bodies()[self.table.organ]
+    pub fn organ(&self) -> &SoftBody<Dim3> {
+        &self.table.world.soft_bodies()[self.table.organ]
     }
 
     /// What is held.
@@ -166,7 +166,7 @@ impl Procedure {
     }
 
     /// What follows the hand.
-    pub fn tool(&self) -> &Rigid {
+    pub fn tool(&self) -> &RigidBody {
         self.held.rigid(&self.table.world)
     }
 
@@ -271,7 +271,7 @@ impl Procedure {
                 .map(|felt| length(felt.contact))
                 .fold(0.0, f32::max),
             torque: mean(|felt| felt.torque),
-            released: before.released + report.released,
+            released: before.released + report.nodes_split,
             pieces: measures::pieces(self.organ()),
             grips: self.held.grips(),
         }
@@ -279,7 +279,7 @@ impl Procedure {
 }
 
 fn entry(table: &Table) -> f32 {
-    let organ = &table.world.bodies()[table.organ];
+    let organ = &table.world.soft_bodies()[table.organ];
     let [low, high] = bounds(organ);
     let above = (ENTRY * (high[1] - low[1])).max(clearance(organ));
     (high[1] + above).clamp(table.room[0][1], table.room[1][1])

@@ -11,7 +11,7 @@
 //! slices the other way round. Letters stand at each.
 
 use fuwafuwa::vector::{minus, plus, scaled};
-use fuwafuwa::{Body, Dim3, ElementId, Vector};
+use fuwafuwa::{Dim3, ElementId, SoftBody, Vector};
 
 /// Which way a slice lies.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -100,7 +100,7 @@ impl Cut {
 
 impl Slice {
     /// That through an organ at a place along its axis [m].
-    pub fn of(organ: &Body<Dim3>, cut: Cut, at: f32) -> Self {
+    pub fn of(organ: &SoftBody<Dim3>, cut: Cut, at: f32) -> Self {
         let mut slice = Self::default();
         let axis = cut.axis();
         let positions = organ.positions();
@@ -121,7 +121,7 @@ impl Slice {
                 let corners = three.map(|k: usize| facet.corners[k]);
                 segment(corners, axis, at)
             });
-            let lines = match facet.is_fresh {
+            let lines = match facet.is_torn {
                 true => &mut slice.cracks,
                 false => &mut slice.rim,
             };
@@ -131,7 +131,7 @@ impl Slice {
         slice
     }
 
-    fn add(&mut self, organ: &Body<Dim3>, id: ElementId, cut: Cut, at: f32) {
+    fn add(&mut self, organ: &SoftBody<Dim3>, id: ElementId, cut: Cut, at: f32) {
         let Some(view) = organ.element_view(id) else {
             return;
         };

@@ -12,13 +12,13 @@
 
 use fuwafuwa::vector::plus;
 use fuwafuwa::{
-    Body, BodyId, Dim3, Drive, End, Joint, JointId, Knife, KnifeId, Refused, Rigid, RigidId,
-    Rotation, Shape, Vector, World,
+    Dim3, Joint, JointAnchor, JointHandle, Knife, KnifeHandle, MotionType, Refused, RigidBody,
+    RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, Vector, World,
 };
 use serde::{Deserialize, Serialize};
 
 /// How a hand holds a tool: it gives way by 2 mm for each newton, and never pushes harder than this [N].
-const DRIVE: Drive = Drive::Coupled {
+const DRIVE: MotionType = MotionType::Coupled {
     mass: 0.1,
     stiffness: 500.0,
     damping: 1.0,
@@ -75,10 +75,10 @@ impl Tool {
 #[derive(Clone, Debug)]
 pub struct Held {
     tool: Tool,
-    holder: RigidId,
+    holder: RigidBodyHandle,
     /// Its edge, and how dull that is [µm].
-    edge: Option<(KnifeId, u16)>,
-    grip: Option<JointId>,
+    edge: Option<(KnifeHandle, u16)>,
+    grip: Option<JointHandle>,
     /// Whether the forceps closed on something or on nothing, and did not open since.
     is_closed: bool,
 }
@@ -90,17 +90,17 @@ impl Held {
     /// [`Refused`] when the place is out of reach.
     pub fn new(
         world: &mut World<Dim3>,
-        organ: BodyId,
+        organ: SoftBodyHandle,
         tool: Tool,
         at: Vector,
         rotation: Rotation,
     ) -> Result<Self, Refused> {
-        let thinnest = thinnest(world.bodies().get(organ)?);
-        let mut rigid = Rigid::driven(form(tool, thinnest), at, DRIVE).rotated(rotation);
+        let thinnest = thinnest(world.soft_bodies().get(organ)?);
+        let mut rigid = RigidBody::new(form(tool, thinnest), at, DRIVE).rotated(rotation);
         rigid.friction = FRICTION;
         // Of a knife the edge alone touches, and its flat.
         rigid.is_sensor = tool == Tool::Knife;
-        let holder = world.add_rigid(rigid)?;
+        let holder = world.add_rigid_body(rigid)?;
         Ok(Self {
             tool,
             holder,
@@ -119,7 +119,7 @@ impl Held {
         if let Some((edge, _)) = self.edge.take() {
             world.remove_knife(edge)?;
         }
-        world.remove_rigid(self.holder)?;
+        world.remove_rigid_body(self.holder)?;
         Ok(())
     }
 
@@ -149,8 +149,8 @@ impl Held {
     }
 
     /// What follows the hand.
-    pub fn rigid<'a>(&self, world: &'a World<Dim3>) -> &'a Rigid {
-        &world.rigids()[self.holder]
+    pub fn rigid<'a>(&self, world: &'a World<Dim3>) -> &'a RigidBody {
+        &world.rigid_bodies()[self.holder]
     }
 
     /// Whether it holds tissue.
@@ -168,9 +168,9 @@ impl Held {
         goal: Vector,
         rotation: Rotation,
     ) -> Result<(), Refused> {
-        world.set_goal(self.holder, goal)?;
+        world.set_target_position(self.holder, goal)?;
         if rotation != self.rigid(world).rotation() {
-            world.set_goal_rotation(self.holder, rotation)?;
+            world.set_target_rotation(self.holder, rotation)?;
         }
         Ok(())
     }
@@ -182,7 +182,7 @@ impl Held {
     pub fn close(
         &mut self,
         world: &mut World<Dim3>,
-        organ: BodyId,
+        organ: SoftBodyHandle,
         closes: bool,
     ) -> Result<(), Refused> {
         if self
@@ -200,12 +200,12 @@ impl Held {
             && self.tool == Tool::Forceps
             && let Some(at) = nearest(world, organ, self.rigid(world))
         {
-            let soft = End::Soft {
+            let soft = JointAnchor::Soft {
                 body: organ,
                 at,
                 radius: JAW,
             };
-            let rigid = End::Rigid {
+            let rigid = JointAnchor::RigidBody {
                 rigid: self.holder,
                 at,
             };
@@ -274,12 +274,12 @@ impl Held {
 }
 
 /// What is round is no thinner than this [m].
-fn thinnest(organ: &Body<Dim3>) -> f32 {
+fn thinnest(organ: &SoftBody<Dim3>) -> f32 {
     THINNEST * organ.grid().voxel_size()
 }
 
 /// So far from an organ no tool touches it, however it is turned [m].
-pub(crate) fn clearance(organ: &Body<Dim3>) -> f32 {
+pub(crate) fn clearance(organ: &SoftBody<Dim3>) -> f32 {
     let [half, radius] = BAR;
     half + radius.max(thinnest(organ)) + organ.grid().voxel_size()
 }
@@ -310,8 +310,8 @@ fn form(tool: Tool, thinnest: f32) -> Shape {
 }
 
 /// The node of an organ that is nearest to the surface of a tip, if one is within reach: where it is [m].
-fn nearest(world: &World<Dim3>, organ: BodyId, tip: &Rigid) -> Option<Vector> {
-    let body = world.bodies().get(organ).ok()?;
+fn nearest(world: &World<Dim3>, organ: SoftBodyHandle, tip: &RigidBody) -> Option<Vector> {
+    let body = world.soft_bodies().get(organ).ok()?;
     let places = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);
     let away = |place: &Vector| tip.shape().distance(*place).0;
     let nearest = places.min_by(|a, b| away(a).total_cmp(&away(b)))?;

@@ -18,7 +18,7 @@ fn procedure(resolution: usize) -> Procedure {
 /// That the organ is as an organ has to be.
 fn check(procedure: &Procedure, what: &str) {
     let organ = procedure.organ();
-    let valid = organ.mesh().validate(organ.grid(), organ.sharing());
+    let valid = organ.mesh().validate(organ.grid(), organ.connectivity());
     valid.unwrap_or_else(|defect| panic!("{what}: {defect}"));
     for view in organ.piece_views() {
         assert!(!view.quarantined, "{what}: a piece went out of hand");

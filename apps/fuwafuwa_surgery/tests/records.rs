@@ -113,7 +113,7 @@ fn noise_inside_neither_panics_nor_takes_long() {
             let organ = playback.procedure().organ();
             organ
                 .mesh()
-                .validate(organ.grid(), organ.sharing())
+                .validate(organ.grid(), organ.connectivity())
                 .unwrap();
         }
     }

@@ -1,6 +1,6 @@
 //! Slices show what is inside, where it is: left on the left, and what was cut open.
 
-use fuwafuwa::{Blade, Body};
+use fuwafuwa::{Blade, SoftBody};
 use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
 use fuwafuwa_surgery::case::{Case, Table};
 use fuwafuwa_surgery::phantom::{GROWTH, HALF, case};
@@ -22,8 +22,8 @@ fn place(case: &Case, table: &Table, [right, front, up]: [f64; 3]) -> [f32; 3] {
     [0, 1, 2].map(|axis: usize| table.corner[axis] + (own[axis] / 1000.0) as f32)
 }
 
-fn organ(table: &Table) -> &Body<fuwafuwa::Dim3> {
-    &table.world.bodies()[table.organ]
+fn organ(table: &Table) -> &SoftBody<fuwafuwa::Dim3> {
+    &table.world.soft_bodies()[table.organ]
 }
 
 #[test]
@@ -61,7 +61,7 @@ fn a_slice_is_as_large_as_the_organ_is_there_and_follows_it() {
     let area = Slice::of(organ(&table), Cut::Axial, at[1]).area();
     assert!((area / ellipse - 1.0).abs() < 0.03, "{area} {ellipse}");
     // Drawn out by a tenth to the right.
-    let body = table.world.body_mut(table.organ).unwrap();
+    let body = table.world.soft_body_mut(table.organ).unwrap();
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
         let ([x, y, z], ..) = body.node_state(id);
@@ -101,7 +101,7 @@ fn a_cut_that_is_still_closed_is_seen() {
     }
     // Nothing of the organ is hidden by it.
     let whole = Slice::of(
-        &Body::new(case.grid.clone(), &case.tissues).unwrap(),
+        &SoftBody::new(case.grid.clone(), &case.tissues).unwrap(),
         Cut::Axial,
         at[1] - table.corner[1],
     );
@@ -165,7 +165,7 @@ fn a_scan_that_counts_to_the_left_is_shown_with_right_on_the_right() {
     let organ = Organ::of(&[&scan], &labels, &options, |_| {}).unwrap();
     let case = Case::of("marked", &organ);
     let table = case.lay().unwrap();
-    let body = &table.world.bodies()[table.organ];
+    let body = &table.world.soft_bodies()[table.organ];
     let [mark, mirrored] = [14.0, -14.0].map(|right| place(&case, &table, [right, 0.0, 0.0]));
     for cut in [Cut::Axial, Cut::Coronal] {
         let slice = Slice::of(body, cut, mark[cut.axis()]);

@@ -54,7 +54,7 @@ pub struct State {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Manner {
     /// It points at a place.
-    Places,
+    CellIndexing,
     /// It says how fast to go. Its proxy never leaves the middle.
     Steers,
     /// Nothing: it is pushed, whatever it does. For a [`Measurement`](crate::Measurement), and for nothing that depends on
@@ -110,7 +110,7 @@ impl Coupling {
         let moved = [0, 1].map(|axis| aim[axis] - memory.aim[axis]);
         memory.aim = aim;
         let pull = match state.manner {
-            Manner::Places => dot(memory.pull, along) - spring * dot(moved, along),
+            Manner::CellIndexing => dot(memory.pull, along) - spring * dot(moved, along),
             Manner::Steers => -spring * dot(aim, along),
             Manner::Yields => return state.contact,
         };

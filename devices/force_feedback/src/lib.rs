@@ -32,7 +32,7 @@
 //! let line = force.add(Box::new(recording.clone()), Settings::default());
 //! line.feel(State {
 //!     contact: [-30.0, 0.0],
-//!     manner: Manner::Places,
+//!     manner: Manner::CellIndexing,
 //! });
 //! line.stop(Stop::Paused);
 //! assert_eq!(line.report().silent, Some(Stop::Paused));

@@ -87,7 +87,7 @@ fn no_history_of_states_breaks_them_either() {
             let state = State {
                 contact: [number(&mut rng), number(&mut rng)],
                 manner: if rng.bool() {
-                    Manner::Places
+                    Manner::CellIndexing
                 } else {
                     Manner::Steers
                 },
@@ -134,7 +134,7 @@ fn it_recovers_from_what_is_no_number() {
         let mail = Mail {
             wish: Ok(State {
                 contact: [odd, 0.0],
-                manner: Manner::Places,
+                manner: Manner::CellIndexing,
             }),
             at: now,
         };

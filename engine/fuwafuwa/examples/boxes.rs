@@ -7,21 +7,23 @@
 
 #![allow(clippy::disallowed_types)] // a benchmark needs the clock
 
-use fuwafuwa::{Body, Dim3, Material, Rigid, Rotation, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{
+    Dim3, Material, RigidBody, Rotation, Shape, SoftBody, VoxelGrid, World, WorldConfig,
+};
 use std::error::Error;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut world = World::<Dim3>::new(Settings::default())?;
+    let mut world = World::<Dim3>::new(WorldConfig::default())?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.5))?;
+    world.add_rigid_body(RigidBody::fixed(floor, 0.5))?;
     let rubber = Material {
         strength: f32::INFINITY,
         toughness: f32::INFINITY,
         ..Material::default()
     };
-    let ball = Body::new(VoxelGrid::ball(32, 1.0)?, &[rubber])?;
-    world.add_body(ball);
+    let ball = SoftBody::new(VoxelGrid::ball(32, 1.0)?, &[rubber])?;
+    world.add_soft_body(ball);
     let boxes = (0..20).map(|k| {
         let half = [0.12, 0.08, 0.1];
         let centre = [
@@ -30,18 +32,20 @@ fn main() -> Result<(), Box<dyn Error>> {
             0.45 + 0.03 * (k % 4) as f32,
         ];
         let turned = Rotation::about([1.0, k as f32, 0.5], 0.3 * k as f32);
-        world.add_rigid(Rigid::free(Shape::Box { centre, half }, 1.0).rotated(turned))
+        world.add_rigid_body(RigidBody::dynamic(Shape::Box { centre, half }, 1.0).rotated(turned))
     });
     let boxes = boxes.collect::<Result<Vec<_>, _>>()?;
     let (mut ticks, mut times) = (0, Vec::new());
-    while ticks < 1200 && !boxes.iter().all(|&id| world.rigids()[id].is_asleep()) {
+    while ticks < 1200 && !boxes.iter().all(|&id| world.rigid_bodies()[id].is_asleep()) {
         let began = Instant::now();
         world.step();
         times.push(1000.0 * began.elapsed().as_secs_f64());
         ticks += 1;
     }
     times.sort_by(f64::total_cmp);
-    let asleep = boxes.iter().filter(|&&id| world.rigids()[id].is_asleep());
+    let asleep = boxes
+        .iter()
+        .filter(|&&id| world.rigid_bodies()[id].is_asleep());
     println!(
         "{} of {} boxes asleep after {:.1} s; a tick took {:.1} ms in the middle, {:.1} ms at the worst",
         asleep.count(),

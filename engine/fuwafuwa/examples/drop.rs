@@ -2,23 +2,25 @@
 //!
 //! `cargo run --release -p fuwafuwa --example drop`
 
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Rigid, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{
+    Dim, Dim2, Dim3, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
+};
 
 fn drop<D: Dim>(n: usize) -> Result<(), Box<dyn std::error::Error>> {
-    let mut world = World::<D>::new(Settings::default())?;
+    let mut world = World::<D>::new(WorldConfig::default())?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.5))?;
+    world.add_rigid_body(RigidBody::fixed(floor, 0.5))?;
     let ball = VoxelGrid::ball(n, 1.0)?;
     let stiff = Material {
         strength: f32::INFINITY,
         ..Material::default()
     };
-    let ball = world.add_body(Body::new(ball, &[stiff])?.moved([0.0, 0.5, 0.0]));
+    let ball = world.add_soft_body(SoftBody::new(ball, &[stiff])?.translated([0.0, 0.5, 0.0]));
     println!("{}D ball, {n} voxels across:", D::N);
     for tick in 0..180 {
         let report = world.step();
-        let nodes = world.bodies()[ball].mesh().nodes();
-        let heights = nodes.map(|(id, _)| world.bodies()[ball].node_state(id).0[1]);
+        let nodes = world.soft_bodies()[ball].mesh().nodes();
+        let heights = nodes.map(|(id, _)| world.soft_bodies()[ball].node_state(id).0[1]);
         let (low, high) = heights.fold((f32::MAX, f32::MIN), |(low, high), y| {
             (low.min(y), high.max(y))
         });

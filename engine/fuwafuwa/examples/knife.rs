@@ -6,7 +6,8 @@
 
 use cpu_time::ThreadTime;
 use fuwafuwa::{
-    Body, Dim3, Drive, Elasticity, Event, Knife, Material, Rigid, Settings, Shape, VoxelGrid, World,
+    Dim3, Elasticity, Event, Knife, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid,
+    World, WorldConfig,
 };
 use std::error::Error;
 
@@ -51,15 +52,15 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// What each tick takes [ms], and what was cut, in words.
 fn cut(voxels: usize, most_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn Error>> {
-    let settings = Settings {
+    let settings = WorldConfig {
         // As in a bath, where such an organ weighs little.
         gravity: [0.0, -1.0, 0.0],
         most_substeps,
-        ..Settings::default()
+        ..WorldConfig::default()
     };
     let mut world = World::<Dim3>::new(settings)?;
     let table = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(table, 0.8))?;
+    world.add_rigid_body(RigidBody::fixed(table, 0.8))?;
     // 0.16 m wide, 0.1 m high.
     let size = 0.16 / voxels as f32;
     let grid = VoxelGrid::from_centres([voxels; 3], size, |at| {
@@ -69,17 +70,18 @@ fn cut(voxels: usize, most_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn 
         u8::from(apart.iter().map(|k| k * k).sum::<f32>() < 1.0)
     })?;
     let solid = grid.solid_count();
-    let organ = world.add_body(Body::new(grid, &[organ()])?);
-    let mut holder = Rigid::hand([0.081, 0.14, 0.08], 0.01).with_drive(Drive::Kinematic);
+    let organ = world.add_soft_body(SoftBody::new(grid, &[organ()])?);
+    let mut holder =
+        RigidBody::coupled_ball([0.081, 0.14, 0.08], 0.01).with_motion_type(MotionType::Kinematic);
     holder.is_sensor = true;
-    let holder = world.add_rigid(holder)?;
+    let holder = world.add_rigid_body(holder)?;
     let edge = [[0.0, 0.0, -0.08], [0.0, 0.0, 0.08]];
     let knife = world.add_knife(Knife::new(holder, edge, [0.0, -1.0, 0.0]))?;
     let (mut times, mut sums, mut most) = (Vec::new(), [0.0; 2], 0.0f32);
     for tick in 0..180 {
         // It waits for half a second, and goes down in two.
         let deep = 0.001 * (tick as f32 - 30.0).clamp(0.0, 135.0);
-        world.set_goal(holder, [0.081, 0.14 - deep, 0.08])?;
+        world.set_target_position(holder, [0.081, 0.14 - deep, 0.08])?;
         let began = ThreadTime::now();
         world.step();
         times.push(1000.0 * began.elapsed().as_secs_f64());
@@ -92,8 +94,8 @@ fn cut(voxels: usize, most_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn 
     }
     let told = format!(
         "{solid} voxels, {} elements, {} pieces; cut {:.2} cm² with {:.3} J, {most:.2} N at most",
-        world.bodies()[organ].mesh().element_count(),
-        world.bodies()[organ].piece_views().len(),
+        world.soft_bodies()[organ].mesh().element_count(),
+        world.soft_bodies()[organ].piece_views().len(),
         1e4 * sums[0],
         sums[1],
     );

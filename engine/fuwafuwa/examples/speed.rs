@@ -4,7 +4,7 @@
 //! `cargo run --release -p fuwafuwa --example speed`
 #![allow(clippy::disallowed_types, clippy::disallowed_methods)] // a benchmark needs the clock
 
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, VoxelGrid};
+use fuwafuwa::{Dim, Dim2, Dim3, Material, SoftBody, VoxelGrid};
 use std::error::Error;
 use std::time::Instant;
 
@@ -19,12 +19,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn ball<D: Dim>(n: usize) -> Result<Body<D>, Box<dyn Error>> {
-    Ok(Body::new(VoxelGrid::ball(n, 1.0)?, &[Material::default()])?)
+fn ball<D: Dim>(n: usize) -> Result<SoftBody<D>, Box<dyn Error>> {
+    Ok(SoftBody::new(
+        VoxelGrid::ball(n, 1.0)?,
+        &[Material::default()],
+    )?)
 }
 
 /// A ball with so many cracks in it, each along an axis and a few voxels wide, opened bit by bit.
-fn torn<D: Dim>(n: usize, cracks: usize) -> Result<Body<D>, Box<dyn Error>> {
+fn torn<D: Dim>(n: usize, cracks: usize) -> Result<SoftBody<D>, Box<dyn Error>> {
     let mut body = ball::<D>(n)?;
     let mut seed = 1u64;
     let mut random = |end: usize| {
@@ -57,7 +60,7 @@ fn torn<D: Dim>(n: usize, cracks: usize) -> Result<Body<D>, Box<dyn Error>> {
     Ok(body)
 }
 
-fn measure<D: Dim>(name: &str, mut body: Body<D>) {
+fn measure<D: Dim>(name: &str, mut body: SoftBody<D>) {
     // A body without strain would be kinder than any in a game.
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for &id in &nodes {

@@ -2,13 +2,13 @@
 //!
 //! `cargo run --release -p fuwafuwa --example squeeze`
 
-use fuwafuwa::{Body, Dim2, Material, Rigid, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{Dim2, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mut world = World::<Dim2>::new(Settings {
+    let mut world = World::<Dim2>::new(WorldConfig {
         gravity: [0.0; 3],
         drag: 1.0,
-        ..Settings::default()
+        ..WorldConfig::default()
     })?;
     for (from, to) in [(-1.0, 0.1), (0.9, 2.0)] {
         let bar = Shape::Capsule {
@@ -16,20 +16,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             to: [1.2, to, 0.0],
             radius: 0.05,
         };
-        world.add_rigid(Rigid::fixed(bar, 0.2))?;
+        world.add_rigid_body(RigidBody::fixed(bar, 0.2))?;
     }
     let unbreakable = Material {
         strength: f32::INFINITY,
         ..Material::default()
     };
-    let ball = world.add_body(Body::new(VoxelGrid::ball(64, 1.0)?, &[unbreakable])?);
-    let hand = world.add_rigid(Rigid::hand([-0.2, 0.5, 0.0], 0.15))?;
+    let ball = world.add_soft_body(SoftBody::new(VoxelGrid::ball(64, 1.0)?, &[unbreakable])?);
+    let hand = world.add_rigid_body(RigidBody::coupled_ball([-0.2, 0.5, 0.0], 0.15))?;
     for tick in 0..=300u16 {
         let x = (-0.2 + 0.008 * f32::from(tick)).min(1.5);
-        world.set_goal(hand, [x, 0.5, 0.0])?;
+        world.set_target_position(hand, [x, 0.5, 0.0])?;
         world.step();
         if tick % 30 == 0 {
-            let body = &world.bodies()[ball];
+            let body = &world.soft_bodies()[ball];
             let view = body.piece_views()[0];
             let through = body.mass_where(|at| at[0] > 1.2) / view.mass;
             println!(

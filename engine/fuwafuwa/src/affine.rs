@@ -1,6 +1,6 @@
 //! Affine motion of elements: maps between the undeformed body and world space.
 
-use crate::body::Body;
+use crate::body::SoftBody;
 use crate::dim::Dim;
 use crate::ids::{ElementId, NodeId};
 use crate::mesh::Element;
@@ -12,11 +12,11 @@ use crate::vector::{cross, dot, minus, plus, scaled, three};
 /// amplify the rounding of positions, about 1e-5 of a voxel, to a hundredth of its width and more.
 const FLAT: f32 = 0.01;
 
-impl<D: Dim> Body<D> {
+impl<D: Dim> SoftBody<D> {
     /// Returns the centre of an element [m], and its deformation gradient F by rows.
     pub(crate) fn deformation(&self, element: &Element) -> (Vector, [Vector; 3]) {
-        let stencil = self.truth.mesh.stencil(element);
-        let half = 0.5 * self.truth.grid.voxel_size() * element.cell.width() as f32;
+        let stencil = self.topology.mesh.stencil(element);
+        let half = 0.5 * self.topology.grid.voxel_size() * element.cell.width() as f32;
         let scale = 1.0 / (stencil.volume as f32 * half);
         let (mut centre, mut gradient) = ([0.0; 3], [[0.0; 3]; 3]);
         for (place, &node) in element.nodes.iter().enumerate() {
@@ -39,7 +39,7 @@ impl<D: Dim> Body<D> {
     /// Elastic part of the deformation gradient, without plastic deformation.
     pub(crate) fn elastic_part(&self, id: ElementId, element: &Element) -> [Vector; 3] {
         let (_, gradient) = self.deformation(element);
-        let Some(undone) = self.state.blocks.undone(id) else {
+        let Some(undone) = self.state.blocks.plastic_inverse(id) else {
             return gradient;
         };
         let column = |j: usize| [undone[0][j], undone[1][j], undone[2][j]];
@@ -48,10 +48,10 @@ impl<D: Dim> Body<D> {
 
     /// Returns the affine motion of an element: maps a point of the undeformed body, in voxels, to its
     /// position [m].
-    pub(crate) fn carry(&self, element: &Element) -> impl Fn(Vector) -> Vector + use<D> {
+    pub(crate) fn affine_map(&self, element: &Element) -> impl Fn(Vector) -> Vector + use<D> {
         let (centre, gradient) = self.deformation(element);
-        let stencil = self.truth.mesh.stencil(element);
-        let size = self.truth.grid.voxel_size();
+        let stencil = self.topology.mesh.stencil(element);
+        let size = self.topology.grid.voxel_size();
         let half = 0.5 * size * element.cell.width() as f32;
         // Slot in the low corner of the cell, relative to the volume centroid at rest.
         let steps = slot_at(stencil.slots[0] as usize).map(|k| k as f32 * half);
@@ -71,10 +71,10 @@ impl<D: Dim> Body<D> {
     }
 
     /// Maps a position [m] back to the undeformed body, in voxels, by the motion of an element: the inverse
-    /// of [`Body::carry`]. `None` if the element is flat.
+    /// of [`SoftBody::carry`]. `None` if the element is flat.
     pub(crate) fn at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
-        let stencil = self.truth.mesh.stencil(element);
-        let size = self.truth.grid.voxel_size();
+        let stencil = self.topology.mesh.stencil(element);
+        let size = self.topology.grid.voxel_size();
         let half = 0.5 * size * element.cell.width() as f32;
         let from_centroid = self.offset_at_rest(element, at)?;
         let corner = slot_at(stencil.slots[0] as usize);
@@ -90,7 +90,7 @@ impl<D: Dim> Body<D> {
     /// functions are interpolated exactly, so an impulse that is distributed with these weights keeps its
     /// torque.
     pub(crate) fn weights(&self, element: &Element, at: Vector) -> Vec<(NodeId, f32)> {
-        let stencil = self.truth.mesh.stencil(element);
+        let stencil = self.topology.mesh.stencil(element);
         let half = 0.5 * element.cell.width() as f32;
         let corner = slot_at(stencil.slots[0] as usize);
         let low = element.cell.first_voxel();
@@ -116,13 +116,13 @@ impl<D: Dim> Body<D> {
 
     /// Maps a position [m] to its rest offset from the centroid of an element [m], in all three coordinates.
     fn offset_at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
-        let (centre, undo) = self.undo(element)?;
+        let (centre, undo) = self.inverse_deformation(element)?;
         Some(undo(minus(at, centre)))
     }
 
     /// Returns the centre of an element [m], and the inverse of its deformation: it maps present directions
     /// to directions at rest. `None` if the element is flat.
-    pub(crate) fn undo(
+    pub(crate) fn inverse_deformation(
         &self,
         element: &Element,
     ) -> Option<(Vector, impl Fn(Vector) -> Vector + use<D>)> {
@@ -144,8 +144,8 @@ impl<D: Dim> Body<D> {
     /// Returns the child of an element's cell that contains a position [m].
     pub(crate) fn child_at(&self, element: &Element, at: Vector) -> Option<usize> {
         let from_centroid = self.offset_at_rest(element, at)?;
-        let child_width = 0.5 * self.truth.grid.voxel_size() * element.cell.width() as f32;
-        let stencil = self.truth.mesh.stencil(element);
+        let child_width = 0.5 * self.topology.grid.voxel_size() * element.cell.width() as f32;
+        let stencil = self.topology.mesh.stencil(element);
         let corner = slot_at(stencil.slots[0] as usize);
         let mut child = 0;
         for axis in 0..D::N {

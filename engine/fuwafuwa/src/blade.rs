@@ -3,7 +3,7 @@
 //! A blade separates two neighbouring voxels if the line between their present centres crosses the blade. The
 //! shared nodes are then released, as they are when a body tears.
 
-use crate::body::Body;
+use crate::body::SoftBody;
 use crate::changes::Changes;
 use crate::dim::{Dim, Point, voxel_around};
 use crate::ids::PieceId;
@@ -60,23 +60,23 @@ pub struct CutReport {
     /// Positions at which shared nodes were released [m].
     pub released: Vec<Vector>,
     /// Numbers of the detached pieces.
-    pub parted: Vec<PieceId>,
+    pub detached: Vec<PieceId>,
 }
 
-impl<D: Dim> Body<D> {
+impl<D: Dim> SoftBody<D> {
     /// Cuts along a blade.
     ///
     /// # Errors
     /// A [`Defect`] if the mesh becomes inconsistent, which is a bug in this library.
     #[inline(never)]
     pub fn cut(&mut self, blade: &Blade) -> Result<CutReport, Defect> {
-        if self.truth.pyramid.grading() == Grading::Coarse {
+        if self.topology.pyramid.grading() == Grading::Coarse {
             return Ok(CutReport::default());
         }
         let (released, changes) = self.open(&self.faces_across(blade))?;
         Ok(CutReport {
             released,
-            parted: changes.parted,
+            detached: changes.detached,
         })
     }
 
@@ -108,32 +108,37 @@ impl<D: Dim> Body<D> {
     #[inline(never)]
     pub fn crumble(&mut self) -> Result<Vec<PieceId>, Defect> {
         let octants = |at: Point| (0..D::CORNERS).map(move |octant| (at, 1 << octant));
-        let everything: Vec<(Point, u8)> = self.truth.sharing.points().flat_map(octants).collect();
+        let everything: Vec<(Point, u8)> = self
+            .topology
+            .connectivity
+            .points()
+            .flat_map(octants)
+            .collect();
         self.release(&everything)
     }
 
     /// Faces that a blade crosses, each given by the voxel before it and its axis.
     fn faces_across(&self, blade: &Blade) -> BTreeSet<(Point, usize)> {
-        let mut middles = vec![None; self.truth.grid.voxels().count()];
-        for (_, element) in self.truth.mesh.elements() {
-            let carry = self.carry(element);
-            for voxel in self.truth.mesh.voxels(element) {
+        let mut middles = vec![None; self.topology.grid.voxels().count()];
+        for (_, element) in self.topology.mesh.elements() {
+            let carry = self.affine_map(element);
+            for voxel in self.topology.mesh.voxels(element) {
                 let middle = carry(voxel.map(|k| k as f32 + 0.5));
-                middles[self.truth.grid.index(voxel)] = Some(middle);
+                middles[self.topology.grid.index(voxel)] = Some(middle);
             }
         }
         let mut crossed = BTreeSet::new();
-        for voxel in self.truth.grid.voxels() {
-            let Some(here) = middles[self.truth.grid.index(voxel)] else {
+        for voxel in self.topology.grid.voxels() {
+            let Some(here) = middles[self.topology.grid.index(voxel)] else {
                 continue;
             };
             for axis in 0..D::N {
                 let mut next = voxel;
                 next[axis] += 1;
-                if !self.truth.grid.is_left(next) {
+                if !self.topology.grid.is_present(next) {
                     continue;
                 }
-                let there = middles[self.truth.grid.index(next)]
+                let there = middles[self.topology.grid.index(next)]
                     .expect("every remaining voxel has an owner");
                 if blade.parts(here, there) {
                     crossed.insert((voxel, axis));
@@ -146,8 +151,8 @@ impl<D: Dim> Body<D> {
     /// Present position of a lattice point [m], interpolated in one of the elements around it.
     fn position_of(&self, at: Point) -> Option<Vector> {
         let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
-        let owner = { voxels }.find_map(|voxel| self.truth.mesh.owner(voxel))?;
-        Some(self.carry(self.truth.mesh.element(owner)?)(
+        let owner = { voxels }.find_map(|voxel| self.topology.mesh.owner(voxel))?;
+        Some(self.affine_map(self.topology.mesh.element(owner)?)(
             at.map(|k| k as f32),
         ))
     }
@@ -155,7 +160,7 @@ impl<D: Dim> Body<D> {
     /// Masks of the octants that must be released at a point to open the given faces, one for each side that
     /// is separated. Empty if the faces are open already.
     fn sides(&self, at: Point, opened: &BTreeSet<(Point, usize)>) -> Vec<u8> {
-        let around = self.truth.sharing.around(at);
+        let around = self.topology.connectivity.around(at);
         let mut groups = around.middle();
         let solid = groups.solid();
         let mut sides: Vec<u8> = (0..D::CORNERS)

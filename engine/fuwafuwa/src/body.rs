@@ -15,22 +15,22 @@ mod truth;
 use crate::changes::{Bookmark, Changes};
 use crate::dim::{Dim, Point};
 use crate::grid::VoxelGrid;
-use crate::handle::{Arena, BodyId};
+use crate::handle::{Arena, SoftBodyHandle};
 use crate::ids::{ElementId, NodeId};
 use crate::law::Law;
 use crate::material::{BodyError, Material};
 use crate::mesh::{Element, Mesh};
 use crate::momentum::Momentum;
 use crate::piece::Pieces;
-use crate::pyramid::{Grading, Pyramid};
-use crate::sharing::Sharing;
-use crate::solve::{Blocks, Row};
+use crate::pyramid::{CellHierarchy, Grading};
+use crate::sharing::Connectivity;
+use crate::solve::{ElementBatches, Row};
 use crate::vector::{as_row, dot, three};
-use blend::{Blend, elasticities, plasticities};
+use blend::{BodyProperties, elasticities, plasticities};
 use cache::Cache;
-pub(crate) use state::MOST_GRAVITY;
+pub(crate) use state::MAX_GRAVITY_SCALE;
 use state::State;
-use truth::Truth;
+use truth::Topology;
 
 /// Courant number of a substep: the largest fraction of a voxel that the fastest pressure wave may travel.
 ///
@@ -43,37 +43,37 @@ const COURANT: f64 = 0.6;
 const LEAD_USED: f64 = 0.7;
 
 /// Arena of the bodies of a world.
-pub type Bodies<D> = Arena<BodyId, Body<D>>;
+pub type SoftBodies<D> = Arena<SoftBodyHandle, SoftBody<D>>;
 
 /// Soft body, whole or in pieces.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
-pub struct Body<D: Dim> {
+pub struct SoftBody<D: Dim> {
     // Snapshots contain `truth` and `state`.
-    pub(crate) truth: Truth<D>,
+    pub(crate) topology: Topology<D>,
     pub(crate) state: State<D>,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) cache: Cache,
 }
 
-impl<D: Dim> Body<D> {
+impl<D: Dim> SoftBody<D> {
     /// Creates a body at rest that fills `grid`, with the low corner of the grid at the origin. A voxel of
     /// material number n uses `materials[n - 1]`.
     ///
     /// # Errors
     /// [`BodyError`] if a material is missing or has a field out of range.
     pub fn new(grid: VoxelGrid<D>, materials: &[Material]) -> Result<Self, BodyError> {
-        Self::with(grid, materials, Law::default(), Grading::default())
+        Self::with_options(grid, materials, Law::default(), Grading::default())
     }
 
-    /// Creates a body like [`Body::new`], with a chosen law and grading. [`Grading::Coarse`] can be neither
+    /// Creates a body like [`SoftBody::new`], with a chosen law and grading. [`Grading::Coarse`] can be neither
     /// torn nor cut.
     ///
     /// # Errors
-    /// See [`Body::new`].
+    /// See [`SoftBody::new`].
     #[inline(never)]
-    pub fn with(
+    pub fn with_options(
         grid: VoxelGrid<D>,
         materials: &[Material],
         law: Law,
@@ -87,18 +87,18 @@ impl<D: Dim> Body<D> {
         for (index, material) in materials.iter().enumerate() {
             material.check(index + 1)?;
         }
-        let sharing = Sharing::new(&grid);
-        let pyramid = Pyramid::new(&grid, &sharing, grading);
+        let sharing = Connectivity::new(&grid);
+        let pyramid = CellHierarchy::new(&grid, &sharing, grading);
         let mesh = Mesh::grade(&grid, &sharing, &pyramid)?;
-        let mut blocks = Blocks::new(law, &elasticities(materials, 1.0), grid.voxel_size());
+        let mut blocks = ElementBatches::new(law, &elasticities(materials, 1.0), grid.voxel_size());
         blocks.set_plasticities(&plasticities(materials));
         let mut body = Self {
-            truth: Truth {
+            topology: Topology {
                 pieces: Pieces::new(&mesh),
                 materials: materials.to_vec(),
                 stiffness_scale: 1.0,
                 grid,
-                sharing,
+                connectivity: sharing,
                 pyramid,
                 mesh,
             },
@@ -106,18 +106,20 @@ impl<D: Dim> Body<D> {
             cache: Cache::default(),
         };
         body.make_room();
-        for (id, node) in body.truth.mesh.nodes() {
-            let at = node.at.map(|k| k as f32 * body.truth.grid.voxel_size());
+        for (id, node) in body.topology.mesh.nodes() {
+            let at = node.at.map(|k| k as f32 * body.topology.grid.voxel_size());
             body.state.position[id] = as_row(at);
         }
         body.state.ahead.clone_from(&body.state.position);
-        let elements: Vec<ElementId> = body.truth.mesh.elements().map(|(id, _)| id).collect();
-        body.state
-            .blocks
-            .update(&body.truth.mesh, &body.truth.grid, &[], &elements, |_| {
-                false
-            });
-        let all: Vec<NodeId> = body.truth.mesh.nodes().map(|(id, _)| id).collect();
+        let elements: Vec<ElementId> = body.topology.mesh.elements().map(|(id, _)| id).collect();
+        body.state.blocks.update(
+            &body.topology.mesh,
+            &body.topology.grid,
+            &[],
+            &elements,
+            |_| false,
+        );
+        let all: Vec<NodeId> = body.topology.mesh.nodes().map(|(id, _)| id).collect();
         body.weigh(&all);
         body.rebuild();
         Ok(body)
@@ -125,20 +127,20 @@ impl<D: Dim> Body<D> {
 
     /// Recomputes the cache and the element stiffness from `truth` and `state`.
     pub(crate) fn rebuild(&mut self) {
-        let Truth {
+        let Topology {
             grid,
             materials,
             stiffness_scale,
             ..
-        } = &self.truth;
-        self.cache.blend = Blend::of(grid, materials);
+        } = &self.topology;
+        self.cache.blend = BodyProperties::of(grid, materials);
         let elasticities = elasticities(materials, *stiffness_scale);
         self.state.blocks.set_elasticities(&elasticities);
         self.make_room();
-        let voxels: Vec<Point> = self.truth.grid.voxels().collect();
+        let voxels: Vec<Point> = self.topology.grid.voxels().collect();
         self.expose(&voxels);
-        if self.truth.pyramid.grading() != Grading::Coarse {
-            let nodes: Vec<NodeId> = self.truth.mesh.nodes().map(|(id, _)| id).collect();
+        if self.topology.pyramid.grading() != Grading::Coarse {
+            let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
             self.find_breakable(&nodes);
         }
         self.cache.awake_is_stale = true;
@@ -164,35 +166,35 @@ impl<D: Dim> Body<D> {
     ///
     /// # Panics
     /// If the id was never used.
-    pub fn hold(&mut self, id: NodeId) {
-        self.state.held[id] = true;
+    pub fn fix_node(&mut self, id: NodeId) {
+        self.state.fixed[id] = true;
         self.state.inverse_mass[id] = 0.0;
     }
 
-    /// Frees a node that [`Body::hold`] fixed.
+    /// Frees a node that [`SoftBody::hold`] fixed.
     ///
     /// # Panics
     /// If the id was never used.
-    pub fn let_go(&mut self, id: NodeId) {
-        self.state.held[id] = false;
-        if !self.truth.pieces.sleeps(id) {
+    pub fn free_node(&mut self, id: NodeId) {
+        self.state.fixed[id] = false;
+        if !self.topology.pieces.sleeps(id) {
             self.state.inverse_mass[id] = 1.0 / self.state.mass[id];
         }
     }
 
     /// Voxel grid from which the body was made.
     pub fn grid(&self) -> &VoxelGrid<D> {
-        &self.truth.grid
+        &self.topology.grid
     }
 
     /// Connectivity of the voxels.
-    pub fn sharing(&self) -> &Sharing<D> {
-        &self.truth.sharing
+    pub fn connectivity(&self) -> &Connectivity<D> {
+        &self.topology.connectivity
     }
 
     /// Elements and nodes.
     pub fn mesh(&self) -> &Mesh<D> {
-        &self.truth.mesh
+        &self.topology.mesh
     }
 
     /// Law of the elastic forces.
@@ -202,17 +204,17 @@ impl<D: Dim> Body<D> {
 
     /// Grading of the elements.
     pub fn grading(&self) -> Grading {
-        self.truth.pyramid.grading()
+        self.topology.pyramid.grading()
     }
 
     /// Pieces of the body.
     pub fn pieces(&self) -> &Pieces {
-        &self.truth.pieces
+        &self.topology.pieces
     }
 
     /// Materials, number 1 first.
     pub fn materials(&self) -> &[Material] {
-        &self.truth.materials
+        &self.topology.materials
     }
 
     /// Material of an element of this body.
@@ -220,8 +222,8 @@ impl<D: Dim> Body<D> {
     /// # Panics
     /// If the element belongs to another body.
     pub fn material(&self, element: &Element) -> &Material {
-        let voxel = self.truth.mesh.first_voxel(element);
-        &self.truth.materials[self.truth.grid.material(voxel) as usize - 1]
+        let voxel = self.topology.mesh.first_voxel(element);
+        &self.topology.materials[self.topology.grid.material(voxel) as usize - 1]
     }
 
     /// Position [m], velocity [m/s] and mass [kg] of a node.
@@ -263,14 +265,14 @@ impl<D: Dim> Body<D> {
     /// Linear and angular momentum of the whole body about the origin.
     #[inline(never)]
     pub fn momentum(&self) -> Momentum {
-        let ids: Vec<NodeId> = self.truth.mesh.nodes().map(|(id, _)| id).collect();
+        let ids: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
         Momentum::of(self.states(&ids), [0.0; 3])
     }
 
     /// Kinetic energy [J].
     #[inline(never)]
     pub fn kinetic_energy(&self) -> f64 {
-        let states = self.truth.mesh.nodes().map(|(id, _)| {
+        let states = self.topology.mesh.nodes().map(|(id, _)| {
             let velocity = self.state.velocity[id].map(f64::from);
             0.5 * f64::from(self.state.mass[id]) * dot(velocity, velocity)
         });
@@ -286,7 +288,7 @@ impl<D: Dim> Body<D> {
     /// Mass [kg].
     #[inline(never)]
     pub fn total_mass(&self) -> f64 {
-        let ids = self.truth.mesh.nodes();
+        let ids = self.topology.mesh.nodes();
         ids.map(|(id, _)| f64::from(self.state.mass[id])).sum()
     }
 
@@ -297,8 +299,8 @@ impl<D: Dim> Body<D> {
     /// stable if Ω²h (h + 2τ) < 4, that is τ < (4/Ω² − h²) / 2h; [`LEAD_USED`] keeps a margin.
     pub(crate) fn damping(&self, duration: f32) -> (f32, f32) {
         let ratio = self.cache.blend.damping;
-        let slow = self.cache.blend.slow * self.truth.stiffness_scale.sqrt();
-        let fast = self.cache.blend.fastest_swing * self.truth.stiffness_scale.sqrt();
+        let slow = self.cache.blend.slow * self.topology.stiffness_scale.sqrt();
+        let fast = self.cache.blend.fastest_swing * self.topology.stiffness_scale.sqrt();
         let step = f64::from(duration);
         let most = LEAD_USED * (4.0 / (fast * fast) - step * step) / (2.0 * step);
         let lead = (2.0 * ratio / slow).min(most).max(0.0);
@@ -318,25 +320,25 @@ impl<D: Dim> Body<D> {
 
     /// Longest stable substep [s] of the stiffest material: 0.6 s / c, with voxel size s and wave speed c.
     pub fn longest_substep(&self) -> f64 {
-        let fastest = self.cache.blend.fastest_wave * self.truth.stiffness_scale.sqrt();
-        COURANT * f64::from(self.truth.grid.voxel_size()) / fastest
+        let fastest = self.cache.blend.fastest_wave * self.topology.stiffness_scale.sqrt();
+        COURANT * f64::from(self.topology.grid.voxel_size()) / fastest
     }
 
     /// Factor by which Young's modulus was lowered to keep the substep stable; 1 = unchanged.
     pub fn stiffness_scale(&self) -> f64 {
-        self.truth.stiffness_scale
+        self.topology.stiffness_scale
     }
 
     /// Lowers the stiffness by as little as makes a substep of `duration` [s] stable.
     pub(crate) fn scale_stiffness_for(&mut self, duration: f64) {
-        let size = f64::from(self.truth.grid.voxel_size());
+        let size = f64::from(self.topology.grid.voxel_size());
         let ratio = COURANT * size / self.cache.blend.fastest_wave / duration;
         let stiffness_scale = (ratio * ratio).min(1.0);
-        if stiffness_scale == self.truth.stiffness_scale {
+        if stiffness_scale == self.topology.stiffness_scale {
             return;
         }
-        self.truth.stiffness_scale = stiffness_scale;
-        let elasticities = elasticities(&self.truth.materials, stiffness_scale);
+        self.topology.stiffness_scale = stiffness_scale;
+        let elasticities = elasticities(&self.topology.materials, stiffness_scale);
         self.state.blocks.set_elasticities(&elasticities);
     }
 

@@ -12,10 +12,10 @@
 
 use crate::dim::{Dim, FAR, Point, voxel_around};
 use crate::grid::VoxelGrid;
-use crate::ids::{Id, NodeId, Table};
+use crate::ids::{Id, IndexVec, NodeId};
 use crate::material::Material;
 use crate::mesh::{Mesh, Node};
-use crate::sharing::{Around, Sharing};
+use crate::sharing::{Connectivity, PointNeighbourhood};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -40,7 +40,7 @@ pub struct BreakableNode {
 
 /// Division of the voxels at a point into two sides by opening faces across `axis`.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Cut {
+pub struct NodeCut {
     /// Axis across the opened faces.
     pub axis: u8,
     /// Octants that are separated, on the far side of the axis.
@@ -48,7 +48,7 @@ pub struct Cut {
     /// Number of opened faces.
     pub faces: u8,
     /// Octants that are the only voxel on their side.
-    pub lone: u8,
+    pub single_voxel_octants: u8,
 }
 
 /// For each axis, the octants on its near side with a closed face across the axis.
@@ -57,9 +57,9 @@ type Closed = [u8; 3];
 /// Breakable nodes of a body.
 #[derive(Clone, Debug, Default)]
 pub struct BreakableNodes {
-    of_node: Table<NodeId, Option<BreakableNode>>,
+    of_node: IndexVec<NodeId, Option<BreakableNode>>,
     /// Cuts of each pattern of closed faces, in the order in which the patterns first occurred.
-    cuts: Vec<Vec<Cut>>,
+    cuts: Vec<Vec<NodeCut>>,
     known: BTreeMap<Closed, u32>,
 }
 
@@ -73,16 +73,16 @@ impl BreakableNodes {
     }
 
     /// Returns all possible cuts at a breakable node.
-    pub fn cuts(&self, node: &BreakableNode) -> &[Cut] {
+    pub fn cuts(&self, node: &BreakableNode) -> &[NodeCut] {
         &self.cuts[node.cuts as usize]
     }
 
     /// Updates `nodes`, which must contain all nodes whose elements or connectivity may have changed.
-    pub fn look<D: Dim>(
+    pub fn update<D: Dim>(
         &mut self,
         nodes: &[NodeId],
         grid: &VoxelGrid<D>,
-        sharing: &Sharing<D>,
+        sharing: &Connectivity<D>,
         mesh: &Mesh<D>,
         materials: &[Material],
     ) {
@@ -105,7 +105,7 @@ impl BreakableNodes {
         &mut self,
         node: Node,
         grid: &VoxelGrid<D>,
-        around: &Around<D>,
+        around: &PointNeighbourhood<D>,
         materials: &[Material],
     ) -> BreakableNode {
         let Node { at, group } = node;
@@ -133,7 +133,7 @@ impl BreakableNodes {
         let cuts = self.pattern::<D>(closed, group);
         let lone = self.cuts[cuts as usize]
             .iter()
-            .fold(0, |lone, cut| lone | cut.lone);
+            .fold(0, |lone, cut| lone | cut.single_voxel_octants);
         let crumbs = (0..D::CORNERS)
             .filter(|octant| lone >> octant & 1 == 1)
             .filter(|&octant| would_crumble(around, octant))
@@ -159,7 +159,7 @@ impl BreakableNodes {
 
 /// Returns all cuts that divide the group by opening all, half or a quarter of the closed faces across one
 /// axis.
-fn cuts<D: Dim>(closed: Closed, group: u8) -> impl Iterator<Item = Cut> {
+fn cuts<D: Dim>(closed: Closed, group: u8) -> impl Iterator<Item = NodeCut> {
     (0..D::N).flat_map(move |axis| {
         let others = 3usize.pow(D::N as u32 - 1);
         let mut known = [0u8; 9];
@@ -171,11 +171,11 @@ fn cuts<D: Dim>(closed: Closed, group: u8) -> impl Iterator<Item = Cut> {
             known[choice] = opened;
             let side = side_of::<D>(closed, axis, opened)?;
             let alone = |side: u8| if side.count_ones() == 1 { side } else { 0 };
-            Some(Cut {
+            Some(NodeCut {
                 axis: axis as u8,
                 side,
                 faces: opened.count_ones() as u8,
-                lone: alone(side) | alone(group & !side),
+                single_voxel_octants: alone(side) | alone(group & !side),
             })
         })
     })
@@ -218,7 +218,7 @@ fn side_of<D: Dim>(mut closed: Closed, axis: usize, opened: u8) -> Option<u8> {
 
 /// Whether the voxel of an octant would become a crumb or hang by one face: at most one of its faces away
 /// from the point is closed.
-fn would_crumble<D: Dim>(around: &Around<D>, octant: usize) -> bool {
+fn would_crumble<D: Dim>(around: &PointNeighbourhood<D>, octant: usize) -> bool {
     let is_held = |axis: &usize| around.is_far_face_closed(octant, *axis);
     (0..D::N).filter(is_held).count() <= 1
 }
@@ -237,13 +237,13 @@ fn chance(at: Point) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Body;
+    use crate::body::SoftBody;
     use crate::dim::{Dim2, Dim3};
 
     /// After any releases, the updated breakable nodes must match a search from scratch.
     fn check_upkeep<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
-        let mut body = Body::new(grid, &[Material::default()]).expect("the material is valid");
+        let mut body = SoftBody::new(grid, &[Material::default()]).expect("the material is valid");
         let mut seed = 5u32;
         let mut random = |below: i32| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -256,13 +256,13 @@ mod tests {
                 .expect("the mesh stays consistent");
         }
         let mut fresh = BreakableNodes::default();
-        let nodes: Vec<NodeId> = body.truth.mesh.nodes().map(|(id, _)| id).collect();
+        let nodes: Vec<NodeId> = body.topology.mesh.nodes().map(|(id, _)| id).collect();
         let materials = body.materials();
-        fresh.look(
+        fresh.update(
             &nodes,
-            &body.truth.grid,
-            &body.truth.sharing,
-            &body.truth.mesh,
+            &body.topology.grid,
+            &body.topology.connectivity,
+            &body.topology.mesh,
             materials,
         );
         let listed = |breakable: &BreakableNodes| -> Vec<_> {

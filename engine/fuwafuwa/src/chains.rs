@@ -12,7 +12,7 @@ const END: u32 = u32::MAX;
 /// One list of ids per index; every id is in at most one list.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Chains<I> {
+pub struct IdLists<I> {
     /// First id of each list.
     first: Vec<u32>,
     /// Next id after each id.
@@ -20,7 +20,7 @@ pub struct Chains<I> {
     ids: PhantomData<I>,
 }
 
-impl<I: Id> Chains<I> {
+impl<I: Id> IdLists<I> {
     /// Creates `places` empty lists.
     pub fn new(places: usize) -> Self {
         Self {
@@ -61,7 +61,7 @@ impl<I: Id> Chains<I> {
     /// Whether lists read from a file are valid: `places` lists, and every id below `ids` and in at most one
     /// list. This implies that every list ends.
     #[cfg(feature = "serde")]
-    pub fn is_sound(&self, places: usize, ids: usize) -> bool {
+    pub fn is_valid(&self, places: usize, ids: usize) -> bool {
         let mut seen = vec![false; ids.min(self.next.len())];
         let mut ends = |&first: &u32| {
             let mut id = first;
@@ -122,20 +122,20 @@ mod tests {
     #[test]
     #[cfg(feature = "serde")]
     fn is_sound_detects_endless_list() {
-        let mut chains = Chains::new(2);
+        let mut chains = IdLists::new(2);
         for id in 0..3 {
             chains.append(1, NodeId(id));
         }
-        assert!(chains.is_sound(2, 3) && !chains.is_sound(3, 3) && !chains.is_sound(2, 2));
+        assert!(chains.is_valid(2, 3) && !chains.is_valid(3, 3) && !chains.is_valid(2, 2));
         chains.next[2] = 0;
-        assert!(!chains.is_sound(2, 3));
+        assert!(!chains.is_valid(2, 3));
         chains.next[2] = 7;
-        assert!(!chains.is_sound(2, 3));
+        assert!(!chains.is_valid(2, 3));
     }
 
     #[test]
     fn chains_preserve_order_after_remove_and_append() {
-        let mut chains = Chains::new(2);
+        let mut chains = IdLists::new(2);
         for id in [4, 0, 2].map(NodeId) {
             chains.append(1, id);
         }

@@ -12,7 +12,7 @@ pub struct Changes {
     /// Elements that were added or removed, or got other nodes or exposed faces.
     pub elements: Vec<ElementId>,
     /// Pieces that were detached.
-    pub parted: Vec<PieceId>,
+    pub detached: Vec<PieceId>,
     /// Pieces that were removed, with their nodes and elements.
     pub removed: Vec<PieceId>,
 }
@@ -40,7 +40,7 @@ pub(crate) struct History {
 impl Changes {
     /// Number of ids.
     fn size(&self) -> usize {
-        self.nodes.len() + self.elements.len() + self.parted.len() + self.removed.len()
+        self.nodes.len() + self.elements.len() + self.detached.len() + self.removed.len()
     }
 }
 
@@ -97,12 +97,12 @@ impl History {
         for changes in self.kept.iter().skip(known as usize) {
             all.nodes.extend(&changes.nodes);
             all.elements.extend(&changes.elements);
-            all.parted.extend(&changes.parted);
+            all.detached.extend(&changes.detached);
             all.removed.extend(&changes.removed);
         }
         sort(&mut all.nodes);
         sort(&mut all.elements);
-        sort(&mut all.parted);
+        sort(&mut all.detached);
         sort(&mut all.removed);
         Some(all)
     }

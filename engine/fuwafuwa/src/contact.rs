@@ -12,17 +12,17 @@ mod rigid_rows;
 mod row;
 mod sides;
 
-use crate::body::{Bodies, Body};
+use crate::body::{SoftBodies, SoftBody};
 use crate::dim::{Dim, inner};
 use crate::handle::{BodySlot, RigidSlot};
-use crate::ids::{PieceId, Table};
+use crate::ids::{IndexVec, PieceId};
 use crate::layers::Layers;
-use crate::rigid::Rigids;
+use crate::rigid::RigidBodies;
 use crate::solve::Row;
 use crate::threads;
 use crate::touch::{ContactSphere, MARGIN, Nearby, NodePairs, WAKE_SPEED};
 use crate::vector::{as_row, cross, minus, scaled, three};
-use exit::Exit;
+use exit::EscapeContact;
 use motion::Motion;
 use rigid_rows::{find_free, find_hands};
 use row::{AHEAD, CLOSE, Contact, is_close};
@@ -46,7 +46,7 @@ const WAKING_SPHERE: f32 = CLOSE;
 pub struct Contacts {
     nodes: Vec<NodeContact>,
     spheres: Vec<SphereContact>,
-    exits: Vec<Exit>,
+    exits: Vec<EscapeContact>,
     hands: Vec<HandContact>,
     free: Vec<FreeContact>,
     motion: Motion,
@@ -66,8 +66,8 @@ impl Contacts {
     /// Finds the contacts of this substep among the nearby pairs. Returns the sleepers that were hit.
     pub fn find<D: Dim>(
         &mut self,
-        bodies: &Bodies<D>,
-        rigids: &Rigids,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
         nearby: &mut Nearby,
         duration: f32,
     ) -> Hits {
@@ -78,8 +78,8 @@ impl Contacts {
         self.exits.clear();
         let (spheres, motion) = (&nearby.spheres, &mut self.motion);
         let exits = nearby.captives.list.iter();
-        let exits =
-            exits.filter_map(|captive| Exit::new(captive, bodies, spheres, motion, duration));
+        let exits = exits
+            .filter_map(|captive| EscapeContact::new(captive, bodies, spheres, motion, duration));
         self.exits.extend(exits);
         find_hands(rigids, duration, &mut self.hands);
         let woken = find_free::<D>(rigids, &nearby.rigids, duration, &mut self.free);
@@ -90,15 +90,15 @@ impl Contacts {
 
     fn find_nodes<D: Dim>(
         &mut self,
-        bodies: &Bodies<D>,
-        rigids: &Rigids,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
         pairs: &mut NodePairs,
         duration: f32,
         hits: &mut Hits,
     ) {
         self.nodes.clear();
         let travel = pairs.travel;
-        let shares = threads::shares(&mut pairs.list);
+        let shares = threads::chunks(&mut pairs.list);
         let found = threads::map(shares, move |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Hits::default());
             for (pair, index) in pairs.iter_mut().zip(first..) {
@@ -123,7 +123,7 @@ impl Contacts {
                     false => [0.0; 4],
                 };
                 let relative = minus(velocity, own);
-                let size = body.truth.grid.voxel_size();
+                let size = body.topology.grid.voxel_size();
                 let approach = inner::<D>(relative, normal);
                 if !is_close(gap, approach, size, duration) {
                     pair.impulse.release();
@@ -136,9 +136,9 @@ impl Contacts {
                 let may_wake = moves || rigid.is_asleep();
                 if may_wake && gap < WAKING_NODE * size {
                     let is_fast = |speed: Row| inner::<D>(speed, speed) > WAKE_SPEED * WAKE_SPEED;
-                    let wakes = rigid.is_driven() || moves && is_fast(own);
-                    if wakes && body.truth.pieces.sleeps(pair.node) {
-                        let piece = body.truth.pieces.of_node(pair.node);
+                    let wakes = rigid.follows_target() || moves && is_fast(own);
+                    if wakes && body.topology.pieces.sleeps(pair.node) {
+                        let piece = body.topology.pieces.of_node(pair.node);
                         hits.pieces.push((pair.body, piece));
                     }
                     if rigid.is_asleep() && is_fast(velocity) {
@@ -147,7 +147,7 @@ impl Contacts {
                 }
                 let inverse_mass = body.state.inverse_mass[node] + rigid.yields_near(three(at));
                 // For a dynamic rigid body, a sleeping node is a wall.
-                if body.state.inverse_mass[node] == 0.0 && !rigid.is_free() {
+                if body.state.inverse_mass[node] == 0.0 && !rigid.is_dynamic() {
                     continue;
                 }
                 let friction = rigid.friction;
@@ -174,15 +174,15 @@ impl Contacts {
 
     fn find_spheres<D: Dim>(
         &mut self,
-        bodies: &Bodies<D>,
+        bodies: &SoftBodies<D>,
         nearby: &mut Nearby,
         duration: f32,
         hits: &mut Vec<Hit>,
     ) {
         self.spheres.clear();
         let waking = WAKE_SPEED * duration;
-        let friction = |body: Option<&Body<D>>| body.map_or(0.0, Body::friction);
-        let frictions: &Table<BodySlot, f32> = &bodies.slots().map(friction).collect();
+        let friction = |body: Option<&SoftBody<D>>| body.map_or(0.0, SoftBody::friction);
+        let frictions: &IndexVec<BodySlot, f32> = &bodies.slots().map(friction).collect();
         let has_layers = bodies
             .iter()
             .any(|body| body.state.layers != Layers::default());
@@ -191,9 +191,9 @@ impl Contacts {
         let (all, captives) = (&nearby.spheres, &nearby.captives);
         // A local slice: through the table, each pair would load the pointer again.
         let centres = all.centres.as_slice();
-        let widths = bodies.iter().map(|body| body.truth.grid.voxel_size());
+        let widths = bodies.iter().map(|body| body.topology.grid.voxel_size());
         let widest = widths.fold(0.0, f32::max);
-        let shares = threads::shares(&mut nearby.pairs.list);
+        let shares = threads::chunks(&mut nearby.pairs.list);
         let found = threads::map(shares, move |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Vec::new());
             for (pair, index) in pairs.iter_mut().zip(first..) {
@@ -267,8 +267,11 @@ impl Contacts {
     }
 
     /// Returns the dynamic rigid bodies that a moving kinematic or coupled body presses on.
-    pub fn handled(&self, rigids: &Rigids) -> BTreeSet<RigidSlot> {
-        let pressed = self.free.iter().filter(|row| row.contact.pressed > 0.0);
+    pub fn handled(&self, rigids: &RigidBodies) -> BTreeSet<RigidSlot> {
+        let pressed = self
+            .free
+            .iter()
+            .filter(|row| row.contact.normal_impulse > 0.0);
         let handled = pressed.filter(|row| rigids.at(row.both[1]).pushes());
         handled.map(|row| row.both[0]).collect()
     }
@@ -276,8 +279,8 @@ impl Contacts {
     /// Solves the contacts on the velocities.
     pub fn solve<D: Dim>(
         &mut self,
-        bodies: &mut Bodies<D>,
-        rigids: &mut Rigids,
+        bodies: &mut SoftBodies<D>,
+        rigids: &mut RigidBodies,
         nearby: &mut Nearby,
         duration: f32,
     ) {
@@ -286,7 +289,11 @@ impl Contacts {
         for row in &self.nodes {
             motion.push_node(row, rigids, row.contact.start(), duration);
         }
-        for row in self.spheres.iter().filter(|row| row.contact.pressed > 0.0) {
+        for row in self
+            .spheres
+            .iter()
+            .filter(|row| row.contact.normal_impulse > 0.0)
+        {
             motion.push_spheres::<D>(&row.grips, row.contact.start());
         }
         for row in &self.free {
@@ -338,7 +345,12 @@ impl Contacts {
     }
 
     /// Removes, after the position update, the velocity that resolved overlaps.
-    pub fn relax<D: Dim>(&mut self, bodies: &mut Bodies<D>, rigids: &mut Rigids, duration: f32) {
+    pub fn relax<D: Dim>(
+        &mut self,
+        bodies: &mut SoftBodies<D>,
+        rigids: &mut RigidBodies,
+        duration: f32,
+    ) {
         let motion = &mut self.motion;
         motion.load(bodies);
         for exit in &self.exits {
@@ -390,7 +402,7 @@ impl Hits {
 /// If a crumb is behind a sphere of a surface, returns the outward normal, as it pushes the
 /// first sphere, and the negative distance of the crumb along it [m].
 fn behind_surface<D: Dim>(
-    bodies: &Bodies<D>,
+    bodies: &SoftBodies<D>,
     [a, b]: [&ContactSphere; 2],
     apart: Row,
 ) -> Option<(Row, f32)> {

@@ -5,9 +5,9 @@
 //! these, the velocities of each piece relax towards its rigid motion, at the rate 2 ζ ω of a damped
 //! oscillator. Linear and angular momentum are not affected.
 
-use crate::body::Body;
+use crate::body::SoftBody;
 use crate::dim::Dim;
-use crate::ids::{PieceId, Table};
+use crate::ids::{IndexVec, PieceId};
 use crate::momentum::RigidMotion;
 use crate::threads;
 use crate::vector::{cross, dot, minus, plus, scaled, three};
@@ -85,12 +85,12 @@ impl PieceMotion {
 }
 
 /// Returns the motion of every piece, by number; sleeping pieces have no mass here.
-pub fn motions<D: Dim>(body: &Body<D>) -> Table<PieceId, PieceMotion> {
-    let count = body.truth.pieces.list.len();
-    let mut motions: Table<PieceId, _> = vec![PieceMotion::default(); count].into();
+pub fn motions<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, PieceMotion> {
+    let count = body.topology.pieces.list.len();
+    let mut motions: IndexVec<PieceId, _> = vec![PieceMotion::default(); count].into();
     // Sums are relative to a node of the piece: far from the world origin they would lose digits.
-    let mut origins: Table<PieceId, _> = vec![[0.0; 3]; count].into();
-    let of_node = |id| body.truth.pieces.of_node(id);
+    let mut origins: IndexVec<PieceId, _> = vec![[0.0; 3]; count].into();
+    let of_node = |id| body.topology.pieces.of_node(id);
     // Consecutive nodes mostly belong to one piece: its sums stay in registers.
     for nodes in body.cache.awake.chunk_by(|&a, &b| of_node(a) == of_node(b)) {
         let piece = of_node(nodes[0]);
@@ -115,7 +115,7 @@ pub fn motions<D: Dim>(body: &Body<D>) -> Table<PieceId, PieceMotion> {
 
 /// Damping of a piece: rates [1/s], or the fractions lost in one round.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Slowing {
+pub struct PieceDamping {
     /// Damping of the motion within the piece.
     pub swing: f32,
     /// Damping of the spin.
@@ -124,7 +124,7 @@ pub struct Slowing {
     pub drag: f32,
 }
 
-impl Slowing {
+impl PieceDamping {
     /// Converts rates to the fractions lost in a round of `duration` [s].
     pub fn over(self, duration: f32) -> Self {
         let share = |rate: f32| (rate * duration).min(1.0);
@@ -137,13 +137,20 @@ impl Slowing {
 }
 
 /// Damps the pieces of a body, each by its own `slowing`, and stores their rigid motions.
-pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &[Slowing]) {
+pub fn slow_down<D: Dim>(
+    body: &mut SoftBody<D>,
+    motions: &[PieceMotion],
+    slowing: &[PieceDamping],
+) {
     let rigid: Vec<RigidMotion> = motions.iter().map(PieceMotion::rigid).collect();
     body.cache.rigid.clear();
     body.cache
         .rigid
         .extend(rigid.iter().map(RigidMotion::roughly));
-    if slowing.iter().all(|slowing| *slowing == Slowing::default()) {
+    if slowing
+        .iter()
+        .all(|slowing| *slowing == PieceDamping::default())
+    {
         return;
     }
     // The velocity of the centre keeps 1 − drag. The spin keeps (1 − drag)(1 − spin), and the internal motion
@@ -151,7 +158,7 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
     let paces: Vec<_> = rigid
         .iter()
         .zip(slowing)
-        .map(|(rigid, &Slowing { swing, spin, drag })| {
+        .map(|(rigid, &PieceDamping { swing, spin, drag })| {
             let kept = 1.0 - drag;
             let pace = rigid.times(f64::from(kept * swing), f64::from(kept * (swing - spin)));
             (kept * (1.0 - swing), pace.roughly())
@@ -160,7 +167,7 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
     let (inverse_mass, position, pieces) = (
         &body.state.inverse_mass,
         &body.state.position,
-        &body.truth.pieces,
+        &body.topology.pieces,
     );
     let rows = threads::rows(&body.cache.awake, [&mut body.state.velocity]);
     threads::map(rows, |rows| {

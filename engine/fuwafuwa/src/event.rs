@@ -1,6 +1,6 @@
 //! Events of a tick and the report of a step.
 
-use crate::handle::{BodyId, JointId, KnifeId, RigidId};
+use crate::handle::{JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
 use crate::ids::PieceId;
 use crate::shape::Vector;
 
@@ -9,25 +9,25 @@ use crate::shape::Vector;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Event {
     /// A node was split: a crack advanced, or a cut passed here.
-    Released {
+    NodeSplit {
         /// The body.
-        body: BodyId,
+        body: SoftBodyHandle,
         /// Position of the node [m].
         at: Vector,
         /// Elastic energy released [J]; 0 for an intentional cut.
         energy: f32,
     },
     /// A piece was detached from its body.
-    Parted {
+    PieceDetached {
         /// The body.
-        body: BodyId,
+        body: SoftBodyHandle,
         /// Number of the new piece.
         piece: PieceId,
     },
     /// A piece pressed on something during the tick.
-    Touched {
+    Pressed {
         /// The body.
-        body: BodyId,
+        body: SoftBodyHandle,
         /// Number of the piece.
         piece: PieceId,
         /// Object that it pressed on.
@@ -40,11 +40,11 @@ pub enum Event {
         impulse: f32,
     },
     /// Two rigid bodies pressed on each other during the tick; at least the first one is dynamic.
-    RigidTouched {
+    RigidPressed {
         /// The dynamic rigid body.
-        rigid: RigidId,
+        rigid: RigidBodyHandle,
         /// Handle of the second rigid body.
-        with: RigidId,
+        with: RigidBodyHandle,
         /// Position of the strongest contact [m].
         at: Vector,
         /// Unit contact normal there, from the second body towards the first.
@@ -53,9 +53,9 @@ pub enum Event {
         impulse: f32,
     },
     /// Two contact participants began to touch.
-    ContactBegan {
+    ContactStarted {
         /// The participants, in ascending order.
-        both: [Party; 2],
+        both: [ObjectRef; 2],
         /// Position of the strongest contact [m].
         at: Vector,
         /// Unit contact normal there, from the second participant towards the first.
@@ -67,28 +67,28 @@ pub enum Event {
     /// side still touch.
     ContactEnded {
         /// The participants, in ascending order.
-        both: [Party; 2],
+        both: [ObjectRef; 2],
     },
     /// A sensor was entered.
-    Entered {
+    SensorEntered {
         /// The sensor.
-        sensor: RigidId,
+        sensor: RigidBodyHandle,
         /// The piece or rigid body that entered.
-        who: Party,
+        who: ObjectRef,
     },
     /// A sensor was exited, or the participant or the sensor was removed.
-    Left {
+    SensorExited {
         /// The sensor.
-        sensor: RigidId,
+        sensor: RigidBodyHandle,
         /// The piece or rigid body that left.
-        who: Party,
+        who: ObjectRef,
     },
     /// A knife opened faces between voxels.
     Cut {
         /// The knife.
-        knife: KnifeId,
+        knife: KnifeHandle,
         /// The body.
-        body: BodyId,
+        body: SoftBodyHandle,
         /// Middle of the part of the cutting edge that is inside the body [m].
         at: Vector,
         /// Area cut since the last such event of this knife, in all bodies, measured at rest [m²].
@@ -99,44 +99,44 @@ pub enum Event {
     /// A joint broke or lost one of its anchors, and was removed.
     JointBroke {
         /// Handle of the removed joint.
-        joint: JointId,
+        joint: JointHandle,
     },
     /// A piece fell asleep.
     FellAsleep {
         /// The body.
-        body: BodyId,
+        body: SoftBodyHandle,
         /// Number of the piece.
         piece: PieceId,
     },
     /// A sleeping piece was woken.
-    Woke {
+    WokeUp {
         /// The body.
-        body: BodyId,
+        body: SoftBodyHandle,
         /// Number of the piece.
         piece: PieceId,
     },
     /// A piece was [removed](crate::World::remove_piece) from the world.
     PieceRemoved {
         /// The body. If this was its last piece, the handle is stale.
-        body: BodyId,
+        body: SoftBodyHandle,
         /// Number of the piece.
         piece: PieceId,
     },
     /// The last piece of a body was removed, and the body with it.
     BodyRemoved {
         /// Handle of the removed body.
-        body: BodyId,
+        body: SoftBodyHandle,
     },
     /// A rigid body was removed because it [left a region](crate::World::remove_outside).
     RigidRemoved {
         /// Handle of the removed rigid body.
-        rigid: RigidId,
+        rigid: RigidBodyHandle,
     },
     /// A piece became non-finite or too fast. It was stopped for good, so that it cannot affect the rest of
     /// the world.
     Quarantined {
         /// The body.
-        body: BodyId,
+        body: SoftBodyHandle,
         /// Number of the piece.
         piece: PieceId,
     },
@@ -144,10 +144,10 @@ pub enum Event {
 
 impl Event {
     /// Returns the events for pieces detached from a body.
-    pub(crate) fn parted(body: BodyId, pieces: &[PieceId]) -> impl Iterator<Item = Self> {
+    pub(crate) fn parted(body: SoftBodyHandle, pieces: &[PieceId]) -> impl Iterator<Item = Self> {
         pieces
             .iter()
-            .map(move |&piece| Self::Parted { body, piece })
+            .map(move |&piece| Self::PieceDetached { body, piece })
     }
 }
 
@@ -156,15 +156,15 @@ impl Event {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum With {
     /// A fixed rigid body.
-    Obstacle(RigidId),
+    Obstacle(RigidBodyHandle),
     /// A kinematic or coupled rigid body.
-    Hand(RigidId),
+    Hand(RigidBodyHandle),
     /// A dynamic rigid body.
-    Free(RigidId),
+    Free(RigidBodyHandle),
     /// Another piece, or the same piece where it folds onto itself.
     Piece {
         /// The body.
-        body: BodyId,
+        body: SoftBodyHandle,
         /// Number of the piece.
         piece: PieceId,
     },
@@ -173,22 +173,22 @@ pub enum With {
 /// Participant of a contact or a sensor overlap.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Party {
+pub enum ObjectRef {
     /// A piece of a soft body.
     Piece {
         /// The body.
-        body: BodyId,
+        body: SoftBodyHandle,
         /// Number of the piece.
         piece: PieceId,
     },
     /// A rigid body.
-    Rigid(RigidId),
+    RigidBody(RigidBodyHandle),
 }
 
-impl From<With> for Party {
+impl From<With> for ObjectRef {
     fn from(with: With) -> Self {
         match with {
-            With::Obstacle(id) | With::Hand(id) | With::Free(id) => Self::Rigid(id),
+            With::Obstacle(id) | With::Hand(id) | With::Free(id) => Self::RigidBody(id),
             With::Piece { body, piece } => Self::Piece { body, piece },
         }
     }
@@ -201,9 +201,9 @@ pub struct StepReport {
     /// Number of substeps.
     pub substeps: u32,
     /// Number of split nodes.
-    pub released: u32,
+    pub nodes_split: u32,
     /// Number of detached pieces.
-    pub parted: u32,
+    pub pieces_detached: u32,
     /// Number of inverted elements in the last substep; they recover by themselves.
     pub inverted: u32,
     /// Number of pieces that were stopped by the quarantine.

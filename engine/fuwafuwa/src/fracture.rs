@@ -12,9 +12,9 @@
 //! The tension σ is compared with the strength at a smooth surface, and with the toughness at the tip of a
 //! crack. A node fails if it is overloaded for some milliseconds.
 
-use crate::body::Body;
+use crate::body::SoftBody;
 use crate::body::cooldowns::is_near;
-use crate::breakable::{BreakableNode, Cut};
+use crate::breakable::{BreakableNode, NodeCut};
 use crate::dim::{Dim, Point};
 use crate::ids::NodeId;
 use crate::lanes::on_widest_lanes;
@@ -48,7 +48,7 @@ const DAMAGE_TIME: f32 = 0.004;
 const HEALING_TIME: f32 = 4.0 * DAMAGE_TIME;
 /// Upper limit of the overload that counts for damage, so that a short impact does not count like a sustained
 /// pull.
-const MOST_OVER: f32 = 3.0;
+const MAX_OVERLOAD: f32 = 3.0;
 /// Factor on the threshold of cuts that separate a single voxel. Without it, cracks leave a trail of crumbs.
 const CRUMB_FACTOR: f32 = 1.3;
 /// Cooldown after a release, as the number of voxels that a wave travels: across the surroundings and back.
@@ -56,26 +56,26 @@ const COOLDOWN_VOXELS: f64 = 4.0;
 
 /// Updates the damage of all breakable nodes after `duration` [s], and returns those that fail now, the worst
 /// first. No two of them are near each other, except along the front of a crack.
-pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
+pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
     body.state.cooldowns.pass(duration);
     if !body.can_tear() {
         return Vec::new();
     }
-    let size = body.truth.grid.voxel_size();
+    let size = body.topology.grid.voxel_size();
     let mut damage = std::mem::take(&mut body.state.damage);
-    let found = threads::map(threads::shares(&mut damage), |(first, damage)| {
+    let found = threads::map(threads::chunks(&mut damage), |(first, damage)| {
         let mut found: Vec<Failure> = Vec::new();
         let nodes = body.cache.breakable.among(first..first + damage.len());
         on_widest_lanes!(simd => for (id, node) in nodes {
             let damage = &mut damage[id.index() - first];
             // Undamaged nodes are examined only in every other round.
-            if body.truth.pieces.sleeps(id)
+            if body.topology.pieces.sleeps(id)
                 || *damage == 0.0 && (id.0 ^ body.state.cooldowns.rounds) & 1 == 1
             {
                 continue;
             }
             // Most nodes are far from failure.
-            let failure = match holds(simd, body, id, node) {
+            let failure = match is_surely_intact(simd, body, id, node) {
                 true => None,
                 false => worst_cut(body, id, node),
             };
@@ -84,7 +84,7 @@ pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
                 *damage = healed.max(0.0);
                 continue;
             };
-            let over = (failure.excess - 1.0).min(MOST_OVER);
+            let over = (failure.excess - 1.0).min(MAX_OVERLOAD);
             *damage += duration / DAMAGE_TIME * 2.0 * over;
             if *damage >= 1.0 && !body.state.cooldowns.covers(failure.at) {
                 found.push(failure);
@@ -96,7 +96,7 @@ pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
     let mut found = found.concat();
     found.sort_by(|a, b| b.excess.total_cmp(&a.excess).then(a.node.cmp(&b.node)));
     let cooldown = (COOLDOWN_VOXELS * f64::from(size) / body.fastest_wave()) as f32;
-    let chosen = undisturbed(found);
+    let chosen = without_worse_neighbour(found);
     let cooling = chosen.iter().map(|failure| failure.at);
     body.state.cooldowns.start(cooling, cooldown);
     chosen
@@ -105,7 +105,7 @@ pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
 /// Returns those failures that have no worse failure nearby; `found` is sorted, the worst first. Neighbours
 /// in one plane are kept together: they form the front of one crack, in 3D a line, which advances as a whole.
 /// If they had to wait for each other, cracks would advance too slowly, and the load would start new ones.
-fn undisturbed(found: Vec<Failure>) -> Vec<Failure> {
+fn without_worse_neighbour(found: Vec<Failure>) -> Vec<Failure> {
     let mut chosen: Vec<Failure> = Vec::new();
     for failure in found {
         let forestalls = |worse: &Failure| {
@@ -122,16 +122,21 @@ fn undisturbed(found: Vec<Failure>) -> Vec<Failure> {
 /// Whether no cut through a breakable node can be overloaded. No pull is larger than half the sum of all
 /// forces, with (Σ|f|)² ≤ n Σ|f|² and a margin for rounding; every cut opens at least one face.
 #[inline(always)]
-fn holds<D: Dim, S: Simd>(simd: S, body: &Body<D>, id: NodeId, node: &BreakableNode) -> bool {
-    let threshold = face_area::<D>(body.truth.grid.voxel_size()) * node.threshold;
+fn is_surely_intact<D: Dim, S: Simd>(
+    simd: S,
+    body: &SoftBody<D>,
+    id: NodeId,
+    node: &BreakableNode,
+) -> bool {
+    let threshold = face_area::<D>(body.topology.grid.voxel_size()) * node.threshold;
     let squares = body.state.blocks.squares_on(simd, id);
     0.2501 * node.group.count_ones() as f32 * squares <= threshold * threshold
 }
 
 /// Returns the most overloaded cut through a breakable node, if any is overloaded.
 #[inline(never)]
-fn worst_cut<D: Dim>(body: &Body<D>, id: NodeId, node: &BreakableNode) -> Option<Failure> {
-    let size = body.truth.grid.voxel_size();
+fn worst_cut<D: Dim>(body: &SoftBody<D>, id: NodeId, node: &BreakableNode) -> Option<Failure> {
+    let size = body.topology.grid.voxel_size();
     let mut forces = [[0.0; 4]; 8];
     for (octant, force) in octants(node.group).zip(body.state.blocks.parts_on(id)) {
         forces[octant] = force;
@@ -139,13 +144,13 @@ fn worst_cut<D: Dim>(body: &Body<D>, id: NodeId, node: &BreakableNode) -> Option
     let total = forces.into_iter().fold([0.0; 4], plus);
     // Common rotation of its voxels, computed on demand.
     let mut turn: Option<[[f32; 3]; 3]> = None;
-    let mut worst: Option<(f32, f32, Cut)> = None;
+    let mut worst: Option<(f32, f32, NodeCut)> = None;
     for cut in body.cache.breakable.cuts(node) {
         let far = octants(cut.side).fold([0.0; 4], |sum, octant| plus(sum, forces[octant]));
         let near = minus(total, far);
         let pull = scaled(minus(far, near), 0.5);
         let area = f32::from(cut.faces) * face_area::<D>(size);
-        let is_crumb = cut.lone & node.crumbs != 0;
+        let is_crumb = cut.single_voxel_octants & node.crumbs != 0;
         let threshold = node.threshold * if is_crumb { CRUMB_FACTOR } else { 1.0 };
         let least = area * threshold * worst.map_or(1.0, |(excess, ..)| excess);
         // The tension is never larger than the pull.
@@ -171,7 +176,7 @@ fn worst_cut<D: Dim>(body: &Body<D>, id: NodeId, node: &BreakableNode) -> Option
     let volume = (0..D::N).fold(1.0, |volume, _| volume * size);
     Some(Failure {
         node: id,
-        at: body.truth.mesh.node(id).at,
+        at: body.topology.mesh.node(id).at,
         side: cut.side,
         axis: cut.axis.into(),
         excess,
@@ -185,9 +190,9 @@ fn octants(mask: u8) -> impl Iterator<Item = usize> {
 }
 
 /// Returns the sum of the rotations of all elements around a node.
-fn total_turn<D: Dim>(body: &Body<D>, id: NodeId) -> [[f32; 3]; 3] {
+fn total_turn<D: Dim>(body: &SoftBody<D>, id: NodeId) -> [[f32; 3]; 3] {
     let mut turn = [[0.0; 3]; 3];
-    for owner in body.truth.mesh.carrier_ids(id) {
+    for owner in body.topology.mesh.carrier_ids(id) {
         let rotation = body.state.blocks.rotation(owner);
         for row in 0..3 {
             turn[row] = plus(turn[row], rotation[row]);
@@ -233,6 +238,6 @@ mod tests {
             failure([11, 8, 8], 1),
         ];
         let far = found[4];
-        assert_eq!(undisturbed(found.to_vec()), [worst, along, far]);
+        assert_eq!(without_worse_neighbour(found.to_vec()), [worst, along, far]);
     }
 }

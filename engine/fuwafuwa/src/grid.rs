@@ -208,7 +208,7 @@ impl<D: Dim> VoxelGrid<D> {
     /// Whether a voxel is solid and was not removed with its [piece](crate::World::remove_piece).
     /// [`VoxelGrid::is_solid`] stays true for removed voxels.
     #[inline]
-    pub fn is_left(&self, voxel: Point) -> bool {
+    pub fn is_present(&self, voxel: Point) -> bool {
         self.is_solid(voxel) && (self.taken_out.is_empty() || !self.taken_out[self.index(voxel)])
     }
 
@@ -220,7 +220,7 @@ impl<D: Dim> VoxelGrid<D> {
     }
 
     /// Marks solid voxels as removed.
-    pub(crate) fn take_out(&mut self, voxels: &[Point]) {
+    pub(crate) fn remove_voxels(&mut self, voxels: &[Point]) {
         self.taken_out.resize(self.materials.len(), false);
         for &voxel in voxels {
             let index = self.index(voxel);
@@ -242,7 +242,7 @@ impl<D: Dim> VoxelGrid<D> {
 
     /// Whether a grid read from a file is valid.
     #[cfg(feature = "serde")]
-    pub(crate) fn is_sound(&self) -> bool {
+    pub(crate) fn is_valid(&self) -> bool {
         let size = self.size.map(|extent| usize::try_from(extent).unwrap_or(0));
         let is_box = Self::from_materials(size, self.voxel_size, self.materials.clone()).is_ok();
         let are_solid = |(&gone, &material): (&bool, &u8)| !gone || material != 0;

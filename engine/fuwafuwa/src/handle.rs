@@ -1,7 +1,7 @@
 //! Generational arenas and their handles. An item keeps its slot while others are removed, and a handle to a
 //! removed item is detected as stale.
 
-use crate::ids::{Id, Table, id};
+use crate::ids::{Id, IndexVec, id};
 use std::fmt;
 
 /// Generational handle into an [`Arena`]: a slot, and the number of items that have left the slot before.
@@ -90,22 +90,22 @@ impl BodySlot {
 handle! {
     /// Handle of a soft body in a [`World`](crate::World). Adding or removing other bodies does not change
     /// it.
-    BodyId, "body", BodySlot
+    SoftBodyHandle, "body", BodySlot
 }
 handle! {
     /// Handle of a rigid body in a [`World`](crate::World). Adding or removing other rigid bodies does not
     /// change it.
-    RigidId, "rigid body", RigidSlot
+    RigidBodyHandle, "rigid body", RigidSlot
 }
 
 handle! {
     /// Handle of a joint in a [`World`](crate::World). Adding or removing other joints does not change it.
-    JointId, "joint", JointSlot
+    JointHandle, "joint", JointSlot
 }
 
 handle! {
     /// Handle of a knife in a [`World`](crate::World). Adding or removing other knives does not change it.
-    KnifeId, "knife", KnifeSlot
+    KnifeHandle, "knife", KnifeSlot
 }
 
 /// Error for a stale handle: the item was removed, or was never in this world. A handle from another world is
@@ -135,7 +135,7 @@ impl std::error::Error for Gone {}
     serde(bound = "T: serde::Serialize + for<'a> serde::Deserialize<'a>")
 )]
 pub struct Arena<K: Handle, T> {
-    slots: Table<K::Slot, Slot<T>>,
+    slots: IndexVec<K::Slot, Slot<T>>,
 }
 
 /// Slot of an [`Arena`]: the number of items that have left it, and the present item.
@@ -148,7 +148,7 @@ struct Slot<T> {
 
 impl<K: Handle, T> Default for Arena<K, T> {
     fn default() -> Self {
-        let slots = Table::default();
+        let slots = IndexVec::default();
         Self { slots }
     }
 }
@@ -328,7 +328,7 @@ mod tests {
 
     #[test]
     fn removal_keeps_other_slots_and_makes_the_handle_stale() {
-        let mut names = Arena::<BodyId, &str>::default();
+        let mut names = Arena::<SoftBodyHandle, &str>::default();
         let [ball, ring, heart] = ["ball", "ring", "heart"].map(|name| names.insert(name));
         assert_eq!(names.remove(ring), Ok("ring"));
         assert_eq!(names[heart], "heart");
@@ -344,7 +344,7 @@ mod tests {
             "stale body handle: slot 1 was removed or reused"
         );
         assert_eq!(names.remove(ring), Err(gone));
-        let all: Vec<BodyId> = names.entries().map(|(id, _)| id).collect();
+        let all: Vec<SoftBodyHandle> = names.entries().map(|(id, _)| id).collect();
         assert_eq!(all, [ball, cube, heart]);
     }
 }

@@ -70,13 +70,13 @@ id! {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(transparent))]
-pub struct Table<I, T> {
+pub struct IndexVec<I, T> {
     list: Vec<T>,
     #[cfg_attr(feature = "serde", serde(skip))]
     ids: PhantomData<I>,
 }
 
-impl<I: Id, T> Table<I, T> {
+impl<I: Id, T> IndexVec<I, T> {
     /// Returns all entries with their ids, ascending.
     pub fn entries(&self) -> impl DoubleEndedIterator<Item = (I, &T)> + Clone {
         let entries = self.list.iter().enumerate();
@@ -100,7 +100,7 @@ impl<I: Id, T> Table<I, T> {
     }
 }
 
-impl<I, T> From<Vec<T>> for Table<I, T> {
+impl<I, T> From<Vec<T>> for IndexVec<I, T> {
     fn from(list: Vec<T>) -> Self {
         Self {
             list,
@@ -109,19 +109,19 @@ impl<I, T> From<Vec<T>> for Table<I, T> {
     }
 }
 
-impl<I, T> FromIterator<T> for Table<I, T> {
+impl<I, T> FromIterator<T> for IndexVec<I, T> {
     fn from_iter<A: IntoIterator<Item = T>>(all: A) -> Self {
         Vec::from_iter(all).into()
     }
 }
 
-impl<I, T> Default for Table<I, T> {
+impl<I, T> Default for IndexVec<I, T> {
     fn default() -> Self {
         Self::from(Vec::new())
     }
 }
 
-impl<I: Id, T> Index<I> for Table<I, T> {
+impl<I: Id, T> Index<I> for IndexVec<I, T> {
     type Output = T;
 
     #[inline(always)]
@@ -130,14 +130,14 @@ impl<I: Id, T> Index<I> for Table<I, T> {
     }
 }
 
-impl<I: Id, T> IndexMut<I> for Table<I, T> {
+impl<I: Id, T> IndexMut<I> for IndexVec<I, T> {
     #[inline(always)]
     fn index_mut(&mut self, id: I) -> &mut T {
         &mut self.list[id.index()]
     }
 }
 
-impl<'a, I, T> IntoIterator for &'a Table<I, T> {
+impl<'a, I, T> IntoIterator for &'a IndexVec<I, T> {
     type Item = &'a T;
     type IntoIter = std::slice::Iter<'a, T>;
 
@@ -146,7 +146,7 @@ impl<'a, I, T> IntoIterator for &'a Table<I, T> {
     }
 }
 
-impl<'a, I, T> IntoIterator for &'a mut Table<I, T> {
+impl<'a, I, T> IntoIterator for &'a mut IndexVec<I, T> {
     type Item = &'a mut T;
     type IntoIter = std::slice::IterMut<'a, T>;
 
@@ -155,7 +155,7 @@ impl<'a, I, T> IntoIterator for &'a mut Table<I, T> {
     }
 }
 
-impl<I, T> Deref for Table<I, T> {
+impl<I, T> Deref for IndexVec<I, T> {
     type Target = Vec<T>;
 
     #[inline(always)]
@@ -164,7 +164,7 @@ impl<I, T> Deref for Table<I, T> {
     }
 }
 
-impl<I, T> DerefMut for Table<I, T> {
+impl<I, T> DerefMut for IndexVec<I, T> {
     #[inline(always)]
     fn deref_mut(&mut self) -> &mut Vec<T> {
         &mut self.list
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn table_is_indexed_by_ids() {
-        let mut table: Table<NodeId, char> = vec!['a', 'b'].into();
+        let mut table: IndexVec<NodeId, char> = vec!['a', 'b'].into();
         assert_eq!(table.next_id(), NodeId(2));
         table.push('c');
         table[NodeId(0)] = 'd';

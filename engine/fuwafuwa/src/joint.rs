@@ -8,35 +8,35 @@ mod anchor;
 mod end;
 mod tie;
 
-use crate::body::Bodies;
+use crate::body::SoftBodies;
 use crate::dim::Dim;
-use crate::handle::{Arena, Gone, JointId};
-use crate::rigid::{FARTHEST, Rigids};
+use crate::handle::{Arena, Gone, JointHandle};
+use crate::rigid::{FARTHEST, RigidBodies};
 use crate::shape::{Vector, flat};
 use crate::vector::length;
-use anchor::Anchor;
+use anchor::AttachedAnchor;
 pub(crate) use end::Woken;
-pub use end::{End, Tie};
+pub use end::{JointAnchor, JointKind};
 
 /// Solver iterations over all joints per substep. Chains need more than one, because their links depend on
 /// each other.
 const ROUNDS: usize = 4;
 
 /// Joints of a world.
-pub type Joints = Arena<JointId, Joint>;
+pub type Joints = Arena<JointHandle, Joint>;
 
 /// Joint between two anchors.
 ///
 /// ```
-/// use fuwafuwa::joint::{End, Joint};
-/// use fuwafuwa::{Body, Dim2, Material, Settings, VoxelGrid, World};
+/// use fuwafuwa::joint::{JointAnchor, Joint};
+/// use fuwafuwa::{SoftBody, Dim2, Material, WorldConfig, VoxelGrid, World};
 ///
-/// let mut world = World::<Dim2>::new(Settings::default())?;
-/// let ball = Body::new(VoxelGrid::ball(12, 1.0)?, &[Material::default()])?;
+/// let mut world = World::<Dim2>::new(WorldConfig::default())?;
+/// let ball = SoftBody::new(VoxelGrid::ball(12, 1.0)?, &[Material::default()])?;
 /// let ball = world.add_body(ball);
 /// let top = [0.5, 1.0, 0.0];
-/// let end = End::Soft { body: ball, at: top, radius: 0.2 };
-/// let nail = world.add_joint(Joint::pin(end, End::Position(top)))?;
+/// let end = JointAnchor::Soft { body: ball, at: top, radius: 0.2 };
+/// let nail = world.add_joint(Joint::pin(end, JointAnchor::Position(top)))?;
 /// for _ in 0..60 {
 ///     world.step();
 /// }
@@ -48,12 +48,12 @@ pub type Joints = Arena<JointId, Joint>;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Joint {
     /// Attachment points of both anchors.
-    pub ends: [End; 2],
+    pub ends: [JointAnchor; 2],
     /// Joint kind.
-    pub tie: Tie,
+    pub tie: JointKind,
     /// Force above which the joint breaks [N], in tension or compression; infinite (default) = never.
     pub breaking_force: f32,
-    anchors: [Anchor; 2],
+    anchors: [AttachedAnchor; 2],
     /// Impulse on the first anchor in the last substep [N s].
     impulse: Vector,
     /// Magnitude of the joint force in the last substep [N].
@@ -65,20 +65,23 @@ pub type BadJoint = (&'static str, &'static str);
 
 impl Joint {
     /// Returns a joint of any kind that never breaks.
-    pub fn new(ends: [End; 2], tie: Tie) -> Self {
+    pub fn new(ends: [JointAnchor; 2], tie: JointKind) -> Self {
         Self {
             ends,
             tie,
             breaking_force: f32::INFINITY,
-            anchors: [Anchor::Position([0.0; 3]), Anchor::Position([0.0; 3])],
+            anchors: [
+                AttachedAnchor::Position([0.0; 3]),
+                AttachedAnchor::Position([0.0; 3]),
+            ],
             impulse: [0.0; 3],
             force: 0.0,
         }
     }
 
     /// Returns a pin, which keeps its anchors together.
-    pub fn pin(first: End, second: End) -> Self {
-        Self::new([first, second], Tie::Pin)
+    pub fn pin(first: JointAnchor, second: JointAnchor) -> Self {
+        Self::new([first, second], JointKind::Pin)
     }
 
     /// Returns the joint with a breaking force [N].
@@ -96,11 +99,15 @@ impl Joint {
     }
 
     /// Attaches the anchors to their bodies at the present positions.
-    pub(crate) fn hold<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids) -> Result<(), Gone> {
+    pub(crate) fn hold<D: Dim>(
+        &mut self,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+    ) -> Result<(), Gone> {
         for (anchor, end) in self.anchors.iter_mut().zip(&self.ends) {
-            *anchor = Anchor::of(end, bodies, rigids)?;
+            *anchor = AttachedAnchor::of(end, bodies, rigids)?;
         }
-        if self.tie == Tie::Pin {
+        if self.tie == JointKind::Pin {
             self.meet_soft_ends(bodies, rigids);
         }
         (self.impulse, self.force) = ([0.0; 3], 0.0);
@@ -109,8 +116,8 @@ impl Joint {
 
     /// For a pin between a soft anchor and another one, moves the other to the soft anchor, so that nothing
     /// jumps at the first step.
-    fn meet_soft_ends<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids) {
-        let is_soft = self.anchors.each_ref().map(Anchor::is_soft);
+    fn meet_soft_ends<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
+        let is_soft = self.anchors.each_ref().map(AttachedAnchor::is_soft);
         for (own, other) in [(0, 1), (1, 0)] {
             if is_soft[own] && !is_soft[other] {
                 let at = self.anchors[own].grip(bodies, rigids).map(|grip| grip.at);
@@ -123,11 +130,11 @@ impl Joint {
     /// Returns the positions of both anchors [m]; `None` if an attached body is gone.
     pub(crate) fn places<D: Dim>(
         &self,
-        bodies: &Bodies<D>,
-        rigids: &Rigids,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
     ) -> Option<[Vector; 2]> {
         let [first, second] = &self.anchors;
-        let at = |anchor: &Anchor| Some(anchor.grip(bodies, rigids)?.at);
+        let at = |anchor: &AttachedAnchor| Some(anchor.grip(bodies, rigids)?.at);
         Some([at(first)?, at(second)?])
     }
 
@@ -135,8 +142,8 @@ impl Joint {
     pub(crate) fn check(&self) -> Result<(), BadJoint> {
         for end in &self.ends {
             let (at, radius) = match *end {
-                End::Position(at) | End::Rigid { at, .. } => (at, 0.0),
-                End::Soft { at, radius, .. } => (at, radius),
+                JointAnchor::Position(at) | JointAnchor::RigidBody { at, .. } => (at, 0.0),
+                JointAnchor::Soft { at, radius, .. } => (at, radius),
             };
             let is_near = at.iter().all(|k| k.abs() <= FARTHEST);
             require(is_near, "place of an end", "within 1e6 m of the origin")?;
@@ -147,8 +154,11 @@ impl Joint {
             )?;
         }
         let is_of_two = match self.ends {
-            [End::Position(_), End::Position(_)] => false,
-            [End::Rigid { rigid, .. }, End::Rigid { rigid: other, .. }] => rigid != other,
+            [JointAnchor::Position(_), JointAnchor::Position(_)] => false,
+            [
+                JointAnchor::RigidBody { rigid, .. },
+                JointAnchor::RigidBody { rigid: other, .. },
+            ] => rigid != other,
             _ => true,
         };
         let expected = "on two different objects, at least one of them a body";
@@ -156,13 +166,13 @@ impl Joint {
         require(self.breaking_force > 0.0, "breaking force", "positive")?;
         let is_within = |k: f32, least: f32| (least..=f32::MAX).contains(&k);
         match self.tie {
-            Tie::Pin => Ok(()),
-            Tie::Rope { length } => require(
+            JointKind::Pin => Ok(()),
+            JointKind::Rope { length } => require(
                 is_within(length, f32::MIN_POSITIVE),
                 "length",
                 "positive and finite",
             ),
-            Tie::Spring {
+            JointKind::Spring {
                 stiffness,
                 damping,
                 length,
@@ -192,10 +202,10 @@ impl Joint {
 /// sleepers to wake.
 pub(crate) fn solve<D: Dim>(
     joints: &mut Joints,
-    bodies: &mut Bodies<D>,
-    rigids: &mut Rigids,
+    bodies: &mut SoftBodies<D>,
+    rigids: &mut RigidBodies,
     duration: f32,
-) -> (Vec<JointId>, Woken) {
+) -> (Vec<JointHandle>, Woken) {
     let (mut broken, mut woken) = (Vec::new(), Woken::default());
     for (id, joint) in joints.entries_mut() {
         match joint.start(bodies, rigids, &mut woken) {
@@ -215,10 +225,10 @@ pub(crate) fn solve<D: Dim>(
 /// joints that exceeded their breaking force.
 pub(crate) fn relax<D: Dim>(
     joints: &mut Joints,
-    bodies: &mut Bodies<D>,
-    rigids: &mut Rigids,
+    bodies: &mut SoftBodies<D>,
+    rigids: &mut RigidBodies,
     duration: f32,
-) -> Vec<JointId> {
+) -> Vec<JointHandle> {
     let mut broken = Vec::new();
     for _ in 0..ROUNDS {
         for joint in joints.iter_mut() {

@@ -21,8 +21,8 @@ mod sample;
 mod swath;
 
 use crate::dim::Dim;
-use crate::handle::{Arena, KnifeId, RigidId};
-use crate::rigid::{FARTHEST, Rigid, Rigids};
+use crate::handle::{Arena, KnifeHandle, RigidBodyHandle};
+use crate::rigid::{FARTHEST, RigidBodies, RigidBody};
 use crate::shape::{Vector, flat};
 use crate::vector::{cross, dot, is_finite, length, minus, scaled};
 #[cfg(feature = "serde")]
@@ -30,17 +30,17 @@ use sample::MOST_SAMPLES;
 use sample::{Near, Sample};
 
 /// Knives of a world.
-pub type Knives = Arena<KnifeId, Knife>;
+pub type Knives = Arena<KnifeHandle, Knife>;
 
 /// Cutting edge on a kinematic or coupled rigid body.
 ///
 /// ```
-/// use fuwafuwa::{Body, Dim2, Event, Knife, Material, Rigid, Settings, Shape, VoxelGrid, World};
+/// use fuwafuwa::{SoftBody, Dim2, Event, Knife, Material, RigidBody, WorldConfig, Shape, VoxelGrid, World};
 ///
-/// let mut world = World::<Dim2>::new(Settings::default())?;
-/// world.add_rigid(Rigid::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
-/// world.add_body(Body::new(VoxelGrid::cube(16, 1.0)?, &[Material::default()])?);
-/// let mut hand = Rigid::hand([0.53, 1.2, 0.0], 0.05);
+/// let mut world = World::<Dim2>::new(WorldConfig::default())?;
+/// world.add_rigid(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
+/// world.add_body(SoftBody::new(VoxelGrid::cube(16, 1.0)?, &[Material::default()])?);
+/// let mut hand = RigidBody::hand([0.53, 1.2, 0.0], 0.05);
 /// hand.is_sensor = true; // the edge alone touches
 /// let hand = world.add_rigid(hand)?;
 /// let knife = world.add_knife(Knife::new(hand, [[0.0; 3]; 2], [0.0, -1.0, 0.0]))?;
@@ -60,10 +60,10 @@ pub type Knives = Arena<KnifeId, Knife>;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Knife {
-    /// Rigid body that holds the knife, kinematic or coupled. If it is a [sensor](Rigid::is_sensor), only its
+    /// Rigid body that holds the knife, kinematic or coupled. If it is a [sensor](RigidBody::is_sensor), only its
     /// edge touches.
-    pub holder: RigidId,
-    /// Ends of the edge in local coordinates of the holder, see [`Rigid::form`] [m]. In 2D only their
+    pub holder: RigidBodyHandle,
+    /// Ends of the edge in local coordinates of the holder, see [`RigidBody::form`] [m]. In 2D only their
     /// midpoint counts, and the body is a sheet 1 m deep.
     pub edge: [Vector; 2],
     /// Cutting direction in local coordinates of the holder, across the edge.
@@ -93,7 +93,7 @@ pub type BadKnife = (&'static str, &'static str);
 
 impl Knife {
     /// Returns a sharp knife with the default height, 0.02 m.
-    pub fn new(holder: RigidId, edge: [Vector; 2], toward: Vector) -> Self {
+    pub fn new(holder: RigidBodyHandle, edge: [Vector; 2], toward: Vector) -> Self {
         Self {
             holder,
             edge,
@@ -136,9 +136,9 @@ impl Knife {
     }
 
     /// Checks that all parameters are in range for a world of `D`.
-    pub(crate) fn check<D: Dim>(&self, rigids: &Rigids) -> Result<(), BadKnife> {
+    pub(crate) fn check<D: Dim>(&self, rigids: &RigidBodies) -> Result<(), BadKnife> {
         let holder = rigids.get(self.holder);
-        let is_held = holder.is_ok_and(Rigid::is_driven);
+        let is_held = holder.is_ok_and(RigidBody::follows_target);
         require(is_held, "holder", "a kinematic or coupled rigid body")?;
         self.check_numbers::<D>()
     }
@@ -175,7 +175,7 @@ impl Knife {
     }
 
     /// Returns the edge and its directions in world coordinates.
-    fn stance<D: Dim>(&self, holder: &Rigid) -> Stance {
+    fn stance<D: Dim>(&self, holder: &RigidBody) -> EdgePose {
         let turn = |vector: Vector| holder.rotation().apply(vector);
         let levers = self.edge.map(|end| flat::<D>(turn(end)));
         // In 2D the edge is a point that stands for an edge along the third axis.
@@ -186,7 +186,7 @@ impl Knife {
         let toward = flat::<D>(turn(self.toward));
         let lean = scaled(along, dot(along, toward));
         let toward = direction(minus(toward, lean));
-        Stance {
+        EdgePose {
             position: holder.position(),
             levers,
             along,
@@ -197,7 +197,7 @@ impl Knife {
 }
 
 /// World-space pose of a cutting edge.
-struct Stance {
+struct EdgePose {
     /// Position of the holder [m].
     position: Vector,
     /// Ends of the edge relative to the position of the holder [m].
@@ -207,7 +207,7 @@ struct Stance {
     across: Vector,
 }
 
-impl Stance {
+impl EdgePose {
     /// Returns the length of the edge [m].
     fn long(&self) -> f32 {
         length(minus(self.levers[1], self.levers[0]))

@@ -2,7 +2,7 @@
 //!
 //! Two laws are available. [`Law::Endo2004`] is that of the paper: the rest shape, rotated so that its
 //! moments balance [Endo 2004, Eq. 1], pulls each node back in proportion to its offset. It is simple and
-//! robust, but fails the patch test as soon as an element has hanging nodes. [`Law::PatchExact`], the
+//! robust, but fails the patch test as soon as an element has hanging nodes. [`Law::CorotationalVem`], the
 //! default, is a corotational virtual element [Beirao da Veiga 2013]:
 //!
 //! ```text
@@ -12,11 +12,11 @@
 //! f_i = −P b_i − k (w_i h_i − S b_i / V)           k = α β Y s^(d−2),  w_i = 2^d V_i / s^d
 //! ```
 //!
-//! α makes a whole cell bend correctly, β other classes: see [`Stencil::hourglass`]. In 2D the law is plane
+//! α makes a whole cell bend correctly, β other classes: see [`ElementClass::hourglass`]. In 2D the law is plane
 //! strain with 1 m of depth: the same formulas with F₃₃ = R₃₃ = 1.
 
 use crate::dim::Dim;
-use crate::stencil::{Stencil, Vector64};
+use crate::stencil::{ElementClass, Vector64};
 use crate::vector::{cross, dot, minus, plus, scaled};
 use std::fmt;
 
@@ -28,7 +28,7 @@ pub enum Law {
     Endo2004,
     /// Corotational virtual element law; exact for every uniform strain, on any graded mesh.
     #[default]
-    PatchExact,
+    CorotationalVem,
 }
 
 /// Elastic constants of a material.
@@ -64,7 +64,7 @@ impl std::error::Error for BadElasticity {}
 /// Volume ratio J below which an element resists further compression, regardless of its material. A higher
 /// limit would stiffen soft contacts; with a lower one, strong contacts invert elements before the resistance
 /// sets in.
-pub const SQUASH_LIMIT: f64 = 0.4;
+pub const MIN_VOLUME_RATIO: f64 = 0.4;
 
 impl Elasticity {
     /// Checks the constants.
@@ -105,7 +105,7 @@ pub(crate) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0
 pub fn forces<D: Dim>(
     law: Law,
     elasticity: Elasticity,
-    stencil: &Stencil<D>,
+    stencil: &ElementClass<D>,
     size: f64,
     positions: &[Vector64],
 ) -> Vec<Vector64> {
@@ -116,25 +116,25 @@ pub fn forces<D: Dim>(
     );
     match law {
         Law::Endo2004 => endo(elasticity, stencil, size, positions),
-        Law::PatchExact => patch_exact(elasticity, stencil, size, positions),
+        Law::CorotationalVem => patch_exact(elasticity, stencil, size, positions),
     }
 }
 
 /// Returns f_i = (Y V d / Σ|R0|²) (M R0_i − r_i), with offsets from the mean of the nodes.
 fn endo<D: Dim>(
     elasticity: Elasticity,
-    stencil: &Stencil<D>,
+    stencil: &ElementClass<D>,
     size: f64,
     positions: &[Vector64],
 ) -> Vec<Vector64> {
-    let (stiffness, apart) = endo_offsets(elasticity, stencil, size, positions);
+    let (stiffness, apart) = shape_matching_offsets(elasticity, stencil, size, positions);
     apart.into_iter().map(|d| scaled(d, stiffness)).collect()
 }
 
 /// Returns Y V d / Σ|R0|², and M R0_i − r_i of each node.
-pub(crate) fn endo_offsets<D: Dim>(
+pub(crate) fn shape_matching_offsets<D: Dim>(
     elasticity: Elasticity,
-    stencil: &Stencil<D>,
+    stencil: &ElementClass<D>,
     size: f64,
     positions: &[Vector64],
 ) -> (f64, Vec<Vector64>) {
@@ -164,7 +164,7 @@ pub(crate) fn endo_offsets<D: Dim>(
 
 fn patch_exact<D: Dim>(
     elasticity: Elasticity,
-    stencil: &Stencil<D>,
+    stencil: &ElementClass<D>,
     size: f64,
     positions: &[Vector64],
 ) -> Vec<Vector64> {
@@ -177,7 +177,7 @@ fn patch_exact<D: Dim>(
 pub(crate) fn forces_of_stress<D: Dim>(
     elasticity: Elasticity,
     stress: &Matrix,
-    stencil: &Stencil<D>,
+    stencil: &ElementClass<D>,
     size: f64,
     positions: &[Vector64],
 ) -> Vec<Vector64> {
@@ -203,14 +203,14 @@ pub(crate) fn forces_of_stress<D: Dim>(
 }
 
 /// Returns b of a node: x bᵀ is its contribution to V F.
-fn gradient_of<D: Dim>(stencil: &Stencil<D>, size: f64, node: usize) -> Vector64 {
+fn gradient_of<D: Dim>(stencil: &ElementClass<D>, size: f64, node: usize) -> Vector64 {
     let half = 0.5 * size;
     scaled(stencil.gradients[node], volume_scale::<D>(half) / half)
 }
 
 /// Returns the deformation gradient and the volume centroid.
 pub(crate) fn deformation_of<D: Dim>(
-    stencil: &Stencil<D>,
+    stencil: &ElementClass<D>,
     size: f64,
     positions: &[Vector64],
 ) -> (Matrix, Vector64) {
@@ -229,7 +229,7 @@ pub(crate) fn deformation_of<D: Dim>(
 /// Returns the stiffness of the hourglass modes, and w h of each node.
 pub(crate) fn hourglass<D: Dim>(
     elasticity: Elasticity,
-    stencil: &Stencil<D>,
+    stencil: &ElementClass<D>,
     size: f64,
     positions: &[Vector64],
     deformation: &Matrix,
@@ -252,7 +252,7 @@ pub(crate) fn stress(elasticity: Elasticity, deformation: &Matrix) -> Matrix {
     let pressure = elasticity.lame() * (stretch - 3.0);
     let cofactor = cofactor(deformation);
     let squash = dot(deformation[0], cofactor[0]);
-    let barrier = elasticity.young * (SQUASH_LIMIT - squash).max(0.0);
+    let barrier = elasticity.young * (MIN_VOLUME_RATIO - squash).max(0.0);
     let mut stress = [[0.0; 3]; 3];
     for i in 0..3 {
         for j in 0..3 {
@@ -274,22 +274,22 @@ pub(crate) fn stress(elasticity: Elasticity, deformation: &Matrix) -> Matrix {
 /// Moments also balance half a turn off, about any axis, but tr Rᵀ F is not maximal there. In that case the
 /// iteration restarts half a turn about each axis away: one of these starts is at most 120° off.
 pub fn rotation_of(deformation: &Matrix) -> Matrix {
-    from_quaternion(turn_of(deformation))
+    from_quaternion(rotation_quaternion(deformation))
 }
 
 /// Returns the rotation of a deformation as a quaternion if `near` is a quarter turn off or more: too far for
 /// a few iterations from there.
-pub fn turn_far_from(near: &Matrix, deformation: &Matrix) -> Option<[f64; 4]> {
+pub fn rotation_if_far_from(near: &Matrix, deformation: &Matrix) -> Option<[f64; 4]> {
     if is_greatest(near, deformation) {
         return None;
     }
-    let turned = turn_of(deformation);
+    let turned = rotation_quaternion(deformation);
     let gain = trace(&from_quaternion(turned), deformation) - trace(near, deformation);
     // A rotation that is off by the angle a has a trace smaller by 2 − 2 cos a, and ‖F‖ = √3.
     (gain > norm(deformation)).then_some(turned)
 }
 
-fn turn_of(deformation: &Matrix) -> [f64; 4] {
+fn rotation_quaternion(deformation: &Matrix) -> [f64; 4] {
     let mut turned = turn_from([0.0, 0.0, 0.0, 1.0], deformation);
     let trace_of = |turned| trace(&from_quaternion(turned), deformation);
     if is_greatest(&from_quaternion(turned), deformation) {
@@ -398,7 +398,7 @@ fn volume_scale<D: Dim>(half: f64) -> f64 {
     (0..D::N).fold(1.0, |scale, _| scale * half)
 }
 
-pub(crate) fn volume_of<D: Dim>(stencil: &Stencil<D>, half: f64) -> f64 {
+pub(crate) fn volume_of<D: Dim>(stencil: &ElementClass<D>, half: f64) -> f64 {
     stencil.volume * volume_scale::<D>(half)
 }
 

@@ -16,7 +16,7 @@
 //!
 //! Two and three dimensions share one implementation; [`dim`] contains everything that differs.
 //!
-//! New users start with the [`guide`], or with [`World`], [`Body`] and [`VoxelGrid`]; `examples` contains
+//! New users start with the [`guide`], or with [`World`], [`SoftBody`] and [`VoxelGrid`]; `examples` contains
 //! complete programs. Debug builds are about a hundred times slower unless your `Cargo.toml` optimises this
 //! crate:
 //! ```toml
@@ -86,24 +86,24 @@ pub mod view;
 pub mod world;
 
 pub use blade::{Blade, CutReport};
-pub use body::Body;
+pub use body::SoftBody;
 pub use changes::{Bookmark, Changes};
 pub use dim::{Dim, Dim2, Dim3, Point};
-pub use event::{Event, Party, StepReport, With};
+pub use event::{Event, ObjectRef, StepReport, With};
 pub use grid::{BuildError, VoxelGrid};
-pub use handle::{BodyId, Gone, JointId, KnifeId, RigidId};
+pub use handle::{Gone, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
 pub use ids::{ElementId, NodeId, PieceId};
-pub use joint::{End, Joint, Tie};
+pub use joint::{Joint, JointAnchor, JointKind};
 pub use knife::Knife;
 pub use law::{Elasticity, Law};
 pub use layers::Layers;
 pub use material::{BodyError, Material};
-pub use measure::{Energy, Strained};
+pub use measure::{ElementState, Energy};
 pub use mesh::Mesh;
 pub use pyramid::Grading;
-pub use query::{Found, Queries, Thing};
-pub use rigid::{Drive, Reaction, Rigid};
+pub use query::{Queries, QueryHit, Thing};
+pub use rigid::{MotionType, Reaction, RigidBody};
 pub use rotation::Rotation;
 pub use shape::{Shape, Vector};
 pub use view::{ElementView, Facet, Outline, PieceView};
-pub use world::{Hooks, PieceSize, Refused, Removed, Settings, Substep, World, field_around};
+pub use world::{Hooks, PieceSize, Refused, Removed, Substep, World, WorldConfig, field_around};

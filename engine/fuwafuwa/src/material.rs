@@ -18,7 +18,7 @@ pub struct Material {
     pub damping: f32,
     /// Coulomb friction coefficient between pieces and between bodies, 0 to 2. Usually about 0.4. Two
     /// surfaces use the mean of both. Contacts with rigid bodies use the [friction of the rigid
-    /// body](crate::Rigid::friction) instead.
+    /// body](crate::RigidBody::friction) instead.
     pub friction: f32,
     /// Tensile strength of a smooth surface [Pa]: the tension at which a crack starts; infinite = never
     /// tears. A fifth of Young's modulus gives a body that can be torn by hand.
@@ -161,13 +161,13 @@ impl Material {
     /// Soft clay for a game: keeps the shape into which it is pressed.
     ///
     /// ```
-    /// use fuwafuwa::{Body, Dim2, Material, Rigid, Settings, Shape, VoxelGrid, World};
+    /// use fuwafuwa::{SoftBody, Dim2, Material, RigidBody, WorldConfig, Shape, VoxelGrid, World};
     ///
-    /// let mut world = World::<Dim2>::new(Settings::default())?;
-    /// world.add_rigid(Rigid::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
-    /// let block = Body::new(VoxelGrid::cube(12, 1.0)?, &[Material::clay()])?;
+    /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
+    /// world.add_rigid(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
+    /// let block = SoftBody::new(VoxelGrid::cube(12, 1.0)?, &[Material::clay()])?;
     /// let block = world.add_body(block);
-    /// let hand = world.add_rigid(Rigid::hand([0.5, 1.2, 0.0], 0.2))?;
+    /// let hand = world.add_rigid(RigidBody::hand([0.5, 1.2, 0.0], 0.2))?;
     /// for height in [0.6, 1.6] {
     ///     world.set_goal(hand, [0.5, height, 0.0])?;
     ///     (0..60).for_each(|_| _ = world.step());

@@ -1,20 +1,20 @@
 //! Measurements on a body: strain and stress of elements, damage of nodes, and the energy of pieces.
 
-use crate::body::Body;
+use crate::body::SoftBody;
 use crate::dim::Dim;
 use crate::ids::{ElementId, NodeId};
 use crate::law::{
-    Elasticity, IDENTITY, Law, Matrix, SQUASH_LIMIT, cofactor, deformation_of, endo_offsets,
-    hourglass, rotation_of, volume_of,
+    Elasticity, IDENTITY, Law, MIN_VOLUME_RATIO, Matrix, cofactor, deformation_of, hourglass,
+    rotation_of, shape_matching_offsets, volume_of,
 };
-use crate::plasticity::{elastic_part, kneaded_stiffness, stress_after};
+use crate::plasticity::{elastic_part, plastic_stiffness_factor, stress_after};
 use crate::shape::Vector;
-use crate::stencil::{Stencil, Vector64};
+use crate::stencil::{ElementClass, Vector64};
 use crate::vector::{dot, three};
 
 /// State of an element: deformation, strain, stress and stored energy.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Strained {
+pub struct ElementState {
     /// Deformation gradient F by rows, including plastic deformation.
     pub deformation: Matrix,
     /// Biot strain, the symmetric part of RᵀF minus 1, along the axes of the body at rest: 0.1 is a stretch
@@ -32,14 +32,14 @@ pub struct Strained {
 /// # Panics
 /// If the number of positions is not the number of nodes of the stencil.
 #[inline(never)]
-pub fn strained<D: Dim>(
+pub fn element_state<D: Dim>(
     law: Law,
     elasticity: Elasticity,
-    stencil: &Stencil<D>,
+    stencil: &ElementClass<D>,
     size: f64,
     positions: &[Vector64],
-) -> Strained {
-    strained_after(law, elasticity, &IDENTITY, stencil, size, positions)
+) -> ElementState {
+    element_state_plastic(law, elasticity, &IDENTITY, stencil, size, positions)
 }
 
 /// Returns the state of an element with plastic deformation. `undone` is G of [`crate::plasticity`]; the
@@ -48,14 +48,14 @@ pub fn strained<D: Dim>(
 /// # Panics
 /// If the number of positions is not the number of nodes of the stencil.
 #[inline(never)]
-pub fn strained_after<D: Dim>(
+pub fn element_state_plastic<D: Dim>(
     law: Law,
     elasticity: Elasticity,
     undone: &Matrix,
-    stencil: &Stencil<D>,
+    stencil: &ElementClass<D>,
     size: f64,
     positions: &[Vector64],
-) -> Strained {
+) -> ElementState {
     assert_eq!(
         positions.len(),
         stencil.slots.len(),
@@ -78,13 +78,13 @@ pub fn strained_after<D: Dim>(
         }
     }
     if law == Law::Endo2004 {
-        let (stiffness, apart) = endo_offsets(elasticity, stencil, size, positions);
+        let (stiffness, apart) = shape_matching_offsets(elasticity, stencil, size, positions);
         let energy = apart.iter().map(|&d| 0.5 * stiffness * dot(d, d)).sum();
-        return Strained {
+        return ElementState {
             deformation: whole,
             strain,
             energy,
-            ..Strained::default()
+            ..ElementState::default()
         };
     }
     let squash = dot(deformation[0], cofactor(&deformation)[0]);
@@ -97,7 +97,7 @@ pub fn strained_after<D: Dim>(
     }
     let squared: f64 = strain.iter().map(|&row| dot(row, row)).sum();
     let spread = strain[0][0] + strain[1][1] + strain[2][2];
-    let below = (SQUASH_LIMIT - squash).max(0.0);
+    let below = (MIN_VOLUME_RATIO - squash).max(0.0);
     let density = elasticity.shear_modulus() * squared
         + 0.5 * elasticity.lame() * spread * spread
         + 0.5 * elasticity.young * below * below;
@@ -105,9 +105,9 @@ pub fn strained_after<D: Dim>(
     let (stiffness, hourglass) = hourglass(elasticity, stencil, size, positions, &whole, centre);
     let weights = stencil.volumes.iter().zip(&hourglass);
     let swings = weights.map(|(&weight, &h)| dot(h, h) / weight);
-    let density = kneaded_stiffness::<D>(undone) * density;
+    let density = plastic_stiffness_factor::<D>(undone) * density;
     let energy = density * volume_of(stencil, half) + 0.5 * stiffness * swings.sum::<f64>();
-    Strained {
+    ElementState {
         deformation: whole,
         strain,
         stress: cauchy,
@@ -134,28 +134,28 @@ impl Energy {
     }
 }
 
-impl<D: Dim> Body<D> {
+impl<D: Dim> SoftBody<D> {
     /// Returns the strain, stress and energy of an element, if it is alive. Computed in double precision from
-    /// the positions of the nodes, with the reduced stiffness of the body (see [`Body::stiffness_scale`]).
+    /// the positions of the nodes, with the reduced stiffness of the body (see [`SoftBody::stiffness_scale`]).
     #[inline(never)]
-    pub fn strained(&self, id: ElementId) -> Option<Strained> {
-        let element = self.truth.mesh.element(id)?;
+    pub fn element_state(&self, id: ElementId) -> Option<ElementState> {
+        let element = self.topology.mesh.element(id)?;
         let at = |&node: &NodeId| three(self.state.position[node]).map(f64::from);
         let positions: Vec<[f64; 3]> = element.nodes.iter().map(at).collect();
         let mut elasticity = self.material(element).elasticity;
-        elasticity.young *= self.truth.stiffness_scale;
-        let size = f64::from(self.truth.grid.voxel_size()) * f64::from(element.cell.width());
-        let stencil = self.truth.mesh.stencil(element);
+        elasticity.young *= self.topology.stiffness_scale;
+        let size = f64::from(self.topology.grid.voxel_size()) * f64::from(element.cell.width());
+        let stencil = self.topology.mesh.stencil(element);
         let law = self.state.blocks.law();
         let undone = self.undone(id);
-        Some(strained_after(
+        Some(element_state_plastic(
             law, elasticity, &undone, stencil, size, &positions,
         ))
     }
 
     /// Inverse G of the plastic deformation of an element.
     fn undone(&self, id: ElementId) -> Matrix {
-        let undone = self.state.blocks.undone(id);
+        let undone = self.state.blocks.plastic_inverse(id);
         undone.map_or(IDENTITY, |undone| undone.map(|row| row.map(f64::from)))
     }
 
@@ -163,8 +163,8 @@ impl<D: Dim> Body<D> {
     /// compressed to 1 / 1.5 of its width along some axis, or in 2D stretched by as much. 0 for elastic
     /// materials.
     pub fn plastic_strain(&self, id: ElementId) -> Option<f32> {
-        self.truth.mesh.element(id)?;
-        let most = 1.0 / kneaded_stiffness::<D>(&self.undone(id));
+        self.topology.mesh.element(id)?;
+        let most = 1.0 / plastic_stiffness_factor::<D>(&self.undone(id));
         Some((most.sqrt() - 1.0).max(0.0) as f32)
     }
 
@@ -179,9 +179,9 @@ impl<D: Dim> Body<D> {
     /// Returns the energy of each piece, by number, under `gravity` [m/s²]; 0 for removed pieces.
     ///
     /// ```
-    /// use fuwafuwa::{Body, Dim2, Material, VoxelGrid};
+    /// use fuwafuwa::{SoftBody, Dim2, Material, VoxelGrid};
     ///
-    /// let body = Body::new(VoxelGrid::<Dim2>::ball(8, 1.0)?, &[Material::default()])?;
+    /// let body = SoftBody::new(VoxelGrid::<Dim2>::ball(8, 1.0)?, &[Material::default()])?;
     /// let mass = body.total_mass();
     /// let energy = body.thrown([2.0, 0.0, 0.0]).energies([0.0, -9.81, 0.0])[0];
     /// assert!((energy.kinetic - 2.0 * mass).abs() < 1e-3 && energy.elastic < 1e-6);
@@ -189,7 +189,11 @@ impl<D: Dim> Body<D> {
     /// ```
     #[inline(never)]
     pub fn energies(&self, gravity: Vector) -> Vec<Energy> {
-        let Self { truth, state, .. } = self;
+        let Self {
+            topology: truth,
+            state,
+            ..
+        } = self;
         let mut energies = vec![Energy::default(); truth.pieces.list.len()];
         let pull = f64::from(state.gravity_scale);
         for (id, _) in truth.mesh.nodes() {
@@ -201,7 +205,9 @@ impl<D: Dim> Body<D> {
             energy.gravitational -= mass * pull * dot(gravity, at);
         }
         for (id, _) in truth.mesh.elements() {
-            let strained = self.strained(id).expect("`elements` returns live elements");
+            let strained = self
+                .element_state(id)
+                .expect("`elements` returns live elements");
             energies[truth.pieces.of_element(id).index()].elastic += strained.energy;
         }
         energies
@@ -218,9 +224,9 @@ mod tests {
     use crate::rotation::Rotation;
 
     /// Displaces every node a little, each differently.
-    fn crooked<D: Dim>(amount: f32) -> Body<D> {
+    fn crooked<D: Dim>(amount: f32) -> SoftBody<D> {
         let grid = VoxelGrid::<D>::ball(12, 1.0).unwrap();
-        let mut body = Body::new(grid, &[Material::default()]).unwrap();
+        let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
         let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in nodes {
             let ([x, y, z], velocity, _) = body.node_state(id);
@@ -241,8 +247,9 @@ mod tests {
             let size = size * f64::from(element.cell.width());
             let at = |&node: &NodeId| body.node_state(node).0.map(f64::from);
             let positions: Vec<Vector64> = element.nodes.iter().map(at).collect();
-            let energy =
-                |positions: &[Vector64]| strained(law, elasticity, stencil, size, positions).energy;
+            let energy = |positions: &[Vector64]| {
+                element_state(law, elasticity, stencil, size, positions).energy
+            };
             let forces = forces(law, elasticity, stencil, size, &positions);
             let most = forces
                 .iter()
@@ -269,7 +276,7 @@ mod tests {
 
     #[test]
     fn forces_match_energy_gradient() {
-        for law in [Law::PatchExact, Law::Endo2004] {
+        for law in [Law::CorotationalVem, Law::Endo2004] {
             check_slope::<Dim2>(law);
             check_slope::<Dim3>(law);
         }
@@ -278,7 +285,7 @@ mod tests {
     /// Stretches a body by a twentieth along the first axis, and rotates it.
     fn check_stretch<D: Dim>() {
         let grid = VoxelGrid::<D>::cube(8, 1.0).unwrap();
-        let mut body = Body::new(grid, &[Material::default()]).unwrap();
+        let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
         let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in nodes {
             let ([x, y, z], ..) = body.node_state(id);
@@ -297,7 +304,7 @@ mod tests {
             "{energy}"
         );
         for (id, _) in body.mesh().elements() {
-            let Strained { strain, stress, .. } = body.strained(id).unwrap();
+            let ElementState { strain, stress, .. } = body.element_state(id).unwrap();
             assert!((strain[0][0] - 0.05).abs() < 1e-4 && strain[1][1].abs() < 1e-4);
             // Along the axis after its rotation by one radian. The stretch does not change the other axes, so
             // areas are unchanged.
@@ -324,7 +331,9 @@ mod tests {
             ..Material::default()
         };
         let grid = VoxelGrid::<Dim2>::ball(12, 1.0).unwrap();
-        let mut body = Body::new(grid, &[calm]).unwrap().thrown([1.0, 2.0, 0.0]);
+        let mut body = SoftBody::new(grid, &[calm])
+            .unwrap()
+            .with_velocity([1.0, 2.0, 0.0]);
         let gravity = [0.0, -9.81, 0.0];
         let before = body.energies(gravity)[0];
         let duration = 1.0 / 960.0;

@@ -16,13 +16,13 @@ mod validate;
 
 pub use remodel::{Inheritance, Remodelled};
 
-use crate::chains::Chains;
+use crate::chains::IdLists;
 use crate::dim::{Dim, Point, points_in, voxel_around};
 use crate::grid::VoxelGrid;
-use crate::ids::{ElementId, NodeId, Table};
-use crate::pyramid::{Cell, Grading, Places, Pyramid, parts};
-use crate::sharing::Sharing;
-use crate::stencil::{MissingCorner, Stencil};
+use crate::ids::{ElementId, IndexVec, NodeId};
+use crate::pyramid::{Cell, CellHierarchy, CellIndexing, Grading, parts};
+use crate::sharing::Connectivity;
+use crate::stencil::{ElementClass, MissingCorner};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -55,22 +55,22 @@ pub struct Node {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Mesh<D: Dim> {
-    elements: Table<ElementId, Option<Element>>,
-    nodes: Table<NodeId, Node>,
-    stencils: Vec<Stencil<D>>,
+    elements: IndexVec<ElementId, Option<Element>>,
+    nodes: IndexVec<NodeId, Node>,
+    stencils: Vec<ElementClass<D>>,
     /// Whether every lattice point of the surface is a node, regardless of the size of its elements.
     dense_surface: bool,
-    places: Places,
+    places: CellIndexing,
     /// Elements of each cell, by the index of the cell.
-    by_cell: Chains<ElementId>,
+    by_cell: IdLists<ElementId>,
     /// Owner of each voxel as its element id + 1, by the index of its level-0 cell; 0 where there is no
     /// element.
     owners: Vec<u32>,
     /// Nodes at each lattice point, by the index of the point.
-    by_point: Chains<NodeId>,
+    by_point: IdLists<NodeId>,
     classes: BTreeMap<(u8, u32), u32>,
     /// Number of elements that carry each node; 0 = the id is free.
-    carriers: Table<NodeId, u8>,
+    carriers: IndexVec<NodeId, u8>,
     free_elements: Vec<ElementId>,
     free_nodes: Vec<NodeId>,
 }
@@ -108,20 +108,20 @@ impl<D: Dim> Mesh<D> {
     #[inline(never)]
     pub fn grade(
         grid: &VoxelGrid<D>,
-        sharing: &Sharing<D>,
-        pyramid: &Pyramid<D>,
+        sharing: &Connectivity<D>,
+        pyramid: &CellHierarchy<D>,
     ) -> Result<Self, Defect> {
         let mut mesh = Self {
-            elements: Table::default(),
-            nodes: Table::default(),
+            elements: IndexVec::default(),
+            nodes: IndexVec::default(),
             stencils: Vec::new(),
             dense_surface: pyramid.grading() == Grading::Coarse,
             places: pyramid.places().clone(),
-            by_cell: Chains::new(pyramid.places().count()),
+            by_cell: IdLists::new(pyramid.places().count()),
             owners: vec![0; pyramid.places().count_of(0)],
-            by_point: Chains::new(sharing.point_count()),
+            by_point: IdLists::new(sharing.point_count()),
             classes: BTreeMap::new(),
-            carriers: Table::default(),
+            carriers: IndexVec::default(),
             free_elements: Vec::new(),
             free_nodes: Vec::new(),
         };
@@ -235,13 +235,13 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// Stencil (element class) of an element.
-    pub fn stencil(&self, element: &Element) -> &Stencil<D> {
+    pub fn stencil(&self, element: &Element) -> &ElementClass<D> {
         &self.stencils[element.stencil as usize]
     }
 
     /// Returns the element that owns a solid voxel; `None` for an empty one.
     pub fn owner(&self, voxel: Point) -> Option<ElementId> {
-        owner(self.owners[self.places.number(Cell::of(voxel))?])
+        owner(self.owners[self.places.index(Cell::of(voxel))?])
     }
 
     /// Returns the element that owns a solid voxel; `None` for an empty one.
@@ -266,7 +266,7 @@ impl<D: Dim> Mesh<D> {
             None => {
                 for octant in 0..D::CORNERS {
                     let voxel = Cell::of(voxel_around::<D>(at, octant));
-                    let place = self.places.number(voxel);
+                    let place = self.places.index(voxel);
                     owners[octant] = place.map_or(0, |place| self.owners[place]);
                 }
             }
@@ -343,7 +343,7 @@ impl<D: Dim> Mesh<D> {
         } else {
             self.elements[id] = Some(element);
         }
-        let place = |cell| self.places.number(cell).expect("cells lie in the grid");
+        let place = |cell| self.places.index(cell).expect("cells lie in the grid");
         self.by_cell.append(place(cell), id);
         for voxel in self.voxels(self.alive(id)) {
             self.owners[place(Cell::of(voxel))] = id.0 + 1;

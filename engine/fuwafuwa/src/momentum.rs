@@ -39,20 +39,20 @@ impl Momentum {
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct RigidMotion {
     velocity: [f64; 3],
-    spin: [f64; 3],
+    angular_velocity: [f64; 3],
     centre: [f64; 3],
 }
 
 /// [`RigidMotion`] in single precision, as an affine map.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub(crate) struct RoughMotion {
+pub(crate) struct RigidMotionF32 {
     velocity: Row,
     centre: Row,
     /// Columns of the matrix of spin ×.
     spin: [Row; 3],
 }
 
-impl RoughMotion {
+impl RigidMotionF32 {
     /// Velocity at a point.
     #[inline(always)]
     pub fn at<D: Dim>(&self, position: Row) -> Row {
@@ -100,7 +100,7 @@ impl RigidMotion {
         (0..3).for_each(|k| inertia[k][k] += little);
         Self {
             velocity,
-            spin: solved(&inertia, *angular),
+            angular_velocity: solved(&inertia, *angular),
             centre,
         }
     }
@@ -109,16 +109,16 @@ impl RigidMotion {
     pub(crate) fn times(&self, velocity: f64, spin: f64) -> Self {
         Self {
             velocity: scaled(self.velocity, velocity),
-            spin: scaled(self.spin, spin),
+            angular_velocity: scaled(self.angular_velocity, spin),
             centre: self.centre,
         }
     }
 
     /// Converts to single precision.
-    pub(crate) fn roughly(&self) -> RoughMotion {
+    pub(crate) fn roughly(&self) -> RigidMotionF32 {
         let row = |[x, y, z]: [f64; 3]| [x as f32, y as f32, z as f32, 0.0];
-        let [x, y, z] = self.spin;
-        RoughMotion {
+        let [x, y, z] = self.angular_velocity;
+        RigidMotionF32 {
             velocity: row(self.velocity),
             centre: row(self.centre),
             spin: [row([0.0, z, -y]), row([-z, 0.0, x]), row([y, -x, 0.0])],
@@ -129,7 +129,7 @@ impl RigidMotion {
     pub fn at(&self, position: Row) -> [f64; 3] {
         plus(
             self.velocity,
-            cross(self.spin, from_centre(position, self.centre)),
+            cross(self.angular_velocity, from_centre(position, self.centre)),
         )
     }
 }

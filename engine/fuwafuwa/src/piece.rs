@@ -7,7 +7,7 @@
 
 use crate::dim::Dim;
 use crate::disjoint::DisjointSets;
-use crate::ids::{ElementId, NodeId, PieceId, Table};
+use crate::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::mesh::Mesh;
 use std::collections::{BTreeMap, VecDeque};
 
@@ -25,7 +25,7 @@ pub struct Piece {
     /// Whether the piece was [removed](crate::World::remove_piece): only its number remains.
     pub removed: bool,
     /// Sleep timer: time for which the piece has been slow [s].
-    pub still: f32,
+    pub sleep_timer: f32,
 }
 
 /// Pieces of one body, and the piece of each element and node.
@@ -33,14 +33,14 @@ pub struct Piece {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pieces {
     /// Pieces by number. Numbers are never reused.
-    pub list: Table<PieceId, Piece>,
-    of_element: Table<ElementId, PieceId>,
-    of_node: Table<NodeId, PieceId>,
+    pub list: IndexVec<PieceId, Piece>,
+    of_element: IndexVec<ElementId, PieceId>,
+    of_node: IndexVec<NodeId, PieceId>,
     /// Scratch of [`Pieces::part`]: mark of the last search that visited each element and node.
     #[cfg_attr(feature = "serde", serde(skip))]
-    seen: Table<ElementId, u32>,
+    seen: IndexVec<ElementId, u32>,
     #[cfg_attr(feature = "serde", serde(skip))]
-    node_seen: Table<NodeId, u32>,
+    node_seen: IndexVec<NodeId, u32>,
     #[cfg_attr(feature = "serde", serde(skip))]
     marked: u32,
 }
@@ -159,7 +159,7 @@ impl Pieces {
 
     /// Determines whether the elements around each place of a release are still connected. Every part that is
     /// not connected to the rest of its piece becomes a new piece. Returns the numbers of the new pieces.
-    pub fn part<D: Dim>(&mut self, mesh: &Mesh<D>, places: &[Vec<ElementId>]) -> Vec<PieceId> {
+    pub fn detach<D: Dim>(&mut self, mesh: &Mesh<D>, places: &[Vec<ElementId>]) -> Vec<PieceId> {
         if self.marked > u32::MAX / 2 {
             self.marked = 0;
             self.seen.fill(0);
@@ -276,7 +276,7 @@ impl Pieces {
         let number = self.list.next_id();
         let whole = &self.list[self.of_element[elements[0]]];
         let part = Piece {
-            still: 0.0,
+            sleep_timer: 0.0,
             ..whole.clone()
         };
         self.list.push(part);

@@ -20,18 +20,18 @@
 
 use crate::dim::Dim;
 use crate::law::{
-    Elasticity, IDENTITY, Matrix, SQUASH_LIMIT, deformation_of, forces_of_stress, rotation_of,
+    Elasticity, IDENTITY, MIN_VOLUME_RATIO, Matrix, deformation_of, forces_of_stress, rotation_of,
     stress,
 };
-use crate::stencil::{Stencil, Vector64};
+use crate::stencil::{ElementClass, Vector64};
 use crate::vector::{cross, dot};
 
 /// Largest plastic strain per evaluation. It keeps violently torn elements from jumping. Q is correct to
 /// first order, so its error is half the square, 2 %.
-pub(crate) const MOST_FLOW: f64 = 0.2;
+pub(crate) const MAX_FLOW: f64 = 0.2;
 /// Volume ratio below which an element does not flow, because its deformation is not meaningful; a quarter of
-/// [`SQUASH_LIMIT`].
-pub(crate) const LEAST_VOLUME: f64 = 0.1;
+/// [`MIN_VOLUME_RATIO`].
+pub(crate) const MIN_FLOW_VOLUME_RATIO: f64 = 0.1;
 
 /// Yield strain and plastic limit of a material.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -45,13 +45,13 @@ pub struct Plasticity {
 impl Plasticity {
     /// Norm |d| of the deviator at which the material yields: ε √(d / (d − 1)) for a volume-preserving
     /// stretch by ε in d dimensions.
-    pub(crate) fn most_deviator<D: Dim>(self) -> f64 {
+    pub(crate) fn max_deviator<D: Dim>(self) -> f64 {
         let axes = D::N as f64;
         self.yield_strain * (axes / (axes - 1.0)).sqrt()
     }
 
     /// |G|² after compression to the limit along one axis and even expansion along the others.
-    pub(crate) fn most_flown<D: Dim>(self) -> f64 {
+    pub(crate) fn max_plastic_norm_squared<D: Dim>(self) -> f64 {
         let squared = self.limit * self.limit;
         // There is one other axis in 2D, and two in 3D.
         match D::N {
@@ -73,7 +73,7 @@ pub fn stress_after<D: Dim>(
     undone: &Matrix,
 ) -> Matrix {
     let own = stress(elasticity, &elastic_part(deformation, undone));
-    let soft = kneaded_stiffness::<D>(undone);
+    let soft = plastic_stiffness_factor::<D>(undone);
     let mut total = [[0.0; 3]; 3];
     for i in 0..3 {
         for j in 0..3 {
@@ -92,7 +92,7 @@ pub fn stress_after<D: Dim>(
 pub fn forces_after<D: Dim>(
     elasticity: Elasticity,
     undone: &Matrix,
-    stencil: &Stencil<D>,
+    stencil: &ElementClass<D>,
     size: f64,
     positions: &[Vector64],
 ) -> Vec<Vector64> {
@@ -114,7 +114,7 @@ pub fn flow<D: Dim>(
     undone: &Matrix,
 ) -> Matrix {
     let elastic = elastic_part(deformation, undone);
-    if determinant(&elastic) <= LEAST_VOLUME {
+    if determinant(&elastic) <= MIN_FLOW_VOLUME_RATIO {
         return *undone;
     }
     let rotation = rotation_of(&elastic);
@@ -133,11 +133,11 @@ pub fn flow<D: Dim>(
     let mean = (0..D::N).map(|k| deviator[k][k]).sum::<f64>() / D::N as f64;
     (0..D::N).for_each(|k| deviator[k][k] -= mean);
     let size = squared(&deviator).sqrt();
-    let excess = size - plasticity.most_deviator::<D>();
+    let excess = size - plasticity.max_deviator::<D>();
     if excess <= 0.0 {
         return *undone;
     }
-    let share = excess.min(MOST_FLOW) / size;
+    let share = excess.min(MAX_FLOW) / size;
     let mut step = [[0.0; 3]; 3];
     for i in 0..3 {
         for j in 0..3 {
@@ -172,12 +172,13 @@ pub fn flow<D: Dim>(
             }
         })
     });
-    let before = kneaded_stiffness::<D>(undone) * density(elasticity, &stretch, whole);
-    let after = kneaded_stiffness::<D>(&next) * density(elasticity, &eased, whole);
+    let before = plastic_stiffness_factor::<D>(undone) * density(elasticity, &stretch, whole);
+    let after = plastic_stiffness_factor::<D>(&next) * density(elasticity, &eased, whole);
     if after >= before {
         return *undone;
     }
-    let may_be = inner(&next) < plasticity.most_flown::<D>() || inner(&next) < inner(undone);
+    let may_be =
+        inner(&next) < plasticity.max_plastic_norm_squared::<D>() || inner(&next) < inner(undone);
     if may_be { next } else { *undone }
 }
 
@@ -186,7 +187,7 @@ fn density(elasticity: Elasticity, stretch: &Matrix, volume: f64) -> f64 {
     let mut strain = *stretch;
     (0..3).for_each(|k| strain[k][k] -= 1.0);
     let spread = strain[0][0] + strain[1][1] + strain[2][2];
-    let below = (SQUASH_LIMIT - volume).max(0.0);
+    let below = (MIN_VOLUME_RATIO - volume).max(0.0);
     elasticity.shear_modulus() * squared(&strain)
         + 0.5 * elasticity.lame() * spread * spread
         + 0.5 * elasticity.young * below * below
@@ -194,7 +195,7 @@ fn density(elasticity: Elasticity, stretch: &Matrix, volume: f64) -> f64 {
 
 /// Stiffness factor s = 1 / λ_max(GᵀG) of a plastically deformed element. Estimated from the trace and the
 /// norm of GᵀG; exact in 2D and for elements flattened along one axis.
-pub fn kneaded_stiffness<D: Dim>(undone: &Matrix) -> f64 {
+pub fn plastic_stiffness_factor<D: Dim>(undone: &Matrix) -> f64 {
     let axes = D::N as f64;
     let mut squares = [[0.0; 3]; 3];
     for i in 0..D::N {
@@ -257,7 +258,7 @@ mod tests {
         // The remaining elastic strain is the yield strain; the rest has become plastic.
         let left = elastic_part(&drawn(1.3), &undone)[0][0];
         assert!((left - 1.05).abs() < 2e-3, "{left}");
-        assert!(kneaded_stiffness::<D>(&undone) <= 1.0);
+        assert!(plastic_stiffness_factor::<D>(&undone) <= 1.0);
         // An element can be compressed to half its width and no further; compression and return restore the
         // shape.
         let mut flat = IDENTITY;
@@ -267,7 +268,7 @@ mod tests {
         }
         let pressed = 1.0 / flat[0][0];
         assert!((pressed - 0.5).abs() < 0.02, "{pressed}");
-        assert!((kneaded_stiffness::<D>(&flat) - 0.25).abs() < 0.03);
+        assert!((plastic_stiffness_factor::<D>(&flat) - 0.25).abs() < 0.03);
         // In one large step it would flow by more than necessary, because a step is correct to first order.
         for step in 0..400 {
             let by = 0.3 + 0.7 * f64::from(step.min(300)) / 300.0;

@@ -12,7 +12,7 @@
 
 use crate::dim::{Dim, Point, add, corner, neighbourhood, points_in, scale, voxel_around};
 use crate::grid::VoxelGrid;
-use crate::sharing::Sharing;
+use crate::sharing::Connectivity;
 use std::marker::PhantomData;
 
 /// Cell of the hierarchy: level 0 is one voxel, level l is 2^l voxels wide.
@@ -80,7 +80,7 @@ impl Cell {
 /// Numbering of all possible cells of a grid, level by level: the indices of tables over cells.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Places {
+pub struct CellIndexing {
     /// For each level: the number of cells on each axis, and the index of its first cell.
     levels: Vec<(Point, usize)>,
     count: usize,
@@ -96,7 +96,7 @@ const WIDEST: i32 = 8;
 /// 1 would need a grid of 16 voxels across, and level 2 one of 32.
 const SMALL_LEVEL: usize = 2;
 
-impl Places {
+impl CellIndexing {
     /// Numbers the cells of a grid of `size` voxels, up to the largest allowed cells.
     fn new(mut size: Point) -> Self {
         let longest = size[0].max(size[1]).max(size[2]);
@@ -128,7 +128,7 @@ impl Places {
 
     /// Index of a cell; `None` outside the grid.
     #[inline]
-    pub fn number(&self, cell: Cell) -> Option<usize> {
+    pub fn index(&self, cell: Cell) -> Option<usize> {
         let &(size, first) = self.levels.get(cell.level as usize)?;
         let inside = (0..3).all(|axis| cell.at[axis] >= 0 && cell.at[axis] < size[axis]);
         let [x, y, z] = cell.at.map(|k| k as usize);
@@ -140,7 +140,7 @@ impl Places {
     pub fn voxels_around<D: Dim>(&self, at: Point) -> Option<[usize; 8]> {
         let (size, _) = self.levels[0];
         let inside = (0..D::N).all(|axis| at[axis] > 0 && at[axis] < size[axis]);
-        let low = self.number(Cell::of(voxel_around::<D>(at, 0)))?;
+        let low = self.index(Cell::of(voxel_around::<D>(at, 0)))?;
         let steps = [1, size[0] as usize, (size[0] * size[1]) as usize];
         let step = |octant: usize, axis: usize| (octant >> axis & 1) * steps[axis];
         inside.then(|| {
@@ -168,18 +168,18 @@ pub enum Grading {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
-pub struct Pyramid<D: Dim> {
-    places: Places,
+pub struct CellHierarchy<D: Dim> {
+    places: CellIndexing,
     grading: Grading,
     exists: Vec<bool>,
     dim: PhantomData<D>,
 }
 
-impl<D: Dim> Pyramid<D> {
+impl<D: Dim> CellHierarchy<D> {
     /// Builds the cells of a body from scratch.
     #[inline(never)]
-    pub fn new(grid: &VoxelGrid<D>, sharing: &Sharing<D>, grading: Grading) -> Self {
-        let places = Places::new(grid.size());
+    pub fn new(grid: &VoxelGrid<D>, sharing: &Connectivity<D>, grading: Grading) -> Self {
+        let places = CellIndexing::new(grid.size());
         let mut exists = vec![false; places.count()];
         // The topmost cells always exist, so that every voxel has an owner.
         if let [_, .., (_, first)] = places.levels[..] {
@@ -206,7 +206,7 @@ impl<D: Dim> Pyramid<D> {
     }
 
     /// Numbering of the cells.
-    pub fn places(&self) -> &Places {
+    pub fn places(&self) -> &CellIndexing {
         &self.places
     }
 
@@ -214,7 +214,7 @@ impl<D: Dim> Pyramid<D> {
     /// cells.
     #[inline]
     pub fn exists(&self, cell: Cell) -> bool {
-        let number = self.places.number(cell);
+        let number = self.places.index(cell);
         number.is_some_and(|number| self.exists[number])
     }
 
@@ -229,7 +229,7 @@ impl<D: Dim> Pyramid<D> {
         }
         (0..D::CORNERS).fold(0, |mask, index| {
             let child = cell.child(index);
-            let own = !self.exists(child) && grid.is_left(child.first_voxel());
+            let own = !self.exists(child) && grid.is_present(child.first_voxel());
             mask | u8::from(own) << index
         })
     }
@@ -272,7 +272,7 @@ impl<D: Dim> Pyramid<D> {
     pub fn refine(
         &mut self,
         grid: &VoxelGrid<D>,
-        sharing: &Sharing<D>,
+        sharing: &Connectivity<D>,
         changed: impl Iterator<Item = Point>,
     ) -> Vec<Cell> {
         let mut born = Vec::new();
@@ -286,7 +286,7 @@ impl<D: Dim> Pyramid<D> {
                     at: voxel,
                 };
                 let cell = if is_coarse { finest.parent() } else { finest };
-                if grid.is_left(voxel) && self.add(cell) {
+                if grid.is_present(voxel) && self.add(cell) {
                     layer.push(cell);
                 }
             }
@@ -315,7 +315,12 @@ impl<D: Dim> Pyramid<D> {
     /// Removes the cells of removed voxels, and the cells that existed only because of them. The result
     /// equals a hierarchy built from scratch. Where a part of a cell remains, it touched the removed voxels
     /// at an open point, so it exists for that reason.
-    pub(crate) fn take_out(&mut self, grid: &VoxelGrid<D>, sharing: &Sharing<D>, voxels: &[Point]) {
+    pub(crate) fn take_out(
+        &mut self,
+        grid: &VoxelGrid<D>,
+        sharing: &Connectivity<D>,
+        voxels: &[Point],
+    ) {
         if self.grading == Grading::Coarse {
             // With this grading, cells of level 0 never exist.
             *self = Self::new(grid, sharing, self.grading);
@@ -350,20 +355,20 @@ impl<D: Dim> Pyramid<D> {
 
     /// Removes a cell; returns false if the cell did not exist.
     fn remove(&mut self, cell: Cell) -> bool {
-        let number = self.places.number(cell);
+        let number = self.places.index(cell);
         number.is_some_and(|number| std::mem::replace(&mut self.exists[number], false))
     }
 
     /// Adds a cell; returns false if the cell already existed or lies outside the grid.
     fn add(&mut self, cell: Cell) -> bool {
-        let number = self.places.number(cell);
+        let number = self.places.index(cell);
         number.is_some_and(|number| !std::mem::replace(&mut self.exists[number], true))
     }
 }
 
 /// Whether the voxels around a point must be cells of level 0: the point is open, or different materials meet
 /// there.
-fn is_fine<D: Dim>(grid: &VoxelGrid<D>, sharing: &Sharing<D>, at: Point) -> bool {
+fn is_fine<D: Dim>(grid: &VoxelGrid<D>, sharing: &Connectivity<D>, at: Point) -> bool {
     if sharing.is_open(at) {
         return true;
     }

@@ -3,11 +3,11 @@
 mod figure;
 mod tree;
 
-use crate::body::Body;
+use crate::body::SoftBody;
 use crate::dim::Dim;
-use crate::handle::{BodyId, RigidId};
+use crate::handle::{RigidBodyHandle, SoftBodyHandle};
 use crate::ids::{ElementId, PieceId};
-use crate::rigid::Rigid;
+use crate::rigid::RigidBody;
 use crate::shape::{Bounds, Shape, Vector, flat};
 use crate::vector::{dot, is_finite, length, minus, plus, scaled};
 use crate::view::Facet;
@@ -30,11 +30,11 @@ type Counts<'a> = &'a dyn Fn(Thing) -> bool;
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Thing {
     /// Rigid body.
-    Rigid(RigidId),
+    RigidBody(RigidBodyHandle),
     /// Element of a soft body.
     Soft {
         /// Handle of the body.
-        body: BodyId,
+        body: SoftBodyHandle,
         /// Piece number.
         piece: PieceId,
         /// Element.
@@ -46,7 +46,7 @@ pub enum Thing {
 
 /// Hit of a query: a point on the surface of an object.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct QueryHit {
     /// The object.
     pub thing: Thing,
     /// Position [m].
@@ -62,11 +62,11 @@ pub struct Found {
 /// objects count.
 ///
 /// ```
-/// use fuwafuwa::{Body, Dim3, Material, Queries, Settings, Thing, VoxelGrid, World};
+/// use fuwafuwa::{SoftBody, Dim3, Material, Queries, WorldConfig, Thing, VoxelGrid, World};
 ///
-/// let mut world = World::new(Settings::default())?;
+/// let mut world = World::new(WorldConfig::default())?;
 /// let grid = VoxelGrid::<Dim3>::ball(16, 1.0)?;
-/// let ball = world.add_body(Body::new(grid, &[Material::default()])?);
+/// let ball = world.add_body(SoftBody::new(grid, &[Material::default()])?);
 /// let queries = Queries::new(&world);
 /// let from_above = queries.ray([0.5, 3.0, 0.5], [0.0, -1.0, 0.0], 10.0, &|_| true);
 /// let found = from_above.expect("the ball is below");
@@ -77,7 +77,7 @@ pub struct Found {
 /// ```
 pub struct Queries<'a, D: Dim> {
     world: &'a World<D>,
-    facets: Vec<(BodyId, Facet)>,
+    facets: Vec<(SoftBodyHandle, Facet)>,
     surface: Tree,
     /// Filled cells of all elements, built by the first query that requires them.
     filled: OnceCell<Filled>,
@@ -95,10 +95,10 @@ impl<'a, D: Dim> Queries<'a, D> {
     #[inline(never)]
     pub fn new(world: &'a World<D>) -> Self {
         let mut facets = Vec::new();
-        for (id, body) in world.bodies().entries() {
+        for (id, body) in world.soft_bodies().entries() {
             facets.extend(body.facets().map(|facet| (id, facet)));
         }
-        let bounds = |(_, facet): &(BodyId, Facet)| around_all(corners::<D>(facet));
+        let bounds = |(_, facet): &(SoftBodyHandle, Facet)| around_all(corners::<D>(facet));
         let boxes: Vec<Bounds> = facets.iter().map(bounds).collect();
         Self {
             world,
@@ -109,8 +109,8 @@ impl<'a, D: Dim> Queries<'a, D> {
     }
 
     /// Iterates over the rigid bodies, except sensors.
-    fn rigids(&self) -> impl Iterator<Item = (RigidId, &Rigid)> + Clone {
-        let all = self.world.rigids().entries();
+    fn rigids(&self) -> impl Iterator<Item = (RigidBodyHandle, &RigidBody)> + Clone {
+        let all = self.world.rigid_bodies().entries();
         all.filter(|(_, rigid)| !rigid.is_sensor)
     }
 
@@ -124,7 +124,7 @@ impl<'a, D: Dim> Queries<'a, D> {
         direction: Vector,
         most: f32,
         counts: Counts<'_>,
-    ) -> Option<Found> {
+    ) -> Option<QueryHit> {
         let (from, direction) = (flat::<D>(from), flat::<D>(direction));
         let long = direction.map(f64::from);
         let direction = scaled(long, 1.0 / dot(long, long).sqrt()).map(|k| k as f32);
@@ -136,7 +136,7 @@ impl<'a, D: Dim> Queries<'a, D> {
             let met = rigid.shape().ray(from, direction);
             let met =
                 met.map(|(distance, normal)| (distance, along(from, direction, distance), normal));
-            best.consider(met, counts, || Thing::Rigid(id));
+            best.consider(met, counts, || Thing::RigidBody(id));
         }
         self.surface.search(
             best.least,
@@ -155,7 +155,7 @@ impl<'a, D: Dim> Queries<'a, D> {
     /// distance `most` [m], which may be infinite. Returns `None` if another value is not finite, or `most`
     /// is negative.
     #[inline(never)]
-    pub fn nearest(&self, at: Vector, most: f32, counts: Counts<'_>) -> Option<Found> {
+    pub fn nearest(&self, at: Vector, most: f32, counts: Counts<'_>) -> Option<QueryHit> {
         let at = flat::<D>(at);
         if !is_finite(at) {
             return None;
@@ -164,7 +164,7 @@ impl<'a, D: Dim> Queries<'a, D> {
         for (id, rigid) in self.rigids() {
             let (gap, normal) = rigid.shape().distance(at);
             let met = (gap.abs(), along(at, normal, -gap), normal);
-            best.consider(Some(met), counts, || Thing::Rigid(id));
+            best.consider(Some(met), counts, || Thing::RigidBody(id));
         }
         self.surface.search(
             best.least,
@@ -189,7 +189,7 @@ impl<'a, D: Dim> Queries<'a, D> {
         }
         let rigids = self.rigids();
         let rigids = rigids.filter(|(_, rigid)| rigid.shape().distance(at).0 <= 0.0);
-        let mut things: Vec<Thing> = rigids.map(|(id, _)| Thing::Rigid(id)).collect();
+        let mut things: Vec<Thing> = rigids.map(|(id, _)| Thing::RigidBody(id)).collect();
         let filled = self.filled.get_or_init(|| Filled::new(self.world));
         filled.tree.search(
             f32::INFINITY,
@@ -218,9 +218,9 @@ impl<'a, D: Dim> Queries<'a, D> {
     pub fn overlapping(&self, shape: &Shape) -> Vec<Thing> {
         let shape = shape.seen_in::<D>();
         let rigids = self.rigids();
-        let overlaps = |(_, rigid): &(RigidId, &Rigid)| overlap(rigid.shape(), &shape);
+        let overlaps = |(_, rigid): &(RigidBodyHandle, &RigidBody)| overlap(rigid.shape(), &shape);
         let rigids = rigids.filter(overlaps);
-        let mut things: BTreeSet<Thing> = rigids.map(|(id, _)| Thing::Rigid(id)).collect();
+        let mut things: BTreeSet<Thing> = rigids.map(|(id, _)| Thing::RigidBody(id)).collect();
         self.surface.search(
             f32::INFINITY,
             |&[low, high]| {
@@ -244,16 +244,16 @@ impl<'a, D: Dim> Queries<'a, D> {
         things
     }
 
-    fn thing(&self, body: BodyId, facet: &Facet) -> Thing {
-        soft(body, &self.world.bodies()[body], facet.element)
+    fn thing(&self, body: SoftBodyHandle, facet: &Facet) -> Thing {
+        soft(body, &self.world.soft_bodies()[body], facet.element)
     }
 }
 
 impl Thing {
     /// Returns the owner of the object: a rigid body, or a piece of a body.
-    pub fn owner(self) -> (Option<RigidId>, Option<(BodyId, PieceId)>) {
+    pub fn owner(self) -> (Option<RigidBodyHandle>, Option<(SoftBodyHandle, PieceId)>) {
         match self {
-            Self::Rigid(rigid) => (Some(rigid), None),
+            Self::RigidBody(rigid) => (Some(rigid), None),
             Self::Soft { body, piece, .. } => (None, Some((body, piece))),
         }
     }
@@ -262,7 +262,7 @@ impl Thing {
 impl Filled {
     fn new<D: Dim>(world: &World<D>) -> Self {
         let (mut things, mut corners) = (Vec::new(), Vec::new());
-        for (id, body) in world.bodies().entries() {
+        for (id, body) in world.soft_bodies().entries() {
             for view in body.element_views() {
                 let whole = if view.level == 0 { 1 } else { D::CORNERS };
                 let children = (0..whole).filter(|child| view.children >> child & 1 == 1);
@@ -282,7 +282,7 @@ impl Filled {
     }
 }
 
-fn soft<D: Dim>(id: BodyId, body: &Body<D>, element: ElementId) -> Thing {
+fn soft<D: Dim>(id: SoftBodyHandle, body: &SoftBody<D>, element: ElementId) -> Thing {
     let mesh = body.mesh();
     let alive = mesh.element(element).expect("the element is alive");
     Thing::Soft {
@@ -295,7 +295,7 @@ fn soft<D: Dim>(id: BodyId, body: &Body<D>, element: ElementId) -> Thing {
 
 /// Nearest hit of a running query.
 struct Best {
-    found: Option<Found>,
+    found: Option<QueryHit>,
     /// Upper limit: only smaller distances count.
     least: f32,
 }
@@ -323,7 +323,7 @@ impl Best {
             let thing = thing();
             if counts(thing) {
                 self.least = distance;
-                self.found = Some(Found {
+                self.found = Some(QueryHit {
                     thing,
                     at,
                     normal,

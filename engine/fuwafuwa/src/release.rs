@@ -1,17 +1,17 @@
 //! Effects of a release of shared nodes on a body: connectivity, cells, elements, state and pieces.
 
-use crate::body::Body;
+use crate::body::SoftBody;
 use crate::chains::ascending;
 use crate::changes::Changes;
 use crate::dim::{Dim, Point, voxel_around};
 use crate::disjoint::DisjointSets;
-use crate::ids::{ElementId, NodeId, PieceId, Table};
+use crate::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::mesh::{Defect, Inheritance, Remodelled};
 use crate::momentum::{Momentum, RigidMotion, centre_of};
 use crate::pyramid::Grading;
 use crate::solve::Row;
 
-impl<D: Dim> Body<D> {
+impl<D: Dim> SoftBody<D> {
     /// Releases shared nodes at lattice points, each between the octants of its mask and the rest, and
     /// remodels around them [Endo 2004, §3.2]. Positions and velocities are transferred; linear and angular
     /// momentum are preserved. Returns the detached pieces. Has no effect on a body of [`Grading::Coarse`].
@@ -20,18 +20,18 @@ impl<D: Dim> Body<D> {
     /// A [`Defect`] if the mesh becomes inconsistent, which is a bug in this library.
     #[inline(never)]
     pub fn release(&mut self, at: &[(Point, u8)]) -> Result<Vec<PieceId>, Defect> {
-        Ok(self.tear(at)?.parted)
+        Ok(self.tear(at)?.detached)
     }
 
-    /// Does the work of [`Body::release`], and returns all changes.
+    /// Does the work of [`SoftBody::release`], and returns all changes.
     pub(crate) fn tear(&mut self, at: &[(Point, u8)]) -> Result<Changes, Defect> {
-        if self.truth.pyramid.grading() == Grading::Coarse {
+        if self.topology.pyramid.grading() == Grading::Coarse {
             return Ok(Changes::default());
         }
         let mut changed: Vec<Point> = Vec::new();
         for &(point, side) in at {
             // A point is often released several times in sequence: it is examined once.
-            if self.truth.sharing.release(point, side) && changed.last() != Some(&point) {
+            if self.topology.connectivity.release(point, side) && changed.last() != Some(&point) {
                 changed.push(point);
             }
         }
@@ -39,19 +39,19 @@ impl<D: Dim> Body<D> {
             return Ok(Changes::default());
         }
         changed.extend(
-            self.truth
-                .sharing
-                .normalise(self.truth.sharing.all_around(&changed)),
+            self.topology
+                .connectivity
+                .normalise(self.topology.connectivity.all_around(&changed)),
         );
-        let near = self.truth.sharing.all_around(&changed).into_iter();
-        let born = self
-            .truth
-            .pyramid
-            .refine(&self.truth.grid, &self.truth.sharing, near);
-        let remodelled = self.truth.mesh.remodel(
-            &self.truth.grid,
-            &self.truth.sharing,
-            &self.truth.pyramid,
+        let near = self.topology.connectivity.all_around(&changed).into_iter();
+        let born =
+            self.topology
+                .pyramid
+                .refine(&self.topology.grid, &self.topology.connectivity, near);
+        let remodelled = self.topology.mesh.remodel(
+            &self.topology.grid,
+            &self.topology.connectivity,
+            &self.topology.pyramid,
             &changed,
             &born,
         )?;
@@ -62,16 +62,16 @@ impl<D: Dim> Body<D> {
         let beside = places.concat();
         let lists = [&touched, &self.nodes_of(&beside), &remodelled.abandoned];
         let nodes = lists.into_iter().flatten().copied();
-        self.find_breakable(&ascending(nodes, self.truth.mesh.node_capacity()));
+        self.find_breakable(&ascending(nodes, self.topology.mesh.node_capacity()));
         self.cache.awake_is_stale = true;
         let new = remodelled.inherited.iter().map(|new| new.node);
         let changes = Changes {
-            parted: self.truth.pieces.part(&self.truth.mesh, &places),
+            detached: self.topology.pieces.detach(&self.topology.mesh, &places),
             nodes: new.chain(remodelled.abandoned).collect(),
             elements: [beside, remodelled.removed, remodelled.seated].concat(),
             removed: Vec::new(),
         };
-        let most = self.truth.mesh.element_capacity();
+        let most = self.topology.mesh.element_capacity();
         self.cache.history.add(&changes, most);
         Ok(changes)
     }
@@ -79,9 +79,9 @@ impl<D: Dim> Body<D> {
     /// Returns the elements around the given points, ascending, grouped by the places where they were
     /// connected before, directly or through others of the group.
     fn places_around(&self, points: &[Point]) -> Vec<Vec<ElementId>> {
-        let around = |&at: &Point| self.truth.mesh.owners_around(at, D::ALL_CORNERS);
+        let around = |&at: &Point| self.topology.mesh.owners_around(at, D::ALL_CORNERS);
         let elements = points.iter().flat_map(around);
-        let elements = ascending(elements, self.truth.mesh.element_capacity());
+        let elements = ascending(elements, self.topology.mesh.element_capacity());
         let mut joined = DisjointSets::new(elements.len());
         for at in points {
             let mut places = around(at).filter_map(|id| elements.binary_search(&id).ok());
@@ -104,14 +104,14 @@ impl<D: Dim> Body<D> {
         } = remodelled;
         let new = ascending(
             inherited.iter().map(|new| new.node),
-            self.truth.mesh.node_capacity(),
+            self.topology.mesh.node_capacity(),
         );
         let is_old = |id: &NodeId| new.binary_search(id).is_err();
         let old = touched.iter().copied().filter(is_old);
         let old = self.free_by_piece(old.chain(abandoned.iter().copied()));
         let momentum = |nodes: &[NodeId]| {
             let centre = centre_of(self.states(nodes).map(|(x, _, mass)| (x, mass)));
-            let piece = self.truth.pieces.of_node(nodes[0]);
+            let piece = self.topology.pieces.of_node(nodes[0]);
             (piece, centre, Momentum::of(self.states(nodes), centre))
         };
         let before: Vec<_> = self.pieces_in(&old).into_iter().map(momentum).collect();
@@ -124,30 +124,32 @@ impl<D: Dim> Body<D> {
         let new: Vec<ElementId> = new.collect();
         for &id in seated {
             let element = self
-                .truth
+                .topology
                 .mesh
                 .element(id)
                 .expect("seated elements are alive");
-            self.truth.pieces.adopt(id, &element.nodes);
+            self.topology.pieces.adopt(id, &element.nodes);
             self.cache.bare[id] = 0;
         }
         let dents = self.dents_of(remodelled, &new);
-        let (blocks, pieces) = (&mut self.state.blocks, &self.truth.pieces);
+        let (blocks, pieces) = (&mut self.state.blocks, &self.topology.pieces);
         let asleep = |id: ElementId| pieces.list[pieces.of_element(id)].asleep;
-        let (mesh, grid) = (&self.truth.mesh, &self.truth.grid);
+        let (mesh, grid) = (&self.topology.mesh, &self.topology.grid);
         blocks.update(mesh, grid, removed, seated, asleep);
         for (id, dent) in dents {
-            blocks.set_undone(id, dent);
+            blocks.set_plastic_inverse(id, dent);
         }
         self.settle(&new);
-        let seated = seated.iter().filter_map(|&id| self.truth.mesh.element(id));
+        let seated = seated
+            .iter()
+            .filter_map(|&id| self.topology.mesh.element(id));
         let fresh = seated.filter(|element| element.cell.level == 0);
         let fresh: Vec<Point> = fresh.map(|element| element.cell.at).collect();
         self.expose(&fresh);
         self.weigh(touched);
         let now = self.free_by_piece(touched.iter().copied());
         for nodes in self.pieces_in(&now) {
-            let piece = self.truth.pieces.of_node(nodes[0]);
+            let piece = self.topology.pieces.of_node(nodes[0]);
             let known = before.binary_search_by_key(&piece, |&(piece, ..)| piece);
             if let Ok(place) = known {
                 let (_, centre, momentum) = before[place];
@@ -167,9 +169,12 @@ impl<D: Dim> Body<D> {
             return Vec::new();
         }
         let of = |&id: &ElementId| {
-            let voxel = self.truth.mesh.first_voxel(self.truth.mesh.element(id)?);
+            let voxel = self
+                .topology
+                .mesh
+                .first_voxel(self.topology.mesh.element(id)?);
             let origin = remodelled.origin::<D>(voxel)?;
-            Some((id, blocks.undone(origin)?))
+            Some((id, blocks.plastic_inverse(origin)?))
         };
         new.iter().filter_map(of).collect()
     }
@@ -179,20 +184,20 @@ impl<D: Dim> Body<D> {
         // Fixed nodes keep their velocity; the others of each piece keep its momentum.
         let free = |id: &NodeId| self.state.inverse_mass[*id] > 0.0;
         let mut nodes: Vec<NodeId> = nodes.filter(free).collect();
-        nodes.sort_by_key(|&id| self.truth.pieces.of_node(id));
+        nodes.sort_by_key(|&id| self.topology.pieces.of_node(id));
         nodes
     }
 
     /// Splits nodes that are sorted by piece into one slice per piece.
     fn pieces_in<'a>(&self, nodes: &'a [NodeId]) -> Vec<&'a [NodeId]> {
-        let of_node = |id| self.truth.pieces.of_node(id);
+        let of_node = |id| self.topology.pieces.of_node(id);
         nodes.chunk_by(|&a, &b| of_node(a) == of_node(b)).collect()
     }
 
     /// Gives new nodes the weighted state of old ones; reads all before it writes any.
     fn inherit(&mut self, remodelled: &Remodelled) {
         let inherited = &remodelled.inherited;
-        let mean = |rows: &Table<NodeId, Row>, from: &[(NodeId, f64)]| {
+        let mean = |rows: &IndexVec<NodeId, Row>, from: &[(NodeId, f64)]| {
             let mut sum = [0.0f64; 4];
             for &(old, weight) in from {
                 for axis in 0..D::N {
@@ -215,7 +220,7 @@ impl<D: Dim> Body<D> {
             self.state.velocity[node] = velocity;
             self.state.damage[node] = 0.0;
             let from = remodelled.from(new);
-            self.truth.pieces.inherit(new.node, from[0].0);
+            self.topology.pieces.inherit(new.node, from[0].0);
             self.inherit_hold(new.node, from);
         }
     }
@@ -224,9 +229,9 @@ impl<D: Dim> Body<D> {
     fn nodes_of(&self, elements: &[ElementId]) -> Vec<NodeId> {
         let elements = elements
             .iter()
-            .filter_map(|&id| self.truth.mesh.element(id));
+            .filter_map(|&id| self.topology.mesh.element(id));
         let nodes = elements.flat_map(|element| element.nodes.iter().copied());
-        ascending(nodes, self.truth.mesh.node_capacity())
+        ascending(nodes, self.topology.mesh.node_capacity())
     }
 
     /// Adds the rigid motion that restores the momentum `before` about `centre`. Interpolation preserves
@@ -269,7 +274,7 @@ mod tests {
     /// search from scratch.
     fn check_pieces<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
-        let mut body = Body::new(grid, &[Material::default()]).expect("the material is valid");
+        let mut body = SoftBody::new(grid, &[Material::default()]).expect("the material is valid");
         let mut seed = 3u32;
         let mut random = |below: usize| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -283,15 +288,15 @@ mod tests {
                 releases.push((at, 1 << random(D::CORNERS)));
             }
             body.release(&releases).expect("the mesh stays consistent");
-            let fresh = Pieces::new(&body.truth.mesh);
-            let both = |(id, _)| (body.truth.pieces.of_element(id), fresh.of_element(id));
+            let fresh = Pieces::new(&body.topology.mesh);
+            let both = |(id, _)| (body.topology.pieces.of_element(id), fresh.of_element(id));
             let pairs: BTreeSet<(PieceId, PieceId)> =
-                body.truth.mesh.elements().map(both).collect();
+                body.topology.mesh.elements().map(both).collect();
             assert_eq!(pairs.len(), fresh.list.len());
-            assert_eq!(pairs.len(), body.truth.pieces.list.len());
+            assert_eq!(pairs.len(), body.topology.pieces.list.len());
         }
         assert!(
-            body.truth.pieces.list.len() > 20,
+            body.topology.pieces.list.len() > 20,
             "too few pieces were detached to test anything"
         );
     }

@@ -3,21 +3,21 @@
 //! A piece shares no node with the rest. So the rest keeps its elements, nodes, numbers, masses and motion;
 //! only the neighbours across the crack are gone.
 
-use crate::body::Body;
+use crate::body::SoftBody;
 use crate::changes::Changes;
 use crate::dim::{Dim, Point};
 use crate::ids::{ElementId, PieceId};
 
-impl<D: Dim> Body<D> {
+impl<D: Dim> SoftBody<D> {
     /// Whether the body has a piece with this number that was not removed.
     pub fn has_piece(&self, piece: PieceId) -> bool {
-        let piece = self.truth.pieces.list.get(piece.index());
+        let piece = self.topology.pieces.list.get(piece.index());
         piece.is_some_and(|piece| !piece.removed)
     }
 
     /// Removes pieces, given in ascending order, of which at least one exists; returns all changes.
     pub(crate) fn take_out(&mut self, pieces: &[PieceId]) -> Changes {
-        let truth = &mut self.truth;
+        let truth = &mut self.topology;
         let of_element = |id: &ElementId| truth.pieces.of_element(*id);
         let elements = truth.mesh.elements().map(|(id, _)| id);
         let elements: Vec<ElementId> = elements
@@ -26,10 +26,12 @@ impl<D: Dim> Body<D> {
         let own = elements.iter().filter_map(|&id| truth.mesh.element(id));
         let voxels = own.flat_map(|element| truth.mesh.voxels(element));
         let voxels: Vec<Point> = voxels.collect();
-        truth.grid.take_out(&voxels);
-        truth.sharing.take_out(&voxels);
-        truth.pyramid.take_out(&truth.grid, &truth.sharing, &voxels);
-        let nodes = truth.mesh.take_out(&truth.sharing, &elements);
+        truth.grid.remove_voxels(&voxels);
+        truth.connectivity.take_out(&voxels);
+        truth
+            .pyramid
+            .take_out(&truth.grid, &truth.connectivity, &voxels);
+        let nodes = truth.mesh.take_out(&truth.connectivity, &elements);
         for &piece in pieces {
             let piece = &mut truth.pieces.list[piece];
             // A removed piece counts as asleep, so that it never counts as moving.
@@ -43,10 +45,10 @@ impl<D: Dim> Body<D> {
         let changes = Changes {
             nodes,
             elements,
-            parted: Vec::new(),
+            detached: Vec::new(),
             removed: pieces.to_vec(),
         };
-        let most = self.truth.mesh.element_capacity();
+        let most = self.topology.mesh.element_capacity();
         self.cache.history.add(&changes, most);
         changes
     }

@@ -11,7 +11,7 @@ mod free;
 mod inertia;
 
 use crate::dim::{Dim, turning};
-use crate::handle::{Arena, RigidId};
+use crate::handle::{Arena, RigidBodyHandle};
 use crate::layers::Layers;
 use crate::rotation::Rotation;
 use crate::shape::{Shape, Vector};
@@ -21,13 +21,13 @@ use bad::{is_within_reach, require};
 use inertia::{Inertia, Matrix};
 
 /// Rigid bodies of a world.
-pub type Rigids = Arena<RigidId, Rigid>;
+pub type RigidBodies = Arena<RigidBodyHandle, RigidBody>;
 
 /// Motion type of a rigid body.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Drive {
+pub enum MotionType {
     /// Fixed: never moves. Bodies resting on it may sleep.
     Fixed,
     /// Kinematic: reaches its target pose at the end of each tick, through any obstacle.
@@ -45,15 +45,15 @@ pub enum Drive {
         limit: f32,
     },
     /// Dynamic: moved and turned by gravity and contacts. The shape must be bounded and centred on its
-    /// origin, see [`Rigid::free`].
-    Free {
+    /// origin, see [`RigidBody::free`].
+    Dynamic {
         /// Mass [kg], 1e-6 to 1e6, with uniform density. A body ten times as heavy as its soft or rigid
         /// support sinks into it.
         mass: f32,
     },
 }
 
-impl Default for Drive {
+impl Default for MotionType {
     fn default() -> Self {
         Self::Coupled {
             mass: 2.0,
@@ -68,7 +68,7 @@ impl Default for Drive {
 /// of their voxels may slip in between.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Rigid {
+pub struct RigidBody {
     /// Coulomb friction coefficient; usual value 0.2. Contacts with soft bodies use this value alone, not
     /// that of the material. Contacts between two rigid bodies use the mean of both, except against a fixed
     /// body. There, a dynamic body uses the value of the fixed body, and a kinematic or coupled body its own.
@@ -77,11 +77,11 @@ pub struct Rigid {
     /// The larger of both values counts. Soft bodies rebound by their elasticity.
     pub restitution: f32,
     /// Motion type.
-    pub drive: Drive,
+    pub motion_type: MotionType,
     /// Collision layers.
     pub layers: Layers,
     /// Whether the body is a sensor. A sensor has no contacts, but reports
-    /// [`Event::Entered`](crate::Event::Entered) and [`Event::Left`](crate::Event::Left).
+    /// [`Event::SensorEntered`](crate::Event::SensorEntered) and [`Event::SensorExited`](crate::Event::SensorExited).
     pub is_sensor: bool,
     /// Number for use by the program; the engine ignores it.
     pub user_data: u64,
@@ -95,10 +95,10 @@ pub struct Rigid {
     /// Rotation from local to world axes.
     pub(crate) rotation: Rotation,
     /// Angular velocity [rad/s].
-    pub(crate) spin: Vector,
+    pub(crate) angular_velocity: Vector,
     /// Whether the body sleeps, and its sleep timer: for how long it has been slow [s].
     pub(crate) asleep: bool,
-    pub(crate) still: f32,
+    pub(crate) sleep_timer: f32,
     /// Position [m] and rotation at the start of the tick.
     position_before: Vector,
     rotation_before: Rotation,
@@ -121,47 +121,51 @@ pub struct Rigid {
 pub struct Reaction {
     /// Contact force [N]; jumps when something tears.
     pub contact: Vector,
-    /// Torque of the contacts and knives about [`position`](Rigid::position) [N m]; in 2D only the third
+    /// Torque of the contacts and knives about [`position`](RigidBody::position) [N m]; in 2D only the third
     /// component.
     pub torque: Vector,
     /// Reversed force of the virtual coupling [N]: the force to play on a force-feedback device.
     pub coupling: Vector,
 }
 
-impl Rigid {
+impl RigidBody {
     /// Returns a fixed rigid body; usual friction 0.2.
     pub fn fixed(shape: Shape, friction: f32) -> Self {
         Self {
             friction,
-            ..Self::driven(shape, [0.0; 3], Drive::Fixed)
+            ..Self::new(shape, [0.0; 3], MotionType::Fixed)
         }
     }
 
     /// Returns a coupled rigid body with the default coupling, at rest at `position` [m]: a ball (2D: a disc)
     /// of the given radius [m].
-    pub fn hand(position: Vector, radius: f32) -> Self {
+    pub fn coupled_ball(position: Vector, radius: f32) -> Self {
         let centre = [0.0; 3];
-        Self::driven(Shape::Ball { centre, radius }, position, Drive::default())
+        Self::new(
+            Shape::Ball { centre, radius },
+            position,
+            MotionType::default(),
+        )
     }
 
     /// Returns a rigid body of any bounded shape and motion type, at rest at `position` [m]. `form` is the
     /// shape in local coordinates, preferably centred on the origin.
-    pub fn driven(form: Shape, position: Vector, drive: Drive) -> Self {
+    pub fn new(form: Shape, position: Vector, drive: MotionType) -> Self {
         Self {
             friction: 0.2,
-            drive,
+            motion_type: drive,
             layers: Layers::default(),
             is_sensor: false,
             user_data: 0,
             form,
-            shape: form.moved(position),
+            shape: form.translated(position),
             position,
             restitution: 0.0,
             velocity: [0.0; 3],
             rotation: Rotation::NONE,
-            spin: [0.0; 3],
+            angular_velocity: [0.0; 3],
             asleep: false,
-            still: 0.0,
+            sleep_timer: 0.0,
             position_before: position,
             rotation_before: Rotation::NONE,
             inertia: None,
@@ -177,13 +181,13 @@ impl Rigid {
     /// Returns a dynamic rigid body of a mass [kg], at rest at the position of `shape`; friction 0.5.
     ///
     /// ```
-    /// use fuwafuwa::{Dim3, Rigid, Rotation, Settings, Shape, World};
+    /// use fuwafuwa::{Dim3, RigidBody, Rotation, WorldConfig, Shape, World};
     ///
-    /// let mut world = World::<Dim3>::new(Settings::default())?;
-    /// world.add_rigid(Rigid::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
+    /// let mut world = World::<Dim3>::new(WorldConfig::default())?;
+    /// world.add_rigid(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
     /// let cube = Shape::Box { centre: [0.0, 2.0, 0.0], half: [0.5; 3] };
     /// let turned = Rotation::about([1.0, 1.0, 0.0], 0.4);
-    /// let cube = world.add_rigid(Rigid::free(cube, 10.0).rotated(turned))?;
+    /// let cube = world.add_rigid(RigidBody::free(cube, 10.0).rotated(turned))?;
     /// for _ in 0..180 {
     ///     world.step();
     /// }
@@ -191,18 +195,18 @@ impl Rigid {
     /// assert!((cube.position()[1] - 0.5).abs() < 0.01 && cube.is_asleep());
     /// # Ok::<(), fuwafuwa::Refused>(())
     /// ```
-    pub fn free(shape: Shape, mass: f32) -> Self {
+    pub fn dynamic(shape: Shape, mass: f32) -> Self {
         let [low, high] = shape.bounds();
         let middle = scaled(plus(low, high), 0.5);
         let middle = if is_finite(middle) { middle } else { [0.0; 3] };
-        let form = shape.moved(scaled(middle, -1.0));
+        let form = shape.translated(scaled(middle, -1.0));
         Self {
             friction: 0.5,
-            ..Self::driven(form, middle, Drive::Free { mass })
+            ..Self::new(form, middle, MotionType::Dynamic { mass })
         }
     }
 
-    /// Returns the body rotated about its [`position`](Rigid::position), target included.
+    /// Returns the body rotated about its [`position`](RigidBody::position), target included.
     #[must_use]
     pub fn rotated(self, by: Rotation) -> Self {
         let rotation = self.rotation.then(by);
@@ -210,14 +214,17 @@ impl Rigid {
             rotation,
             rotation_before: rotation,
             rotation_goal: rotation,
-            shape: self.form.rotated(rotation).moved(self.position),
+            shape: self.form.rotated(rotation).translated(self.position),
             ..self
         }
     }
 
     /// Returns the body with another motion type.
-    pub fn with_drive(self, drive: Drive) -> Self {
-        Self { drive, ..self }
+    pub fn with_motion_type(self, drive: MotionType) -> Self {
+        Self {
+            motion_type: drive,
+            ..self
+        }
     }
 
     /// Returns the body for a world of `D`: in 2D third coordinates are set to 0.
@@ -232,21 +239,24 @@ impl Rigid {
         for rotation in rotations.into_iter().chain([&mut self.rotation]) {
             *rotation = rotation.seen_in::<D>();
         }
-        self.spin = turning::<D>(self.spin);
-        if self.drive == Drive::Fixed {
+        self.angular_velocity = turning::<D>(self.angular_velocity);
+        if self.motion_type == MotionType::Fixed {
             // The body may have been kinematic or coupled before.
             (self.velocity, self.goal_velocity) = ([0.0; 3], [0.0; 3]);
             self.stay();
         }
-        if matches!(self.drive, Drive::Fixed | Drive::Coupled { .. }) {
-            self.spin = [0.0; 3];
+        if matches!(
+            self.motion_type,
+            MotionType::Fixed | MotionType::Coupled { .. }
+        ) {
+            self.angular_velocity = [0.0; 3];
         }
         self.take_inertia::<D>();
         self.stand_at(self.position, self.rotation);
         self
     }
 
-    /// Returns the position of the local origin [m]: the centre of a [`Rigid::hand`].
+    /// Returns the position of the local origin [m]: the centre of a [`RigidBody::hand`].
     pub fn position(&self) -> Vector {
         self.position
     }
@@ -263,11 +273,11 @@ impl Rigid {
 
     /// Returns the angular velocity [rad/s]; in 2D only the third component.
     pub fn angular_velocity(&self) -> Vector {
-        self.spin
+        self.angular_velocity
     }
 
     /// Returns the target position [m].
-    pub fn goal(&self) -> Vector {
+    pub fn target_position(&self) -> Vector {
         self.goal
     }
 
@@ -287,13 +297,16 @@ impl Rigid {
     }
 
     /// Returns whether the body follows a target: it is kinematic or coupled.
-    pub fn is_driven(&self) -> bool {
-        matches!(self.drive, Drive::Kinematic | Drive::Coupled { .. })
+    pub fn follows_target(&self) -> bool {
+        matches!(
+            self.motion_type,
+            MotionType::Kinematic | MotionType::Coupled { .. }
+        )
     }
 
     /// Sets the target position [m]; in 2D the third coordinate is ignored.
     pub(crate) fn send<D: Dim>(&mut self, goal: Vector) -> Result<(), BadRigid> {
-        require(self.is_driven(), "drive", "kinematic or coupled")?;
+        require(self.follows_target(), "drive", "kinematic or coupled")?;
         require(is_within_reach(goal), "goal", "within 1e6 m of the origin")?;
         self.goal[..D::N].copy_from_slice(&goal[..D::N]);
         Ok(())
@@ -302,10 +315,10 @@ impl Rigid {
     /// Returns the inverse mass for contacts [1/kg]; 0 for fixed, kinematic and sleeping bodies.
     #[inline(always)]
     pub(crate) fn inverse_mass(&self) -> f32 {
-        match self.drive {
-            Drive::Fixed | Drive::Kinematic => 0.0,
-            Drive::Free { .. } if self.asleep => 0.0,
-            Drive::Coupled { mass, .. } | Drive::Free { mass } => 1.0 / mass,
+        match self.motion_type {
+            MotionType::Fixed | MotionType::Kinematic => 0.0,
+            MotionType::Dynamic { .. } if self.asleep => 0.0,
+            MotionType::Coupled { mass, .. } | MotionType::Dynamic { mass } => 1.0 / mass,
         }
     }
 
@@ -313,10 +326,11 @@ impl Rigid {
     pub(crate) fn start_tick(&mut self, duration: f32) {
         (self.position_before, self.rotation_before) = (self.position, self.rotation);
         self.goal_velocity = scaled(minus(self.goal, self.goal_before), 1.0 / duration);
-        if self.is_driven() && self.rotation != self.rotation_goal || self.drive == Drive::Kinematic
+        if self.follows_target() && self.rotation != self.rotation_goal
+            || self.motion_type == MotionType::Kinematic
         {
             let way = self.rotation.inverse().then(self.rotation_goal);
-            self.spin = scaled(way.scaled_axis(), 1.0 / duration);
+            self.angular_velocity = scaled(way.scaled_axis(), 1.0 / duration);
         }
         self.reactions.clear();
     }
@@ -325,16 +339,16 @@ impl Rigid {
     /// of range is reset to its pose at the start of the tick, at rest.
     pub(crate) fn end_tick(&mut self) {
         self.goal_before = self.goal;
-        if self.is_driven() && self.rotation != self.rotation_goal {
+        if self.follows_target() && self.rotation != self.rotation_goal {
             self.stand_at(self.position, self.rotation_goal);
         }
-        if matches!(self.drive, Drive::Coupled { .. }) {
-            self.spin = [0.0; 3];
+        if matches!(self.motion_type, MotionType::Coupled { .. }) {
+            self.angular_velocity = [0.0; 3];
         }
-        let is_finite = is_finite(self.velocity) && is_finite(self.spin);
+        let is_finite = is_finite(self.velocity) && is_finite(self.angular_velocity);
         if !is_finite || !is_within_reach(self.position) {
             self.stand_at(self.position_before, self.rotation_before);
-            (self.velocity, self.spin) = ([0.0; 3], [0.0; 3]);
+            (self.velocity, self.angular_velocity) = ([0.0; 3], [0.0; 3]);
             self.reactions.fill(Reaction::default());
         }
     }
@@ -343,13 +357,13 @@ impl Rigid {
     pub(crate) fn pull(&mut self, duration: f32) {
         self.goal_before = plus(self.goal_before, scaled(self.goal_velocity, duration));
         let mut reaction = Reaction::default();
-        match self.drive {
-            Drive::Fixed => return,
-            Drive::Free { .. } => {}
-            Drive::Kinematic => {
+        match self.motion_type {
+            MotionType::Fixed => return,
+            MotionType::Dynamic { .. } => {}
+            MotionType::Kinematic => {
                 self.velocity = scaled(minus(self.goal_before, self.position), 1.0 / duration);
             }
-            Drive::Coupled {
+            MotionType::Coupled {
                 mass,
                 stiffness,
                 damping,
@@ -397,7 +411,7 @@ impl Rigid {
 
     fn stand_at(&mut self, position: Vector, rotation: Rotation) {
         (self.position, self.rotation) = (position, rotation);
-        self.shape = self.form.rotated(rotation).moved(position);
+        self.shape = self.form.rotated(rotation).translated(position);
         if let Some(inertia) = &self.inertia {
             self.inverse_inertia = inertia.inverse(rotation);
         }

@@ -95,7 +95,7 @@ impl Rotation {
     }
 
     /// Whether the quaternion has length 1; one read from a file may not.
-    pub(crate) fn is_one(self) -> bool {
+    pub(crate) fn is_unit(self) -> bool {
         (dot(self.quaternion, self.quaternion) - 1.0).abs() < 1e-9
     }
 

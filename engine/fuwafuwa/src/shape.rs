@@ -121,7 +121,7 @@ impl Shape {
             } => {
                 Self::Box { centre, half }.check()?;
                 let (field, expected) = ("rotation", "of length 1");
-                let is_good = rotation.is_one();
+                let is_good = rotation.is_unit();
                 is_good.then_some(()).ok_or(BadShape { field, expected })
             }
             Self::Capsule { from, to, radius } => {
@@ -248,7 +248,7 @@ impl Shape {
     }
 
     /// Returns the shape translated `by` [m].
-    pub fn moved(self, by: Vector) -> Self {
+    pub fn translated(self, by: Vector) -> Self {
         match self {
             Self::HalfSpace { normal, offset } => Self::HalfSpace {
                 normal,

@@ -3,7 +3,7 @@
 //! Voxels of one group share a node at that point; releasing a node splits its group. A face between two
 //! voxels is *closed* if they share a node at every point of that face. After a release, the voxels at a
 //! point stay together only through closed faces. So cracks that meet join up, and no hinge of a single node
-//! remains ([`Sharing::normalise`]).
+//! remains ([`Connectivity::normalise`]).
 //!
 //! ```text
 //!   a │ b        the crack came from below and ended at p: c and d are no longer closed, but
@@ -143,14 +143,14 @@ id! {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
-pub struct Sharing<D: Dim> {
+pub struct Connectivity<D: Dim> {
     /// Number of lattice points on each axis: voxels + 1 (1 on the third axis in 2D).
     size: Point,
     groups: Vec<Groups>,
     dim: PhantomData<D>,
 }
 
-impl<D: Dim> Sharing<D> {
+impl<D: Dim> Connectivity<D> {
     /// Connectivity of the uncut body: voxels at a point are together if closed faces around it connect them.
     #[inline(never)]
     pub fn new(grid: &VoxelGrid<D>) -> Self {
@@ -160,7 +160,7 @@ impl<D: Dim> Sharing<D> {
         let groups = points_in([0; 3], high)
             .map(|at| {
                 let solid = (0..D::CORNERS).fold(0u8, |mask, octant| {
-                    mask | u8::from(grid.is_left(voxel_around::<D>(at, octant))) << octant
+                    mask | u8::from(grid.is_present(voxel_around::<D>(at, octant))) << octant
                 });
                 Groups::joined(solid)
             })
@@ -213,7 +213,7 @@ impl<D: Dim> Sharing<D> {
 
     /// Mask of the voxels around a solid voxel that share a node with it, including itself: bit x + 3 y + 9
     /// z, each from 0 to 2.
-    pub fn bound(&self, voxel: Point) -> u32 {
+    pub fn connected_voxels(&self, voxel: Point) -> u32 {
         let mut bound = 0;
         for octant in 0..D::CORNERS {
             // Lattice point that sees the voxel in this octant.
@@ -230,7 +230,7 @@ impl<D: Dim> Sharing<D> {
     }
 
     /// Groupings at a point and its neighbours.
-    pub fn around(&self, at: Point) -> Around<D> {
+    pub fn around(&self, at: Point) -> PointNeighbourhood<D> {
         let mut groups = [Groups::NONE; 27];
         let is_inner = (0..D::N).all(|axis| at[axis] > 0 && at[axis] + 1 < self.size[axis]);
         if is_inner {
@@ -246,7 +246,7 @@ impl<D: Dim> Sharing<D> {
                 *groups = self.groups(near);
             }
         }
-        Around {
+        PointNeighbourhood {
             groups,
             dim: PhantomData,
         }
@@ -277,7 +277,7 @@ impl<D: Dim> Sharing<D> {
     }
 
     /// Splits the groups at `at` into the octants of `side` and the others. Returns whether anything changed;
-    /// [`Sharing::normalise`] must follow.
+    /// [`Connectivity::normalise`] must follow.
     pub fn release(&mut self, at: Point, side: u8) -> bool {
         if !self.contains(at) {
             return false;
@@ -288,7 +288,7 @@ impl<D: Dim> Sharing<D> {
 
     /// Whether connectivity read from a file groups the voxels of `grid`, by closed faces only.
     #[cfg(feature = "serde")]
-    pub(crate) fn is_sound(&self, grid: &VoxelGrid<D>) -> bool {
+    pub(crate) fn is_valid(&self, grid: &VoxelGrid<D>) -> bool {
         let whole = Self::new(grid);
         let is_grouping = |(&own, whole): (&Groups, &Groups)| {
             let groups = own.iter().map(|group| (group, group.trailing_zeros()));
@@ -332,13 +332,13 @@ impl<D: Dim> Sharing<D> {
 /// Groupings at a lattice point and its neighbours: they determine the faces that meet at the point, and the
 /// voxels around it.
 #[derive(Copy, Clone, Debug)]
-pub struct Around<D: Dim> {
+pub struct PointNeighbourhood<D: Dim> {
     /// The first axis fastest, the point itself in the middle.
     groups: [Groups; 27],
     dim: PhantomData<D>,
 }
 
-impl<D: Dim> Around<D> {
+impl<D: Dim> PointNeighbourhood<D> {
     /// Distance in `groups` between neighbours along each axis.
     const STEPS: [usize; 3] = [1, 3, 9];
 
@@ -374,7 +374,7 @@ impl<D: Dim> Around<D> {
         closed
     }
 
-    /// Whether a crack can start or continue at the point: see [`Sharing::is_open`].
+    /// Whether a crack can start or continue at the point: see [`Connectivity::is_open`].
     pub fn is_open(&self) -> bool {
         let groups = self.middle();
         if groups != Groups::joined(D::ALL_CORNERS) {
@@ -412,7 +412,7 @@ impl<D: Dim> Around<D> {
         self.groups[..D::SLOTS].iter().all(|&groups| groups == full)
     }
 
-    /// Does the work of [`Around::is_closed`], seen from the point at index `place` of `groups`. All corners
+    /// Does the work of [`PointNeighbourhood::is_closed`], seen from the point at index `place` of `groups`. All corners
     /// of the face must have an entry.
     #[inline]
     fn is_closed_from(&self, place: usize, octant: usize, axis: usize) -> bool {
@@ -458,7 +458,7 @@ mod tests {
     fn sharing_separates_voxels_that_meet_only_at_corner() {
         let diagonal = |at: Point| u8::from(at[0] == at[1]);
         let grid = VoxelGrid::<Dim2>::from_fn([2, 2, 1], 1.0, diagonal).unwrap();
-        let sharing = Sharing::new(&grid);
+        let sharing = Connectivity::new(&grid);
         assert_eq!(sharing.groups([1, 1, 0]).iter().collect::<Vec<_>>(), [1, 8]);
     }
 
@@ -466,7 +466,7 @@ mod tests {
     fn normalise_removes_hinge_when_crack_reaches_far_side() {
         // Release the middle column of a 4 × 2 block point by point: the last release separates it.
         let grid = VoxelGrid::<Dim2>::from_fn([4, 2, 1], 1.0, |_| 1).unwrap();
-        let mut sharing = Sharing::new(&grid);
+        let mut sharing = Connectivity::new(&grid);
         assert!(sharing.release([2, 0, 0], 0b1010));
         sharing.normalise(vec![[2, 0, 0]]);
         assert_eq!(
@@ -483,7 +483,7 @@ mod tests {
     #[test]
     fn is_open_includes_far_corners_of_open_face() {
         let grid = VoxelGrid::<Dim3>::cube(6, 1.0).unwrap();
-        let mut sharing = Sharing::new(&grid);
+        let mut sharing = Connectivity::new(&grid);
         assert!(!sharing.is_open([3, 3, 3]));
         sharing.release([3, 3, 3], 0b1010_1010);
         sharing.normalise(neighbourhood::<Dim3>([3, 3, 3], 1).collect());

@@ -17,9 +17,9 @@ const HEADER: usize = 17;
 
 /// Reason why a snapshot could not be loaded.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum BadSnapshot {
+pub enum SnapshotError {
     /// The bytes are not a snapshot, or end within the header.
-    NotOne,
+    NotASnapshot,
     /// The snapshot has another format version.
     Version {
         /// Version in the header.
@@ -33,12 +33,12 @@ pub enum BadSnapshot {
     /// The snapshot is truncated, damaged or modified: its checksum does not match.
     Damaged,
     /// The checksum matches, but the world is invalid.
-    NoWorld {
+    InvalidWorld {
         /// Violated invariant.
         defect: &'static str,
     },
     /// The checksum matches, but a body of the world is invalid.
-    Broken {
+    InvalidBody {
         /// Slot of the body.
         body: usize,
         /// Violated invariant.
@@ -46,10 +46,10 @@ pub enum BadSnapshot {
     },
 }
 
-impl fmt::Display for BadSnapshot {
+impl fmt::Display for SnapshotError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotOne => write!(f, "this is no snapshot of a world"),
+            Self::NotASnapshot => write!(f, "this is no snapshot of a world"),
             Self::Version { found } => write!(
                 f,
                 "unsupported snapshot format {found}: expected format {VERSION}"
@@ -57,16 +57,16 @@ impl fmt::Display for BadSnapshot {
             Self::Dimensions { found } => {
                 write!(f, "the snapshot is of a world with {found} dimensions")
             }
-            Self::Broken { body, defect } => {
+            Self::InvalidBody { body, defect } => {
                 write!(f, "the snapshot is invalid: body {body}: {defect}")
             }
-            Self::NoWorld { defect } => write!(f, "the snapshot is invalid: {defect}"),
+            Self::InvalidWorld { defect } => write!(f, "the snapshot is invalid: {defect}"),
             Self::Damaged => write!(f, "the snapshot is damaged: its checksum does not match"),
         }
     }
 }
 
-impl std::error::Error for BadSnapshot {}
+impl std::error::Error for SnapshotError {}
 
 /// Serialises the present state of a world.
 #[inline(never)]
@@ -84,7 +84,7 @@ pub fn save<D: Dim>(world: &World<D>) -> Vec<u8> {
 /// Loads a world from the bytes of [`save`].
 ///
 /// # Errors
-/// [`BadSnapshot`] if the bytes are not a snapshot, have another version or number of dimensions, or are
+/// [`SnapshotError`] if the bytes are not a snapshot, have another version or number of dimensions, or are
 /// damaged. Also if the voxels, connections, elements, nodes or pieces of a body contradict each other, or if
 /// a position is not finite.
 ///
@@ -92,9 +92,9 @@ pub fn save<D: Dim>(world: &World<D>) -> Vec<u8> {
 /// like a badly posed scene. Time and memory are bounded by the number of bytes, not by lengths that the
 /// bytes claim.
 #[inline(never)]
-pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
+pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, SnapshotError> {
     if bytes.len() < HEADER || bytes[..4] != MAGIC {
-        return Err(BadSnapshot::NotOne);
+        return Err(SnapshotError::NotASnapshot);
     }
     let (header, state) = bytes.split_at(HEADER);
     let number = |from: usize| header[from..].iter().take(4);
@@ -102,22 +102,22 @@ pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
         .rev()
         .fold(0, |all, &byte| all << 8 | u32::from(byte));
     if found != VERSION {
-        return Err(BadSnapshot::Version { found });
+        return Err(SnapshotError::Version { found });
     }
     let found = header[8];
     if usize::from(found) != D::N {
-        return Err(BadSnapshot::Dimensions { found });
+        return Err(SnapshotError::Dimensions { found });
     }
     if header[9..] != Hash::of(state).to_le_bytes() {
-        return Err(BadSnapshot::Damaged);
+        return Err(SnapshotError::Damaged);
     }
-    let mut world: World<D> = postcard::from_bytes(state).map_err(|_| BadSnapshot::Damaged)?;
+    let mut world: World<D> = postcard::from_bytes(state).map_err(|_| SnapshotError::Damaged)?;
     if let Some(defect) = world.defect() {
-        return Err(BadSnapshot::NoWorld { defect });
+        return Err(SnapshotError::InvalidWorld { defect });
     }
-    for (id, body) in world.bodies().entries() {
+    for (id, body) in world.soft_bodies().entries() {
         let checked = body.check();
-        checked.map_err(|defect| BadSnapshot::Broken {
+        checked.map_err(|defect| SnapshotError::InvalidBody {
             body: id.slot().index(),
             defect: defect.to_string(),
         })?;

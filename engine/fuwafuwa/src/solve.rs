@@ -21,17 +21,17 @@ mod turn;
 pub use crate::lanes::Row;
 
 use crate::dim::Dim;
-use crate::ids::{ElementId, NodeId, Table};
+use crate::ids::{ElementId, IndexVec, NodeId};
 use crate::lanes::{Eight, LANES, on_widest_lanes, splat, sum, sum_of_squares};
 use crate::law::{Elasticity, Law};
 use crate::plasticity::Plasticity;
 use crate::rotation::Rotation;
-use crate::threads::{self, Rows};
+use crate::threads::{self, RowChunk};
 use crate::vector::{plus, scaled};
-use block::{Block, GROUP, Group, Home, Shared, VACANT, evaluate_best};
+use block::{Batch, BatchKey, GROUP, Group, Shared, VACANT, evaluate_best};
 use fearless_simd::Simd;
 use kernel::{Moduli, Scratch};
-use plastic::Flow;
+use plastic::PlasticFlowLimits;
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
@@ -45,15 +45,15 @@ const PAD: usize = 4;
 
 /// All elements of a body in blocks, with their nodal forces.
 #[derive(Clone, Debug)]
-pub struct Blocks<D: Dim> {
+pub struct ElementBatches<D: Dim> {
     law: Law,
     moduli: Vec<Moduli>,
     /// Plastic flow of each material; `None` for elastic materials.
-    flows: Vec<Option<Flow>>,
+    flows: Vec<Option<PlasticFlowLimits>>,
     voxel_size: f32,
-    blocks: Vec<Block>,
+    blocks: Vec<Batch>,
     /// Blocks with vacant lanes.
-    open: BTreeMap<Home, BTreeSet<u32>>,
+    open: BTreeMap<BatchKey, BTreeSet<u32>>,
     /// Blocks without elements, by number of nodes and by whether their lanes have different classes.
     empty: BTreeMap<(u32, bool), Vec<u32>>,
     /// Start of the stencil in `numbers`, for each class that has blocks of its own.
@@ -62,10 +62,10 @@ pub struct Blocks<D: Dim> {
     /// Stencils of pooled lanes.
     pooled: Vec<Eight>,
     /// Block and lane of each element, by id; the block is [`VACANT`] if the element has none.
-    assigned: Table<ElementId, (u32, u8)>,
+    assigned: IndexVec<ElementId, (u32, u8)>,
     /// Indices in `forces` of the forces on each node, by id: one per element, in the order of the octants.
     /// Unused entries are 0, where a zero force is stored.
-    slots: Table<NodeId, [u32; 8]>,
+    slots: IndexVec<NodeId, [u32; 8]>,
     /// Nodes of all blocks: node k of lane l at k · LANES + l after the first of the block.
     nodes: Vec<u32>,
     /// Forces on these nodes with D::N components each. Padding to four would make up a quarter (3D) or half
@@ -73,15 +73,15 @@ pub struct Blocks<D: Dim> {
     forces: Vec<f32>,
     /// Reused by the next evaluation, so that it need not be cleared.
     scratch: Option<Box<[Scratch; GROUP]>>,
-    /// State read from a file, until [`Blocks::restore`] distributes it.
+    /// State read from a file, until [`ElementBatches::restore`] distributes it.
     #[cfg(feature = "serde")]
-    saved: Option<saved::Saved>,
+    saved: Option<saved::SavedElementStates>,
     dim: PhantomData<D>,
 }
 
 /// Parameters of the velocity update in a substep.
 #[derive(Copy, Clone, Debug)]
-pub struct Kick<'a> {
+pub struct VelocityUpdate<'a> {
     /// Nodes to be moved, ascending.
     pub nodes: &'a [NodeId],
     /// Inverse mass of each node [1/kg], by id; 0 if the node is fixed.
@@ -92,7 +92,7 @@ pub struct Kick<'a> {
     pub gravity: Row,
 }
 
-impl<D: Dim> Blocks<D> {
+impl<D: Dim> ElementBatches<D> {
     /// Creates blocks without elements. `elasticities[number - 1]` belongs to material `number`; `voxel_size`
     /// is in metres.
     pub fn new(law: Law, elasticities: &[Elasticity], voxel_size: f32) -> Self {
@@ -107,8 +107,8 @@ impl<D: Dim> Blocks<D> {
             stencils: BTreeMap::new(),
             numbers: Vec::new(),
             pooled: Vec::new(),
-            assigned: Table::default(),
-            slots: Table::default(),
+            assigned: IndexVec::default(),
+            slots: IndexVec::default(),
             nodes: vec![VACANT; LANES],
             forces: vec![0.0; LANES * D::N + PAD],
             scratch: None,
@@ -132,15 +132,15 @@ impl<D: Dim> Blocks<D> {
     /// [`Law::Endo2004`].
     pub fn set_plasticities(&mut self, plasticities: &[Option<Plasticity>]) {
         self.flows.clear();
-        if self.law == Law::PatchExact {
-            let flow = |plasticity: &Option<Plasticity>| plasticity.map(Flow::of::<D>);
+        if self.law == Law::CorotationalVem {
+            let flow = |plasticity: &Option<Plasticity>| plasticity.map(PlasticFlowLimits::of::<D>);
             self.flows.extend(plasticities.iter().map(flow));
         }
     }
 
     /// Returns the plastic state G of an element ([`crate::plasticity`]) by rows; `None` if its material is
     /// elastic.
-    pub fn undone(&self, id: ElementId) -> Option<[[f32; 3]; 3]> {
+    pub fn plastic_inverse(&self, id: ElementId) -> Option<[[f32; 3]; 3]> {
         let &(block, lane) = self.assigned.get(id.index())?;
         let block = self.blocks.get(block as usize)?;
         let undone = block.undone.as_ref()?;
@@ -148,7 +148,7 @@ impl<D: Dim> Blocks<D> {
     }
 
     /// Sets the plastic state of an element.
-    pub fn set_undone(&mut self, id: ElementId, undone: [[f32; 3]; 3]) {
+    pub fn set_plastic_inverse(&mut self, id: ElementId, undone: [[f32; 3]; 3]) {
         let (block, lane) = self.assigned[id];
         if let Some(own) = &mut self.blocks[block as usize].undone {
             own.set(lane as usize, undone);
@@ -205,7 +205,7 @@ impl<D: Dim> Blocks<D> {
         let mut first = LANES;
         self.blocks.chunks_mut(GROUP).map(move |blocks| {
             // Blocks are in the order of their forces.
-            let end = blocks.last().map_or(first, Block::end);
+            let end = blocks.last().map_or(first, Batch::end);
             let (own, others) = std::mem::take(&mut forces).split_at_mut((end - first) * D::N);
             let group = Group {
                 blocks,
@@ -308,19 +308,19 @@ impl<D: Dim> Blocks<D> {
     /// which does not check for inversion.
     pub fn inverted_count(&self) -> u32 {
         let awake = self.blocks.iter().filter(|block| !block.is_idle());
-        let inverted = |block: &Block| (block.inverted & !block.vacant).count_ones();
+        let inverted = |block: &Batch| (block.inverted & !block.vacant).count_ones();
         awake.map(inverted).sum()
     }
 
     /// Applies the elastic forces and gravity of one substep to velocities [m/s].
-    pub fn kick(&self, kick: &Kick, velocity: &mut [Row]) {
+    pub fn kick(&self, kick: &VelocityUpdate, velocity: &mut [Row]) {
         threads::map(threads::rows(kick.nodes, [velocity]), |rows| {
             on_widest_lanes!(simd => self.kick_by(simd, kick, rows));
         });
     }
 
     #[inline(always)]
-    fn kick_by<S: Simd>(&self, simd: S, kick: &Kick, rows: Rows<Row, 1>) {
+    fn kick_by<S: Simd>(&self, simd: S, kick: &VelocityUpdate, rows: RowChunk<Row, 1>) {
         let [velocity] = rows.lists;
         for &id in rows.nodes {
             let node = id.index();
@@ -358,17 +358,17 @@ mod tests {
     use crate::dim::{Dim2, Dim3};
     use crate::grid::VoxelGrid;
     use crate::mesh::Mesh;
-    use crate::pyramid::{Grading, Pyramid};
-    use crate::sharing::Sharing;
+    use crate::pyramid::{CellHierarchy, Grading};
+    use crate::sharing::Connectivity;
 
     /// Compares the widest lanes with others, on a body with every kind of block.
     fn check_same_bits<D: Dim, S: Simd>(law: Law, simd: S) {
         let grid = VoxelGrid::<D>::ball(24, 1.0).unwrap();
-        let sharing = Sharing::new(&grid);
-        let pyramid = Pyramid::new(&grid, &sharing, Grading::Graded);
+        let sharing = Connectivity::new(&grid);
+        let pyramid = CellHierarchy::new(&grid, &sharing, Grading::Graded);
         let mesh = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
         let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
-        let mut wide = Blocks::new(law, &[elasticity], grid.voxel_size());
+        let mut wide = ElementBatches::new(law, &[elasticity], grid.voxel_size());
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
         wide.update(&mesh, &grid, &[], &all, |_| false);
         let mut other = wide.clone();
@@ -392,12 +392,12 @@ mod tests {
             }
         }
         for (id, _) in mesh.nodes() {
-            let bits = |blocks: &Blocks<D>| blocks.force_on(id).map(f32::to_bits);
+            let bits = |blocks: &ElementBatches<D>| blocks.force_on(id).map(f32::to_bits);
             assert_eq!(bits(&wide), bits(&other));
         }
         let nodes: Vec<NodeId> = mesh.nodes().map(|(id, _)| id).collect();
         let inverse_mass: Vec<f32> = (0..position.len()).map(|id| (id % 7) as f32).collect();
-        let kick = Kick {
+        let kick = VelocityUpdate {
             nodes: &nodes,
             inverse_mass: &inverse_mass,
             duration: 0.001,
@@ -421,15 +421,16 @@ mod tests {
     /// in its lane.
     fn check_sleepers<D: Dim>() {
         let grid = VoxelGrid::<D>::ball(16, 1.0).unwrap();
-        let sharing = Sharing::new(&grid);
-        let pyramid = Pyramid::new(&grid, &sharing, Grading::Graded);
+        let sharing = Connectivity::new(&grid);
+        let pyramid = CellHierarchy::new(&grid, &sharing, Grading::Graded);
         let mesh = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
         let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
-        let mut blocks = Blocks::<D>::new(Law::PatchExact, &[elasticity], grid.voxel_size());
+        let mut blocks =
+            ElementBatches::<D>::new(Law::CorotationalVem, &[elasticity], grid.voxel_size());
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
         blocks.update(&mesh, &grid, &[], &all, |_| false);
         let mut position = vec![[0.0; 4]; mesh.node_capacity()];
-        let mut evaluate = |blocks: &mut Blocks<D>, bend: f32| {
+        let mut evaluate = |blocks: &mut ElementBatches<D>, bend: f32| {
             for (id, node) in mesh.nodes() {
                 let [x, y, z] = node.at.map(|k| k as f32 / 16.0);
                 let bent = [x - bend * y * y, bend * x + y, z + bend * x * y, 0.0];
@@ -439,15 +440,16 @@ mod tests {
         };
         evaluate(&mut blocks, 0.1);
         let sleeps = |id: &ElementId| id.0 % 4 < 3;
-        let state = |blocks: &Blocks<D>, id: ElementId| {
+        let state = |blocks: &ElementBatches<D>, id: ElementId| {
             let nodes = mesh.element(id).unwrap().nodes.iter();
-            let forces = nodes.map(|&node| blocks.slot(id, node) as usize);
+            let forces = nodes.map(|&node| blocks.force_index(id, node) as usize);
             let forces = forces.flat_map(|place| &blocks.forces[place..][..D::N]);
             (blocks.rotation(id), forces.copied().collect::<Vec<f32>>())
         };
-        let states =
-            |blocks: &Blocks<D>| -> Vec<_> { all.iter().map(|&id| state(blocks, id)).collect() };
-        let evaluated = |blocks: &Blocks<D>| {
+        let states = |blocks: &ElementBatches<D>| -> Vec<_> {
+            all.iter().map(|&id| state(blocks, id)).collect()
+        };
+        let evaluated = |blocks: &ElementBatches<D>| {
             let awake = blocks.blocks.iter().filter(|block| !block.is_idle());
             awake.count()
         };
@@ -483,7 +485,7 @@ mod tests {
 
     #[test]
     fn lanes_of_all_widths_give_same_bits() {
-        for law in [Law::PatchExact, Law::Endo2004] {
+        for law in [Law::CorotationalVem, Law::Endo2004] {
             // In debug builds with scalar lanes, compilation takes four minutes and several gigabytes.
             #[cfg(not(debug_assertions))]
             {

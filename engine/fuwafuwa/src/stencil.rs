@@ -67,7 +67,7 @@ impl std::error::Error for MissingCorner {}
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
-pub struct Stencil<D: Dim> {
+pub struct ElementClass<D: Dim> {
     /// Mask of the filled children; every bit set for a whole cell.
     pub children: u8,
     /// Slots that carry a node, ascending.
@@ -83,12 +83,12 @@ pub struct Stencil<D: Dim> {
     pub volumes: Vec<f64>,
     /// Volume: number of filled children.
     pub volume: f64,
-    /// Stiffness of the hourglass modes relative to those of a plain cell: see [`Stencil::new`].
+    /// Stiffness of the hourglass modes relative to those of a plain cell: see [`ElementClass::new`].
     pub hourglass: f64,
     dim: PhantomData<D>,
 }
 
-impl<D: Dim> Stencil<D> {
+impl<D: Dim> ElementClass<D> {
     /// Computes the class that fills `children` and carries nodes on `slots`.
     ///
     /// Each exposed face of a child distributes its area vector in equal parts to its corners, and each child
@@ -126,8 +126,8 @@ impl<D: Dim> Stencil<D> {
                 }
             }
         }
-        hand_on::<D, 3>(&mut gradients, slots)?;
-        hand_on::<D, 1>(&mut volumes, slots)?;
+        distribute_shares::<D, 3>(&mut gradients, slots)?;
+        distribute_shares::<D, 1>(&mut volumes, slots)?;
 
         let slots: Vec<u8> = (0..D::SLOTS as u8)
             .filter(|slot| slots >> slot & 1 == 1)
@@ -230,7 +230,7 @@ impl<D: Dim> Stencil<D> {
 }
 
 /// Passes the shares of slots without a node to the slots between which they lie.
-fn hand_on<D: Dim, const K: usize>(
+fn distribute_shares<D: Dim, const K: usize>(
     shares: &mut [[f64; K]; 27],
     nodes: u32,
 ) -> Result<(), MissingCorner> {
@@ -263,7 +263,7 @@ mod tests {
 
     /// Checks Σ x bᵀ = V·I of a class that carries at least the corners of the outline of its children.
     fn check_gradient_is_exact<D: Dim>(children: u8, slots: u32) {
-        let stencil = Stencil::<D>::new(children, slots).unwrap();
+        let stencil = ElementClass::<D>::new(children, slots).unwrap();
         for i in 0..D::N {
             for j in 0..D::N {
                 let sum: f64 = (0..stencil.slots.len())
@@ -297,7 +297,7 @@ mod tests {
     #[test]
     fn hourglass_stiffness_matches_bending_energy() {
         fn check<D: Dim>(children: u8, slots: u32, expected: f64) {
-            let stencil = Stencil::<D>::new(children, slots).unwrap();
+            let stencil = ElementClass::<D>::new(children, slots).unwrap();
             assert!((stencil.hourglass - expected).abs() < 1e-12, "{stencil:?}");
         }
         let (square, cube) = (cell_corners::<Dim2>(), cell_corners::<Dim3>());
@@ -319,7 +319,7 @@ mod tests {
     fn stencil_new_fails_for_corner_without_node() {
         let slots = cell_corners::<Dim2>() & !1;
         assert_eq!(
-            Stencil::<Dim2>::new(15, slots),
+            ElementClass::<Dim2>::new(15, slots),
             Err(MissingCorner { slot: 0 })
         );
     }

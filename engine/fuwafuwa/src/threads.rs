@@ -6,13 +6,13 @@ use crate::ids::NodeId;
 
 /// Number of items in a chunk. With fewer, the handover takes longer than the work. Unit tests use small
 /// bodies, and should still cover several chunks.
-pub const SHARE: usize = if cfg!(test) { 32 } else { 2048 };
+pub const CHUNK_SIZE: usize = if cfg!(test) { 32 } else { 2048 };
 
 /// Smallest number of chunks that are processed on several threads. If other programs use the machine, each
 /// synchronisation of threads can take as long as a tick, and small bodies gain nothing. The nodes of a ball
 /// of 40 voxels across fill this many chunks.
 #[cfg(feature = "parallel")]
-const LEAST: usize = if cfg!(test) { 2 } else { 8 };
+const MIN_PARALLEL_CHUNKS: usize = if cfg!(test) { 2 } else { 8 };
 
 /// Processes each chunk; returns the results in order.
 pub fn map<T: Send, R: Send>(
@@ -23,7 +23,7 @@ pub fn map<T: Send, R: Send>(
     let shares = {
         use rayon::prelude::*;
         let shares: Vec<T> = shares.collect();
-        if shares.len() >= LEAST && rayon::current_num_threads() > 1 {
+        if shares.len() >= MIN_PARALLEL_CHUNKS && rayon::current_num_threads() > 1 {
             return shares.into_par_iter().map(&work).collect();
         }
         shares.into_iter()
@@ -32,13 +32,13 @@ pub fn map<T: Send, R: Send>(
 }
 
 /// Splits a list into chunks, each with the index of its first item.
-pub fn shares<T>(list: &mut [T]) -> impl Iterator<Item = (usize, &mut [T])> {
-    let firsts = (0..).step_by(SHARE);
-    firsts.zip(list.chunks_mut(SHARE))
+pub fn chunks<T>(list: &mut [T]) -> impl Iterator<Item = (usize, &mut [T])> {
+    let firsts = (0..).step_by(CHUNK_SIZE);
+    firsts.zip(list.chunks_mut(CHUNK_SIZE))
 }
 
 /// Some nodes, and their rows in several lists indexed by node id.
-pub struct Rows<'a, T, const N: usize> {
+pub struct RowChunk<'a, T, const N: usize> {
     /// Nodes, ascending.
     pub nodes: &'a [NodeId],
     /// Id of the first row in `lists`.
@@ -51,16 +51,16 @@ pub struct Rows<'a, T, const N: usize> {
 pub fn rows<'a, T, const N: usize>(
     nodes: &'a [NodeId],
     mut lists: [&'a mut [T]; N],
-) -> impl Iterator<Item = Rows<'a, T, N>> {
+) -> impl Iterator<Item = RowChunk<'a, T, N>> {
     let mut first = 0;
-    nodes.chunks(SHARE).map(move |nodes| {
+    nodes.chunks(CHUNK_SIZE).map(move |nodes| {
         let end = nodes[nodes.len() - 1].index() + 1;
         let lists = lists.each_mut().map(|list| {
             let (own, others) = std::mem::take(list).split_at_mut(end - first);
             *list = others;
             own
         });
-        let share = Rows {
+        let share = RowChunk {
             nodes,
             first,
             lists,
@@ -76,13 +76,13 @@ mod tests {
 
     #[test]
     fn rows_assign_every_node_to_one_chunk() {
-        let nodes = (0..5 * SHARE as u32).map(|k| NodeId(3 * k + k % 2));
+        let nodes = (0..5 * CHUNK_SIZE as u32).map(|k| NodeId(3 * k + k % 2));
         let nodes: Vec<NodeId> = nodes.collect();
-        let count = 20 * SHARE;
+        let count = 20 * CHUNK_SIZE;
         let (mut a, mut b) = (vec![[0.0; 4]; count], vec![[0.0; 4]; count]);
         let shares = rows(&nodes, [&mut a, &mut b]);
         let counts = map(shares, |share| {
-            let Rows {
+            let RowChunk {
                 nodes,
                 first,
                 lists: [a, b],
@@ -93,7 +93,7 @@ mod tests {
             }
             nodes.len()
         });
-        assert_eq!(counts, [SHARE; 5]);
+        assert_eq!(counts, [CHUNK_SIZE; 5]);
         for id in 0..count {
             let is_one = nodes.binary_search(&NodeId(id as u32)).is_ok();
             let expected = if is_one { [1.0, id as f32] } else { [0.0; 2] };

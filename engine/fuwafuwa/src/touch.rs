@@ -18,13 +18,13 @@ mod rigids;
 mod sphere;
 mod spheres;
 
-use crate::body::{Bodies, Body};
+use crate::body::{SoftBodies, SoftBody};
 use crate::changes::Changes;
 use crate::dim::Dim;
 use crate::handle::{BodySlot, RigidSlot};
 use crate::ids::{ElementId, PieceId};
-use crate::rigid::Rigids;
-pub use captives::{Captive, Captives};
+use crate::rigid::RigidBodies;
+pub use captives::{Captives, EmbeddedSphere};
 pub use impulse::Impulse;
 pub use leaning::{bounds_of, leaning_on_body, leaning_on_pieces, leaning_on_rigid, sleeping_in};
 pub use nodes::{NodePair, NodePairs};
@@ -66,7 +66,7 @@ pub struct Nearby {
 impl Nearby {
     /// Starts a tick of `duration` [s]: clears the sums of the last tick. Bodies may have changed in any way
     /// since then.
-    pub fn start_tick<D: Dim>(&mut self, bodies: &Bodies<D>, duration: f32) {
+    pub fn start_tick<D: Dim>(&mut self, bodies: &SoftBodies<D>, duration: f32) {
         self.nodes.start_tick();
         self.rigids.start_tick();
         let numbers = self.spheres.start_tick(bodies, &mut self.pairs.changed);
@@ -79,7 +79,7 @@ impl Nearby {
     }
 
     /// Updates the lists after a body was torn.
-    pub fn tear<D: Dim>(&mut self, slot: BodySlot, body: &Body<D>, changes: &Changes) {
+    pub fn tear<D: Dim>(&mut self, slot: BodySlot, body: &SoftBody<D>, changes: &Changes) {
         self.nodes.tear(slot, &changes.nodes);
         let changed = &mut self.pairs.changed;
         self.spheres.tear(slot, body, changes, changed);
@@ -100,14 +100,14 @@ impl Nearby {
     pub fn remove_elements<D: Dim>(
         &mut self,
         slot: BodySlot,
-        body: &Body<D>,
+        body: &SoftBody<D>,
         elements: &[ElementId],
     ) {
         self.spheres.remove_elements(slot, elements);
         let is_gone = |&sphere: &SphereId| self.spheres.body_of(sphere) == BodySlot::NONE;
         let pairs = &mut self.pairs.list;
         pairs.retain(|pair| !pair.spheres.iter().any(is_gone));
-        let is_there = |node| body.truth.mesh.is_alive(node);
+        let is_there = |node| body.topology.mesh.is_alive(node);
         let nodes = &mut self.nodes.list;
         nodes.retain(|pair| pair.body != slot || is_there(pair.node));
     }
@@ -115,7 +115,7 @@ impl Nearby {
     /// Discards data that was read from a file and refers to nothing in the world. Other lists may stay,
     /// because a new tick rebuilds them; only impulses matter.
     #[cfg(feature = "serde")]
-    pub fn keep_known<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids) {
+    pub fn keep_known<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
         self.nodes.keep_known(bodies, rigids);
         self.rigids.keep_known::<D>(rigids);
         let known = self.spheres.count_keys();
@@ -138,7 +138,7 @@ impl Nearby {
     }
 
     /// Updates the lists after pieces woke, given by body and number in ascending order.
-    pub fn wake<D: Dim>(&mut self, pieces: &[(BodySlot, PieceId)], bodies: &Bodies<D>) {
+    pub fn wake<D: Dim>(&mut self, pieces: &[(BodySlot, PieceId)], bodies: &SoftBodies<D>) {
         self.nodes.wake(pieces, bodies);
         self.spheres.wake(pieces, &mut self.pairs.changed);
     }
@@ -151,7 +151,7 @@ impl Nearby {
     }
 
     /// Updates the lists to the present positions; a substep takes `duration` [s].
-    pub fn follow<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids, duration: f32) {
+    pub fn follow<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies, duration: f32) {
         self.nodes.follow(bodies, rigids, duration, self.left);
         let changed = self.pairs.follow(&mut self.spheres, bodies);
         if !self.knows_captives {
@@ -168,7 +168,10 @@ impl Nearby {
     }
 
     /// Iterates over pieces that press on something, by body and number, possibly repeated.
-    pub fn pressed<D: Dim>(&self, bodies: &Bodies<D>) -> impl Iterator<Item = (BodySlot, PieceId)> {
+    pub fn pressed<D: Dim>(
+        &self,
+        bodies: &SoftBodies<D>,
+    ) -> impl Iterator<Item = (BodySlot, PieceId)> {
         let nodes = { self.nodes.list.iter() }.filter(|pair| pair.impulse.pressed > 0.0);
         let nodes = nodes.filter_map(|pair| Some((pair.body, pair.piece(bodies)?)));
         let pairs = { self.pairs.list.iter() }.filter(|pair| pair.impulse.pressed > 0.0);

@@ -1,8 +1,8 @@
 //! Views of a body: pieces, surface, elements, and the mass in a region.
 
-use crate::body::Body;
+use crate::body::SoftBody;
 use crate::dim::{Dim, Dim2, Point, add, corner, face_corners, scale};
-use crate::ids::{ElementId, NodeId, PieceId, Table};
+use crate::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::mesh::Element;
 use crate::shape::{Shape, Vector};
 use crate::stencil::{slot_at, slot_index};
@@ -48,7 +48,7 @@ pub struct Facet {
     /// Piece of the element.
     pub piece: PieceId,
     /// Whether the face was exposed by a crack.
-    pub is_fresh: bool,
+    pub is_torn: bool,
 }
 
 /// Closed line around a piece of a 2D body, or around a hole in it.
@@ -142,7 +142,7 @@ pub fn faces<D: Dim>(level: u8, children: u8) -> Vec<ElementFace> {
 
 /// Returns the slots around the region that a 2D element fills, in one round. A slot at which children meet
 /// only in a corner occurs twice.
-pub fn ring(level: u8, children: u8) -> Vec<usize> {
+pub fn outline_slots(level: u8, children: u8) -> Vec<usize> {
     let mut faces = faces::<Dim2>(level, children);
     let mut at = faces.first().map(|face| face.slots[0]);
     let mut ring = Vec::new();
@@ -161,7 +161,7 @@ fn beyond(mut block: Point, face: usize) -> Point {
     block
 }
 
-impl<D: Dim> Body<D> {
+impl<D: Dim> SoftBody<D> {
     /// Returns a summary of each piece, by number.
     #[inline(never)]
     pub fn piece_views(&self) -> Vec<PieceView> {
@@ -177,12 +177,12 @@ impl<D: Dim> Body<D> {
             quarantined: piece.quarantined,
             removed: piece.removed,
         };
-        let pieces = &self.truth.pieces;
+        let pieces = &self.topology.pieces;
         let mut views: Vec<PieceView> = pieces.list.entries().map(none).collect();
-        for (id, _) in self.truth.mesh.elements() {
+        for (id, _) in self.topology.mesh.elements() {
             views[pieces.of_element(id).index()].element_count += 1;
         }
-        for (id, _) in self.truth.mesh.nodes() {
+        for (id, _) in self.topology.mesh.nodes() {
             let (at, velocity, mass) = self.node_state(id);
             let view = &mut views[pieces.of_node(id).index()];
             view.mass += mass;
@@ -213,7 +213,11 @@ impl<D: Dim> Body<D> {
 
     /// Mass of all nodes [kg] at positions [m] that satisfy a condition.
     pub fn mass_where(&self, is_inside: impl Fn(Vector) -> bool) -> f32 {
-        let states = self.truth.mesh.nodes().map(|(id, _)| self.node_state(id));
+        let states = self
+            .topology
+            .mesh
+            .nodes()
+            .map(|(id, _)| self.node_state(id));
         states
             .filter(|&(at, _, _)| is_inside(at))
             .fold(0.0, |sum, (_, _, mass)| sum + mass)
@@ -221,23 +225,26 @@ impl<D: Dim> Body<D> {
 
     /// Returns all exposed faces, by element.
     pub fn facets(&self) -> impl Iterator<Item = Facet> + '_ {
-        self.truth.mesh.elements().flat_map(move |(id, element)| {
-            let bare = self.bare_faces(id);
-            (0..2 * D::N)
-                .filter(move |face| bare >> face & 1 == 1)
-                .map(move |face| self.facet(id, element, face))
-        })
+        self.topology
+            .mesh
+            .elements()
+            .flat_map(move |(id, element)| {
+                let bare = self.bare_faces(id);
+                (0..2 * D::N)
+                    .filter(move |face| bare >> face & 1 == 1)
+                    .map(move |face| self.facet(id, element, face))
+            })
     }
 
     /// Mask of the exposed faces of an element: bit 2 · axis + side. Only elements of level 0 have any. Use
-    /// [`Body::changes_since`] to learn where cracks changed the mask.
+    /// [`SoftBody::changes_since`] to learn where cracks changed the mask.
     ///
     /// # Panics
     /// If the id was never used.
     pub fn bare_faces(&self, element: ElementId) -> u8 {
         match self.cache.bare[element] {
             0 => 0,
-            bare => match self.truth.mesh.element(element) {
+            bare => match self.topology.mesh.element(element) {
                 Some(alive) if alive.cell.level == 0 => bare,
                 _ => 0,
             },
@@ -245,7 +252,7 @@ impl<D: Dim> Body<D> {
     }
 
     /// Positions of all nodes [m], by id, each padded with a 0. Entries of free ids are unspecified.
-    pub fn positions(&self) -> &Table<NodeId, [f32; 4]> {
+    pub fn positions(&self) -> &IndexVec<NodeId, [f32; 4]> {
         &self.state.position
     }
 
@@ -257,8 +264,8 @@ impl<D: Dim> Body<D> {
             return Vec::new();
         }
         // Every node of the surface starts one segment and ends one.
-        let mut leaving: Table<NodeId, Option<Facet>> =
-            vec![None; self.truth.mesh.node_capacity()].into();
+        let mut leaving: IndexVec<NodeId, Option<Facet>> =
+            vec![None; self.topology.mesh.node_capacity()].into();
         for facet in self.facets() {
             leaving[facet.nodes[0]] = Some(facet);
         }
@@ -279,7 +286,7 @@ impl<D: Dim> Body<D> {
                     nodes: ring.iter().map(|facet| facet.nodes[0]).collect(),
                     points: ring.iter().map(|facet| facet.corners[0]).collect(),
                     normals: normals.collect(),
-                    is_fresh: ring.iter().map(|facet| facet.is_fresh).collect(),
+                    is_fresh: ring.iter().map(|facet| facet.is_torn).collect(),
                 });
             }
         }
@@ -288,7 +295,7 @@ impl<D: Dim> Body<D> {
 
     /// Returns views of all elements.
     pub fn element_views(&self) -> impl Iterator<Item = ElementView> + '_ {
-        self.truth
+        self.topology
             .mesh
             .elements()
             .map(|(id, element)| self.view_of(id, element))
@@ -297,7 +304,7 @@ impl<D: Dim> Body<D> {
     /// Returns the view of an element, if the element is alive.
     #[inline(never)]
     pub fn element_view(&self, id: ElementId) -> Option<ElementView> {
-        Some(self.view_of(id, self.truth.mesh.element(id)?))
+        Some(self.view_of(id, self.topology.mesh.element(id)?))
     }
 
     #[inline(never)]
@@ -305,11 +312,11 @@ impl<D: Dim> Body<D> {
         ElementView {
             id,
             level: element.cell.level,
-            piece: self.truth.pieces.of_element(id),
+            piece: self.topology.pieces.of_element(id),
             material: self
-                .truth
+                .topology
                 .grid
-                .material(self.truth.mesh.first_voxel(element)),
+                .material(self.topology.mesh.first_voxel(element)),
             children: element.children,
             strain: self.strain_of(id, element),
             slots: self.slot_positions(element),
@@ -317,10 +324,10 @@ impl<D: Dim> Body<D> {
     }
 
     /// Elastic strain ‖F − R‖ of an element, if it is alive; 0.1 is a stretch by a tenth. [Plastic
-    /// strain](Body::plastic_strain) is not included.
+    /// strain](SoftBody::plastic_strain) is not included.
     #[inline(never)]
     pub fn strain(&self, id: ElementId) -> Option<f32> {
-        Some(self.strain_of(id, self.truth.mesh.element(id)?))
+        Some(self.strain_of(id, self.topology.mesh.element(id)?))
     }
 
     fn strain_of(&self, id: ElementId, element: &Element) -> f32 {
@@ -341,7 +348,7 @@ impl<D: Dim> Body<D> {
     fn slot_positions(&self, element: &Element) -> [Vector; 27] {
         let centre = self.deformation(element).0;
         let mut positions: [Option<Vector>; 27] = [None; 27];
-        let slots = &self.truth.mesh.stencil(element).slots;
+        let slots = &self.topology.mesh.stencil(element).slots;
         for (&slot, &node) in slots.iter().zip(&element.nodes) {
             positions[slot as usize] = Some(three(self.state.position[node]));
         }
@@ -395,8 +402,8 @@ impl<D: Dim> Body<D> {
             corners,
             normal: unit(normal),
             element: id,
-            piece: self.truth.pieces.of_element(id),
-            is_fresh: self.truth.grid.is_solid(beyond(element.cell.at, face)),
+            piece: self.topology.pieces.of_element(id),
+            is_torn: self.topology.grid.is_solid(beyond(element.cell.at, face)),
         }
     }
 }
@@ -443,7 +450,7 @@ mod tests {
     #[test]
     fn ring_encloses_filled_children_once() {
         let check = |level, children, expect: &[[i32; 2]]| {
-            let ring = ring(level, children);
+            let ring = outline_slots(level, children);
             let low = ring
                 .iter()
                 .position(|&slot| slot == 0)

@@ -9,24 +9,26 @@ mod settings;
 mod ties;
 mod touches;
 
-use crate::body::{Bodies, Body};
+use crate::body::{SoftBodies, SoftBody};
 use crate::contact::{Contacts, Hit, Hits};
-use crate::damping::{PieceMotion, Slowing, motions, slow_down};
+use crate::damping::{PieceDamping, PieceMotion, motions, slow_down};
 use crate::dim::Dim;
-use crate::event::{Event, Party, StepReport};
+use crate::event::{Event, ObjectRef, StepReport};
 use crate::fracture::{Failure, failures};
-use crate::handle::{BodySlot, Gone, RigidId, RigidSlot};
-use crate::ids::{PieceId, Table};
+use crate::handle::{BodySlot, Gone, RigidBodyHandle, RigidSlot};
+use crate::ids::{IndexVec, PieceId};
 use crate::joint::{self, Joints};
 use crate::knife::{Knife, Knives};
-use crate::rigid::{BadRigid, Rigids};
+use crate::rigid::{BadRigid, RigidBodies};
 use crate::sleep::{fall_asleep, fall_asleep_rigid, wake};
 use crate::touch::{Nearby, NodePair};
 use crate::vector::{is_finite, plus, three};
 pub use hooks::{Hooks, Substep, field_around};
 pub use removal::{PieceSize, Removed};
 use settings::BadSetting;
-pub use settings::{FEWEST_SUBSTEPS, LONGEST_TICK, SHORTEST_TICK, Settings, TICK, USUAL_SUBSTEPS};
+pub use settings::{
+    FEWEST_SUBSTEPS, LONGEST_TICK, SHORTEST_TICK, TICK, USUAL_SUBSTEPS, WorldConfig,
+};
 use std::fmt;
 
 /// Decay rate of the angular velocity of a one-voxel piece that touches something [1/s], because it does not
@@ -61,7 +63,7 @@ pub enum Refused {
         expected: &'static str,
     },
     /// Invalid rigid-body parameter.
-    Rigid(BadRigid),
+    RigidBody(BadRigid),
     /// A handle is stale.
     Gone(Gone),
 }
@@ -74,7 +76,7 @@ impl Refused {
 
 impl From<BadRigid> for Refused {
     fn from(bad: BadRigid) -> Self {
-        Self::Rigid(bad)
+        Self::RigidBody(bad)
     }
 }
 
@@ -91,7 +93,7 @@ impl fmt::Display for Refused {
                 write!(f, "the setting {field} must be {expected}")
             }
             Self::Argument { field, expected } => write!(f, "the {field} must be {expected}"),
-            Self::Rigid(bad) => bad.fmt(f),
+            Self::RigidBody(bad) => bad.fmt(f),
             Self::Gone(gone) => gone.fmt(f),
         }
     }
@@ -104,17 +106,17 @@ impl std::error::Error for Refused {}
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct World<D: Dim> {
-    settings: Settings,
-    bodies: Bodies<D>,
-    rigids: Rigids,
+    settings: WorldConfig,
+    bodies: SoftBodies<D>,
+    rigids: RigidBodies,
     joints: Joints,
     knives: Knives,
     ticks: u64,
     nearby: Nearby,
     events: Vec<Event>,
     /// Contact pairs of the last tick, and participants inside each sensor; both ascending.
-    touching: Vec<[Party; 2]>,
-    inside: Vec<(RigidId, Party)>,
+    touching: Vec<[ObjectRef; 2]>,
+    inside: Vec<(RigidBodyHandle, ObjectRef)>,
     #[cfg_attr(feature = "serde", serde(skip))]
     contacts: Contacts,
 }
@@ -125,12 +127,12 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Refused::Setting`] if a setting is out of range.
     #[inline(never)]
-    pub fn new(settings: Settings) -> Result<Self, Refused> {
+    pub fn new(settings: WorldConfig) -> Result<Self, Refused> {
         settings.check().map_err(Refused::setting)?;
         Ok(Self {
             settings,
-            bodies: Bodies::default(),
-            rigids: Rigids::default(),
+            bodies: SoftBodies::default(),
+            rigids: RigidBodies::default(),
             joints: Joints::default(),
             knives: Knives::default(),
             ticks: 0,
@@ -152,10 +154,10 @@ impl<D: Dim> World<D> {
     /// substep. A field does not act on sleeping pieces; [`wake_up`](World::wake_up) wakes them.
     ///
     /// ```
-    /// use fuwafuwa::{Dim2, Hooks, Rigid, Settings, World};
+    /// use fuwafuwa::{Dim2, Hooks, RigidBody, WorldConfig, World};
     ///
-    /// let mut world = World::<Dim2>::new(Settings::default())?;
-    /// let hand = world.add_rigid(Rigid::hand([0.0; 3], 0.1))?;
+    /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
+    /// let hand = world.add_rigid(RigidBody::hand([0.0; 3], 0.1))?;
     /// world.set_goal(hand, [0.1, 0.0, 0.0])?;
     /// let mut forces = Vec::new();
     /// let mut note = |substep: &fuwafuwa::Substep| {
@@ -192,7 +194,7 @@ impl<D: Dim> World<D> {
                 after(&Substep::new(substep, duration, &self.rigids));
             }
         }
-        report.inverted = self.bodies.iter().map(Body::inverted_count).sum();
+        report.inverted = self.bodies.iter().map(SoftBody::inverted_count).sum();
         self.quarantine(&mut report);
         self.sleep();
         self.end_tick();
@@ -202,7 +204,7 @@ impl<D: Dim> World<D> {
     /// Returns the number of substeps per tick that the stiffest body requires. At least 16 in 1/60 s, at
     /// most the limit of the settings.
     pub fn substeps(&self) -> u32 {
-        let longest = self.bodies.iter().map(Body::longest_substep);
+        let longest = self.bodies.iter().map(SoftBody::longest_substep);
         let longest = longest.fold(f64::INFINITY, f64::min);
         let asked = (f64::from(self.settings.tick) / longest - 1e-6).ceil() as u32;
         let most = self.settings.most_in_tick();
@@ -211,7 +213,7 @@ impl<D: Dim> World<D> {
     }
 
     fn start_tick(&mut self) {
-        self.bodies.iter_mut().for_each(Body::note_before);
+        self.bodies.iter_mut().for_each(SoftBody::note_before);
         for rigid in self.rigids.iter_mut() {
             rigid.start_tick(self.settings.tick);
         }
@@ -234,7 +236,7 @@ impl<D: Dim> World<D> {
             if failures.is_empty() {
                 continue;
             }
-            let released = |failure: &Failure| Event::Released {
+            let released = |failure: &Failure| Event::NodeSplit {
                 body: id,
                 at: three(body.state.position[failure.node]),
                 energy: failure.energy,
@@ -243,9 +245,9 @@ impl<D: Dim> World<D> {
             let sides = failures.iter().map(|failure| (failure.at, failure.side));
             let changes = body.tear(&sides.collect::<Vec<_>>());
             let changes = changes.expect("splitting a node keeps the mesh valid");
-            report.released += failures.len() as u32;
-            report.parted += changes.parted.len() as u32;
-            self.events.extend(Event::parted(id, &changes.parted));
+            report.nodes_split += failures.len() as u32;
+            report.pieces_detached += changes.detached.len() as u32;
+            self.events.extend(Event::parted(id, &changes.detached));
             self.nearby.tear(id.slot(), body, &changes);
         }
     }
@@ -258,7 +260,7 @@ impl<D: Dim> World<D> {
             body.refresh_awake();
             let motions = motions(body);
             let (_, rate) = body.damping(substep);
-            let slowing: Vec<Slowing> = motions
+            let slowing: Vec<PieceDamping> = motions
                 .iter()
                 .zip(&touching[slot])
                 .map(|(motion, &touches)| {
@@ -278,10 +280,10 @@ impl<D: Dim> World<D> {
                 body.pull(duration, field);
             }
         }
-        let Settings { gravity, drag, .. } = self.settings;
+        let WorldConfig { gravity, drag, .. } = self.settings;
         for rigid in self.rigids.iter_mut() {
             rigid.pull(duration);
-            if rigid.is_free() && rigid.moves() {
+            if rigid.is_dynamic() && rigid.moves() {
                 let field = hooks.field.map(|field| field(rigid.position()));
                 let field = field.filter(|pull| is_finite(*pull));
                 let pull = field.map_or(gravity, |field| plus(gravity, field));
@@ -338,7 +340,7 @@ impl<D: Dim> World<D> {
 
     /// Puts pieces and rigid bodies to sleep that have been slow for long enough.
     fn sleep(&mut self) {
-        let motions: Vec<Table<PieceId, PieceMotion>> = self
+        let motions: Vec<IndexVec<PieceId, PieceMotion>> = self
             .bodies
             .iter_mut()
             .map(|body| {
@@ -347,7 +349,7 @@ impl<D: Dim> World<D> {
             })
             .collect();
         let pairs = self.nearby.nodes.list.iter();
-        let is_hand = |pair: &&NodePair| self.rigids.at(pair.rigid).is_driven();
+        let is_hand = |pair: &&NodePair| self.rigids.at(pair.rigid).follows_target();
         let handled = pairs
             .filter(is_hand)
             .filter(|pair| pair.impulse.pressed > 0.0);
@@ -392,7 +394,7 @@ impl<D: Dim> World<D> {
             body.refresh_awake();
         }
         self.nearby.wake(&woken, &self.bodies);
-        let events = woken.iter().map(|&(body, piece)| Event::Woke {
+        let events = woken.iter().map(|&(body, piece)| Event::WokeUp {
             body: self.bodies.id(body),
             piece,
         });
@@ -400,12 +402,12 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns for each piece of each body whether it touches anything.
-    fn touching(&self) -> Table<BodySlot, Table<PieceId, bool>> {
-        let none = |body: Option<&Body<D>>| {
-            let pieces = body.map_or(0, |body| body.truth.pieces.list.len());
+    fn touching(&self) -> IndexVec<BodySlot, IndexVec<PieceId, bool>> {
+        let none = |body: Option<&SoftBody<D>>| {
+            let pieces = body.map_or(0, |body| body.topology.pieces.list.len());
             vec![false; pieces].into()
         };
-        let mut touching: Table<_, Table<_, bool>> = self.bodies.slots().map(none).collect();
+        let mut touching: IndexVec<_, IndexVec<_, bool>> = self.bodies.slots().map(none).collect();
         for (body, piece) in self.nearby.pressed(&self.bodies) {
             // The pair lists date from the last substep, and the slot may have been reused since.
             if let Some(touches) = touching[body].get_mut(piece.index()) {
@@ -422,10 +424,16 @@ fn is_due(substep: u32, substeps: u32, rounds: u32) -> bool {
 }
 
 /// Returns the damping rates of a piece [1/s].
-fn slowing(motion: &PieceMotion, touches: bool, rate: f32, drag: f32, corners: usize) -> Slowing {
+fn slowing(
+    motion: &PieceMotion,
+    touches: bool,
+    rate: f32,
+    drag: f32,
+    corners: usize,
+) -> PieceDamping {
     let is_crumb = motion.nodes as usize == corners;
     let settles = touches && motion.speed_squared < SETTLING_SPEED * SETTLING_SPEED;
-    Slowing {
+    PieceDamping {
         swing: rate,
         spin: if is_crumb && touches {
             CRUMB_SPIN_LOSS

@@ -1,21 +1,21 @@
 //! What is told of contacts: when they begin and end, who comes into a sensor, and who touches whom at all.
 
 use fuwafuwa::{
-    Body, BodyId, Dim, Dim2, Dim3, Elasticity, Event, Layers, Material, Party, Rigid, RigidId,
-    Rotation, Settings, Shape, VoxelGrid, World,
+    Dim, Dim2, Dim3, Elasticity, Event, Layers, Material, ObjectRef, RigidBody, RigidBodyHandle,
+    Rotation, Shape, SoftBody, SoftBodyHandle, VoxelGrid, World, WorldConfig,
 };
 
 const UP: [f32; 3] = [0.0, 1.0, 0.0];
 
-fn floored<D: Dim>() -> (World<D>, RigidId) {
-    let mut world = World::new(Settings::default()).unwrap();
-    let floor = Rigid::fixed(Shape::half_space(UP, [0.0; 3]), 0.5);
-    let floor = world.add_rigid(floor).unwrap();
+fn floored<D: Dim>() -> (World<D>, RigidBodyHandle) {
+    let mut world = World::new(WorldConfig::default()).unwrap();
+    let floor = RigidBody::fixed(Shape::half_space(UP, [0.0; 3]), 0.5);
+    let floor = world.add_rigid_body(floor).unwrap();
     (world, floor)
 }
 
 /// A ball of a width of 1 m that does not tear, so high above the floor.
-fn ball<D: Dim>(world: &mut World<D>, height: f32) -> BodyId {
+fn ball<D: Dim>(world: &mut World<D>, height: f32) -> SoftBodyHandle {
     let rubber = Material {
         elasticity: Elasticity {
             young: 5e4,
@@ -26,20 +26,20 @@ fn ball<D: Dim>(world: &mut World<D>, height: f32) -> BodyId {
         ..Material::default()
     };
     let grid = VoxelGrid::<D>::ball(10, 1.0).unwrap();
-    let body = Body::new(grid, &[rubber]).unwrap();
-    world.add_body(body.moved([0.0, height, 0.0]))
+    let body = SoftBody::new(grid, &[rubber]).unwrap();
+    world.add_soft_body(body.translated([0.0, height, 0.0]))
 }
 
-fn crate_of(height: f32, half: f32) -> Rigid {
+fn crate_of(height: f32, half: f32) -> RigidBody {
     let shape = Shape::Box {
         centre: [0.5, height, 0.5],
         half: [half; 3],
     };
-    Rigid::free(shape, 1.0)
+    RigidBody::dynamic(shape, 1.0)
 }
 
-fn of_body(party: Party, body: BodyId) -> bool {
-    matches!(party, Party::Piece { body: found, .. } if found == body)
+fn of_body(party: ObjectRef, body: SoftBodyHandle) -> bool {
+    matches!(party, ObjectRef::Piece { body: found, .. } if found == body)
 }
 
 /// A ball falls for 0.45 s, rests, and is taken up again: one beginning, with the speed of its fall, and one end.
@@ -49,18 +49,18 @@ fn contacts_begin_and_end<D: Dim>() {
     let (mut began, mut ended) = (Vec::new(), 0);
     for tick in 0..500 {
         if tick == 450 {
-            world.move_body(id, [0.0, 2.0, 0.0]).unwrap();
+            world.translate_body(id, [0.0, 2.0, 0.0]).unwrap();
         }
         world.step();
         for event in world.events() {
             match *event {
-                Event::ContactBegan {
+                Event::ContactStarted {
                     both,
                     normal,
                     speed,
                     at,
                 } => {
-                    assert!(of_body(both[0], id) && both[1] == Party::Rigid(floor));
+                    assert!(of_body(both[0], id) && both[1] == ObjectRef::RigidBody(floor));
                     assert_eq!(normal, UP);
                     assert!(at[1] < 0.1);
                     began.push((tick, speed));
@@ -81,7 +81,7 @@ fn contacts_begin_and_end<D: Dim>() {
     );
     assert_eq!(began.len(), ended, "it bounces, and each bounce ends");
     assert!(ended < 30, "{ended}");
-    let asleep = world.bodies()[id].piece_views();
+    let asleep = world.soft_bodies()[id].piece_views();
     assert_eq!(asleep.len(), 1);
 }
 
@@ -94,19 +94,19 @@ fn contacts_begin_with_a_speed_and_end() {
 #[test]
 fn what_falls_asleep_still_touches() {
     let (mut world, _) = floored::<Dim3>();
-    let id = world.add_rigid(crate_of(0.3, 0.25)).unwrap();
+    let id = world.add_rigid_body(crate_of(0.3, 0.25)).unwrap();
     let mut ends = 0;
     for _ in 0..240 {
         world.step();
         let ended = |event: &&Event| matches!(event, Event::ContactEnded { .. });
         ends += world.events().iter().filter(ended).count();
     }
-    assert!(world.rigids()[id].is_asleep());
+    assert!(world.rigid_bodies()[id].is_asleep());
     assert_eq!(ends, 0);
-    world.remove_rigid(id).unwrap();
+    world.remove_rigid_body(id).unwrap();
     world.step();
     let told = world.events().iter().any(
-        |event| matches!(event, Event::ContactEnded { both } if both.contains(&Party::Rigid(id))),
+        |event| matches!(event, Event::ContactEnded { both } if both.contains(&ObjectRef::RigidBody(id))),
     );
     assert!(told, "{:?}", world.events());
 }
@@ -114,13 +114,13 @@ fn what_falls_asleep_still_touches() {
 #[test]
 fn rigid_things_tell_what_they_hit() {
     let (mut world, floor) = floored::<Dim3>();
-    let id = world.add_rigid(crate_of(1.25, 0.25)).unwrap();
+    let id = world.add_rigid_body(crate_of(1.25, 0.25)).unwrap();
     let (mut impulse, mut speed) = (0.0, 0.0f32);
     for _ in 0..60 {
         world.step();
         for event in world.events() {
             match *event {
-                Event::RigidTouched {
+                Event::RigidPressed {
                     rigid,
                     with,
                     normal,
@@ -130,7 +130,7 @@ fn rigid_things_tell_what_they_hit() {
                     assert_eq!((rigid, with, normal), (id, floor, UP));
                     impulse += felt;
                 }
-                Event::ContactBegan { speed: found, .. } => speed = speed.max(found),
+                Event::ContactStarted { speed: found, .. } => speed = speed.max(found),
                 _ => {}
             }
         }
@@ -147,29 +147,31 @@ fn sensors_tell<D: Dim>() {
         centre: [0.5, 2.5, 0.5],
         half: [4.0, 0.2, 2.0],
     };
-    let mut gate = Rigid::fixed(gate, 0.5);
+    let mut gate = RigidBody::fixed(gate, 0.5);
     gate.is_sensor = true;
-    let gate = world.add_rigid(gate).unwrap();
+    let gate = world.add_rigid_body(gate).unwrap();
     let soft = ball(&mut world, 3.0);
-    let free = world.add_rigid(crate_of(5.5, 0.2)).unwrap();
+    let free = world.add_rigid_body(crate_of(5.5, 0.2)).unwrap();
     // Beside the ball, where it does not bounce back.
     world
-        .place_rigid(free, [3.0, 5.5, 0.5], Rotation::NONE)
+        .set_rigid_body_pose(free, [3.0, 5.5, 0.5], Rotation::NONE)
         .unwrap();
     let (mut entered, mut left) = (Vec::new(), Vec::new());
     for _ in 0..60 {
         world.step();
         for event in world.events() {
             match *event {
-                Event::Entered { sensor, who } if sensor == gate => entered.push(who),
-                Event::Left { sensor, who } if sensor == gate => left.push(who),
-                Event::ContactBegan { both, .. } => assert!(!both.contains(&Party::Rigid(gate))),
+                Event::SensorEntered { sensor, who } if sensor == gate => entered.push(who),
+                Event::SensorExited { sensor, who } if sensor == gate => left.push(who),
+                Event::ContactStarted { both, .. } => {
+                    assert!(!both.contains(&ObjectRef::RigidBody(gate)))
+                }
                 _ => {}
             }
         }
     }
     assert_eq!(entered.len(), 2, "{entered:?}");
-    assert!(of_body(entered[0], soft) && entered[1] == Party::Rigid(free));
+    assert!(of_body(entered[0], soft) && entered[1] == ObjectRef::RigidBody(free));
     assert_eq!(left, entered);
 }
 
@@ -191,15 +193,15 @@ fn layers_part<D: Dim>() {
         };
         world.set_layers(low, ghost).unwrap();
         world.set_layers(high, ghost).unwrap();
-        let crate_id = world.add_rigid(crate_of(2.6, 0.2)).unwrap();
+        let crate_id = world.add_rigid_body(crate_of(2.6, 0.2)).unwrap();
         for _ in 0..90 {
             world.step();
         }
-        let [low, high] = [low, high].map(|id| world.bodies()[id].centre_of_mass()[1]);
+        let [low, high] = [low, high].map(|id| world.soft_bodies()[id].centre_of_mass()[1]);
         assert_eq!(high - low > 0.5, meets, "{low} {high}");
         assert!(low > 0.3 && high > 0.3);
         // The crate meets them in either case.
-        assert!(world.rigids()[crate_id].position()[1] > 0.8 || meets);
+        assert!(world.rigid_bodies()[crate_id].position()[1] > 0.8 || meets);
     }
 }
 
@@ -208,7 +210,7 @@ fn layers_say_who_touches_whom() {
     layers_part::<Dim2>();
     layers_part::<Dim3>();
     let (mut world, floor) = floored::<Dim3>();
-    let id = world.add_rigid(crate_of(0.5, 0.2)).unwrap();
+    let id = world.add_rigid_body(crate_of(0.5, 0.2)).unwrap();
     world
         .change_rigid(floor, |floor| floor.layers.memberships = 2)
         .unwrap();
@@ -216,7 +218,7 @@ fn layers_say_who_touches_whom() {
     for _ in 0..60 {
         world.step();
     }
-    assert!(world.rigids()[id].position()[1] < -3.0);
+    assert!(world.rigid_bodies()[id].position()[1] < -3.0);
 }
 
 #[test]
@@ -228,9 +230,9 @@ fn numbers_of_users_stay_with_their_things() {
         .change_rigid(floor, |floor| floor.user_data = 9)
         .unwrap();
     world.step();
-    assert_eq!(world.bodies()[id].user_data(), 7);
-    assert_eq!(world.rigids()[floor].user_data, 9);
-    world.remove_body(id).unwrap();
+    assert_eq!(world.soft_bodies()[id].user_data(), 7);
+    assert_eq!(world.rigid_bodies()[floor].user_data, 9);
+    world.remove_soft_body(id).unwrap();
     assert!(
         world.set_user_data(id, 1).is_err() && world.set_layers(id, Layers::default()).is_err()
     );

@@ -2,8 +2,8 @@
 
 use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
 use fuwafuwa::{
-    Body, Dim, Dim2, Dim3, Elasticity, Material, PieceId, Rigid, Settings, Shape, Vector,
-    VoxelGrid, World,
+    Dim, Dim2, Dim3, Elasticity, Material, PieceId, RigidBody, Shape, SoftBody, Vector, VoxelGrid,
+    World, WorldConfig,
 };
 
 /// A crumb is well inside a piece when its middle is in an element and this far from all faces, in
@@ -52,14 +52,18 @@ fn is_in_cell<D: Dim>(corners: &[Vector], at: Vector) -> bool {
 
 /// The crumbs that are well inside a larger piece, by body and piece; and how many crumbs there are.
 fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
-    let views: Vec<_> = world.bodies().iter().map(Body::piece_views).collect();
+    let views: Vec<_> = world
+        .soft_bodies()
+        .iter()
+        .map(SoftBody::piece_views)
+        .collect();
     let crumbs = || {
         let all = views.iter().enumerate();
         let all = all.flat_map(|(body, views)| views.iter().map(move |view| (body, view)));
         all.filter(|(_, view)| view.element_count <= SMALL)
     };
     let mut inside = Vec::new();
-    for (place, body) in world.bodies().iter().enumerate() {
+    for (place, body) in world.soft_bodies().iter().enumerate() {
         let size = body.grid().voxel_size();
         let faces: Vec<(PieceId, Vector)> = body
             .facets()
@@ -111,7 +115,10 @@ fn check<D: Dim>(
     let mut stays = std::collections::BTreeMap::new();
     for tick in 0..ticks {
         world
-            .set_goal(world.nth_hand(0).unwrap(), goal(f32::from(tick) / 60.0))
+            .set_target_position(
+                world.nth_target_follower(0).unwrap(),
+                goal(f32::from(tick) / 60.0),
+            )
             .unwrap();
         world.step();
         let (inside, _) = crumbs_inside(&world);
@@ -132,11 +139,11 @@ fn check<D: Dim>(
 }
 
 fn weightless<D: Dim>() -> World<D> {
-    let settings = Settings {
+    let settings = WorldConfig {
         gravity: [0.0; 3],
         drag: 1.0,
         most_substeps: 64,
-        ..Settings::default()
+        ..WorldConfig::default()
     };
     World::new(settings).unwrap()
 }
@@ -145,19 +152,19 @@ fn weightless<D: Dim>() -> World<D> {
 fn check_grinding<D: Dim>(n: usize, least: usize) {
     let mut world = weightless::<D>();
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.05, 0.0, 0.0]);
-    world.add_rigid(Rigid::fixed(wall, 0.2)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
     let tough = Material {
         strength: f32::INFINITY,
         ..Material::default()
     };
-    let ball = |n, width| Body::new(VoxelGrid::<D>::ball(n, width).unwrap(), &[tough]).unwrap();
-    world.add_body(ball(n, 1.0));
+    let ball = |n, width| SoftBody::new(VoxelGrid::<D>::ball(n, width).unwrap(), &[tough]).unwrap();
+    world.add_soft_body(ball(n, 1.0));
     let mut dust = ball(n / 3, 0.33);
     dust.crumble().unwrap();
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    world.add_body(dust.moved([-0.36, 0.33, depth - 0.17]));
+    world.add_soft_body(dust.translated([-0.36, 0.33, depth - 0.17]));
     world
-        .add_rigid(Rigid::hand([-0.55, 0.5, depth], 0.2))
+        .add_rigid_body(RigidBody::coupled_ball([-0.55, 0.5, depth], 0.2))
         .unwrap();
     check(world, 240, 30, least, |seconds| {
         let in_and_out = seconds.min(0.8) - (seconds - 2.2).max(0.0);
@@ -179,11 +186,11 @@ fn dust_ground_into_a_body_comes_out_again() {
 fn crumbs_of_a_tear_stay_outside() {
     let mut world = weightless::<Dim2>();
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.15, 0.0, 0.0]);
-    world.add_rigid(Rigid::fixed(wall, 0.2)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
     let disc = VoxelGrid::ball(64, 1.0).unwrap();
-    world.add_body(Body::new(disc, &[Material::default()]).unwrap());
+    world.add_soft_body(SoftBody::new(disc, &[Material::default()]).unwrap());
     world
-        .add_rigid(Rigid::hand([-0.3, 0.55, 0.0], 0.08))
+        .add_rigid_body(RigidBody::coupled_ball([-0.3, 0.55, 0.0], 0.08))
         .unwrap();
     check(world, 150, 30, 20, |seconds| {
         [-0.3 + 0.9 * seconds.min(1.5), 0.55, 0.0]
@@ -192,9 +199,9 @@ fn crumbs_of_a_tear_stay_outside() {
 
 /// Dust that begins inside a body drifts out of it: nothing pops, and momentum is kept.
 fn check_way_out<D: Dim>(n: usize) {
-    let mut world = World::<D>::new(Settings {
+    let mut world = World::<D>::new(WorldConfig {
         gravity: [0.0; 3],
-        ..Settings::default()
+        ..WorldConfig::default()
     })
     .unwrap();
     let ball = |n, width| VoxelGrid::<D>::ball(n, width).unwrap();
@@ -202,24 +209,27 @@ fn check_way_out<D: Dim>(n: usize) {
         strength: f32::INFINITY,
         ..Material::default()
     };
-    let mut dust = Body::new(ball(n / 4, 0.25), &[tough]).unwrap();
+    let mut dust = SoftBody::new(ball(n / 4, 0.25), &[tough]).unwrap();
     dust.crumble().unwrap();
     let depth = if D::N == 3 { 0.37 } else { 0.0 };
-    world.add_body(dust.moved([0.1, 0.37, depth]));
-    world.add_body(Body::new(ball(n, 1.0), &[tough]).unwrap());
+    world.add_soft_body(dust.translated([0.1, 0.37, depth]));
+    world.add_soft_body(SoftBody::new(ball(n, 1.0), &[tough]).unwrap());
     let (before, count) = crumbs_inside(&world);
     assert!(5 * before.len() > 4 * count, "{} of {count}", before.len());
     for tick in 0..60 {
         world.step();
-        for crumb in world.bodies().first().unwrap().piece_views() {
+        for crumb in world.soft_bodies().first().unwrap().piece_views() {
             let speed = length(crumb.velocity);
             assert!(speed < 1.5, "tick {tick}: {speed} m/s");
         }
         // Later the body touches who is out, and what is slow and touches something is slowed down.
         if tick < 10 {
-            let linear = world.bodies().iter().map(|body| body.momentum().linear);
+            let linear = world
+                .soft_bodies()
+                .iter()
+                .map(|body| body.momentum().linear);
             let linear = linear.fold([0.0; 3], plus);
-            let most = 1e-3 * world.bodies().first().unwrap().total_mass();
+            let most = 1e-3 * world.soft_bodies().first().unwrap().total_mass();
             assert!(linear.iter().all(|k| k.abs() < most), "{linear:?} kg m/s");
         }
     }
@@ -244,11 +254,11 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
         elasticity,
         ..Material::default()
     };
-    let settings = Settings {
+    let settings = WorldConfig {
         gravity: [0.0; 3],
         drag: 0.0,
         most_substeps: substeps,
-        ..Settings::default()
+        ..WorldConfig::default()
     };
     let mut world = World::<D>::new(settings).unwrap();
     // It is damped as the large body is that it came off.
@@ -257,8 +267,10 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
     let grid = VoxelGrid::from_fn(size, 1.0 / WIDE as f32, |at| {
         u8::from(at == [0; 3] || at[0] as usize > WIDE / 2)
     });
-    world.add_body(Body::new(grid.unwrap(), &[material]).unwrap());
-    let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
+    world.add_soft_body(SoftBody::new(grid.unwrap(), &[material]).unwrap());
+    let body = world
+        .soft_body_mut(world.nth_soft_body(0).unwrap())
+        .unwrap();
     let views = body.piece_views();
     let crumb = views.iter().find(|view| view.element_count == 1).unwrap();
     let ids = body.mesh().nodes().map(|(id, _)| id);
@@ -274,7 +286,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
     }
     let speeds = nodes
         .iter()
-        .map(|&node| world.bodies().first().unwrap().node_state(node).1);
+        .map(|&node| world.soft_bodies().first().unwrap().node_state(node).1);
     speeds.map(length).fold(0.0, f32::max)
 }
 
@@ -294,34 +306,34 @@ fn a_crumb_stops_swinging_whatever_it_is_made_of() {
 /// it [voxels].
 fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
     const VOXEL: f32 = 1.0 / 32.0;
-    let settings = Settings {
+    let settings = WorldConfig {
         most_substeps: 8,
-        ..Settings::default()
+        ..WorldConfig::default()
     };
     let mut world = World::<D>::new(settings).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
     let crumb = VoxelGrid::<D>::cube(1, VOXEL).unwrap();
-    world.add_body(Body::new(crumb, &[Material::default()]).unwrap());
+    world.add_soft_body(SoftBody::new(crumb, &[Material::default()]).unwrap());
     for _ in 0..90 {
         world.step();
     }
-    assert!(world.bodies().first().unwrap().pieces().list[PieceId(0)].asleep);
+    assert!(world.soft_bodies().first().unwrap().pieces().list[PieceId(0)].asleep);
     let block = VoxelGrid::<D>::cube(size, size as f32 * VOXEL).unwrap();
     let mut heavy = Material::default();
     heavy.density *= 10.0;
-    let block = Body::new(block, &[heavy]).unwrap();
-    let thrown = block.thrown([0.0, -speed, 0.0]);
-    world.add_body(thrown.moved([-0.3 * VOXEL, 4.0 * VOXEL, -0.2 * VOXEL]));
+    let block = SoftBody::new(block, &[heavy]).unwrap();
+    let thrown = block.with_velocity([0.0, -speed, 0.0]);
+    world.add_soft_body(thrown.translated([-0.3 * VOXEL, 4.0 * VOXEL, -0.2 * VOXEL]));
     let mut lowest = f32::INFINITY;
     for _ in 0..20 {
         world.step();
-        let crumb = world.bodies().first().unwrap();
+        let crumb = world.soft_bodies().first().unwrap();
         let nodes = crumb.mesh().nodes();
         lowest = nodes.fold(lowest, |low, (id, _)| low.min(crumb.node_state(id).0[1]));
     }
     assert!(
-        !world.bodies().first().unwrap().pieces().list[PieceId(0)].asleep,
+        !world.soft_bodies().first().unwrap().pieces().list[PieceId(0)].asleep,
         "it was missed"
     );
     -lowest / VOXEL

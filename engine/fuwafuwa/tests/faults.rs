@@ -1,46 +1,47 @@
 //! Faults that there were, each with what brought it about.
 
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Dim3, Drive, Event, Material, Rigid, Settings, Shape, VoxelGrid, World,
+    Blade, Dim, Dim2, Dim3, Event, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid,
+    World, WorldConfig,
 };
 use std::time::Duration;
 
 fn weightless<D: Dim>() -> World<D> {
     let gravity = [0.0; 3];
-    let settings = Settings {
+    let settings = WorldConfig {
         gravity,
-        ..Settings::default()
+        ..WorldConfig::default()
     };
     World::new(settings).expect("the settings are good")
 }
 
-fn ball<D: Dim>(n: usize) -> Body<D> {
+fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     let grid = VoxelGrid::ball(n, 1.0).expect("a ball is not empty");
-    Body::new(grid, &[Material::default()]).expect("the material is good")
+    SoftBody::new(grid, &[Material::default()]).expect("the material is good")
 }
 
 /// Along the same blade, all that can be released was released the first time; the next ones told of
 /// as many nodes again, with events.
 fn check_cut_twice<D: Dim>(n: usize) {
     let mut world = weightless::<D>();
-    world.add_body(ball(n));
+    world.add_soft_body(ball(n));
     let blade = Blade {
         from: [0.5, -1.0, -1.0],
         across: [0.0, 3.0, 0.0],
         along: [0.0, 0.0, 3.0],
     };
-    let first = world.cut(world.nth_body(0).unwrap(), &blade).unwrap();
+    let first = world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap();
     let points = (n - 1) * (D::N - 1);
     assert!(first >= points && first < n * n, "{first}");
     let told = |world: &World<D>| {
-        let is_release = |event: &&Event| matches!(event, Event::Released { .. });
+        let is_release = |event: &&Event| matches!(event, Event::NodeSplit { .. });
         world.events().iter().filter(is_release).count()
     };
     assert_eq!(told(&world), first);
-    assert_eq!(world.bodies().first().unwrap().pieces().list.len(), 2);
+    assert_eq!(world.soft_bodies().first().unwrap().pieces().list.len(), 2);
     assert_eq!(
         (
-            world.cut(world.nth_body(0).unwrap(), &blade).unwrap(),
+            world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap(),
             told(&world)
         ),
         (0, first)
@@ -51,9 +52,12 @@ fn check_cut_twice<D: Dim>(n: usize) {
         across: [3.0, 0.0, 0.0],
         along: [0.0, 0.0, 3.0],
     };
-    assert!(world.cut(world.nth_body(0).unwrap(), &across).unwrap() >= points);
-    assert_eq!(world.cut(world.nth_body(0).unwrap(), &across).unwrap(), 0);
-    assert_eq!(world.bodies().first().unwrap().pieces().list.len(), 4);
+    assert!(world.cut(world.nth_soft_body(0).unwrap(), &across).unwrap() >= points);
+    assert_eq!(
+        world.cut(world.nth_soft_body(0).unwrap(), &across).unwrap(),
+        0
+    );
+    assert_eq!(world.soft_bodies().first().unwrap().pieces().list.len(), 4);
 }
 
 #[test]
@@ -63,7 +67,7 @@ fn a_second_cut_along_a_blade_releases_nothing() {
 }
 
 /// Puts every node of a body elsewhere.
-fn place<D: Dim>(body: &mut Body<D>, to: impl Fn([f32; 3]) -> [f32; 3]) {
+fn place<D: Dim>(body: &mut SoftBody<D>, to: impl Fn([f32; 3]) -> [f32; 3]) {
     let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in ids {
         let at = to(body.node_state(id).0);
@@ -83,7 +87,7 @@ fn turns() -> [fn([f32; 3]) -> [f32; 3]; 5] {
     ]
 }
 
-fn fastest<D: Dim>(body: &Body<D>) -> f32 {
+fn fastest<D: Dim>(body: &SoftBody<D>) -> f32 {
     let speeds = body.mesh().nodes().map(|(id, _)| {
         let speed = body.node_state(id).1;
         speed.iter().map(|k| k * k).sum::<f32>().sqrt()
@@ -99,14 +103,14 @@ fn a_body_turned_round_stays_whole() {
         let mut world = weightless::<Dim3>();
         let mut body = ball(12);
         place(&mut body, turn);
-        world.add_body(body);
+        world.add_soft_body(body);
         for _ in 0..10 {
-            assert_eq!(world.step().released, 0);
+            assert_eq!(world.step().nodes_split, 0);
         }
         assert!(
-            fastest(world.bodies().first().unwrap()) < 1e-3,
+            fastest(world.soft_bodies().first().unwrap()) < 1e-3,
             "{}",
-            fastest(world.bodies().first().unwrap())
+            fastest(world.soft_bodies().first().unwrap())
         );
     }
 }
@@ -119,13 +123,13 @@ fn a_cut_through_a_body_turned_round_moves_nothing() {
         let mut body = ball(16);
         place(&mut body, turn);
         let from = body.piece_views()[0].centre;
-        world.add_body(body);
+        world.add_soft_body(body);
         world.step();
         let (across, along) = ([0.3, 1.0, 0.0], [0.0, 0.0, 1.0]);
         assert!(
             world
                 .cut(
-                    world.nth_body(0).unwrap(),
+                    world.nth_soft_body(0).unwrap(),
                     &Blade {
                         from,
                         across,
@@ -136,12 +140,12 @@ fn a_cut_through_a_body_turned_round_moves_nothing() {
                 > 20
         );
         for _ in 0..5 {
-            assert_eq!(world.step().released, 0);
+            assert_eq!(world.step().nodes_split, 0);
         }
         assert!(
-            fastest(world.bodies().first().unwrap()) < 1e-2,
+            fastest(world.soft_bodies().first().unwrap()) < 1e-2,
             "{}",
-            fastest(world.bodies().first().unwrap())
+            fastest(world.soft_bodies().first().unwrap())
         );
     }
 }
@@ -166,26 +170,31 @@ fn all_of_a_body_crumbles() {
     assert_eq!(parted.len(), voxels - 1);
     assert_eq!(body.pieces().list.len(), voxels);
     assert_eq!(body.mesh().node_count(), 8 * voxels);
-    assert_eq!(body.mesh().validate(body.grid(), body.sharing()), Ok(()));
+    assert_eq!(
+        body.mesh().validate(body.grid(), body.connectivity()),
+        Ok(())
+    );
 }
 
 /// A hand that moved in space and was put into the plane went on along the third axis.
 #[test]
 fn a_hand_from_space_stays_in_the_plane() {
     let mut space = weightless::<Dim3>();
-    let hand = Rigid::hand([0.0, 0.0, 0.5], 0.1);
-    space.add_rigid(hand).expect("the hand is good");
+    let hand = RigidBody::coupled_ball([0.0, 0.0, 0.5], 0.1);
+    space.add_rigid_body(hand).expect("the hand is good");
     space
-        .set_goal(space.nth_hand(0).unwrap(), [0.0, 0.0, 1.0])
+        .set_target_position(space.nth_target_follower(0).unwrap(), [0.0, 0.0, 1.0])
         .unwrap();
     space.step();
-    let hand = space.remove_rigid(space.nth_hand(0).unwrap()).unwrap();
+    let hand = space
+        .remove_rigid_body(space.nth_target_follower(0).unwrap())
+        .unwrap();
     assert!(hand.velocity()[2] > 0.1);
     let mut plane = weightless::<Dim2>();
-    plane.add_rigid(hand).expect("the hand is good");
+    plane.add_rigid_body(hand).expect("the hand is good");
     for _ in 0..3 {
         plane.step();
-        let (_, hand) = plane.hands().next().unwrap();
+        let (_, hand) = plane.target_followers().next().unwrap();
         assert_eq!((hand.position()[2], hand.velocity()[2]), (0.0, 0.0));
     }
 }
@@ -202,27 +211,28 @@ fn a_weaker_material_that_no_voxel_has_changes_nothing() {
     let run = |materials: &[Material]| {
         let mut world = weightless::<Dim2>();
         let grid = VoxelGrid::ball(16, 1.0).expect("a ball is not empty");
-        world.add_body(Body::new(grid, materials).expect("the materials are good"));
+        world.add_soft_body(SoftBody::new(grid, materials).expect("the materials are good"));
         assert!(
             world
                 .cut(
-                    world.nth_body(0).unwrap(),
+                    world.nth_soft_body(0).unwrap(),
                     &Blade::segment([0.5, 0.4], [0.5, 2.0])
                 )
                 .unwrap()
                 > 0
         );
-        let hand = Rigid::hand([0.5, 1.1, 0.0], 0.1).with_drive(Drive::Kinematic);
-        world.add_rigid(hand).expect("the hand is good");
+        let hand =
+            RigidBody::coupled_ball([0.5, 1.1, 0.0], 0.1).with_motion_type(MotionType::Kinematic);
+        world.add_rigid_body(hand).expect("the hand is good");
         let mut released = 0;
         for tick in 0..40u8 {
             world
-                .set_goal(
-                    world.nth_hand(0).unwrap(),
+                .set_target_position(
+                    world.nth_target_follower(0).unwrap(),
                     [0.5, 1.1 - 0.02 * f32::from(tick), 0.0],
                 )
                 .unwrap();
-            released += world.step().released;
+            released += world.step().nodes_split;
         }
         (released, world.hash())
     };
@@ -236,20 +246,20 @@ fn a_weaker_material_that_no_voxel_has_changes_nothing() {
 fn a_crumb_out_of_hand_inside_a_ball_leaves_the_ball() {
     for nowhere in [f32::NAN, f32::INFINITY, 1e30] {
         let mut world = weightless::<Dim2>();
-        world.add_body(ball(16));
+        world.add_soft_body(ball(16));
         let grid = VoxelGrid::cube(1, 1.0 / 16.0).expect("a cube is not empty");
-        let crumb = Body::new(grid, &[Material::default()]).expect("the material is good");
-        let crumb = world.add_body(crumb.moved([0.45, 0.45, 0.0]));
+        let crumb = SoftBody::new(grid, &[Material::default()]).expect("the material is good");
+        let crumb = world.add_soft_body(crumb.translated([0.45, 0.45, 0.0]));
         for _ in 0..3 {
             world.step();
         }
-        let crumb = world.body_mut(crumb).unwrap();
-        *crumb = crumb.clone().thrown([0.0, nowhere, 0.0]);
+        let crumb = world.soft_body_mut(crumb).unwrap();
+        *crumb = crumb.clone().with_velocity([0.0, nowhere, 0.0]);
         let mut quarantined = 0;
         for _ in 0..10 {
             quarantined += world.step().quarantined;
         }
-        let ball = world.bodies().first().unwrap();
+        let ball = world.soft_bodies().first().unwrap();
         assert!(
             ball.pieces().list.iter().all(|piece| !piece.quarantined),
             "{nowhere}"
@@ -262,10 +272,10 @@ fn a_crumb_out_of_hand_inside_a_ball_leaves_the_ball() {
 /// what comes out is the same.
 fn check_zeros<D: Dim>(n: usize) {
     let run = |zero: f32| {
-        let settings = Settings {
+        let settings = WorldConfig {
             gravity: [zero, -9.81, zero],
             drag: zero,
-            ..Settings::default()
+            ..WorldConfig::default()
         };
         let mut world = World::<D>::new(settings).expect("the settings are good");
         let material = Material {
@@ -276,26 +286,29 @@ fn check_zeros<D: Dim>(n: usize) {
             ..Material::default()
         };
         let grid = VoxelGrid::ball(n, 1.0).expect("a ball is not empty");
-        let body = Body::new(grid, &[material]).expect("the material is good");
-        let middle = body.clone().moved([-0.5, zero, zero]);
-        world.add_body(middle.thrown([zero; 3]));
+        let body = SoftBody::new(grid, &[material]).expect("the material is good");
+        let middle = body.clone().translated([-0.5, zero, zero]);
+        world.add_soft_body(middle.with_velocity([zero; 3]));
         let normal = [zero, 1.0, zero];
         let floor = Shape::HalfSpace {
             normal,
             offset: zero,
         };
         world
-            .add_rigid(Rigid::fixed(floor, zero))
+            .add_rigid_body(RigidBody::fixed(floor, zero))
             .expect("the floor is good");
-        let hand = Rigid::hand([zero, 1.2, 0.5], 0.1).with_drive(Drive::Kinematic);
-        let hand = world.add_rigid(hand).expect("the hand is good");
+        let hand =
+            RigidBody::coupled_ball([zero, 1.2, 0.5], 0.1).with_motion_type(MotionType::Kinematic);
+        let hand = world.add_rigid_body(hand).expect("the hand is good");
         let mut released = 0;
         for tick in 0..40u8 {
             let goal = [zero, 1.2 - 0.02 * f32::from(tick), 0.5];
-            world.set_goal(hand, goal).expect("the goal is good");
-            released += world.step().released;
+            world
+                .set_target_position(hand, goal)
+                .expect("the goal is good");
+            released += world.step().nodes_split;
         }
-        let body = world.bodies().first().expect("there is one");
+        let body = world.soft_bodies().first().expect("there is one");
         let states = body.mesh().nodes().map(|(id, _)| body.node_state(id));
         (released, states.collect::<Vec<_>>())
     };

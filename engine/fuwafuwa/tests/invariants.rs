@@ -4,8 +4,8 @@
 use fuwafuwa::dim::{neighbourhood, points_in};
 use fuwafuwa::law::{Elasticity, Law, forces};
 use fuwafuwa::mesh::Remodelled;
-use fuwafuwa::pyramid::{Grading, Pyramid};
-use fuwafuwa::sharing::Sharing;
+use fuwafuwa::pyramid::{CellHierarchy, Grading};
+use fuwafuwa::sharing::Connectivity;
 use fuwafuwa::{Dim, Dim2, Dim3, Mesh, Point, VoxelGrid};
 
 /// A small repeatable stream of numbers (xorshift64*).
@@ -51,7 +51,7 @@ fn random_shape<D: Dim>(random: &mut Random, n: i32) -> Option<VoxelGrid<D>> {
 }
 
 /// Releases a few single points or whole rectangles, as a crack or a knife would.
-fn random_cut<D: Dim>(sharing: &mut Sharing<D>, random: &mut Random, n: i32) -> Vec<Point> {
+fn random_cut<D: Dim>(sharing: &mut Connectivity<D>, random: &mut Random, n: i32) -> Vec<Point> {
     let axis = random.below(D::N as i32) as usize;
     let side = (0..D::CORNERS).fold(0u8, |mask, octant| {
         mask | ((octant >> axis & 1) as u8) << octant
@@ -99,8 +99,8 @@ fn check_one_sequence<D: Dim>(seed: u64, n: i32) {
     let Some(grid) = random_shape::<D>(&mut random, n) else {
         return;
     };
-    let mut sharing = Sharing::new(&grid);
-    let mut pyramid = Pyramid::new(&grid, &sharing, Grading::Graded);
+    let mut sharing = Connectivity::new(&grid);
+    let mut pyramid = CellHierarchy::new(&grid, &sharing, Grading::Graded);
     let mut mesh = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
     for _ in 0..1 + random.below(5) {
         let touched = random_cut(&mut sharing, &mut random, n);
@@ -116,7 +116,7 @@ fn check_one_sequence<D: Dim>(seed: u64, n: i32) {
     }
     assert_eq!(
         pyramid,
-        Pyramid::new(&grid, &sharing, Grading::Graded),
+        CellHierarchy::new(&grid, &sharing, Grading::Graded),
         "seed {seed}"
     );
     let scratch = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
@@ -152,7 +152,7 @@ fn assert_affine_motion_is_inherited<D: Dim>(
 /// The patch test: residual of the default law on inner nodes, relative to stress × voxel face.
 fn assert_uniform_strain_leaves_inner_nodes_at_rest<D: Dim>(
     mesh: &Mesh<D>,
-    sharing: &Sharing<D>,
+    sharing: &Connectivity<D>,
     seed: u64,
 ) {
     let elasticity = Elasticity::new(1000.0, 0.3).unwrap();
@@ -173,7 +173,7 @@ fn assert_uniform_strain_leaves_inner_nodes_at_rest<D: Dim>(
             .collect();
         let size = f64::from(element.cell.width());
         let all = forces(
-            Law::PatchExact,
+            Law::CorotationalVem,
             elasticity,
             mesh.stencil(element),
             size,

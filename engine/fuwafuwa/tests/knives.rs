@@ -1,11 +1,11 @@
 //! Knives: what they cut, and what that takes.
 
 use fuwafuwa::{
-    Body, BodyId, Dim, Dim2, Dim3, Drive, Event, Knife, KnifeId, Material, Rigid, RigidId,
-    Rotation, Settings, Vector, VoxelGrid, World,
+    Dim, Dim2, Dim3, Event, Knife, KnifeHandle, Material, MotionType, RigidBody, RigidBodyHandle,
+    Rotation, SoftBody, SoftBodyHandle, Vector, VoxelGrid, World, WorldConfig,
 };
 
-const NO_GRAVITY: Settings = Settings {
+const NO_GRAVITY: WorldConfig = WorldConfig {
     gravity: [0.0; 3],
     drag: 0.0,
     most_substeps: 64,
@@ -14,19 +14,24 @@ const NO_GRAVITY: Settings = Settings {
 const DOWN: Vector = [0.0, -1.0, 0.0];
 
 /// A block with its middle over the origin, held at its bottom. The edge lies along the third axis.
-fn block<D: Dim>(world: &mut World<D>, size: [usize; 3], voxel: f32, material: Material) -> BodyId {
+fn block<D: Dim>(
+    world: &mut World<D>,
+    size: [usize; 3],
+    voxel: f32,
+    material: Material,
+) -> SoftBodyHandle {
     let grid = VoxelGrid::from_fn(size, voxel, |_| 1).unwrap();
     let [x, _, z] = size.map(|k| k as f32 * voxel);
     let depth = if D::N == 3 { -0.5 * z } else { 0.0 };
-    let body = Body::new(grid, &[material]).unwrap();
-    let mut body = body.moved([-0.5 * x, 0.0, depth]);
+    let body = SoftBody::new(grid, &[material]).unwrap();
+    let mut body = body.translated([-0.5 * x, 0.0, depth]);
     let bottom: Vec<_> = body
         .mesh()
         .nodes()
         .filter(|(_, node)| node.at[1] == 0)
         .collect();
-    bottom.iter().for_each(|&(id, _)| body.hold(id));
-    world.add_body(body)
+    bottom.iter().for_each(|&(id, _)| body.fix_node(id));
+    world.add_soft_body(body)
 }
 
 /// What cannot be torn.
@@ -39,10 +44,15 @@ fn rubber() -> Material {
 }
 
 /// A hand that does as it is told, and a knife in it.
-fn knife<D: Dim>(world: &mut World<D>, at: Vector, half: f32, radius: f32) -> (RigidId, KnifeId) {
-    let mut holder = Rigid::hand(at, 0.01).with_drive(Drive::Kinematic);
+fn knife<D: Dim>(
+    world: &mut World<D>,
+    at: Vector,
+    half: f32,
+    radius: f32,
+) -> (RigidBodyHandle, KnifeHandle) {
+    let mut holder = RigidBody::coupled_ball(at, 0.01).with_motion_type(MotionType::Kinematic);
     holder.is_sensor = true;
-    let holder = world.add_rigid(holder).unwrap();
+    let holder = world.add_rigid_body(holder).unwrap();
     let edge = [[0.0, 0.0, -half], [0.0, 0.0, half]];
     let mut knife = Knife::new(holder, edge, DOWN);
     knife.radius = radius;
@@ -52,19 +62,19 @@ fn knife<D: Dim>(world: &mut World<D>, at: Vector, half: f32, radius: f32) -> (R
 /// Lets it go to a place at a speed [m/s]; what is done with each tick.
 fn go<D: Dim>(
     world: &mut World<D>,
-    holder: RigidId,
+    holder: RigidBodyHandle,
     to: Vector,
     speed: f32,
     mut each: impl FnMut(&World<D>),
 ) {
-    let from = world.rigids()[holder].position();
+    let from = world.rigid_bodies()[holder].position();
     let way: Vec<f32> = (0..3).map(|k| to[k] - from[k]).collect();
     let long = way.iter().map(|k| k * k).sum::<f32>().sqrt();
     let ticks = (60.0 * long / speed).ceil() as usize;
     for tick in 1..=ticks {
         let share = tick as f32 / ticks as f32;
         let goal = [0, 1, 2].map(|k: usize| from[k] + share * way[k]);
-        world.set_goal(holder, goal).unwrap();
+        world.set_target_position(holder, goal).unwrap();
         world.step();
         each(world);
     }
@@ -79,9 +89,11 @@ fn cut<D: Dim>(world: &World<D>) -> [f32; 2] {
     cuts.fold([0.0; 2], |sum, cut| [sum[0] + cut[0], sum[1] + cut[1]])
 }
 
-fn validated<D: Dim>(world: &World<D>, body: BodyId) {
-    let body = &world.bodies()[body];
-    body.mesh().validate(body.grid(), body.sharing()).unwrap();
+fn validated<D: Dim>(world: &World<D>, body: SoftBodyHandle) {
+    let body = &world.soft_bodies()[body];
+    body.mesh()
+        .validate(body.grid(), body.connectivity())
+        .unwrap();
 }
 
 /// The middle force upwards [N] while a knife goes from above into a slab, and what it cut.
@@ -97,7 +109,7 @@ fn force_in_slab<D: Dim>(
     // Not in a plane of the lattice.
     let (holder, id) = knife(&mut world, [0.13 * voxel, top + 0.01, 0.0], 0.2, radius);
     let turned = Rotation::about([0.0, 1.0, 0.0], turned);
-    world.set_goal_rotation(holder, turned).unwrap();
+    world.set_target_rotation(holder, turned).unwrap();
     world.step();
     let (mut forces, mut sums) = (Vec::new(), [0.0; 2]);
     go(
@@ -106,7 +118,7 @@ fn force_in_slab<D: Dim>(
         [0.13 * voxel, 0.3 * top, 0.0],
         0.1,
         |world| {
-            let at = world.rigids()[holder].position()[1];
+            let at = world.rigid_bodies()[holder].position()[1];
             if at < 0.8 * top {
                 forces.push(world.knives().get(id).unwrap().force()[1]);
                 let torque = world.knives().get(id).unwrap().torque();
@@ -164,7 +176,7 @@ fn pressed_before<D: Dim>(size: [usize; 3], radius: f32) -> f32 {
         0.1,
         |world| {
             if first.is_none() && cut(world) != [0.0; 2] {
-                first = Some(top - world.rigids()[holder].position()[1]);
+                first = Some(top - world.rigid_bodies()[holder].position()[1]);
             }
         },
     );
@@ -196,11 +208,11 @@ fn goes_through<D: Dim>(size: [usize; 3], slant: f32) {
     let end = [start[0] + slant, -0.02, 0.0];
     // It cuts the way it goes.
     let turned = Rotation::in_plane(libm::atanf(slant / (top + 0.04)));
-    world.set_goal_rotation(holder, turned).unwrap();
+    world.set_target_rotation(holder, turned).unwrap();
     go(&mut world, holder, end, 0.5, |world| area += cut(world)[0]);
     validated(&world, body);
     let large = |world: &World<D>| {
-        let pieces = world.bodies()[body].piece_views();
+        let pieces = world.soft_bodies()[body].piece_views();
         let total: f32 = pieces.iter().map(|piece| piece.mass).sum();
         pieces
             .iter()
@@ -246,26 +258,28 @@ fn a_knife_on_a_spring_cuts_once_its_pull_is_enough() {
     for (pull, cuts) in [(0.8, false), (2.0, true)] {
         let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
         let body = block(&mut world, [16, 12, 8], 0.02, Material::default());
-        let drive = Drive::Coupled {
+        let drive = MotionType::Coupled {
             mass: 0.2,
             stiffness: 300.0,
             damping: 1.0,
             limit: pull,
         };
-        let mut holder = Rigid::hand([0.003, 0.25, 0.0], 0.01).with_drive(drive);
+        let mut holder = RigidBody::coupled_ball([0.003, 0.25, 0.0], 0.01).with_motion_type(drive);
         holder.is_sensor = true;
-        let holder = world.add_rigid(holder).unwrap();
+        let holder = world.add_rigid_body(holder).unwrap();
         let edge = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]];
         world.add_knife(Knife::new(holder, edge, DOWN)).unwrap();
         let mut area = 0.0;
         for tick in 0..240 {
             let deep = 0.1f32.max(0.25 - 0.001 * tick as f32);
-            world.set_goal(holder, [0.003, deep, 0.0]).unwrap();
+            world
+                .set_target_position(holder, [0.003, deep, 0.0])
+                .unwrap();
             world.step();
             area += cut(&world)[0];
         }
         validated(&world, body);
-        let at = world.rigids()[holder].position()[1];
+        let at = world.rigid_bodies()[holder].position()[1];
         assert_eq!(area > 0.01, cuts, "{area} m² with {pull} N, at {at} m");
         assert_eq!(at < 0.12, cuts, "at {at} m with {pull} N");
     }
@@ -277,10 +291,10 @@ fn the_flat_of_a_blade_pushes_sideways() {
     let body = block(&mut world, [16, 12, 8], 0.02, Material::default());
     let (holder, id) = knife(&mut world, [0.003, 0.26, 0.0], 0.1, 0.0);
     go(&mut world, holder, [0.003, 0.12, 0.0], 0.2, |_| {});
-    let before = world.bodies()[body].centre_of_mass()[0];
+    let before = world.soft_bodies()[body].centre_of_mass()[0];
     go(&mut world, holder, [0.013, 0.12, 0.0], 0.05, |_| {});
     let force = world.knives().get(id).unwrap().force()[0];
-    let moved = world.bodies()[body].centre_of_mass()[0] - before;
+    let moved = world.soft_bodies()[body].centre_of_mass()[0] - before;
     assert!(force < -0.5, "{force} N");
     assert!(moved > 0.001, "{moved} m");
 }
@@ -294,9 +308,9 @@ fn what_cannot_be_torn_cannot_be_cut_and_a_sleeper_wakes() {
     go(&mut world, holder, [0.003, 0.17, 0.0], 0.2, |world| {
         assert_eq!(cut(world), [0.0; 2])
     });
-    assert_eq!(world.bodies()[body].piece_views().len(), 1);
-    assert!(!world.bodies()[body].piece_views()[0].asleep);
-    let body = &world.bodies()[body];
+    assert_eq!(world.soft_bodies()[body].piece_views().len(), 1);
+    assert!(!world.soft_bodies()[body].piece_views()[0].asleep);
+    let body = &world.soft_bodies()[body];
     let nodes = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);
     let under = nodes.filter(|at| at[0].abs() < 0.015);
     let top = under.fold(0.0, |top: f32, at| top.max(at[1]));
@@ -312,8 +326,8 @@ fn what_is_thrown_at_an_edge_that_stands_is_cut() {
             ..Material::default()
         };
         let grid = VoxelGrid::cube(24, 0.24).unwrap();
-        let body = Body::new(grid, &[soft]).unwrap();
-        let body = world.add_body(body.moved([-0.12, 0.02, 0.0]));
+        let body = SoftBody::new(grid, &[soft]).unwrap();
+        let body = world.add_soft_body(body.translated([-0.12, 0.02, 0.0]));
         world
             .add_velocity(body, [0.0, -speed, 0.0], [0.0; 3])
             .unwrap();
@@ -326,7 +340,7 @@ fn what_is_thrown_at_an_edge_that_stands_is_cut() {
             world.step();
             area += cut(&world)[0];
         }
-        let pieces = world.bodies()[body].piece_views().len();
+        let pieces = world.soft_bodies()[body].piece_views().len();
         assert_eq!(pieces, 2, "at {speed} m/s: {area} m²");
         assert!((area - 0.24).abs() < 0.03, "at {speed} m/s: {area} m²");
     }
@@ -344,7 +358,7 @@ fn a_knife_without_a_flat_in_what_cannot_be_torn_holds_nothing() {
         let force = world.knives().get(id).unwrap().force();
         assert!(force.iter().all(|k| k.is_finite()), "{force:?}");
     });
-    world.remove_rigid(holder).unwrap();
+    world.remove_rigid_body(holder).unwrap();
     world.step();
     assert_eq!(world.knives().get(id).unwrap().force(), [0.0; 3]);
 }
@@ -353,17 +367,17 @@ fn a_knife_without_a_flat_in_what_cannot_be_torn_holds_nothing() {
 fn a_body_that_is_held_everywhere_is_cut_and_felt() {
     let mut world = World::<Dim2>::new(NO_GRAVITY).unwrap();
     let grid = VoxelGrid::cube(8, 0.16).unwrap();
-    let mut body = Body::new(grid, &[Material::default()]).unwrap();
+    let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
-    nodes.iter().for_each(|&id| body.hold(id));
-    let body = world.add_body(body);
+    nodes.iter().for_each(|&id| body.fix_node(id));
+    let body = world.add_soft_body(body);
     let (holder, id) = knife(&mut world, [0.083, 0.2, 0.0], 0.1, 0.0);
     let (mut area, mut most) = (0.0, 0.0f32);
     go(&mut world, holder, [0.083, -0.05, 0.0], 0.2, |world| {
         area += cut(world)[0];
         most = most.max(world.knives().get(id).unwrap().force()[1]);
     });
-    assert_eq!(world.bodies()[body].piece_views().len(), 2);
+    assert_eq!(world.soft_bodies()[body].piece_views().len(), 2);
     assert!(
         (area - 0.16).abs() < 0.02 && most > 0.0,
         "{area} m², {most} N"
@@ -375,8 +389,8 @@ fn bad_knives_are_refused_by_field() {
     let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
     let (holder, id) = knife(&mut world, [0.0; 3], 0.1, 0.0);
     let good = world.knives().get(id).unwrap().clone();
-    let wall = Rigid::hand([0.0; 3], 0.1).with_drive(Drive::Fixed);
-    let wall = world.add_rigid(wall).unwrap();
+    let wall = RigidBody::coupled_ball([0.0; 3], 0.1).with_motion_type(MotionType::Fixed);
+    let wall = world.add_rigid_body(wall).unwrap();
     let change = |change: &dyn Fn(&mut Knife)| {
         let mut knife = good.clone();
         change(&mut knife);
@@ -399,7 +413,7 @@ fn bad_knives_are_refused_by_field() {
         let refused = world.add_knife(knife).unwrap_err().to_string();
         assert!(refused.contains(word), "{refused}");
     }
-    world.remove_rigid(holder).unwrap();
+    world.remove_rigid_body(holder).unwrap();
     world.step();
     assert!(
         world

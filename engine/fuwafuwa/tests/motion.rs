@@ -3,15 +3,15 @@
 
 use fuwafuwa::law::{Law, forces};
 use fuwafuwa::pyramid::Grading;
-use fuwafuwa::{Body, BodyError, Dim, Dim2, Dim3, Material, NodeId, VoxelGrid};
+use fuwafuwa::{BodyError, Dim, Dim2, Dim3, Material, NodeId, SoftBody, VoxelGrid};
 
-fn ball<D: Dim>(n: usize, law: Law) -> Body<D> {
+fn ball<D: Dim>(n: usize, law: Law) -> SoftBody<D> {
     let grid = VoxelGrid::ball(n, 1.0).unwrap();
-    Body::with(grid, &[Material::default()], law, Grading::Graded).unwrap()
+    SoftBody::with_options(grid, &[Material::default()], law, Grading::Graded).unwrap()
 }
 
 /// Sets every node by its rest position [m], relative to the middle of a body 1 m wide.
-fn arrange<D: Dim>(body: &mut Body<D>, state: impl Fn([f32; 3]) -> ([f32; 3], [f32; 3])) {
+fn arrange<D: Dim>(body: &mut SoftBody<D>, state: impl Fn([f32; 3]) -> ([f32; 3], [f32; 3])) {
     let nodes: Vec<_> = body.mesh().nodes().collect();
     let size = body.grid().voxel_size();
     for (id, node) in nodes {
@@ -28,7 +28,7 @@ fn arrange<D: Dim>(body: &mut Body<D>, state: impl Fn([f32; 3]) -> ([f32; 3], [f
 }
 
 /// Linear and angular momentum about the origin.
-fn momentum<D: Dim>(body: &Body<D>) -> ([f64; 3], [f64; 3]) {
+fn momentum<D: Dim>(body: &SoftBody<D>) -> ([f64; 3], [f64; 3]) {
     let (mut linear, mut angular) = ([0.0; 3], [0.0; 3]);
     for (id, _) in body.mesh().nodes() {
         let (x, v, mass) = body.node_state(id);
@@ -101,7 +101,7 @@ fn check_forces_against_the_law<D: Dim>(law: Law) {
 
 #[test]
 fn blocks_of_lanes_compute_the_law() {
-    for law in [Law::PatchExact, Law::Endo2004] {
+    for law in [Law::CorotationalVem, Law::Endo2004] {
         check_forces_against_the_law::<Dim2>(law);
         check_forces_against_the_law::<Dim3>(law);
     }
@@ -110,7 +110,7 @@ fn blocks_of_lanes_compute_the_law() {
 /// A free ball that spins at 5 rad/s keeps its angular momentum for five seconds.
 #[test]
 fn a_spinning_ball_keeps_its_spin() {
-    let mut body = ball::<Dim3>(12, Law::PatchExact);
+    let mut body = ball::<Dim3>(12, Law::CorotationalVem);
     arrange(&mut body, |[x, y, z]| {
         ([x, y, z], [4.0 * z - 3.0 * y, 3.0 * x, -4.0 * x])
     });
@@ -126,7 +126,7 @@ fn a_spinning_ball_keeps_its_spin() {
 
 /// Cuts a moving body again and again: mass and linear momentum pass over.
 fn check_releases_keep_momentum<D: Dim>(n: i32) {
-    let mut body = ball::<D>(n as usize, Law::PatchExact);
+    let mut body = ball::<D>(n as usize, Law::CorotationalVem);
     arrange(&mut body, |[x, y, z]| {
         let velocity = [
             1.0 + 2.0 * y,
@@ -135,7 +135,7 @@ fn check_releases_keep_momentum<D: Dim>(n: i32) {
         ];
         ([x * 1.05, y * 0.95, z], velocity)
     });
-    let mass = |body: &Body<D>| -> f64 {
+    let mass = |body: &SoftBody<D>| -> f64 {
         body.mesh()
             .nodes()
             .map(|(id, _)| f64::from(body.node_state(id).2))
@@ -154,7 +154,9 @@ fn check_releases_keep_momentum<D: Dim>(n: i32) {
             body.advance(1.0 / 960.0, [0.0; 3]);
         }
     }
-    body.mesh().validate(body.grid(), body.sharing()).unwrap();
+    body.mesh()
+        .validate(body.grid(), body.connectivity())
+        .unwrap();
     let (after, spin_after) = momentum(&body);
     let drift = length([0, 1, 2].map(|k: usize| after[k] - before[k])) / length(before);
     let spin =
@@ -173,18 +175,18 @@ fn releases_keep_momentum() {
 #[test]
 fn bad_bodies_are_refused() {
     let grid = || VoxelGrid::<Dim2>::cube(2, 1.0).unwrap();
-    let missing = Body::new(grid(), &[]).map(|_| ());
+    let missing = SoftBody::new(grid(), &[]).map(|_| ());
     assert_eq!(missing, Err(BodyError::MissingMaterial { number: 1 }));
     let weightless = Material {
         density: 0.0,
         ..Material::default()
     };
-    let refused = Body::new(grid(), &[weightless]).map(|_| ());
+    let refused = SoftBody::new(grid(), &[weightless]).map(|_| ());
     let message = refused.unwrap_err().to_string();
     assert_eq!(
         message,
         "material 1: density = 0 must be positive and finite"
     );
-    let mut body = Body::new(grid(), &[Material::default()]).unwrap();
+    let mut body = SoftBody::new(grid(), &[Material::default()]).unwrap();
     assert!(!body.set_node_state(NodeId(0), [f32::NAN, 0.0, 0.0], [0.0; 3]));
 }

@@ -2,9 +2,9 @@
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
 use fuwafuwa::law::{Elasticity, Law, forces};
-use fuwafuwa::pyramid::{Grading, Pyramid};
-use fuwafuwa::sharing::Sharing;
-use fuwafuwa::stencil::{Stencil, cell_corners};
+use fuwafuwa::pyramid::{CellHierarchy, Grading};
+use fuwafuwa::sharing::Connectivity;
+use fuwafuwa::stencil::{ElementClass, cell_corners};
 use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
 
 fn graded<D: Dim>(grid: &VoxelGrid<D>) -> Mesh<D> {
@@ -12,8 +12,8 @@ fn graded<D: Dim>(grid: &VoxelGrid<D>) -> Mesh<D> {
 }
 
 fn mesh_of<D: Dim>(grid: &VoxelGrid<D>, grading: Grading) -> Mesh<D> {
-    let sharing = Sharing::new(grid);
-    let pyramid = Pyramid::new(grid, &sharing, grading);
+    let sharing = Connectivity::new(grid);
+    let pyramid = CellHierarchy::new(grid, &sharing, grading);
     let mesh = Mesh::grade(grid, &sharing, &pyramid).unwrap();
     mesh.validate(grid, &sharing).unwrap();
     mesh
@@ -95,7 +95,7 @@ fn a_disc_is_fine_at_the_rim_and_coarse_inside() {
 #[test]
 fn the_papers_law_has_youngs_modulus_on_a_cube() {
     fn check<D: Dim>() {
-        let stencil = Stencil::<D>::new(D::ALL_CORNERS, cell_corners::<D>()).unwrap();
+        let stencil = ElementClass::<D>::new(D::ALL_CORNERS, cell_corners::<D>()).unwrap();
         let elasticity = Elasticity::new(2000.0, 0.0).unwrap();
         let (size, strain) = (0.5, 0.01);
         let positions: Vec<_> = stencil
@@ -104,7 +104,7 @@ fn the_papers_law_has_youngs_modulus_on_a_cube() {
             .map(|r| [r[0] * 0.25 * (1.0 + strain), r[1] * 0.25, r[2] * 0.25])
             .collect();
         let ideal = 2000.0 * strain * (1..D::N).fold(1.0, |area, _| area * size);
-        for law in [Law::Endo2004, Law::PatchExact] {
+        for law in [Law::Endo2004, Law::CorotationalVem] {
             let all = forces(law, elasticity, &stencil, size, &positions);
             let pull: f64 = all
                 .iter()
@@ -125,7 +125,7 @@ fn the_papers_law_has_youngs_modulus_on_a_cube() {
 /// §3.1: vertices that swap places come back, because the force knows the rotation.
 #[test]
 fn swapped_nodes_are_pulled_back() {
-    let stencil = Stencil::<Dim2>::new(15, cell_corners::<Dim2>()).unwrap();
+    let stencil = ElementClass::<Dim2>::new(15, cell_corners::<Dim2>()).unwrap();
     let elasticity = Elasticity::new(1000.0, 0.0).unwrap();
     let mut positions = stencil.offsets.clone();
     positions.swap(0, 1);

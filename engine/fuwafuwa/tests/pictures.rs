@@ -6,15 +6,15 @@
 
 use fuwafuwa::dim::Dim;
 use fuwafuwa::mesh::Element;
-use fuwafuwa::{Blade, Body, Dim2, Material, VoxelGrid};
+use fuwafuwa::{Blade, Dim2, Material, SoftBody, VoxelGrid};
 
-fn body_of(picture: &[&str]) -> Body<Dim2> {
+fn body_of(picture: &[&str]) -> SoftBody<Dim2> {
     let size = [picture[0].len(), picture.len(), 1];
     let grid = VoxelGrid::from_fn(size, 1.0, |[x, y, _]| {
         let row = picture[picture.len() - 1 - y as usize].as_bytes();
         u8::from(row[x as usize] == b'#')
     });
-    Body::new(grid.unwrap(), &[Material::default()]).unwrap()
+    SoftBody::new(grid.unwrap(), &[Material::default()]).unwrap()
 }
 
 fn sign(element: &Element) -> char {
@@ -23,7 +23,7 @@ fn sign(element: &Element) -> char {
     char::from(first + element.cell.level)
 }
 
-fn picture_of(body: &Body<Dim2>) -> Vec<String> {
+fn picture_of(body: &SoftBody<Dim2>) -> Vec<String> {
     let [width, height, _] = body.grid().size();
     let voxel = |x, y| {
         let owner = body.mesh().owner([x, y, 0]);
@@ -41,7 +41,9 @@ fn check(voxels: &[&str], graded: &[&str], cuts: &[([f32; 2], [f32; 2])], remode
     assert_eq!(found, graded, "graded:\n{}", found.join("\n"));
     for &(from, to) in cuts {
         body.cut(&Blade::segment(from, to)).unwrap();
-        body.mesh().validate(body.grid(), body.sharing()).unwrap();
+        body.mesh()
+            .validate(body.grid(), body.connectivity())
+            .unwrap();
     }
     let found = picture_of(&body);
     assert_eq!(found, remodelled, "remodelled:\n{}", found.join("\n"));

@@ -3,8 +3,8 @@
 use fuwafuwa::plasticity::Plasticity;
 use fuwafuwa::plasticity::{elastic_part, flow, forces_after};
 use fuwafuwa::{
-    Blade, Body, BodyId, Dim, Dim2, Dim3, Drive, Elasticity, Material, Rigid, Settings, Shape,
-    VoxelGrid, World,
+    Blade, Dim, Dim2, Dim3, Elasticity, Material, MotionType, RigidBody, Shape, SoftBody,
+    SoftBodyHandle, VoxelGrid, World, WorldConfig,
 };
 
 fn rubber() -> Material {
@@ -14,36 +14,38 @@ fn rubber() -> Material {
     }
 }
 
-fn weightless() -> Settings {
-    Settings {
+fn weightless() -> WorldConfig {
+    WorldConfig {
         gravity: [0.0; 3],
-        ..Settings::default()
+        ..WorldConfig::default()
     }
 }
 
 /// A block between two plates; presses it to a share of its height and lets it go. Returns its height, width and volume after
 /// that, in terms of what they were.
-fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, BodyId) {
+fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, SoftBodyHandle) {
     let mut world = World::<D>::new(weightless()).unwrap();
-    let body = Body::new(VoxelGrid::<D>::cube(8, 1.0).unwrap(), &[material]).unwrap();
-    let id = world.add_body(body);
+    let body = SoftBody::new(VoxelGrid::<D>::cube(8, 1.0).unwrap(), &[material]).unwrap();
+    let id = world.add_soft_body(body);
     let plate = |y: f32| {
         let half = [3.0, 0.25, 3.0];
         let form = Shape::Box {
             centre: [0.0; 3],
             half,
         };
-        let mut plate = Rigid::driven(form, [0.5, y, 0.0], Drive::Kinematic);
+        let mut plate = RigidBody::new(form, [0.5, y, 0.0], MotionType::Kinematic);
         plate.friction = 0.0;
         plate
     };
-    let low = world.add_rigid(plate(-0.25)).unwrap();
-    let high = world.add_rigid(plate(1.25)).unwrap();
+    let low = world.add_rigid_body(plate(-0.25)).unwrap();
+    let high = world.add_rigid_body(plate(1.25)).unwrap();
     let _ = low;
     let go = |world: &mut World<D>, from: f32, to: f32, ticks: u32| {
         for tick in 1..=ticks {
             let y = from + (to - from) * tick as f32 / ticks as f32;
-            world.set_goal(high, [0.5, 0.25 + y, 0.0]).unwrap();
+            world
+                .set_target_position(high, [0.5, 0.25 + y, 0.0])
+                .unwrap();
             let report = world.step();
             assert_eq!(report.quarantined, 0);
         }
@@ -52,17 +54,17 @@ fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, BodyI
     go(&mut world, share, share, 20);
     go(&mut world, share, 2.0, 60);
     go(&mut world, 2.0, 2.0, 120);
-    let view = world.bodies()[id].piece_views()[0];
+    let view = world.soft_bodies()[id].piece_views()[0];
     let [height, width] = [1, 0].map(|axis: usize| view.high[axis] - view.low[axis]);
-    let volume = volume(&world.bodies()[id]);
+    let volume = volume(&world.soft_bodies()[id]);
     ([height, width, volume], world, id)
 }
 
 /// The volume of a body [m³]: of its elements as they are deformed.
-fn volume<D: Dim>(body: &Body<D>) -> f32 {
+fn volume<D: Dim>(body: &SoftBody<D>) -> f32 {
     let width = f64::from(body.grid().voxel_size());
     let parts = body.mesh().elements().map(|(id, element)| {
-        let f = body.strained(id).unwrap().deformation;
+        let f = body.element_state(id).unwrap().deformation;
         let det = f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1])
             - f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0])
             + f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]);
@@ -77,7 +79,7 @@ fn check_dent<D: Dim>() {
     assert!((0.6..0.8).contains(&height), "clay is {height} m high");
     assert!(width > 1.05, "it went {width} m aside");
     assert!((volume - 1.0).abs() < 0.05, "its volume is {volume}");
-    let body = &world.bodies()[clay];
+    let body = &world.soft_bodies()[clay];
     let dents = body
         .mesh()
         .elements()
@@ -86,7 +88,7 @@ fn check_dent<D: Dim>() {
     let ([height, width, volume], world, rubber) = pressed::<D>(rubber(), 0.65);
     assert!((height - 1.0).abs() < 0.01, "rubber is {height} m high");
     assert!((width - 1.0).abs() < 0.01 && (volume - 1.0).abs() < 0.01);
-    let body = &world.bodies()[rubber];
+    let body = &world.soft_bodies()[rubber];
     assert!({ body.mesh().elements() }.all(|(id, _)| body.plastic_strain(id) == Some(0.0)));
 }
 
@@ -99,11 +101,11 @@ fn a_squashed_block_of_clay_keeps_its_dent_and_one_of_rubber_does_not() {
 /// What bears any strain is the same to the last bit as what knows of none, and so is what never strains so far.
 fn check_same_bits<D: Dim>() {
     let run = |material: Material| {
-        let mut world = World::<D>::new(Settings::default()).unwrap();
+        let mut world = World::<D>::new(WorldConfig::default()).unwrap();
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-        world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
-        let body = Body::new(VoxelGrid::<D>::ball(10, 1.0).unwrap(), &[material]).unwrap();
-        world.add_body(body.moved([0.0, 0.2, 0.0]));
+        world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
+        let body = SoftBody::new(VoxelGrid::<D>::ball(10, 1.0).unwrap(), &[material]).unwrap();
+        world.add_soft_body(body.translated([0.0, 0.2, 0.0]));
         (0..60).for_each(|_| _ = world.step());
         world.hash()
     };
@@ -133,7 +135,7 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
     };
     let clay = Material::clay();
     let grid = VoxelGrid::<D>::cube(1, 1.0).unwrap();
-    let mut body = Body::new(grid, &[clay]).unwrap();
+    let mut body = SoftBody::new(grid, &[clay]).unwrap();
     let (id, element) = body.mesh().elements().next().unwrap();
     let element = element.clone();
     let stencil = body.mesh().stencil(&element).clone();
@@ -154,12 +156,12 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
         let place = |&node: &_| body.node_state(node).0.map(f64::from);
         let positions: Vec<[f64; 3]> = element.nodes.iter().map(place).collect();
         let expected = forces_after(elasticity, &undone, &stencil, 1.0, &positions);
-        let deformation = body.strained(id).unwrap().deformation;
-        let before = body.strained(id).unwrap().energy;
+        let deformation = body.element_state(id).unwrap().deformation;
+        let before = body.element_state(id).unwrap().energy;
         undone = flow::<D>(plasticity, elasticity, &deformation, &undone);
         // A substep of no length moves nothing.
         body.advance(0.0, [0.0; 3]);
-        let after = body.strained(id).unwrap().energy;
+        let after = body.element_state(id).unwrap().energy;
         assert!(after <= before * (1.0 + 1e-5), "energy {before} to {after}");
         for (&node, expected) in element.nodes.iter().zip(&expected) {
             let found = body.force_on(node);
@@ -172,7 +174,7 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
             }
         }
         let strain = body.plastic_strain(id).unwrap();
-        let other = fuwafuwa::plasticity::kneaded_stiffness::<D>(&undone);
+        let other = fuwafuwa::plasticity::plastic_stiffness_factor::<D>(&undone);
         let expected = (1.0 / other).sqrt() - 1.0;
         assert!(
             (f64::from(strain) - expected).abs() < 2e-3,
@@ -199,9 +201,9 @@ fn check_kept<D: Dim>() {
         ..Material::clay()
     };
     let mut world = World::<D>::new(weightless()).unwrap();
-    let body = Body::new(VoxelGrid::<D>::ball(8, 1.0).unwrap(), &[clay]).unwrap();
-    let id = world.add_body(body);
-    let body = world.body_mut(id).unwrap();
+    let body = SoftBody::new(VoxelGrid::<D>::ball(8, 1.0).unwrap(), &[clay]).unwrap();
+    let id = world.add_soft_body(body);
+    let body = world.soft_body_mut(id).unwrap();
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for node in nodes {
         let (at, _, _) = body.node_state(node);
@@ -211,10 +213,10 @@ fn check_kept<D: Dim>() {
         body.set_node_state(node, at, velocity);
     }
     let energy = |world: &World<D>| {
-        let energies = world.bodies()[id].energies([0.0; 3]);
+        let energies = world.soft_bodies()[id].energies([0.0; 3]);
         energies.iter().map(|energy| energy.total()).sum::<f64>()
     };
-    let momentum = world.bodies()[id].momentum();
+    let momentum = world.soft_bodies()[id].momentum();
     let mut before = energy(&world);
     let first = before;
     for tick in 0..90 {
@@ -225,7 +227,7 @@ fn check_kept<D: Dim>() {
             "tick {tick}: {before} to {now} J"
         );
         before = before.min(now).max(now);
-        let other = world.bodies()[id].momentum();
+        let other = world.soft_bodies()[id].momentum();
         for axis in 0..3 {
             let linear = other.linear[axis] - momentum.linear[axis];
             let spin = other.angular[axis] - momentum.angular[axis];
@@ -236,7 +238,7 @@ fn check_kept<D: Dim>() {
             );
         }
     }
-    let body = &world.bodies()[id];
+    let body = &world.soft_bodies()[id];
     let dents = body
         .mesh()
         .elements()
@@ -258,7 +260,7 @@ fn momentum_is_kept_and_energy_never_grows() {
 fn check_inherited<D: Dim>() {
     let (_, mut world, id) = pressed::<D>(Material::clay(), 0.6);
     let mean = |world: &World<D>| {
-        let body = &world.bodies()[id];
+        let body = &world.soft_bodies()[id];
         let dents = body.mesh().elements().map(|(own, element)| {
             let voxels = body.mesh().voxels(element).count() as f32;
             (voxels * body.plastic_strain(own).unwrap(), voxels)
@@ -266,23 +268,25 @@ fn check_inherited<D: Dim>() {
         let (sum, voxels) = dents.fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
         sum / voxels
     };
-    let (dent, elements) = (mean(&world), world.bodies()[id].mesh().element_count());
+    let (dent, elements) = (mean(&world), world.soft_bodies()[id].mesh().element_count());
     assert!(dent > 0.1);
-    let [x, y, _] = world.bodies()[id].centre_of_mass();
+    let [x, y, _] = world.soft_bodies()[id].centre_of_mass();
     let blade = Blade {
         from: [x - 0.03, y - 2.0, -3.0],
         across: [0.05, 4.0, 0.0],
         along: [0.0, 0.0, 6.0],
     };
     world.cut(id, &blade).unwrap();
-    let body = &world.bodies()[id];
+    let body = &world.soft_bodies()[id];
     assert!(body.pieces().count() == 2 && body.mesh().element_count() >= elements);
     assert!(
         (mean(&world) - dent).abs() < 1e-4,
         "{} for {dent}",
         mean(&world)
     );
-    body.mesh().validate(body.grid(), body.sharing()).unwrap();
+    body.mesh()
+        .validate(body.grid(), body.connectivity())
+        .unwrap();
     #[cfg(feature = "serde")]
     {
         use fuwafuwa::snapshot::{load, save};
@@ -322,12 +326,14 @@ fn check_abuse<D: Dim>(seed: u32) {
         strength: if random() < 0.5 { 800.0 } else { f32::INFINITY },
         ..Material::clay()
     };
-    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
-    let body = Body::new(VoxelGrid::<D>::ball(8, 1.0).unwrap(), &[clay]).unwrap();
-    let id = world.add_body(body);
-    let hand = world.add_rigid(Rigid::hand([0.5, 2.0, 0.5], 0.2)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
+    let body = SoftBody::new(VoxelGrid::<D>::ball(8, 1.0).unwrap(), &[clay]).unwrap();
+    let id = world.add_soft_body(body);
+    let hand = world
+        .add_rigid_body(RigidBody::coupled_ball([0.5, 2.0, 0.5], 0.2))
+        .unwrap();
     let limit = f64::from(clay.plastic_limit);
     let (mut place, mut target) = ([0.5, 2.0, 0.5], [0.5; 3]);
     for tick in 0..120 {
@@ -337,11 +343,11 @@ fn check_abuse<D: Dim>(seed: u32) {
         // Some metres in a second: faster, and rubber is shot away as well.
         let goal = [0, 1, 2].map(|k: usize| place[k] + (target[k] - place[k]).clamp(-0.08, 0.08));
         place = goal;
-        world.set_goal(hand, goal).unwrap();
+        world.set_target_position(hand, goal).unwrap();
         let report = world.step();
         assert_eq!(report.quarantined, 0, "{}D, seed {seed}, tick {tick}", D::N);
     }
-    let body = &world.bodies()[id];
+    let body = &world.soft_bodies()[id];
     for (own, _) in body.mesh().elements() {
         let dent = f64::from(body.plastic_strain(own).unwrap());
         assert!(dent < limit * 1.05 + 0.05, "{dent} of {limit}");
@@ -378,7 +384,7 @@ fn bad_numbers_are_refused() {
             ..Material::default()
         };
         let grid = VoxelGrid::<Dim2>::cube(2, 1.0).unwrap();
-        let error = Body::new(grid, &[material]).unwrap_err();
+        let error = SoftBody::new(grid, &[material]).unwrap_err();
         assert_eq!(error.to_string(), expected);
     }
 }

@@ -1,8 +1,8 @@
 //! What can be asked of a world: rays, places, shapes.
 
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Dim3, Material, Queries, Rigid, Rotation, Settings, Shape, Thing,
-    VoxelGrid, World,
+    Blade, Dim, Dim2, Dim3, Material, Queries, RigidBody, Rotation, Shape, SoftBody, Thing,
+    VoxelGrid, World, WorldConfig,
 };
 
 type Vector = [f32; 3];
@@ -11,7 +11,7 @@ fn length(v: Vector) -> f32 {
     v.iter().map(|k| k * k).sum::<f32>().sqrt()
 }
 
-const WEIGHTLESS: Settings = Settings {
+const WEIGHTLESS: WorldConfig = WorldConfig {
     gravity: [0.0; 3],
     drag: 0.0,
     most_substeps: 64,
@@ -19,7 +19,7 @@ const WEIGHTLESS: Settings = Settings {
 };
 
 /// A ball of two materials, number 2 within a quarter of its middle, which is at the origin.
-fn ball<D: Dim>(n: usize) -> Body<D> {
+fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     let half = [0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 }];
     let apart = |at: Vector| length([0, 1, 2].map(|axis: usize| at[axis] - half[axis]));
     let size = [n, n, D::depth(n)];
@@ -28,16 +28,16 @@ fn ball<D: Dim>(n: usize) -> Body<D> {
         distance if distance < 0.5 => 1,
         _ => 0,
     });
-    let body = Body::new(grid.unwrap(), &[Material::default(); 2]).unwrap();
-    body.moved(half.map(|k| -k))
+    let body = SoftBody::new(grid.unwrap(), &[Material::default(); 2]).unwrap();
+    body.translated(half.map(|k| -k))
 }
 
 /// Turned, so that nothing lies along an axis.
 fn world<D: Dim>() -> World<D> {
     let mut world = World::new(WEIGHTLESS).unwrap();
-    world.add_body(ball::<D>(16).rotated(Rotation::in_plane(0.4), [0.0; 3]));
+    world.add_soft_body(ball::<D>(16).rotated(Rotation::in_plane(0.4), [0.0; 3]));
     world
-        .add_rigid(Rigid::fixed(
+        .add_rigid_body(RigidBody::fixed(
             Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]),
             0.3,
         ))
@@ -47,7 +47,7 @@ fn world<D: Dim>() -> World<D> {
         to: [3.0, 1.0, 0.0],
         radius: 0.25,
     };
-    world.add_rigid(Rigid::fixed(bar, 0.3)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(bar, 0.3)).unwrap();
     world
 }
 
@@ -64,7 +64,7 @@ fn around<D: Dim>() -> Vec<Vector> {
 fn check_rays<D: Dim>() {
     let world = world::<D>();
     let queries = Queries::new(&world);
-    let body = world.nth_body(0).unwrap();
+    let body = world.nth_soft_body(0).unwrap();
     let voxel = 1.0 / 16.0;
     let is_soft = |thing: Thing| matches!(thing, Thing::Soft { .. });
     for direction in around::<D>() {
@@ -102,7 +102,7 @@ fn check_rays<D: Dim>() {
             .unwrap()
     };
     let bar = first([9.0, 0.0, 0.0]);
-    assert!(matches!(bar.thing, Thing::Rigid(_)));
+    assert!(matches!(bar.thing, Thing::RigidBody(_)));
     assert!(
         (bar.distance - 5.75).abs() < 1e-3 && (bar.normal[0] - 1.0).abs() < 1e-3,
         "{bar:?}"
@@ -133,7 +133,7 @@ fn check_nearest<D: Dim>() {
                 .nearest(at, 9.0, &|thing| matches!(thing, Thing::Soft { .. }))
                 .unwrap();
             // No bare face is nearer than that.
-            let body = world.bodies().first().unwrap();
+            let body = world.soft_bodies().first().unwrap();
             let corners = body
                 .facets()
                 .flat_map(|facet| facet.corners.into_iter().take(D::CORNERS / 2));
@@ -145,7 +145,7 @@ fn check_nearest<D: Dim>() {
         }
     }
     let floor = queries.nearest([0.0, -1.9, 0.0], 9.0, &|_| true).unwrap();
-    assert!(matches!(floor.thing, Thing::Rigid(_)));
+    assert!(matches!(floor.thing, Thing::RigidBody(_)));
     assert!(
         (floor.at[1] + 2.0).abs() < 1e-5 && (floor.distance - 0.1).abs() < 1e-5,
         "{floor:?}"
@@ -180,10 +180,13 @@ fn check_places<D: Dim>() {
             assert_eq!(material(at), expect, "{at:?}");
         }
     }
-    assert!(matches!(queries.at([3.0, 0.0, 0.0])[..], [Thing::Rigid(_)]));
+    assert!(matches!(
+        queries.at([3.0, 0.0, 0.0])[..],
+        [Thing::RigidBody(_)]
+    ));
     assert!(matches!(
         queries.at([7.0, -3.0, 0.0])[..],
-        [Thing::Rigid(_)]
+        [Thing::RigidBody(_)]
     ));
     assert!(queries.at([f32::NAN; 3]).is_empty());
 }
@@ -196,7 +199,7 @@ fn what_is_at_a_place_is_known() {
 
 fn check_overlaps<D: Dim>() {
     let mut world = world::<D>();
-    let body = world.nth_body(0).unwrap();
+    let body = world.nth_soft_body(0).unwrap();
     let count = |world: &World<D>, shape: Shape| {
         let things = Queries::new(world).overlapping(&shape);
         let soft = things

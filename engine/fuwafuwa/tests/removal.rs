@@ -1,14 +1,15 @@
 //! Pieces that are taken out of a world: what is gone is gone, and the rest does not notice.
 #![cfg(feature = "serde")]
 
-use fuwafuwa::pyramid::Pyramid;
+use fuwafuwa::pyramid::CellHierarchy;
 use fuwafuwa::snapshot::{load, save};
 use fuwafuwa::{
-    Blade, Body, BodyId, Bookmark, Dim, Dim2, Dim3, End, Event, Grading, Joint, Material, Mesh,
-    Party, PieceId, PieceSize, Removed, Rigid, Settings, Shape, VoxelGrid, World,
+    Blade, Bookmark, Dim, Dim2, Dim3, Event, Grading, Joint, JointAnchor, Material, Mesh,
+    ObjectRef, PieceId, PieceSize, Removed, RigidBody, Shape, SoftBody, SoftBodyHandle, VoxelGrid,
+    World, WorldConfig,
 };
 
-const WEIGHTLESS: Settings = Settings {
+const WEIGHTLESS: WorldConfig = WorldConfig {
     gravity: [0.0; 3],
     drag: 0.0,
     most_substeps: 64,
@@ -22,9 +23,9 @@ fn random(seed: &mut u32, below: usize) -> usize {
 
 /// The mesh of a body, and what it follows from, against all of it from scratch, and against a file.
 fn check_whole<D: Dim>(world: &World<D>, what: &str) {
-    for body in world.bodies() {
-        let (grid, sharing) = (body.grid(), body.sharing());
-        let fresh = Pyramid::new(grid, sharing, Grading::Graded);
+    for body in world.soft_bodies() {
+        let (grid, sharing) = (body.grid(), body.connectivity());
+        let fresh = CellHierarchy::new(grid, sharing, Grading::Graded);
         let mesh = Mesh::grade(grid, sharing, &fresh).unwrap();
         assert!(body.mesh().is_same_as(&mesh), "{what}: not as from scratch");
         let valid = body.mesh().validate(grid, sharing);
@@ -61,12 +62,12 @@ fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
         toughness: 80.0,
         ..Material::default()
     };
-    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.3)).unwrap();
-    let body = Body::new(VoxelGrid::<D>::ball(n, 1.0).unwrap(), &[soft]).unwrap();
-    let id = world.add_body(body);
-    let mut bookmark = world.bodies()[id].bookmark();
+    world.add_rigid_body(RigidBody::fixed(floor, 0.3)).unwrap();
+    let body = SoftBody::new(VoxelGrid::<D>::ball(n, 1.0).unwrap(), &[soft]).unwrap();
+    let id = world.add_soft_body(body);
+    let mut bookmark = world.soft_bodies()[id].bookmark();
     let mut gone = 0;
     for round in 0..12 {
         let what = format!("{}D, seed {seed}, round {round}", D::N);
@@ -76,19 +77,23 @@ fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
                 let mut at = [0; 3];
                 (0..D::N).for_each(|axis| at[axis] = random(seed, n + 1) as i32);
                 let side = 1 + random(seed, (1 << D::CORNERS) - 2) as u8;
-                world.body_mut(id).unwrap().release(&[(at, side)]).unwrap();
-                bookmark = world.bodies()[id].bookmark();
+                world
+                    .soft_body_mut(id)
+                    .unwrap()
+                    .release(&[(at, side)])
+                    .unwrap();
+                bookmark = world.soft_bodies()[id].bookmark();
             }
             _ => drop((0..2).map(|_| world.step()).collect::<Vec<_>>()),
         }
-        let views = world.bodies()[id].piece_views();
+        let views = world.soft_bodies()[id].piece_views();
         let left = views.iter().filter(|view| !view.removed).count();
         let largest = { views.iter() }.max_by_key(|view| view.element_count);
         let largest = largest.unwrap().number;
         if left < 2 {
             continue;
         }
-        world.bodies()[id].changes_since(&mut bookmark);
+        world.soft_bodies()[id].changes_since(&mut bookmark);
         let other = views
             .iter()
             .find(|view| view.number != largest && !view.removed && random(seed, 2) == 0);
@@ -98,7 +103,7 @@ fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
         };
         gone += removed.pieces.len();
         check_whole(&world, &what);
-        let body = &world.bodies()[id];
+        let body = &world.soft_bodies()[id];
         let pieces: Vec<PieceId> = removed.pieces.iter().map(|&(_, piece)| piece).collect();
         // Too much to be kept is not told.
         if let Some(changes) = body.changes_since(&mut bookmark) {
@@ -130,18 +135,18 @@ fn whatever_is_removed_the_rest_is_as_from_scratch() {
 }
 
 /// A cube cut in two halves side by side.
-fn halves<D: Dim>(settings: Settings) -> (World<D>, BodyId) {
+fn halves<D: Dim>(settings: WorldConfig) -> (World<D>, SoftBodyHandle) {
     let mut world = World::new(settings).unwrap();
     let cube = VoxelGrid::cube(8, 1.0).unwrap();
-    let cube = Body::new(cube, &[Material::default()]).unwrap();
-    let cube = world.add_body(cube);
+    let cube = SoftBody::new(cube, &[Material::default()]).unwrap();
+    let cube = world.add_soft_body(cube);
     let blade = Blade {
         from: [0.5, -1.0, -1.0],
         across: [0.0, 3.0, 0.0],
         along: [0.0, 0.0, 3.0],
     };
     world.cut(cube, &blade).unwrap();
-    assert_eq!(world.bodies()[cube].pieces().count(), 2);
+    assert_eq!(world.soft_bodies()[cube].pieces().count(), 2);
     (world, cube)
 }
 
@@ -152,16 +157,16 @@ fn check_rest_untouched<D: Dim>() {
         .unwrap();
     (0..3).for_each(|_| _ = world.step());
     let states = |world: &World<D>, piece: u32| -> Vec<_> {
-        let body = &world.bodies()[cube];
+        let body = &world.soft_bodies()[cube];
         let nodes = body.mesh().nodes().map(|(id, _)| id);
         let own = nodes.filter(|&id| body.pieces().of_node(id) == PieceId(piece));
         own.map(|id| (id, body.node_state(id))).collect()
     };
-    let (before, whole) = (states(&world, 0), world.bodies()[cube].total_mass());
+    let (before, whole) = (states(&world, 0), world.soft_bodies()[cube].total_mass());
     let removed = world.remove_piece(cube, PieceId(1)).unwrap();
     assert_eq!(states(&world, 0), before);
     assert_eq!(states(&world, 1), []);
-    let left = world.bodies()[cube].total_mass();
+    let left = world.soft_bodies()[cube].total_mass();
     assert!((removed.mass + left - whole).abs() < 1e-9 * whole && removed.mass > 0.3 * whole);
     let events = [Event::PieceRemoved {
         body: cube,
@@ -172,9 +177,9 @@ fn check_rest_untouched<D: Dim>() {
     let error = world.remove_piece(cube, PieceId(1)).unwrap_err();
     assert_eq!((error.kind, error.slot), ("piece", 1));
     assert!(world.remove_piece(cube, PieceId(7)).is_err());
-    let momentum = world.bodies()[cube].momentum().linear;
+    let momentum = world.soft_bodies()[cube].momentum().linear;
     (0..30).for_each(|_| _ = world.step());
-    let now = world.bodies()[cube].momentum().linear;
+    let now = world.soft_bodies()[cube].momentum().linear;
     for axis in 0..3 {
         assert!(
             (now[axis] - momentum[axis]).abs() < 1e-3 * left,
@@ -196,7 +201,7 @@ fn the_rest_swings_as_if_the_other_half_were_far_away() {
     let (mut other, _) = halves::<Dim2>(WEIGHTLESS);
     world.remove_piece(cube, PieceId(1)).unwrap();
     let far = |world: &mut World<Dim2>| {
-        let body = world.body_mut(cube).unwrap();
+        let body = world.soft_body_mut(cube).unwrap();
         let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in nodes {
             let (mut at, _, _) = body.node_state(id);
@@ -214,7 +219,7 @@ fn the_rest_swings_as_if_the_other_half_were_far_away() {
         other.step();
     }
     let [alone, beside] = [&world, &other].map(|world| {
-        let body = &world.bodies()[cube];
+        let body = &world.soft_bodies()[cube];
         let nodes = body.mesh().nodes().map(|(id, _)| id);
         let own = nodes.filter(|&id| body.pieces().of_node(id) == PieceId(0));
         own.map(|id| body.node_state(id)).collect::<Vec<_>>()
@@ -223,17 +228,17 @@ fn the_rest_swings_as_if_the_other_half_were_far_away() {
 }
 
 fn check_leaning<D: Dim>() {
-    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.5)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(floor, 0.5)).unwrap();
     let cube = |n, width| {
         let strong = Material {
             strength: f32::INFINITY,
             ..Material::default()
         };
-        Body::new(VoxelGrid::<D>::cube(n, width).unwrap(), &[strong]).unwrap()
+        SoftBody::new(VoxelGrid::<D>::cube(n, width).unwrap(), &[strong]).unwrap()
     };
-    let below = world.add_body(cube(8, 0.8).moved([0.0, 0.0, 0.0]));
+    let below = world.add_soft_body(cube(8, 0.8).translated([0.0, 0.0, 0.0]));
     let blade = Blade {
         from: [0.4, -1.0, -1.0],
         across: [0.0, 3.0, 0.0],
@@ -241,11 +246,14 @@ fn check_leaning<D: Dim>() {
     };
     world.cut(below, &blade).unwrap();
     // One on each half, one elsewhere.
-    let on_left = world.add_body(cube(3, 0.3).moved([0.05, 0.82, 0.2]));
-    let on_right = world.add_body(cube(3, 0.3).moved([0.45, 0.82, 0.2]));
-    let far = world.add_body(cube(3, 0.3).moved([5.0, 0.01, 0.0]));
+    let on_left = world.add_soft_body(cube(3, 0.3).translated([0.05, 0.82, 0.2]));
+    let on_right = world.add_soft_body(cube(3, 0.3).translated([0.45, 0.82, 0.2]));
+    let far = world.add_soft_body(cube(3, 0.3).translated([5.0, 0.01, 0.0]));
     let all_sleep = |world: &World<D>| {
-        let pieces = world.bodies().iter().flat_map(|body| &body.pieces().list);
+        let pieces = world
+            .soft_bodies()
+            .iter()
+            .flat_map(|body| &body.pieces().list);
         pieces.into_iter().all(|piece| piece.asleep)
     };
     // They may lean on each other for long; what they lie on is all that counts.
@@ -259,11 +267,11 @@ fn check_leaning<D: Dim>() {
         let ended = |event: &&Event| matches!(event, Event::ContactEnded { .. });
         world.events().iter().filter(ended).copied().collect()
     };
-    let asleep = |world: &World<D>, id: BodyId, piece: usize| {
-        world.bodies()[id].pieces().list[PieceId(piece as u32)].asleep
+    let asleep = |world: &World<D>, id: SoftBodyHandle, piece: usize| {
+        world.soft_bodies()[id].pieces().list[PieceId(piece as u32)].asleep
     };
-    let centre = world.bodies()[on_right].centre_of_mass();
-    let right = if { world.bodies()[below].piece_views() }[0].centre[0] > 0.4 {
+    let centre = world.soft_bodies()[on_right].centre_of_mass();
+    let right = if { world.soft_bodies()[below].piece_views() }[0].centre[0] > 0.4 {
         0
     } else {
         1
@@ -272,10 +280,10 @@ fn check_leaning<D: Dim>() {
     assert!(!asleep(&world, on_right, 0), "it leant on what is gone");
     // The other half leant on it too, and so who lies on that.
     assert!(!asleep(&world, on_left, 0) && asleep(&world, far, 0));
-    let woken = |event: &Event| matches!(event, Event::Woke { body, .. } if *body == on_right);
+    let woken = |event: &Event| matches!(event, Event::WokeUp { body, .. } if *body == on_right);
     assert!(world.events().iter().any(woken));
     world.step();
-    let gone = Party::Piece {
+    let gone = ObjectRef::Piece {
         body: below,
         piece: PieceId(right as u32),
     };
@@ -284,7 +292,7 @@ fn check_leaning<D: Dim>() {
         |event: &Event| matches!(event, Event::ContactEnded { both } if both.contains(&gone));
     assert!(ended.iter().any(told), "{ended:?}");
     (0..40).for_each(|_| _ = world.step());
-    let now = world.bodies()[on_right].centre_of_mass();
+    let now = world.soft_bodies()[on_right].centre_of_mass();
     assert!(now[1] < centre[1] - 0.3, "{centre:?} to {now:?}");
     assert!(asleep(&world, far, 0));
 }
@@ -302,20 +310,22 @@ fn check_ties<D: Dim>() {
         centre: [0.5, 0.5, middle],
         radius: 3.0,
     };
-    let mut sensor = Rigid::fixed(sensor, 0.0);
+    let mut sensor = RigidBody::fixed(sensor, 0.0);
     sensor.is_sensor = true;
-    let sensor = world.add_rigid(sensor).unwrap();
+    let sensor = world.add_rigid_body(sensor).unwrap();
     let [to_left, to_right] = [0.1, 0.9].map(|x| {
         let at = [x, 0.5, middle];
-        let end = End::Soft {
+        let end = JointAnchor::Soft {
             body: cube,
             at,
             radius: 0.1,
         };
-        world.add_joint(Joint::pin(end, End::Position(at))).unwrap()
+        world
+            .add_joint(Joint::pin(end, JointAnchor::Position(at)))
+            .unwrap()
     });
     world.step();
-    let views = world.bodies()[cube].piece_views();
+    let views = world.soft_bodies()[cube].piece_views();
     let right = views
         .iter()
         .find(|view| view.centre[0] > 0.5)
@@ -328,11 +338,14 @@ fn check_ties<D: Dim>() {
         events.contains(&Event::JointBroke { joint: to_right }),
         "{events:?}"
     );
-    let who = Party::Piece {
+    let who = ObjectRef::Piece {
         body: cube,
         piece: right,
     };
-    assert!(events.contains(&Event::Left { sensor, who }), "{events:?}");
+    assert!(
+        events.contains(&Event::SensorExited { sensor, who }),
+        "{events:?}"
+    );
     assert!(world.joints().get(to_left).is_ok() && world.joints().get(to_right).is_err());
 }
 
@@ -343,22 +356,22 @@ fn joints_break_and_sensors_tell() {
 }
 
 fn check_last<D: Dim>() {
-    let (mut world, cube) = halves::<D>(Settings::default());
+    let (mut world, cube) = halves::<D>(WorldConfig::default());
     world.remove_piece(cube, PieceId(0)).unwrap();
     let removed = world.remove_piece(cube, PieceId(1)).unwrap();
     assert_eq!(
         (removed.pieces.len(), &removed.bodies[..]),
         (1, &[cube][..])
     );
-    assert!(world.bodies().get(cube).is_err() && world.bodies().is_empty());
+    assert!(world.soft_bodies().get(cube).is_err() && world.soft_bodies().is_empty());
     assert!(world.events().contains(&Event::BodyRemoved { body: cube }));
     assert!(world.remove_piece(cube, PieceId(1)).is_err());
     world.step();
     // Its slot is free for another one.
-    let ball = Body::new(VoxelGrid::ball(6, 1.0).unwrap(), &[Material::default()]).unwrap();
-    let ball = world.add_body(ball);
+    let ball = SoftBody::new(VoxelGrid::ball(6, 1.0).unwrap(), &[Material::default()]).unwrap();
+    let ball = world.add_soft_body(ball);
     (0..30).for_each(|_| _ = world.step());
-    assert!(world.bodies().get(ball).is_ok() && world.bodies().get(cube).is_err());
+    assert!(world.soft_bodies().get(ball).is_ok() && world.soft_bodies().get(cube).is_err());
     check_whole(&world, "after the last piece");
 }
 
@@ -370,7 +383,7 @@ fn with_its_last_piece_a_body_leaves_the_world() {
 
 fn check_sizes<D: Dim>() {
     let (mut world, cube) = halves::<D>(WEIGHTLESS);
-    let half = 0.5 * world.bodies()[cube].total_mass();
+    let half = 0.5 * world.soft_bodies()[cube].total_mass();
     let none = Removed::default();
     for size in [
         PieceSize::Mass(0.9 * half),
@@ -406,14 +419,14 @@ fn small_pieces_go_by_mass_volume_or_voxels() {
 
 fn check_outside<D: Dim>() {
     let (mut world, cube) = halves::<D>(WEIGHTLESS);
-    let views = world.bodies()[cube].piece_views();
+    let views = world.soft_bodies()[cube].piece_views();
     let right = views
         .iter()
         .find(|view| view.centre[0] > 0.5)
         .unwrap()
         .number;
     let ball = |x| {
-        Rigid::free(
+        RigidBody::dynamic(
             Shape::Ball {
                 centre: [x, 0.0, 0.0],
                 radius: 0.2,
@@ -421,9 +434,11 @@ fn check_outside<D: Dim>() {
             1.0,
         )
     };
-    let near = world.add_rigid(ball(-2.1)).unwrap();
-    let far = world.add_rigid(ball(-2.3)).unwrap();
-    let hand = world.add_rigid(Rigid::hand([-9.0, 0.0, 0.0], 0.1)).unwrap();
+    let near = world.add_rigid_body(ball(-2.1)).unwrap();
+    let far = world.add_rigid_body(ball(-2.3)).unwrap();
+    let hand = world
+        .add_rigid_body(RigidBody::coupled_ball([-9.0, 0.0, 0.0], 0.1))
+        .unwrap();
     let region = Shape::Box {
         centre: [-0.8, 0.0, 0.0],
         half: [1.2, 3.0, 3.0],
@@ -433,7 +448,7 @@ fn check_outside<D: Dim>() {
         (removed.pieces, removed.rigids),
         (vec![(cube, right)], vec![far])
     );
-    assert!(world.rigids().get(near).is_ok() && world.rigids().get(hand).is_ok());
+    assert!(world.rigid_bodies().get(near).is_ok() && world.rigid_bodies().get(hand).is_ok());
     assert!(world.events().contains(&Event::RigidRemoved { rigid: far }));
     let bad = Shape::Ball {
         centre: [0.0; 3],
@@ -453,16 +468,16 @@ fn what_left_a_region_is_removed() {
 #[test]
 fn what_was_torn_and_removed_is_told_once() {
     let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
-    let cube = Body::new(VoxelGrid::cube(32, 1.0).unwrap(), &[Material::default()]).unwrap();
-    let cube = world.add_body(cube);
-    let mut bookmark: Bookmark = world.bodies()[cube].bookmark();
+    let cube = SoftBody::new(VoxelGrid::cube(32, 1.0).unwrap(), &[Material::default()]).unwrap();
+    let cube = world.add_soft_body(cube);
+    let mut bookmark: Bookmark = world.soft_bodies()[cube].bookmark();
     let blade = Blade::segment([-0.1, 0.2], [0.2, -0.1]);
     world.cut(cube, &blade).unwrap();
     world.remove_piece(cube, PieceId(1)).unwrap();
-    let body = &world.bodies()[cube];
+    let body = &world.soft_bodies()[cube];
     let changes = body.changes_since(&mut bookmark).unwrap();
     assert_eq!(
-        (changes.parted, changes.removed),
+        (changes.detached, changes.removed),
         (vec![PieceId(1)], vec![PieceId(1)])
     );
     assert!(changes.elements.is_sorted() && changes.nodes.is_sorted());

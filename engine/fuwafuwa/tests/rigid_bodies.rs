@@ -1,8 +1,8 @@
 //! Rigid bodies that fall, turn, stack, bounce, and lie on soft ones.
 
 use fuwafuwa::{
-    Body, Dim, Dim2, Dim3, Drive, Elasticity, Material, Rigid, RigidId, Rotation, Settings, Shape,
-    VoxelGrid, World,
+    Dim, Dim2, Dim3, Elasticity, Material, MotionType, RigidBody, RigidBodyHandle, Rotation, Shape,
+    SoftBody, VoxelGrid, World, WorldConfig,
 };
 use std::f32::consts::{FRAC_PI_4, PI};
 
@@ -11,17 +11,17 @@ type Vector = [f32; 3];
 const UP: Vector = [0.0, 1.0, 0.0];
 
 fn world<D: Dim>(gravity: f32) -> World<D> {
-    let settings = Settings {
+    let settings = WorldConfig {
         gravity: [0.0, gravity, 0.0],
-        ..Settings::default()
+        ..WorldConfig::default()
     };
     World::new(settings).unwrap()
 }
 
 fn floored<D: Dim>() -> World<D> {
     let mut world = world::<D>(-9.81);
-    let floor = Rigid::fixed(Shape::half_space(UP, [0.0; 3]), 0.5);
-    world.add_rigid(floor).unwrap();
+    let floor = RigidBody::fixed(Shape::half_space(UP, [0.0; 3]), 0.5);
+    world.add_rigid_body(floor).unwrap();
     world
 }
 
@@ -38,7 +38,7 @@ fn bar(centre: Vector) -> Shape {
         to: [0.4, 0.0, 0.0],
         radius: 0.2,
     }
-    .moved(centre)
+    .translated(centre)
 }
 
 fn ball(centre: Vector) -> Shape {
@@ -53,7 +53,7 @@ fn upright(angle: f32) -> Vector {
     Rotation::in_plane(-angle).apply(UP)
 }
 
-fn speed(rigid: &Rigid) -> f32 {
+fn speed(rigid: &RigidBody) -> f32 {
     let squared = rigid.velocity().map(|k| k * k);
     squared.iter().sum::<f32>().sqrt()
 }
@@ -71,12 +71,12 @@ fn all_come_to_rest<D: Dim>() {
     ] {
         let mut world = floored::<D>();
         let id = world
-            .add_rigid(Rigid::free(shape, 5.0).rotated(turned))
+            .add_rigid_body(RigidBody::dynamic(shape, 5.0).rotated(turned))
             .unwrap();
         for _ in 0..300 {
             world.step();
         }
-        let rigid = &world.rigids()[id];
+        let rigid = &world.rigid_bodies()[id];
         assert!(
             (rigid.position()[1] - height).abs() < 0.01,
             "{shape:?} {:?}",
@@ -97,17 +97,19 @@ fn all_shapes_come_to_rest() {
 
 fn a_tower_stands<D: Dim>() {
     let mut world = floored::<D>();
-    let ids: Vec<RigidId> = (0..10)
+    let ids: Vec<RigidBodyHandle> = (0..10)
         .map(|n| {
             let shape = cube([0.01 * (n % 3) as f32, 0.25 + 0.5 * n as f32, 0.0], 0.25);
-            world.add_rigid(Rigid::free(shape, 2.0)).unwrap()
+            world
+                .add_rigid_body(RigidBody::dynamic(shape, 2.0))
+                .unwrap()
         })
         .collect();
     for _ in 0..600 {
         world.step();
     }
     for (n, &id) in ids.iter().enumerate() {
-        let rigid = &world.rigids()[id];
+        let rigid = &world.rigid_bodies()[id];
         let [x, y, z] = rigid.position();
         assert!(x.abs() < 0.03 && z.abs() < 0.03, "{n}: {x} {z}");
         assert!((y - 0.25 - 0.5 * n as f32).abs() < 0.02, "{n}: {y}");
@@ -132,18 +134,23 @@ fn one_of_two_towers_falls<D: Dim>() {
     let mut material = Material::default();
     (material.elasticity.young, material.strength) = (2e5, f32::INFINITY);
     let mut tower = |x: f32| {
-        let mut add = |rigid: Rigid| world.add_rigid(rigid).unwrap();
-        let foot = add(Rigid::fixed(cube([x, 0.25, 0.0], 0.25), 0.5));
-        let boxes = [0.75, 1.65].map(|y| add(Rigid::free(cube([x, y, 0.0], 0.25), 0.5)));
+        let mut add = |rigid: RigidBody| world.add_rigid_body(rigid).unwrap();
+        let foot = add(RigidBody::fixed(cube([x, 0.25, 0.0], 0.25), 0.5));
+        let boxes = [0.75, 1.65].map(|y| add(RigidBody::dynamic(cube([x, y, 0.0], 0.25), 0.5)));
         let grid = VoxelGrid::<D>::cube(4, 0.4).unwrap();
-        let soft = Body::new(grid, std::slice::from_ref(&material)).unwrap();
+        let soft = SoftBody::new(grid, std::slice::from_ref(&material)).unwrap();
         let z = if D::N == 2 { 0.0 } else { -0.2 };
-        (foot, boxes, world.add_body(soft.moved([x - 0.2, 1.0, z])))
+        (
+            foot,
+            boxes,
+            world.add_soft_body(soft.translated([x - 0.2, 1.0, z])),
+        )
     };
     let (falling, standing) = (tower(0.0), tower(3.0));
-    let sleep = |world: &World<D>, &(_, boxes, soft): &(RigidId, [RigidId; 2], _)| {
-        let pieces = &world.bodies()[soft].pieces().list;
-        let boxes = boxes.map(|id| world.rigids()[id].is_asleep());
+    let sleep = |world: &World<D>,
+                 &(_, boxes, soft): &(RigidBodyHandle, [RigidBodyHandle; 2], _)| {
+        let pieces = &world.soft_bodies()[soft].pieces().list;
+        let boxes = boxes.map(|id| world.rigid_bodies()[id].is_asleep());
         [boxes[0], pieces.iter().all(|piece| piece.asleep), boxes[1]]
     };
     for _ in 0..600 {
@@ -151,13 +158,13 @@ fn one_of_two_towers_falls<D: Dim>() {
     }
     assert_eq!(sleep(&world, &falling), [true; 3]);
     assert_eq!(sleep(&world, &standing), [true; 3]);
-    world.remove_rigid(falling.0).unwrap();
+    world.remove_rigid_body(falling.0).unwrap();
     assert_eq!(sleep(&world, &falling), [false; 3]);
     for _ in 0..120 {
         world.step();
         assert_eq!(sleep(&world, &standing), [true; 3]);
     }
-    let height = world.rigids()[falling.1[0]].position()[1];
+    let height = world.rigid_bodies()[falling.1[0]].position()[1];
     assert!((height - 0.25).abs() < 0.01, "{height}");
 }
 
@@ -172,16 +179,18 @@ fn it_rolls<D: Dim>() {
     let slope = 0.3f32;
     let normal = upright(slope);
     world
-        .add_rigid(Rigid::fixed(Shape::half_space(normal, [0.0; 3]), 0.9))
+        .add_rigid_body(RigidBody::fixed(Shape::half_space(normal, [0.0; 3]), 0.9))
         .unwrap();
     let start = normal.map(|k| 0.3 * k);
-    let id = world.add_rigid(Rigid::free(ball(start), 2.0)).unwrap();
+    let id = world
+        .add_rigid_body(RigidBody::dynamic(ball(start), 2.0))
+        .unwrap();
     for _ in 0..60 {
         world.step();
     }
     let share = if D::N == 2 { 2.0 / 3.0 } else { 5.0 / 7.0 };
     let expected = share * 9.81 * normal[0];
-    let rigid = &world.rigids()[id];
+    let rigid = &world.rigid_bodies()[id];
     assert!(
         (speed(rigid) / expected - 1.0).abs() < 0.03,
         "{} {expected}",
@@ -203,16 +212,18 @@ fn friction_holds_a_box_on_a_slope_below_its_angle_and_not_above() {
         let normal = upright(angle);
         // tan 0.3 = 0.31, tan 0.6 = 0.68
         world
-            .add_rigid(Rigid::fixed(Shape::half_space(normal, [0.0; 3]), 0.5))
+            .add_rigid_body(RigidBody::fixed(Shape::half_space(normal, [0.0; 3]), 0.5))
             .unwrap();
         let shape = cube([0.0; 3], 0.3).rotated(Rotation::in_plane(-angle));
-        let shape = shape.moved(normal.map(|k| 0.3 * k));
-        let id = world.add_rigid(Rigid::free(shape, 2.0)).unwrap();
-        let start = world.rigids()[id].position();
+        let shape = shape.translated(normal.map(|k| 0.3 * k));
+        let id = world
+            .add_rigid_body(RigidBody::dynamic(shape, 2.0))
+            .unwrap();
+        let start = world.rigid_bodies()[id].position();
         for _ in 0..120 {
             world.step();
         }
-        let rigid = &world.rigids()[id];
+        let rigid = &world.rigid_bodies()[id];
         let way = rigid.position()[0] - start[0];
         // Sliding for 2 s: g (sin - 0.5 cos) t²/2 along the slope.
         let along = 9.81 * (normal[0] - 0.5 * normal[1]) * 2.0 * normal[1];
@@ -228,14 +239,14 @@ fn friction_holds_a_box_on_a_slope_below_its_angle_and_not_above() {
 fn what_bounces_comes_back_as_high_as_its_restitution_says() {
     for restitution in [0.0f32, 0.5, 0.8] {
         let mut world = floored::<Dim3>();
-        let mut rigid = Rigid::free(ball([0.0, 2.3, 0.0]), 1.0);
+        let mut rigid = RigidBody::dynamic(ball([0.0, 2.3, 0.0]), 1.0);
         rigid.restitution = restitution;
-        let id = world.add_rigid(rigid).unwrap();
+        let id = world.add_rigid_body(rigid).unwrap();
         let (mut hit, mut highest) = (false, 0.0f32);
         for _ in 0..100 {
-            let before = world.rigids()[id].velocity()[1];
+            let before = world.rigid_bodies()[id].velocity()[1];
             world.step();
-            let rigid = &world.rigids()[id];
+            let rigid = &world.rigid_bodies()[id];
             hit |= before < 0.0 && rigid.velocity()[1] >= 0.0;
             if hit {
                 highest = highest.max(rigid.position()[1] - 0.3);
@@ -250,9 +261,9 @@ fn what_bounces_comes_back_as_high_as_its_restitution_says() {
 }
 
 /// Linear momentum of free boxes.
-fn momentum<D: Dim>(world: &World<D>, ids: &[RigidId], mass: f32) -> Vector {
+fn momentum<D: Dim>(world: &World<D>, ids: &[RigidBodyHandle], mass: f32) -> Vector {
     ids.iter().fold([0.0; 3], |sum, &id| {
-        let velocity = world.rigids()[id].velocity();
+        let velocity = world.rigid_bodies()[id].velocity();
         [0, 1, 2].map(|k: usize| sum[k] + mass * velocity[k])
     })
 }
@@ -260,8 +271,11 @@ fn momentum<D: Dim>(world: &World<D>, ids: &[RigidId], mass: f32) -> Vector {
 #[test]
 fn what_collides_in_the_air_keeps_its_momentum() {
     let mut world = world::<Dim3>(0.0);
-    let ids = [[0.0, 0.0, 0.0], [2.0, 0.2, 0.1]]
-        .map(|at| world.add_rigid(Rigid::free(cube(at, 0.3), 2.0)).unwrap());
+    let ids = [[0.0, 0.0, 0.0], [2.0, 0.2, 0.1]].map(|at| {
+        world
+            .add_rigid_body(RigidBody::dynamic(cube(at, 0.3), 2.0))
+            .unwrap()
+    });
     world
         .set_velocity(ids[0], [5.0, 0.0, 0.0], [0.0, 1.0, 2.0])
         .unwrap();
@@ -276,8 +290,8 @@ fn what_collides_in_the_air_keeps_its_momentum() {
             "{before:?} {after:?}"
         );
     }
-    assert!(world.rigids()[ids[1]].velocity()[0] > 2.0);
-    assert!(world.rigids()[ids[1]].angular_velocity() != [0.0; 3]);
+    assert!(world.rigid_bodies()[ids[1]].velocity()[0] > 2.0);
+    assert!(world.rigid_bodies()[ids[1]].angular_velocity() != [0.0; 3]);
 }
 
 /// Rigid on soft: it sinks in a little, and comes to rest; the soft one is squashed by it, and both keep their places.
@@ -293,7 +307,7 @@ fn it_lies_on_a_soft_body<D: Dim>(mass: f32) {
         toughness: f32::INFINITY,
         ..Material::default()
     };
-    world.add_body(Body::new(grid, &[material]).unwrap());
+    world.add_soft_body(SoftBody::new(grid, &[material]).unwrap());
     for _ in 0..240 {
         world.step();
     }
@@ -301,11 +315,13 @@ fn it_lies_on_a_soft_body<D: Dim>(mass: f32) {
         centre: [0.5, 1.11, if D::N == 2 { 0.0 } else { 0.5 }],
         half: [0.4, 0.1, 0.4],
     };
-    let id = world.add_rigid(Rigid::free(shape, mass)).unwrap();
+    let id = world
+        .add_rigid_body(RigidBody::dynamic(shape, mass))
+        .unwrap();
     for _ in 0..480 {
         world.step();
     }
-    let rigid = &world.rigids()[id];
+    let rigid = &world.rigid_bodies()[id];
     let [_, y, _] = rigid.position();
     assert!((0.5..1.12).contains(&y), "{mass}: {:?}", rigid.position());
     let tilt = rigid.rotation().apply(UP)[1];
@@ -325,10 +341,10 @@ fn light_and_heavy_boxes_lie_on_a_soft_one() {
 fn a_soft_ball_rolls_a_rigid_one_away() {
     let mut world = floored::<Dim3>();
     let id = world
-        .add_rigid(Rigid::free(ball([1.6, 0.3, 0.5]), 1.0))
+        .add_rigid_body(RigidBody::dynamic(ball([1.6, 0.3, 0.5]), 1.0))
         .unwrap();
     let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
-    let soft = world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
     for _ in 0..60 {
         world.step();
     }
@@ -336,7 +352,7 @@ fn a_soft_ball_rolls_a_rigid_one_away() {
     for _ in 0..60 {
         world.step();
     }
-    let rigid = &world.rigids()[id];
+    let rigid = &world.rigid_bodies()[id];
     assert!(rigid.velocity()[0] > 0.5, "{:?}", rigid.velocity());
     assert!(
         rigid.angular_velocity()[2] < -1.0,
@@ -352,38 +368,40 @@ fn what_is_kinematic_turns_to_its_goal_and_takes_along_what_lies_on_it() {
         centre: [0.0; 3],
         half: [2.0, 0.1, 2.0],
     };
-    let table = Rigid::driven(disc, [0.0; 3], Drive::Kinematic);
-    let table = world.add_rigid(table).unwrap();
+    let table = RigidBody::new(disc, [0.0; 3], MotionType::Kinematic);
+    let table = world.add_rigid_body(table).unwrap();
     let id = world
-        .add_rigid(Rigid::free(cube([1.0, 0.31, 0.0], 0.2), 1.0))
+        .add_rigid_body(RigidBody::dynamic(cube([1.0, 0.31, 0.0], 0.2), 1.0))
         .unwrap();
     for tick in 1..=120 {
         // It begins and ends gently: what lies there must not slip.
         let share = tick as f32 / 120.0;
         let angle = 0.5 * PI * share * share * (3.0 - 2.0 * share);
         world
-            .set_goal_rotation(table, Rotation::about(UP, angle))
+            .set_target_rotation(table, Rotation::about(UP, angle))
             .unwrap();
         world.step();
     }
-    let [x, _, z] = world.rigids()[id].position();
+    let [x, _, z] = world.rigid_bodies()[id].position();
     assert!(x.abs() < 0.05 && (z + 1.0).abs() < 0.05, "{x} {z}");
-    let turned = world.rigids()[table].rotation().apply([1.0, 0.0, 0.0]);
+    let turned = world.rigid_bodies()[table]
+        .rotation()
+        .apply([1.0, 0.0, 0.0]);
     assert!((turned[2] + 1.0).abs() < 1e-4, "{turned:?}");
 }
 
 #[test]
 fn a_turned_wall_is_a_wall() {
     let mut world = world::<Dim2>(-9.81);
-    let ramp = Rigid::fixed(cube([0.0; 3], 1.0), 0.0).rotated(Rotation::in_plane(FRAC_PI_4));
-    world.add_rigid(ramp).unwrap();
+    let ramp = RigidBody::fixed(cube([0.0; 3], 1.0), 0.0).rotated(Rotation::in_plane(FRAC_PI_4));
+    world.add_rigid_body(ramp).unwrap();
     let id = world
-        .add_rigid(Rigid::free(ball([0.3, 2.5, 0.0]), 1.0))
+        .add_rigid_body(RigidBody::dynamic(ball([0.3, 2.5, 0.0]), 1.0))
         .unwrap();
     for _ in 0..60 {
         world.step();
     }
-    let [x, y, _] = world.rigids()[id].position();
+    let [x, y, _] = world.rigid_bodies()[id].position();
     assert!(x > 1.0 && y < 1.2, "{x} {y}");
 }
 
@@ -394,11 +412,11 @@ fn bad_rigid_things_are_refused_by_field() {
         centre: [0.0; 3],
         radius: 1e-20,
     };
-    let tiny = Rigid::free(tiny, 1e-6);
-    let endless = Rigid::free(Shape::half_space(UP, [0.0; 3]), 1.0);
-    let heavy = Rigid::free(cube([0.0; 3], 1.0), f32::NAN);
-    let off = Rigid::driven(cube(UP, 1.0), [0.0; 3], Drive::Free { mass: 1.0 });
-    let mut bouncy = Rigid::free(cube([0.0; 3], 1.0), 1.0);
+    let tiny = RigidBody::dynamic(tiny, 1e-6);
+    let endless = RigidBody::dynamic(Shape::half_space(UP, [0.0; 3]), 1.0);
+    let heavy = RigidBody::dynamic(cube([0.0; 3], 1.0), f32::NAN);
+    let off = RigidBody::new(cube(UP, 1.0), [0.0; 3], MotionType::Dynamic { mass: 1.0 });
+    let mut bouncy = RigidBody::dynamic(cube([0.0; 3], 1.0), 1.0);
     bouncy.restitution = 2.0;
     for (rigid, word) in [
         (endless, "shape"),
@@ -407,23 +425,27 @@ fn bad_rigid_things_are_refused_by_field() {
         (off, "middle"),
         (bouncy, "restitution"),
     ] {
-        let refused = world.add_rigid(rigid).unwrap_err().to_string();
+        let refused = world.add_rigid_body(rigid).unwrap_err().to_string();
         assert!(refused.contains(word), "{refused}");
     }
     let id = world
-        .add_rigid(Rigid::free(cube([0.0; 3], 1.0), 1.0))
+        .add_rigid_body(RigidBody::dynamic(cube([0.0; 3], 1.0), 1.0))
         .unwrap();
     assert!(world.set_velocity(id, [f32::NAN; 3], [0.0; 3]).is_err());
-    assert!(world.push_rigid(id, [0.0; 3], [f32::INFINITY; 3]).is_err());
-    assert!(world.set_goal(id, [0.0; 3]).is_err());
     assert!(
         world
-            .place_rigid(id, [2e6, 0.0, 0.0], Rotation::NONE)
+            .apply_rigid_body_impulse(id, [0.0; 3], [f32::INFINITY; 3])
             .is_err()
     );
-    let floor = world.rigids().ids().next().unwrap();
+    assert!(world.set_target_position(id, [0.0; 3]).is_err());
+    assert!(
+        world
+            .set_rigid_body_pose(id, [2e6, 0.0, 0.0], Rotation::NONE)
+            .is_err()
+    );
+    let floor = world.rigid_bodies().ids().next().unwrap();
     assert!(world.set_velocity(floor, [0.0; 3], [0.0; 3]).is_err());
-    world.remove_rigid(id).unwrap();
+    world.remove_rigid_body(id).unwrap();
     assert!(world.set_velocity(id, [0.0; 3], [0.0; 3]).is_err());
 }
 
@@ -431,16 +453,16 @@ fn bad_rigid_things_are_refused_by_field() {
 fn sleepers_hold<D: Dim>() {
     let mut world = world::<D>(0.0);
     let grid = VoxelGrid::<D>::cube(8, 1.0).unwrap();
-    let soft = world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
     world.put_to_sleep(soft).unwrap();
     let depth = if D::N == 2 { 0.0 } else { 0.5 };
     let slow = world
-        .add_rigid(Rigid::free(cube([-0.4, 0.5, depth], 0.2), 1.0))
+        .add_rigid_body(RigidBody::dynamic(cube([-0.4, 0.5, depth], 0.2), 1.0))
         .unwrap();
     world.set_velocity(slow, [0.1, 0.0, 0.0], [0.0; 3]).unwrap();
     for _ in 0..300 {
         world.step();
-        assert!(world.rigids()[slow].position()[0] < -0.17);
+        assert!(world.rigid_bodies()[slow].position()[0] < -0.17);
     }
 }
 
@@ -453,22 +475,22 @@ fn what_comes_slowly_does_not_go_through_a_sleeper() {
 #[test]
 fn a_slow_lift_takes_a_sleeper_along() {
     let mut world = world::<Dim3>(-9.81);
-    let lift = Rigid::driven(cube([0.0; 3], 0.5), [0.0; 3], Drive::Kinematic);
-    let lift = world.add_rigid(lift).unwrap();
+    let lift = RigidBody::new(cube([0.0; 3], 0.5), [0.0; 3], MotionType::Kinematic);
+    let lift = world.add_rigid_body(lift).unwrap();
     let load = world
-        .add_rigid(Rigid::free(cube([0.0, 0.75, 0.0], 0.25), 1.0))
+        .add_rigid_body(RigidBody::dynamic(cube([0.0, 0.75, 0.0], 0.25), 1.0))
         .unwrap();
     for _ in 0..120 {
         world.step();
     }
-    assert!(world.rigids()[load].is_asleep());
+    assert!(world.rigid_bodies()[load].is_asleep());
     for tick in 1..=240 {
         world
-            .set_goal(lift, [0.0, 0.05 * tick as f32 / 60.0, 0.0])
+            .set_target_position(lift, [0.0, 0.05 * tick as f32 / 60.0, 0.0])
             .unwrap();
         world.step();
     }
-    let height = world.rigids()[load].position()[1];
+    let height = world.rigid_bodies()[load].position()[1];
     assert!((height - 0.95).abs() < 0.01, "{height}");
 }
 
@@ -476,19 +498,19 @@ fn a_slow_lift_takes_a_sleeper_along() {
 fn what_is_picked_up_in_its_fall_stays_where_it_is() {
     let mut world = world::<Dim3>(-9.81);
     let id = world
-        .add_rigid(Rigid::free(cube([0.0; 3], 0.2), 1.0))
+        .add_rigid_body(RigidBody::dynamic(cube([0.0; 3], 0.2), 1.0))
         .unwrap();
     world.set_velocity(id, [0.0; 3], [0.0, 3.0, 0.0]).unwrap();
     for _ in 0..60 {
         world.step();
     }
-    for drive in [Drive::Kinematic, Drive::default()] {
-        let before = world.rigids()[id].position();
-        world.change_rigid(id, |it| it.drive = drive).unwrap();
+    for drive in [MotionType::Kinematic, MotionType::default()] {
+        let before = world.rigid_bodies()[id].position();
+        world.change_rigid(id, |it| it.motion_type = drive).unwrap();
         for _ in 0..10 {
             world.step();
         }
-        let it = &world.rigids()[id];
+        let it = &world.rigid_bodies()[id];
         assert!((it.position()[1] - before[1]).abs() < 0.5, "{drive:?}");
         assert_eq!(it.angular_velocity(), [0.0; 3]);
     }

@@ -3,23 +3,23 @@
 
 use fuwafuwa::hash::Hash;
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Dim3, Drive, End, Event, Joint, Knife, Material, Rigid, Rotation,
-    Settings, Shape, Tie, VoxelGrid, World, snapshot,
+    Blade, Dim, Dim2, Dim3, Event, Joint, JointAnchor, JointKind, Knife, Material, MotionType,
+    RigidBody, Rotation, Shape, SoftBody, VoxelGrid, World, WorldConfig, snapshot,
 };
 
 /// A ball that falls on a floor while a hand pushes it against a wall and through.
 fn torn_world<D: Dim>(n: usize) -> World<D> {
-    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
-    world.add_rigid(Rigid::fixed(wall, 0.2)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
     let ball = VoxelGrid::ball(n, 1.0).unwrap();
-    let body = Body::new(ball, &[Material::default()]).unwrap();
-    world.add_body(body.moved([0.0, 0.05, 0.0]));
+    let body = SoftBody::new(ball, &[Material::default()]).unwrap();
+    world.add_soft_body(body.translated([0.0, 0.05, 0.0]));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = Rigid::hand([-0.3, 0.5, depth], 0.08);
-    world.add_rigid(hand).unwrap();
+    let hand = RigidBody::coupled_ball([-0.3, 0.5, depth], 0.08);
+    world.add_rigid_body(hand).unwrap();
     world
 }
 
@@ -27,8 +27,8 @@ fn push<D: Dim>(world: &mut World<D>, ticks: std::ops::Range<u32>) {
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     for tick in ticks {
         world
-            .set_goal(
-                world.nth_hand(0).unwrap(),
+            .set_target_position(
+                world.nth_target_follower(0).unwrap(),
                 [-0.3 + tick as f32 * 0.03, 0.5, depth],
             )
             .unwrap();
@@ -36,7 +36,7 @@ fn push<D: Dim>(world: &mut World<D>, ticks: std::ops::Range<u32>) {
     }
 }
 
-use fuwafuwa::snapshot::{BadSnapshot, load, save};
+use fuwafuwa::snapshot::{SnapshotError, load, save};
 
 fn check_resumes<D: Dim>(n: usize) {
     let mut world = torn_world::<D>(n);
@@ -62,35 +62,35 @@ fn tied_world<D: Dim>() -> World<D> {
         centre: [x, y, depth],
         half: [0.12; 3],
     };
-    let mut gate = Rigid::fixed(cube(0.5, 1.3), 0.5).rotated(Rotation::in_plane(0.3));
+    let mut gate = RigidBody::fixed(cube(0.5, 1.3), 0.5).rotated(Rotation::in_plane(0.3));
     gate.is_sensor = true;
-    world.add_rigid(gate).unwrap();
+    world.add_rigid_body(gate).unwrap();
     let boxes: Vec<_> = (0..6)
         .map(|k| {
-            let free = Rigid::free(cube(0.4 + 0.03 * k as f32, 1.4 + 0.3 * k as f32), 0.5);
+            let free = RigidBody::dynamic(cube(0.4 + 0.03 * k as f32, 1.4 + 0.3 * k as f32), 0.5);
             let turned = free.rotated(Rotation::in_plane(0.4 * k as f32));
-            world.add_rigid(turned).unwrap()
+            world.add_rigid_body(turned).unwrap()
         })
         .collect();
-    let on = |k: usize, y: f32| End::Rigid {
+    let on = |k: usize, y: f32| JointAnchor::RigidBody {
         rigid: boxes[k],
         at: [0.4, y, depth],
     };
-    let ball = End::Soft {
-        body: world.nth_body(0).unwrap(),
+    let ball = JointAnchor::Soft {
+        body: world.nth_soft_body(0).unwrap(),
         at: [0.5, 1.0, depth],
         radius: 0.2,
     };
-    let spring = Tie::Spring {
+    let spring = JointKind::Spring {
         stiffness: 50.0,
         damping: 0.5,
         length: 0.3,
     };
-    let place = End::Position([0.4, 4.0, depth]);
+    let place = JointAnchor::Position([0.4, 4.0, depth]);
     let ties = [
-        (on(0, 1.4), ball, Tie::Pin),
+        (on(0, 1.4), ball, JointKind::Pin),
         (on(1, 1.7), on(2, 2.0), spring),
-        (on(5, 2.9), place, Tie::Rope { length: 1.5 }),
+        (on(5, 2.9), place, JointKind::Rope { length: 1.5 }),
     ];
     for (first, second, tie) in ties {
         world.add_joint(Joint::new([first, second], tie)).unwrap();
@@ -110,10 +110,10 @@ fn check_tied_resumes<D: Dim>() {
         let is_change = |event: &&Event| {
             matches!(
                 event,
-                Event::ContactBegan { .. }
+                Event::ContactStarted { .. }
                     | Event::ContactEnded { .. }
-                    | Event::Entered { .. }
-                    | Event::Left { .. }
+                    | Event::SensorEntered { .. }
+                    | Event::SensorExited { .. }
             )
         };
         told += world.events().iter().filter(is_change).count();
@@ -135,11 +135,12 @@ fn things_that_fall_and_are_tied_go_on_to_the_same_bits() {
 fn check_cut_resumes<D: Dim>() {
     let mut world = torn_world::<D>(14);
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = world.nth_hand(0).unwrap();
-    world.remove_rigid(hand).unwrap();
-    let mut holder = Rigid::hand([-0.2, 0.45, depth], 0.05).with_drive(Drive::Kinematic);
+    let hand = world.nth_target_follower(0).unwrap();
+    world.remove_rigid_body(hand).unwrap();
+    let mut holder =
+        RigidBody::coupled_ball([-0.2, 0.45, depth], 0.05).with_motion_type(MotionType::Kinematic);
     holder.is_sensor = true;
-    let holder = world.add_rigid(holder).unwrap();
+    let holder = world.add_rigid_body(holder).unwrap();
     let edge = [[0.0, 0.0, -0.4], [0.0, 0.0, 0.4]];
     world
         .add_knife(Knife::new(holder, edge, [1.0, 0.0, 0.0]))
@@ -148,9 +149,9 @@ fn check_cut_resumes<D: Dim>() {
     for tick in 0..90 {
         for world in [&mut world, &mut resumed] {
             let at = [-0.2 + 0.015 * tick as f32, 0.45, depth];
-            world.set_goal(holder, at).unwrap();
+            world.set_target_position(holder, at).unwrap();
             world
-                .set_goal_rotation(holder, Rotation::in_plane(0.002 * tick as f32))
+                .set_target_rotation(holder, Rotation::in_plane(0.002 * tick as f32))
                 .unwrap();
             world.step();
         }
@@ -174,16 +175,18 @@ fn a_cut_that_was_begun_goes_on_to_the_same_bits() {
 /// Crumbs of one body, some asleep and some awake, while a hand goes through them; and one that is cut.
 fn check_crumbs_resume<D: Dim>(n: usize) {
     let mut world = torn_world::<D>(2 * n);
-    let ball = world.nth_body(0).unwrap();
-    let cube = Body::new(VoxelGrid::cube(n, 0.5).unwrap(), &[Material::default()]).unwrap();
-    let crumbs = world.add_body(cube.moved([-1.5, 0.0, 0.3]));
-    world.body_mut(crumbs).unwrap().crumble().unwrap();
-    let hand = world.add_rigid(Rigid::hand([-3.0, 0.1, 0.5], 0.1)).unwrap();
+    let ball = world.nth_soft_body(0).unwrap();
+    let cube = SoftBody::new(VoxelGrid::cube(n, 0.5).unwrap(), &[Material::default()]).unwrap();
+    let crumbs = world.add_soft_body(cube.translated([-1.5, 0.0, 0.3]));
+    world.soft_body_mut(crumbs).unwrap().crumble().unwrap();
+    let hand = world
+        .add_rigid_body(RigidBody::coupled_ball([-3.0, 0.1, 0.5], 0.1))
+        .unwrap();
     let (mut mixed, mut resumed) = (0, load::<D>(&save(&world)).unwrap());
     for tick in 0..240 {
         let along = (tick as f32 - 100.0).max(0.0) * 0.02 - 3.0;
         for world in [&mut world, &mut resumed] {
-            world.set_goal(hand, [along, 0.1, 0.5]).unwrap();
+            world.set_target_position(hand, [along, 0.1, 0.5]).unwrap();
             push(world, tick.min(50)..tick.min(50) + 1);
             if tick == 45 {
                 let blade = Blade::segment([0.5, -2.0], [0.6, 2.0]);
@@ -191,7 +194,7 @@ fn check_crumbs_resume<D: Dim>(n: usize) {
             }
         }
         assert_eq!(resumed.hash(), world.hash(), "tick {tick}");
-        let pieces = &world.bodies()[crumbs].pieces().list;
+        let pieces = &world.soft_bodies()[crumbs].pieces().list;
         let asleep = pieces.iter().filter(|piece| piece.asleep).count();
         mixed += usize::from(asleep > 0 && asleep < pieces.len());
         if tick % 40 == 20 {
@@ -211,21 +214,25 @@ fn what_sleeps_and_wakes_goes_on_to_the_same_bits() {
 fn check_any_state<D: Dim>(n: usize) {
     let mut world = torn_world::<D>(n);
     let nowhere = VoxelGrid::ball(4, 0.2).unwrap();
-    let nowhere = Body::new(nowhere, &[Material::default()]).unwrap();
-    let other = world.add_body(nowhere.thrown([f32::NAN; 3]).moved([5.0, 3.0, 0.0]));
-    let ball = world.nth_body(0).unwrap();
+    let nowhere = SoftBody::new(nowhere, &[Material::default()]).unwrap();
+    let other = world.add_soft_body(
+        nowhere
+            .with_velocity([f32::NAN; 3])
+            .translated([5.0, 3.0, 0.0]),
+    );
+    let ball = world.nth_soft_body(0).unwrap();
     for tick in 0..60 {
         push(&mut world, tick..tick + 1);
         match tick {
             20 => {
-                let body = world.body_mut(ball).unwrap();
+                let body = world.soft_body_mut(ball).unwrap();
                 let held: Vec<_> = body.mesh().nodes().map(|(id, _)| id).take(9).collect();
                 for id in held {
-                    body.hold(id);
+                    body.fix_node(id);
                     assert!(body.set_node_state(id, [0.1, 0.2, 0.3], [1.0; 3]));
                 }
             }
-            40 => drop(world.body_mut(other).unwrap().crumble().unwrap()),
+            40 => drop(world.soft_body_mut(other).unwrap().crumble().unwrap()),
             _ => {}
         }
         let loaded = load::<D>(&save(&world)).map(|world| world.hash());
@@ -244,18 +251,21 @@ fn what_is_not_as_it_was_saved_is_refused() {
     let bytes = save(&torn_world::<Dim2>(8));
     let refused = |bytes: &[u8]| load::<Dim2>(bytes).map(|_| ()).unwrap_err();
     let solid = load::<Dim3>(&bytes).map(|_| ());
-    assert_eq!(solid, Err(BadSnapshot::Dimensions { found: 2 }));
-    assert_eq!(refused(b"something else, long enough"), BadSnapshot::NotOne);
+    assert_eq!(solid, Err(SnapshotError::Dimensions { found: 2 }));
+    assert_eq!(
+        refused(b"something else, long enough"),
+        SnapshotError::NotASnapshot
+    );
     let mut newer = bytes.clone();
     newer[4] = 200;
-    assert_eq!(refused(&newer), BadSnapshot::Version { found: 200 });
+    assert_eq!(refused(&newer), SnapshotError::Version { found: 200 });
     for length in 0..bytes.len() {
         refused(&bytes[..length]);
     }
     for place in 9..bytes.len() {
         let mut damaged = bytes.clone();
         damaged[place] ^= 4;
-        assert_eq!(refused(&damaged), BadSnapshot::Damaged);
+        assert_eq!(refused(&damaged), SnapshotError::Damaged);
     }
 }
 
@@ -270,7 +280,7 @@ fn what_was_changed_by_someone_who_knows_the_checksum_does_no_harm() {
         let mut state = state.to_vec();
         state[place] ^= 1 << (place % 7);
         let loaded = load::<Dim2>(&with_state(header, state));
-        broken += u32::from(matches!(loaded, Err(BadSnapshot::Broken { .. })));
+        broken += u32::from(matches!(loaded, Err(SnapshotError::InvalidBody { .. })));
     }
     assert!(broken > 500, "{broken} of {}", state.len());
 }
@@ -288,7 +298,7 @@ fn with_state(header: &[u8], state: Vec<u8>) -> Vec<u8> {
 fn a_node_that_is_off_the_plane_or_nowhere_is_refused() {
     let mut world = torn_world::<Dim2>(6);
     push(&mut world, 0..3);
-    let body = world.bodies().iter().next().unwrap();
+    let body = world.soft_bodies().iter().next().unwrap();
     let (id, _) = body.mesh().nodes().nth(5).unwrap();
     let (at, velocity, mass) = body.node_state(id);
     let bytes = save(&world);
@@ -304,7 +314,7 @@ fn a_node_that_is_off_the_plane_or_nowhere_is_refused() {
             let mut state = state.to_vec();
             change(&mut state[place..][..row.len()]);
             let loaded = load::<Dim2>(&with_state(header, state)).map(|_| ());
-            let broken = matches!(loaded, Err(BadSnapshot::Broken { body: 0, .. }));
+            let broken = matches!(loaded, Err(SnapshotError::InvalidBody { body: 0, .. }));
             assert!(broken, "{loaded:?}");
             refused += 1;
         }
@@ -331,28 +341,33 @@ fn a_node_that_is_off_the_plane_or_nowhere_is_refused() {
 fn what_was_changed_since_the_last_tick_goes_on_to_the_same_bits() {
     let ball = |x: f32| {
         let grid = VoxelGrid::<Dim2>::ball(16, 1.0).unwrap();
-        let body = Body::new(grid, &[Material::default()]).unwrap();
-        body.moved([x, 0.02, 0.0])
+        let body = SoftBody::new(grid, &[Material::default()]).unwrap();
+        body.translated([x, 0.02, 0.0])
     };
-    let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+    let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
-    let ids = [0.0, 0.97, 1.94].map(|x| world.add_body(ball(x)));
+    world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
+    let ids = [0.0, 0.97, 1.94].map(|x| world.add_soft_body(ball(x)));
     let (down, blade) = (
-        Rigid::hand([1.4, 1.2, 0.0], 0.1),
+        RigidBody::coupled_ball([1.4, 1.2, 0.0], 0.1),
         Blade::segment([0.5, -1.0], [0.5, 2.0]),
     );
-    let hand = world.add_rigid(down).unwrap();
-    world.set_goal(hand, [1.4, 0.7, 0.0]).unwrap();
+    let hand = world.add_rigid_body(down).unwrap();
+    world.set_target_position(hand, [1.4, 0.7, 0.0]).unwrap();
     (0..30).for_each(|_| {
         world.step();
     });
     type Change<'a> = &'a dyn Fn(&mut World<Dim2>);
     let changes: [Change<'_>; 4] = [
         &|world| assert!(world.cut(ids[0], &blade).unwrap() > 0),
-        &|world| drop(world.remove_body(ids[1]).unwrap()),
-        &|world| assert_eq!(world.add_body(ball(0.97)), world.nth_body(1).unwrap()),
-        &|world| drop(world.remove_rigid(hand).unwrap()),
+        &|world| drop(world.remove_soft_body(ids[1]).unwrap()),
+        &|world| {
+            assert_eq!(
+                world.add_soft_body(ball(0.97)),
+                world.nth_soft_body(1).unwrap()
+            )
+        },
+        &|world| drop(world.remove_rigid_body(hand).unwrap()),
     ];
     for change in changes {
         let mut loaded = snapshot::load::<Dim2>(&snapshot::save(&world)).unwrap();
@@ -379,16 +394,16 @@ fn full_of_all<D: Dim>(n: usize) -> World<D> {
     let mut world = torn_world::<D>(n);
     let small = |at: [f32; 3]| {
         let grid = VoxelGrid::ball(2, 0.2).unwrap();
-        let body = Body::new(grid, &[Material::default()]).unwrap();
-        body.moved(at)
+        let body = SoftBody::new(grid, &[Material::default()]).unwrap();
+        body.translated(at)
     };
-    world.add_body(small([0.4, 1.05, 0.4]));
-    world.add_body(small([-3.0, 0.0, 0.0]));
-    world.add_body(small([-2.9, 0.2, 0.0]));
-    world.add_body(small([5.0, 3.0, 0.0]).thrown([f32::NAN; 3]));
-    let gone = world.add_body(small([-5.0, 1.0, 0.0]));
+    world.add_soft_body(small([0.4, 1.05, 0.4]));
+    world.add_soft_body(small([-3.0, 0.0, 0.0]));
+    world.add_soft_body(small([-2.9, 0.2, 0.0]));
+    world.add_soft_body(small([5.0, 3.0, 0.0]).with_velocity([f32::NAN; 3]));
+    let gone = world.add_soft_body(small([-5.0, 1.0, 0.0]));
     push(&mut world, 0..40);
-    world.remove_body(gone).unwrap();
+    world.remove_soft_body(gone).unwrap();
     world
 }
 
@@ -436,8 +451,8 @@ fn check_changed<D: Dim>(n: usize, variants: u32) -> u32 {
             (0..3).for_each(|_| _ = world.step());
             let again = load::<D>(&save(&world)).map(|again| again.hash());
             assert_eq!(again, Ok(world.hash()));
-            for body in world.bodies().ids().collect::<Vec<_>>() {
-                world.remove_body(body).unwrap();
+            for body in world.soft_bodies().ids().collect::<Vec<_>>() {
+                world.remove_soft_body(body).unwrap();
             }
             1
         });

@@ -2,8 +2,8 @@
 
 use fuwafuwa::world::{LONGEST_TICK, SHORTEST_TICK, TICK};
 use fuwafuwa::{
-    Body, Dim, Dim2, Dim3, Event, Hooks, Material, Refused, Rigid, Settings, Shape, Substep,
-    VoxelGrid, World,
+    Dim, Dim2, Dim3, Event, Hooks, Material, Refused, RigidBody, Shape, SoftBody, Substep,
+    VoxelGrid, World, WorldConfig,
 };
 
 const TICKS: [f32; 6] = [
@@ -16,28 +16,28 @@ const TICKS: [f32; 6] = [
 ];
 
 fn world<D: Dim>(tick: f32) -> World<D> {
-    let settings = Settings {
+    let settings = WorldConfig {
         tick,
-        ..Settings::default()
+        ..WorldConfig::default()
     };
     let mut world = World::new(settings).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
     world
 }
 
-fn ball<D: Dim>(n: usize) -> Body<D> {
+fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     let strong = Material {
         strength: f32::INFINITY,
         toughness: f32::INFINITY,
         ..Material::default()
     };
-    Body::new(VoxelGrid::ball(n, 1.0).unwrap(), &[strong]).unwrap()
+    SoftBody::new(VoxelGrid::ball(n, 1.0).unwrap(), &[strong]).unwrap()
 }
 
 /// How often something happens in so many seconds, and in which of them it first does.
 fn pass<D: Dim>(world: &mut World<D>, seconds: f32, mut watch: impl FnMut(&World<D>)) {
-    let ticks = (seconds / world.settings().tick).round() as u32;
+    let ticks = (seconds / world.config().tick).round() as u32;
     for _ in 0..ticks {
         world.step();
         watch(world);
@@ -48,11 +48,11 @@ fn check_fall<D: Dim>() {
     // In half a second it falls by 1.226 m, whatever the tick.
     for tick in TICKS {
         let mut world = world::<D>(tick);
-        let ball = world.add_body(ball::<D>(12).moved([0.0, 5.0, 0.0]));
-        let start = world.bodies()[ball].centre_of_mass()[1];
+        let ball = world.add_soft_body(ball::<D>(12).translated([0.0, 5.0, 0.0]));
+        let start = world.soft_bodies()[ball].centre_of_mass()[1];
         pass(&mut world, 0.5, |_| {});
         let seconds = (0.5 / tick).round() * tick;
-        let fallen = start - world.bodies()[ball].centre_of_mass()[1];
+        let fallen = start - world.soft_bodies()[ball].centre_of_mass()[1];
         let expected = 0.5 * 9.81 * seconds * seconds;
         assert!(
             (fallen / expected - 1.0).abs() < 0.01,
@@ -70,18 +70,18 @@ fn what_falls_comes_as_far_in_any_tick() {
 /// When a ball that is dropped first touches the floor, how far it is squashed at the most, and when it sleeps.
 fn landing<D: Dim>(tick: f32) -> [f32; 3] {
     let mut world = world::<D>(tick);
-    let ball = world.add_body(ball::<D>(12).moved([0.0, 0.5, 0.0]));
+    let ball = world.add_soft_body(ball::<D>(12).translated([0.0, 0.5, 0.0]));
     let (mut lowest, mut touched, mut slept) = (f32::MAX, 0.0, 0.0);
     pass(&mut world, 12.0, |world| {
         let seconds = world.ticks() as f32 * tick;
         if touched == 0.0 && { world.events().iter() }
-            .any(|event| matches!(event, Event::Touched { .. }))
+            .any(|event| matches!(event, Event::Pressed { .. }))
         {
             touched = seconds;
         }
-        lowest = lowest.min(world.bodies()[ball].centre_of_mass()[1]);
+        lowest = lowest.min(world.soft_bodies()[ball].centre_of_mass()[1]);
         if slept == 0.0
-            && world.bodies()[ball]
+            && world.soft_bodies()[ball]
                 .pieces()
                 .list
                 .iter()
@@ -127,19 +127,21 @@ fn torn<D: Dim>(tick: f32) -> u32 {
         toughness: 100.0,
         ..Material::default()
     };
-    let body = Body::new(VoxelGrid::<D>::ball(12, 1.0).unwrap(), &[soft]).unwrap();
-    world.add_body(body);
+    let body = SoftBody::new(VoxelGrid::<D>::ball(12, 1.0).unwrap(), &[soft]).unwrap();
+    world.add_soft_body(body);
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
-    world.add_rigid(Rigid::fixed(wall, 0.2)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let hand = world
-        .add_rigid(Rigid::hand([-0.3, 0.5, depth], 0.1))
+        .add_rigid_body(RigidBody::coupled_ball([-0.3, 0.5, depth], 0.1))
         .unwrap();
     let mut released = 0;
     for number in 1..=(1.0 / tick).round() as u32 {
         let along = -0.3 + 1.5 * number as f32 * tick;
-        world.set_goal(hand, [along, 0.5, depth]).unwrap();
-        released += world.step().released;
+        world
+            .set_target_position(hand, [along, 0.5, depth])
+            .unwrap();
+        released += world.step().nodes_split;
     }
     released
 }
@@ -163,7 +165,7 @@ fn a_hand_tears_alike() {
 fn substeps_are_as_many_in_a_second() {
     for tick in TICKS {
         let mut world = world::<Dim2>(tick);
-        world.add_body(ball::<Dim2>(12));
+        world.add_soft_body(ball::<Dim2>(12));
         let a_second = world.step().substeps as f32 / tick;
         assert!(
             (a_second / 960.0 - 1.0).abs() < 0.05,
@@ -177,9 +179,9 @@ fn substeps_are_as_many_in_a_second() {
             ..Material::default()
         };
         let mut world = world::<Dim3>(tick);
-        let body = Body::new(VoxelGrid::ball(8, 0.2).unwrap(), &[stiff]).unwrap();
-        let id = world.add_body(body);
-        world.bodies()[id].stiffness_scale()
+        let body = SoftBody::new(VoxelGrid::ball(8, 0.2).unwrap(), &[stiff]).unwrap();
+        let id = world.add_soft_body(body);
+        world.soft_bodies()[id].stiffness_scale()
     };
     let usual = scale(TICK);
     assert!(usual < 0.5);
@@ -191,9 +193,9 @@ fn substeps_are_as_many_in_a_second() {
 #[test]
 fn bad_ticks_are_refused() {
     for tick in [0.0, -TICK, f32::NAN, f32::INFINITY, 1.0 / 29.0, 1.0 / 250.0] {
-        let settings = Settings {
+        let settings = WorldConfig {
             tick,
-            ..Settings::default()
+            ..WorldConfig::default()
         };
         let refused = World::<Dim2>::new(settings).unwrap_err();
         assert_eq!(
@@ -203,25 +205,25 @@ fn bad_ticks_are_refused() {
         );
         let mut world = world::<Dim2>(TICK);
         assert!(matches!(
-            world.set_settings(settings),
+            world.set_config(settings),
             Err(Refused::Setting { field: "tick", .. })
         ));
-        assert_eq!(world.settings().tick, TICK);
+        assert_eq!(world.config().tick, TICK);
     }
 }
 
 /// Every setting takes effect on a world that runs.
 #[test]
 fn settings_change_on_the_way() {
-    let usual = Settings::default();
+    let usual = WorldConfig::default();
     let mut world = world::<Dim2>(TICK);
-    let ball = world.add_body(ball::<Dim2>(12).moved([0.0, 50.0, 0.0]));
+    let ball = world.add_soft_body(ball::<Dim2>(12).translated([0.0, 50.0, 0.0]));
     let speed = |world: &World<Dim2>| {
-        let body = &world.bodies()[ball];
+        let body = &world.soft_bodies()[ball];
         body.momentum().linear[1] / body.total_mass()
     };
-    let mut gain = |settings: Settings| {
-        world.set_settings(settings).unwrap();
+    let mut gain = |settings: WorldConfig| {
+        world.set_config(settings).unwrap();
         let before = speed(&world);
         let substeps = world.step().substeps;
         (speed(&world) - before, before, substeps)
@@ -232,20 +234,20 @@ fn settings_change_on_the_way() {
     let tick = f64::from(TICK);
     near(gain(usual).0, -9.81 * tick);
     let gravity = [0.0, 3.0, 0.0];
-    near(gain(Settings { gravity, ..usual }).0, 3.0 * tick);
-    let halved = Settings {
+    near(gain(WorldConfig { gravity, ..usual }).0, 3.0 * tick);
+    let halved = WorldConfig {
         tick: 0.5 * TICK,
         ..usual
     };
     let (found, _, substeps) = gain(halved);
     near(found, -9.81 * 0.5 * tick);
     assert_eq!(substeps, 8);
-    let few = Settings {
+    let few = WorldConfig {
         most_substeps: 8,
         ..usual
     };
     assert_eq!(gain(few).2, 8);
-    let braked = Settings {
+    let braked = WorldConfig {
         drag: 10.0,
         gravity: [0.0; 3],
         ..usual
@@ -258,7 +260,7 @@ fn settings_change_on_the_way() {
 /// What a stick is told in each substep is what the tick tells at its end, force and torque.
 fn check_callback<D: Dim>(tick: f32) {
     let mut world = world::<D>(tick);
-    world.add_body(ball::<D>(12).moved([0.0, 0.0, 0.0]));
+    world.add_soft_body(ball::<D>(12).translated([0.0, 0.0, 0.0]));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     // A bar that meets the ball with one end: it is pushed and turned.
     let bar = Shape::Capsule {
@@ -267,12 +269,14 @@ fn check_callback<D: Dim>(tick: f32) {
         radius: 0.1,
     };
     let from = [-0.2, 1.2, depth];
-    let hand = Rigid::driven(bar, from, fuwafuwa::Drive::default());
-    let hand = world.add_rigid(hand).unwrap();
+    let hand = RigidBody::new(bar, from, fuwafuwa::MotionType::default());
+    let hand = world.add_rigid_body(hand).unwrap();
     let mut most = 0.0f32;
     for number in 1..=(0.5 / tick).round() as u32 {
         let down = (1.2 * number as f32 * tick).min(0.4);
-        world.set_goal(hand, [-0.2, 1.2 - down, depth]).unwrap();
+        world
+            .set_target_position(hand, [-0.2, 1.2 - down, depth])
+            .unwrap();
         let mut felt = Vec::new();
         let mut time = 0.0;
         let mut note = |substep: &Substep| {
@@ -286,7 +290,7 @@ fn check_callback<D: Dim>(tick: f32) {
         let report = world.step_with(hooks);
         assert_eq!(felt.len(), report.substeps as usize);
         assert!((time - tick).abs() < 1e-6);
-        assert_eq!(felt, world.rigids()[hand].reactions());
+        assert_eq!(felt, world.rigid_bodies()[hand].reactions());
         for reaction in felt {
             most = most.max(reaction.torque[2]);
             if reaction.contact[1] > 1.0 {

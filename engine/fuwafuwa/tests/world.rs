@@ -3,11 +3,12 @@
 use fuwafuwa::blade::Blade;
 use fuwafuwa::view::PieceView;
 use fuwafuwa::{
-    Body, Dim, Dim2, Dim3, ElementId, Event, Material, NodeId, Settings, Shape, VoxelGrid, World,
+    Dim, Dim2, Dim3, ElementId, Event, Material, NodeId, Shape, SoftBody, VoxelGrid, World,
+    WorldConfig,
 };
-use fuwafuwa::{Drive, Rigid};
+use fuwafuwa::{MotionType, RigidBody};
 
-const WEIGHTLESS: Settings = Settings {
+const WEIGHTLESS: WorldConfig = WorldConfig {
     gravity: [0.0; 3],
     drag: 0.0,
     most_substeps: 64,
@@ -21,18 +22,20 @@ fn unbreakable() -> Material {
     }
 }
 
-fn ball<D: Dim>(n: usize, material: Material) -> Body<D> {
-    Body::new(VoxelGrid::ball(n, 1.0).unwrap(), &[material]).unwrap()
+fn ball<D: Dim>(n: usize, material: Material) -> SoftBody<D> {
+    SoftBody::new(VoxelGrid::ball(n, 1.0).unwrap(), &[material]).unwrap()
 }
 
 fn validate<D: Dim>(world: &World<D>) {
-    for body in world.bodies() {
-        body.mesh().validate(body.grid(), body.sharing()).unwrap();
+    for body in world.soft_bodies() {
+        body.mesh()
+            .validate(body.grid(), body.connectivity())
+            .unwrap();
     }
 }
 
 /// The volume inside all facets, by the divergence theorem.
-fn volume_inside<D: Dim>(body: &Body<D>) -> f32 {
+fn volume_inside<D: Dim>(body: &SoftBody<D>) -> f32 {
     let of = |facet: fuwafuwa::view::Facet| {
         let [a, b, c, d] = facet.corners;
         match D::N {
@@ -53,28 +56,28 @@ fn volume_inside<D: Dim>(body: &Body<D>) -> f32 {
 
 fn check_cut_in_two<D: Dim>(n: usize, blade: Blade) {
     let mut world = World::<D>::new(WEIGHTLESS).unwrap();
-    world.add_body(ball::<D>(n, unbreakable()));
-    let mass = world.bodies().first().unwrap().total_mass();
-    let volume = volume_inside(world.bodies().first().unwrap());
+    world.add_soft_body(ball::<D>(n, unbreakable()));
+    let mass = world.soft_bodies().first().unwrap().total_mass();
+    let volume = volume_inside(world.soft_bodies().first().unwrap());
     assert!(
         (f64::from(volume) * 100.0 / mass - 1.0).abs() < 1e-3,
         "{volume}"
     );
-    assert!(world.cut(world.nth_body(0).unwrap(), &blade).unwrap() > n / 2);
+    assert!(world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap() > n / 2);
     validate(&world);
-    let body = world.bodies().first().unwrap();
+    let body = world.soft_bodies().first().unwrap();
     let views = body.piece_views();
     assert_eq!(views.len(), 2);
     let total: f32 = views.iter().map(|view| view.mass).sum();
     assert!((f64::from(total) / mass - 1.0).abs() < 1e-4);
     assert!(views.iter().all(|view| view.mass > 0.2 * total));
-    let fresh = body.facets().filter(|facet| facet.is_fresh).count();
+    let fresh = body.facets().filter(|facet| facet.is_torn).count();
     assert!(fresh >= n, "{fresh} fresh faces");
     assert!((volume_inside(body) / volume - 1.0).abs() < 1e-3);
     for _ in 0..30 {
         world.step();
     }
-    let kept: f64 = world.bodies().first().unwrap().total_mass();
+    let kept: f64 = world.soft_bodies().first().unwrap().total_mass();
     assert!((kept / mass - 1.0).abs() < 1e-4);
 }
 
@@ -92,9 +95,9 @@ fn a_blade_cuts_in_two() {
 #[test]
 fn what_a_cut_changed_is_told_by_bare_faces_and_nodes() {
     let mut world = World::<Dim3>::new(WEIGHTLESS).unwrap();
-    world.add_body(ball(16, unbreakable()));
+    world.add_soft_body(ball(16, unbreakable()));
     let forms = |world: &World<Dim3>| -> Vec<(u8, Vec<NodeId>)> {
-        let body = world.bodies().first().unwrap();
+        let body = world.soft_bodies().first().unwrap();
         let form = |id| {
             let nodes = body.mesh().element(id).map(|element| element.nodes.clone());
             (body.bare_faces(id), nodes.unwrap_or_default())
@@ -106,7 +109,7 @@ fn what_a_cut_changed_is_told_by_bare_faces_and_nodes() {
     let (from, across, along) = ([0.5, -0.2, -0.2], [0.0, 0.4, 0.0], [0.0, 0.0, 1.4]);
     world
         .cut(
-            world.nth_body(0).unwrap(),
+            world.nth_soft_body(0).unwrap(),
             &Blade {
                 from,
                 across,
@@ -114,7 +117,7 @@ fn what_a_cut_changed_is_told_by_bare_faces_and_nodes() {
             },
         )
         .unwrap();
-    let (after, body) = (forms(&world), world.bodies().first().unwrap());
+    let (after, body) = (forms(&world), world.soft_bodies().first().unwrap());
     let told: u32 = after.iter().map(|(bare, _)| bare.count_ones()).sum();
     assert_eq!(told as usize, body.facets().count());
     for facet in body.facets() {
@@ -127,81 +130,81 @@ fn what_a_cut_changed_is_told_by_bare_faces_and_nodes() {
         );
         let is_far = facet.corners[0][1] > 0.6;
         assert!(!is_far || old == Some(new), "{facet:?}");
-        assert!(!facet.is_fresh || old != Some(new), "{facet:?}");
+        assert!(!facet.is_torn || old != Some(new), "{facet:?}");
     }
 }
 
 #[test]
 fn a_short_blade_leaves_a_slit() {
     let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
-    world.add_body(ball(24, unbreakable()));
+    world.add_soft_body(ball(24, unbreakable()));
     assert!(
         world
             .cut(
-                world.nth_body(0).unwrap(),
+                world.nth_soft_body(0).unwrap(),
                 &Blade::segment([0.5, -0.1], [0.5, 0.5])
             )
             .unwrap()
             > 5
     );
     validate(&world);
-    assert_eq!(world.bodies().first().unwrap().pieces().list.len(), 1);
+    assert_eq!(world.soft_bodies().first().unwrap().pieces().list.len(), 1);
     assert_eq!(
-        world.bodies().first().unwrap().outlines().len(),
+        world.soft_bodies().first().unwrap().outlines().len(),
         1,
         "the slit joins the rim"
     );
     assert!(
         world
             .cut(
-                world.nth_body(0).unwrap(),
+                world.nth_soft_body(0).unwrap(),
                 &Blade::segment([0.5, 0.7], [0.5, 0.8])
             )
             .unwrap()
             > 0
     );
     assert_eq!(
-        world.bodies().first().unwrap().outlines().len(),
+        world.soft_bodies().first().unwrap().outlines().len(),
         2,
         "a hole of its own"
     );
 }
 
 fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
-    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.5)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(floor, 0.5)).unwrap();
     let damped = Material {
         damping: 0.3,
         ..unbreakable()
     };
-    world.add_body(ball::<D>(n, damped).moved([0.0, 0.3, 0.0]));
+    world.add_soft_body(ball::<D>(n, damped).translated([0.0, 0.3, 0.0]));
     let (mut hit, mut slept) = (false, false);
     for _ in 0..600 {
         world.step();
         for event in world.events() {
-            hit |= matches!(event, Event::Touched { impulse, .. } if *impulse > 1.0);
+            hit |= matches!(event, Event::Pressed { impulse, .. } if *impulse > 1.0);
             slept |= matches!(event, Event::FellAsleep { .. });
         }
         if slept {
             break;
         }
     }
-    let view = world.bodies().first().unwrap().piece_views()[0];
+    let view = world.soft_bodies().first().unwrap().piece_views()[0];
     assert!(hit && slept && view.asleep, "{view:?}");
     assert!(view.low[1] > -0.01 && view.high[1] > 0.5, "{view:?}");
     let still = world.hash();
     world.step();
-    let mut hand = Rigid::hand([0.5, 2.0, if D::N == 3 { 0.5 } else { 0.0 }], 0.1);
-    hand.drive = Drive::Kinematic;
-    world.add_rigid(hand).unwrap();
+    let mut hand = RigidBody::coupled_ball([0.5, 2.0, if D::N == 3 { 0.5 } else { 0.0 }], 0.1);
+    hand.motion_type = MotionType::Kinematic;
+    world.add_rigid_body(hand).unwrap();
     assert_ne!(world.hash(), still, "ticks count");
     let mut woke = false;
     for tick in 0..60 {
         let height = 2.0 - 1.5 * tick as f32 / 60.0;
         world
-            .set_goal(
-                world.nth_hand(0).unwrap(),
+            .set_target_position(
+                world.nth_target_follower(0).unwrap(),
                 [0.5, height, if D::N == 3 { 0.5 } else { 0.0 }],
             )
             .unwrap();
@@ -209,11 +212,11 @@ fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
         woke |= world
             .events()
             .iter()
-            .any(|event| matches!(event, Event::Woke { .. }));
+            .any(|event| matches!(event, Event::WokeUp { .. }));
     }
     assert!(woke, "a hand wakes what it touches");
     let felt = world
-        .hands()
+        .target_followers()
         .next()
         .unwrap()
         .1
@@ -231,16 +234,16 @@ fn a_ball_falls_rests_sleeps_and_wakes() {
 }
 
 /// The hand is slammed through the body at 20 body widths a second.
-fn check_slam<D: Dim>(n: usize, drive: Drive) {
+fn check_slam<D: Dim>(n: usize, drive: MotionType) {
     let mut world = World::<D>::new(WEIGHTLESS).unwrap();
-    world.add_body(ball::<D>(n, Material::default()));
+    world.add_soft_body(ball::<D>(n, Material::default()));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = Rigid::hand([-0.5, 0.5, depth], 0.1).with_drive(drive);
-    world.add_rigid(hand).unwrap();
+    let hand = RigidBody::coupled_ball([-0.5, 0.5, depth], 0.1).with_motion_type(drive);
+    world.add_rigid_body(hand).unwrap();
     for tick in 0..60 {
         world
-            .set_goal(
-                world.nth_hand(0).unwrap(),
+            .set_target_position(
+                world.nth_target_follower(0).unwrap(),
                 [-0.5 + tick as f32 * 20.0 / 60.0, 0.5, depth],
             )
             .unwrap();
@@ -248,7 +251,7 @@ fn check_slam<D: Dim>(n: usize, drive: Drive) {
         assert_eq!(report.quarantined, 0, "tick {tick}");
     }
     validate(&world);
-    let body = world.bodies().first().unwrap();
+    let body = world.soft_bodies().first().unwrap();
     for (id, _) in body.mesh().nodes() {
         let (at, velocity, _) = body.node_state(id);
         assert!(at.iter().chain(&velocity).all(|k| k.is_finite()));
@@ -257,7 +260,7 @@ fn check_slam<D: Dim>(n: usize, drive: Drive) {
 
 #[test]
 fn a_slammed_hand_leaves_a_finite_world() {
-    for drive in [Drive::Kinematic, Drive::default()] {
+    for drive in [MotionType::Kinematic, MotionType::default()] {
         check_slam::<Dim2>(32, drive);
         check_slam::<Dim3>(12, drive);
     }
@@ -266,20 +269,30 @@ fn a_slammed_hand_leaves_a_finite_world() {
 #[test]
 fn what_is_not_finite_is_refused() {
     let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
-    world.add_rigid(Rigid::hand([0.0; 3], 0.1)).unwrap();
+    world
+        .add_rigid_body(RigidBody::coupled_ball([0.0; 3], 0.1))
+        .unwrap();
     assert!(
         world
-            .set_goal(world.nth_hand(0).unwrap(), [f32::NAN, 0.0, 0.0])
+            .set_target_position(world.nth_target_follower(0).unwrap(), [f32::NAN, 0.0, 0.0])
             .is_err()
     );
-    assert!(world.add_rigid(Rigid::hand([0.0; 3], -1.0)).is_err());
+    assert!(
+        world
+            .add_rigid_body(RigidBody::coupled_ball([0.0; 3], -1.0))
+            .is_err()
+    );
     let nowhere = Shape::Ball {
         centre: [f32::INFINITY, 0.0, 0.0],
         radius: 1.0,
     };
-    assert!(world.add_rigid(Rigid::fixed(nowhere, 0.1)).is_err());
     assert!(
-        World::<Dim2>::new(Settings {
+        world
+            .add_rigid_body(RigidBody::fixed(nowhere, 0.1))
+            .is_err()
+    );
+    assert!(
+        World::<Dim2>::new(WorldConfig {
             drag: -1.0,
             ..WEIGHTLESS
         })
@@ -296,29 +309,29 @@ fn an_inverted_start_stays_finite() {
         let (at, _, _) = body.node_state(id);
         body.set_node_state(id, [1.0 - at[0], at[1], 0.0], [0.0; 3]);
     }
-    world.add_body(body);
+    world.add_soft_body(body);
     let inverted: Vec<u32> = (0..120).map(|_| world.step().inverted).collect();
     assert!(inverted[0] > 0, "reported: {inverted:?}");
     assert!(inverted[119] < inverted[0], "turned back: {inverted:?}");
-    let view = world.bodies().first().unwrap().piece_views()[0];
+    let view = world.soft_bodies().first().unwrap().piece_views()[0];
     assert!(view.high[0] - view.low[0] < 2.0, "{view:?}");
 }
 
 /// A body far too stiff for the substeps allowed is softened, and says so.
 #[test]
 fn a_body_too_stiff_is_softened() {
-    let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+    let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.5)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(floor, 0.5)).unwrap();
     let mut steel = unbreakable();
     steel.elasticity.young = 1e9;
-    world.add_body(ball::<Dim2>(24, steel).moved([0.0, 0.1, 0.0]));
-    assert!(world.bodies().first().unwrap().stiffness_scale() < 0.1);
+    world.add_soft_body(ball::<Dim2>(24, steel).translated([0.0, 0.1, 0.0]));
+    assert!(world.soft_bodies().first().unwrap().stiffness_scale() < 0.1);
     assert_eq!(world.substeps(), 64);
     for _ in 0..60 {
         assert_eq!(world.step().quarantined, 0);
     }
-    let view = world.bodies().first().unwrap().piece_views()[0];
+    let view = world.soft_bodies().first().unwrap().piece_views()[0];
     assert!(view.low[1] > -0.05 && view.high[1] < 1.5, "{view:?}");
 }
 
@@ -331,13 +344,17 @@ fn check_no_tunnelling<D: Dim>(n: usize) {
         if crumbles {
             flying.crumble().unwrap();
         }
-        world.add_body(flying.moved([-1.2, 0.0, 0.0]).thrown([10.0, 0.0, 0.0]));
-        world.add_body(ball::<D>(n, unbreakable()));
+        world.add_soft_body(
+            flying
+                .translated([-1.2, 0.0, 0.0])
+                .with_velocity([10.0, 0.0, 0.0]),
+        );
+        world.add_soft_body(ball::<D>(n, unbreakable()));
         for tick in 0..40 {
             world.step();
-            let target = world.bodies()[world.nth_body(1).unwrap()].piece_views()[0];
+            let target = world.soft_bodies()[world.nth_soft_body(1).unwrap()].piece_views()[0];
             let is_aside = |axis: usize, at: f32| (at - target.centre[axis]).abs() > 0.3;
-            let pieces = world.bodies().first().unwrap().piece_views();
+            let pieces = world.soft_bodies().first().unwrap().piece_views();
             let is_through = |piece: &&PieceView| {
                 let aside = (1..D::N).any(|axis| is_aside(axis, piece.centre[axis]));
                 !aside && piece.centre[0] > target.centre[0]
@@ -357,19 +374,21 @@ fn what_is_fast_does_not_pass_through() {
 /// A stick is driven 960 times a second: what it is to push back with must not jitter while the
 /// hand rests on a body, nor jump from one substep to the next while it pushes in.
 fn check_smooth_reaction<D: Dim>(n: usize) {
-    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.5)).unwrap();
-    world.add_body(ball::<D>(n, unbreakable()));
+    world.add_rigid_body(RigidBody::fixed(floor, 0.5)).unwrap();
+    world.add_soft_body(ball::<D>(n, unbreakable()));
     let z = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = Rigid::hand([0.5, 1.2, z], 0.15);
-    let hand = world.add_rigid(hand).unwrap();
+    let hand = RigidBody::coupled_ball([0.5, 1.2, z], 0.15);
+    let hand = world.add_rigid_body(hand).unwrap();
     let (mut steps, mut pressed) = (Vec::new(), Vec::new());
     for tick in 0..480u16 {
         let down = 0.5 * f32::from(tick.min(120)) / 120.0;
-        world.set_goal(hand, [0.5, 1.2 - down, z]).unwrap();
+        world
+            .set_target_position(hand, [0.5, 1.2 - down, z])
+            .unwrap();
         world.step();
-        let felt = world.rigids()[hand].reactions();
+        let felt = world.rigid_bodies()[hand].reactions();
         let up = felt.iter().map(|reaction| reaction.coupling[1]);
         // The start is a jerk of the goal, and felt as one.
         if (1..120).contains(&tick) {
@@ -400,29 +419,32 @@ fn what_a_hand_feels_is_smooth() {
 #[test]
 fn eight_substeps_squash_a_soft_ball_as_sixteen_do() {
     let [eight, sixteen] = [8, 16].map(|most_substeps| {
-        let mut world = World::<Dim3>::new(Settings {
+        let mut world = World::<Dim3>::new(WorldConfig {
             gravity: [0.0, -3.0, 0.0],
             drag: 0.5,
             most_substeps,
-            ..Settings::default()
+            ..WorldConfig::default()
         })
         .unwrap();
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-        world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
-        world.add_body(ball::<Dim3>(16, unbreakable()));
-        let hand = Rigid::hand([0.5, 1.2, 0.5], 0.2);
-        world.add_rigid(hand).unwrap();
+        world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
+        world.add_soft_body(ball::<Dim3>(16, unbreakable()));
+        let hand = RigidBody::coupled_ball([0.5, 1.2, 0.5], 0.2);
+        world.add_rigid_body(hand).unwrap();
         let mut lowest = 0.0_f32;
         for tick in 0..90 {
             let height = 1.2 - 0.01 * tick.min(60) as f32;
             world
-                .set_goal(world.nth_hand(0).unwrap(), [0.5, height, 0.5])
+                .set_target_position(world.nth_target_follower(0).unwrap(), [0.5, height, 0.5])
                 .unwrap();
             assert_eq!(world.step().substeps, most_substeps);
-            lowest = lowest.min(world.bodies().first().unwrap().piece_views()[0].low[1]);
+            lowest = lowest.min(world.soft_bodies().first().unwrap().piece_views()[0].low[1]);
         }
-        assert_eq!(world.bodies().first().unwrap().stiffness_scale(), 1.0);
-        (world.hands().next().unwrap().1.position()[1], lowest)
+        assert_eq!(world.soft_bodies().first().unwrap().stiffness_scale(), 1.0);
+        (
+            world.target_followers().next().unwrap().1.position()[1],
+            lowest,
+        )
     });
     assert!(
         (eight.0 - sixteen.0).abs() < 0.002,

@@ -4,14 +4,14 @@ use crate::solid::Solid;
 use crate::{Frame, Painter, Role, Spot};
 use fuwafuwa::shape::{Shape, Vector};
 use fuwafuwa::vector::{cross, minus, plus, scaled};
-use fuwafuwa::view::{ElementView, Facet, Outline, faces, ring};
-use fuwafuwa::{Body, Dim, Dim2, Dim3, ElementId, NodeId, PieceId, Rotation, World};
+use fuwafuwa::view::{ElementView, Facet, Outline, faces, outline_slots};
+use fuwafuwa::{Dim, Dim2, Dim3, ElementId, NodeId, PieceId, Rotation, SoftBody, World};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// How a body of the plane is painted.
-pub type DrawPlane = fn(&mut Painter, Frame, &Body<Dim2>);
+pub type DrawPlane = fn(&mut Painter, Frame, &SoftBody<Dim2>);
 /// How a body of space is painted.
-pub type DrawSpace = fn(&mut Solid, &Body<Dim3>);
+pub type DrawSpace = fn(&mut Solid, &SoftBody<Dim3>);
 
 /// Corners of a bar's round end.
 const ROUND: usize = 24;
@@ -19,16 +19,16 @@ const ROUND: usize = 24;
 /// Paints a world of the plane, each body as `draw` does.
 pub fn plane(painter: &mut Painter, frame: Frame, world: &World<Dim2>, draw: DrawPlane) {
     for obstacle in world
-        .rigids()
+        .rigid_bodies()
         .iter()
-        .filter(|rigid| !rigid.is_driven() && !rigid.is_sensor)
+        .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor)
     {
         rigid(painter, frame, *obstacle.shape(), Role::Obstacle);
     }
-    for body in world.bodies() {
+    for body in world.soft_bodies() {
         draw(painter, frame, body);
     }
-    for (_, hand) in world.hands() {
+    for (_, hand) in world.target_followers() {
         if let Shape::Ball { centre, radius } = *hand.shape() {
             let radius = radius * frame.unit + 1.5;
             painter.dot(frame.spot(centre), radius, Role::Ink);
@@ -38,14 +38,14 @@ pub fn plane(painter: &mut Painter, frame: Frame, world: &World<Dim2>, draw: Dra
 }
 
 /// Paints the elements of a body of the plane, and in another colour what is torn.
-pub fn plane_elements(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
+pub fn plane_elements(painter: &mut Painter, frame: Frame, body: &SoftBody<Dim2>) {
     plane_pieces(painter, frame, body, Role::Crack, |painter, view, _| {
         plane_element(painter, frame, view, 1.2);
     });
 }
 
 /// Paints the skin of a body of the plane.
-pub fn plane_skin(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
+pub fn plane_skin(painter: &mut Painter, frame: Frame, body: &SoftBody<Dim2>) {
     plane_pieces(
         painter,
         frame,
@@ -67,7 +67,7 @@ pub fn plane_skin(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
 fn plane_pieces(
     painter: &mut Painter,
     frame: Frame,
-    body: &Body<Dim2>,
+    body: &SoftBody<Dim2>,
     torn: Role,
     draw: impl Fn(&mut Painter, &ElementView, bool),
 ) {
@@ -108,16 +108,16 @@ pub fn plane_element(painter: &mut Painter, frame: Frame, view: &ElementView, wi
 
 /// The outline of an element on the paper.
 pub fn outline(frame: Frame, view: &ElementView) -> Vec<Spot> {
-    let ring = ring(view.level, view.children).into_iter();
+    let ring = outline_slots(view.level, view.children).into_iter();
     ring.map(|slot| frame.spot(view.slots[slot])).collect()
 }
 
 /// Paints a world of space, each body as `draw` does.
 pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
     for obstacle in world
-        .rigids()
+        .rigid_bodies()
         .iter()
-        .filter(|rigid| !rigid.is_driven() && !rigid.is_sensor)
+        .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor)
     {
         match *obstacle.shape() {
             Shape::HalfSpace { normal, offset } if normal[1] > 0.99 => solid.floor(offset),
@@ -126,10 +126,10 @@ pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
             shape => solid_shape(solid, shape, Role::Obstacle),
         }
     }
-    for body in world.bodies() {
+    for body in world.soft_bodies() {
         draw(solid, body);
     }
-    for (_, hand) in world.hands() {
+    for (_, hand) in world.target_followers() {
         solid_shape(solid, *hand.shape(), Role::Hand);
     }
 }
@@ -152,7 +152,7 @@ fn solid_shape(solid: &mut Solid, shape: Shape, role: Role) {
 /// Paints those elements of a body in space that are chosen.
 pub fn space_elements(
     solid: &mut Solid,
-    body: &Body<Dim3>,
+    body: &SoftBody<Dim3>,
     is_chosen: impl Fn(&ElementView) -> bool,
 ) {
     for view in body.element_views().filter(|view| is_chosen(view)) {
@@ -161,7 +161,7 @@ pub fn space_elements(
 }
 
 /// Paints the skin of a body in space, its steps smoothed out, its edges kept where it is torn.
-pub fn space_skin(solid: &mut Solid, body: &Body<Dim3>) {
+pub fn space_skin(solid: &mut Solid, body: &SoftBody<Dim3>) {
     let crumbs = crumbs(body);
     let inner: BTreeMap<ElementId, u8> = match body.materials() {
         [_] => BTreeMap::new(),
@@ -178,12 +178,12 @@ pub fn space_skin(solid: &mut Solid, body: &Body<Dim3>) {
         let [a, b, c, d] = corners(facet);
         let normal = cross(minus(c, a), minus(d, b));
         for node in facet.nodes {
-            let sum = sums.entry((node, facet.is_fresh)).or_insert([0.0; 3]);
+            let sum = sums.entry((node, facet.is_torn)).or_insert([0.0; 3]);
             *sum = plus(*sum, normal);
         }
     }
     for facet in &facets {
-        let role = match facet.is_fresh {
+        let role = match facet.is_torn {
             _ if inner.get(&facet.element).is_some_and(|&number| number > 1) => {
                 Role::Material(inner[&facet.element])
             }
@@ -191,7 +191,7 @@ pub fn space_skin(solid: &mut Solid, body: &Body<Dim3>) {
             true => Role::Fresh,
             false => Role::Skin,
         };
-        let normals = facet.nodes.map(|node| sums[&(node, facet.is_fresh)]);
+        let normals = facet.nodes.map(|node| sums[&(node, facet.is_torn)]);
         solid.smooth_quad(corners(facet), normals, role);
     }
 }
@@ -237,7 +237,7 @@ fn space_element(solid: &mut Solid, view: &ElementView) {
 }
 
 /// The pieces of a single voxel.
-fn crumbs<D: Dim>(body: &Body<D>) -> BTreeSet<PieceId> {
+fn crumbs<D: Dim>(body: &SoftBody<D>) -> BTreeSet<PieceId> {
     let views = body.piece_views().into_iter();
     views
         .filter(|view| view.element_count == 1)

@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for tick in 0..=TICKS {
         let mut is_new = false;
         let skin = best(&mut skins, |skin| {
-            is_new = skin.follow(world.bodies().first().unwrap(), &palette.materials);
+            is_new = skin.follow(world.soft_bodies().first().unwrap(), &palette.materials);
         });
         times[0].push((is_new, skin));
         ages.follow(&world, 1.0 / 60.0);
@@ -97,7 +97,7 @@ fn best<T>(goes: &mut [T], mut act: impl FnMut(&mut T)) -> f64 {
 
 /// Something with as many corners as a face of the game has.
 fn face(world: &World<Dim3>) -> Sticker {
-    let body = world.bodies().first().unwrap();
+    let body = world.soft_bodies().first().unwrap();
     let anchor = anchor(body);
     let mark = |k: u32| {
         let count = if k < 12 { 28 } else { 16 };

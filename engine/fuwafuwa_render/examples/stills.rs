@@ -89,7 +89,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Dust around the largest piece of the first body, to see what particles look like.
 fn crumbs(world: &World<Dim2>) -> Vec<Particle> {
-    let Some(body) = world.bodies().first() else {
+    let Some(body) = world.soft_bodies().first() else {
         return Vec::new();
     };
     let anchor = anchor(body);

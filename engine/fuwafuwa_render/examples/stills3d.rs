@@ -237,7 +237,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Dust beside the first hand, to see what particles look like.
 fn dust(world: &World<Dim3>) -> Vec<Particle> {
-    let Some((_, hand)) = world.hands().next() else {
+    let Some((_, hand)) = world.target_followers().next() else {
         return Vec::new();
     };
     let [x, y, z] = hand.position();

@@ -1,7 +1,7 @@
 //! How long ago each element was remodelled.
 
 use fuwafuwa::mesh::Element;
-use fuwafuwa::{BodyId, Dim, ElementId, World};
+use fuwafuwa::{Dim, ElementId, SoftBodyHandle, World};
 
 /// What an element is, as far as remodelling changes it.
 type Form = ([i32; 3], u8, u8);
@@ -9,7 +9,7 @@ type Form = ([i32; 3], u8, u8);
 /// How long ago each element was remodelled, by looking again and again.
 #[derive(Clone, Debug, Default)]
 pub struct Ages {
-    bodies: Vec<BodyId>,
+    bodies: Vec<SoftBodyHandle>,
     forms: Vec<Vec<Option<Form>>>,
     /// [s], by body and element id: what [`crate::Look::Elements`] takes.
     pub seconds: Vec<Vec<f32>>,
@@ -21,7 +21,7 @@ impl Ages {
         let known = std::mem::take(&mut self.bodies);
         let mut forms_before = std::mem::take(&mut self.forms);
         let mut ages_before = std::mem::take(&mut self.seconds);
-        for (id, body) in world.bodies().entries() {
+        for (id, body) in world.soft_bodies().entries() {
             let before = known.iter().position(|&known| known == id);
             let young = before.map_or(f32::MAX, |_| 0.0);
             let of = |before: usize| std::mem::take(&mut forms_before[before]);
@@ -54,20 +54,20 @@ fn form(element: &Element) -> Form {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Blade, Body, Dim2, Material, Settings, VoxelGrid};
+    use fuwafuwa::{Blade, Dim2, Material, SoftBody, VoxelGrid, WorldConfig};
 
     #[test]
     fn what_a_cut_remodels_is_young_and_grows_old() {
-        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(32, 1.0).unwrap();
-        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let mut ages = Ages::default();
         ages.follow(&world, 0.0);
         let young = |ages: &Ages| ages.seconds[0].iter().filter(|&&age| age < 0.2).count();
         assert_eq!(young(&ages), 0);
         world
             .cut(
-                world.nth_body(0).unwrap(),
+                world.nth_soft_body(0).unwrap(),
                 &Blade::segment([0.5, 0.5], [0.5, 2.0]),
             )
             .unwrap();

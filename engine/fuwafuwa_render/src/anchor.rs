@@ -1,6 +1,6 @@
 //! A frame that follows a body, for a face to be painted in.
 
-use fuwafuwa::{Body, Dim, PieceId, Vector};
+use fuwafuwa::{Dim, PieceId, SoftBody, Vector};
 use glam::{Mat3, Vec3};
 
 /// Steps towards the turn of a piece. Each doubles its correct digits once it is near.
@@ -23,7 +23,7 @@ pub struct Anchor {
 ///
 /// The turn is the one that leaves the least of the motion unexplained: the rotation part of
 /// Σ m (x − x̄)(r − r̄)ᵀ over its nodes, x where they are and r where they were at rest.
-pub fn anchor<D: Dim>(body: &Body<D>) -> Anchor {
+pub fn anchor<D: Dim>(body: &SoftBody<D>) -> Anchor {
     let (mesh, pieces) = (body.mesh(), body.pieces());
     let mut masses = vec![0.0f32; pieces.list.len()];
     for (id, _) in mesh.nodes() {
@@ -57,7 +57,7 @@ pub fn anchor<D: Dim>(body: &Body<D>) -> Anchor {
 /// Where a place of a piece is [m] and how it is turned, by what of the piece was no farther from it than `reach`, both in
 /// voxels of the body at rest; none where that is too little or too flat to have a turn.
 pub fn anchor_at<D: Dim>(
-    body: &Body<D>,
+    body: &SoftBody<D>,
     piece: PieceId,
     place: Vector,
     reach: f32,
@@ -127,14 +127,14 @@ fn turn_of<D: Dim>(mut turn: Mat3) -> Option<Mat3> {
 mod tests {
     use super::*;
     use fuwafuwa::vector::dot;
-    use fuwafuwa::{Blade, Dim2, Dim3, Material, NodeId, Settings, VoxelGrid, World};
+    use fuwafuwa::{Blade, Dim2, Dim3, Material, NodeId, VoxelGrid, World, WorldConfig};
 
     #[test]
     fn it_turns_with_the_largest_piece_and_ignores_its_squash() {
-        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(24, 1.0).unwrap();
-        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
-        let rest = anchor(world.bodies().first().unwrap());
+        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let rest = anchor(world.soft_bodies().first().unwrap());
         assert!(
             (rest.scale - 0.48).abs() < 0.02 && (rest.axes[0][0] - 1.0).abs() < 1e-6,
             "{rest:?}"
@@ -142,11 +142,13 @@ mod tests {
 
         world
             .cut(
-                world.nth_body(0).unwrap(),
+                world.nth_soft_body(0).unwrap(),
                 &Blade::segment([0.25, -1.0], [0.25, 2.0]),
             )
             .unwrap();
-        let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
+        let body = world
+            .soft_body_mut(world.nth_soft_body(0).unwrap())
+            .unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         let (sin, cos) = 2.5f32.sin_cos();
         for id in ids {
@@ -163,7 +165,7 @@ mod tests {
                 body.set_node_state(id, [place[0] + gone, place[1], 0.0], [0.0; 3]);
             }
         }
-        let now = anchor(world.bodies().first().unwrap());
+        let now = anchor(world.soft_bodies().first().unwrap());
         let [right, up, _] = now.axes;
         assert!(
             (right[0] - cos).abs() < 1e-3 && (right[1] - sin).abs() < 1e-3,
@@ -175,10 +177,12 @@ mod tests {
 
     #[test]
     fn in_space_it_turns_around_any_axis() {
-        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(12, 1.0).unwrap();
-        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
-        let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
+        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let body = world
+            .soft_body_mut(world.nth_soft_body(0).unwrap())
+            .unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             // Half as high, then turned so that x leads to y, y to z and z to x.
@@ -186,7 +190,7 @@ mod tests {
             body.set_node_state(id, [z, x, 0.5 * y], [0.0; 3]);
         }
         let wanted = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
-        for (axis, wanted) in anchor(world.bodies().first().unwrap())
+        for (axis, wanted) in anchor(world.soft_bodies().first().unwrap())
             .axes
             .into_iter()
             .zip(wanted)
@@ -195,7 +199,7 @@ mod tests {
         }
     }
 
-    fn middle(body: &Body<Dim2>) -> NodeId {
+    fn middle(body: &SoftBody<Dim2>) -> NodeId {
         let nodes = body.mesh().nodes();
         let distance = |at: [i32; 3]| (at[0] - 16).abs() + (at[1] - 12).abs();
         nodes

@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{add, corner, scale};
 use fuwafuwa::stencil::slot_index;
 use fuwafuwa::view::{ElementFace, blocks, faces};
-use fuwafuwa::{Body, Dim2, ElementView};
+use fuwafuwa::{Dim2, ElementView, SoftBody};
 use glam::Vec2;
 
 /// For how long an element flashes after it was remodelled [s].
@@ -61,7 +61,7 @@ impl ElementMesh {
     /// Adds the elements of a body, then their edges, then their nodes.
     pub fn add(
         &mut self,
-        body: &Body<Dim2>,
+        body: &SoftBody<Dim2>,
         palette: &Palette,
         colour: ElementColour,
         ages: &[f32],
@@ -175,7 +175,7 @@ mod tests {
     fn the_fills_of_a_disc_have_its_area() {
         let grid = VoxelGrid::<Dim2>::ball(32, 1.0).unwrap();
         let voxels = grid.solid_count() as f32;
-        let body = Body::new(grid, &[Material::default()]).unwrap();
+        let body = SoftBody::new(grid, &[Material::default()]).unwrap();
         let mut mesh = ElementMesh::default();
         for view in body.element_views() {
             mesh.add_fill(&view, [0; 4]);
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn a_young_element_flashes_and_an_old_one_does_not() {
         let grid = VoxelGrid::<Dim2>::from_fn([1, 1, 1], 1.0, |_| 1).unwrap();
-        let body = Body::new(grid, &[Material::default()]).unwrap();
+        let body = SoftBody::new(grid, &[Material::default()]).unwrap();
         let palette = Palette::candy();
         let colour = |age: f32| {
             let mut mesh = ElementMesh::default();

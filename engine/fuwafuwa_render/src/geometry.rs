@@ -7,7 +7,7 @@ use crate::rest::Rest;
 use crate::rigid::RigidShapes;
 use crate::rings::Rings;
 use crate::skin::SkinMesh;
-use fuwafuwa::{Body, Dim2, World};
+use fuwafuwa::{Dim2, SoftBody, World};
 use glam::Vec2;
 use std::ops::Range;
 
@@ -44,10 +44,11 @@ impl Geometry {
         let basket = frame.basket.as_ref();
         self.rigid
             .gather(world, frame.palette, basket, frame.particles);
-        self.radius = world.bodies().iter().map(radius).fold(0.0, f32::max);
+        self.radius = world.soft_bodies().iter().map(radius).fold(0.0, f32::max);
         self.bounds = NOWHERE;
-        self.rests.resize_with(world.bodies().len(), Rest::default);
-        for (place, body) in world.bodies().iter().enumerate() {
+        self.rests
+            .resize_with(world.soft_bodies().len(), Rest::default);
+        for (place, body) in world.soft_bodies().iter().enumerate() {
             match frame.look {
                 Look::Skin => self.add_skin(place, body, frame),
                 Look::Elements {
@@ -69,7 +70,7 @@ impl Geometry {
         self.skin.vertices.len() + self.elements.vertices.len()
     }
 
-    fn add_skin(&mut self, place: usize, body: &Body<Dim2>, frame: &Frame<'_>) {
+    fn add_skin(&mut self, place: usize, body: &SoftBody<Dim2>, frame: &Frame<'_>) {
         let rest = &mut self.rests[place];
         if !rest.fits(body.grid()) {
             *rest = Rest::new(body.grid());
@@ -98,7 +99,7 @@ impl Geometry {
     }
 }
 
-fn radius(body: &Body<Dim2>) -> f32 {
+fn radius(body: &SoftBody<Dim2>) -> f32 {
     let grid = body.grid();
     grid.voxel_size() * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt()
 }

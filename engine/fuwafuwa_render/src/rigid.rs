@@ -68,9 +68,9 @@ impl RigidShapes {
         self.shapes.clear();
         self.dots.clear();
         for obstacle in world
-            .rigids()
+            .rigid_bodies()
             .iter()
-            .filter(|rigid| !rigid.is_driven() && !rigid.is_sensor)
+            .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor)
         {
             if let Shape::HalfSpace { normal, offset } = *obstacle.shape() {
                 self.walls.push([normal[0], normal[1], offset, 0.0]);
@@ -80,7 +80,7 @@ impl RigidShapes {
         }
         self.walls.truncate(MOST_WALLS);
         self.bar_count = self.shapes.len() as u32;
-        for (player, (_, hand)) in world.hands().enumerate() {
+        for (player, (_, hand)) in world.target_followers().enumerate() {
             let hand = instance(*hand.shape(), palette.hand(player), player as f32);
             self.shapes.extend(hand);
         }
@@ -124,23 +124,27 @@ fn instance(shape: Shape, colour: Colour, number: f32) -> Option<RigidInstance> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Rigid, Rotation, Settings};
+    use fuwafuwa::{RigidBody, Rotation, WorldConfig};
 
     #[test]
     fn walls_bars_hands_and_basket_each_have_their_place() {
-        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);
         world
-            .add_rigid(Rigid::fixed(
+            .add_rigid_body(RigidBody::fixed(
                 Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]),
                 0.2,
             ))
             .unwrap();
         world
-            .add_rigid(Rigid::fixed(Shape::Capsule { from, to, radius }, 0.2))
+            .add_rigid_body(RigidBody::fixed(Shape::Capsule { from, to, radius }, 0.2))
             .unwrap();
-        world.add_rigid(Rigid::hand([0.0, 3.0, 0.0], 0.2)).unwrap();
-        world.add_rigid(Rigid::hand([1.0, 3.0, 0.0], 0.2)).unwrap();
+        world
+            .add_rigid_body(RigidBody::coupled_ball([0.0, 3.0, 0.0], 0.2))
+            .unwrap();
+        world
+            .add_rigid_body(RigidBody::coupled_ball([1.0, 3.0, 0.0], 0.2))
+            .unwrap();
         let region = Shape::Box {
             centre: [0.5; 3],
             half: [0.25; 3],
@@ -151,8 +155,8 @@ mod tests {
             half: [0.3, 0.2, 1.0],
         };
         let turned = Rotation::in_plane(0.5);
-        let fallen = Rigid::free(crate_shape, 1.0).rotated(turned);
-        world.add_rigid(fallen).unwrap();
+        let fallen = RigidBody::dynamic(crate_shape, 1.0).rotated(turned);
+        world.add_rigid_body(fallen).unwrap();
         let dot = Particle {
             at: [1.0, 2.0, 0.0],
             radius: 0.01,

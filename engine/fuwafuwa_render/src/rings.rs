@@ -8,8 +8,8 @@
 
 use crate::plane::flat;
 use crate::rest::{Rest, SMALL};
-use fuwafuwa::ids::Table;
-use fuwafuwa::{Body, Dim2, NodeId};
+use fuwafuwa::ids::IndexVec;
+use fuwafuwa::{Dim2, NodeId, SoftBody};
 use glam::Vec2;
 
 /// The closed curves around the pieces of a body, with the buffers that make them.
@@ -17,7 +17,7 @@ use glam::Vec2;
 pub struct Rings {
     sides: Vec<Side>,
     /// The place of the side that starts at a node, or none.
-    leaving: Table<NodeId, u32>,
+    leaving: IndexVec<NodeId, u32>,
     ring: Vec<Control>,
     planed: Vec<Vec2>,
     /// All curves, one after another.
@@ -83,7 +83,7 @@ const TORN_ROUNDS: usize = 1;
 
 impl Rings {
     /// Finds the curves of a body.
-    pub fn trace(&mut self, body: &Body<Dim2>, rest: &Rest) {
+    pub fn trace(&mut self, body: &SoftBody<Dim2>, rest: &Rest) {
         self.points.clear();
         self.spans.clear();
         self.gather_sides(body, rest);
@@ -96,7 +96,7 @@ impl Rings {
         }
     }
 
-    fn gather_sides(&mut self, body: &Body<Dim2>, rest: &Rest) {
+    fn gather_sides(&mut self, body: &SoftBody<Dim2>, rest: &Rest) {
         let (mesh, grid) = (body.mesh(), body.grid());
         self.sides.clear();
         self.leaving.clear();
@@ -108,7 +108,7 @@ impl Rings {
             let corner = |index: usize| flat(body.node_state(element.nodes[index]).0);
             let (right, up) = sides([0, 1, 2, 3].map(corner));
             let [from, to] = [0, 1].map(|end| mesh.node(facet.nodes[end]).at);
-            let offsets = match facet.is_fresh {
+            let offsets = match facet.is_torn {
                 true => Default::default(),
                 false => rest.offsets(grid, element.cell.at, [to[0] - from[0], to[1] - from[1]]),
             };
@@ -118,7 +118,7 @@ impl Rings {
                 next: NONE,
                 start: flat(facet.corners[0]),
                 moved: offsets.map(|by| by.x * right + by.y * up),
-                is_fresh: facet.is_fresh,
+                is_fresh: facet.is_torn,
                 strain: strain(right, up, grid.voxel_size()),
                 grain: grain(from),
             });
@@ -252,25 +252,25 @@ fn grain([x, y, _]: [i32; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
+    use fuwafuwa::{Blade, Material, VoxelGrid, World, WorldConfig};
 
     fn rings(world: &World<Dim2>) -> Rings {
-        let body = world.bodies().first().unwrap();
+        let body = world.soft_bodies().first().unwrap();
         let mut rings = Rings::default();
         rings.trace(body, &Rest::new(body.grid()));
         rings
     }
 
     fn disc(n: usize) -> World<Dim2> {
-        let mut world = World::new(Settings::default()).unwrap();
+        let mut world = World::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(n, 1.0).unwrap();
-        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         world
     }
 
     /// The radius of a disc of as many voxels [m].
     fn round(world: &World<Dim2>) -> f32 {
-        let grid = world.bodies().first().unwrap().grid();
+        let grid = world.soft_bodies().first().unwrap().grid();
         grid.voxel_size() * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt()
     }
 
@@ -297,7 +297,9 @@ mod tests {
     fn a_stretched_disc_is_an_ellipse() {
         let mut world = disc(64);
         let round = round(&world);
-        let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
+        let body = world
+            .soft_body_mut(world.nth_soft_body(0).unwrap())
+            .unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             let [x, y, _] = body.node_state(id).0;
@@ -317,7 +319,7 @@ mod tests {
         let whole = total_area(&rings(&world));
         world
             .cut(
-                world.nth_body(0).unwrap(),
+                world.nth_soft_body(0).unwrap(),
                 &Blade::segment([0.5, -1.0], [0.5, 2.0]),
             )
             .unwrap();
@@ -334,18 +336,18 @@ mod tests {
 
     #[test]
     fn a_hole_has_a_negative_area_and_a_crumb_is_round() {
-        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::from_fn([20, 20, 1], 0.05, |[x, y, _]| {
             u8::from(!(8..12).contains(&x) || !(8..12).contains(&y))
         });
-        world.add_body(Body::new(grid.unwrap(), &[Material::default()]).unwrap());
+        world.add_soft_body(SoftBody::new(grid.unwrap(), &[Material::default()]).unwrap());
         let ring = rings(&world);
         assert_eq!(ring.spans.len(), 2);
         assert!(ring.spans.iter().any(|span| span.area < -0.02));
 
-        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::from_fn([1, 1, 1], 1.0, |_| 1).unwrap();
-        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let crumb = rings(&world);
         assert!(crumb.points.len() >= 12);
         for point in &crumb.points {

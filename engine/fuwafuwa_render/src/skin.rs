@@ -6,7 +6,7 @@ use crate::rings::{Rings, sides, strain};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{corner, scale};
 use fuwafuwa::stencil::slot_index;
-use fuwafuwa::{Body, Dim, Dim2, ElementView};
+use fuwafuwa::{Dim, Dim2, ElementView, SoftBody};
 use glam::Vec2;
 
 /// Pieces of less area are crumbs [voxels].
@@ -104,7 +104,7 @@ impl SkinMesh {
     }
 
     /// Adds how far the large elements of a body are strained, whatever their colour.
-    pub fn add_strains(&mut self, body: &Body<Dim2>) {
+    pub fn add_strains(&mut self, body: &SoftBody<Dim2>) {
         let (mesh, voxel) = (body.mesh(), body.grid().voxel_size());
         for (_, element) in mesh.elements() {
             if element.cell.level == 0 || element.children != Dim2::ALL_CORNERS {
@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn fans_enclose_what_the_curves_enclose() {
         let grid = VoxelGrid::ball(16, 1.0).unwrap();
-        let body = Body::new(grid, &[Material::default()]).unwrap();
+        let body = SoftBody::new(grid, &[Material::default()]).unwrap();
         let mut rings = Rings::default();
         rings.trace(&body, &Rest::new(body.grid()));
         let enclosed: f32 = rings.spans.iter().map(|span| span.area).sum();

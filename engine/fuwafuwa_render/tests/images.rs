@@ -4,8 +4,8 @@
 mod shared;
 
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Grading, Law, Material, PieceId, Rigid, Settings, Shape, VoxelGrid,
-    World,
+    Blade, Dim, Dim2, Grading, Law, Material, PieceId, RigidBody, Shape, SoftBody, VoxelGrid,
+    World, WorldConfig,
 };
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::{
@@ -69,9 +69,9 @@ impl Picture {
 
 fn floating() -> World<Dim2> {
     let gravity = [0.0; 3];
-    let settings = Settings {
+    let settings = WorldConfig {
         gravity,
-        ..Settings::default()
+        ..WorldConfig::default()
     };
     World::new(settings).unwrap()
 }
@@ -79,7 +79,7 @@ fn floating() -> World<Dim2> {
 fn disc() -> World<Dim2> {
     let mut world = floating();
     let grid = VoxelGrid::ball(64, 1.0).unwrap();
-    world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
     world
 }
 
@@ -93,7 +93,7 @@ fn a_disc_is_warm_on_a_cool_floor_and_its_edge_has_no_stairs() {
     let floor = picture.around([0.0, 1.0]);
     assert!(floor[2] > 0.8 && !is_warm(floor), "{floor:?}");
 
-    let grid = world.bodies().first().unwrap().grid();
+    let grid = world.soft_bodies().first().unwrap().grid();
     let voxel = grid.voxel_size();
     let round = voxel * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt();
     let warmth = |angle: f32, radius: f32| {
@@ -120,11 +120,13 @@ fn a_torn_face_shows_a_lighter_inside() {
     let mut world = disc();
     world
         .cut(
-            world.nth_body(0).unwrap(),
+            world.nth_soft_body(0).unwrap(),
             &Blade::segment([0.5, -1.0], [0.5, 2.0]),
         )
         .unwrap();
-    let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
+    let body = world
+        .soft_body_mut(world.nth_soft_body(0).unwrap())
+        .unwrap();
     let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     let pieces: Vec<_> = ids.iter().map(|&id| body.pieces().of_node(id)).collect();
     for (id, piece) in ids.into_iter().zip(pieces) {
@@ -159,14 +161,14 @@ fn elements_have_the_colour_of_their_level() {
     let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |frame| frame.look = look) else {
         return;
     };
-    let views = world.bodies().first().unwrap().element_views();
+    let views = world.soft_bodies().first().unwrap().element_views();
     let views: Vec<_> = views
         .filter(|view| view.level > 1 && view.children == Dim2::ALL_CORNERS)
         .collect();
     assert!(views.len() > 8, "{} large elements", views.len());
     for view in views {
         let [x, y, _] = view.child_corners::<Dim2>(0)[3];
-        let quarter = world.bodies().first().unwrap().grid().voxel_size()
+        let quarter = world.soft_bodies().first().unwrap().grid().voxel_size()
             * 0.5
             * f32::from(1u8 << (view.level - 1));
         let seen = picture.around([x - quarter, y - quarter]);
@@ -184,16 +186,18 @@ fn bars_hands_walls_basket_and_particles_are_there() {
     let mut world = floating();
     let (from, to, radius) = ([0.2, 0.9, 0.0], [0.8, 0.9, 0.0], 0.06);
     world
-        .add_rigid(Rigid::fixed(Shape::Capsule { from, to, radius }, 0.2))
+        .add_rigid_body(RigidBody::fixed(Shape::Capsule { from, to, radius }, 0.2))
         .unwrap();
     world
-        .add_rigid(Rigid::fixed(
+        .add_rigid_body(RigidBody::fixed(
             Shape::half_space([0.0, 1.0, 0.0], [0.0, 0.05, 0.0]),
             0.2,
         ))
         .unwrap();
     for x in [0.2, 0.5] {
-        world.add_rigid(Rigid::hand([x, 0.6, 0.0], 0.1)).unwrap();
+        world
+            .add_rigid_body(RigidBody::coupled_ball([x, 0.6, 0.0], 0.1))
+            .unwrap();
     }
     let region = Shape::Box {
         centre: [0.85, 0.4, 0.0],
@@ -266,13 +270,13 @@ fn nothing_is_a_picture_too_and_so_is_what_has_no_skin() {
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let mut coarse = floating();
     let grid = VoxelGrid::ball(32, 1.0).unwrap();
-    let body = Body::with(
+    let body = SoftBody::with_options(
         grid,
         &[Material::default()],
         Law::default(),
         Grading::Coarse,
     );
-    coarse.add_body(body.unwrap());
+    coarse.add_soft_body(body.unwrap());
     let elements = Look::Elements {
         colour: ElementColour::Level,
         ages: &[],
@@ -331,13 +335,13 @@ fn what_is_too_much_for_a_buffer_is_left_out() {
     };
     let mut world = floating();
     let grid = VoxelGrid::ball(40, 1.0).unwrap();
-    let body = Body::with(
+    let body = SoftBody::with_options(
         grid,
         &[Material::default()],
         Law::default(),
         Grading::Uniform,
     );
-    world.add_body(body.unwrap());
+    world.add_soft_body(body.unwrap());
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let size = [96, 96];
     let mut frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], size), &PALETTE);
@@ -355,7 +359,9 @@ fn what_is_too_much_for_a_buffer_is_left_out() {
 #[test]
 fn hands_are_in_front_of_what_is_painted_on_bodies() {
     let mut world = disc();
-    world.add_rigid(Rigid::hand([0.5, 0.5, 0.0], 0.1)).unwrap();
+    world
+        .add_rigid_body(RigidBody::coupled_ball([0.5, 0.5, 0.0], 0.1))
+        .unwrap();
     let camera = Camera::fit([-0.1, -0.1, 0.0], [1.1, 1.1, 0.0], SIZE);
     let half = |paint: fn(&Renderer, &mut wgpu::RenderPass<'static>)| {
         let (device, queue) = device()?;

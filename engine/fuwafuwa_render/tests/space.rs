@@ -3,7 +3,9 @@
 
 mod shared;
 
-use fuwafuwa::{Blade, Body, Dim3, Material, PieceId, Rigid, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{
+    Blade, Dim3, Material, PieceId, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
+};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::space::{Camera, Cut, Renderer};
 use fuwafuwa_render::{Basket, Colour, Frame, Look, Mark, Palette, Particle, Sticker};
@@ -60,20 +62,20 @@ impl Picture {
 
 fn floating() -> World<Dim3> {
     let gravity = [0.0; 3];
-    let settings = Settings {
+    let settings = WorldConfig {
         gravity,
-        ..Settings::default()
+        ..WorldConfig::default()
     };
     let mut world = World::new(settings).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.2)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(floor, 0.2)).unwrap();
     world
 }
 
 fn ball() -> World<Dim3> {
     let mut world = floating();
     let grid = VoxelGrid::ball(32, 1.0).unwrap();
-    world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
     world
 }
 
@@ -130,7 +132,7 @@ fn a_torn_face_shows_a_paler_inside_and_no_gap_where_it_begins() {
     let (from, across, along) = ([0.5, -0.2, -0.2], [0.0, 1.4, 0.0], [0.0, 0.0, 1.4]);
     world
         .cut(
-            world.nth_body(0).unwrap(),
+            world.nth_soft_body(0).unwrap(),
             &Blade {
                 from,
                 across,
@@ -139,7 +141,9 @@ fn a_torn_face_shows_a_paler_inside_and_no_gap_where_it_begins() {
         )
         .unwrap();
     let closed = take(&world, TextureFormat::Rgba8Unorm, |_| ());
-    let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
+    let body = world
+        .soft_body_mut(world.nth_soft_body(0).unwrap())
+        .unwrap();
     let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     let left = (ids.iter()).find(|&&id| body.mesh().node(id).at[0] < 8);
     let left = body.pieces().of_node(*left.unwrap());
@@ -196,9 +200,9 @@ fn a_cut_through_the_elements_shows_their_levels() {
     };
     let hue = |[red, green, blue]: Colour| [red / green, blue / green, 0.0];
     let mut count = 0;
-    for view in world.bodies().first().unwrap().element_views() {
+    for view in world.soft_bodies().first().unwrap().element_views() {
         let width =
-            world.bodies().first().unwrap().grid().voxel_size() * f32::from(1u8 << view.level);
+            world.soft_bodies().first().unwrap().grid().voxel_size() * f32::from(1u8 << view.level);
         let [x, y, z] = view.slots[13];
         // Those whose front lies in the cut.
         if view.level < 2 || view.children != 255 || (z + 0.5 * width - 0.5).abs() > 1e-3 {
@@ -250,7 +254,7 @@ fn a_sticker_is_seen_from_its_side_and_not_through_a_bar() {
     assert_eq!(is_seen(&world, std::f32::consts::PI), Some(false));
     let (from, to, radius) = ([0.0, 0.5, 1.2], [1.0, 0.5, 1.2], 0.1);
     let bar = Shape::Capsule { from, to, radius };
-    world.add_rigid(Rigid::fixed(bar, 0.2)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(bar, 0.2)).unwrap();
     assert_eq!(is_seen(&world, 0.0), Some(false));
 }
 
@@ -258,7 +262,7 @@ fn a_sticker_is_seen_from_its_side_and_not_through_a_bar() {
 fn a_ghost_is_seen_through_and_not_where_the_body_is() {
     let (world, mut ghost) = (floating(), floating());
     let grid = VoxelGrid::ball(16, 1.0).unwrap();
-    ghost.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    ghost.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
     let middle = |world: &World<Dim3>, ghost| {
         let picture = take(world, TextureFormat::Rgba8Unorm, |frame| {
             frame.ghost = ghost
@@ -280,12 +284,12 @@ fn bars_hands_walls_basket_and_particles_are_there() {
     let mut world = floating();
     let (from, to, radius) = ([0.1, 0.1, 0.2], [0.4, 0.1, 0.2], 0.06);
     let bar = Shape::Capsule { from, to, radius };
-    world.add_rigid(Rigid::fixed(bar, 0.2)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(bar, 0.2)).unwrap();
     let wall = Shape::half_space([0.0, 0.0, 1.0], [0.0, 0.0, -0.6]);
-    world.add_rigid(Rigid::fixed(wall, 0.2)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
     for x in [0.3, 0.7] {
-        let hand = Rigid::hand([x, 0.9, -0.1], 0.1);
-        world.add_rigid(hand).unwrap();
+        let hand = RigidBody::coupled_ball([x, 0.9, -0.1], 0.1);
+        world.add_rigid_body(hand).unwrap();
     }
     let region = Shape::Box {
         centre: [0.9, 0.2, 0.2],

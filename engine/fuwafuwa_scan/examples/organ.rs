@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p fuwafuwa_scan --example organ -- 64 grey.nii.gz white.nii.gz`: maps of two materials
 
-use fuwafuwa::{Body, Material};
+use fuwafuwa::{Material, SoftBody};
 use fuwafuwa_scan::{MAX_FILE_BYTES, Options, Organ, Scan, Segmentation};
 use fuwafuwa_scenes::disk::bytes_of;
 use std::time::Instant;
@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             organ.millilitres(material)
         );
     }
-    let body = Body::new(organ.grid, &vec![Material::default(); scans.len()])?;
+    let body = SoftBody::new(organ.grid, &vec![Material::default(); scans.len()])?;
     let seconds = start.elapsed().as_secs_f32();
     println!(
         "read after {:.2} s, voxels after {:.2} s, {} elements after {seconds:.2} s",

@@ -2,7 +2,7 @@
 
 mod phantom;
 
-use fuwafuwa::{Body, Material};
+use fuwafuwa::{Material, SoftBody};
 use fuwafuwa_scan::{Organ, Scan, Source};
 use phantom::{Axes, File, Form, HALF, MARKS, RAS, ball, ellipsoid, label, labels, organ};
 
@@ -143,7 +143,7 @@ fn a_place_in_the_patient_is_found_in_the_organ() {
                 assert!((back[axis] - middle[axis]).abs() <= 500.0 * edge * 1.001);
             }
         }
-        let body = Body::new(organ.grid, &[Material::default(); 4]).unwrap();
+        let body = SoftBody::new(organ.grid, &[Material::default(); 4]).unwrap();
         assert!(body.mesh().element_count() > 1000);
     }
 }

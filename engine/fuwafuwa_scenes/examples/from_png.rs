@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p fuwafuwa_scenes --example from_png -- drawing.png`
 
-use fuwafuwa::{Body, Dim2, Material, Rigid, Settings, Shape, World};
+use fuwafuwa::{Dim2, Material, RigidBody, Shape, SoftBody, World, WorldConfig};
 use fuwafuwa_scenes::disk::bytes_of;
 use fuwafuwa_scenes::import;
 
@@ -17,16 +17,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         grid.solid_count(),
         grid.size()
     );
-    let mut world = World::<Dim2>::new(Settings::default())?;
-    world.add_rigid(Rigid::fixed(
+    let mut world = World::<Dim2>::new(WorldConfig::default())?;
+    world.add_rigid_body(RigidBody::fixed(
         Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
         0.5,
     ))?;
-    let body = world.add_body(Body::new(grid, &[Material::default()])?.moved([0.0, 0.3, 0.0]));
+    let body = world
+        .add_soft_body(SoftBody::new(grid, &[Material::default()])?.translated([0.0, 0.3, 0.0]));
     for tick in 1..=120 {
         world.step();
         if tick % 20 == 0 {
-            for piece in world.bodies()[body].piece_views().iter().take(4) {
+            for piece in world.soft_bodies()[body].piece_views().iter().take(4) {
                 println!("{tick:3}: piece {} at {:.2?}", piece.number, piece.centre);
             }
         }

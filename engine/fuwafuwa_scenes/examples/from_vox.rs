@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p fuwafuwa_scenes --example from_vox -- model.vox`
 
-use fuwafuwa::{Body, Dim3, Material, Rigid, Settings, Shape, World};
+use fuwafuwa::{Dim3, Material, RigidBody, Shape, SoftBody, World, WorldConfig};
 use fuwafuwa_scenes::disk::bytes_of;
 use fuwafuwa_scenes::import;
 
@@ -17,18 +17,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         grid.solid_count(),
         grid.size()
     );
-    let mut world = World::<Dim3>::new(Settings::default())?;
-    world.add_rigid(Rigid::fixed(
+    let mut world = World::<Dim3>::new(WorldConfig::default())?;
+    world.add_rigid_body(RigidBody::fixed(
         Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
         0.5,
     ))?;
     // Each colour of the palette is a material of its own; here all of them are alike.
     let materials = [Material::default(); 255];
-    let body = world.add_body(Body::new(grid, &materials)?.moved([0.0, 0.3, 0.0]));
+    let body = world.add_soft_body(SoftBody::new(grid, &materials)?.translated([0.0, 0.3, 0.0]));
     for tick in 1..=120 {
         world.step();
         if tick % 20 == 0 {
-            for piece in world.bodies()[body].piece_views().iter().take(4) {
+            for piece in world.soft_bodies()[body].piece_views().iter().take(4) {
                 println!("{tick:3}: piece {} at {:.2?}", piece.number, piece.centre);
             }
         }

@@ -89,7 +89,7 @@ pub use rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, Obstacl
 use budget::Budget;
 use error::{Origin, Wrong, require, require_vector};
 use fuwafuwa::world::{Refused, SHORTEST_TICK, TICK};
-use fuwafuwa::{Dim, Material, Settings, Shape, World};
+use fuwafuwa::{Dim, Material, Shape, World, WorldConfig};
 use joint::Known;
 use serde::{Deserialize, Serialize};
 
@@ -260,7 +260,7 @@ impl Scene {
             format!("expected a low corner below a high one, found {low:?} and {high:?}");
         require(good, "view", expected)?;
 
-        let settings = Settings {
+        let settings = WorldConfig {
             gravity: self.gravity,
             drag: self.drag,
             most_substeps: self.most_substeps,
@@ -316,9 +316,9 @@ impl Scene {
             added.map_err(|wrong| wrong.inside("rigid", index))?;
         }
         // All were put into an empty world, one after another.
-        let mut rigids = world.rigids().ids();
+        let mut rigids = world.rigid_bodies().ids();
         let known = Known {
-            bodies: world.bodies().ids().collect(),
+            bodies: world.soft_bodies().ids().collect(),
             obstacles: rigids.by_ref().take(self.obstacle.len()).collect(),
             hands: rigids.by_ref().take(self.hand.len()).collect(),
             rigids: rigids.collect(),

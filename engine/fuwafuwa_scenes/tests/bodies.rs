@@ -2,25 +2,25 @@
 
 mod picture;
 
-use fuwafuwa::{Body, Dim, Dim2, Dim3};
+use fuwafuwa::{Dim, Dim2, Dim3, SoftBody};
 use fuwafuwa_scenes::disk::scene_at;
 use fuwafuwa_scenes::{Recording, Scene, SceneError};
 use picture::png_of;
 use std::path::PathBuf;
 
-fn bodies<D: Dim>(text: &str) -> Vec<Body<D>> {
+fn bodies<D: Dim>(text: &str) -> Vec<SoftBody<D>> {
     let scene = Scene::read("toy.toml", text, &[]).unwrap();
     let world = scene.build::<D>();
     world
         .unwrap_or_else(|error| panic!("{error}"))
-        .bodies()
+        .soft_bodies()
         .iter()
         .cloned()
         .collect()
 }
 
 /// The materials of a flat body, or of the middle layer of a solid one; the highest row first.
-fn picture<D: Dim>(body: &Body<D>) -> Vec<String> {
+fn picture<D: Dim>(body: &SoftBody<D>) -> Vec<String> {
     let grid = body.grid();
     let [width, height, depth] = grid.size();
     let sign = |at| char::from(b".12345"[usize::from(grid.material(at))]);
@@ -106,10 +106,10 @@ fn a_crack_does_not_enter_what_is_unbreakable() {
     let mut released = 0;
     for tick in 0..80 {
         scene.send(&mut world, tick);
-        released += world.step().released;
+        released += world.step().nodes_split;
     }
     assert!(released > 50, "{released}");
-    let views = world.bodies().first().unwrap().element_views();
+    let views = world.soft_bodies().first().unwrap().element_views();
     let mut of_core: Vec<_> = views
         .filter(|view| view.material == 2)
         .map(|view| view.piece)
@@ -137,7 +137,7 @@ fn a_hand_may_be_a_ball_a_box_or_a_bar() {
             scene.send(&mut world, tick);
             world.step();
         });
-        let (_, hand) = world.hands().next().unwrap();
+        let (_, hand) = world.target_followers().next().unwrap();
         assert_eq!(hand.shape().inradius(), thick);
         let (distance, _) = hand.shape().distance([0.0, 2.0, 0.0]);
         assert!((distance + thick - 1.0).abs() < 0.01, "{text}: {distance}");
@@ -190,9 +190,18 @@ at = [0.0, 3.0, 0.0]
     std::fs::write(folder.join("painting.png"), painting(&["rb. ", "rrrr"])).unwrap();
     let scene = open(&folder).unwrap();
     let world = scene.build::<Dim2>().unwrap();
-    assert_eq!(picture(world.bodies().first().unwrap()), ["21..", "2222"]);
-    assert_eq!(world.bodies().first().unwrap().grid().voxel_size(), 0.5);
-    assert_eq!(picture(&world.bodies()[world.nth_body(1).unwrap()]), ["33"]);
+    assert_eq!(
+        picture(world.soft_bodies().first().unwrap()),
+        ["21..", "2222"]
+    );
+    assert_eq!(
+        world.soft_bodies().first().unwrap().grid().voxel_size(),
+        0.5
+    );
+    assert_eq!(
+        picture(&world.soft_bodies()[world.nth_soft_body(1).unwrap()]),
+        ["33"]
+    );
 
     // It can be recorded, and run again from the text of the recording.
     let recording = Recording::of::<Dim2>(&scene, 3, |_| {}).unwrap();
@@ -225,7 +234,7 @@ fn a_model_beside_the_scene_becomes_a_body() {
         std::fs::write(folder.join("a.vox"), MODEL).unwrap();
         let world = open(&folder).unwrap().build::<Dim3>();
         world
-            .map(|world| picture(world.bodies().first().unwrap()))
+            .map(|world| picture(world.soft_bodies().first().unwrap()))
             .map_err(|error| error.to_string())
     };
     let expected = ["1", "3"].map(String::from).to_vec();

@@ -1,8 +1,8 @@
 //! Worlds that are written down: text → world → text → world.
 
 use fuwafuwa::{
-    Body, Dim, Dim2, Dim3, End, Event, Joint, Layers, Material, Rigid, Rotation, Settings, Shape,
-    VoxelGrid, World,
+    Dim, Dim2, Dim3, Event, Joint, JointAnchor, Layers, Material, RigidBody, Rotation, Shape,
+    SoftBody, VoxelGrid, World, WorldConfig,
 };
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::NAMED;
@@ -114,7 +114,7 @@ fn again<D: Dim>(world: &World<D>, what: &str) -> World<D> {
 fn check_round_trip<D: Dim>(scene: &Scene, what: &str) {
     let mut world = scene.build::<D>().unwrap_or_else(|error| panic!("{error}"));
     let mut other = again(&world, what);
-    assert_eq!(other.settings(), world.settings(), "{what}");
+    assert_eq!(other.config(), world.config(), "{what}");
     assert_eq!(other.hash(), world.hash(), "{what}, tick 0");
     // A text of what was read from a text is the same text.
     let texts = [&world, &other].map(|world| Scene::of_world(world).unwrap().text().unwrap());
@@ -161,8 +161,8 @@ fn all_that_a_scene_can_say_is_written_and_read_again() {
 fn what_a_scene_says_is_in_its_world() {
     let scene = Scene::read("rich", &rich(2), &[]).unwrap();
     let world = scene.build::<Dim2>().unwrap();
-    assert!((world.settings().tick - 1.0 / 120.0).abs() < 1e-8);
-    let bodies: Vec<&Body<Dim2>> = world.bodies().iter().collect();
+    assert!((world.config().tick - 1.0 / 120.0).abs() < 1e-8);
+    let bodies: Vec<&SoftBody<Dim2>> = world.soft_bodies().iter().collect();
     let layers = Layers {
         memberships: 2,
         filters: 5,
@@ -175,10 +175,10 @@ fn what_a_scene_says_is_in_its_world() {
         ),
         (layers, 7, 0.5)
     );
-    let rigids: Vec<&Rigid> = world.rigids().iter().collect();
-    assert!(rigids[2].is_free() && rigids[2].velocity() == [0.0, -1.0, 0.0]);
+    let rigids: Vec<&RigidBody> = world.rigid_bodies().iter().collect();
+    assert!(rigids[2].is_dynamic() && rigids[2].velocity() == [0.0, -1.0, 0.0]);
     assert_eq!(rigids[2].angular_velocity(), [0.0, 0.0, 2.0]);
-    assert!(rigids[4].is_driven() && rigids[5].is_sensor);
+    assert!(rigids[4].follows_target() && rigids[5].is_sensor);
     assert_eq!(
         (rigids[3].user_data, rigids[3].layers.filters),
         (9, u32::MAX)
@@ -195,54 +195,61 @@ fn what_a_scene_says_is_in_its_world() {
 }
 
 fn check_torn<D: Dim>() {
-    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.3)).unwrap();
+    world.add_rigid_body(RigidBody::fixed(floor, 0.3)).unwrap();
     let soft = Material {
         strength: 200.0,
         toughness: 40.0,
         ..Material::default()
     };
     let grid = VoxelGrid::<D>::ball(8, 0.5).unwrap();
-    let ball = world.add_body(Body::new(grid, &[soft]).unwrap().moved([0.0, 1.2, 0.0]));
+    let ball = world.add_soft_body(
+        SoftBody::new(grid, &[soft])
+            .unwrap()
+            .translated([0.0, 1.2, 0.0]),
+    );
     let cube = Shape::Box {
         centre: [0.2, 2.5, 0.2],
         half: [0.1; 3],
     };
     let turned = Rotation::about([1.0, 1.0, 0.0], 0.4);
     world
-        .add_rigid(Rigid::free(cube, 4.0).rotated(turned))
+        .add_rigid_body(RigidBody::dynamic(cube, 4.0).rotated(turned))
         .unwrap();
-    let hand = world.add_rigid(Rigid::hand([-1.0, 0.2, 0.2], 0.1)).unwrap();
+    let hand = world
+        .add_rigid_body(RigidBody::coupled_ball([-1.0, 0.2, 0.2], 0.1))
+        .unwrap();
     for tick in 0..50 {
         world
-            .set_goal(hand, [-1.0 + 0.02 * tick as f32, 0.2, 0.2])
+            .set_target_position(hand, [-1.0 + 0.02 * tick as f32, 0.2, 0.2])
             .unwrap();
         world.step();
     }
     assert!(
-        world.bodies()[ball].pieces().count() > 1,
+        world.soft_bodies()[ball].pieces().count() > 1,
         "nothing came off"
     );
     let other = again(&world, "torn");
     let states = |world: &World<D>| -> Vec<_> {
-        let body = world.bodies().first().unwrap();
+        let body = world.soft_bodies().first().unwrap();
         let ids = body.mesh().nodes().map(|(id, _)| id);
         ids.map(|id| (id, body.node_state(id))).collect()
     };
     assert_eq!(states(&other), states(&world));
-    for (a, b) in other.rigids().iter().zip(world.rigids()) {
+    for (a, b) in other.rigid_bodies().iter().zip(world.rigid_bodies()) {
         assert_eq!(
             (a.position(), a.velocity(), a.rotation()),
             (b.position(), b.velocity(), b.rotation())
         );
         assert_eq!(a.angular_velocity(), b.angular_velocity());
-        assert!(!a.is_driven() || a.goal() == b.goal());
+        assert!(!a.follows_target() || a.target_position() == b.target_position());
     }
     // And on from there, alike.
     let (mut world, mut other) = (world, other);
     (0..30).for_each(|_| _ = (world.step(), other.step()));
-    let centres = [&world, &other].map(|world| world.bodies().first().unwrap().centre_of_mass());
+    let centres =
+        [&world, &other].map(|world| world.soft_bodies().first().unwrap().centre_of_mass());
     for axis in 0..3 {
         assert!(
             (centres[0][axis] - centres[1][axis]).abs() < 0.05,
@@ -362,16 +369,18 @@ fn mistakes_are_told_with_line_and_field() {
 
 #[test]
 fn a_joint_that_holds_what_moved_is_refused_or_held_where_it_is() {
-    let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+    let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
     let grid = VoxelGrid::<Dim2>::cube(8, 0.5).unwrap();
-    let cube = world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    let cube = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
     let at = [0.25, 0.5, 0.0];
-    let end = End::Soft {
+    let end = JointAnchor::Soft {
         body: cube,
         at,
         radius: 0.1,
     };
-    world.add_joint(Joint::pin(end, End::Position(at))).unwrap();
+    world
+        .add_joint(Joint::pin(end, JointAnchor::Position(at)))
+        .unwrap();
     (0..30).for_each(|_| _ = world.step());
     assert!(
         !world
@@ -382,22 +391,22 @@ fn a_joint_that_holds_what_moved_is_refused_or_held_where_it_is() {
     let other = again(&world, "hanging");
     let places = [&world, &other].map(|world| {
         let joint = world.joints().ids().next().unwrap();
-        world.joint_places(joint).unwrap().unwrap()
+        world.joint_anchor_positions(joint).unwrap().unwrap()
     });
     assert!((places[0][0][1] - places[1][0][1]).abs() < 1e-3);
 }
 
 #[test]
 fn what_is_too_long_is_refused() {
-    let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+    let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
     let grid = VoxelGrid::<Dim3>::ball(40, 1.0).unwrap();
-    let ball = Body::new(grid, &[Material::default()]).unwrap();
-    let id = world.add_body(ball);
+    let ball = SoftBody::new(grid, &[Material::default()]).unwrap();
+    let id = world.add_soft_body(ball);
     assert!(
         Scene::of_world(&world).unwrap().text().is_ok(),
         "its voxels are few letters"
     );
-    world.body_mut(id).unwrap().crumble().unwrap();
+    world.soft_body_mut(id).unwrap().crumble().unwrap();
     let error = Scene::of_world(&world).unwrap().text().unwrap_err();
     assert!(
         error.to_string().contains("save a snapshot instead"),

@@ -2,7 +2,7 @@
 
 use force_feedback::Stop;
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Event, Rigid, Vector};
+use fuwafuwa::{Event, RigidBody, Vector};
 use tamaire_play::{AnyRound, PLAYERS};
 
 /// A round has begun once it is so old [s]: until then hands are elsewhere.
@@ -12,7 +12,7 @@ const TEAR: f32 = 0.2;
 const MORE: f32 = 0.05;
 
 /// With what everything that a hand touches pushed it, averaged over the last tick [N].
-pub fn contact(hand: &Rigid) -> Vector {
+pub fn contact(hand: &RigidBody) -> Vector {
     let all = hand.reactions();
     let mean = |axis: usize| {
         let sum: f32 = all.iter().map(|reaction| reaction.contact[axis]).sum();
@@ -35,10 +35,10 @@ pub fn on_stick([x, y, z]: Vector, turn: Option<f32>) -> [f32; 2] {
 pub fn tears(round: &AnyRound) -> [f32; PLAYERS] {
     let mut counts = [0u32; PLAYERS];
     for event in round.events() {
-        let Event::Released { at, .. } = *event else {
+        let Event::NodeSplit { at, .. } = *event else {
             continue;
         };
-        let away = |hand: &Rigid| {
+        let away = |hand: &RigidBody| {
             let square = |axis: usize| (hand.position()[axis] - at[axis]).powi(2);
             square(0) + square(1) + square(2)
         };

@@ -183,7 +183,7 @@ fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
         }
     }
     let mut deepest = f32::MIN;
-    for body in round.world().bodies() {
+    for body in round.world().soft_bodies() {
         for piece in body.piece_views() {
             let depth = beyond(piece.low, piece.high);
             // What is not finite shows in the middle: low and high pass it over.
@@ -200,7 +200,7 @@ fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
 
 /// How many elements and nodes there are.
 fn parts<D: Dim>(round: &Round<D>) -> [usize; 2] {
-    let meshes = || round.world().bodies().iter().map(|body| body.mesh());
+    let meshes = || round.world().soft_bodies().iter().map(|body| body.mesh());
     let elements = meshes().map(|mesh| mesh.element_count()).sum();
     [elements, meshes().map(|mesh| mesh.node_count()).sum()]
 }
@@ -215,7 +215,7 @@ fn held_each<D: Dim>(round: &Round<D>) -> f32 {
 
 /// A row about a minute.
 fn tell<D: Dim>(id: &str, minute: usize, round: &Round<D>, [half, worst, deepest]: [f32; 3]) {
-    let bodies = round.world().bodies().iter();
+    let bodies = round.world().soft_bodies().iter();
     let pieces = bodies.flat_map(|body| &body.pieces().list);
     say(&format!(
         "{id:12} {minute:>6} {:>6} {:>6} {:>8} {:>7.1} {:>8.0} | {half:>8.1} {worst:>8.1} | {deepest:.1} mm",

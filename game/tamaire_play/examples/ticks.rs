@@ -7,7 +7,7 @@
 //! `--json` prints an object a line in place of each row. `--help` tells the rest.
 
 use clap::Parser;
-use fuwafuwa::{Dim, Dim2, Dim3, RigidId, StepReport, Vector};
+use fuwafuwa::{Dim, Dim2, Dim3, RigidBodyHandle, StepReport, Vector};
 use serde::Serialize;
 use std::error::Error;
 use std::io::{self, Write};
@@ -160,7 +160,7 @@ fn measure_level<D: Dim>(
                 milliseconds: Ranks::of(whole()),
                 rules: options.rules.then(|| Ranks::of(rules())),
                 worst_tick: worst,
-                worst_released: ticks[worst].report.released,
+                worst_released: ticks[worst].report.nodes_split,
             };
             tell(&row, options)?;
             all.extend(whole());
@@ -248,7 +248,7 @@ fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64, most: usize) -> (V
         let hands = round.hands();
         ticks.push(Tick {
             report,
-            goals: hands.map(|hand| hand.goal()).collect(),
+            goals: hands.map(|hand| hand.target_position()).collect(),
             whole,
             engine: f64::INFINITY,
         });
@@ -260,17 +260,21 @@ fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64, most: usize) -> (V
 /// more goes to the rules. Not beside the round, where both would have to share the caches.
 fn step_alone<D: Dim>(level: &Arc<Level>, ticks: &mut [Tick]) {
     let mut world = Round::<D>::new(level.clone()).world().clone();
-    let mut hands: Vec<RigidId> = world.hands().map(|(hand, _)| hand).collect();
+    let mut hands: Vec<RigidBodyHandle> = world.target_followers().map(|(hand, _)| hand).collect();
     for tick in ticks {
         for player in hands.len()..tick.goals.len() {
             let scene = level.scene().build::<D>();
             let scene = scene.expect("the level was built once");
-            let hand = scene.nth_hand(player).expect("the level has one");
-            let joins = world.add_rigid(scene.rigids()[hand].clone());
+            let hand = scene
+                .nth_target_follower(player)
+                .expect("the level has one");
+            let joins = world.add_rigid_body(scene.rigid_bodies()[hand].clone());
             hands.push(joins.expect("it is in the round"));
         }
         for (&hand, &goal) in hands.iter().zip(&tick.goals) {
-            world.set_goal(hand, goal).expect("it was one in the round");
+            world
+                .set_target_position(hand, goal)
+                .expect("it was one in the round");
         }
         let start = Instant::now();
         assert_eq!(world.step(), tick.report, "both worlds are the same");

@@ -1,7 +1,7 @@
 //! Rounds whose dimension is that of their level: for those who do not look into bodies.
 
 use crate::{InputFrame, Level, Progress, Round};
-use fuwafuwa::{Dim2, Dim3, Event, Rigid, Shape, StepReport, Vector};
+use fuwafuwa::{Dim2, Dim3, Event, RigidBody, Shape, StepReport, Vector};
 use std::sync::Arc;
 
 /// A round in the plane or in space.
@@ -71,7 +71,7 @@ impl AnyRound {
     }
 
     /// See [`Round::hands`].
-    pub fn hands(&self) -> Vec<&Rigid> {
+    pub fn hands(&self) -> Vec<&RigidBody> {
         both!(self, round => round.hands().collect())
     }
 

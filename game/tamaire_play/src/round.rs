@@ -2,7 +2,7 @@
 
 use crate::{InputFrame, Level, PLAYERS, Progress};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Dim, Rigid, RigidId, Shape, StepReport, Vector, World};
+use fuwafuwa::{Dim, RigidBody, RigidBodyHandle, Shape, StepReport, Vector, World};
 use std::sync::Arc;
 
 /// A hand's goal moves no faster than this [m/s]: what is much faster than a wave in the body
@@ -22,9 +22,9 @@ pub struct Round<D: Dim> {
     world: World<D>,
     basket: Option<Shape>,
     progress: Progress,
-    starts: Vec<Rigid>,
+    starts: Vec<RigidBody>,
     /// The hand of each player who has joined.
-    players: Vec<RigidId>,
+    players: Vec<RigidBodyHandle>,
     frames: Vec<InputFrame>,
     hashes: Vec<u64>,
 }
@@ -36,12 +36,12 @@ impl<D: Dim> Round<D> {
     /// When the level is of another dimension.
     pub fn new(level: Arc<Level>) -> Self {
         let (mut world, basket) = level.build::<D>();
-        let hands: Vec<RigidId> = world.hands().map(|(id, _)| id).collect();
-        let starts = hands.iter().map(|&id| world.rigids()[id].clone());
-        let starts: Vec<Rigid> = starts.collect();
+        let hands: Vec<RigidBodyHandle> = world.target_followers().map(|(id, _)| id).collect();
+        let starts = hands.iter().map(|&id| world.rigid_bodies()[id].clone());
+        let starts: Vec<RigidBody> = starts.collect();
         // The others come in when their players join.
         for &hand in hands.iter().skip(1) {
-            world.remove_rigid(hand).expect("it is in the world");
+            world.remove_rigid_body(hand).expect("it is in the world");
         }
         Self {
             players: hands.into_iter().take(1).collect(),
@@ -60,7 +60,7 @@ impl<D: Dim> Round<D> {
         self.let_players_in(&frame);
         for player in 0..self.players.len() {
             let goal = self.reachable(player, frame.goal(player));
-            let sent = self.world.set_goal(self.players[player], goal);
+            let sent = self.world.set_target_position(self.players[player], goal);
             sent.expect("a hand is in the world, and its goal in the arena");
         }
         let report = self.world.step();
@@ -89,8 +89,10 @@ impl<D: Dim> Round<D> {
     }
 
     /// The hands of the players who have joined, in their order.
-    pub fn hands(&self) -> impl ExactSizeIterator<Item = &Rigid> {
-        self.players.iter().map(|&hand| &self.world.rigids()[hand])
+    pub fn hands(&self) -> impl ExactSizeIterator<Item = &RigidBody> {
+        self.players
+            .iter()
+            .map(|&hand| &self.world.rigid_bodies()[hand])
     }
 
     /// The region that has to be filled, where the level has one.
@@ -136,7 +138,7 @@ impl<D: Dim> Round<D> {
                 break;
             }
             let hand = self.starts[player].clone();
-            let added = self.world.add_rigid(hand);
+            let added = self.world.add_rigid_body(hand);
             let added = added.expect("it was in this world when the level was checked");
             self.players.push(added);
         }
@@ -144,16 +146,16 @@ impl<D: Dim> Round<D> {
 
     /// The place nearest to a wish to which a goal can move in a tick.
     fn reachable(&self, player: usize, wish: Option<Vector>) -> Vector {
-        let hand = &self.world.rigids()[self.players[player]];
+        let hand = &self.world.rigid_bodies()[self.players[player]];
         let [low, high] = self.level.arena();
         let [first, last] = hand.form().bounds();
-        let mut goal = wish.unwrap_or(hand.goal());
+        let mut goal = wish.unwrap_or(hand.target_position());
         for axis in 0..D::N {
             let half = 0.5 * (high[axis] - low[axis]);
             let [below, above] = [-first[axis], last[axis]].map(|k| k.min(half));
             goal[axis] = goal[axis].clamp(low[axis] + below, high[axis] - above);
         }
-        let goal = near(hand.goal(), goal, TOP_SPEED * TICK);
+        let goal = near(hand.target_position(), goal, TOP_SPEED * TICK);
         near(hand.position(), goal, LEASH)
     }
 }

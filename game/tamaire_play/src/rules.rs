@@ -3,7 +3,7 @@
 use crate::{Level, Route, Wish};
 use fuwafuwa::vector::minus;
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Body, Dim, ElementId, PieceView, Shape, World};
+use fuwafuwa::{Dim, ElementId, PieceView, Shape, SoftBody, World};
 use serde::{Deserialize, Serialize};
 
 /// What moves faster than this does not rest in the basket [m/s].
@@ -88,14 +88,14 @@ impl Progress {
             within: 0.0,
             kept: 1.0,
             pieces: world
-                .bodies()
+                .soft_bodies()
                 .iter()
                 .map(|body| body.pieces().list.len())
                 .sum(),
             held: 0.0,
             relaxed: false,
             outcome: None,
-            bodies: world.bodies().len(),
+            bodies: world.soft_bodies().len(),
             squeezed: SQUEEZED + own_strain(world, &views),
             whole: greatest(&views),
         }
@@ -153,7 +153,11 @@ impl Progress {
 }
 
 fn views_of<D: Dim>(world: &World<D>) -> Vec<Vec<PieceView>> {
-    world.bodies().iter().map(Body::piece_views).collect()
+    world
+        .soft_bodies()
+        .iter()
+        .map(SoftBody::piece_views)
+        .collect()
 }
 
 /// Mass of the largest piece of each body, all together [kg].
@@ -167,8 +171,8 @@ fn greatest(views: &[Vec<PieceView>]) -> f32 {
 /// The mean strain of the body that its own weight strains most: of a column as high as it is, of its heaviest
 /// and softest material, whose foot bears ρ g h and whose top nothing.
 fn own_strain<D: Dim>(world: &World<D>, views: &[Vec<PieceView>]) -> f32 {
-    let gravity = world.settings().gravity;
-    let of = |(body, pieces): (&Body<D>, &Vec<PieceView>)| {
+    let gravity = world.config().gravity;
+    let of = |(body, pieces): (&SoftBody<D>, &Vec<PieceView>)| {
         let materials = body.materials().iter();
         let heavy = materials.map(|m| m.density / m.elasticity.young as f32);
         let drops = pieces.iter().map(|piece| {
@@ -178,13 +182,13 @@ fn own_strain<D: Dim>(world: &World<D>, views: &[Vec<PieceView>]) -> f32 {
         let softer = body.stiffness_scale() as f32;
         0.5 * heavy.fold(0.0, f32::max) * drops.fold(0.0, f32::max) / softer
     };
-    let bodies = world.bodies().iter().zip(views);
+    let bodies = world.soft_bodies().iter().zip(views);
     bodies.map(of).fold(0.0, f32::max)
 }
 
 fn total_mass<D: Dim>(world: &World<D>) -> f32 {
     world
-        .bodies()
+        .soft_bodies()
         .iter()
         .map(|body| body.total_mass() as f32)
         .sum()
@@ -192,7 +196,7 @@ fn total_mass<D: Dim>(world: &World<D>) -> f32 {
 
 /// The mass in a region [kg]: of the nodes that rest, and of all.
 fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
-    let inside = |body: &Body<D>| {
+    let inside = |body: &SoftBody<D>| {
         let (mut resting, mut all) = (0.0, 0.0);
         for (id, _) in body.mesh().nodes() {
             if !is_inside(region, body.positions()[id]) {
@@ -207,14 +211,14 @@ fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
         }
         (resting, all)
     };
-    let bodies = world.bodies().iter().map(inside);
+    let bodies = world.soft_bodies().iter().map(inside);
     bodies.fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1))
 }
 
 /// The mean strain, by volume, of the pieces whose middle is in a region and that are more than crumbs.
 fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Shape) -> f32 {
     let (mut sum, mut volume) = (0.0, 0.0);
-    for (body, pieces) in world.bodies().iter().zip(views) {
+    for (body, pieces) in world.soft_bodies().iter().zip(views) {
         let counts = |id: ElementId| {
             let view = &pieces[body.pieces().of_element(id).index()];
             region.distance(view.centre).0 < 0.0 && view.element_count > 50

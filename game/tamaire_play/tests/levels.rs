@@ -33,7 +33,7 @@ fn is_closed<D: Dim>(id: &str) {
     let [low, high] = level.arena();
     let round = Round::<D>::new(level);
     let is_rigid = |at: [f32; 3]| {
-        let mut all = round.world().obstacles();
+        let mut all = round.world().fixed_rigid_bodies();
         all.any(|obstacle| obstacle.shape().distance(at).0 < 0.0)
     };
     let place =
@@ -60,13 +60,13 @@ fn stays_whole_and_in_the_room<D: Dim>(id: &str, ticks: usize) {
     let mut bot = Bot::new(BotKind::Random, 7);
     for _ in 0..ticks {
         let report = still.step(InputFrame::default());
-        assert_eq!(report.released, 0, "{id}");
+        assert_eq!(report.nodes_split, 0, "{id}");
         let frame = bot.frame(&wild);
         assert_eq!(wild.step(frame).quarantined, 0, "{id}");
     }
     assert!(still.progress().outcome.is_none(), "{id}");
     let [low, high] = level.arena();
-    for body in wild.world().bodies() {
+    for body in wild.world().soft_bodies() {
         for piece in body.piece_views() {
             let mut inside = (0..D::N)
                 .map(|axis| piece.centre[axis] > low[axis] && piece.centre[axis] < high[axis]);

@@ -92,11 +92,11 @@ pub fn strokes(level: Level) -> Vec<Stroke> {
 
 fn of_world<D: Dim>(grid: Grid, world: &World<D>) -> Vec<Stroke> {
     let fixed = world
-        .rigids()
+        .rigid_bodies()
         .iter()
-        .filter(|rigid| !rigid.is_driven() && !rigid.is_sensor);
+        .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor);
     let fixed = fixed.filter_map(|rigid| of_shape(grid, rigid.shape(), Thing::Obstacle));
-    let bodies = world.bodies().iter().flat_map(|body| match D::N {
+    let bodies = world.soft_bodies().iter().flat_map(|body| match D::N {
         2 => body
             .outlines()
             .into_iter()

@@ -10,7 +10,7 @@ use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::world::DeferredWorld;
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
-use fuwafuwa::{BodyId, BuildError, Drive, Layers, Material, RigidId, Shape, VoxelGrid};
+use fuwafuwa::{BodyId, BuildError, MotionType, Layers, Material, RigidId, Shape, VoxelGrid};
 use std::marker::PhantomData;
 
 /// A soft body: the voxels that it is made from. It enters the world at the beginning of the next tick, where its
@@ -72,11 +72,11 @@ pub struct SoftBodyId(pub BodyId);
 /// origin, best with its middle there; its `Transform` moves, turns and scales it when it enters. From then on its size
 /// stays, as does all that is said here: insert it again for another one.
 ///
-/// What moves it is [`Drive`]:
-/// - Nothing moves what is [`Drive::Fixed`].
-/// - [`Drive::Kinematic`] is where its `Transform` says at the end of the next tick, and moves and turns there evenly.
-/// - [`Drive::Coupled`] is pulled to its [`Goal`] without turning; its `Transform` says how far it got.
-/// - [`Drive::Free`] falls, turns, and is pushed by what it touches; its `Transform` follows. See [`RigidBody::free`].
+/// What moves it is [`MotionType`]:
+/// - Nothing moves what is [`MotionType::Fixed`].
+/// - [`MotionType::Kinematic`] is where its `Transform` says at the end of the next tick, and moves and turns there evenly.
+/// - [`MotionType::Coupled`] is pulled to its [`Goal`] without turning; its `Transform` says how far it got.
+/// - [`MotionType::Dynamic`] falls, turns, and is pushed by what it touches; its `Transform` follows. See [`RigidBody::free`].
 ///
 /// All but what is kinematic are put at once where you write that they are, with the velocity that they have.
 #[derive(Component, Clone, Debug, PartialEq)]
@@ -95,11 +95,11 @@ pub struct RigidBody<D: Dimension> {
     /// Who touches it.
     pub layers: Layers,
     /// What moves it.
-    pub drive: Drive,
+    pub drive: MotionType,
     dim: PhantomData<D>,
 }
 
-/// Where a hand that is [`Drive::Coupled`] is pulled [m].
+/// Where a hand that is [`MotionType::Coupled`] is pulled [m].
 #[derive(Component, Copy, Clone, Debug, PartialEq)]
 pub struct Goal(pub Vec3);
 
@@ -162,7 +162,7 @@ impl<D: Dimension> RigidBody<D> {
             restitution: 0.0,
             is_sensor: false,
             layers: Layers::default(),
-            drive: Drive::Fixed,
+            drive: MotionType::Fixed,
             dim: PhantomData,
         }
     }
@@ -176,18 +176,18 @@ impl<D: Dimension> RigidBody<D> {
     /// A disc or ball of a radius [m] that is where its `Transform` says.
     pub fn hand(radius: f32) -> Self {
         let centre = [0.0; 3];
-        Self::fixed(Shape::Ball { centre, radius }).with_drive(Drive::Kinematic)
+        Self::fixed(Shape::Ball { centre, radius }).with_drive(MotionType::Kinematic)
     }
 
     /// What falls and turns, of a mass [kg] that is spread evenly over a ball, box or bar, and of friction 0.5. It turns
     /// about the middle of its shape, wherever that is.
     pub fn free(shape: Shape, mass: f32) -> Self {
-        let drive = Drive::Free { mass };
+        let drive = MotionType::Dynamic { mass };
         Self::fixed(shape).with_friction(0.5).with_drive(drive)
     }
 
     /// The same with another drive.
-    pub fn with_drive(self, drive: Drive) -> Self {
+    pub fn with_drive(self, drive: MotionType) -> Self {
         Self { drive, ..self }
     }
 

@@ -20,7 +20,7 @@ use bevy_ecs::world::World;
 use bevy_math::Vec3;
 use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
-use fuwafuwa::{Body, Drive, Material, Rigid, Shape, VoxelGrid};
+use fuwafuwa::{Body, MotionType, Material, RigidBody, Shape, VoxelGrid};
 
 /// What becomes of somebody who wants to enter.
 enum Entry {
@@ -178,7 +178,7 @@ fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, P
     let form = pose.form(rigid.shape);
     let middle = middle_of(&form, rigid.drive);
     let at = pose.translation + pose.rotation * middle;
-    let own = Rigid::driven(form.moved((-middle).into()), at.into(), rigid.drive);
+    let own = RigidBody::driven(form.moved((-middle).into()), at.into(), rigid.drive);
     let mut own = own.rotated(engine_rotation(transform.rotation));
     (own.friction, own.restitution) = (rigid.friction, rigid.restitution);
     (own.is_sensor, own.layers) = (rigid.is_sensor, rigid.layers);
@@ -206,12 +206,12 @@ fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, P
 }
 
 /// What the engine has at the origin of something rigid: the middle of what is free, about which it turns.
-fn middle_of(form: &Shape, drive: Drive) -> Vec3 {
+fn middle_of(form: &Shape, drive: MotionType) -> Vec3 {
     let [low, high] = form.bounds().map(Vec3::from);
     let middle = 0.5 * (low + high);
     match drive {
         // What has no end has no middle, and is refused for that.
-        Drive::Free { .. } if middle.is_finite() => middle,
+        MotionType::Dynamic { .. } if middle.is_finite() => middle,
         _ => Vec3::ZERO,
     }
 }

@@ -115,6 +115,6 @@ pub mod prelude {
         RigidBody3d, SoftBody2d, SoftBody3d, SoftQueries, SoftSettings, SoftWorld,
     };
     pub use fuwafuwa::{
-        Dim2, Dim3, Drive, Elasticity, Layers, Material as SoftMaterial, Shape, VoxelGrid,
+        Dim2, Dim3, MotionType, Elasticity, Layers, Material as SoftMaterial, Shape, VoxelGrid,
     };
 }

@@ -63,7 +63,7 @@ impl<D: Dimension> SoftQueries<'_, D> {
     /// The entity of what the engine found.
     pub fn entity(&self, thing: Thing) -> Option<Entity> {
         match thing {
-            Thing::Rigid(rigid) => self.world.entity_of_rigid(rigid),
+            Thing::RigidBody(rigid) => self.world.entity_of_rigid(rigid),
             Thing::Soft { body, .. } => self.world.entity_of_body(body),
         }
     }
@@ -71,7 +71,7 @@ impl<D: Dimension> SoftQueries<'_, D> {
     fn hit(&self, found: Found) -> Hit {
         let piece = match found.thing {
             Thing::Soft { piece, .. } => Some(piece),
-            Thing::Rigid(_) => None,
+            Thing::RigidBody(_) => None,
         };
         Hit {
             entity: self.entity(found.thing),

@@ -13,7 +13,7 @@ use bevy_ecs::query::Without;
 use bevy_ecs::system::{Commands, Query};
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
-use fuwafuwa::{Drive, RigidId};
+use fuwafuwa::{MotionType, RigidId};
 
 /// What something rigid may have been asked for.
 type Asked<'a> = (
@@ -61,7 +61,7 @@ pub fn steer_rigids<D: Dimension>(
         let goal = goal.map(|goal| goal.0);
         let bits = |goal: Vec3| goal.to_array().map(f32::to_bits);
         if goal.map(bits) != followed.goal.map(bits) {
-            if let (Some(goal), Drive::Coupled { .. }) = (goal, engine.rigids()[id].drive) {
+            if let (Some(goal), MotionType::Coupled { .. }) = (goal, engine.rigids()[id].drive) {
                 check(engine.set_goal(id, goal.into()).map_err(Problem::from));
             }
             // Once, and not again in each tick.
@@ -106,7 +106,7 @@ fn put<D: Dimension>(
     }
     let rotation = engine_rotation(transform.rotation);
     let rigid = &engine.rigids()[id];
-    if rigid.drive == Drive::Kinematic {
+    if rigid.drive == MotionType::Kinematic {
         engine.set_goal(id, at.into())?;
         engine.set_goal_rotation(id, rotation)?;
         return Ok(());

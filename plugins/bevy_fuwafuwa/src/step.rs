@@ -9,7 +9,7 @@ use crate::world::SoftWorld;
 use bevy_ecs::change_detection::ResMut;
 use bevy_ecs::message::MessageWriter;
 use bevy_ecs::system::SystemParam;
-use fuwafuwa::{Event, Party};
+use fuwafuwa::{Event, ObjectRef};
 
 /// Where all that happened is written down.
 #[derive(SystemParam)]
@@ -50,20 +50,20 @@ impl Writers<'_> {
     /// Tells of an event, where whoever it happened to has an entity.
     fn tell<D: Dimension>(&mut self, world: &SoftWorld<D>, event: Event) -> Option<()> {
         let of_body = |body| world.entity_of_body(body);
-        let of = |party: Party| match party {
-            Party::Piece { body, piece } => Some((of_body(body)?, Some(piece))),
-            Party::Rigid(rigid) => Some((world.entity_of_rigid(rigid)?, None)),
+        let of = |party: ObjectRef| match party {
+            ObjectRef::Piece { body, piece } => Some((of_body(body)?, Some(piece))),
+            ObjectRef::RigidBody(rigid) => Some((world.entity_of_rigid(rigid)?, None)),
         };
         match event {
-            Event::Released { body, at, energy } => {
+            Event::NodeSplit { body, at, energy } => {
                 let (body, at) = (of_body(body)?, at.into());
                 self.torn.write(Torn { body, at, energy });
             }
-            Event::Parted { body, piece } => {
+            Event::PieceDetached { body, piece } => {
                 let body = of_body(body)?;
                 self.parted.write(Parted { body, piece });
             }
-            Event::Touched {
+            Event::Pressed {
                 body,
                 piece,
                 with,
@@ -82,7 +82,7 @@ impl Writers<'_> {
                     impulse,
                 });
             }
-            Event::RigidTouched {
+            Event::RigidPressed {
                 rigid,
                 with,
                 at,
@@ -99,7 +99,7 @@ impl Writers<'_> {
                     impulse,
                 });
             }
-            Event::ContactBegan {
+            Event::ContactStarted {
                 both: [first, second],
                 at,
                 normal,
@@ -121,11 +121,11 @@ impl Writers<'_> {
                 let (both, pieces) = ([first, second], [own, other]);
                 self.contact_ended.write(ContactEnded { both, pieces });
             }
-            Event::Entered { sensor, who } => {
+            Event::SensorEntered { sensor, who } => {
                 let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(who)?);
                 self.entered.write(Entered { sensor, who, piece });
             }
-            Event::Left { sensor, who } => {
+            Event::SensorExited { sensor, who } => {
                 let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(who)?);
                 self.left.write(Left { sensor, who, piece });
             }
@@ -152,7 +152,7 @@ impl Writers<'_> {
                 let (body, piece) = (of_body(body)?, Some(piece));
                 self.fell_asleep.write(FellAsleep { body, piece });
             }
-            Event::Woke { body, piece } => {
+            Event::WokeUp { body, piece } => {
                 let (body, piece) = (of_body(body)?, Some(piece));
                 self.woke.write(Woke { body, piece });
             }

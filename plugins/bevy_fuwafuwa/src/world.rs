@@ -4,7 +4,7 @@ use crate::dimension::Dimension;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::resource::Resource;
 use fuwafuwa::handle::Gone;
-use fuwafuwa::{BodyId, Event, Rigid, RigidId, Settings, StepReport, World};
+use fuwafuwa::{BodyId, Event, RigidBody, RigidId, Settings, StepReport, World};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What holds for all worlds of an app: gravity, drag, substeps. Change it whenever you like; what the engine refuses is
@@ -192,7 +192,7 @@ impl<D: Dimension> SoftWorld<D> {
     pub(crate) fn add_rigid(
         &mut self,
         entity: Entity,
-        rigid: Rigid,
+        rigid: RigidBody,
     ) -> Result<RigidId, fuwafuwa::Refused> {
         let id = self.engine.add_rigid(rigid)?;
         self.rigids.add(entity, id);

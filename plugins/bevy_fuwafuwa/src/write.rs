@@ -13,7 +13,7 @@ use bevy_ecs::system::Query;
 use bevy_math::{Quat, Vec3};
 use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
-use fuwafuwa::Drive;
+use fuwafuwa::MotionType;
 
 /// What an entity was told last: what differs from it was changed by somebody else.
 #[derive(Component, Copy, Clone, Debug)]
@@ -124,10 +124,10 @@ pub fn write_rigids<D: Dimension>(
             continue;
         };
         let is_settled = followed.is_settled && rigid.is_asleep();
-        if own.0 != id || rigid.drive == Drive::Fixed || is_settled {
+        if own.0 != id || rigid.drive == MotionType::Fixed || is_settled {
             continue;
         }
-        if rigid.drive != Drive::Kinematic {
+        if rigid.drive != MotionType::Kinematic {
             if rigid.is_free() {
                 transform.rotation = Quat::from_array(rigid.rotation().quaternion());
             }

@@ -2,7 +2,7 @@
 
 use fuwafuwa::law::Elasticity;
 use fuwafuwa::world::{FEWEST_SUBSTEPS, TICK};
-use fuwafuwa::{Body, Dim, Material, Rigid, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{Body, Dim, Material, RigidBody, Settings, Shape, VoxelGrid, World};
 
 use crate::world::{Falling, Span};
 use crate::{Drop, Result, WIDTH};
@@ -34,7 +34,7 @@ pub fn world<D: Dim>(scene: &Drop, substeps: Option<usize>) -> Result<World<D>> 
         ..Settings::default()
     })?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, scene.friction))?;
+    world.add_rigid(RigidBody::fixed(floor, scene.friction))?;
     let lowest = span(&body).lowest;
     world.add_body(body.moved([0.0, scene.height - lowest, 0.0]));
     Ok(world)

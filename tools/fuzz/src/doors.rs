@@ -6,7 +6,7 @@ use base64::Engine;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
 use fuwafuwa::grid::MAX_EXTENT;
 use fuwafuwa::hash::Hash;
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Settings, VoxelGrid, World, snapshot};
+use fuwafuwa::{Dim, Dim2, Dim3, Material, SoftBody, VoxelGrid, World, WorldConfig, snapshot};
 use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
 use fuwafuwa_scenes::import::{Colours, Model, Picture};
 use fuwafuwa_scenes::scene::BodyText;
@@ -154,7 +154,7 @@ pub fn procedure(bytes: &[u8]) -> bool {
     };
     let is_as_it_was = playback.step().is_ok();
     let organ = playback.procedure().organ();
-    let checked = organ.mesh().validate(organ.grid(), organ.sharing());
+    let checked = organ.mesh().validate(organ.grid(), organ.connectivity());
     checked.expect("a tick keeps every mesh consistent");
     is_as_it_was
 }
@@ -226,9 +226,9 @@ fn drop_in<D: Dim>(grid: VoxelGrid<D>) {
     if grid.solid_count() > FEW_VOXELS {
         return;
     }
-    let mut world = World::new(Settings::default()).expect("the usual settings are good");
-    if let Ok(body) = Body::new(grid, &[Material::default(); 255]) {
-        world.add_body(body);
+    let mut world = World::new(WorldConfig::default()).expect("the usual settings are good");
+    if let Ok(body) = SoftBody::new(grid, &[Material::default(); 255]) {
+        world.add_soft_body(body);
         step(&mut world);
     }
 }
@@ -240,7 +240,7 @@ fn go_on<D: Dim>(bytes: &[u8]) -> bool {
     let again = snapshot::load::<D>(&snapshot::save(&world)).expect("it can be loaded again");
     assert_eq!(again.hash(), world.hash());
     let voxels: usize = world
-        .bodies()
+        .soft_bodies()
         .iter()
         .map(|body| body.grid().solid_count())
         .sum();

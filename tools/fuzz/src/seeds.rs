@@ -5,8 +5,8 @@ use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use fuwafuwa::{
-    Body, Dim, Dim2, Dim3, End, Joint, Knife, Material, Rigid, Rotation, Settings, Shape, Tie,
-    VoxelGrid, World, snapshot,
+    Dim, Dim2, Dim3, Joint, JointAnchor, JointKind, Knife, Material, RigidBody, Rotation, Shape,
+    SoftBody, VoxelGrid, World, WorldConfig, snapshot,
 };
 use fuwafuwa_scenes::{Recording, Scene, scene};
 use fuwafuwa_surgery::phantom;
@@ -156,50 +156,52 @@ pub fn snapshots() -> Vec<Vec<u8>> {
 
 /// The same of a world with what scenes have none of: things that fall, sensors, joints.
 fn tied<D: Dim>() -> Vec<u8> {
-    let mut world = World::<D>::new(Settings::default()).expect("the usual settings are good");
+    let mut world = World::<D>::new(WorldConfig::default()).expect("the usual settings are good");
     let ball = VoxelGrid::ball(FEW, 1.0).expect("it is small");
-    let ball = Body::new(ball, &[Material::default()]).expect("it has its material");
-    let body = world.add_body(ball);
+    let ball = SoftBody::new(ball, &[Material::default()]).expect("it has its material");
+    let body = world.add_soft_body(ball);
     let cube = |height: f32| Shape::Box {
         centre: [0.5, height, 0.5],
         half: [0.2; 3],
     };
     let turned = Rotation::about([1.0, 2.0, 3.0], 0.4);
-    let mut gate = Rigid::fixed(cube(-0.5), 0.5).rotated(turned);
+    let mut gate = RigidBody::fixed(cube(-0.5), 0.5).rotated(turned);
     gate.is_sensor = true;
-    world.add_rigid(gate).expect("it can be");
-    let free = Rigid::free(cube(1.3), 1.0).rotated(turned);
-    let rigid = world.add_rigid(free).expect("it can be");
+    world.add_rigid_body(gate).expect("it can be");
+    let free = RigidBody::dynamic(cube(1.3), 1.0).rotated(turned);
+    let rigid = world.add_rigid_body(free).expect("it can be");
     let ends = [
-        End::Soft {
+        JointAnchor::Soft {
             body,
             at: [0.5, 1.0, 0.5],
             radius: 0.3,
         },
-        End::Rigid {
+        JointAnchor::RigidBody {
             rigid,
             at: [0.5, 1.1, 0.5],
         },
-        End::Position([0.5, 2.0, 0.5]),
+        JointAnchor::Position([0.5, 2.0, 0.5]),
     ];
-    let spring = Tie::Spring {
+    let spring = JointKind::Spring {
         stiffness: 100.0,
         damping: 1.0,
         length: 0.5,
     };
-    let rope = Tie::Rope { length: 0.8 };
-    for (first, second, tie) in [(0, 1, Tie::Pin), (1, 2, spring), (0, 2, rope)] {
+    let rope = JointKind::Rope { length: 0.8 };
+    for (first, second, tie) in [(0, 1, JointKind::Pin), (1, 2, spring), (0, 2, rope)] {
         let joint = Joint::new([ends[first], ends[second]], tie);
         world.add_joint(joint).expect("its ends are there");
     }
-    let mut holder = Rigid::hand([0.5, 0.9, 0.5], 0.1);
+    let mut holder = RigidBody::coupled_ball([0.5, 0.9, 0.5], 0.1);
     holder.is_sensor = true;
-    let holder = world.add_rigid(holder).expect("it can be");
+    let holder = world.add_rigid_body(holder).expect("it can be");
     let edge = [[0.0, 0.0, -0.3], [0.0, 0.0, 0.3]];
     let knife = Knife::new(holder, edge, [0.0, -1.0, 0.0]);
     world.add_knife(knife).expect("it can be held");
     let below = [0.5, 0.5, 0.5];
-    world.set_goal(holder, below).expect("it is near");
+    world
+        .set_target_position(holder, below)
+        .expect("it is near");
     for _ in 0..5 {
         world.step();
     }

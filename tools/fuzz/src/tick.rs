@@ -15,8 +15,8 @@ pub fn play<D: Dim>(scene: &Scene) -> bool {
 /// Plays a tick, after which no mesh may contradict itself.
 pub fn step<D: Dim>(world: &mut World<D>) {
     world.step();
-    for body in world.bodies() {
-        let checked = body.mesh().validate(body.grid(), body.sharing());
+    for body in world.soft_bodies() {
+        let checked = body.mesh().validate(body.grid(), body.connectivity());
         checked.expect("a tick keeps every mesh consistent");
     }
 }

@@ -13,8 +13,8 @@ use super::statics::Statics;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
 use fuwafuwa::law::Elasticity;
-use fuwafuwa::pyramid::{Grading, Pyramid};
-use fuwafuwa::sharing::Sharing;
+use fuwafuwa::pyramid::{CellHierarchy, Grading};
+use fuwafuwa::sharing::Connectivity;
 use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
 
 /// Thickness of a beam in voxels.
@@ -72,11 +72,11 @@ impl Beam {
         let elasticity = Elasticity::new(1000.0, self.poisson)?;
         let size = [self.length, self.thickness, D::depth(self.thickness)];
         let grid = VoxelGrid::<D>::from_fn(size, 1.0, |_| 1)?;
-        let sharing = Sharing::new(&grid);
+        let sharing = Connectivity::new(&grid);
         let mesh = Mesh::grade(
             &grid,
             &sharing,
-            &Pyramid::new(&grid, &sharing, Grading::Graded),
+            &CellHierarchy::new(&grid, &sharing, Grading::Graded),
         )?;
         let statics = Statics::new(&mesh, elasticity, |node, _| node.at[0] == 0);
         let load = self.load(&mesh);

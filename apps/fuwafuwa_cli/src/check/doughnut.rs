@@ -5,7 +5,10 @@ use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::shape::Vector;
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Drive, Material, NodeId, Rigid, Settings, VoxelGrid, World};
+use fuwafuwa::{
+    Dim, Dim2, Dim3, Material, MotionType, NodeId, RigidBody, SoftBody, VoxelGrid, World,
+    WorldConfig,
+};
 
 /// Dimensions, voxels across, and how fast each hand comes [m/s]: at the fastest one side of the hole comes to the other by ten
 /// widths of the ring a second.
@@ -52,9 +55,9 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
 
 /// How far the upper side of the hole goes into the lower one at most, in voxels.
 fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
-    let mut world = World::<D>::new(Settings {
+    let mut world = World::<D>::new(WorldConfig {
         gravity: [0.0; 3],
-        ..Settings::default()
+        ..WorldConfig::default()
     })?;
     let material = Material {
         damping: Material::default().damping,
@@ -62,15 +65,15 @@ fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
     };
     let grid = VoxelGrid::<D>::ring(n, 1.0)?;
     let (voxel, plane) = (grid.voxel_size(), plane_of(&grid));
-    let ring = world.add_body(Body::new(grid, &[material])?);
+    let ring = world.add_soft_body(SoftBody::new(grid, &[material])?);
     let sides = [-1.0, 1.0];
     let middle_of = |side: f32, apart: f32| [0.5, 0.5 + side * (HAND + 0.5 * apart), plane];
     let mut hands = Vec::new();
     for side in sides {
-        let hand = Rigid::hand(middle_of(side, 1.0), HAND);
-        hands.push(world.add_rigid(hand.with_drive(Drive::Kinematic))?);
+        let hand = RigidBody::coupled_ball(middle_of(side, 1.0), HAND);
+        hands.push(world.add_rigid_body(hand.with_motion_type(MotionType::Kinematic))?);
     }
-    let holes = sides.map(|side| hole_side(&world.bodies()[ring], side));
+    let holes = sides.map(|side| hole_side(&world.soft_bodies()[ring], side));
     let (mut apart, mut waited, mut deepest) = (1.0, 0.0, f32::NEG_INFINITY);
     while waited < WAIT {
         apart -= 2.0 * speed / 60.0;
@@ -78,13 +81,13 @@ fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
             (apart, waited) = (LEFT, waited + 1.0 / 60.0);
         }
         for (&hand, side) in hands.iter().zip(sides) {
-            world.set_goal(hand, middle_of(side, apart))?;
+            world.set_target_position(hand, middle_of(side, apart))?;
         }
         let report = world.step();
         ensure!(report.quarantined == 0, "the ring went out of hand");
         let [low, high] = holes
             .each_ref()
-            .map(|nodes| places(&world.bodies()[ring], nodes));
+            .map(|nodes| places(&world.soft_bodies()[ring], nodes));
         let slips = |at: &Vector| (at[2] - plane).abs() > voxel;
         ensure!(
             !low.iter().chain(&high).any(slips),
@@ -104,7 +107,7 @@ fn plane_of<D: Dim>(grid: &VoxelGrid<D>) -> f32 {
 }
 
 /// The nodes below or above the middle of the hole that stand on its side, in space in its plane.
-fn hole_side<D: Dim>(body: &Body<D>, side: f32) -> Vec<NodeId> {
+fn hole_side<D: Dim>(body: &SoftBody<D>, side: f32) -> Vec<NodeId> {
     let (voxel, plane) = (body.grid().voxel_size(), plane_of(body.grid()));
     let nodes = body.mesh().nodes().filter(|(id, node)| {
         let [x, y, z] = body.node_state(*id).0;
@@ -117,7 +120,7 @@ fn hole_side<D: Dim>(body: &Body<D>, side: f32) -> Vec<NodeId> {
 }
 
 /// Where nodes are, from left to right.
-fn places<D: Dim>(body: &Body<D>, nodes: &[NodeId]) -> Vec<Vector> {
+fn places<D: Dim>(body: &SoftBody<D>, nodes: &[NodeId]) -> Vec<Vector> {
     let mut places: Vec<Vector> = nodes.iter().map(|&id| body.node_state(id).0).collect();
     places.sort_by(|a, b| a[0].total_cmp(&b[0]));
     places
@@ -152,7 +155,7 @@ mod tests {
     }
 
     fn check_rest<D: Dim>() {
-        let body = Body::new(VoxelGrid::<D>::ring(24, 1.0).unwrap(), &[material()]).unwrap();
+        let body = SoftBody::new(VoxelGrid::<D>::ring(24, 1.0).unwrap(), &[material()]).unwrap();
         let [low, high] = [-1.0, 1.0].map(|side| places(&body, &hole_side(&body, side)));
         assert!(
             (overlap(&low, &high) + 0.5).abs() < 0.1,

@@ -8,12 +8,12 @@
 //! out: the bodies of the checks are nowhere near that.
 
 use fuwafuwa::law::{Elasticity, Matrix};
-use fuwafuwa::stencil::{Stencil, Vector64};
+use fuwafuwa::stencil::{ElementClass, Vector64};
 use fuwafuwa::vector::{cross, dot, minus, plus, scaled};
-use fuwafuwa::{Body, Dim, NodeId};
+use fuwafuwa::{Dim, NodeId, SoftBody};
 
 /// The energy stored in a body [J].
-pub fn of_body<D: Dim>(body: &Body<D>) -> f64 {
+pub fn of_body<D: Dim>(body: &SoftBody<D>) -> f64 {
     let elements = body.mesh().elements().map(|(_, element)| {
         let place = |&node: &NodeId| body.node_state(node).0.map(f64::from);
         let positions: Vec<Vector64> = element.nodes.iter().map(place).collect();
@@ -27,7 +27,7 @@ pub fn of_body<D: Dim>(body: &Body<D>) -> f64 {
 /// The energy stored in an element of width `size` [m] with its nodes at `positions` [m].
 fn of_element<D: Dim>(
     elasticity: Elasticity,
-    stencil: &Stencil<D>,
+    stencil: &ElementClass<D>,
     size: f64,
     positions: &[Vector64],
 ) -> f64 {
@@ -91,7 +91,7 @@ mod tests {
     /// The force is the slope of the energy, also for elements with mid nodes.
     fn check_slope<D: Dim>(children: u8, slots: u32) {
         let elasticity = Elasticity::new(1000.0, 0.3).unwrap();
-        let stencil = Stencil::<D>::new(children, slots).unwrap();
+        let stencil = ElementClass::<D>::new(children, slots).unwrap();
         let size = 0.5;
         let bent = |r: &Vector64| {
             let [x, y, z] = r.map(|k| 0.5 * size * k);
@@ -103,7 +103,7 @@ mod tests {
             ]
         };
         let positions: Vec<Vector64> = stencil.offsets.iter().map(bent).collect();
-        let found = forces(Law::PatchExact, elasticity, &stencil, size, &positions);
+        let found = forces(Law::CorotationalVem, elasticity, &stencil, size, &positions);
         for (node, axis) in (0..positions.len()).flat_map(|k| (0..D::N).map(move |i| (k, i))) {
             let at = |by: f64| {
                 let mut moved = positions.clone();

@@ -4,7 +4,7 @@ use anyhow::Result;
 use fuwafuwa::law::{Elasticity, Law};
 use fuwafuwa::pyramid::Grading;
 use fuwafuwa::shape::Vector;
-use fuwafuwa::{Body, Dim, Material, NodeId, VoxelGrid};
+use fuwafuwa::{Dim, Material, NodeId, SoftBody, VoxelGrid};
 
 /// A soft body that rings without damping and does not tear.
 pub fn material() -> Material {
@@ -21,14 +21,19 @@ pub fn material() -> Material {
 }
 
 /// A disc or a ball 1 m across, of `n` voxels.
-pub fn ball<D: Dim>(n: usize, material: Material, grading: Grading) -> Result<Body<D>> {
+pub fn ball<D: Dim>(n: usize, material: Material, grading: Grading) -> Result<SoftBody<D>> {
     let grid = VoxelGrid::ball(n, 1.0)?;
-    Ok(Body::with(grid, &[material], Law::PatchExact, grading)?)
+    Ok(SoftBody::with_options(
+        grid,
+        &[material],
+        Law::CorotationalVem,
+        grading,
+    )?)
 }
 
 /// Sets position [m] and velocity [m/s] of every node by its place at rest [m], which is measured
 /// from the middle of a body 1 m across.
-pub fn arrange<D: Dim>(body: &mut Body<D>, state: impl Fn(Vector) -> (Vector, Vector)) {
+pub fn arrange<D: Dim>(body: &mut SoftBody<D>, state: impl Fn(Vector) -> (Vector, Vector)) {
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
         let (position, velocity) = state(at_rest(body, id));
@@ -37,7 +42,7 @@ pub fn arrange<D: Dim>(body: &mut Body<D>, state: impl Fn(Vector) -> (Vector, Ve
 }
 
 /// Where a node is at rest, measured from the middle of a body 1 m across [m].
-pub fn at_rest<D: Dim>(body: &Body<D>, id: NodeId) -> Vector {
+pub fn at_rest<D: Dim>(body: &SoftBody<D>, id: NodeId) -> Vector {
     let (at, size) = (body.mesh().node(id).at, body.grid().voxel_size());
     [0, 1, 2].map(|axis| match axis {
         axis if axis < D::N => at[axis] as f32 * size - 0.5,

@@ -5,8 +5,8 @@ use crate::report::{Outcome, Progress};
 use anyhow::Result;
 use fuwafuwa::dim::{neighbourhood, points_in};
 use fuwafuwa::law::{Elasticity, Law, forces};
-use fuwafuwa::pyramid::{Grading, Pyramid};
-use fuwafuwa::sharing::Sharing;
+use fuwafuwa::pyramid::{CellHierarchy, Grading};
+use fuwafuwa::sharing::Connectivity;
 use fuwafuwa::{Dim, Dim2, Dim3, Mesh, NodeId, Point, VoxelGrid};
 
 /// Largest residual of the default law, relative to stress times the face of a voxel.
@@ -42,20 +42,20 @@ fn check_dim<D: Dim>(
     sizes: std::ops::Range<i32>,
     progress: &Progress,
 ) -> Result<Vec<Outcome>> {
-    let laws = [Law::PatchExact, Law::Endo2004];
+    let laws = [Law::CorotationalVem, Law::Endo2004];
     let mut worst = [0.0f64; 2];
     for seed in 0..shapes {
         let n = sizes.start + seed as i32 % (sizes.end - sizes.start);
         let mut random = Random::new(seed + 1);
         if let Some(grid) = random_shape::<D>(&mut random, n) {
-            let mut sharing = Sharing::new(&grid);
+            let mut sharing = Connectivity::new(&grid);
             for _ in 0..1 + random.below(5) {
                 random_cut(&mut sharing, &mut random, n);
             }
             let mesh = Mesh::grade(
                 &grid,
                 &sharing,
-                &Pyramid::new(&grid, &sharing, Grading::Graded),
+                &CellHierarchy::new(&grid, &sharing, Grading::Graded),
             )?;
             for (worst, law) in worst.iter_mut().zip(laws) {
                 *worst = worst.max(residual(&mesh, &sharing, law)?);
@@ -71,7 +71,7 @@ fn check_dim<D: Dim>(
 }
 
 /// Worst force on an inner node under a uniform strain, relative to stress times a voxel's face.
-fn residual<D: Dim>(mesh: &Mesh<D>, sharing: &Sharing<D>, law: Law) -> Result<f64> {
+fn residual<D: Dim>(mesh: &Mesh<D>, sharing: &Connectivity<D>, law: Law) -> Result<f64> {
     let elasticity = Elasticity::new(1000.0, 0.3)?;
     let strain = [[1.12, 0.07, 0.0], [-0.21, 0.91, 0.05], [0.0, 0.11, 1.04]];
     let deformed = |at: Point| {
@@ -134,7 +134,7 @@ fn random_shape<D: Dim>(random: &mut Random, n: i32) -> Option<VoxelGrid<D>> {
 }
 
 /// Releases a few single points or whole rectangles, as a crack or a knife would.
-fn random_cut<D: Dim>(sharing: &mut Sharing<D>, random: &mut Random, n: i32) {
+fn random_cut<D: Dim>(sharing: &mut Connectivity<D>, random: &mut Random, n: i32) {
     let axis = random.below(D::N as i32) as usize;
     let side = (0..D::CORNERS).fold(0u8, |mask, octant| {
         mask | ((octant >> axis & 1) as u8) << octant

@@ -6,7 +6,7 @@ use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::pyramid::Grading;
 use fuwafuwa::vector::{dot, plus, scaled};
-use fuwafuwa::{Body, Dim, Dim2, Dim3};
+use fuwafuwa::{Dim, Dim2, Dim3, SoftBody};
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
@@ -108,9 +108,9 @@ fn ring<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<Ring>
 /// Takes a step of `duration` [s]; returns the energy [J] before it. A step kicks velocities over
 /// a whole duration from half of one before to half of one after, so the speed that goes with the
 /// places is the mean of both.
-fn advance_and_weigh<D: Dim>(body: &mut Body<D>, duration: f64) -> f64 {
+fn advance_and_weigh<D: Dim>(body: &mut SoftBody<D>, duration: f64) -> f64 {
     let stored = energy::of_body(body);
-    let velocity = |body: &Body<D>, id| body.node_state(id).1.map(f64::from);
+    let velocity = |body: &SoftBody<D>, id| body.node_state(id).1.map(f64::from);
     let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     let before: Vec<[f64; 3]> = ids.iter().map(|&id| velocity(body, id)).collect();
     body.advance(duration as f32, [0.0; 3]);
@@ -151,7 +151,7 @@ fn strongest_period(signal: &[f64], duration: f64, about: f64) -> f64 {
 }
 
 /// How far a body is squashed: its height at rest against its height now, weighed by mass.
-fn squash_of<D: Dim>(body: &Body<D>) -> f64 {
+fn squash_of<D: Dim>(body: &SoftBody<D>) -> f64 {
     let (mut sum, mut whole) = (0.0, 0.0);
     for (id, _) in body.mesh().nodes() {
         let (rest, (at, _, mass)) = (f64::from(at_rest(body, id)[1]), body.node_state(id));

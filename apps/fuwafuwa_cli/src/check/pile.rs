@@ -56,14 +56,18 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
     let mut world = scene.build::<D>()?;
     let count = |world: &World<D>| {
         world
-            .bodies()
+            .soft_bodies()
             .first()
             .expect("it has a body")
             .piece_views()
             .len()
     };
     let before = count(&world);
-    let mass = world.bodies().first().expect("it has a body").total_mass();
+    let mass = world
+        .soft_bodies()
+        .first()
+        .expect("it has a body")
+        .total_mass();
     let mut asleep = f64::INFINITY;
     let mut depth = 0.0f64;
     for tick in 0..(PATIENCE * 60.0) as usize {
@@ -71,7 +75,7 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
         anyhow::ensure!(report.quarantined == 0, "a piece went out of hand");
         depth = depth.max(deepest(&world));
         if world
-            .bodies()
+            .soft_bodies()
             .first()
             .expect("it has a body")
             .pieces()
@@ -83,20 +87,29 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
             break;
         }
     }
-    let views = world.bodies().first().expect("it has a body").piece_views();
+    let views = world
+        .soft_bodies()
+        .first()
+        .expect("it has a body")
+        .piece_views();
     let size = f64::from(
         world
-            .bodies()
+            .soft_bodies()
             .first()
             .expect("it has a body")
             .grid()
             .voxel_size(),
     );
     let outside = views.iter().filter(|view| {
-        let mut obstacles = world.obstacles();
+        let mut obstacles = world.fixed_rigid_bodies();
         obstacles.any(|obstacle| obstacle.shape().distance(view.centre).0 < 0.0)
     });
-    let kept = world.bodies().first().expect("it has a body").total_mass() / mass;
+    let kept = world
+        .soft_bodies()
+        .first()
+        .expect("it has a body")
+        .total_mass()
+        / mass;
     anyhow::ensure!(
         (kept - 1.0).abs() < 1e-6,
         "mass changed to {kept} of what it was"
@@ -111,11 +124,11 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
 
 /// How deep the deepest node is in a wall [m].
 fn deepest<D: Dim>(world: &World<D>) -> f64 {
-    let body = world.bodies().first().expect("it has a body");
+    let body = world.soft_bodies().first().expect("it has a body");
     let mut deepest = 0.0f32;
     for (id, _) in body.mesh().nodes() {
         let at = body.node_state(id).0;
-        for obstacle in world.obstacles() {
+        for obstacle in world.fixed_rigid_bodies() {
             deepest = deepest.max(-obstacle.shape().distance(at).0);
         }
     }

@@ -15,8 +15,8 @@ use super::parallel;
 use super::statics::Statics;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
-use fuwafuwa::pyramid::{Grading, Pyramid};
-use fuwafuwa::sharing::Sharing;
+use fuwafuwa::pyramid::{CellHierarchy, Grading};
+use fuwafuwa::sharing::Connectivity;
 use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
 
 /// Voxels across the discs.
@@ -132,8 +132,12 @@ fn sag_between<D: Dim>(
         let is_beyond = level_axes.clone().all(|axis| at[axis] >= mirror);
         u8::from(is_beyond) * whole.material(at)
     })?;
-    let sharing = Sharing::new(&grid);
-    let mesh = Mesh::grade(&grid, &sharing, &Pyramid::new(&grid, &sharing, grading))?;
+    let sharing = Connectivity::new(&grid);
+    let mesh = Mesh::grade(
+        &grid,
+        &sharing,
+        &CellHierarchy::new(&grid, &sharing, grading),
+    )?;
     let heights: Vec<i32> = mesh.nodes().map(|(_, node)| node.at[1]).collect();
     let lowest = heights.iter().copied().min().unwrap_or(0);
     let highest = heights.iter().copied().max().unwrap_or(0);

@@ -7,7 +7,7 @@ use anyhow::{Result, ensure};
 use fuwafuwa::pyramid::Grading;
 use fuwafuwa::vector::{cross, plus};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Blade, Body, Dim, Dim2, Dim3, Material, PieceId, Settings, World};
+use fuwafuwa::{Blade, Dim, Dim2, Dim3, Material, PieceId, SoftBody, World, WorldConfig};
 
 /// Dimensions, voxels across, and damping of the bodies.
 const BODIES: [(usize, usize, f32); 4] = [(2, 32, 0.0), (2, 32, 0.08), (3, 24, 0.0), (3, 24, 0.08)];
@@ -56,7 +56,7 @@ struct Halves {
 fn halves<D: Dim>(n: usize) -> Result<Halves> {
     let mut world = spinning::<D>(n, material())?;
     let whole = world
-        .bodies()
+        .soft_bodies()
         .first()
         .expect("it has a body")
         .momentum()
@@ -65,7 +65,7 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
     let from = [0.0, -1.5, -1.5];
     let cut = world
         .cut(
-            world.nth_body(0).expect("it has a body"),
+            world.nth_soft_body(0).expect("it has a body"),
             &Blade {
                 from,
                 across,
@@ -80,7 +80,7 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
     };
     step(&mut world, APART);
     let pieces = world
-        .bodies()
+        .soft_bodies()
         .first()
         .expect("it has a body")
         .pieces()
@@ -90,7 +90,7 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
     let motions = |world: &World<D>| {
         [0, 1].map(|piece| {
             motion(
-                world.bodies().first().expect("it has a body"),
+                world.soft_bodies().first().expect("it has a body"),
                 PieceId(piece),
             )
         })
@@ -108,7 +108,7 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
         both: along_first(
             whole,
             world
-                .bodies()
+                .soft_bodies()
                 .first()
                 .expect("it has a body")
                 .momentum()
@@ -118,7 +118,7 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
 }
 
 /// The momentum of a piece, and its angular momentum about its own centre.
-fn motion<D: Dim>(body: &Body<D>, piece: PieceId) -> ([f64; 3], [f64; 3]) {
+fn motion<D: Dim>(body: &SoftBody<D>, piece: PieceId) -> ([f64; 3], [f64; 3]) {
     let nodes = body.mesh().nodes().map(|(id, _)| id);
     let nodes = nodes.filter(|&id| body.pieces().of_node(id) == piece);
     let states: Vec<_> = nodes.map(|id| body.node_state(id)).collect();
@@ -152,7 +152,7 @@ fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
     };
     let mut world = spinning::<D>(n, material)?;
     let before = world
-        .bodies()
+        .soft_bodies()
         .first()
         .expect("it has a body")
         .momentum()
@@ -163,7 +163,7 @@ fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
     Ok(along_first(
         before,
         world
-            .bodies()
+            .soft_bodies()
             .first()
             .expect("it has a body")
             .momentum()
@@ -188,13 +188,13 @@ fn spinning<D: Dim>(n: usize, material: Material) -> Result<World<D>> {
         ];
         ([x, y, z], velocity)
     });
-    let mut world = World::<D>::new(Settings {
+    let mut world = World::<D>::new(WorldConfig {
         gravity: [0.0; 3],
         drag: 0.0,
         most_substeps: 1024,
-        ..Settings::default()
+        ..WorldConfig::default()
     })?;
-    world.add_body(body);
+    world.add_soft_body(body);
     Ok(world)
 }
 

@@ -6,7 +6,9 @@ use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::law::Elasticity;
 use fuwafuwa::shape::Vector;
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Rigid, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{
+    Dim, Dim2, Dim3, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
+};
 
 /// Bodies in a stack, voxels across each, and its width [m].
 const BODIES: usize = 10;
@@ -46,8 +48,8 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
 }
 
 fn stand<D: Dim>(bodies: usize, duration: f32) -> Result<Stack> {
-    let mut world = World::<D>::new(Settings::default())?;
-    world.add_rigid(Rigid::fixed(
+    let mut world = World::<D>::new(WorldConfig::default())?;
+    world.add_rigid_body(RigidBody::fixed(
         Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
         0.5,
     ))?;
@@ -60,11 +62,11 @@ fn stand<D: Dim>(bodies: usize, duration: f32) -> Result<Stack> {
         ..material()
     };
     for place in 0..bodies {
-        let body = Body::new(VoxelGrid::cube(VOXELS, WIDTH)?, &[material])?;
-        world.add_body(body.moved([0.0, WIDTH * place as f32, 0.0]));
+        let body = SoftBody::new(VoxelGrid::cube(VOXELS, WIDTH)?, &[material])?;
+        world.add_soft_body(body.translated([0.0, WIDTH * place as f32, 0.0]));
     }
     let centres = |world: &World<D>| -> Vec<Vector> {
-        let views = world.bodies().iter().map(|body| body.piece_views());
+        let views = world.soft_bodies().iter().map(|body| body.piece_views());
         views.map(|pieces| pieces[0].centre).collect()
     };
     let put = centres(&world);
@@ -72,7 +74,7 @@ fn stand<D: Dim>(bodies: usize, duration: f32) -> Result<Stack> {
     let (mut leaning, mut motion) = (0.0f32, 0.0f32);
     for tick in 0..(60.0 * duration) as usize {
         let report = world.step();
-        ensure!(report.released == 0, "a body of the stack tore");
+        ensure!(report.nodes_split == 0, "a body of the stack tore");
         let now = centres(&world);
         if tick == (60.0 * SETTLED) as usize {
             settled.clone_from(&now);

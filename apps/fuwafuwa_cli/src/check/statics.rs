@@ -7,7 +7,7 @@ use crate::report::Progress;
 use anyhow::{Result, ensure};
 use fuwafuwa::law::{Elasticity, Law, forces};
 use fuwafuwa::mesh::Node;
-use fuwafuwa::stencil::Stencil;
+use fuwafuwa::stencil::ElementClass;
 use fuwafuwa::{Dim, Mesh};
 use std::collections::BTreeMap;
 
@@ -160,13 +160,13 @@ impl Statics {
 }
 
 /// −∂f/∂x at rest for an element of width 2, by central differences, made symmetric.
-fn stiffness<D: Dim>(stencil: &Stencil<D>, elasticity: Elasticity) -> Vec<f64> {
+fn stiffness<D: Dim>(stencil: &ElementClass<D>, elasticity: Elasticity) -> Vec<f64> {
     let count = stencil.slots.len() * D::N;
     let mut matrix = vec![0.0; count * count];
     let pull = |column: usize, step: f64| {
         let mut positions = stencil.offsets.clone();
         positions[column / D::N][column % D::N] += step;
-        forces(Law::PatchExact, elasticity, stencil, 2.0, &positions)
+        forces(Law::CorotationalVem, elasticity, stencil, 2.0, &positions)
     };
     for column in 0..count {
         let (ahead, behind) = (pull(column, STEP), pull(column, -STEP));

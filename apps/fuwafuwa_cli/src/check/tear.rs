@@ -3,7 +3,7 @@
 use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
-use fuwafuwa::{Blade, Body, Dim, Dim2, Dim3, Material, Settings, VoxelGrid, World};
+use fuwafuwa::{Blade, Dim, Dim2, Dim3, Material, SoftBody, VoxelGrid, World, WorldConfig};
 
 /// Dimensions, voxels across the bar, and whether it has a notch.
 const BARS: [(usize, usize, bool); 10] = [
@@ -24,7 +24,7 @@ const TOLERANCE: f64 = 0.03;
 /// neither inertia nor damping carries a share of the load.
 const SPEEDS: [f32; 2] = [0.03, 0.01];
 /// Strain that a bar starts with, relative to strength / Young's modulus. A whole bar is in balance
-/// then. Around a notch the strain has yet to gather, and overshoots as it does: start at less
+/// then. PointNeighbourhood a notch the strain has yet to gather, and overshoots as it does: start at less
 /// than half of what that bar bears.
 const STARTS: [f32; 2] = [0.85, 0.08];
 
@@ -70,7 +70,7 @@ fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
         // Ends that are held cannot grow thin: without bulging, the strain is the same everywhere.
         material.elasticity.poisson = 0.0;
     }
-    let mut body = Body::new(grid, &[material])?;
+    let mut body = SoftBody::new(grid, &[material])?;
     if notched {
         let blade = Blade {
             from: [0.5 * length as f32 + 0.001, -0.1, -0.1],
@@ -88,7 +88,7 @@ fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
         let share = node.at[0] as f32 / last as f32;
         body.set_node_state(id, [x * (1.0 + strain), y, z], [speed * share, 0.0, 0.0]);
         if node.at[0] == 0 || node.at[0] == last {
-            body.hold(id);
+            body.fix_node(id);
         }
     }
     let held: Vec<_> = nodes
@@ -96,17 +96,17 @@ fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
         .filter(|(_, node)| node.at[0] == 0)
         .map(|&(id, _)| id)
         .collect();
-    let mut world = World::<D>::new(Settings {
+    let mut world = World::<D>::new(WorldConfig {
         gravity: [0.0; 3],
         drag: 0.0,
         most_substeps: 256,
-        ..Settings::default()
+        ..WorldConfig::default()
     })?;
-    world.add_body(body);
+    world.add_soft_body(body);
     let mut peak = 0.0f64;
     for _ in 0..6000 {
         world.step();
-        let body = world.bodies().first().expect("it has a body");
+        let body = world.soft_bodies().first().expect("it has a body");
         let load: f64 = held.iter().map(|&id| f64::from(body.force_on(id)[0])).sum();
         peak = peak.max(load);
         if peak > 10.0 && load < 0.3 * peak {

@@ -35,7 +35,7 @@ pub fn conditions() -> Result<Painter> {
     square(&mut painter, frame, child, 1);
     draw_nodes(&mut painter, frame, &voxel.before);
     for at in [child, add(child, [1, 0, 0]), add(child, [1, 1, 0])] {
-        let front = voxel.after.sharing().is_open(at);
+        let front = voxel.after.connectivity().is_open(at);
         let role = if front { Role::Removed } else { Role::Added };
         painter.bright_dot(frame.spot(at.map(|k| k as f32)), 6.5, role);
     }

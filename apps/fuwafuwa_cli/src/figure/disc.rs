@@ -3,9 +3,9 @@
 use super::legend::level_entries;
 use anyhow::Result;
 use fuwafuwa::dim::{add, corner, points_in, scale};
-use fuwafuwa::pyramid::{Grading, Pyramid};
+use fuwafuwa::pyramid::{CellHierarchy, Grading};
 use fuwafuwa::stencil::slot_at;
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Mesh, NodeId, Point, VoxelGrid};
+use fuwafuwa::{Dim, Dim2, Dim3, Material, Mesh, NodeId, Point, SoftBody, VoxelGrid};
 use fuwafuwa_painter::solid::{Camera, Solid};
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Frame, Painter, Role, Sample};
@@ -50,7 +50,7 @@ pub fn table() -> Result<Painter> {
     const PANEL: f32 = 288.0;
     const PITCH: [f32; 2] = [330.0, 356.0];
     let body = disc()?;
-    let pyramid = Pyramid::new(body.grid(), body.sharing(), Grading::Graded);
+    let pyramid = CellHierarchy::new(body.grid(), body.connectivity(), Grading::Graded);
     let count = pyramid.level_count();
     let rows = count.div_ceil(3);
     let mut painter = Painter::new(1028, (PITCH[1] * rows as f32) as u32 + 96);
@@ -95,7 +95,7 @@ pub fn table() -> Result<Painter> {
 /// Figure 1 in space: a ball from which the front quarter was lifted, elements by level.
 pub fn opened_ball() -> Result<Painter> {
     let (width, height) = (900, 880);
-    let body = Body::<Dim3>::new(VoxelGrid::ball(BALL, 1.0)?, &[Material::default()])?;
+    let body = SoftBody::<Dim3>::new(VoxelGrid::ball(BALL, 1.0)?, &[Material::default()])?;
     let mut solid = Solid::new(Camera {
         eye: [2.6, 2.05, 2.9],
         target: [0.5, 0.43, 0.5],
@@ -129,17 +129,17 @@ pub fn opened_ball() -> Result<Painter> {
     Ok(painter)
 }
 
-fn disc() -> Result<Body<Dim2>> {
+fn disc() -> Result<SoftBody<Dim2>> {
     let grid = VoxelGrid::ball(ACROSS, 1.0)?;
-    Ok(Body::new(grid, &[Material::default()])?)
+    Ok(SoftBody::new(grid, &[Material::default()])?)
 }
 
 /// The table of one level: its places, the cells that exist, and the elements they own.
 fn draw_level(
     painter: &mut Painter,
     frame: Frame,
-    body: &Body<Dim2>,
-    pyramid: &Pyramid<Dim2>,
+    body: &SoftBody<Dim2>,
+    pyramid: &CellHierarchy<Dim2>,
     level: u8,
 ) {
     let spot = |at: Point| frame.spot(at.map(|k| k as f32 / ACROSS as f32));

@@ -6,7 +6,8 @@ use anyhow::Result;
 use fuwafuwa::law::Elasticity;
 use fuwafuwa::world::TICK;
 use fuwafuwa::{
-    Blade, Body, Dim2, Dim3, Drive, Material, Rigid, Settings, Shape, VoxelGrid, World,
+    Blade, Dim2, Dim3, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid, World,
+    WorldConfig,
 };
 use fuwafuwa_painter::solid::{Camera, Solid};
 use fuwafuwa_painter::worlds::{self, DrawPlane, DrawSpace};
@@ -29,8 +30,8 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
         toughness: 200.0,
         ..Material::default()
     };
-    let mut world = World::<Dim2>::new(Settings::default())?;
-    world.add_rigid(Rigid::fixed(
+    let mut world = World::<Dim2>::new(WorldConfig::default())?;
+    world.add_rigid_body(RigidBody::fixed(
         Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
         0.6,
     ))?;
@@ -39,12 +40,12 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
             centre: [x - 0.05 * lean, 0.2, 0.0],
             half: [0.08, 0.2, 1.0],
         };
-        world.add_rigid(Rigid::fixed(wall, 0.4))?;
+        world.add_rigid_body(RigidBody::fixed(wall, 0.4))?;
     }
-    world.add_body(Body::new(VoxelGrid::ball(40, 1.0)?, &[material])?);
-    let mut hand = Rigid::hand([0.46, 1.2, 0.0], 0.055);
-    hand.drive = Drive::Kinematic;
-    let hand = world.add_rigid(hand)?;
+    world.add_soft_body(SoftBody::new(VoxelGrid::ball(40, 1.0)?, &[material])?);
+    let mut hand = RigidBody::coupled_ball([0.46, 1.2, 0.0], 0.055);
+    hand.motion_type = MotionType::Kinematic;
+    let hand = world.add_rigid_body(hand)?;
 
     let progress = Progress::new();
     progress.expect(TICKS as u64);
@@ -55,7 +56,7 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
             skins.push(plane_frame(&world, tick, worlds::plane_skin)?);
         }
         let way = (tick as f32 / (TICKS as f32 * 0.8)).min(1.0);
-        world.set_goal(hand, [0.46 + 0.05 * way, 1.2 - 1.1 * way, 0.0])?;
+        world.set_target_position(hand, [0.46 + 0.05 * way, 1.2 - 1.1 * way, 0.0])?;
         world.step();
         progress.step();
     }
@@ -81,14 +82,14 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
         strength: f32::INFINITY,
         ..Material::default()
     };
-    let mut world = World::<Dim3>::new(Settings::default())?;
-    world.add_rigid(Rigid::fixed(
+    let mut world = World::<Dim3>::new(WorldConfig::default())?;
+    world.add_rigid_body(RigidBody::fixed(
         Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
         1.0,
     ))?;
     let low = -1.0 / ACROSS as f32;
-    let body = Body::new(VoxelGrid::ball(ACROSS, 1.0)?, &[material])?;
-    world.add_body(body.moved([0.0, low, 0.0]));
+    let body = SoftBody::new(VoxelGrid::ball(ACROSS, 1.0)?, &[material])?;
+    world.add_soft_body(body.translated([0.0, low, 0.0]));
     let progress = Progress::new();
     progress.expect(TICKS as u64);
     let (mut skins, mut sections) = (Vec::new(), Vec::new());
@@ -101,7 +102,7 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
                 across: [0.0, -depth, 0.0],
                 along: [0.0, 0.0, 2.0],
             };
-            world.cut(world.nth_body(0).unwrap(), &blade).unwrap();
+            world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap();
             skins.push(space_frame(&world, tick, worlds::space_skin)?);
             sections.push(space_frame(&world, tick, draw_section)?);
         }
@@ -124,7 +125,7 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
 }
 
 /// Elements whose cells lie behind the middle of the body, at rest.
-fn draw_section(solid: &mut Solid, body: &Body<Dim3>) {
+fn draw_section(solid: &mut Solid, body: &SoftBody<Dim3>) {
     let middle = body.grid().size()[2] / 2;
     worlds::space_elements(solid, body, |view| {
         let element = body.mesh().element(view.id);

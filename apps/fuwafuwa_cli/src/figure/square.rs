@@ -11,7 +11,7 @@ use anyhow::Result;
 use fuwafuwa::mesh::Element;
 use fuwafuwa::pyramid::Cell;
 use fuwafuwa::view::ElementView;
-use fuwafuwa::{Body, Dim, Dim2, Material, Point, VoxelGrid};
+use fuwafuwa::{Dim, Dim2, Material, Point, SoftBody, VoxelGrid};
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Frame, Painter, Role};
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,9 +28,9 @@ const GAPE: f32 = 0.16;
 /// The square before and after one release.
 pub struct Release {
     /// Before.
-    pub before: Body<Dim2>,
+    pub before: SoftBody<Dim2>,
     /// Afterwards.
-    pub after: Body<Dim2>,
+    pub after: SoftBody<Dim2>,
     /// The height of the node that is released.
     pub height: i32,
 }
@@ -43,7 +43,7 @@ impl Release {
         let grid = VoxelGrid::from_fn(size, 1.0, |at| {
             u8::from(solid.contains(&at[0]) && solid.contains(&at[1]))
         })?;
-        let mut before = Body::<Dim2>::new(grid, &[Material::default()])?;
+        let mut before = SoftBody::<Dim2>::new(grid, &[Material::default()])?;
         for y in 1..height {
             before.release(&[([MIDDLE, y, 0], RIGHT)])?;
         }
@@ -59,7 +59,7 @@ impl Release {
     }
 
     /// The same, the new crack open as well.
-    pub fn opened(&self) -> Body<Dim2> {
+    pub fn opened(&self) -> SoftBody<Dim2> {
         let mut body = self.after.clone();
         gape(&mut body, self.height + 1);
         body
@@ -85,14 +85,14 @@ impl Release {
 }
 
 /// Draws the elements.
-pub fn draw(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
+pub fn draw(painter: &mut Painter, frame: Frame, body: &SoftBody<Dim2>) {
     for view in body.element_views() {
         worlds::plane_element(painter, frame, &view, 1.2);
     }
 }
 
 /// Draws the nodes.
-pub fn draw_nodes(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
+pub fn draw_nodes(painter: &mut Painter, frame: Frame, body: &SoftBody<Dim2>) {
     for (id, _) in body.mesh().nodes() {
         let spot = frame.spot(body.node_state(id).0);
         painter.dot(spot, 0.1 * frame.unit, Role::Node);
@@ -103,7 +103,7 @@ pub fn draw_nodes(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
 pub fn mark(
     painter: &mut Painter,
     frame: Frame,
-    body: &Body<Dim2>,
+    body: &SoftBody<Dim2>,
     cells: &BTreeSet<Cell>,
     role: Role,
 ) {
@@ -113,14 +113,17 @@ pub fn mark(
 }
 
 /// The elements of some cells, each with its view.
-pub fn views<'a>(body: &'a Body<Dim2>, cells: &BTreeSet<Cell>) -> Vec<(&'a Element, ElementView)> {
+pub fn views<'a>(
+    body: &'a SoftBody<Dim2>,
+    cells: &BTreeSet<Cell>,
+) -> Vec<(&'a Element, ElementView)> {
     let pairs = body.mesh().elements().zip(body.element_views());
     let wanted = pairs.filter(|((_, element), _)| cells.contains(&element.cell));
     wanted.map(|((_, element), view)| (element, view)).collect()
 }
 
 /// The cells that have elements, and the children these fill.
-fn filled(body: &Body<Dim2>) -> BTreeMap<Cell, u8> {
+fn filled(body: &SoftBody<Dim2>) -> BTreeMap<Cell, u8> {
     let mut filled = BTreeMap::new();
     for (_, element) in body.mesh().elements() {
         *filled.entry(element.cell).or_insert(0) |= element.children;
@@ -129,12 +132,12 @@ fn filled(body: &Body<Dim2>) -> BTreeMap<Cell, u8> {
 }
 
 /// The lattice points of the nodes.
-pub fn points(body: &Body<Dim2>) -> BTreeSet<Point> {
+pub fn points(body: &SoftBody<Dim2>) -> BTreeSet<Point> {
     body.mesh().nodes().map(|(_, node)| node.at).collect()
 }
 
 /// Opens the crack below a height like a wedge, so that it can be seen.
-fn gape(body: &mut Body<Dim2>, height: i32) {
+fn gape(body: &mut SoftBody<Dim2>, height: i32) {
     let nodes: Vec<_> = body.mesh().nodes().collect();
     for (id, node) in nodes {
         let is_right = (0..Dim2::CORNERS)

@@ -127,7 +127,7 @@ impl Devices {
                 return Err(Stop::Idle);
             }
             let manner = match pushes {
-                true => force_feedback::Manner::Places,
+                true => force_feedback::Manner::CellIndexing,
                 false => force_feedback::Manner::Steers,
             };
             let contact = on_stick(contact, Some(turn));

@@ -2,14 +2,14 @@
 
 use crate::stick::Other;
 use fuwafuwa::{
-    Body, Dim2, Drive, Elasticity, Material, Rigid, RigidId, Settings as WorldSettings, Shape,
-    VoxelGrid, World,
+    Dim2, Elasticity, Material, MotionType, RigidBody, RigidBodyHandle, Shape, SoftBody, VoxelGrid,
+    World, WorldConfig as WorldSettings,
 };
 
 /// A soft disc between three walls, open to the left.
 pub struct Disc {
     pub world: World<Dim2>,
-    hand: RigidId,
+    hand: RigidBodyHandle,
 }
 
 impl Disc {
@@ -32,7 +32,7 @@ impl Disc {
             ..usual
         };
         let grid = VoxelGrid::ball(12, 1.0).expect("it is small");
-        world.add_body(Body::new(grid, &[material]).expect("it is a disc"));
+        world.add_soft_body(SoftBody::new(grid, &[material]).expect("it is a disc"));
         // In a corner from which it does not roll away.
         for (normal, at) in [
             ([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]),
@@ -41,11 +41,12 @@ impl Disc {
         ] {
             let wall = Shape::half_space(normal, at);
             world
-                .add_rigid(Rigid::fixed(wall, 0.5))
+                .add_rigid_body(RigidBody::fixed(wall, 0.5))
                 .expect("it is a shape");
         }
-        let hand = Rigid::hand([-0.3, 0.5, 0.0], 0.15).with_drive(Drive::default());
-        let hand = world.add_rigid(hand).expect("it is a hand");
+        let hand =
+            RigidBody::coupled_ball([-0.3, 0.5, 0.0], 0.15).with_motion_type(MotionType::default());
+        let hand = world.add_rigid_body(hand).expect("it is a hand");
         Self { world, hand }
     }
 }
@@ -53,10 +54,10 @@ impl Disc {
 impl Other for Disc {
     fn tick(&mut self, goal: [f32; 2]) -> ([f32; 2], [f32; 2]) {
         self.world
-            .set_goal(self.hand, [goal[0], 0.5 + goal[1], 0.0])
+            .set_target_position(self.hand, [goal[0], 0.5 + goal[1], 0.0])
             .expect("it is a place");
         self.world.step();
-        let hand = &self.world.rigids()[self.hand];
+        let hand = &self.world.rigid_bodies()[self.hand];
         let all = hand.reactions();
         let mean =
             |axis: usize| all.iter().map(|one| one.contact[axis]).sum::<f32>() / all.len() as f32;

@@ -25,7 +25,7 @@ fn feel(disc: &mut Disc, manner: Manner, lean: impl Fn(f32) -> f32) -> (Vec<[f32
                 at: now,
             };
             for event in disc.world.events() {
-                if matches!(event, Event::Released { .. }) {
+                if matches!(event, Event::NodeSplit { .. }) {
                     torn += 1;
                     feel.tear(0.5);
                 }
@@ -43,7 +43,7 @@ fn feel(disc: &mut Disc, manner: Manner, lean: impl Fn(f32) -> f32) -> (Vec<[f32
 
 #[test]
 fn at_rest_it_is_steady() {
-    for manner in [Manner::Places, Manner::Steers] {
+    for manner in [Manner::CellIndexing, Manner::Steers] {
         for young in [1000.0, 5000.0, 20_000.0] {
             let mut disc = Disc::new(young, f32::INFINITY);
             let (forces, _) = feel(&mut disc, manner, |time| (0.5 * time - 0.4).min(0.3));
@@ -64,7 +64,7 @@ fn at_rest_it_is_steady() {
 #[test]
 fn a_tear_is_no_jump() {
     let slew = Settings::default().slew;
-    for manner in [Manner::Places, Manner::Steers] {
+    for manner in [Manner::CellIndexing, Manner::Steers] {
         let mut disc = Disc::new(5000.0, 0.05);
         let (forces, torn) = feel(&mut disc, manner, |time| (0.8 * time - 0.4).min(0.9));
         assert!(torn > 10, "it tore {torn} times");

@@ -94,7 +94,7 @@ pub fn play(
             let manner = if play.steers {
                 Manner::Steers
             } else {
-                Manner::Places
+                Manner::CellIndexing
             };
             mail = Mail {
                 wish: Ok(State {

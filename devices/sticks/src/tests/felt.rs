@@ -122,7 +122,7 @@ fn all_of_it_up_to_the_pad() {
         .map(|pad| force.add(Box::new(sticks.haptic(pad.id())), Settings::default()));
     let push = State {
         contact: [-300.0, 0.0],
-        manner: Manner::Places,
+        manner: Manner::CellIndexing,
     };
     until("the one rumbles", || {
         lines[0].feel(push);

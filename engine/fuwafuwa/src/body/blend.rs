@@ -8,7 +8,7 @@ use crate::plasticity::Plasticity;
 
 /// Properties of a whole body, combined from the materials of its voxels.
 #[derive(Copy, Clone, Debug, Default)]
-pub struct Blend {
+pub struct BodyProperties {
     /// Damping ratio of the slowest mode; mean over the voxels.
     pub damping: f64,
     /// Angular frequency ω = π √(Y/ρ) / width of the slowest mode [1/s].
@@ -23,7 +23,7 @@ pub struct Blend {
     pub fastest_swing: f64,
 }
 
-impl Blend {
+impl BodyProperties {
     pub fn of<D: Dim>(grid: &VoxelGrid<D>, materials: &[Material]) -> Self {
         let mut counts = vec![0.0; materials.len()];
         for number in grid.voxels().map(|voxel| grid.material(voxel)) {

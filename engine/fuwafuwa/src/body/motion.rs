@@ -1,18 +1,18 @@
 //! Motion of the nodes of a body in a substep.
 
-use super::Body;
+use super::SoftBody;
 use crate::dim::{Dim, inner};
 use crate::ids::ElementId;
-use crate::law::turn_far_from;
-use crate::momentum::RoughMotion;
+use crate::law::rotation_if_far_from;
+use crate::momentum::RigidMotionF32;
 use crate::shape::Vector;
-use crate::solve::Kick;
+use crate::solve::VelocityUpdate;
 use crate::threads;
 use crate::vector::{as_row, is_finite, minus, plus, scaled, three};
 
-impl<D: Dim> Body<D> {
+impl<D: Dim> SoftBody<D> {
     /// Advances an isolated body by `duration` [s] under `gravity` [m/s²], without contact or damping.
-    /// Symplectic Euler, stable if `duration` is at most [`Body::longest_substep`].
+    /// Symplectic Euler, stable if `duration` is at most [`SoftBody::longest_substep`].
     #[inline(never)]
     pub fn advance(&mut self, duration: f32, gravity: [f32; 3]) {
         self.push(duration, gravity);
@@ -23,13 +23,13 @@ impl<D: Dim> Body<D> {
     pub(crate) fn push(&mut self, duration: f32, gravity: [f32; 3]) {
         self.refresh_awake();
         if std::mem::take(&mut self.state.placed) {
-            let all: Vec<ElementId> = self.truth.mesh.elements().map(|(id, _)| id).collect();
+            let all: Vec<ElementId> = self.topology.mesh.elements().map(|(id, _)| id).collect();
             self.settle(&all);
         }
         self.state.blocks.evaluate(&self.state.ahead);
         let mut gravity = scaled(as_row(gravity), self.state.gravity_scale);
         gravity[D::N..].fill(0.0);
-        let kick = Kick {
+        let kick = VelocityUpdate {
             nodes: &self.cache.awake,
             inverse_mass: &self.state.inverse_mass,
             duration,
@@ -59,7 +59,7 @@ impl<D: Dim> Body<D> {
         }
         for &id in elements {
             let element = self
-                .truth
+                .topology
                 .mesh
                 .element(id)
                 .expect("`settle` is called with live elements");
@@ -68,7 +68,7 @@ impl<D: Dim> Body<D> {
                 self.state.blocks.rotation(id),
                 self.elastic_part(id, element),
             );
-            if let Some(turned) = turn_far_from(&wide(rotation), &wide(deformation)) {
+            if let Some(turned) = rotation_if_far_from(&wide(rotation), &wide(deformation)) {
                 self.state
                     .blocks
                     .set_rotation(id, turned.map(|part| part as f32));
@@ -82,12 +82,12 @@ impl<D: Dim> Body<D> {
     /// No node moves by more than a voxel per substep. Faster nodes would invert elements, and the forces
     /// would grow from substep to substep. Returns the distance that the fastest node has moved [m].
     pub(crate) fn drift(&mut self, duration: f32, lead: f32) -> f32 {
-        let top_speed = self.truth.grid.voxel_size() / duration;
+        let top_speed = self.topology.grid.voxel_size() / duration;
         // Pieces created since the last damping round have no motion yet.
         self.cache
             .rigid
-            .resize(self.truth.pieces.list.len(), RoughMotion::default());
-        let (rigid, pieces) = (self.cache.rigid.as_slice(), &self.truth.pieces);
+            .resize(self.topology.pieces.list.len(), RigidMotionF32::default());
+        let (rigid, pieces) = (self.cache.rigid.as_slice(), &self.topology.pieces);
         let lists = [
             &mut self.state.position,
             &mut self.state.velocity,
@@ -131,8 +131,8 @@ impl<D: Dim> Body<D> {
         self.cache.awake_is_stale = false;
         let mut awake = std::mem::take(&mut self.cache.awake);
         awake.clear();
-        let nodes = self.truth.mesh.nodes().map(|(id, _)| id);
-        awake.extend(nodes.filter(|&id| !self.truth.pieces.sleeps(id)));
+        let nodes = self.topology.mesh.nodes().map(|(id, _)| id);
+        awake.extend(nodes.filter(|&id| !self.topology.pieces.sleeps(id)));
         self.cache.awake = awake;
     }
 }

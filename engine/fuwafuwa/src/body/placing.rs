@@ -1,6 +1,6 @@
 //! Position, orientation, velocity and user settings of a whole body.
 
-use super::Body;
+use super::SoftBody;
 use super::state::State;
 use crate::dim::{Dim, turning};
 use crate::ids::NodeId;
@@ -11,7 +11,7 @@ use crate::shape::{Vector, flat};
 use crate::solve::Row;
 use crate::vector::{as_row, cross, minus, plus, three};
 
-impl<D: Dim> Body<D> {
+impl<D: Dim> SoftBody<D> {
     /// Collision layers of the body: see [`World::set_layers`](crate::World::set_layers).
     pub fn layers(&self) -> Layers {
         self.state.layers
@@ -30,7 +30,7 @@ impl<D: Dim> Body<D> {
     /// Returns the body translated by `by` [m]. Pieces that are then not finite are quarantined in their
     /// first tick.
     #[inline(never)]
-    pub fn moved(mut self, by: Vector) -> Self {
+    pub fn translated(mut self, by: Vector) -> Self {
         self.shift(by);
         self
     }
@@ -40,10 +40,10 @@ impl<D: Dim> Body<D> {
     /// first tick.
     ///
     /// ```
-    /// use fuwafuwa::{Body, Dim2, Material, Rotation, VoxelGrid};
+    /// use fuwafuwa::{SoftBody, Dim2, Material, Rotation, VoxelGrid};
     ///
     /// let grid = VoxelGrid::<Dim2>::from_fn([8, 4, 1], 0.25, |_| 1)?;
-    /// let body = Body::new(grid, &[Material::default()])?;
+    /// let body = SoftBody::new(grid, &[Material::default()])?;
     /// let centre = body.centre_of_mass();
     /// let upright = body.rotated(Rotation::in_plane(1.5708), centre);
     /// assert!((upright.centre_of_mass()[0] - centre[0]).abs() < 1e-5);
@@ -57,7 +57,7 @@ impl<D: Dim> Body<D> {
 
     /// Returns the body with every node moving at `velocity` [m/s].
     #[inline(never)]
-    pub fn thrown(mut self, velocity: Vector) -> Self {
+    pub fn with_velocity(mut self, velocity: Vector) -> Self {
         for row in self.state.velocity.iter_mut() {
             row[..D::N].copy_from_slice(&velocity[..D::N]);
         }
@@ -67,7 +67,7 @@ impl<D: Dim> Body<D> {
     /// Centre of mass [m].
     #[inline(never)]
     pub fn centre_of_mass(&self) -> Vector {
-        let nodes: Vec<NodeId> = self.truth.mesh.nodes().map(|(id, _)| id).collect();
+        let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
         let states = self.states(&nodes).map(|(at, _, mass)| (at, mass));
         centre_of(states).map(|k| k as f32)
     }
@@ -107,7 +107,7 @@ impl<D: Dim> Body<D> {
     pub(crate) fn add_velocity(&mut self, linear: Vector, angular: Vector) {
         let centre = self.centre_of_mass();
         let angular = turning::<D>(angular);
-        for (id, _) in self.truth.mesh.nodes() {
+        for (id, _) in self.topology.mesh.nodes() {
             if self.state.inverse_mass[id] > 0.0 {
                 let lever = minus(three(self.state.position[id]), centre);
                 let added = plus(linear, cross(angular, lever));
@@ -120,7 +120,7 @@ impl<D: Dim> Body<D> {
     /// their mass, so that all of them gain the same velocity. If there is no node within the radius, the
     /// nearest one receives it. Fixed and sleeping nodes are skipped.
     pub(crate) fn add_impulse(&mut self, at: Vector, radius: f32, impulse: Vector) {
-        let nodes = self.truth.mesh.nodes().map(|(id, _)| id);
+        let nodes = self.topology.mesh.nodes().map(|(id, _)| id);
         let free = nodes.filter(|&id| self.state.inverse_mass[id] > 0.0);
         let at = flat::<D>(at);
         let squared = |id: NodeId| {

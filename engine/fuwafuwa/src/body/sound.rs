@@ -1,38 +1,38 @@
 //! Validation of bodies read from files: a checksum detects damage, but not invalid content.
 
-use super::Body;
+use super::SoftBody;
 use super::blend::plasticities;
-use super::state::{MOST_GRAVITY, State};
-use super::truth::Truth;
+use super::state::{MAX_GRAVITY_SCALE, State};
+use super::truth::Topology;
 use crate::dim::Dim;
-use crate::ids::{ElementId, NodeId, PieceId, Table};
+use crate::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::mesh::{Defect, Mesh};
 use crate::piece::Pieces;
-use crate::pyramid::Pyramid;
+use crate::pyramid::CellHierarchy;
 use crate::solve::Row;
 
-impl<D: Dim> Body<D> {
+impl<D: Dim> SoftBody<D> {
     /// Checks that cells, elements, nodes and pieces follow from the voxels and their connectivity, and that
     /// every node has a valid state.
     ///
     /// # Errors
     /// The first [`Defect`] found.
     pub(crate) fn check(&self) -> Result<(), Defect> {
-        self.truth.check()?;
+        self.topology.check()?;
         ensure(
-            self.state.has_room(self.truth.mesh.node_capacity()),
+            self.state.has_room(self.topology.mesh.node_capacity()),
             "states",
         )?;
         ensure(
-            self.state.blocks.is_sound(&self.truth.mesh),
+            self.state.blocks.is_sound(&self.topology.mesh),
             "states of elements",
         )?;
         let pull = self.state.gravity_scale;
-        ensure(pull.abs() <= MOST_GRAVITY, "gravity scale")?;
+        ensure(pull.abs() <= MAX_GRAVITY_SCALE, "gravity scale")?;
         let points = self.state.cooldowns.points();
-        let is_known = { points }.all(|at| self.truth.sharing.contains(at));
+        let is_known = { points }.all(|at| self.topology.connectivity.contains(at));
         ensure(is_known, "cooldown points")?;
-        for (id, node) in self.truth.mesh.nodes() {
+        for (id, node) in self.topology.mesh.nodes() {
             let defect = |what: &str| Err(Defect::of(format!("the node at {:?} {what}", node.at)));
             if !self.is_somewhere(id) {
                 return defect("has a position or velocity that is not finite or leaves the plane");
@@ -46,13 +46,13 @@ impl<D: Dim> Body<D> {
 
     /// Recomputes everything that snapshots do not contain, after the checks.
     pub(crate) fn restore(&mut self) {
-        let Truth {
+        let Topology {
             mesh,
             grid,
             materials,
             pieces,
             ..
-        } = &self.truth;
+        } = &self.topology;
         let asleep = |id: ElementId| pieces.list[pieces.of_element(id)].asleep;
         let (blocks, plasticities) = (&mut self.state.blocks, plasticities(materials));
         blocks.restore(mesh, grid, &plasticities, asleep);
@@ -76,22 +76,22 @@ impl<D: Dim> Body<D> {
     }
 }
 
-impl<D: Dim> Truth<D> {
+impl<D: Dim> Topology<D> {
     fn check(&self) -> Result<(), Defect> {
-        ensure(self.grid.is_sound(), "voxels")?;
+        ensure(self.grid.is_valid(), "voxels")?;
         let numbers = self.grid.voxels().map(|voxel| self.grid.material(voxel));
         let number = usize::from(numbers.max().unwrap_or(0));
         let are_good = { self.materials.iter() }.all(|material| material.check(0).is_ok())
             && self.stiffness_scale > 0.0
             && self.stiffness_scale <= 1.0;
         ensure(number <= self.materials.len() && are_good, "materials")?;
-        ensure(self.sharing.is_sound(&self.grid), "groups")?;
+        ensure(self.connectivity.is_valid(&self.grid), "groups")?;
         let grading = self.pyramid.grading();
-        let cells = Pyramid::new(&self.grid, &self.sharing, grading);
+        let cells = CellHierarchy::new(&self.grid, &self.connectivity, grading);
         ensure(self.pyramid == cells, "cells")?;
-        let fresh = Mesh::grade(&self.grid, &self.sharing, &cells)?;
-        self.mesh.check_against(&fresh, &self.sharing)?;
-        self.mesh.validate(&self.grid, &self.sharing)?;
+        let fresh = Mesh::grade(&self.grid, &self.connectivity, &cells)?;
+        self.mesh.check_against(&fresh, &self.connectivity)?;
+        self.mesh.validate(&self.grid, &self.connectivity)?;
         ensure(self.pieces.is_sound(&self.mesh), "pieces")
     }
 }
@@ -101,7 +101,7 @@ impl<D: Dim> State<D> {
     fn has_room(&self, nodes: usize) -> bool {
         let rows = [&self.position, &self.velocity, &self.ahead].map(|rows| rows.len());
         let numbers = [&self.mass, &self.inverse_mass, &self.damage].map(|numbers| numbers.len());
-        let mut lengths = rows.into_iter().chain(numbers).chain([self.held.len()]);
+        let mut lengths = rows.into_iter().chain(numbers).chain([self.fixed.len()]);
         lengths.all(|length| length == nodes)
     }
 }
@@ -117,7 +117,7 @@ impl Pieces {
     /// Whether the pieces are those of the mesh, regardless of their numbers.
     fn is_sound<D: Dim>(&self, mesh: &Mesh<D>) -> bool {
         let fresh = Self::new(mesh);
-        let mut numbers: Table<PieceId, _> = vec![None; fresh.list.len()].into();
+        let mut numbers: IndexVec<PieceId, _> = vec![None; fresh.list.len()].into();
         let mut taken = vec![false; self.list.len()];
         self.has_room(mesh)
             && mesh.elements().all(|(id, element)| {

@@ -2,12 +2,12 @@
 
 use super::cooldowns::Cooldowns;
 use crate::dim::Dim;
-use crate::ids::{NodeId, Table};
+use crate::ids::{IndexVec, NodeId};
 use crate::layers::Layers;
-use crate::solve::{Blocks, Row};
+use crate::solve::{ElementBatches, Row};
 
 /// Largest absolute factor on gravity for a body. With it, a body falls by 1 m within three ticks.
-pub const MOST_GRAVITY: f32 = 100.0;
+pub const MAX_GRAVITY_SCALE: f32 = 100.0;
 
 /// State of a body that changes from substep to substep.
 #[derive(Clone, Debug)]
@@ -15,18 +15,18 @@ pub const MOST_GRAVITY: f32 = 100.0;
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct State<D: Dim> {
     /// Position [m], velocity [m/s] and mass [kg] of each node.
-    pub position: Table<NodeId, Row>,
-    pub velocity: Table<NodeId, Row>,
-    pub mass: Table<NodeId, f32>,
+    pub position: IndexVec<NodeId, Row>,
+    pub velocity: IndexVec<NodeId, Row>,
+    pub mass: IndexVec<NodeId, f32>,
     /// Inverse mass [1/kg]; 0 while a node is fixed or sleeps.
-    pub inverse_mass: Table<NodeId, f32>,
-    pub held: Table<NodeId, bool>,
+    pub inverse_mass: IndexVec<NodeId, f32>,
+    pub fixed: IndexVec<NodeId, bool>,
     /// Damage of each node; at 1 the node is split.
-    pub damage: Table<NodeId, f32>,
+    pub damage: IndexVec<NodeId, f32>,
     /// Recent releases.
     pub cooldowns: Cooldowns,
     /// Extrapolated positions at which the damped forces are evaluated.
-    pub ahead: Table<NodeId, Row>,
+    pub ahead: IndexVec<NodeId, Row>,
     /// Factor on gravity.
     pub gravity_scale: f32,
     /// Collision layers.
@@ -37,21 +37,21 @@ pub struct State<D: Dim> {
     pub placed: bool,
     /// Rotation of each element, and the forces of the last substep. Both are state: rotations are followed
     /// iteratively, and the next crack follows the last forces. Snapshots contain only these.
-    pub blocks: Blocks<D>,
+    pub blocks: ElementBatches<D>,
 }
 
 impl<D: Dim> State<D> {
     /// Creates the state of a body without nodes.
-    pub fn new(blocks: Blocks<D>) -> Self {
+    pub fn new(blocks: ElementBatches<D>) -> Self {
         Self {
-            position: Table::default(),
-            velocity: Table::default(),
-            mass: Table::default(),
-            inverse_mass: Table::default(),
-            held: Table::default(),
-            damage: Table::default(),
+            position: IndexVec::default(),
+            velocity: IndexVec::default(),
+            mass: IndexVec::default(),
+            inverse_mass: IndexVec::default(),
+            fixed: IndexVec::default(),
+            damage: IndexVec::default(),
             cooldowns: Cooldowns::default(),
-            ahead: Table::default(),
+            ahead: IndexVec::default(),
             gravity_scale: 1.0,
             layers: Layers::default(),
             user_data: 0,
@@ -66,7 +66,7 @@ impl<D: Dim> State<D> {
         self.velocity.resize(nodes, [0.0; 4]);
         self.mass.resize(nodes, 0.0);
         self.inverse_mass.resize(nodes, 0.0);
-        self.held.resize(nodes, false);
+        self.fixed.resize(nodes, false);
         self.damage.resize(nodes, 0.0);
         self.ahead.resize(nodes, [0.0; 4]);
     }

@@ -5,8 +5,8 @@ use crate::grid::VoxelGrid;
 use crate::material::Material;
 use crate::mesh::Mesh;
 use crate::piece::Pieces;
-use crate::pyramid::Pyramid;
-use crate::sharing::Sharing;
+use crate::pyramid::CellHierarchy;
+use crate::sharing::Connectivity;
 
 /// Topology of a body: voxels, connectivity, and the mesh that follows from them.
 ///
@@ -15,10 +15,10 @@ use crate::sharing::Sharing;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
-pub struct Truth<D: Dim> {
+pub struct Topology<D: Dim> {
     pub grid: VoxelGrid<D>,
-    pub sharing: Sharing<D>,
-    pub pyramid: Pyramid<D>,
+    pub connectivity: Connectivity<D>,
+    pub pyramid: CellHierarchy<D>,
     pub mesh: Mesh<D>,
     pub pieces: Pieces,
     /// Materials, number 1 first.

@@ -2,29 +2,29 @@
 
 use super::motion::Motion;
 use super::row::PUSH_OUT_SPEED;
-use super::sides::Grip;
-use crate::body::Bodies;
+use super::sides::SphereNodeRows;
+use crate::body::SoftBodies;
 use crate::dim::{Dim, inner};
 use crate::solve::Row;
-use crate::touch::{Captive, Spheres};
+use crate::touch::{EmbeddedSphere, Spheres};
 use crate::vector::{minus, plus, scaled};
 
 /// Embedded sphere and its escape sphere in one substep.
 #[derive(Copy, Clone, Debug)]
-pub struct Exit {
-    grips: [Grip; 2],
+pub struct EscapeContact {
+    grips: [SphereNodeRows; 2],
     /// Effective mass [kg].
     inertia: f32,
     /// Target velocity of the embedded sphere relative to its escape sphere [m/s].
     velocity: Row,
 }
 
-impl Exit {
+impl EscapeContact {
     /// Returns the escape contact that moves an embedded sphere to the front of its escape sphere; `None` if
     /// neither can move.
     pub fn new<D: Dim>(
-        captive: &Captive,
-        bodies: &Bodies<D>,
+        captive: &EmbeddedSphere,
+        bodies: &SoftBodies<D>,
         spheres: &Spheres,
         motion: &mut Motion,
         duration: f32,

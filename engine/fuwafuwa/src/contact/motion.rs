@@ -1,11 +1,11 @@
 //! Contiguous node velocities for the contact solver.
 
-use super::sides::{Grip, NodeContact, NodeRow};
-use crate::body::Bodies;
+use super::sides::{NodeContact, NodeRow, SphereNodeRows};
+use crate::body::SoftBodies;
 use crate::dim::Dim;
 use crate::handle::{BodySlot, RigidSlot};
-use crate::ids::{Id, NodeId, Table};
-use crate::rigid::Rigids;
+use crate::ids::{Id, IndexVec, NodeId};
+use crate::rigid::RigidBodies;
 use crate::shape::Vector;
 use crate::solve::Row;
 use crate::touch::{ContactSphere, mean};
@@ -20,16 +20,16 @@ const STRETCH: usize = 16;
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
     /// Rows; unspecified where no contact uses them.
-    rows: Table<NodeRow, Row>,
+    rows: IndexVec<NodeRow, Row>,
     /// Row of the first node of each body, at the start of a block.
-    first: Table<BodySlot, NodeRow>,
+    first: IndexVec<BodySlot, NodeRow>,
     /// Whether any node of a block is in contact; in a large body few are.
     is_touched: Vec<bool>,
 }
 
 impl Motion {
     /// Prepares the rows, none of them in contact.
-    pub fn clear<D: Dim>(&mut self, bodies: &Bodies<D>) {
+    pub fn clear<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         self.first.clear();
         let mut count = 0;
         for body in bodies.slots() {
@@ -52,7 +52,7 @@ impl Motion {
 
     /// Returns the rows of a sphere's corner nodes and marks them as in contact.
     #[inline(always)]
-    pub fn grip<D: Dim>(&mut self, sphere: &ContactSphere) -> Grip {
+    pub fn grip<D: Dim>(&mut self, sphere: &ContactSphere) -> SphereNodeRows {
         let first = self.first[sphere.body];
         let grip = sphere.nodes.map(|node| row_of(first, node));
         for row in &grip[..D::CORNERS] {
@@ -62,7 +62,7 @@ impl Motion {
     }
 
     /// Copies the velocities from the bodies.
-    pub fn load<D: Dim>(&mut self, bodies: &Bodies<D>) {
+    pub fn load<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         for (slot, body) in bodies.by_slot() {
             let first = self.first[slot].index();
             let nodes = body.state.velocity.chunks(STRETCH);
@@ -82,7 +82,7 @@ impl Motion {
     }
 
     /// Copies the velocities back to the bodies.
-    pub fn store<D: Dim>(&self, bodies: &mut Bodies<D>) {
+    pub fn store<D: Dim>(&self, bodies: &mut SoftBodies<D>) {
         for (slot, body) in bodies.by_slot_mut() {
             let first = self.first[slot].index();
             let rows = self.rows.as_slice()[first..].chunks(STRETCH);
@@ -98,14 +98,14 @@ impl Motion {
 
     /// Returns the velocity of the first sphere relative to the second [m/s].
     #[inline(always)]
-    pub fn between<D: Dim>(&self, grips: &[Grip; 2]) -> Row {
+    pub fn between<D: Dim>(&self, grips: &[SphereNodeRows; 2]) -> Row {
         let [first, second] = grips.each_ref().map(|grip| mean::<D, _>(&self.rows, grip));
         with_fourth(minus(first, second), 0.0)
     }
 
     /// Applies an impulse to the first sphere and its opposite to the second.
     #[inline(always)]
-    pub fn push_spheres<D: Dim>(&mut self, grips: &[Grip; 2], impulse: Row) {
+    pub fn push_spheres<D: Dim>(&mut self, grips: &[SphereNodeRows; 2], impulse: Row) {
         let share = scaled(impulse, 1.0 / D::CORNERS as f32);
         for (grip, share) in [(&grips[0], share), (&grips[1], scaled(share, -1.0))] {
             for &node in &grip[..D::CORNERS] {
@@ -117,7 +117,7 @@ impl Motion {
 
     /// Returns the velocity of a node relative to the rigid body that it touches [m/s].
     #[inline(always)]
-    pub fn of_node(&self, row: &NodeContact, rigids: &Rigids) -> Row {
+    pub fn of_node(&self, row: &NodeContact, rigids: &RigidBodies) -> Row {
         let own = self.rows[row.node];
         let other = row.mover.map_or([0.0; 4], |mover| velocity(mover, rigids));
         with_fourth(minus(own, other), 0.0)
@@ -128,7 +128,7 @@ impl Motion {
     pub fn push_node(
         &mut self,
         row: &NodeContact,
-        rigids: &mut Rigids,
+        rigids: &mut RigidBodies,
         impulse: Row,
         duration: f32,
     ) {
@@ -143,13 +143,18 @@ impl Motion {
 /// Returns the velocity of a rigid body at a lever arm [m/s]. Not inlined, because it is rare and would slow
 /// down the other contacts.
 #[inline(never)]
-fn velocity((mover, lever): (RigidSlot, Vector), rigids: &Rigids) -> Row {
+fn velocity((mover, lever): (RigidSlot, Vector), rigids: &RigidBodies) -> Row {
     as_row(rigids.at(mover).velocity_at(lever))
 }
 
 /// Applies an impulse to a rigid body at a lever arm.
 #[inline(never)]
-fn push((mover, lever): (RigidSlot, Vector), rigids: &mut Rigids, impulse: Row, duration: f32) {
+fn push(
+    (mover, lever): (RigidSlot, Vector),
+    rigids: &mut RigidBodies,
+    impulse: Row,
+    duration: f32,
+) {
     rigids
         .at_mut(mover)
         .push_at(three(impulse), lever, duration);

@@ -5,7 +5,7 @@ use super::row::{AHEAD, CLOSE, Contact, is_close};
 use super::sides::{FreeContact, HandContact};
 use crate::dim::{Dim, inner};
 use crate::handle::RigidSlot;
-use crate::rigid::{Drive, Rigid, Rigids};
+use crate::rigid::{MotionType, RigidBodies, RigidBody};
 use crate::shape::Vector;
 use crate::solve::Row;
 use crate::touch::{Impulse, Passed, RigidTouch, RigidTouches, WAKE_SPEED};
@@ -16,16 +16,16 @@ use crate::vector::{across, as_row, length, minus, plus, scaled, three};
 const BOUNCE_SPEED: f32 = 0.5;
 
 /// Finds the contacts of kinematic and coupled bodies with fixed bodies and with each other.
-pub fn find_hands(rigids: &Rigids, duration: f32, found: &mut Vec<HandContact>) {
+pub fn find_hands(rigids: &RigidBodies, duration: f32, found: &mut Vec<HandContact>) {
     found.clear();
     let hands = rigids
         .by_slot()
-        .filter(|(_, rigid)| rigid.is_driven() && !rigid.is_sensor);
+        .filter(|(_, rigid)| rigid.follows_target() && !rigid.is_sensor);
     for (own, hand) in hands {
         let others = rigids
             .by_slot()
-            .filter(|(_, rigid)| !rigid.is_free() && hand.meets_rigid(rigid));
-        for (other, rigid) in others.filter(|&(at, rigid)| at < own || !rigid.is_driven()) {
+            .filter(|(_, rigid)| !rigid.is_dynamic() && hand.meets_rigid(rigid));
+        for (other, rigid) in others.filter(|&(at, rigid)| at < own || !rigid.follows_target()) {
             let inverse_mass = hand.inverse_mass() + rigid.inverse_mass();
             let relative = minus(as_row(hand.velocity()), as_row(rigid.velocity()));
             if inverse_mass == 0.0 || !relative.iter().all(|k| k.is_finite()) {
@@ -36,7 +36,7 @@ pub fn find_hands(rigids: &Rigids, duration: f32, found: &mut Vec<HandContact>) 
             if gap.is_nan() || gap >= hand.shape().inradius() {
                 continue;
             }
-            let friction = match rigid.is_driven() {
+            let friction = match rigid.follows_target() {
                 true => 0.5 * (hand.friction + rigid.friction),
                 false => hand.friction,
             };
@@ -52,14 +52,14 @@ pub fn find_hands(rigids: &Rigids, duration: f32, found: &mut Vec<HandContact>) 
 /// Finds the contacts of dynamic bodies with all rigid bodies. Returns the sleepers that were hit, possibly
 /// repeated.
 pub fn find_free<D: Dim>(
-    rigids: &Rigids,
+    rigids: &RigidBodies,
     known: &RigidTouches,
     duration: f32,
     found: &mut Vec<FreeContact>,
 ) -> Vec<RigidSlot> {
     found.clear();
     let mut hits = Vec::new();
-    if !rigids.iter().any(Rigid::is_free) {
+    if !rigids.iter().any(RigidBody::is_dynamic) {
         return hits;
     }
     let boxes = rigids.by_slot().map(|(slot, rigid)| {
@@ -68,10 +68,10 @@ pub fn find_free<D: Dim>(
         let by = [margin; 3];
         (slot, rigid, [minus(low, by), plus(high, by)])
     });
-    let boxes: Vec<(RigidSlot, &Rigid, [Vector; 2])> = boxes.collect();
-    for &(own, rigid, [low, high]) in boxes.iter().filter(|(_, rigid, _)| rigid.is_free()) {
+    let boxes: Vec<(RigidSlot, &RigidBody, [Vector; 2])> = boxes.collect();
+    for &(own, rigid, [low, high]) in boxes.iter().filter(|(_, rigid, _)| rigid.is_dynamic()) {
         for &(other, against, [others_low, others_high]) in &boxes {
-            let is_once = other < own || !against.is_free();
+            let is_once = other < own || !against.is_dynamic();
             let is_apart = (0..D::N)
                 .any(|axis| low[axis] > others_high[axis] || high[axis] < others_low[axis]);
             let is_idle = !rigid.moves() && !against.moves();
@@ -95,18 +95,18 @@ pub fn find_free<D: Dim>(
 }
 
 /// Returns the distance at which a contact may matter within a substep [m].
-fn margin(rigid: &Rigid, duration: f32) -> f32 {
+fn margin(rigid: &RigidBody, duration: f32) -> f32 {
     CLOSE * rigid.shape().inradius().min(1.0) + margin_of_other(rigid, duration)
 }
 
-fn margin_of_other(rigid: &Rigid, duration: f32) -> f32 {
+fn margin_of_other(rigid: &RigidBody, duration: f32) -> f32 {
     AHEAD * duration * rigid.top_speed()
 }
 
 /// Finds the contacts between two bodies.
 fn touch<D: Dim>(
     slots: [RigidSlot; 2],
-    both: [&Rigid; 2],
+    both: [&RigidBody; 2],
     margin: f32,
     known: &RigidTouches,
     duration: f32,
@@ -115,8 +115,8 @@ fn touch<D: Dim>(
 ) {
     let manifold = both[0].shape().manifold(both[1].shape(), margin);
     let size = both[0].shape().inradius().min(1.0);
-    let friction = match both[1].drive {
-        Drive::Fixed => both[1].friction,
+    let friction = match both[1].motion_type {
+        MotionType::Fixed => both[1].friction,
         _ => 0.5 * (both[0].friction + both[1].friction),
     };
     let restitution = both[0].restitution.max(both[1].restitution);
@@ -150,7 +150,7 @@ fn touch<D: Dim>(
         let is_new = impulse.pressed == 0.0 && approach < -BOUNCE_SPEED;
         let bounce = if is_new { -restitution * approach } else { 0.0 };
         if bounce > 0.0 {
-            contact.least = contact.least.max(bounce);
+            contact.min_normal_velocity = contact.min_normal_velocity.max(bounce);
         }
         found.push(FreeContact {
             contact,
@@ -189,7 +189,7 @@ impl FreeContact {
     pub fn passed(&self) -> Option<Passed> {
         let passed = Passed {
             both: self.both,
-            impulse: self.contact.pressed,
+            impulse: self.contact.normal_impulse,
             speed: self.speed,
             at: self.at,
             normal: three(self.contact.normal),
@@ -198,18 +198,18 @@ impl FreeContact {
     }
 
     /// Applies the warm-start impulse.
-    pub fn start(&self, rigids: &mut Rigids, duration: f32) {
+    pub fn start(&self, rigids: &mut RigidBodies, duration: f32) {
         self.push(rigids, self.contact.start(), duration);
     }
 
-    pub fn solve<D: Dim>(&mut self, rigids: &mut Rigids, duration: f32) {
+    pub fn solve<D: Dim>(&mut self, rigids: &mut RigidBodies, duration: f32) {
         let relative = self.relative(rigids);
         let change = self.contact.solve_across::<D>(relative, self.across);
         self.push(rigids, change, duration);
     }
 
     /// Removes, after the position update, the velocity that resolved an overlap, but keeps that of a bounce.
-    pub fn relax<D: Dim>(&mut self, rigids: &mut Rigids, duration: f32) {
+    pub fn relax<D: Dim>(&mut self, rigids: &mut RigidBodies, duration: f32) {
         if self.contact.was_pushed_out() {
             let kept = scaled(self.contact.normal, self.bounce);
             let relative = minus(self.relative(rigids), kept);
@@ -219,13 +219,13 @@ impl FreeContact {
     }
 
     /// Returns the velocity of the first body relative to the second at the contact point [m/s].
-    fn relative(&self, rigids: &Rigids) -> Row {
+    fn relative(&self, rigids: &RigidBodies) -> Row {
         let [own, other] =
             [0, 1].map(|k: usize| rigids.at(self.both[k]).velocity_at(self.levers[k]));
         as_row(minus(own, other))
     }
 
-    fn push(&self, rigids: &mut Rigids, impulse: Row, duration: f32) {
+    fn push(&self, rigids: &mut RigidBodies, impulse: Row, duration: f32) {
         let impulse = three(impulse);
         rigids
             .at_mut(self.both[0])

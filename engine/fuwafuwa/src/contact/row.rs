@@ -25,12 +25,12 @@ pub struct Contact {
     /// Distance of the two sides [m], negative if they overlap.
     pub gap: f32,
     /// Lower limit of the normal velocity [m/s]; negative values allow an approach.
-    pub least: f32,
+    pub min_normal_velocity: f32,
     /// Effective mass [kg].
     pub inertia: f32,
     pub friction: f32,
-    pub pressed: f32,
-    pub dragged: Row,
+    pub normal_impulse: f32,
+    pub friction_impulse: Row,
     /// Index of its pair in the list.
     pub pair: u32,
 }
@@ -46,11 +46,11 @@ impl Contact {
         Self {
             normal,
             gap,
-            least,
+            min_normal_velocity: least,
             inertia,
             friction,
-            pressed: 0.0,
-            dragged: [0.0; 4],
+            normal_impulse: 0.0,
+            friction_impulse: [0.0; 4],
             pair: 0,
         }
     }
@@ -60,10 +60,10 @@ impl Contact {
     pub fn known_as<D: Dim>(mut self, pair: usize, impulse: &Impulse) -> Self {
         self.pair = pair as u32;
         if impulse.pressed > 0.0 {
-            self.pressed = WARM_START * impulse.pressed;
+            self.normal_impulse = WARM_START * impulse.pressed;
             let along = inner::<D>(impulse.dragged, self.normal);
             let dragged = minus(impulse.dragged, scaled(self.normal, along));
-            self.dragged = scaled(dragged, WARM_START);
+            self.friction_impulse = scaled(dragged, WARM_START);
         }
         self
     }
@@ -72,12 +72,15 @@ impl Contact {
     /// true for most contacts that are merely close.
     #[inline(always)]
     pub fn is_idle<D: Dim>(&self, relative: Row) -> bool {
-        self.pressed == 0.0 && inner::<D>(relative, self.normal) >= self.least
+        self.normal_impulse == 0.0 && inner::<D>(relative, self.normal) >= self.min_normal_velocity
     }
 
     /// Returns the warm-start impulse [N s].
     pub fn start(&self) -> Row {
-        plus(scaled(self.normal, self.pressed), self.dragged)
+        plus(
+            scaled(self.normal, self.normal_impulse),
+            self.friction_impulse,
+        )
     }
 
     /// Returns the change of impulse on the first side [N s], given its velocity relative to the second side
@@ -92,17 +95,18 @@ impl Contact {
     #[inline(always)]
     pub fn solve_across<D: Dim>(&mut self, relative: Row, across: f32) -> Row {
         let approach = inner::<D>(relative, self.normal);
-        let pressed = (self.pressed + (self.least - approach) * self.inertia).max(0.0);
+        let pressed =
+            (self.normal_impulse + (self.min_normal_velocity - approach) * self.inertia).max(0.0);
         let slip = minus(relative, scaled(self.normal, approach));
-        let mut dragged = minus(self.dragged, scaled(slip, across));
+        let mut dragged = minus(self.friction_impulse, scaled(slip, across));
         let (held, wanted) = (self.friction * pressed, inner::<D>(dragged, dragged));
         if wanted > held * held {
             dragged = scaled(dragged, held / wanted.sqrt());
         }
-        let press = scaled(self.normal, pressed - self.pressed);
-        let change = plus(press, minus(dragged, self.dragged));
-        self.pressed = pressed;
-        self.dragged = dragged;
+        let press = scaled(self.normal, pressed - self.normal_impulse);
+        let change = plus(press, minus(dragged, self.friction_impulse));
+        self.normal_impulse = pressed;
+        self.friction_impulse = dragged;
         change
     }
 
@@ -110,14 +114,14 @@ impl Contact {
     #[inline(always)]
     pub fn relax<D: Dim>(&mut self, relative: Row) -> Row {
         let approach = inner::<D>(relative, self.normal);
-        let pressed = (self.pressed - approach * self.inertia).max(0.0);
-        let change = scaled(self.normal, pressed - self.pressed);
-        self.pressed = pressed;
+        let pressed = (self.normal_impulse - approach * self.inertia).max(0.0);
+        let change = scaled(self.normal, pressed - self.normal_impulse);
+        self.normal_impulse = pressed;
         change
     }
 
     pub fn was_pushed_out(&self) -> bool {
-        self.gap < 0.0 && self.pressed > 0.0
+        self.gap < 0.0 && self.normal_impulse > 0.0
     }
 }
 
@@ -132,9 +136,9 @@ impl Impulse {
     }
 
     pub fn note(&mut self, contact: &Contact) {
-        self.pressed = contact.pressed;
-        self.dragged = contact.dragged;
-        self.total += contact.pressed;
+        self.pressed = contact.normal_impulse;
+        self.dragged = contact.friction_impulse;
+        self.total += contact.normal_impulse;
     }
 }
 

@@ -23,11 +23,11 @@ pub struct NodeContact {
 #[derive(Copy, Clone, Debug)]
 pub struct SphereContact {
     pub contact: Contact,
-    pub grips: [Grip; 2],
+    pub grips: [SphereNodeRows; 2],
 }
 
 /// Rows of a sphere's corner nodes; only the first four in 2D.
-pub type Grip = [NodeRow; 8];
+pub type SphereNodeRows = [NodeRow; 8];
 
 /// Contact point between a dynamic and any other rigid body.
 #[derive(Copy, Clone, Debug)]

@@ -1,32 +1,32 @@
 //! Joint anchors: a point of the world, a point of a rigid body, or the mean of some nodes.
 
-use super::end::{End, Woken};
-use crate::body::{Bodies, Body};
+use super::end::{JointAnchor, Woken};
+use crate::body::{SoftBodies, SoftBody};
 use crate::dim::{Dim, Point, voxel_around};
-use crate::handle::{BodyId, Gone, RigidId};
+use crate::handle::{Gone, RigidBodyHandle, SoftBodyHandle};
 use crate::ids::NodeId;
 #[cfg(feature = "serde")]
 use crate::rigid::FARTHEST;
-use crate::rigid::Rigids;
+use crate::rigid::RigidBodies;
 use crate::shape::{Vector, flat};
 use crate::vector::{as_row, dot, minus, plus, scaled, three};
 
 /// Anchor of a joint.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Anchor {
+pub enum AttachedAnchor {
     /// Point of the world [m].
     Position(Vector),
     /// Point of a rigid body in local coordinates [m].
-    Rigid(RigidId, Vector),
+    RigidBody(RigidBodyHandle, Vector),
     /// Corners of a soft body, each a voxel and the lattice point of its node. A voxel keeps its corner when
     /// the body tears around it.
-    Soft(BodyId, Vec<(Point, Point)>),
+    Soft(SoftBodyHandle, Vec<(Point, Point)>),
 }
 
 /// State and compliance of an anchor.
 #[derive(Copy, Clone, Debug)]
-pub struct Grip {
+pub struct AnchorState {
     /// Position [m].
     pub at: Vector,
     /// Velocity [m/s].
@@ -36,17 +36,21 @@ pub struct Grip {
     pub is_asleep: bool,
 }
 
-impl Anchor {
+impl AttachedAnchor {
     /// Returns the anchor at an attachment point.
-    pub fn of<D: Dim>(end: &End, bodies: &Bodies<D>, rigids: &Rigids) -> Result<Self, Gone> {
+    pub fn of<D: Dim>(
+        end: &JointAnchor,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+    ) -> Result<Self, Gone> {
         Ok(match *end {
-            End::Position(at) => Self::Position(flat::<D>(at)),
-            End::Rigid { rigid: id, at } => {
+            JointAnchor::Position(at) => Self::Position(flat::<D>(at)),
+            JointAnchor::RigidBody { rigid: id, at } => {
                 let rigid = rigids.get(id)?;
                 let apart = minus(flat::<D>(at), rigid.position());
-                Self::Rigid(id, rigid.rotation().inverse().apply(apart))
+                Self::RigidBody(id, rigid.rotation().inverse().apply(apart))
             }
-            End::Soft {
+            JointAnchor::Soft {
                 body: id,
                 at,
                 radius,
@@ -63,10 +67,10 @@ impl Anchor {
     }
 
     /// Moves an anchor that is not soft to a world-space point [m].
-    pub fn stand_at(&mut self, at: Vector, rigids: &Rigids) {
+    pub fn stand_at(&mut self, at: Vector, rigids: &RigidBodies) {
         match self {
             Self::Position(place) => *place = at,
-            Self::Rigid(id, own) => {
+            Self::RigidBody(id, own) => {
                 if let Ok(rigid) = rigids.get(*id) {
                     *own = rigid
                         .rotation()
@@ -79,19 +83,23 @@ impl Anchor {
     }
 
     /// Returns the present state of the anchor; `None` if its body or all of its voxels are gone.
-    pub fn grip<D: Dim>(&self, bodies: &Bodies<D>, rigids: &Rigids) -> Option<Grip> {
+    pub fn grip<D: Dim>(
+        &self,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+    ) -> Option<AnchorState> {
         match self {
-            Self::Position(at) => Some(Grip {
+            Self::Position(at) => Some(AnchorState {
                 at: *at,
                 velocity: [0.0; 3],
                 yields: [[0.0; 3]; 3],
                 is_asleep: false,
             }),
-            Self::Rigid(id, own) => {
+            Self::RigidBody(id, own) => {
                 let rigid = rigids.get(*id).ok()?;
                 let lever = rigid.rotation().apply(*own);
                 let ways = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-                Some(Grip {
+                Some(AnchorState {
                     at: plus(rigid.position(), lever),
                     velocity: rigid.velocity_at(lever),
                     yields: ways.map(|way| rigid.gain(lever, way)),
@@ -111,11 +119,11 @@ impl Anchor {
                     at = plus(at, scaled(three(body.state.position[node]), share));
                     velocity = plus(velocity, scaled(three(body.state.velocity[node]), share));
                     gain += body.state.inverse_mass[node] * share * share;
-                    is_asleep &= body.truth.pieces.sleeps(node);
+                    is_asleep &= body.topology.pieces.sleeps(node);
                 }
                 let mut yields = [[0.0; 3]; 3];
                 (0..D::N).for_each(|axis| yields[axis][axis] = gain);
-                Some(Grip {
+                Some(AnchorState {
                     at,
                     velocity,
                     yields,
@@ -126,10 +134,15 @@ impl Anchor {
     }
 
     /// Applies an impulse [N s].
-    pub fn push<D: Dim>(&self, bodies: &mut Bodies<D>, rigids: &mut Rigids, impulse: Vector) {
+    pub fn push<D: Dim>(
+        &self,
+        bodies: &mut SoftBodies<D>,
+        rigids: &mut RigidBodies,
+        impulse: Vector,
+    ) {
         match self {
             Self::Position(_) => {}
-            Self::Rigid(id, own) => {
+            Self::RigidBody(id, own) => {
                 if let Ok(rigid) = rigids.get_mut(*id) {
                     let lever = rigid.rotation().apply(*own);
                     rigid.kick(impulse, lever);
@@ -150,15 +163,15 @@ impl Anchor {
     }
 
     /// Adds the attached bodies or pieces to the sleepers to wake.
-    pub fn wake<D: Dim>(&self, bodies: &Bodies<D>, woken: &mut Woken) {
+    pub fn wake<D: Dim>(&self, bodies: &SoftBodies<D>, woken: &mut Woken) {
         match self {
             Self::Position(_) => {}
-            Self::Rigid(id, _) => woken.rigids.push(id.slot()),
+            Self::RigidBody(id, _) => woken.rigids.push(id.slot()),
             Self::Soft(id, corners) => {
                 let Ok(body) = bodies.get(*id) else {
                     return;
                 };
-                let pieces = nodes(body, corners).map(|node| body.truth.pieces.of_node(node));
+                let pieces = nodes(body, corners).map(|node| body.topology.pieces.of_node(node));
                 woken.pieces.extend(pieces.map(|piece| (id.slot(), piece)));
             }
         }
@@ -166,15 +179,15 @@ impl Anchor {
 
     /// Returns whether an anchor that was read from a file is valid.
     #[cfg(feature = "serde")]
-    pub fn is_sound<D: Dim>(&self, end: &End) -> bool {
+    pub fn is_sound<D: Dim>(&self, end: &JointAnchor) -> bool {
         let is_of_it = match (self, end) {
-            (Self::Position(_), End::Position(_)) => true,
-            (Self::Rigid(own, _), End::Rigid { rigid, .. }) => own == rigid,
-            (Self::Soft(own, _), End::Soft { body, .. }) => own == body,
+            (Self::Position(_), JointAnchor::Position(_)) => true,
+            (Self::RigidBody(own, _), JointAnchor::RigidBody { rigid, .. }) => own == rigid,
+            (Self::Soft(own, _), JointAnchor::Soft { body, .. }) => own == body,
             _ => false,
         };
         let is_somewhere = match self {
-            Self::Position(at) | Self::Rigid(_, at) => {
+            Self::Position(at) | Self::RigidBody(_, at) => {
                 let is_near = at.iter().all(|k| k.abs() <= 4.0 * FARTHEST);
                 is_near && at[D::N..].iter().all(|k| *k == 0.0)
             }
@@ -186,11 +199,11 @@ impl Anchor {
 
 /// Returns the nodes at some corners; removed voxels are skipped.
 fn nodes<'a, D: Dim>(
-    body: &'a Body<D>,
+    body: &'a SoftBody<D>,
     corners: &'a [(Point, Point)],
 ) -> impl Iterator<Item = NodeId> + 'a {
     corners.iter().filter_map(|&(voxel, point)| {
-        let mesh = &body.truth.mesh;
+        let mesh = &body.topology.mesh;
         let element = mesh.element_at(voxel)?;
         let apart = |node: NodeId| {
             let at = mesh.node(node).at;
@@ -207,12 +220,12 @@ fn nodes<'a, D: Dim>(
 }
 
 /// Returns the corners of a body within `radius` [m] of a point, or the nearest one.
-fn corners_near<D: Dim>(body: &Body<D>, at: Vector, radius: f32) -> Vec<(Point, Point)> {
+fn corners_near<D: Dim>(body: &SoftBody<D>, at: Vector, radius: f32) -> Vec<(Point, Point)> {
     let distance = |node: NodeId| {
         let apart = minus(three(body.state.position[node]), at);
         dot(apart, apart)
     };
-    let mesh = &body.truth.mesh;
+    let mesh = &body.topology.mesh;
     let nodes = || mesh.nodes().map(|(node, _)| node);
     let is_near = |&node: &NodeId| distance(node) <= radius * radius;
     let mut near: Vec<NodeId> = nodes().filter(is_near).collect();

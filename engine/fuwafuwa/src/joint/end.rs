@@ -1,26 +1,26 @@
 //! Attachment points and kinds of joints.
 
-use crate::handle::{BodyId, BodySlot, RigidId, RigidSlot};
+use crate::handle::{BodySlot, RigidBodyHandle, RigidSlot, SoftBodyHandle};
 use crate::ids::PieceId;
 use crate::shape::Vector;
 
 /// Attachment point of a joint. Positions are world-space positions at the time when the joint is added.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum End {
+pub enum JointAnchor {
     /// Point of the world [m].
     Position(Vector),
     /// Point of a rigid body, on its surface or elsewhere.
-    Rigid {
+    RigidBody {
         /// Handle of the rigid body.
-        rigid: RigidId,
+        rigid: RigidBodyHandle,
         /// Position [m].
         at: Vector,
     },
     /// Mean of some nodes of a soft body.
     Soft {
         /// Handle of the body.
-        body: BodyId,
+        body: SoftBodyHandle,
         /// Position [m].
         at: Vector,
         /// Radius within which nodes are attached [m], or the nearest node if it contains none. With more
@@ -32,7 +32,7 @@ pub enum End {
 /// Kind of a joint.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Tie {
+pub enum JointKind {
     /// Pin: keeps the anchors together and lets them rotate. A soft anchor that is pinned to a rigid body or
     /// a point is held where it is; other anchors that are apart are drawn together.
     Pin,

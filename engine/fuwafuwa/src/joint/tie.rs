@@ -1,11 +1,11 @@
 //! Impulses of pins, springs and ropes.
 
 use super::Joint;
-use super::anchor::Grip;
-use super::end::{Tie, Woken};
-use crate::body::Bodies;
+use super::anchor::AnchorState;
+use super::end::{JointKind, Woken};
+use crate::body::SoftBodies;
 use crate::dim::Dim;
-use crate::rigid::Rigids;
+use crate::rigid::RigidBodies;
 use crate::shape::Vector;
 use crate::touch::WAKE_SPEED;
 use crate::vector::{cross, dot, length, minus, plus, scaled};
@@ -27,8 +27,8 @@ impl Joint {
     /// Begins a substep with a warm start. Returns whether both anchors exist.
     pub(super) fn start<D: Dim>(
         &mut self,
-        bodies: &mut Bodies<D>,
-        rigids: &mut Rigids,
+        bodies: &mut SoftBodies<D>,
+        rigids: &mut RigidBodies,
         woken: &mut Woken,
     ) -> bool {
         let [Some(first), Some(second)] = self.grips(bodies, rigids) else {
@@ -41,7 +41,7 @@ impl Joint {
             }
         }
         self.impulse = match self.tie {
-            Tie::Pin => scaled(self.impulse, WARM_START),
+            JointKind::Pin => scaled(self.impulse, WARM_START),
             _ => [0.0; 3],
         };
         self.push(bodies, rigids, self.impulse);
@@ -51,9 +51,9 @@ impl Joint {
     /// Returns whether the joint is out of balance at a distance of its anchors [m].
     fn is_strained(&self, distance: f32) -> bool {
         match self.tie {
-            Tie::Pin => distance > WAKE_STRETCH,
-            Tie::Rope { length } => distance > length + WAKE_STRETCH,
-            Tie::Spring {
+            JointKind::Pin => distance > WAKE_STRETCH,
+            JointKind::Rope { length } => distance > length + WAKE_STRETCH,
+            JointKind::Spring {
                 stiffness, length, ..
             } => {
                 let pull = stiffness * (distance - length).abs();
@@ -65,8 +65,8 @@ impl Joint {
     /// Applies one solver iteration; with `draws` it also corrects position errors.
     pub(super) fn solve<D: Dim>(
         &mut self,
-        bodies: &mut Bodies<D>,
-        rigids: &mut Rigids,
+        bodies: &mut SoftBodies<D>,
+        rigids: &mut RigidBodies,
         duration: f32,
         draws: bool,
     ) {
@@ -77,7 +77,7 @@ impl Joint {
         let relative = minus(first.velocity, second.velocity);
         let yields = [0, 1, 2].map(|row: usize| plus(first.yields[row], second.yields[row]));
         let impulse = match self.tie {
-            Tie::Pin => {
+            JointKind::Pin => {
                 let draw = if draws {
                     drawn(apart, duration)
                 } else {
@@ -85,7 +85,7 @@ impl Joint {
                 };
                 solved::<D>(&yields, scaled(plus(relative, draw), -1.0))
             }
-            Tie::Spring {
+            JointKind::Spring {
                 stiffness,
                 damping,
                 length: rest,
@@ -99,7 +99,9 @@ impl Joint {
                 ),
                 false => [0.0; 3],
             },
-            Tie::Rope { length } => self.rope(apart, relative, &yields, length, duration, draws),
+            JointKind::Rope { length } => {
+                self.rope(apart, relative, &yields, length, duration, draws)
+            }
         };
         if crate::vector::is_finite(impulse) {
             self.impulse = plus(self.impulse, impulse);
@@ -136,19 +138,23 @@ impl Joint {
     }
 
     /// Returns whether at least one attached body can move.
-    pub(super) fn yields<D: Dim>(&self, bodies: &Bodies<D>, rigids: &Rigids) -> bool {
+    pub(super) fn yields<D: Dim>(&self, bodies: &SoftBodies<D>, rigids: &RigidBodies) -> bool {
         let grips = self.grips(bodies, rigids).into_iter().flatten();
         let mut ways = grips.flat_map(|grip| grip.yields);
         ways.any(|way| way != [0.0; 3])
     }
 
-    fn grips<D: Dim>(&self, bodies: &Bodies<D>, rigids: &Rigids) -> [Option<Grip>; 2] {
+    fn grips<D: Dim>(
+        &self,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+    ) -> [Option<AnchorState>; 2] {
         self.anchors
             .each_ref()
             .map(|anchor| anchor.grip(bodies, rigids))
     }
 
-    fn push<D: Dim>(&self, bodies: &mut Bodies<D>, rigids: &mut Rigids, impulse: Vector) {
+    fn push<D: Dim>(&self, bodies: &mut SoftBodies<D>, rigids: &mut RigidBodies, impulse: Vector) {
         self.anchors[0].push(bodies, rigids, impulse);
         self.anchors[1].push(bodies, rigids, scaled(impulse, -1.0));
     }

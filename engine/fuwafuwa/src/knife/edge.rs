@@ -3,11 +3,11 @@
 use super::inside::{self, Spot};
 use super::sample::{MOST_SAMPLES, Near, Sample};
 use super::swath::{self, Faces, RestPosition};
-use super::{Knife, Stance};
-use crate::body::{Bodies, Body};
+use super::{EdgePose, Knife};
+use crate::body::{SoftBodies, SoftBody};
 use crate::dim::{Dim, Point};
-use crate::handle::BodyId;
-use crate::rigid::Rigid;
+use crate::handle::SoftBodyHandle;
+use crate::rigid::RigidBody;
 use crate::shape::Vector;
 use crate::vector::{dot, length, minus, plus, scaled, three};
 
@@ -24,7 +24,7 @@ const MOST_JUMP: f64 = 2.0;
 
 /// Part of a body that an edge has passed through.
 pub struct Cut {
-    pub body: BodyId,
+    pub body: SoftBodyHandle,
     pub faces: Faces,
     /// Swept area where the material was whole, at rest [m²].
     pub area: f64,
@@ -35,7 +35,12 @@ pub struct Cut {
 impl Knife {
     /// Updates the positions of the samples in the bodies. `ahead` is the time until the next search for
     /// nearby elements [s].
-    pub(crate) fn follow<D: Dim>(&mut self, bodies: &Bodies<D>, holder: &Rigid, ahead: f32) {
+    pub(crate) fn follow<D: Dim>(
+        &mut self,
+        bodies: &SoftBodies<D>,
+        holder: &RigidBody,
+        ahead: f32,
+    ) {
         let stance = self.stance::<D>(holder);
         self.take_samples(&stance, bodies);
         if !self.knows_near {
@@ -51,13 +56,13 @@ impl Knife {
     /// in.
     pub(crate) fn pass<D: Dim>(
         &mut self,
-        bodies: &Bodies<D>,
-        holder: &Rigid,
+        bodies: &SoftBodies<D>,
+        holder: &RigidBody,
         since: f32,
     ) -> Vec<Cut> {
         let stance = self.stance::<D>(holder);
         let spots = self.samples.iter().flat_map(|k| [k.inside, k.passed]);
-        let mut ids: Vec<BodyId> = spots.flatten().map(|(body, _)| body).collect();
+        let mut ids: Vec<SoftBodyHandle> = spots.flatten().map(|(body, _)| body).collect();
         ids.sort_unstable();
         ids.dedup();
         let known = ids
@@ -80,7 +85,7 @@ impl Knife {
     }
 
     /// Returns the length of edge that a sample represents [m].
-    pub(super) fn share<D: Dim>(&self, stance: &Stance, place: usize) -> f32 {
+    pub(super) fn share<D: Dim>(&self, stance: &EdgePose, place: usize) -> f32 {
         let last = self.samples.len() - 1;
         // In 2D the edge is a point, and the body 1 m thick.
         if D::N == 2 {
@@ -94,7 +99,7 @@ impl Knife {
     }
 
     /// Returns the position of a sample relative to the holder [m].
-    pub(super) fn lever(&self, stance: &Stance, place: usize) -> Vector {
+    pub(super) fn lever(&self, stance: &EdgePose, place: usize) -> Vector {
         let [from, to] = stance.levers;
         let share = match self.samples.len() {
             1 => 0.5,
@@ -104,13 +109,13 @@ impl Knife {
     }
 
     /// Returns the world-space position of a sample [m].
-    fn place(&self, stance: &Stance, place: usize) -> Vector {
+    fn place(&self, stance: &EdgePose, place: usize) -> Vector {
         plus(stance.position, self.lever(stance, place))
     }
 
     /// Adjusts the number of samples to the smallest voxel of all bodies.
-    fn take_samples<D: Dim>(&mut self, stance: &Stance, bodies: &Bodies<D>) {
-        let sizes = bodies.iter().map(|body| body.truth.grid.voxel_size());
+    fn take_samples<D: Dim>(&mut self, stance: &EdgePose, bodies: &SoftBodies<D>) {
+        let sizes = bodies.iter().map(|body| body.topology.grid.voxel_size());
         let least = sizes.fold(f32::INFINITY, f32::min);
         // In local coordinates, because the length of the rotated edge fluctuates by rounding.
         let long = length(minus(self.edge[1], self.edge[0]));
@@ -132,9 +137,9 @@ impl Knife {
     /// Lists the elements that each sample may enter soon.
     fn look_around<D: Dim>(
         &mut self,
-        stance: &Stance,
-        bodies: &Bodies<D>,
-        holder: &Rigid,
+        stance: &EdgePose,
+        bodies: &SoftBodies<D>,
+        holder: &RigidBody,
         ahead: f32,
     ) {
         self.knows_near = true;
@@ -151,9 +156,9 @@ impl Knife {
             if !holder.layers.meet(body.layers()) {
                 continue;
             }
-            let size = body.truth.grid.voxel_size();
+            let size = body.topology.grid.voxel_size();
             let margin = size + STRETCH * ahead * holder.top_speed();
-            for (_, element) in body.truth.mesh.elements() {
+            for (_, element) in body.topology.mesh.elements() {
                 let node = element.nodes[0];
                 let diagonal = size * element.cell.width() as f32 * (D::N as f32).sqrt();
                 let reach = STRETCH * diagonal + margin;
@@ -166,7 +171,7 @@ impl Knife {
                 if length(minus(apart, nearest)) > reach {
                     continue;
                 }
-                let voxel = body.truth.mesh.first_voxel(element);
+                let voxel = body.topology.mesh.first_voxel(element);
                 let first = ((along - reach) / spacing).ceil().max(0.0) as usize;
                 let last = ((along + reach) / spacing).floor().max(0.0) as usize;
                 let count = last.saturating_add(1).saturating_sub(first);
@@ -185,7 +190,12 @@ impl Knife {
 
     /// Returns the body and the rest position of a sample: near its last position, at its neighbours, or in
     /// nearby elements.
-    fn find<D: Dim>(&self, bodies: &Bodies<D>, place: usize, at: Vector) -> Option<(BodyId, Spot)> {
+    fn find<D: Dim>(
+        &self,
+        bodies: &SoftBodies<D>,
+        place: usize,
+        at: Vector,
+    ) -> Option<(SoftBodyHandle, Spot)> {
         if let Some((id, spot)) = self.samples[place].inside
             && let Ok(body) = bodies.get(id)
         {
@@ -205,7 +215,7 @@ impl Knife {
             };
             let node = three(body.state.position[near.node]);
             length(minus(node, at)) <= near.reach
-                && (body.truth.mesh.element_at(near.voxel))
+                && (body.topology.mesh.element_at(near.voxel))
                     .is_some_and(|element| inside::may_have(body, element, at))
         };
         let near = self.near[place].iter().filter(is_in_reach);
@@ -214,8 +224,13 @@ impl Knife {
     }
 
     /// Returns the area that the edge has swept through a body since the last sweep.
-    fn swath_in<D: Dim>(&self, stance: &Stance, (id, body): (BodyId, &Body<D>), since: f32) -> Cut {
-        let size = body.truth.grid.voxel_size();
+    fn swath_in<D: Dim>(
+        &self,
+        stance: &EdgePose,
+        (id, body): (SoftBodyHandle, &SoftBody<D>),
+        since: f32,
+    ) -> Cut {
+        let size = body.topology.grid.voxel_size();
         let rows: Vec<Option<[RestPosition; 2]>> = (0..self.samples.len())
             .map(|place| self.way_in(stance, (id, body), place, since))
             .collect();
@@ -223,7 +238,7 @@ impl Knife {
         let cuts = |place: usize| f64::from(u8::from(self.samples[place].cut && is_inside(place)));
         let (mut faces, mut area) = (Faces::new(), 0.0);
         let mut add = |patch: [RestPosition; 4], share: f64| {
-            swath::go_through::<D>(patch, body.truth.grid.size(), &mut faces);
+            swath::go_through::<D>(patch, body.topology.grid.size(), &mut faces);
             area += share * swath::area(patch);
         };
         // In 2D a sample sweeps a line, which stands for an area across the body.
@@ -251,7 +266,7 @@ impl Knife {
                 add([*a, *b, *c, *d], 0.5 * (cuts(place) + cuts(place + 1)));
             }
         }
-        let grid = &body.truth.grid;
+        let grid = &body.topology.grid;
         faces.retain(|&(voxel, axis)| {
             let mut next = voxel;
             next[axis] += 1;
@@ -280,8 +295,8 @@ impl Knife {
     /// has been in the body.
     fn way_in<D: Dim>(
         &self,
-        stance: &Stance,
-        (id, body): (BodyId, &Body<D>),
+        stance: &EdgePose,
+        (id, body): (SoftBodyHandle, &SoftBody<D>),
         place: usize,
         since: f32,
     ) -> Option<[RestPosition; 2]> {
@@ -292,7 +307,7 @@ impl Knife {
         let of_neighbour = || others.find_map(|other| self.samples.get(other)?.inside_of(id));
         // A sample outside of the body is extrapolated from tissue nearby.
         let base = inside.or(passed).or_else(of_neighbour)?;
-        let size = body.truth.grid.voxel_size();
+        let size = body.topology.grid.voxel_size();
         let at = self.place(stance, place);
         let now = inside.map_or_else(|| base.extend(body, at), |spot| Some(spot.at))?;
         // The motion of the tissue counts, too: tissue that moves against a resting edge is cut.

@@ -1,6 +1,6 @@
 //! Rest positions of world-space points in a body.
 
-use crate::body::Body;
+use crate::body::SoftBody;
 use crate::dim::{Dim, Point, voxel_around};
 use crate::ids::NodeId;
 use crate::mesh::Element;
@@ -26,8 +26,8 @@ pub struct Spot {
 impl Spot {
     /// Finds a world-space point [m] in a body, starting from a voxel. Returns `None` if the point is not in
     /// the body or too far from the start.
-    pub fn find<D: Dim>(body: &Body<D>, at: Vector, from: Point) -> Option<Self> {
-        let mesh = &body.truth.mesh;
+    pub fn find<D: Dim>(body: &SoftBody<D>, at: Vector, from: Point) -> Option<Self> {
+        let mesh = &body.topology.mesh;
         let mut voxel = from;
         for step in 0..STEPS {
             let owner = mesh.owner(voxel)?;
@@ -40,7 +40,7 @@ impl Spot {
                     at: rest,
                 });
             }
-            if !body.truth.grid.is_solid(next) {
+            if !body.topology.grid.is_solid(next) {
                 return None;
             }
             if step + 1 == STEPS && distance::<D>(element, rest) <= LITTLE {
@@ -52,38 +52,43 @@ impl Spot {
     }
 
     /// Returns the rest position of a world-space point [m], extrapolated with the deformation here.
-    pub fn extend<D: Dim>(&self, body: &Body<D>, at: Vector) -> Option<Vector> {
-        body.at_rest(body.truth.mesh.element_at(self.voxel)?, at)
+    pub fn extend<D: Dim>(&self, body: &SoftBody<D>, at: Vector) -> Option<Vector> {
+        body.at_rest(body.topology.mesh.element_at(self.voxel)?, at)
     }
 
     /// Returns the velocity of the body here [m/s].
-    pub fn velocity<D: Dim>(&self, body: &Body<D>) -> Option<Vector> {
-        let element = body.truth.mesh.element_at(self.voxel)?;
+    pub fn velocity<D: Dim>(&self, body: &SoftBody<D>) -> Option<Vector> {
+        let element = body.topology.mesh.element_at(self.voxel)?;
         Some(body.velocity_of(&body.weights(element, self.at)))
     }
 
     /// Returns world-space directions in rest coordinates, scaled to the width of a voxel [voxels].
     pub fn directions<D: Dim, const COUNT: usize>(
         &self,
-        body: &Body<D>,
+        body: &SoftBody<D>,
         ways: [Vector; COUNT],
     ) -> Option<[Vector; COUNT]> {
-        let (_, undo) = body.undo(body.truth.mesh.element_at(self.voxel)?)?;
+        let (_, undo) = body.inverse_deformation(body.topology.mesh.element_at(self.voxel)?)?;
         Some(ways.map(undo))
     }
 
     /// Returns whether the point is within half a voxel of a world-space point [m].
-    pub fn is_near<D: Dim>(&self, body: &Body<D>, at: Vector) -> bool {
-        let element = body.truth.mesh.element_at(self.voxel);
-        let half = 0.5 * body.truth.grid.voxel_size();
-        element.is_some_and(|element| length(minus(body.carry(element)(self.at), at)) <= half)
+    pub fn is_near<D: Dim>(&self, body: &SoftBody<D>, at: Vector) -> bool {
+        let element = body.topology.mesh.element_at(self.voxel);
+        let half = 0.5 * body.topology.grid.voxel_size();
+        element.is_some_and(|element| length(minus(body.affine_map(element)(self.at), at)) <= half)
     }
 
     /// Returns whether the material in front of an edge is whole: whether the next face that it opens is
     /// closed. `along` is the direction of the edge and `toward` the cutting direction [voxels].
-    pub fn is_whole_ahead<D: Dim>(&self, body: &Body<D>, along: Vector, toward: Vector) -> bool {
+    pub fn is_whole_ahead<D: Dim>(
+        &self,
+        body: &SoftBody<D>,
+        along: Vector,
+        toward: Vector,
+    ) -> bool {
         let ahead = [0, 1, 2].map(|k: usize| self.at[k] + 0.5 * toward[k]);
-        let Some(voxel) = voxel_of::<D>(ahead).filter(|&at| body.truth.grid.is_solid(at)) else {
+        let Some(voxel) = voxel_of::<D>(ahead).filter(|&at| body.topology.grid.is_solid(at)) else {
             return false;
         };
         let normal = cross(along, toward);
@@ -101,7 +106,7 @@ impl Spot {
 }
 
 /// Returns whether the face behind a voxel across an axis connects it to its neighbour.
-fn is_closed<D: Dim>(body: &Body<D>, voxel: Point, axis: usize) -> bool {
+fn is_closed<D: Dim>(body: &SoftBody<D>, voxel: Point, axis: usize) -> bool {
     let mut corner = voxel;
     corner[axis] += 1;
     // Relative to the voxel's upper corner along the axis, the voxel is in the octant that is low along this
@@ -110,7 +115,10 @@ fn is_closed<D: Dim>(body: &Body<D>, voxel: Point, axis: usize) -> bool {
         .filter(|&other| other != axis)
         .fold(0, |octant, other| octant | 1 << other);
     debug_assert_eq!(voxel_around::<D>(corner, octant), voxel);
-    body.truth.sharing.around(corner).is_closed(octant, axis)
+    body.topology
+        .connectivity
+        .around(corner)
+        .is_closed(octant, axis)
 }
 
 /// Returns the voxel at a rest position; `None` far from any grid.
@@ -126,8 +134,8 @@ fn voxel_of<D: Dim>(at: Vector) -> Option<Point> {
 }
 
 /// Returns whether an element may contain a point [m]: a test with the enlarged box around its nodes.
-pub fn may_have<D: Dim>(body: &Body<D>, element: &Element, at: Vector) -> bool {
-    let margin = LITTLE * body.truth.grid.voxel_size() * element.cell.width() as f32;
+pub fn may_have<D: Dim>(body: &SoftBody<D>, element: &Element, at: Vector) -> bool {
+    let margin = LITTLE * body.topology.grid.voxel_size() * element.cell.width() as f32;
     (0..D::N).all(|axis| {
         let apart = |&node: &NodeId| body.state.position[node][axis] - at[axis];
         let apart = element.nodes.iter().map(apart);

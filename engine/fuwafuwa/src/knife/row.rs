@@ -1,12 +1,12 @@
 //! Solver rows between a cutting edge and the tissue that it is in.
 
-use super::{Knife, Stance};
-use crate::body::{Bodies, Body};
+use super::{EdgePose, Knife};
+use crate::body::{SoftBodies, SoftBody};
 use crate::dim::Dim;
-use crate::handle::{BodyId, BodySlot};
+use crate::handle::{BodySlot, SoftBodyHandle};
 use crate::ids::{NodeId, PieceId};
 use crate::material::Material;
-use crate::rigid::{Rigid, Rigids};
+use crate::rigid::{RigidBodies, RigidBody};
 use crate::shape::Vector;
 use crate::vector::{as_row, cross, dot, minus, plus, scaled};
 
@@ -18,8 +18,8 @@ const ROUNDS: usize = 8;
 const AT_LIMIT: f32 = 0.98;
 
 /// Solver row of one sample.
-struct Row {
-    body: BodyId,
+struct EdgeRow {
+    body: SoftBodyHandle,
     /// Nodes and their weights.
     weights: Vec<(NodeId, f32)>,
     /// Inverse effective mass of the tissue [1/kg].
@@ -35,8 +35,8 @@ impl Knife {
     /// Solves the edge against the tissue for a substep of `duration` [s]. Returns the sleepers to wake.
     pub(crate) fn solve<D: Dim>(
         &mut self,
-        bodies: &mut Bodies<D>,
-        rigids: &mut Rigids,
+        bodies: &mut SoftBodies<D>,
+        rigids: &mut RigidBodies,
         duration: f32,
     ) -> Vec<(BodySlot, PieceId)> {
         (self.force, self.torque) = ([0.0; 3], [0.0; 3]);
@@ -51,8 +51,8 @@ impl Knife {
                 continue;
             };
             let row = self.row(&stance, place, &bodies[id], duration);
-            let piece = bodies[id].truth.pieces.of_node(row.weights[0].0);
-            if bodies[id].truth.pieces.list[piece].asleep && holder.pushes() {
+            let piece = bodies[id].topology.pieces.of_node(row.weights[0].0);
+            if bodies[id].topology.pieces.list[piece].asleep && holder.pushes() {
                 woken.push((id.slot(), piece));
             }
             rows.push((place, row));
@@ -87,12 +87,12 @@ impl Knife {
     }
 
     /// Returns the pieces that the edge is in. They stay awake while the edge moves.
-    pub(crate) fn held<D: Dim>(&self, bodies: &Bodies<D>) -> Vec<(BodySlot, PieceId)> {
+    pub(crate) fn held<D: Dim>(&self, bodies: &SoftBodies<D>) -> Vec<(BodySlot, PieceId)> {
         let inside = self.samples.iter().filter_map(|sample| sample.inside);
         let pieces = inside.filter_map(|(id, spot)| {
             let body = bodies.get(id).ok()?;
-            let owner = body.truth.mesh.owner(spot.voxel)?;
-            Some((id.slot(), body.truth.pieces.of_element(owner)))
+            let owner = body.topology.mesh.owner(spot.voxel)?;
+            Some((id.slot(), body.topology.pieces.of_element(owner)))
         });
         let mut pieces: Vec<(BodySlot, PieceId)> = pieces.collect();
         pieces.sort_unstable();
@@ -101,9 +101,15 @@ impl Knife {
     }
 
     /// Returns the solver row of a sample that is in a body.
-    fn row<D: Dim>(&self, stance: &Stance, place: usize, body: &Body<D>, duration: f32) -> Row {
+    fn row<D: Dim>(
+        &self,
+        stance: &EdgePose,
+        place: usize,
+        body: &SoftBody<D>,
+        duration: f32,
+    ) -> EdgeRow {
         let (id, spot) = self.samples[place].inside.expect("the sample is in a body");
-        let mesh = &body.truth.mesh;
+        let mesh = &body.topology.mesh;
         let owner = mesh
             .owner(spot.voxel)
             .expect("the sample is in a solid voxel");
@@ -120,7 +126,7 @@ impl Knife {
         let gains = weights
             .iter()
             .map(|&(node, weight)| weight * weight * body.state.inverse_mass[node]);
-        Row {
+        EdgeRow {
             body: id,
             gain: gains.sum(),
             weights,
@@ -142,7 +148,7 @@ impl Knife {
 }
 
 /// Returns the velocity of the edge relative to the tissue [m/s].
-fn slip<D: Dim>(row: &Row, body: &Body<D>, holder: &Rigid) -> Vector {
+fn slip<D: Dim>(row: &EdgeRow, body: &SoftBody<D>, holder: &RigidBody) -> Vector {
     minus(
         holder.velocity_at(row.lever),
         body.velocity_of(&row.weights),
@@ -151,9 +157,9 @@ fn slip<D: Dim>(row: &Row, body: &Body<D>, holder: &Rigid) -> Vector {
 
 /// Applies the impulse that removes the slip, within the limits of the row.
 fn solve_row<D: Dim>(
-    row: &mut Row,
-    body: &mut Body<D>,
-    holder: &mut Rigid,
+    row: &mut EdgeRow,
+    body: &mut SoftBody<D>,
+    holder: &mut RigidBody,
     ways: [Vector; 2],
     duration: f32,
 ) {

@@ -2,7 +2,7 @@
 
 use super::inside::Spot;
 use crate::dim::Point;
-use crate::handle::BodyId;
+use crate::handle::SoftBodyHandle;
 use crate::ids::NodeId;
 use crate::shape::Vector;
 #[cfg(feature = "serde")]
@@ -14,7 +14,7 @@ pub const MOST_SAMPLES: usize = 512;
 /// Element that a sample may enter.
 #[derive(Copy, Clone, Debug)]
 pub struct Near {
-    pub body: BodyId,
+    pub body: SoftBodyHandle,
     pub voxel: Point,
     /// A node of the element, and the reach of the element from it [m].
     pub node: NodeId,
@@ -26,9 +26,9 @@ pub struct Near {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sample {
     /// Body and rest position that the sample is in.
-    pub inside: Option<(BodyId, Spot)>,
+    pub inside: Option<(SoftBodyHandle, Spot)>,
     /// Body and rest position at the last sweep, where the swept area ends.
-    pub passed: Option<(BodyId, Spot)>,
+    pub passed: Option<(SoftBodyHandle, Spot)>,
     /// World-space position at the last sweep [m].
     pub before: Vector,
     /// Whether the sample has advanced through tissue since the last sweep, and whether through whole tissue.
@@ -38,13 +38,13 @@ pub struct Sample {
 
 impl Sample {
     /// Returns the rest position in a body at the last sweep.
-    pub fn passed_in(&self, body: BodyId) -> Option<Spot> {
+    pub fn passed_in(&self, body: SoftBodyHandle) -> Option<Spot> {
         let passed = self.passed.filter(|(own, _)| *own == body);
         passed.map(|(_, spot)| spot)
     }
 
     /// Returns the present rest position in a body.
-    pub fn inside_of(&self, body: BodyId) -> Option<Spot> {
+    pub fn inside_of(&self, body: SoftBodyHandle) -> Option<Spot> {
         let inside = self.inside.filter(|(own, _)| *own == body);
         inside.map(|(_, spot)| spot)
     }

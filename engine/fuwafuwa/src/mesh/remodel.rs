@@ -4,10 +4,10 @@ use super::{Defect, Element, Mesh, path};
 use crate::chains::ascending;
 use crate::dim::{Dim, Point, add, corner, scale};
 use crate::grid::VoxelGrid;
-use crate::ids::{ElementId, NodeId, Table};
-use crate::pyramid::{Cell, Pyramid, parts};
-use crate::sharing::Sharing;
-use crate::stencil::{Stencil, slot_index};
+use crate::ids::{ElementId, IndexVec, NodeId};
+use crate::pyramid::{Cell, CellHierarchy, parts};
+use crate::sharing::Connectivity;
+use crate::stencil::{ElementClass, slot_index};
 use std::ops::Range;
 
 /// Changes made by one remodelling.
@@ -69,8 +69,8 @@ impl<D: Dim> Mesh<D> {
     pub fn remodel(
         &mut self,
         grid: &VoxelGrid<D>,
-        sharing: &Sharing<D>,
-        pyramid: &Pyramid<D>,
+        sharing: &Connectivity<D>,
+        pyramid: &CellHierarchy<D>,
         changed: &[Point],
         born: &[Cell],
     ) -> Result<Remodelled, Defect> {
@@ -115,17 +115,21 @@ impl<D: Dim> Mesh<D> {
 
     /// Removes elements, and returns the nodes that no other element carries; both are removed from the mesh.
     /// The caller updates grid, connectivity and pyramid.
-    pub(crate) fn take_out(&mut self, sharing: &Sharing<D>, elements: &[ElementId]) -> Vec<NodeId> {
+    pub(crate) fn take_out(
+        &mut self,
+        sharing: &Connectivity<D>,
+        elements: &[ElementId],
+    ) -> Vec<NodeId> {
         let mut nodes = Vec::new();
         for &id in elements {
             let Some(element) = self.elements[id].take() else {
                 continue;
             };
-            if let Some(place) = self.places.number(element.cell) {
+            if let Some(place) = self.places.index(element.cell) {
                 self.by_cell.remove(place, id);
             }
             for voxel in self.voxels(&element) {
-                if let Some(place) = self.places.number(Cell::of(voxel)) {
+                if let Some(place) = self.places.index(Cell::of(voxel)) {
                     self.owners[place] = 0;
                 }
             }
@@ -149,7 +153,7 @@ impl<D: Dim> Mesh<D> {
     /// points whose groups have changed or which are corners of `born` cells. Nodes are created nowhere else.
     fn elements_touched(
         &self,
-        sharing: &Sharing<D>,
+        sharing: &Connectivity<D>,
         changed: &[Point],
         born: &[Cell],
         refitted: &[Cell],
@@ -162,7 +166,7 @@ impl<D: Dim> Mesh<D> {
         // Neighbouring cells share corners.
         let points = sharing.each_once(changed.iter().copied().chain(corners));
         let around = |at| self.owners_around(at, D::ALL_CORNERS);
-        let places = refitted.iter().filter_map(|&cell| self.places.number(cell));
+        let places = refitted.iter().filter_map(|&cell| self.places.index(cell));
         let inside = places.flat_map(|place| self.by_cell.at(place));
         let touched = points.into_iter().flat_map(around).chain(inside);
         ascending(touched, self.elements.len())
@@ -170,7 +174,7 @@ impl<D: Dim> Mesh<D> {
 
     /// Rebuilds the elements of a cell so that they fill `filled` [Endo 2004, §3.2, phase 2 d].
     fn refit(&mut self, cell: Cell, filled: u8, past: &mut Past, removed: &mut Vec<ElementId>) {
-        let Some(place) = self.places.number(cell) else {
+        let Some(place) = self.places.index(cell) else {
             return;
         };
         let mut left = filled;
@@ -267,7 +271,7 @@ impl Past {
             let mut removed = removed.take_while(|element| element.cell == cell);
             let here = || {
                 mesh.by_cell
-                    .at(mesh.places.number(cell)?)
+                    .at(mesh.places.index(cell)?)
                     .find_map(|id| self.was(mesh, id).filter(fills))
             };
             let found = removed.find(fills).or_else(here)?;
@@ -286,7 +290,7 @@ impl Past {
     }
 
     /// Old nodes that no element carries any more, ascending.
-    fn abandoned(&self, carriers: &Table<NodeId, u8>) -> Vec<NodeId> {
+    fn abandoned(&self, carriers: &IndexVec<NodeId, u8>) -> Vec<NodeId> {
         let replaced = self.replaced.iter().map(|(_, element)| element);
         let old = self.removed.iter().chain(replaced);
         let old = old.flat_map(|element| element.nodes.iter().copied());
@@ -297,7 +301,7 @@ impl Past {
 /// Distributes `weight` of a slot to the nodes that represent it: its own node, or recursively those of the
 /// adjacent slots. The shares of the current new node start at index `first`.
 fn collect_shares<D: Dim>(
-    stencil: &Stencil<D>,
+    stencil: &ElementClass<D>,
     nodes: &[NodeId],
     slot: Point,
     weight: f64,

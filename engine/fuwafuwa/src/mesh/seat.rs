@@ -5,8 +5,8 @@ use super::{Defect, Element, Mesh, Node};
 use crate::dim::{Dim, Point, add, corner, scale, voxel_around};
 use crate::ids::{ElementId, NodeId};
 use crate::pyramid::Cell;
-use crate::sharing::Sharing;
-use crate::stencil::{Stencil, cell_corners, slot_at};
+use crate::sharing::Connectivity;
+use crate::stencil::{ElementClass, cell_corners, slot_at};
 
 impl<D: Dim> Mesh<D> {
     /// Gives an element the nodes and the class that follow from its surroundings; returns false if nothing
@@ -14,7 +14,7 @@ impl<D: Dim> Mesh<D> {
     pub(super) fn seat(
         &mut self,
         id: ElementId,
-        sharing: &Sharing<D>,
+        sharing: &Connectivity<D>,
         mut past: Option<&mut Past>,
     ) -> Result<bool, Defect> {
         let (cell, children) = (self.alive(id).cell, self.alive(id).children);
@@ -105,7 +105,7 @@ impl<D: Dim> Mesh<D> {
             return Ok(class);
         }
         let class = self.stencils.len() as u32;
-        self.stencils.push(Stencil::new(children, slots)?);
+        self.stencils.push(ElementClass::new(children, slots)?);
         self.classes.insert((children, slots), class);
         Ok(class)
     }

@@ -7,12 +7,12 @@ use crate::dim::{Dim, Point, neighbourhood};
 use crate::grid::VoxelGrid;
 #[cfg(feature = "serde")]
 use crate::ids::{ElementId, Id};
-use crate::ids::{NodeId, Table};
+use crate::ids::{IndexVec, NodeId};
 #[cfg(feature = "serde")]
 use crate::pyramid::Cell;
-use crate::sharing::Sharing;
+use crate::sharing::Connectivity;
 #[cfg(feature = "serde")]
-use crate::stencil::Stencil;
+use crate::stencil::ElementClass;
 #[cfg(feature = "serde")]
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ impl<D: Dim> Mesh<D> {
     /// # Errors
     /// The first [`Defect`] found.
     #[inline(never)]
-    pub fn validate(&self, grid: &VoxelGrid<D>, sharing: &Sharing<D>) -> Result<(), Defect> {
+    pub fn validate(&self, grid: &VoxelGrid<D>, sharing: &Connectivity<D>) -> Result<(), Defect> {
         let levels = self.check_ownership(grid)?;
         check_grading(grid, &levels)?;
         self.check_split_points(sharing)?;
@@ -43,7 +43,7 @@ impl<D: Dim> Mesh<D> {
                         "element {id} fills voxel {voxel:?}, which is listed for {other:?}"
                     )));
                 }
-                if !grid.is_left(voxel) {
+                if !grid.is_present(voxel) {
                     let cell = element.cell;
                     return Err(Defect(format!("{cell:?} fills the empty voxel {voxel:?}")));
                 }
@@ -55,7 +55,7 @@ impl<D: Dim> Mesh<D> {
             }
         }
         let is_orphan =
-            |&voxel: &Point| grid.is_left(voxel) && owners[grid.index(voxel)] == u8::MAX;
+            |&voxel: &Point| grid.is_present(voxel) && owners[grid.index(voxel)] == u8::MAX;
         match grid.voxels().find(is_orphan) {
             Some(voxel) => Err(Defect(format!("no element owns the voxel {voxel:?}"))),
             None => Ok(owners),
@@ -68,7 +68,11 @@ impl<D: Dim> Mesh<D> {
     /// # Errors
     /// The first [`Defect`] found.
     #[cfg(feature = "serde")]
-    pub(crate) fn check_against(&self, fresh: &Self, sharing: &Sharing<D>) -> Result<(), Defect> {
+    pub(crate) fn check_against(
+        &self,
+        fresh: &Self,
+        sharing: &Connectivity<D>,
+    ) -> Result<(), Defect> {
         let ensure = |good: bool, what: &str| match good {
             true => Ok(()),
             false => Err(Defect(format!("inconsistent {what}"))),
@@ -81,7 +85,7 @@ impl<D: Dim> Mesh<D> {
         let is_class = |(&(children, slots), &class): (&(u8, u32), &u32)| {
             let known = children != 0 && children <= D::ALL_CORNERS && slots >> D::SLOTS == 0;
             let stencil = known
-                .then(|| Stencil::<D>::new(children, slots).ok())
+                .then(|| ElementClass::<D>::new(children, slots).ok())
                 .flatten();
             stencil.is_some() && self.stencils.get(class as usize) == stencil.as_ref()
         };
@@ -113,12 +117,12 @@ impl<D: Dim> Mesh<D> {
 
         let ends = self
             .by_cell
-            .is_sound(self.places.count(), self.elements.len())
+            .is_valid(self.places.count(), self.elements.len())
             && self
                 .by_point
-                .is_sound(sharing.point_count(), self.nodes.len());
+                .is_valid(sharing.point_count(), self.nodes.len());
         ensure(ends, "lists of ids")?;
-        let at = |cell| self.places.number(cell).into_iter();
+        let at = |cell| self.places.index(cell).into_iter();
         let listed = |cell| at(cell).flat_map(|place| self.by_cell.at(place));
         let mut elements = self.elements();
         let found = elements.all(|(id, element)| listed(element.cell).any(|other| other == id));
@@ -163,7 +167,7 @@ impl<D: Dim> Mesh<D> {
         Some(shapes)
     }
 
-    fn check_split_points(&self, sharing: &Sharing<D>) -> Result<(), Defect> {
+    fn check_split_points(&self, sharing: &Connectivity<D>) -> Result<(), Defect> {
         for (_, element) in self
             .elements()
             .filter(|(_, element)| element.cell.level > 0)
@@ -182,7 +186,7 @@ impl<D: Dim> Mesh<D> {
     }
 
     fn check_carriers(&self) -> Result<(), Defect> {
-        let mut counts: Table<NodeId, u8> = vec![0; self.nodes.len()].into();
+        let mut counts: IndexVec<NodeId, u8> = vec![0; self.nodes.len()].into();
         for (_, element) in self.elements() {
             element.nodes.iter().for_each(|&node| counts[node] += 1);
         }
@@ -198,8 +202,8 @@ impl<D: Dim> Mesh<D> {
         }
     }
 
-    fn check_gradients(&self, sharing: &Sharing<D>) -> Result<(), Defect> {
-        let mut sums: Table<NodeId, _> = vec![[0.0; 3]; self.nodes.len()].into();
+    fn check_gradients(&self, sharing: &Connectivity<D>) -> Result<(), Defect> {
+        let mut sums: IndexVec<NodeId, _> = vec![[0.0; 3]; self.nodes.len()].into();
         for (_, element) in self.elements() {
             let half = element.cell.width() as f64 * 0.5;
             let scale = (1..D::N).fold(1.0, |scale, _| scale * half);
@@ -232,9 +236,9 @@ fn are_just<I: Id + Ord>(ids: &[I], expected: impl Iterator<Item = I>) -> bool {
 }
 
 fn check_grading<D: Dim>(grid: &VoxelGrid<D>, levels: &[u8]) -> Result<(), Defect> {
-    for voxel in grid.voxels().filter(|&voxel| grid.is_left(voxel)) {
+    for voxel in grid.voxels().filter(|&voxel| grid.is_present(voxel)) {
         let level = levels[grid.index(voxel)];
-        for near in neighbourhood::<D>(voxel, 1).filter(|&near| grid.is_left(near)) {
+        for near in neighbourhood::<D>(voxel, 1).filter(|&near| grid.is_present(near)) {
             if level.abs_diff(levels[grid.index(near)]) > 1 {
                 return Err(Defect(format!(
                     "levels jump between {voxel:?} and {near:?}"

@@ -1,11 +1,11 @@
 //! Validation of rigid bodies.
 
 use super::bad::{BadRigid, is_within_reach, require};
-use super::{Drive, Rigid};
+use super::{MotionType, RigidBody};
 use crate::rotation::Rotation;
 use crate::vector::{is_finite, length, minus, plus};
 
-impl Rigid {
+impl RigidBody {
     /// Checks every field.
     ///
     /// # Errors
@@ -29,13 +29,17 @@ impl Rigid {
             )?;
         }
         require(is_finite(self.velocity), "velocity", "finite")?;
-        require(is_finite(self.spin), "angular velocity", "finite")?;
+        require(
+            is_finite(self.angular_velocity),
+            "angular velocity",
+            "finite",
+        )?;
         let rotations = [self.rotation, self.rotation_before, self.rotation_goal];
-        let are_rotations = rotations.into_iter().all(Rotation::is_one);
+        let are_rotations = rotations.into_iter().all(Rotation::is_unit);
         require(are_rotations, "rotation", "of length 1")?;
-        require(self.still >= 0.0, "sleep timer", "0 or more")?;
+        require(self.sleep_timer >= 0.0, "sleep timer", "0 or more")?;
         self.form.check()?;
-        let is_moved = self.shape == self.form.rotated(self.rotation).moved(self.position);
+        let is_moved = self.shape == self.form.rotated(self.rotation).translated(self.position);
         let expected = "the local shape, rotated and translated to the pose";
         require(is_moved, "shape", expected)?;
         within(
@@ -46,13 +50,13 @@ impl Rigid {
             "0 or more, and finite",
         )?;
         within("restitution", self.restitution, 0.0, 1.0, "0 to 1")?;
-        if self.drive != Drive::Fixed {
+        if self.motion_type != MotionType::Fixed {
             let ends = self.form.bounds().into_iter().all(is_within_reach);
             require(ends, "shape", "bounded, within 1e6 m of its position")?;
         }
-        match self.drive {
-            Drive::Fixed | Drive::Kinematic => Ok(()),
-            Drive::Free { mass } => {
+        match self.motion_type {
+            MotionType::Fixed | MotionType::Kinematic => Ok(()),
+            MotionType::Dynamic { mass } => {
                 within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
                 let [low, high] = self.form.bounds();
                 let off = length(plus(low, high)) <= 1e-3 * length(minus(high, low));
@@ -64,7 +68,7 @@ impl Rigid {
                     "neither too small nor too large to be turned",
                 )
             }
-            Drive::Coupled {
+            MotionType::Coupled {
                 mass,
                 stiffness,
                 damping,

@@ -2,17 +2,17 @@
 
 use super::bad::{BadRigid, is_within_reach, require};
 use super::inertia::{Inertia, times};
-use super::{Drive, Rigid};
+use super::{MotionType, RigidBody};
 use crate::dim::Dim;
 use crate::layers::Layers;
 use crate::rotation::Rotation;
 use crate::shape::{Vector, flat};
 use crate::vector::{cross, dot, length, minus, plus, scaled};
 
-impl Rigid {
+impl RigidBody {
     /// Returns whether the body is dynamic.
-    pub fn is_free(&self) -> bool {
-        matches!(self.drive, Drive::Free { .. })
+    pub fn is_dynamic(&self) -> bool {
+        matches!(self.motion_type, MotionType::Dynamic { .. })
     }
 
     /// Returns whether the body is dynamic and sleeps, until something moves against it.
@@ -23,10 +23,10 @@ impl Rigid {
     /// Returns whether the body keeps objects in contact with it awake: a coupled body always, a kinematic
     /// body while it moves.
     pub(crate) fn pushes(&self) -> bool {
-        match self.drive {
-            Drive::Coupled { .. } => true,
-            Drive::Kinematic => self.velocity != [0.0; 3] || self.spin != [0.0; 3],
-            Drive::Fixed | Drive::Free { .. } => false,
+        match self.motion_type {
+            MotionType::Coupled { .. } => true,
+            MotionType::Kinematic => self.velocity != [0.0; 3] || self.angular_velocity != [0.0; 3],
+            MotionType::Fixed | MotionType::Dynamic { .. } => false,
         }
     }
 
@@ -45,14 +45,14 @@ impl Rigid {
     /// Returns whether the body can move in this substep.
     #[inline(always)]
     pub(crate) fn moves(&self) -> bool {
-        !matches!(self.drive, Drive::Fixed) && !self.asleep
+        !matches!(self.motion_type, MotionType::Fixed) && !self.asleep
     }
 
-    /// Returns the velocity [m/s] of a body point, given relative to [`position`](Rigid::position) [m].
+    /// Returns the velocity [m/s] of a body point, given relative to [`position`](RigidBody::position) [m].
     #[inline(always)]
     pub(crate) fn velocity_at(&self, lever: Vector) -> Vector {
         match self.turns() {
-            true => plus(self.velocity, cross(self.spin, lever)),
+            true => plus(self.velocity, cross(self.angular_velocity, lever)),
             false => self.velocity,
         }
     }
@@ -69,8 +69,8 @@ impl Rigid {
     /// Returns an upper bound of the speed of all body points [m/s].
     pub(crate) fn top_speed(&self) -> f32 {
         let speed = length(self.velocity);
-        match self.turns() && self.spin != [0.0; 3] {
-            true => speed + length(self.spin) * self.extent(),
+        match self.turns() && self.angular_velocity != [0.0; 3] {
+            true => speed + length(self.angular_velocity) * self.extent(),
             false => speed,
         }
     }
@@ -83,7 +83,7 @@ impl Rigid {
 
     /// Sets the target rotation.
     pub(crate) fn turn_to<D: Dim>(&mut self, rotation: Rotation) -> Result<(), BadRigid> {
-        require(self.is_driven(), "drive", "kinematic or coupled")?;
+        require(self.follows_target(), "drive", "kinematic or coupled")?;
         self.rotation_goal = rotation.seen_in::<D>();
         Ok(())
     }
@@ -112,13 +112,13 @@ impl Rigid {
 
     /// Wakes the body and restarts its sleep timer.
     pub(crate) fn wake(&mut self) {
-        (self.asleep, self.still) = (false, 0.0);
+        (self.asleep, self.sleep_timer) = (false, 0.0);
     }
 
     /// Computes the moments of inertia for a world of `D`.
     pub(super) fn take_inertia<D: Dim>(&mut self) {
-        self.inertia = match self.drive {
-            Drive::Free { mass } => Some(Inertia::of::<D>(&self.form, mass)),
+        self.inertia = match self.motion_type {
+            MotionType::Dynamic { mass } => Some(Inertia::of::<D>(&self.form, mass)),
             _ => None,
         };
     }
@@ -128,7 +128,7 @@ impl Rigid {
         let gain = scaled(flat::<D>(acceleration), duration);
         let left = 1.0 / (1.0 + drag * duration);
         self.velocity = scaled(plus(self.velocity, gain), left);
-        self.spin = scaled(self.spin, left);
+        self.angular_velocity = scaled(self.angular_velocity, left);
     }
 
     /// Integrates position and rotation.
@@ -137,14 +137,18 @@ impl Rigid {
             return;
         }
         let position = plus(self.position, scaled(self.velocity, duration));
-        if self.spin == [0.0; 3] {
+        if self.angular_velocity == [0.0; 3] {
             return self.stand_at(position, self.rotation);
         }
-        let way = Rotation::about(self.spin, length(self.spin) * duration);
+        let way = Rotation::about(
+            self.angular_velocity,
+            length(self.angular_velocity) * duration,
+        );
         let rotation = self.rotation.then(way);
         if let Some(inertia) = &self.inertia {
             // Without torque the angular momentum is preserved.
-            self.spin = inertia.spin_kept(self.spin, self.rotation, rotation);
+            self.angular_velocity =
+                inertia.spin_kept(self.angular_velocity, self.rotation, rotation);
         }
         self.stand_at(position, rotation);
     }
@@ -167,7 +171,7 @@ impl Rigid {
     fn twirl(&mut self, impulse: Vector, lever: Vector) {
         if self.can_be_turned() {
             let twist = times(&self.inverse_inertia, cross(lever, impulse));
-            self.spin = plus(self.spin, twist);
+            self.angular_velocity = plus(self.angular_velocity, twist);
         }
     }
 
@@ -211,16 +215,16 @@ impl Rigid {
     /// Returns whether contacts can turn the body.
     #[inline(always)]
     fn can_be_turned(&self) -> bool {
-        self.is_free() && !self.asleep
+        self.is_dynamic() && !self.asleep
     }
 
     /// Returns whether the body can have an angular velocity.
     #[inline(always)]
     fn turns(&self) -> bool {
-        match self.drive {
-            Drive::Fixed => false,
-            Drive::Kinematic | Drive::Free { .. } => true,
-            Drive::Coupled { .. } => self.spin != [0.0; 3],
+        match self.motion_type {
+            MotionType::Fixed => false,
+            MotionType::Kinematic | MotionType::Dynamic { .. } => true,
+            MotionType::Coupled { .. } => self.angular_velocity != [0.0; 3],
         }
     }
 }

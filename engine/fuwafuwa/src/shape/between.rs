@@ -148,7 +148,7 @@ mod tests {
                 half: [1.0; 3],
             }
             .rotated(quarter)
-            .moved([0.0, y, 0.0])
+            .translated([0.0, y, 0.0])
         };
         check(edge(2.0), floor, 2.0 - 2.0f32.sqrt(), up);
         check(edge(2.0), cube([0.0; 3]), 1.5 - 2.0f32.sqrt(), up);

@@ -273,7 +273,7 @@ mod tests {
         check(cube([0.3, 1.5, 0.2], [1.0, 0.5, 0.7]), brick, 4, 0.01, up);
         let turned = Rotation::about(up, 0.7);
         let above = cube([0.0; 3], [0.9, 0.5, 0.9]).rotated(turned);
-        check(above.moved([0.0, 1.48, 0.0]), brick, 8, -0.01, up);
+        check(above.translated([0.0, 1.48, 0.0]), brick, 8, -0.01, up);
         // Boxes in 2D.
         let flat = |centre: Vector| cube(centre, [1.0, 0.5, f32::MAX]);
         check(flat([0.4, 0.99, 0.0]), flat([0.0; 3]), 2, -0.01, up);
@@ -285,7 +285,7 @@ mod tests {
                 to,
                 radius: 0.25,
             }
-            .moved([0.0, y, 0.0])
+            .translated([0.0, y, 0.0])
         };
         check(bar(0.24, [1.0, 0.0, 0.0]), floor, 2, -0.01, up);
         check(bar(1.23, [0.8, 0.0, 0.0]), brick, 2, -0.01, up);
@@ -313,12 +313,12 @@ mod tests {
         // Two crossing edges.
         let quarter = std::f32::consts::FRAC_PI_4;
         let beam = |axis| cube([0.0; 3], [1.0; 3]).rotated(Rotation::about(axis, quarter));
-        let high = beam([1.0, 0.0, 0.0]).moved([0.0, 2.0 * 2.0f32.sqrt() - 0.01, 0.0]);
+        let high = beam([1.0, 0.0, 0.0]).translated([0.0, 2.0 * 2.0f32.sqrt() - 0.01, 0.0]);
         check(high, beam([0.0, 0.0, 1.0]), 1, -0.01, up);
         assert!(floor.manifold(&floor, 1.0).points.is_empty());
         assert!(
             brick
-                .manifold(&brick.moved([0.0, 3.0, 0.0]), 0.1)
+                .manifold(&brick.translated([0.0, 3.0, 0.0]), 0.1)
                 .points
                 .is_empty()
         );

@@ -1,9 +1,9 @@
 //! Removal of voxels.
 
-use super::{EMPTY, Sharing};
+use super::{Connectivity, EMPTY};
 use crate::dim::{Dim, Point};
 
-impl<D: Dim> Sharing<D> {
+impl<D: Dim> Connectivity<D> {
     /// Removes voxels. They must form whole groups, so that the remaining voxels keep their grouping.
     pub(crate) fn take_out(&mut self, voxels: &[Point]) {
         for &voxel in voxels {

@@ -1,9 +1,9 @@
 //! Assignment of elements to blocks and lanes, and its update after a remodelling.
 
-use super::block::{ALL_LANES, Block, Home, Kind, VACANT};
+use super::block::{ALL_LANES, Batch, BatchKey, BatchKind, VACANT};
 use super::kernel::{numbers, numbers_a_node, symmetric};
-use super::plastic::{Dent, NO_DENT, Undone};
-use super::{Blocks, PAD};
+use super::plastic::{IDENTITY, PlasticInverse, PlasticInverseLanes};
+use super::{ElementBatches, PAD};
 use crate::chains::ascending;
 use crate::dim::Dim;
 use crate::grid::VoxelGrid;
@@ -11,11 +11,11 @@ use crate::ids::{ElementId, NodeId};
 use crate::lanes::LANES;
 use crate::law::Law;
 use crate::mesh::{Element, Mesh};
-use crate::stencil::Stencil;
+use crate::stencil::ElementClass;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-impl<D: Dim> Blocks<D> {
+impl<D: Dim> ElementBatches<D> {
     /// Updates the blocks after a remodelling: removes the elements `removed`, and adds or moves the elements
     /// `seated`, of which some are `asleep`. The cost is proportional to the changes.
     pub fn update(
@@ -31,11 +31,11 @@ impl<D: Dim> Blocks<D> {
             let material = grid.material(mesh.first_voxel(element));
             self.newcomer(id, element, material, asleep(id))
         };
-        let newcomers: Vec<Newcomer> = seated.iter().map(newcomer).collect();
+        let newcomers: Vec<PendingElement> = seated.iter().map(newcomer).collect();
         for &id in removed.iter().chain(seated) {
             self.take_out(id);
         }
-        self.take_in(mesh, newcomers);
+        self.insert_pending(mesh, newcomers);
     }
 
     /// Puts elements to sleep, or wakes them. A block is evaluated as a whole. If all elements of a block
@@ -55,7 +55,7 @@ impl<D: Dim> Blocks<D> {
             let block = &self.blocks[index as usize];
             let rest = !(lanes | block.vacant);
             if rest == 0 && !is_few(lanes) {
-                self.rehome(index, asleep);
+                self.change_key(index, asleep);
                 continue;
             }
             let rest = if is_few(rest) { rest } else { 0 };
@@ -68,9 +68,9 @@ impl<D: Dim> Blocks<D> {
     }
 
     /// Puts a whole block to sleep, or wakes it.
-    fn rehome(&mut self, index: u32, asleep: bool) {
+    fn change_key(&mut self, index: u32, asleep: bool) {
         let block = &mut self.blocks[index as usize];
-        let home = Home {
+        let home = BatchKey {
             asleep,
             ..block.home
         };
@@ -88,22 +88,22 @@ impl<D: Dim> Blocks<D> {
             let (index, lane) = self.assigned[id];
             let block = &self.blocks[index as usize];
             let newcomer = self.newcomer(id, element, block.home.material, asleep);
-            let forces = (0..element.nodes.len()).map(|node| self.place(index, lane, node));
+            let forces = (0..element.nodes.len()).map(|node| self.force_range(index, lane, node));
             let forces: Vec<f32> = forces
                 .flat_map(|place| &self.forces[place])
                 .copied()
                 .collect();
             (newcomer, block.inverted >> lane & 1, forces)
         };
-        let states: Vec<(Newcomer, u8, Vec<f32>)> = movers.iter().map(state).collect();
+        let states: Vec<(PendingElement, u8, Vec<f32>)> = movers.iter().map(state).collect();
         movers.iter().for_each(|&(id, _)| self.take_out(id));
         let newcomers = states.iter().map(|(newcomer, ..)| *newcomer);
-        self.take_in(mesh, newcomers.collect());
-        for (Newcomer { id, .. }, inverted, forces) in states {
+        self.insert_pending(mesh, newcomers.collect());
+        for (PendingElement { id, .. }, inverted, forces) in states {
             let (index, lane) = self.assigned[id];
             self.blocks[index as usize].inverted |= inverted << lane;
             for (node, force) in forces.chunks_exact(D::N).enumerate() {
-                let place = self.place(index, lane, node);
+                let place = self.force_range(index, lane, node);
                 self.forces[place].copy_from_slice(force);
             }
         }
@@ -116,26 +116,26 @@ impl<D: Dim> Blocks<D> {
         element: &'a Element,
         material: u8,
         asleep: bool,
-    ) -> Newcomer<'a> {
-        Newcomer {
+    ) -> PendingElement<'a> {
+        PendingElement {
             id,
             element,
             material,
             asleep,
             rotation: self.rotation_of(id),
-            undone: self.undone(id).unwrap_or(NO_DENT),
+            undone: self.plastic_inverse(id).unwrap_or(IDENTITY),
         }
     }
 
     /// Adds elements that are in no block, and updates the indices of the forces on their nodes.
-    fn take_in(&mut self, mesh: &Mesh<D>, newcomers: Vec<Newcomer>) {
+    fn insert_pending(&mut self, mesh: &Mesh<D>, newcomers: Vec<PendingElement>) {
         let nodes = newcomers
             .iter()
             .flat_map(|newcomer| newcomer.element.nodes.iter().copied());
         let nodes = ascending(nodes, mesh.node_capacity());
-        let mut classes: BTreeMap<(bool, u8, u32), Vec<Newcomer>> = BTreeMap::new();
+        let mut classes: BTreeMap<(bool, u8, u32), Vec<PendingElement>> = BTreeMap::new();
         for newcomer in newcomers {
-            let Newcomer {
+            let PendingElement {
                 asleep,
                 material,
                 element,
@@ -147,13 +147,13 @@ impl<D: Dim> Blocks<D> {
             class.push(newcomer);
         }
         for newcomers in classes.values() {
-            self.put_in(mesh.stencil(newcomers[0].element), newcomers);
+            self.insert_class(mesh.stencil(newcomers[0].element), newcomers);
         }
         self.slots.resize(mesh.node_capacity(), [0; 8]);
         for node in nodes {
             let mut slots = [0; 8];
             for (place, id) in slots.iter_mut().zip(mesh.carrier_ids(node)) {
-                *place = self.slot(id, node);
+                *place = self.force_index(id, node);
             }
             self.slots[node] = slots;
         }
@@ -161,14 +161,14 @@ impl<D: Dim> Blocks<D> {
 
     /// Range in `forces` of the force on node `node` of the element in a lane of a block; nodes are counted
     /// in the order of the element.
-    pub(super) fn place(&self, index: u32, lane: u8, node: usize) -> Range<usize> {
+    pub(super) fn force_range(&self, index: u32, lane: u8, node: usize) -> Range<usize> {
         let first = self.blocks[index as usize].first as usize;
         let place = (first + node * LANES + lane as usize) * D::N;
         place..place + D::N
     }
 
     /// Index in `forces` of the force of an element on a node.
-    pub(super) fn slot(&self, id: ElementId, node: NodeId) -> u32 {
+    pub(super) fn force_index(&self, id: ElementId, node: NodeId) -> u32 {
         let (block, lane) = self.assigned[id];
         let block = &self.blocks[block as usize];
         let first = block.first as usize + lane as usize;
@@ -202,23 +202,23 @@ impl<D: Dim> Blocks<D> {
 
     /// Adds elements of one class and material that are all asleep or all awake. They go to vacant lanes of
     /// the class, then eight at a time to new blocks of the class, and the rest to the pool.
-    fn put_in(&mut self, stencil: &Stencil<D>, mut newcomers: &[Newcomer]) {
-        let Newcomer {
+    fn insert_class(&mut self, stencil: &ElementClass<D>, mut newcomers: &[PendingElement]) {
+        let PendingElement {
             element,
             material,
             asleep,
             ..
         } = newcomers[0];
         let class = element.stencil;
-        let is_plain = stencil.is_plain() && self.law == Law::PatchExact;
-        let home = |kind: Kind| Home {
+        let is_plain = stencil.is_plain() && self.law == Law::CorotationalVem;
+        let home = |kind: BatchKind| BatchKey {
             kind,
             material,
             asleep,
         };
         let own = home(match is_plain {
-            true => Kind::Plain,
-            false => Kind::Class(class),
+            true => BatchKind::Plain,
+            false => BatchKind::Class(class),
         });
         let count = stencil.slots.len() as u32;
         let numbers = numbers_of(self.law, stencil);
@@ -232,7 +232,7 @@ impl<D: Dim> Blocks<D> {
                     index
                 }
                 None => {
-                    let pool = home(Kind::Pool(count));
+                    let pool = home(BatchKind::Pool(count));
                     let open = self.open.get(&pool).and_then(|open| open.first().copied());
                     open.unwrap_or_else(|| self.empty_block(pool, count))
                 }
@@ -243,7 +243,7 @@ impl<D: Dim> Blocks<D> {
     }
 
     /// Returns a block without elements, for elements with `count` nodes.
-    fn empty_block(&mut self, home: Home, count: u32) -> u32 {
+    fn empty_block(&mut self, home: BatchKey, count: u32) -> u32 {
         let kind = (count, home.is_pool());
         if let Some(index) = self.empty.get_mut(&kind).and_then(Vec::pop) {
             let undone = self.undone_in(home);
@@ -261,7 +261,7 @@ impl<D: Dim> Blocks<D> {
             self.pooled.resize(length, [0.0; LANES]);
         }
         let undone = self.undone_in(home);
-        self.blocks.push(Block {
+        self.blocks.push(Batch {
             home,
             undone,
             elements: [VACANT; LANES],
@@ -278,9 +278,9 @@ impl<D: Dim> Blocks<D> {
     }
 
     /// Initial plastic state of the elements of a block, if their material is plastic.
-    fn undone_in(&self, home: Home) -> Option<Box<Undone>> {
+    fn undone_in(&self, home: BatchKey) -> Option<Box<PlasticInverseLanes>> {
         let flow = self.flows.get(home.material as usize - 1);
-        flow.copied().flatten().map(|_| Undone::none())
+        flow.copied().flatten().map(|_| PlasticInverseLanes::none())
     }
 
     /// Returns the start of the stencil of a class in `numbers`; adds the stencil if necessary.
@@ -293,7 +293,7 @@ impl<D: Dim> Blocks<D> {
     }
 
     /// Puts an element into a vacant lane of a block.
-    fn assign(&mut self, index: u32, newcomer: &Newcomer, numbers: &[f32]) {
+    fn assign(&mut self, index: u32, newcomer: &PendingElement, numbers: &[f32]) {
         let block = &mut self.blocks[index as usize];
         let is_first = block.vacant == ALL_LANES;
         assert_ne!(block.vacant, 0, "open blocks have vacant lanes");
@@ -345,17 +345,17 @@ impl<D: Dim> Blocks<D> {
 
 /// Element that is to be added to a block.
 #[derive(Copy, Clone)]
-struct Newcomer<'a> {
+struct PendingElement<'a> {
     id: ElementId,
     element: &'a Element,
     material: u8,
     asleep: bool,
     rotation: [f32; 4],
-    undone: Dent,
+    undone: PlasticInverse,
 }
 
 /// Returns a stencil in single precision, in the layout of the kernel.
-fn numbers_of<D: Dim>(law: Law, stencil: &Stencil<D>) -> Vec<f32> {
+fn numbers_of<D: Dim>(law: Law, stencil: &ElementClass<D>) -> Vec<f32> {
     let count = stencil.slots.len();
     let mut mean = [0.0; 3];
     for offset in &stencil.offsets {
@@ -372,14 +372,14 @@ fn numbers_of<D: Dim>(law: Law, stencil: &Stencil<D>) -> Vec<f32> {
             let centred = stencil.offsets[k][axis] - mean[axis];
             total += centred * centred;
             match law {
-                Law::PatchExact => {
+                Law::CorotationalVem => {
                     node[axis] = stencil.gradients[k][axis] as f32;
                     node[D::N + axis] = (w * stencil.offsets[k][axis]) as f32;
                 }
                 Law::Endo2004 => node[axis] = centred as f32,
             }
         }
-        node[2 * D::N] = if law == Law::PatchExact {
+        node[2 * D::N] = if law == Law::CorotationalVem {
             w as f32
         } else {
             1.0
@@ -394,13 +394,13 @@ fn numbers_of<D: Dim>(law: Law, stencil: &Stencil<D>) -> Vec<f32> {
         }
     }
     let volume = match law {
-        Law::PatchExact => stencil.volume,
+        Law::CorotationalVem => stencil.volume,
         Law::Endo2004 => count as f64,
     };
     let last = all.len() - 1;
     all[last - 1] = (1.0 / volume) as f32;
     let stiffness = match law {
-        Law::PatchExact => stencil.hourglass,
+        Law::CorotationalVem => stencil.hourglass,
         Law::Endo2004 => stencil.volume * D::N as f64 / total,
     };
     all[last] = stiffness as f32;

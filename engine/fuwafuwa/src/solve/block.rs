@@ -4,7 +4,7 @@ use super::kernel::{
     BlockView, Moduli, PerLane, Scratch, Uniform, forces, gradient, plain_forces, plain_gradient,
     stress,
 };
-use super::plastic::{Flow, Undone, plastic_stress};
+use super::plastic::{PlasticFlowLimits, PlasticInverseLanes, plastic_stress};
 use crate::dim::Dim;
 use crate::lanes::{Eight, LANES, Row, on_widest_lanes};
 use crate::law::Law;
@@ -20,8 +20,8 @@ pub const ALL_LANES: u8 = u8::MAX;
 
 /// Block of elements, with the indices of their nodes, forces and stencils.
 #[derive(Clone, Debug)]
-pub struct Block {
-    pub home: Home,
+pub struct Batch {
+    pub home: BatchKey,
     pub elements: [u32; LANES],
     /// Mask of the lanes without an element.
     pub vacant: u8,
@@ -31,7 +31,7 @@ pub struct Block {
     /// Quaternion in 3D; cosine and sine in 2D.
     pub rotation: [Eight; 4],
     /// Plastic state of each lane, if the material is plastic.
-    pub undone: Option<Box<Undone>>,
+    pub undone: Option<Box<PlasticInverseLanes>>,
     pub node_count: u32,
     /// Index of its first nodes and forces.
     pub first: u32,
@@ -42,8 +42,8 @@ pub struct Block {
 
 /// Properties that the elements of a block have in common.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Home {
-    pub kind: Kind,
+pub struct BatchKey {
+    pub kind: BatchKind,
     /// Number of the material.
     pub material: u8,
     /// Whether the elements sleep; then their rotations and forces are not updated.
@@ -52,7 +52,7 @@ pub struct Home {
 
 /// Classes of the elements of a block.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum BatchKind {
     /// Whole cells with nodes only in their corners.
     Plain,
     /// One class.
@@ -61,9 +61,9 @@ pub enum Kind {
     Pool(u32),
 }
 
-impl Home {
+impl BatchKey {
     pub fn is_pool(self) -> bool {
-        matches!(self.kind, Kind::Pool(_))
+        matches!(self.kind, BatchKind::Pool(_))
     }
 }
 
@@ -72,7 +72,7 @@ impl Home {
 pub struct Shared<'a> {
     pub law: Law,
     pub moduli: &'a [Moduli],
-    pub flows: &'a [Option<Flow>],
+    pub flows: &'a [Option<PlasticFlowLimits>],
     pub numbers: &'a [f32],
     pub pooled: &'a [Eight],
     pub nodes: &'a [u32],
@@ -80,13 +80,13 @@ pub struct Shared<'a> {
 
 /// Some blocks, and the forces that they write; `first` is the index of the first force.
 pub struct Group<'a> {
-    pub blocks: &'a mut [Block],
+    pub blocks: &'a mut [Batch],
     pub forces: &'a mut [f32],
     pub first: usize,
     pub shared: Shared<'a>,
 }
 
-impl Block {
+impl Batch {
     /// Index after its last force.
     pub fn end(&self) -> usize {
         self.first as usize + self.node_count as usize * LANES
@@ -109,9 +109,9 @@ impl Block {
     fn stencil<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
         let places = self.stencil as usize..(self.stencil + self.numbers) as usize;
         match self.home.kind {
-            Kind::Plain => (&[], &[]),
-            Kind::Class(_) => (&shared.numbers[places], &[]),
-            Kind::Pool(_) => (&[], &shared.pooled[places]),
+            BatchKind::Plain => (&[], &[]),
+            BatchKind::Class(_) => (&shared.numbers[places], &[]),
+            BatchKind::Pool(_) => (&[], &shared.pooled[places]),
         }
     }
 
@@ -157,7 +157,7 @@ pub fn evaluate_group<D: Dim, S: Simd>(
         let (home, stencil) = (block.home, block.stencil(&shared));
         let view = block.view::<D>(&shared, all, first);
         match (home.kind, stencil) {
-            (Kind::Plain, _) => plain_gradient::<D, S>(simd, position, &view, scratch),
+            (BatchKind::Plain, _) => plain_gradient::<D, S>(simd, position, &view, scratch),
             (_, (one, [])) => gradient::<D, S>(simd, &Uniform(one), position, &view, scratch),
             (_, (_, each)) => gradient::<D, S>(simd, &PerLane(each), position, &view, scratch),
         }
@@ -191,7 +191,7 @@ pub fn evaluate_group<D: Dim, S: Simd>(
         let moduli = &shared.moduli[home.material as usize - 1];
         let view = &mut block.view::<D>(&shared, all, first);
         match (home.kind, stencil) {
-            (Kind::Plain, _) => plain_forces::<D, S>(simd, moduli, view, scratch),
+            (BatchKind::Plain, _) => plain_forces::<D, S>(simd, moduli, view, scratch),
             (_, (one, [])) => {
                 forces::<D, S>(simd, law, moduli, &Uniform(one), view, scratch);
             }

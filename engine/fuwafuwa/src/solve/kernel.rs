@@ -19,7 +19,7 @@
 use super::turn::{Matrix, turn};
 use crate::dim::Dim;
 use crate::lanes::{Eight, LANES, Lanes, Row, at_least, gather, load, positive, scatter, splat};
-use crate::law::{Elasticity, Law, SQUASH_LIMIT};
+use crate::law::{Elasticity, Law, MIN_VOLUME_RATIO};
 use fearless_simd::prelude::*;
 
 /// Data of one block for the kernel.
@@ -219,7 +219,7 @@ pub fn stress<D: Dim, S: Simd>(
     }
     let rotation = turn::<D, S>(simd, &f, view.rotation);
     let stress = match law {
-        Law::PatchExact => stress_of::<D, S>(simd, moduli, &f, &rotation, view.inverted),
+        Law::CorotationalVem => stress_of::<D, S>(simd, moduli, &f, &rotation, view.inverted),
         Law::Endo2004 => rotation,
     };
     for i in 0..D::N {
@@ -295,7 +295,7 @@ pub fn forces<D: Dim, S: Simd>(
     let (mut pull, mut shear) = ([[zero; 3]; 3], [[zero; 3]; 3]);
     let stiffness;
     let own_stiffness = stencils.get(simd, numbers::<D>(count) - 1);
-    if law == Law::PatchExact {
+    if law == Law::CorotationalVem {
         let (plain_spring, area) = scales::<D, S>(simd, moduli, half);
         let spring = plain_spring * own_stiffness;
         let inverse_volume = stencils.get(simd, numbers::<D>(count) - 2);
@@ -387,11 +387,11 @@ pub(super) fn stress_of<D: Dim, S: Simd>(
             }
         }
     }
-    let mut squash = splat(simd, SQUASH_LIMIT as f32);
+    let mut squash = splat(simd, MIN_VOLUME_RATIO as f32);
     for j in 0..D::N {
         squash -= f[0][j] * cofactor[0][j];
     }
-    *inverted = positive(squash - splat(simd, SQUASH_LIMIT as f32));
+    *inverted = positive(squash - splat(simd, MIN_VOLUME_RATIO as f32));
     let barrier = splat(simd, moduli.young) * at_least(squash, zero);
     let mut p = [[zero; 3]; 3];
     for i in 0..D::N {

@@ -4,46 +4,46 @@ use super::kernel::{BlockView, Moduli, Scratch, stress_of};
 use super::turn::{Matrix, turn};
 use crate::dim::Dim;
 use crate::lanes::{Eight, LANES, Lanes, at_least, if_positive, load, splat};
-use crate::law::SQUASH_LIMIT;
-use crate::plasticity::{LEAST_VOLUME, MOST_FLOW, Plasticity};
+use crate::law::MIN_VOLUME_RATIO;
+use crate::plasticity::{MAX_FLOW, MIN_FLOW_VOLUME_RATIO, Plasticity};
 use fearless_simd::prelude::*;
 
 /// Plastic state G of each lane, by rows.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Undone(pub [[Eight; 3]; 3]);
+pub struct PlasticInverseLanes(pub [[Eight; 3]; 3]);
 
 /// Plastic state G of one element.
-pub type Dent = [[f32; 3]; 3];
+pub type PlasticInverse = [[f32; 3]; 3];
 
-pub const NO_DENT: Dent = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub const IDENTITY: PlasticInverse = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Flow parameters of a material in single precision.
 #[derive(Copy, Clone, Debug)]
-pub struct Flow {
+pub struct PlasticFlowLimits {
     most_deviator: f32,
     most_flown: f32,
 }
 
-impl Flow {
+impl PlasticFlowLimits {
     pub fn of<D: Dim>(plasticity: Plasticity) -> Self {
         Self {
-            most_deviator: plasticity.most_deviator::<D>() as f32,
-            most_flown: plasticity.most_flown::<D>() as f32,
+            most_deviator: plasticity.max_deviator::<D>() as f32,
+            most_flown: plasticity.max_plastic_norm_squared::<D>() as f32,
         }
     }
 }
 
-impl Undone {
+impl PlasticInverseLanes {
     /// Returns the state without plastic deformation.
     pub fn none() -> Box<Self> {
-        Box::new(Self(NO_DENT.map(|row| row.map(|entry| [entry; LANES]))))
+        Box::new(Self(IDENTITY.map(|row| row.map(|entry| [entry; LANES]))))
     }
 
-    pub fn get(&self, lane: usize) -> Dent {
+    pub fn get(&self, lane: usize) -> PlasticInverse {
         self.0.map(|row| row.map(|entry| entry[lane]))
     }
 
-    pub fn set(&mut self, lane: usize, dent: Dent) {
+    pub fn set(&mut self, lane: usize, dent: PlasticInverse) {
         for (row, numbers) in self.0.iter_mut().zip(dent) {
             for (entry, number) in row.iter_mut().zip(numbers) {
                 entry[lane] = number;
@@ -58,9 +58,9 @@ impl Undone {
 #[inline(never)]
 pub fn plastic_stress<D: Dim, S: Simd>(
     simd: S,
-    material: (&Moduli, &Flow),
+    material: (&Moduli, &PlasticFlowLimits),
     view: &mut BlockView,
-    undone: &mut Undone,
+    undone: &mut PlasticInverseLanes,
     scratch: &mut Scratch,
 ) {
     simd.vectorize(
@@ -72,9 +72,9 @@ pub fn plastic_stress<D: Dim, S: Simd>(
 #[inline(always)]
 fn flow_on<D: Dim, S: Simd>(
     simd: S,
-    (moduli, flow): (&Moduli, &Flow),
+    (moduli, flow): (&Moduli, &PlasticFlowLimits),
     view: &mut BlockView,
-    undone: &mut Undone,
+    undone: &mut PlasticInverseLanes,
     scratch: &mut Scratch,
 ) {
     let zero = splat(simd, 0.0);
@@ -109,7 +109,7 @@ fn flow_on<D: Dim, S: Simd>(
 #[inline(never)]
 fn flown_apart<D: Dim, S: Simd>(
     simd: S,
-    material: (&Moduli, &Flow),
+    material: (&Moduli, &PlasticFlowLimits),
     elastic: &Matrix<S>,
     rotation: &Matrix<S>,
     g: &Matrix<S>,
@@ -123,7 +123,7 @@ fn flown_apart<D: Dim, S: Simd>(
 #[inline(always)]
 fn flown<D: Dim, S: Simd>(
     simd: S,
-    (moduli, flow): (&Moduli, &Flow),
+    (moduli, flow): (&Moduli, &PlasticFlowLimits),
     elastic: &Matrix<S>,
     rotation: &Matrix<S>,
     g: &Matrix<S>,
@@ -152,7 +152,7 @@ fn flown<D: Dim, S: Simd>(
     }
     let size = size.sqrt();
     let excess = size - splat(simd, flow.most_deviator);
-    let most = splat(simd, MOST_FLOW as f32);
+    let most = splat(simd, MAX_FLOW as f32);
     let bounded = most - at_least(most - at_least(excess, zero), zero);
     let share = bounded / at_least(size, splat(simd, 1e-6));
     let mut step = [[zero; 3]; 3];
@@ -186,7 +186,7 @@ fn flown<D: Dim, S: Simd>(
     let (now, then) = (squared::<D, S>(zero, g), squared::<D, S>(zero, &next));
     let room = splat(simd, flow.most_flown) - then;
     let room = if_positive(room, room, now - then);
-    let volume = whole - splat(simd, LEAST_VOLUME as f32);
+    let volume = whole - splat(simd, MIN_FLOW_VOLUME_RATIO as f32);
     let may = if_positive(room, if_positive(before - after, volume, zero), zero);
     let may = if_positive(excess, may, zero);
     let mut kept = *g;
@@ -212,7 +212,7 @@ fn density<D: Dim, S: Simd>(
         strain[i][i] -= splat(simd, 1.0);
         trace += strain[i][i];
     }
-    let below = at_least(splat(simd, SQUASH_LIMIT as f32) - volume, zero);
+    let below = at_least(splat(simd, MIN_VOLUME_RATIO as f32) - volume, zero);
     half * (splat(simd, moduli.twice_shear) * squared::<D, S>(zero, &strain)
         + splat(simd, moduli.lame) * trace * trace
         + splat(simd, moduli.young) * below * below)

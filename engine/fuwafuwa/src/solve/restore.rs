@@ -1,10 +1,10 @@
 //! Snapshots of the blocks. Only the state of each element is saved; the blocks are rebuilt from the mesh,
 //! because the distribution over blocks does not change the result.
 
-use super::Blocks;
+use super::ElementBatches;
 use super::block::VACANT;
-use super::plastic::{Dent, NO_DENT};
-use super::saved::Saved;
+use super::plastic::{IDENTITY, PlasticInverse};
+use super::saved::SavedElementStates;
 use crate::dim::Dim;
 use crate::grid::VoxelGrid;
 use crate::ids::ElementId;
@@ -13,16 +13,17 @@ use crate::plasticity::Plasticity;
 use crate::vector::{cross, dot};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-impl<D: Dim> Blocks<D> {
+impl<D: Dim> ElementBatches<D> {
     /// Whether a state read from a file matches the elements of a mesh. Its numbers may be arbitrary: pieces
     /// that become non-finite are quarantined after the tick.
     pub fn is_sound(&self, mesh: &Mesh<D>) -> bool {
         let numbers = |(_, element): (_, &Element)| parts::<D>() + element.nodes.len() * D::N;
         let numbers: usize = mesh.elements().map(numbers).sum();
-        let fits = |saved: &Saved| {
+        let fits = |saved: &SavedElementStates| {
             let undone = &saved.undone;
-            let is_one =
-                |(id, dent): &(ElementId, Dent)| mesh.element(*id).is_some() && is_sound::<D>(dent);
+            let is_one = |(id, dent): &(ElementId, PlasticInverse)| {
+                mesh.element(*id).is_some() && is_sound::<D>(dent)
+            };
             saved.inverted.len() == mesh.element_count()
                 && saved.numbers.len() == numbers
                 && undone.is_sorted_by(|a, b| a.0 < b.0)
@@ -40,7 +41,7 @@ impl<D: Dim> Blocks<D> {
         plasticities: &[Option<Plasticity>],
         asleep: impl Fn(ElementId) -> bool,
     ) {
-        let Some(Saved {
+        let Some(SavedElementStates {
             law,
             numbers,
             undone,
@@ -54,7 +55,7 @@ impl<D: Dim> Blocks<D> {
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
         self.update(mesh, grid, &[], &all, asleep);
         for (id, dent) in undone {
-            self.set_undone(id, dent);
+            self.set_plastic_inverse(id, dent);
         }
         let mut numbers = numbers.into_iter();
         for (&id, inverted) in all.iter().zip(inverted) {
@@ -66,7 +67,7 @@ impl<D: Dim> Blocks<D> {
                 part[lane as usize] = number;
             }
             for node in 0..block.node_count as usize {
-                let place = self.place(index, lane, node);
+                let place = self.force_range(index, lane, node);
                 let forces = self.forces[place].iter_mut();
                 for (force, number) in forces.zip(numbers.by_ref()) {
                     *force = number;
@@ -75,13 +76,13 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    fn to_be_saved(&self) -> Saved {
+    fn to_be_saved(&self) -> SavedElementStates {
         let known = self.assigned.ids();
-        let undone = known.filter_map(|id| Some((id, self.undone(id)?)));
-        let mut saved = Saved {
+        let undone = known.filter_map(|id| Some((id, self.plastic_inverse(id)?)));
+        let mut saved = SavedElementStates {
             law: self.law,
             numbers: Vec::new(),
-            undone: undone.filter(|(_, dent)| *dent != NO_DENT).collect(),
+            undone: undone.filter(|(_, dent)| *dent != IDENTITY).collect(),
             inverted: Vec::new(),
         };
         let assigned = self.assigned.iter();
@@ -91,7 +92,7 @@ impl<D: Dim> Blocks<D> {
             let rotation = rotation.map(|part| part[lane as usize]);
             saved.numbers.extend(rotation);
             for node in 0..block.node_count as usize {
-                let place = self.place(index, lane, node);
+                let place = self.force_range(index, lane, node);
                 saved.numbers.extend_from_slice(&self.forces[place]);
             }
             saved.inverted.push(block.inverted >> lane & 1 == 1);
@@ -101,12 +102,12 @@ impl<D: Dim> Blocks<D> {
 }
 
 /// Whether a plastic state is possible: it preserves volume, and is flat in 2D.
-fn is_sound<D: Dim>(dent: &Dent) -> bool {
+fn is_sound<D: Dim>(dent: &PlasticInverse) -> bool {
     let [x, y, z] = *dent;
     let volume = dot(x, cross(y, z));
     let is_flat = (D::N..3).all(|axis| {
         let column = [x[axis], y[axis], z[axis]];
-        dent[axis] == NO_DENT[axis] && column == NO_DENT[axis]
+        dent[axis] == IDENTITY[axis] && column == IDENTITY[axis]
     });
     let most = dent
         .iter()
@@ -123,15 +124,15 @@ const fn parts<D: Dim>() -> usize {
     }
 }
 
-impl<D: Dim> Serialize for Blocks<D> {
+impl<D: Dim> Serialize for ElementBatches<D> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.to_be_saved().serialize(serializer)
     }
 }
 
-impl<'a, D: Dim> Deserialize<'a> for Blocks<D> {
+impl<'a, D: Dim> Deserialize<'a> for ElementBatches<D> {
     fn deserialize<S: Deserializer<'a>>(deserializer: S) -> Result<Self, S::Error> {
-        let saved = Saved::deserialize(deserializer)?;
+        let saved = SavedElementStates::deserialize(deserializer)?;
         let mut blocks = Self::new(saved.law, &[], 0.0);
         blocks.saved = Some(saved);
         Ok(blocks)

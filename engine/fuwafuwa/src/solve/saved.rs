@@ -1,18 +1,18 @@
 //! State of the blocks in a snapshot: rotation and last forces of each element.
 
-use super::plastic::Dent;
+use super::plastic::PlasticInverse;
 use crate::ids::ElementId;
 use crate::law::Law;
 use serde::{Deserialize, Serialize};
 
 /// State of the elements, by ascending id.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Saved {
+pub struct SavedElementStates {
     pub law: Law,
     /// For each element its rotation, then the forces on its nodes [N], in their order.
     pub numbers: Vec<f32>,
     /// Plastic states other than the initial one, by ascending id.
-    pub undone: Vec<(ElementId, Dent)>,
+    pub undone: Vec<(ElementId, PlasticInverse)>,
     /// Whether each element was inverted.
     pub inverted: Vec<bool>,
 }

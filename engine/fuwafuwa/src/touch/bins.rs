@@ -2,7 +2,7 @@
 
 use crate::dim::{Dim, Point};
 use crate::lanes::{LANES, Lanes, Row, splat};
-use crate::threads::SHARE;
+use crate::threads::CHUNK_SIZE;
 use crate::vector::{minus, plus};
 use fearless_simd::prelude::*;
 use std::ops::Range;
@@ -83,8 +83,8 @@ impl Bins {
     /// Iterates over shares of the bins.
     pub fn shares(&self) -> impl Iterator<Item = Range<usize>> + use<> {
         let bins = self.start.len() - 1;
-        let firsts = (0..bins).step_by(SHARE);
-        firsts.map(move |first| first..bins.min(first + SHARE))
+        let firsts = (0..bins).step_by(CHUNK_SIZE);
+        firsts.map(move |first| first..bins.min(first + CHUNK_SIZE))
     }
 
     /// Calls `visit` once for each pair of points within `reach` [m] of which one is in `bins`. It receives

@@ -9,10 +9,10 @@ use super::bins::Bins;
 use super::pair::SpherePair;
 use super::sphere::{ContactSphere, SphereId};
 use super::spheres::Spheres;
-use crate::body::{Bodies, Body};
+use crate::body::{SoftBodies, SoftBody};
 use crate::dim::Dim;
 use crate::handle::BodySlot;
-use crate::ids::{ElementId, PieceId, Table};
+use crate::ids::{ElementId, IndexVec, PieceId};
 use crate::lanes::on_widest_lanes;
 use crate::shape::Vector;
 use crate::solve::Row;
@@ -24,27 +24,32 @@ const EXIT_REACH: f32 = 2.0;
 
 /// Sphere with its centre inside another piece.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Captive {
+pub struct EmbeddedSphere {
     pub sphere: SphereId,
     /// Nearest surface sphere of the host piece.
     pub exit: SphereId,
 }
 
 /// Host piece of an embedded sphere: body and piece number.
-type Captor = (BodySlot, PieceId);
+type HostPiece = (BodySlot, PieceId);
 
 /// Spheres embedded in other pieces.
 #[derive(Clone, Debug, Default)]
 pub struct Captives {
     /// Embedded spheres, ascending.
-    pub list: Vec<Captive>,
+    pub list: Vec<EmbeddedSphere>,
     /// Host piece of each sphere.
-    captors: Table<SphereId, Option<Captor>>,
+    captors: IndexVec<SphereId, Option<HostPiece>>,
 }
 
 impl Captives {
     /// Finds the spheres that are inside a piece larger than their own.
-    pub fn find<D: Dim>(&mut self, spheres: &Spheres, pairs: &[SpherePair], bodies: &Bodies<D>) {
+    pub fn find<D: Dim>(
+        &mut self,
+        spheres: &Spheres,
+        pairs: &[SpherePair],
+        bodies: &SoftBodies<D>,
+    ) {
         self.list.clear();
         self.captors.clear();
         self.captors.resize(spheres.list.len(), None);
@@ -129,7 +134,7 @@ impl Captives {
                 }
             }
         }
-        let mut exits: BTreeMap<Captor, Exits> = BTreeMap::new();
+        let mut exits: BTreeMap<HostPiece, Exits> = BTreeMap::new();
         for sphere in small {
             let Some(captor) = self.captors[sphere] else {
                 continue;
@@ -137,7 +142,7 @@ impl Captives {
             let exits = exits.entry(captor);
             let exits = exits.or_insert_with(|| Exits::of(captor, spheres, bodies));
             match exits.nearest::<D>(spheres.centres[sphere]) {
-                Some(exit) => self.list.push(Captive { sphere, exit }),
+                Some(exit) => self.list.push(EmbeddedSphere { sphere, exit }),
                 None => self.captors[sphere] = None,
             }
         }
@@ -174,7 +179,7 @@ struct Exits {
 }
 
 impl Exits {
-    fn of<D: Dim>((body, piece): Captor, spheres: &Spheres, bodies: &Bodies<D>) -> Self {
+    fn of<D: Dim>((body, piece): HostPiece, spheres: &Spheres, bodies: &SoftBodies<D>) -> Self {
         let all = spheres.list.entries();
         let exits = all.filter(|(_, sphere)| {
             (sphere.body, sphere.piece) == (body, piece) && sphere.leads_out()
@@ -182,7 +187,7 @@ impl Exits {
         let exits: Vec<SphereId> = exits.map(|(id, _)| id).collect();
         let centres = exits.iter().map(|&exit| spheres.centres[exit]);
         let centres: Vec<Row> = centres.collect();
-        let reach = EXIT_REACH * bodies.at(body).truth.grid.voxel_size();
+        let reach = EXIT_REACH * bodies.at(body).topology.grid.voxel_size();
         Self {
             bins: Bins::new::<D>(&centres, reach),
             list: exits,
@@ -215,19 +220,19 @@ struct Inner {
     level: u8,
     element: ElementId,
     /// Its piece, and the number of elements of that piece.
-    captor: Captor,
+    captor: HostPiece,
     count: u32,
     centre: Row,
     radius: f32,
 }
 
 /// Returns the elements without a bare face that reach into a box, by level, for pieces with `has_inner`.
-fn inner_elements<D: Dim>(bodies: &Bodies<D>, pieces: &Extents, within: &Extent) -> Vec<Inner> {
+fn inner_elements<D: Dim>(bodies: &SoftBodies<D>, pieces: &Extents, within: &Extent) -> Vec<Inner> {
     let mut found = Vec::new();
     for (slot, body) in bodies.by_slot() {
-        for (id, element) in body.truth.mesh.elements() {
+        for (id, element) in body.topology.mesh.elements() {
             let level = element.cell.level;
-            let piece = body.truth.pieces.of_element(id);
+            let piece = body.topology.pieces.of_element(id);
             let extent = &pieces[slot][piece];
             if !extent.has_inner || level == 0 && body.cache.bare[id] != 0 {
                 continue;
@@ -262,7 +267,7 @@ fn usual_radius(elements: &[Inner]) -> f32 {
 }
 
 /// Extents of all pieces of all bodies.
-type Extents = Table<BodySlot, Table<PieceId, Extent>>;
+type Extents = IndexVec<BodySlot, IndexVec<PieceId, Extent>>;
 
 /// Extent of a piece.
 #[derive(Copy, Clone, Debug)]
@@ -307,24 +312,24 @@ impl Extent {
 }
 
 /// Returns the extents of the pieces of a body, by number, without their boxes.
-fn extents<D: Dim>(body: Option<&Body<D>>) -> Table<PieceId, Extent> {
+fn extents<D: Dim>(body: Option<&SoftBody<D>>) -> IndexVec<PieceId, Extent> {
     let Some(body) = body else {
-        return Table::default();
+        return IndexVec::default();
     };
-    let count = body.truth.pieces.list.len();
-    let mut extents: Table<PieceId, Extent> = vec![Extent::NONE; count].into();
-    for (id, element) in body.truth.mesh.elements() {
-        let extent = &mut extents[body.truth.pieces.of_element(id)];
+    let count = body.topology.pieces.list.len();
+    let mut extents: IndexVec<PieceId, Extent> = vec![Extent::NONE; count].into();
+    for (id, element) in body.topology.mesh.elements() {
+        let extent = &mut extents[body.topology.pieces.of_element(id)];
         extent.count += 1;
         extent.has_inner |= element.cell.level > 0 || body.cache.bare[id] == 0;
     }
     extents
 }
 
-impl<D: Dim> Body<D> {
+impl<D: Dim> SoftBody<D> {
     /// Returns whether a position [m] is in an element, which is treated as evenly deformed.
     fn holds(&self, id: ElementId, at: Vector) -> bool {
-        let Some(element) = self.truth.mesh.element(id) else {
+        let Some(element) = self.topology.mesh.element(id) else {
             return false;
         };
         let child = self.child_at(element, at);

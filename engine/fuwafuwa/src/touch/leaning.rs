@@ -5,12 +5,12 @@
 use super::bins::Bins;
 use super::pair::MARGIN;
 use super::sphere::ContactSphere;
-use crate::body::{Bodies, Body};
+use crate::body::{SoftBodies, SoftBody};
 use crate::dim::Dim;
 use crate::handle::{BodySlot, RigidSlot};
 use crate::ids::{NodeId, PieceId};
 use crate::lanes::on_widest_lanes;
-use crate::rigid::{Rigid, Rigids};
+use crate::rigid::{RigidBodies, RigidBody};
 use crate::shape::Bounds;
 use crate::solve::Row;
 use crate::vector::{minus, plus, three};
@@ -21,8 +21,8 @@ use std::marker::PhantomData;
 pub type Sleeper = (BodySlot, PieceId);
 
 /// Returns the boxes around pieces of a body, enlarged by the contact margin [m].
-pub fn bounds_of<D: Dim>(body: &Body<D>, is_one: impl Fn(PieceId) -> bool) -> Vec<Bounds> {
-    let margin = [MARGIN * body.truth.grid.voxel_size(); 3];
+pub fn bounds_of<D: Dim>(body: &SoftBody<D>, is_one: impl Fn(PieceId) -> bool) -> Vec<Bounds> {
+    let margin = [MARGIN * body.topology.grid.voxel_size(); 3];
     let pieces = body.piece_views().into_iter();
     let pieces = pieces.filter(|piece| !piece.removed && is_one(piece.number));
     let bounds = pieces.map(|piece| [minus(piece.low, margin), plus(piece.high, margin)]);
@@ -30,8 +30,8 @@ pub fn bounds_of<D: Dim>(body: &Body<D>, is_one: impl Fn(PieceId) -> bool) -> Ve
 }
 
 /// Returns the sleeping dynamic rigid bodies with a bounding box that overlaps one of `places`.
-pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &Rigids) -> Vec<RigidSlot> {
-    let is_there = |rigid: &Rigid| {
+pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &RigidBodies) -> Vec<RigidSlot> {
+    let is_there = |rigid: &RigidBody| {
         let [low, high] = rigid.shape().bounds();
         let margin = MARGIN * rigid.shape().inradius().min(1.0);
         places.iter().any(|[from, to]| {
@@ -44,23 +44,23 @@ pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &Rigids) -> Vec<RigidSlot>
 }
 
 /// Returns the sleepers in contact with a rigid body, ascending by body and number.
-pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<Sleeper> {
+pub fn leaning_on_rigid<D: Dim>(rigid: &RigidBody, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let mut leaning = BTreeSet::new();
     for (slot, body) in bodies.by_slot() {
-        let reach = MARGIN * body.truth.grid.voxel_size();
+        let reach = MARGIN * body.topology.grid.voxel_size();
         let is_near = |node: NodeId| {
             let at = three(body.state.position[node]);
-            body.truth.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
+            body.topology.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
         };
-        let nodes = body.truth.mesh.nodes().map(|(node, _)| node);
+        let nodes = body.topology.mesh.nodes().map(|(node, _)| node);
         let nodes = nodes.filter(|&node| is_near(node));
-        leaning.extend(nodes.map(|node| (slot, body.truth.pieces.of_node(node))));
+        leaning.extend(nodes.map(|node| (slot, body.topology.pieces.of_node(node))));
     }
     Sleepers::of(bodies).with_those_on(leaning)
 }
 
 /// Returns the sleepers in contact with a body that is not in `bodies`, ascending by body and number.
-pub fn leaning_on_body<D: Dim>(body: &Body<D>, bodies: &Bodies<D>) -> Vec<Sleeper> {
+pub fn leaning_on_body<D: Dim>(body: &SoftBody<D>, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let sleepers = Sleepers::of(bodies);
     let mut leaning = BTreeSet::new();
     for sphere in spheres_of(BodySlot::NONE, body) {
@@ -72,7 +72,7 @@ pub fn leaning_on_body<D: Dim>(body: &Body<D>, bodies: &Bodies<D>) -> Vec<Sleepe
 
 /// Returns the sleepers in contact with some pieces, given in ascending order, without these pieces;
 /// ascending.
-pub fn leaning_on_pieces<D: Dim>(pieces: &[Sleeper], bodies: &Bodies<D>) -> Vec<Sleeper> {
+pub fn leaning_on_pieces<D: Dim>(pieces: &[Sleeper], bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let sleepers = Sleepers::of(bodies);
     let is_one = |piece: &Sleeper| pieces.binary_search(piece).is_ok();
     let mut leaning = BTreeSet::new();
@@ -103,7 +103,7 @@ struct Sleepers<D: Dim> {
 }
 
 impl<D: Dim> Sleepers<D> {
-    fn of(bodies: &Bodies<D>) -> Self {
+    fn of(bodies: &SoftBodies<D>) -> Self {
         let (mut spheres, mut centres) = (Vec::new(), Vec::new());
         for (slot, body) in bodies.by_slot() {
             for sphere in spheres_of(slot, body).filter(|sphere| sphere.asleep) {
@@ -159,7 +159,7 @@ fn reach(first: f32, second: f32) -> f32 {
     (1.0 + MARGIN) * (first + second)
 }
 
-fn spheres_of<D: Dim>(slot: BodySlot, body: &Body<D>) -> impl Iterator<Item = ContactSphere> {
-    let ids = body.truth.mesh.elements().map(|(id, _)| id);
+fn spheres_of<D: Dim>(slot: BodySlot, body: &SoftBody<D>) -> impl Iterator<Item = ContactSphere> {
+    let ids = body.topology.mesh.elements().map(|(id, _)| id);
     ids.filter_map(move |id| ContactSphere::of(slot, body, id))
 }

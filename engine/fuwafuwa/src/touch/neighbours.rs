@@ -2,13 +2,13 @@
 //! itself keeps them apart, or they are on opposite crack faces, which are listed separately. Also finds
 //! ranges in which all spheres sleep.
 
-use super::path::Traveller;
+use super::path::SweptSphere;
 use super::sphere::{NEAR, SphereId};
 use super::spheres::Spheres;
-use crate::body::Bodies;
+use crate::body::SoftBodies;
 use crate::dim::Dim;
 use crate::handle::BodySlot;
-use crate::ids::Table;
+use crate::ids::IndexVec;
 use crate::lanes::LANES;
 use fearless_simd::{prelude::*, u16x8, u32x8};
 use std::ops::Range;
@@ -17,7 +17,7 @@ use std::ops::Range;
 #[derive(Clone, Debug, Default)]
 pub struct Neighbours {
     /// Number of each body's first piece among the pieces of all bodies.
-    first: Table<BodySlot, u32>,
+    first: IndexVec<BodySlot, u32>,
     /// Piece numbers of the spheres.
     pieces: Vec<u32>,
     /// Voxel coordinates, axis by axis.
@@ -35,12 +35,16 @@ pub struct PieceSite {
 
 impl Neighbours {
     /// Returns the table for swept spheres, in their order.
-    pub fn of<D: Dim>(travellers: &[Traveller], spheres: &Spheres, bodies: &Bodies<D>) -> Self {
+    pub fn of<D: Dim>(
+        travellers: &[SweptSphere],
+        spheres: &Spheres,
+        bodies: &SoftBodies<D>,
+    ) -> Self {
         let mut neighbours = Self::default();
         let mut count = 0;
         for body in bodies.slots() {
             neighbours.first.push(count);
-            count += body.map_or(0, |body| body.truth.pieces.list.len()) as u32;
+            count += body.map_or(0, |body| body.topology.pieces.list.len()) as u32;
         }
         neighbours.awake.push(0);
         // Padding, so that eight can be read from the last index on.

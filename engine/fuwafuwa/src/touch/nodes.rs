@@ -3,11 +3,11 @@
 use super::bins::Bins;
 use super::impulse::Impulse;
 use super::pair::MARGIN;
-use crate::body::{Bodies, Body};
+use crate::body::{SoftBodies, SoftBody};
 use crate::dim::Dim;
 use crate::handle::{BodySlot, RigidSlot};
-use crate::ids::{NodeId, PieceId, Table};
-use crate::rigid::{Rigid, Rigids};
+use crate::ids::{IndexVec, NodeId, PieceId};
+use crate::rigid::{RigidBodies, RigidBody};
 use crate::shape::Shape;
 use crate::solve::Row;
 use crate::vector::{dot, length, minus, plus, scaled, three};
@@ -53,7 +53,7 @@ pub struct NodePairs {
     /// Position of each node at its last search, and as the fourth component its allowed distance from there
     /// [m], by body and node.
     #[cfg_attr(feature = "serde", serde(skip))]
-    anchors: Table<BodySlot, Table<NodeId, Row>>,
+    anchors: IndexVec<BodySlot, IndexVec<NodeId, Row>>,
     /// Distance that all nodes may still move before one may exceed its allowed distance [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     spare: f32,
@@ -90,7 +90,7 @@ impl NodePairs {
     /// Discards pairs without an existing rigid body, soft body or node, and restores the order without
     /// duplicates.
     #[cfg(feature = "serde")]
-    pub fn keep_known<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids) {
+    pub fn keep_known<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
         let is_known =
             |pair: &NodePair| rigids.find(pair.rigid).is_some() && pair.piece(bodies).is_some();
         self.list.retain(is_known);
@@ -105,13 +105,13 @@ impl NodePairs {
 
     /// Notes the nodes of woken pieces, given by body and number in ascending order, because they can touch
     /// fixed bodies again.
-    pub fn wake<D: Dim>(&mut self, pieces: &[(BodySlot, PieceId)], bodies: &Bodies<D>) {
+    pub fn wake<D: Dim>(&mut self, pieces: &[(BodySlot, PieceId)], bodies: &SoftBodies<D>) {
         for (slot, body) in bodies.by_slot() {
             if pieces.iter().all(|&(body, _)| body != slot) {
                 continue;
             }
             let woke = |node| {
-                let piece = body.truth.pieces.of_node(node);
+                let piece = body.topology.pieces.of_node(node);
                 pieces.binary_search(&(slot, piece)).is_ok()
             };
             let woken = body.cache.awake.iter().filter(|&&node| woke(node));
@@ -128,8 +128,8 @@ impl NodePairs {
     /// Updates the list. A substep takes `duration` [s], and `left` [s] of the tick remain.
     pub fn follow<D: Dim>(
         &mut self,
-        bodies: &Bodies<D>,
-        rigids: &Rigids,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
         duration: f32,
         left: f32,
     ) {
@@ -161,10 +161,10 @@ impl NodePairs {
         for ((own, rigid), leeway) in rigids.by_slot().zip(&self.leeways) {
             let is_near = |&&(slot, node): &&(BodySlot, NodeId)| {
                 let body = bodies.at(slot);
-                let reach = self.reach(slot, node, body.truth.grid.voxel_size());
+                let reach = self.reach(slot, node, body.topology.grid.voxel_size());
                 let at = three(body.state.position[node]);
                 rigid.meets(body.state.layers)
-                    && body.truth.mesh.is_alive(node)
+                    && body.topology.mesh.is_alive(node)
                     && rigid.shape().distance(at).0 <= reach + leeway.most
             };
             let near = changed.iter().filter(is_near);
@@ -178,13 +178,13 @@ impl NodePairs {
 
     /// Searches all nodes that may reach a rigid body in the remaining time `left` of the tick [s]. Sleeping
     /// nodes are paired only with moving rigid bodies.
-    fn find_all<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids, left: f32) {
+    fn find_all<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies, left: f32) {
         self.changed.clear();
         self.travel = 0.0;
         self.spare = f32::INFINITY;
-        let sizes = bodies.iter().map(|body| body.truth.grid.voxel_size());
+        let sizes = bodies.iter().map(|body| body.topology.grid.voxel_size());
         let size = sizes.fold(0.0, f32::max);
-        let leeway = |rigid: &Rigid| {
+        let leeway = |rigid: &RigidBody| {
             let slack = if rigid.moves() {
                 HAND_SLACK * size
             } else {
@@ -195,13 +195,14 @@ impl NodePairs {
         };
         self.leeways.clear();
         self.leeways.extend(rigids.iter().map(leeway));
-        self.anchors.resize(bodies.slot_count(), Table::default());
+        self.anchors
+            .resize(bodies.slot_count(), IndexVec::default());
         let mut squares = Vec::new();
         for (slot, body) in bodies.by_slot() {
             for &node in &body.cache.awake {
                 self.anchor(slot, node, bodies, left);
             }
-            let reach = |node| self.reach(slot, node, body.truth.grid.voxel_size());
+            let reach = |node| self.reach(slot, node, body.topology.grid.voxel_size());
             squares.push((slot, body, Squares::of(body, reach)));
         }
         let mut found = Vec::new();
@@ -212,14 +213,14 @@ impl NodePairs {
             for (slot, body, squares) in met {
                 near.clear();
                 squares.within(leeway.most, rigid.shape(), &mut near);
-                if rigid.moves() && body.cache.awake.len() < body.truth.mesh.node_count() {
-                    let reach = leeway.most + MARGIN * body.truth.grid.voxel_size();
+                if rigid.moves() && body.cache.awake.len() < body.topology.mesh.node_count() {
+                    let reach = leeway.most + MARGIN * body.topology.grid.voxel_size();
                     let is_near = |&node: &NodeId| {
                         let at = three(body.state.position[node]);
-                        body.truth.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
+                        body.topology.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
                     };
                     near.extend(
-                        body.truth
+                        body.topology
                             .mesh
                             .nodes()
                             .map(|(node, _)| node)
@@ -236,7 +237,7 @@ impl NodePairs {
 
     /// Adds the nodes that have exceeded their allowed distance to the changed ones, and updates the spare
     /// distance of the others.
-    fn find_strayed<D: Dim>(&mut self, bodies: &Bodies<D>) {
+    fn find_strayed<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         let mut spare = f32::INFINITY;
         for (slot, body) in bodies.by_slot() {
             let Some(anchors) = self.anchors.get(slot.index()) else {
@@ -260,13 +261,13 @@ impl NodePairs {
     }
 
     /// Stores the position of a node and its allowed distance until the end of the tick.
-    fn anchor<D: Dim>(&mut self, slot: BodySlot, node: NodeId, bodies: &Bodies<D>, left: f32) {
+    fn anchor<D: Dim>(&mut self, slot: BodySlot, node: NodeId, bodies: &SoftBodies<D>, left: f32) {
         let body = bodies.at(slot);
         let anchors = &mut self.anchors[slot];
         anchors.resize(body.state.position.len(), [0.0; 4]);
         let [x, y, z, _] = body.state.position[node];
         let speed = length(body.state.velocity[node]);
-        let most = SLACK * body.truth.grid.voxel_size() + speed * left;
+        let most = SLACK * body.topology.grid.voxel_size() + speed * left;
         anchors[node] = [x, y, z, most];
         self.spare = if most < self.spare { most } else { self.spare };
     }
@@ -310,15 +311,15 @@ impl NodePair {
 
     /// Returns whether the pair touched in this tick. Such a pair is kept for the events even if it is far
     /// apart now.
-    fn has_touched<D: Dim>(&self, bodies: &Bodies<D>) -> bool {
-        self.impulse.total > 0.0 && bodies.at(self.body).truth.mesh.is_alive(self.node)
+    fn has_touched<D: Dim>(&self, bodies: &SoftBodies<D>) -> bool {
+        self.impulse.total > 0.0 && bodies.at(self.body).topology.mesh.is_alive(self.node)
     }
 
     /// Returns the piece of the node; `None` if another body is in the slot now.
-    pub fn piece<D: Dim>(&self, bodies: &Bodies<D>) -> Option<PieceId> {
+    pub fn piece<D: Dim>(&self, bodies: &SoftBodies<D>) -> Option<PieceId> {
         let body = bodies.find(self.body)?;
-        let is_known = self.node.index() < body.truth.mesh.node_capacity();
-        is_known.then(|| body.truth.pieces.of_node(self.node))
+        let is_known = self.node.index() < body.topology.mesh.node_capacity();
+        is_known.then(|| body.topology.pieces.of_node(self.node))
     }
 }
 
@@ -340,12 +341,12 @@ struct Square {
 }
 
 impl Squares {
-    fn of<D: Dim>(body: &Body<D>, reach: impl Fn(NodeId) -> f32) -> Self {
+    fn of<D: Dim>(body: &SoftBody<D>, reach: impl Fn(NodeId) -> f32) -> Self {
         let nodes = body.cache.awake.iter().map(|&node| (node, reach(node)));
         let nodes: Vec<(NodeId, f32)> = nodes.collect();
         let points = nodes.iter().map(|&(node, _)| body.state.position[node]);
         let points: Vec<Row> = points.collect();
-        let bins = Bins::new::<D>(&points, SQUARE * body.truth.grid.voxel_size());
+        let bins = Bins::new::<D>(&points, SQUARE * body.topology.grid.voxel_size());
         let squares = { bins.filled() }.map(|range| Square::around(&bins, range, &nodes));
         Self {
             list: squares.collect(),
@@ -403,12 +404,13 @@ mod tests {
     /// Tears a body and moves its nodes at random between two walls, and compares the list with all nodes.
     fn check<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("the ball has voxels");
-        let body = Body::new(grid, &[Material::default()]).expect("the default material is valid");
-        let size = body.truth.grid.voxel_size();
-        let mut bodies = Bodies::default();
+        let body =
+            SoftBody::new(grid, &[Material::default()]).expect("the default material is valid");
+        let size = body.topology.grid.voxel_size();
+        let mut bodies = SoftBodies::default();
         let ball = bodies.insert(body).slot();
-        let wall = |normal, offset| Rigid::fixed(Shape::HalfSpace { normal, offset }, 0.0);
-        let mut walls = Rigids::default();
+        let wall = |normal, offset| RigidBody::fixed(Shape::HalfSpace { normal, offset }, 0.0);
+        let mut walls = RigidBodies::default();
         walls.insert(wall([0.0, 1.0, 0.0], 0.3));
         walls.insert(wall([-1.0, 0.0, 0.0], -0.8));
         let mut seed = 5u32;
@@ -428,9 +430,9 @@ mod tests {
             assert!(
                 listed
                     .iter()
-                    .all(|&(.., node)| body.truth.mesh.is_alive(node))
+                    .all(|&(.., node)| body.topology.mesh.is_alive(node))
             );
-            for (node, _) in body.truth.mesh.nodes() {
+            for (node, _) in body.topology.mesh.nodes() {
                 let at = three(body.state.position[node]);
                 for (own, wall) in walls.by_slot() {
                     let is_close = wall.shape().distance(at).0 <= MARGIN * size;
@@ -442,13 +444,13 @@ mod tests {
                 (0..D::N).for_each(|axis| at[axis] = random(n + 1) as i32);
                 (at, 1 + random((1 << D::CORNERS) - 2) as u8)
             });
-            let before = body.truth.mesh.node_count();
+            let before = body.topology.mesh.node_count();
             let changes = body.tear(&sides.collect::<Vec<_>>());
             let changes = changes.expect("splitting a node keeps the mesh valid");
-            let alive = |&&node: &&NodeId| body.truth.mesh.is_alive(node);
+            let alive = |&&node: &&NodeId| body.topology.mesh.is_alive(node);
             new += changes.nodes.iter().filter(alive).count();
             gone += changes.nodes.len() - changes.nodes.iter().filter(alive).count();
-            assert!(body.truth.mesh.node_count() == before || !changes.nodes.is_empty());
+            assert!(body.topology.mesh.node_count() == before || !changes.nodes.is_empty());
             body.refresh_awake();
             pairs.tear(ball, &changes.nodes);
             let step = 0.1 * size;

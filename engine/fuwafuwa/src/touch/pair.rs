@@ -2,8 +2,8 @@
 
 use super::impulse::Impulse;
 use super::sphere::{ContactSphere, SphereId};
-use crate::ids::Table;
-use crate::threads::{self, SHARE};
+use crate::ids::IndexVec;
+use crate::threads::{self, CHUNK_SIZE};
 use crate::vector::scaled;
 
 /// Search margin of contacts [voxels]. Contacts that close by up to a sixth of a voxel in a substep, (0.3 −
@@ -28,7 +28,7 @@ pub struct SpherePair {
 pub fn merge(
     list: &mut Vec<SpherePair>,
     found: &[Vec<[SphereId; 2]>],
-    is_changed: &Table<SphereId, bool>,
+    is_changed: &IndexVec<SphereId, bool>,
 ) {
     let stays = |pair: &SpherePair| {
         let mut both = pair.spheres.iter();
@@ -59,7 +59,7 @@ pub fn merge(
 }
 
 /// Replaces the sphere numbers by new ones, given for each old number.
-pub fn renumber(list: &mut Vec<SpherePair>, numbers: &Table<SphereId, SphereId>) {
+pub fn renumber(list: &mut Vec<SpherePair>, numbers: &IndexVec<SphereId, SphereId>) {
     list.retain_mut(|pair| {
         let number = |old: SphereId| numbers.get(old.index()).copied().unwrap_or(SphereId::NONE);
         let [a, b] = pair.spheres.map(number);
@@ -82,7 +82,7 @@ fn shares<'a>(
         if is_done {
             return None;
         }
-        let last = found.get(SHARE).map(|pair| pair[0]);
+        let last = found.get(CHUNK_SIZE).map(|pair| pair[0]);
         is_done = last.is_none();
         let last = last.unwrap_or(SphereId::NONE);
         let end = found.partition_point(|pair| pair[0] <= last);
@@ -106,14 +106,17 @@ impl SpherePair {
     }
 
     /// Returns both spheres.
-    pub fn both<'a>(&self, spheres: &'a Table<SphereId, ContactSphere>) -> [&'a ContactSphere; 2] {
+    pub fn both<'a>(
+        &self,
+        spheres: &'a IndexVec<SphereId, ContactSphere>,
+    ) -> [&'a ContactSphere; 2] {
         self.spheres.map(|sphere| &spheres[sphere])
     }
 }
 
 /// Returns the pairs ascending by their first sphere; sphere numbers are below `count`.
 fn by_first(pairs: &[Vec<[SphereId; 2]>], count: usize) -> Vec<[SphereId; 2]> {
-    let mut end: Table<SphereId, u32> = vec![0; count].into();
+    let mut end: IndexVec<SphereId, u32> = vec![0; count].into();
     for pair in pairs.iter().flatten() {
         end[pair[0]] += 1;
     }

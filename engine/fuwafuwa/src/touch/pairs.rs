@@ -14,15 +14,15 @@
 use super::bins::Bins;
 use super::neighbours::Neighbours;
 use super::pair::{SpherePair, merge};
-use super::path::{Path, STRAY, Span, Start, Traveller, widened};
+use super::path::{Path, SLACK, Span, Start, SweptSphere, widened};
 use super::sphere::{ContactSphere, SphereId};
 use super::spheres::Spheres;
-use crate::body::Bodies;
+use crate::body::SoftBodies;
 use crate::dim::Dim;
-use crate::ids::Table;
+use crate::ids::IndexVec;
 use crate::lanes::on_widest_lanes;
 use crate::solve::Row;
-use crate::threads::{self, SHARE};
+use crate::threads::{self, CHUNK_SIZE};
 use crate::vector::{dot, length, minus, plus, scaled};
 
 /// Share of the spheres that may have long paths, and half the length of the longest short path as a share of
@@ -40,9 +40,9 @@ const COMPARED: usize = 12;
 /// Marks a sphere that is found through the bins, in place of its index among the loose ones.
 const BINNED: u32 = u32::MAX;
 
-/// Number of spheres that a thread searches at a time; below `SHARE`, because each search visits several
+/// Number of spheres that a thread searches at a time; below `CHUNK_SIZE`, because each search visits several
 /// bins.
-const LOOKS: usize = SHARE / 8;
+const LOOKS: usize = CHUNK_SIZE / 8;
 
 /// Pairs of spheres that may touch while their paths hold.
 #[derive(Clone, Debug, Default)]
@@ -51,10 +51,10 @@ pub struct SpherePairs {
     /// Pairs, ascending.
     pub list: Vec<SpherePair>,
     #[cfg_attr(feature = "serde", serde(skip))]
-    paths: Table<SphereId, Path>,
+    paths: IndexVec<SphereId, Path>,
     /// Starting points of the paths.
     #[cfg_attr(feature = "serde", serde(skip))]
-    starts: Table<SphereId, Start>,
+    starts: IndexVec<SphereId, Start>,
     /// Bins of the midpoints of all paths; `None` if a full search is due.
     #[cfg_attr(feature = "serde", serde(skip))]
     bins: Option<Bins>,
@@ -63,7 +63,7 @@ pub struct SpherePairs {
     binned_at: f32,
     /// Swept spheres in bin order.
     #[cfg_attr(feature = "serde", serde(skip))]
-    binned: Vec<Traveller>,
+    binned: Vec<SweptSphere>,
     /// Mean velocity of the moving spheres [m/s], relative to which paths are short or long, and half the
     /// length of the longest short path [m].
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -72,10 +72,10 @@ pub struct SpherePairs {
     short: f32,
     /// Spheres that are not found through the bins: those with long paths, or with paths newer than the bins.
     #[cfg_attr(feature = "serde", serde(skip))]
-    loose: Vec<Traveller>,
+    loose: Vec<SweptSphere>,
     /// Index of each sphere in `loose`, or [`BINNED`].
     #[cfg_attr(feature = "serde", serde(skip))]
-    loose_at: Table<SphereId, u32>,
+    loose_at: IndexVec<SphereId, u32>,
     /// Whether a tick has begun since the last update.
     #[cfg_attr(feature = "serde", serde(skip))]
     is_new_tick: bool,
@@ -121,7 +121,7 @@ impl SpherePairs {
     }
 
     /// Updates the spheres and the list. Returns whether the list changed or a new tick began.
-    pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &Bodies<D>) -> bool {
+    pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &SoftBodies<D>) -> bool {
         let is_new_tick = std::mem::take(&mut self.is_new_tick);
         if spheres.awake.is_empty() {
             self.list.clear();
@@ -180,7 +180,7 @@ impl SpherePairs {
     }
 
     /// Starts a new path of a sphere at its present position.
-    fn lay<D: Dim>(&mut self, sphere: SphereId, spheres: &Spheres, bodies: &Bodies<D>) {
+    fn lay<D: Dim>(&mut self, sphere: SphereId, spheres: &Spheres, bodies: &SoftBodies<D>) {
         let now = spheres.centres[sphere];
         let start = &mut self.starts[sphere];
         let (mut velocity, mut laid) = ([0.0; 4], Start::UNKNOWN);
@@ -199,9 +199,9 @@ impl SpherePairs {
     }
 
     /// Returns a sphere with its path.
-    fn traveller(&self, sphere: SphereId, spheres: &Spheres) -> Traveller {
+    fn traveller(&self, sphere: SphereId, spheres: &Spheres) -> SweptSphere {
         let ContactSphere { radius, asleep, .. } = spheres.list[sphere];
-        Traveller {
+        SweptSphere {
             path: self.paths[sphere],
             sweep: self.speed(sphere) * self.span().half,
             radius,
@@ -211,7 +211,7 @@ impl SpherePairs {
     }
 
     /// Searches all pairs.
-    fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &Bodies<D>) {
+    fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &SoftBodies<D>) {
         let count = spheres.list.len();
         self.changed.clear();
         self.make_room(count);
@@ -258,7 +258,7 @@ impl SpherePairs {
         let (smallest, largest) = radii.fold((f32::MAX, 0.0f32), |(low, high), radius| {
             (low.min(radius), high.max(radius))
         });
-        self.least_stray = 2.0 * STRAY * smallest;
+        self.least_stray = 2.0 * SLACK * smallest;
         self.spare = self.least_stray;
         self.reach = widened(2.0 * largest);
         self.set_frame(spheres);
@@ -280,7 +280,7 @@ impl SpherePairs {
     /// Returns whether a sphere is found through the bins: its path is short and as it was when the bins were
     /// built.
     #[inline(always)]
-    fn is_binned(&self, traveller: &Traveller) -> bool {
+    fn is_binned(&self, traveller: &SweptSphere) -> bool {
         self.loose_at[traveller.sphere] == BINNED
     }
 
@@ -310,12 +310,12 @@ impl SpherePairs {
     /// Returns the pairs on opposite crack faces.
     fn lips(&self, spheres: &Spheres) -> Vec<Vec<[SphereId; 2]>> {
         // Index of each sphere in bin order.
-        let mut order: Table<SphereId, u32> = vec![0; self.binned.len()].into();
+        let mut order: IndexVec<SphereId, u32> = vec![0; self.binned.len()].into();
         for (traveller, at) in self.binned.iter().zip(0..) {
             order[traveller.sphere] = at;
         }
         let span = self.span();
-        threads::map(spheres.lips.chunks(SHARE), |share| {
+        threads::map(spheres.crack_faces.chunks(CHUNK_SIZE), |share| {
             let mut found = Vec::new();
             for &lips in share {
                 let [a, b] = lips.map(|sphere| &self.binned[order[sphere] as usize]);
@@ -339,7 +339,7 @@ impl SpherePairs {
         let middles: Vec<Row> = middles.collect();
         let long = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
         // Of two long paths the longer one searches the other.
-        let rank = |long: &Traveller| (long.sweep, long.sphere);
+        let rank = |long: &SweptSphere| (long.sweep, long.sphere);
         threads::map(self.loose.chunks(LOOKS), |share| {
             let (mut found, mut near) = (Vec::new(), Vec::new());
             on_widest_lanes!(simd => for own in share {
@@ -376,11 +376,16 @@ impl SpherePairs {
     }
 
     /// Searches the pairs of the changed spheres again, given in ascending order; other pairs stay.
-    fn find_again<D: Dim>(&mut self, changed: &[SphereId], spheres: &Spheres, bodies: &Bodies<D>) {
+    fn find_again<D: Dim>(
+        &mut self,
+        changed: &[SphereId],
+        spheres: &Spheres,
+        bodies: &SoftBodies<D>,
+    ) {
         let count = spheres.list.len();
         self.make_room(count);
         self.loose_at.resize(count, BINNED);
-        let mut is_changed: Table<SphereId, bool> = vec![false; count].into();
+        let mut is_changed: IndexVec<SphereId, bool> = vec![false; count].into();
         for &sphere in changed {
             self.lay(sphere, spheres, bodies);
             is_changed[sphere] = true;
@@ -407,7 +412,7 @@ impl SpherePairs {
             let (mut found, mut near) = (Vec::new(), Vec::new());
             on_widest_lanes!(simd => for &sphere in share {
                 let own = &this.traveller(sphere, spheres);
-                let is_first = |other: &Traveller| match is_changed[other.sphere] {
+                let is_first = |other: &SweptSphere| match is_changed[other.sphere] {
                     true => other.sphere > sphere,
                     false => true,
                 };
@@ -481,14 +486,14 @@ impl SpherePairs {
 
 /// Returns the ids of two spheres in ascending order.
 #[inline(always)]
-fn pair(a: &Traveller, b: &Traveller) -> [SphereId; 2] {
+fn pair(a: &SweptSphere, b: &SweptSphere) -> [SphereId; 2] {
     [a.sphere.min(b.sphere), a.sphere.max(b.sphere)]
 }
 
 /// Returns the slack of a sphere [m].
 #[inline(always)]
 fn most_stray(spheres: &Spheres, sphere: SphereId) -> f32 {
-    STRAY * 2.0 * spheres.list[sphere].radius
+    SLACK * 2.0 * spheres.list[sphere].radius
 }
 
 /// Returns the speed that at most a share of 1 / `LONG_SHARE` of the spheres exceeds.

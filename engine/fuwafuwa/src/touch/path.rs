@@ -7,7 +7,7 @@ use crate::vector::{dot, minus, plus, scaled};
 
 /// Slack: how far a sphere may deviate from its path [voxels]. Larger values mean longer lists, smaller ones
 /// more searches.
-pub const STRAY: f32 = 0.35;
+pub const SLACK: f32 = 0.35;
 
 /// Weight of the mean velocity since the start of the last path in the prediction; the remainder is the
 /// present velocity. Vibrating spheres return, so their mean velocity predicts them better.
@@ -67,7 +67,7 @@ pub struct Span {
 
 /// Swept sphere: a sphere with its path, stored contiguously with everything that the pair test reads.
 #[derive(Copy, Clone, Debug)]
-pub struct Traveller {
+pub struct SweptSphere {
     pub path: Path,
     /// Upper bound of half its swept length relative to the frame [m].
     pub sweep: f32,
@@ -76,7 +76,7 @@ pub struct Traveller {
     pub asleep: bool,
 }
 
-impl Traveller {
+impl SweptSphere {
     /// Returns whether two swept spheres come close within a time span.
     #[inline(always)]
     pub fn meets(&self, other: &Self, span: Span) -> bool {
@@ -102,5 +102,5 @@ impl Traveller {
 /// `touching` [m].
 #[inline(always)]
 pub fn widened(touching: f32) -> f32 {
-    (1.0 + MARGIN + 2.0 * STRAY) * touching
+    (1.0 + MARGIN + 2.0 * SLACK) * touching
 }

@@ -5,7 +5,7 @@ use super::impulse::Impulse;
 use crate::dim::Dim;
 use crate::handle::RigidSlot;
 #[cfg(feature = "serde")]
-use crate::rigid::Rigids;
+use crate::rigid::RigidBodies;
 use crate::shape::Vector;
 
 /// Contact point between two rigid bodies.
@@ -81,7 +81,7 @@ impl RigidTouches {
 
     /// Discards points of bodies that do not exist, and restores the order without duplicates.
     #[cfg(feature = "serde")]
-    pub fn keep_known<D: Dim>(&mut self, rigids: &Rigids) {
+    pub fn keep_known<D: Dim>(&mut self, rigids: &RigidBodies) {
         let is_known =
             |touch: &RigidTouch| touch.both.iter().all(|&slot| rigids.find(slot).is_some());
         self.list.retain(is_known);

@@ -1,9 +1,9 @@
 //! Contact sphere of a surface element.
 
-use crate::body::{Bodies, Body};
+use crate::body::{SoftBodies, SoftBody};
 use crate::dim::{Dim, Point};
 use crate::handle::BodySlot;
-use crate::ids::{ElementId, Id, NodeId, PieceId, Table, id};
+use crate::ids::{ElementId, Id, IndexVec, NodeId, PieceId, id};
 use crate::solve::Row;
 use crate::vector::{plus, scaled};
 
@@ -47,7 +47,7 @@ pub struct ContactSphere {
 
 /// Returns the mean of the rows of a sphere's corner nodes.
 #[inline(always)]
-pub fn mean<D: Dim, I: Id>(rows: &Table<I, Row>, nodes: &[I; 8]) -> Row {
+pub fn mean<D: Dim, I: Id>(rows: &IndexVec<I, Row>, nodes: &[I; 8]) -> Row {
     let mut sum = rows[nodes[0]];
     for &node in &nodes[1..D::CORNERS] {
         sum = plus(sum, rows[node]);
@@ -57,21 +57,21 @@ pub fn mean<D: Dim, I: Id>(rows: &Table<I, Row>, nodes: &[I; 8]) -> Row {
 
 impl ContactSphere {
     /// Returns the contact sphere of an element, if the element is at the surface.
-    pub fn of<D: Dim>(slot: BodySlot, body: &Body<D>, id: ElementId) -> Option<Self> {
+    pub fn of<D: Dim>(slot: BodySlot, body: &SoftBody<D>, id: ElementId) -> Option<Self> {
         let bare = *body.cache.bare.get(id.index())?;
         if bare == 0 {
             return None;
         }
-        let element = body.truth.mesh.element(id)?;
+        let element = body.topology.mesh.element(id)?;
         let mut nodes = [NodeId(0); 8];
         nodes[..D::CORNERS].copy_from_slice(&element.nodes);
-        let piece = body.truth.pieces.of_element(id);
+        let piece = body.topology.pieces.of_element(id);
         Some(Self {
             body: slot,
             element: id,
             piece,
-            radius: 0.5 * body.truth.grid.voxel_size(),
-            asleep: body.truth.pieces.list[piece].asleep,
+            radius: 0.5 * body.topology.grid.voxel_size(),
+            asleep: body.topology.pieces.list[piece].asleep,
             bare,
             voxel: element.cell.at.map(|k| k as i16),
             bound: body.cache.bound[id],
@@ -100,7 +100,7 @@ impl ContactSphere {
 
     /// Returns the mean of a quantity over the corner nodes.
     #[inline]
-    pub fn mean<D: Dim>(&self, rows: &Table<NodeId, Row>) -> Row {
+    pub fn mean<D: Dim>(&self, rows: &IndexVec<NodeId, Row>) -> Row {
         mean::<D, _>(rows, &self.nodes)
     }
 
@@ -115,7 +115,7 @@ impl ContactSphere {
     }
 
     /// Returns the vector from the centre out of the body through the bare faces; 0 for a crumb or a sheet.
-    pub fn outward<D: Dim>(&self, position: &Table<NodeId, Row>) -> Row {
+    pub fn outward<D: Dim>(&self, position: &IndexVec<NodeId, Row>) -> Row {
         let mut sum = [0.0; 4];
         for corner in 0..D::CORNERS {
             let is_bare = |axis: usize, side: usize| f32::from(self.bare >> (2 * axis + side) & 1);
@@ -134,7 +134,7 @@ impl ContactSphere {
 
     /// Returns the inverse effective mass of the sphere [1/kg].
     #[inline]
-    pub fn inverse_mass<D: Dim>(&self, bodies: &Bodies<D>) -> f32 {
+    pub fn inverse_mass<D: Dim>(&self, bodies: &SoftBodies<D>) -> f32 {
         let all = &bodies.at(self.body).state.inverse_mass;
         let nodes = self.nodes[..D::CORNERS].iter();
         let sum: f32 = nodes.map(|&node| all[node]).sum();

@@ -2,11 +2,11 @@
 //! surface, so that a tear moves none of them in the list.
 
 use super::sphere::{ContactSphere, NEAR, SphereId};
-use crate::body::{Bodies, Body};
+use crate::body::{SoftBodies, SoftBody};
 use crate::changes::{Bookmark, Changes};
 use crate::dim::Dim;
 use crate::handle::BodySlot;
-use crate::ids::{ElementId, PieceId, Table};
+use crate::ids::{ElementId, IndexVec, PieceId};
 use crate::solve::Row;
 use crate::vector::{dot, minus};
 
@@ -15,36 +15,36 @@ use crate::vector::{dot, minus};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spheres {
     /// Body and element of each sphere. They define the order of the list when it is rebuilt.
-    keys: Table<SphereId, Key>,
+    keys: IndexVec<SphereId, Key>,
     /// Spheres: the first ones by body and element, then those that appeared at the surface later.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub list: Table<SphereId, ContactSphere>,
+    pub list: IndexVec<SphereId, ContactSphere>,
     /// Sphere of each voxel, by body and voxel index; [`SphereId::NONE`] inside.
     #[cfg_attr(feature = "serde", serde(skip))]
-    by_voxel: Table<BodySlot, Vec<SphereId>>,
+    by_voxel: IndexVec<BodySlot, Vec<SphereId>>,
     /// Pairs on opposite crack faces: neighbours in a piece that the piece does not keep apart.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub lips: Vec<[SphereId; 2]>,
+    pub crack_faces: Vec<[SphereId; 2]>,
     /// Bookmark up to which the changes of each body have been applied.
     #[cfg_attr(feature = "serde", serde(skip))]
-    followed: Table<BodySlot, Bookmark>,
+    followed: IndexVec<BodySlot, Bookmark>,
     /// Awake spheres.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub awake: Vec<SphereId>,
     /// Centres [m]; those of sleepers date from the start of the tick.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub centres: Table<SphereId, Row>,
+    pub centres: IndexVec<SphereId, Row>,
     /// Awake spheres in pairs or escape contacts, as a list and as a flag per sphere.
     #[cfg_attr(feature = "serde", serde(skip))]
     close: Vec<SphereId>,
     #[cfg_attr(feature = "serde", serde(skip))]
-    is_close: Table<SphereId, bool>,
+    is_close: IndexVec<SphereId, bool>,
     /// For close spheres: velocity without contacts in this substep [m/s], and squared distance moved in the
     /// last substep [m²].
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub velocities: Table<SphereId, Row>,
+    pub velocities: IndexVec<SphereId, Row>,
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub moved: Table<SphereId, f32>,
+    pub moved: IndexVec<SphereId, f32>,
 }
 
 /// Stable key of a sphere: body and element.
@@ -85,9 +85,9 @@ impl Spheres {
     /// or [`SphereId::NONE`].
     pub fn start_tick<D: Dim>(
         &mut self,
-        bodies: &Bodies<D>,
+        bodies: &SoftBodies<D>,
         changed: &mut Vec<SphereId>,
-    ) -> Option<Table<SphereId, SphereId>> {
+    ) -> Option<IndexVec<SphereId, SphereId>> {
         let numbers = (!self.catch_up(bodies, changed)).then(|| {
             changed.clear();
             self.list_anew(bodies)
@@ -96,7 +96,7 @@ impl Spheres {
         for ((id, sphere), centre) in all {
             let body = bodies.at(sphere.body);
             let was_asleep = sphere.asleep;
-            sphere.asleep = body.truth.pieces.list[sphere.piece].asleep;
+            sphere.asleep = body.topology.pieces.list[sphere.piece].asleep;
             // Sleepers are not updated during the tick, so their centres are computed here.
             if sphere.asleep != was_asleep {
                 changed.push(id);
@@ -117,7 +117,7 @@ impl Spheres {
     }
 
     /// Applies the tears between two ticks; returns false if bodies changed in another way.
-    fn catch_up<D: Dim>(&mut self, bodies: &Bodies<D>, changed: &mut Vec<SphereId>) -> bool {
+    fn catch_up<D: Dim>(&mut self, bodies: &SoftBodies<D>, changed: &mut Vec<SphereId>) -> bool {
         if self.followed.len() != bodies.slot_count() {
             return false;
         }
@@ -133,21 +133,21 @@ impl Spheres {
 
     /// Rebuilds the list: known spheres that still exist, in their order, then the others by body and
     /// element.
-    fn list_anew<D: Dim>(&mut self, bodies: &Bodies<D>) -> Table<SphereId, SphereId> {
+    fn list_anew<D: Dim>(&mut self, bodies: &SoftBodies<D>) -> IndexVec<SphereId, SphereId> {
         let known = std::mem::take(&mut self.keys);
         self.list.clear();
         self.followed = vec![Bookmark::default(); bodies.slot_count()].into();
         for (slot, body) in bodies.by_slot() {
             self.followed[slot] = body.bookmark();
         }
-        let none = |body: Option<&Body<D>>| {
-            let size = body.map_or([0; 3], |body| body.truth.grid.size());
+        let none = |body: Option<&SoftBody<D>>| {
+            let size = body.map_or([0; 3], |body| body.topology.grid.size());
             let voxels = size.map(|extent| extent as usize);
             vec![SphereId::NONE; voxels.iter().product()]
         };
         self.by_voxel = bodies.slots().map(none).collect();
         let all = bodies.by_slot().flat_map(|(slot, body)| {
-            let ids = body.truth.mesh.elements().map(|(id, _)| id);
+            let ids = body.topology.mesh.elements().map(|(id, _)| id);
             ids.map(move |id| (slot, id))
         });
         for (slot, id) in known.iter().copied().chain(all) {
@@ -156,7 +156,7 @@ impl Spheres {
             let Some((sphere, body)) = sphere.zip(body) else {
                 continue;
             };
-            let own = &mut self.by_voxel[slot][body.truth.grid.index(sphere.voxel())];
+            let own = &mut self.by_voxel[slot][body.topology.grid.index(sphere.voxel())];
             if *own == SphereId::NONE {
                 *own = self.list.next_id();
                 self.list.push(sphere);
@@ -170,7 +170,7 @@ impl Spheres {
         self.centres.clear();
         self.centres.extend(self.list.iter().map(centre));
         self.make_room();
-        self.lips.clear();
+        self.crack_faces.clear();
         for own in self.list.ids() {
             let body = bodies.at(self.list[own].body);
             self.find_lips(own, body, |other| other > own);
@@ -178,7 +178,7 @@ impl Spheres {
         let number = |&(slot, id): &Key| {
             let (body, by_voxel) = (bodies.find(slot)?, &self.by_voxel[slot]);
             let voxel = ContactSphere::of(slot, body, id)?.voxel();
-            Some(by_voxel[body.truth.grid.index(voxel)])
+            Some(by_voxel[body.topology.grid.index(voxel)])
         };
         let numbers = known.iter().map(number);
         numbers.map(|own| own.unwrap_or(SphereId::NONE)).collect()
@@ -189,7 +189,7 @@ impl Spheres {
     pub fn tear<D: Dim>(
         &mut self,
         slot: BodySlot,
-        body: &Body<D>,
+        body: &SoftBody<D>,
         changes: &Changes,
         changed: &mut Vec<SphereId>,
     ) {
@@ -200,7 +200,7 @@ impl Spheres {
                 continue;
             };
             // A voxel at the surface stays there for good.
-            let own = &mut self.by_voxel[slot][body.truth.grid.index(sphere.voxel())];
+            let own = &mut self.by_voxel[slot][body.topology.grid.index(sphere.voxel())];
             if *own == SphereId::NONE {
                 *own = self.list.next_id();
                 if !sphere.asleep {
@@ -218,17 +218,17 @@ impl Spheres {
         touched.sort_unstable();
         touched.dedup();
         changed.extend(&touched);
-        let mut is_touched: Table<SphereId, bool> = vec![false; self.list.len()].into();
+        let mut is_touched: IndexVec<SphereId, bool> = vec![false; self.list.len()].into();
         touched.iter().for_each(|&own| is_touched[own] = true);
         let is_known = |lips: &[SphereId; 2]| lips.iter().all(|&own| !is_touched[own]);
-        self.lips.retain(is_known);
-        if !changes.parted.is_empty() {
+        self.crack_faces.retain(is_known);
+        if !changes.detached.is_empty() {
             for sphere in self.list.iter_mut().filter(|sphere| sphere.body == slot) {
-                sphere.piece = body.truth.pieces.of_element(sphere.element);
+                sphere.piece = body.topology.pieces.of_element(sphere.element);
             }
             let list = &self.list;
             let piece = |own: SphereId| (list[own].body, list[own].piece);
-            self.lips.retain(|&[a, b]| piece(a) == piece(b));
+            self.crack_faces.retain(|&[a, b]| piece(a) == piece(b));
         }
         for own in touched {
             self.find_lips(own, body, |other| !is_touched[other] || other > own);
@@ -239,25 +239,25 @@ impl Spheres {
     fn find_lips<D: Dim>(
         &mut self,
         id: SphereId,
-        body: &Body<D>,
+        body: &SoftBody<D>,
         applies: impl Fn(SphereId) -> bool,
     ) {
         let own = &self.list[id];
-        let (site, voxel, size) = (own.site(), own.voxel(), body.truth.grid.size());
+        let (site, voxel, size) = (own.site(), own.voxel(), body.topology.grid.size());
         let by_voxel = &self.by_voxel[own.body];
         let near = i32::from(NEAR);
         let low = [0, 1, 2].map(|axis: usize| (voxel[axis] - near).max(0));
         let high = [0, 1, 2].map(|axis: usize| (voxel[axis] + near).min(size[axis] - 1));
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
-                let row =
-                    body.truth.grid.index([low[0], y, z])..=body.truth.grid.index([high[0], y, z]);
+                let row = body.topology.grid.index([low[0], y, z])
+                    ..=body.topology.grid.index([high[0], y, z]);
                 let others = by_voxel[row].iter().copied();
                 for other in others.filter(|&other| other != SphereId::NONE && applies(other)) {
                     let sphere = &self.list[other];
                     let is_held = other == id || site.is_held_to(&sphere.site());
                     if !is_held && sphere.piece == own.piece {
-                        self.lips.push([id, other]);
+                        self.crack_faces.push([id, other]);
                     }
                 }
             }
@@ -296,28 +296,28 @@ impl Spheres {
     }
 
     /// Updates the centres of all awake spheres.
-    pub fn move_all<D: Dim>(&mut self, bodies: &Bodies<D>) {
+    pub fn move_all<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         for at in 0..self.awake.len() {
             self.follow::<D>(self.awake[at], bodies);
         }
     }
 
     /// Updates the centres of the close spheres.
-    pub fn move_close<D: Dim>(&mut self, bodies: &Bodies<D>) {
+    pub fn move_close<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         for at in 0..self.close.len() {
             self.follow::<D>(self.close[at], bodies);
         }
     }
 
     /// Copies the velocities of the close spheres from the bodies.
-    pub fn take_velocities<D: Dim>(&mut self, bodies: &Bodies<D>) {
+    pub fn take_velocities<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         for &id in &self.close {
             self.velocities[id] = self.velocity(id, bodies);
         }
     }
 
     /// Returns the velocity of a sphere [m/s].
-    pub fn velocity<D: Dim>(&self, id: SphereId, bodies: &Bodies<D>) -> Row {
+    pub fn velocity<D: Dim>(&self, id: SphereId, bodies: &SoftBodies<D>) -> Row {
         let sphere = &self.list[id];
         sphere.mean::<D>(&bodies.at(sphere.body).state.velocity)
     }
@@ -328,7 +328,7 @@ impl Spheres {
         a.is_held_to(&b)
     }
 
-    fn follow<D: Dim>(&mut self, id: SphereId, bodies: &Bodies<D>) {
+    fn follow<D: Dim>(&mut self, id: SphereId, bodies: &SoftBodies<D>) {
         let sphere = &self.list[id];
         let centre = sphere.mean::<D>(&bodies.at(sphere.body).state.position);
         if self.is_close[id] {

@@ -1,14 +1,14 @@
 //! Actions on bodies from outside: translation, rotation, velocity, impulse, sleep.
 
-use super::{Refused, Settings, World};
-use crate::body::{Body, MOST_GRAVITY};
+use super::{Refused, World, WorldConfig};
+use crate::body::{MAX_GRAVITY_SCALE, SoftBody};
 use crate::contact::Hit;
 use crate::dim::{Dim, turning};
 use crate::event::Event;
-use crate::handle::{BodyId, RigidId};
-use crate::ids::{PieceId, Table};
+use crate::handle::{RigidBodyHandle, SoftBodyHandle};
+use crate::ids::{IndexVec, PieceId};
 use crate::layers::Layers;
-use crate::rigid::{FARTHEST, Rigid};
+use crate::rigid::{FARTHEST, RigidBody};
 use crate::rotation::Rotation;
 use crate::shape::{Bounds, Vector, flat};
 use crate::touch::{bounds_of, leaning_on_body, leaning_on_rigid};
@@ -21,20 +21,20 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Refused`] if the handle is stale, or a coordinate is not finite or beyond ±1e6 m.
     #[inline(never)]
-    pub fn move_body(&mut self, body: BodyId, by: Vector) -> Result<(), Refused> {
+    pub fn translate_body(&mut self, body: SoftBodyHandle, by: Vector) -> Result<(), Refused> {
         let by = within("distance", by, FARTHEST, "at most 1e6 m on each axis")?;
         self.displace(body, |body| body.shift(by))
     }
 
     /// Rotates a body about a point [m] at once, its velocities included; otherwise like
-    /// [`World::move_body`]. See also [`Body::rotated`].
+    /// [`World::move_body`]. See also [`SoftBody::rotated`].
     ///
     /// # Errors
     /// As for [`World::move_body`].
     #[inline(never)]
     pub fn rotate_body(
         &mut self,
-        body: BodyId,
+        body: SoftBodyHandle,
         rotation: Rotation,
         about: Vector,
     ) -> Result<(), Refused> {
@@ -50,7 +50,7 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub fn add_velocity(
         &mut self,
-        body: BodyId,
+        body: SoftBodyHandle,
         linear: Vector,
         angular: Vector,
     ) -> Result<(), Refused> {
@@ -66,11 +66,11 @@ impl<D: Dim> World<D> {
     /// impulse can squash or tear the body there. The body wakes.
     ///
     /// ```
-    /// use fuwafuwa::{Body, Dim2, Material, Settings, VoxelGrid, World};
+    /// use fuwafuwa::{SoftBody, Dim2, Material, WorldConfig, VoxelGrid, World};
     ///
     /// let grid = VoxelGrid::<Dim2>::ball(16, 1.0)?;
-    /// let mut world = World::new(Settings { gravity: [0.0; 3], ..Settings::default() })?;
-    /// let ball = world.add_body(Body::new(grid, &[Material::default()])?);
+    /// let mut world = World::new(WorldConfig { gravity: [0.0; 3], ..WorldConfig::default() })?;
+    /// let ball = world.add_body(SoftBody::new(grid, &[Material::default()])?);
     /// world.apply_impulse(ball, [0.5, 0.5, 0.0], 1.0, [2.0, 0.0, 0.0])?;
     /// let momentum = world.bodies()[ball].momentum().linear[0];
     /// assert!((momentum - 2.0).abs() < 1e-4);
@@ -82,7 +82,7 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub fn apply_impulse(
         &mut self,
-        body: BodyId,
+        body: SoftBodyHandle,
         at: Vector,
         radius: f32,
         impulse: Vector,
@@ -102,9 +102,9 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Refused`] if the handle is stale or the position is out of range. The body then stays unchanged.
     #[inline(never)]
-    pub fn place_rigid(
+    pub fn set_rigid_body_pose(
         &mut self,
-        rigid: RigidId,
+        rigid: RigidBodyHandle,
         position: Vector,
         rotation: Rotation,
     ) -> Result<(), Refused> {
@@ -125,7 +125,7 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub fn set_velocity(
         &mut self,
-        rigid: RigidId,
+        rigid: RigidBodyHandle,
         linear: Vector,
         angular: Vector,
     ) -> Result<(), Refused> {
@@ -133,7 +133,7 @@ impl<D: Dim> World<D> {
         let angular = within("spin", angular, FARTHEST, "at most 1e6 rad/s on each axis")?;
         let free = self.free_mut(rigid)?;
         free.velocity = flat::<D>(linear);
-        free.spin = turning::<D>(angular);
+        free.angular_velocity = turning::<D>(angular);
         Ok(())
     }
 
@@ -142,9 +142,9 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// As for [`World::set_velocity`].
     #[inline(never)]
-    pub fn push_rigid(
+    pub fn apply_rigid_body_impulse(
         &mut self,
-        rigid: RigidId,
+        rigid: RigidBodyHandle,
         at: Vector,
         impulse: Vector,
     ) -> Result<(), Refused> {
@@ -160,12 +160,12 @@ impl<D: Dim> World<D> {
     /// user data. Its contacts restart; the body and sleepers in contact with it wake.
     ///
     /// ```
-    /// use fuwafuwa::{Dim2, Drive, Rigid, Settings, Shape, World};
+    /// use fuwafuwa::{Dim2, MotionType, RigidBody, WorldConfig, Shape, World};
     ///
-    /// let mut world = World::<Dim2>::new(Settings::default())?;
+    /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
     /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.2 };
-    /// let ball = world.add_rigid(Rigid::free(ball, 1.0))?;
-    /// world.change_rigid(ball, |ball| ball.drive = Drive::Fixed)?;
+    /// let ball = world.add_rigid(RigidBody::free(ball, 1.0))?;
+    /// world.change_rigid(ball, |ball| ball.drive = MotionType::Fixed)?;
     /// world.step();
     /// assert_eq!(world.rigids()[ball].position(), [0.0; 3]);
     /// assert!(world.change_rigid(ball, |ball| ball.friction = -1.0).is_err());
@@ -177,13 +177,13 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub fn change_rigid(
         &mut self,
-        rigid: RigidId,
-        change: impl FnOnce(&mut Rigid),
+        rigid: RigidBodyHandle,
+        change: impl FnOnce(&mut RigidBody),
     ) -> Result<(), Refused> {
         let mut changed = self.rigids.get(rigid)?.clone();
-        let (drive, was) = (changed.drive, changed.shape().bounds());
+        let (drive, was) = (changed.motion_type, changed.shape().bounds());
         change(&mut changed);
-        if changed.drive != drive {
+        if changed.motion_type != drive {
             changed.stay();
         }
         let mut changed = changed.seen_in::<D>();
@@ -198,18 +198,18 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Refused::Gone`] if the handle is stale.
     #[inline(never)]
-    pub fn set_layers(&mut self, body: BodyId, layers: Layers) -> Result<(), Refused> {
+    pub fn set_layers(&mut self, body: SoftBodyHandle, layers: Layers) -> Result<(), Refused> {
         self.displace(body, |body| body.state.layers = layers)?;
         self.nearby.nodes.look_again();
         Ok(())
     }
 
-    /// Sets the [`Body::user_data`] of a body.
+    /// Sets the [`SoftBody::user_data`] of a body.
     ///
     /// # Errors
     /// [`Refused::Gone`] if the handle is stale.
     #[inline(never)]
-    pub fn set_user_data(&mut self, body: BodyId, data: u64) -> Result<(), Refused> {
+    pub fn set_user_data(&mut self, body: SoftBodyHandle, data: u64) -> Result<(), Refused> {
         self.bodies.get_mut(body)?.state.user_data = data;
         Ok(())
     }
@@ -220,8 +220,12 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Refused`] if the handle is stale, or the scale is not finite or beyond ±100.
     #[inline(never)]
-    pub fn set_gravity_scale(&mut self, body: BodyId, scale: f32) -> Result<(), Refused> {
-        require(scale.abs() <= MOST_GRAVITY, "gravity scale", "-100 to 100")?;
+    pub fn set_gravity_scale(&mut self, body: SoftBodyHandle, scale: f32) -> Result<(), Refused> {
+        require(
+            scale.abs() <= MAX_GRAVITY_SCALE,
+            "gravity scale",
+            "-100 to 100",
+        )?;
         self.wake_up(body)?;
         self.bodies.get_mut(body)?.state.gravity_scale = scale;
         Ok(())
@@ -233,7 +237,7 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Refused::Gone`] if the handle is stale.
     #[inline(never)]
-    pub fn wake_up(&mut self, body: BodyId) -> Result<(), Refused> {
+    pub fn wake_up(&mut self, body: SoftBodyHandle) -> Result<(), Refused> {
         self.bodies.get(body)?;
         self.wake_body(body);
         self.keep_awake(body);
@@ -241,15 +245,20 @@ impl<D: Dim> World<D> {
     }
 
     /// Puts a body to sleep at its present position, at rest. A sleeping body costs next to nothing and acts
-    /// as a wall until something moves against it. Its [fixed](Body::hold) nodes stop, too.
+    /// as a wall until something moves against it. Its [fixed](SoftBody::hold) nodes stop, too.
     ///
     /// # Errors
     /// [`Refused::Gone`] if the handle is stale.
     #[inline(never)]
-    pub fn put_to_sleep(&mut self, body: BodyId) -> Result<(), Refused> {
+    pub fn put_to_sleep(&mut self, body: SoftBodyHandle) -> Result<(), Refused> {
         let sleeper = self.bodies.get_mut(body)?;
-        let awake = sleeper.truth.pieces.list.iter().map(|piece| !piece.asleep);
-        let awake: Table<PieceId, bool> = awake.collect();
+        let awake = sleeper
+            .topology
+            .pieces
+            .list
+            .iter()
+            .map(|piece| !piece.asleep);
+        let awake: IndexVec<PieceId, bool> = awake.collect();
         sleeper.set_asleep(&awake, true);
         sleeper.refresh_awake();
         let fallen = awake.ids().filter(|&piece| awake[piece]);
@@ -259,31 +268,35 @@ impl<D: Dim> World<D> {
     }
 
     /// Changes the world settings from the next tick on. Everything wakes. Bodies are softened or stiffened
-    /// for the new maximum number of substeps, see [`Body::stiffness_scale`].
+    /// for the new maximum number of substeps, see [`SoftBody::stiffness_scale`].
     ///
     /// # Errors
     /// [`Refused::Setting`] if a setting is out of range. Everything then stays unchanged.
     #[inline(never)]
-    pub fn set_settings(&mut self, settings: Settings) -> Result<(), Refused> {
+    pub fn set_config(&mut self, settings: WorldConfig) -> Result<(), Refused> {
         settings.check().map_err(Refused::setting)?;
         self.settings = settings;
         let shortest = settings.shortest_substep();
         let mut all: Vec<Hit> = Vec::new();
         for (slot, body) in self.bodies.by_slot_mut() {
             body.scale_stiffness_for(shortest);
-            let pieces = body.truth.pieces.list.ids();
+            let pieces = body.topology.pieces.list.ids();
             all.extend(pieces.map(|piece| (slot, piece)));
         }
         self.wake(&all);
         self.wake_all_rigids();
-        let all: Vec<BodyId> = self.bodies.ids().collect();
+        let all: Vec<SoftBodyHandle> = self.bodies.ids().collect();
         all.into_iter().for_each(|body| self.keep_awake(body));
         Ok(())
     }
 
     /// Changes the position or the layers of a body, discards its contacts, and wakes it together with
     /// sleepers in contact with it.
-    fn displace(&mut self, id: BodyId, change: impl FnOnce(&mut Body<D>)) -> Result<(), Refused> {
+    fn displace(
+        &mut self,
+        id: SoftBodyHandle,
+        change: impl FnOnce(&mut SoftBody<D>),
+    ) -> Result<(), Refused> {
         let body = self.bodies.get(id)?;
         let own = id.slot();
         let leaning = leaning_on_body(body, &self.bodies);
@@ -299,7 +312,7 @@ impl<D: Dim> World<D> {
 
     /// Discards the contacts of a rigid body after a change of its pose or fields, and wakes sleepers in
     /// contact with its old and its new bounds.
-    fn forget_rigid(&mut self, id: RigidId, was: Bounds) -> Result<(), Refused> {
+    fn forget_rigid(&mut self, id: RigidBodyHandle, was: Bounds) -> Result<(), Refused> {
         let rigid = self.rigids.get(id)?;
         let is = rigid.shape().bounds();
         let leaning = leaning_on_rigid(rigid, &self.bodies);
@@ -310,9 +323,9 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns a dynamic rigid body and wakes it.
-    fn free_mut(&mut self, rigid: RigidId) -> Result<&mut Rigid, Refused> {
+    fn free_mut(&mut self, rigid: RigidBodyHandle) -> Result<&mut RigidBody, Refused> {
         require(
-            self.rigids.get(rigid)?.is_free(),
+            self.rigids.get(rigid)?.is_dynamic(),
             "rigid body",
             "free (dynamic)",
         )?;
@@ -321,10 +334,10 @@ impl<D: Dim> World<D> {
     }
 
     /// Restarts the sleep timers of a body.
-    fn keep_awake(&mut self, body: BodyId) {
+    fn keep_awake(&mut self, body: SoftBodyHandle) {
         if let Ok(body) = self.bodies.get_mut(body) {
-            let pieces = body.truth.pieces.list.iter_mut();
-            pieces.for_each(|piece| piece.still = 0.0);
+            let pieces = body.topology.pieces.list.iter_mut();
+            pieces.for_each(|piece| piece.sleep_timer = 0.0);
         }
     }
 }

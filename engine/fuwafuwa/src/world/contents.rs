@@ -1,19 +1,19 @@
 //! Contents of a world: insertion, removal, access and wake-up.
 
-use super::{Refused, Settings, World};
+use super::{Refused, World, WorldConfig};
 use crate::blade::{Blade, CutReport};
-use crate::body::{Bodies, Body};
+use crate::body::{SoftBodies, SoftBody};
 use crate::changes::History;
 use crate::contact::Hit;
 use crate::dim::Dim;
 use crate::event::Event;
-use crate::handle::{BodyId, Gone, RigidId, RigidSlot};
+use crate::handle::{Gone, RigidBodyHandle, RigidSlot, SoftBodyHandle};
 use crate::hash::Hash;
 #[cfg(feature = "serde")]
 use crate::joint::Joint;
 #[cfg(feature = "serde")]
 use crate::knife::Knife;
-use crate::rigid::{Drive, Rigid, Rigids};
+use crate::rigid::{MotionType, RigidBodies, RigidBody};
 use crate::rotation::Rotation;
 use crate::shape::{Bounds, Vector};
 use crate::touch::{bounds_of, leaning_on_body, leaning_on_rigid, sleeping_in};
@@ -24,9 +24,9 @@ const MOST_TICKS: u64 = 1 << 60;
 
 impl<D: Dim> World<D> {
     /// Adds a body. A body too stiff for the maximum number of substeps is softened, see
-    /// [`Body::stiffness_scale`].
+    /// [`SoftBody::stiffness_scale`].
     #[inline(never)]
-    pub fn add_body(&mut self, mut body: Body<D>) -> BodyId {
+    pub fn add_soft_body(&mut self, mut body: SoftBody<D>) -> SoftBodyHandle {
         body.scale_stiffness_for(self.settings.shortest_substep());
         let id = self.bodies.insert(body);
         // The body may have fallen asleep in another world.
@@ -37,9 +37,9 @@ impl<D: Dim> World<D> {
     /// Adds a rigid body. In 2D the third coordinates are ignored.
     ///
     /// # Errors
-    /// [`Refused::Rigid`] if a parameter is out of range.
+    /// [`Refused::RigidBody`] if a parameter is out of range.
     #[inline(never)]
-    pub fn add_rigid(&mut self, rigid: Rigid) -> Result<RigidId, Refused> {
+    pub fn add_rigid_body(&mut self, rigid: RigidBody) -> Result<RigidBodyHandle, Refused> {
         let rigid = rigid.seen_in::<D>();
         rigid.check()?;
         Ok(self.rigids.insert(rigid))
@@ -51,7 +51,11 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Refused`] if the handle is stale, the body is fixed or dynamic, or the target is not finite or
     /// beyond [`FARTHEST`](crate::rigid::FARTHEST). The target then stays unchanged.
-    pub fn set_goal(&mut self, hand: RigidId, goal: Vector) -> Result<(), Refused> {
+    pub fn set_target_position(
+        &mut self,
+        hand: RigidBodyHandle,
+        goal: Vector,
+    ) -> Result<(), Refused> {
         Ok(self.rigids.get_mut(hand)?.send::<D>(goal)?)
     }
 
@@ -60,7 +64,11 @@ impl<D: Dim> World<D> {
     ///
     /// # Errors
     /// [`Refused`] if the handle is stale, or the body is fixed or dynamic. The target then stays unchanged.
-    pub fn set_goal_rotation(&mut self, rigid: RigidId, rotation: Rotation) -> Result<(), Refused> {
+    pub fn set_target_rotation(
+        &mut self,
+        rigid: RigidBodyHandle,
+        rotation: Rotation,
+    ) -> Result<(), Refused> {
         Ok(self.rigids.get_mut(rigid)?.turn_to::<D>(rotation)?)
     }
 
@@ -70,14 +78,17 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Gone`] if the handle is stale.
     #[inline(never)]
-    pub fn cut(&mut self, body: BodyId, blade: &Blade) -> Result<usize, Gone> {
+    pub fn cut(&mut self, body: SoftBodyHandle, blade: &Blade) -> Result<usize, Gone> {
         self.bodies.get(body)?;
         self.wake_body(body);
         let cut = self.bodies.get_mut(body)?.cut(blade);
-        let CutReport { released, parted } = cut.expect("splitting a node keeps the mesh valid");
+        let CutReport {
+            released,
+            detached: parted,
+        } = cut.expect("splitting a node keeps the mesh valid");
         let energy = 0.0;
         let positions = released.iter();
-        let releases = positions.map(|&at| Event::Released { body, at, energy });
+        let releases = positions.map(|&at| Event::NodeSplit { body, at, energy });
         self.events.extend(releases);
         self.events.extend(Event::parted(body, &parted));
         Ok(released.len())
@@ -90,7 +101,7 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Gone`] if the handle is stale.
     #[inline(never)]
-    pub fn body_mut(&mut self, body: BodyId) -> Result<&mut Body<D>, Gone> {
+    pub fn soft_body_mut(&mut self, body: SoftBodyHandle) -> Result<&mut SoftBody<D>, Gone> {
         self.bodies.get(body)?;
         self.wake_body(body);
         let body = self.bodies.get_mut(body)?;
@@ -104,7 +115,7 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Gone`] if the handle is stale.
     #[inline(never)]
-    pub fn remove_body(&mut self, body: BodyId) -> Result<Body<D>, Gone> {
+    pub fn remove_soft_body(&mut self, body: SoftBodyHandle) -> Result<SoftBody<D>, Gone> {
         let removed = self.bodies.remove(body)?;
         self.nearby.remove_body(body.slot());
         let leaning = leaning_on_body(&removed, &self.bodies);
@@ -117,7 +128,7 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Gone`] if the handle is stale.
     #[inline(never)]
-    pub fn remove_rigid(&mut self, rigid: RigidId) -> Result<Rigid, Gone> {
+    pub fn remove_rigid_body(&mut self, rigid: RigidBodyHandle) -> Result<RigidBody, Gone> {
         let removed = self.rigids.remove(rigid)?;
         self.nearby.remove_rigid(rigid.slot());
         let leaning = leaning_on_rigid(&removed, &self.bodies);
@@ -126,40 +137,42 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns the settings.
-    pub fn settings(&self) -> &Settings {
+    pub fn config(&self) -> &WorldConfig {
         &self.settings
     }
 
     /// Returns the soft bodies.
-    pub fn bodies(&self) -> &Bodies<D> {
+    pub fn soft_bodies(&self) -> &SoftBodies<D> {
         &self.bodies
     }
 
     /// Returns the rigid bodies.
-    pub fn rigids(&self) -> &Rigids {
+    pub fn rigid_bodies(&self) -> &RigidBodies {
         &self.rigids
     }
 
     /// Iterates over the fixed rigid bodies.
-    pub fn obstacles(&self) -> impl Iterator<Item = &Rigid> + Clone {
+    pub fn fixed_rigid_bodies(&self) -> impl Iterator<Item = &RigidBody> + Clone {
         self.rigids
             .iter()
-            .filter(|rigid| rigid.drive == Drive::Fixed)
+            .filter(|rigid| rigid.motion_type == MotionType::Fixed)
     }
 
     /// Iterates over the kinematic and coupled rigid bodies.
-    pub fn hands(&self) -> impl Iterator<Item = (RigidId, &Rigid)> + Clone {
-        self.rigids.entries().filter(|(_, rigid)| rigid.is_driven())
+    pub fn target_followers(&self) -> impl Iterator<Item = (RigidBodyHandle, &RigidBody)> + Clone {
+        self.rigids
+            .entries()
+            .filter(|(_, rigid)| rigid.follows_target())
     }
 
     /// Returns the handle of the `n`-th body in slot order, counted from 0.
-    pub fn nth_body(&self, n: usize) -> Option<BodyId> {
+    pub fn nth_soft_body(&self, n: usize) -> Option<SoftBodyHandle> {
         self.bodies.ids().nth(n)
     }
 
     /// Returns the handle of the `n`-th kinematic or coupled rigid body in slot order, counted from 0.
-    pub fn nth_hand(&self, n: usize) -> Option<RigidId> {
-        self.hands().map(|(id, _)| id).nth(n)
+    pub fn nth_target_follower(&self, n: usize) -> Option<RigidBodyHandle> {
+        self.target_followers().map(|(id, _)| id).nth(n)
     }
 
     /// Returns the events of the last tick, and of operations since then.
@@ -179,9 +192,9 @@ impl<D: Dim> World<D> {
         let mut hash = Hash::NONE;
         hash.add(self.ticks);
         for body in self.bodies.iter() {
-            for (id, _) in body.truth.mesh.nodes() {
+            for (id, _) in body.topology.mesh.nodes() {
                 let (at, speed) = (body.state.position[id], body.state.velocity[id]);
-                hash.add(u64::from(body.truth.pieces.of_node(id).0));
+                hash.add(u64::from(body.topology.pieces.of_node(id).0));
                 for value in at.iter().chain(&speed) {
                     hash.add(u64::from(value.to_bits()));
                 }
@@ -190,14 +203,14 @@ impl<D: Dim> World<D> {
         for rigid in self
             .rigids
             .iter()
-            .filter(|rigid| rigid.drive != Drive::Fixed)
+            .filter(|rigid| rigid.motion_type != MotionType::Fixed)
         {
             for value in rigid.position.iter().chain(&rigid.velocity) {
                 hash.add(u64::from(value.to_bits()));
             }
-            if rigid.is_free() {
+            if rigid.is_dynamic() {
                 let turned = rigid.rotation.quaternion();
-                for value in turned.iter().chain(&rigid.spin) {
+                for value in turned.iter().chain(&rigid.angular_velocity) {
                     hash.add(u64::from(value.to_bits()));
                 }
             }
@@ -209,7 +222,7 @@ impl<D: Dim> World<D> {
     #[cfg(feature = "serde")]
     pub(crate) fn defect(&self) -> Option<&'static str> {
         let is_sound =
-            |rigid: &Rigid| rigid.check().is_ok() && rigid.clone().seen_in::<D>() == *rigid;
+            |rigid: &RigidBody| rigid.check().is_ok() && rigid.clone().seen_in::<D>() == *rigid;
         let checks = [
             (
                 "its settings are out of range",
@@ -239,7 +252,7 @@ impl<D: Dim> World<D> {
     /// Rebuilds everything that is not saved.
     #[cfg(feature = "serde")]
     pub(crate) fn rebuild(&mut self) {
-        self.bodies.iter_mut().for_each(Body::restore);
+        self.bodies.iter_mut().for_each(SoftBody::restore);
         self.nearby.keep_known(&self.bodies, &self.rigids);
         self.touching.sort_unstable();
         self.touching.dedup();
@@ -286,8 +299,8 @@ impl<D: Dim> World<D> {
     }
 
     /// Wakes all pieces of a body.
-    pub(super) fn wake_body(&mut self, body: BodyId) {
-        let pieces = self.bodies[body].truth.pieces.list.ids();
+    pub(super) fn wake_body(&mut self, body: SoftBodyHandle) {
+        let pieces = self.bodies[body].topology.pieces.list.ids();
         let pieces: Vec<Hit> = pieces.map(|piece| (body.slot(), piece)).collect();
         self.wake(&pieces);
     }

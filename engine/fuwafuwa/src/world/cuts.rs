@@ -4,7 +4,7 @@ use super::{Refused, World};
 use crate::contact::Hit;
 use crate::dim::Dim;
 use crate::event::{Event, StepReport};
-use crate::handle::{Gone, KnifeId};
+use crate::handle::{Gone, KnifeHandle};
 use crate::knife::{Knife, Knives};
 
 impl<D: Dim> World<D> {
@@ -14,7 +14,7 @@ impl<D: Dim> World<D> {
     /// [`Refused`] if the handle of the rigid body is stale, the body is fixed or dynamic, or a parameter is
     /// out of range.
     #[inline(never)]
-    pub fn add_knife(&mut self, mut knife: Knife) -> Result<KnifeId, Refused> {
+    pub fn add_knife(&mut self, mut knife: Knife) -> Result<KnifeHandle, Refused> {
         self.rigids.get(knife.holder)?;
         let refused = |(field, expected)| Refused::Argument { field, expected };
         knife.check::<D>(&self.rigids).map_err(refused)?;
@@ -28,7 +28,7 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Gone`] if the handle is stale.
     #[inline(never)]
-    pub fn remove_knife(&mut self, knife: KnifeId) -> Result<Knife, Gone> {
+    pub fn remove_knife(&mut self, knife: KnifeHandle) -> Result<Knife, Gone> {
         self.knives.remove(knife)
     }
 
@@ -56,8 +56,8 @@ impl<D: Dim> World<D> {
                 if released.is_empty() {
                     continue;
                 }
-                report.released += released.len() as u32;
-                report.parted += changes.parted.len() as u32;
+                report.nodes_split += released.len() as u32;
+                report.pieces_detached += changes.detached.len() as u32;
                 let [area, work] = knife.take_sums();
                 self.events.push(Event::Cut {
                     knife: id,
@@ -66,7 +66,8 @@ impl<D: Dim> World<D> {
                     area,
                     work,
                 });
-                self.events.extend(Event::parted(cut.body, &changes.parted));
+                self.events
+                    .extend(Event::parted(cut.body, &changes.detached));
                 self.nearby.tear(cut.body.slot(), body, &changes);
             }
         }

@@ -1,7 +1,7 @@
 //! Callbacks during a tick.
 
-use crate::handle::{Gone, RigidId};
-use crate::rigid::{Reaction, Rigids};
+use crate::handle::{Gone, RigidBodyHandle};
+use crate::rigid::{Reaction, RigidBodies};
 use crate::shape::Vector;
 
 /// Callbacks during a tick; none by default. See [`World::step_with`](crate::World::step_with).
@@ -20,11 +20,11 @@ pub struct Substep<'a> {
     pub number: u32,
     /// Length of the substep [s].
     pub duration: f32,
-    rigids: &'a Rigids,
+    rigids: &'a RigidBodies,
 }
 
 impl<'a> Substep<'a> {
-    pub(super) fn new(number: u32, duration: f32, rigids: &'a Rigids) -> Self {
+    pub(super) fn new(number: u32, duration: f32, rigids: &'a RigidBodies) -> Self {
         Self {
             number,
             duration,
@@ -37,7 +37,7 @@ impl<'a> Substep<'a> {
     ///
     /// # Errors
     /// [`Gone`] if the handle is stale.
-    pub fn reaction(&self, hand: RigidId) -> Result<Reaction, Gone> {
+    pub fn reaction(&self, hand: RigidBodyHandle) -> Result<Reaction, Gone> {
         let hand = self.rigids.get(hand)?;
         Ok(hand.reactions().last().copied().unwrap_or_default())
     }
@@ -46,7 +46,7 @@ impl<'a> Substep<'a> {
     ///
     /// # Errors
     /// [`Gone`] if the handle is stale.
-    pub fn position(&self, hand: RigidId) -> Result<Vector, Gone> {
+    pub fn position(&self, hand: RigidBodyHandle) -> Result<Vector, Gone> {
         Ok(self.rigids.get(hand)?.position())
     }
 }

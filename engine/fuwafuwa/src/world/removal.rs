@@ -1,11 +1,11 @@
 //! Removal of pieces, and of everything that left a region.
 
 use super::{Refused, World};
-use crate::body::Body;
+use crate::body::SoftBody;
 use crate::contact::Hit;
 use crate::dim::Dim;
 use crate::event::Event;
-use crate::handle::{BodyId, Gone, RigidId};
+use crate::handle::{Gone, RigidBodyHandle, SoftBodyHandle};
 use crate::ids::PieceId;
 use crate::shape::Shape;
 use crate::touch::{bounds_of, leaning_on_pieces};
@@ -26,11 +26,11 @@ pub enum PieceSize {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Removed {
     /// Removed pieces, ascending by body and number.
-    pub pieces: Vec<(BodyId, PieceId)>,
+    pub pieces: Vec<(SoftBodyHandle, PieceId)>,
     /// Bodies without remaining pieces; they were removed, and their handles are stale.
-    pub bodies: Vec<BodyId>,
+    pub bodies: Vec<SoftBodyHandle>,
     /// Removed dynamic rigid bodies.
-    pub rigids: Vec<RigidId>,
+    pub rigids: Vec<RigidBodyHandle>,
     /// Total mass of the removed pieces [kg].
     pub mass: f64,
 }
@@ -42,10 +42,10 @@ impl<D: Dim> World<D> {
     /// and makes its handle stale.
     ///
     /// ```
-    /// use fuwafuwa::{Blade, Body, Dim2, Material, PieceId, Settings, VoxelGrid, World};
+    /// use fuwafuwa::{Blade, SoftBody, Dim2, Material, PieceId, WorldConfig, VoxelGrid, World};
     ///
-    /// let mut world = World::<Dim2>::new(Settings::default())?;
-    /// let cake = Body::new(VoxelGrid::cube(16, 1.0)?, &[Material::default()])?;
+    /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
+    /// let cake = SoftBody::new(VoxelGrid::cube(16, 1.0)?, &[Material::default()])?;
     /// let cake = world.add_body(cake);
     /// let across = Blade::segment([0.3, -1.0], [0.3, 2.0]);
     /// world.cut(cake, &across)?;
@@ -59,7 +59,7 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Gone`] if the body or the piece does not exist.
     #[inline(never)]
-    pub fn remove_piece(&mut self, body: BodyId, piece: PieceId) -> Result<Removed, Gone> {
+    pub fn remove_piece(&mut self, body: SoftBodyHandle, piece: PieceId) -> Result<Removed, Gone> {
         match self.bodies.get(body)?.has_piece(piece) {
             true => Ok(self.take_out(&[(body, piece)])),
             false => Err(Gone {
@@ -74,10 +74,10 @@ impl<D: Dim> World<D> {
     ///
     /// ```
     /// use fuwafuwa::world::PieceSize;
-    /// use fuwafuwa::{Body, Dim3, Material, Settings, VoxelGrid, World};
+    /// use fuwafuwa::{SoftBody, Dim3, Material, WorldConfig, VoxelGrid, World};
     ///
-    /// let mut world = World::<Dim3>::new(Settings::default())?;
-    /// let ball = Body::new(VoxelGrid::ball(8, 0.4)?, &[Material::default()])?;
+    /// let mut world = World::<Dim3>::new(WorldConfig::default())?;
+    /// let ball = SoftBody::new(VoxelGrid::ball(8, 0.4)?, &[Material::default()])?;
     /// let ball = world.add_body(ball);
     /// world.body_mut(ball)?.crumble()?;
     /// assert_eq!(world.remove_small_pieces(PieceSize::Voxels(1))?.pieces, []);
@@ -107,11 +107,11 @@ impl<D: Dim> World<D> {
     /// To remove objects that fall for ever, use the half-space above a plane that is below the lowest floor:
     ///
     /// ```
-    /// use fuwafuwa::{Dim3, Rigid, Settings, Shape, World};
+    /// use fuwafuwa::{Dim3, RigidBody, WorldConfig, Shape, World};
     ///
-    /// let mut world = World::<Dim3>::new(Settings::default())?;
+    /// let mut world = World::<Dim3>::new(WorldConfig::default())?;
     /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.1 };
-    /// let ball = world.add_rigid(Rigid::free(ball, 1.0))?;
+    /// let ball = world.add_rigid(RigidBody::free(ball, 1.0))?;
     /// The solid side of this half-space is above the plane, because its normal points down.
     /// let above = Shape::half_space([0.0, -1.0, 0.0], [0.0, -2.0, 0.0]);
     /// let mut removed = world.remove_outside(&above)?;
@@ -134,20 +134,23 @@ impl<D: Dim> World<D> {
             expected: bad.expected,
         })?;
         let mut removed = self.take_out_where(|body| {
-            let mut outside: Vec<bool> = vec![true; body.truth.pieces.list.len()];
-            for (id, _) in body.truth.mesh.nodes() {
+            let mut outside: Vec<bool> = vec![true; body.topology.pieces.list.len()];
+            for (id, _) in body.topology.mesh.nodes() {
                 let at = three(body.state.position[id]);
                 // Comparisons with NaN are false, so a non-finite position is outside of every region.
                 let is_inside = region.distance(at).0 <= 0.0;
-                outside[body.truth.pieces.of_node(id).index()] &= !is_inside;
+                outside[body.topology.pieces.of_node(id).index()] &= !is_inside;
             }
             outside
         });
-        let free = self.rigids.entries().filter(|(_, rigid)| rigid.is_free());
+        let free = self
+            .rigids
+            .entries()
+            .filter(|(_, rigid)| rigid.is_dynamic());
         let left = free.filter(|(_, rigid)| rigid.shape().gap(&region).0 > 0.0);
         removed.rigids = left.map(|(id, _)| id).collect();
         for &rigid in &removed.rigids {
-            if self.remove_rigid(rigid).is_ok() {
+            if self.remove_rigid_body(rigid).is_ok() {
                 self.events.push(Event::RigidRemoved { rigid });
             }
         }
@@ -155,10 +158,10 @@ impl<D: Dim> World<D> {
     }
 
     /// Removes the pieces that `marks` selects; it returns a flag per piece number for each body.
-    fn take_out_where(&mut self, marks: impl Fn(&Body<D>) -> Vec<bool>) -> Removed {
+    fn take_out_where(&mut self, marks: impl Fn(&SoftBody<D>) -> Vec<bool>) -> Removed {
         let mut pieces = Vec::new();
         for (id, body) in self.bodies.entries() {
-            let marked = body.truth.pieces.list.ids().zip(marks(body));
+            let marked = body.topology.pieces.list.ids().zip(marks(body));
             let marked = marked.filter(|&(piece, is_marked)| is_marked && body.has_piece(piece));
             pieces.extend(marked.map(|(piece, _)| (id, piece)));
         }
@@ -166,7 +169,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Removes existing pieces, given in ascending order.
-    fn take_out(&mut self, pieces: &[(BodyId, PieceId)]) -> Removed {
+    fn take_out(&mut self, pieces: &[(SoftBodyHandle, PieceId)]) -> Removed {
         let mut removed = Removed::default();
         if pieces.is_empty() {
             return removed;
@@ -186,7 +189,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Removes pieces of a body, and the body itself if none is left.
-    fn take_out_of(&mut self, id: BodyId, pieces: &[PieceId], removed: &mut Removed) {
+    fn take_out_of(&mut self, id: SoftBodyHandle, pieces: &[PieceId], removed: &mut Removed) {
         let body = self.bodies.at_mut(id.slot());
         let whole = body.total_mass();
         let events = pieces
@@ -196,7 +199,7 @@ impl<D: Dim> World<D> {
         removed
             .pieces
             .extend(pieces.iter().map(|&piece| (id, piece)));
-        if pieces.len() == body.truth.pieces.count() {
+        if pieces.len() == body.topology.pieces.count() {
             removed.mass += whole;
             if self.bodies.remove(id).is_ok() {
                 self.nearby.remove_body(id.slot());
@@ -213,8 +216,8 @@ impl<D: Dim> World<D> {
 }
 
 /// Returns for each piece number whether the piece is below a size.
-fn is_below<D: Dim>(body: &Body<D>, size: PieceSize) -> Vec<bool> {
-    let (mesh, pieces) = (&body.truth.mesh, &body.truth.pieces);
+fn is_below<D: Dim>(body: &SoftBody<D>, size: PieceSize) -> Vec<bool> {
+    let (mesh, pieces) = (&body.topology.mesh, &body.topology.pieces);
     let mut found = vec![0.0; pieces.list.len()];
     if let PieceSize::Mass(_) = size {
         for (id, _) in mesh.nodes() {
@@ -225,7 +228,7 @@ fn is_below<D: Dim>(body: &Body<D>, size: PieceSize) -> Vec<bool> {
             found[pieces.of_element(id).index()] += mesh.voxels(element).count() as f64;
         }
     }
-    let width = f64::from(body.truth.grid.voxel_size());
+    let width = f64::from(body.topology.grid.voxel_size());
     let voxel = (0..D::N).fold(1.0, |volume, _| volume * width);
     let least = match size {
         PieceSize::Voxels(count) => count as f64,

@@ -2,12 +2,12 @@
 
 use crate::shape::Vector;
 
-/// Default tick length [s]; see [`Settings::tick`].
+/// Default tick length [s]; see [`WorldConfig::tick`].
 pub const TICK: f32 = 1.0 / 60.0;
 /// Minimum number of substeps in 1/60 s, unless the settings allow only fewer. It gives a force-feedback
 /// device 960 force updates a second.
 pub const USUAL_SUBSTEPS: u32 = 16;
-/// Smallest value of [`Settings::most_substeps`]. With 8 substeps a soft ball is squashed as much as with 16.
+/// Smallest value of [`WorldConfig::most_substeps`]. With 8 substeps a soft ball is squashed as much as with 16.
 pub const FEWEST_SUBSTEPS: u32 = 8;
 /// Shortest tick length [s], equal to the interval between two fracture rounds. Each tick has at least one
 /// round, so shorter ticks would mean more rounds per second.
@@ -24,15 +24,15 @@ pub(super) type BadSetting = (&'static str, &'static str);
 /// World settings.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Settings {
+pub struct WorldConfig {
     /// Gravity [m/s²], default `[0.0, -9.81, 0.0]`. The third component is ignored in 2D.
     pub gravity: Vector,
     /// Air drag: decay rate of all velocities [1/s], 0 to 10, default 0. Without gravity and with a drag of
     /// about 1, bodies float.
     pub drag: f32,
     /// Maximum number of substeps in 1/60 s, 8 to 1024, default 64; scaled in proportion for other tick
-    /// lengths. Bodies that require more are softened, see
-    /// [`Body::stiffness_scale`](crate::Body::stiffness_scale). Values below 16 make large soft bodies cheap.
+    /// lengths. SoftBodies that require more are softened, see
+    /// [`SoftBody::stiffness_scale`](crate::SoftBody::stiffness_scale). Values below 16 make large soft bodies cheap.
     pub most_substeps: u32,
     /// Tick length [s], 1/240 to 1/30, default 1/60. It sets how often targets, events and contact changes
     /// are exchanged with the program. Substeps, fracture and damping keep their rates per second; shorter
@@ -40,7 +40,7 @@ pub struct Settings {
     pub tick: f32,
 }
 
-impl Default for Settings {
+impl Default for WorldConfig {
     fn default() -> Self {
         Self {
             gravity: [0.0, -9.81, 0.0],
@@ -51,7 +51,7 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
+impl WorldConfig {
     /// Returns the number of occurrences per tick for a rate per second, at least 1.
     pub(super) fn in_tick(&self, per_second: f64) -> u32 {
         ((f64::from(self.tick) * per_second + 0.5) as u32).max(1)

@@ -3,8 +3,8 @@
 use super::{Refused, World};
 use crate::dim::Dim;
 use crate::event::Event;
-use crate::handle::{Gone, JointId};
-use crate::joint::{End, Joint, Joints};
+use crate::handle::{Gone, JointHandle};
+use crate::joint::{Joint, JointAnchor, Joints};
 use crate::shape::Vector;
 
 impl<D: Dim> World<D> {
@@ -13,7 +13,7 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Refused`] if a handle is stale or a parameter is out of range.
     #[inline(never)]
-    pub fn add_joint(&mut self, mut joint: Joint) -> Result<JointId, Refused> {
+    pub fn add_joint(&mut self, mut joint: Joint) -> Result<JointHandle, Refused> {
         let refused = |(field, expected)| Refused::Argument { field, expected };
         joint.check().map_err(refused)?;
         joint.hold(&self.bodies, &self.rigids)?;
@@ -26,7 +26,7 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Gone`] if the handle is stale.
     #[inline(never)]
-    pub fn remove_joint(&mut self, joint: JointId) -> Result<Joint, Gone> {
+    pub fn remove_joint(&mut self, joint: JointHandle) -> Result<Joint, Gone> {
         let joint = self.joints.remove(joint)?;
         self.wake_ends(&joint);
         Ok(joint)
@@ -43,12 +43,12 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Gone`] if the handle is stale.
     #[inline(never)]
-    pub fn joint_places(&self, joint: JointId) -> Result<Option<[Vector; 2]>, Gone> {
+    pub fn joint_anchor_positions(&self, joint: JointHandle) -> Result<Option<[Vector; 2]>, Gone> {
         Ok(self.joints.get(joint)?.places(&self.bodies, &self.rigids))
     }
 
     /// Removes broken joints, and reports an event for each.
-    pub(super) fn part_joints(&mut self, broken: Vec<JointId>) {
+    pub(super) fn part_joints(&mut self, broken: Vec<JointHandle>) {
         for joint in broken {
             // A joint can be in two lists of the same substep.
             if let Ok(parted) = self.joints.remove(joint) {
@@ -61,13 +61,13 @@ impl<D: Dim> World<D> {
     fn wake_ends(&mut self, joint: &Joint) {
         for end in &joint.ends {
             match *end {
-                End::Position(_) => {}
-                End::Rigid { rigid, .. } => {
+                JointAnchor::Position(_) => {}
+                JointAnchor::RigidBody { rigid, .. } => {
                     if self.rigids.get(rigid).is_ok_and(|rigid| rigid.is_asleep()) {
                         self.wake_rigids(&[rigid.slot()]);
                     }
                 }
-                End::Soft { body, .. } => {
+                JointAnchor::Soft { body, .. } => {
                     if self.bodies.get(body).is_ok() {
                         self.wake_body(body);
                     }

@@ -1,12 +1,12 @@
 //! Contact and sensor events of a tick.
 
 use super::World;
-use crate::body::Body;
+use crate::body::SoftBody;
 use crate::dim::Dim;
-use crate::event::{Event, Party, With};
-use crate::handle::{BodyId, RigidId};
+use crate::event::{Event, ObjectRef, With};
+use crate::handle::{RigidBodyHandle, SoftBodyHandle};
 use crate::ids::PieceId;
-use crate::rigid::{Drive, Rigid};
+use crate::rigid::{MotionType, RigidBody};
 use crate::shape::Vector;
 use crate::vector::{length, minus, scaled, three};
 use std::collections::{BTreeMap, BTreeSet};
@@ -97,10 +97,10 @@ impl<D: Dim> World<D> {
         let soft = self.soft_presses();
         let rigid = self.rigid_presses();
         let known = rigid.iter();
-        let known = known.map(|(&both, press)| (both.map(Party::Rigid), *press));
-        let mut presses: Vec<([Party; 2], Press)> = known.collect();
+        let known = known.map(|(&both, press)| (both.map(ObjectRef::RigidBody), *press));
+        let mut presses: Vec<([ObjectRef; 2], Press)> = known.collect();
         for ((body, piece, with), press) in soft {
-            self.events.push(Event::Touched {
+            self.events.push(Event::Pressed {
                 body,
                 piece,
                 with,
@@ -108,12 +108,12 @@ impl<D: Dim> World<D> {
                 normal: press.normal,
                 impulse: press.impulse,
             });
-            let (first, second) = (Party::Piece { body, piece }, with.into());
+            let (first, second) = (ObjectRef::Piece { body, piece }, with.into());
             // Ignores contacts within a piece: a folded piece always touches itself. Two pieces can press on
             // each other from either side of the pair, so the order is normalised.
             match (first, second) {
                 _ if first == second => {}
-                (_, Party::Piece { .. }) if second < first => {
+                (_, ObjectRef::Piece { .. }) if second < first => {
                     presses.push(([second, first], press.turned()));
                 }
                 _ => presses.push(([first, second], press)),
@@ -128,7 +128,7 @@ impl<D: Dim> World<D> {
             is_same
         });
         for ([rigid, with], press) in rigid {
-            self.events.push(Event::RigidTouched {
+            self.events.push(Event::RigidPressed {
                 rigid,
                 with,
                 at: press.at,
@@ -141,20 +141,20 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns the contacts of soft pieces, by piece and by the object that it presses on.
-    fn soft_presses(&self) -> Vec<((BodyId, PieceId, With), Press)> {
+    fn soft_presses(&self) -> Vec<((SoftBodyHandle, PieceId, With), Press)> {
         let mut presses = Presses::default();
         let pairs = self.nearby.nodes.list.iter();
         for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
             let id = self.rigids.id(pair.rigid);
             let rigid = &self.rigids[id];
-            let with = match rigid.drive {
-                Drive::Fixed => With::Obstacle(id),
-                Drive::Free { .. } => With::Free(id),
+            let with = match rigid.motion_type {
+                MotionType::Fixed => With::Obstacle(id),
+                MotionType::Dynamic { .. } => With::Free(id),
                 _ => With::Hand(id),
             };
             let id = self.bodies.id(pair.body);
             let body = &self.bodies[id];
-            let piece = body.truth.pieces.of_node(pair.node);
+            let piece = body.topology.pieces.of_node(pair.node);
             let press = presses.of((id, piece, with));
             press.add(pair.impulse.total, pair.impulse.speed, || {
                 let at = three(body.state.position[pair.node]);
@@ -178,7 +178,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns the contacts between rigid bodies, by handles.
-    fn rigid_presses(&self) -> BTreeMap<[RigidId; 2], Press> {
+    fn rigid_presses(&self) -> BTreeMap<[RigidBodyHandle; 2], Press> {
         let mut presses: BTreeMap<_, Press> = BTreeMap::new();
         for touch in &self.nearby.rigids.passed {
             let both = touch.both.map(|slot| self.rigids.id(slot));
@@ -190,10 +190,10 @@ impl<D: Dim> World<D> {
 
     /// Compares the contact pairs, in ascending order, with those of the last tick, and reports beginnings
     /// and ends. Pairs at rest still touch.
-    fn note_changes(&mut self, presses: &[([Party; 2], Press)]) {
+    fn note_changes(&mut self, presses: &[([ObjectRef; 2], Press)]) {
         let mut before = std::mem::take(&mut self.touching).into_iter().peekable();
         let (mut touching, mut ended) = (Vec::with_capacity(presses.len()), Vec::new());
-        let mut leave = |both: [Party; 2], touching: &mut Vec<_>| match self.rest(both) {
+        let mut leave = |both: [ObjectRef; 2], touching: &mut Vec<_>| match self.rest(both) {
             true => touching.push(both),
             false => ended.push(Event::ContactEnded { both }),
         };
@@ -204,7 +204,7 @@ impl<D: Dim> World<D> {
             }
             touching.push(*both);
             if before.next_if_eq(both).is_none() {
-                began.push(Event::ContactBegan {
+                began.push(Event::ContactStarted {
                     both: *both,
                     at: press.at,
                     normal: press.normal,
@@ -218,15 +218,15 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns whether both participants exist and neither moves.
-    fn rest(&self, both: [Party; 2]) -> bool {
+    fn rest(&self, both: [ObjectRef; 2]) -> bool {
         both.into_iter().all(|party| self.rests(party))
     }
 
-    fn rests(&self, party: Party) -> bool {
+    fn rests(&self, party: ObjectRef) -> bool {
         match party {
-            Party::Rigid(id) => self.rigids.get(id).is_ok_and(|rigid| !rigid.moves()),
-            Party::Piece { body, piece } => self.bodies.get(body).is_ok_and(|body| {
-                let piece = body.truth.pieces.list.get(piece.index());
+            ObjectRef::RigidBody(id) => self.rigids.get(id).is_ok_and(|rigid| !rigid.moves()),
+            ObjectRef::Piece { body, piece } => self.bodies.get(body).is_ok_and(|body| {
+                let piece = body.topology.pieces.list.get(piece.index());
                 piece.is_some_and(|piece| piece.asleep && !piece.removed)
             }),
         }
@@ -235,39 +235,39 @@ impl<D: Dim> World<D> {
     /// Compares the contents of the sensors with those of the last tick, and reports entries and exits.
     fn note_sensors(&mut self) {
         let sensors = self.rigids.entries().filter(|(_, rigid)| rigid.is_sensor);
-        let mut inside: BTreeSet<(RigidId, Party)> = BTreeSet::new();
+        let mut inside: BTreeSet<(RigidBodyHandle, ObjectRef)> = BTreeSet::new();
         for (sensor, rigid) in sensors {
             inside.extend(self.within(sensor, rigid).map(|party| (sensor, party)));
         }
-        let before: BTreeSet<(RigidId, Party)> =
+        let before: BTreeSet<(RigidBodyHandle, ObjectRef)> =
             std::mem::take(&mut self.inside).into_iter().collect();
         let entered = inside.difference(&before);
         let left = before.difference(&inside);
         self.events
-            .extend(entered.map(|&(sensor, who)| Event::Entered { sensor, who }));
+            .extend(entered.map(|&(sensor, who)| Event::SensorEntered { sensor, who }));
         self.events
-            .extend(left.map(|&(sensor, who)| Event::Left { sensor, who }));
+            .extend(left.map(|&(sensor, who)| Event::SensorExited { sensor, who }));
         self.inside = inside.into_iter().collect();
     }
 
     /// Returns the participants inside a sensor, possibly repeated.
-    fn within(&self, own: RigidId, sensor: &Rigid) -> impl Iterator<Item = Party> {
+    fn within(&self, own: RigidBodyHandle, sensor: &RigidBody) -> impl Iterator<Item = ObjectRef> {
         let shape = sensor.shape();
         let bodies = self.bodies.entries();
         let bodies = bodies.filter(|(_, body)| sensor.layers.meet(body.state.layers));
-        let pieces = bodies.flat_map(move |(id, body): (BodyId, &Body<D>)| {
-            let nodes = body.truth.mesh.nodes().map(|(node, _)| node);
+        let pieces = bodies.flat_map(move |(id, body): (SoftBodyHandle, &SoftBody<D>)| {
+            let nodes = body.topology.mesh.nodes().map(|(node, _)| node);
             let inside =
                 nodes.filter(|&node| shape.distance(three(body.state.position[node])).0 < 0.0);
-            inside.map(move |node| Party::Piece {
+            inside.map(move |node| ObjectRef::Piece {
                 body: id,
-                piece: body.truth.pieces.of_node(node),
+                piece: body.topology.pieces.of_node(node),
             })
         });
         let rigids = self.rigids.entries().filter(move |&(id, rigid)| {
-            let counts = id != own && rigid.drive != Drive::Fixed && !rigid.is_sensor;
+            let counts = id != own && rigid.motion_type != MotionType::Fixed && !rigid.is_sensor;
             counts && sensor.layers.meet(rigid.layers) && rigid.shape().gap(shape).0 < 0.0
         });
-        pieces.chain(rigids.map(|(id, _)| Party::Rigid(id)))
+        pieces.chain(rigids.map(|(id, _)| ObjectRef::RigidBody(id)))
     }
 }

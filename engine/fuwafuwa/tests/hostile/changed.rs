@@ -7,9 +7,11 @@ fn a_body_in_the_place_of_another_may_have_fewer_nodes_and_pieces() {
     let mut world = world::<Dim2>();
     let mut dust = ball(16);
     dust.crumble().unwrap();
-    world.add_body(dust);
+    world.add_soft_body(dust);
     step(&mut world, 20);
-    *world.body_mut(world.nth_body(0).unwrap()).unwrap() = ball(8);
+    *world
+        .soft_body_mut(world.nth_soft_body(0).unwrap())
+        .unwrap() = ball(8);
     step(&mut world, 5);
     assert_finite(&world);
 }
@@ -22,10 +24,10 @@ fn sleeper() -> World<Dim2> {
         ..Material::default()
     };
     let grid = VoxelGrid::ball(16, 1.0).unwrap();
-    world.add_body(Body::new(grid, &[damped]).unwrap());
+    world.add_soft_body(SoftBody::new(grid, &[damped]).unwrap());
     for _ in 0..900 {
         world.step();
-        if world.bodies().first().unwrap().piece_views()[0].asleep {
+        if world.soft_bodies().first().unwrap().piece_views()[0].asleep {
             return world;
         }
     }
@@ -35,24 +37,26 @@ fn sleeper() -> World<Dim2> {
 #[test]
 fn a_sleeper_changed_from_outside_wakes() {
     let mut thrown = sleeper();
-    let body = thrown.body_mut(thrown.nth_body(0).unwrap()).unwrap();
-    *body = body.clone().thrown([0.0, 5.0, 0.0]);
-    let id = thrown.nth_body(0).unwrap();
+    let body = thrown
+        .soft_body_mut(thrown.nth_soft_body(0).unwrap())
+        .unwrap();
+    *body = body.clone().with_velocity([0.0, 5.0, 0.0]);
+    let id = thrown.nth_soft_body(0).unwrap();
     let woke =
-        |event: &Event| matches!(event, Event::Woke { body, piece: PieceId(0) } if *body == id);
+        |event: &Event| matches!(event, Event::WokeUp { body, piece: PieceId(0) } if *body == id);
     assert!(thrown.events().iter().any(woke));
     step(&mut thrown, 10);
-    assert!(thrown.bodies().first().unwrap().piece_views()[0].low[1] > 0.3);
+    assert!(thrown.soft_bodies().first().unwrap().piece_views()[0].low[1] > 0.3);
 
     let mut crumbled = sleeper();
     crumbled
-        .body_mut(crumbled.nth_body(0).unwrap())
+        .soft_body_mut(crumbled.nth_soft_body(0).unwrap())
         .unwrap()
         .crumble()
         .unwrap();
-    let before = crumbled.bodies().first().unwrap().piece_views();
+    let before = crumbled.soft_bodies().first().unwrap().piece_views();
     step(&mut crumbled, 10);
-    let after = crumbled.bodies().first().unwrap().piece_views();
+    let after = crumbled.soft_bodies().first().unwrap().piece_views();
     let frozen = before
         .iter()
         .zip(&after)
@@ -66,11 +70,11 @@ fn a_sleeper_changed_from_outside_wakes() {
 #[test]
 fn what_leant_on_what_is_removed_falls() {
     let mut world = sleeper();
-    let (floor, _) = world.rigids().entries().next().unwrap();
-    world.remove_rigid(floor).unwrap();
-    assert_eq!(world.obstacles().count(), 0);
+    let (floor, _) = world.rigid_bodies().entries().next().unwrap();
+    world.remove_rigid_body(floor).unwrap();
+    assert_eq!(world.fixed_rigid_bodies().count(), 0);
     step(&mut world, 30);
-    let view = world.bodies().first().unwrap().piece_views()[0];
+    let view = world.soft_bodies().first().unwrap().piece_views()[0];
     assert!(!view.asleep && view.high[1] < 0.5, "{view:?}");
 }
 
@@ -78,12 +82,12 @@ fn what_leant_on_what_is_removed_falls() {
 fn a_sleeper_that_is_put_back_elsewhere_falls() {
     let mut world = sleeper();
     let body = world
-        .remove_body(world.nth_body(0).unwrap())
+        .remove_soft_body(world.nth_soft_body(0).unwrap())
         .unwrap()
-        .moved([0.0, 3.0, 0.0]);
-    world.add_body(body);
+        .translated([0.0, 3.0, 0.0]);
+    world.add_soft_body(body);
     step(&mut world, 30);
-    let view = world.bodies().first().unwrap().piece_views()[0];
+    let view = world.soft_bodies().first().unwrap().piece_views()[0];
     assert!(!view.asleep && view.low[1] < 2.5, "{view:?}");
 }
 
@@ -97,21 +101,27 @@ fn a_body_is_as_stiff_as_the_world_that_it_is_in_bears() {
         ..Material::default()
     };
     let world_of = |most_substeps| {
-        let settings = Settings {
+        let settings = WorldConfig {
             most_substeps,
-            ..Settings::default()
+            ..WorldConfig::default()
         };
         World::<Dim2>::new(settings).unwrap()
     };
     let (mut poor, mut rich) = (world_of(16), world_of(1024));
-    poor.add_body(Body::new(VoxelGrid::ball(16, 1.0).unwrap(), &[stiff]).unwrap());
-    let stiffness_scale = poor.bodies().first().unwrap().stiffness_scale();
+    poor.add_soft_body(SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), &[stiff]).unwrap());
+    let stiffness_scale = poor.soft_bodies().first().unwrap().stiffness_scale();
     assert!(stiffness_scale < 0.2);
-    rich.add_body(poor.remove_body(poor.nth_body(0).unwrap()).unwrap());
-    assert_eq!(rich.bodies().first().unwrap().stiffness_scale(), 1.0);
-    poor.add_body(rich.remove_body(rich.nth_body(0).unwrap()).unwrap());
+    rich.add_soft_body(
+        poor.remove_soft_body(poor.nth_soft_body(0).unwrap())
+            .unwrap(),
+    );
+    assert_eq!(rich.soft_bodies().first().unwrap().stiffness_scale(), 1.0);
+    poor.add_soft_body(
+        rich.remove_soft_body(rich.nth_soft_body(0).unwrap())
+            .unwrap(),
+    );
     assert_eq!(
-        poor.bodies().first().unwrap().stiffness_scale(),
+        poor.soft_bodies().first().unwrap().stiffness_scale(),
         stiffness_scale
     );
 }
@@ -122,24 +132,26 @@ fn things_leave_and_the_rest_stay_what_they_are() {
     let (mut bodies, mut hands) = (Vec::new(), Vec::new());
     for place in 0..3u8 {
         let x = 2.0 * f32::from(place);
-        let body = ball(8 + 4 * usize::from(place)).moved([x, 0.0, 0.0]);
-        bodies.push(world.add_body(body));
-        let hand = Rigid::hand([x + 0.5, 1.1, 0.0], 0.1);
-        let hand = world.add_rigid(hand).unwrap();
-        world.set_goal(hand, [x + 0.5, 0.8, 0.0]).unwrap();
+        let body = ball(8 + 4 * usize::from(place)).translated([x, 0.0, 0.0]);
+        bodies.push(world.add_soft_body(body));
+        let hand = RigidBody::coupled_ball([x + 0.5, 1.1, 0.0], 0.1);
+        let hand = world.add_rigid_body(hand).unwrap();
+        world
+            .set_target_position(hand, [x + 0.5, 0.8, 0.0])
+            .unwrap();
         hands.push(hand);
     }
     step(&mut world, 10);
-    let removed = world.remove_body(bodies[1]).unwrap();
+    let removed = world.remove_soft_body(bodies[1]).unwrap();
     assert_eq!(removed.grid().size()[0], 12);
-    let removed = world.remove_rigid(hands[0]).unwrap();
+    let removed = world.remove_rigid_body(hands[0]).unwrap();
     assert!(removed.position()[0] < 1.0);
     step(&mut world, 30);
     assert_finite(&world);
-    let sizes = world.bodies().iter().map(|body| body.grid().size()[0]);
+    let sizes = world.soft_bodies().iter().map(|body| body.grid().size()[0]);
     assert_eq!(sizes.collect::<Vec<_>>(), [8, 16]);
     let with = |event: &Event| match *event {
-        Event::Touched { body, with, .. } => Some((body, with)),
+        Event::Pressed { body, with, .. } => Some((body, with)),
         _ => None,
     };
     let touched: Vec<_> = world.events().iter().filter_map(with).collect();
@@ -152,27 +164,34 @@ fn things_leave_and_the_rest_stay_what_they_are() {
 #[test]
 fn a_stale_handle_is_refused() {
     let mut world = world::<Dim2>();
-    let ball = world.add_body(ball(8));
-    let hand = world.add_rigid(Rigid::hand([3.0, 1.0, 0.0], 0.1)).unwrap();
-    let floor = world.rigids().ids().next().unwrap();
+    let ball = world.add_soft_body(ball(8));
+    let hand = world
+        .add_rigid_body(RigidBody::coupled_ball([3.0, 1.0, 0.0], 0.1))
+        .unwrap();
+    let floor = world.rigid_bodies().ids().next().unwrap();
     assert!(
-        world.set_goal(floor, [0.0; 3]).is_err(),
+        world.set_target_position(floor, [0.0; 3]).is_err(),
         "it follows no goal"
     );
-    let body = world.remove_body(ball).unwrap();
-    world.remove_rigid(hand).unwrap();
-    let heir = world.add_body(body);
-    world.add_rigid(Rigid::hand([3.0, 1.0, 0.0], 0.1)).unwrap();
-    let gone = world.bodies().get(ball).unwrap_err().to_string();
+    let body = world.remove_soft_body(ball).unwrap();
+    world.remove_rigid_body(hand).unwrap();
+    let heir = world.add_soft_body(body);
+    world
+        .add_rigid_body(RigidBody::coupled_ball([3.0, 1.0, 0.0], 0.1))
+        .unwrap();
+    let gone = world.soft_bodies().get(ball).unwrap_err().to_string();
     assert!(gone.contains("no such body"), "{gone}");
-    assert!(world.body_mut(ball).is_err() && world.remove_body(ball).is_err());
+    assert!(world.soft_body_mut(ball).is_err() && world.remove_soft_body(ball).is_err());
     assert!(
         world
             .cut(ball, &Blade::segment([0.0; 2], [1.0; 2]))
             .is_err()
     );
-    assert!(world.set_goal(hand, [0.0; 3]).is_err() && world.remove_rigid(hand).is_err());
-    assert!(world.bodies().get(heir).is_ok());
+    assert!(
+        world.set_target_position(hand, [0.0; 3]).is_err()
+            && world.remove_rigid_body(hand).is_err()
+    );
+    assert!(world.soft_bodies().get(heir).is_ok());
     step(&mut world, 5);
 }
 
@@ -187,12 +206,13 @@ fn who_did_not_lean_on_what_is_removed_sleeps_on() {
     };
     let cube = |at: [f32; 2]| {
         let grid = VoxelGrid::cube(8, 0.1).unwrap();
-        let body = Body::new(grid, &[damped]).unwrap();
-        body.moved([at[0], at[1], 0.0])
+        let body = SoftBody::new(grid, &[damped]).unwrap();
+        body.translated([at[0], at[1], 0.0])
     };
     let places = [[0.0, 0.0], [0.0, 0.101], [0.0, 0.202], [2.0, 0.0]];
-    let ids = places.map(|at| world.add_body(cube(at)));
-    let sleeps = |world: &World<Dim2>, n: usize| world.bodies()[ids[n]].piece_views()[0].asleep;
+    let ids = places.map(|at| world.add_soft_body(cube(at)));
+    let sleeps =
+        |world: &World<Dim2>, n: usize| world.soft_bodies()[ids[n]].piece_views()[0].asleep;
     for _ in 0..1200 {
         world.step();
         if (0..4).all(|n| sleeps(&world, n)) {
@@ -200,10 +220,10 @@ fn who_did_not_lean_on_what_is_removed_sleeps_on() {
         }
     }
     assert!((0..4).all(|n| sleeps(&world, n)), "they come to rest");
-    world.remove_body(ids[0]).unwrap();
+    world.remove_soft_body(ids[0]).unwrap();
     assert!(!sleeps(&world, 1) && !sleeps(&world, 2) && sleeps(&world, 3));
     step(&mut world, 60);
-    let low = |n: usize| world.bodies()[ids[n]].piece_views()[0].low[1];
+    let low = |n: usize| world.soft_bodies()[ids[n]].piece_views()[0].low[1];
     assert!(low(1) < 0.01 && low(2) < 0.11, "they fell");
     assert!(sleeps(&world, 3));
 }
@@ -222,28 +242,30 @@ fn a_hand_of_another_shape_pushes_and_is_stopped() {
         },
     ] {
         let mut world = world::<Dim2>();
-        world.add_body(ball(12));
-        let plate = Rigid::driven(form, [0.5, 1.2, 0.0], Drive::default());
-        let plate = world.add_rigid(plate).unwrap();
+        world.add_soft_body(ball(12));
+        let plate = RigidBody::new(form, [0.5, 1.2, 0.0], MotionType::default());
+        let plate = world.add_rigid_body(plate).unwrap();
         for tick in 0..60u8 {
             let height = 1.2 - 0.015 * f32::from(tick);
-            world.set_goal(plate, [0.5, height, 0.0]).unwrap();
+            world
+                .set_target_position(plate, [0.5, height, 0.0])
+                .unwrap();
             world.step();
         }
-        let felt = world.rigids()[plate].reactions().last().unwrap();
+        let felt = world.rigid_bodies()[plate].reactions().last().unwrap();
         assert!(felt.contact[1] > 5.0, "{felt:?}");
-        let high = world.bodies().first().unwrap().piece_views()[0].high[1];
+        let high = world.soft_bodies().first().unwrap().piece_views()[0].high[1];
         assert!(high < 0.9, "{form:?}: the ball is {high} m high");
         // Beside the ball it comes to lie on the floor.
         for _ in 0..60 {
-            world.set_goal(plate, [3.0, 0.4, 0.0]).unwrap();
+            world.set_target_position(plate, [3.0, 0.4, 0.0]).unwrap();
             world.step();
         }
         for _ in 0..60 {
-            world.set_goal(plate, [3.0, -0.4, 0.0]).unwrap();
+            world.set_target_position(plate, [3.0, -0.4, 0.0]).unwrap();
             world.step();
         }
-        let low = world.rigids()[plate].position()[1] - 0.1;
+        let low = world.rigid_bodies()[plate].position()[1] - 0.1;
         assert!(low.abs() < 0.01, "{form:?}: {low} m above the floor");
         assert_finite(&world);
     }
@@ -251,17 +273,20 @@ fn a_hand_of_another_shape_pushes_and_is_stopped() {
 
 #[test]
 fn a_held_node_that_is_let_go_falls() {
-    let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+    let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
     let mut body = ball::<Dim2>(8);
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
-    nodes.iter().for_each(|&id| body.hold(id));
-    world.add_body(body);
-    let height = |world: &World<Dim2>| world.bodies().first().unwrap().piece_views()[0].centre[1];
+    nodes.iter().for_each(|&id| body.fix_node(id));
+    world.add_soft_body(body);
+    let height =
+        |world: &World<Dim2>| world.soft_bodies().first().unwrap().piece_views()[0].centre[1];
     let start = height(&world);
     step(&mut world, 120);
     assert_eq!(height(&world), start);
-    let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
-    nodes.iter().for_each(|&id| body.let_go(id));
+    let body = world
+        .soft_body_mut(world.nth_soft_body(0).unwrap())
+        .unwrap();
+    nodes.iter().for_each(|&id| body.free_node(id));
     step(&mut world, 30);
     assert!(height(&world) < start - 1.0);
 }
@@ -269,11 +294,13 @@ fn a_held_node_that_is_let_go_falls() {
 #[test]
 fn another_body_in_the_place_of_one_is_taken_for_what_it_is() {
     let mut world = world::<Dim2>();
-    world.add_body(bar([2, 7]));
+    world.add_soft_body(bar([2, 7]));
     world.step();
-    *world.body_mut(world.nth_body(0).unwrap()).unwrap() = bar([2, 8]).thrown([0.0, -4.0, 0.0]);
+    *world
+        .soft_body_mut(world.nth_soft_body(0).unwrap())
+        .unwrap() = bar([2, 8]).with_velocity([0.0, -4.0, 0.0]);
     let mut touches = 0;
-    let id = world.nth_body(0).unwrap();
+    let id = world.nth_soft_body(0).unwrap();
     for _ in 0..30 {
         world.step();
         let is_own = |event: &&Event| {
@@ -281,7 +308,7 @@ fn another_body_in_the_place_of_one_is_taken_for_what_it_is() {
                 body: id,
                 piece: PieceId(0),
             };
-            matches!(event, Event::Touched { with, .. } if *with == own)
+            matches!(event, Event::Pressed { with, .. } if *with == own)
         };
         touches += world.events().iter().filter(is_own).count();
     }
@@ -296,7 +323,7 @@ fn small_voxels_still_meet_when_large_ones_came() {
     let mut world = about_to_meet();
     world.step();
     let grid = VoxelGrid::from_fn([2, 2, 1], 1.0, |_| 1).unwrap();
-    let large = Body::new(grid, &[Material::default()]).unwrap();
-    world.add_body(large.moved([0.0, -9.0, 0.0]));
+    let large = SoftBody::new(grid, &[Material::default()]).unwrap();
+    world.add_soft_body(large.translated([0.0, -9.0, 0.0]));
     assert_they_meet(world);
 }

@@ -5,8 +5,8 @@ mod changed;
 mod quarantine;
 
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Dim3, Drive, Event, Grading, Law, Material, PieceId, Rigid, Settings,
-    Shape, VoxelGrid, With, World,
+    Blade, Dim, Dim2, Dim3, Event, Grading, Law, Material, MotionType, PieceId, RigidBody, Shape,
+    SoftBody, VoxelGrid, With, World, WorldConfig,
 };
 
 const FLOOR: Shape = Shape::HalfSpace {
@@ -15,13 +15,13 @@ const FLOOR: Shape = Shape::HalfSpace {
 };
 
 fn world<D: Dim>() -> World<D> {
-    let mut world = World::new(Settings::default()).unwrap();
-    world.add_rigid(Rigid::fixed(FLOOR, 0.5)).unwrap();
+    let mut world = World::new(WorldConfig::default()).unwrap();
+    world.add_rigid_body(RigidBody::fixed(FLOOR, 0.5)).unwrap();
     world
 }
 
-fn ball<D: Dim>(n: usize) -> Body<D> {
-    Body::new(VoxelGrid::ball(n, 1.0).unwrap(), &[Material::default()]).unwrap()
+fn ball<D: Dim>(n: usize) -> SoftBody<D> {
+    SoftBody::new(VoxelGrid::ball(n, 1.0).unwrap(), &[Material::default()]).unwrap()
 }
 
 fn step<D: Dim>(world: &mut World<D>, ticks: usize) {
@@ -31,8 +31,10 @@ fn step<D: Dim>(world: &mut World<D>, ticks: usize) {
 }
 
 fn assert_finite<D: Dim>(world: &World<D>) {
-    for body in world.bodies() {
-        body.mesh().validate(body.grid(), body.sharing()).unwrap();
+    for body in world.soft_bodies() {
+        body.mesh()
+            .validate(body.grid(), body.connectivity())
+            .unwrap();
         for (id, _) in body.mesh().nodes() {
             let (at, velocity, mass) = body.node_state(id);
             let mut all = at.iter().chain(&velocity).chain([&mass]);
@@ -40,36 +42,36 @@ fn assert_finite<D: Dim>(world: &World<D>) {
             assert!(D::N == 3 || (at[2] == 0.0 && velocity[2] == 0.0), "{at:?}");
         }
     }
-    for (_, hand) in world.hands() {
+    for (_, hand) in world.target_followers() {
         let (at, velocity) = (hand.position(), hand.velocity());
         let mut all = at.iter().chain(&velocity);
         assert!(all.all(|k| k.is_finite()), "{at:?} {velocity:?}");
     }
 }
 
-fn bar(size: [usize; 2]) -> Body<Dim2> {
+fn bar(size: [usize; 2]) -> SoftBody<Dim2> {
     let grid = VoxelGrid::from_fn([size[0], size[1], 1], 0.03, |_| 1).unwrap();
-    Body::new(grid, &[Material::default()]).unwrap()
+    SoftBody::new(grid, &[Material::default()]).unwrap()
 }
 
 /// Two bars that fly at each other, with nothing else.
 fn about_to_meet() -> World<Dim2> {
-    let settings = Settings {
+    let settings = WorldConfig {
         gravity: [0.0; 3],
-        ..Settings::default()
+        ..WorldConfig::default()
     };
     let mut world = World::new(settings).unwrap();
-    world.add_body(bar([6, 6]).thrown([1.0, 0.0, 0.0]));
-    let other = bar([6, 6]).moved([0.4, 0.0, 0.0]);
-    world.add_body(other.thrown([-1.0, 0.0, 0.0]));
+    world.add_soft_body(bar([6, 6]).with_velocity([1.0, 0.0, 0.0]));
+    let other = bar([6, 6]).translated([0.4, 0.0, 0.0]);
+    world.add_soft_body(other.with_velocity([-1.0, 0.0, 0.0]));
     world
 }
 
 fn assert_they_meet(mut world: World<Dim2>) {
     step(&mut world, 40);
     let [left, right] = [0, 1].map(|n| {
-        let body = world.nth_body(n).unwrap();
-        world.bodies()[body].piece_views()[0].centre[0]
+        let body = world.nth_soft_body(n).unwrap();
+        world.soft_bodies()[body].piece_views()[0].centre[0]
     });
     assert!(
         left < right,
@@ -80,30 +82,34 @@ fn assert_they_meet(mut world: World<Dim2>) {
 /// Grading::Coarse is for counting: its surface elements cannot be split.
 fn check_coarse<D: Dim>(blade: Blade) {
     let grid = VoxelGrid::<D>::ball(12, 1.0).unwrap();
-    let coarse = Body::with(
+    let coarse = SoftBody::with_options(
         grid,
         &[Material::default()],
-        Law::PatchExact,
+        Law::CorotationalVem,
         Grading::Coarse,
     );
     let mut world = world::<D>();
-    world.add_body(coarse.unwrap());
+    world.add_soft_body(coarse.unwrap());
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = Rigid::hand([0.5, 1.2, depth], 0.1).with_drive(Drive::Kinematic);
-    world.add_rigid(hand).unwrap();
+    let hand =
+        RigidBody::coupled_ball([0.5, 1.2, depth], 0.1).with_motion_type(MotionType::Kinematic);
+    world.add_rigid_body(hand).unwrap();
     for tick in 0..60u16 {
         world
-            .set_goal(
-                world.nth_hand(0).unwrap(),
+            .set_target_position(
+                world.nth_target_follower(0).unwrap(),
                 [0.5, 1.2 - 0.02 * f32::from(tick), depth],
             )
             .unwrap();
-        assert_eq!(world.step().released, 0);
+        assert_eq!(world.step().nodes_split, 0);
     }
-    assert_eq!(world.cut(world.nth_body(0).unwrap(), &blade).unwrap(), 0);
+    assert_eq!(
+        world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap(),
+        0
+    );
     assert!(
         world
-            .body_mut(world.nth_body(0).unwrap())
+            .soft_body_mut(world.nth_soft_body(0).unwrap())
             .unwrap()
             .crumble()
             .unwrap()
@@ -126,18 +132,18 @@ fn a_coarse_body_neither_tears_nor_is_cut() {
 #[test]
 fn hands_without_bounds_are_refused() {
     let mut world = world::<Dim2>();
-    let usual = || Rigid::hand([0.0, 3.0, 0.0], 0.1);
-    let Drive::Coupled {
+    let usual = || RigidBody::coupled_ball([0.0, 3.0, 0.0], 0.1);
+    let MotionType::Coupled {
         mass,
         stiffness,
         damping,
         limit,
-    } = Drive::default()
+    } = MotionType::default()
     else {
         panic!("the usual hand is coupled");
     };
     let drive = |mass, stiffness, damping, limit| {
-        usual().with_drive(Drive::Coupled {
+        usual().with_motion_type(MotionType::Coupled {
             mass,
             stiffness,
             damping,
@@ -148,8 +154,8 @@ fn hands_without_bounds_are_refused() {
     let mut slippery = usual();
     slippery.friction = infinite;
     let bad = [
-        (Rigid::hand([0.0, 1e30, 0.0], 0.1), "position"),
-        (Rigid::hand([0.0; 3], infinite), "radius"),
+        (RigidBody::coupled_ball([0.0, 1e30, 0.0], 0.1), "position"),
+        (RigidBody::coupled_ball([0.0; 3], infinite), "radius"),
         (slippery, "friction"),
         (drive(infinite, stiffness, damping, limit), "mass"),
         (drive(1e-30, stiffness, damping, limit), "mass"),
@@ -158,20 +164,24 @@ fn hands_without_bounds_are_refused() {
         (drive(mass, stiffness, damping, f32::NAN), "limit"),
     ];
     for (hand, field) in bad {
-        let message = world.add_rigid(hand).unwrap_err().to_string();
+        let message = world.add_rigid_body(hand).unwrap_err().to_string();
         assert!(message.contains(field), "{message}");
     }
-    assert!(world.add_rigid(Rigid::fixed(FLOOR, infinite)).is_err());
+    assert!(
+        world
+            .add_rigid_body(RigidBody::fixed(FLOOR, infinite))
+            .is_err()
+    );
     world
-        .add_rigid(drive(mass, stiffness, damping, infinite))
+        .add_rigid_body(drive(mass, stiffness, damping, infinite))
         .unwrap();
     world
-        .add_rigid(usual().with_drive(Drive::Kinematic))
+        .add_rigid_body(usual().with_motion_type(MotionType::Kinematic))
         .unwrap();
     for hand in 0..2 {
-        let hand = world.nth_hand(hand).unwrap();
-        assert!(world.set_goal(hand, [1e38, 0.0, 0.0]).is_err());
-        assert!(world.set_goal(hand, [1e6, -1e6, 0.0]).is_ok());
+        let hand = world.nth_target_follower(hand).unwrap();
+        assert!(world.set_target_position(hand, [1e38, 0.0, 0.0]).is_err());
+        assert!(world.set_target_position(hand, [1e6, -1e6, 0.0]).is_ok());
     }
     world.step();
     assert_finite(&world);
@@ -193,20 +203,20 @@ fn what_stands_off_the_plane_pushes_nothing_out_of_it() {
         },
     ];
     for shape in shapes {
-        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
-        world.add_rigid(Rigid::fixed(shape, 0.5)).unwrap();
-        world.add_body(ball(12).moved([0.0, 0.02, 0.0]));
-        let hand = Rigid::hand([0.5, 0.9, 0.05], 0.1);
-        world.add_rigid(hand).unwrap();
+        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
+        world.add_rigid_body(RigidBody::fixed(shape, 0.5)).unwrap();
+        world.add_soft_body(ball(12).translated([0.0, 0.02, 0.0]));
+        let hand = RigidBody::coupled_ball([0.5, 0.9, 0.05], 0.1);
+        world.add_rigid_body(hand).unwrap();
         step(&mut world, 30);
         assert_finite(&world);
-        let low = world.bodies().first().unwrap().piece_views()[0].low[1];
+        let low = world.soft_bodies().first().unwrap().piece_views()[0].low[1];
         assert!(low > -0.03, "{shape:?}: {low}");
     }
     let edge_on = Shape::half_space([0.0, 0.0, 1.0], [0.0; 3]);
     assert!(
         world::<Dim2>()
-            .add_rigid(Rigid::fixed(edge_on, 0.5))
+            .add_rigid_body(RigidBody::fixed(edge_on, 0.5))
             .is_err()
     );
     let body = ball::<Dim2>(12);
@@ -230,15 +240,16 @@ fn a_material_that_no_voxel_has_changes_nothing() {
     };
     let hash_with = |materials: &[Material]| {
         let mut world = world::<Dim2>();
-        world.add_body(Body::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap());
-        assert_eq!(world.bodies().first().unwrap().stiffness_scale(), 1.0);
-        let hand = Rigid::hand([0.5, 1.1, 0.0], 0.1).with_drive(Drive::Kinematic);
-        let hand = world.add_rigid(hand).unwrap();
+        world.add_soft_body(SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap());
+        assert_eq!(world.soft_bodies().first().unwrap().stiffness_scale(), 1.0);
+        let hand =
+            RigidBody::coupled_ball([0.5, 1.1, 0.0], 0.1).with_motion_type(MotionType::Kinematic);
+        let hand = world.add_rigid_body(hand).unwrap();
         let mut released = 0;
         for tick in 0..40u8 {
             let goal = [0.5, 1.1 - 0.03 * f32::from(tick), 0.0];
-            world.set_goal(hand, goal).unwrap();
-            released += world.step().released;
+            world.set_target_position(hand, goal).unwrap();
+            released += world.step().nodes_split;
         }
         assert!(released > 10, "it does not tear");
         world.hash()
@@ -251,16 +262,16 @@ fn a_material_that_no_voxel_has_changes_nothing() {
 #[test]
 fn a_cut_is_told_where_it_was() {
     let mut world = world::<Dim2>();
-    world.add_body(ball(16).moved([3.0, 0.0, 0.0]));
+    world.add_soft_body(ball(16).translated([3.0, 0.0, 0.0]));
     let count = world
         .cut(
-            world.nth_body(0).unwrap(),
+            world.nth_soft_body(0).unwrap(),
             &Blade::segment([3.5, -0.1], [3.5, 1.1]),
         )
         .unwrap();
     let mut places = 0;
     for event in world.events() {
-        if let Event::Released { at, energy, .. } = event {
+        if let Event::NodeSplit { at, energy, .. } = event {
             assert!(
                 (at[0] - 3.5).abs() < 0.07 && (0.0..=1.0).contains(&at[1]),
                 "{at:?}"
@@ -270,6 +281,6 @@ fn a_cut_is_told_where_it_was() {
         }
     }
     assert_eq!(places, count);
-    let parted = |event: &&Event| matches!(event, Event::Parted { .. });
+    let parted = |event: &&Event| matches!(event, Event::PieceDetached { .. });
     assert_eq!(world.events().iter().filter(parted).count(), 1);
 }

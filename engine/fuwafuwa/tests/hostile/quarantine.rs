@@ -7,15 +7,19 @@ use super::*;
 fn a_body_that_is_no_place_is_quarantined() {
     for nowhere in [f32::NAN, f32::INFINITY] {
         let mut world = world::<Dim2>();
-        world.add_body(ball(12).moved([nowhere, 0.0, 0.0]));
-        world.add_body(ball(12).moved([3.0, 0.0, 0.0]).thrown([0.0, nowhere, 0.0]));
+        world.add_soft_body(ball(12).translated([nowhere, 0.0, 0.0]));
+        world.add_soft_body(
+            ball(12)
+                .translated([3.0, 0.0, 0.0])
+                .with_velocity([0.0, nowhere, 0.0]),
+        );
         let report = world.step();
         assert_eq!(report.quarantined, 2);
         assert_finite(&world);
         step(&mut world, 5);
         assert_finite(&world);
         let centres = world
-            .bodies()
+            .soft_bodies()
             .iter()
             .map(|body| body.piece_views()[0].centre);
         let expected = [[0.5, 0.5, 0.0], [3.5, 0.5, 0.0]];
@@ -31,25 +35,28 @@ fn a_body_that_is_no_place_is_quarantined() {
 #[test]
 fn a_piece_that_tears_in_its_last_tick_is_not_stretched() {
     let mut world = world::<Dim2>();
-    world.add_body(ball(24).moved([5.0, 0.0, 0.0]));
-    let hand = Rigid::hand([5.5, 1.1, 0.0], 0.08).with_drive(Drive::Kinematic);
-    world.add_rigid(hand).unwrap();
+    world.add_soft_body(ball(24).translated([5.0, 0.0, 0.0]));
+    let hand =
+        RigidBody::coupled_ball([5.5, 1.1, 0.0], 0.08).with_motion_type(MotionType::Kinematic);
+    world.add_rigid_body(hand).unwrap();
     let mut both = 0;
     for tick in 0..40u16 {
         world
-            .set_goal(
-                world.nth_hand(0).unwrap(),
+            .set_target_position(
+                world.nth_target_follower(0).unwrap(),
                 [5.5, 1.1 - 0.03 * f32::from(tick), 0.0],
             )
             .unwrap();
         world.step();
         let mut doomed = world.clone();
-        let body = doomed.body_mut(doomed.nth_body(0).unwrap()).unwrap();
-        *body = body.clone().thrown([f32::NAN; 3]);
+        let body = doomed
+            .soft_body_mut(doomed.nth_soft_body(0).unwrap())
+            .unwrap();
+        *body = body.clone().with_velocity([f32::NAN; 3]);
         let report = doomed.step();
-        both += u32::from(report.released > 0 && report.quarantined > 0);
+        both += u32::from(report.nodes_split > 0 && report.quarantined > 0);
         assert_finite(&doomed);
-        let body = doomed.bodies().first().unwrap();
+        let body = doomed.soft_bodies().first().unwrap();
         for (_, element) in body.mesh().elements() {
             let places = || element.nodes.iter().map(|&node| body.node_state(node).0);
             let width = element.cell.width() as f32 / 24.0;
@@ -68,17 +75,21 @@ fn a_piece_that_tears_in_its_last_tick_is_not_stretched() {
 fn a_body_out_of_hand_spoils_nothing_else() {
     let mut world = world::<Dim2>();
     for (place, x) in [0.0, 0.97].into_iter().enumerate() {
-        world.add_body(ball(16).moved([x, 0.0, 0.0]));
-        let hand = Rigid::hand([x + 0.5, 0.95, 0.0], 0.1);
-        let drive = [Drive::Kinematic, Drive::default()][place];
-        world.add_rigid(hand.with_drive(drive)).unwrap();
+        world.add_soft_body(ball(16).translated([x, 0.0, 0.0]));
+        let hand = RigidBody::coupled_ball([x + 0.5, 0.95, 0.0], 0.1);
+        let drive = [MotionType::Kinematic, MotionType::default()][place];
+        world.add_rigid_body(hand.with_motion_type(drive)).unwrap();
     }
     step(&mut world, 10);
-    let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
-    *body = body.clone().thrown([f32::NAN; 3]);
+    let body = world
+        .soft_body_mut(world.nth_soft_body(0).unwrap())
+        .unwrap();
+    *body = body.clone().with_velocity([f32::NAN; 3]);
     assert_eq!(world.step().quarantined, 1);
     assert_finite(&world);
-    let forces = world.hands().flat_map(|(_, hand)| hand.reactions());
+    let forces = world
+        .target_followers()
+        .flat_map(|(_, hand)| hand.reactions());
     for reaction in forces {
         let mut all = reaction.contact.iter().chain(&reaction.coupling);
         assert!(all.all(|k| k.is_finite()), "{reaction:?}");
@@ -88,26 +99,26 @@ fn a_body_out_of_hand_spoils_nothing_else() {
 #[test]
 fn what_came_off_a_quarantined_piece_is_quarantined() {
     let mut world = world::<Dim2>();
-    world.add_body(ball(12).thrown([f32::NAN, 0.0, 0.0]));
+    world.add_soft_body(ball(12).with_velocity([f32::NAN, 0.0, 0.0]));
     world.step();
     world
         .cut(
-            world.nth_body(0).unwrap(),
+            world.nth_soft_body(0).unwrap(),
             &Blade::segment([0.5, -1.0], [0.5, 2.0]),
         )
         .unwrap();
-    let views = world.bodies().first().unwrap().piece_views();
+    let views = world.soft_bodies().first().unwrap().piece_views();
     assert_eq!(views.len(), 2);
     assert!(views.iter().all(|view| view.asleep && view.quarantined));
 }
 
 #[test]
 fn a_quarantined_body_still_holds_others_up() {
-    let mut world = World::new(Settings::default()).unwrap();
-    world.add_body(bar([24, 4]).moved([f32::INFINITY, 0.0, 0.0]));
-    world.add_body(bar([6, 6]).moved([0.27, 0.25, 0.0]));
+    let mut world = World::new(WorldConfig::default()).unwrap();
+    world.add_soft_body(bar([24, 4]).translated([f32::INFINITY, 0.0, 0.0]));
+    world.add_soft_body(bar([6, 6]).translated([0.27, 0.25, 0.0]));
     step(&mut world, 30);
-    let view = &world.bodies()[world.nth_body(1).unwrap()].piece_views()[0];
+    let view = &world.soft_bodies()[world.nth_soft_body(1).unwrap()].piece_views()[0];
     assert!(view.low[1] > 0.05, "it fell through: {view:?}");
 }
 
@@ -115,7 +126,7 @@ fn a_quarantined_body_still_holds_others_up() {
 fn others_still_meet_when_one_was_quarantined() {
     for nowhere in [f32::NAN, f32::INFINITY] {
         let mut world = about_to_meet();
-        world.add_body(bar([2, 2]).moved([nowhere, -3.0, 0.0]));
+        world.add_soft_body(bar([2, 2]).translated([nowhere, -3.0, 0.0]));
         assert_eq!(world.step().quarantined, 1);
         assert_they_meet(world);
     }

@@ -11,7 +11,7 @@ use fuwafuwa::mesh::Element;
 use fuwafuwa::stencil::slot_index;
 use fuwafuwa::vector::three;
 use fuwafuwa::view::{ElementFace, faces};
-use fuwafuwa::{Body, Dim3, ElementId, ElementView, Vector};
+use fuwafuwa::{Dim3, ElementId, ElementView, SoftBody, Vector};
 use glam::Vec3;
 
 /// How far a box stays inside its element [voxels]: so neighbours are told apart.
@@ -56,7 +56,7 @@ impl Boxes {
     pub fn add(
         &mut self,
         place: usize,
-        body: &Body<Dim3>,
+        body: &SoftBody<Dim3>,
         palette: &Palette,
         colour: ElementColour,
         ages: &[f32],
@@ -123,7 +123,7 @@ impl Boxes {
 /// What [`Body::element_view`] says of an element of level 0, as far as it is shown: most are such, and have no slots to be
 /// worked out but their corners and their middle.
 fn small_view(
-    body: &Body<Dim3>,
+    body: &SoftBody<Dim3>,
     id: ElementId,
     element: &Element,
     colour: ElementColour,
@@ -152,22 +152,22 @@ fn small_view(
 mod tests {
     use super::*;
     use fuwafuwa::vector::{length, minus};
-    use fuwafuwa::{Material, Rigid, Settings, Shape, VoxelGrid, World};
+    use fuwafuwa::{Material, RigidBody, Shape, VoxelGrid, World, WorldConfig};
 
     #[test]
     fn small_elements_look_as_the_body_says() {
-        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
-        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
-        let hand = Rigid::hand([0.5, 1.3, 0.5], 0.3);
-        let hand = world.add_rigid(hand).unwrap();
+        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let hand = RigidBody::coupled_ball([0.5, 1.3, 0.5], 0.3);
+        let hand = world.add_rigid_body(hand).unwrap();
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-        world.add_rigid(Rigid::fixed(floor, 0.2)).unwrap();
+        world.add_rigid_body(RigidBody::fixed(floor, 0.2)).unwrap();
         for _ in 0..40 {
-            world.set_goal(hand, [0.5, 0.8, 0.4]).unwrap();
+            world.set_target_position(hand, [0.5, 0.8, 0.4]).unwrap();
             world.step();
         }
-        let body = world.bodies().first().unwrap();
+        let body = world.soft_bodies().first().unwrap();
         let mut most = 0.0f32;
         for (id, element) in body.mesh().elements().filter(|(_, of)| of.cell.level == 0) {
             let exact = body.element_view(id).unwrap();
@@ -184,15 +184,15 @@ mod tests {
     #[test]
     fn boxes_fill_what_is_left_of_a_body_however_it_lies() {
         let grid = VoxelGrid::<Dim3>::cube(8, 1.0).unwrap();
-        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
-        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
+        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let volume = |world: &World<Dim3>, share: f32| {
             let towards = [0.6, 0.0, 0.8];
             let (palette, cut) = (Palette::candy(), Some(Cut { towards, share }));
             let mut boxes = Boxes::default();
             boxes.add(
                 0,
-                world.bodies().first().unwrap(),
+                world.soft_bodies().first().unwrap(),
                 &palette,
                 ElementColour::Level,
                 &[],
@@ -220,7 +220,9 @@ mod tests {
         assert!((0.84..0.97).contains(&volume(&world, 1.0).0));
         assert_eq!(volume(&world, 0.0).0, 0.0);
         // It lies on its side, away from where it was.
-        let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
+        let body = world
+            .soft_body_mut(world.nth_soft_body(0).unwrap())
+            .unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             let [x, y, z] = body.node_state(id).0;

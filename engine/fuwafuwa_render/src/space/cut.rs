@@ -2,7 +2,7 @@
 
 use super::camera::Cut;
 use fuwafuwa::vector::three;
-use fuwafuwa::{Body, Dim3};
+use fuwafuwa::{Dim3, SoftBody};
 use glam::{Mat3, Vec3};
 
 /// A piece is cut across another axis once that faces so much better, as a cosine: what trembles does not flicker.
@@ -29,7 +29,7 @@ impl Plane {
 }
 
 /// Where each piece of a body is cut; `before` has the axes and sides of the last time.
-pub fn planes(body: &Body<Dim3>, cut: Cut, before: &[(usize, f32)]) -> Vec<Plane> {
+pub fn planes(body: &SoftBody<Dim3>, cut: Cut, before: &[(usize, f32)]) -> Vec<Plane> {
     let nodes = || {
         body.mesh().nodes().map(|(id, node)| {
             let at = Vec3::from(three(body.positions()[id]));
@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn a_cut_keeps_its_axis_until_another_one_faces_clearly_better() {
         let grid = VoxelGrid::<Dim3>::cube(8, 1.0).unwrap();
-        let body = Body::new(grid, &[Material::default()]).unwrap();
+        let body = SoftBody::new(grid, &[Material::default()]).unwrap();
         let mut before = Vec::new();
         let mut axis = |degrees: f32| {
             let (sin, cos) = degrees.to_radians().sin_cos();

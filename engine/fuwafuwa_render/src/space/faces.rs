@@ -9,8 +9,8 @@ use super::pool::Pool;
 use super::rest::Rest;
 use crate::palette::{Colour, among, bytes};
 use fuwafuwa::dim::{corner, face_corners};
-use fuwafuwa::ids::Table;
-use fuwafuwa::{Body, Bookmark, Dim3, ElementId, NodeId, Point};
+use fuwafuwa::ids::IndexVec;
+use fuwafuwa::{Bookmark, Dim3, ElementId, NodeId, Point, SoftBody};
 use glam::Vec3;
 
 /// No place.
@@ -24,9 +24,9 @@ const ALL_FACES: u8 = 0b11_1111;
 #[derive(Clone, Debug, Default)]
 pub struct Faces {
     /// What was taken up of each element.
-    forms: Table<ElementId, Form>,
+    forms: IndexVec<ElementId, Form>,
     /// The point of each node, or none.
-    of_node: Table<NodeId, u32>,
+    of_node: IndexVec<NodeId, u32>,
     /// Faces; those that are gone have no points.
     pub faces: Pool<Face>,
     /// Points; those that are gone have no node.
@@ -149,7 +149,7 @@ const NO_CORNER: Corner = Corner {
 impl Faces {
     /// Takes up what changed since the last look; `palette` has the colours of the materials, number
     /// 1 first. Returns whether anything did.
-    pub fn follow(&mut self, body: &Body<Dim3>, rest: &Rest, palette: &[Colour]) -> bool {
+    pub fn follow(&mut self, body: &SoftBody<Dim3>, rest: &Rest, palette: &[Colour]) -> bool {
         let mesh = body.mesh();
         let (elements, nodes) = (mesh.element_capacity(), mesh.node_capacity());
         // Ids are never given up by a body: this is another one.
@@ -189,7 +189,7 @@ impl Faces {
     }
 
     /// Which elements differ from what they were, and what they are now.
-    fn compare(&mut self, body: &Body<Dim3>) -> Vec<(ElementId, Form)> {
+    fn compare(&mut self, body: &SoftBody<Dim3>) -> Vec<(ElementId, Form)> {
         let (mut stale, mut has_lost) = (Vec::new(), false);
         let changes = body.changes_since(&mut self.followed);
         let is_other = changes.is_none();
@@ -246,7 +246,7 @@ impl Faces {
         }
     }
 
-    fn put_up(&mut self, body: &Body<Dim3>, element: ElementId, side: u8) -> u32 {
+    fn put_up(&mut self, body: &SoftBody<Dim3>, element: ElementId, side: u8) -> u32 {
         let form = self.forms[element];
         let mut beyond = form.at;
         beyond[usize::from(side / 2)] += 2 * i32::from(side % 2) - 1;
@@ -306,7 +306,7 @@ impl Faces {
     }
 
     /// Works out again what follows from the faces at a point.
-    fn refresh(&mut self, body: &Body<Dim3>, rest: &Rest, place: u32) {
+    fn refresh(&mut self, body: &SoftBody<Dim3>, rest: &Rest, place: u32) {
         let mut point = self.points[place];
         point.is_dirty = false;
         if point.first == NONE {

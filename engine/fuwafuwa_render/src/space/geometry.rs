@@ -10,7 +10,7 @@ use crate::frame::{Frame, Look};
 use crate::palette::Palette;
 use crate::rigid::MOST_WALLS;
 use fuwafuwa::vector::three;
-use fuwafuwa::{Body, Dim3, ElementId, Rigid, Shape, Vector, World};
+use fuwafuwa::{Dim3, ElementId, RigidBody, Shape, SoftBody, Vector, World};
 use glam::{Mat3, Vec3};
 use std::ops::Range;
 
@@ -57,21 +57,21 @@ impl Geometry {
         self.stickers.clear();
         let palette = frame.palette;
         let bars = world
-            .rigids()
+            .rigid_bodies()
             .iter()
-            .filter(|rigid| !rigid.is_driven() && !rigid.is_sensor);
+            .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor);
         let bars = bars.filter_map(|bar| RoundedInstance::of(*bar.shape(), palette.bar, 0.0));
         self.bars = append(&mut self.rounded, bars);
-        let hands = || world.hands().enumerate();
+        let hands = || world.target_followers().enumerate();
         self.hands = append(&mut self.rounded, balls(world, palette));
         let props = frame.props.iter();
         let props = props.filter_map(|prop| RoundedInstance::of(prop.shape, prop.colour, 0.0));
         self.props = append(&mut self.rounded, props);
         self.renewed_ghosts.clear();
-        let ghosts = frame.ghost.map_or(0, |ghost| ghost.bodies().len());
+        let ghosts = frame.ghost.map_or(0, |ghost| ghost.soft_bodies().len());
         self.ghosts.resize_with(ghosts, Skin::default);
         if let Some(ghost) = frame.ghost {
-            let skins = self.ghosts.iter_mut().zip(ghost.bodies());
+            let skins = self.ghosts.iter_mut().zip(ghost.soft_bodies());
             let renewed = skins.map(|(skin, body)| skin.follow(body, &palette.materials));
             self.renewed_ghosts.extend(renewed);
         }
@@ -80,10 +80,11 @@ impl Geometry {
             .into_iter()
             .flat_map(|ghost| balls(ghost, palette));
         self.ghost_hands = append(&mut self.rounded, of_ghost);
-        self.skins.resize_with(world.bodies().len(), Skin::default);
+        self.skins
+            .resize_with(world.soft_bodies().len(), Skin::default);
         self.renewed.clear();
         let first = self.rounded.len() as u32;
-        for (place, body) in world.bodies().iter().enumerate() {
+        for (place, body) in world.soft_bodies().iter().enumerate() {
             match frame.look {
                 Look::Skin => {
                     let skin = &mut self.skins[place];
@@ -104,7 +105,7 @@ impl Geometry {
         if frame.look == Look::Skin {
             let eye = frame.camera.eye();
             for sticker in frame.stickers {
-                if let Some(body) = world.bodies().iter().nth(sticker.body) {
+                if let Some(body) = world.soft_bodies().iter().nth(sticker.body) {
                     let skin = &self.skins[sticker.body];
                     self.stickers.add(sticker, skin, body, eye);
                 }
@@ -139,7 +140,7 @@ impl Geometry {
 
     fn gather_room(&mut self, world: &World<Dim3>, camera: &Camera) {
         self.walls.clear();
-        let shapes = world.obstacles().map(Rigid::shape);
+        let shapes = world.fixed_rigid_bodies().map(RigidBody::shape);
         self.walls.extend(shapes.filter_map(plane).take(MOST_WALLS));
         self.room.clear();
         let reach = REACH * camera.distance;
@@ -157,7 +158,7 @@ impl Geometry {
 
 /// The hands of a world.
 fn balls(world: &World<Dim3>, palette: &Palette) -> impl Iterator<Item = RoundedInstance> {
-    let hands = world.hands().enumerate();
+    let hands = world.target_followers().enumerate();
     hands.filter_map(|(player, (_, hand))| {
         RoundedInstance::of(*hand.shape(), palette.hand(player), player as f32)
     })
@@ -183,7 +184,11 @@ fn ball(centre: Vector, radius: f32, number: f32) -> RoundedInstance {
 }
 
 /// A voxel that is a piece of its own: a ball that is squashed as it is.
-fn crumb(body: &Body<Dim3>, id: ElementId, frame: &Frame<'_, Camera>) -> Option<RoundedInstance> {
+fn crumb(
+    body: &SoftBody<Dim3>,
+    id: ElementId,
+    frame: &Frame<'_, Camera>,
+) -> Option<RoundedInstance> {
     let element = body.mesh().element(id)?;
     let place = |k: usize| Vec3::from(three(body.positions()[element.nodes[k]]));
     let sum = |side: [usize; 4]| side.map(place).iter().sum::<Vec3>();
@@ -208,25 +213,25 @@ fn crumb(body: &Body<Dim3>, id: ElementId, frame: &Frame<'_, Camera>) -> Option<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Material, Settings, VoxelGrid};
+    use fuwafuwa::{Material, VoxelGrid, WorldConfig};
 
     #[test]
     fn everything_has_its_place() {
-        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0, -0.5, 0.0]);
-        world.add_rigid(Rigid::fixed(floor, 0.2)).unwrap();
+        world.add_rigid_body(RigidBody::fixed(floor, 0.2)).unwrap();
         let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);
         let bar = Shape::Capsule { from, to, radius };
-        world.add_rigid(Rigid::fixed(bar, 0.2)).unwrap();
-        let hand = Rigid::hand([0.0, 3.0, 1.0], 0.2);
-        world.add_rigid(hand).unwrap();
+        world.add_rigid_body(RigidBody::fixed(bar, 0.2)).unwrap();
+        let hand = RigidBody::coupled_ball([0.0, 3.0, 1.0], 0.2);
+        world.add_rigid_body(hand).unwrap();
         let grid = VoxelGrid::from_fn([5, 2, 2], 0.5, |[x, ..]| u8::from(x != 2)).unwrap();
-        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let grid = VoxelGrid::from_fn([1, 1, 1], 0.5, |_| 1).unwrap();
-        world.add_body(
-            Body::new(grid, &[Material::default()])
+        world.add_soft_body(
+            SoftBody::new(grid, &[Material::default()])
                 .unwrap()
-                .moved([0.0, 2.0, 0.0]),
+                .translated([0.0, 2.0, 0.0]),
         );
         let palette = Palette::candy();
         let mut frame = Frame::new(Camera::fit([-1.0; 3], [1.0; 3], [1, 1]), &palette);

@@ -5,7 +5,7 @@
 
 use crate::stairs::smoothed;
 use fuwafuwa::dim::{add, corner, face_corners, points_in, voxel_around};
-use fuwafuwa::sharing::{Groups, Sharing};
+use fuwafuwa::sharing::{Connectivity, Groups};
 use fuwafuwa::{Dim, Dim3, Point, VoxelGrid};
 use glam::Vec3;
 
@@ -101,7 +101,7 @@ const NONE: u32 = u32::MAX;
 impl Rest {
     /// Finds the offsets of a grid.
     pub fn new(grid: &VoxelGrid<Dim3>) -> Self {
-        let sharing = Sharing::new(grid);
+        let sharing = Connectivity::new(grid);
         let materials = grid.voxels().map(|voxel| grid.material(voxel));
         let mut rest = Self {
             first: vec![NONE; sharing.point_count()],

@@ -8,8 +8,8 @@ use super::faces::{Faces, Ground, NO_NODE, NONE, SkinPoint};
 use super::rest::Rest;
 use crate::palette::Colour;
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::ids::Table;
-use fuwafuwa::{Body, Dim3, ElementId, NodeId, PieceId};
+use fuwafuwa::ids::IndexVec;
+use fuwafuwa::{Dim3, ElementId, NodeId, PieceId, SoftBody};
 use glam::{Vec3, Vec4};
 
 /// By how much of the way to the mean of its neighbours a point goes in each round: on the original
@@ -53,7 +53,7 @@ pub struct Skin {
 impl Skin {
     /// Brings the surface up to date with a body; `palette` has the colours of its materials, number
     /// 1 first. Returns whether the triangles are others than before.
-    pub fn follow(&mut self, body: &Body<Dim3>, palette: &[Colour]) -> bool {
+    pub fn follow(&mut self, body: &SoftBody<Dim3>, palette: &[Colour]) -> bool {
         if !self.rest.fits(body.grid()) {
             *self = Self {
                 rest: Rest::new(body.grid()),
@@ -86,7 +86,7 @@ impl Skin {
     /// Its vertices on a piece, as of the last look.
     pub(super) fn vertices_of<'a>(
         &'a self,
-        body: &'a Body<Dim3>,
+        body: &'a SoftBody<Dim3>,
         piece: PieceId,
     ) -> impl Iterator<Item = &'a SkinVertex> {
         let corners = self.faces.vertices.all.iter().zip(&self.vertices);
@@ -100,7 +100,7 @@ impl Skin {
     }
 
     /// Puts all points where their voxels carry them.
-    fn place(&mut self, body: &Body<Dim3>) {
+    fn place(&mut self, body: &SoftBody<Dim3>) {
         let (positions, size) = (body.positions(), body.grid().voxel_size());
         self.places.clear();
         self.places
@@ -178,7 +178,12 @@ impl Skin {
 /// Where a point is: its node moved by its offset, as the mean deformation of its voxel turns and
 /// stretches it. Behind that ‖F − R‖, to first order.
 #[inline]
-fn carried(point: &SkinPoint, node: Vec4, positions: &Table<NodeId, [f32; 4]>, size: f32) -> Vec4 {
+fn carried(
+    point: &SkinPoint,
+    node: Vec4,
+    positions: &IndexVec<NodeId, [f32; 4]>,
+    size: f32,
+) -> Vec4 {
     let [x, y, z] = edges(&point.voxel, positions);
     let by = point.offset;
     let mut place = node + by.x * x + by.y * y + by.z * z;
@@ -192,7 +197,7 @@ fn carried(point: &SkinPoint, node: Vec4, positions: &Table<NodeId, [f32; 4]>, s
 
 /// The mean edges of a voxel along its axes [m].
 #[inline]
-fn edges(voxel: &[NodeId; 8], positions: &Table<NodeId, [f32; 4]>) -> [Vec4; 3] {
+fn edges(voxel: &[NodeId; 8], positions: &IndexVec<NodeId, [f32; 4]>) -> [Vec4; 3] {
     let corners = voxel.map(|id| Vec4::from(positions[id]));
     [1, 2, 4].map(|side| {
         let low = [0, 1, 2, 3].map(|k| (k & (side - 1)) | (k & !(side - 1)) << 1);
@@ -208,18 +213,21 @@ mod tests {
     use super::*;
     use crate::palette::Palette;
     use fuwafuwa::vector::{cross, dot, length, minus};
-    use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
+    use fuwafuwa::{Blade, Material, VoxelGrid, World, WorldConfig};
 
     fn ball(n: usize) -> World<Dim3> {
-        let mut world = World::new(Settings::default()).unwrap();
+        let mut world = World::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(n, 1.0).unwrap();
-        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         world
     }
 
     fn skin(world: &World<Dim3>) -> Skin {
         let mut skin = Skin::default();
-        skin.follow(world.bodies().first().unwrap(), &Palette::candy().materials);
+        skin.follow(
+            world.soft_bodies().first().unwrap(),
+            &Palette::candy().materials,
+        );
         skin
     }
 
@@ -228,7 +236,7 @@ mod tests {
         let from = [x, -0.2, -0.2];
         world
             .cut(
-                world.nth_body(0).unwrap(),
+                world.nth_soft_body(0).unwrap(),
                 &Blade {
                     from,
                     across,
@@ -254,7 +262,7 @@ mod tests {
     #[test]
     fn the_skin_of_a_ball_is_a_sphere() {
         let world = ball(32);
-        let count = world.bodies().first().unwrap().grid().solid_count() as f32;
+        let count = world.soft_bodies().first().unwrap().grid().solid_count() as f32;
         let round = (0.75 * count / std::f32::consts::PI).cbrt() / 32.0;
         for vertex in skin(&world).vertices() {
             let away = minus(vertex.at, [0.5; 3]);
@@ -270,7 +278,9 @@ mod tests {
     fn a_stretched_ball_is_an_ellipsoid_and_knows_its_strain() {
         let mut world = ball(32);
         let whole = skin(&world).volume();
-        let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
+        let body = world
+            .soft_body_mut(world.nth_soft_body(0).unwrap())
+            .unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             let [x, y, z] = body.node_state(id).0;
@@ -320,29 +330,38 @@ mod tests {
         };
         for x in [0.2, 0.8, 0.3, 0.55, 0.4, 0.48] {
             cut(&mut world, x);
-            assert!(kept.follow(world.bodies().first().unwrap(), &Palette::candy().materials));
+            assert!(kept.follow(
+                world.soft_bodies().first().unwrap(),
+                &Palette::candy().materials
+            ));
             let new = skin(&world);
             assert_eq!(sorted(&kept), sorted(&new));
             assert!((kept.volume() / new.volume() - 1.0).abs() < 1e-4);
             world.step();
-            kept.follow(world.bodies().first().unwrap(), &Palette::candy().materials);
+            kept.follow(
+                world.soft_bodies().first().unwrap(),
+                &Palette::candy().materials,
+            );
         }
         let safe = Palette::colour_safe().materials;
-        assert!(kept.follow(world.bodies().first().unwrap(), &safe));
-        assert!(!kept.follow(world.bodies().first().unwrap(), &safe));
+        assert!(kept.follow(world.soft_bodies().first().unwrap(), &safe));
+        assert!(!kept.follow(world.soft_bodies().first().unwrap(), &safe));
         // Another body with a grid of its own, and an untorn one with the same.
         for n in [16, 20] {
             let other = ball(n);
-            kept.follow(other.bodies().first().unwrap(), &Palette::candy().materials);
+            kept.follow(
+                other.soft_bodies().first().unwrap(),
+                &Palette::candy().materials,
+            );
             assert_eq!(sorted(&kept), sorted(&skin(&other)));
         }
     }
 
     #[test]
     fn a_voxel_on_its_own_is_a_crumb() {
-        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::from_fn([3, 1, 1], 1.0, |[x, ..]| u8::from(x != 1)).unwrap();
-        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let skin = skin(&world);
         assert_eq!((skin.crumbs().len(), skin.indices().len()), (2, 0));
     }

@@ -10,7 +10,7 @@
 use super::skin::{Skin, SkinVertex};
 use crate::frame::{Mark, Sticker};
 use crate::palette::bytes;
-use fuwafuwa::{Body, Dim3, Vector};
+use fuwafuwa::{Dim3, SoftBody, Vector};
 use glam::{Mat3, Vec2, Vec3};
 
 /// The heights of the skin reach so far to each side, in coordinates of marks, and are so many in a row.
@@ -42,7 +42,7 @@ impl Stickers {
     }
 
     /// Adds a sticker, as it is seen from a place [m].
-    pub fn add(&mut self, sticker: &Sticker, skin: &Skin, body: &Body<Dim3>, eye: Vector) {
+    pub fn add(&mut self, sticker: &Sticker, skin: &Skin, body: &SoftBody<Dim3>, eye: Vector) {
         let Some(heights) = Heights::new(sticker, skin, body) else {
             return;
         };
@@ -110,7 +110,7 @@ struct Heights([f32; SIDE * SIDE]);
 
 impl Heights {
     /// Finds it; none where there is no skin.
-    fn new(sticker: &Sticker, skin: &Skin, body: &Body<Dim3>) -> Option<Self> {
+    fn new(sticker: &Sticker, skin: &Skin, body: &SoftBody<Dim3>) -> Option<Self> {
         let axes = sticker.axes.map(Vec3::from);
         let square = axes.map(Vec3::length_squared);
         if square.contains(&0.0) {
@@ -186,13 +186,13 @@ mod tests {
     use super::*;
     use crate::Palette;
     use fuwafuwa::vector::{length, minus};
-    use fuwafuwa::{Blade, Material, PieceId, Settings, VoxelGrid, World};
+    use fuwafuwa::{Blade, Material, PieceId, VoxelGrid, World, WorldConfig};
 
     #[test]
     fn a_sticker_lies_on_the_skin_and_on_what_is_left_of_it() {
-        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(32, 1.0).unwrap();
-        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let outline = [[-0.6, -0.6], [0.6, -0.6], [0.6, 0.6], [-0.6, 0.6]].to_vec();
         let mark = Mark {
             outline,
@@ -209,7 +209,7 @@ mod tests {
         };
         let mut skin = Skin::default();
         let mut stuck = |world: &World<Dim3>, sticker: &Sticker| {
-            let body = world.bodies().first().unwrap();
+            let body = world.soft_bodies().first().unwrap();
             skin.follow(body, &Palette::candy().materials);
             let mut stickers = Stickers::default();
             stickers.add(sticker, &skin, body, [0.5, 0.5, 9.0]);
@@ -230,8 +230,8 @@ mod tests {
             across,
             along,
         };
-        world.cut(world.nth_body(0).unwrap(), &blade).unwrap();
-        let body = world.bodies().first().unwrap();
+        world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap();
+        let body = world.soft_bodies().first().unwrap();
         let nodes = body.mesh().nodes();
         let inside = nodes.min_by(|a, b| {
             let away = |id| length(minus(body.node_state(id).0, [0.5; 3]));

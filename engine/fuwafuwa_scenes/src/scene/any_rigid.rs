@@ -5,7 +5,7 @@ use super::build::rotation_of;
 use super::error::{Wrong, require, require_vector};
 use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, Shapes};
 use super::state;
-use fuwafuwa::{Dim, Drive, Refused, Rigid, RigidId, Rotation, Shape, World};
+use fuwafuwa::{Dim, MotionType, Refused, RigidBody, RigidBodyHandle, Rotation, Shape, World};
 use serde::{Deserialize, Serialize};
 
 /// Something rigid as it is written down: one of the four shapes, as it would be at the origin, and what moves it; or a
@@ -75,7 +75,7 @@ pub struct RigidText {
     pub user_data: Option<u64>,
 }
 
-/// What moves something rigid, as it is written down: see [`fuwafuwa::Drive`].
+/// What moves something rigid, as it is written down: see [`fuwafuwa::MotionType`].
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DriveText {
@@ -91,7 +91,7 @@ pub enum DriveText {
 }
 
 impl RigidText {
-    pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>) -> Result<RigidId, Wrong> {
+    pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>) -> Result<RigidBodyHandle, Wrong> {
         if let Some(state) = &self.state {
             let alone = Self {
                 state: self.state.clone(),
@@ -99,16 +99,16 @@ impl RigidText {
             };
             let expected = "expected nothing beside it: it says all of something rigid";
             require(*self == alone, "state", expected)?;
-            let added = world.add_rigid(state::rigid::<D>(state)?);
+            let added = world.add_rigid_body(state::rigid::<D>(state)?);
             return added.map_err(|refused| Wrong::new("state", refused));
         }
         let rigid = self.rigid::<D>()?;
-        let is_free = rigid.is_free();
+        let is_free = rigid.is_dynamic();
         let refused = |refused| match refused {
-            Refused::Rigid(bad) => Wrong::new(bad.field, format!("expected {}", bad.expected)),
+            Refused::RigidBody(bad) => Wrong::new(bad.field, format!("expected {}", bad.expected)),
             refused => Wrong::new("shape", refused),
         };
-        let id = world.add_rigid(rigid).map_err(refused)?;
+        let id = world.add_rigid_body(rigid).map_err(refused)?;
         let (velocity, spin) = (self.velocity, self.spin);
         let moves = velocity.is_some() || spin.is_some();
         require(
@@ -125,7 +125,7 @@ impl RigidText {
         Ok(id)
     }
 
-    fn rigid<D: Dim>(&self) -> Result<Rigid, Wrong> {
+    fn rigid<D: Dim>(&self) -> Result<RigidBody, Wrong> {
         require_vector(D::N, "at", self.at)?;
         let shapes = Shapes {
             half_space: self.half_space.as_ref(),
@@ -141,11 +141,11 @@ impl RigidText {
             (Some(turned), None) => rotation_of::<D>(turned)?,
             (None, rotation) => rotation.unwrap_or(Rotation::NONE),
         };
-        let mut rigid = Rigid::driven(shapes.only::<D>()?, self.at, self.drive()?);
+        let mut rigid = RigidBody::new(shapes.only::<D>()?, self.at, self.drive()?);
         if rotation != Rotation::NONE {
             rigid = rigid.rotated(rotation);
         }
-        let usual = if rigid.is_free() { 0.5 } else { 0.2 };
+        let usual = if rigid.is_dynamic() { 0.5 } else { 0.2 };
         rigid.friction = self.friction.unwrap_or(usual);
         rigid.restitution = self.restitution.unwrap_or(0.0);
         rigid.is_sensor = self.sensor;
@@ -154,7 +154,7 @@ impl RigidText {
         Ok(rigid)
     }
 
-    fn drive(&self) -> Result<Drive, Wrong> {
+    fn drive(&self) -> Result<MotionType, Wrong> {
         let of_hands = [self.stiffness, self.damping, self.limit];
         let is_hand = self.drive == DriveText::Hand;
         let good = is_hand || of_hands == [None; 3];
@@ -163,16 +163,16 @@ impl RigidText {
         let expected = "expected of drive = \"free\" or \"hand\" alone";
         require(bears || self.mass.is_none(), "mass", expected)?;
         Ok(match self.drive {
-            DriveText::Fixed => Drive::Fixed,
-            DriveText::Kinematic => Drive::Kinematic,
+            DriveText::Fixed => MotionType::Fixed,
+            DriveText::Kinematic => MotionType::Kinematic,
             DriveText::Free => {
                 let missing = || Wrong::new("mass", "expected the mass of what falls [kg]");
                 let mass = self.mass.ok_or_else(missing)?;
-                Drive::Free { mass }
+                MotionType::Dynamic { mass }
             }
             DriveText::Hand => {
-                let mut drive = Drive::default();
-                if let Drive::Coupled {
+                let mut drive = MotionType::default();
+                if let MotionType::Coupled {
                     mass,
                     stiffness,
                     damping,
@@ -190,7 +190,7 @@ impl RigidText {
     }
 
     /// What there is to say of something rigid; none where words would not make the same of it.
-    pub(super) fn of<D: Dim>(rigid: &Rigid) -> Option<Self> {
+    pub(super) fn of<D: Dim>(rigid: &RigidBody) -> Option<Self> {
         let words = Self::in_words::<D>(rigid);
         let is_same = words.as_ref().is_some_and(|words| words.makes::<D>(rigid));
         match is_same {
@@ -203,27 +203,27 @@ impl RigidText {
     }
 
     /// Whether these words make something rigid as it is, but for how long it has rested.
-    fn makes<D: Dim>(&self, rigid: &Rigid) -> bool {
-        let Ok(mut world) = World::<D>::new(fuwafuwa::Settings::default()) else {
+    fn makes<D: Dim>(&self, rigid: &RigidBody) -> bool {
+        let Ok(mut world) = World::<D>::new(fuwafuwa::WorldConfig::default()) else {
             return false;
         };
         let Ok(id) = self.add_to(&mut world) else {
             return false;
         };
-        let made = &world.rigids()[id];
-        if rigid.is_driven() {
+        let made = &world.rigid_bodies()[id];
+        if rigid.follows_target() {
             // How its goal moves is seen from nowhere else.
             return made == rigid;
         }
         let both = [made, rigid];
         let [places, others] = both.map(|k| (k.position(), k.velocity(), k.angular_velocity()));
-        let [turns, other_turns] = both.map(Rigid::rotation);
-        let [forms, other_forms] = both.map(|k| (*k.form(), k.drive, k.layers, k.is_sensor));
+        let [turns, other_turns] = both.map(RigidBody::rotation);
+        let [forms, other_forms] = both.map(|k| (*k.form(), k.motion_type, k.layers, k.is_sensor));
         let [numbers, other_numbers] = both.map(|k| (k.friction, k.restitution, k.user_data));
         (places, turns, forms, numbers) == (others, other_turns, other_forms, other_numbers)
     }
 
-    fn in_words<D: Dim>(rigid: &Rigid) -> Option<Self> {
+    fn in_words<D: Dim>(rigid: &RigidBody) -> Option<Self> {
         let mut text = Self {
             at: rigid.position(),
             friction: Some(rigid.friction),
@@ -250,16 +250,16 @@ impl RigidText {
         }
         let rotation = rigid.rotation();
         text.rotation = (rotation != Rotation::NONE).then_some(rotation);
-        match rigid.drive {
-            Drive::Fixed => {}
-            Drive::Kinematic => text.drive = DriveText::Kinematic,
-            Drive::Free { mass } => {
+        match rigid.motion_type {
+            MotionType::Fixed => {}
+            MotionType::Kinematic => text.drive = DriveText::Kinematic,
+            MotionType::Dynamic { mass } => {
                 (text.drive, text.mass) = (DriveText::Free, Some(mass));
                 let said = |vector: [f32; 3]| (vector != [0.0; 3]).then_some(vector);
                 text.velocity = said(rigid.velocity());
                 text.spin = said(rigid.angular_velocity());
             }
-            Drive::Coupled {
+            MotionType::Coupled {
                 mass,
                 stiffness,
                 damping,

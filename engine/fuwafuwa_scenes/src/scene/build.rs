@@ -7,7 +7,7 @@ use super::grid;
 use super::state;
 use fuwafuwa::law::Law;
 use fuwafuwa::pyramid::Grading;
-use fuwafuwa::{Blade, Body, BodyError, Dim, Material, Refused, Rotation, VoxelGrid, World};
+use fuwafuwa::{Blade, BodyError, Dim, Material, Refused, Rotation, SoftBody, VoxelGrid, World};
 
 impl BodyText {
     /// The body, where it and those before it take no more work than the budget has.
@@ -15,7 +15,7 @@ impl BodyText {
         &self,
         materials: &[Material],
         budget: &mut Budget,
-    ) -> Result<Body<D>, Wrong> {
+    ) -> Result<SoftBody<D>, Wrong> {
         require_vector(D::N, "at", self.at)?;
         require_vector(D::N, "velocity", self.velocity)?;
         if let Some(state) = &self.state {
@@ -33,14 +33,14 @@ impl BodyText {
         self.check_diced(&grid, budget)?;
         let law = match self.paper_law {
             true => Law::Endo2004,
-            false => Law::PatchExact,
+            false => Law::CorotationalVem,
         };
         let grading = match self.uniform {
             true => Grading::Uniform,
             false => Grading::Graded,
         };
         let broken = |reason: String| Wrong::new("shape", reason);
-        let body = Body::with(grid, materials, law, grading);
+        let body = SoftBody::with_options(grid, materials, law, grading);
         let mut body = body.map_err(|error| match error {
             BodyError::MissingMaterial { number } => {
                 let count = materials.len();
@@ -61,7 +61,7 @@ impl BodyText {
         if let Some(turned) = self.turned {
             body = body.rotated(rotation_of::<D>(turned)?, [0.0; 3]);
         }
-        Ok(body.moved(self.at).thrown(self.velocity))
+        Ok(body.translated(self.at).with_velocity(self.velocity))
     }
 
     /// Puts the body into a world.
@@ -71,7 +71,7 @@ impl BodyText {
         materials: &[Material],
         budget: &mut Budget,
     ) -> Result<(), Wrong> {
-        let body = world.add_body(self.build(materials, budget)?);
+        let body = world.add_soft_body(self.build(materials, budget)?);
         let wrong = |field: &'static str| move |refused: Refused| Wrong::new(field, refused);
         if let Some(scale) = self.gravity_scale {
             let set = world.set_gravity_scale(body, scale);
@@ -131,7 +131,7 @@ pub(super) fn rotation_of<D: Dim>(turned: [f32; 3]) -> Result<Rotation, Wrong> {
 }
 
 /// Planes a distance apart on every axis, through the whole body.
-fn grid_of_blades<D: Dim>(body: &Body<D>, spacing: f32) -> Vec<Blade> {
+fn grid_of_blades<D: Dim>(body: &SoftBody<D>, spacing: f32) -> Vec<Blade> {
     let size = body
         .grid()
         .size()

@@ -1,7 +1,7 @@
 //! What ties things together in a scene.
 
 use super::error::{Wrong, require, require_vector};
-use fuwafuwa::{BodyId, Dim, End, Joint, RigidId, Tie, World};
+use fuwafuwa::{Dim, Joint, JointAnchor, JointKind, RigidBodyHandle, SoftBodyHandle, World};
 use serde::{Deserialize, Serialize};
 
 /// A joint as it is written down: two ends, and how they are tied.
@@ -26,7 +26,7 @@ pub struct JointText {
     pub breaking_force: Option<f32>,
 }
 
-/// How two ends are tied, as it is written down: see [`fuwafuwa::Tie`].
+/// How two ends are tied, as it is written down: see [`fuwafuwa::JointKind`].
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TieText {
@@ -64,10 +64,10 @@ pub struct EndText {
 
 /// What the ends of joints may be tied to, in the order of their lists.
 pub(super) struct Known {
-    pub(super) bodies: Vec<BodyId>,
-    pub(super) obstacles: Vec<RigidId>,
-    pub(super) hands: Vec<RigidId>,
-    pub(super) rigids: Vec<RigidId>,
+    pub(super) bodies: Vec<SoftBodyHandle>,
+    pub(super) obstacles: Vec<RigidBodyHandle>,
+    pub(super) hands: Vec<RigidBodyHandle>,
+    pub(super) rigids: Vec<RigidBodyHandle>,
 }
 
 impl JointText {
@@ -91,7 +91,7 @@ impl JointText {
             .map_err(|refused| Wrong::new("tie", refused))
     }
 
-    fn tie(&self) -> Result<Tie, Wrong> {
+    fn tie(&self) -> Result<JointKind, Wrong> {
         let missing = |field: &'static str| move || Wrong::new(field, "expected a number");
         let is = |tie| self.tie == tie;
         let good = is(TieText::Spring) || self.stiffness.is_none() && self.damping.is_none();
@@ -99,11 +99,11 @@ impl JointText {
         let good = !is(TieText::Pin) || self.length.is_none();
         require(good, "length", "expected of a spring or a rope alone")?;
         Ok(match self.tie {
-            TieText::Pin => Tie::Pin,
-            TieText::Rope => Tie::Rope {
+            TieText::Pin => JointKind::Pin,
+            TieText::Rope => JointKind::Rope {
                 length: self.length.ok_or_else(missing("length"))?,
             },
-            TieText::Spring => Tie::Spring {
+            TieText::Spring => JointKind::Spring {
                 stiffness: self.stiffness.ok_or_else(missing("stiffness"))?,
                 damping: self.damping.unwrap_or(0.0),
                 length: self.length.ok_or_else(missing("length"))?,
@@ -114,9 +114,9 @@ impl JointText {
     /// What there is to say of a joint whose ends are as given.
     pub(super) fn of(joint: &Joint, ends: [EndText; 2]) -> Self {
         let (tie, stiffness, damping, length) = match joint.tie {
-            Tie::Pin => (TieText::Pin, None, None, None),
-            Tie::Rope { length } => (TieText::Rope, None, None, Some(length)),
-            Tie::Spring {
+            JointKind::Pin => (TieText::Pin, None, None, None),
+            JointKind::Rope { length } => (TieText::Rope, None, None, Some(length)),
+            JointKind::Spring {
                 stiffness,
                 damping,
                 length,
@@ -140,7 +140,7 @@ impl JointText {
 }
 
 impl EndText {
-    fn end<D: Dim>(&self, known: &Known) -> Result<End, Wrong> {
+    fn end<D: Dim>(&self, known: &Known) -> Result<JointAnchor, Wrong> {
         require_vector(D::N, "at", self.at)?;
         let at = self.at;
         let good = self.body.is_some() || self.radius.is_none();
@@ -157,15 +157,15 @@ impl EndText {
         if let Some(number) = self.body {
             let body = nth("body", number, &known.bodies)?;
             let radius = self.radius.unwrap_or(0.0);
-            return Ok(End::Soft { body, at, radius });
+            return Ok(JointAnchor::Soft { body, at, radius });
         }
         for &(field, number, list) in &is_rigid {
             if let Some(number) = number {
                 let rigid = nth(field, number, list)?;
-                return Ok(End::Rigid { rigid, at });
+                return Ok(JointAnchor::RigidBody { rigid, at });
             }
         }
-        Ok(End::Position(at))
+        Ok(JointAnchor::Position(at))
     }
 }
 

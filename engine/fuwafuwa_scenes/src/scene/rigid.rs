@@ -1,7 +1,7 @@
 //! What is rigid in a scene: obstacles and hands, and shapes as they are written down.
 
 use super::error::{Wrong, require, require_vector};
-use fuwafuwa::{Dim, Drive, Refused, Rigid, RigidId, Shape, World};
+use fuwafuwa::{Dim, MotionType, Refused, RigidBody, RigidBodyHandle, Shape, World};
 use serde::{Deserialize, Serialize};
 
 /// A rigid shape as it is written down: exactly one of the fields but `friction`.
@@ -95,7 +95,7 @@ impl ObstacleText {
         let good = self.friction >= 0.0;
         let found = format!("expected 0 or more, found {}", self.friction);
         require(good, "friction", found)?;
-        let added = world.add_rigid(Rigid::fixed(shape.only::<D>()?, self.friction));
+        let added = world.add_rigid_body(RigidBody::fixed(shape.only::<D>()?, self.friction));
         added
             .map(|_| ())
             .map_err(|reason| Wrong::new("friction", reason))
@@ -177,11 +177,11 @@ impl HandText {
         }
         let form = self.form::<D>()?;
         let drive = match self.kinematic {
-            true => Drive::Kinematic,
-            false => Drive::default(),
+            true => MotionType::Kinematic,
+            false => MotionType::default(),
         };
-        let hand = Rigid::driven(form, self.goal(0.0), drive);
-        let added = world.add_rigid(hand);
+        let hand = RigidBody::new(form, self.goal(0.0), drive);
+        let added = world.add_rigid_body(hand);
         added
             .map(|_| ())
             .map_err(|reason| Wrong::new("shape", reason))
@@ -230,9 +230,9 @@ impl HandText {
 
 /// Sends the hands of a world to goals, the first to the first. A hand whose goal is no place stays where it is.
 pub(crate) fn send<D: Dim>(world: &mut World<D>, goals: &[[f32; 3]]) {
-    let hands: Vec<RigidId> = world.hands().map(|(hand, _)| hand).collect();
+    let hands: Vec<RigidBodyHandle> = world.target_followers().map(|(hand, _)| hand).collect();
     for (hand, &goal) in hands.into_iter().zip(goals) {
-        let _sent: Result<(), Refused> = world.set_goal(hand, goal);
+        let _sent: Result<(), Refused> = world.set_target_position(hand, goal);
     }
 }
 

@@ -3,36 +3,38 @@
 use super::error::Wrong;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
-use fuwafuwa::{Body, Dim, Rigid, Settings, World, snapshot};
+use fuwafuwa::{Dim, RigidBody, SoftBody, World, WorldConfig, snapshot};
 
 /// A body, in letters.
-pub(super) fn of_body<D: Dim>(body: &Body<D>, settings: Settings) -> Option<String> {
+pub(super) fn of_body<D: Dim>(body: &SoftBody<D>, settings: WorldConfig) -> Option<String> {
     let mut world = World::new(settings).ok()?;
-    world.add_body(body.clone());
+    world.add_soft_body(body.clone());
     Some(BASE64.encode(snapshot::save(&world)))
 }
 
 /// Something rigid, in letters.
-pub(super) fn of_rigid<D: Dim>(rigid: &Rigid) -> Option<String> {
-    let mut world = World::<D>::new(Settings::default()).ok()?;
-    world.add_rigid(rigid.clone()).ok()?;
+pub(super) fn of_rigid<D: Dim>(rigid: &RigidBody) -> Option<String> {
+    let mut world = World::<D>::new(WorldConfig::default()).ok()?;
+    world.add_rigid_body(rigid.clone()).ok()?;
     Some(BASE64.encode(snapshot::save(&world)))
 }
 
 /// The body that letters say.
-pub(super) fn body<D: Dim>(text: &str) -> Result<Body<D>, Wrong> {
+pub(super) fn body<D: Dim>(text: &str) -> Result<SoftBody<D>, Wrong> {
     let mut world = world::<D>(text)?;
-    let id = world.nth_body(0).filter(|_| world.bodies().len() == 1);
-    let body = id.and_then(|id| world.remove_body(id).ok());
+    let id = world
+        .nth_soft_body(0)
+        .filter(|_| world.soft_bodies().len() == 1);
+    let body = id.and_then(|id| world.remove_soft_body(id).ok());
     body.ok_or_else(|| Wrong::new("state", "expected the snapshot of a world with one body"))
 }
 
 /// The rigid thing that letters say.
-pub(super) fn rigid<D: Dim>(text: &str) -> Result<Rigid, Wrong> {
+pub(super) fn rigid<D: Dim>(text: &str) -> Result<RigidBody, Wrong> {
     let mut world = world::<D>(text)?;
-    let id = world.rigids().ids().next();
-    let id = id.filter(|_| world.rigids().len() == 1);
-    let rigid = id.and_then(|id| world.remove_rigid(id).ok());
+    let id = world.rigid_bodies().ids().next();
+    let id = id.filter(|_| world.rigid_bodies().len() == 1);
+    let rigid = id.and_then(|id| world.remove_rigid_body(id).ok());
     rigid.ok_or_else(|| {
         Wrong::new(
             "state",

@@ -7,7 +7,10 @@ use super::joint::{EndText, JointText};
 use super::state;
 use super::{MAX_BODIES, MAX_MATERIALS, MAX_RIGID, MAX_TEXT_BYTES, Scene, SceneError};
 use fuwafuwa::law::Law;
-use fuwafuwa::{Body, BodyId, Dim, End, Grading, Material, RigidId, Settings, VoxelGrid, World};
+use fuwafuwa::{
+    Dim, Grading, JointAnchor, Material, RigidBodyHandle, SoftBody, SoftBodyHandle, VoxelGrid,
+    World, WorldConfig,
+};
 use fuwafuwa::{Joint, snapshot};
 use std::fmt::Write;
 
@@ -66,7 +69,7 @@ impl Scene {
 }
 
 fn written<D: Dim>(world: &World<D>) -> Result<Scene, Wrong> {
-    let settings = *world.settings();
+    let settings = *world.config();
     let mut scene = Scene {
         dim: D::N as u8,
         gravity: settings.gravity,
@@ -84,14 +87,14 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, Wrong> {
         game: None,
         origin: Origin::default(),
     };
-    let found = world.bodies().len();
+    let found = world.soft_bodies().len();
     let expected = format!("expected {MAX_BODIES} bodies at most, found {found}");
     require(found <= MAX_BODIES, "body", expected)?;
-    let found = world.rigids().len();
+    let found = world.rigid_bodies().len();
     let expected = format!("expected {MAX_RIGID} at most, found {found}");
     require(found <= MAX_RIGID, "rigid", expected)?;
     let mut materials: Vec<Material> = Vec::new();
-    for (index, body) in world.bodies().iter().enumerate() {
+    for (index, body) in world.soft_bodies().iter().enumerate() {
         let text = body_text(body, settings, &mut materials);
         scene
             .body
@@ -101,7 +104,7 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, Wrong> {
     if scene.material.is_empty() {
         scene.material = super::usual_materials();
     }
-    for (index, rigid) in world.rigids().iter().enumerate() {
+    for (index, rigid) in world.rigid_bodies().iter().enumerate() {
         let text = RigidText::of::<D>(rigid);
         let wrong = || Wrong::new("state", "cannot be written down").inside("rigid", index);
         scene.rigid.push(text.ok_or_else(wrong)?);
@@ -112,13 +115,13 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, Wrong> {
 
 /// A body in words, or whole.
 fn body_text<D: Dim>(
-    body: &Body<D>,
-    settings: Settings,
+    body: &SoftBody<D>,
+    settings: WorldConfig,
     materials: &mut Vec<Material>,
 ) -> Result<BodyText, Wrong> {
-    let of_world = |body: Body<D>| {
+    let of_world = |body: SoftBody<D>| {
         let mut world = World::new(settings).ok()?;
-        world.add_body(body);
+        world.add_soft_body(body);
         Some(snapshot::save(&world))
     };
     let words = in_words(body).filter(|(_, made)| {
@@ -149,7 +152,7 @@ fn body_text<D: Dim>(
 }
 
 /// What there may be to say of a body, and the body that it makes.
-fn in_words<D: Dim>(body: &Body<D>) -> Option<(BodyText, Body<D>)> {
+fn in_words<D: Dim>(body: &SoftBody<D>) -> Option<(BodyText, SoftBody<D>)> {
     let (grid, grading) = (body.grid(), body.grading());
     if grading == Grading::Coarse || grid.left_count() < grid.solid_count() {
         return None;
@@ -157,14 +160,14 @@ fn in_words<D: Dim>(body: &Body<D>) -> Option<(BodyText, Body<D>)> {
     let size = grid.size().map(|extent| extent as usize);
     let materials = grid.voxels().map(|voxel| grid.material(voxel));
     let whole = VoxelGrid::from_materials(size, grid.voxel_size(), materials.collect());
-    let made = Body::with(whole.ok()?, body.materials(), body.law(), grading).ok()?;
+    let made = SoftBody::with_options(whole.ok()?, body.materials(), body.law(), grading).ok()?;
     if !made.mesh().is_same_as(body.mesh()) {
         return None;
     }
     let at = place_of(&made, body)?;
     let (first, _) = body.mesh().nodes().next()?;
     let velocity = body.node_state(first).1;
-    let made = made.moved(at).thrown(velocity);
+    let made = made.translated(at).with_velocity(velocity);
     let text = BodyText {
         voxels: Some(VoxelsText {
             size,
@@ -184,17 +187,17 @@ fn in_words<D: Dim>(body: &Body<D>) -> Option<(BodyText, Body<D>)> {
 }
 
 /// The same body with what a world says of another one.
-fn of_the_same_kind<D: Dim>(made: Body<D>, body: &Body<D>) -> Option<Body<D>> {
-    let mut world = World::new(Settings::default()).ok()?;
-    let id = world.add_body(made);
+fn of_the_same_kind<D: Dim>(made: SoftBody<D>, body: &SoftBody<D>) -> Option<SoftBody<D>> {
+    let mut world = World::new(WorldConfig::default()).ok()?;
+    let id = world.add_soft_body(made);
     world.set_gravity_scale(id, body.gravity_scale()).ok()?;
     world.set_layers(id, body.layers()).ok()?;
     world.set_user_data(id, body.user_data()).ok()?;
-    world.remove_body(id).ok()
+    world.remove_soft_body(id).ok()
 }
 
 /// How far a body was moved as a whole [m], if that is all that happened to its places: so far that rounding gives the same.
-fn place_of<D: Dim>(made: &Body<D>, body: &Body<D>) -> Option<[f32; 3]> {
+fn place_of<D: Dim>(made: &SoftBody<D>, body: &SoftBody<D>) -> Option<[f32; 3]> {
     let mut at = [0.0; 3];
     let mut ids = made.mesh().nodes().map(|(id, _)| id);
     if !ids.all(|id| id.index() < body.positions().len()) {
@@ -255,7 +258,7 @@ fn write_joints<D: Dim>(world: &World<D>, scene: &mut Scene) -> Result<(), Wrong
     for (index, (id, joint)) in world.joints().entries().enumerate() {
         let inside = |wrong: Wrong| wrong.inside("joint", index);
         let gone = || Wrong::new("ends", "expected both ends to be there");
-        let places = world.joint_places(id).ok().flatten();
+        let places = world.joint_anchor_positions(id).ok().flatten();
         let places = places.ok_or_else(|| inside(gone()))?;
         let tied = joint.ends.each_ref().map(|end| end_text(world, end, None));
         let [first, second] = &joint.ends;
@@ -290,28 +293,32 @@ fn holds(scene: &Scene, text: &JointText, places: [[f32; 3]; 2], joint: &Joint) 
 fn only_joint<D: Dim>(world: Result<World<D>, SceneError>) -> Option<([[f32; 3]; 2], Joint)> {
     let world = world.ok()?;
     let (id, joint) = world.joints().entries().next()?;
-    Some((world.joint_places(id).ok()??, joint.clone()))
+    Some((world.joint_anchor_positions(id).ok()??, joint.clone()))
 }
 
 /// An end as it was tied, or at another place.
-fn end_text<D: Dim>(world: &World<D>, end: &End, other: Option<[f32; 3]>) -> Option<EndText> {
-    let rank_of_body = |id: BodyId| world.bodies().rank(id).map(|rank| rank + 1);
-    let rank_of_rigid = |id: RigidId| world.rigids().rank(id).map(|rank| rank + 1);
+fn end_text<D: Dim>(
+    world: &World<D>,
+    end: &JointAnchor,
+    other: Option<[f32; 3]>,
+) -> Option<EndText> {
+    let rank_of_body = |id: SoftBodyHandle| world.soft_bodies().rank(id).map(|rank| rank + 1);
+    let rank_of_rigid = |id: RigidBodyHandle| world.rigid_bodies().rank(id).map(|rank| rank + 1);
     let flat = |mut at: [f32; 3]| {
         at[D::N..].fill(0.0);
         at
     };
     Some(match *end {
-        End::Position(at) => EndText {
+        JointAnchor::Position(at) => EndText {
             at: flat(other.unwrap_or(at)),
             ..EndText::default()
         },
-        End::Rigid { rigid, at } => EndText {
+        JointAnchor::RigidBody { rigid, at } => EndText {
             rigid: Some(rank_of_rigid(rigid)?),
             at: flat(other.unwrap_or(at)),
             ..EndText::default()
         },
-        End::Soft { body, at, radius } => EndText {
+        JointAnchor::Soft { body, at, radius } => EndText {
             body: Some(rank_of_body(body)?),
             at: flat(other.unwrap_or(at)),
             radius: Some(radius),
@@ -322,11 +329,14 @@ fn end_text<D: Dim>(world: &World<D>, end: &End, other: Option<[f32; 3]>) -> Opt
 
 /// What part of a world there is to look at.
 fn view_of<D: Dim>(world: &World<D>) -> [[f32; 3]; 2] {
-    let nodes = world.bodies().iter().flat_map(|body| {
+    let nodes = world.soft_bodies().iter().flat_map(|body| {
         let ids = body.mesh().nodes().map(|(id, _)| id);
         ids.map(|id| body.node_state(id).0)
     });
-    let free = world.rigids().iter().filter(|rigid| rigid.is_free());
+    let free = world
+        .rigid_bodies()
+        .iter()
+        .filter(|rigid| rigid.is_dynamic());
     let middles = free.map(|rigid| rigid.position());
     let (mut low, mut high) = ([f32::MAX; 3], [f32::MIN; 3]);
     for at in nodes.chain(middles) {

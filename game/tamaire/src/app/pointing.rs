@@ -52,7 +52,7 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
                 .controls
                 .players
                 .wanted(0)
-                .unwrap_or(round.hands()[0].goal());
+                .unwrap_or(round.hands()[0].target_position());
             let [x, _, z] = view.in_world(at, floor(in_space));
             [x, goal[1], z]
         }
@@ -73,7 +73,7 @@ fn floor(round: &Round<Dim3>) -> f32 {
     let mut at = round.start(0);
     while at[1] > lowest {
         // Nothing is closer than `free`, so stepping down by it is safe (sphere tracing).
-        let obstacles = round.world().obstacles();
+        let obstacles = round.world().fixed_rigid_bodies();
         let free = obstacles.map(|obstacle| obstacle.shape().distance(at).0);
         let free = free.fold(f32::MAX, f32::min);
         if free < NEAR {

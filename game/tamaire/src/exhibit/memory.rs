@@ -154,7 +154,9 @@ impl Memory {
     pub fn pass(&mut self, config: &Config, is_idle: bool, seconds: f32) {
         for news in self.clips.pass(seconds) {
             match news {
-                News::Saved(_) => self.clips.thin_out(Kept::Clip, config.take_home.clips),
+                News::SavedElementStates(_) => {
+                    self.clips.thin_out(Kept::Clip, config.take_home.clips)
+                }
                 News::Failed(reason) => self.note(Kind::Other("no_clip".into()), &reason),
                 News::Full => self.note(Kind::FullDisk, "a clip was not kept"),
                 News::Level(_) | News::Damaged(_) => {}

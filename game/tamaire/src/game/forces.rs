@@ -93,7 +93,7 @@ impl Game {
             return None;
         }
         let manner = match self.settings.stick_places || pushes_back {
-            true => Manner::Places,
+            true => Manner::CellIndexing,
             false => Manner::Steers,
         };
         Some(State { contact, manner })

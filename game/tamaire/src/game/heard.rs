@@ -2,7 +2,7 @@
 
 use super::{Game, Screen};
 use crate::look::View;
-use fuwafuwa::{BodyId, Dim, Event, PieceId, Vector, With};
+use fuwafuwa::{Dim, Event, PieceId, SoftBodyHandle, Vector, With};
 use std::collections::BTreeMap;
 use tamaire_play::rules::CRUMB;
 use tamaire_play::{AnyRound, Round};
@@ -49,10 +49,10 @@ pub(super) fn cues(round: &AnyRound, view: Option<View>) -> Vec<Cue> {
 }
 
 fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
-    let bodies = round.world().bodies();
+    let bodies = round.world().soft_bodies();
     // Masses of the pieces of each body [kg], computed when first used.
-    let mut masses: BTreeMap<BodyId, Vec<f32>> = BTreeMap::new();
-    let mut mass_of = |body: BodyId, piece: PieceId| {
+    let mut masses: BTreeMap<SoftBodyHandle, Vec<f32>> = BTreeMap::new();
+    let mut mass_of = |body: SoftBodyHandle, piece: PieceId| {
         let views = || bodies[body].piece_views().into_iter();
         let masses = masses.entry(body);
         let masses = masses.or_insert_with(|| views().map(|view| view.mass).collect());
@@ -62,7 +62,7 @@ fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
     let (mut torn, mut at) = (0.0, 0.0);
     for event in round.world().events() {
         match *event {
-            Event::Released {
+            Event::NodeSplit {
                 at: position,
                 energy,
                 ..
@@ -70,7 +70,7 @@ fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
                 torn += energy.max(0.01);
                 at = across(view, position);
             }
-            Event::Touched {
+            Event::Pressed {
                 with: With::Obstacle(_),
                 impulse,
                 at: position,

@@ -83,7 +83,7 @@ impl Game {
             News::Level(level) if self.levels.iter().any(|known| known.id == level.id) => {}
             News::Level(level) => self.levels.push(level),
             News::Damaged(damage) => self.tell_of(damage),
-            News::Saved(location) => {
+            News::SavedElementStates(location) => {
                 self.shelf.look(&self.files);
                 self.notify(format!("{} {location}", self.words().saved));
             }

@@ -106,7 +106,7 @@ impl Game {
                 // A player who joins now begins at the start position of the level.
                 let mut hands = round.level().scene().goals(0);
                 for (goal, hand) in hands.iter_mut().zip(round.hands()) {
-                    *goal = hand.goal();
+                    *goal = hand.target_position();
                 }
                 let tick = fuwafuwa::world::TICK;
                 let frame = players.frame(devices, &settings.bindings, &manner, &hands, tick);

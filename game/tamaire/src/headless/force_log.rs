@@ -99,7 +99,7 @@ impl ForceLog {
         }
         let before = self.aims;
         for (aim, hand) in self.aims.iter_mut().zip(&hands) {
-            *aim = Some(aim_at(hand.goal(), round));
+            *aim = Some(aim_at(hand.target_position(), round));
         }
         loop {
             let seconds = self.updates as f64 * PERIOD;
@@ -135,7 +135,7 @@ impl ForceLog {
         let contact = haptics::contact(hand);
         let state = State {
             contact: haptics::on_stick(contact, turn(round)),
-            manner: Manner::Places,
+            manner: Manner::CellIndexing,
         };
         let mail = Mail {
             wish: haptics::silence(round).map_or(Ok(state), Err),

@@ -4,7 +4,7 @@ use super::CameraRig;
 use super::confetti::Confetti;
 use super::feelings::{Fate, Feeling};
 use fuwafuwa::vector::{length, minus, plus, scaled};
-use fuwafuwa::{Body, Dim, Event, NodeId, Rigid, Vector, With};
+use fuwafuwa::{Dim, Event, NodeId, RigidBody, SoftBody, Vector, With};
 use tamaire_play::{AnyRound, Round};
 
 /// Most particles at once.
@@ -114,9 +114,9 @@ impl Effects {
 
     fn look_at<D: Dim>(&mut self, round: &Round<D>, camera: &mut CameraRig, still: bool) {
         let world = round.world();
-        if world.ticks() <= self.tick || self.feelings.len() != world.bodies().len() {
+        if world.ticks() <= self.tick || self.feelings.len() != world.soft_bodies().len() {
             // Another round.
-            let bodies = world.bodies().iter();
+            let bodies = world.soft_bodies().iter();
             let eye = (D::N == 3).then(|| camera.eye(round.level().arena()));
             *self = Self {
                 feelings: bodies.map(|body| Feeling::of(body, eye)).collect(),
@@ -130,21 +130,21 @@ impl Effects {
         let mut pressed = 0.0;
         let mut material = 1;
         let mut looked_up = 0;
-        let mut torn = vec![false; world.bodies().len()];
+        let mut torn = vec![false; world.soft_bodies().len()];
         for event in world.events() {
             match *event {
-                Event::Released { body, at, energy } => {
-                    let rank = world.bodies().rank(body);
+                Event::NodeSplit { body, at, energy } => {
+                    let rank = world.soft_bodies().rank(body);
                     torn[rank.expect("who tore is there")] = true;
                     camera.shake(0.002 + 0.002 * energy.clamp(0.0, 2.0));
                     if looked_up < LOOKED_UP {
                         looked_up += 1;
-                        material = material_at(&world.bodies()[body], at);
+                        material = material_at(&world.soft_bodies()[body], at);
                     }
                     let count = if still { 1 } else { DUST };
                     (0..count).for_each(|_| self.puff(at, material));
                 }
-                Event::Touched {
+                Event::Pressed {
                     with: With::Hand(_),
                     impulse,
                     ..
@@ -159,7 +159,7 @@ impl Effects {
         self.celebrate(round, still);
         let progress = round.progress();
         let is_in = progress.outcome.is_some() || progress.held > 0.2;
-        let bodies = self.feelings.iter_mut().zip(world.bodies()).zip(torn);
+        let bodies = self.feelings.iter_mut().zip(world.soft_bodies()).zip(torn);
         for ((feeling, body), torn) in bodies {
             let in_basket = |region: &fuwafuwa::Shape| region.distance(feeling.middle).0 < 0.0;
             let fate = Fate {
@@ -205,7 +205,7 @@ impl Effects {
     }
 
     fn watch_hand<D: Dim>(&mut self, round: &Round<D>) {
-        let Some(hand) = round.hands().next().map(Rigid::position) else {
+        let Some(hand) = round.hands().next().map(RigidBody::position) else {
             return;
         };
         let start = *self.start.get_or_insert(hand);
@@ -245,7 +245,7 @@ impl Effects {
 }
 
 /// The material of a body at a place [m]: that of the nearest node.
-fn material_at<D: Dim>(body: &Body<D>, at: Vector) -> u8 {
+fn material_at<D: Dim>(body: &SoftBody<D>, at: Vector) -> u8 {
     let mesh = body.mesh();
     let square = |id: NodeId| {
         let position = body.node_state(id).0;
@@ -320,8 +320,8 @@ mod tests {
         let AnyRound::Plane(round) = round("twins") else {
             panic!("it is in the plane")
         };
-        let bodies: Vec<&Body<_>> = round.world().bodies().iter().collect();
-        let middle = |body: &Body<_>| body.piece_views()[0].centre;
+        let bodies: Vec<&SoftBody<_>> = round.world().soft_bodies().iter().collect();
+        let middle = |body: &SoftBody<_>| body.piece_views()[0].centre;
         assert_eq!(material_at(bodies[0], middle(bodies[0])), 1);
         assert_eq!(material_at(bodies[1], middle(bodies[1])), 2);
     }

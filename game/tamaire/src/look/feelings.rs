@@ -4,7 +4,7 @@ use super::Mood;
 use super::perch::{Perch, UPRIGHT, largest, masses, square};
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Body, Dim, NodeId, PieceId, Vector};
+use fuwafuwa::{Dim, NodeId, PieceId, SoftBody, Vector};
 use fuwafuwa_render::anchor;
 
 /// How long a body is shocked after a tear [s]; one that goes on tearing winces then.
@@ -82,7 +82,7 @@ pub struct Fate {
 
 impl Feeling {
     /// How a body feels before anything happens to it; in space, for whom its face is to be seen [m].
-    pub fn of<D: Dim>(body: &Body<D>, eye: Option<Vector>) -> Self {
+    pub fn of<D: Dim>(body: &SoftBody<D>, eye: Option<Vector>) -> Self {
         let mut feeling = Self {
             mood: Mood::Calm,
             age: 9.0,
@@ -106,7 +106,7 @@ impl Feeling {
     }
 
     /// Lets a tick pass.
-    pub fn see<D: Dim>(&mut self, body: &Body<D>, fate: Fate) {
+    pub fn see<D: Dim>(&mut self, body: &SoftBody<D>, fate: Fate) {
         if fate.tick.is_multiple_of(LOOK) {
             self.strain = strain(body);
         }
@@ -158,7 +158,7 @@ impl Feeling {
     }
 
     /// Follows the seat.
-    fn sit<D: Dim>(&mut self, body: &Body<D>, seconds: f32) {
+    fn sit<D: Dim>(&mut self, body: &SoftBody<D>, seconds: f32) {
         if self.seat.is_none() {
             self.choose_seat(body);
         }
@@ -188,7 +188,7 @@ impl Feeling {
     }
 
     /// Looks for a better seat; the face goes there from where it is.
-    fn choose_seat<D: Dim>(&mut self, body: &Body<D>) {
+    fn choose_seat<D: Dim>(&mut self, body: &SoftBody<D>) {
         let before = self.seat.filter(|&seat| is_there(body, seat));
         let after = best_seat(body, before.map(|seat| seat.node));
         if let (Some(old), Some(new)) = (self.seat, after)
@@ -201,7 +201,7 @@ impl Feeling {
     }
 }
 
-fn is_there<D: Dim>(body: &Body<D>, seat: Seat) -> bool {
+fn is_there<D: Dim>(body: &SoftBody<D>, seat: Seat) -> bool {
     let mesh = body.mesh();
     seat.node.index() < mesh.node_capacity()
         && mesh.is_alive(seat.node)
@@ -209,13 +209,13 @@ fn is_there<D: Dim>(body: &Body<D>, seat: Seat) -> bool {
 }
 
 /// The piece with the most mass.
-fn largest_piece<D: Dim>(body: &Body<D>) -> PieceId {
+fn largest_piece<D: Dim>(body: &SoftBody<D>) -> PieceId {
     largest(&masses(body))
 }
 
 /// The node of the largest piece that is deepest inside and near the middle; the one that is taken
 /// now unless another is clearly better.
-fn best_seat<D: Dim>(body: &Body<D>, now: Option<NodeId>) -> Option<Seat> {
+fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>) -> Option<Seat> {
     let (mesh, pieces) = (body.mesh(), body.pieces());
     let piece = largest_piece(body);
     let own = || mesh.nodes().filter(|&(id, _)| pieces.of_node(id) == piece);
@@ -259,7 +259,7 @@ fn best_seat<D: Dim>(body: &Body<D>, now: Option<NodeId>) -> Option<Seat> {
 }
 
 /// The mean strain of the largest piece, by volume; of a body with many elements a part of them is asked.
-fn strain<D: Dim>(body: &Body<D>) -> f32 {
+fn strain<D: Dim>(body: &SoftBody<D>) -> f32 {
     let piece = largest_piece(body);
     let (mut sum, mut volume) = (0.0, 0.0);
     let own = || {
@@ -278,11 +278,11 @@ fn strain<D: Dim>(body: &Body<D>) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Blade, Dim2, Dim3, Material, Settings, VoxelGrid, World};
+    use fuwafuwa::{Blade, Dim2, Dim3, Material, VoxelGrid, World, WorldConfig};
 
     fn alone(grid: VoxelGrid<Dim2>) -> World<Dim2> {
-        let mut world = World::new(Settings::default()).expect("usual");
-        world.add_body(Body::new(grid, &[Material::default()]).expect("usual"));
+        let mut world = World::new(WorldConfig::default()).expect("usual");
+        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).expect("usual"));
         world
     }
 
@@ -296,7 +296,7 @@ mod tests {
             u8::from(hole([voxel[0] as f32 + 0.5, voxel[1] as f32 + 0.5]))
         });
         let world = alone(grid.expect("a ring"));
-        let feeling = Feeling::of(world.bodies().first().unwrap(), None);
+        let feeling = Feeling::of(world.soft_bodies().first().unwrap(), None);
         let away = [feeling.at[0] - 0.5, feeling.at[1] - 0.5];
         let radius = length(away);
         assert!((0.25..0.45).contains(&radius), "{feeling:?}");
@@ -309,11 +309,11 @@ mod tests {
     #[test]
     fn the_face_glides_to_what_is_left_and_dust_has_none() {
         let mut world = alone(VoxelGrid::ball(32, 1.0).expect("a ball"));
-        let mut feeling = Feeling::of(world.bodies().first().unwrap(), None);
+        let mut feeling = Feeling::of(world.soft_bodies().first().unwrap(), None);
         let (before, size) = (feeling.at, feeling.size);
         world
             .cut(
-                world.nth_body(0).unwrap(),
+                world.nth_soft_body(0).unwrap(),
                 &Blade::segment([0.375, -1.0], [0.375, 2.0]),
             )
             .unwrap();
@@ -321,26 +321,31 @@ mod tests {
             tick: LOOK,
             ..Fate::default()
         };
-        feeling.see(world.bodies().first().unwrap(), fate);
+        feeling.see(world.soft_bodies().first().unwrap(), fate);
         let step = feeling.at[0] - before[0];
         assert!(step.abs() < 0.03, "no leap: {step}");
         for _ in 0..200 {
-            feeling.see(world.bodies().first().unwrap(), Fate::default());
+            feeling.see(world.soft_bodies().first().unwrap(), Fate::default());
         }
         assert!(feeling.at[0] > before[0] + 0.05 && feeling.size < size);
         let dust = alone(VoxelGrid::ball(4, 0.05).expect("a crumb"));
-        assert_eq!(Feeling::of(dust.bodies().first().unwrap(), None).size, 0.0);
+        assert_eq!(
+            Feeling::of(dust.soft_bodies().first().unwrap(), None).size,
+            0.0
+        );
     }
 
     #[test]
     fn in_space_a_face_turns_with_its_body_and_comes_back_to_the_camera() {
-        let mut world = World::<Dim3>::new(Settings::default()).expect("usual");
+        let mut world = World::<Dim3>::new(WorldConfig::default()).expect("usual");
         let grid = VoxelGrid::ball(12, 1.0).expect("a ball");
-        world.add_body(Body::new(grid, &[Material::default()]).expect("usual"));
-        let mut feeling = Feeling::of(world.bodies().first().unwrap(), None);
+        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).expect("usual"));
+        let mut feeling = Feeling::of(world.soft_bodies().first().unwrap(), None);
         assert!(feeling.axes[2][2] > 0.99, "{feeling:?}");
         // The body turns its back.
-        let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
+        let body = world
+            .soft_body_mut(world.nth_soft_body(0).unwrap())
+            .unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             let [x, y, z] = body.node_state(id).0;
@@ -351,7 +356,7 @@ mod tests {
                 eye,
                 ..Fate::default()
             };
-            (0..ticks).for_each(|_| feeling.see(world.bodies().first().unwrap(), fate));
+            (0..ticks).for_each(|_| feeling.see(world.soft_bodies().first().unwrap(), fate));
             feeling.axes
         };
         let [_, up, out] = see(None, 60);
@@ -363,7 +368,7 @@ mod tests {
     #[test]
     fn a_tear_shocks_once_and_then_hurts() {
         let world = alone(VoxelGrid::ball(16, 1.0).expect("a ball"));
-        let body = world.bodies().first().unwrap();
+        let body = world.soft_bodies().first().unwrap();
         let mut feeling = Feeling::of(body, None);
         let torn = Fate {
             tick: 1,

@@ -23,7 +23,7 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
         } else {
             0.5 + 0.5 * (5.0 * look.time).sin() as f32
         };
-        for obstacle in round.world().obstacles() {
+        for obstacle in round.world().fixed_rigid_bodies() {
             shine(painter, view, *obstacle.shape(), 0.55 + 0.45 * breath);
         }
     }

@@ -3,7 +3,7 @@
 
 use super::{Hint, Look, View};
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
-use fuwafuwa::{Dim, Dim2, Dim3, Rigid, Vector};
+use fuwafuwa::{Dim, Dim2, Dim3, RigidBody, Vector};
 use tamaire_play::Round;
 
 /// How long it takes from the hand to the basket [s].
@@ -34,13 +34,13 @@ pub(super) fn draw_ring_of_space(painter: &Painter, round: &Round<Dim3>, look: &
 }
 
 /// The first hand, until it has moved.
-fn hand_to_show<'a, D: Dim>(round: &'a Round<D>, look: &Look) -> Option<&'a Rigid> {
+fn hand_to_show<'a, D: Dim>(round: &'a Round<D>, look: &Look) -> Option<&'a RigidBody> {
     let is_shown = look.hint != Hint::None && look.effects.hint != 0.0;
     round.hands().next().filter(|_| is_shown)
 }
 
 /// A ring that opens around the hand.
-fn draw_ring(painter: &Painter, hand: &Rigid, look: &Look) {
+fn draw_ring(painter: &Painter, hand: &RigidBody, look: &Look) {
     let at = look.view.on_screen(hand.position());
     let radius = hand.shape().inradius() * look.view.scale_at(hand.position());
     let tone = look.theme.hand(0).gamma_multiply(look.effects.hint);
@@ -59,7 +59,8 @@ fn draw_ring(painter: &Painter, hand: &Rigid, look: &Look) {
 /// The pale hand and what it pushes.
 fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, look: &Look) {
     let (view, strength) = (&look.view, look.effects.hint);
-    let (Some(basket), Some(body)) = (basket_centre(round), round.world().bodies().first()) else {
+    let (Some(basket), Some(body)) = (basket_centre(round), round.world().soft_bodies().first())
+    else {
         return;
     };
     let Some(piece) = body.piece_views().into_iter().next() else {
@@ -107,7 +108,7 @@ fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, loo
 fn draw_pale_body(
     painter: &Painter,
     view: &View,
-    body: &fuwafuwa::Body<Dim2>,
+    body: &fuwafuwa::SoftBody<Dim2>,
     by: Vec2,
     edge: Color32,
     fill: Color32,

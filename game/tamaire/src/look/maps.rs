@@ -127,7 +127,7 @@ impl Maps {
 }
 
 fn faces<D: Dim>(round: &Round<D>, eye: Option<Vector>) -> Vec<Face> {
-    let bodies = round.world().bodies().iter().enumerate();
+    let bodies = round.world().soft_bodies().iter().enumerate();
     bodies
         .map(|(number, body)| face_of(number, &Feeling::of(body, eye), 1.0))
         .collect()

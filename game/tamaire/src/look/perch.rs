@@ -3,9 +3,9 @@
 //! It keeps its place there and rolls with it. Once too much of that place is torn, or who looks sees it from behind, it
 //! shrinks and comes up again where there is a better one.
 
-use fuwafuwa::ids::Table;
+use fuwafuwa::ids::IndexVec;
 use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
-use fuwafuwa::{Body, Dim, PieceId, Point, Vector};
+use fuwafuwa::{Dim, PieceId, Point, SoftBody, Vector};
 use fuwafuwa_render::anchor_at;
 use std::f32::consts::PI;
 
@@ -110,7 +110,7 @@ struct Skin {
 
 impl Perch {
     /// The place where it is seen best.
-    pub fn new<D: Dim>(body: &Body<D>, eye: Option<Vector>) -> Self {
+    pub fn new<D: Dim>(body: &SoftBody<D>, eye: Option<Vector>) -> Self {
         let mut perch = Self {
             axes: UPRIGHT,
             up: 1.0,
@@ -124,7 +124,7 @@ impl Perch {
     /// Lets time pass; it is looked for another place only where `looks` says so, for that takes time.
     pub fn follow<D: Dim>(
         &mut self,
-        body: &Body<D>,
+        body: &SoftBody<D>,
         eye: Option<Vector>,
         looks: bool,
         seconds: f32,
@@ -159,7 +159,7 @@ impl Perch {
     }
 
     /// Follows the skin.
-    fn sit<D: Dim>(&mut self, body: &Body<D>) {
+    fn sit<D: Dim>(&mut self, body: &SoftBody<D>) {
         let voxel = body.grid().voxel_size();
         let found = self.place.and_then(|place| {
             let piece = body.pieces().of_element(body.mesh().owner(place.voxel)?);
@@ -182,7 +182,7 @@ impl Perch {
     }
 
     /// Looks whether it is well where it is.
-    fn review<D: Dim>(&mut self, body: &Body<D>, eye: Option<Vector>) {
+    fn review<D: Dim>(&mut self, body: &SoftBody<D>, eye: Option<Vector>) {
         let masses = masses(body);
         let largest = largest(&masses);
         let own = self.place.and_then(|place| body.mesh().owner(place.voxel));
@@ -234,14 +234,14 @@ impl Perch {
 
 impl Skin {
     fn of<D: Dim>(
-        body: &Body<D>,
+        body: &SoftBody<D>,
         piece: PieceId,
-        masses: &Table<PieceId, f32>,
+        masses: &IndexVec<PieceId, f32>,
         eye: Option<Vector>,
     ) -> Self {
         let facets = body
             .facets()
-            .filter(|facet| facet.piece == piece && !facet.is_fresh);
+            .filter(|facet| facet.piece == piece && !facet.is_torn);
         let spots = facets.filter_map(|facet| {
             let mean = |of: [Vector; 4]| scaled(of.into_iter().fold([0.0; 3], plus), 0.25);
             let rest = facet
@@ -346,7 +346,13 @@ impl Skin {
     }
 
     /// The place at a spot, upright for who looks.
-    fn place<D: Dim>(&self, body: &Body<D>, spot: &Spot, out: Vector, fit: f32) -> Option<Place> {
+    fn place<D: Dim>(
+        &self,
+        body: &SoftBody<D>,
+        spot: &Spot,
+        out: Vector,
+        fit: f32,
+    ) -> Option<Place> {
         let reach = (fit * self.full / self.voxel).max(LEAST_REACH);
         let (_, turn) = anchor_at(body, self.piece, spot.rest, reach)?;
         let axes = upright(out, self.eye.map_or(UPRIGHT[2], |eye| minus(eye, spot.at)));
@@ -388,7 +394,7 @@ pub(super) fn square([_, up, out]: [Vector; 3]) -> [Vector; 3] {
 }
 
 /// The piece with the most mass; of several the first.
-pub(super) fn largest(masses: &Table<PieceId, f32>) -> PieceId {
+pub(super) fn largest(masses: &IndexVec<PieceId, f32>) -> PieceId {
     let heavier = |best, piece| match masses[piece] > masses[best] {
         true => piece,
         false => best,
@@ -397,8 +403,8 @@ pub(super) fn largest(masses: &Table<PieceId, f32>) -> PieceId {
 }
 
 /// The mass of each piece [kg].
-pub(super) fn masses<D: Dim>(body: &Body<D>) -> Table<PieceId, f32> {
-    let mut masses = Table::from(vec![0.0f32; body.pieces().list.len()]);
+pub(super) fn masses<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, f32> {
+    let mut masses = IndexVec::from(vec![0.0f32; body.pieces().list.len()]);
     for (id, _) in body.mesh().nodes() {
         masses[body.pieces().of_node(id)] += body.node_state(id).2;
     }

@@ -197,7 +197,7 @@ fn faces<D: Dim>(round: &Round<D>, look: &Look) -> Vec<Face> {
     if look.elements.is_some() {
         return Vec::new();
     }
-    let bodies = round.world().bodies();
+    let bodies = round.world().soft_bodies();
     // Before the first tick nobody has felt anything.
     let fresh: Vec<Feeling>;
     let feelings = match look.effects.feelings.len() == bodies.len() {
@@ -230,7 +230,7 @@ fn faces<D: Dim>(round: &Round<D>, look: &Look) -> Vec<Face> {
 /// The lines of a round that was played before.
 fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
     let stroke = Stroke::new(2.5, GHOST);
-    for body in round.world().bodies() {
+    for body in round.world().soft_bodies() {
         for outline in body.outlines() {
             let points = outline.points.iter().map(|&at| view.on_screen(at));
             let points: Vec<Pos2> = points.collect();

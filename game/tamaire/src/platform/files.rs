@@ -64,7 +64,7 @@ pub enum News {
     /// Stored data could not be used.
     Damaged(Damage),
     /// A replay or picture was saved at this location.
-    Saved(String),
+    SavedElementStates(String),
     /// Writing failed. For settings and records this is reported once.
     Failed(String),
     /// Writing failed because the storage is full.
@@ -330,7 +330,7 @@ impl Files {
                 Done::Level(Ok(Ok(level))) => news.push(News::Level(level)),
                 Done::Level(Ok(Err(damage))) => news.push(News::Damaged(damage)),
                 Done::Replay(Ok(location)) | Done::Picture(Ok(location)) => {
-                    news.push(News::Saved(location));
+                    news.push(News::SavedElementStates(location));
                 }
                 Done::Replay(Err(error)) | Done::Picture(Err(error)) => news.push(failed(&error)),
                 Done::Note(Ok(())) => self.is_failing = false,

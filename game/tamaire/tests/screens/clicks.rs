@@ -292,7 +292,10 @@ fn mouse_and_keys_are_two_players() {
     frames(&mut window, 2);
     let hands = |window: &Window| {
         let hands = window.state().game.bout.round().hands();
-        hands.iter().map(|hand| hand.goal()).collect::<Vec<_>>()
+        hands
+            .iter()
+            .map(|hand| hand.target_position())
+            .collect::<Vec<_>>()
     };
     let before = hands(&window);
     let start = window.state().game.bout.round().level().scene().goals(0);

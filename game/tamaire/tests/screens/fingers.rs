@@ -9,7 +9,7 @@ use tamaire::platform::Files;
 fn goal(window: &Window, player: usize) -> [f32; 3] {
     let game = &window.state().game;
     let wanted = game.controls.players.wanted(player);
-    wanted.unwrap_or_else(|| game.bout.round().hands()[player].goal())
+    wanted.unwrap_or_else(|| game.bout.round().hands()[player].target_position())
 }
 
 /// Where a button is that fingers can press.

@@ -92,7 +92,10 @@ fn one_switch_is_enough_to_win_and_to_go_on() {
     assert_eq!(screen(&window), Screen::Play);
     // What chose the level has moved nothing.
     let start = game(&mut window).bout.round().start(0);
-    assert_eq!(game(&mut window).bout.round().hands()[0].goal(), start);
+    assert_eq!(
+        game(&mut window).bout.round().hands()[0].target_position(),
+        start
+    );
 
     wait_for(&mut window, |offer| offer == Offer::Pause);
     tap(&mut window);
@@ -135,7 +138,7 @@ fn in_space_the_switch_raises_and_lowers_the_hand() {
     game(&mut window).settings.toggle_keys = true;
     start(&mut window, "classic-3d");
     frames(&mut window, 2);
-    let height = |window: &mut Window| game(window).bout.round().hands()[0].goal()[1];
+    let height = |window: &mut Window| game(window).bout.round().hands()[0].target_position()[1];
     let before = height(&mut window);
     wait_for(&mut window, |offer| offer == Offer::Raise);
     // One press takes it, the next one leaves it.

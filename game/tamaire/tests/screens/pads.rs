@@ -94,7 +94,7 @@ fn a_pad_alone_goes_everywhere() {
 
     let hand = |table: &mut Table| {
         let round = game(&mut table.window).bout.round();
-        round.hands()[0].goal()
+        round.hands()[0].target_position()
     };
     let before = hand(&mut table);
     table.devices[0].pad.as_mut().unwrap().left = [0.0, 1.0];
@@ -204,7 +204,10 @@ fn a_second_player_joins_leaves_and_is_unplugged() {
     let hands = |table: &mut Table| {
         let round = game(&mut table.window).bout.round();
         let hands = round.hands();
-        hands.iter().map(|hand| hand.goal()).collect::<Vec<_>>()
+        hands
+            .iter()
+            .map(|hand| hand.target_position())
+            .collect::<Vec<_>>()
     };
     let before = hands(&mut table);
     assert_eq!(before.len(), 2);

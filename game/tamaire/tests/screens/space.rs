@@ -21,7 +21,7 @@ pub fn in_space() -> Window {
 
 /// Where a player's hand is to go next [m].
 pub fn goal(window: &Window, player: usize) -> Vector {
-    window.state().game.bout.round().hands()[player].goal()
+    window.state().game.bout.round().hands()[player].target_position()
 }
 
 fn turned(window: &Window) -> [f32; 2] {

@@ -3,7 +3,7 @@
 use super::map::Map;
 use crate::Round;
 use fuwafuwa::vector::{dot, length, minus, plus, scaled};
-use fuwafuwa::{Dim, PieceView, Rigid, Shape, Vector};
+use fuwafuwa::{Dim, PieceView, RigidBody, Shape, Vector};
 use std::cell::LazyCell;
 
 /// Pieces with less than this share of the mass are not worth the way.
@@ -74,7 +74,7 @@ impl Sight {
     pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
         let (world, arena) = (round.world(), round.level().arena());
         let region = round.basket()?;
-        let obstacles: Vec<&Shape> = world.obstacles().map(Rigid::shape).collect();
+        let obstacles: Vec<&Shape> = world.fixed_rigid_bodies().map(RigidBody::shape).collect();
         let obstacles = obstacles.as_slice();
         let basket = Basket::of::<D>(region, obstacles)?;
         let hand = round.hands().next()?;
@@ -85,7 +85,7 @@ impl Sight {
         });
 
         let mass = round.progress().mass;
-        let bodies = world.bodies().iter();
+        let bodies = world.soft_bodies().iter();
         let mut views: Vec<PieceView> = bodies.flat_map(|body| body.piece_views()).collect();
         views.sort_by(|a, b| b.mass.total_cmp(&a.mass));
         let largest = views.first()?;
@@ -103,7 +103,7 @@ impl Sight {
         let piece = pieces[skips % pieces.len()];
 
         let mut within = 0.0;
-        for body in world.bodies().iter() {
+        for body in world.soft_bodies().iter() {
             for (id, _) in body.mesh().nodes() {
                 let (at, _, share) = body.node_state(id);
                 map.add(at, SOFT * share / mass);
@@ -122,7 +122,7 @@ impl Sight {
             within,
             surplus: within - round.level().game().share,
             hand: hand.position(),
-            goal: hand.goal(),
+            goal: hand.target_position(),
             away: clamped(out, arena, radius),
             map,
         })

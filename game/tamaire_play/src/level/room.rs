@@ -1,7 +1,7 @@
 //! Whether what a level begins with can be played.
 
 use fuwafuwa::vector::{plus, scaled};
-use fuwafuwa::{Body, Dim, Vector, World};
+use fuwafuwa::{Dim, SoftBody, Vector, World};
 
 /// Checks that in the arena hands can move and bodies can be reached; else which field is wrong, and what was expected.
 pub(super) fn check<D: Dim>(
@@ -15,12 +15,12 @@ pub(super) fn check<D: Dim>(
         return Err(("hand", reason));
     }
     // What is above may fall in.
-    let fall = world.settings().gravity;
+    let fall = world.config().gravity;
     let is_out = |middle: Vector, k: usize| {
         middle[k] < low[k] && fall[k] <= 0.0 || middle[k] > high[k] && fall[k] >= 0.0
     };
     let is_within = |middle: Vector| !(0..D::N).any(|k| is_out(middle, k));
-    let mut middles = world.bodies().iter().map(middle);
+    let mut middles = world.soft_bodies().iter().map(middle);
     match middles.position(|middle| !is_within(middle)) {
         None => Ok(()),
         Some(index) => {
@@ -34,7 +34,7 @@ pub(super) fn check<D: Dim>(
 }
 
 /// The middle of the nodes of a body [m].
-fn middle<D: Dim>(body: &Body<D>) -> Vector {
+fn middle<D: Dim>(body: &SoftBody<D>) -> Vector {
     let positions = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);
     let (sum, count) = positions.fold(([0.0; 3], 0.0), |(sum, count), at| {
         (plus(sum, at), count + 1.0)
@@ -44,7 +44,7 @@ fn middle<D: Dim>(body: &Body<D>) -> Vector {
 
 /// How wide the widest hand is on any axis [m].
 fn widest_hand<D: Dim>(world: &World<D>) -> f32 {
-    let widths = world.hands().flat_map(|(_, hand)| {
+    let widths = world.target_followers().flat_map(|(_, hand)| {
         let [low, high] = hand.form().bounds();
         (0..D::N).map(move |axis| high[axis] - low[axis])
     });

@@ -1,7 +1,7 @@
 //! Same input, same bits.
 
 use super::{app, at, run, world};
-use bevy_fuwafuwa::fuwafuwa::{Body, Rigid, Settings, World};
+use bevy_fuwafuwa::fuwafuwa::{Body, RigidBody, Settings, World};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::Vec3;
 
@@ -39,14 +39,14 @@ fn hash_of_app() -> u64 {
 fn an_app_has_the_bits_of_the_engine() -> Result<(), Box<dyn std::error::Error>> {
     let mut world = World::<Dim2>::new(Settings::default())?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(Rigid::fixed(floor, 0.5))?;
+    world.add_rigid(RigidBody::fixed(floor, 0.5))?;
     for (across, x, y) in BALLS {
         let body = Body::new(VoxelGrid::ball(across, 1.0)?, &[SoftMaterial::default()])?;
         world.add_body(body.moved([-0.5, -0.5, 0.0]).moved([x, y, 0.0]));
     }
     let (centre, radius) = ([0.0; 3], 0.15);
     let form = Shape::Ball { centre, radius };
-    let hand = Rigid::driven(form, hand_at(0).into(), Drive::Kinematic);
+    let hand = RigidBody::driven(form, hand_at(0).into(), MotionType::Kinematic);
     let hand = world.add_rigid(hand)?;
     let mut released = 0;
     for tick in 0..TICKS {

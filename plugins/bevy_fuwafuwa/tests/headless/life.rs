@@ -7,7 +7,7 @@ use bevy_ecs::resource::Resource;
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::system::ResMut;
 use bevy_fuwafuwa::component::SoftBodyId;
-use bevy_fuwafuwa::fuwafuwa::{Blade, Knife, PieceSize, Rigid};
+use bevy_fuwafuwa::fuwafuwa::{Blade, Knife, PieceSize, RigidBody};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::Vec3;
 use bevy_mesh::Mesh2d;
@@ -127,7 +127,7 @@ fn what_a_knife_cuts_and_what_is_taken_out_is_told() {
     app.update();
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
     let engine = world.engine_mut();
-    let mut hand = Rigid::hand([0.03, 1.2, 0.0], 0.05);
+    let mut hand = RigidBody::hand([0.03, 1.2, 0.0], 0.05);
     hand.is_sensor = true; // the edge alone touches
     let hand = engine.add_rigid(hand).unwrap();
     let knife = Knife::new(hand, [[0.0; 3]; 2], [0.0, -1.0, 0.0]);

@@ -87,7 +87,7 @@ fn who_cannot_be_does_not_enter_and_hears_why() {
     check(rejected(free(f32::NAN)), "mass");
     check(rejected(free(0.0)), "mass");
     check(
-        rejected(RigidBody2d::floor().with_drive(Drive::Free { mass: 1.0 })),
+        rejected(RigidBody2d::floor().with_drive(MotionType::Dynamic { mass: 1.0 })),
         "shape",
     );
     check(rejected(free(1.0).with_restitution(2.0)), "restitution");

@@ -136,7 +136,7 @@ fn hands_go_to_their_goals_and_obstacles_where_they_are_put() {
         .world_mut()
         .spawn((RigidBody3d::hand(0.1), at(0.0, 5.0)))
         .id();
-    let coupled = RigidBody3d::hand(0.1).with_drive(Drive::default());
+    let coupled = RigidBody3d::hand(0.1).with_drive(MotionType::default());
     let coupled = (coupled, at(3.0, 5.0), Goal(Vec3::new(3.0, 6.0, 0.0)));
     let coupled = app.world_mut().spawn(coupled).id();
     let half = [0.5; 3];

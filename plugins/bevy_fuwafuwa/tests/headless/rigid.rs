@@ -6,7 +6,7 @@ use bevy_ecs::bundle::Bundle;
 use bevy_ecs::entity::Entity;
 use bevy_fuwafuwa::Dimension;
 use bevy_fuwafuwa::component::RigidBodyId;
-use bevy_fuwafuwa::fuwafuwa::{Body, Rigid, Rotation, Settings, World};
+use bevy_fuwafuwa::fuwafuwa::{Body, RigidBody, Rotation, Settings, World};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
@@ -39,7 +39,7 @@ fn spawn(app: &mut App, bundle: impl Bundle) -> Entity {
     app.world_mut().spawn(bundle).id()
 }
 
-fn rigid<D: Dimension>(app: &App, entity: Entity) -> &Rigid {
+fn rigid<D: Dimension>(app: &App, entity: Entity) -> &RigidBody {
     let world = world::<D>(app);
     let id = world.rigid_of(entity).expect("it has entered");
     assert_eq!(world.entity_of_rigid(id), Some(entity));
@@ -141,7 +141,7 @@ fn walls_are_turned_as_their_transform_is() {
 fn a_turning_table_takes_a_box_along() {
     let mut app = app::<Dim3>();
     let table = RigidBody3d::fixed(slab())
-        .with_drive(Drive::Kinematic)
+        .with_drive(MotionType::Kinematic)
         .with_friction(0.8);
     let table = spawn(&mut app, table);
     let rider = (RigidBody3d::free(block(), 1.0), at(1.0, 0.1 + 0.5 * SIDE));
@@ -188,7 +188,7 @@ fn what_is_written_into_a_transform_puts_it_there() {
     assert!(velocity.distance(Vec3::Y) < 1e-3, "{velocity}");
 
     // So is a hand, which then is pulled to its goal again.
-    let hand = RigidBody3d::hand(0.1).with_drive(Drive::default());
+    let hand = RigidBody3d::hand(0.1).with_drive(MotionType::default());
     let hand = spawn(&mut app, (hand, at(0.0, 9.0), Goal(Vec3::Y * 9.0)));
     run(&mut app, 5);
     app.world_mut().entity_mut(hand).insert(at(0.0, 8.0));
@@ -288,7 +288,7 @@ const TICKS: usize = 120;
 
 fn hash_of_app<D: Dimension>() -> u64 {
     let mut app = app::<D>();
-    let table = RigidBody::<D>::fixed(slab()).with_drive(Drive::Kinematic);
+    let table = RigidBody::<D>::fixed(slab()).with_drive(MotionType::Kinematic);
     let table = spawn(&mut app, table);
     for n in 0..4 {
         let own = RigidBody::<D>::free(block(), 2.0).with_restitution(0.3);
@@ -309,11 +309,11 @@ fn hash_of_app<D: Dimension>() -> u64 {
 fn hash_of_engine<D: Dimension>() -> Result<u64, Box<dyn std::error::Error>> {
     let rotation = |own: Quat| Rotation::from_quaternion(own.to_array());
     let mut world = World::<D>::new(Settings::default())?;
-    let table = world.add_rigid(Rigid::driven(slab(), [0.0; 3], Drive::Kinematic))?;
+    let table = world.add_rigid(RigidBody::driven(slab(), [0.0; 3], MotionType::Kinematic))?;
     for n in 0..4 {
         let shape = block().moved([0.0, 0.5 + n as f32, 0.0]);
         let turned = rotation(Quat::from_rotation_z(askew(n)));
-        let mut own = Rigid::free(shape, 2.0).rotated(turned);
+        let mut own = RigidBody::free(shape, 2.0).rotated(turned);
         own.restitution = 0.3;
         world.add_rigid(own)?;
     }

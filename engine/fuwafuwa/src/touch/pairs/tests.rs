@@ -1,9 +1,9 @@
 use super::*;
-use crate::body::Body;
+use crate::body::SoftBody;
 use crate::dim::{Dim2, Dim3};
 use crate::grid::VoxelGrid;
 use crate::handle::BodySlot;
-use crate::ids::{ElementId, PieceId, Table};
+use crate::ids::{ElementId, IndexVec, PieceId};
 use crate::material::Material;
 use crate::touch::pair::{MARGIN, renumber};
 use crate::touch::sphere::ContactSphere;
@@ -19,7 +19,7 @@ fn random(seed: &mut u32) -> f32 {
 }
 
 /// Starts a tick as a world does.
-fn start_tick<D: Dim>(spheres: &mut Spheres, pairs: &mut SpherePairs, bodies: &Bodies<D>) {
+fn start_tick<D: Dim>(spheres: &mut Spheres, pairs: &mut SpherePairs, bodies: &SoftBodies<D>) {
     let numbers = spheres.start_tick(bodies, &mut pairs.changed);
     pairs.start_tick(numbers.is_some());
     if let Some(numbers) = numbers {
@@ -28,7 +28,7 @@ fn start_tick<D: Dim>(spheres: &mut Spheres, pairs: &mut SpherePairs, bodies: &B
 }
 
 /// Compares the list with a test of all pairs of spheres.
-fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &Bodies<D>, when: &str) {
+fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &SoftBodies<D>, when: &str) {
     assert!(pairs.list.is_sorted_by(|a, b| a.spheres < b.spheres));
     let all = &spheres.list;
     let centre = |sphere: &ContactSphere| sphere.mean::<D>(&bodies.at(sphere.body).state.position);
@@ -50,10 +50,12 @@ fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &Bodies<D>, w
 }
 
 /// Returns a set of bodies with a single ball.
-fn ball<D: Dim>(n: usize) -> Bodies<D> {
+fn ball<D: Dim>(n: usize) -> SoftBodies<D> {
     let grid = VoxelGrid::<D>::ball(n, 1.0).expect("the ball has voxels");
-    let mut bodies = Bodies::default();
-    bodies.insert(Body::new(grid, &[Material::default()]).expect("the default material is valid"));
+    let mut bodies = SoftBodies::default();
+    bodies.insert(
+        SoftBody::new(grid, &[Material::default()]).expect("the default material is valid"),
+    );
     bodies
 }
 
@@ -63,7 +65,10 @@ fn check<D: Dim>(n: usize) {
     let body = bodies.at_mut(BALL);
     body.crumble()
         .expect("splitting nodes keeps the mesh valid");
-    let (size, count) = (body.truth.grid.voxel_size(), body.truth.pieces.list.len());
+    let (size, count) = (
+        body.topology.grid.voxel_size(),
+        body.topology.pieces.list.len(),
+    );
     let mut seed = 7;
     let (mut spheres, mut pairs) = (Spheres::default(), SpherePairs::default());
     let (mut again, mut whole) = (0, 0);
@@ -88,11 +93,11 @@ fn check<D: Dim>(n: usize) {
                 speed
             })
             .collect();
-        let speeds: Table<PieceId, Row> = speeds.into();
-        let velocity = |body: &mut Body<D>, sign: &dyn Fn(PieceId) -> f32| {
+        let speeds: IndexVec<PieceId, Row> = speeds.into();
+        let velocity = |body: &mut SoftBody<D>, sign: &dyn Fn(PieceId) -> f32| {
             for node in body.state.position.ids() {
-                let piece = body.truth.pieces.of_node(node);
-                let moves = if body.truth.pieces.list[piece].asleep {
+                let piece = body.topology.pieces.of_node(node);
+                let moves = if body.topology.pieces.list[piece].asleep {
                     0.0
                 } else {
                     sign(piece)
@@ -150,7 +155,7 @@ fn list_contains_all_close_pairs_of_moving_crumbs() {
 fn lips(spheres: &Spheres) -> Vec<[(BodySlot, ElementId); 2]> {
     let key = |sphere: SphereId| spheres.list[sphere].key();
     let ascending = |[a, b]: [(BodySlot, ElementId); 2]| [a.min(b), a.max(b)];
-    let mut lips: Vec<_> = { spheres.lips.iter() }
+    let mut lips: Vec<_> = { spheres.crack_faces.iter() }
         .map(|lips| ascending(lips.map(key)))
         .collect();
     lips.sort_unstable();
@@ -212,7 +217,7 @@ fn check_tears<D: Dim>(n: usize) {
             }
         }
     }
-    assert!(bodies.at(BALL).truth.pieces.list.len() > 10);
+    assert!(bodies.at(BALL).topology.pieces.list.len() > 10);
 }
 
 #[test]

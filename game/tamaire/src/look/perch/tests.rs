@@ -1,12 +1,12 @@
 use super::*;
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Blade, Dim3, Material, PieceId, Settings, VoxelGrid, World};
+use fuwafuwa::{Blade, Dim3, Material, PieceId, VoxelGrid, World, WorldConfig};
 
 const EYE: Vector = [0.5, 0.8, 6.0];
 
 fn alone(grid: VoxelGrid<Dim3>) -> World<Dim3> {
-    let mut world = World::new(Settings::default()).expect("usual");
-    world.add_body(Body::new(grid, &[Material::default()]).expect("usual"));
+    let mut world = World::new(WorldConfig::default()).expect("usual");
+    world.add_soft_body(SoftBody::new(grid, &[Material::default()]).expect("usual"));
     world
 }
 
@@ -16,7 +16,9 @@ fn ball() -> World<Dim3> {
 
 /// Moves all nodes from where they were at rest.
 fn deform(world: &mut World<Dim3>, to: impl Fn(PieceId, Vector) -> Vector) {
-    let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
+    let body = world
+        .soft_body_mut(world.nth_soft_body(0).unwrap())
+        .unwrap();
     let voxel = body.grid().voxel_size();
     let nodes = body.mesh().nodes();
     let nodes: Vec<_> = nodes.map(|(id, node)| (id, node.at)).collect();
@@ -28,7 +30,7 @@ fn deform(world: &mut World<Dim3>, to: impl Fn(PieceId, Vector) -> Vector) {
 }
 
 /// How much of the face lies on original skin.
-fn covered(perch: &Perch, body: &Body<Dim3>) -> f32 {
+fn covered(perch: &Perch, body: &SoftBody<Dim3>) -> f32 {
     let skin = Skin::of(body, perch.piece, &masses(body), Some(EYE));
     let size = perch.size;
     let at = plus(perch.at, scaled(perch.axes[2], INSIDE * size));
@@ -38,16 +40,16 @@ fn covered(perch: &Perch, body: &Body<Dim3>) -> f32 {
 #[test]
 fn it_looks_at_who_looks_from_a_place_that_holds_it() {
     let world = ball();
-    let perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
+    let perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
     assert!(dot(perch.axes[2], wish([0.5; 3], EYE)) > 0.97, "{perch:?}");
     assert!(perch.axes[0][0] > 0.97 && perch.size > 0.2, "{perch:?}");
-    assert!(covered(&perch, world.bodies().first().unwrap()) > 0.9);
+    assert!(covered(&perch, world.soft_bodies().first().unwrap()) > 0.9);
 }
 
 #[test]
 fn it_rolls_with_the_skin_however_fast_that_turns() {
     let mut world = ball();
-    let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
+    let mut perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
     let (first, out) = (perch.at, perch.axes[2]);
     for tick in 1..20 {
         // Ten radians a second, and away.
@@ -60,7 +62,7 @@ fn it_rolls_with_the_skin_however_fast_that_turns() {
         };
         deform(&mut world, |_, at| carried(at));
         perch.follow(
-            world.bodies().first().unwrap(),
+            world.soft_bodies().first().unwrap(),
             Some(EYE),
             tick % 5 == 0,
             TICK,
@@ -73,7 +75,7 @@ fn it_rolls_with_the_skin_however_fast_that_turns() {
 #[test]
 fn it_stays_while_its_body_rolls_by_and_is_upright_again_after() {
     let mut world = ball();
-    let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
+    let mut perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
     let mut leaps = 0;
     let (mut angle, mut least) = (0.0f32, f32::MAX);
     for tick in 1..150 {
@@ -85,7 +87,7 @@ fn it_stays_while_its_body_rolls_by_and_is_upright_again_after() {
             plus([cos * x + sin * y, cos * y - sin * x, z], [0.5; 3])
         });
         let before = perch.axes[2];
-        let body = world.bodies().first().unwrap();
+        let body = world.soft_bodies().first().unwrap();
         perch.follow(body, Some(EYE), tick % 5 == 0, TICK);
         leaps += u32::from(length(minus(perch.axes[2], before)) > 0.2);
         least = least.min(dot(perch.axes[2], wish([0.5; 3], EYE)));
@@ -97,13 +99,13 @@ fn it_stays_while_its_body_rolls_by_and_is_upright_again_after() {
 #[test]
 fn it_comes_back_once_its_body_has_turned_its_back() {
     let mut world = ball();
-    let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
+    let mut perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
     deform(&mut world, |_, [x, y, z]| [1.0 - x, y, 1.0 - z]);
     let mut least = f32::MAX;
     for tick in 0..60 {
         let before = perch.clone();
         perch.follow(
-            world.bodies().first().unwrap(),
+            world.soft_bodies().first().unwrap(),
             Some(EYE),
             tick % 5 == 0,
             TICK,
@@ -121,12 +123,12 @@ fn it_comes_back_once_its_body_has_turned_its_back() {
 #[test]
 fn it_leaves_a_place_that_was_torn_off_for_skin_that_is_left() {
     let mut world = ball();
-    let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
+    let mut perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
     // What was towards who looks is cut off and gone.
     let (from, across, along) = ([-0.5, 1.25, 0.0], [2.0, 0.0, 0.0], [0.0, -1.3, 1.3]);
     world
         .cut(
-            world.nth_body(0).unwrap(),
+            world.nth_soft_body(0).unwrap(),
             &Blade {
                 from,
                 across,
@@ -134,7 +136,7 @@ fn it_leaves_a_place_that_was_torn_off_for_skin_that_is_left() {
             },
         )
         .unwrap();
-    let masses = masses(world.bodies().first().unwrap());
+    let masses = masses(world.soft_bodies().first().unwrap());
     let is_gone = |piece: PieceId| masses[piece] < masses.iter().sum::<f32>() * 0.5;
     deform(&mut world, |piece, at| match is_gone(piece) {
         true => plus(at, [9.0, 0.0, 0.0]),
@@ -142,7 +144,7 @@ fn it_leaves_a_place_that_was_torn_off_for_skin_that_is_left() {
     });
     for tick in 0..60 {
         perch.follow(
-            world.bodies().first().unwrap(),
+            world.soft_bodies().first().unwrap(),
             Some(EYE),
             tick % 5 == 0,
             TICK,
@@ -150,14 +152,14 @@ fn it_leaves_a_place_that_was_torn_off_for_skin_that_is_left() {
     }
     assert!(!is_gone(perch.piece) && perch.size > 0.08, "{perch:?}");
     assert!(
-        covered(&perch, world.bodies().first().unwrap()) > 0.7,
+        covered(&perch, world.soft_bodies().first().unwrap()) > 0.7,
         "{perch:?}"
     );
     // There it stays.
     let place = perch.place.expect("it has one").voxel;
     for tick in 0..120 {
         perch.follow(
-            world.bodies().first().unwrap(),
+            world.soft_bodies().first().unwrap(),
             Some(EYE),
             tick % 5 == 0,
             TICK,
