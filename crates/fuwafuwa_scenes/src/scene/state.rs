@@ -1,25 +1,25 @@
-//! What has no words in a scene: a body or something rigid as it is, as the snapshot of a world that has nothing else.
+//! Complete states of bodies and rigid bodies: base64 snapshots of worlds with a single one.
 
 use super::error::Wrong;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::{Body, Dim, Rigid, Settings, World, snapshot};
 
-/// A body, in letters.
+/// Encodes a body.
 pub(super) fn of_body<D: Dim>(body: &Body<D>, settings: Settings) -> Option<String> {
     let mut world = World::new(settings).ok()?;
     world.add_body(body.clone());
     Some(BASE64.encode(snapshot::save(&world)))
 }
 
-/// Something rigid, in letters.
+/// Encodes a rigid body.
 pub(super) fn of_rigid<D: Dim>(rigid: &Rigid) -> Option<String> {
     let mut world = World::<D>::new(Settings::default()).ok()?;
     world.add_rigid(rigid.clone()).ok()?;
     Some(BASE64.encode(snapshot::save(&world)))
 }
 
-/// The body that letters say.
+/// Decodes a body.
 pub(super) fn body<D: Dim>(text: &str) -> Result<Body<D>, Wrong> {
     let mut world = world::<D>(text)?;
     let id = world.nth_body(0).filter(|_| world.bodies().len() == 1);
@@ -27,7 +27,7 @@ pub(super) fn body<D: Dim>(text: &str) -> Result<Body<D>, Wrong> {
     body.ok_or_else(|| Wrong::new("state", "expected the snapshot of a world with one body"))
 }
 
-/// The rigid thing that letters say.
+/// Decodes a rigid body.
 pub(super) fn rigid<D: Dim>(text: &str) -> Result<Rigid, Wrong> {
     let mut world = world::<D>(text)?;
     let id = world.rigids().ids().next();
@@ -36,7 +36,7 @@ pub(super) fn rigid<D: Dim>(text: &str) -> Result<Rigid, Wrong> {
     rigid.ok_or_else(|| {
         Wrong::new(
             "state",
-            "expected the snapshot of a world with one rigid thing",
+            "expected the snapshot of a world with one rigid body",
         )
     })
 }
