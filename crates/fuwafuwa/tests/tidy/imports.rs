@@ -1,28 +1,29 @@
-//! Which file of a crate uses what another one defines.
+//! Dependencies between the source files of a crate.
 //!
-//! A file uses another where a path in its code, its tests left out, leads to something that is defined
-//! there, through whatever is re-exported on the way. Declaring a module and re-exporting from it is no
-//! use of it, and neither is calling a method: those belong to their type, wherever they stand.
+//! A file depends on another one if a path in its code, tests excluded, leads to an item that is defined
+//! there, directly or through re-exports. Declaring a module or re-exporting from it is not a dependency.
+//! Neither is a method call: methods belong to their type, wherever they are defined.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The path of a module below the root of its crate.
+/// Path of a module below the root of its crate.
 type Module = Vec<String>;
-/// The files of a crate with their names, by module.
+/// Files of a crate with their names, by module.
 type Files = BTreeMap<Module, (String, File)>;
 
-/// A file of a crate.
+/// A source file, parsed.
 #[derive(Default)]
 struct File {
     tokens: Vec<String>,
     defined: BTreeSet<String>,
-    /// What `use` brings in: the name here, the path, and whether it is re-exported.
+    /// Names imported by `use`: local name, path, and whether the name is re-exported.
     brought: Vec<(String, Vec<String>, bool)>,
     /// Paths in code.
     paths: Vec<Vec<String>>,
 }
 
-/// For each file of a crate those that it uses: of files by name, below its folder of sources, and text.
+/// Returns the dependencies of each file of a crate. `files` has the name below the source folder and the
+/// text of each file.
 pub fn imports(files: &[(String, String)]) -> BTreeMap<String, BTreeSet<String>> {
     let read = |(name, text): &(String, String)| (module_of(name), (name.clone(), File::of(text)));
     let files: Files = files.iter().map(read).collect();
@@ -41,8 +42,8 @@ pub fn imports(files: &[(String, String)]) -> BTreeMap<String, BTreeSet<String>>
     found.collect()
 }
 
-/// What stays of that when files that use none of the others, or that none of the others uses, are taken away, again
-/// and again: nothing, where none uses itself by way of others.
+/// Repeatedly removes files that depend on no other file or on which no other file depends. The result is
+/// empty if and only if there are no cycles.
 pub fn tangle(
     mut imports: BTreeMap<String, BTreeSet<String>>,
 ) -> BTreeMap<String, BTreeSet<String>> {
@@ -60,18 +61,19 @@ pub fn tangle(
     }
 }
 
-/// The module that a file is.
+/// Returns the module of a file.
 fn module_of(file: &str) -> Module {
     let path = file.trim_end_matches(".rs").split('/').map(str::to_string);
     let mut path: Module = path.collect();
-    let last = path.last().expect("it has a name").as_str();
+    let last = path.last().expect("a file has a name").as_str();
     if last == "mod" || path.len() == 1 && ["lib", "main"].contains(&last) {
         path.pop();
     }
     path
 }
 
-/// The module where what a path leads to is defined, as seen from another; none outside the crate.
+/// Returns the module that defines the target of a path, as seen from module `from`; `None` outside the
+/// crate.
 fn definer(files: &Files, from: &Module, path: &[String], detours: usize) -> Option<Module> {
     let (mut at, mut rest) = (from.clone(), path);
     while let Some((first, after)) = rest.split_first() {
@@ -95,7 +97,7 @@ fn definer(files: &Files, from: &Module, path: &[String], detours: usize) -> Opt
     if first == "*" || file.defined.contains(first) {
         return Some(at);
     }
-    // A crate that is named as one of its modules leads back here for ever.
+    // A crate with the name of one of its modules would lead back here endlessly.
     let mut brought = file.brought.iter().filter(|_| detours < 8);
     brought.find_map(|(word, source, _)| match word.as_str() {
         _ if word == first => definer(files, &at, &[source, after].concat(), detours + 1),
@@ -120,11 +122,11 @@ impl File {
             match file.tokens[at].as_str() {
                 "{" => depth += 1,
                 "}" => depth -= 1,
-                // Not that of `impl Trait + use<>`.
+                // Not the `use` of `impl Trait + use<>`.
                 "use" if next != "<" => {
                     let is_handed_on = at > 0 && ["pub", ")"].contains(&&*file.tokens[at - 1]);
                     let end = file.tokens[at..].iter().position(|token| token == ";");
-                    let end = at + end.expect("a semicolon ends what is brought in");
+                    let end = at + end.expect("a semicolon ends each use declaration");
                     let mut leaves = Vec::new();
                     use_tree(&file.tokens[at + 1..end], &[], &mut leaves);
                     let leaves = leaves.into_iter();
@@ -156,7 +158,7 @@ impl File {
     }
 }
 
-/// The names that a `use` brings in, each with its path.
+/// Collects the names of a `use` tree, each with its path.
 fn use_tree(tree: &[String], before: &[String], leaves: &mut Vec<(String, Vec<String>)>) {
     let Some(open) = tree.iter().position(|token| token == "{") else {
         let words = tree.iter().take_while(|token| *token != "as");
@@ -164,7 +166,10 @@ fn use_tree(tree: &[String], before: &[String], leaves: &mut Vec<(String, Vec<St
         let words = words.filter(|token| *token != "self" || before.is_empty());
         let path: Vec<String> = before.iter().cloned().chain(words).collect();
         let name = tree.last().filter(|last| *last != "self").or(path.last());
-        leaves.push((name.expect("it names something").clone(), path));
+        leaves.push((
+            name.expect("a use tree has at least one name").clone(),
+            path,
+        ));
         return;
     };
     let words = tree[..open].iter().filter(|token| *token != "::").cloned();
@@ -190,7 +195,7 @@ fn is_word(token: &str) -> bool {
     token.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// The words and signs of a source, `::` as one, without comments and strings.
+/// Splits a source into words and signs, with `::` as one token, without comments and strings.
 fn tokens(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut rest = text;
@@ -235,7 +240,7 @@ fn string_length(text: &str) -> usize {
     text.len()
 }
 
-/// That of a character, or of the mark of a lifetime.
+/// Returns the length of a character literal or of a lifetime's mark.
 fn character_length(text: &str) -> usize {
     let mut inner = text[1..].chars();
     match (inner.next(), inner.next()) {
@@ -245,7 +250,7 @@ fn character_length(text: &str) -> usize {
     }
 }
 
-/// Drops what follows `#[cfg(test)]`: an item up to its closing brace or semicolon.
+/// Drops each item after `#[cfg(test)]`, up to its closing brace or semicolon.
 fn without_tests(tokens: Vec<String>) -> Vec<String> {
     let mark = ["#", "[", "cfg", "(", "test", ")", "]"];
     let mut kept = Vec::new();
@@ -274,7 +279,7 @@ fn without_tests(tokens: Vec<String>) -> Vec<String> {
 }
 
 #[test]
-fn whoever_uses_each_other_is_found() {
+fn tangle_finds_import_cycles() {
     let check = |files: &[(&str, &str)], expect: &[&str]| {
         let files = files
             .iter()

@@ -1,4 +1,4 @@
-//! What the documents say about the code.
+//! Agreement of the documents with the code.
 
 mod imports;
 
@@ -15,10 +15,12 @@ fn architecture() -> String {
     fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap()
 }
 
-/// The rank of each module of the engine: the lines with arrows in ARCHITECTURE.md.
+/// Returns the rank of each module of the engine, read from the lines with arrows in ARCHITECTURE.md.
 fn ranks() -> BTreeMap<String, usize> {
     let text = architecture();
-    let start = text.find("The order is").expect("the order is told");
+    let start = text
+        .find("The order is")
+        .expect("ARCHITECTURE.md must contain \"The order is\"");
     let lines = text[start..]
         .lines()
         .skip_while(|line| !line.starts_with("    "));
@@ -33,7 +35,7 @@ fn ranks() -> BTreeMap<String, usize> {
         .collect()
 }
 
-/// The source files of a folder and of those in it, but for what was built there.
+/// Returns the source files of a folder and its subfolders, except for build outputs.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -48,7 +50,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The modules that a source names after `crate::`, but for its tests.
+/// Returns the modules that a source names after `crate::`, tests excluded.
 fn used(source: &str) -> Vec<String> {
     let end = source
         .find("#[cfg(test)]\nmod tests")
@@ -59,12 +61,17 @@ fn used(source: &str) -> Vec<String> {
         .filter(|line| !line.trim_start().starts_with("//"));
     code.flat_map(|line| line.split("crate::").skip(1))
         .map(|rest| rest.chars().take_while(|&c| is_word(c)).collect())
-        .inspect(|name: &String| assert!(!name.is_empty(), "name each module: {source}"))
+        .inspect(|name: &String| {
+            assert!(
+                !name.is_empty(),
+                "a path after crate:: must name a module: {source}"
+            )
+        })
         .collect()
 }
 
 #[test]
-fn a_module_knows_only_those_above_it() {
+fn module_uses_only_modules_before_it() {
     let ranks = ranks();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut seen = 0;
@@ -76,14 +83,15 @@ fn a_module_knows_only_those_above_it() {
             continue;
         }
         let rank = ranks.get(module);
-        let rank = rank.unwrap_or_else(|| panic!("ARCHITECTURE.md does not place `{module}`"));
+        let rank =
+            rank.unwrap_or_else(|| panic!("ARCHITECTURE.md has no rank for module `{module}`"));
         seen += 1;
         for other in used(&fs::read_to_string(&path).unwrap()) {
             if let Some(above) = ranks.get(&other) {
                 let allowed = above < rank || other == module;
                 assert!(
                     allowed,
-                    "{} uses `{other}`, which is not above it",
+                    "{} uses `{other}`, which does not come before it in ARCHITECTURE.md",
                     inner.display()
                 );
             }
@@ -91,13 +99,13 @@ fn a_module_knows_only_those_above_it() {
     }
     assert!(
         seen >= ranks.len(),
-        "each module has a file: {seen} of {}",
+        "found {seen} module files, expected at least {}",
         ranks.len()
     );
 }
 
 #[test]
-fn what_the_documents_name_is_there() {
+fn documents_name_existing_paths() {
     for document in [
         "ARCHITECTURE.md",
         "README.md",
@@ -116,13 +124,13 @@ fn what_the_documents_name_is_there() {
         for path in paths {
             assert!(
                 root().join(path).exists(),
-                "{document} names `{path}`, which is not there"
+                "{document} names `{path}`, which does not exist"
             );
         }
     }
 }
 
-/// The folders of all crates, with the one that is a workspace of its own.
+/// Returns the folders of all crates, including those outside `crates`.
 fn crates() -> Vec<PathBuf> {
     let listed = fs::read_dir(root().join("crates")).unwrap();
     let listed = listed.map(|entry| entry.unwrap().path());
@@ -131,7 +139,7 @@ fn crates() -> Vec<PathBuf> {
 }
 
 #[test]
-fn no_two_files_import_each_other() {
+fn source_files_have_no_import_cycles() {
     let mut count = 0;
     for folder in crates() {
         let folder = folder.join("src");
@@ -142,15 +150,19 @@ fn no_two_files_import_each_other() {
         let imports = imports(&files.collect::<Vec<_>>());
         count += imports.values().flatten().count();
         let tangled = tangle(imports);
-        assert!(tangled.is_empty(), "in {}: {tangled:#?}", folder.display());
+        assert!(
+            tangled.is_empty(),
+            "import cycle in {}: {tangled:#?}",
+            folder.display()
+        );
     }
     assert!(count > 500, "only {count} imports were found");
 }
 
-/// A browser has neither paths nor files: what the game keeps and opens goes through `platform`, by kind and name, and
-/// what the libraries below it read are bytes.
+/// A browser has neither paths nor files. The game opens and saves through `platform`, by kind and name, and
+/// the libraries below it read only bytes.
 #[test]
-fn files_are_opened_in_the_platform_and_for_the_command_line_alone() {
+fn file_access_is_limited_to_platform_and_command_line() {
     let edges = [
         ("game/src", &["platform", "headless", "desktop", "main"][..]),
         ("crates/tamaire_play/src", &[]),
@@ -173,17 +185,21 @@ fn files_are_opened_in_the_platform_and_for_the_command_line_alone() {
         let tests = text.find("#[cfg(test)]").unwrap_or(text.len());
         for word in ["std::fs", "std::path", "PathBuf", "Path::", "File::"] {
             let is_named = text[..tests].contains(word);
-            assert!(!is_named, "{} names {word}", path.display());
+            assert!(!is_named, "{} must not use {word}", path.display());
         }
     }
-    assert!(seen > 60, "only {seen} files were seen");
+    assert!(seen > 60, "only {seen} files were found");
 }
 
 #[test]
-fn no_file_is_too_long_to_read() {
+fn source_files_have_at_most_500_lines() {
     const MOST_LINES: usize = 500;
     for path in crates().iter().flat_map(|folder| sources(folder)) {
         let lines = fs::read_to_string(&path).unwrap().lines().count();
-        assert!(lines <= MOST_LINES, "{} has {lines} lines", path.display());
+        assert!(
+            lines <= MOST_LINES,
+            "{} has {lines} lines, expected at most {MOST_LINES}",
+            path.display()
+        );
     }
 }
