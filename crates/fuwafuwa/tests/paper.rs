@@ -33,8 +33,7 @@ fn element_count_grows_with_surface() {
     );
 }
 
-/// Elements stay small relative to the body, whatever its size, because their mass is lumped into their
-/// nodes.
+/// Elements stay small relative to a body of any size, because their mass is lumped into their nodes.
 #[test]
 fn element_width_is_at_most_an_eighth_of_body() {
     for n in [32, 64, 100, 256] {
