@@ -1,4 +1,4 @@
-//! Twenty rigid boxes fall onto a soft, unbreakable ball of 32 voxels across and come to rest. Prints the
+//! Twenty rigid boxes fall onto a soft, unbreakable ball of 32 voxels across until all sleep. Prints the
 //! time per tick.
 //!
 //! ```text

@@ -18,7 +18,7 @@ pub extern "C" fn golden_name(scene: usize) -> *const u8 {
     SCENES[scene].name.as_ptr()
 }
 
-/// Returns the length of a scene's name [bytes].
+/// Returns the length of a scene's name in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn golden_name_length(scene: usize) -> usize {
     SCENES[scene].name.len()

@@ -38,6 +38,7 @@ impl Scene {
     /// # Ok::<(), fuwafuwa_scenes::SceneError>(())
     /// ```
     ///
+    /// # Errors
     /// [`SceneError::Build`] names the cause: more bodies, materials or rigid bodies than a scene may have,
     /// or a joint whose bodies have moved since it was attached so that the fields of a scene cannot
     /// reproduce it.
