@@ -1,5 +1,4 @@
-//! What packages bring beside a program with a command line: manual pages, and completions for shells. Both follow from what the
-//! program says about itself.
+//! Manual pages and shell completions for a command-line program, generated from its `clap` description.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
@@ -10,18 +9,18 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Write the manual pages, and completions for shells, into a folder
+/// Write manual pages and shell completions into a folder
 #[derive(Args)]
 pub struct Options {
-    /// The folder; it gets a folder man and a folder completions
+    /// Target folder; receives the subfolders man and completions
     #[arg(value_name = "FOLDER")]
     pub folder: PathBuf,
 }
 
-/// Exit status when the folder cannot be written.
+/// Exit status if the folder cannot be written.
 const NOT_WRITTEN: u8 = 2;
 
-/// Writes all into the folder, and says so when that cannot be; the status to end with.
+/// Writes all files into the folder and reports errors on standard error. Returns the exit status.
 pub fn run(command: Command, options: &Options) -> ExitCode {
     let name = command.get_name().to_string();
     match write(command, &options.folder) {
@@ -33,16 +32,16 @@ pub fn run(command: Command, options: &Options) -> ExitCode {
     }
 }
 
-/// Writes all into the folder, which is made where there is none.
+/// Writes all files into the folder, which is created if missing.
 ///
 /// # Errors
-/// When a file cannot be written.
+/// If a file cannot be written.
 pub fn write(mut command: Command, folder: &Path) -> io::Result<()> {
     let (pages, completions) = (folder.join("man"), folder.join("completions"));
     fs::create_dir_all(&pages)?;
     fs::create_dir_all(&completions)?;
     let name = command.get_name().to_string();
-    // Of `help`, which only shows the same, there would be a page for each subcommand.
+    // Without this, the `help` subcommand would get a page for each subcommand, all repeating the same text.
     clap_mangen::generate_to(command.clone().disable_help_subcommand(true), pages)?;
     for shell in [Shell::Bash, Shell::Fish, Shell::Zsh, Shell::PowerShell] {
         generate_to(shell, &mut command, &name, &completions)?;
@@ -64,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn each_shell_and_each_subcommand_is_written_and_nothing_hidden() {
+    fn write_covers_shells_and_visible_subcommands() {
         let folder = tempfile::tempdir().unwrap();
         write(program(), folder.path()).unwrap();
         let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
@@ -79,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_cannot_be_made_is_told() {
+    fn write_fails_if_folder_cannot_be_created() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         fs::write(&file, "").unwrap();
@@ -87,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_a_subcommand_of_a_program() {
+    fn options_parse_as_subcommand() {
         #[derive(Subcommand)]
         enum Chore {
             Manual(Options),

@@ -1,5 +1,5 @@
-//! Twenty rigid boxes fall onto a soft ball of 32 voxels across, which does not tear, and come to rest: prints how long that
-//! takes.
+//! Twenty rigid boxes fall onto a soft, unbreakable ball of 32 voxels across until all sleep. Prints the
+//! time per tick.
 //!
 //! ```text
 //! cargo run --release -p fuwafuwa --example boxes
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .iter()
         .filter(|&&id| world.rigid_bodies()[id].is_asleep());
     println!(
-        "{} of {} boxes asleep after {:.1} s; a tick took {:.1} ms in the middle, {:.1} ms at the worst",
+        "{} of {} boxes asleep after {:.1} s; time per tick: median {:.1} ms, maximum {:.1} ms",
         asleep.count(),
         boxes.len(),
         f64::from(ticks) / 60.0,

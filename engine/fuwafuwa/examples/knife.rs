@@ -1,4 +1,4 @@
-//! A knife goes through an organ, an ellipsoid of 64 voxels across on a table: prints what that takes.
+//! A knife cuts through an organ, an ellipsoid of 64 voxels across on a table. Prints the time per tick.
 //!
 //! ```text
 //! cargo run --release -p fuwafuwa --example knife -- [VOXELS [SUBSTEPS]]
@@ -11,7 +11,7 @@ use fuwafuwa::{
 };
 use std::error::Error;
 
-/// About as a brain is: a square metre of cut takes 8 J.
+/// Roughly brain tissue: a cut takes 8 J/m².
 fn organ() -> Material {
     Material {
         elasticity: Elasticity {
@@ -31,7 +31,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut numbers = std::env::args().skip(1);
     let voxels: usize = numbers.next().map_or(Ok(64), |word| word.parse())?;
     let most_substeps: u32 = numbers.next().map_or(Ok(8), |word| word.parse())?;
-    // It goes the same every time: the least of three times of a tick is what it costs, the rest is the machine.
+    // The simulation is deterministic, so the minimum of three runs is the cost of a tick; the rest is noise
+    // of the machine.
     let (mut times, told) = cut(voxels, most_substeps)?;
     for _ in 1..3 {
         let again = cut(voxels, most_substeps)?.0;
@@ -43,17 +44,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     times.sort_by(f64::total_cmp);
     println!("{told}");
     println!(
-        "the first tick {first:.1} ms, the others {:.1} ms in the middle, {:.1} ms at the worst",
+        "first tick {first:.1} ms; others: median {:.1} ms, maximum {:.1} ms",
         times[times.len() / 2],
         times[times.len() - 1]
     );
     Ok(())
 }
 
-/// What each tick takes [ms], and what was cut, in words.
+/// Returns the time of each tick [ms], and a summary of the cut.
 fn cut(voxels: usize, most_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn Error>> {
     let settings = WorldConfig {
-        // As in a bath, where such an organ weighs little.
+        // As in a bath, where buoyancy carries most of the organ's weight.
         gravity: [0.0, -1.0, 0.0],
         most_substeps,
         ..WorldConfig::default()
@@ -79,7 +80,7 @@ fn cut(voxels: usize, most_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn 
     let knife = world.add_knife(Knife::new(holder, edge, [0.0, -1.0, 0.0]))?;
     let (mut times, mut sums, mut most) = (Vec::new(), [0.0; 2], 0.0f32);
     for tick in 0..180 {
-        // It waits for half a second, and goes down in two.
+        // The knife waits for half a second and then moves down for a bit over two seconds.
         let deep = 0.001 * (tick as f32 - 30.0).clamp(0.0, 135.0);
         world.set_target_position(holder, [0.081, 0.14 - deep, 0.08])?;
         let began = ThreadTime::now();
@@ -93,9 +94,9 @@ fn cut(voxels: usize, most_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn 
         most = most.max(world.knives().get(knife)?.force()[1]);
     }
     let told = format!(
-        "{solid} voxels, {} elements, {} pieces; cut {:.2} cm² with {:.3} J, {most:.2} N at most",
-        world.soft_bodies()[organ].mesh().element_count(),
-        world.soft_bodies()[organ].piece_views().len(),
+        "{solid} voxels, {} elements, {} pieces; cut {:.2} cm² with {:.3} J, maximum force {most:.2} N",
+        world.bodies()[organ].mesh().element_count(),
+        world.bodies()[organ].piece_views().len(),
         1e4 * sums[0],
         sums[1],
     );

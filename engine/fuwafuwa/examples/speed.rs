@@ -1,4 +1,4 @@
-//! Times a free ball that spins and swings, whole and torn: nanoseconds an element and substep,
+//! Times a free ball that spins and vibrates, whole and torn. Prints nanoseconds per element and substep, for
 //! forces and motion together.
 //!
 //! `cargo run --release -p fuwafuwa --example speed`
@@ -26,7 +26,7 @@ fn ball<D: Dim>(n: usize) -> Result<SoftBody<D>, Box<dyn Error>> {
     )?)
 }
 
-/// A ball with so many cracks in it, each along an axis and a few voxels wide, opened bit by bit.
+/// A ball with `cracks` cracks, each normal to an axis, a few voxels wide and opened point by point.
 fn torn<D: Dim>(n: usize, cracks: usize) -> Result<SoftBody<D>, Box<dyn Error>> {
     let mut body = ball::<D>(n)?;
     let mut seed = 1u64;
@@ -38,7 +38,7 @@ fn torn<D: Dim>(n: usize, cracks: usize) -> Result<SoftBody<D>, Box<dyn Error>> 
         let axis = random(D::N) as usize;
         let middle = [0; 3].map(|_: i32| random(n + 1));
         let radius = 2 + random(n / 6);
-        // The octants before the crack.
+        // Octants on the lower side of the crack.
         let side = (0..D::CORNERS).filter(|octant| octant >> axis & 1 == 0);
         let side: u8 = side.map(|octant| 1 << octant).sum();
         let reach = |other: usize| {
@@ -61,7 +61,7 @@ fn torn<D: Dim>(n: usize, cracks: usize) -> Result<SoftBody<D>, Box<dyn Error>> 
 }
 
 fn measure<D: Dim>(name: &str, mut body: SoftBody<D>) {
-    // A body without strain would be kinder than any in a game.
+    // Without strain the result would be too good: bodies in a game are strained.
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for &id in &nodes {
         let ([x, y, z], ..) = body.node_state(id);

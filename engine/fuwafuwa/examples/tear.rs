@@ -1,4 +1,4 @@
-//! Pushes a hand through a soft disc against a wall and tells what tears.
+//! Pushes a hand through a soft disc against a wall, and prints releases, energy and pieces.
 //!
 //! `cargo run --release -p fuwafuwa --example tear`
 
@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         VoxelGrid::ball(64, 1.0)?,
         &[Material::default()],
     )?);
-    // Stronger than the usual hand, which gets stuck halfway.
+    // Stronger than the default hand, which gets stuck halfway.
     let strong = MotionType::Coupled {
         mass: 2.0,
         stiffness: 10_000.0,
@@ -44,8 +44,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let felt = felt.map_or(0.0, |reaction| -reaction.coupling[0]);
         if report.nodes_split > 0 || tick % 20 == 0 {
             println!(
-                "tick {tick:3}: the hand pushes with {felt:5.0} N; {:2} nodes released ({energy:.2} J), {} pieces came off",
-                report.nodes_split, report.pieces_detached
+                "tick {tick:3}: the hand pushes with {felt:5.0} N; {:2} nodes released ({energy:.2} J), {} pieces detached",
+                report.released, report.parted
             );
         }
     }

@@ -1,4 +1,4 @@
-//! What is done to bodies from outside: turned, moved, pushed, put to sleep.
+//! Actions on bodies from outside: rotation, translation, impulses, sleep, settings, fields.
 
 use fuwafuwa::{
     Bookmark, Dim, Dim2, Dim3, Event, Hooks, Material, MotionType, NodeId, Refused, RigidBody,
@@ -36,7 +36,7 @@ fn places<D: Dim>(body: &SoftBody<D>) -> Vec<Vector> {
     all.map(|id| body.node_state(id).0).collect()
 }
 
-/// How far two bodies of the same nodes lie apart at most [m].
+/// Maximum distance between corresponding nodes of two bodies [m].
 fn apart<D: Dim>(a: &SoftBody<D>, b: &SoftBody<D>) -> f32 {
     let both = places(a).into_iter().zip(places(b));
     let gaps = both.map(|(a, b)| {
@@ -75,7 +75,7 @@ fn check_turned<D: Dim>(rotation: Rotation) {
 }
 
 #[test]
-fn a_body_that_was_turned_is_at_rest() {
+fn rotated_body_stays_at_rest() {
     for angle in [0.1, 1.0, FRAC_PI_2, 2.5, PI, -FRAC_PI_2] {
         check_turned::<Dim2>(Rotation::in_plane(angle));
         for axis in [[1.0, 0.0, 0.0], [0.0, 0.0, -2.0], [1.0, -1.0, 0.5]] {
@@ -84,7 +84,7 @@ fn a_body_that_was_turned_is_at_rest() {
     }
 }
 
-/// What is turned with all that it moves by goes the same way, turned: in a world, in the middle of being torn.
+/// A world rotated in the middle of tearing moves like the original, rotated.
 fn check_turned_in_motion<D: Dim>() {
     let rotation = Rotation::in_plane(PI);
     let (mut world, id) = with(WEIGHTLESS, ball::<D>(16));
@@ -99,7 +99,7 @@ fn check_turned_in_motion<D: Dim>() {
         world.step();
         turned.step();
     }
-    // Cracks may go another way by a rounding, so what all of it does is compared.
+    // Rounding can change the path of cracks, so total momentum and energy are compared.
     let [momentum, other] =
         [&world, &turned].map(|world| world.soft_bodies()[id].momentum().linear);
     let energies = [&world, &turned].map(|world| world.soft_bodies()[id].kinetic_energy());
@@ -114,13 +114,13 @@ fn check_turned_in_motion<D: Dim>() {
 }
 
 #[test]
-fn what_is_turned_goes_the_same_way_turned() {
+fn rotated_world_moves_like_original() {
     check_turned_in_motion::<Dim2>();
     check_turned_in_motion::<Dim3>();
 }
 
 #[test]
-fn a_grid_of_larger_voxels_is_the_same_body_larger() {
+fn scaled_grid_scales_mass_and_rejects_invalid_factors() {
     let small = VoxelGrid::<Dim3>::ball(8, 1.0).unwrap();
     let large = SoftBody::new(small.clone().scaled(2.0).unwrap(), &[Material::default()]).unwrap();
     let small = SoftBody::new(small, &[Material::default()]).unwrap();
@@ -149,12 +149,12 @@ fn check_moved<D: Dim>() {
 }
 
 #[test]
-fn a_body_is_moved_and_who_follows_it_need_not_begin_anew() {
+fn move_body_keeps_bookmarks_valid() {
     check_moved::<Dim2>();
     check_moved::<Dim3>();
 }
 
-/// One body rests on another one, which is pulled away.
+/// A body rests on another one, which is moved away.
 fn check_pulled_away<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     world.add_rigid_body(floor()).unwrap();
@@ -186,7 +186,7 @@ fn check_pulled_away<D: Dim>() {
 }
 
 #[test]
-fn what_leant_on_a_body_falls_when_that_is_moved() {
+fn move_body_wakes_bodies_in_contact_with_it() {
     check_pulled_away::<Dim2>();
     check_pulled_away::<Dim3>();
 }
@@ -213,16 +213,17 @@ fn check_pushed<D: Dim>() {
     assert!((straight.linear[1] / mass - 2.0).abs() < 1e-3);
     let turning = gained([0.0, 0.0, 3.0]);
     assert!((turning.linear[1] / mass - 2.0).abs() < 1e-3);
-    // A disc about its middle has half of m r², a ball two fifths of it.
+    // Moment of inertia about the centre: m r²/2 for a disc, 2/5 m r² for a ball.
     let share = if D::N == 2 { 0.5 } else { 0.4 };
     let inertia = share * mass * 0.25;
     let spin = turning.less(straight).angular[2] / inertia;
     assert!((spin - 3.0).abs() < 0.6, "{spin}");
 }
 
-/// One that was slow for almost long enough to sleep does not when the world begins to pull, though that is slow too.
+/// A body that is almost asleep stays awake when gravity sets in, even though its speed is below the sleep
+/// threshold at first.
 #[test]
-fn who_is_about_to_sleep_is_kept_awake() {
+fn gravity_change_resets_sleep_timer() {
     let gravity = [0.0, -1.0, 0.0];
     let pulls: [fn(&mut World<Dim2>, SoftBodyHandle); 3] = [
         |world, _| {
@@ -260,7 +261,7 @@ fn who_is_about_to_sleep_is_kept_awake() {
 }
 
 #[test]
-fn a_push_is_gained_whole() {
+fn impulse_and_velocity_change_momentum_exactly() {
     check_pushed::<Dim2>();
     check_pushed::<Dim3>();
 }
@@ -286,7 +287,7 @@ fn check_pull<D: Dim>() {
 }
 
 #[test]
-fn gravity_pulls_as_it_is_told() {
+fn gravity_scale_multiplies_acceleration() {
     check_pull::<Dim2>();
     check_pull::<Dim3>();
 }
@@ -297,7 +298,7 @@ fn check_sleep<D: Dim>() {
     let before = world.soft_bodies()[sleeper].clone();
     (0..60).for_each(|_| _ = world.step());
     assert_eq!(apart(&world.soft_bodies()[sleeper], &before), 0.0);
-    // What falls on it wakes it.
+    // A body that falls on the sleeping one wakes it.
     world.add_soft_body(ball::<D>(8).translated([0.0, 1.5, 0.0]));
     let woke = |world: &World<D>| {
         let events = world.events().iter();
@@ -315,15 +316,15 @@ fn check_sleep<D: Dim>() {
 }
 
 #[test]
-fn who_is_put_to_sleep_sleeps_until_something_comes() {
+fn put_to_sleep_lasts_until_impact_or_wake_up() {
     check_sleep::<Dim2>();
     check_sleep::<Dim3>();
 }
 
 #[test]
-fn settings_can_be_changed() {
-    let (mut world, id) = with(WorldConfig::default(), ball::<Dim2>(8));
-    let upwards = WorldConfig {
+fn set_settings_applies_to_running_world() {
+    let (mut world, id) = with(Settings::default(), ball::<Dim2>(8));
+    let upwards = Settings {
         gravity: [0.0, 9.81, 0.0],
         ..WorldConfig::default()
     };
@@ -377,19 +378,19 @@ fn check_field<D: Dim>() {
             let body = &world.soft_bodies()[id];
             body.momentum().linear[0] / body.total_mass()
         });
-        // At a distance of three reaches, a ninth of the strength, over a tenth of a second.
+        // At three times the radius, the field has a ninth of its strength; it acts for a tenth of a second.
         assert!((speeds[0] - 5.0 / 9.0 * 0.1).abs() < 0.01, "{speeds:?}");
         assert!((speeds[0] + speeds[1]).abs() < 0.01, "{speeds:?}");
     }
 }
 
 #[test]
-fn a_field_pulls_towards_its_middle() {
+fn field_accelerates_towards_centre() {
     check_field::<Dim2>();
     check_field::<Dim3>();
 }
 
-/// A bar that is pressed down on a body a metre to the right of where it is held is turned to the left.
+/// Pressing a bar on a body one metre to the right of its centre gives a counterclockwise torque.
 fn check_torque<D: Dim>() {
     let (mut world, _) = with(WEIGHTLESS, ball::<D>(16));
     let bar = Shape::Capsule {
@@ -414,18 +415,18 @@ fn check_torque<D: Dim>() {
         });
     }
     assert!(force > 0.1, "{force}");
-    // The top of the ball is a metre to the right.
+    // The top of the ball is one metre to the right of the bar's centre.
     assert!((torque[2] / force - 1.0).abs() < 0.1, "{torque:?} {force}");
     assert!(torque[0].abs() + torque[1].abs() < 0.1 * torque[2]);
 }
 
 #[test]
-fn a_hand_feels_how_it_is_turned() {
+fn coupled_body_reports_contact_torque() {
     check_torque::<Dim2>();
     check_torque::<Dim3>();
 }
 
-/// All that can be done to a body, some of it with a number.
+/// Number of actions in `act`.
 const ACTS: usize = 8;
 
 fn act<D: Dim>(
@@ -452,7 +453,7 @@ fn act<D: Dim>(
     }
 }
 
-/// Any calls in any order, with numbers that are none and bodies that are gone.
+/// Calls random actions in random order, with non-finite numbers and removed bodies.
 fn check_any<D: Dim>(seeds: std::ops::Range<u64>) {
     let numbers = [
         0.0,
@@ -512,7 +513,7 @@ fn check_any<D: Dim>(seeds: std::ops::Range<u64>) {
 }
 
 #[test]
-fn any_calls_in_any_order_leave_a_world_that_goes_on() {
+fn world_stays_valid_under_random_calls() {
     check_any::<Dim2>(0..500);
     check_any::<Dim3>(500..1000);
 }

@@ -1,10 +1,10 @@
-//! The engine is compiled in its own crate, and not again in one that uses it, as this one does.
+//! The engine is compiled once, in its own crate, and not again in a crate that uses it, such as this one.
 
 use fuwafuwa::compiled::compiled;
 use fuwafuwa::{Dim2, Dim3, entries};
 
 #[test]
-fn who_uses_the_engine_calls_what_was_compiled_with_it() {
+fn entry_points_are_compiled_only_in_engine_crate() {
     let called = [entries!(Dim2), entries!(Dim3)];
     assert_eq!(
         called.each_ref().map(Vec::len),
@@ -17,7 +17,7 @@ fn who_uses_the_engine_calls_what_was_compiled_with_it() {
     {
         assert_eq!(
             called.1, compiled.1,
-            "{} is compiled again: is it #[inline(never)]?",
+            "{} was compiled again; it must be #[inline(never)]",
             called.0
         );
     }

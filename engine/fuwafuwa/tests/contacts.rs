@@ -1,4 +1,4 @@
-//! What is told of contacts: when they begin and end, who comes into a sensor, and who touches whom at all.
+//! Contact events, sensors and layers.
 
 use fuwafuwa::{
     Dim, Dim2, Dim3, Elasticity, Event, Layers, Material, ObjectRef, RigidBody, RigidBodyHandle,
@@ -14,7 +14,7 @@ fn floored<D: Dim>() -> (World<D>, RigidBodyHandle) {
     (world, floor)
 }
 
-/// A ball of a width of 1 m that does not tear, so high above the floor.
+/// A ball 1 m wide that does not tear, with its low corner at a height [m].
 fn ball<D: Dim>(world: &mut World<D>, height: f32) -> SoftBodyHandle {
     let rubber = Material {
         elasticity: Elasticity {
@@ -42,7 +42,8 @@ fn of_body(party: ObjectRef, body: SoftBodyHandle) -> bool {
     matches!(party, ObjectRef::Piece { body: found, .. } if found == body)
 }
 
-/// A ball falls for 0.45 s, rests, and is taken up again: one beginning, with the speed of its fall, and one end.
+/// A ball falls for 0.45 s, rests, and is lifted again: each contact begins once, the first with the speed of
+/// the fall, and ends once.
 fn contacts_begin_and_end<D: Dim>() {
     let (mut world, floor) = floored::<D>();
     let id = ball(&mut world, 1.0);
@@ -79,20 +80,24 @@ fn contacts_begin_and_end<D: Dim>() {
         (26..30).contains(&first) && (speed - 4.43).abs() < 0.3,
         "{first} {speed}"
     );
-    assert_eq!(began.len(), ended, "it bounces, and each bounce ends");
+    assert_eq!(
+        began.len(),
+        ended,
+        "each contact of the bouncing ball must end"
+    );
     assert!(ended < 30, "{ended}");
     let asleep = world.soft_bodies()[id].piece_views();
     assert_eq!(asleep.len(), 1);
 }
 
 #[test]
-fn contacts_begin_with_a_speed_and_end() {
+fn contact_events_report_begin_with_speed_and_end() {
     contacts_begin_and_end::<Dim2>();
     contacts_begin_and_end::<Dim3>();
 }
 
 #[test]
-fn what_falls_asleep_still_touches() {
+fn sleeping_body_keeps_contact_until_removed() {
     let (mut world, _) = floored::<Dim3>();
     let id = world.add_rigid_body(crate_of(0.3, 0.25)).unwrap();
     let mut ends = 0;
@@ -112,7 +117,7 @@ fn what_falls_asleep_still_touches() {
 }
 
 #[test]
-fn rigid_things_tell_what_they_hit() {
+fn rigid_contact_event_reports_impulse_and_speed() {
     let (mut world, floor) = floored::<Dim3>();
     let id = world.add_rigid_body(crate_of(1.25, 0.25)).unwrap();
     let (mut impulse, mut speed) = (0.0, 0.0f32);
@@ -135,12 +140,12 @@ fn rigid_things_tell_what_they_hit() {
             }
         }
     }
-    // It stopped: all that gravity gave it in a second.
+    // The box came to rest, so the impulse equals that of gravity in one second.
     assert!((impulse - 9.81).abs() < 0.3, "{impulse}");
     assert!((speed - 4.43).abs() < 0.3, "{speed}");
 }
 
-/// A sensor above the floor: what falls through it comes in and goes out, untouched.
+/// A body that falls through a sensor enters and exits it without contact.
 fn sensors_tell<D: Dim>() {
     let (mut world, _) = floored::<D>();
     let gate = Shape::Box {
@@ -152,7 +157,7 @@ fn sensors_tell<D: Dim>() {
     let gate = world.add_rigid_body(gate).unwrap();
     let soft = ball(&mut world, 3.0);
     let free = world.add_rigid_body(crate_of(5.5, 0.2)).unwrap();
-    // Beside the ball, where it does not bounce back.
+    // Beside the ball, so that it does not bounce back.
     world
         .set_rigid_body_pose(free, [3.0, 5.5, 0.5], Rotation::NONE)
         .unwrap();
@@ -176,12 +181,12 @@ fn sensors_tell<D: Dim>() {
 }
 
 #[test]
-fn sensors_tell_who_comes_and_goes() {
+fn sensor_reports_entered_and_exited_bodies() {
     sensors_tell::<Dim2>();
     sensors_tell::<Dim3>();
 }
 
-/// Two balls on each other's heads: they meet or not, as their layers say; the floor holds both.
+/// Two balls, one above the other, collide or not depending on their layers; the floor supports both.
 fn layers_part<D: Dim>() {
     for (filters, meets) in [(u32::MAX, true), (1, false)] {
         let (mut world, _) = floored::<D>();
@@ -200,13 +205,13 @@ fn layers_part<D: Dim>() {
         let [low, high] = [low, high].map(|id| world.soft_bodies()[id].centre_of_mass()[1]);
         assert_eq!(high - low > 0.5, meets, "{low} {high}");
         assert!(low > 0.3 && high > 0.3);
-        // The crate meets them in either case.
+        // The box collides with the balls in both cases.
         assert!(world.rigid_bodies()[crate_id].position()[1] > 0.8 || meets);
     }
 }
 
 #[test]
-fn layers_say_who_touches_whom() {
+fn layers_filter_contacts() {
     layers_part::<Dim2>();
     layers_part::<Dim3>();
     let (mut world, floor) = floored::<Dim3>();
@@ -222,7 +227,7 @@ fn layers_say_who_touches_whom() {
 }
 
 #[test]
-fn numbers_of_users_stay_with_their_things() {
+fn user_data_persists_until_removal() {
     let (mut world, floor) = floored::<Dim2>();
     let id = ball(&mut world, 0.0);
     world.set_user_data(id, 7).unwrap();

@@ -1,4 +1,4 @@
-//! Crumbs that are pressed hard: none stays inside a larger piece.
+//! Crumbs under pressure: none stays embedded in a larger piece.
 
 use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
 use fuwafuwa::{
@@ -6,13 +6,13 @@ use fuwafuwa::{
     World, WorldConfig,
 };
 
-/// A crumb is well inside a piece when its middle is in an element and this far from all faces, in
-/// voxels.
+/// A crumb counts as embedded in a piece if its centre is in an element and at least this far from all faces
+/// [voxels].
 const DEPTH: f32 = 0.6;
-/// A crumb is a piece of so many elements at most.
+/// Maximum number of elements in a crumb of these tests.
 const SMALL: u32 = 16;
 
-/// Twice or six times the volume of a simplex.
+/// Returns twice the area of a triangle, or six times the volume of a tetrahedron.
 fn volume<D: Dim>(points: &[Vector]) -> f32 {
     let [a, b] = [1, 2].map(|k| minus(points[k], points[0]));
     match D::N {
@@ -21,7 +21,7 @@ fn volume<D: Dim>(points: &[Vector]) -> f32 {
     }
 }
 
-/// Whether a place is in a simplex: whichever corner it replaces, the volume keeps its sign.
+/// Returns whether a point is in a simplex: replacing any corner by the point keeps the sign of the volume.
 fn is_in_simplex<D: Dim>(points: &[Vector], at: Vector) -> bool {
     let whole = volume::<D>(points);
     (0..=D::N).all(|corner| {
@@ -31,7 +31,7 @@ fn is_in_simplex<D: Dim>(points: &[Vector], at: Vector) -> bool {
     })
 }
 
-/// Whether a place is in a cell with these corners: in a simplex from the first corner to the last.
+/// Returns whether a point is in a cell, split into simplices between its first and its last corner.
 fn is_in_cell<D: Dim>(corners: &[Vector], at: Vector) -> bool {
     let simplices: &[[usize; 4]] = match D::N {
         2 => &[[0, 3, 1, 0], [0, 3, 2, 0]],
@@ -50,7 +50,7 @@ fn is_in_cell<D: Dim>(corners: &[Vector], at: Vector) -> bool {
     })
 }
 
-/// The crumbs that are well inside a larger piece, by body and piece; and how many crumbs there are.
+/// Returns the crumbs embedded in larger pieces, by body and piece, and the number of all crumbs.
 fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
     let views: Vec<_> = world
         .soft_bodies()
@@ -103,8 +103,8 @@ fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
     (inside, crumbs().count())
 }
 
-/// Runs a world; no crumb may stay inside for more than `patience` ticks, and in the end none may
-/// be inside. There must be `least` crumbs.
+/// Runs a world. No crumb may stay embedded for more than `patience` ticks, none may be embedded at the end,
+/// and there must be at least `least` crumbs.
 fn check<D: Dim>(
     mut world: World<D>,
     ticks: u16,
@@ -128,14 +128,20 @@ fn check<D: Dim>(
             *stay += 1;
             assert!(
                 *stay <= patience,
-                "{}D, tick {tick}: {crumb:?} stays inside",
+                "{}D, tick {tick}: {crumb:?} stays embedded",
                 D::N
             );
         }
     }
     let (inside, count) = crumbs_inside(&world);
-    assert!(count >= least, "{count} crumbs");
-    assert!(inside.is_empty(), "{inside:?} of {count} are inside");
+    assert!(
+        count >= least,
+        "only {count} crumbs, expected at least {least}"
+    );
+    assert!(
+        inside.is_empty(),
+        "{inside:?} of {count} crumbs are embedded"
+    );
 }
 
 fn weightless<D: Dim>() -> World<D> {
@@ -148,7 +154,7 @@ fn weightless<D: Dim>() -> World<D> {
     World::new(settings).unwrap()
 }
 
-/// A hand presses dust into a body that leans on a wall, grinds to and fro, and leaves.
+/// A hand presses dust into a body against a wall, grinds to and fro, and retreats.
 fn check_grinding<D: Dim>(n: usize, least: usize) {
     let mut world = weightless::<D>();
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.05, 0.0, 0.0]);
@@ -169,21 +175,22 @@ fn check_grinding<D: Dim>(n: usize, least: usize) {
     check(world, 240, 30, least, |seconds| {
         let in_and_out = seconds.min(0.8) - (seconds - 2.2).max(0.0);
         let turn = 2.0 * (seconds - 0.8).clamp(0.0, 1.4);
-        // To and fro, twice in a second.
+        // To and fro twice a second.
         let to_and_fro = 0.3 * ((turn - turn.floor() - 0.5).abs() - 0.5);
         [-0.55 + 1.25 * in_and_out, 0.5 + to_and_fro, depth]
     });
 }
 
 #[test]
-fn dust_ground_into_a_body_comes_out_again() {
+fn dust_leaves_body_after_grinding() {
     check_grinding::<Dim2>(48, 150);
     check_grinding::<Dim3>(18, 50);
 }
 
-/// A hand pushes a disc against a wall and through: what it grinds off is not left in the halves.
+/// A hand pushes a disc against a wall and through it; the crumbs it grinds off do not stay embedded in the
+/// halves.
 #[test]
-fn crumbs_of_a_tear_stay_outside() {
+fn crumbs_stay_outside_halves_of_torn_disc() {
     let mut world = weightless::<Dim2>();
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.15, 0.0, 0.0]);
     world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
@@ -197,7 +204,7 @@ fn crumbs_of_a_tear_stay_outside() {
     });
 }
 
-/// Dust that begins inside a body drifts out of it: nothing pops, and momentum is kept.
+/// Dust that starts inside a body drifts out slowly, and momentum is preserved.
 fn check_way_out<D: Dim>(n: usize) {
     let mut world = World::<D>::new(WorldConfig {
         gravity: [0.0; 3],
@@ -222,7 +229,7 @@ fn check_way_out<D: Dim>(n: usize) {
             let speed = length(crumb.velocity);
             assert!(speed < 1.5, "tick {tick}: {speed} m/s");
         }
-        // Later the body touches who is out, and what is slow and touches something is slowed down.
+        // Later, the body touches crumbs outside, and slow contacts are damped.
         if tick < 10 {
             let linear = world
                 .soft_bodies()
@@ -234,16 +241,20 @@ fn check_way_out<D: Dim>(n: usize) {
         }
     }
     let (after, _) = crumbs_inside(&world);
-    assert!(after.is_empty(), "{} of {count} are inside", after.len());
+    assert!(
+        after.is_empty(),
+        "{} of {count} crumbs are embedded",
+        after.len()
+    );
 }
 
 #[test]
-fn who_begins_inside_drifts_out() {
+fn embedded_dust_drifts_out_slowly() {
     check_way_out::<Dim2>(48);
     check_way_out::<Dim3>(16);
 }
 
-/// How fast the nodes of a voxel by itself still move [m/s], a second after it grew a little.
+/// Returns the speed of a single voxel's nodes [m/s] one second after it was slightly expanded.
 fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
     const WIDE: usize = 32;
     let elasticity = Elasticity {
@@ -261,7 +272,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
         ..WorldConfig::default()
     };
     let mut world = World::<D>::new(settings).unwrap();
-    // It is damped as the large body is that it came off.
+    // The voxel is damped like the large body it came off.
     let mut size = [WIDE; 3];
     size[D::N..].fill(1);
     let grid = VoxelGrid::from_fn(size, 1.0 / WIDE as f32, |at| {
@@ -291,7 +302,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
 }
 
 #[test]
-fn a_crumb_stops_swinging_whatever_it_is_made_of() {
+fn crumb_vibration_decays_for_any_material_and_substeps() {
     for poisson in [0.0, 0.3, 0.45] {
         for substeps in [8, 16, 64] {
             let plane = left_of_a_swing::<Dim2>(poisson, substeps);
@@ -302,8 +313,7 @@ fn a_crumb_stops_swinging_whatever_it_is_made_of() {
     }
 }
 
-/// How deep in the floor a crumb that slept there is at the most, when something heavy is thrown on
-/// it [voxels].
+/// Returns the maximum depth in the floor [voxels] of a sleeping crumb that is hit by a heavy block.
 fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
     const VOXEL: f32 = 1.0 / 32.0;
     let settings = WorldConfig {
@@ -333,14 +343,14 @@ fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
         lowest = nodes.fold(lowest, |low, (id, _)| low.min(crumb.node_state(id).0[1]));
     }
     assert!(
-        !world.soft_bodies().first().unwrap().pieces().list[PieceId(0)].asleep,
-        "it was missed"
+        !world.bodies().first().unwrap().pieces().list[PieceId(0)].asleep,
+        "the block must wake the crumb"
     );
     -lowest / VOXEL
 }
 
 #[test]
-fn a_sleeper_that_is_hit_is_not_driven_into_the_floor() {
+fn sleeping_crumb_stays_above_floor_when_hit() {
     for size in [2, 4, 8] {
         for speed in [1.0, 2.0] {
             let plane = depth_of_a_sleeper::<Dim2>(size, speed);

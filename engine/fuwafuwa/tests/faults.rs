@@ -1,4 +1,4 @@
-//! Faults that there were, each with what brought it about.
+//! Regression tests: each comment describes the former fault.
 
 use fuwafuwa::{
     Blade, Dim, Dim2, Dim3, Event, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid,
@@ -12,16 +12,16 @@ fn weightless<D: Dim>() -> World<D> {
         gravity,
         ..WorldConfig::default()
     };
-    World::new(settings).expect("the settings are good")
+    World::new(settings).expect("the settings are valid")
 }
 
 fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     let grid = VoxelGrid::ball(n, 1.0).expect("a ball is not empty");
-    SoftBody::new(grid, &[Material::default()]).expect("the material is good")
+    Body::new(grid, &[Material::default()]).expect("the material is valid")
 }
 
-/// Along the same blade, all that can be released was released the first time; the next ones told of
-/// as many nodes again, with events.
+/// A second cut along the same blade released nothing, but reported the released nodes of the first cut
+/// again, with events.
 fn check_cut_twice<D: Dim>(n: usize) {
     let mut world = weightless::<D>();
     world.add_soft_body(ball(n));
@@ -46,7 +46,7 @@ fn check_cut_twice<D: Dim>(n: usize) {
         ),
         (0, first)
     );
-    // A blade that crosses it releases only what it adds.
+    // A crossing blade releases only new nodes.
     let across = Blade {
         from: [-1.0, 0.5, -1.0],
         across: [3.0, 0.0, 0.0],
@@ -61,12 +61,12 @@ fn check_cut_twice<D: Dim>(n: usize) {
 }
 
 #[test]
-fn a_second_cut_along_a_blade_releases_nothing() {
+fn cut_releases_nothing_along_same_blade() {
     check_cut_twice::<Dim2>(16);
     check_cut_twice::<Dim3>(8);
 }
 
-/// Puts every node of a body elsewhere.
+/// Moves every node of a body.
 fn place<D: Dim>(body: &mut SoftBody<D>, to: impl Fn([f32; 3]) -> [f32; 3]) {
     let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in ids {
@@ -75,14 +75,14 @@ fn place<D: Dim>(body: &mut SoftBody<D>, to: impl Fn([f32; 3]) -> [f32; 3]) {
     }
 }
 
-/// Half a turn about an axis of the grid, about a diagonal of it, and nearly so.
+/// Half turns about an axis of the grid and about a diagonal, and a rotation of nearly half a turn.
 fn turns() -> [fn([f32; 3]) -> [f32; 3]; 5] {
     [
         |[x, y, z]| [x, 1.0 - y, 1.0 - z],
         |[x, y, z]| [1.0 - x, y, 1.0 - z],
         |[x, y, z]| [1.0 - x, 1.0 - y, z],
         |[x, y, z]| [y, x, 1.0 - z],
-        // By the angle whose cosine is −0.8.
+        // Rotation by the angle with cosine −0.8.
         |[x, y, z]| [-0.8 * x - 0.6 * y, 0.6 * x - 0.8 * y, z],
     ]
 }
@@ -95,10 +95,10 @@ fn fastest<D: Dim>(body: &SoftBody<D>) -> f32 {
     speeds.fold(0.0, f32::max)
 }
 
-/// The rotations of elements begin at none, where half a turn off they stood still: a ball that was put
-/// upside down tore itself into 42 pieces.
+/// The iteration for the rotation of an element starts at the identity and got stuck at half a turn: an
+/// upside-down ball tore itself into 42 pieces.
 #[test]
-fn a_body_turned_round_stays_whole() {
+fn body_stays_whole_when_turned_by_half_turn() {
     for turn in turns() {
         let mut world = weightless::<Dim3>();
         let mut body = ball(12);
@@ -115,9 +115,9 @@ fn a_body_turned_round_stays_whole() {
     }
 }
 
-/// So did new elements in a body that had turned: a cut through it upside down threw it about.
+/// New elements in a rotated body had the same fault: a cut through an upside-down body hurled it about.
 #[test]
-fn a_cut_through_a_body_turned_round_moves_nothing() {
+fn cut_keeps_turned_body_at_rest() {
     for turn in turns() {
         let mut world = weightless::<Dim3>();
         let mut body = ball(16);
@@ -150,23 +150,23 @@ fn a_cut_through_a_body_turned_round_moves_nothing() {
     }
 }
 
-/// Each voxel that came off was taken from the front of a list of all: n = 48 took five times as long as
-/// n = 32, of three times as many voxels, and n = 64 a minute.
+/// Each detached voxel was removed from the front of a list of all voxels: n = 48 took five times as long as
+/// n = 32, with three times as many voxels, and n = 64 took a minute.
 #[test]
-#[allow(clippy::disallowed_types)] // how long it takes is what is asked
-fn crumbling_takes_as_long_as_there_are_voxels() {
+#[allow(clippy::disallowed_types)] // the test measures time
+fn crumble_takes_linear_time() {
     let mut body = ball::<Dim3>(64);
     let start = std::time::Instant::now();
-    body.crumble().expect("the mesh stays whole");
+    body.crumble().expect("the mesh stays valid");
     let elapsed = start.elapsed();
     assert!(elapsed < Duration::from_secs(20), "{elapsed:?}");
 }
 
 #[test]
-fn all_of_a_body_crumbles() {
+fn crumble_detaches_every_voxel() {
     let mut body = ball::<Dim3>(24);
     let voxels = body.grid().solid_count();
-    let parted = body.crumble().expect("the mesh stays whole");
+    let parted = body.crumble().expect("the mesh stays valid");
     assert_eq!(parted.len(), voxels - 1);
     assert_eq!(body.pieces().list.len(), voxels);
     assert_eq!(body.mesh().node_count(), 8 * voxels);
@@ -176,12 +176,12 @@ fn all_of_a_body_crumbles() {
     );
 }
 
-/// A hand that moved in space and was put into the plane went on along the third axis.
+/// A hand that had moved in 3D and was added to a 2D world kept moving along the third axis.
 #[test]
-fn a_hand_from_space_stays_in_the_plane() {
+fn coupled_body_from_3d_stays_in_plane() {
     let mut space = weightless::<Dim3>();
-    let hand = RigidBody::coupled_ball([0.0, 0.0, 0.5], 0.1);
-    space.add_rigid_body(hand).expect("the hand is good");
+    let hand = Rigid::hand([0.0, 0.0, 0.5], 0.1);
+    space.add_rigid(hand).expect("the hand is valid");
     space
         .set_target_position(space.nth_target_follower(0).unwrap(), [0.0, 0.0, 1.0])
         .unwrap();
@@ -191,7 +191,7 @@ fn a_hand_from_space_stays_in_the_plane() {
         .unwrap();
     assert!(hand.velocity()[2] > 0.1);
     let mut plane = weightless::<Dim2>();
-    plane.add_rigid_body(hand).expect("the hand is good");
+    plane.add_rigid(hand).expect("the hand is valid");
     for _ in 0..3 {
         plane.step();
         let (_, hand) = plane.target_followers().next().unwrap();
@@ -199,10 +199,10 @@ fn a_hand_from_space_stays_in_the_plane() {
     }
 }
 
-/// A body whose surface bears anything tears nowhere, whatever else its list of materials holds. With a
-/// weaker one in the list that no voxel had, its cracks went on.
+/// A body with infinite strength tears nowhere, independent of unused materials in its list. With a weaker
+/// unused material, its cracks used to grow.
 #[test]
-fn a_weaker_material_that_no_voxel_has_changes_nothing() {
+fn unused_weaker_material_has_no_effect_on_cracks() {
     let strong = Material {
         strength: f32::INFINITY,
         toughness: 20.0,
@@ -211,7 +211,7 @@ fn a_weaker_material_that_no_voxel_has_changes_nothing() {
     let run = |materials: &[Material]| {
         let mut world = weightless::<Dim2>();
         let grid = VoxelGrid::ball(16, 1.0).expect("a ball is not empty");
-        world.add_soft_body(SoftBody::new(grid, materials).expect("the materials are good"));
+        world.add_body(Body::new(grid, materials).expect("the materials are valid"));
         assert!(
             world
                 .cut(
@@ -221,9 +221,8 @@ fn a_weaker_material_that_no_voxel_has_changes_nothing() {
                 .unwrap()
                 > 0
         );
-        let hand =
-            RigidBody::coupled_ball([0.5, 1.1, 0.0], 0.1).with_motion_type(MotionType::Kinematic);
-        world.add_rigid_body(hand).expect("the hand is good");
+        let hand = Rigid::hand([0.5, 1.1, 0.0], 0.1).with_drive(Drive::Kinematic);
+        world.add_rigid(hand).expect("the hand is valid");
         let mut released = 0;
         for tick in 0..40u8 {
             world
@@ -241,15 +240,15 @@ fn a_weaker_material_that_no_voxel_has_changes_nothing() {
     assert_eq!(run(&[strong, Material::default()]), (0, hash));
 }
 
-/// A crumb that is nowhere, inside another body, is quarantined alone.
+/// A non-finite crumb inside another body is quarantined alone.
 #[test]
-fn a_crumb_out_of_hand_inside_a_ball_leaves_the_ball() {
+fn quarantine_spares_ball_around_non_finite_crumb() {
     for nowhere in [f32::NAN, f32::INFINITY, 1e30] {
         let mut world = weightless::<Dim2>();
         world.add_soft_body(ball(16));
         let grid = VoxelGrid::cube(1, 1.0 / 16.0).expect("a cube is not empty");
-        let crumb = SoftBody::new(grid, &[Material::default()]).expect("the material is good");
-        let crumb = world.add_soft_body(crumb.translated([0.45, 0.45, 0.0]));
+        let crumb = Body::new(grid, &[Material::default()]).expect("the material is valid");
+        let crumb = world.add_body(crumb.moved([0.45, 0.45, 0.0]));
         for _ in 0..3 {
             world.step();
         }
@@ -268,8 +267,8 @@ fn a_crumb_out_of_hand_inside_a_ball_leaves_the_ball() {
     }
 }
 
-/// Of 0 and −0, `f32::max` and `min` return either, as the machine has it. Whatever the signs of the zeros that go in,
-/// what comes out is the same.
+/// `f32::max` and `f32::min` of 0 and −0 return either zero, depending on the machine. The result must not
+/// depend on the signs of zeros in the input.
 fn check_zeros<D: Dim>(n: usize) {
     let run = |zero: f32| {
         let settings = WorldConfig {
@@ -277,7 +276,7 @@ fn check_zeros<D: Dim>(n: usize) {
             drag: zero,
             ..WorldConfig::default()
         };
-        let mut world = World::<D>::new(settings).expect("the settings are good");
+        let mut world = World::<D>::new(settings).expect("the settings are valid");
         let material = Material {
             damping: zero,
             friction: zero,
@@ -286,40 +285,37 @@ fn check_zeros<D: Dim>(n: usize) {
             ..Material::default()
         };
         let grid = VoxelGrid::ball(n, 1.0).expect("a ball is not empty");
-        let body = SoftBody::new(grid, &[material]).expect("the material is good");
-        let middle = body.clone().translated([-0.5, zero, zero]);
-        world.add_soft_body(middle.with_velocity([zero; 3]));
+        let body = Body::new(grid, &[material]).expect("the material is valid");
+        let middle = body.clone().moved([-0.5, zero, zero]);
+        world.add_body(middle.thrown([zero; 3]));
         let normal = [zero, 1.0, zero];
         let floor = Shape::HalfSpace {
             normal,
             offset: zero,
         };
         world
-            .add_rigid_body(RigidBody::fixed(floor, zero))
-            .expect("the floor is good");
-        let hand =
-            RigidBody::coupled_ball([zero, 1.2, 0.5], 0.1).with_motion_type(MotionType::Kinematic);
-        let hand = world.add_rigid_body(hand).expect("the hand is good");
+            .add_rigid(Rigid::fixed(floor, zero))
+            .expect("the floor is valid");
+        let hand = Rigid::hand([zero, 1.2, 0.5], 0.1).with_drive(Drive::Kinematic);
+        let hand = world.add_rigid(hand).expect("the hand is valid");
         let mut released = 0;
         for tick in 0..40u8 {
             let goal = [zero, 1.2 - 0.02 * f32::from(tick), 0.5];
-            world
-                .set_target_position(hand, goal)
-                .expect("the goal is good");
-            released += world.step().nodes_split;
+            world.set_goal(hand, goal).expect("the target is valid");
+            released += world.step().released;
         }
-        let body = world.soft_bodies().first().expect("there is one");
+        let body = world.bodies().first().expect("the world has one body");
         let states = body.mesh().nodes().map(|(id, _)| body.node_state(id));
         (released, states.collect::<Vec<_>>())
     };
     let plain = run(0.0);
     assert!(plain.0 > 0, "nothing tore");
-    // Which takes 0 and −0 for equal.
+    // Equality treats 0 and −0 as equal.
     assert_eq!(run(-0.0), plain);
 }
 
 #[test]
-fn the_sign_of_a_zero_changes_nothing() {
+fn simulation_is_independent_of_sign_of_zero() {
     check_zeros::<Dim2>(16);
     check_zeros::<Dim3>(8);
 }

@@ -1,4 +1,4 @@
-//! What must hold for every shape and every history of cuts.
+//! Invariants for every shape and every sequence of cuts.
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
 use fuwafuwa::dim::{neighbourhood, points_in};
@@ -8,7 +8,7 @@ use fuwafuwa::pyramid::{CellHierarchy, Grading};
 use fuwafuwa::sharing::Connectivity;
 use fuwafuwa::{Dim, Dim2, Dim3, Mesh, Point, VoxelGrid};
 
-/// A small repeatable stream of numbers (xorshift64*).
+/// A small reproducible random generator (xorshift64*).
 struct Random(u64);
 
 impl Random {
@@ -24,7 +24,7 @@ impl Random {
     }
 }
 
-/// A union of balls and boxes less one ball, of one or two materials.
+/// A union of balls and boxes minus one ball, of one or two materials.
 fn random_shape<D: Dim>(random: &mut Random, n: i32) -> Option<VoxelGrid<D>> {
     let parts: Vec<([i32; 3], i32, bool)> = (0..4)
         .map(|_| {
@@ -77,7 +77,7 @@ fn random_cut<D: Dim>(sharing: &mut Connectivity<D>, random: &mut Random, n: i32
     touched
 }
 
-/// Seeds `0..sequences`, shared out among threads; n runs through `sizes`.
+/// Checks seeds `0..sequences` on several threads; n cycles through `sizes`.
 fn check_remodelling<D: Dim>(sequences: u64, sizes: std::ops::Range<i32>) {
     let threads = 4;
     let sizes = &sizes;
@@ -93,7 +93,7 @@ fn check_remodelling<D: Dim>(sequences: u64, sizes: std::ops::Range<i32>) {
     });
 }
 
-/// Cuts a random shape a few times: the remodelled mesh must equal one graded from scratch.
+/// Cuts a random shape several times. The remodelled mesh must equal one graded from scratch.
 fn check_one_sequence<D: Dim>(seed: u64, n: i32) {
     let mut random = Random::new(seed + 1);
     let Some(grid) = random_shape::<D>(&mut random, n) else {
@@ -127,7 +127,7 @@ fn check_one_sequence<D: Dim>(seed: u64, n: i32) {
     assert_uniform_strain_leaves_inner_nodes_at_rest(&mesh, &sharing, seed);
 }
 
-/// A new node that inherits positions of an affine motion lies where that motion takes it.
+/// A new node that inherits positions of an affine motion lies at the image of its rest position.
 fn assert_affine_motion_is_inherited<D: Dim>(
     before: &Mesh<D>,
     after: &Mesh<D>,
@@ -149,7 +149,7 @@ fn assert_affine_motion_is_inherited<D: Dim>(
     }
 }
 
-/// The patch test: residual of the default law on inner nodes, relative to stress × voxel face.
+/// Patch test: residual of the default law on inner nodes, relative to stress × voxel face.
 fn assert_uniform_strain_leaves_inner_nodes_at_rest<D: Dim>(
     mesh: &Mesh<D>,
     sharing: &Connectivity<D>,
@@ -199,11 +199,11 @@ fn assert_uniform_strain_leaves_inner_nodes_at_rest<D: Dim>(
 }
 
 #[test]
-fn remodelling_equals_grading_from_scratch_2d() {
+fn remodelling_equals_grading_from_scratch_in_2d() {
     check_remodelling::<Dim2>(10_000, 6..20);
 }
 
 #[test]
-fn remodelling_equals_grading_from_scratch_3d() {
+fn remodelling_equals_grading_from_scratch_in_3d() {
     check_remodelling::<Dim3>(10_000, 6..11);
 }

@@ -1,4 +1,4 @@
-//! Pins, springs and ropes between soft bodies, rigid things and places.
+//! Pins, springs and ropes between soft bodies, rigid bodies and fixed points.
 
 use fuwafuwa::{
     Dim, Dim2, Dim3, Elasticity, Event, Joint, JointAnchor, JointKind, Material, MotionType,
@@ -32,7 +32,7 @@ fn rubber(damping: f32) -> Material {
     }
 }
 
-/// A ball of a width of 1 m with its middle at a place.
+/// A ball 1 m wide with its centre at `middle`.
 fn soft<D: Dim>(world: &mut World<D>, middle: Vector) -> SoftBodyHandle {
     let grid = VoxelGrid::<D>::ball(10, 1.0).unwrap();
     let body = SoftBody::new(grid, &[rubber(0.08)]).unwrap();
@@ -65,7 +65,7 @@ fn turns(joints: usize, broken: &[Event]) -> usize {
     joints + broken.iter().filter(is_break).count()
 }
 
-/// A pendulum swings for a minute; its energy never exceeds what it began with, and it swings on.
+/// A pendulum swings for a minute. Its energy never exceeds the initial energy, and it keeps swinging.
 fn no_energy_comes_from<D: Dim>(tie: JointKind) {
     let mut world = world::<D>(-9.81);
     let bob = ball(&mut world, [1.0, 0.0, 0.0], 2.0);
@@ -82,20 +82,20 @@ fn no_energy_comes_from<D: Dim>(tie: JointKind) {
         let [x, y, _] = rigid.position();
         let speed = rigid.velocity().iter().map(|k| k * k).sum::<f32>();
         let spin = rigid.angular_velocity().iter().map(|k| k * k).sum::<f32>();
-        // Of a ball 2/5 m r², of a disc 1/2.
+        // Moment of inertia: 2/5 m r² for a ball, m r²/2 for a disc.
         let share = if D::N == 2 { 0.5 } else { 0.4 };
         most = most.max(speed + share * 0.01 * spin + 2.0 * 9.81 * y);
         lowest = lowest.min(y);
         assert!((x * x + y * y).sqrt() < 1.02, "{tick}: {x} {y}");
     }
     assert!(lowest < -0.95, "{lowest}");
-    // Of 2 g l = 19.6 that it has when it hangs.
+    // For comparison: 2 g l = 19.6 at the lowest point.
     assert!(most < 0.2, "{most}");
 }
 
 #[test]
-fn pins_and_ropes_gain_no_energy() {
-    for tie in [JointKind::Pin, JointKind::Rope { length: 1.0 }] {
+fn pendulum_gains_no_energy_with_pin_and_rope() {
+    for tie in [Tie::Pin, Tie::Rope { length: 1.0 }] {
         no_energy_comes_from::<Dim2>(tie);
         no_energy_comes_from::<Dim3>(tie);
     }
@@ -127,7 +127,7 @@ fn it_hangs_on_a_nail<D: Dim>() {
     let weight = body.total_mass() as f32 * 9.81;
     let force = world.joints().get(nail).unwrap().force();
     assert!((force / weight - 1.0).abs() < 0.1, "{force} {weight}");
-    // It wakes and falls when the nail is drawn.
+    // The body wakes and falls when the joint is removed.
     world.remove_joint(nail).unwrap();
     for _ in 0..60 {
         world.step();
@@ -136,7 +136,7 @@ fn it_hangs_on_a_nail<D: Dim>() {
 }
 
 #[test]
-fn a_soft_body_hangs_on_a_nail_and_falls_without() {
+fn pinned_soft_body_hangs_until_joint_is_removed() {
     it_hangs_on_a_nail::<Dim2>();
     it_hangs_on_a_nail::<Dim3>();
 }
@@ -167,19 +167,19 @@ fn it_follows<D: Dim>() {
         world.step();
         let [held, place] = world.joint_anchor_positions(pin).unwrap().unwrap();
         assert!(apart(held, place) < 0.02, "{tick}: {held:?} {place:?}");
-        // The pin is where the nodes were.
+        // The pin stays at the initial centre of the nodes.
         assert!(apart(place, way.apply(first)) < 1e-3, "{tick}: {place:?}");
     }
 }
 
 #[test]
-fn a_body_pinned_to_something_that_turns_follows_it() {
+fn pinned_soft_body_follows_rotating_arm() {
     it_follows::<Dim2>();
     it_follows::<Dim3>();
 }
 
 #[test]
-fn two_soft_bodies_that_are_tied_stay_together() {
+fn pin_keeps_two_soft_bodies_together() {
     let mut world = world::<Dim3>(0.0);
     let [a, b] = [-0.55, 0.55].map(|x| soft(&mut world, [x, 0.0, 0.0]));
     let end = |body: SoftBodyHandle, x: f32| JointAnchor::Soft {
@@ -206,9 +206,9 @@ fn two_soft_bodies_that_are_tied_stay_together() {
     assert!(b < -0.3 * f64::from(mass as f32), "{b}");
 }
 
-/// A mass on a spring without damping: ω² = k/m, and it dies slowly by the implicit step alone.
+/// A mass on an undamped spring: ω² = k/m. Only the implicit step damps the oscillation, slowly.
 #[test]
-fn a_spring_swings_as_fast_as_it_must() {
+fn spring_oscillates_at_natural_frequency() {
     let mut world = world::<Dim3>(0.0);
     let bob = ball(&mut world, [1.5, 0.0, 0.0], 2.0);
     let tie = JointKind::Spring {
@@ -238,7 +238,7 @@ fn a_spring_swings_as_fast_as_it_must() {
 }
 
 #[test]
-fn very_stiff_springs_hold_still() {
+fn very_stiff_spring_keeps_length() {
     let mut world = world::<Dim2>(-9.81);
     let bob = ball(&mut world, [0.0, -1.0, 0.0], 2.0);
     let tie = JointKind::Spring {
@@ -255,7 +255,7 @@ fn very_stiff_springs_hold_still() {
 }
 
 #[test]
-fn a_chain_of_ten_hangs() {
+fn chain_of_ten_ropes_keeps_length() {
     let mut world = world::<Dim3>(-9.81);
     let mut above = JointAnchor::Position([0.0; 3]);
     let mut links = Vec::new();
@@ -282,9 +282,9 @@ fn a_chain_of_ten_hangs() {
     assert!(lowest < -2.3, "{lowest}");
 }
 
-/// A chain of pins from which something heavier hangs straight down: nothing moves.
+/// A heavier body hangs at rest from a vertical chain of pins: nothing moves.
 #[test]
-fn what_hangs_still_on_a_chain_of_pins_stays_still() {
+fn chain_of_pins_stays_at_rest_under_load() {
     for heavy in [1.0, 10.0, 20.0] {
         let mut world = world::<Dim3>(-9.81);
         let mut above = JointAnchor::Position([0.0; 3]);
@@ -310,10 +310,10 @@ fn what_hangs_still_on_a_chain_of_pins_stays_still() {
 }
 
 #[test]
-fn joints_break_at_their_force_and_tell() {
+fn joint_breaks_above_breaking_force_with_event() {
     for (bears, holds) in [(60.0, true), (30.0, false)] {
         let mut world = world::<Dim3>(-9.81);
-        // 39.2 N when it hangs.
+        // Load when hanging: 39.2 N.
         let bob = ball(&mut world, [0.0, -1.0, 0.0], 4.0);
         let ends = [
             on(bob, [0.0, -1.0, 0.0]),
@@ -333,7 +333,7 @@ fn joints_break_at_their_force_and_tell() {
 }
 
 #[test]
-fn a_joint_goes_with_what_it_held() {
+fn joint_breaks_when_body_is_removed() {
     let mut world = world::<Dim3>(-9.81);
     let id = soft(&mut world, [0.0; 3]);
     let end = JointAnchor::Soft {
@@ -352,9 +352,9 @@ fn a_joint_goes_with_what_it_held() {
     assert!(world.remove_joint(joint).is_err());
 }
 
-/// What is torn around it, a pin keeps its voxels.
+/// A pin keeps its voxels while the body tears around them.
 #[test]
-fn a_pin_holds_on_while_the_body_crumbles() {
+fn pin_keeps_voxels_while_body_crumbles() {
     let mut world = world::<Dim3>(-9.81);
     let grid = VoxelGrid::<Dim3>::ball(10, 1.0).unwrap();
     let id = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
@@ -380,7 +380,7 @@ fn a_pin_holds_on_while_the_body_crumbles() {
 }
 
 #[test]
-fn bad_joints_are_refused_by_field() {
+fn add_joint_names_invalid_field() {
     let mut world = world::<Dim2>(-9.81);
     let bob = ball(&mut world, [0.0; 3], 1.0);
     let good = [on(bob, [0.0; 3]), JointAnchor::Position([0.0; 3])];
@@ -414,7 +414,7 @@ fn bad_joints_are_refused_by_field() {
 }
 
 #[test]
-fn a_slow_crane_takes_a_sleeper_along() {
+fn slow_kinematic_body_moves_sleeping_load_by_joint() {
     let mut world = world::<Dim3>(-9.81);
     let crane = Shape::Ball {
         centre: [0.0; 3],

@@ -1,4 +1,4 @@
-//! Knives: what they cut, and what that takes.
+//! Knives: cuts, cutting force and work.
 
 use fuwafuwa::{
     Dim, Dim2, Dim3, Event, Knife, KnifeHandle, Material, MotionType, RigidBody, RigidBodyHandle,
@@ -13,7 +13,7 @@ const NO_GRAVITY: WorldConfig = WorldConfig {
 };
 const DOWN: Vector = [0.0, -1.0, 0.0];
 
-/// A block with its middle over the origin, held at its bottom. The edge lies along the third axis.
+/// A block centred above the origin, fixed at its bottom. The cutting edge lies along the third axis.
 fn block<D: Dim>(
     world: &mut World<D>,
     size: [usize; 3],
@@ -34,7 +34,7 @@ fn block<D: Dim>(
     world.add_soft_body(body)
 }
 
-/// What cannot be torn.
+/// A material that cannot be torn.
 fn rubber() -> Material {
     Material {
         strength: f32::INFINITY,
@@ -43,7 +43,7 @@ fn rubber() -> Material {
     }
 }
 
-/// A hand that does as it is told, and a knife in it.
+/// A kinematic hand that holds a knife.
 fn knife<D: Dim>(
     world: &mut World<D>,
     at: Vector,
@@ -59,7 +59,7 @@ fn knife<D: Dim>(
     (holder, world.add_knife(knife).unwrap())
 }
 
-/// Lets it go to a place at a speed [m/s]; what is done with each tick.
+/// Moves the knife to a position at a speed [m/s], and calls `each` after every tick.
 fn go<D: Dim>(
     world: &mut World<D>,
     holder: RigidBodyHandle,
@@ -80,7 +80,7 @@ fn go<D: Dim>(
     }
 }
 
-/// Area [m²] and work [J] of the cuts of the last tick.
+/// Returns the area [m²] and the work [J] of the cuts of the last tick.
 fn cut<D: Dim>(world: &World<D>) -> [f32; 2] {
     let cuts = world.events().iter().map(|event| match event {
         Event::Cut { area, work, .. } => [*area, *work],
@@ -96,7 +96,8 @@ fn validated<D: Dim>(world: &World<D>, body: SoftBodyHandle) {
         .unwrap();
 }
 
-/// The middle force upwards [N] while a knife goes from above into a slab, and what it cut.
+/// Returns the mean upward force [N] on a knife that cuts from above into a slab, and the area and work of
+/// the cut.
 fn force_in_slab<D: Dim>(
     size: [usize; 3],
     voxel: f32,
@@ -106,7 +107,7 @@ fn force_in_slab<D: Dim>(
     let mut world = World::<D>::new(NO_GRAVITY).unwrap();
     let body = block(&mut world, size, voxel, Material::default());
     let top = size[1] as f32 * voxel;
-    // Not in a plane of the lattice.
+    // Not in a plane of the voxel lattice.
     let (holder, id) = knife(&mut world, [0.13 * voxel, top + 0.01, 0.0], 0.2, radius);
     let turned = Rotation::about([0.0, 1.0, 0.0], turned);
     world.set_target_rotation(holder, turned).unwrap();
@@ -134,7 +135,7 @@ fn force_in_slab<D: Dim>(
 }
 
 #[test]
-fn a_knife_in_a_slab_feels_toughness_times_thickness() {
+fn knife_force_is_fracture_energy_times_thickness() {
     let material = Material::default();
     let energy = (material.toughness * material.toughness) as f64 / material.elasticity.young;
     for (radius, turned) in [(0.0, 0.0), (0.002, 0.0), (0.0, 0.4)] {
@@ -161,7 +162,7 @@ fn a_knife_in_a_slab_feels_toughness_times_thickness() {
     );
 }
 
-/// How deep a knife presses before anything is cut [m].
+/// Returns the depth to which a knife presses before it cuts [m].
 fn pressed_before<D: Dim>(size: [usize; 3], radius: f32) -> f32 {
     let voxel = 0.02;
     let mut world = World::<D>::new(NO_GRAVITY).unwrap();
@@ -180,11 +181,11 @@ fn pressed_before<D: Dim>(size: [usize; 3], radius: f32) -> f32 {
             }
         },
     );
-    first.expect("it cuts at last")
+    first.expect("the knife must cut in the end")
 }
 
 #[test]
-fn a_dull_edge_presses_before_it_cuts() {
+fn dull_edge_presses_deeper_before_cut() {
     let (sharp, dull) = (
         pressed_before::<Dim3>([16, 10, 6], 0.0),
         pressed_before::<Dim3>([16, 10, 6], 0.02),
@@ -206,7 +207,7 @@ fn goes_through<D: Dim>(size: [usize; 3], slant: f32) {
     let (holder, id) = knife(&mut world, start, 0.15, 0.0);
     let (mut area, mut most) = (0.0, 0.0f32);
     let end = [start[0] + slant, -0.02, 0.0];
-    // It cuts the way it goes.
+    // The blade points in the direction of motion.
     let turned = Rotation::in_plane(libm::atanf(slant / (top + 0.04)));
     world.set_target_rotation(holder, turned).unwrap();
     go(&mut world, holder, end, 0.5, |world| area += cut(world)[0]);
@@ -231,7 +232,7 @@ fn goes_through<D: Dim>(size: [usize; 3], slant: f32) {
         "{area} m² of {}",
         long * depth
     );
-    // Back the same way, and once more: there is nothing to cut.
+    // The same way back and forth again: nothing is left to cut.
     let mut again = 0.0;
     go(&mut world, holder, start, 0.5, |world| {
         again += cut(world)[0]
@@ -245,7 +246,7 @@ fn goes_through<D: Dim>(size: [usize; 3], slant: f32) {
 }
 
 #[test]
-fn what_was_cut_is_in_two_and_is_cut_once() {
+fn knife_cuts_block_in_two_only_once() {
     goes_through::<Dim3>([20, 12, 8], 0.0);
     goes_through::<Dim3>([20, 12, 8], 0.1);
     goes_through::<Dim2>([20, 12, 1], 0.0);
@@ -253,7 +254,7 @@ fn what_was_cut_is_in_two_and_is_cut_once() {
 }
 
 #[test]
-fn a_knife_on_a_spring_cuts_once_its_pull_is_enough() {
+fn coupled_knife_cuts_only_with_enough_force() {
     // 8 N/m over 0.16 m: 1.28 N.
     for (pull, cuts) in [(0.8, false), (2.0, true)] {
         let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
@@ -286,7 +287,7 @@ fn a_knife_on_a_spring_cuts_once_its_pull_is_enough() {
 }
 
 #[test]
-fn the_flat_of_a_blade_pushes_sideways() {
+fn blade_face_pushes_sideways() {
     let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
     let body = block(&mut world, [16, 12, 8], 0.02, Material::default());
     let (holder, id) = knife(&mut world, [0.003, 0.26, 0.0], 0.1, 0.0);
@@ -300,7 +301,7 @@ fn the_flat_of_a_blade_pushes_sideways() {
 }
 
 #[test]
-fn what_cannot_be_torn_cannot_be_cut_and_a_sleeper_wakes() {
+fn knife_presses_unbreakable_block_and_wakes_it() {
     let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
     let body = block(&mut world, [12, 10, 6], 0.02, rubber());
     world.put_to_sleep(body).unwrap();
@@ -318,7 +319,7 @@ fn what_cannot_be_torn_cannot_be_cut_and_a_sleeper_wakes() {
 }
 
 #[test]
-fn what_is_thrown_at_an_edge_that_stands_is_cut() {
+fn fixed_edge_cuts_moving_body_at_any_speed() {
     for speed in [0.5, 3.0, 8.0] {
         let mut world = World::<Dim2>::new(NO_GRAVITY).unwrap();
         let soft = Material {
@@ -347,7 +348,7 @@ fn what_is_thrown_at_an_edge_that_stands_is_cut() {
 }
 
 #[test]
-fn a_knife_without_a_flat_in_what_cannot_be_torn_holds_nothing() {
+fn knife_without_height_has_finite_force_in_unbreakable_block() {
     let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
     block(&mut world, [6, 6, 6], 0.02, rubber());
     let (holder, id) = knife(&mut world, [0.003, 0.14, 0.0], 0.1, 0.0);
@@ -364,7 +365,7 @@ fn a_knife_without_a_flat_in_what_cannot_be_torn_holds_nothing() {
 }
 
 #[test]
-fn a_body_that_is_held_everywhere_is_cut_and_felt() {
+fn knife_cuts_body_with_all_nodes_fixed() {
     let mut world = World::<Dim2>::new(NO_GRAVITY).unwrap();
     let grid = VoxelGrid::cube(8, 0.16).unwrap();
     let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
@@ -385,7 +386,7 @@ fn a_body_that_is_held_everywhere_is_cut_and_felt() {
 }
 
 #[test]
-fn bad_knives_are_refused_by_field() {
+fn add_knife_names_invalid_field() {
     let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
     let (holder, id) = knife(&mut world, [0.0; 3], 0.1, 0.0);
     let good = world.knives().get(id).unwrap().clone();

@@ -1,4 +1,4 @@
-//! Figures and formulas of the paper, measured.
+//! Measurements against figures and formulas of the paper.
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
 use fuwafuwa::law::{Elasticity, Law, forces};
@@ -21,21 +21,21 @@ fn mesh_of<D: Dim>(grid: &VoxelGrid<D>, grading: Grading) -> Mesh<D> {
 
 /// §3.1: elements grow from the surface to the centre, so their number grows with the surface.
 #[test]
-fn element_count_grows_with_the_surface() {
+fn element_count_grows_with_surface() {
     let count = |n| graded(&VoxelGrid::<Dim3>::ball(n, 1.0).unwrap()).element_count();
-    // An independent prototype has 5,048 and 12,368: it lets elements grow wider than an eighth.
+    // An independent prototype has 5,048 and 12,368: its elements may be wider than an eighth of the body.
     assert_eq!((count(32), count(48)), (5_048, 12_520));
     let disc = |n| graded(&VoxelGrid::<Dim2>::ball(n, 1.0).unwrap()).element_count() as f64;
     let growth = disc(128) / disc(64);
     assert!(
         (1.9..2.2).contains(&growth),
-        "doubling n doubles a ring: {growth}"
+        "doubling n must double the elements: {growth}"
     );
 }
 
-/// However large the body, its elements stay small against it: their mass lies in their nodes.
+/// Elements stay small relative to a body of any size, because their mass is lumped into their nodes.
 #[test]
-fn elements_are_at_most_an_eighth_of_the_body_wide() {
+fn element_width_is_at_most_an_eighth_of_body() {
     for n in [32, 64, 100, 256] {
         let mesh = graded(&VoxelGrid::<Dim2>::ball(n, 1.0).unwrap());
         let widths = mesh.elements().map(|(_, element)| element.cell.width());
@@ -44,10 +44,10 @@ fn elements_are_at_most_an_eighth_of_the_body_wide() {
     }
 }
 
-/// §3.1: counted by each element for itself, n³ voxels have 8n³ vertices; graded from two voxels
-/// at the surface about 26n² are left.
+/// §3.1: if each element counts its own vertices, n³ voxels have 8n³. Graded from two voxels at the surface,
+/// about 26n² remain.
 #[test]
-fn vertices_fall_from_8n3_to_26n2() {
+fn vertex_count_falls_from_8n3_to_26n2_when_graded() {
     let count = |n, grading| {
         let cube = VoxelGrid::<Dim3>::cube(n, 1.0).unwrap();
         mesh_of(&cube, grading).independent_vertex_count() as f64
@@ -59,9 +59,9 @@ fn vertices_fall_from_8n3_to_26n2() {
     }
 }
 
-/// Fig. 1: a small disc, each voxel named by the level that owns it.
+/// Fig. 1: a small disc; each voxel shows the level of its element.
 #[test]
-fn a_disc_is_fine_at_the_rim_and_coarse_inside() {
+fn disc_is_fine_at_rim_and_coarse_inside() {
     let grid = VoxelGrid::<Dim2>::ball(12, 1.0).unwrap();
     let mesh = graded(&grid);
     let mut rows = vec![vec!['.'; 12]; 12];
@@ -90,10 +90,10 @@ fn a_disc_is_fine_at_the_rim_and_coarse_inside() {
     );
 }
 
-/// §3.1: for a regular polyhedron the paper's force equals that of a linear element of the given
-/// Young's modulus and no lateral contraction: a stretched cube pulls with Y × strain × area.
+/// §3.1: for a regular polyhedron, the paper's force equals that of a linear element with the given Young's
+/// modulus and no lateral contraction. A stretched cube pulls with Y × strain × area.
 #[test]
-fn the_papers_law_has_youngs_modulus_on_a_cube() {
+fn laws_reproduce_youngs_modulus_on_cube() {
     fn check<D: Dim>() {
         let stencil = ElementClass::<D>::new(D::ALL_CORNERS, cell_corners::<D>()).unwrap();
         let elasticity = Elasticity::new(2000.0, 0.0).unwrap();
@@ -122,10 +122,10 @@ fn the_papers_law_has_youngs_modulus_on_a_cube() {
     check::<Dim3>();
 }
 
-/// §3.1: vertices that swap places come back, because the force knows the rotation.
+/// §3.1: swapped vertices return, because the force includes the rotation.
 #[test]
-fn swapped_nodes_are_pulled_back() {
-    let stencil = ElementClass::<Dim2>::new(15, cell_corners::<Dim2>()).unwrap();
+fn paper_law_pulls_swapped_nodes_back() {
+    let stencil = Stencil::<Dim2>::new(15, cell_corners::<Dim2>()).unwrap();
     let elasticity = Elasticity::new(1000.0, 0.0).unwrap();
     let mut positions = stencil.offsets.clone();
     positions.swap(0, 1);

@@ -1,8 +1,7 @@
-//! Meshes as pictures: voxels in, and out what each of them belongs to, so that a reader sees the
-//! gradation and the remodelling.
+//! Meshes as text pictures, which show the gradation and the remodelling.
 //!
-//! In: `#` is a voxel. Out: the level of the element that owns it, and a letter in place of the
-//! digit (`b` for 1, `c` for 2) where that element has lost children and is a cell no longer.
+//! Input: `#` is a voxel. Output: the level of the element that owns the voxel. A letter in place of the
+//! digit (`b` for 1, `c` for 2) marks an element that has lost children and is no longer a whole cell.
 
 use fuwafuwa::dim::Dim;
 use fuwafuwa::mesh::Element;
@@ -34,7 +33,7 @@ fn picture_of(body: &SoftBody<Dim2>) -> Vec<String> {
         .collect()
 }
 
-/// Grades the voxels, then cuts along the segments one after the other.
+/// Grades the voxels, then cuts along the segments in order.
 fn check(voxels: &[&str], graded: &[&str], cuts: &[([f32; 2], [f32; 2])], remodelled: &[&str]) {
     let mut body = body_of(voxels);
     let found = picture_of(&body);
@@ -50,7 +49,7 @@ fn check(voxels: &[&str], graded: &[&str], cuts: &[([f32; 2], [f32; 2])], remode
 }
 
 #[test]
-fn a_square_is_cut_halfway() {
+fn remodelling_refines_around_half_cut_square() {
     check(
         &["################"; 16],
         &[
@@ -94,7 +93,7 @@ fn a_square_is_cut_halfway() {
 }
 
 #[test]
-fn a_bar_is_cut_through() {
+fn remodelling_refines_around_cut_through_bar() {
     check(
         &["########################"; 6],
         &[
@@ -118,7 +117,7 @@ fn a_bar_is_cut_through() {
 }
 
 #[test]
-fn a_corner_is_nicked() {
+fn remodelling_refines_around_nicked_corner() {
     check(
         &["############"; 12],
         &[

@@ -1,4 +1,4 @@
-//! Materials that keep their dents.
+//! Materials with permanent deformation.
 
 use fuwafuwa::plasticity::Plasticity;
 use fuwafuwa::plasticity::{elastic_part, flow, forces_after};
@@ -21,8 +21,8 @@ fn weightless() -> WorldConfig {
     }
 }
 
-/// A block between two plates; presses it to a share of its height and lets it go. Returns its height, width and volume after
-/// that, in terms of what they were.
+/// Presses a block between two plates to a share of its height and releases it. Returns its final height,
+/// width and volume, relative to the initial ones.
 fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, SoftBodyHandle) {
     let mut world = World::<D>::new(weightless()).unwrap();
     let body = SoftBody::new(VoxelGrid::<D>::cube(8, 1.0).unwrap(), &[material]).unwrap();
@@ -60,7 +60,7 @@ fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, SoftB
     ([height, width, volume], world, id)
 }
 
-/// The volume of a body [m³]: of its elements as they are deformed.
+/// Returns the volume of a body [m³], summed over its deformed elements.
 fn volume<D: Dim>(body: &SoftBody<D>) -> f32 {
     let width = f64::from(body.grid().voxel_size());
     let parts = body.mesh().elements().map(|(id, element)| {
@@ -76,29 +76,29 @@ fn volume<D: Dim>(body: &SoftBody<D>) -> f32 {
 
 fn check_dent<D: Dim>() {
     let ([height, width, volume], world, clay) = pressed::<D>(Material::clay(), 0.65);
-    assert!((0.6..0.8).contains(&height), "clay is {height} m high");
-    assert!(width > 1.05, "it went {width} m aside");
-    assert!((volume - 1.0).abs() < 0.05, "its volume is {volume}");
-    let body = &world.soft_bodies()[clay];
+    assert!((0.6..0.8).contains(&height), "clay: height {height} m");
+    assert!(width > 1.05, "clay: width {width} m");
+    assert!((volume - 1.0).abs() < 0.05, "clay: volume {volume}");
+    let body = &world.bodies()[clay];
     let dents = body
         .mesh()
         .elements()
         .filter_map(|(id, _)| body.plastic_strain(id));
     assert!(dents.fold(0.0, f32::max) > 0.2);
     let ([height, width, volume], world, rubber) = pressed::<D>(rubber(), 0.65);
-    assert!((height - 1.0).abs() < 0.01, "rubber is {height} m high");
+    assert!((height - 1.0).abs() < 0.01, "rubber: height {height} m");
     assert!((width - 1.0).abs() < 0.01 && (volume - 1.0).abs() < 0.01);
     let body = &world.soft_bodies()[rubber];
     assert!({ body.mesh().elements() }.all(|(id, _)| body.plastic_strain(id) == Some(0.0)));
 }
 
 #[test]
-fn a_squashed_block_of_clay_keeps_its_dent_and_one_of_rubber_does_not() {
+fn pressed_clay_stays_deformed_and_rubber_recovers() {
     check_dent::<Dim2>();
     check_dent::<Dim3>();
 }
 
-/// What bears any strain is the same to the last bit as what knows of none, and so is what never strains so far.
+/// A yield strain that is never reached gives the same bits as an infinite one.
 fn check_same_bits<D: Dim>() {
     let run = |material: Material| {
         let mut world = World::<D>::new(WorldConfig::default()).unwrap();
@@ -116,17 +116,26 @@ fn check_same_bits<D: Dim>() {
         ..Material::default()
     };
     let rubber = run(strong(f32::INFINITY));
-    assert_eq!(run(strong(1e30)), rubber, "bears anything");
-    assert_ne!(run(strong(0.01)), rubber, "bears nothing");
+    assert_eq!(
+        run(strong(1e30)),
+        rubber,
+        "a yield strain of 1e30 must be elastic"
+    );
+    assert_ne!(
+        run(strong(0.01)),
+        rubber,
+        "a yield strain of 0.01 must flow"
+    );
 }
 
 #[test]
-fn what_is_not_strained_so_far_is_elastic_to_the_last_bit() {
+fn unreached_yield_strain_gives_same_bits_as_infinite() {
     check_same_bits::<Dim2>();
     check_same_bits::<Dim3>();
 }
 
-/// Nodes of a cube moved at random: forces of the fast path against the reference, and what flows of both.
+/// Moves the nodes of a cube at random, and compares the forces and the plastic flow of the fast path with
+/// the reference.
 fn check_reference<D: Dim>(seed: u32) -> f32 {
     let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(9);
     let mut random = || {
@@ -159,7 +168,7 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
         let deformation = body.element_state(id).unwrap().deformation;
         let before = body.element_state(id).unwrap().energy;
         undone = flow::<D>(plasticity, elasticity, &deformation, &undone);
-        // A substep of no length moves nothing.
+        // A substep of zero length moves no node.
         body.advance(0.0, [0.0; 3]);
         let after = body.element_state(id).unwrap().energy;
         assert!(after <= before * (1.0 + 1e-5), "energy {before} to {after}");
@@ -187,14 +196,15 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
 }
 
 #[test]
-fn the_fast_path_flows_as_the_reference_does() {
+fn fast_path_matches_reference_plasticity() {
     for check in [check_reference::<Dim2>, check_reference::<Dim3>] {
         let most = (0..20).map(check).fold(0.0, f32::max);
-        assert!(most > 0.1, "it never flowed");
+        assert!(most > 0.1, "the material must flow");
     }
 }
 
-/// A ball of clay that is thrown apart, spins, and flows: momentum and spin stay, energy never grows.
+/// A clay ball that expands, spins and flows: momentum and angular momentum are preserved, and energy never
+/// grows.
 fn check_kept<D: Dim>() {
     let clay = Material {
         damping: 0.0,
@@ -243,20 +253,20 @@ fn check_kept<D: Dim>() {
         .mesh()
         .elements()
         .filter_map(|(id, _)| body.plastic_strain(id));
-    assert!(dents.fold(0.0, f32::max) > 0.05, "nothing flowed");
+    assert!(dents.fold(0.0, f32::max) > 0.05, "the material must flow");
     assert!(
         before < 0.99 * first,
-        "flow takes energy: {first} to {before} J"
+        "flow must dissipate energy: {first} to {before} J"
     );
 }
 
 #[test]
-fn momentum_is_kept_and_energy_never_grows() {
+fn plastic_flow_preserves_momentum_and_dissipates_energy() {
     check_kept::<Dim2>();
     check_kept::<Dim3>();
 }
 
-/// A dented body is cut: what comes of large elements has their dents, and a file has them too.
+/// A deformed body is cut: new elements inherit the plastic strain of the old ones, and so does a snapshot.
 fn check_inherited<D: Dim>() {
     let (_, mut world, id) = pressed::<D>(Material::clay(), 0.6);
     let mean = |world: &World<D>| {
@@ -299,16 +309,19 @@ fn check_inherited<D: Dim>() {
         assert_eq!(loaded.hash(), world.hash());
     }
     (0..60).for_each(|_| _ = world.step());
-    assert!((mean(&world) - dent).abs() < 0.05, "it sprang back");
+    assert!(
+        (mean(&world) - dent).abs() < 0.05,
+        "the deformation must be permanent"
+    );
 }
 
 #[test]
-fn dents_outlast_cuts_and_files() {
+fn plastic_strain_survives_cut_and_snapshot() {
     check_inherited::<Dim2>();
     check_inherited::<Dim3>();
 }
 
-/// Hands that beat on clay from everywhere: nothing goes out of hand.
+/// Beats clay with a hand from random directions: the state stays bounded.
 fn check_abuse<D: Dim>(seed: u32) {
     let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(5);
     let mut random = || {
@@ -340,7 +353,7 @@ fn check_abuse<D: Dim>(seed: u32) {
         if tick % 8 == 0 {
             target = [random() * 2.0 - 0.5, random() * 1.2, random()];
         }
-        // Some metres in a second: faster, and rubber is shot away as well.
+        // The hand moves at most some metres per second; a faster one would hurl away rubber, too.
         let goal = [0, 1, 2].map(|k: usize| place[k] + (target[k] - place[k]).clamp(-0.08, 0.08));
         place = goal;
         world.set_target_position(hand, goal).unwrap();
@@ -361,13 +374,13 @@ fn check_abuse<D: Dim>(seed: u32) {
 }
 
 #[test]
-fn whatever_is_done_to_it_clay_stays_in_hand() {
+fn clay_stays_bounded_under_random_blows() {
     (0..20).for_each(check_abuse::<Dim2>);
     (0..20).for_each(check_abuse::<Dim3>);
 }
 
 #[test]
-fn bad_numbers_are_refused() {
+fn body_rejects_invalid_plasticity() {
     for (yield_strain, limit, expected) in [
         (0.0, 2.0, "material 1: yield_strain = 0 must be positive"),
         (

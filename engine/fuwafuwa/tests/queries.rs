@@ -1,4 +1,4 @@
-//! What can be asked of a world: rays, places, shapes.
+//! Queries on a world: rays, nearest surfaces, points, overlaps.
 
 use fuwafuwa::{
     Blade, Dim, Dim2, Dim3, Material, Queries, RigidBody, Rotation, Shape, SoftBody, Thing,
@@ -18,7 +18,7 @@ const WEIGHTLESS: WorldConfig = WorldConfig {
     tick: fuwafuwa::world::TICK,
 };
 
-/// A ball of two materials, number 2 within a quarter of its middle, which is at the origin.
+/// A ball of two materials centred at the origin; material 2 fills a radius of 0.25 m.
 fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     let half = [0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 }];
     let apart = |at: Vector| length([0, 1, 2].map(|axis: usize| at[axis] - half[axis]));
@@ -32,7 +32,7 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     body.translated(half.map(|k| -k))
 }
 
-/// Turned, so that nothing lies along an axis.
+/// The ball is rotated, so that no element is aligned with an axis.
 fn world<D: Dim>() -> World<D> {
     let mut world = World::new(WEIGHTLESS).unwrap();
     world.add_soft_body(ball::<D>(16).rotated(Rotation::in_plane(0.4), [0.0; 3]));
@@ -71,7 +71,7 @@ fn check_rays<D: Dim>() {
         let from = direction.map(|k| 5.0 * k);
         let inwards = direction.map(|k| -k);
         let found = queries.ray(from, inwards, 10.0, &is_soft).unwrap();
-        // The surface is one of voxels: their corners are up to two of them from the sphere.
+        // The surface consists of voxels, with corners up to two voxel widths from the sphere.
         assert!(
             (found.distance - 4.5).abs() < 2.0 * voxel,
             "{direction:?} {found:?}"
@@ -79,7 +79,7 @@ fn check_rays<D: Dim>() {
         assert!(matches!(found.thing, Thing::Soft { body: it, material: 1, .. } if it == body));
         let facing: f32 = (0..3).map(|k| found.normal[k] * direction[k]).sum();
         assert!(facing > 0.0, "{found:?}");
-        // From inside it is met on its way out.
+        // A ray from inside hits the surface on its way out.
         let out = queries.ray([0.0; 3], direction, 10.0, &is_soft).unwrap();
         assert!((out.distance - 0.5).abs() < 2.0 * voxel, "{out:?}");
         assert!((out.distance + found.distance - 5.0).abs() < 1e-4);
@@ -95,7 +95,7 @@ fn check_rays<D: Dim>() {
                 .is_some()
         );
     }
-    // Whatever is first.
+    // Without a filter, the ray hits the first object.
     let first = |from| {
         queries
             .ray(from, [-1.0, 0.0, 0.0], 20.0, &|_| true)
@@ -118,7 +118,7 @@ fn check_rays<D: Dim>() {
 }
 
 #[test]
-fn a_ray_meets_the_first_surface() {
+fn ray_hits_first_surface() {
     check_rays::<Dim2>();
     check_rays::<Dim3>();
 }
@@ -132,7 +132,7 @@ fn check_nearest<D: Dim>() {
             let found = queries
                 .nearest(at, 9.0, &|thing| matches!(thing, Thing::Soft { .. }))
                 .unwrap();
-            // No bare face is nearer than that.
+            // No bare face may be nearer.
             let body = world.soft_bodies().first().unwrap();
             let corners = body
                 .facets()
@@ -155,7 +155,7 @@ fn check_nearest<D: Dim>() {
 }
 
 #[test]
-fn the_nearest_surface_is_found() {
+fn nearest_finds_closest_surface() {
     check_nearest::<Dim2>();
     check_nearest::<Dim3>();
 }
@@ -176,7 +176,7 @@ fn check_places<D: Dim>() {
                 _ => 0,
             };
             let at = direction.map(|k| far * k);
-            // Where materials meet elements are of level 0: each is of its own.
+            // At the boundary of materials, elements are of level 0, so each has a single material.
             assert_eq!(material(at), expect, "{at:?}");
         }
     }
@@ -192,7 +192,7 @@ fn check_places<D: Dim>() {
 }
 
 #[test]
-fn what_is_at_a_place_is_known() {
+fn at_finds_objects_and_materials_at_point() {
     check_places::<Dim2>();
     check_places::<Dim3>();
 }
@@ -223,7 +223,7 @@ fn check_overlaps<D: Dim>() {
         radius: 0.001,
     };
     assert_eq!(count(&world, needle), [0, 1], "through it");
-    // In two pieces it is two.
+    // Cut in two, the body counts as two pieces.
     let blade = Blade {
         from: [0.0, -1.0, -1.0],
         across: [0.0, 2.0, 0.0],
@@ -234,7 +234,7 @@ fn check_overlaps<D: Dim>() {
 }
 
 #[test]
-fn what_overlaps_a_shape_is_known() {
+fn overlapping_finds_pieces_and_rigid_bodies() {
     check_overlaps::<Dim2>();
     check_overlaps::<Dim3>();
 }

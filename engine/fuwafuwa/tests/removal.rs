@@ -1,4 +1,4 @@
-//! Pieces that are taken out of a world: what is gone is gone, and the rest does not notice.
+//! Removal of pieces from a world: the rest is unaffected.
 #![cfg(feature = "serde")]
 
 use fuwafuwa::pyramid::CellHierarchy;
@@ -21,13 +21,16 @@ fn random(seed: &mut u32, below: usize) -> usize {
     (*seed >> 8) as usize % below
 }
 
-/// The mesh of a body, and what it follows from, against all of it from scratch, and against a file.
+/// Compares the mesh of each body with one graded from scratch, and the world with its snapshot.
 fn check_whole<D: Dim>(world: &World<D>, what: &str) {
     for body in world.soft_bodies() {
         let (grid, sharing) = (body.grid(), body.connectivity());
         let fresh = CellHierarchy::new(grid, sharing, Grading::Graded);
         let mesh = Mesh::grade(grid, sharing, &fresh).unwrap();
-        assert!(body.mesh().is_same_as(&mesh), "{what}: not as from scratch");
+        assert!(
+            body.mesh().is_same_as(&mesh),
+            "{what}: the mesh differs from one graded from scratch"
+        );
         let valid = body.mesh().validate(grid, sharing);
         valid.unwrap_or_else(|defect| panic!("{what}: {defect}"));
         assert_eq!(
@@ -53,7 +56,7 @@ fn blade(seed: &mut u32) -> Blade {
     }
 }
 
-/// Cuts, tears, ticks and removals in any order.
+/// Cuts, tears, ticks and removals in random order.
 fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
     let mut seed_of = seed.wrapping_mul(2_654_435_761).wrapping_add(17);
     let seed = &mut seed_of;
@@ -105,7 +108,7 @@ fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
         check_whole(&world, &what);
         let body = &world.soft_bodies()[id];
         let pieces: Vec<PieceId> = removed.pieces.iter().map(|&(_, piece)| piece).collect();
-        // Too much to be kept is not told.
+        // After too many changes, `changes_since` returns `None`.
         if let Some(changes) = body.changes_since(&mut bookmark) {
             assert_eq!(changes.removed, pieces, "{what}");
             assert!({ changes.elements.iter() }.all(|&id| body.mesh().element(id).is_none()));
@@ -116,7 +119,7 @@ fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
             pieces.iter().all(|piece| now[piece.index()].removed),
             "{what}"
         );
-        // A tick and its copy from a file go the same way.
+        // A tick of the world and one of its loaded snapshot give the same hash.
         let mut loaded = load::<D>(&save(&world)).unwrap();
         world.step();
         loaded.step();
@@ -127,14 +130,14 @@ fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
 }
 
 #[test]
-fn whatever_is_removed_the_rest_is_as_from_scratch() {
+fn removal_leaves_mesh_as_graded_from_scratch() {
     let flat = (0..20).map(|seed| check_history::<Dim2>(seed, 12 + seed as usize % 9));
-    assert!(flat.sum::<usize>() > 30, "hardly anything came off");
+    assert!(flat.sum::<usize>() > 30, "too few pieces were removed");
     let solid = (0..8).map(|seed| check_history::<Dim3>(seed, 7 + seed as usize % 4));
-    assert!(solid.sum::<usize>() > 10, "hardly anything came off");
+    assert!(solid.sum::<usize>() > 10, "too few pieces were removed");
 }
 
-/// A cube cut in two halves side by side.
+/// A cube cut into two halves side by side.
 fn halves<D: Dim>(settings: WorldConfig) -> (World<D>, SoftBodyHandle) {
     let mut world = World::new(settings).unwrap();
     let cube = VoxelGrid::cube(8, 1.0).unwrap();
@@ -173,7 +176,7 @@ fn check_rest_untouched<D: Dim>() {
         piece: PieceId(1),
     }];
     assert_eq!(world.events()[world.events().len() - 1..], events);
-    // Once more it is not there.
+    // A second removal fails.
     let error = world.remove_piece(cube, PieceId(1)).unwrap_err();
     assert_eq!((error.kind, error.slot), ("piece", 1));
     assert!(world.remove_piece(cube, PieceId(7)).is_err());
@@ -189,14 +192,14 @@ fn check_rest_untouched<D: Dim>() {
 }
 
 #[test]
-fn the_rest_keeps_its_places_its_mass_and_its_motion() {
+fn remove_piece_preserves_state_of_other_pieces() {
     check_rest_untouched::<Dim2>();
     check_rest_untouched::<Dim3>();
 }
 
-/// What crumbles away around a piece leaves what holds it, how it is damped and what it bears as it was.
+/// The removal of one half changes neither the forces, nor the damping, nor the strength of the other half.
 #[test]
-fn the_rest_swings_as_if_the_other_half_were_far_away() {
+fn remove_piece_has_no_effect_on_vibration_of_rest() {
     let (mut world, cube) = halves::<Dim2>(WEIGHTLESS);
     let (mut other, _) = halves::<Dim2>(WEIGHTLESS);
     world.remove_piece(cube, PieceId(1)).unwrap();
@@ -245,7 +248,7 @@ fn check_leaning<D: Dim>() {
         along: [0.0, 0.0, 3.0],
     };
     world.cut(below, &blade).unwrap();
-    // One on each half, one elsewhere.
+    // One cube on each half, one elsewhere.
     let on_left = world.add_soft_body(cube(3, 0.3).translated([0.05, 0.82, 0.2]));
     let on_right = world.add_soft_body(cube(3, 0.3).translated([0.45, 0.82, 0.2]));
     let far = world.add_soft_body(cube(3, 0.3).translated([5.0, 0.01, 0.0]));
@@ -256,13 +259,13 @@ fn check_leaning<D: Dim>() {
             .flat_map(|body| &body.pieces().list);
         pieces.into_iter().all(|piece| piece.asleep)
     };
-    // They may lean on each other for long; what they lie on is all that counts.
+    // The halves may stay in contact for long; only their support matters here.
     (0..40).for_each(|_| _ = world.step());
     for id in [below, on_left, on_right, far] {
         world.put_to_sleep(id).unwrap();
     }
     (0..10).for_each(|_| _ = world.step());
-    assert!(all_sleep(&world), "somebody does not rest");
+    assert!(all_sleep(&world), "all pieces must be asleep");
     let touching = |world: &World<D>| -> Vec<Event> {
         let ended = |event: &&Event| matches!(event, Event::ContactEnded { .. });
         world.events().iter().filter(ended).copied().collect()
@@ -277,8 +280,11 @@ fn check_leaning<D: Dim>() {
         1
     };
     world.remove_piece(below, PieceId(right as u32)).unwrap();
-    assert!(!asleep(&world, on_right, 0), "it leant on what is gone");
-    // The other half leant on it too, and so who lies on that.
+    assert!(
+        !asleep(&world, on_right, 0),
+        "the cube on the removed half must wake"
+    );
+    // The other half touched the removed one, so it wakes as well, and with it the cube on top.
     assert!(!asleep(&world, on_left, 0) && asleep(&world, far, 0));
     let woken = |event: &Event| matches!(event, Event::WokeUp { body, .. } if *body == on_right);
     assert!(world.events().iter().any(woken));
@@ -298,7 +304,7 @@ fn check_leaning<D: Dim>() {
 }
 
 #[test]
-fn who_leant_on_it_falls_and_others_sleep_on() {
+fn remove_piece_wakes_only_bodies_in_contact() {
     check_leaning::<Dim2>();
     check_leaning::<Dim3>();
 }
@@ -350,7 +356,7 @@ fn check_ties<D: Dim>() {
 }
 
 #[test]
-fn joints_break_and_sensors_tell() {
+fn remove_piece_breaks_joints_and_exits_sensors() {
     check_ties::<Dim2>();
     check_ties::<Dim3>();
 }
@@ -367,7 +373,7 @@ fn check_last<D: Dim>() {
     assert!(world.events().contains(&Event::BodyRemoved { body: cube }));
     assert!(world.remove_piece(cube, PieceId(1)).is_err());
     world.step();
-    // Its slot is free for another one.
+    // The slot is free for another body.
     let ball = SoftBody::new(VoxelGrid::ball(6, 1.0).unwrap(), &[Material::default()]).unwrap();
     let ball = world.add_soft_body(ball);
     (0..30).for_each(|_| _ = world.step());
@@ -376,7 +382,7 @@ fn check_last<D: Dim>() {
 }
 
 #[test]
-fn with_its_last_piece_a_body_leaves_the_world() {
+fn body_is_removed_with_its_last_piece() {
     check_last::<Dim2>();
     check_last::<Dim3>();
 }
@@ -412,7 +418,7 @@ fn check_sizes<D: Dim>() {
 }
 
 #[test]
-fn small_pieces_go_by_mass_volume_or_voxels() {
+fn remove_small_pieces_compares_mass_volume_or_voxels() {
     check_sizes::<Dim2>();
     check_sizes::<Dim3>();
 }
@@ -459,14 +465,14 @@ fn check_outside<D: Dim>() {
 }
 
 #[test]
-fn what_left_a_region_is_removed() {
+fn remove_outside_removes_pieces_and_dynamic_bodies() {
     check_outside::<Dim2>();
     check_outside::<Dim3>();
 }
 
-/// A reader that follows hears of a tear and a removal together.
+/// A reader of changes gets a tear and a removal together.
 #[test]
-fn what_was_torn_and_removed_is_told_once() {
+fn changes_since_reports_tear_and_removal_together() {
     let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
     let cube = SoftBody::new(VoxelGrid::cube(32, 1.0).unwrap(), &[Material::default()]).unwrap();
     let cube = world.add_soft_body(cube);

@@ -1,4 +1,4 @@
-//! Rigid bodies that fall, turn, stack, bounce, and lie on soft ones.
+//! Rigid bodies that fall, rotate, stack, bounce, and lie on soft bodies.
 
 use fuwafuwa::{
     Dim, Dim2, Dim3, Elasticity, Material, MotionType, RigidBody, RigidBodyHandle, Rotation, Shape,
@@ -48,7 +48,7 @@ fn ball(centre: Vector) -> Shape {
     }
 }
 
-/// What is upwards on a slope of an angle [rad] that falls to the right.
+/// Returns the normal of a slope that falls to the right at an angle [rad].
 fn upright(angle: f32) -> Vector {
     Rotation::in_plane(-angle).apply(UP)
 }
@@ -58,7 +58,7 @@ fn speed(rigid: &RigidBody) -> f32 {
     squared.iter().sum::<f32>().sqrt()
 }
 
-/// Each shape falls askew and comes to rest on the floor, as low as it can.
+/// Each shape falls tilted and settles on the floor in its lowest position.
 fn all_come_to_rest<D: Dim>() {
     let turned = match D::N {
         2 => Rotation::in_plane(0.5),
@@ -90,7 +90,7 @@ fn all_come_to_rest<D: Dim>() {
 }
 
 #[test]
-fn all_shapes_come_to_rest() {
+fn dynamic_body_comes_to_rest_with_each_shape() {
     all_come_to_rest::<Dim2>();
     all_come_to_rest::<Dim3>();
 }
@@ -123,12 +123,13 @@ fn a_tower_stands<D: Dim>() {
 }
 
 #[test]
-fn towers_of_ten_stand_and_sleep() {
+fn tower_of_ten_stands_and_sleeps() {
     a_tower_stands::<Dim2>();
     a_tower_stands::<Dim3>();
 }
 
-/// A box, something soft and another box, on something fixed, all asleep: of two such towers one loses its foot.
+/// Two sleeping towers, each of a box, a soft body and another box on a fixed foot; one of them loses its
+/// foot.
 fn one_of_two_towers_falls<D: Dim>() {
     let mut world = floored::<D>();
     let mut material = Material::default();
@@ -169,7 +170,7 @@ fn one_of_two_towers_falls<D: Dim>() {
 }
 
 #[test]
-fn what_is_pulled_away_from_under_a_tower_wakes_it_and_no_other() {
+fn removal_of_foot_wakes_only_its_tower() {
     one_of_two_towers_falls::<Dim2>();
     one_of_two_towers_falls::<Dim3>();
 }
@@ -200,13 +201,13 @@ fn it_rolls<D: Dim>() {
 }
 
 #[test]
-fn a_ball_rolls_down_a_slope_as_it_must() {
+fn ball_rolls_down_slope_with_expected_acceleration() {
     it_rolls::<Dim2>();
     it_rolls::<Dim3>();
 }
 
 #[test]
-fn friction_holds_a_box_on_a_slope_below_its_angle_and_not_above() {
+fn friction_holds_box_only_below_friction_angle() {
     for (angle, holds) in [(0.3f32, true), (0.6, false)] {
         let mut world = world::<Dim3>(-9.81);
         let normal = upright(angle);
@@ -225,7 +226,7 @@ fn friction_holds_a_box_on_a_slope_below_its_angle_and_not_above() {
         }
         let rigid = &world.rigid_bodies()[id];
         let way = rigid.position()[0] - start[0];
-        // Sliding for 2 s: g (sin - 0.5 cos) t²/2 along the slope.
+        // Sliding for 2 s: g (sin − 0.5 cos) t²/2 along the slope.
         let along = 9.81 * (normal[0] - 0.5 * normal[1]) * 2.0 * normal[1];
         let expected = if holds { 0.0 } else { along };
         assert!(
@@ -236,7 +237,7 @@ fn friction_holds_a_box_on_a_slope_below_its_angle_and_not_above() {
 }
 
 #[test]
-fn what_bounces_comes_back_as_high_as_its_restitution_says() {
+fn ball_bounces_to_height_given_by_restitution() {
     for restitution in [0.0f32, 0.5, 0.8] {
         let mut world = floored::<Dim3>();
         let mut rigid = RigidBody::dynamic(ball([0.0, 2.3, 0.0]), 1.0);
@@ -260,7 +261,7 @@ fn what_bounces_comes_back_as_high_as_its_restitution_says() {
     }
 }
 
-/// Linear momentum of free boxes.
+/// Returns the linear momentum of dynamic boxes.
 fn momentum<D: Dim>(world: &World<D>, ids: &[RigidBodyHandle], mass: f32) -> Vector {
     ids.iter().fold([0.0; 3], |sum, &id| {
         let velocity = world.rigid_bodies()[id].velocity();
@@ -269,7 +270,7 @@ fn momentum<D: Dim>(world: &World<D>, ids: &[RigidBodyHandle], mass: f32) -> Vec
 }
 
 #[test]
-fn what_collides_in_the_air_keeps_its_momentum() {
+fn collision_preserves_linear_momentum() {
     let mut world = world::<Dim3>(0.0);
     let ids = [[0.0, 0.0, 0.0], [2.0, 0.2, 0.1]].map(|at| {
         world
@@ -294,7 +295,7 @@ fn what_collides_in_the_air_keeps_its_momentum() {
     assert!(world.rigid_bodies()[ids[1]].angular_velocity() != [0.0; 3]);
 }
 
-/// Rigid on soft: it sinks in a little, and comes to rest; the soft one is squashed by it, and both keep their places.
+/// A rigid box on a soft body sinks in a little and settles; neither is pushed away.
 fn it_lies_on_a_soft_body<D: Dim>(mass: f32) {
     let mut world = floored::<D>();
     let grid = VoxelGrid::<D>::cube(12, 1.0).unwrap();
@@ -330,7 +331,7 @@ fn it_lies_on_a_soft_body<D: Dim>(mass: f32) {
 }
 
 #[test]
-fn light_and_heavy_boxes_lie_on_a_soft_one() {
+fn box_rests_on_soft_body_at_any_mass() {
     for mass in [0.5, 20.0, 200.0] {
         it_lies_on_a_soft_body::<Dim2>(mass);
         it_lies_on_a_soft_body::<Dim3>(mass);
@@ -338,7 +339,7 @@ fn light_and_heavy_boxes_lie_on_a_soft_one() {
 }
 
 #[test]
-fn a_soft_ball_rolls_a_rigid_one_away() {
+fn soft_ball_pushes_and_rolls_rigid_ball() {
     let mut world = floored::<Dim3>();
     let id = world
         .add_rigid_body(RigidBody::dynamic(ball([1.6, 0.3, 0.5]), 1.0))
@@ -362,7 +363,7 @@ fn a_soft_ball_rolls_a_rigid_one_away() {
 }
 
 #[test]
-fn what_is_kinematic_turns_to_its_goal_and_takes_along_what_lies_on_it() {
+fn kinematic_table_rotates_and_carries_box() {
     let mut world = world::<Dim3>(-9.81);
     let disc = Shape::Box {
         centre: [0.0; 3],
@@ -374,7 +375,7 @@ fn what_is_kinematic_turns_to_its_goal_and_takes_along_what_lies_on_it() {
         .add_rigid_body(RigidBody::dynamic(cube([1.0, 0.31, 0.0], 0.2), 1.0))
         .unwrap();
     for tick in 1..=120 {
-        // It begins and ends gently: what lies there must not slip.
+        // The rotation begins and ends gently, so that the box does not slip.
         let share = tick as f32 / 120.0;
         let angle = 0.5 * PI * share * share * (3.0 - 2.0 * share);
         world
@@ -391,7 +392,7 @@ fn what_is_kinematic_turns_to_its_goal_and_takes_along_what_lies_on_it() {
 }
 
 #[test]
-fn a_turned_wall_is_a_wall() {
+fn rotated_box_collides() {
     let mut world = world::<Dim2>(-9.81);
     let ramp = RigidBody::fixed(cube([0.0; 3], 1.0), 0.0).rotated(Rotation::in_plane(FRAC_PI_4));
     world.add_rigid_body(ramp).unwrap();
@@ -406,7 +407,7 @@ fn a_turned_wall_is_a_wall() {
 }
 
 #[test]
-fn bad_rigid_things_are_refused_by_field() {
+fn add_rigid_names_invalid_field() {
     let mut world = floored::<Dim3>();
     let tiny = Shape::Ball {
         centre: [0.0; 3],
@@ -449,7 +450,7 @@ fn bad_rigid_things_are_refused_by_field() {
     assert!(world.set_velocity(id, [0.0; 3], [0.0; 3]).is_err());
 }
 
-/// To what falls a sleeper is a wall, however slowly it comes.
+/// A sleeping body stops a rigid one, however slowly it approaches.
 fn sleepers_hold<D: Dim>() {
     let mut world = world::<D>(0.0);
     let grid = VoxelGrid::<D>::cube(8, 1.0).unwrap();
@@ -467,13 +468,13 @@ fn sleepers_hold<D: Dim>() {
 }
 
 #[test]
-fn what_comes_slowly_does_not_go_through_a_sleeper() {
+fn sleeping_body_stops_slow_rigid_body() {
     sleepers_hold::<Dim2>();
     sleepers_hold::<Dim3>();
 }
 
 #[test]
-fn a_slow_lift_takes_a_sleeper_along() {
+fn slow_kinematic_lift_moves_sleeping_load() {
     let mut world = world::<Dim3>(-9.81);
     let lift = RigidBody::new(cube([0.0; 3], 0.5), [0.0; 3], MotionType::Kinematic);
     let lift = world.add_rigid_body(lift).unwrap();
@@ -495,7 +496,7 @@ fn a_slow_lift_takes_a_sleeper_along() {
 }
 
 #[test]
-fn what_is_picked_up_in_its_fall_stays_where_it_is() {
+fn drive_change_stops_falling_body() {
     let mut world = world::<Dim3>(-9.81);
     let id = world
         .add_rigid_body(RigidBody::dynamic(cube([0.0; 3], 0.2), 1.0))

@@ -1,4 +1,4 @@
-//! The same bits after saving and loading.
+//! Snapshots: a loaded world continues with the same bits.
 #![cfg(feature = "serde")]
 
 use fuwafuwa::hash::Hash;
@@ -49,12 +49,12 @@ fn check_resumes<D: Dim>(n: usize) {
 }
 
 #[test]
-fn a_saved_world_goes_on_to_the_same_bits() {
+fn loaded_world_continues_with_same_bits() {
     check_resumes::<Dim2>(24);
     check_resumes::<Dim3>(12);
 }
 
-/// A heap of free boxes on a ball, a gate that tells who is in it, a pin, a spring and a rope.
+/// A heap of dynamic boxes on a ball, a sensor, a pin, a spring and a rope.
 fn tied_world<D: Dim>() -> World<D> {
     let mut world = torn_world::<D>(10);
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
@@ -126,12 +126,12 @@ fn check_tied_resumes<D: Dim>() {
 }
 
 #[test]
-fn things_that_fall_and_are_tied_go_on_to_the_same_bits() {
+fn loaded_world_continues_with_same_bits_with_joints_and_sensors() {
     check_tied_resumes::<Dim2>();
     check_tied_resumes::<Dim3>();
 }
 
-/// A knife goes through a ball that falls.
+/// A knife cuts through a falling ball.
 fn check_cut_resumes<D: Dim>() {
     let mut world = torn_world::<D>(14);
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
@@ -167,12 +167,12 @@ fn check_cut_resumes<D: Dim>() {
 }
 
 #[test]
-fn a_cut_that_was_begun_goes_on_to_the_same_bits() {
+fn loaded_world_continues_with_same_bits_during_cut() {
     check_cut_resumes::<Dim2>();
     check_cut_resumes::<Dim3>();
 }
 
-/// Crumbs of one body, some asleep and some awake, while a hand goes through them; and one that is cut.
+/// Crumbs of one body, some asleep and some awake, while a hand moves through them; and a body that is cut.
 fn check_crumbs_resume<D: Dim>(n: usize) {
     let mut world = torn_world::<D>(2 * n);
     let ball = world.nth_soft_body(0).unwrap();
@@ -205,12 +205,12 @@ fn check_crumbs_resume<D: Dim>(n: usize) {
 }
 
 #[test]
-fn what_sleeps_and_wakes_goes_on_to_the_same_bits() {
+fn loaded_world_continues_with_same_bits_with_sleeping_pieces() {
     check_crumbs_resume::<Dim2>(8);
     check_crumbs_resume::<Dim3>(4);
 }
 
-/// Torn, held, placed, gone out of hand, woken again or asleep: each is a state that a body can be in.
+/// Bodies in every state: torn, fixed, moved, quarantined, awake again or asleep.
 fn check_any_state<D: Dim>(n: usize) {
     let mut world = torn_world::<D>(n);
     let nowhere = VoxelGrid::ball(4, 0.2).unwrap();
@@ -241,13 +241,13 @@ fn check_any_state<D: Dim>(n: usize) {
 }
 
 #[test]
-fn a_world_can_be_loaded_whatever_befell_it() {
+fn load_accepts_any_valid_state() {
     check_any_state::<Dim2>(16);
     check_any_state::<Dim3>(8);
 }
 
 #[test]
-fn what_is_not_as_it_was_saved_is_refused() {
+fn load_rejects_damaged_snapshot() {
     let bytes = save(&torn_world::<Dim2>(8));
     let refused = |bytes: &[u8]| load::<Dim2>(bytes).map(|_| ()).unwrap_err();
     let solid = load::<Dim3>(&bytes).map(|_| ());
@@ -269,10 +269,10 @@ fn what_is_not_as_it_was_saved_is_refused() {
     }
 }
 
-/// With its checksum put right, what somebody changed is still read without harm: a list of cells or nodes
-/// could go round for ever, and an id lead out of its table.
+/// Altered snapshots with a valid checksum do no harm: a list of cells or nodes could be cyclic, and an id
+/// could point out of its table.
 #[test]
-fn what_was_changed_by_someone_who_knows_the_checksum_does_no_harm() {
+fn load_survives_altered_state_with_valid_checksum() {
     let bytes = save(&torn_world::<Dim2>(6));
     let (header, state) = bytes.split_at(17);
     let mut broken = 0;
@@ -285,7 +285,7 @@ fn what_was_changed_by_someone_who_knows_the_checksum_does_no_harm() {
     assert!(broken > 500, "{broken} of {}", state.len());
 }
 
-/// A header of a snapshot with what is behind it, and a checksum that fits.
+/// Returns a snapshot of `state` with the header's version and a valid checksum.
 fn with_state(header: &[u8], state: Vec<u8>) -> Vec<u8> {
     let mut changed = header[..9].to_vec();
     changed.extend(Hash::of(&state).to_le_bytes());
@@ -293,9 +293,9 @@ fn with_state(header: &[u8], state: Vec<u8>) -> Vec<u8> {
     changed
 }
 
-/// A body in the plane with a node beside it went through the checks, and contact search panicked.
+/// Regression: a 2D body with a node off the plane passed the checks, and the contact search panicked.
 #[test]
-fn a_node_that_is_off_the_plane_or_nowhere_is_refused() {
+fn load_rejects_node_off_plane_or_non_finite() {
     let mut world = torn_world::<Dim2>(6);
     push(&mut world, 0..3);
     let body = world.soft_bodies().iter().next().unwrap();
@@ -321,7 +321,7 @@ fn a_node_that_is_off_the_plane_or_nowhere_is_refused() {
     };
     for axis in 0..4 {
         for wrong in [f32::NAN, f32::INFINITY, 0.5] {
-            // In the plane it may be anywhere.
+            // Within the plane, any position is valid.
             if axis < 2 && wrong.is_finite() {
                 continue;
             }
@@ -336,9 +336,9 @@ fn a_node_that_is_off_the_plane_or_nowhere_is_refused() {
     assert!(refused > 20, "{refused}");
 }
 
-/// Between two ticks a body was cut, another one was taken out and a third put into its place.
+/// Between two ticks, one body is cut, another one removed and a third put in its place.
 #[test]
-fn what_was_changed_since_the_last_tick_goes_on_to_the_same_bits() {
+fn loaded_world_continues_with_same_bits_after_changes() {
     let ball = |x: f32| {
         let grid = VoxelGrid::<Dim2>::ball(16, 1.0).unwrap();
         let body = SoftBody::new(grid, &[Material::default()]).unwrap();
@@ -388,8 +388,7 @@ fn what_was_changed_since_the_last_tick_goes_on_to_the_same_bits() {
     }
 }
 
-/// A world where something tears, something leans on something else, something sleeps and something was stopped
-/// for good, as a snapshot.
+/// A world with a tearing body, bodies in contact, a sleeping body, a quarantined one and a free slot.
 fn full_of_all<D: Dim>(n: usize) -> World<D> {
     let mut world = torn_world::<D>(n);
     let small = |at: [f32; 3]| {
@@ -407,7 +406,7 @@ fn full_of_all<D: Dim>(n: usize) -> World<D> {
     world
 }
 
-/// Changes of a few bytes here and there; most are of numbers in single precision, whose last bytes count.
+/// Random changes of a few bytes; most hit single-precision numbers, where the last byte matters most.
 struct Changer(u32);
 
 impl Changer {
@@ -435,7 +434,7 @@ impl Changer {
     }
 }
 
-/// Whatever of a snapshot is changed, it is refused or can be stepped; returns how many were stepped.
+/// Checks that an altered snapshot is refused or can be stepped; returns the number of those stepped.
 fn check_changed<D: Dim>(n: usize, variants: u32) -> u32 {
     let bytes = save(&full_of_all::<D>(n));
     let (header, state) = bytes.split_at(17);
@@ -465,9 +464,9 @@ fn check_changed<D: Dim>(n: usize, variants: u32) -> u32 {
     stepped
 }
 
-/// A list that is said to be as long as can be: no room is made for it before its entries are there.
+/// No memory is reserved for the stated length of a list before its entries are read.
 #[test]
-fn what_is_said_to_be_long_takes_no_memory() {
+fn load_reserves_no_memory_for_stated_length() {
     let bytes = save(&full_of_all::<Dim2>(6));
     let (header, state) = bytes.split_at(17);
     for place in 0..state.len() {
@@ -482,13 +481,13 @@ fn what_is_said_to_be_long_takes_no_memory() {
     }
 }
 
-/// Blocks of elements were taken as they stood, and led out of their tables.
+/// Regression: element batches were loaded unchecked and pointed out of their tables.
 #[test]
-fn what_a_stranger_wrote_is_refused_or_can_be_stepped() {
+fn altered_snapshot_is_rejected_or_steppable() {
     let stepped = [
         check_changed::<Dim2>(8, 1500),
         check_changed::<Dim3>(4, 1000),
     ];
-    println!("so many were stepped: {stepped:?}");
+    println!("number of stepped worlds: {stepped:?}");
     assert!(stepped.iter().all(|&stepped| stepped > 200), "{stepped:?}");
 }

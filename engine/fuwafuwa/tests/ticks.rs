@@ -1,4 +1,4 @@
-//! Ticks of other lengths: what counts in seconds takes as many seconds.
+//! Tick lengths: durations in seconds do not depend on the tick.
 
 use fuwafuwa::world::{LONGEST_TICK, SHORTEST_TICK, TICK};
 use fuwafuwa::{
@@ -35,7 +35,7 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     SoftBody::new(VoxelGrid::ball(n, 1.0).unwrap(), &[strong]).unwrap()
 }
 
-/// How often something happens in so many seconds, and in which of them it first does.
+/// Steps the world for a time [s] and calls `watch` after each tick.
 fn pass<D: Dim>(world: &mut World<D>, seconds: f32, mut watch: impl FnMut(&World<D>)) {
     let ticks = (seconds / world.config().tick).round() as u32;
     for _ in 0..ticks {
@@ -45,7 +45,7 @@ fn pass<D: Dim>(world: &mut World<D>, seconds: f32, mut watch: impl FnMut(&World
 }
 
 fn check_fall<D: Dim>() {
-    // In half a second it falls by 1.226 m, whatever the tick.
+    // In half a second a body falls 1.226 m, at any tick.
     for tick in TICKS {
         let mut world = world::<D>(tick);
         let ball = world.add_soft_body(ball::<D>(12).translated([0.0, 5.0, 0.0]));
@@ -62,12 +62,13 @@ fn check_fall<D: Dim>() {
 }
 
 #[test]
-fn what_falls_comes_as_far_in_any_tick() {
+fn fall_distance_is_independent_of_tick() {
     check_fall::<Dim2>();
     check_fall::<Dim3>();
 }
 
-/// When a ball that is dropped first touches the floor, how far it is squashed at the most, and when it sleeps.
+/// Returns the time when a dropped ball first touches the floor, the lowest height of its centre, and the
+/// time when it falls asleep.
 fn landing<D: Dim>(tick: f32) -> [f32; 3] {
     let mut world = world::<D>(tick);
     let ball = world.add_soft_body(ball::<D>(12).translated([0.0, 0.5, 0.0]));
@@ -95,7 +96,7 @@ fn landing<D: Dim>(tick: f32) -> [f32; 3] {
 
 fn check_landing<D: Dim>() {
     let [touched, lowest, slept] = landing::<D>(TICK);
-    assert!(slept > 0.0, "it never sleeps");
+    assert!(slept > 0.0, "the ball must fall asleep");
     for tick in TICKS {
         let [other, squashed, resting] = landing::<D>(tick);
         assert!(
@@ -114,12 +115,12 @@ fn check_landing<D: Dim>() {
 }
 
 #[test]
-fn what_lands_is_squashed_and_comes_to_rest_alike() {
+fn landing_is_independent_of_tick() {
     check_landing::<Dim2>();
     check_landing::<Dim3>();
 }
 
-/// How many nodes a hand tears that is driven through a ball at the same speed.
+/// Returns the number of nodes that a hand releases when it moves through a ball at a given speed.
 fn torn<D: Dim>(tick: f32) -> u32 {
     let mut world = world::<D>(tick);
     let soft = Material {
@@ -147,7 +148,7 @@ fn torn<D: Dim>(tick: f32) -> u32 {
 }
 
 #[test]
-fn a_hand_tears_alike() {
+fn tearing_is_similar_at_any_tick() {
     for tear in [torn::<Dim2>, torn::<Dim3>] {
         let usual = tear(TICK);
         assert!(usual > 10);
@@ -162,7 +163,7 @@ fn a_hand_tears_alike() {
 }
 
 #[test]
-fn substeps_are_as_many_in_a_second() {
+fn substeps_per_second_are_independent_of_tick() {
     for tick in TICKS {
         let mut world = world::<Dim2>(tick);
         world.add_soft_body(ball::<Dim2>(12));
@@ -172,7 +173,7 @@ fn substeps_are_as_many_in_a_second() {
             "tick {tick}: {a_second}"
         );
     }
-    // A body that is too stiff is softened as much in any tick.
+    // A body that is too stiff is softened by the same factor at any tick.
     let scale = |tick| {
         let stiff = Material {
             elasticity: fuwafuwa::Elasticity::new(5e7, 0.3).unwrap(),
@@ -191,7 +192,7 @@ fn substeps_are_as_many_in_a_second() {
 }
 
 #[test]
-fn bad_ticks_are_refused() {
+fn settings_reject_tick_out_of_range() {
     for tick in [0.0, -TICK, f32::NAN, f32::INFINITY, 1.0 / 29.0, 1.0 / 250.0] {
         let settings = WorldConfig {
             tick,
@@ -212,10 +213,10 @@ fn bad_ticks_are_refused() {
     }
 }
 
-/// Every setting takes effect on a world that runs.
+/// Each setting takes effect on a running world.
 #[test]
-fn settings_change_on_the_way() {
-    let usual = WorldConfig::default();
+fn set_settings_takes_effect_immediately() {
+    let usual = Settings::default();
     let mut world = world::<Dim2>(TICK);
     let ball = world.add_soft_body(ball::<Dim2>(12).translated([0.0, 50.0, 0.0]));
     let speed = |world: &World<Dim2>| {
@@ -257,12 +258,13 @@ fn settings_change_on_the_way() {
     near(found / before, kept * kept * kept * kept - 1.0);
 }
 
-/// What a stick is told in each substep is what the tick tells at its end, force and torque.
+/// The reactions passed to the hook in each substep, force and torque, are those stored at the end of the
+/// tick.
 fn check_callback<D: Dim>(tick: f32) {
     let mut world = world::<D>(tick);
     world.add_soft_body(ball::<D>(12).translated([0.0, 0.0, 0.0]));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    // A bar that meets the ball with one end: it is pushed and turned.
+    // A bar that meets the ball with one end, so that it is pushed and rotated.
     let bar = Shape::Capsule {
         from: [-1.0, 0.0, 0.0],
         to: [0.3, 0.0, 0.0],
@@ -294,7 +296,7 @@ fn check_callback<D: Dim>(tick: f32) {
         for reaction in felt {
             most = most.max(reaction.torque[2]);
             if reaction.contact[1] > 1.0 {
-                // To the right of the hand, and pushed up.
+                // The contact is to the right of the hand and pushes up.
                 assert!(reaction.torque[2] > 0.0, "{reaction:?}");
             }
         }
@@ -303,7 +305,7 @@ fn check_callback<D: Dim>(tick: f32) {
 }
 
 #[test]
-fn each_substep_tells_force_and_torque() {
+fn substep_hook_reports_stored_reactions() {
     for tick in [SHORTEST_TICK, TICK, LONGEST_TICK] {
         check_callback::<Dim2>(tick);
         check_callback::<Dim3>(tick);

@@ -1,4 +1,4 @@
-//! Worlds: things fall, rest, sleep, are cut, pushed, torn and looked at.
+//! Worlds: falling, rest, sleep, cuts, contacts, tears and views.
 
 use fuwafuwa::blade::Blade;
 use fuwafuwa::view::PieceView;
@@ -34,7 +34,7 @@ fn validate<D: Dim>(world: &World<D>) {
     }
 }
 
-/// The volume inside all facets, by the divergence theorem.
+/// Returns the volume enclosed by all facets, by the divergence theorem.
 fn volume_inside<D: Dim>(body: &SoftBody<D>) -> f32 {
     let of = |facet: fuwafuwa::view::Facet| {
         let [a, b, c, d] = facet.corners;
@@ -82,7 +82,7 @@ fn check_cut_in_two<D: Dim>(n: usize, blade: Blade) {
 }
 
 #[test]
-fn a_blade_cuts_in_two() {
+fn cut_splits_body_in_two() {
     check_cut_in_two::<Dim2>(24, Blade::segment([0.47, -0.1], [0.55, 1.1]));
     let across = Blade {
         from: [-0.1, 0.45, -0.1],
@@ -93,7 +93,7 @@ fn a_blade_cuts_in_two() {
 }
 
 #[test]
-fn what_a_cut_changed_is_told_by_bare_faces_and_nodes() {
+fn bare_faces_and_nodes_reveal_changes_of_cut() {
     let mut world = World::<Dim3>::new(WEIGHTLESS).unwrap();
     world.add_soft_body(ball(16, unbreakable()));
     let forms = |world: &World<Dim3>| -> Vec<(u8, Vec<NodeId>)> {
@@ -135,7 +135,7 @@ fn what_a_cut_changed_is_told_by_bare_faces_and_nodes() {
 }
 
 #[test]
-fn a_short_blade_leaves_a_slit() {
+fn short_cut_leaves_slit_in_one_piece() {
     let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
     world.add_soft_body(ball(24, unbreakable()));
     assert!(
@@ -152,7 +152,7 @@ fn a_short_blade_leaves_a_slit() {
     assert_eq!(
         world.soft_bodies().first().unwrap().outlines().len(),
         1,
-        "the slit joins the rim"
+        "the slit must join the rim"
     );
     assert!(
         world
@@ -166,7 +166,7 @@ fn a_short_blade_leaves_a_slit() {
     assert_eq!(
         world.soft_bodies().first().unwrap().outlines().len(),
         2,
-        "a hole of its own"
+        "an inner cut must have its own outline"
     );
 }
 
@@ -195,10 +195,10 @@ fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
     assert!(view.low[1] > -0.01 && view.high[1] > 0.5, "{view:?}");
     let still = world.hash();
     world.step();
-    let mut hand = RigidBody::coupled_ball([0.5, 2.0, if D::N == 3 { 0.5 } else { 0.0 }], 0.1);
-    hand.motion_type = MotionType::Kinematic;
-    world.add_rigid_body(hand).unwrap();
-    assert_ne!(world.hash(), still, "ticks count");
+    let mut hand = Rigid::hand([0.5, 2.0, if D::N == 3 { 0.5 } else { 0.0 }], 0.1);
+    hand.drive = Drive::Kinematic;
+    world.add_rigid(hand).unwrap();
+    assert_ne!(world.hash(), still, "the hash must change with the tick");
     let mut woke = false;
     for tick in 0..60 {
         let height = 2.0 - 1.5 * tick as f32 / 60.0;
@@ -214,7 +214,7 @@ fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
             .iter()
             .any(|event| matches!(event, Event::WokeUp { .. }));
     }
-    assert!(woke, "a hand wakes what it touches");
+    assert!(woke, "a hand must wake the body it touches");
     let felt = world
         .target_followers()
         .next()
@@ -224,16 +224,16 @@ fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
         .last()
         .unwrap()
         .contact;
-    assert!(felt[1] > 1.0, "the body pushes back: {felt:?}");
+    assert!(felt[1] > 1.0, "the body must push back: {felt:?}");
 }
 
 #[test]
-fn a_ball_falls_rests_sleeps_and_wakes() {
+fn ball_falls_sleeps_and_wakes_when_touched() {
     check_falls_rests_and_sleeps::<Dim2>(24);
     check_falls_rests_and_sleeps::<Dim3>(12);
 }
 
-/// The hand is slammed through the body at 20 body widths a second.
+/// Slams a hand through the body at 20 body widths per second.
 fn check_slam<D: Dim>(n: usize, drive: MotionType) {
     let mut world = World::<D>::new(WEIGHTLESS).unwrap();
     world.add_soft_body(ball::<D>(n, Material::default()));
@@ -259,15 +259,15 @@ fn check_slam<D: Dim>(n: usize, drive: MotionType) {
 }
 
 #[test]
-fn a_slammed_hand_leaves_a_finite_world() {
-    for drive in [MotionType::Kinematic, MotionType::default()] {
+fn world_stays_finite_when_hand_is_slammed() {
+    for drive in [Drive::Kinematic, Drive::default()] {
         check_slam::<Dim2>(32, drive);
         check_slam::<Dim3>(12, drive);
     }
 }
 
 #[test]
-fn what_is_not_finite_is_refused() {
+fn world_rejects_non_finite_arguments() {
     let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
     world
         .add_rigid_body(RigidBody::coupled_ball([0.0; 3], 0.1))
@@ -301,7 +301,7 @@ fn what_is_not_finite_is_refused() {
 }
 
 #[test]
-fn an_inverted_start_stays_finite() {
+fn inverted_body_recovers_and_stays_finite() {
     let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
     let mut body = ball::<Dim2>(24, unbreakable());
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
@@ -311,16 +311,22 @@ fn an_inverted_start_stays_finite() {
     }
     world.add_soft_body(body);
     let inverted: Vec<u32> = (0..120).map(|_| world.step().inverted).collect();
-    assert!(inverted[0] > 0, "reported: {inverted:?}");
-    assert!(inverted[119] < inverted[0], "turned back: {inverted:?}");
-    let view = world.soft_bodies().first().unwrap().piece_views()[0];
+    assert!(
+        inverted[0] > 0,
+        "inverted elements must be reported: {inverted:?}"
+    );
+    assert!(
+        inverted[119] < inverted[0],
+        "inverted elements must decrease: {inverted:?}"
+    );
+    let view = world.bodies().first().unwrap().piece_views()[0];
     assert!(view.high[0] - view.low[0] < 2.0, "{view:?}");
 }
 
-/// A body far too stiff for the substeps allowed is softened, and says so.
+/// A body that is too stiff for the allowed substeps is softened and reports it.
 #[test]
-fn a_body_too_stiff_is_softened() {
-    let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
+fn too_stiff_body_is_softened() {
+    let mut world = World::<Dim2>::new(Settings::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
     world.add_rigid_body(RigidBody::fixed(floor, 0.5)).unwrap();
     let mut steel = unbreakable();
@@ -335,8 +341,7 @@ fn a_body_too_stiff_is_softened() {
     assert!(view.low[1] > -0.05 && view.high[1] < 1.5, "{view:?}");
 }
 
-/// Ten widths a second, one body against its like and a handful of dust against another: nothing
-/// passes through.
+/// At ten widths per second, neither a body nor a cloud of crumbs passes through another body.
 fn check_no_tunnelling<D: Dim>(n: usize) {
     for crumbles in [false, true] {
         let mut world = World::<D>::new(WEIGHTLESS).unwrap();
@@ -366,13 +371,13 @@ fn check_no_tunnelling<D: Dim>(n: usize) {
 }
 
 #[test]
-fn what_is_fast_does_not_pass_through() {
+fn fast_body_does_not_tunnel() {
     check_no_tunnelling::<Dim2>(16);
     check_no_tunnelling::<Dim3>(10);
 }
 
-/// A stick is driven 960 times a second: what it is to push back with must not jitter while the
-/// hand rests on a body, nor jump from one substep to the next while it pushes in.
+/// A force-feedback stick is updated 960 times a second. Its force must not jitter while the hand rests on a
+/// body, nor jump between substeps while the hand pushes in.
 fn check_smooth_reaction<D: Dim>(n: usize) {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
@@ -390,7 +395,7 @@ fn check_smooth_reaction<D: Dim>(n: usize) {
         world.step();
         let felt = world.rigid_bodies()[hand].reactions();
         let up = felt.iter().map(|reaction| reaction.coupling[1]);
-        // The start is a jerk of the goal, and felt as one.
+        // The first tick is excluded: the target jumps, which is felt as a jerk.
         if (1..120).contains(&tick) {
             steps.extend(up);
         } else if tick >= 420 {
@@ -398,7 +403,7 @@ fn check_smooth_reaction<D: Dim>(n: usize) {
         }
     }
     let mean = pressed.iter().sum::<f32>() / pressed.len() as f32;
-    assert!(mean.abs() > 20.0, "it is pushed back: {mean} N");
+    assert!(mean.abs() > 20.0, "the hand must be pushed back: {mean} N");
     let furthest = pressed.iter().map(|up| (up - mean).abs());
     let furthest = furthest.fold(0.0, f32::max);
     assert!(
@@ -411,13 +416,13 @@ fn check_smooth_reaction<D: Dim>(n: usize) {
 }
 
 #[test]
-fn what_a_hand_feels_is_smooth() {
+fn hand_reaction_is_smooth_between_substeps() {
     check_smooth_reaction::<Dim2>(24);
     check_smooth_reaction::<Dim3>(12);
 }
 
 #[test]
-fn eight_substeps_squash_a_soft_ball_as_sixteen_do() {
+fn squash_is_equal_with_8_and_16_substeps() {
     let [eight, sixteen] = [8, 16].map(|most_substeps| {
         let mut world = World::<Dim3>::new(WorldConfig {
             gravity: [0.0, -3.0, 0.0],
@@ -448,7 +453,10 @@ fn eight_substeps_squash_a_soft_ball_as_sixteen_do() {
     });
     assert!(
         (eight.0 - sixteen.0).abs() < 0.002,
-        "the hand is stopped alike"
+        "the hand must stop at the same height"
     );
-    assert!(eight.1 > -0.006, "a tenth of a voxel into the floor");
+    assert!(
+        eight.1 > -0.006,
+        "the ball may sink a tenth of a voxel into the floor"
+    );
 }

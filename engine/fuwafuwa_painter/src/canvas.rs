@@ -1,4 +1,4 @@
-//! The depth buffer behind [`crate::solid`].
+//! Depth buffer used by [`crate::solid`].
 
 use crate::PaintError;
 use crate::role::{Role, colour};
@@ -7,48 +7,48 @@ use fuwafuwa::shape::Vector;
 use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
-/// From where space is seen.
+/// Perspective camera.
 #[derive(Copy, Clone, Debug)]
 pub struct Camera {
-    /// Where the eye is [m].
+    /// Position of the camera [m].
     pub eye: Vector,
-    /// What it looks at [m]; this falls in the middle of the image.
+    /// Target [m], which appears at the centre of the image.
     pub target: Vector,
-    /// What fits across the image at the target [m].
+    /// Width of the view at the target [m].
     pub across: f32,
 }
 
 /// A triangle with a normal at each corner.
 #[derive(Copy, Clone, Debug)]
 pub struct Triangle {
-    /// [m]
+    /// Corners [m].
     pub corners: [Vector; 3],
-    /// Outwards, one at each corner; of any length.
+    /// Outward normal at each corner; any length.
     pub normals: [Vector; 3],
-    /// What it belongs to.
+    /// Role of the surface.
     pub role: Role,
 }
 
-/// Pixels are painted this many times as fine on each axis, and averaged.
+/// Supersampling factor on each axis.
 const FINE: usize = 2;
-/// Towards the weaker light.
+/// Direction to the weaker light.
 const FILL: Vector = [-0.76, 0.38, 0.53];
 
-/// Depth and light of every fine pixel.
+/// Depth and light of every supersampled pixel.
 pub struct Canvas {
     width: usize,
     height: usize,
     eye: Vector,
-    /// To the right, upwards, and away from the eye; each of length 1.
+    /// Unit vectors to the right, up, and away from the camera.
     axes: [Vector; 3],
-    /// Pixels a metre at a distance of 1 m.
+    /// Focal length [px].
     focal: f32,
     depth: Vec<f32>,
     light: Vec<Vector>,
 }
 
 impl Canvas {
-    /// Empty paper of a size [px].
+    /// Creates empty paper [px].
     pub fn new(camera: Camera, width: u32, height: u32) -> Self {
         let away = minus(camera.target, camera.eye);
         let forward = unit(away);
@@ -65,7 +65,7 @@ impl Canvas {
         }
     }
 
-    /// Pixel coordinates and depth of a place.
+    /// Returns the pixel coordinates and the depth of a point.
     fn project(&self, at: Vector) -> [f32; 3] {
         let reach = minus(at, self.eye);
         let [x, y, depth] = self.axes.map(|axis| dot(axis, reach));
@@ -77,7 +77,7 @@ impl Canvas {
         ]
     }
 
-    /// Paints a triangle where nothing is nearer.
+    /// Paints a triangle, with a depth test.
     pub fn triangle(&mut self, triangle: &Triangle) {
         let spots = triangle.corners.map(|at| self.project(at));
         let [a, b, c] = spots;
@@ -102,7 +102,7 @@ impl Canvas {
                 if shares.iter().any(|&share| share < 0.0) {
                     continue;
                 }
-                // Straight in space means straight in one over the depth on the image.
+                // Perspective-correct interpolation: 1/depth is linear on the image.
                 let near: f32 = (0..3).map(|k| shares[k] / spots[k][2]).sum();
                 let (depth, pixel) = (1.0 / near, y * self.width + x);
                 if depth < self.depth[pixel] {
@@ -117,7 +117,7 @@ impl Canvas {
         }
     }
 
-    /// The direction in which the eye sees a pixel.
+    /// Returns the unit vector from the camera through a pixel.
     fn look(&self, x: usize, y: usize) -> Vector {
         let right = (x as f32 + 0.5 - 0.5 * self.width as f32) / self.focal;
         let up = (0.5 * self.height as f32 - y as f32 - 0.5) / self.focal;
@@ -125,7 +125,7 @@ impl Canvas {
         unit(plus(sideways, self.axes[2]))
     }
 
-    /// Darkens what lies deeper than the mean of two opposite neighbours within `reach` [m].
+    /// Darkens pixels that are deeper than the mean of two opposite neighbours within `reach` [m].
     pub fn darken_creases(&mut self, reach: f32) {
         const DIRECTIONS: [[f32; 2]; 6] = [
             [1.0, 0.0],
@@ -169,7 +169,7 @@ impl Canvas {
         }
     }
 
-    /// Paints a line of half a width `radius` [px] where nothing is nearer.
+    /// Paints a line with a half width of `radius` [px], with a depth test.
     pub fn segment(&mut self, ends: [Vector; 2], radius: f32, role: Role) {
         let radius = radius * FINE as f32;
         let colour = light_of(role);
@@ -201,7 +201,7 @@ impl Canvas {
         }
     }
 
-    /// Fills what is still empty with the floor, which fades into the paper far off.
+    /// Fills empty pixels with the floor, which fades into the paper in the distance.
     pub fn floor(&mut self, height: f32, shadow: &Shadow) {
         let (paper, floor) = (light_of(Role::Paper), light_of(Role::Floor));
         for y in 0..self.height {
@@ -224,10 +224,10 @@ impl Canvas {
         }
     }
 
-    /// The image.
+    /// Averages the supersampled pixels to an image.
     ///
     /// # Errors
-    /// When it has no area.
+    /// [`PaintError::NoSize`] if the image has no area.
     pub fn averaged(&self) -> Result<Pixmap, PaintError> {
         let (width, height) = (self.width / FINE, self.height / FINE);
         let mut pixels = Pixmap::new(width as u32, height as u32)
@@ -247,7 +247,7 @@ impl Canvas {
     }
 }
 
-/// A colour under both lights and the sky; what is seen from behind is lit like the front.
+/// Returns a colour under both lights and the sky; back faces are lit like front faces.
 fn shaded(colour: Vector, normal: Vector, look: Vector) -> Vector {
     let normal = if dot(normal, look) > 0.0 {
         scaled(normal, -1.0)
@@ -266,7 +266,7 @@ fn shaded(colour: Vector, normal: Vector, look: Vector) -> Vector {
 }
 
 fn light_of(role: Role) -> Vector {
-    // Squares stand in for the curve between bytes and light.
+    // A square approximates the sRGB transfer curve.
     colour(role).map(|byte| (f32::from(byte) / 255.0).powi(2))
 }
 
@@ -278,7 +278,7 @@ fn mixed(a: Vector, b: Vector, share: f32) -> Vector {
     plus(scaled(a, 1.0 - share), scaled(b, share))
 }
 
-/// The same direction with length 1.
+/// Returns the unit vector in the direction of `v`.
 pub fn unit(v: Vector) -> Vector {
     scaled(v, 1.0 / length(v).max(1e-12))
 }

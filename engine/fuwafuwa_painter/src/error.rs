@@ -1,41 +1,41 @@
-//! Why a picture or a film could not be made.
+//! Errors of pictures and films.
 
 use std::error::Error;
 
-/// Why a picture or a film could not be made.
+/// Reason why a picture or a film could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PaintError {
     /// Paper or an image without area, or a shape without a finite size.
     #[error("{what} has no finite size above zero")]
     NoSize {
-        /// What it is.
+        /// Object without a size.
         what: &'static str,
     },
-    /// A film or a strip of nothing.
+    /// A film or a strip without frames.
     #[error("a film or a strip needs at least one frame")]
     NoFrame,
-    /// A frame that differs in size from the first.
-    #[error("frame {frame} is {found:?} pixels, the first is {expected:?}: all must be alike")]
+    /// A frame with another size than the first.
+    #[error("frame {frame} has {found:?} pixels, expected {expected:?} as in the first frame")]
     FrameSize {
-        /// Its number, from 1.
+        /// Number of the frame, from 1.
         frame: usize,
-        /// Its width and height [px].
+        /// Width and height of the frame [px].
         found: [u32; 2],
-        /// Those of the first frame [px].
+        /// Width and height of the first frame [px].
         expected: [u32; 2],
     },
-    /// The pixels could not be packed as a file.
+    /// The pixels could not be encoded.
     #[error("{format}: {reason}")]
     Packing {
         /// GIF or PNG.
         format: &'static str,
-        /// Why.
+        /// Error of the encoder.
         reason: Box<dyn Error + Send + Sync>,
     },
 }
 
 impl PaintError {
-    /// What to make of a failure to pack pixels.
+    /// Returns a function that converts an error of an encoder.
     pub(crate) fn packing<E: Error + Send + Sync + 'static>(
         format: &'static str,
     ) -> impl Fn(E) -> Self {

@@ -1,26 +1,26 @@
-//! Several moments: one after the other in a GIF, or side by side in one image.
+//! Sequences of pictures: an animated GIF, or a strip side by side in one image.
 
 use crate::{PaintError, Painter};
 use gif::{Encoder, Frame, Repeat};
 use tiny_skia::Pixmap;
 
-/// Gap between the moments of a strip [px].
+/// Gap between the pictures of a strip [px].
 const GAP: u32 = 12;
 
-/// A GIF that runs for ever, made frame by frame, so that a long one needs no more memory than its file.
+/// An endless GIF, encoded frame by frame, so that a long one needs no more memory than its file.
 #[derive(Default)]
 pub struct Gif {
-    /// Nothing before the first frame, from which it has its size.
+    /// `None` before the first frame, which determines the size.
     encoder: Option<Encoder<Vec<u8>>>,
     size: [u32; 2],
     count: usize,
 }
 
 impl Gif {
-    /// Adds a frame that is shown for `hundredths` of a second.
+    /// Adds a frame, shown for `hundredths` of a second.
     ///
     /// # Errors
-    /// When it differs in size from the first.
+    /// [`PaintError::FrameSize`] if its size differs from that of the first frame.
     pub fn add(&mut self, pixels: &Pixmap, hundredths: u16) -> Result<(), PaintError> {
         let found = [pixels.width(), pixels.height()];
         let failed = PaintError::packing("GIF");
@@ -45,26 +45,26 @@ impl Gif {
                 none.insert(new)
             }
         };
-        // 1 to 30, slow to fast: 10 is hardly worse than 1.
+        // Speed of quantisation, from 1 (slow) to 30 (fast): 10 is hardly worse than 1.
         let mut frame = Frame::from_rgba_speed(width, height, &mut pixels.data().to_vec(), 10);
         frame.delay = hundredths;
         encoder.write_frame(&frame).map_err(&failed)
     }
 
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     ///
     /// # Errors
-    /// When there is no frame.
+    /// [`PaintError::NoFrame`] if there is no frame.
     pub fn finish(self) -> Result<Vec<u8>, PaintError> {
         let encoder = self.encoder.ok_or(PaintError::NoFrame)?;
         encoder.into_inner().map_err(PaintError::packing("GIF"))
     }
 }
 
-/// The frames as the bytes of a GIF that runs for ever, each shown for `hundredths` of a second.
+/// Encodes frames as an endless GIF, each shown for `hundredths` of a second.
 ///
 /// # Errors
-/// When there is no frame, or their sizes differ.
+/// If there is no frame, or the sizes differ.
 pub fn gif(frames: &[Pixmap], hundredths: u16) -> Result<Vec<u8>, PaintError> {
     let mut film = Gif::default();
     for pixels in frames {
@@ -73,10 +73,10 @@ pub fn gif(frames: &[Pixmap], hundredths: u16) -> Result<Vec<u8>, PaintError> {
     film.finish()
 }
 
-/// The moments side by side, `columns` in a row, on paper of their own.
+/// Arranges pictures side by side, `columns` in a row, on new paper.
 ///
 /// # Errors
-/// When there is no moment.
+/// [`PaintError::NoFrame`] if there is no picture.
 pub fn strip(moments: &[Pixmap], columns: usize) -> Result<Painter, PaintError> {
     let first = moments.first().ok_or(PaintError::NoFrame)?;
     let rows = moments.len().div_ceil(columns) as u32;
@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_film_has_its_frames_and_a_strip_its_width() {
+    fn gif_needs_frames_and_strip_arranges_them_in_rows() {
         let frames = vec![Painter::new(20, 10).pixels().unwrap(); 3];
         let bytes = gif(&frames, 4).unwrap();
         assert!(bytes.starts_with(b"GIF89a"));

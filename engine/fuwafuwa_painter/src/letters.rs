@@ -1,9 +1,10 @@
-//! Letters as strokes, so that no file needs a font and every back end writes alike. There are those
-//! of English, digits and some signs; what is not there leaves a gap.
+//! A stroke font, so that no font file is needed and all outputs look the same. It has the letters of
+//! English, digits and some signs; other characters leave a gap.
 
 use crate::Spot;
 
-/// The lines of a text: `at` is the top left of its first capital, `height` that of a capital.
+/// Returns the lines of a text. `at` is the top left corner of its first capital, `height` the height of a
+/// capital.
 pub fn lines(at: Spot, height: f32, text: &str) -> Vec<Vec<Spot>> {
     let unit = height / 6.0;
     let mut x = at[0];
@@ -24,12 +25,12 @@ pub fn lines(at: Spot, height: f32, text: &str) -> Vec<Vec<Spot>> {
     lines
 }
 
-/// How wide a text is [px].
+/// Returns the width of a text [px].
 pub fn width(height: f32, text: &str) -> f32 {
     text.chars().map(advance).sum::<f32>() * height / 6.0
 }
 
-/// Width of the letters relative to the grid they are drawn on.
+/// Width of the letters relative to the grid of their strokes.
 const SLENDER: f32 = 0.78;
 
 fn advance(letter: char) -> f32 {
@@ -38,7 +39,7 @@ fn advance(letter: char) -> f32 {
     width * SLENDER + 1.3
 }
 
-/// Empty columns on the left of a letter, and the columns it fills.
+/// Returns the number of empty columns to the left of a letter, and of the columns it fills.
 fn room(letter: char) -> (f32, f32) {
     match letter {
         'i' | '.' | ',' | ':' | '!' | '\'' | '|' => (2.0, 0.4),
@@ -50,7 +51,7 @@ fn room(letter: char) -> (f32, f32) {
     }
 }
 
-/// Turns the corners of a stroke into curves, but for the sharp ones and those of a box.
+/// Rounds the corners of a stroke, except sharp ones and those of boxes.
 fn rounded(spots: &[Spot]) -> Vec<Spot> {
     let mut curve = Vec::new();
     let closed = spots.len() > 2 && spots.first() == spots.last();
@@ -84,7 +85,7 @@ fn is_round(before: Spot, at: Spot, after: Spot) -> bool {
     cosine > 0.69 || (cosine > -0.01 && slanted(u) && slanted(v))
 }
 
-/// A quadratic curve at `t`.
+/// Evaluates a quadratic Bézier curve at `t`.
 fn bent(from: Spot, by: Spot, to: Spot, t: f32) -> Spot {
     let s = 1.0 - t;
     [0, 1].map(|k: usize| s * s * from[k] + 2.0 * s * t * by[k] + t * t * to[k])
@@ -98,7 +99,7 @@ fn minus(a: Spot, b: Spot) -> Spot {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// The strokes of a letter on a grid of 4 × 8: pairs of digits x, y; `|` lifts the pen.
+/// Returns the strokes of a letter on a grid of 4 × 8: pairs of digits x, y; `|` lifts the pen.
 fn strokes(letter: char) -> &'static str {
     match letter {
         '0' => "10 30 41 45 36 16 05 01 10",
@@ -188,7 +189,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_stroke_lies_on_the_grid() {
+    fn strokes_lie_on_grid() {
         for letter in ' '..='~' {
             for pair in strokes(letter).split(['|', ' ']).filter(|s| !s.is_empty()) {
                 let digits = pair.as_bytes();
@@ -200,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_fits_its_width() {
+    fn width_matches_lines() {
         let text = "level 0, 2.5 s";
         let right = lines([0.0; 2], 6.0, text).into_iter().flatten();
         let right = right.map(|spot| spot[0]).fold(0.0, f32::max);

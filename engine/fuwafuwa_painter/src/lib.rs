@@ -1,12 +1,12 @@
-//! Pictures and films of worlds, painted without a GPU, from shapes that have a role and no colour:
-//! see [`role`].
+//! Pictures and films of worlds, painted without a GPU. Shapes have a role, and the role determines the
+//! colour: see [`role`].
 //!
-//! A [`Painter`] is a list of shapes; it becomes a drawing ([`Painter::svg`]), an image
-//! ([`Painter::pixels`]) or a frame of a [`film`], the same in all of them. Bodies in space are
-//! painted by [`solid`] into an image that lies on the paper like any other shape.
+//! A [`Painter`] is a list of shapes. It becomes a drawing ([`Painter::svg`]), an image ([`Painter::pixels`])
+//! or a frame of a [`film`], with the same look. The module [`solid`] renders 3D bodies to an image, which is
+//! a shape like any other.
 //!
-//! Whole worlds are put on a painter by [`worlds`], which shows elements and voxels as they are. The look of the game is
-//! that of the crate `fuwafuwa_render` alone.
+//! The module [`worlds`] paints whole worlds and shows their elements and voxels exactly. For the look of the
+//! game, use the crate `fuwafuwa_render`.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
@@ -30,12 +30,12 @@ pub use role::Role;
 use std::rc::Rc;
 pub use tiny_skia::Pixmap;
 
-/// One thing on the paper.
+/// A shape on the paper.
 #[derive(Clone, Debug)]
 enum Shape {
-    /// A filled outline.
+    /// A filled polygon.
     Area { outline: Vec<Spot>, role: Role },
-    /// A line through spots, joined at the end when it is closed.
+    /// A line through points; a closed one also joins the last point to the first.
     Line {
         spots: Vec<Spot>,
         closed: bool,
@@ -44,11 +44,11 @@ enum Shape {
     },
     /// A filled disc.
     Dot { at: Spot, radius: f32, role: Role },
-    /// An image with its top left at a spot.
+    /// An image; `at` is its top left corner.
     Image { at: Spot, pixels: Rc<Pixmap> },
 }
 
-/// Shapes on paper, the last one on top.
+/// List of shapes on paper; later shapes cover earlier ones.
 #[derive(Clone, Debug)]
 pub struct Painter {
     width: u32,
@@ -57,17 +57,17 @@ pub struct Painter {
 }
 
 impl Painter {
-    /// Its width and height [px].
+    /// Returns width and height [px].
     pub fn size(&self) -> [u32; 2] {
         [self.width, self.height]
     }
 
-    /// More paper at the bottom.
+    /// Extends the paper at the bottom by `by` [px].
     pub fn extend(&mut self, by: u32) {
         self.height += by;
     }
 
-    /// Empty paper of a size [px].
+    /// Creates empty paper [px].
     pub fn new(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -76,8 +76,8 @@ impl Painter {
         }
     }
 
-    /// Empty paper of a width [px] for a view from one corner to the other [m], and where its places
-    /// fall; 50 to 2000 px high.
+    /// Creates empty paper of a width [px] for a view from a low to a high corner [m], and the map from world
+    /// to paper. The height is clamped to 50 to 2000 px.
     pub fn for_view([low, high]: [[f32; 3]; 2], width: u32) -> (Self, Frame) {
         let unit = width as f32 / (high[0] - low[0]);
         let height = (unit * (high[1] - low[1])).round().clamp(50.0, 2000.0);
@@ -85,18 +85,18 @@ impl Painter {
         (Self::new(width, height as u32), Frame { origin, unit })
     }
 
-    /// Adds a filled outline without an edge.
+    /// Adds a filled polygon without an outline.
     pub fn area(&mut self, outline: Vec<Spot>, role: Role) {
         self.shapes.push(Shape::Area { outline, role });
     }
 
-    /// Adds a filled outline with an edge of a width [px].
+    /// Adds a filled polygon with an outline of a width [px].
     pub fn polygon(&mut self, outline: Vec<Spot>, role: Role, edge: Role, width: f32) {
         self.area(outline.clone(), role);
         self.ring(outline, width, edge);
     }
 
-    /// Adds a filled rectangle with an edge.
+    /// Adds a filled rectangle with an outline of a width [px].
     pub fn rectangle(&mut self, low: Spot, size: Spot, role: Role, edge: Role, width: f32) {
         self.polygon(rectangle(low, size), role, edge, width);
     }
@@ -121,7 +121,7 @@ impl Painter {
         });
     }
 
-    /// Adds a line of text in the middle below everything, on paper of its own.
+    /// Adds a centred line of text below everything, on an extension of the paper.
     pub fn caption(&mut self, text: &str) {
         const HEIGHT: f32 = 13.0;
         let [width, height] = self.size().map(|k| k as f32);
@@ -135,13 +135,13 @@ impl Painter {
         self.shapes.push(Shape::Dot { at, radius, role });
     }
 
-    /// Adds a disc with a pale ring that sets it off.
+    /// Adds a disc with a pale ring for contrast.
     pub fn bright_dot(&mut self, at: Spot, radius: f32, role: Role) {
         self.dot(at, radius * 1.45, Role::Paper);
         self.dot(at, radius, role);
     }
 
-    /// Adds a cross with a pale rim that sets it off.
+    /// Adds a cross with a pale rim for contrast.
     pub fn cross(&mut self, at: Spot, reach: f32, role: Role) {
         for (width, role) in [(1.1 * reach, Role::Paper), (0.55 * reach, role)] {
             for side in [-reach, reach] {
@@ -151,27 +151,28 @@ impl Painter {
         }
     }
 
-    /// Adds a line of text; `at` is the top left of its first capital, `height` that of a capital.
+    /// Adds a line of text. `at` is the top left corner of its first capital, `height` the height of a
+    /// capital [px].
     pub fn text(&mut self, at: Spot, height: f32, role: Role, text: &str) {
         for spots in letters::lines(at, height, text) {
             self.line(spots, 0.15 * height, role);
         }
     }
 
-    /// Adds an image with its top left at a spot.
+    /// Adds an image; `at` is its top left corner.
     pub fn image(&mut self, at: Spot, pixels: Pixmap) {
         let pixels = Rc::new(pixels);
         self.shapes.push(Shape::Image { at, pixels });
     }
 
-    /// Adds a row of samples with their names in the middle of the paper, as a legend.
+    /// Adds a centred row of named samples as a legend.
     pub fn legend(&mut self, y: f32, entries: &[(Sample, &str)]) {
         let wide: f32 = entries.iter().map(|(_, name)| entry_width(name)).sum();
         let x = 0.5 * (self.width as f32 - wide + BETWEEN_ENTRIES);
         self.entries([x, y], entries);
     }
 
-    /// Adds a row of samples with their names from `at` on.
+    /// Adds a row of named samples that begins at `at`.
     pub fn entries(&mut self, at: Spot, entries: &[(Sample, &str)]) {
         let mut x = at[0];
         for &(sample, name) in entries {
@@ -193,7 +194,7 @@ impl Painter {
     }
 }
 
-/// Width of a sample in a legend [px].
+/// Size of a sample in a legend [px].
 const SIZE: f32 = 22.0;
 const BETWEEN_ENTRIES: f32 = 26.0;
 
@@ -201,10 +202,10 @@ fn entry_width(name: &str) -> f32 {
     SIZE + 10.0 + letters::width(15.0, name) + BETWEEN_ENTRIES
 }
 
-/// What stands before a name in a legend.
+/// Sample next to a name in a legend.
 #[derive(Copy, Clone, Debug)]
 pub enum Sample {
-    /// A filled square with an edge.
+    /// A filled square: roles of the fill and of the outline.
     Area(Role, Role),
     /// A dot.
     Dot(Role),
@@ -214,7 +215,7 @@ pub enum Sample {
     Line(Role),
 }
 
-/// The corners of a rectangle.
+/// Returns the corners of a rectangle.
 pub fn rectangle([x, y]: Spot, size: Spot) -> Vec<Spot> {
     let (right, bottom) = (x + size[0], y + size[1]);
     vec![[x, y], [right, y], [right, bottom], [x, bottom]]
@@ -226,7 +227,7 @@ mod tests {
     use role::colour;
 
     #[test]
-    fn a_caption_stands_on_paper_of_its_own() {
+    fn caption_extends_paper() {
         let mut painter = Painter::new(120, 40);
         painter.caption("2.5 s: it is in!");
         let pixels = painter.pixels().unwrap();
@@ -235,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn drawing_and_image_hold_the_same_shapes() {
+    fn svg_and_png_show_same_colours() {
         let mut painter = Painter::new(40, 30);
         painter.rectangle([5.0, 5.0], [20.0, 20.0], Role::Hand, Role::Ink, 1.0);
         painter.bright_dot([30.0, 15.0], 3.0, Role::Added);

@@ -1,19 +1,19 @@
-//! Places on the paper.
+//! Coordinates on the paper.
 
-/// A place on the paper [px], y downwards.
+/// A point on the paper [px], y downwards.
 pub type Spot = [f32; 2];
 
-/// Where places of the plane, y upwards, fall on the paper.
+/// Map from the plane, y upwards, to the paper.
 #[derive(Copy, Clone, Debug)]
 pub struct Frame {
-    /// Where the origin falls.
+    /// Position of the origin on the paper.
     pub origin: Spot,
-    /// Pixels a unit.
+    /// Scale: pixels per unit.
     pub unit: f32,
 }
 
 impl Frame {
-    /// The spot of a place; its third coordinate does not count.
+    /// Returns the point on the paper; the third coordinate is ignored.
     pub fn spot(self, at: [f32; 3]) -> Spot {
         let [x, y] = self.origin;
         [x + at[0] * self.unit, y - at[1] * self.unit]

@@ -1,4 +1,4 @@
-//! The painter's shapes as pixels.
+//! Rasterisation of the painter's shapes.
 
 use crate::role::colour;
 use crate::{PaintError, Painter, Role, Shape, Spot};
@@ -8,10 +8,10 @@ use tiny_skia::{
 };
 
 impl Painter {
-    /// The shapes as pixels.
+    /// Renders the shapes to pixels.
     ///
     /// # Errors
-    /// When the paper or a shape has no area.
+    /// [`PaintError::NoSize`] if the paper or a shape has no area.
     pub fn pixels(&self) -> Result<Pixmap, PaintError> {
         let mut pixels =
             Pixmap::new(self.width, self.height).ok_or(PaintError::NoSize { what: "the paper" })?;
@@ -23,7 +23,7 @@ impl Painter {
         Ok(pixels)
     }
 
-    /// The shapes as the bytes of a PNG file.
+    /// Renders the shapes to a PNG file.
     ///
     /// # Errors
     /// As [`Painter::pixels`].
@@ -32,10 +32,10 @@ impl Painter {
     }
 }
 
-/// Pixels as the bytes of a PNG file.
+/// Encodes pixels as a PNG file.
 ///
 /// # Errors
-/// When they cannot be packed.
+/// [`PaintError::Packing`] if the encoder fails.
 pub fn png_of(pixels: &Pixmap) -> Result<Vec<u8>, PaintError> {
     let straight = pixels.pixels().iter().flat_map(|pixel| {
         let pixel = pixel.demultiply();

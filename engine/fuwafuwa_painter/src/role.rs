@@ -1,24 +1,24 @@
-//! What has which colour, and nothing else.
+//! Roles of shapes, and their colours.
 //!
-//! The levels run from coral through cream to blue, a scale on which neighbours differ in lightness
-//! or along blue-yellow, so that few eyes confuse them. Added and removed are the blue and the
-//! vermilion of [Okabe 2008], and differ in shape besides.
+//! The colours of levels run from coral through cream to blue. Neighbours differ in lightness or along the
+//! blue-yellow axis, so that they can be told apart with most kinds of colour vision. Added and removed are
+//! the blue and the vermilion of [Okabe 2008], and also differ in shape.
 
 /// Red, green, blue.
 pub type Colour = [u8; 3];
 
-/// What is painted.
+/// Meaning of a shape, which determines its colour.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// What everything is painted on.
+    /// Background.
     Paper,
-    /// Letters and outlines.
+    /// Text and outlines.
     Ink,
-    /// Letters that matter less.
+    /// Less important text.
     Faded,
     /// Guide lines.
     Guide,
-    /// A cell of the pyramid that owns no element.
+    /// A cell of the hierarchy without an element of its own.
     HandedOn,
     /// An element of a level, 0 = finest.
     Level(u8),
@@ -28,27 +28,27 @@ pub enum Role {
     Node,
     /// A node in the middle of an edge or a face.
     MidNode,
-    /// What is new.
+    /// Something new.
     Added,
-    /// What is gone, or about to go.
+    /// Something removed or about to be removed.
     Removed,
-    /// What is being pointed at.
+    /// Something pointed at.
     Marked,
-    /// The sides of a crack.
+    /// The faces of a crack.
     Crack,
-    /// The outside of a body, and in the plane its first material.
+    /// The surface of a body; in 2D its first material.
     Skin,
-    /// A material of a body, 1 for its first.
+    /// A material of a body, from 1.
     Material(u8),
-    /// What was inside before the body tore.
+    /// Surface that was inside before the body tore.
     Fresh,
-    /// A piece of a single voxel.
+    /// A crumb: a piece of one voxel.
     Crumb,
-    /// Something rigid that never moves.
+    /// A fixed rigid body.
     Obstacle,
-    /// The rigid hand.
+    /// The player's hand.
     Hand,
-    /// What bodies stand on, in space.
+    /// The floor of a 3D scene.
     Floor,
 }
 
@@ -61,7 +61,7 @@ const LEVELS: [Colour; 6] = [
     [0x6A, 0x97, 0xBF],
 ];
 
-/// Of a body's second material and those after it, which begin again when they are used up.
+/// Colours of a body's second and later materials; they repeat.
 const MATERIALS: [Colour; 4] = [
     [0xB5, 0x5D, 0x6B],
     [0xF6, 0xCE, 0x8A],
@@ -69,7 +69,7 @@ const MATERIALS: [Colour; 4] = [
     [0x8C, 0xA6, 0xC9],
 ];
 
-/// The colour of a role.
+/// Returns the colour of a role.
 pub fn colour(role: Role) -> Colour {
     match role {
         Role::Paper => [0xFF, 0xFD, 0xFA],
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn neighbouring_levels_can_be_told_apart() {
+    fn colours_differ_between_neighbouring_levels() {
         for level in 0..5 {
             let (a, b) = (colour(Role::Level(level)), colour(Role::Level(level + 1)));
             let apart: i32 = (0..3)

@@ -1,13 +1,13 @@
-//! The soft shadow of bodies on the floor: their outline as the light sees it, blurred.
+//! Soft shadow of bodies on the floor: their silhouette from the light, blurred.
 
 use fuwafuwa::shape::Vector;
 
-/// Towards the light that throws the shadow; of length 1.
+/// Unit vector to the stronger light, which casts the shadow.
 pub const KEY: Vector = [0.44, 0.71, 0.55];
-/// Cells of the map on each axis.
+/// Number of cells of the map on each axis.
 const CELLS: usize = 256;
 
-/// How much of the stronger light the floor misses, as a map around the bodies.
+/// Share of the stronger light that the floor misses, as a map around the bodies.
 pub struct Shadow {
     low: [f32; 2],
     cell: f32,
@@ -15,7 +15,7 @@ pub struct Shadow {
 }
 
 impl Shadow {
-    /// The shadow of triangles on the floor at a height [m].
+    /// Creates the shadow of triangles on a floor at `height` [m].
     pub fn of(triangles: &[[Vector; 3]], height: f32) -> Self {
         let fallen: Vec<[[f32; 2]; 3]> = triangles
             .iter()
@@ -70,7 +70,7 @@ impl Shadow {
         }
     }
 
-    /// The mean over `reach` cells to both sides, along each axis in turn.
+    /// Applies a box blur of `reach` cells to both sides, along each axis.
     fn blur(&mut self, reach: usize) {
         for (along, across) in [(1, CELLS), (CELLS, 1)] {
             let old = self.dark.clone();
@@ -88,7 +88,7 @@ impl Shadow {
         [0, 1].map(|k: usize| (at[k] - self.low[k]) / self.cell)
     }
 
-    /// 0 in the light, 1 in the dark.
+    /// Returns the shadow at a point of the floor: 0 in the light, 1 in full shadow.
     pub fn at(&self, at: Vector) -> f32 {
         let [x, y] = self.place([at[0], at[2]]);
         let last = CELLS as f32 - 1.001;
@@ -102,7 +102,7 @@ impl Shadow {
             + v * ((1.0 - u) * dark(0, 1) + u * dark(1, 1))
     }
 
-    /// Distance from the middle of the map, in half its width.
+    /// Returns the distance of a point from the centre of the map, in half widths of the map.
     pub fn distance(&self, at: Vector) -> f32 {
         let half = 0.5 * self.cell * CELLS as f32;
         let away = [at[0] - self.low[0] - half, at[2] - self.low[1] - half];
@@ -110,7 +110,7 @@ impl Shadow {
     }
 }
 
-/// Where the shadow of a place falls on the floor.
+/// Projects a point along the light onto the floor.
 fn fallen(at: Vector, height: f32) -> [f32; 2] {
     let drop = (at[1] - height) / KEY[1];
     [at[0] - drop * KEY[0], at[2] - drop * KEY[2]]

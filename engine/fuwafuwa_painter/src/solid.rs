@@ -1,5 +1,5 @@
-//! Bodies in space as an image: triangles through a depth buffer, two lights, dark creases and a
-//! soft shadow on the floor. Enough to judge shape, cracks and levels; no more.
+//! Rendering of 3D bodies to an image: triangles through a depth buffer, two lights, dark creases and a soft
+//! shadow on the floor. It is meant for judging shape, cracks and levels.
 
 use crate::PaintError;
 pub use crate::canvas::{Camera, Triangle};
@@ -11,18 +11,18 @@ use fuwafuwa::shape::Vector;
 use fuwafuwa::vector::{cross, minus, plus, scaled};
 use tiny_skia::Pixmap;
 
-/// What stands in space, to become an image.
+/// A 3D scene to be rendered.
 #[derive(Clone, Debug)]
 pub struct Solid {
     camera: Camera,
     triangles: Vec<Triangle>,
-    /// Ends [m] and width [px].
+    /// Lines: end points [m], width [px] and role.
     segments: Vec<([Vector; 2], f32, Role)>,
     floor: Option<f32>,
 }
 
 impl Solid {
-    /// Empty space.
+    /// Creates an empty scene.
     pub fn new(camera: Camera) -> Self {
         Self {
             camera,
@@ -32,7 +32,7 @@ impl Solid {
         }
     }
 
-    /// Adds a flat face; its corners [m] run counterclockwise seen from outside.
+    /// Adds a flat face; its corners [m] run counterclockwise when seen from outside.
     pub fn quad(&mut self, corners: [Vector; 4], role: Role) {
         let [a, b, c, d] = corners;
         let normal = unit(cross(minus(c, a), minus(d, b)));
@@ -50,7 +50,7 @@ impl Solid {
         }
     }
 
-    /// Adds a line from one place to another [m], of a width [px].
+    /// Adds a line between two points [m], with a width [px].
     pub fn segment(&mut self, ends: [Vector; 2], width: f32, role: Role) {
         self.segments.push((ends, width, role));
     }
@@ -81,16 +81,16 @@ impl Solid {
         }
     }
 
-    /// Adds a bar with round ends.
+    /// Adds a capsule.
     pub fn bar(&mut self, [from, to]: [Vector; 2], radius: f32, role: Role) {
         const ROUND: usize = 32;
         self.ball(from, radius, role);
         self.ball(to, radius, role);
         let along = minus(to, from);
-        // Whichever axis it lies along least is far enough from it.
+        // The axis with the smallest component of `along` is never parallel to it.
         let least = (0..3).min_by(|&a, &b| along[a].abs().total_cmp(&along[b].abs()));
         let mut aside = [0.0; 3];
-        aside[least.expect("there are three")] = 1.0;
+        aside[least.expect("there are three axes")] = 1.0;
         let across = unit(cross(along, aside));
         let up = unit(cross(across, along));
         let normal = |step: usize| {
@@ -105,7 +105,7 @@ impl Solid {
         }
     }
 
-    /// Adds a block.
+    /// Adds a box.
     pub fn block(&mut self, centre: Vector, half: Vector, rotation: Rotation, role: Role) {
         for axis in 0..3 {
             for side in [-1.0, 1.0] {
@@ -117,15 +117,15 @@ impl Solid {
         }
     }
 
-    /// Adds a floor at a height [m].
+    /// Adds a floor at `height` [m].
     pub fn floor(&mut self, height: f32) {
         self.floor = Some(height);
     }
 
-    /// The image, `width` × `height` pixels.
+    /// Renders an image of `width` × `height` pixels.
     ///
     /// # Errors
-    /// When the image has no area.
+    /// [`PaintError::NoSize`] if the image has no area.
     pub fn pixels(&self, width: u32, height: u32) -> Result<Pixmap, PaintError> {
         let mut canvas = Canvas::new(self.camera, width, height);
         for triangle in &self.triangles {
@@ -147,7 +147,8 @@ impl Solid {
     }
 }
 
-/// The corner of a block that is on these sides of its middle, -1 or 1: along an axis, and along the two that follow it.
+/// Returns a corner of a box relative to its centre. `sides` are −1 or 1, for `axis` and the two axes that
+/// follow.
 fn corner(half: Vector, axis: usize, sides: [f32; 3]) -> Vector {
     let mut corner = [0.0; 3];
     for (step, side) in sides.into_iter().enumerate() {
@@ -174,18 +175,18 @@ mod tests {
     }
 
     #[test]
-    fn what_is_nearer_hides_what_is_farther() {
+    fn pixels_show_nearer_ball_in_front() {
         let mut solid = Solid::new(CAMERA);
         solid.ball([0.0; 3], 0.5, Role::Hand);
         solid.ball([0.0, 0.0, -1.0], 0.5, Role::Skin);
         let pixels = solid.pixels(60, 60).unwrap();
         let [red, _, blue] = at(&pixels, 30, 30);
-        assert!(blue > red, "the blue ball stands in front");
+        assert!(blue > red, "the blue ball must be in front");
         assert_eq!(at(&pixels, 2, 2), colour(Role::Paper));
     }
 
     #[test]
-    fn bars_and_blocks_are_seen_from_all_sides() {
+    fn bar_and_block_are_visible_from_each_side() {
         for eye in [
             [0.0, 1.0, 4.0],
             [0.0, 1.0, -4.0],
@@ -205,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_throws_a_shadow() {
+    fn ball_darkens_floor() {
         let mut solid = Solid::new(CAMERA);
         solid.floor(-0.5);
         let bright = solid.pixels(60, 60).unwrap();

@@ -1,4 +1,4 @@
-//! The painter's shapes as an SVG document.
+//! SVG output of the painter's shapes.
 
 use crate::raster::png_of;
 use crate::role::colour;
@@ -8,10 +8,10 @@ use base64::prelude::BASE64_STANDARD;
 use std::fmt::Write;
 
 impl Painter {
-    /// The shapes as an SVG document.
+    /// Writes the shapes as an SVG document.
     ///
     /// # Errors
-    /// When an image in it cannot be packed.
+    /// [`PaintError::Packing`] if an image cannot be encoded.
     pub fn svg(&self) -> Result<String, PaintError> {
         let (width, height, paper) = (self.width, self.height, name(Role::Paper));
         let mut text = format!(
@@ -61,7 +61,7 @@ fn write_shape(text: &mut String, shape: &Shape) -> Result<(), PaintError> {
             BASE64_STANDARD.encode(png_of(pixels)?)
         ),
     };
-    written.expect("a string has room");
+    written.expect("writing to a string cannot fail");
     Ok(())
 }
 

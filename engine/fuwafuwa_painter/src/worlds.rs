@@ -1,4 +1,4 @@
-//! Bodies and worlds on a painter: by their elements, or by their skin.
+//! Pictures of bodies and worlds, by their elements or by their surface.
 
 use crate::solid::Solid;
 use crate::{Frame, Painter, Role, Spot};
@@ -8,15 +8,15 @@ use fuwafuwa::view::{ElementView, Facet, Outline, faces, outline_slots};
 use fuwafuwa::{Dim, Dim2, Dim3, ElementId, NodeId, PieceId, Rotation, SoftBody, World};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How a body of the plane is painted.
+/// Function that paints a 2D body.
 pub type DrawPlane = fn(&mut Painter, Frame, &SoftBody<Dim2>);
-/// How a body of space is painted.
+/// Function that paints a 3D body.
 pub type DrawSpace = fn(&mut Solid, &SoftBody<Dim3>);
 
-/// Corners of a bar's round end.
+/// Number of segments in the round end of a capsule.
 const ROUND: usize = 24;
 
-/// Paints a world of the plane, each body as `draw` does.
+/// Paints a 2D world; `draw` paints each body.
 pub fn plane(painter: &mut Painter, frame: Frame, world: &World<Dim2>, draw: DrawPlane) {
     for obstacle in world
         .rigid_bodies()
@@ -37,14 +37,14 @@ pub fn plane(painter: &mut Painter, frame: Frame, world: &World<Dim2>, draw: Dra
     }
 }
 
-/// Paints the elements of a body of the plane, and in another colour what is torn.
+/// Paints the elements of a 2D body, with torn edges in another colour.
 pub fn plane_elements(painter: &mut Painter, frame: Frame, body: &SoftBody<Dim2>) {
     plane_pieces(painter, frame, body, Role::Crack, |painter, view, _| {
         plane_element(painter, frame, view, 1.2);
     });
 }
 
-/// Paints the skin of a body of the plane.
+/// Paints the surface of a 2D body.
 pub fn plane_skin(painter: &mut Painter, frame: Frame, body: &SoftBody<Dim2>) {
     plane_pieces(
         painter,
@@ -56,14 +56,14 @@ pub fn plane_skin(painter: &mut Painter, frame: Frame, body: &SoftBody<Dim2>) {
                 1 if is_crumb => Role::Crumb,
                 number => Role::Material(number),
             };
-            // An edge of the same colour closes the seams between elements.
+            // An outline of the same colour closes the seams between elements.
             painter.polygon(outline(frame, view), role, role, 1.0);
         },
     );
 }
 
-/// Paints piece after piece, the small ones on top: each element by `draw`, which is told whether
-/// it is a crumb, and the outline, where it is torn as `torn`.
+/// Paints the pieces, the small ones on top. `draw` paints each element and receives whether it is a crumb;
+/// torn edges have the role `torn`.
 fn plane_pieces(
     painter: &mut Painter,
     frame: Frame,
@@ -100,19 +100,19 @@ fn plane_outline(painter: &mut Painter, frame: Frame, line: &Outline, torn: Role
     }
 }
 
-/// Paints an element of the plane with an edge of a width [px].
+/// Paints a 2D element with an outline of a width [px].
 pub fn plane_element(painter: &mut Painter, frame: Frame, view: &ElementView, width: f32) {
     let role = Role::Level(view.level);
     painter.polygon(outline(frame, view), role, Role::Edge, width);
 }
 
-/// The outline of an element on the paper.
+/// Returns the outline of an element on the paper.
 pub fn outline(frame: Frame, view: &ElementView) -> Vec<Spot> {
     let ring = outline_slots(view.level, view.children).into_iter();
     ring.map(|slot| frame.spot(view.slots[slot])).collect()
 }
 
-/// Paints a world of space, each body as `draw` does.
+/// Paints a 3D world; `draw` paints each body.
 pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
     for obstacle in world
         .rigid_bodies()
@@ -121,7 +121,7 @@ pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
     {
         match *obstacle.shape() {
             Shape::HalfSpace { normal, offset } if normal[1] > 0.99 => solid.floor(offset),
-            // The other walls would hide what is inside.
+            // Other half-spaces are not painted: they would hide the bodies.
             Shape::HalfSpace { .. } => {}
             shape => solid_shape(solid, shape, Role::Obstacle),
         }
@@ -134,7 +134,7 @@ pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
     }
 }
 
-/// Paints a rigid shape that ends somewhere.
+/// Paints a bounded rigid shape.
 fn solid_shape(solid: &mut Solid, shape: Shape, role: Role) {
     match shape {
         Shape::HalfSpace { .. } => {}
@@ -149,7 +149,7 @@ fn solid_shape(solid: &mut Solid, shape: Shape, role: Role) {
     }
 }
 
-/// Paints those elements of a body in space that are chosen.
+/// Paints the chosen elements of a 3D body.
 pub fn space_elements(
     solid: &mut Solid,
     body: &SoftBody<Dim3>,
@@ -160,7 +160,7 @@ pub fn space_elements(
     }
 }
 
-/// Paints the skin of a body in space, its steps smoothed out, its edges kept where it is torn.
+/// Paints the surface of a 3D body. The steps of voxels are smoothed; the edges of cracks are kept.
 pub fn space_skin(solid: &mut Solid, body: &SoftBody<Dim3>) {
     let crumbs = crumbs(body);
     let inner: BTreeMap<ElementId, u8> = match body.materials() {
@@ -196,7 +196,7 @@ pub fn space_skin(solid: &mut Solid, body: &SoftBody<Dim3>) {
     }
 }
 
-/// The nodes of a skin, each moved several times half-way to the mean of its neighbours.
+/// Smooths a surface: moves each node half-way to the mean of its neighbours, several times.
 fn smoothed(facets: &[Facet]) -> BTreeMap<NodeId, Vector> {
     const ROUNDS: usize = 4;
     let corners = facets
@@ -220,7 +220,7 @@ fn smoothed(facets: &[Facet]) -> BTreeMap<NodeId, Vector> {
     places
 }
 
-/// Paints the faces of an element, and the edges where faces of different direction meet.
+/// Paints the faces of an element, and the edges between faces of different direction.
 fn space_element(solid: &mut Solid, view: &ElementView) {
     let mut edges = BTreeSet::new();
     for face in faces::<Dim3>(view.level, view.children) {
@@ -236,7 +236,7 @@ fn space_element(solid: &mut Solid, view: &ElementView) {
     }
 }
 
-/// The pieces of a single voxel.
+/// Returns the pieces of a single element.
 fn crumbs<D: Dim>(body: &SoftBody<D>) -> BTreeSet<PieceId> {
     let views = body.piece_views().into_iter();
     views
@@ -245,7 +245,7 @@ fn crumbs<D: Dim>(body: &SoftBody<D>) -> BTreeSet<PieceId> {
         .collect()
 }
 
-/// Paints something rigid in the plane.
+/// Paints a rigid shape in 2D.
 fn rigid(painter: &mut Painter, frame: Frame, shape: Shape, role: Role) {
     let rim = match shape {
         Shape::Ball { centre, radius } => {

@@ -1,6 +1,7 @@
-//! How long it takes from the bytes of scans to a body.
+//! Measures the time from the bytes of scans to a body.
 //!
-//! `cargo run --release -p fuwafuwa_scan --example organ -- 64 grey.nii.gz white.nii.gz`: maps of two materials
+//! `cargo run --release -p fuwafuwa_scan --example organ -- 64 grey.nii.gz white.nii.gz`: probability maps of
+//! two materials
 
 use fuwafuwa::{Material, SoftBody};
 use fuwafuwa_scan::{MAX_FILE_BYTES, Options, Organ, Scan, Segmentation};

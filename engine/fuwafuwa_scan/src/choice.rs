@@ -1,23 +1,23 @@
-//! Which material is where, as people write it on a command line.
+//! Command-line notation of thresholds and labels.
 
 use crate::segmentation::Segmentation;
 use std::str::FromStr;
 
-/// Intensities and the material that they mean, as in `40:120=1` or, without an end, `120:=2`.
+/// A range of intensities and its material, as in `40:120=1`; `120:=2` has no upper limit.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Threshold {
-    /// The lowest intensity.
+    /// Lowest intensity.
     pub low: f32,
-    /// The highest.
+    /// Highest intensity.
     pub high: f32,
     /// Number of the material.
     pub material: u8,
 }
 
-/// A label and the material that it means, as in `17=1`.
+/// A label and its material, as in `17=1`.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Label {
-    /// The label.
+    /// Label in the scan.
     pub label: i32,
     /// Number of the material.
     pub material: u8,
@@ -61,7 +61,7 @@ impl FromStr for Label {
 }
 
 impl Segmentation {
-    /// By thresholds, where there are any, else by labels, else by a map for each material.
+    /// Segments by thresholds if there are any, otherwise by labels, otherwise by one map per material.
     pub fn chosen(thresholds: &[Threshold], labels: &[Label]) -> Self {
         match (thresholds, labels) {
             ([], []) => Self::Maps,
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn intensities_may_have_no_end_and_labels_may_be_negative() {
+    fn parse_accepts_open_thresholds_and_negative_labels() {
         let threshold = |low, high, material| Threshold {
             low,
             high,

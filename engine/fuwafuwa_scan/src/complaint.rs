@@ -1,8 +1,8 @@
-//! A problem and its place in a file.
+//! Problems with their position in a file.
 
 use fuwafuwa_scenes::import::{ImportError, Place, Problem};
 
-/// A problem and its place, before the name of the file is put to it.
+/// Position and problem; the caller adds the name of the file.
 pub type Complaint = (Place, Problem);
 
 pub fn unexpected(place: Place, expected: impl Into<String>, found: impl ToString) -> Complaint {

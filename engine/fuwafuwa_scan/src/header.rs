@@ -1,22 +1,22 @@
-//! The header of a file of NIfTI: where which number stands, and what it may be.
+//! Header of a NIfTI file: layout of its fields, and the range of each.
 //!
-//! NIfTI-1 has 348 bytes of it and NIfTI-2 has 540, with the same fields in other places [Cox 2004]. The first number is
-//! that length, and tells the byte order too.
+//! The header has 348 bytes in NIfTI-1 and 540 in NIfTI-2, with the same fields at different offsets [Cox
+//! 2004]. The first number is this length, which also reveals the byte order.
 
 use crate::complaint::{Complaint, too_large, unexpected};
 use crate::placement::{Forms, Placement, Quaternion};
 use fuwafuwa_scenes::import::Place;
 
-/// Most voxels of a scan: 512 on each axis, half a gigabyte once they are read.
+/// Maximum number of voxels in a scan: 512 on each axis, half a gigabyte in memory.
 pub const MAX_VOXELS: u64 = 1 << 27;
 
-/// Bytes of the longer of the two headers.
+/// Length of the longer of the two headers [bytes].
 pub const LONGEST: usize = 540;
 
-/// Most bytes before the first voxel: what programs add to the header lies there.
+/// Maximum offset of the first voxel [bytes]: header extensions lie before it.
 const MAX_OFFSET: f64 = (1 << 26) as f64;
 
-/// How one number of a file is written.
+/// Number format of a field or a voxel.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Number {
     U8,
@@ -30,7 +30,7 @@ pub enum Number {
     F64,
 }
 
-/// Numbers of one name that stand behind each other: in NIfTI-1 and in NIfTI-2.
+/// Consecutive numbers with a common name: offsets and formats in NIfTI-1 and NIfTI-2.
 struct Field {
     name: &'static str,
     at: [usize; 2],
@@ -60,23 +60,23 @@ const QUATERN: Field = field("quatern", (256, F32), (352, F64));
 const QOFFSET: Field = field("qoffset", (268, F32), (376, F64));
 const SROW: Field = field("srow", (280, F32), (400, F64));
 
-/// What the header of a file says, checked.
+/// Checked header.
 #[derive(Debug)]
 pub struct Header {
-    /// Voxels on each axis of the scan.
+    /// Number of voxels on each axis of the scan.
     pub size: [usize; 3],
-    /// How each is written.
+    /// Number format of a voxel.
     pub number: Number,
     pub is_big_endian: bool,
-    /// Bytes before the first voxel.
+    /// Offset of the first voxel [bytes].
     pub offset: usize,
-    /// What a number is multiplied by, and what is then added.
+    /// Slope and intercept: value = slope · stored number + intercept.
     pub scale: [f64; 2],
     pub placement: Placement,
 }
 
 impl Header {
-    /// From the beginning of a file, [`LONGEST`] bytes of it where it has so many.
+    /// Reads the header from the beginning of a file: its first [`LONGEST`] bytes, or all if it is shorter.
     pub fn read(bytes: &[u8]) -> Result<Self, Complaint> {
         let bytes = Bytes::of(bytes)?;
         let size = size(&bytes)?;
@@ -91,12 +91,12 @@ impl Header {
         })
     }
 
-    /// Voxels in all; [`Header::read`] has seen that they are not too many.
+    /// Returns the number of voxels; [`Header::read`] has checked the limit.
     pub fn voxels(&self) -> usize {
         self.size.iter().product()
     }
 
-    /// Bytes of the file up to the end of the last voxel.
+    /// Returns the length of the file up to the end of the last voxel [bytes].
     pub fn bytes(&self) -> u64 {
         self.offset as u64 + self.voxels() as u64 * self.number.bytes() as u64
     }
@@ -112,7 +112,7 @@ impl Number {
         }
     }
 
-    /// The number that stands in so many bytes. One of 64 bits loses what is beyond 53, far beyond every limit.
+    /// Decodes a number. 64-bit integers are rounded to 53 bits, which is far beyond all limits.
     pub fn value(self, bytes: &[u8], is_big_endian: bool) -> f64 {
         let mut word = [0; 8];
         let used = &mut word[..self.bytes()];
@@ -135,7 +135,7 @@ impl Number {
     }
 }
 
-/// The bytes of a header that is known to be whole.
+/// Bytes of a complete header.
 struct Bytes<'a> {
     bytes: &'a [u8],
     /// 0 for NIfTI-1, 1 for NIfTI-2.
@@ -181,7 +181,7 @@ impl<'a> Bytes<'a> {
         Place::Field(field.name, field.at[self.version] + index * width)
     }
 
-    /// The number of this index in a field.
+    /// Returns the number at `index` of a field.
     fn number(&self, field: &Field, index: usize) -> f64 {
         let number = field.number[self.version];
         let at = field.at[self.version] + index * number.bytes();
@@ -206,7 +206,7 @@ fn size(bytes: &Bytes) -> Result<[usize; 3], Complaint> {
     }
     for axis in 4..=axes as usize {
         if bytes.number(&DIM, axis) != 1.0 {
-            return Err(bytes.wrong(&DIM, axis, "one volume, 1"));
+            return Err(bytes.wrong(&DIM, axis, "1 (only one volume is supported)"));
         }
     }
     let mut voxels = 1.0;
@@ -235,14 +235,13 @@ fn number(bytes: &Bytes) -> Result<Number, Complaint> {
         512 => Number::U16,
         768 => Number::U32,
         _ => {
-            let expected =
-                "2, 4, 8, 16, 64, 256, 512 or 768: whole numbers to 32 bits, or real ones";
+            let expected = "2, 4, 8, 16, 64, 256, 512 or 768: integers up to 32 bits, or floating-point numbers";
             return Err(bytes.wrong(&DATATYPE, 0, expected));
         }
     };
     let bits = 8 * number.bytes();
     if bytes.number(&BITPIX, 0) != bits as f64 {
-        let expected = format!("the {bits} bits of that datatype");
+        let expected = format!("{bits}, the bits of that datatype");
         return Err(bytes.wrong(&BITPIX, 0, &expected));
     }
     Ok(number)
@@ -258,7 +257,8 @@ fn offset(bytes: &Bytes) -> Result<usize, Complaint> {
     Ok(found as usize)
 }
 
-/// A slope of 0 means that nothing is scaled, and programs write no number there when they mean the same.
+/// Returns slope and intercept. A slope of 0 means no scaling, and so does a slope that is not finite, which
+/// some programs write.
 fn scale(bytes: &Bytes) -> Result<[f64; 2], Complaint> {
     let slope = bytes.number(&SCL_SLOPE, 0);
     if slope == 0.0 || !slope.is_finite() {
@@ -273,7 +273,7 @@ fn scale(bytes: &Bytes) -> Result<[f64; 2], Complaint> {
 }
 
 fn placement(bytes: &Bytes) -> Result<Placement, Complaint> {
-    // The lowest three bits tell the unit of lengths; most programs that leave it out mean millimetres.
+    // The lowest three bits give the unit of length; most programs that leave it at 0 mean millimetres.
     let unit = match bytes.number(&XYZT_UNITS, 0) as i32 & 7 {
         0 | 2 => 1.0,
         1 => 1000.0,

@@ -1,5 +1,6 @@
-//! Scans become soft bodies: a file of NIfTI is read ([`Scan`]), each place in it gets a material ([`Segmentation`]), and
-//! the largest thing that hangs together becomes a grid of voxels at the resolution that was asked for ([`Organ`]).
+//! Soft bodies from medical scans: [`Scan`] reads a NIfTI file, [`Segmentation`] assigns a material to each
+//! position in it, and [`Organ`] turns the largest connected object into a grid of voxels at the requested
+//! resolution.
 //!
 //! ```no_run
 //! use fuwafuwa::{Body, Material};
@@ -15,14 +16,15 @@
 //! # }
 //! ```
 //!
-//! **This is no medical device.** It is made to play, to show and to teach. Nothing that comes out of it may be used to
-//! judge, to plan or to treat anybody.
+//! **This is not a medical device.** It is made for games, demonstrations and teaching. Do not use its
+//! results for diagnosis, planning or treatment.
 //!
-//! # Left, right, and which way up
+//! # Orientation
 //!
-//! A patient's own axes are RAS+: millimetres to the patient's *right*, to the front (*anterior*) and to the head
-//! (*superior*), a right-handed system. A scan tells by its affine where in it each of its voxels lies. The engine's y
-//! is up; so the patient is turned, as models of MagicaVoxel are, and never mirrored:
+//! Patient coordinates are RAS+: millimetres to the patient's *right*, to the front (*anterior*) and to the
+//! head (*superior*), a right-handed system. The affine of a scan gives the position of each voxel in the
+//! patient. The engine's y axis points up, so the patient is rotated, as MagicaVoxel models are, and never
+//! mirrored:
 //!
 //! ```text
 //!   patient   S            y  engine      x ← right
@@ -33,17 +35,19 @@
 //!                        z
 //! ```
 //!
-//! Who looks against the engine's z, as its pictures do, sees the patient from behind, left on the left.
+//! A camera that looks against the engine's z axis, as the engine's pictures do, sees the patient from
+//! behind, with the left side on the left.
 //!
-//! # Strangers' files
+//! # Untrusted files
 //!
-//! A file may come from anywhere. Whatever its bytes are, the answer is a scan or an
-//! [`ImportError`](fuwafuwa_scenes::import::ImportError) that names the field, what it should be and what was found;
-//! every size is compared with its limit, and with what the file can hold, before memory is taken or anything inflated.
+//! Files are untrusted. For any bytes, the result is a scan or an
+//! [`ImportError`](fuwafuwa_scenes::import::ImportError) that names the field, what was expected and what was
+//! found. Every size is compared with its limit, and with the amount the file can hold, before memory is
+//! allocated or data decompressed.
 //!
-//! The crate `nifti` reads the format too. It takes memory by what the header says before it has seen the data, knows
-//! nothing of NIfTI-2, and brings a library of matrices for its affines; what is needed of the format are some twenty
-//! numbers, so they are read here.
+//! The crate `nifti` is not used: it allocates memory according to the header before it has seen the data,
+//! does not support NIfTI-2, and depends on a matrix library for its affines. Only some twenty numbers of the
+//! format are needed, so this crate reads them itself.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [mm]

@@ -1,4 +1,4 @@
-//! From scans to a grid of voxels with materials: the largest thing in them that hangs together.
+//! Voxel grids from scans: the largest connected object in a scan.
 
 use crate::placement::Placement;
 use crate::region::{fill_holes, keep_largest, solid_box};
@@ -7,25 +7,28 @@ use crate::segmentation::Segmentation;
 use fuwafuwa::{BuildError, Dim3, Point, VoxelGrid};
 use std::ops::RangeInclusive;
 
-/// How many voxels an organ may have along its longest side: fewer show nothing, and a model has no more.
+/// Allowed numbers of voxels along an organ's longest side. Fewer show no shape; a MagicaVoxel model has no
+/// more.
 pub const RESOLUTIONS: RangeInclusive<usize> = 8..=256;
 
-/// Where an organ lies is found in so many voxels at least, whatever its own resolution: in fewer a small one is lost.
+/// Minimum resolution of the search for an organ [voxels], whatever the final resolution: a coarser search
+/// misses small organs.
 const SEARCHED: usize = 64;
 
-/// Along each axis of a voxel at most so many places are asked for their material. More change little.
+/// Maximum number of samples along each axis of a voxel. More hardly change the result.
 const MOST_ASKED: usize = 4;
 
-/// As many while it is only searched for.
+/// Maximum number of samples along each axis of a voxel during the search.
 const MOST_SEARCHED: usize = 2;
 
-/// How an organ is made.
+/// Options for building an organ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Voxels along its longest side, of [`RESOLUTIONS`]. One at each end is empty.
+    /// Number of voxels along the longest side, in [`RESOLUTIONS`], including one empty voxel at each end.
+    /// Default 64.
     pub resolution: usize,
-    /// Whether what it encloses becomes solid, of the material that is nearest: a hole without a way in cannot be seen,
-    /// and costs many small elements.
+    /// Whether enclosed holes are filled with the nearest material; default false. A hole without an opening
+    /// is invisible and costs many small elements.
     pub fills_holes: bool,
 }
 
@@ -38,50 +41,51 @@ impl Default for Options {
     }
 }
 
-/// Why scans give no organ.
+/// Reason why scans give no organ.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum OrganError {
-    /// So many scans do not go with the segmentation.
+    /// The number of scans does not fit the segmentation.
     #[error("expected {expected}, found {found}")]
     Scans {
-        /// How many go with it.
+        /// Number of scans that the segmentation requires.
         expected: &'static str,
-        /// How many there are.
+        /// Number of scans given.
         found: usize,
     },
-    /// The resolution is none of [`RESOLUTIONS`].
+    /// The resolution is not in [`RESOLUTIONS`].
     #[error("expected {RESOLUTIONS:?} voxels along the longest side, found {found}")]
     Resolution {
-        /// How many were asked for.
+        /// Requested number of voxels.
         found: usize,
     },
-    /// Nothing has a material.
-    #[error("nothing in the scan is of a material: see which intensities or labels it has")]
+    /// No position in the scan has a material.
+    #[error("no voxel has a material: check which intensities or labels the scan contains")]
     Empty,
-    /// The engine takes no such grid.
+    /// The engine rejects the grid.
     #[error("{0}")]
     Grid(BuildError),
 }
 
-/// An organ, on the engine's axes: x to the patient's right, y up to the head, z to the back.
+/// An organ on the engine's axes: x to the patient's right, y up to the head, z to the back.
 #[derive(Clone, Debug)]
 pub struct Organ {
-    /// Its voxels, in metres, with materials from 1 on.
+    /// Voxels with material numbers from 1; lengths in metres.
     pub grid: VoxelGrid<Dim3>,
     lattice: Lattice,
-    /// Voxels of each material.
+    /// Number of voxels of each material.
     counts: [usize; 256],
-    /// The lowest and the highest solid voxel on each axis.
+    /// Lowest and highest solid voxel on each axis.
     solid: [[usize; 3]; 2],
 }
 
 impl Organ {
-    /// The largest thing in some scans that hangs together. `progress` hears numbers from 0 to 1 now and then.
+    /// Builds the largest connected object in the scans. `progress` is called with increasing numbers from 0
+    /// to 1.
     ///
-    /// A voxel is solid when at least half of it is, and of the material of which most is in it.
+    /// A voxel is solid if at least half of it is. It gets the material with the largest share.
     ///
     /// # Errors
-    /// [`OrganError`] says what is wrong with the choice of scans, materials or resolution.
+    /// [`OrganError`] names the problem with the scans, the materials or the resolution.
     pub fn of(
         scans: &[&Scan],
         segmentation: &Segmentation,
@@ -94,12 +98,12 @@ impl Organ {
             return Err(OrganError::Resolution { found: resolution });
         }
         let mut region = Region::of(scans);
-        // Between the voxels of a scan there is nothing to be found.
+        // A search finer than the voxels of the scan finds nothing more.
         let shown = (region.longest() / finest(scans)).ceil() as usize;
         let searched = resolution
             .max(SEARCHED)
             .min(shown.max(*RESOLUTIONS.start()));
-        // The first look finds it, the second sees how large it is, and the third is at it alone.
+        // The first pass finds the object, the second measures it, and the third samples only its region.
         let looks = [
             (searched, MOST_SEARCHED),
             (searched, MOST_SEARCHED),
@@ -136,29 +140,29 @@ impl Organ {
         })
     }
 
-    /// Number of voxels of a material.
+    /// Returns the number of voxels of a material.
     pub fn voxels(&self, material: u8) -> usize {
         self.counts[usize::from(material)]
     }
 
-    /// Volume of a material [ml].
+    /// Returns the volume of a material [ml].
     pub fn millilitres(&self, material: u8) -> f64 {
         let edge = 0.1 * self.lattice.voxel;
         self.voxels(material) as f64 * edge * edge * edge
     }
 
-    /// How long it is on each of the engine's axes [mm].
+    /// Returns the length on each of the engine's axes [mm].
     pub fn sides(&self) -> [f64; 3] {
         let [low, high] = self.solid;
         [0, 1, 2].map(|axis: usize| (high[axis] - low[axis] + 1) as f64 * self.lattice.voxel)
     }
 
-    /// The place in the patient, RAS+ [mm], of a place in the grid, from its low corner [m].
+    /// Converts a position in the grid, relative to its low corner [m], to patient coordinates, RAS+ [mm].
     pub fn patient_at(&self, place: [f64; 3]) -> [f64; 3] {
         self.lattice.patient_at(place.map(|k| 1000.0 * k))
     }
 
-    /// The voxel that a place in the patient, RAS+ [mm], is in. It may lie outside the grid.
+    /// Returns the voxel at a position in the patient, RAS+ [mm]. It may lie outside the grid.
     pub fn voxel_at(&self, patient: [f64; 3]) -> Point {
         self.lattice.voxel_at(patient)
     }
@@ -173,14 +177,14 @@ fn check(found: usize, segmentation: &Segmentation) -> Result<(), OrganError> {
     range.contains(&found).then_some(()).ok_or(wrong)
 }
 
-/// A box in the patient, RAS+ [mm].
+/// Box in patient coordinates, RAS+ [mm].
 struct Region {
     low: [f64; 3],
     high: [f64; 3],
 }
 
 impl Region {
-    /// All that scans show.
+    /// Returns the bounding box of scans.
     fn of(scans: &[&Scan]) -> Self {
         let mut region = Self {
             low: [f64::INFINITY; 3],
@@ -206,13 +210,13 @@ impl Region {
     }
 }
 
-/// How far apart the voxels of some scans are at least [mm].
+/// Returns the smallest voxel spacing of scans [mm].
 fn finest(scans: &[&Scan]) -> f64 {
     let spacings = scans.iter().flat_map(|scan| scan.placement().spacing());
     spacings.fold(f64::INFINITY, f64::min)
 }
 
-/// The outer corners of the voxels at the corners of a scan, RAS+ [mm].
+/// Returns the corners of a scan, RAS+ [mm], half a voxel outside the centres of its corner voxels.
 fn corners(size: [usize; 3], placement: &Placement) -> [[f64; 3]; 8] {
     [0, 1, 2, 3, 4, 5, 6, 7].map(|corner: usize| {
         let voxel = [0, 1, 2].map(|axis: usize| match corner >> axis & 1 {
@@ -223,22 +227,22 @@ fn corners(size: [usize; 3], placement: &Placement) -> [[f64; 3]; 8] {
     })
 }
 
-/// Cubes that fill a box in the patient, counted along the engine's axes.
+/// Grid of cubes over a box in the patient, on the engine's axes.
 #[derive(Clone, Debug)]
 struct Lattice {
     size: [usize; 3],
-    /// Edge of a cube [mm].
+    /// Edge length of a cube [mm].
     voxel: f64,
-    /// The corner from which the engine's axes run, RAS+ [mm].
+    /// Low corner on the engine's axes, RAS+ [mm].
     corner: [f64; 3],
 }
 
 impl Lattice {
-    /// Over a box, with so many cubes along its longest side.
+    /// Covers a box, with `across` cubes along its longest side.
     fn over(region: &Region, across: usize) -> Self {
         let Region { low, high } = region;
         let voxel = region.longest() / across as f64;
-        // The longest side is a whole number of voxels, but for rounding.
+        // The longest side is a whole number of voxels, up to rounding.
         let count = |length: f64| ((length / voxel - 1e-6).ceil().max(1.0) as usize).min(across);
         let [right, front, up] = region.extent();
         let size = [right, up, front].map(count);
@@ -256,7 +260,7 @@ impl Lattice {
         }
     }
 
-    /// What is in some of its cubes and in those next to them.
+    /// Returns the region of a range of cubes, extended by one cube on each side.
     fn around(&self, [low, high]: [[usize; 3]; 2]) -> Region {
         let low = self.patient_at(low.map(|k| (k as f64 - 1.0) * self.voxel));
         let high = self.patient_at(high.map(|k| (k as f64 + 2.0) * self.voxel));
@@ -266,7 +270,7 @@ impl Lattice {
         }
     }
 
-    /// The patient is turned here: z is the opposite of the front.
+    /// Converts a position on the engine's axes [mm] to patient coordinates: z points to the back.
     fn patient_at(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let [right, front, up] = self.corner;
         [right + x, front - z, up + y]
@@ -277,7 +281,8 @@ impl Lattice {
         [right, up, -front].map(|k| (k / self.voxel).floor() as i32)
     }
 
-    /// The material of each cube: that of most of the places in it that are asked, if half of them are solid.
+    /// Returns the material of each cube: that of most of its samples, or 0 if more than half of them are
+    /// empty.
     fn materials(
         &self,
         scans: &[&Scan],

@@ -1,23 +1,25 @@
-//! Where in the patient the voxels of a scan lie.
+//! Position of a scan's voxels in the patient.
 
 use std::ops::RangeInclusive;
 
-/// How far the voxels of a scan may be apart [mm].
+/// Allowed spacing of a scan's voxels [mm].
 pub const SPACINGS: RangeInclusive<f64> = 1e-3..=100.0;
 
-/// How far from the patient's origin the first voxel may lie [mm]: beyond it places lose their digits.
+/// Maximum distance of the first voxel from the patient's origin on each axis [mm]: beyond it, positions lose
+/// precision.
 const MAX_OFFSET: f64 = 1e6;
 
-/// The volume of a voxel in terms of that of a box with the same edges, at least: a flatter one is as good as no volume.
+/// Minimum volume of a voxel, relative to a box with the same edge lengths; flatter voxels count as
+/// degenerate.
 const LEAST_VOLUME: f64 = 0.05;
 
-/// How far a quaternion may be too long: single precision leaves some.
+/// Tolerance on the squared length of a quaternion's imaginary part, for rounding in single precision.
 const ROUNDING: f64 = 1e-3;
 
-/// Three rows of a matrix and, last in each, what is added.
+/// Affine map: rows of a 3 × 3 matrix, each followed by its offset.
 pub type Affine = [[f64; 4]; 3];
 
-/// Where in the patient the voxels of a scan lie, RAS+ [mm].
+/// Map between voxels of a scan and patient coordinates, RAS+ [mm].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placement {
     affine: Affine,
@@ -25,40 +27,40 @@ pub struct Placement {
     source: Source,
 }
 
-/// What of a header tells where its voxels lie.
+/// Part of the header that gives the placement.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Source {
     /// A matrix (sform).
     Matrix,
-    /// A rotation (qform), where there is no matrix.
+    /// A rotation (qform); used if there is no matrix.
     Rotation,
-    /// Only how far they are apart. What is left and what is right is then not known, and is taken to be as in most files.
+    /// Only the spacing of voxels. Left and right are then unknown, and the usual orientation is assumed.
     Spacing,
 }
 
-/// All that a header says about it.
+/// All placement data of a header.
 pub struct Forms {
     pub sform: Option<Affine>,
     pub qform: Option<Quaternion>,
     pub spacing: [f64; 3],
 }
 
-/// A rotation, and where the first voxel lies.
+/// Rotation, and position of the first voxel.
 pub struct Quaternion {
     pub imaginary: [f64; 3],
     pub offset: [f64; 3],
-    /// Whether the third axis runs the other way.
+    /// Whether the third axis is reversed.
     pub is_left_handed: bool,
 }
 
-/// What is wrong with a placement.
+/// Problem with a placement.
 pub struct Wrong {
     pub expected: &'static str,
     pub found: String,
 }
 
 impl Placement {
-    /// From the best of the forms, their lengths in `unit` millimetres.
+    /// Creates a placement from the best of the forms, with lengths in units of `unit` [mm].
     pub(crate) fn of(forms: &Forms, unit: f64) -> Result<Self, Wrong> {
         let (affine, source) = match (&forms.sform, &forms.qform) {
             (Some(affine), _) => (*affine, Source::Matrix),
@@ -74,29 +76,30 @@ impl Placement {
         })
     }
 
-    /// What of the header told it.
+    /// Returns the part of the header that gave the placement.
     pub fn source(&self) -> Source {
         self.source
     }
 
-    /// How far neighbouring voxels are apart on each axis of the scan [mm].
+    /// Returns the distance between neighbouring voxels on each axis of the scan [mm].
     pub fn spacing(&self) -> [f64; 3] {
         spacing(&self.affine)
     }
 
-    /// The place in the patient, RAS+ [mm], of a place in the scan [voxels]; whole numbers are middles of voxels.
+    /// Converts a position in the scan [voxels] to patient coordinates, RAS+ [mm]. Integers are centres of
+    /// voxels.
     pub fn patient_at(&self, voxel: [f64; 3]) -> [f64; 3] {
         apply(&self.affine, voxel)
     }
 
-    /// The place in the scan [voxels] of a place in the patient, RAS+ [mm].
+    /// Converts patient coordinates, RAS+ [mm], to a position in the scan [voxels].
     pub fn voxel_at(&self, patient: [f64; 3]) -> [f64; 3] {
         apply(&self.inverse, patient)
     }
 }
 
 impl Quaternion {
-    /// Rotation, scaling and offset in one [Cox 2004, method 2].
+    /// Combines rotation, scaling and offset [Cox 2004, method 2].
     fn affine(&self, spacing: [f64; 3]) -> Result<Affine, Wrong> {
         let [mut b, mut c, mut d] = self.imaginary;
         let squared = b * b + c * c + d * d;
@@ -159,8 +162,8 @@ fn check(affine: &Affine) -> Result<(), Wrong> {
     }
     let volume = determinant(affine).abs() / spacing.iter().product::<f64>();
     if volume < LEAST_VOLUME {
-        let found = format!("{volume:.3} of what their edges make a box");
-        return wrong("three axes that make voxels of some volume", found);
+        let found = format!("{volume:.3} of the volume of a box with the same edges");
+        return wrong("three independent axes", found);
     }
     let offset = affine.map(|row| row[3]);
     if !offset.iter().all(|k| k.abs() <= MAX_OFFSET) {
@@ -181,7 +184,8 @@ fn apply(affine: &Affine, [x, y, z]: [f64; 3]) -> [f64; 3] {
     affine.map(|[a, b, c, offset]| a * x + b * y + c * z + offset)
 }
 
-/// Of two rows and two columns, those after this one: the signs of a determinant come out by themselves.
+/// Returns the minor of the two rows and columns that follow cyclically, so that its sign is that of the
+/// cofactor.
 fn minor(affine: &Affine, row: usize, column: usize) -> f64 {
     let ([r, s], [c, d]) = (after(row), after(column));
     affine[r][c] * affine[s][d] - affine[r][d] * affine[s][c]
@@ -217,7 +221,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn there_and_back_is_the_same_place() {
+    fn voxel_at_inverts_patient_at() {
         let sform = Some([
             [0.0, -1.5, 0.2, 90.0],
             [0.7, 0.1, 0.0, -126.0],

@@ -1,8 +1,8 @@
-//! What hangs together in a box of voxels, and what it encloses. Voxels touch by their faces.
+//! Connected components and holes in a box of voxels. Voxels are connected through faces.
 
 use std::collections::VecDeque;
 
-/// Empties all but the largest thing, the first of several.
+/// Empties all connected components except the largest, the first of several.
 pub fn keep_largest(size: [usize; 3], materials: &mut [u8]) {
     let mut is_seen = vec![false; materials.len()];
     let mut largest = (0, 0);
@@ -24,7 +24,7 @@ pub fn keep_largest(size: [usize; 3], materials: &mut [u8]) {
     }
 }
 
-/// Fills what no way leads to from outside, with the material that is nearest by faces.
+/// Fills voxels without a path to the outside with the nearest material, by steps through faces.
 pub fn fill_holes(size: [usize; 3], materials: &mut [u8]) {
     let is_border = |at: &usize| {
         let place = place(size, *at);
@@ -46,7 +46,7 @@ pub fn fill_holes(size: [usize; 3], materials: &mut [u8]) {
     }
 }
 
-/// The lowest and the highest voxel on each axis of what is solid.
+/// Returns the lowest and the highest solid voxel on each axis.
 pub fn solid_box(size: [usize; 3], materials: &[u8]) -> Option<[[usize; 3]; 2]> {
     let solid = (0..materials.len()).filter(|&at| materials[at] != 0);
     solid.map(|at| place(size, at)).fold(None, |found, place| {
@@ -59,7 +59,7 @@ pub fn solid_box(size: [usize; 3], materials: &[u8]) -> Option<[[usize; 3]; 2]> 
     })
 }
 
-/// Marks all that some seeds hang together with; how many that are.
+/// Marks everything connected to the seeds and returns the number of marked voxels.
 fn flood(
     size: [usize; 3],
     seeds: &[usize],
@@ -101,7 +101,7 @@ fn neighbours(size: [usize; 3], at: usize) -> impl Iterator<Item = usize> {
 mod tests {
     use super::*;
 
-    /// A layer of voxels, and what becomes of it.
+    /// Applies `change` to a layer of voxels.
     fn check(change: fn([usize; 3], &mut [u8]), before: &[&str], after: &[&str]) {
         let size = [before[0].len(), before.len(), 1];
         let digits = |rows: &[&str]| rows.concat().bytes().map(|k| k - b'0').collect::<Vec<_>>();
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_thing_is_kept_whatever_it_is_made_of() {
+    fn keep_largest_ignores_materials() {
         let before = ["11001", "12000", "00110", "01110"];
         let after = ["00000", "00000", "00110", "01110"];
         check(keep_largest, &before, &after);
@@ -120,8 +120,8 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_is_filled_and_a_bay_is_not() {
-        // A layer has no inside: a box has. So this one lies between two full layers.
+    fn fill_holes_leaves_open_bay_empty() {
+        // A single layer has no enclosed voxels, so it lies between two full layers.
         let full = "11111".repeat(4);
         let middle = ["11111", "10021", "11111", "10101"].concat();
         let text = [full.clone(), middle, full].concat();
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_solid_has_a_box() {
+    fn solid_box_encloses_solid_voxels() {
         assert_eq!(solid_box([2, 1, 1], &[0, 0]), None);
         let materials = [0, 0, 3, 0, 2, 0, 0, 0];
         assert_eq!(

@@ -1,4 +1,4 @@
-//! A scan: a number for each voxel of a box, and where in the patient that box lies.
+//! Scans: a number for each voxel of a box, and the position of the box in the patient.
 
 use crate::complaint::{Complaint, in_file};
 use crate::header::{Header, LONGEST};
@@ -6,14 +6,14 @@ use crate::placement::Placement;
 use crate::stream::Stream;
 use fuwafuwa_scenes::import::ImportError;
 
-/// Voxels that are read at once, between two words about progress.
+/// Number of voxels read between two calls of `progress`.
 const CHUNK: usize = 1 << 16;
 
 /// A scan: an intensity, a label or a probability for each voxel of a box.
 #[derive(Clone, Debug)]
 pub struct Scan {
     size: [usize; 3],
-    /// The first axis runs fastest. All are finite.
+    /// Values, the first axis fastest; all finite.
     values: Vec<f32>,
     lowest: f32,
     highest: f32,
@@ -21,13 +21,13 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// The scan in the bytes of a NIfTI file, version 1 or 2, header and voxels in one, compressed with gzip or not.
-    /// `file` names it in errors; `progress` hears numbers from 0 to 1 now and then.
+    /// Decodes a NIfTI file, version 1 or 2, with header and voxels in one file, plain or gzipped. `file` is
+    /// the name used in errors; `progress` is called with increasing numbers from 0 to 1.
     ///
-    /// What stands there instead of a finite number is taken to be as low as the lowest.
+    /// Values that are not finite are replaced by the lowest finite value.
     ///
     /// # Errors
-    /// [`ImportError`] names the field of the header or the byte, what was expected there and what was found.
+    /// [`ImportError`] names the field of the header or the byte, what was expected and what was found.
     pub fn decode(
         file: &str,
         bytes: &[u8],
@@ -36,29 +36,30 @@ impl Scan {
         in_file(file, try_decode(bytes, progress))
     }
 
-    /// Voxels on each axis of the scan.
+    /// Returns the number of voxels on each axis of the scan.
     pub fn size(&self) -> [usize; 3] {
         self.size
     }
 
-    /// Where in the patient its voxels lie.
+    /// Returns the map between voxels and patient coordinates.
     pub fn placement(&self) -> &Placement {
         &self.placement
     }
 
-    /// The lowest and the highest value in it.
+    /// Returns the lowest and the highest value.
     pub fn range(&self) -> [f32; 2] {
         [self.lowest, self.highest]
     }
 
-    /// The value of the voxel nearest to a place in the scan [voxels], outside of it the lowest.
+    /// Returns the value of the voxel nearest to a position in the scan [voxels]; outside the scan, the
+    /// lowest value.
     pub fn nearest(&self, voxel: [f64; 3]) -> f32 {
         let at = voxel.map(|k| (k + 0.5).floor() as i64);
         self.value(at)
     }
 
-    /// The value at a place in the scan [voxels], straight between those of the eight voxels around it; more than half a
-    /// voxel outside the lowest.
+    /// Interpolates trilinearly at a position in the scan [voxels]; more than half a voxel outside the scan,
+    /// returns the lowest value.
     pub fn between(&self, voxel: [f64; 3]) -> f32 {
         let high = self.size.map(|extent| extent as f64 - 1.0);
         let is_inside = |axis: usize| (-0.5..=high[axis] + 0.5).contains(&voxel[axis]);
@@ -122,7 +123,7 @@ fn try_decode(bytes: &[u8], mut progress: impl FnMut(f32)) -> Result<Scan, Compl
     })
 }
 
-/// The values of all voxels. Some of their bytes may have come with the beginning of the file.
+/// Reads the values of all voxels. The bytes in `beginning` are already taken from the stream.
 fn read(
     header: &Header,
     beginning: &[u8],

@@ -1,38 +1,40 @@
-//! Which material is where: by intensity, by label, or by maps of how probable each is.
+//! Assignment of materials: by intensity, by label, or by probability maps.
 
 use crate::scan::Scan;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-/// Least sum of the maps at a place for it to be solid: there it is more probably one of the materials than none.
+/// Minimum sum of the probability maps at a solid position.
 const SOLID: f32 = 0.5;
 
-/// What tells the material of a place; 0 leaves it empty.
+/// Rule that gives the material at a position; 0 means empty.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Segmentation {
-    /// The first range that the intensity of the one scan is in, between voxels as well; beyond all of them nothing.
+    /// Ranges of intensity and their materials, for one scan. The intensity is interpolated between voxels
+    /// and the first matching range decides; without a match, the position is empty.
     Thresholds(Vec<(RangeInclusive<f32>, u8)>),
-    /// The label in the one scan, a whole number, of the nearest voxel, as what lies between two labels is no label.
-    /// Those that are not named are empty.
+    /// Integer labels and their materials, for one scan. The nearest voxel decides, because a value between
+    /// two labels is not a label. Other labels are empty.
     Labels(BTreeMap<i32, u8>),
-    /// A scan for each material, number 1 first, that says how probable it is. A place is solid where the sum is a half
-    /// or more, and of the most probable material, so that there is no gap where two are alike. A scan whose highest
-    /// value is above 1 is divided by it: programs write percents, and bytes up to 255.
+    /// Probability maps: one scan for each material, number 1 first. A position is solid if the sum of
+    /// probabilities is at least 0.5, and gets the most probable material; where two are similar, no gap
+    /// arises. A scan with a highest value above 1 is divided by it, because programs write percentages or
+    /// bytes up to 255.
     Maps,
 }
 
 impl Segmentation {
-    /// [`Segmentation::Thresholds`] from a list.
+    /// Creates [`Segmentation::Thresholds`] from a list.
     pub fn thresholds(ranges: &[(RangeInclusive<f32>, u8)]) -> Self {
         Self::Thresholds(ranges.to_vec())
     }
 
-    /// [`Segmentation::Labels`] from a list of labels and materials.
+    /// Creates [`Segmentation::Labels`] from a list of labels and materials.
     pub fn labels(labels: &[(i32, u8)]) -> Self {
         Self::Labels(labels.iter().copied().collect())
     }
 
-    /// The material at a place in the patient, RAS+ [mm]; 0 where it is empty.
+    /// Returns the material at a position in the patient, RAS+ [mm]; 0 if empty.
     pub(crate) fn material(&self, scans: &[&Scan], patient: [f64; 3]) -> u8 {
         let voxel = |scan: &Scan| scan.placement().voxel_at(patient);
         let first = scans[0];

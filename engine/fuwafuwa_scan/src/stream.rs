@@ -1,28 +1,29 @@
-//! The bytes of a file in their order, inflated where it is compressed, and never more of them than are asked for.
+//! Sequential access to the bytes of a file, decompressed on demand.
 
 use crate::complaint::{Complaint, too_large, unexpected};
 use flate2::bufread::MultiGzDecoder;
 use fuwafuwa_scenes::import::Place;
 use std::io::Read;
 
-/// Most bytes of a file, and most that are made of one: a full scan of numbers of 64 bits, and what stands before it.
+/// Maximum size of a file and of its decompressed content [bytes]: a full scan of 64-bit numbers, and the
+/// bytes before it.
 pub const MAX_FILE_BYTES: u64 = (1 << 30) + (1 << 26);
 
-/// The most that deflate makes of one byte.
+/// Maximum expansion of deflate: decompressed bytes per compressed byte.
 const MOST_INFLATED: u64 = 1032;
 
-/// What two bytes a compressed file begins with.
+/// First two bytes of a gzip file.
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 
-/// Most bytes behind the last voxel. Some files are padded, but who sends gigabytes there means no good.
+/// Maximum number of bytes after the last voxel. Some files are padded, but gigabytes there are an attack.
 const MAX_TRAILING: u64 = 1 << 20;
 
-/// The bytes of a file from its front.
+/// The bytes of a file, read from the front.
 pub struct Stream<'a> {
     source: Source<'a>,
-    /// How many were taken.
+    /// Number of bytes read.
     at: u64,
-    /// How many there can be.
+    /// Maximum number of bytes that the file can contain, decompressed.
     most: u64,
 }
 
@@ -49,7 +50,7 @@ impl<'a> Stream<'a> {
         Ok(Self { source, at, most })
     }
 
-    /// That there can be so many bytes of what is said to be in the file.
+    /// Checks that the file can contain `expected` bytes.
     pub fn check(&self, expected: u64) -> Result<(), Complaint> {
         let missing = || {
             let found = format!("at most {}", self.most);
@@ -58,7 +59,7 @@ impl<'a> Stream<'a> {
         (expected <= self.most).then_some(()).ok_or_else(missing)
     }
 
-    /// Fills the buffer, as far as the file goes; how far that is.
+    /// Fills the buffer up to the end of the file, and returns the number of bytes filled.
     pub fn fill(&mut self, buffer: &mut [u8]) -> Result<usize, Complaint> {
         let mut filled = 0;
         while filled < buffer.len() {
@@ -68,7 +69,7 @@ impl<'a> Stream<'a> {
                 Source::Zipped(decoder) => decoder.read(rest),
             };
             let at = Place::Byte((self.at + filled as u64) as usize);
-            match read.map_err(|error| unexpected(at, "bytes that gzip inflates", error))? {
+            match read.map_err(|error| unexpected(at, "valid gzip data", error))? {
                 0 => break,
                 count => filled += count,
             }
@@ -77,14 +78,14 @@ impl<'a> Stream<'a> {
         Ok(filled)
     }
 
-    /// Fills all of the buffer, of a file that should have so many bytes up to the last voxel.
+    /// Fills the whole buffer; `expected` is the length of the file up to the last voxel, for the error.
     pub fn fill_all(&mut self, buffer: &mut [u8], expected: u64) -> Result<(), Complaint> {
         let filled = self.fill(buffer)?;
         let missing = || unexpected(Place::Byte(self.at as usize), bytes(expected), self.at);
         (filled == buffer.len()).then_some(()).ok_or_else(missing)
     }
 
-    /// Passes the rest, which must be short; only at its end gzip sees whether all was as it was written.
+    /// Reads the rest, which must be short. Only the end of a gzip stream has its checksum.
     pub fn finish(mut self) -> Result<(), Complaint> {
         let mut buffer = [0; 1 << 12];
         let mut trailing = 0;

@@ -1,4 +1,4 @@
-//! Files that are damaged, cut short or made to do harm get an error, and soon.
+//! Damaged, truncated and malicious files give an error, and quickly.
 
 mod phantom;
 
@@ -21,7 +21,7 @@ fn decode(bytes: &[u8]) -> Result<Scan, ImportError> {
 }
 
 fn error(bytes: &[u8]) -> ImportError {
-    decode(bytes).expect_err("this is no good file")
+    decode(bytes).expect_err("the file must be rejected")
 }
 
 fn small(version: usize) -> File {
@@ -32,7 +32,7 @@ fn small(version: usize) -> File {
 }
 
 #[test]
-fn a_file_that_is_cut_short_anywhere_is_refused() {
+fn decode_rejects_truncated_file_at_every_length() {
     for version in [1, 2] {
         let whole = small(version).bytes();
         decode(&whole).unwrap();
@@ -49,7 +49,7 @@ fn a_file_that_is_cut_short_anywhere_is_refused() {
     }
 }
 
-/// A header with some bytes replaced.
+/// Returns a file with some bytes of the header replaced.
 fn with(at: usize, bytes: &[u8]) -> Vec<u8> {
     let mut file = small(1).bytes();
     file[at..at + bytes.len()].copy_from_slice(bytes);
@@ -57,7 +57,7 @@ fn with(at: usize, bytes: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn an_error_names_the_field_and_what_was_found_and_expected() {
+fn error_names_field_expectation_and_value() {
     let whole = |number: i16| number.to_le_bytes();
     let real = |number: f32| number.to_le_bytes();
     for (bytes, expect) in [
@@ -88,12 +88,12 @@ fn an_error_names_the_field_and_what_was_found_and_expected() {
                 40,
                 &[whole(4), whole(5), whole(4), whole(3), whole(2)].concat(),
             ),
-            "dim at byte 48: expected one volume, 1, found 2",
+            "dim at byte 48: expected 1 (only one volume is supported), found 2",
         ),
         (with(70, &whole(128)), "datatype at byte 70"),
         (
             with(72, &whole(8)),
-            "bitpix at byte 72: expected the 16 bits of that datatype, found 8",
+            "bitpix at byte 72: expected 16, the bits of that datatype, found 8",
         ),
         (
             with(108, &real(347.0)),
@@ -122,19 +122,22 @@ fn an_error_names_the_field_and_what_was_found_and_expected() {
         (with(292, &real(1e30)), "the first voxel within a kilometre"),
         (with(280, &real(0.0)), "voxels 0.001 to 100 mm apart"),
         (with(280, &real(1e9)), "voxels 0.001 to 100 mm apart"),
-        // The second axis runs along the first.
+        // The second axis is parallel to the first.
         (
             with(
                 280,
                 &[real(1.0), real(1.0), real(0.0), real(0.0), [0; 4], [0; 4]].concat(),
             ),
-            "three axes that make voxels of some volume",
+            "three independent axes",
         ),
     ] {
         let found = error(&bytes).to_string();
-        assert!(found.contains(expect), "{found:?} is not {expect:?}");
+        assert!(
+            found.contains(expect),
+            "{found:?} does not contain {expect:?}"
+        );
     }
-    // A rotation that is none.
+    // A quaternion with an imaginary part longer than 1.
     let mut bytes = with(252, &[whole(1), whole(0)].concat());
     bytes[256..260].copy_from_slice(&real(1.1));
     let found = error(&bytes).to_string();
@@ -147,7 +150,7 @@ fn an_error_names_the_field_and_what_was_found_and_expected() {
 }
 
 #[test]
-fn a_header_that_promises_more_than_the_file_can_hold_is_refused_at_once() {
+fn decode_rejects_size_beyond_file_length_at_once() {
     let start = Instant::now();
     for version in [1, 2] {
         let mut file = small(version);
@@ -172,7 +175,7 @@ fn a_header_that_promises_more_than_the_file_can_hold_is_refused_at_once() {
 }
 
 #[test]
-fn a_bomb_is_not_inflated_to_its_end() {
+fn decode_stops_at_limit_for_gzip_bomb() {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
     encoder.write_all(&small(1).bytes()).unwrap();
     let zeros = vec![0; 1 << 20];
@@ -181,7 +184,7 @@ fn a_bomb_is_not_inflated_to_its_end() {
     }
     let mut bomb = encoder.finish().unwrap();
     assert!(bomb.len() < 100_000);
-    // Who came to the end would complain about this instead.
+    // A reader that reaches the end would report this checksum instead.
     let end = bomb.len() - 8;
     bomb[end..].fill(0xaa);
     match error(&bomb).problem {
@@ -193,7 +196,7 @@ fn a_bomb_is_not_inflated_to_its_end() {
 }
 
 #[test]
-fn a_file_that_arrived_otherwise_than_it_was_sent_is_refused() {
+fn decode_rejects_wrong_gzip_checksum() {
     let mut bytes = zipped(&small(1).bytes());
     let checksum = bytes.len() - 8;
     bytes[checksum] ^= 1;
@@ -201,7 +204,7 @@ fn a_file_that_arrived_otherwise_than_it_was_sent_is_refused() {
 }
 
 #[test]
-fn no_byte_of_a_header_does_harm() {
+fn decode_survives_any_header_byte() {
     let tissue = Segmentation::thresholds(&[(10.0..=50.0, 1)]);
     let options = Options {
         resolution: 8,
@@ -232,7 +235,7 @@ fn no_byte_of_a_header_does_harm() {
 }
 
 #[test]
-fn what_is_no_number_is_as_low_as_the_lowest() {
+fn scan_replaces_non_finite_values_by_lowest() {
     let mut file = File::small([2, 2, 1], &[f64::NAN, 5.0, f64::INFINITY, -3.0]);
     file.datatype = 16;
     let scan = file.scan();

@@ -1,4 +1,4 @@
-//! What becomes an organ, and of which materials.
+//! Shape and materials of organs from scans.
 
 mod phantom;
 
@@ -12,7 +12,7 @@ fn distance(patient: [f64; 3], middle: [f64; 3]) -> f64 {
     squares.sum::<f64>().sqrt()
 }
 
-/// From 1 to 0 over so many millimetres at a distance, as scanners smear borders.
+/// Falls from 1 to 0 over `across` [mm] around a border, as scanners blur borders.
 fn smeared(inside: f64, across: f64) -> f64 {
     (0.5 + inside / across).clamp(0.0, 1.0)
 }
@@ -23,7 +23,7 @@ fn near(found: f64, expected: f64, tolerance: f64) {
 }
 
 #[test]
-fn thresholds_keep_the_volume_at_each_resolution() {
+fn thresholds_preserve_volume_at_each_resolution() {
     let file = File::of(RAS, [1.5, 1.5, 3.0], |patient| {
         1000.0 * smeared(30.0 - distance(patient, [0.0; 3]), 3.0)
     });
@@ -38,9 +38,9 @@ fn thresholds_keep_the_volume_at_each_resolution() {
 }
 
 #[test]
-fn of_maps_the_more_probable_counts_and_there_is_no_gap_between() {
+fn maps_choose_most_probable_material_without_gaps() {
     let depth = |patient| 30.0 - distance(patient, [0.0; 3]);
-    // As bytes to 255, and as shares.
+    // One map as bytes up to 255, the other as fractions.
     let grey = File::of(RAS, [2.0; 3], |patient| {
         let inside = smeared(depth(patient), 4.0);
         255.0 * inside * (1.0 - smeared(depth(patient) - 12.0, 4.0))
@@ -62,11 +62,11 @@ fn of_maps_the_more_probable_counts_and_there_is_no_gap_between() {
         ..Options::default()
     };
     let filled = Organ::of(&[&grey, &white], &Segmentation::Maps, &options, |_| {}).unwrap();
-    assert_eq!(filled.grid, organ.grid, "there is no gap to be filled");
+    assert_eq!(filled.grid, organ.grid, "there must be no gap to fill");
 }
 
 #[test]
-fn specks_elsewhere_change_nothing() {
+fn organ_ignores_distant_specks() {
     let sound = |patient| 20.0 - distance(patient, [-20.0, 10.0, 0.0]);
     let speck = |patient| 4.0 - distance(patient, [50.0, -45.0, 40.0]);
     let alone = File::of(RAS, [2.0; 3], |patient| {
@@ -82,7 +82,7 @@ fn specks_elsewhere_change_nothing() {
 }
 
 #[test]
-fn what_is_enclosed_is_filled_where_that_is_asked_for() {
+fn organ_fills_holes_on_request() {
     let file = File::of(RAS, [2.0; 3], |patient| {
         let far = distance(patient, [0.0; 3]);
         f64::from(u8::from(far < 30.0 && far > 12.0))
@@ -99,7 +99,7 @@ fn what_is_enclosed_is_filled_where_that_is_asked_for() {
 }
 
 #[test]
-fn an_organ_becomes_a_model_and_comes_back() {
+fn organ_round_trips_through_vox_model() {
     let file = File::of(RAS, [2.0; 3], |patient| f64::from(phantom::label(patient)));
     let organ = organ(&file.scan(), &phantom::labels(), 24);
     let model = Model::of("a.vox", &organ.grid, &[[200, 90, 80]]).unwrap();
@@ -114,7 +114,7 @@ fn an_organ_becomes_a_model_and_comes_back() {
 }
 
 #[test]
-fn a_choice_that_does_not_fit_is_refused() {
+fn organ_rejects_invalid_options() {
     let scan = File::small([2, 2, 2], &[1.0; 8]).scan();
     let labels = Segmentation::labels(&[(1, 1)]);
     let refused = |scans: &[&Scan], segmentation: &Segmentation, resolution| {
@@ -123,7 +123,9 @@ fn a_choice_that_does_not_fit_is_refused() {
             ..Options::default()
         };
         let outcome = Organ::of(scans, segmentation, &options, |_| {});
-        outcome.expect_err("this cannot be").to_string()
+        outcome
+            .expect_err("the options must be rejected")
+            .to_string()
     };
     let error = refused(&[&scan], &labels, 7);
     assert_eq!(
@@ -146,7 +148,7 @@ fn a_choice_that_does_not_fit_is_refused() {
 }
 
 #[test]
-fn progress_goes_from_nothing_to_all() {
+fn progress_increases_from_zero_to_one() {
     let file = File::of(RAS, [2.0; 3], |patient| f64::from(phantom::label(patient)));
     let mut told = Vec::new();
     let scan = Scan::decode("a.nii", &file.bytes(), |done| told.push(done)).unwrap();

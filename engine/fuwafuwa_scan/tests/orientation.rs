@@ -1,4 +1,4 @@
-//! However a patient lay in the scanner, and however the file is written, it is the same patient.
+//! The position of the patient in the scanner and the encoding of the file do not change the organ.
 
 mod phantom;
 
@@ -6,7 +6,8 @@ use fuwafuwa::{Material, SoftBody};
 use fuwafuwa_scan::{Organ, Scan, Source};
 use phantom::{Axes, File, Form, HALF, MARKS, RAS, ball, ellipsoid, label, labels, organ};
 
-/// Where a material is on average, on the engine's axes from the middle of the whole organ [mm].
+/// Returns the mean position of the chosen materials, on the engine's axes from the low corner of the grid
+/// [mm].
 fn middle(organ: &Organ, is_meant: impl Fn(u8) -> bool) -> [f64; 3] {
     let grid = &organ.grid;
     let meant = grid
@@ -19,7 +20,7 @@ fn middle(organ: &Organ, is_meant: impl Fn(u8) -> bool) -> [f64; 3] {
     })
 }
 
-/// That an organ is the phantom, on the engine's axes, with the sizes of the patient.
+/// Checks that an organ is the phantom, on the engine's axes, with the patient's size.
 fn check(organ: &Organ) -> Result<(), String> {
     let near = |what: &str, found: f64, expected: f64, tolerance: f64| {
         let good = (found - expected).abs() <= tolerance;
@@ -28,16 +29,16 @@ fn check(organ: &Organ) -> Result<(), String> {
     };
     let [right, front, up] = HALF.map(|half| 2.0 * half);
     for (side, expected) in organ.sides().into_iter().zip([right, up, front]) {
-        // A cap as flat as a voxel of the scan is lost.
+        // At the ends of the ellipsoid, caps thinner than a voxel of the scan are lost.
         near("side [mm]", side, expected, 5.0)?;
     }
-    // Marks do not tell the middle of the whole apart from that of the box.
+    // Positions are relative to the centre of the whole organ, marks included.
     let whole = middle(organ, |material| material != 0);
     for (number, [right, front, up], radius) in MARKS {
         let found = middle(organ, |material| i32::from(material) == number);
         for (axis, expected) in [right, up, -front].into_iter().enumerate() {
             let what = format!("mark {number} on axis {axis} [mm]");
-            // Less than the voxels of the scans themselves are apart.
+            // The tolerance is less than the voxel spacing of the scans.
             near(&what, found[axis] - whole[axis], expected, 1.0)?;
         }
         let volume = organ.millilitres(number as u8);
@@ -45,7 +46,7 @@ fn check(organ: &Organ) -> Result<(), String> {
     }
     let all: f64 = (1..=4).map(|material| organ.millilitres(material)).sum();
     near(
-        "all of it [ml]",
+        "whole organ [ml]",
         all,
         ellipsoid(HALF),
         0.03 * ellipsoid(HALF),
@@ -69,14 +70,14 @@ fn minus(axis: [f64; 3]) -> [f64; 3] {
     axis.map(|k| -k)
 }
 
-/// Turned by 30 degrees about the patient's long axis.
+/// Axes rotated by 30 degrees about the patient's long axis.
 fn oblique() -> Axes {
     let (sin, cos) = (0.5, 0.75_f64.sqrt());
     [[cos, sin, 0.0], [-sin, cos, 0.0], Z]
 }
 
 #[test]
-fn any_order_and_direction_of_axes_gives_the_same_organ() {
+fn organ_is_independent_of_scan_axes() {
     let isotropic = [2.0; 3];
     for (what, axes, spacing) in [
         ("RAS", RAS, isotropic),
@@ -98,40 +99,40 @@ fn any_order_and_direction_of_axes_gives_the_same_organ() {
 }
 
 #[test]
-fn a_rotation_stands_for_a_matrix_where_there_is_none() {
+fn placement_uses_qform_without_sform() {
     let mut file = phantom(RAS, [1.0, 2.0, 2.5]);
     file.form = Form::Qform([0.0; 3], false);
     check_file("RAS", &file);
-    // About the long axis by 30 degrees: the half of it has these sine and cosine.
+    // 30 degrees about the long axis; a quaternion contains the sine and cosine of half the angle.
     let mut file = phantom(oblique(), [2.0; 3]);
     file.form = Form::Qform([0.0, 0.0, 0.5 * (2.0 - 3.0_f64.sqrt()).sqrt()], false);
     assert_eq!(file.scan().placement().source(), Source::Rotation);
     check_file("oblique", &file);
-    // Half a turn about the second axis, and the third the other way: only left and right are exchanged.
+    // Half a turn about the second axis, with the third axis reversed: only left and right are exchanged.
     let mut file = phantom([minus(X), Y, Z], [1.0, 2.0, 2.5]);
     file.form = Form::Qform([0.0, 1.0, 0.0], true);
     check_file("LAS", &file);
 }
 
 #[test]
-fn left_taken_for_right_is_noticed() {
+fn check_detects_mirrored_organ() {
     for axis in 0..3 {
         let mut file = phantom(RAS, [2.0; 3]);
         let [_, _, _, offset] = file.affine[axis];
         file.affine[axis] = file.affine[axis].map(|k| -k);
         file.affine[axis][3] = -offset;
         let organ = organ(&file.scan(), &labels(), 64);
-        let wrong = check(&organ).expect_err("one axis is the wrong way round");
+        let wrong = check(&organ).expect_err("one axis is mirrored");
         assert!(wrong.starts_with("mark"), "{wrong}");
     }
-    // Two axes exchanged: the sides show it already.
+    // With two axes exchanged, the lengths of the sides already differ.
     let mut file = phantom(RAS, [2.0; 3]);
     file.affine.swap(0, 1);
     assert!(check(&organ(&file.scan(), &labels(), 64)).is_err());
 }
 
 #[test]
-fn a_place_in_the_patient_is_found_in_the_organ() {
+fn voxel_at_finds_marks_of_patient() {
     for axes in [RAS, [minus(Y), minus(Z), X], oblique()] {
         let organ = organ(&phantom(axes, [2.0; 3]).scan(), &labels(), 48);
         for (number, middle, _) in MARKS {
@@ -149,7 +150,7 @@ fn a_place_in_the_patient_is_found_in_the_organ() {
 }
 
 #[test]
-fn spacing_alone_places_a_scan_and_says_so() {
+fn placement_uses_spacing_without_forms() {
     let mut file = phantom(RAS, [1.0, 2.0, 4.0]);
     file.form = Form::Spacing;
     let scan = file.scan();
@@ -159,8 +160,8 @@ fn spacing_alone_places_a_scan_and_says_so() {
 }
 
 #[test]
-fn each_way_to_write_a_scan_has_the_same_voxels() {
-    // The mean of a whole number of steps: exact in each type.
+fn decode_gives_same_values_for_each_encoding() {
+    // Multiples of the scaling step, so that every number format is exact.
     let values: Vec<f64> = (0..24).map(|k| f64::from(k * 5 % 24)).collect();
     let plain = File::small([4, 3, 2], &values);
     let numbers = |scan: &Scan| -> Vec<f32> {
@@ -188,7 +189,7 @@ fn each_way_to_write_a_scan_has_the_same_voxels() {
 }
 
 #[test]
-fn lengths_in_metres_and_micrometres_are_understood() {
+fn decode_converts_units_of_length() {
     for (unit, factor) in [(0, 1.0), (1, 0.001), (2, 1.0), (3, 1000.0)] {
         let mut file = phantom(RAS, [2.0; 3]);
         file.unit = unit;

@@ -1,4 +1,5 @@
-//! Files, for programs that have a disk. Nothing else here knows of paths, and a browser does without this.
+//! File access, for programs with a file system. The rest of the crate uses no paths and also works in a
+//! browser.
 
 use crate::import::MAX_FILE_BYTES;
 use crate::scene::{MAX_TEXT_BYTES, NAMED, Scene, SceneError};
@@ -6,11 +7,12 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// The bytes of a file, refused when there are more than `most` ([`ErrorKind::FileTooLarge`]), and when it is a folder, a
-/// pipe or a device ([`ErrorKind::InvalidInput`]): who reads a pipe may wait for ever, and some devices have no end.
+/// Reads a file of at most `most` bytes. Longer files are refused ([`ErrorKind::FileTooLarge`]), as are
+/// folders, pipes and devices ([`ErrorKind::InvalidInput`]): reading a pipe can block forever, and some
+/// devices are endless.
 ///
 /// # Errors
-/// These two, and what the system says.
+/// Those two, and errors of the system.
 pub fn bytes_of(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if !path.metadata()?.is_file() {
         let reason = "expected a file, found a folder, a pipe or a device";
@@ -19,30 +21,30 @@ pub fn bytes_of(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most {
-        let reason = format!("longer than {most} bytes, the most that are read");
+        let reason = format!("expected at most {most} bytes, found more");
         return Err(io::Error::new(ErrorKind::FileTooLarge, reason));
     }
     Ok(bytes)
 }
 
-/// The text of a file, refused as [`bytes_of`] does.
+/// Reads a UTF-8 text file of at most `most` bytes.
 ///
 /// # Errors
-/// As [`bytes_of`], and when it is no UTF-8 ([`ErrorKind::InvalidData`]).
+/// As [`bytes_of`], and [`ErrorKind::InvalidData`] if the file is not UTF-8.
 pub fn text_of(path: &Path, most: u64) -> io::Result<String> {
     let text = String::from_utf8(bytes_of(path, most)?);
     text.map_err(|_| io::Error::new(ErrorKind::InvalidData, "expected a text in UTF-8"))
 }
 
-/// Hands out the pictures and models that lie in a folder, for [`Scene::embed_files`].
+/// Returns a function that reads pictures and models from a folder, for [`Scene::embed_files`].
 pub fn beside(folder: &Path) -> impl Fn(&str) -> io::Result<Vec<u8>> {
     move |name| bytes_of(&folder.join(name), MAX_FILE_BYTES)
 }
 
-/// The scene of a name, as [`Scene::open`], or in a file, with the files that it names.
+/// Opens a built-in scene by name, or a scene file with the files it names.
 ///
 /// # Errors
-/// [`SceneError`] says what is wrong and where.
+/// [`SceneError`] names the file, the line and the field.
 pub fn scene_at(place: &str, changes: &[String]) -> Result<Scene, SceneError> {
     let path = Path::new(place);
     if NAMED.iter().any(|(name, _)| *name == place) || !path.exists() {
@@ -64,7 +66,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn pipes_and_devices_are_refused_and_not_waited_for() {
+    fn bytes_of_rejects_pipes_devices_and_folders_without_blocking() {
         let pipe = std::env::temp_dir().join(format!("fuwafuwa-pipe-{}", std::process::id()));
         assert!(
             Command::new("mkfifo")

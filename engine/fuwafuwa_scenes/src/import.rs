@@ -1,8 +1,8 @@
 //! Shapes from files: a silhouette from PNG ([`png()`]), a model from MagicaVoxel ([`vox()`]).
 //!
-//! A file may come from anywhere. Whatever its bytes are, the answer is a grid or an [`ImportError`]
-//! that says which file, where in it, and what was expected; every size is compared with its limit
-//! and with the length of the file before memory is taken for it.
+//! Files are untrusted. For any bytes, the result is a grid or an [`ImportError`] that names the file, the
+//! position in it and what was expected. Every size is compared with its limit and with the length of the
+//! file before memory is allocated for it.
 
 mod colours;
 mod error;

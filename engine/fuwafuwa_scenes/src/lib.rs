@@ -1,5 +1,5 @@
-//! Worlds to look at, to measure and to play in: scenes as data files, and recordings of what
-//! hands did in them. Used by tests, benchmarks, the command line and the game alike.
+//! Scenes for the soft-body engine fuwafuwa: worlds as data files, and recordings of hand movements that
+//! replay to the same bits. Tests, benchmarks, the command line and the game use them.
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]

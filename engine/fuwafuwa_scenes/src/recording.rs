@@ -1,76 +1,77 @@
-//! What hands did in a scene, tick by tick, so that it can be run again and compared.
+//! Recordings: a scene with the targets of its hands at each tick, so that a run can be repeated and
+//! compared.
 
 use crate::scene::send;
 use crate::scene::{BodyText, MAX_SECONDS, Scene, SceneError, shortened};
 use fuwafuwa::{Dim, World};
 use serde::{Deserialize, Serialize};
 
-/// Number of the format; it changes when an older recording would run differently.
+/// Version of the format. It increases when an older recording would run differently.
 pub const VERSION: u32 = 1;
-/// Most bytes of a recording that are read: some hours of two hands.
+/// Maximum size of a recording [bytes]: some hours of two hands.
 pub const MAX_BYTES: u64 = 1 << 26;
-/// Most ticks of a recording: as long as a scene can be watched.
+/// Maximum number of ticks in a recording: the longest viewing time of a scene.
 pub const MAX_TICKS: usize = (MAX_SECONDS * 60.0) as usize;
 
-/// A scene, the goals of its hands at each tick, and the hashes they led to.
+/// A scene, the targets of its hands at each tick, and the resulting hashes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Recording {
-    /// Number of the format.
+    /// Version of the format.
     pub version: u32,
-    /// Version of the engine.
+    /// Version of this crate.
     pub engine: String,
-    /// The scene it was made in.
+    /// Scene that was recorded.
     pub scene: Scene,
-    /// For each tick, the goal of each hand [m].
+    /// Target of each hand at each tick [m].
     pub goals: Vec<Vec<[f32; 3]>>,
-    /// The world's hash after every sixtieth tick and after the last, in hexadecimal.
+    /// Hash of the world after every 60th tick and after the last, in hexadecimal.
     pub hashes: Vec<String>,
 }
 
-/// Why a recording could not be read.
+/// Reason why a recording could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
-    /// The text is not that of a recording.
+    /// The text is not a valid recording.
     #[error("{name}: {reason}")]
     Text {
-        /// The file.
+        /// Name of the file.
         name: String,
-        /// The field, and what was expected.
+        /// Field, and what was expected.
         reason: String,
     },
-    /// It was made by another version of this library.
+    /// The recording has another format.
     #[error("{name}: the recording has format {found}, this library reads format {VERSION}")]
     Version {
-        /// The file.
+        /// Name of the file.
         name: String,
-        /// The format it has.
+        /// Version of the recording's format.
         found: u32,
     },
 }
 
-/// What came of running a recording again.
+/// Result of a replay.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Comparison {
-    /// Ticks that were run.
+    /// Number of ticks that were run.
     pub ticks: usize,
-    /// The first tick at which the hash was another, if it was.
+    /// First compared tick with a different hash, if any.
     pub differs_at: Option<usize>,
 }
 
 impl Recording {
-    /// The recording in a text; `name` names it in errors.
+    /// Parses a recording; `name` names it in errors.
     ///
     /// # Errors
-    /// [`RecordingError`] when it is none, or one of another format.
+    /// [`RecordingError`] if the text is not a recording, or has another format.
     pub fn read(name: &str, text: &str) -> Result<Self, RecordingError> {
         let name = name.to_string();
         let recording: Self = match toml::from_str(text) {
             Ok(recording) => recording,
             Err(error) => {
-                // Without the line itself, in which the goals of hours may stand.
+                // The line itself is omitted: it may contain the targets of hours.
                 let message = shortened(error.message(), 400);
-                let reason = format!("this is no recording: {message}");
+                let reason = format!("not a valid recording: {message}");
                 return Err(RecordingError::Text { name, reason });
             }
         };
@@ -84,10 +85,10 @@ impl Recording {
         }
     }
 
-    /// It as a text, if that can be opened again.
+    /// Returns the recording as text that [`Recording::read`] accepts.
     ///
     /// # Errors
-    /// What is too long in it.
+    /// The limit that the recording exceeds.
     pub fn text(&self) -> Result<String, String> {
         self.check()?;
         let text = toml::to_string(self).map_err(|error| error.to_string())?;
@@ -103,17 +104,17 @@ impl Recording {
         }
         let mut bodies = self.scene.body.iter();
         if bodies.any(BodyText::lacks_content) {
-            // Whose recording it is does not say which files are opened.
+            // A recording may come from a stranger and must not choose which files of the reader are opened.
             return Err("expected the content of every body that has a file".into());
         }
         Ok(())
     }
 
-    /// Records a scene with the goals of its own hands, for so many ticks. `watch` sees the world
-    /// after each.
+    /// Records a scene with the targets of its own hands for `ticks` ticks. `watch` is called with the world
+    /// after each tick.
     ///
     /// # Errors
-    /// [`SceneError`] when the scene cannot be built.
+    /// [`SceneError`] if the scene cannot be built.
     pub fn of<D: Dim>(
         scene: &Scene,
         ticks: u64,
@@ -140,10 +141,10 @@ impl Recording {
         })
     }
 
-    /// Runs it again and compares the hashes.
+    /// Runs the recording again and compares the hashes. `watch` is called with the world after each tick.
     ///
     /// # Errors
-    /// [`SceneError`] when the scene in it cannot be built.
+    /// [`SceneError`] if the scene cannot be built.
     pub fn replay<D: Dim>(
         &self,
         mut watch: impl FnMut(&World<D>),
@@ -179,7 +180,7 @@ mod tests {
     use fuwafuwa::Dim2;
 
     #[test]
-    fn a_recording_runs_again_to_the_same_hashes_and_a_changed_one_does_not() {
+    fn replay_reproduces_hashes_unless_goals_change() {
         let scene = Scene::open("tear", &["body.n=16".into()]).unwrap();
         let recording = Recording::of::<Dim2>(&scene, 70, |_| {}).unwrap();
         assert_eq!(recording.hashes.len(), 2);
@@ -192,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_opens_no_files_of_its_reader() {
+    fn check_rejects_body_file_without_content() {
         let scene = Scene::open("drop", &["body.n=8".into()]).unwrap();
         let mut recording = Recording::of::<Dim2>(&scene, 1, |_| {}).unwrap();
         assert_eq!(recording.check(), Ok(()));
@@ -203,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_ends() {
+    fn check_rejects_more_than_max_ticks() {
         let scene = Scene::open("drop", &["body.n=8".into()]).unwrap();
         let mut recording = Recording::of::<Dim2>(&scene, 1, |_| {}).unwrap();
         recording.goals = vec![Vec::new(); MAX_TICKS + 1];
@@ -213,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_recording_is_refused_with_its_name() {
+    fn read_error_names_file_for_foreign_text() {
         let error = Recording::read("mine", "[package]").unwrap_err();
         assert!(error.to_string().starts_with("mine: "), "{error}");
     }

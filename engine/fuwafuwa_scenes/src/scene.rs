@@ -1,12 +1,12 @@
-//! A world as a text file.
+//! Scenes: a [`World`] written as a TOML file.
 //!
 //! ```toml
 //! dim = 2
 //! gravity = [0.0, -9.81, 0.0]     # [m/s²]
-//! tick = 0.0166666667             # [s]; that of Settings when left out, as drag and most_substeps
+//! tick = 0.0166666667             # [s]; tick, drag and most_substeps default to those of Settings
 //!
 //! [[material]]                    # number 1
-//! young = 5000.0                  # [Pa]; what is not named is that of `Material::default`
+//! young = 5000.0                  # [Pa]; missing fields take the values of `Material::default`
 //!
 //! [[material]]                    # number 2
 //! young = 50000.0
@@ -15,31 +15,31 @@
 //! shape = "ball"                  # or box, ring, heart, flower, empty
 //! n = 64                          # voxels across
 //! width = 1.0                     # [m]
-//! at = [0.0, 0.2, 0.0]            # its low corner [m]
+//! at = [0.0, 0.2, 0.0]            # low corner of the body [m]
 //!
-//! [[body.part]]                   # a hard core: changes apply in their order
-//! paint = 2                       # what is solid here becomes material 2
+//! [[body.part]]                   # a hard core; parts apply in their order
+//! paint = 2                       # solid voxels in the shape become material 2
 //! ball = { centre = [0.5, 0.5, 0.0], radius = 0.2 }   # [m] from the body's low corner
 //!
-//! [[body.part]]                   # with a hole in it
-//! fill = 0                        # all of this becomes empty; fill = 2: solid, of material 2
+//! [[body.part]]                   # a hole in the core
+//! fill = 0                        # all voxels in the shape become empty; fill = 2: solid, of material 2
 //! box = { centre = [0.5, 0.5, 0.0], half = [0.05, 0.05, 0.0] }
 //!
 //! [[body]]
-//! file = "cat.png"                # in 3D a .vox; a path is taken from the scene's own folder
-//! n = 48                          # voxels on its longer side at most
-//! colours = { "#d04030" = 1, "#ffffff" = 0 }   # materials; of a model by palette index too: "79" = 2
+//! file = "cat.png"                # in 3D a .vox file; relative to the folder of the scene
+//! n = 48                          # maximum number of voxels on the longer side
+//! colours = { "#d04030" = 1, "#ffffff" = 0 }   # colour = material; models also take palette indices: "79" = 2
 //!
-//! [[obstacle]]                    # half_space, box, capsule or ball
+//! [[obstacle]]                    # fixed rigid body: half_space, box, capsule or ball
 //! half_space = { normal = [0.0, 1.0, 0.0], point = [0.0, 0.0, 0.0] }
 //!
-//! [[hand]]
+//! [[hand]]                        # rigid body that follows a path
 //! radius = 0.1                    # [m]; or a box or a capsule
-//! path = [[0.0, -0.3, 0.5, 0.0], [1.0, 1.2, 0.5, 0.0]]   # seconds, then where [m]
+//! path = [[0.0, -0.3, 0.5, 0.0], [1.0, 1.2, 0.5, 0.0]]   # time [s], then position [m]
 //!
-//! [[rigid]]                       # anything rigid; its shape is as it would be at the origin
+//! [[rigid]]                       # any rigid body; its shape is given as if it stood at the origin
 //! ball = { centre = [0.0, 0.0, 0.0], radius = 0.2 }
-//! drive = "free"                  # falls; or fixed, kinematic, hand
+//! drive = "free"                  # dynamic; or fixed, kinematic, hand (coupled by a spring)
 //! mass = 3.0                      # [kg]
 //! at = [0.5, 2.0, 0.0]            # [m]
 //! turned = [0.0, 0.0, 0.5]        # axis times angle [rad]
@@ -47,21 +47,21 @@
 //!
 //! [[rigid]]
 //! box = { centre = [0.0, 0.0, 0.0], half = [0.5, 0.5, 0.5] }
-//! sensor = true                   # touches nobody, tells who comes in
+//! sensor = true                   # no contact forces; reports bodies that enter and exit
 //!
 //! [[joint]]                       # pin, spring or rope
 //! tie = "rope"
 //! length = 0.5                    # [m]
 //! ends = [{ body = 1, at = [0.5, 1.2, 0.0], radius = 0.1 }, { at = [0.5, 1.7, 0.0] }]   # or rigid, obstacle, hand
 //!
-//! [game]                          # only where a scene is a level of the game
+//! [game]                          # only for levels of the game
 //! name = { en = "Over the wall", ja = "かべのむこう" }
 //! basket = { centre = [1.2, 0.3, 0.0], half = [0.4, 0.4, 0.0] }   # [m]
-//! share = 0.6                     # of the mass that must rest in the basket
+//! share = 0.6                     # share of the mass that must rest in the basket
 //! ```
 //!
-//! How pictures and models become voxels is said at [`Picture::grid`](crate::import::Picture::grid)
-//! and [`Model::grid`](crate::import::Model::grid).
+//! [`Picture::grid`](crate::import::Picture::grid) and [`Model::grid`](crate::import::Model::grid) document
+//! how pictures and models become voxels.
 
 mod any_rigid;
 mod body;
@@ -93,74 +93,74 @@ use fuwafuwa::{Dim, Material, Shape, World, WorldConfig};
 use joint::Known;
 use serde::{Deserialize, Serialize};
 
-/// Most bytes of a scene's file.
+/// Maximum size of a scene file [bytes].
 pub const MAX_TEXT_BYTES: u64 = 1 << 20;
 
-/// Most materials of a scene: as many as have a number.
+/// Maximum number of materials in a scene: a material number is a byte, and 0 means empty.
 pub const MAX_MATERIALS: usize = 255;
 
-/// Most bodies of a scene.
+/// Maximum number of bodies in a scene.
 pub const MAX_BODIES: usize = 1024;
 
-/// Most obstacles of a scene, and most hands: what moves is held against each of them.
+/// Maximum number of obstacles, of hands, of rigid bodies and of joints in a scene, each: moving nodes are
+/// tested against every rigid body.
 pub const MAX_RIGID: usize = 256;
 
-/// Most voxels in the grids of all bodies of a scene together, solid or not: as many as the largest
-/// model has.
+/// Maximum number of voxels, solid or empty, in all grids of a scene together: the size of the largest model.
 pub const MAX_VOXELS: usize = 1 << 24;
 
-/// Longest time to watch a scene [s]: a day.
+/// Maximum viewing time of a scene [s]: one day.
 pub const MAX_SECONDS: f32 = 86_400.0;
 
-/// A world as it is written down.
+/// Description of a world, as read from a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// 2 or 3.
+    /// Number of dimensions, 2 or 3.
     pub dim: u8,
-    /// [m/s²]
+    /// Gravity [m/s²], default (0, −9.81, 0).
     #[serde(default = "usual_gravity")]
     pub gravity: [f32; 3],
-    /// Air drag [1/s].
+    /// Air drag [1/s], default 0.
     #[serde(default)]
     pub drag: f32,
-    /// Substeps in 1/60 s at most.
+    /// Maximum number of substeps in 1/60 s, default 64.
     #[serde(default = "usual_substeps")]
     pub most_substeps: u32,
-    /// Length of a tick [s].
+    /// Length of a tick [s], default 1/60.
     #[serde(default = "usual_tick", skip_serializing_if = "is_usual_tick")]
     pub tick: f32,
-    /// How long to watch it [s].
+    /// Viewing time [s], default 3.
     #[serde(default = "usual_seconds")]
     pub seconds: f32,
-    /// What part of the world to look at: low and high corner [m].
+    /// Visible part of the world: its low and its high corner [m].
     #[serde(default = "usual_view")]
     pub view: [[f32; 3]; 2],
-    /// Materials, number 1 first; one of the usual kind when there is none.
+    /// Materials, number 1 first; the default is one material with default values.
     #[serde(default = "usual_materials")]
     pub material: Vec<MaterialText>,
     /// Soft bodies.
     #[serde(default)]
     pub body: Vec<BodyText>,
-    /// Rigid shapes.
+    /// Fixed rigid bodies.
     #[serde(default)]
     pub obstacle: Vec<ObstacleText>,
-    /// Hands.
+    /// Rigid bodies that follow a path.
     #[serde(default)]
     pub hand: Vec<HandText>,
-    /// Anything rigid.
+    /// Rigid bodies of any kind.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rigid: Vec<RigidText>,
-    /// What ties things together.
+    /// Joints between bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joint: Vec<JointText>,
-    /// What makes a game of it.
+    /// Rules of the game, if the scene is a level.
     pub game: Option<GameText>,
     #[serde(skip)]
     origin: Origin,
 }
 
-/// The scenes that come along.
+/// Scenes built into this crate: name and text.
 pub const NAMED: [(&str, &str); 11] = [
     ("drop", include_str!("../scenes/drop.toml")),
     ("drop-3d", include_str!("../scenes/drop-3d.toml")),
@@ -176,10 +176,10 @@ pub const NAMED: [(&str, &str); 11] = [
 ];
 
 impl Scene {
-    /// The scene of a name, of those that come along; `changes` replace values in it, e.g. `material.young=9000`.
+    /// Opens a built-in scene by name; `changes` replace values in it, e.g. `material.young=9000`.
     ///
     /// # Errors
-    /// [`SceneError`] says what is wrong and where.
+    /// [`SceneError`] if the name is unknown or a change is invalid; it names the field.
     pub fn open(name: &str, changes: &[String]) -> Result<Self, SceneError> {
         if let Some((_, text)) = NAMED.iter().find(|(known, _)| *known == name) {
             return Self::read(name, text, changes);
@@ -191,12 +191,12 @@ impl Scene {
         })
     }
 
-    /// The scene that a text describes.
+    /// Parses the text of a scene and applies `changes` to it; `name` names the scene in errors.
     ///
     /// # Errors
     /// [`SceneError`] names line and field.
     pub fn read(name: &str, text: &str, changes: &[String]) -> Result<Self, SceneError> {
-        // Read once as it stands, so that errors name its lines.
+        // Parsed without the changes first, so that errors name lines of the text.
         let scene = toml::from_str(text);
         let mut scene: Self = scene.map_err(|error| SceneError::of_text(name, text, &error))?;
         scene.origin = Origin::of(name, text);
@@ -210,7 +210,7 @@ impl Scene {
     }
 
     fn changed(&self, name: &str, changes: &[String]) -> Result<Self, SceneError> {
-        // No longer what stands in the lines of the text.
+        // Changed values have no line in the text, so errors name the changes instead.
         let name = format!("{name} with {}", changes.join(", "));
         let wrong = |reason: String| SceneError::Text {
             name: name.clone(),
@@ -228,15 +228,15 @@ impl Scene {
         Ok(changed)
     }
 
-    /// The world that it describes.
+    /// Builds the world that the scene describes.
     ///
     /// # Errors
-    /// [`SceneError::Build`] names the field and what is wrong with it.
+    /// [`SceneError::Build`] names the field, what was expected and what was found.
     pub fn build<D: Dim>(&self) -> Result<World<D>, SceneError> {
         self.build_within(MAX_VOXELS)
     }
 
-    /// The same, with at most so many voxels in the grids of all bodies together.
+    /// Builds the world, with at most `most_voxels` voxels in the grids of all bodies together.
     ///
     /// # Errors
     /// As [`Scene::build`].
@@ -315,7 +315,8 @@ impl Scene {
             let added = text.add_to(&mut world);
             added.map_err(|wrong| wrong.inside("rigid", index))?;
         }
-        // All were put into an empty world, one after another.
+        // The world was empty, so its rigid bodies are in the order of the lists: obstacles, hands, rigid
+        // bodies.
         let mut rigids = world.rigid_bodies().ids();
         let known = Known {
             bodies: world.soft_bodies().ids().collect(),
@@ -330,7 +331,7 @@ impl Scene {
         Ok(world)
     }
 
-    /// The region that has to be filled, where it is a level of the game with a basket.
+    /// Returns the region to be filled, if the scene is a level of the game with a basket.
     ///
     /// # Errors
     /// [`SceneError::Build`] names the field of `[game]` and what is wrong with it.
@@ -342,14 +343,14 @@ impl Scene {
         basket.map_err(|wrong| self.origin.error(wrong.under("game")))
     }
 
-    /// Takes the files that its bodies are made from into the scene, so that it can travel alone. Without them it is
-    /// not built.
+    /// Embeds the files that its bodies are made from, so that the scene is self-contained. A body with a
+    /// file cannot be built before its file is embedded.
     ///
     /// # Errors
-    /// [`SceneError::Shape`] names the body whose file cannot be had.
+    /// [`SceneError::Shape`] names the body whose file could not be read.
     pub fn embed_files(&mut self, fetch: Fetch) -> Result<(), SceneError> {
         let mut budget = Budget::of_scene(MAX_VOXELS);
-        // Those beyond are refused when the scene is built.
+        // Bodies beyond the limit are refused when the scene is built.
         for (index, body) in self.body.iter_mut().enumerate().take(MAX_BODIES) {
             let embedded = body.embed_file(fetch, &mut budget);
             embedded.map_err(|wrong| self.origin.error(wrong.inside("body", index)))?;
@@ -357,12 +358,12 @@ impl Scene {
         Ok(())
     }
 
-    /// Its materials, number 1 first.
+    /// Returns the materials, number 1 first.
     pub fn materials(&self) -> Vec<Material> {
         self.material.iter().map(MaterialText::material).collect()
     }
 
-    /// Where its hands are to be at the end of a tick [m].
+    /// Returns the target position of each hand at the end of a tick [m].
     pub fn goals(&self, tick: u64) -> Vec<[f32; 3]> {
         let seconds = match is_usual_tick(&self.tick) {
             true => (tick + 1) as f32 / 60.0,
@@ -371,12 +372,12 @@ impl Scene {
         self.hand.iter().map(|hand| hand.goal(seconds)).collect()
     }
 
-    /// Sends the hands of its world to where they are to be at the end of a tick.
+    /// Sets the targets of the world's hands to their positions at the end of a tick.
     pub fn send<D: Dim>(&self, world: &mut World<D>, tick: u64) {
         send(world, &self.goals(tick));
     }
 
-    /// How many ticks to watch it.
+    /// Returns the viewing time in ticks.
     pub fn ticks(&self) -> u64 {
         let seconds = self.seconds.clamp(0.0, MAX_SECONDS);
         match is_usual_tick(&self.tick) {
@@ -425,9 +426,9 @@ mod tests {
     use fuwafuwa::{Dim2, Dim3};
 
     #[test]
-    fn every_named_scene_runs() {
+    fn named_scene_steps_without_quarantine_for_each() {
         for (name, _) in NAMED {
-            // Smaller bodies: the scenes are tested here, not the engine.
+            // The scenes are tested here, not the engine, so small bodies suffice.
             let small = ["body.n=12".to_string(), "body.diced=0.3".to_string()];
             let changes = if name == "diced" {
                 &small[..]

@@ -1,4 +1,4 @@
-//! What scenes say about the shapes and materials of bodies.
+//! Shapes and materials of bodies in scenes.
 
 mod picture;
 
@@ -19,7 +19,7 @@ fn bodies<D: Dim>(text: &str) -> Vec<SoftBody<D>> {
         .collect()
 }
 
-/// The materials of a flat body, or of the middle layer of a solid one; the highest row first.
+/// Materials of a flat body, or of the middle layer of a 3D one; the highest row first.
 fn picture<D: Dim>(body: &SoftBody<D>) -> Vec<String> {
     let grid = body.grid();
     let [width, height, depth] = grid.size();
@@ -43,7 +43,7 @@ friction = 0.3
 ";
 
 #[test]
-fn parts_fill_paint_and_empty_in_their_order() {
+fn parts_apply_in_order() {
     let text = "
 [[body]]
 shape = \"empty\"
@@ -65,7 +65,7 @@ part = [
 }
 
 #[test]
-fn a_hard_core_in_space() {
+fn part_paints_core_of_3d_ball() {
     let text = "
 [[body]]
 shape = \"ball\"
@@ -83,7 +83,7 @@ ball = { centre = [3.5, 3.5, 3.5], radius = 1.2 }
 }
 
 #[test]
-fn every_form_can_be_built() {
+fn shape_builds_in_2d_and_3d_for_each() {
     for form in ["ball", "box", "ring", "heart", "flower"] {
         let body = format!("[[body]]\nshape = \"{form}\"\nn = 16\n");
         let flat = bodies::<Dim2>(&format!("dim = 2\n{body}"));
@@ -94,8 +94,8 @@ fn every_form_can_be_built() {
 }
 
 #[test]
-fn a_crack_does_not_enter_what_is_unbreakable() {
-    // Coarser than it comes along and weaker around the core, so that it is soon torn.
+fn crack_stops_at_unbreakable_core() {
+    // Coarser than the named scene, and weaker around the core, so that it tears soon.
     let changes = [
         "body.n=32",
         "material.1.strength=250",
@@ -116,11 +116,11 @@ fn a_crack_does_not_enter_what_is_unbreakable() {
         .collect();
     of_core.sort_unstable();
     of_core.dedup();
-    assert_eq!(of_core.len(), 1, "in one piece");
+    assert_eq!(of_core.len(), 1, "the core must stay in one piece");
 }
 
 #[test]
-fn a_hand_may_be_a_ball_a_box_or_a_bar() {
+fn hand_follows_path_with_each_shape() {
     let shapes = [
         ("radius = 0.1", 0.1),
         ("box = { centre = [0, 0, 0], half = [0.4, 0.2, 0] }", 0.2),
@@ -144,7 +144,7 @@ fn a_hand_may_be_a_ball_a_box_or_a_bar() {
     }
 }
 
-/// A folder of its own for a test, with a scene in it.
+/// Creates a folder for a test, with a scene in it.
 fn folder(name: &str, scene: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::create_dir_all(&folder).unwrap();
@@ -156,7 +156,7 @@ fn open(folder: &std::path::Path) -> Result<Scene, SceneError> {
     scene_at(folder.join("scene.toml").to_str().unwrap(), &[])
 }
 
-/// Red, blue and clear pixels, `r`, `b` and anything else.
+/// A picture of red (`r`), blue (`b`) and transparent pixels (anything else).
 fn painting(rows: &[&str]) -> Vec<u8> {
     let colour = |sign| match sign {
         b'r' => [230, 20, 20, 255],
@@ -172,7 +172,7 @@ fn painting(rows: &[&str]) -> Vec<u8> {
 }
 
 #[test]
-fn a_picture_beside_the_scene_becomes_a_body() {
+fn picture_in_scene_folder_becomes_body() {
     let scene = format!(
         "dim = 2\n{TWO}
 [[body]]
@@ -203,7 +203,7 @@ at = [0.0, 3.0, 0.0]
         ["33"]
     );
 
-    // It can be recorded, and run again from the text of the recording.
+    // The scene can be recorded, and replayed from the text of the recording.
     let recording = Recording::of::<Dim2>(&scene, 3, |_| {}).unwrap();
     let read: Recording = toml::from_str(&toml::to_string(&recording).unwrap()).unwrap();
     assert_eq!(read, recording);
@@ -222,12 +222,12 @@ at = [0.0, 3.0, 0.0]
     );
 }
 
-/// A model of two voxels, one upon the other, of palette indices 79 and 80.
+/// A model of two voxels, one above the other, with palette indices 79 and 80.
 const MODEL: &[u8] = b"VOX \x96\0\0\0MAIN\0\0\0\0\x30\0\0\0SIZE\x0c\0\0\0\0\0\0\0\
     \x01\0\0\0\x01\0\0\0\x02\0\0\0XYZI\x0c\0\0\0\0\0\0\0\x02\0\0\0\0\0\0\x4f\0\0\x01\x50";
 
 #[test]
-fn a_model_beside_the_scene_becomes_a_body() {
+fn model_in_scene_folder_becomes_body() {
     let with = |colours: &str| {
         let scene = format!("dim = 3\n{TWO}\n[[body]]\nfile = \"a.vox\"\n{colours}");
         let folder = folder("model", &scene);
@@ -242,7 +242,7 @@ fn a_model_beside_the_scene_becomes_a_body() {
     for (fields, expected) in [
         (
             "",
-            ": body 1, material: voxels are of material 80, the scene has 1 to 3",
+            ": body 1, material: voxels have material 80, but the scene has materials 1 to 3",
         ),
         (
             "colours = { \"79\" = 3 }",
@@ -250,7 +250,7 @@ fn a_model_beside_the_scene_becomes_a_body() {
         ),
         (
             "colours = { \"#ff0000\" = 3 }",
-            "none: name palette indices instead",
+            "none (name palette indices instead)",
         ),
         (
             "colours = { \"0\" = 3 }",
@@ -266,7 +266,7 @@ fn a_model_beside_the_scene_becomes_a_body() {
         ),
         (
             "n = 8",
-            "line 17: body 1, n: a model has as many voxels as it has; expected only its width",
+            "line 17: body 1, n: not allowed for a model, which has a fixed number of voxels; expected only width",
         ),
         (
             "material = 2",

@@ -1,4 +1,4 @@
-//! Files that travel with a scene: no larger than its bodies need, and to the same voxels.
+//! Embedded files: no larger than the bodies of the scene need, with the same voxels.
 
 #[allow(dead_code)]
 mod damage;
@@ -11,7 +11,7 @@ use fuwafuwa::{Dim, Dim2, Dim3};
 use fuwafuwa_scenes::Scene;
 use picture::png_of;
 
-/// Red, green, blue and alpha of anything.
+/// A picture of random red, green, blue and alpha.
 fn noisy_picture(width: u32, height: u32, is_opaque: bool) -> Vec<u8> {
     let mut noise = Noise(7);
     let samples = 4 * width * height;
@@ -23,7 +23,7 @@ fn noisy_picture(width: u32, height: u32, is_opaque: bool) -> Vec<u8> {
     png_of(width, height, &samples)
 }
 
-/// A model with a voxel in ten, and much beside that nobody asked for.
+/// A model with one voxel in ten solid, and a large unknown chunk.
 fn cluttered_model(size: [u8; 3]) -> Vec<u8> {
     let mut noise = Noise(7);
     let chunk = |name: &[u8; 4], contents: &[u8], children: &[u8]| {
@@ -55,8 +55,8 @@ fn cluttered_model(size: [u8; 3]) -> Vec<u8> {
     [b"VOX ", &version[..], &main].concat()
 }
 
-/// That a scene is made of the same voxels whether all of its file travels with it or what is needed, and how long
-/// that is.
+/// Checks that a scene has the same voxels with the whole file and with the reduced one. Returns the length
+/// of the embedded content.
 fn check<D: Dim>(file: &str, bytes: &[u8], fields: &str) -> usize {
     let material = "[[material]]\n".repeat(3);
     let text = format!(
@@ -87,12 +87,12 @@ fn check<D: Dim>(file: &str, bytes: &[u8], fields: &str) -> usize {
     let again = embedded.clone();
     let nothing = |_: &str| Err(std::io::ErrorKind::NotFound.into());
     embedded.embed_files(&nothing).unwrap();
-    assert_eq!(embedded, again, "what is there already stays");
+    assert_eq!(embedded, again, "embedded content stays unchanged");
     embedded.body[0].content.as_ref().unwrap().len()
 }
 
 #[test]
-fn a_large_picture_travels_as_its_voxels() {
+fn embed_reduces_large_picture_to_voxels() {
     let wide = noisy_picture(300, 200, false);
     assert!(wide.len() > 200_000);
     let colours =
@@ -106,19 +106,19 @@ fn a_large_picture_travels_as_its_voxels() {
     }
     let small = format!("n = 40\n{colours}\n");
     assert!(check::<Dim2>("b.png", &wide, &small) < 10_000);
-    // Ink on paper, of which much is left; and a picture that is solid everywhere.
+    // A drawing in which much is solid, and a picture that is solid everywhere.
     let opaque = noisy_picture(200, 300, true);
     assert!(check::<Dim2>("c.png", &opaque, "n = 64\n") < 10_000);
     assert!(check::<Dim2>("d.png", &opaque, "n = 6\n") < 1000);
 }
 
 #[test]
-fn a_cluttered_model_travels_alone() {
+fn embed_strips_unknown_chunks_from_model() {
     let model = cluttered_model([7, 9, 11]);
     for fields in ["", "colours = { \"#ff0000\" = 2, \"#ffffff\" = 1 }\n"] {
         assert!(check::<Dim3>("a.vox", &model, fields) < 5000);
     }
-    // A small file stays as it is.
+    // A small file is embedded unchanged.
     let small = noisy_picture(20, 20, false);
     let length = check::<Dim2>("e.png", &small, "n = 5\n");
     assert_eq!(length, small.len().div_ceil(3) * 4);

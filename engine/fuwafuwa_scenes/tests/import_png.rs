@@ -1,4 +1,4 @@
-//! Pictures become flat shapes, and no bytes whatever do harm.
+//! PNG pictures become flat shapes, and no input bytes cause harm.
 
 mod damage;
 
@@ -11,7 +11,7 @@ use png::{BitDepth, ColorType, Encoder, Filter};
 
 type Setting<'a, 'b> = Encoder<'a, &'b mut Vec<u8>>;
 
-/// A PNG file of these samples.
+/// Encodes samples as a PNG file.
 fn encode(
     size: [u32; 2],
     (colour, depth): (ColorType, BitDepth),
@@ -37,7 +37,7 @@ fn grey(width: u32, samples: &[u8]) -> Vec<u8> {
     encode([width, height], GREY, samples, |_| {})
 }
 
-/// A picture in grey, `#` black and anything else white; the first row is the top.
+/// A greyscale picture; `#` is black, anything else white; the first row is the top.
 fn drawing(rows: &[&str]) -> Vec<u8> {
     let sample = |sign| if sign == b'#' { 0 } else { 255 };
     let samples: Vec<u8> = rows
@@ -52,7 +52,7 @@ fn import(bytes: &[u8], across: usize) -> Result<VoxelGrid<Dim2>, ImportError> {
     png("test.png", bytes, across, 0.5)
 }
 
-/// The materials of a grid, the highest row first.
+/// Materials of a grid, the highest row first.
 fn rows(grid: &VoxelGrid<Dim2>) -> Vec<String> {
     let [width, height, _] = grid.size();
     let sign = |at| char::from(b".#23456789"[usize::from(grid.material(at))]);
@@ -69,7 +69,7 @@ fn complaint(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn the_top_row_is_the_highest() {
+fn png_puts_top_row_highest() {
     let bytes = drawing(&["##..", ".#..", "...#"]);
     check(&bytes, 1024, &["##..", ".#..", "...#"]);
     assert_eq!(import(&bytes, 8).unwrap().voxel_size(), 0.5);
@@ -77,10 +77,10 @@ fn the_top_row_is_the_highest() {
 }
 
 #[test]
-fn every_colour_type_and_depth_is_read() {
+fn png_decodes_each_colour_type_and_depth() {
     use BitDepth::{Eight, Four, One, Sixteen, Two};
     use ColorType::{Grayscale, GrayscaleAlpha, Indexed, Rgb, Rgba};
-    // Two pixels each: dark and light, opaque and clear, or of a colour and of the transparent one.
+    // Two pixels each: dark and light, opaque and transparent, or a colour and the transparent colour.
     let half = &[255, 255, 128, 0, 0, 0, 127, 255];
     let none = |_: &mut Setting| {};
     let palette = |encoder: &mut Setting| encoder.set_palette(vec![90, 0, 0, 255, 255, 200]);
@@ -123,8 +123,8 @@ fn every_colour_type_and_depth_is_read() {
     }
 }
 
-/// `data` as 2 × 2 pixels in the passes of Adam7, which the encoder does not write: as raw bytes these
-/// are one row of 6 pixels, in which two pixels stand for the filters of the later passes.
+/// `data` as 2 × 2 pixels in the passes of Adam7, which the encoder cannot write. As raw bytes these are one
+/// row of 6 pixels, two of which stand for the filters of the later passes.
 ///
 /// ```text
 ///   2 × 2 pixels:  0 a | 0 b | 0 c d     each pass begins each of its rows with a filter, here 0
@@ -138,45 +138,45 @@ fn interlaced([a, b, c, d]: [u8; 4]) -> Vec<u8> {
 }
 
 #[test]
-fn an_interlaced_picture_is_put_together() {
+fn png_decodes_interlaced_picture() {
     check(&interlaced([255, 0, 0, 0]), 8, &[".#", "##"]);
     check(&interlaced([0, 0, 255, 0]), 8, &["##", ".#"]);
 }
 
 #[test]
-fn a_sprite_is_what_is_opaque_and_a_drawing_what_is_dark_or_coloured() {
+fn png_selects_opaque_pixels_of_sprite_and_dark_pixels_of_drawing() {
     let pixels = |pixels: &[[u8; 4]]| {
         let size = [pixels.len() as u32, 1];
         encode(size, COLOUR, pixels.as_flattened(), |_| {})
     };
     let (black, white) = ([0, 0, 0, 255], [255; 4]);
     check(&pixels(&[black, white, [0, 0, 0, 127]]), 8, &["##."]);
-    // Nothing is more than half transparent: on white paper, and grey where it shines through.
+    // No pixel is more than half transparent: blended with white paper, where the result is grey.
     check(&pixels(&[black, white, [0, 0, 0, 128]]), 8, &["#.#"]);
     check(&pixels(&[black, white, [20, 20, 20, 128]]), 8, &["#.."]);
-    // Orange, yellow, a pale pink, light grey.
+    // Orange, yellow, pale pink, light grey.
     let crayons = [[255, 165, 0], [255, 255, 0], [255, 190, 200], [200; 3]];
     let crayons = crayons.map(|[red, green, blue]| [red, green, blue, 255]);
     check(&pixels(&crayons), 8, &["##.."]);
 }
 
 #[test]
-fn a_large_picture_is_scaled_down() {
+fn grid_scales_down_large_picture() {
     let bytes = drawing(&["##..", "#...", "####", "..##"]);
-    // Three of four, none; half, all.
+    // Quarters with 3, 0, 2 and 4 of 4 pixels black.
     check(&bytes, 2, &["#.", "##"]);
     check(&bytes, 9, &["##..", "#...", "####", "..##"]);
-    // 3 pixels on 2 voxels: each has all of one pixel and half of the middle one.
+    // 3 pixels on 2 voxels: each covers one pixel and half of the middle one.
     check(&drawing(&["#.#"]), 2, &["##"]);
     check(&drawing(&["..#"]), 2, &[".#"]);
     check(&drawing(&[".#.", ".#.", "##."]), 2, &["..", "#."]);
-    // The sides are rounded, and a long picture keeps a row.
+    // The sides are rounded, and a long picture keeps at least one row.
     check(&drawing(&["#####"; 3]), 3, &["###", "###"]);
     check(&drawing(&["########"]), 2, &["##"]);
     check(&drawing(&["#"; 500]), 2, &["#", "#"]);
 }
 
-/// Red, a darker red, green and clear.
+/// Red, a darker red, green and transparent.
 const PAINTED: [[u8; 4]; 8] = [
     [255, 0, 0, 255],
     [200, 40, 40, 255],
@@ -199,19 +199,19 @@ fn painted(across: usize, named: &[([u8; 3], u8)]) -> Vec<String> {
 }
 
 #[test]
-fn a_pixel_is_of_the_material_of_the_nearest_colour() {
+fn grid_takes_material_of_nearest_colour() {
     let (red, green) = ([255, 0, 0], [0, 255, 0]);
     assert_eq!(painted(9, &[]), ["###.", "###."]);
     assert_eq!(painted(9, &[(red, 3), (green, 2)]), ["332.", "332."]);
     assert_eq!(painted(9, &[(red, 3), (green, 0)]), ["33..", "33.."]);
     assert_eq!(painted(9, &[(red, 7)]), ["777.", "777."]);
     assert_eq!(painted(2, &[(red, 3), (green, 2)]), ["32"]);
-    // Half red and a quarter green, so that red is most of what is solid.
+    // Half is red and a quarter green, so red has the largest solid area.
     assert_eq!(painted(1, &[(red, 3), (green, 2)]), ["3"]);
 }
 
 #[test]
-fn a_picture_has_no_palette_indices() {
+fn grid_rejects_palette_indices_for_picture() {
     let picture = Picture::decode("test.png", &drawing(&["#"])).unwrap();
     let colours = Colours {
         indices: [(7, 1)].into(),
@@ -222,7 +222,7 @@ fn a_picture_has_no_palette_indices() {
 }
 
 #[test]
-fn an_empty_picture_says_what_it_looked_for() {
+fn error_names_missing_pixels_for_empty_picture() {
     assert_eq!(
         complaint(&drawing(&["..", ".."])),
         "test.png: the shape is empty: there is no pixel with a red, green or blue below 128"
@@ -233,7 +233,7 @@ fn an_empty_picture_says_what_it_looked_for() {
 }
 
 #[test]
-fn wrong_sizes_are_refused_by_the_header() {
+fn decode_rejects_wrong_size_from_header() {
     let most = MAX_PIXELS;
     let one = drawing(&["#"]);
     for size in [
@@ -254,7 +254,7 @@ fn wrong_sizes_are_refused_by_the_header() {
         complaint(&with_size(&one, [most + 1, 1])),
         "test.png, chunk IHDR at byte 8: 4097 pixels on a side are too many, the limit is 4096"
     );
-    // What the file cannot hold, however well it is compressed.
+    // More pixels than the file can hold at the best compression.
     assert_eq!(
         complaint(&with_size(&one, [4096, 4096])),
         "test.png, chunk IHDR at byte 8: expected at least 16261 bytes for 4096 x 4096 pixels, found 67"
@@ -268,7 +268,7 @@ fn wrong_sizes_are_refused_by_the_header() {
 }
 
 #[test]
-fn what_the_caller_asks_for_is_checked() {
+fn png_rejects_invalid_arguments() {
     let bytes = drawing(&["#"]);
     for across in [0, 1025, usize::MAX] {
         let error = import(&bytes, across).unwrap_err().to_string();
@@ -286,14 +286,14 @@ fn what_the_caller_asks_for_is_checked() {
 }
 
 #[test]
-fn a_file_that_is_too_long_is_not_looked_at() {
+fn decode_rejects_too_long_file() {
     let long = vec![0; MAX_FILE_BYTES as usize + 1];
     let error = complaint(&long);
     assert!(error.contains("the limit is 134217728"), "{error}");
 }
 
 #[test]
-fn a_picture_cut_short_is_an_error_at_every_length() {
+fn decode_rejects_truncated_picture_at_every_length() {
     for bytes in samples() {
         assert!(import(&bytes, 4).is_ok());
         for length in 0..bytes.len() {
@@ -317,13 +317,13 @@ fn a_picture_cut_short_is_an_error_at_every_length() {
 }
 
 #[test]
-fn damaged_pictures_never_panic() {
+fn decode_survives_damaged_pictures() {
     let mut noise = Noise(1);
     for bytes in samples() {
         for _ in 0..1500 {
             let mut broken = noise.damaged(&bytes);
             damage::check(import(&broken, 4));
-            // Most damage ends at a wrong checksum; with right ones it goes deeper.
+            // Most damage is caught by a checksum; with corrected checksums it reaches the decoder.
             mend_checksums(&mut broken);
             damage::check(import(&broken, 4));
         }
@@ -335,7 +335,7 @@ fn damaged_pictures_never_panic() {
 }
 
 #[test]
-fn a_first_frame_smaller_than_the_picture_is_refused() {
+fn decode_rejects_first_frame_smaller_than_picture() {
     let mut bytes = animated();
     let control = bytes.windows(4).position(|word| word == b"fcTL").unwrap();
     bytes[control + 8..control + 12].copy_from_slice(&1_u32.to_be_bytes());
@@ -343,7 +343,7 @@ fn a_first_frame_smaller_than_the_picture_is_refused() {
     assert!(complaint(&bytes).contains("expected a PNG picture"));
 }
 
-/// One small picture of each kind that is decoded differently.
+/// A small picture for each kind of decoding.
 fn samples() -> Vec<Vec<u8>> {
     let indexed = encode(
         [5, 3],
@@ -380,7 +380,7 @@ fn samples() -> Vec<Vec<u8>> {
     ]
 }
 
-/// Two frames of 2 × 2 pixels, the first of which is the picture that still viewers show.
+/// Two frames of 2 × 2 pixels; the first is the picture that still viewers show.
 fn animated() -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, 2, 2);
@@ -400,7 +400,7 @@ fn with_size(bytes: &[u8], size: [u32; 2]) -> Vec<u8> {
     bytes
 }
 
-/// Makes the checksum of every chunk right, as far as the lengths of the chunks can be followed.
+/// Corrects the checksums of all chunks whose length is plausible.
 fn mend_checksums(bytes: &mut [u8]) {
     let mut at = 8;
     while let Some(word) = bytes.get(at..at + 4) {
@@ -415,7 +415,7 @@ fn mend_checksums(bytes: &mut [u8]) {
     }
 }
 
-/// The CRC of the PNG specification, annex D, bit by bit.
+/// CRC of the PNG specification, annex D, bit by bit.
 fn crc(bytes: &[u8]) -> u32 {
     let mut remainder = u32::MAX;
     for &byte in bytes {

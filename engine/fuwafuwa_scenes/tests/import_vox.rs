@@ -1,4 +1,4 @@
-//! MagicaVoxel models become solid shapes, and no bytes whatever do harm.
+//! MagicaVoxel models become solid shapes, and no input bytes cause harm.
 
 mod damage;
 
@@ -19,13 +19,13 @@ fn size(size: [u32; 3]) -> Vec<u8> {
     chunk(b"SIZE", &size.map(u32::to_le_bytes).concat(), &[])
 }
 
-/// A list of voxels that claims to have `count` of them.
+/// A list of voxels with a stated length of `count`.
 fn voxels(count: usize, voxels: &[[u8; 4]]) -> Vec<u8> {
     let contents = [&(count as u32).to_le_bytes()[..], &voxels.concat()].concat();
     chunk(b"XYZI", &contents, &[])
 }
 
-/// A palette in which colour 1 is red, 2 is dark red, 7 is green and the others are black.
+/// A palette with red as colour 1, dark red as 2, green as 7 and black for all others.
 fn palette() -> Vec<u8> {
     let mut colours = [[0, 0, 0, 255]; 256];
     colours[0] = [255, 0, 0, 255];
@@ -43,7 +43,7 @@ fn model(extent: [u32; 3], list: &[[u8; 4]]) -> Vec<u8> {
     file(150, &[size(extent), voxels(list.len(), list)])
 }
 
-/// A file with much that is passed over: a second model, and chunks that nobody knows.
+/// A file with much that is ignored: a second model and unknown chunks.
 fn full() -> Vec<u8> {
     let first = [[0, 0, 0, 1], [1, 2, 3, 7], [1, 0, 0, 2], [0, 2, 0, 255]];
     file(
@@ -65,13 +65,13 @@ fn import(bytes: &[u8]) -> Result<VoxelGrid<Dim3>, ImportError> {
 }
 
 #[test]
-fn up_stays_up_and_the_front_faces_the_viewer() {
+fn vox_maps_axes_with_y_up_and_front_to_viewer() {
     let grid = import(&full()).unwrap();
-    assert_eq!(grid.size(), [2, 4, 3], "x, z and y of the file");
+    assert_eq!(grid.size(), [2, 4, 3], "sizes on x, z and y of the file");
     assert_eq!(grid.voxel_size(), 0.25);
     assert_eq!(grid.solid_count(), 4);
     for (voxel, material) in [
-        ([0, 0, 2], 1),   // the corner at the origin: left, bottom, front
+        ([0, 0, 2], 1),   // corner at the origin: left, bottom, front
         ([1, 0, 2], 2),   // one to the right
         ([0, 0, 0], 255), // farthest along y: at the back
         ([1, 3, 0], 7),   // and at the top
@@ -83,14 +83,14 @@ fn up_stays_up_and_the_front_faces_the_viewer() {
 }
 
 #[test]
-fn colours_and_palette_indices_become_materials() {
+fn grid_maps_colours_and_palette_indices_to_materials() {
     let model = Model::decode("test.vox", &full()).unwrap();
     assert_eq!(model.size(), [2, 4, 3]);
     let grid = |indices: &[(u8, u8)], named: &[([u8; 3], u8)]| {
         let (indices, named) = (indices.iter().copied(), named.iter().copied());
         let (indices, named) = (indices.collect(), named.collect());
         let grid = model.grid(1.0, &Colours { indices, named });
-        // The voxels of index 1, 2, 7 and 255.
+        // The voxels with index 1, 2, 7 and 255.
         let places = [[0, 0, 2], [1, 0, 2], [1, 3, 0], [0, 0, 0]];
         grid.map(|grid| places.map(|at| grid.material(at)))
             .map_err(|error| error.to_string())
@@ -99,7 +99,7 @@ fn colours_and_palette_indices_become_materials() {
     assert_eq!(grid(&[], &[]), Ok([1, 2, 7, 255]));
     let every = [(1, 3), (2, 3), (7, 0), (255, 1)];
     assert_eq!(grid(&every, &[]), Ok([3, 3, 0, 1]));
-    // Black is nearer to green here; what an index says comes first.
+    // Black is closer to green; an index takes precedence over a colour.
     assert_eq!(grid(&[], &[(red, 1), (green, 2)]), Ok([1, 1, 2, 2]));
     assert_eq!(grid(&[(1, 9)], &[(red, 1), (green, 2)]), Ok([9, 1, 2, 2]));
     let lacking = grid(&[(1, 3), (2, 3), (255, 1)], &[]);
@@ -110,7 +110,7 @@ fn colours_and_palette_indices_become_materials() {
 }
 
 #[test]
-fn a_model_without_a_palette_has_no_colours() {
+fn grid_rejects_colours_without_palette() {
     let bare = Model::decode("test.vox", &model([1; 3], &[[0, 0, 0, 4]])).unwrap();
     let colours = Colours {
         named: [([0; 3], 1)].into(),
@@ -121,7 +121,7 @@ fn a_model_without_a_palette_has_no_colours() {
 }
 
 #[test]
-fn the_largest_model_is_taken() {
+fn vox_accepts_largest_model() {
     let corners = [[0, 0, 0, 1], [255, 255, 255, 1]];
     let grid = import(&model([256; 3], &corners)).unwrap();
     assert_eq!(grid.size(), [256; 3]);
@@ -129,7 +129,7 @@ fn the_largest_model_is_taken() {
 }
 
 #[test]
-fn each_fault_is_told_with_its_place() {
+fn error_names_position_of_each_fault() {
     let one = [[0, 0, 0, 1]];
     let main = |lengths: [u32; 2]| {
         let lengths = lengths.map(u32::to_le_bytes).concat();
@@ -235,7 +235,7 @@ fn each_fault_is_told_with_its_place() {
 }
 
 #[test]
-fn the_voxel_size_is_checked() {
+fn vox_rejects_invalid_voxel_size() {
     let error = vox("test.vox", &full(), 0.0).unwrap_err();
     assert_eq!(error.place, Place::File);
     let problem = error.problem;
@@ -246,7 +246,7 @@ fn the_voxel_size_is_checked() {
 }
 
 #[test]
-fn chunks_nested_without_end_do_not_overflow_the_stack() {
+fn decode_survives_deeply_nested_chunks() {
     let levels = 200_000;
     let mut bytes = b"VOX \x96\0\0\0".to_vec();
     for level in 0..levels {
@@ -258,8 +258,8 @@ fn chunks_nested_without_end_do_not_overflow_the_stack() {
 }
 
 #[test]
-fn a_model_cut_short_is_an_error_at_every_length() {
-    // MAIN states its length, so that every byte is missed.
+fn decode_rejects_truncated_model_at_every_length() {
+    // The stated length of MAIN reveals every missing byte.
     let bytes = full();
     for length in 0..bytes.len() {
         match import(&bytes[..length]).unwrap_err() {
@@ -273,9 +273,9 @@ fn a_model_cut_short_is_an_error_at_every_length() {
 }
 
 #[test]
-fn damaged_models_never_panic() {
+fn decode_survives_damaged_models() {
     let mut noise = Noise(3);
-    // Without what is passed over at the end, so that the damage hits what counts.
+    // Without the ignored chunks of `full`, so that most damage hits relevant bytes.
     let first = [[0, 0, 0, 1], [1, 2, 3, 7]];
     let chunks = [size([2, 3, 4]), voxels(2, &first), chunk(b"what", b"", &[])];
     let mut taken = 0;
@@ -286,5 +286,5 @@ fn damaged_models_never_panic() {
             damage::check(outcome);
         }
     }
-    assert!(taken > 100, "some damage is harmless: {taken}");
+    assert!(taken > 100, "some damage must be harmless: {taken}");
 }

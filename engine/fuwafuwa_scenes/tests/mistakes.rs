@@ -1,4 +1,4 @@
-//! Mistakes in scenes, and what is said about them: the file, the line, the field, what was expected.
+//! Errors in scenes: each message names the file, the line, the field and what was expected.
 
 use fuwafuwa::{Dim2, Dim3};
 use fuwafuwa_scenes::Scene;
@@ -31,12 +31,12 @@ fn complaint(text: &str) -> String {
 }
 
 #[test]
-fn a_mistake_is_told_with_file_line_field_and_what_was_expected() {
+fn error_names_file_line_field_and_expectation() {
     assert_eq!(complaint(GOOD), "fine");
     let body = "width = 1.0";
     let obstacle = "ball = { centre = [0.0, -1.0, 0.0], radius = 0.5 }";
     for (replaced, by, expected) in [
-        // What is no scene.
+        // Texts that are not scenes.
         (
             "dim = 2",
             "dim = 2 3",
@@ -93,7 +93,7 @@ fn a_mistake_is_told_with_file_line_field_and_what_was_expected() {
             "",
             ", line 13: hand 1, radius: expected exactly one of radius, box and capsule",
         ),
-        // What cannot be.
+        // Invalid values.
         (
             "dim = 2",
             "dim = 4",
@@ -197,7 +197,7 @@ fn a_mistake_is_told_with_file_line_field_and_what_was_expected() {
         (
             body,
             "proportions = [1, 2, 1]",
-            ", line 8: body 1, proportions: only a box and an empty grid have any",
+            ", line 8: body 1, proportions: allowed only for shape = \"box\" or \"empty\"",
         ),
         (
             body,
@@ -207,7 +207,7 @@ fn a_mistake_is_told_with_file_line_field_and_what_was_expected() {
         (
             body,
             "material = 2",
-            ", line 8: body 1, material: voxels are of material 2, the scene has 1 to 1",
+            ", line 8: body 1, material: voxels have material 2, but the scene has materials 1 to 1",
         ),
         (
             body,
@@ -277,7 +277,7 @@ fn a_mistake_is_told_with_file_line_field_and_what_was_expected() {
 }
 
 #[test]
-fn a_mistake_in_a_change_names_the_change() {
+fn error_names_invalid_change() {
     let complaint = |change: &str| {
         let scene = Scene::read("toy.toml", GOOD, &[change.into()]);
         let built = scene.and_then(|scene| scene.build::<Dim2>().map(|_| ()));
@@ -329,7 +329,7 @@ fn a_mistake_in_a_change_names_the_change() {
 }
 
 #[test]
-fn a_change_reaches_materials_that_are_not_written_down() {
+fn change_applies_to_default_material() {
     let bare = GOOD.replace("[[material]]\nyoung = 5000.0", "");
     let changes = ["material.young=9000".to_string()];
     let scene = Scene::read("toy.toml", &bare, &changes).unwrap();
@@ -337,7 +337,7 @@ fn a_change_reaches_materials_that_are_not_written_down() {
 }
 
 #[test]
-fn texts_that_are_no_scenes_are_refused_briefly() {
+fn read_rejects_foreign_texts_with_short_error() {
     let deep = 300_000;
     for text in [
         "x = ".to_string() + &"[".repeat(deep),
@@ -371,7 +371,7 @@ fn texts_that_are_no_scenes_are_refused_briefly() {
 }
 
 #[test]
-fn bodies_are_limited_in_number_and_in_their_sum() {
+fn build_limits_number_of_bodies_and_sum_of_voxels() {
     let many = GOOD.to_string() + &"[[body]]\nshape = \"box\"\nn = 1\n".repeat(1024);
     assert_eq!(
         complaint(&many),
@@ -386,9 +386,9 @@ fn bodies_are_limited_in_number_and_in_their_sum() {
     );
 }
 
-/// A text of a megabyte asked for 10^12 distances, or for obstacles that every node was held against.
+/// Regression: a text of 1 MB could require 10^12 distances, or obstacles that every node was tested against.
 #[test]
-fn what_takes_long_is_refused_before_it_is_begun() {
+fn build_rejects_expensive_scenes_before_work_begins() {
     let part = "[[body.part]]\nfill = 0\nball = { centre = [9.0, 9.0, 0.0], radius = 0.1 }\n";
     let body = "[[body]]\nshape = \"box\"\nn = 1024\n";
     let parts = format!("dim = 2\n{body}{}", part.repeat(200));
@@ -424,9 +424,9 @@ fn what_takes_long_is_refused_before_it_is_begun() {
     );
 }
 
-/// A grid was built first, and its voxels counted then.
+/// Regression: the voxels were counted only after the grid was built.
 #[test]
-fn a_grid_that_is_too_large_is_not_even_built() {
+fn build_rejects_too_large_grid_before_allocation() {
     let dim3 = |text: &str| {
         let scene = Scene::read("toy.toml", text, &[]).unwrap();
         let start = Instant::now();
@@ -442,7 +442,7 @@ fn a_grid_that_is_too_large_is_not_even_built() {
 }
 
 #[test]
-fn lists_have_an_end() {
+fn build_limits_length_of_lists() {
     let material = "[[material]]\n".repeat(256);
     let colours: Vec<String> = (0..256).map(|k| format!("\"#{k:06x}\" = 1")).collect();
     let colours = colours.join(", ");
@@ -473,7 +473,7 @@ fn lists_have_an_end() {
 }
 
 #[test]
-fn what_is_quoted_is_cut() {
+fn error_truncates_quoted_text() {
     let long = "z".repeat(1 << 19);
     for text in [
         format!("dim = 2\n[[body]]\nfile = \"{long}\"\n"),
@@ -486,7 +486,7 @@ fn what_is_quoted_is_cut() {
 }
 
 #[test]
-fn a_long_text_is_read_as_fast_as_it_is_long() {
+fn read_takes_linear_time_for_long_text() {
     let path = "path = [".to_string() + &"[0,0,0,0],\n".repeat(30_000) + "[0,0,0,nan]";
     let text = GOOD.replace("path = [[0.0, -0.3, 0.5, 0.0]", &path);
     let start = Instant::now();

@@ -1,4 +1,4 @@
-//! Worlds that are written down: text → world → text → world.
+//! Round trips: text → world → text → world.
 
 use fuwafuwa::{
     Dim, Dim2, Dim3, Event, Joint, JointAnchor, Layers, Material, RigidBody, Rotation, Shape,
@@ -116,7 +116,7 @@ fn check_round_trip<D: Dim>(scene: &Scene, what: &str) {
     let mut other = again(&world, what);
     assert_eq!(other.config(), world.config(), "{what}");
     assert_eq!(other.hash(), world.hash(), "{what}, tick 0");
-    // A text of what was read from a text is the same text.
+    // The text of a rebuilt world is the same text.
     let texts = [&world, &other].map(|world| Scene::of_world(world).unwrap().text().unwrap());
     assert_eq!(texts[0], texts[1], "{what}");
     for tick in 0..60 {
@@ -129,7 +129,7 @@ fn check_round_trip<D: Dim>(scene: &Scene, what: &str) {
 }
 
 #[test]
-fn every_scene_that_comes_along_is_written_and_read_again() {
+fn of_world_round_trips_each_named_scene() {
     for (name, _) in NAMED {
         let n = if name == "pile-3d" {
             "body.n=6"
@@ -147,7 +147,7 @@ fn every_scene_that_comes_along_is_written_and_read_again() {
 }
 
 #[test]
-fn all_that_a_scene_can_say_is_written_and_read_again() {
+fn of_world_round_trips_every_field() {
     for dim in [2, 3] {
         let scene = Scene::read("rich", &rich(dim), &[]).unwrap_or_else(|error| panic!("{error}"));
         match dim {
@@ -158,7 +158,7 @@ fn all_that_a_scene_can_say_is_written_and_read_again() {
 }
 
 #[test]
-fn what_a_scene_says_is_in_its_world() {
+fn build_applies_fields_of_scene() {
     let scene = Scene::read("rich", &rich(2), &[]).unwrap();
     let world = scene.build::<Dim2>().unwrap();
     assert!((world.config().tick - 1.0 / 120.0).abs() < 1e-8);
@@ -186,7 +186,7 @@ fn what_a_scene_says_is_in_its_world() {
     let [x, y, _] = rigids[3].rotation().apply([1.0, 0.0, 0.0]);
     assert!((x - 0.5f32.cos()).abs() < 1e-6 && (y - 0.5f32.sin()).abs() < 1e-6);
     assert_eq!(world.joints().len(), 3);
-    // Text stays readable where words do.
+    // The text stays readable where fields suffice.
     let text = Scene::of_world(&world).unwrap().text().unwrap();
     assert!(
         text.contains("runs = ") && text.contains("drive = \"free\""),
@@ -227,8 +227,8 @@ fn check_torn<D: Dim>() {
         world.step();
     }
     assert!(
-        world.soft_bodies()[ball].pieces().count() > 1,
-        "nothing came off"
+        world.bodies()[ball].pieces().count() > 1,
+        "no piece was detached"
     );
     let other = again(&world, "torn");
     let states = |world: &World<D>| -> Vec<_> {
@@ -245,7 +245,7 @@ fn check_torn<D: Dim>() {
         assert_eq!(a.angular_velocity(), b.angular_velocity());
         assert!(!a.follows_target() || a.target_position() == b.target_position());
     }
-    // And on from there, alike.
+    // The two worlds behave alike afterwards.
     let (mut world, mut other) = (world, other);
     (0..30).for_each(|_| _ = (world.step(), other.step()));
     let centres =
@@ -259,7 +259,7 @@ fn check_torn<D: Dim>() {
 }
 
 #[test]
-fn what_is_torn_is_taken_along_whole() {
+fn of_world_stores_state_of_torn_bodies() {
     check_torn::<Dim2>();
     check_torn::<Dim3>();
 }
@@ -272,7 +272,7 @@ fn complaint(scene: &str) -> String {
 }
 
 #[test]
-fn mistakes_are_told_with_line_and_field() {
+fn error_names_line_and_field() {
     let good = rich(2);
     assert_eq!(complaint(&good), "fine");
     for (replaced, by, expected) in [
@@ -284,12 +284,12 @@ fn mistakes_are_told_with_line_and_field() {
         (
             "mass = 3.0\n",
             "",
-            "rigid 1, mass: expected the mass of what falls [kg]",
+            "rigid 1, mass: missing mass [kg], required with drive = \"free\"",
         ),
         (
             "drive = \"kinematic\"",
             "drive = \"kinematic\"\nmass = 1.0",
-            "rigid 3, mass: expected of drive = \"free\" or \"hand\" alone",
+            "rigid 3, mass: allowed only with drive = \"free\" or \"hand\"",
         ),
         (
             "drive = \"kinematic\"",
@@ -304,12 +304,12 @@ fn mistakes_are_told_with_line_and_field() {
         (
             "tie = \"pin\"",
             "tie = \"pin\"\nlength = 1.0",
-            "joint 1, length: expected of a spring or a rope alone",
+            "joint 1, length: allowed only with tie = \"spring\" or \"rope\"",
         ),
         (
             "{ at = [0.4, 1.6, 0.0] }",
             "{ at = [0.4, 1.6, 0.0], radius = 1.0 }",
-            "joint 2, ends 2, radius: expected of a body alone",
+            "joint 2, ends 2, radius: allowed only with a body",
         ),
         (
             "gravity_scale = 0.5",
@@ -319,17 +319,17 @@ fn mistakes_are_told_with_line_and_field() {
         (
             "turned = [0.0, 0.0, 0.4]",
             "turned = [0.1, 0.0, 0.4]",
-            "body 2, turned: expected 0 but for the third axis",
+            "body 2, turned: expected 0 except on the third axis",
         ),
         (
             "at = [1.6, 1.5, 0.0]\n",
             "at = [1.6, 1.5, 0.0]\nstate = \"%\"\n",
-            "rigid 2, state: expected nothing beside it",
+            "rigid 2, state: expected no other field",
         ),
         (
             "shape = \"box\"",
             "state = \"%\"",
-            "body 2, state: expected nothing beside it",
+            "body 2, state: expected no other field",
         ),
     ] {
         assert!(good.contains(replaced), "{replaced}");
@@ -368,8 +368,8 @@ fn mistakes_are_told_with_line_and_field() {
 }
 
 #[test]
-fn a_joint_that_holds_what_moved_is_refused_or_held_where_it_is() {
-    let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
+fn of_world_keeps_joint_positions_after_motion() {
+    let mut world = World::<Dim2>::new(Settings::default()).unwrap();
     let grid = VoxelGrid::<Dim2>::cube(8, 0.5).unwrap();
     let cube = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
     let at = [0.25, 0.5, 0.0];
@@ -397,14 +397,14 @@ fn a_joint_that_holds_what_moved_is_refused_or_held_where_it_is() {
 }
 
 #[test]
-fn what_is_too_long_is_refused() {
-    let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
+fn text_rejects_too_long_scene() {
+    let mut world = World::<Dim3>::new(Settings::default()).unwrap();
     let grid = VoxelGrid::<Dim3>::ball(40, 1.0).unwrap();
     let ball = SoftBody::new(grid, &[Material::default()]).unwrap();
     let id = world.add_soft_body(ball);
     assert!(
         Scene::of_world(&world).unwrap().text().is_ok(),
-        "its voxels are few letters"
+        "an intact body has a short text"
     );
     world.soft_body_mut(id).unwrap().crumble().unwrap();
     let error = Scene::of_world(&world).unwrap().text().unwrap_err();

@@ -1,13 +1,15 @@
-//! How long each golden scene takes on one thread [ms], one a line: what `cargo xtask wasm` compares Node with. `times [RUNS]`: at
-//! the least of so many, five unless told.
+//! Prints the time of each golden scene on one thread [ms], one per line; `cargo xtask wasm` compares Node
+//! with it.
+//!
+//! `times [RUNS]` takes the minimum of RUNS runs, by default five.
 
 use std::time::Instant;
 
 fn main() {
     let runs = std::env::args()
         .nth(1)
-        .map_or(5, |runs| runs.parse().expect("a number"));
-    for scene in &determinism_checks::golden::SCENES {
+        .map_or(5, |runs| runs.parse().expect("RUNS must be a number"));
+    for scene in &fuwafuwa_golden::SCENES {
         let time = |_| {
             let start = Instant::now();
             assert_eq!((scene.run)(), scene.golden, "{}", scene.name);

@@ -1,8 +1,8 @@
-//! Scenes whose outcome must be the same, to the last bit, on every platform.
+//! Scenes with results that must be the same, bit by bit, on every platform.
 //!
-//! [`SCENES`] is the one table. The tests of this crate run it natively, on one thread and, with
-//! the feature `parallel`, on several; `cargo xtask wasm` runs it under Node, through the [`exports`].
-//! A changed hash is a changed simulation: say why in the commit.
+//! [`SCENES`] is the only table. The tests of this crate run it natively, on one thread and, with the feature
+//! `parallel`, on several; `cargo xtask wasm` runs it under Node, through the [`exports`]. A changed hash
+//! means a changed simulation: give the reason in the commit.
 use fuwafuwa::law::Law;
 use fuwafuwa::world::FEWEST_SUBSTEPS;
 use fuwafuwa::{
@@ -10,18 +10,18 @@ use fuwafuwa::{
     VoxelGrid, With, World, WorldConfig,
 };
 
-/// A simulation without input, and the bits it must end in.
+/// A simulation without input, and its expected hash.
 pub struct Scene {
-    /// What it shows, for messages.
+    /// Short description, for messages.
     pub name: &'static str,
-    /// Runs it from the start and hashes how it ends.
+    /// Runs the scene from the start and hashes the final state.
     pub run: fn() -> u64,
-    /// The hash on every platform.
+    /// Expected hash on every platform.
     pub golden: u64,
 }
 
-/// All scenes. For a new one, run the tests: they print the hash that they found. Static, because
-/// a constant would be compiled, engine included, into whatever names it.
+/// All scenes. To add one, run the tests: they print the hash they found. This is a static because a constant
+/// would be compiled, engine included, into each crate that uses it.
 pub static SCENES: [Scene; 6] = [
     Scene {
         name: "torn disc",
@@ -55,29 +55,29 @@ pub static SCENES: [Scene; 6] = [
     },
 ];
 
-/// A floor, and nothing on it.
-fn floor<D: Dim>(settings: WorldConfig) -> World<D> {
-    let mut world = World::new(settings).expect("the scenes are sound");
+/// Creates a world with only a floor.
+fn floor<D: Dim>(settings: Settings) -> World<D> {
+    let mut world = World::new(settings).expect("the scene is valid");
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
     world
-        .add_rigid_body(RigidBody::fixed(floor, 0.4))
-        .expect("the scenes are sound");
+        .add_rigid(Rigid::fixed(floor, 0.4))
+        .expect("the scene is valid");
     world
 }
 
-/// A ball that falls on a floor while a hand pushes it against a wall and through.
+/// Creates a ball above a floor, a wall, and a hand that will push the ball against the wall and through it.
 fn torn_world<D: Dim>(n: usize) -> (World<D>, RigidBodyHandle) {
     let mut world = floor::<D>(WorldConfig::default());
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
     world
-        .add_rigid_body(RigidBody::fixed(wall, 0.2))
-        .expect("the scenes are sound");
-    let ball = VoxelGrid::ball(n, 1.0).expect("the scenes are sound");
-    let body = SoftBody::new(ball, &[Material::default()]).expect("the scenes are sound");
-    world.add_soft_body(body.translated([0.0, 0.05, 0.0]));
+        .add_rigid(Rigid::fixed(wall, 0.2))
+        .expect("the scene is valid");
+    let ball = VoxelGrid::ball(n, 1.0).expect("the scene is valid");
+    let body = Body::new(ball, &[Material::default()]).expect("the scene is valid");
+    world.add_body(body.moved([0.0, 0.05, 0.0]));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = RigidBody::coupled_ball([-0.3, 0.5, depth], 0.08);
-    let hand = world.add_rigid_body(hand).expect("the scenes are sound");
+    let hand = Rigid::hand([-0.3, 0.5, depth], 0.08);
+    let hand = world.add_rigid(hand).expect("the scene is valid");
     (world, hand)
 }
 
@@ -87,39 +87,39 @@ fn hash_of_torn_world<D: Dim>(n: usize, ticks: u32) -> u64 {
     let mut released = 0;
     for tick in 0..ticks {
         world
-            .set_target_position(hand, [-0.3 + tick as f32 * 0.03, 0.5, depth])
-            .expect("the scenes are sound");
-        released += world.step().nodes_split;
+            .set_goal(hand, [-0.3 + tick as f32 * 0.03, 0.5, depth])
+            .expect("the scene is valid");
+        released += world.step().released;
     }
     assert!(released > 10, "{released} releases: the body must tear");
     world.hash()
 }
 
-/// A ball as soft as those of the game, which comes down in pieces while a hand tears more off.
+/// A soft ball, as in the game, that falls in pieces while a hand tears more off.
 fn hash_of_heap() -> u64 {
     let settings = WorldConfig {
         most_substeps: FEWEST_SUBSTEPS,
         ..WorldConfig::default()
     };
     let mut world = floor::<Dim3>(settings);
-    let ball = VoxelGrid::ball(12, 1.0).expect("the scenes are sound");
-    let body = SoftBody::new(ball, &[Material::default()]).expect("the scenes are sound");
-    let ball = world.add_soft_body(body);
+    let ball = VoxelGrid::ball(12, 1.0).expect("the scene is valid");
+    let body = Body::new(ball, &[Material::default()]).expect("the scene is valid");
+    let ball = world.add_body(body);
     for (height, slant) in [(0.3, 0.2), (0.6, -0.3)] {
         let blade = Blade {
             from: [-1.0, height - slant, -1.0],
             across: [3.0, 3.0 * slant, 0.0],
             along: [0.0, 0.0, 3.0],
         };
-        world.cut(ball, &blade).expect("the scenes are sound");
+        world.cut(ball, &blade).expect("the scene is valid");
     }
-    let hand = RigidBody::coupled_ball([0.4, 1.2, 0.5], 0.12);
-    let hand = world.add_rigid_body(hand).expect("the scenes are sound");
+    let hand = Rigid::hand([0.4, 1.2, 0.5], 0.12);
+    let hand = world.add_rigid(hand).expect("the scene is valid");
     let (mut released, mut touched) = (0, 0.0);
     for tick in 0..50 {
         world
-            .set_target_position(hand, [0.4, 1.2 - tick as f32 * 0.03, 0.5])
-            .expect("the scenes are sound");
+            .set_goal(hand, [0.4, 1.2 - tick as f32 * 0.03, 0.5])
+            .expect("the scene is valid");
         let report = world.step();
         assert_eq!(report.substeps, FEWEST_SUBSTEPS);
         released += report.nodes_split;
@@ -141,12 +141,12 @@ fn hash_of_heap() -> u64 {
 
 /// The elastic force of the paper, without tearing.
 fn hash_of_paper_law<D: Dim>(n: usize) -> u64 {
-    let mut world = floor::<D>(WorldConfig::default());
-    let ball = VoxelGrid::ball(n, 1.0).expect("the scenes are sound");
+    let mut world = floor::<D>(Settings::default());
+    let ball = VoxelGrid::ball(n, 1.0).expect("the scene is valid");
     let grading = fuwafuwa::pyramid::Grading::Graded;
-    let body = SoftBody::with_options(ball, &[Material::default()], Law::Endo2004, grading)
-        .expect("the scenes are sound");
-    world.add_soft_body(body.translated([0.0, 0.05, 0.0]));
+    let body = Body::with(ball, &[Material::default()], Law::Endo2004, grading)
+        .expect("the scene is valid");
+    world.add_body(body.moved([0.0, 0.05, 0.0]));
     for _ in 0..30 {
         world.step();
     }

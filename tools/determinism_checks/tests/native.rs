@@ -1,4 +1,4 @@
-//! The golden scenes, natively; with the feature `parallel`, on one to eight threads.
+//! Golden scenes run natively; with the feature `parallel`, on one to eight threads.
 
 use determinism_checks::golden::SCENES;
 
@@ -10,13 +10,13 @@ fn check_all(how: &str) {
 }
 
 #[test]
-fn every_scene_comes_out_as_it_always_did() {
+fn scene_ends_in_golden_hash_for_each() {
     check_all("natively");
 }
 
 #[cfg(feature = "parallel")]
 #[test]
-fn any_number_of_threads_gives_the_same_bits() {
+fn scene_ends_in_golden_hash_for_any_number_of_threads() {
     for threads in 1..=8 {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         let pool = pool.build().expect("threads can be started");

@@ -1,9 +1,9 @@
-//! What is changed, put in or taken out between two ticks.
+//! Changes, additions and removals between two ticks.
 
 use super::*;
 
 #[test]
-fn a_body_in_the_place_of_another_may_have_fewer_nodes_and_pieces() {
+fn replaced_body_may_have_fewer_nodes_and_pieces() {
     let mut world = world::<Dim2>();
     let mut dust = ball(16);
     dust.crumble().unwrap();
@@ -16,7 +16,7 @@ fn a_body_in_the_place_of_another_may_have_fewer_nodes_and_pieces() {
     assert_finite(&world);
 }
 
-/// A body on a floor, a while later.
+/// A world with a body asleep on a floor.
 fn sleeper() -> World<Dim2> {
     let mut world = world::<Dim2>();
     let damped = Material {
@@ -35,7 +35,7 @@ fn sleeper() -> World<Dim2> {
 }
 
 #[test]
-fn a_sleeper_changed_from_outside_wakes() {
+fn sleeping_body_wakes_when_changed() {
     let mut thrown = sleeper();
     let body = thrown
         .soft_body_mut(thrown.nth_soft_body(0).unwrap())
@@ -63,12 +63,12 @@ fn a_sleeper_changed_from_outside_wakes() {
         .filter(|(before, after)| before.centre == after.centre);
     assert!(
         after.len() > 100 && frozen.count() == 0,
-        "no crumb hangs in the air"
+        "no crumb may hang in the air"
     );
 }
 
 #[test]
-fn what_leant_on_what_is_removed_falls() {
+fn sleeping_body_falls_when_floor_is_removed() {
     let mut world = sleeper();
     let (floor, _) = world.rigid_bodies().entries().next().unwrap();
     world.remove_rigid_body(floor).unwrap();
@@ -79,7 +79,7 @@ fn what_leant_on_what_is_removed_falls() {
 }
 
 #[test]
-fn a_sleeper_that_is_put_back_elsewhere_falls() {
+fn sleeping_body_wakes_when_added_elsewhere() {
     let mut world = sleeper();
     let body = world
         .remove_soft_body(world.nth_soft_body(0).unwrap())
@@ -92,7 +92,7 @@ fn a_sleeper_that_is_put_back_elsewhere_falls() {
 }
 
 #[test]
-fn a_body_is_as_stiff_as_the_world_that_it_is_in_bears() {
+fn stiffness_scale_follows_substeps_of_world() {
     let stiff = Material {
         elasticity: fuwafuwa::Elasticity {
             young: 1e6,
@@ -127,7 +127,7 @@ fn a_body_is_as_stiff_as_the_world_that_it_is_in_bears() {
 }
 
 #[test]
-fn things_leave_and_the_rest_stay_what_they_are() {
+fn removal_keeps_other_handles_valid() {
     let mut world = world::<Dim2>();
     let (mut bodies, mut hands) = (Vec::new(), Vec::new());
     for place in 0..3u8 {
@@ -160,9 +160,9 @@ fn things_leave_and_the_rest_stay_what_they_are() {
     assert!(!touched.contains(&(bodies[0], hand(0))), "{touched:?}");
 }
 
-/// The handle of who left is that of nobody, also when somebody else stands there.
+/// The handle of a removed object stays invalid when another object takes its slot.
 #[test]
-fn a_stale_handle_is_refused() {
+fn stale_handle_is_rejected() {
     let mut world = world::<Dim2>();
     let ball = world.add_soft_body(ball(8));
     let hand = world
@@ -170,8 +170,8 @@ fn a_stale_handle_is_refused() {
         .unwrap();
     let floor = world.rigid_bodies().ids().next().unwrap();
     assert!(
-        world.set_target_position(floor, [0.0; 3]).is_err(),
-        "it follows no goal"
+        world.set_goal(floor, [0.0; 3]).is_err(),
+        "a fixed body has no target"
     );
     let body = world.remove_soft_body(ball).unwrap();
     world.remove_rigid_body(hand).unwrap();
@@ -195,10 +195,11 @@ fn a_stale_handle_is_refused() {
     step(&mut world, 5);
 }
 
-/// Three cubes sleep on each other and a fourth beside them: without the lowest, that one alone sleeps on. What leans
-/// by way of another one would else hang in the air: its support moves too slowly at first to wake it.
+/// Three cubes sleep on each other and a fourth beside them. Without the lowest, only the fourth sleeps on.
+/// The topmost must wake as well: its support moves too slowly at first to wake it, so it would hang in the
+/// air.
 #[test]
-fn who_did_not_lean_on_what_is_removed_sleeps_on() {
+fn removal_wakes_only_bodies_in_contact() {
     let mut world = world::<Dim2>();
     let damped = Material {
         damping: 0.5,
@@ -219,18 +220,21 @@ fn who_did_not_lean_on_what_is_removed_sleeps_on() {
             break;
         }
     }
-    assert!((0..4).all(|n| sleeps(&world, n)), "they come to rest");
-    world.remove_soft_body(ids[0]).unwrap();
+    assert!(
+        (0..4).all(|n| sleeps(&world, n)),
+        "all cubes must fall asleep"
+    );
+    world.remove_body(ids[0]).unwrap();
     assert!(!sleeps(&world, 1) && !sleeps(&world, 2) && sleeps(&world, 3));
     step(&mut world, 60);
-    let low = |n: usize| world.soft_bodies()[ids[n]].piece_views()[0].low[1];
-    assert!(low(1) < 0.01 && low(2) < 0.11, "they fell");
+    let low = |n: usize| world.bodies()[ids[n]].piece_views()[0].low[1];
+    assert!(low(1) < 0.01 && low(2) < 0.11, "the upper cubes must fall");
     assert!(sleeps(&world, 3));
 }
 
-/// A plate that is pushed down by its goal, on a ball and then on the floor.
+/// A plate presses on a ball and then on the floor.
 #[test]
-fn a_hand_of_another_shape_pushes_and_is_stopped() {
+fn coupled_box_and_capsule_push_and_stop_at_floor() {
     let centre = [0.0; 3];
     let half = [0.5, 0.1, 0.5];
     for form in [
@@ -256,7 +260,7 @@ fn a_hand_of_another_shape_pushes_and_is_stopped() {
         assert!(felt.contact[1] > 5.0, "{felt:?}");
         let high = world.soft_bodies().first().unwrap().piece_views()[0].high[1];
         assert!(high < 0.9, "{form:?}: the ball is {high} m high");
-        // Beside the ball it comes to lie on the floor.
+        // Beside the ball, the plate stops on the floor.
         for _ in 0..60 {
             world.set_target_position(plate, [3.0, 0.4, 0.0]).unwrap();
             world.step();
@@ -272,8 +276,8 @@ fn a_hand_of_another_shape_pushes_and_is_stopped() {
 }
 
 #[test]
-fn a_held_node_that_is_let_go_falls() {
-    let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
+fn fixed_node_falls_when_freed() {
+    let mut world = World::<Dim2>::new(Settings::default()).unwrap();
     let mut body = ball::<Dim2>(8);
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     nodes.iter().for_each(|&id| body.fix_node(id));
@@ -292,7 +296,7 @@ fn a_held_node_that_is_let_go_falls() {
 }
 
 #[test]
-fn another_body_in_the_place_of_one_is_taken_for_what_it_is() {
+fn replaced_body_has_no_contacts_with_itself() {
     let mut world = world::<Dim2>();
     world.add_soft_body(bar([2, 7]));
     world.step();
@@ -319,7 +323,7 @@ fn another_body_in_the_place_of_one_is_taken_for_what_it_is() {
 }
 
 #[test]
-fn small_voxels_still_meet_when_large_ones_came() {
+fn small_voxels_collide_after_large_ones_are_added() {
     let mut world = about_to_meet();
     world.step();
     let grid = VoxelGrid::from_fn([2, 2, 1], 1.0, |_| 1).unwrap();

@@ -1,5 +1,5 @@
-//! What should not be asked for, and what should not be in a world: nothing panics, all stays
-//! finite, and whoever asked is told.
+//! Invalid arguments and invalid states: nothing panics, all state stays finite, and the caller gets an
+//! error.
 
 mod changed;
 mod quarantine;
@@ -54,7 +54,7 @@ fn bar(size: [usize; 2]) -> SoftBody<Dim2> {
     SoftBody::new(grid, &[Material::default()]).unwrap()
 }
 
-/// Two bars that fly at each other, with nothing else.
+/// A weightless world with only two bars that fly towards each other.
 fn about_to_meet() -> World<Dim2> {
     let settings = WorldConfig {
         gravity: [0.0; 3],
@@ -75,11 +75,11 @@ fn assert_they_meet(mut world: World<Dim2>) {
     });
     assert!(
         left < right,
-        "they went through each other: {left}, {right}"
+        "the bars passed through each other: {left}, {right}"
     );
 }
 
-/// Grading::Coarse is for counting: its surface elements cannot be split.
+/// `Grading::Coarse` is meant for counting: its surface elements cannot be split.
 fn check_coarse<D: Dim>(blade: Blade) {
     let grid = VoxelGrid::<D>::ball(12, 1.0).unwrap();
     let coarse = SoftBody::with_options(
@@ -120,7 +120,7 @@ fn check_coarse<D: Dim>(blade: Blade) {
 }
 
 #[test]
-fn a_coarse_body_neither_tears_nor_is_cut() {
+fn coarse_body_neither_tears_nor_is_cut() {
     check_coarse::<Dim2>(Blade::segment([0.5, -0.1], [0.5, 1.1]));
     check_coarse::<Dim3>(Blade {
         from: [0.5, -0.1, -0.1],
@@ -130,7 +130,7 @@ fn a_coarse_body_neither_tears_nor_is_cut() {
 }
 
 #[test]
-fn hands_without_bounds_are_refused() {
+fn add_rigid_rejects_out_of_range_hand() {
     let mut world = world::<Dim2>();
     let usual = || RigidBody::coupled_ball([0.0, 3.0, 0.0], 0.1);
     let MotionType::Coupled {
@@ -140,7 +140,7 @@ fn hands_without_bounds_are_refused() {
         limit,
     } = MotionType::default()
     else {
-        panic!("the usual hand is coupled");
+        panic!("the default drive is coupled");
     };
     let drive = |mass, stiffness, damping, limit| {
         usual().with_motion_type(MotionType::Coupled {
@@ -187,9 +187,9 @@ fn hands_without_bounds_are_refused() {
     assert_finite(&world);
 }
 
-/// In the plane third coordinates do not count: nothing is pushed out of it.
+/// In 2D, third coordinates are ignored, and no contact moves a body out of the plane.
 #[test]
-fn what_stands_off_the_plane_pushes_nothing_out_of_it() {
+fn plane_world_ignores_third_coordinates() {
     let shapes = [
         Shape::half_space([0.0, 1.0, 1.0], [0.0; 3]),
         Shape::Box {
@@ -229,7 +229,7 @@ fn what_stands_off_the_plane_pushes_nothing_out_of_it() {
 }
 
 #[test]
-fn a_material_that_no_voxel_has_changes_nothing() {
+fn unused_material_has_no_effect() {
     let stiff = Material {
         elasticity: fuwafuwa::Elasticity {
             young: 1e9,
@@ -251,16 +251,16 @@ fn a_material_that_no_voxel_has_changes_nothing() {
             world.set_target_position(hand, goal).unwrap();
             released += world.step().nodes_split;
         }
-        assert!(released > 10, "it does not tear");
+        assert!(released > 10, "the body must tear");
         world.hash()
     };
     let usual = Material::default();
     assert_eq!(hash_with(&[usual, stiff]), hash_with(&[usual]));
 }
 
-/// A cut on purpose is reported as a tear is, where it happened, but sets no energy free.
+/// An intentional cut is reported like a tear, with its position, but releases no energy.
 #[test]
-fn a_cut_is_told_where_it_was() {
+fn cut_reports_positions_of_released_nodes() {
     let mut world = world::<Dim2>();
     world.add_soft_body(ball(16).translated([3.0, 0.0, 0.0]));
     let count = world

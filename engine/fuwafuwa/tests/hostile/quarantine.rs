@@ -1,10 +1,10 @@
-//! What is not finite, or too fast, is stopped where it was.
+//! Quarantine: a non-finite or too fast piece is stopped at its last valid position.
 
 use super::*;
 
-/// A body that is nowhere is stopped, put to where it was made, and reported.
+/// A non-finite body is stopped, returned to its last finite position, and reported.
 #[test]
-fn a_body_that_is_no_place_is_quarantined() {
+fn non_finite_body_is_quarantined() {
     for nowhere in [f32::NAN, f32::INFINITY] {
         let mut world = world::<Dim2>();
         world.add_soft_body(ball(12).translated([nowhere, 0.0, 0.0]));
@@ -30,10 +30,10 @@ fn a_body_that_is_no_place_is_quarantined() {
     }
 }
 
-/// A prototype restored positions by node ids, which a release in the same tick had given to other
-/// nodes, or to none: elements were stretched to the origin.
+/// Regression: positions were restored by node ids that a release in the same tick had given to other nodes
+/// or to none, which stretched elements to the origin.
 #[test]
-fn a_piece_that_tears_in_its_last_tick_is_not_stretched() {
+fn quarantine_restores_positions_of_torn_piece() {
     let mut world = world::<Dim2>();
     world.add_soft_body(ball(24).translated([5.0, 0.0, 0.0]));
     let hand =
@@ -70,9 +70,9 @@ fn a_piece_that_tears_in_its_last_tick_is_not_stretched() {
     assert!(both > 3, "{both} ticks with a release and a quarantine");
 }
 
-/// What is not finite touches nothing: a hand and a neighbour beside it are left as they are.
+/// A non-finite body has no contacts: a hand and a neighbour beside it are unaffected.
 #[test]
-fn a_body_out_of_hand_spoils_nothing_else() {
+fn quarantine_leaves_neighbours_unaffected() {
     let mut world = world::<Dim2>();
     for (place, x) in [0.0, 0.97].into_iter().enumerate() {
         world.add_soft_body(ball(16).translated([x, 0.0, 0.0]));
@@ -97,7 +97,7 @@ fn a_body_out_of_hand_spoils_nothing_else() {
 }
 
 #[test]
-fn what_came_off_a_quarantined_piece_is_quarantined() {
+fn piece_detached_from_quarantined_one_is_quarantined() {
     let mut world = world::<Dim2>();
     world.add_soft_body(ball(12).with_velocity([f32::NAN, 0.0, 0.0]));
     world.step();
@@ -113,17 +113,20 @@ fn what_came_off_a_quarantined_piece_is_quarantined() {
 }
 
 #[test]
-fn a_quarantined_body_still_holds_others_up() {
-    let mut world = World::new(WorldConfig::default()).unwrap();
-    world.add_soft_body(bar([24, 4]).translated([f32::INFINITY, 0.0, 0.0]));
-    world.add_soft_body(bar([6, 6]).translated([0.27, 0.25, 0.0]));
+fn quarantined_body_supports_others() {
+    let mut world = World::new(Settings::default()).unwrap();
+    world.add_body(bar([24, 4]).moved([f32::INFINITY, 0.0, 0.0]));
+    world.add_body(bar([6, 6]).moved([0.27, 0.25, 0.0]));
     step(&mut world, 30);
-    let view = &world.soft_bodies()[world.nth_soft_body(1).unwrap()].piece_views()[0];
-    assert!(view.low[1] > 0.05, "it fell through: {view:?}");
+    let view = &world.bodies()[world.nth_body(1).unwrap()].piece_views()[0];
+    assert!(
+        view.low[1] > 0.05,
+        "the bar fell through the quarantined one: {view:?}"
+    );
 }
 
 #[test]
-fn others_still_meet_when_one_was_quarantined() {
+fn bodies_collide_after_quarantine_of_another() {
     for nowhere in [f32::NAN, f32::INFINITY] {
         let mut world = about_to_meet();
         world.add_soft_body(bar([2, 2]).translated([nowhere, -3.0, 0.0]));

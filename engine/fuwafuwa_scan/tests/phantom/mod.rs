@@ -1,4 +1,4 @@
-//! A made-up patient, and files of scans of it. Left and right, front and back, head and feet differ:
+//! A synthetic patient and scans of it. Left and right, front and back, head and feet differ:
 //!
 //! ```text
 //!   from behind      S             from the left     S
@@ -7,22 +7,22 @@
 //!           L │         2    │ R           A │ 3                │ P      72 × 96 × 60 mm
 //!             ╰──────────────╯               ╰──────────────────╯
 //! ```
-#![allow(dead_code)] // not each test needs all of it
+#![allow(dead_code)] // no test file uses all of it
 
 use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
 
-/// The half axes of the ellipsoid that it is [mm]: to the right, to the front, up. It is round, so that voxels at its
-/// border are as often too large as too small.
+/// Half axes of the ellipsoid [mm]: to the right, to the front, up. The shape is round, so that voxels at its
+/// border are too large as often as too small.
 pub const HALF: [f64; 3] = [36.0, 48.0, 30.0];
 
-/// Its marks: label, middle (RAS+) and radius [mm].
+/// Marks: label, centre (RAS+) and radius [mm].
 pub const MARKS: [(i32, [f64; 3], f64); 3] = [
     (2, [20.0, 0.0, 0.0], 9.0),
     (3, [0.0, 30.0, 0.0], 9.0),
     (4, [0.0, 0.0, 14.0], 9.0),
 ];
 
-/// The label at a place in the patient, RAS+ [mm].
+/// Returns the label at a position in the patient, RAS+ [mm].
 pub fn label(patient: [f64; 3]) -> i32 {
     let squared = |middle: [f64; 3]| -> f64 {
         (0..3)
@@ -35,21 +35,21 @@ pub fn label(patient: [f64; 3]) -> i32 {
     mark.map_or(i32::from(is_inside), |mark| mark.0)
 }
 
-/// Three directions of a scan's axes, RAS+.
+/// Directions of a scan's three axes, RAS+.
 pub type Axes = [[f64; 3]; 3];
 
 pub const RAS: Axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// What tells in a file where its voxels lie.
+/// Part of the header that gives the placement.
 #[derive(Copy, Clone)]
 pub enum Form {
     Sform,
-    /// The imaginary part of a quaternion, and whether the third axis runs the other way.
+    /// Imaginary part of a quaternion, and whether the third axis is reversed.
     Qform([f64; 3], bool),
     Spacing,
 }
 
-/// A file of NIfTI, as it is before it is written.
+/// Content of a NIfTI file.
 #[derive(Clone)]
 pub struct File {
     pub version: usize,
@@ -60,16 +60,16 @@ pub struct File {
     pub affine: [[f64; 4]; 3],
     pub form: Form,
     pub unit: u8,
-    /// A slope of 0 and one that is no number say that nothing is scaled.
+    /// Slope and intercept; a slope of 0 or NaN means no scaling.
     pub scale: [f64; 2],
     pub values: Vec<f64>,
 }
 
 impl File {
-    /// Of what a function says of each place in the patient, RAS+ [mm], in a box around the phantom.
+    /// Samples `value` at positions in the patient, RAS+ [mm], in a box around the phantom.
     pub fn of(axes: Axes, spacing: [f64; 3], value: impl Fn([f64; 3]) -> f64) -> Self {
         let size = spacing.map(|k| (124.0 / k) as usize);
-        // The middle of the box lies beside that of the patient.
+        // The centre of the box is offset from the patient's.
         let middle = [3.0, -4.0, 2.0];
         let affine = [0, 1, 2].map(|row: usize| {
             let column = |axis: usize| axes[axis][row] * spacing[axis];
@@ -100,7 +100,7 @@ impl File {
         }
     }
 
-    /// A few voxels, one millimetre apart.
+    /// A few voxels with a spacing of 1 mm.
     pub fn small(size: [usize; 3], values: &[f64]) -> Self {
         let mut file = Self::of(RAS, [62.0; 3], |_| 0.0);
         file.size = size;
@@ -114,7 +114,7 @@ impl File {
         file
     }
 
-    /// Its bytes, as the standard lays them out.
+    /// Encodes the file as the standard defines.
     pub fn bytes(&self) -> Vec<u8> {
         let is_first = self.version == 1;
         let (length, offset) = if is_first { (348, 352) } else { (540, 544) };
@@ -125,7 +125,8 @@ impl File {
             true => bytes[344..348].copy_from_slice(b"n+1\0"),
             false => bytes[4..12].copy_from_slice(b"n+2\0\r\n\x1a\n"),
         }
-        // Types of the fields: 16 bits or 64, single or double precision, 16 bits or 32.
+        // Formats of the fields: 16-bit or 64-bit integers, single or double precision, 16-bit or 32-bit
+        // codes.
         let (whole, real, code) = if is_first { (4, 16, 4) } else { (1024, 64, 8) };
         let width = if is_first { [2, 4] } else { [8, 8] };
         let [x, y, z] = self.size.map(|k| k as f64);
@@ -191,7 +192,7 @@ impl File {
         bytes[at..at + number.len()].copy_from_slice(&number);
     }
 
-    /// A number as a datatype of the standard writes it.
+    /// Encodes a number in a datatype of the standard.
     fn number(&self, value: f64, datatype: i16) -> Vec<u8> {
         let mut bytes = match datatype {
             2 => (value as u8).to_le_bytes().to_vec(),
@@ -212,7 +213,7 @@ impl File {
     }
 }
 
-/// The labels of the phantom as materials.
+/// Returns a segmentation with the phantom's labels as materials.
 pub fn labels() -> Segmentation {
     Segmentation::labels(&[(1, 1), (2, 2), (3, 3), (4, 4)])
 }
@@ -226,12 +227,12 @@ pub fn organ(scan: &Scan, segmentation: &Segmentation, resolution: usize) -> Org
     organ.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The volume of a ball [ml] by its radius [mm].
+/// Returns the volume of a ball [ml] of a radius [mm].
 pub fn ball(radius: f64) -> f64 {
     ellipsoid([radius; 3])
 }
 
-/// The volume of an ellipsoid [ml] by its half axes [mm].
+/// Returns the volume of an ellipsoid [ml] of half axes [mm].
 pub fn ellipsoid(half: [f64; 3]) -> f64 {
     4.0 / 3.0 * std::f64::consts::PI * half.iter().product::<f64>() / 1000.0
 }

@@ -1,15 +1,15 @@
-//! Which colours of a file are which material.
+//! Mapping from the colours of a file to materials.
 
 use std::collections::BTreeMap;
 
-/// Which material a colour in a file stands for; 0 leaves its voxels empty.
+/// Mapping from colours or palette indices of a file to material numbers; 0 leaves a voxel empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Colours {
-    /// Materials by palette index, 1 to 255; for models only.
+    /// Materials by palette index, 1 to 255; only for models.
     pub indices: BTreeMap<u8, u8>,
-    /// Materials by red, green and blue. A voxel is of the material whose colour is nearest to its
-    /// own (least sum of squared differences, the first of several), so that shades of a colour and
-    /// smoothed edges need no entries.
+    /// Materials by red, green and blue. A voxel gets the material of the nearest colour: the least sum of
+    /// squared differences, the first of several. Shades of a colour and smoothed edges therefore need no
+    /// entries.
     pub named: BTreeMap<[u8; 3], u8>,
 }
 

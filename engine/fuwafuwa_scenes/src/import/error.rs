@@ -1,61 +1,61 @@
-//! Why a file gives no shape.
+//! Errors of imported files.
 
 use fuwafuwa::BuildError;
 use std::{fmt, io};
 
-/// Why a file gives no shape.
+/// Reason why a file could not be imported.
 #[derive(Debug, thiserror::Error)]
 #[error("{file}{place}: {problem}")]
 pub struct ImportError {
-    /// The name that the caller gave its bytes.
+    /// Name of the file, as given by the caller.
     pub file: String,
-    /// Where in the file.
+    /// Position in the file.
     pub place: Place,
-    /// What is wrong there.
+    /// Problem at that position.
     pub problem: Problem,
 }
 
-/// A place in a file.
+/// A position in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     /// The file as a whole.
     File,
-    /// So many bytes from its beginning. A picture is decoded some bytes ahead of what is wrong.
+    /// Byte offset. The decoder of pictures reads ahead, so the problem may lie some bytes earlier.
     Byte(usize),
-    /// The chunk of this name, whose header begins so many bytes from the beginning.
+    /// Name of a chunk and byte offset of its header.
     Chunk([u8; 4], usize),
-    /// The field of this name in a header, so many bytes from the beginning.
+    /// Name of a header field and its byte offset.
     Field(&'static str, usize),
 }
 
-/// What is wrong with a file.
+/// Problem with a file.
 #[derive(Debug, thiserror::Error)]
 pub enum Problem {
-    /// The system does not let us read it.
-    #[error("it cannot be read: {0}")]
+    /// The system refuses to read the file.
+    #[error("the file cannot be read: {0}")]
     Unreadable(io::Error),
-    /// Something else stands there than what is needed.
+    /// The content is not as expected.
     #[error("expected {expected}, found {found}")]
     Unexpected {
-        /// What is needed.
+        /// Expected content.
         expected: String,
-        /// What stands there.
+        /// Content that was found.
         found: String,
     },
-    /// A number is above its limit.
+    /// A number exceeds its limit.
     #[error("{found} {what} are too many, the limit is {limit}")]
     TooLarge {
-        /// What is counted.
+        /// Unit of the number, in the plural.
         what: &'static str,
-        /// The number found.
+        /// Number that was found.
         found: u64,
-        /// The largest that is taken.
+        /// Maximum.
         limit: u64,
     },
-    /// Nothing in it is solid.
+    /// The shape has no solid voxel. The text names what would be solid.
     #[error("the shape is empty: there is no {0}")]
     Empty(&'static str),
-    /// The engine takes no such grid.
+    /// The engine rejects the grid.
     #[error("{0}")]
     Grid(BuildError),
 }
@@ -71,7 +71,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// A problem and its place, before the name of the file is put to it.
+/// Position and problem; the caller adds the name of the file.
 pub type Complaint = (Place, Problem);
 
 pub fn unexpected(
@@ -91,7 +91,7 @@ pub fn in_file<T>(file: &str, outcome: Result<T, Complaint>) -> Result<T, Import
     })
 }
 
-/// The complaint about a grid that cannot be; `sought` is what would have been solid.
+/// Converts an error of the grid; `sought` names what would have been solid.
 pub fn no_grid(error: BuildError, sought: &'static str) -> Complaint {
     let problem = match error {
         BuildError::Empty => Problem::Empty(sought),

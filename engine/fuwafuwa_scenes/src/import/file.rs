@@ -1,8 +1,8 @@
-//! How long a file may be.
+//! Limit on the length of a file.
 
 use super::error::{Complaint, Place, Problem};
 
-/// Most bytes of a file: twice what the largest model takes when it is full.
+/// Maximum length of a file [bytes]: twice that of the largest model with every voxel solid.
 pub const MAX_FILE_BYTES: u64 = 1 << 27;
 
 pub fn check_length(bytes: &[u8]) -> Result<(), Complaint> {

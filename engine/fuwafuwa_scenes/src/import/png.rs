@@ -1,4 +1,4 @@
-//! PNG: a drawing or a sprite becomes a flat shape.
+//! Import of PNG pictures: a drawing or a sprite becomes a flat shape.
 
 use super::colours::Colours;
 use super::error::{Complaint, ImportError, Place, Problem, in_file, no_grid, unexpected};
@@ -10,13 +10,13 @@ use fuwafuwa::grid::MAX_EXTENT;
 use fuwafuwa::{Dim2, VoxelGrid};
 use std::io::{Cursor, ErrorKind};
 
-/// Most pixels on a side of a picture; decoded, the largest takes 64 MiB.
+/// Maximum width and height of a picture [pixels]; the largest takes 64 MiB when decoded.
 pub const MAX_PIXELS: u32 = 4096;
 
-/// Most bytes that the decoder may take for its own tables and rows.
+/// Maximum memory for the decoder's own tables and rows [bytes].
 const DECODER_BYTES: usize = 1 << 24;
 
-/// The most that deflate, the compression in PNG, makes of one byte.
+/// Maximum expansion of deflate, the compression of PNG: decoded bytes per compressed byte.
 const MOST_INFLATED: usize = 1032;
 
 /// A decoded picture.
@@ -28,11 +28,11 @@ pub struct Picture {
     pixels: Vec<[u8; 4]>,
 }
 
-/// The silhouette in the bytes of a PNG file, with voxels of edge length `voxel_size` [m], at most `across` of
-/// them on its longer side; see [`Picture::grid`]. `file` names it in errors.
+/// Imports a PNG silhouette with voxels of edge length `voxel_size` [m], at most `across` on its longer side;
+/// see [`Picture::grid`]. `file` is the name used in errors.
 ///
 /// # Errors
-/// [`ImportError`] names the file, the place in it, and what was expected there.
+/// [`ImportError`] names the file, the position in it, and what was expected there.
 pub fn png(
     file: &str,
     bytes: &[u8],
@@ -43,11 +43,11 @@ pub fn png(
 }
 
 impl Picture {
-    /// The picture in the bytes of a PNG file, of any kind; of an animated one the image that still viewers show.
-    /// `file` names it in errors.
+    /// Decodes a PNG file of any colour type; of an animated file, the image that still viewers show. `file`
+    /// is the name used in errors.
     ///
     /// # Errors
-    /// [`ImportError`] when the file is longer than [`super::MAX_FILE_BYTES`], when it is damaged or cut short, or has
+    /// [`ImportError`] if the file is longer than [`super::MAX_FILE_BYTES`], is damaged or truncated, or has
     /// more than [`MAX_PIXELS`] on a side.
     pub fn decode(file: &str, bytes: &[u8]) -> Result<Self, ImportError> {
         in_file(file, check_length(bytes))?;
@@ -67,28 +67,28 @@ impl Picture {
         Ok(Self { file, size, pixels })
     }
 
-    /// Its width and height [pixels].
+    /// Width and height [pixels].
     pub fn size(&self) -> [usize; 2] {
         self.size
     }
 
-    /// The shape in it, with voxels of edge length `voxel_size` [m]. The top row is the highest.
+    /// Converts the picture to voxels of edge length `voxel_size` [m]. The top row is the highest.
     ///
-    /// Which pixels are solid, and of which material:
-    /// - When `colours` names any, a pixel is of the material of the nearest colour, and empty when
-    ///   that is 0 or the pixel is more than half transparent (alpha below 128).
-    /// - Otherwise all are of material 1. If any pixel is more than half transparent, it is a sprite,
-    ///   and the others are solid.
-    /// - If none is, it is a drawing on white paper, and what is drawn is solid, in ink or in colours:
-    ///   the pixels whose red, green or blue is below 128 of 255, as stored.
+    /// These rules decide which pixels are solid, and their material:
+    /// - If `colours` names colours, a pixel gets the material of the nearest one. It is empty if that
+    ///   material is 0, or if the pixel is more than half transparent (alpha below 128).
+    /// - Otherwise all solid pixels have material 1. If any pixel is more than half transparent, the picture
+    ///   is a sprite: the other pixels are solid.
+    /// - If no pixel is, the picture is a drawing on white paper: pixels whose red, green or blue is below
+    ///   128 of 255, as stored, are solid.
     ///
-    /// A picture with more than `across` pixels on its longer side is scaled down to that many voxels. A
-    /// voxel is solid when at least half of what it covers is, and of the material of which it covers
-    /// most, the lowest of several. A smaller picture keeps its pixels.
+    /// A picture with more than `across` pixels on its longer side is scaled down to `across` voxels. A voxel
+    /// is solid if at least half of its area is covered by solid pixels. It gets the material with the
+    /// largest area, the lowest number of several. A smaller picture keeps its pixels.
     ///
     /// # Errors
-    /// [`ImportError`] when `across` is not 1 to [`MAX_EXTENT`], when nothing is solid, when colours
-    /// are named by palette index, or when the engine takes no voxels of that size.
+    /// [`ImportError`] if `across` is not 1 to [`MAX_EXTENT`], if no voxel is solid, if `colours` names
+    /// palette indices, or if the engine rejects `voxel_size`.
     pub fn grid(
         &self,
         across: usize,
@@ -98,14 +98,14 @@ impl Picture {
         in_file(&self.file, self.try_grid(across, voxel_size, colours))
     }
 
-    /// A PNG file with a pixel for each voxel that this picture becomes, from which the same voxels come; none where
-    /// nothing comes of this one.
+    /// Returns a PNG file with one pixel per voxel, which gives the same voxels as this picture; `None` if
+    /// the picture gives none.
     pub(crate) fn needed(&self, across: usize, colours: &Colours) -> Option<Vec<u8>> {
         let grid = self.grid(across, 1.0, colours).ok()?;
         let [columns, rows, _] = grid.size();
         let colour_of = |material: u8| match material {
             0 => Some([u8::MAX, u8::MAX, u8::MAX, 0]),
-            // Black is ink too, where no pixel is transparent.
+            // Without a transparent pixel, the file counts as a drawing, and black is solid there, too.
             _ if colours.named.is_empty() => Some([0, 0, 0, u8::MAX]),
             _ => {
                 let mut named = colours.named.iter();
@@ -157,7 +157,7 @@ impl Picture {
     }
 }
 
-/// What decides about a pixel.
+/// Rule that decides the material of a pixel.
 enum Rule<'a> {
     Colour(&'a Colours),
     Alpha,
@@ -173,7 +173,7 @@ impl<'a> Rule<'a> {
         if is_sprite { Self::Alpha } else { Self::Drawn }
     }
 
-    /// The material of a pixel, 0 where it is not solid.
+    /// Returns the material of a pixel, 0 if it is empty.
     fn judge(&self, pixel: [u8; 4]) -> u8 {
         let [red, green, blue, _] = pixel;
         match self {
@@ -197,7 +197,7 @@ fn is_opaque(pixel: [u8; 4]) -> bool {
     pixel[3] >= 128
 }
 
-/// Whether there is ink or colour on a pixel of white paper.
+/// Returns whether a pixel, laid over white paper, is dark or coloured.
 fn is_drawn(pixel: [u8; 4]) -> bool {
     const WHITE: u32 = 255;
     let [red, green, blue, alpha] = pixel.map(u32::from);
@@ -227,7 +227,7 @@ fn decode(cursor: &mut Cursor<&[u8]>) -> Result<Result<Pixels, Complaint>, Decod
         };
         return Ok(Err((place, too_large)));
     }
-    // Before memory is taken: a file of a few bytes cannot hold a large picture.
+    // Checked before memory is allocated: a file of a few bytes cannot contain a large picture.
     let needed = header.raw_bytes().div_ceil(MOST_INFLATED);
     if needed > length {
         let expected = format!("at least {needed} bytes for {width} x {height} pixels");
@@ -238,20 +238,20 @@ fn decode(cursor: &mut Cursor<&[u8]>) -> Result<Result<Pixels, Complaint>, Decod
     let length = reader.output_buffer_size();
     let mut channels = vec![0; length.ok_or(DecodingError::LimitsExceeded)?];
     let frame = reader.next_frame(&mut channels)?;
-    // To the end, so that a file cut short behind the last row is found out as well.
+    // Reads to the end, so that a file truncated after the last row is rejected, too.
     reader.finish()?;
     let pixels = channels[..frame.buffer_size()]
         .chunks_exact(frame.color_type.samples())
         .map(|pixel| match *pixel {
             [grey, alpha] => [grey, grey, grey, alpha],
             [red, green, blue, alpha] => [red, green, blue, alpha],
-            _ => unreachable!("the decoder was told to add alpha"),
+            _ => unreachable!("the decoder adds an alpha channel"),
         });
     let size = [frame.width as usize, frame.height as usize];
     Ok(Ok((size, pixels.collect())))
 }
 
-/// A PNG file of red, green, blue and alpha, row by row from the top.
+/// Encodes red, green, blue and alpha, row by row from the top, as a PNG file.
 fn encode([width, height]: [u32; 2], pixels: &[u8]) -> Result<Vec<u8>, EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, width, height);
@@ -263,15 +263,15 @@ fn encode([width, height]: [u32; 2], pixels: &[u8]) -> Result<Vec<u8>, EncodingE
     Ok(bytes)
 }
 
-/// The size in voxels, the sides in proportion as closely as whole voxels allow.
+/// Returns the size in voxels, with proportions as close as whole voxels allow.
 fn scaled(size: [usize; 2], across: usize) -> [usize; 2] {
     let longer = size[0].max(size[1]);
     let across = across.min(longer);
     size.map(|side| ((2 * side * across + longer) / (2 * longer)).max(1))
 }
 
-/// The pixels that voxel `index` of `voxels` covers on an axis of `pixels`, each with how much of it
-/// is covered, in units of a pixel divided by `voxels`: whole numbers, so that areas are exact.
+/// Returns the pixels that voxel `index` of `voxels` covers on an axis of `pixels`, each with the covered
+/// length in units of a pixel divided by `voxels`. Integers keep the areas exact.
 ///
 /// ```text
 ///   3 pixels   ├─────┼─────┼─────┤      covered(3, 2, 0): all of pixel 0 (2), half of pixel 1 (1)
@@ -285,7 +285,8 @@ fn covered(pixels: usize, voxels: usize, index: usize) -> impl Iterator<Item = (
     })
 }
 
-/// The material of a voxel that covers so much of each, of nothing first.
+/// Returns the material with the largest covered area, or 0 if more than half is empty; `areas[0]` is the
+/// empty area.
 fn largest(areas: &[u64]) -> u8 {
     let solid: u64 = areas[1..].iter().sum();
     if solid == 0 || solid < areas[0] {

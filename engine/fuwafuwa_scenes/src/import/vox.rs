@@ -1,56 +1,57 @@
-//! MagicaVoxel's .vox: a model becomes a solid shape.
+//! Import of MagicaVoxel's .vox files: a model becomes a solid shape.
 //!
 //! ```text
-//!   "VOX " version                       every number is 4 bytes, the lowest first
+//!   "VOX " version                       every number is 4 bytes, little-endian
 //!   MAIN  length, length of children     every chunk: name, two lengths, contents, children
 //!    ├─ SIZE  x y z                      ┐ once for
 //!    ├─ XYZI  count {x y z index}…       ┘ each model
-//!    ├─ RGBA  256 × {red green blue alpha}, of palette index 1 first
-//!    └─ PACK, nTRN, MATL, …              passed over
+//!    ├─ RGBA  256 × {red green blue alpha}, palette index 1 first
+//!    └─ PACK, nTRN, MATL, …              ignored
 //! ```
 //!
-//! The crate `dot_vox` reads the format too, but it recurses on nested chunks, so that a small
-//! hostile file overflows the stack, and it drops damaged chunks without a word.
+//! The crate `dot_vox` is not used: it recurses into nested chunks, so a small hostile file overflows the
+//! stack, and it drops damaged chunks silently.
 
 use super::colours::Colours;
 use super::error::{Complaint, ImportError, Place, Problem, in_file, no_grid, unexpected};
 use super::file::check_length;
 use fuwafuwa::{Dim3, VoxelGrid};
 
-/// Most voxels on an axis of a model: the format gives each coordinate a byte.
+/// Maximum number of voxels on an axis of a model: the format stores each coordinate in a byte.
 pub const MAX_VOXELS_ACROSS: u32 = 256;
 
-/// Versions of the format: 150 for years, 200 since MagicaVoxel 0.99.7. What is read here is the same.
+/// Accepted versions of the format: 150, and 200 since MagicaVoxel 0.99.7. The chunks read here are the same
+/// in both.
 const VERSIONS: std::ops::RangeInclusive<u32> = 150..=200;
 
-/// A model, on our axes.
+/// A model on the engine's axes (y up).
 #[derive(Clone, Debug)]
 pub struct Model {
     file: String,
     size: [usize; 3],
-    /// Palette indices, 0 where it is empty, the first axis running fastest.
+    /// Palette indices, 0 where empty, the first axis fastest.
     voxels: Vec<u8>,
-    /// Red, green and blue, of palette index 1 first.
+    /// Red, green and blue, palette index 1 first.
     palette: Option<Vec<[u8; 3]>>,
 }
 
-/// The first model in the bytes of a MagicaVoxel file, with voxels of edge length `voxel_size` [m], the palette
-/// index of each as its material; see [`Model::grid`]. `file` names it in errors.
+/// Imports the first model of a MagicaVoxel file with voxels of edge length `voxel_size` [m]. The palette
+/// index of a voxel is its material; see [`Model::grid`]. `file` is the name used in errors.
 ///
 /// # Errors
-/// [`ImportError`] names the file, the place in it, and what was expected there.
+/// [`ImportError`] names the file, the position in it, and what was expected there.
 pub fn vox(file: &str, bytes: &[u8], voxel_size: f32) -> Result<VoxelGrid<Dim3>, ImportError> {
     Model::decode(file, bytes)?.grid(voxel_size, &Colours::default())
 }
 
 impl Model {
-    /// The first model in the bytes of a MagicaVoxel file, which `file` names in errors. Where the scene in it puts the
-    /// model is passed over.
+    /// Decodes the first model of a MagicaVoxel file. `file` is the name used in errors. The model's
+    /// transform in the file's scene is ignored.
     ///
-    /// MagicaVoxel's z points upwards, and ours is y, so that a model is turned and not mirrored:
+    /// MagicaVoxel's z axis points up, the engine's y axis does. The model is rotated, not mirrored:
     ///
     /// ```text
-    ///   MagicaVoxel   z           y  ours        x ← x
+    ///   MagicaVoxel   z           y  engine      x ← x
     ///                 │  y        │              y ← z
     ///                 │ ╱         │              z ← size of y − 1 − y
     ///                 └── x       └── x
@@ -59,18 +60,18 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// [`ImportError`] when the file is longer than [`super::MAX_FILE_BYTES`], or when it is damaged, cut short, or has
+    /// [`ImportError`] if the file is longer than [`super::MAX_FILE_BYTES`], is damaged or truncated, or has
     /// more than [`MAX_VOXELS_ACROSS`].
     pub fn decode(file: &str, bytes: &[u8]) -> Result<Self, ImportError> {
         let model = check_length(bytes).and_then(|()| Self::try_decode(file, bytes));
         in_file(file, model)
     }
 
-    /// The model of a grid: the material of a voxel is its palette index, whose colours, of index 1 first, may be named.
-    /// Those that are not are black.
+    /// Creates a model from a grid. The material of a voxel becomes its palette index; `colours` gives the
+    /// colours of the palette, index 1 first, and missing ones are black.
     ///
     /// # Errors
-    /// [`ImportError`], which names `file`, when the grid has more than [`MAX_VOXELS_ACROSS`].
+    /// [`ImportError`], which names `file`, if the grid has more than [`MAX_VOXELS_ACROSS`].
     pub fn of(
         file: &str,
         grid: &VoxelGrid<Dim3>,
@@ -95,29 +96,30 @@ impl Model {
         })
     }
 
-    /// Voxels on each of our axes, empty layers included.
+    /// Number of voxels on each axis of the engine, empty layers included.
     pub fn size(&self) -> [usize; 3] {
         self.size
     }
 
-    /// Red, green and blue by palette index, 1 first; none where the file leaves them to the program that reads it.
+    /// Red, green and blue by palette index, 1 first; `None` if the file has no palette.
     pub fn palette(&self) -> Option<&[[u8; 3]]> {
         self.palette.as_deref()
     }
 
-    /// Its shape, with voxels of edge length `voxel_size` [m].
+    /// Converts the model to voxels of edge length `voxel_size` [m].
     ///
-    /// Without `colours` the palette index of a voxel, 1 to 255 as stored in the file, is the number of
-    /// its material. Otherwise it is what `colours` says for the index, or else for the nearest colour.
+    /// Without `colours`, the palette index of a voxel, 1 to 255 as stored in the file, is its material
+    /// number. Otherwise `colours` gives the material for the index or, if the index is not named, for the
+    /// nearest colour.
     ///
     /// # Errors
-    /// [`ImportError`] when nothing is solid, when `colours` says nothing for an index, or when the
-    /// engine takes no voxels of that size.
+    /// [`ImportError`] if no voxel is solid, if `colours` has no material for an index, or if the engine
+    /// rejects `voxel_size`.
     pub fn grid(&self, voxel_size: f32, colours: &Colours) -> Result<VoxelGrid<Dim3>, ImportError> {
         in_file(&self.file, self.try_grid(voxel_size, colours))
     }
 
-    /// A file with this model alone, from which the same voxels come.
+    /// Returns a file with only this model, which gives the same voxels.
     pub fn bytes(&self) -> Vec<u8> {
         let [width, height, depth] = self.size;
         let chunk = |name: &[u8; 4], contents: &[u8], children: &[u8]| {
@@ -173,8 +175,8 @@ impl Model {
             });
         }
         let palette = self.palette.as_ref().ok_or_else(|| {
-            let expected = "a chunk RGBA with the colours that are asked for";
-            unexpected(Place::File, expected, "none: name palette indices instead")
+            let expected = "a chunk RGBA with the named colours";
+            unexpected(Place::File, expected, "none (name palette indices instead)")
         })?;
         let nearest = colours.nearest(palette[usize::from(index) - 1]);
         Ok(nearest.expect("at least one colour is named"))
@@ -224,7 +226,7 @@ impl Model {
     }
 }
 
-/// A part of a file that is read from its front; `at` is where that stands in the file.
+/// Unread part of a file; `at` is its offset in the file.
 #[derive(Clone, Copy)]
 struct Bytes<'a> {
     bytes: &'a [u8],
@@ -239,7 +241,7 @@ struct Chunk<'a> {
 }
 
 impl<'a> Bytes<'a> {
-    /// The next `count` bytes, which hold `what`.
+    /// Takes the next `count` bytes; `what` names their content in errors.
     fn take(&mut self, count: usize, what: &str) -> Result<Self, Complaint> {
         let Some((taken, rest)) = self.bytes.split_at_checked(count) else {
             let expected = format!("{count} bytes for {what}");
@@ -282,7 +284,7 @@ impl<'a> Bytes<'a> {
 }
 
 impl Chunk<'_> {
-    /// That the contents are as long as they should be for `what`.
+    /// Requires contents of `expected` bytes; `what` names them in errors.
     fn check_length(&self, expected: u64, what: &str) -> Result<(), Complaint> {
         let found = self.contents.bytes.len() as u64;
         let expected_text = format!("{expected} bytes for {what}");
@@ -290,7 +292,7 @@ impl Chunk<'_> {
         (found == expected).then_some(()).ok_or(wrong)
     }
 
-    /// The size of a model, on the axes of the file.
+    /// Returns the size of a model on the axes of the file.
     fn size(&self) -> Result<[usize; 3], Complaint> {
         self.check_length(12, "a size on three axes")?;
         let mut contents = self.contents;
@@ -314,8 +316,8 @@ impl Chunk<'_> {
         Ok(size)
     }
 
-    /// The palette indices in a model of `size` on the axes of the file, in our order on our axes. A
-    /// voxel that is given twice has the later index.
+    /// Returns the palette indices of a model of `size` (on the axes of the file) in the engine's order. If a
+    /// voxel occurs twice, the later index counts.
     fn voxels(&self, size: [usize; 3]) -> Result<Vec<u8>, Complaint> {
         let mut contents = self.contents;
         let count = contents.number("the number of voxels")?;

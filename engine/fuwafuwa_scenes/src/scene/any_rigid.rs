@@ -1,4 +1,4 @@
-//! Anything rigid, as it is written down: what stands, what is led, what falls, what only tells who is there.
+//! Rigid bodies of a scene file: fixed, kinematic, coupled, dynamic, and sensors.
 
 use super::body::LayersText;
 use super::build::rotation_of;
@@ -8,85 +8,85 @@ use super::state;
 use fuwafuwa::{Dim, MotionType, Refused, RigidBody, RigidBodyHandle, Rotation, Shape, World};
 use serde::{Deserialize, Serialize};
 
-/// Something rigid as it is written down: one of the four shapes, as it would be at the origin, and what moves it; or a
-/// `state`, which says all of it.
+/// A `[[rigid]]` table: one of the four shapes, given as if it stood at the origin, and its motion type; or
+/// only a `state`, which contains everything.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RigidText {
-    /// Everything below a plane; only where it stands still.
+    /// Half-space below a plane; only for fixed rigid bodies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub half_space: Option<HalfSpaceText>,
-    /// Middle and half widths [m].
+    /// Axis-aligned box.
     #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
     pub boxed: Option<BoxText>,
-    /// A bar with round ends.
+    /// Capsule.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub capsule: Option<CapsuleText>,
-    /// A ball.
+    /// Ball.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ball: Option<BallText>,
-    /// All of it as it was; see [`Scene::of_world`](super::Scene::of_world).
+    /// Complete state of a rigid body; see [`Scene::of_world`](super::Scene::of_world).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub state: Option<String>,
-    /// What moves it.
+    /// Motion type, default fixed.
     #[serde(default)]
     pub drive: DriveText,
-    /// Of what falls, which needs one, and of a hand [kg].
+    /// Mass [kg]; required for `drive = "free"`, allowed for `drive = "hand"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass: Option<f32>,
-    /// Of the spring of a hand [N/m].
+    /// Stiffness of the coupling spring [N/m]; only for `drive = "hand"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f32>,
-    /// Damping ratio of that.
+    /// Damping ratio of the coupling spring; only for `drive = "hand"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<f32>,
-    /// The strongest pull of that [N].
+    /// Maximum force of the coupling spring [N]; only for `drive = "hand"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<f32>,
-    /// How far it is moved from the origin [m].
+    /// Translation from the origin [m].
     #[serde(default)]
     pub at: [f32; 3],
-    /// How it is turned before that: axis times angle [rad]; in the plane about the third axis alone.
+    /// Rotation before the translation: axis times angle [rad]; in 2D only about the third axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turned: Option<[f32; 3]>,
-    /// The same to the last bit, in place of that.
+    /// Exact rotation, in place of `turned`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<Rotation>,
-    /// Of what falls [m/s].
+    /// Velocity [m/s]; only for `drive = "free"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity: Option<[f32; 3]>,
-    /// Of what falls [rad/s].
+    /// Angular velocity [rad/s]; only for `drive = "free"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spin: Option<[f32; 3]>,
-    /// Coulomb friction; 0.2, of what falls 0.5.
+    /// Coulomb friction; default 0.5 for dynamic rigid bodies, otherwise 0.2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<f32>,
-    /// Share of its speed with which it bounces off what is rigid.
+    /// Coefficient of restitution against other rigid bodies, default 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub restitution: Option<f32>,
-    /// Whether it touches nobody, and tells who comes into it.
+    /// Whether the body is a sensor: it has no contact forces and reports bodies that enter and exit.
     #[serde(default)]
     pub sensor: bool,
-    /// Whom it touches.
+    /// Contact layers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layers: Option<LayersText>,
-    /// A number of the user's.
+    /// Arbitrary number of the user.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub user_data: Option<u64>,
 }
 
-/// What moves something rigid, as it is written down: see [`fuwafuwa::MotionType`].
+/// Motion type of a rigid body; see [`fuwafuwa::Drive`].
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DriveText {
-    /// Nothing.
+    /// Fixed rigid body.
     #[default]
     Fixed,
-    /// It is where it is sent.
+    /// Kinematic rigid body: it follows its target exactly.
     Kinematic,
-    /// A spring draws it to where it is sent.
+    /// Coupled rigid body: a spring pulls it to its target.
     Hand,
-    /// It falls.
+    /// Dynamic rigid body.
     Free,
 }
 
@@ -97,7 +97,7 @@ impl RigidText {
                 state: self.state.clone(),
                 ..Self::default()
             };
-            let expected = "expected nothing beside it: it says all of something rigid";
+            let expected = "expected no other field: state is the whole rigid body";
             require(*self == alone, "state", expected)?;
             let added = world.add_rigid_body(state::rigid::<D>(state)?);
             return added.map_err(|refused| Wrong::new("state", refused));
@@ -114,7 +114,7 @@ impl RigidText {
         require(
             is_free || !moves,
             "velocity",
-            "expected of drive = \"free\" alone",
+            "allowed only with drive = \"free\"",
         )?;
         if moves {
             let [velocity, spin] = [velocity, spin].map(Option::unwrap_or_default);
@@ -158,15 +158,16 @@ impl RigidText {
         let of_hands = [self.stiffness, self.damping, self.limit];
         let is_hand = self.drive == DriveText::Hand;
         let good = is_hand || of_hands == [None; 3];
-        require(good, "stiffness", "expected of drive = \"hand\" alone")?;
+        require(good, "stiffness", "allowed only with drive = \"hand\"")?;
         let bears = is_hand || self.drive == DriveText::Free;
-        let expected = "expected of drive = \"free\" or \"hand\" alone";
+        let expected = "allowed only with drive = \"free\" or \"hand\"";
         require(bears || self.mass.is_none(), "mass", expected)?;
         Ok(match self.drive {
             DriveText::Fixed => MotionType::Fixed,
             DriveText::Kinematic => MotionType::Kinematic,
             DriveText::Free => {
-                let missing = || Wrong::new("mass", "expected the mass of what falls [kg]");
+                let missing =
+                    || Wrong::new("mass", "missing mass [kg], required with drive = \"free\"");
                 let mass = self.mass.ok_or_else(missing)?;
                 MotionType::Dynamic { mass }
             }
@@ -189,7 +190,7 @@ impl RigidText {
         })
     }
 
-    /// What there is to say of something rigid; none where words would not make the same of it.
+    /// Returns the text of a rigid body: its fields if they reproduce it exactly, otherwise its state.
     pub(super) fn of<D: Dim>(rigid: &RigidBody) -> Option<Self> {
         let words = Self::in_words::<D>(rigid);
         let is_same = words.as_ref().is_some_and(|words| words.makes::<D>(rigid));
@@ -202,7 +203,7 @@ impl RigidText {
         }
     }
 
-    /// Whether these words make something rigid as it is, but for how long it has rested.
+    /// Returns whether this text reproduces a rigid body, except for its sleep timer.
     fn makes<D: Dim>(&self, rigid: &RigidBody) -> bool {
         let Ok(mut world) = World::<D>::new(fuwafuwa::WorldConfig::default()) else {
             return false;
@@ -212,7 +213,7 @@ impl RigidText {
         };
         let made = &world.rigid_bodies()[id];
         if rigid.follows_target() {
-            // How its goal moves is seen from nowhere else.
+            // The motion of the target has no getter, so everything is compared.
             return made == rigid;
         }
         let both = [made, rigid];

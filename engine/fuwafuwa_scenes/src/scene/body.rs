@@ -1,4 +1,4 @@
-//! Bodies and materials as they are written down.
+//! Bodies and materials of a scene file.
 
 use super::error::{Wrong, require};
 use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText};
@@ -9,7 +9,7 @@ use fuwafuwa::{BodyError, Layers, Material};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// A material as it is written down: what is not named is that of [`Material::default`].
+/// A `[[material]]` table. Missing fields take the values of [`Material::default`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialText {
@@ -17,115 +17,119 @@ pub struct MaterialText {
     pub young: Option<f64>,
     /// Poisson ratio.
     pub poisson: Option<f64>,
-    /// [kg/m³]
+    /// Density [kg/m³].
     pub density: Option<f32>,
     /// Damping ratio.
     pub damping: Option<f32>,
-    /// Friction between pieces.
+    /// Coulomb friction between pieces.
     pub friction: Option<f32>,
-    /// [Pa]
+    /// Tensile strength [Pa].
     pub strength: Option<f32>,
-    /// [Pa √m]
+    /// Fracture toughness [Pa √m].
     pub toughness: Option<f32>,
-    /// The strain beyond which it keeps a dent; none when left out.
+    /// Yield strain, beyond which the deformation is permanent; purely elastic if missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub yield_strain: Option<f32>,
-    /// To how many times less than its width it is pressed for good.
+    /// Limit of permanent deformation: the factor by which the material can be flattened for good.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plastic_limit: Option<f32>,
-    /// Whether it never tears.
+    /// Whether the material never tears: infinite strength and toughness.
     #[serde(default)]
     pub unbreakable: bool,
 }
 
-/// A body as it is written down. It needs a `shape`, a `file`, `voxels` or a `state`.
+/// A `[[body]]` table. It requires exactly one of `shape`, `file`, `voxels` and `state`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyText {
-    /// What fills its grid.
+    /// Basic shape that fills the grid.
     pub shape: Option<Form>,
-    /// In place of a shape: a silhouette (.png, in 2D) or a model of MagicaVoxel (.vox, in 3D). A path
-    /// is taken from the folder of the scene.
+    /// File in place of a shape: a silhouette (.png, in 2D) or a MagicaVoxel model (.vox, in 3D). The path is
+    /// relative to the folder of the scene.
     pub file: Option<String>,
-    /// The bytes of that file in base64, once they travel with the scene.
+    /// Content of `file` in base64, once it is embedded.
     pub content: Option<String>,
-    /// In place of a shape: its voxels, one by one.
+    /// List of voxels in place of a shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voxels: Option<VoxelsText>,
-    /// In place of a shape: all of it as it was, however torn, deformed and thrown; see [`Scene::of_world`].
+    /// Complete state of a body in place of a shape, with cracks, deformation and velocity; see
+    /// [`Scene::of_world`].
     ///
     /// [`Scene::of_world`]: super::Scene::of_world
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub state: Option<String>,
-    /// Voxels across; of a silhouette at most so many, of a model it is not asked.
+    /// Voxels across; for a silhouette the maximum; not allowed for a model.
     pub n: Option<usize>,
-    /// Width of the grid [m]; with a file, of its longest side.
+    /// Width of the grid [m]; for a file, length of its longest side. Default 1.
     #[serde(default = "one")]
     pub width: f32,
-    /// Of a box or an empty grid: voxels on each axis in terms of `n`, e.g. [3.0, 1.0, 1.0].
+    /// Number of voxels on each axis in multiples of `n`, e.g. [3.0, 1.0, 1.0]; only for a box or an empty
+    /// grid.
     #[serde(default = "unit_proportions")]
     pub proportions: [f32; 3],
-    /// The number of its material, 1 when left out; not for models and where `colours` are named.
+    /// Number of the material, default 1; not allowed for models, nor for a picture with `colours`.
     pub material: Option<u8>,
-    /// The number of the material of each colour of the file (`"#d04030" = 2`, the nearest counts) or
-    /// palette index of a model (`"79" = 2`); 0 leaves it out. Without it a model's palette indices
-    /// are numbers of materials.
+    /// Material number for each colour of the file (`"#d04030" = 2`; the nearest colour decides) or palette
+    /// index of a model (`"79" = 2`); 0 leaves the voxel empty. Without `colours`, the palette indices of a
+    /// model are material numbers.
     #[serde(default)]
     pub colours: BTreeMap<String, u8>,
-    /// Changes to the grid, in their order.
+    /// Changes to the grid, applied in order.
     #[serde(default)]
     pub part: Vec<PartText>,
-    /// Its low corner [m].
+    /// Position of the low corner [m].
     #[serde(default)]
     pub at: [f32; 3],
-    /// [m/s]
+    /// Velocity [m/s].
     #[serde(default)]
     pub velocity: [f32; 3],
-    /// Turned about its low corner, before it is moved there: axis times angle [rad]; in the plane about the third alone.
+    /// Rotation about the low corner, before the translation: axis times angle [rad]; in 2D only about the
+    /// third axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turned: Option<[f32; 3]>,
-    /// How many times as strongly as on others gravity pulls on it.
+    /// Factor on gravity for this body; default 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_scale: Option<f32>,
-    /// Whom it touches.
+    /// Contact layers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layers: Option<LayersText>,
-    /// A number of the user's.
+    /// Arbitrary number of the user.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub user_data: Option<u64>,
-    /// Cut along planes this far apart on every axis [m].
+    /// Spacing of planes, on every axis, along which the body is cut [m].
     pub diced: Option<f32>,
-    /// Cut into single voxels.
+    /// Whether the body is cut into single voxels.
     #[serde(default)]
     pub crumbled: bool,
-    /// Elements of single voxels everywhere, for comparison.
+    /// True for elements of single voxels everywhere, for comparison with graded elements.
     #[serde(default)]
     pub uniform: bool,
-    /// The elastic force of the paper instead of the patch-exact one.
+    /// Whether the elastic force is that of the paper instead of the corotational virtual element law.
     #[serde(default)]
     pub paper_law: bool,
 }
 
-/// The voxels of a grid as they are written down.
+/// Voxels of a grid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VoxelsText {
-    /// Voxels on each axis; 1 on the third in 2D.
+    /// Number of voxels on each axis; 1 on the third in 2D.
     pub size: [usize; 3],
     /// Edge length of a voxel [m].
     pub voxel_size: f32,
-    /// Runs of materials, the first axis running fastest: `"12x0 4x1"` are twelve voxels that are empty and four of material 1.
+    /// Run lengths of materials, the first axis fastest: `"12x0 4x1"` is 12 empty voxels, then 4 of material
+    /// 1.
     pub runs: String,
 }
 
-/// Layers as they are written down: see [`fuwafuwa::Layers`].
+/// Contact layers as bit masks; see [`fuwafuwa::Layers`].
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LayersText {
-    /// Those that it is in, bit by bit.
+    /// Bit mask of the layers that the body is in.
     #[serde(default = "first_layer")]
     pub memberships: u32,
-    /// Those that it meets, bit by bit.
+    /// Bit mask of the layers that the body interacts with.
     #[serde(default = "all_layers")]
     pub filters: u32,
 }
@@ -140,7 +144,7 @@ impl From<LayersText> for Layers {
 }
 
 impl LayersText {
-    /// What is to be said of layers, if they are not the usual ones.
+    /// Returns the text of `layers`, or `None` for the default layers.
     pub(super) fn of(layers: Layers) -> Option<Self> {
         (layers != Layers::default()).then_some(Self {
             memberships: layers.memberships,
@@ -157,7 +161,7 @@ fn all_layers() -> u32 {
     Layers::default().filters
 }
 
-/// What fills a grid.
+/// Basic shape of a body.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
@@ -165,37 +169,37 @@ pub enum Form {
     Ball,
     /// A box.
     Box,
-    /// A ring, in 3D a torus, with a hole of half its width.
+    /// A ring (2D) or a torus (3D) with a hole of half its width.
     Ring,
-    /// A heart, its point down.
+    /// A heart with its point down.
     Heart,
-    /// A flower of five petals.
+    /// A flower with five petals.
     Flower,
-    /// Nothing: parts fill it.
+    /// An empty grid, to be filled by parts.
     Empty,
 }
 
-/// A change to the voxels whose centres lie in a shape: either `fill` or `paint`, and one of the
-/// shapes, in metres from the low corner of the body.
+/// A change to all voxels with their centres in a shape. It requires one of `fill` and `paint`, and one shape,
+/// in metres from the low corner of the body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartText {
-    /// The number of the material that fills the shape; 0 empties it.
+    /// Number of the material that fills the shape; 0 makes it empty.
     pub fill: Option<u8>,
-    /// The number of the material that what is solid in the shape becomes.
+    /// Number of the material for the solid voxels in the shape; empty voxels stay empty.
     pub paint: Option<u8>,
-    /// Everything below a plane.
+    /// Half-space below a plane.
     pub half_space: Option<HalfSpaceText>,
-    /// Middle and half widths [m].
+    /// Axis-aligned box.
     #[serde(rename = "box")]
     pub boxed: Option<BoxText>,
-    /// A bar with round ends.
+    /// Capsule.
     pub capsule: Option<CapsuleText>,
-    /// A ball.
+    /// Ball.
     pub ball: Option<BallText>,
 }
 
-/// What the name of a file ends in, as in `png`: in small letters, and empty where it has no ending.
+/// Returns the extension of a file name in lower case, e.g. `png`; empty if the name has none.
 pub fn ending_of(name: &str) -> String {
     let name = name.rsplit(['/', '\\']).next().unwrap_or(name);
     let ending = name.rsplit_once('.').map(|(_, ending)| ending);
@@ -205,7 +209,7 @@ pub fn ending_of(name: &str) -> String {
 impl MaterialText {
     pub(super) fn material(&self) -> Material {
         let usual = Material::default();
-        // Infinite strength alone would let a crack in from a weaker neighbour.
+        // Infinite strength alone does not suffice: a crack could enter from a weaker neighbour.
         let borne = |given: Option<f32>, usual| match self.unbreakable {
             true => f32::INFINITY,
             false => given.unwrap_or(usual),
@@ -225,7 +229,8 @@ impl MaterialText {
         }
     }
 
-    /// What is to be said of a material: every number, so that it stays what it is.
+    /// Returns the text of a material with all its values, so that later changes of the defaults do not
+    /// affect it.
     pub(super) fn of(material: &Material) -> Self {
         let Elasticity { young, poisson } = material.elasticity;
         let unbreakable = material.strength == f32::INFINITY && material.toughness == f32::INFINITY;
@@ -245,7 +250,7 @@ impl MaterialText {
         }
     }
 
-    /// Checks the material of this text.
+    /// Checks the ranges of the material's fields.
     pub(super) fn check(&self) -> Result<(), Wrong> {
         let material = self.material();
         let Elasticity { young, poisson } = material.elasticity;
@@ -267,7 +272,7 @@ impl MaterialText {
 }
 
 impl BodyText {
-    /// The bytes of its file.
+    /// Decodes the embedded content of the file.
     pub(super) fn file_bytes(&self) -> Result<Vec<u8>, Wrong> {
         let wrong = |reason: String| Wrong::new("content", reason);
         let missing = || wrong("expected the content of the file".into());
@@ -276,12 +281,12 @@ impl BodyText {
         bytes.map_err(|error| wrong(format!("expected base64: {error}")))
     }
 
-    /// Whether the file that it is made from is not there.
+    /// Returns whether the content of the body's file is missing.
     pub fn lacks_content(&self) -> bool {
         self.file.is_some() && self.content.is_none()
     }
 
-    /// Takes the bytes of its file along.
+    /// Embeds `bytes` as the content of the file.
     pub(super) fn embed(&mut self, bytes: &[u8]) {
         self.content = Some(BASE64.encode(bytes));
     }

@@ -1,41 +1,41 @@
-//! How much work the bodies of a scene may take, all together: who wrote it may be a stranger.
+//! Limits on the total work for all bodies of a scene, which may come from an untrusted author.
 
 use super::error::{Wrong, require};
 
-/// What is left for the bodies that are still to be built. Each part is asked before the work is begun.
+/// Remaining work for the bodies still to be built. Each step takes its share before it begins.
 pub(super) struct Budget {
     most_voxels: usize,
-    /// In the grids of the bodies so far, solid or not.
+    /// Voxels, solid or empty, in the grids built before.
     voxels: usize,
-    /// One for each part of a body and voxel.
+    /// Distance evaluations: one for each part and voxel of a body.
     pub(super) distances: usize,
-    /// One for each blade through a diced body and voxel.
+    /// Plane tests: one for each cutting plane and voxel of a diced body.
     pub(super) crossings: usize,
-    /// Pixels of pictures, each as often as colours are named for it.
+    /// Colour comparisons: one for each pixel and named colour of a picture.
     pub(super) judgements: usize,
 }
 
 impl Budget {
-    /// A budget for a scene with at most so many voxels.
+    /// Creates the budget of a scene with at most `most_voxels` voxels.
     pub(super) fn of_scene(most_voxels: usize) -> Self {
         Self {
             most_voxels,
             voxels: 0,
             distances: 1 << 27,
             crossings: 1 << 26,
-            // Four of the largest pictures with 16 colours each.
+            // Enough for four of the largest pictures with 16 colours each.
             judgements: 1 << 30,
         }
     }
 
-    /// Takes so many voxels.
+    /// Takes `count` voxels.
     pub(super) fn take_voxels(&mut self, count: usize) -> Result<(), Wrong> {
         self.check_voxels(count)?;
         self.voxels += count;
         Ok(())
     }
 
-    /// Whether there are so many voxels left.
+    /// Checks that `count` voxels are left.
     pub(super) fn check_voxels(&self, count: usize) -> Result<(), Wrong> {
         let (most, found) = (self.most_voxels, self.voxels.saturating_add(count));
         let expected = format!(
@@ -44,7 +44,7 @@ impl Budget {
         require(found <= most, "n", expected)
     }
 
-    /// Takes a distance for each of so many parts and voxels.
+    /// Takes one distance evaluation for each part and voxel.
     pub(super) fn take_distances(&mut self, parts: usize, voxels: usize) -> Result<(), Wrong> {
         let most = self.distances / voxels.max(1);
         let expected =
@@ -54,7 +54,7 @@ impl Budget {
         Ok(())
     }
 
-    /// Takes the pixels of a picture, for each of so many colours.
+    /// Takes one colour comparison for each pixel and colour.
     pub(super) fn take_pixels(&mut self, pixels: usize, colours: usize) -> Result<(), Wrong> {
         let (most, colours) = (self.judgements / pixels.max(1), colours.max(1));
         let expected = format!("expected {most} at most for {pixels} pixels, found {colours}");
@@ -68,9 +68,10 @@ impl Budget {
 mod tests {
     use super::*;
 
-    /// A thousand bodies asked for a thousand times what one may.
+    /// Regression: the limits applied to each body alone, so a thousand bodies could exceed them a
+    /// thousandfold.
     #[test]
-    fn what_bodies_ask_for_is_limited_in_its_sum() {
+    fn budget_limits_sum_over_all_bodies() {
         let mut budget = Budget::of_scene(1000);
         budget.take_voxels(600).unwrap();
         assert!(budget.take_voxels(401).is_err() && budget.take_voxels(400).is_ok());

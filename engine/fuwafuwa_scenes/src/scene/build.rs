@@ -1,4 +1,4 @@
-//! A body, from what a scene says about it.
+//! Construction of a body from its table in a scene.
 
 use super::body::BodyText;
 use super::budget::Budget;
@@ -10,7 +10,7 @@ use fuwafuwa::pyramid::Grading;
 use fuwafuwa::{Blade, BodyError, Dim, Material, Refused, Rotation, SoftBody, VoxelGrid, World};
 
 impl BodyText {
-    /// The body, where it and those before it take no more work than the budget has.
+    /// Builds the body, if the budget suffices for its work.
     pub(super) fn build<D: Dim>(
         &self,
         materials: &[Material],
@@ -23,7 +23,7 @@ impl BodyText {
             require(
                 good,
                 "state",
-                "expected nothing beside it: it says all of a body",
+                "expected no other field: state is the whole body",
             )?;
             let body = state::body::<D>(state)?;
             budget.take_voxels(body.grid().voxels().count())?;
@@ -44,7 +44,9 @@ impl BodyText {
         let mut body = body.map_err(|error| match error {
             BodyError::MissingMaterial { number } => {
                 let count = materials.len();
-                let reason = format!("voxels are of material {number}, the scene has 1 to {count}");
+                let reason = format!(
+                    "voxels have material {number}, but the scene has materials 1 to {count}"
+                );
                 Wrong::new("material", reason)
             }
             error => broken(error.to_string()),
@@ -64,7 +66,7 @@ impl BodyText {
         Ok(body.translated(self.at).with_velocity(self.velocity))
     }
 
-    /// Puts the body into a world.
+    /// Adds the body to a world.
     pub(super) fn add_to<D: Dim>(
         &self,
         world: &mut World<D>,
@@ -102,7 +104,7 @@ impl BodyText {
         let voxel_size = grid.voxel_size();
         let expected = format!("expected a voxel, {voxel_size} m, or more, found {spacing}");
         require(spacing >= voxel_size, "diced", expected)?;
-        // Each blade looks at every voxel.
+        // Each cutting plane is tested against every voxel.
         let blades = |&extent: &i32| (extent as f32 * voxel_size / spacing) as usize;
         let blades: usize = grid.size()[..D::N].iter().map(blades).sum();
         let voxels = grid.voxels().count();
@@ -114,13 +116,13 @@ impl BodyText {
     }
 }
 
-/// Axis times angle [rad] as a rotation.
+/// Converts axis times angle [rad] to a rotation.
 pub(super) fn rotation_of<D: Dim>(turned: [f32; 3]) -> Result<Rotation, Wrong> {
     let good = turned.iter().all(|k| k.is_finite());
-    let found = format!("expected axis times angle, found {turned:?}");
+    let found = format!("expected axis times angle [rad], found {turned:?}");
     require(good, "turned", found)?;
     let flat = D::N == 3 || turned[..2] == [0.0; 2];
-    let expected = "expected 0 but for the third axis in a world with dim = 2";
+    let expected = "expected 0 except on the third axis in a world with dim = 2";
     require(flat, "turned", expected)?;
     let squared = turned.iter().map(|&k| f64::from(k) * f64::from(k));
     let angle = squared.sum::<f64>().sqrt() as f32;
@@ -130,7 +132,7 @@ pub(super) fn rotation_of<D: Dim>(turned: [f32; 3]) -> Result<Rotation, Wrong> {
     })
 }
 
-/// Planes a distance apart on every axis, through the whole body.
+/// Returns planes through the whole body, `spacing` [m] apart on every axis.
 fn grid_of_blades<D: Dim>(body: &SoftBody<D>, spacing: f32) -> Vec<Blade> {
     let size = body
         .grid()

@@ -1,5 +1,5 @@
-//! The files of a scene, taken into it so that it can travel alone: whole where they are small, else what its bodies need
-//! of them.
+//! Files embedded in a scene, so that it is self-contained: small files whole, large ones reduced to the
+//! voxels of their bodies.
 
 use super::body::{BodyText, ending_of};
 use super::budget::Budget;
@@ -9,10 +9,11 @@ use crate::import::{ImportError, Model, Picture, Place, Problem};
 use fuwafuwa::grid::MAX_EXTENT;
 use std::io;
 
-/// A file of so many bytes travels as it is. A photo has a hundred times as many, and its body needs as few.
+/// Size up to which a file is embedded whole [bytes]. A photo is a hundred times as large, and its body needs
+/// no more than this.
 const SMALL: usize = 1 << 16;
 
-/// Hands out the bytes of a picture or a model that a scene names. Only who opens a scene knows where those lie.
+/// Reads a picture or a model named in a scene. The caller decides where files are searched.
 pub type Fetch<'a> = &'a dyn Fn(&str) -> io::Result<Vec<u8>>;
 
 impl BodyText {
@@ -27,7 +28,7 @@ impl BodyText {
                 problem: Problem::Unreadable(error),
             })
         })?;
-        // What is wrong with it is told when the body is built.
+        // An invalid file is embedded whole, and its error is reported when the body is built.
         let less = match bytes.len() > SMALL {
             true => self.needed_of(&file, &bytes, budget)?,
             false => None,
@@ -36,7 +37,7 @@ impl BodyText {
         Ok(())
     }
 
-    /// A file from which the same voxels come as from this one.
+    /// Returns a smaller file that gives the same voxels; `None` if the file is invalid.
     fn needed_of(
         &self,
         file: &str,

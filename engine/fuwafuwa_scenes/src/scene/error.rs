@@ -1,73 +1,73 @@
-//! What can be wrong with a scene, and where in its file that stands.
+//! Errors of scenes, with their position in the file.
 
 use crate::import::ImportError;
 use std::collections::BTreeMap;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Why a scene could not be read or built.
+/// Reason why a scene could not be read or built.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// There is no such scene or file.
+    /// No scene or file has this name.
     #[error("there is no scene or file {name:?}; the scenes are {known}")]
     Unknown {
-        /// What was asked for.
+        /// Name that was requested.
         name: String,
-        /// What there is.
+        /// Names of the built-in scenes.
         known: String,
     },
     /// The file cannot be read.
     #[error("{path}: {source}")]
     File {
-        /// The file.
+        /// Path of the file.
         path: String,
-        /// Why.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// The text is not that of a scene.
+    /// The text does not have the structure of a scene.
     #[error("{name}{}: {reason}", in_line(line))]
     Text {
-        /// The scene or file.
+        /// Name of the scene or file.
         name: String,
-        /// The line, when the fault has one.
+        /// Line of the error, if it has one.
         line: Option<usize>,
-        /// What stands there and what was expected.
+        /// Text that was found, and what was expected.
         reason: String,
     },
-    /// What it describes cannot be.
+    /// A value is invalid.
     #[error("{name}{}: {field}: {reason}", in_line(line))]
     Build {
-        /// The scene or file.
+        /// Name of the scene or file.
         name: String,
-        /// The line, when it stands in a text.
+        /// Line of the field, if the scene was read from a text.
         line: Option<usize>,
-        /// The field, with the numbers of entries counted from 1.
+        /// Path of the field; entries of lists are numbered from 1.
         field: String,
-        /// What was expected and what was found.
+        /// Value that was found, and what was expected.
         reason: String,
     },
-    /// A picture or a model that a body is made from gives no shape.
+    /// The picture or model of a body cannot be imported.
     #[error("{name}{}: {field}: {error}", in_line(line))]
     Shape {
-        /// The scene or file that asks for it.
+        /// Name of the scene or file.
         name: String,
-        /// The line, when it stands in a text.
+        /// Line of the field, if the scene was read from a text.
         line: Option<usize>,
-        /// The field, with the numbers of entries counted from 1.
+        /// Path of the field; entries of lists are numbered from 1.
         field: String,
-        /// Which file, where in it, and what was expected there.
+        /// Error of the import: file, position, and what was expected.
         error: Box<ImportError>,
     },
 }
 
 impl SceneError {
-    /// For a text that does not hold the fields of a scene.
+    /// Converts an error of the TOML parser.
     pub(super) fn of_text(name: &str, text: &str, error: &toml::de::Error) -> Self {
         let mut message = shortened(error.message(), 400);
         for (type_name, words) in IN_WORDS {
             message = message.replace(type_name, words);
         }
-        // What is missing from the text as a whole is nowhere; what is missing in a line is between letters.
+        // A field missing from the whole text has an empty span, which names no line.
         let span = error.span().filter(|span| span.end > 0);
         let line = span.map(|span| line_of(&line_starts(text), span.start));
         let reason = match line.and_then(|line| text.lines().nth(line - 1)) {
@@ -79,7 +79,7 @@ impl SceneError {
     }
 }
 
-/// What a reader who does not know Rust calls its types.
+/// Plain words for Rust types in messages of the TOML parser.
 const IN_WORDS: [(&str, &str); 6] = [
     ("expected u8", "expected a whole number from 0 to 255"),
     ("expected u32", "expected a whole number of 0 or more"),
@@ -92,7 +92,7 @@ const IN_WORDS: [(&str, &str); 6] = [
     ),
 ];
 
-/// The first letters of a text that may be as long as a file.
+/// Returns at most `most` characters of a text, with an ellipsis if it is longer.
 pub fn shortened(text: &str, most: usize) -> String {
     match text.char_indices().nth(most) {
         Some((end, _)) => format!("{}…", &text[..end]),
@@ -100,7 +100,7 @@ pub fn shortened(text: &str, most: usize) -> String {
     }
 }
 
-/// Where each line of a text begins.
+/// Returns the byte offset of the beginning of each line.
 fn line_starts(text: &str) -> Vec<usize> {
     let after = text.match_indices('\n').map(|(place, _)| place + 1);
     std::iter::once(0).chain(after).collect()
@@ -114,7 +114,7 @@ fn in_line(line: &Option<usize>) -> String {
     line.map_or(String::new(), |line| format!(", line {line}"))
 }
 
-/// A value that cannot be: where, as in `body.2.n`, and why.
+/// An invalid value: path of the field, as in `body.2.n`, and reason.
 #[derive(Debug)]
 pub(super) struct Wrong {
     path: String,
@@ -133,31 +133,31 @@ impl Wrong {
         Self { path, reason }
     }
 
-    /// A file that gives no shape.
+    /// Creates the error of a file that cannot be imported.
     pub(super) fn file(error: ImportError) -> Self {
         let (path, reason) = ("file".into(), Reason::Import(Box::new(error)));
         Self { path, reason }
     }
 
-    /// The same in an entry of a list, counted from 0.
+    /// Puts the field into entry `index`, counted from 0, of a list.
     pub(super) fn inside(self, list: &str, index: usize) -> Self {
         let path = format!("{list}.{}.{}", index + 1, self.path);
         Self { path, ..self }
     }
 
-    /// The same in a table.
+    /// Puts the field into a table.
     pub(super) fn under(self, table: &str) -> Self {
         let path = format!("{table}.{}", self.path);
         Self { path, ..self }
     }
 }
 
-/// `Ok` when a value is good.
+/// Returns an error for `field` unless `good`.
 pub(super) fn require(good: bool, field: &str, reason: impl ToString) -> Result<(), Wrong> {
     good.then_some(()).ok_or_else(|| Wrong::new(field, reason))
 }
 
-/// That every number is finite and, in a world of two dimensions, the third is 0.
+/// Requires finite components, and in 2D a third component of 0.
 pub(super) fn require_vector(dim: usize, field: &str, vector: [f32; 3]) -> Result<(), Wrong> {
     let finite = vector.iter().all(|k| k.is_finite());
     let found = format!("found {vector:?}");
@@ -167,11 +167,12 @@ pub(super) fn require_vector(dim: usize, field: &str, vector: [f32; 3]) -> Resul
     require(flat, field, format!("{expected}, {found}"))
 }
 
-/// Where a scene was read from. It is no part of what the scene says, so that any two are equal.
+/// Source of a scene: its name and the lines of its values. All origins compare equal, because they are not
+/// part of a scene's content.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Origin {
     pub(super) name: String,
-    /// By path, as in `body.2.n`.
+    /// Line numbers by path, as in `body.2.n`.
     lines: BTreeMap<String, usize>,
 }
 
@@ -197,7 +198,7 @@ impl Origin {
     }
 
     pub(super) fn error(&self, wrong: Wrong) -> SceneError {
-        // A value that is not written down: the line of the entry that it belongs to.
+        // A value that is missing from the text takes the line of the entry it belongs to.
         let mut path = wrong.path.as_str();
         let line = loop {
             match (self.lines.get(path), path.rsplit_once('.')) {
@@ -216,7 +217,7 @@ impl Origin {
                 name,
                 line,
                 field,
-                // It may quote a key or a path that is as long as the file.
+                // The reason may quote a key or a path as long as the file.
                 reason: shortened(&reason, 400),
             },
             Reason::Import(error) => SceneError::Shape {
@@ -258,7 +259,7 @@ impl Origin {
     }
 }
 
-/// `body.2.n` as it is read aloud: body 2, n.
+/// Turns the path `body.2.n` into "body 2, n".
 fn in_words(path: &str) -> String {
     let mut words = String::new();
     for word in path.split('.') {

@@ -1,4 +1,4 @@
-//! What makes a game of a scene, as it is written down.
+//! Rules of the game in a scene file.
 
 use super::error::{Wrong, require};
 use super::rigid::{BoxText, Shapes};
@@ -6,33 +6,33 @@ use fuwafuwa::{Dim, Shape};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// The table `[game]` of a level. The engine knows nothing of it; the crate `tamaire_play` plays by it.
+/// The `[game]` table of a level. The engine ignores it; the crate `tamaire_play` applies it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GameText {
-    /// What the level is called.
+    /// Name of the level.
     pub name: Words,
-    /// The region that the bars enclose.
+    /// Region enclosed by the bars, to be filled.
     pub basket: Option<BoxText>,
-    /// Share of the bodies' mass that must rest in the basket, above 0 and up to 1.
+    /// Share of the bodies' mass that must rest in the basket, above 0 and up to 1; default 0.6.
     #[serde(default = "usual_share")]
     pub share: f32,
-    /// For how long it must rest there [s].
+    /// Time for which it must rest there [s], 0 to 60; default 1.
     #[serde(default = "usual_hold")]
     pub hold: f32,
-    /// The routes by which it can be won, where they are not those that its materials allow.
+    /// Routes by which the level can be won; empty: those that its materials allow.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub routes: Vec<RouteText>,
-    /// What was made easier in it, so that what is won in it can be told from what is won without help.
-    /// The game writes it down with a round; in the file of a level it counts for nothing.
+    /// Aids that were active, so that results with aids can be told apart. The game writes them into a
+    /// recorded round; in a level file they have no effect.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub assists: BTreeSet<AssistText>,
-    /// What else one may try.
+    /// Optional goals of the level.
     #[serde(default)]
     pub wish: Vec<WishText>,
 }
 
-/// What can be made easier in a level.
+/// Aid that makes a level easier.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AssistText {
@@ -42,47 +42,47 @@ pub enum AssistText {
     Unbreakable,
 }
 
-/// The same in each language of the game.
+/// A text in each language of the game.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Words {
     /// English.
     pub en: String,
-    /// Japanese; English where it is left out.
+    /// Japanese; English is used if missing.
     pub ja: Option<String>,
 }
 
-/// A wish that a level has beyond being won: all that it names must come true.
+/// An optional goal of a level. All its conditions must hold in the same round.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WishText {
-    /// Won within so many seconds.
+    /// Maximum time to win [s].
     pub seconds: Option<f32>,
-    /// Won with at least this share of the mass still in one piece.
+    /// Minimum share of the mass that is still in one piece at the win, 0 to 1.
     pub kept: Option<f32>,
-    /// Won with at least so many pieces.
+    /// Minimum number of pieces at the win.
     pub pieces: Option<usize>,
-    /// Won by this route.
+    /// Route by which the level must be won.
     pub route: Option<RouteText>,
 }
 
-/// How a round was won.
+/// Route by which a round was won.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RouteText {
     /// Whole, by squeezing (押し込み).
     Squeeze,
-    /// By shaving until it fitted (削り).
+    /// By shaving until it fits (削り).
     Shave,
-    /// By some of both.
+    /// By a mix of both.
     Mix,
 }
 
-/// Most wishes of a level: all of them are listed with its result.
+/// Maximum number of optional goals in a level: the result screen lists them all.
 const MAX_WISHES: usize = 8;
 
 impl GameText {
-    /// Its basket, checked, where it has one.
+    /// Returns the checked basket, if there is one.
     pub(super) fn basket<D: Dim>(&self) -> Result<Option<Shape>, Wrong> {
         let shape = |text| {
             let shapes = Shapes {

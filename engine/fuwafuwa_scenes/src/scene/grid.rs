@@ -1,4 +1,4 @@
-//! The grid of a body, from what a scene says about its shape.
+//! Construction of a body's voxel grid from its table in a scene.
 
 use super::body::{BodyText, Form, PartText, VoxelsText, ending_of};
 use super::budget::Budget;
@@ -9,10 +9,10 @@ use fuwafuwa::dim::points_in;
 use fuwafuwa::grid::MAX_EXTENT;
 use fuwafuwa::{BuildError, Dim, Dim2, Dim3, Shape, VoxelGrid};
 
-/// Most colours that a body names: as many as a palette has.
+/// Maximum number of colours that a body can name: the size of a palette.
 const MAX_COLOURS: usize = 255;
 
-/// The grid of a body, if the budget lets it through.
+/// Builds the grid of a body, if the budget suffices.
 pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGrid<D>, Wrong> {
     let good = text.width > 0.0 && text.width.is_finite();
     let expected = format!("expected a positive number of metres, found {}", text.width);
@@ -39,7 +39,7 @@ pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGr
     grid.map_err(|error| Wrong::new("part", error))
 }
 
-/// Voxels before parts change them.
+/// Voxels of a grid before its parts change them.
 struct Voxels {
     size: [usize; 3],
     voxel_size: f32,
@@ -47,7 +47,8 @@ struct Voxels {
 }
 
 impl Voxels {
-    /// Those of a grid, of any dimension, with what it says is solid.
+    /// Returns the voxels of a grid, with the material that `material` returns for the grid's material
+    /// number.
     fn of<D: Dim>(grid: &VoxelGrid<D>, voxel_size: f32, material: impl Fn(u8) -> u8) -> Self {
         let materials = grid.voxels().map(|voxel| material(grid.material(voxel)));
         Self {
@@ -69,7 +70,7 @@ impl Voxels {
     }
 }
 
-/// A part of a body, checked.
+/// A checked part of a body.
 struct Part {
     shape: Shape,
     material: u8,
@@ -105,13 +106,17 @@ fn of_form<D: Dim>(text: &BodyText, form: Form, budget: &Budget) -> Result<Voxel
     check_across(n)?;
     let any_form = matches!(form, Form::Box | Form::Empty);
     let good = any_form || text.proportions == [1.0; 3];
-    require(good, "proportions", "only a box and an empty grid have any")?;
+    require(
+        good,
+        "proportions",
+        "allowed only for shape = \"box\" or \"empty\"",
+    )?;
     let mut extent = match any_form {
         true => text.proportions.map(|k| (k * n as f32).round() as usize),
         false => [n; 3],
     };
     extent[D::N..].fill(1);
-    // One that no grid takes is told as that.
+    // Extents above the maximum get the error of the grid below.
     if extent.iter().all(|&k| k <= MAX_EXTENT) {
         budget.check_voxels(extent.iter().product())?;
     }
@@ -173,7 +178,11 @@ fn of_voxels<D: Dim>(text: &VoxelsText, budget: &Budget) -> Result<Voxels, Wrong
 
 fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<Voxels, Wrong> {
     let good = text.proportions == [1.0; 3];
-    require(good, "proportions", "a file has its own")?;
+    require(
+        good,
+        "proportions",
+        "not allowed for a file, which has its own proportions",
+    )?;
     let colours = colours(text)?;
     let named = !text.colours.is_empty();
     let (name, dim) = (shortened(file, 200), D::N);
@@ -182,7 +191,11 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
             let across = text.n.unwrap_or(MAX_EXTENT);
             check_across(across)?;
             let both = named && text.material.is_some();
-            require(!both, "material", "the colours name the materials")?;
+            require(
+                !both,
+                "material",
+                "not allowed together with colours, which name the materials",
+            )?;
             let bytes = text.file_bytes()?;
             let picture = Picture::decode(&name, &bytes).map_err(Wrong::file)?;
             let pixels: usize = picture.size().iter().product();
@@ -194,7 +207,8 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
             }))
         }
         ("vox", Dim3::N) => {
-            let expected = "a model has as many voxels as it has; expected only its width";
+            let expected =
+                "not allowed for a model, which has a fixed number of voxels; expected only width";
             require(text.n.is_none(), "n", expected)?;
             let expected = "the palette indices of a model are its materials, see colours";
             require(text.material.is_none(), "material", expected)?;
@@ -217,13 +231,13 @@ pub(super) fn check_across(n: usize) -> Result<(), Wrong> {
     require((1..=MAX_EXTENT).contains(&n), "n", expected)
 }
 
-/// The edge length of a voxel [m] when the longest side is to be as long as the text says.
+/// Returns the edge length of a voxel [m], so that the longest side is `text.width`.
 fn voxel_size<D: Dim>(text: &BodyText, grid: &VoxelGrid<D>) -> f32 {
     let longest = grid.size().into_iter().max().unwrap_or(1);
     text.width / longest as f32
 }
 
-/// `"79" = 1` and `"#d04030" = 2`, read.
+/// Parses the colours of a body, such as `"79" = 1` and `"#d04030" = 2`.
 pub(super) fn colours(text: &BodyText) -> Result<Colours, Wrong> {
     let found = text.colours.len();
     let expected = format!("expected {MAX_COLOURS} at most, found {found}");

@@ -1,68 +1,69 @@
-//! What ties things together in a scene.
+//! Joints of a scene file.
 
 use super::error::{Wrong, require, require_vector};
 use fuwafuwa::{Dim, Joint, JointAnchor, JointKind, RigidBodyHandle, SoftBodyHandle, World};
 use serde::{Deserialize, Serialize};
 
-/// A joint as it is written down: two ends, and how they are tied.
+/// A `[[joint]]` table: two anchors and a joint kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JointText {
-    /// How.
+    /// Joint kind.
     pub tie: TieText,
-    /// What.
+    /// The two anchors.
     pub ends: Vec<EndText>,
-    /// Of a spring [N/m].
+    /// Spring stiffness [N/m]; required for a spring.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f32>,
-    /// Of a spring [N s/m]; 0 when left out.
+    /// Spring damping [N s/m]; default 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<f32>,
-    /// Of a spring at rest, of a rope at the most [m].
+    /// Rest length of a spring or maximum length of a rope [m]; required for both.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length: Option<f32>,
-    /// At which it breaks [N]; never when left out.
+    /// Force at which the joint breaks [N]; unbreakable if missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub breaking_force: Option<f32>,
 }
 
-/// How two ends are tied, as it is written down: see [`fuwafuwa::JointKind`].
+/// Joint kind; see [`fuwafuwa::Tie`].
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TieText {
-    /// They stay together.
+    /// The anchors coincide.
     Pin,
-    /// They are drawn to be so far apart.
+    /// A spring pulls the anchors to its rest length.
     Spring,
-    /// They are at most so far apart.
+    /// The anchors are at most `length` apart.
     Rope,
 }
 
-/// One end: a number of a body, an obstacle, a hand or something rigid, counted from 1 in its own list, or none for a place of
-/// the world.
+/// A joint anchor on a body, an obstacle, a hand or a rigid body, named by its number from 1 in its list;
+/// without any of them, a fixed point of the world.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EndText {
-    /// Which `[[body]]`.
+    /// Number of a `[[body]]`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<usize>,
-    /// Which `[[obstacle]]`.
+    /// Number of an `[[obstacle]]`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub obstacle: Option<usize>,
-    /// Which `[[hand]]`.
+    /// Number of a `[[hand]]`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hand: Option<usize>,
-    /// Which `[[rigid]]`.
+    /// Number of a `[[rigid]]`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rigid: Option<usize>,
-    /// Where in the world [m].
+    /// Position in the world [m].
     pub at: [f32; 3],
-    /// Of a body: it is held by its nodes within [m], or by the nearest.
+    /// Radius around `at` in which the nodes of a body are attached [m]; without nodes in it, the nearest
+    /// node is attached.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f32>,
 }
 
-/// What the ends of joints may be tied to, in the order of their lists.
+/// Handles of possible joint targets, in the order of their lists.
 pub(super) struct Known {
     pub(super) bodies: Vec<SoftBodyHandle>,
     pub(super) obstacles: Vec<RigidBodyHandle>,
@@ -74,7 +75,10 @@ impl JointText {
     pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>, known: &Known) -> Result<(), Wrong> {
         let [first, second] = &self.ends[..] else {
             let found = self.ends.len();
-            return Err(Wrong::new("ends", format!("expected two, found {found}")));
+            return Err(Wrong::new(
+                "ends",
+                format!("expected two anchors, found {found}"),
+            ));
         };
         let end = |index: usize, text: &EndText| {
             let end = text.end::<D>(known);
@@ -95,9 +99,13 @@ impl JointText {
         let missing = |field: &'static str| move || Wrong::new(field, "expected a number");
         let is = |tie| self.tie == tie;
         let good = is(TieText::Spring) || self.stiffness.is_none() && self.damping.is_none();
-        require(good, "stiffness", "expected of tie = \"spring\" alone")?;
+        require(good, "stiffness", "allowed only with tie = \"spring\"")?;
         let good = !is(TieText::Pin) || self.length.is_none();
-        require(good, "length", "expected of a spring or a rope alone")?;
+        require(
+            good,
+            "length",
+            "allowed only with tie = \"spring\" or \"rope\"",
+        )?;
         Ok(match self.tie {
             TieText::Pin => JointKind::Pin,
             TieText::Rope => JointKind::Rope {
@@ -111,7 +119,7 @@ impl JointText {
         })
     }
 
-    /// What there is to say of a joint whose ends are as given.
+    /// Returns the text of a joint with the given anchors.
     pub(super) fn of(joint: &Joint, ends: [EndText; 2]) -> Self {
         let (tie, stiffness, damping, length) = match joint.tie {
             JointKind::Pin => (TieText::Pin, None, None, None),
@@ -144,7 +152,7 @@ impl EndText {
         require_vector(D::N, "at", self.at)?;
         let at = self.at;
         let good = self.body.is_some() || self.radius.is_none();
-        require(good, "radius", "expected of a body alone")?;
+        require(good, "radius", "allowed only with a body")?;
         let is_rigid = [
             ("obstacle", self.obstacle, &known.obstacles),
             ("hand", self.hand, &known.hands),
@@ -152,7 +160,7 @@ impl EndText {
         ];
         let named = is_rigid.iter().filter(|(_, number, _)| number.is_some());
         let count = named.clone().count() + usize::from(self.body.is_some());
-        let expected = "expected one of body, obstacle, hand and rigid, or none for a place";
+        let expected = "expected at most one of body, obstacle, hand and rigid; none for a fixed point of the world";
         require(count <= 1, "body", expected)?;
         if let Some(number) = self.body {
             let body = nth("body", number, &known.bodies)?;

@@ -1,86 +1,87 @@
-//! What is rigid in a scene: obstacles and hands, and shapes as they are written down.
+//! Obstacles, hands and shapes of a scene file.
 
 use super::error::{Wrong, require, require_vector};
 use fuwafuwa::{Dim, MotionType, Refused, RigidBody, RigidBodyHandle, Shape, World};
 use serde::{Deserialize, Serialize};
 
-/// A rigid shape as it is written down: exactly one of the fields but `friction`.
+/// An `[[obstacle]]` table: a fixed rigid body. It requires exactly one shape.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObstacleText {
-    /// Everything below a plane.
+    /// Half-space below a plane.
     pub half_space: Option<HalfSpaceText>,
-    /// Middle and half widths [m].
+    /// Axis-aligned box.
     #[serde(rename = "box")]
     pub boxed: Option<BoxText>,
-    /// A bar with round ends.
+    /// Capsule.
     pub capsule: Option<CapsuleText>,
-    /// A ball.
+    /// Ball.
     pub ball: Option<BallText>,
-    /// Coulomb friction.
+    /// Coulomb friction, default 0.2.
     #[serde(default = "usual_friction")]
     pub friction: f32,
 }
 
-/// A plane, and what is below it.
+/// Half-space below a plane.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HalfSpaceText {
-    /// Points out of what is below; of any length but 0.
+    /// Normal of the plane, pointing out of the half-space; any length except 0.
     pub normal: [f32; 3],
     /// A point of the plane [m].
     pub point: [f32; 3],
 }
 
-/// An upright box.
+/// Axis-aligned box.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BoxText {
-    /// Its middle [m].
+    /// Centre [m].
     pub centre: [f32; 3],
-    /// Half of its width on each axis [m]; the third does not count in 2D.
+    /// Half widths on each axis [m]; the third is ignored in 2D.
     pub half: [f32; 3],
 }
 
-/// A bar with round ends.
+/// Capsule: a bar with round ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CapsuleText {
-    /// One end [m].
+    /// Centre of one end [m].
     pub from: [f32; 3],
-    /// The other end [m].
+    /// Centre of the other end [m].
     pub to: [f32; 3],
-    /// Half of its thickness [m].
+    /// Radius [m].
     pub radius: f32,
 }
 
-/// A ball.
+/// Ball.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BallText {
-    /// Its middle [m].
+    /// Centre [m].
     pub centre: [f32; 3],
-    /// [m]
+    /// Radius [m].
     pub radius: f32,
 }
 
-/// A hand as it is written down.
+/// A `[[hand]]` table: a rigid body that follows a path. It requires exactly one of `radius`, `box` and
+/// `capsule`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandText {
-    /// Of a ball (2D: a disc) [m]. Either this or one of the next two.
+    /// Radius of a ball (2D: a disc) [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f32>,
-    /// An upright box, where it would be if its goal were the origin.
+    /// Axis-aligned box, relative to the target.
     #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
     pub boxed: Option<BoxText>,
-    /// A bar with round ends, as the box.
+    /// Capsule, relative to the target.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub capsule: Option<CapsuleText>,
-    /// Whether it goes where it is sent, whatever is in the way.
+    /// Whether the hand is kinematic and follows its path exactly; otherwise a spring pulls it along.
     #[serde(default)]
     pub kinematic: bool,
-    /// Where its goal is when: seconds, then a place [m]; straight in between.
+    /// Points of the path: time [s], then target position [m]; interpolated linearly.
     pub path: Vec<[f32; 4]>,
 }
 
@@ -102,7 +103,7 @@ impl ObstacleText {
     }
 }
 
-/// The ways of writing down a shape, of which one has to be chosen.
+/// The possible shapes of a table; exactly one must be present.
 pub(super) struct Shapes<'a> {
     pub(super) half_space: Option<&'a HalfSpaceText>,
     pub(super) boxed: Option<&'a BoxText>,
@@ -111,7 +112,7 @@ pub(super) struct Shapes<'a> {
 }
 
 impl Shapes<'_> {
-    /// The shape, checked.
+    /// Returns the only shape, checked.
     pub(super) fn only<D: Dim>(&self) -> Result<Shape, Wrong> {
         let vector = |field: &str, vector| require_vector(D::N, field, vector);
         let (name, shape) = match (self.half_space, self.boxed, self.capsule, self.ball) {
@@ -154,7 +155,7 @@ impl Shapes<'_> {
     }
 }
 
-/// Most points of the path of a hand: it is gone through in each tick.
+/// Maximum number of points in the path of a hand: each tick searches it from the beginning.
 const MAX_POINTS: usize = 10_000;
 
 impl HandText {
@@ -187,7 +188,7 @@ impl HandText {
             .map_err(|reason| Wrong::new("shape", reason))
     }
 
-    /// Its shape, where it would be if its goal were the origin.
+    /// Returns the shape relative to the target.
     fn form<D: Dim>(&self) -> Result<Shape, Wrong> {
         let shapes = Shapes {
             half_space: None,
@@ -211,7 +212,7 @@ impl HandText {
         }
     }
 
-    /// Where the goal is at a time [s].
+    /// Returns the target position [m] at a time [s].
     pub fn goal(&self, seconds: f32) -> [f32; 3] {
         let place = |point: &[f32; 4]| [point[1], point[2], point[3]];
         let after = self.path.iter().position(|point| point[0] >= seconds);
@@ -228,7 +229,7 @@ impl HandText {
     }
 }
 
-/// Sends the hands of a world to goals, the first to the first. A hand whose goal is no place stays where it is.
+/// Sets the targets of a world's hands, in order. A hand with a non-finite target keeps its old one.
 pub(crate) fn send<D: Dim>(world: &mut World<D>, goals: &[[f32; 3]]) {
     let hands: Vec<RigidBodyHandle> = world.target_followers().map(|(hand, _)| hand).collect();
     for (hand, &goal) in hands.into_iter().zip(goals) {

@@ -1,25 +1,25 @@
-//! What has no words in a scene: a body or something rigid as it is, as the snapshot of a world that has nothing else.
+//! Complete states of bodies and rigid bodies: base64 snapshots of worlds with a single one.
 
 use super::error::Wrong;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::{Dim, RigidBody, SoftBody, World, WorldConfig, snapshot};
 
-/// A body, in letters.
+/// Encodes a body.
 pub(super) fn of_body<D: Dim>(body: &SoftBody<D>, settings: WorldConfig) -> Option<String> {
     let mut world = World::new(settings).ok()?;
     world.add_soft_body(body.clone());
     Some(BASE64.encode(snapshot::save(&world)))
 }
 
-/// Something rigid, in letters.
+/// Encodes a rigid body.
 pub(super) fn of_rigid<D: Dim>(rigid: &RigidBody) -> Option<String> {
     let mut world = World::<D>::new(WorldConfig::default()).ok()?;
     world.add_rigid_body(rigid.clone()).ok()?;
     Some(BASE64.encode(snapshot::save(&world)))
 }
 
-/// The body that letters say.
+/// Decodes a body.
 pub(super) fn body<D: Dim>(text: &str) -> Result<SoftBody<D>, Wrong> {
     let mut world = world::<D>(text)?;
     let id = world
@@ -29,7 +29,7 @@ pub(super) fn body<D: Dim>(text: &str) -> Result<SoftBody<D>, Wrong> {
     body.ok_or_else(|| Wrong::new("state", "expected the snapshot of a world with one body"))
 }
 
-/// The rigid thing that letters say.
+/// Decodes a rigid body.
 pub(super) fn rigid<D: Dim>(text: &str) -> Result<RigidBody, Wrong> {
     let mut world = world::<D>(text)?;
     let id = world.rigid_bodies().ids().next();
@@ -38,7 +38,7 @@ pub(super) fn rigid<D: Dim>(text: &str) -> Result<RigidBody, Wrong> {
     rigid.ok_or_else(|| {
         Wrong::new(
             "state",
-            "expected the snapshot of a world with one rigid thing",
+            "expected the snapshot of a world with one rigid body",
         )
     })
 }

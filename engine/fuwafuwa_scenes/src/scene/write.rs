@@ -1,4 +1,4 @@
-//! A world, written down.
+//! Conversion of a world to a scene.
 
 use super::any_rigid::RigidText;
 use super::body::{BodyText, LayersText, MaterialText, VoxelsText};
@@ -14,18 +14,20 @@ use fuwafuwa::{
 use fuwafuwa::{Joint, snapshot};
 use std::fmt::Write;
 
-/// Ends of a joint that were written down are where they were but for so much [m].
+/// Maximum distance between a joint anchor and its counterpart in the rebuilt scene [m].
 const NEAR: f32 = 1e-3;
 
 impl Scene {
-    /// A world as it is now, written down: settings, bodies, what is rigid, joints.
+    /// Describes the current state of a world: settings, bodies, rigid bodies, joints.
     ///
-    /// What is as it was built is said in words: a body by its voxels, materials, place and velocity, what is rigid by its
-    /// shape, its drive, how it lies and moves. What words do not make again to the bit, as a body that is torn or deformed,
-    /// or a hand on its way, is taken along whole as its `state`, which no reader understands but all of it is there. So the
-    /// world of the text has the same [hash](World::hash) but for ticks. What is not said is what passed: contacts, events,
-    /// who rests, ticks, where the paths of hands lead; a world that is to go on to the same bits is saved by
-    /// [`fuwafuwa::snapshot`].
+    /// Bodies that are as they were built are described by fields: a soft body by its voxels, materials,
+    /// position and velocity, a rigid body by its shape, motion type, pose and velocity. If fields cannot
+    /// reproduce a body bit by bit (a torn or deformed body, a hand on its way), its complete state is stored
+    /// in `state`, which is not human-readable. The world built from the scene therefore has the same
+    /// [hash](World::hash), except for ticks.
+    ///
+    /// Not included are contacts, events, sleep timers, ticks and the paths of hands. To continue a world to
+    /// the same bits, save it with [`fuwafuwa::snapshot`].
     ///
     /// ```
     /// use fuwafuwa::{Dim2, Settings, World};
@@ -40,16 +42,17 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// [`SceneError::Build`] names what cannot be said: more bodies, materials or rigid things than a scene may have, and
-    /// joints that hold what has moved since they were tied.
+    /// [`SceneError::Build`] names the cause: more bodies, materials or rigid bodies than a scene may have,
+    /// or a joint whose bodies have moved since it was attached so that the fields of a scene cannot
+    /// reproduce it.
     pub fn of_world<D: Dim>(world: &World<D>) -> Result<Self, SceneError> {
         written(world).map_err(|wrong| Origin::named("world").error(wrong))
     }
 
-    /// It as a text, if that can be read again.
+    /// Returns the scene as TOML text that [`Scene::read`] accepts.
     ///
     /// # Errors
-    /// [`SceneError::Text`] when it is longer than [`MAX_TEXT_BYTES`].
+    /// [`SceneError::Text`] if the text is longer than [`MAX_TEXT_BYTES`].
     pub fn text(&self) -> Result<String, SceneError> {
         let wrong = |reason: String| SceneError::Text {
             name: "scene".into(),
@@ -61,7 +64,7 @@ impl Scene {
         match found <= MAX_TEXT_BYTES {
             true => Ok(text),
             false => Err(wrong(format!(
-                "expected {MAX_TEXT_BYTES} bytes at most, found {found}; bodies that are torn or deformed take the most: save \
+                "expected {MAX_TEXT_BYTES} bytes at most, found {found}; torn or deformed bodies need the most space: save \
                  a snapshot instead"
             ))),
         }
@@ -106,14 +109,14 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, Wrong> {
     }
     for (index, rigid) in world.rigid_bodies().iter().enumerate() {
         let text = RigidText::of::<D>(rigid);
-        let wrong = || Wrong::new("state", "cannot be written down").inside("rigid", index);
+        let wrong = || Wrong::new("state", "the state cannot be serialised").inside("rigid", index);
         scene.rigid.push(text.ok_or_else(wrong)?);
     }
     write_joints(world, &mut scene)?;
     Ok(scene)
 }
 
-/// A body in words, or whole.
+/// Returns the text of a body: its fields if they reproduce it exactly, otherwise its state.
 fn body_text<D: Dim>(
     body: &SoftBody<D>,
     settings: WorldConfig,
@@ -143,7 +146,7 @@ fn body_text<D: Dim>(
         }
         return Ok(text);
     }
-    let unsaid = || Wrong::new("state", "cannot be written down");
+    let unsaid = || Wrong::new("state", "the state cannot be serialised");
     let state = state::of_body(body, settings).ok_or_else(unsaid)?;
     Ok(BodyText {
         state: Some(state),
@@ -151,7 +154,8 @@ fn body_text<D: Dim>(
     })
 }
 
-/// What there may be to say of a body, and the body that it makes.
+/// Describes a body by fields, and builds the body that they describe; `None` for bodies that fields cannot
+/// describe.
 fn in_words<D: Dim>(body: &SoftBody<D>) -> Option<(BodyText, SoftBody<D>)> {
     let (grid, grading) = (body.grid(), body.grading());
     if grading == Grading::Coarse || grid.left_count() < grid.solid_count() {
@@ -186,7 +190,7 @@ fn in_words<D: Dim>(body: &SoftBody<D>) -> Option<(BodyText, SoftBody<D>)> {
     Some((text, of_the_same_kind(made, body)?))
 }
 
-/// The same body with what a world says of another one.
+/// Returns `made` with the gravity scale, layers and user data of `body`.
 fn of_the_same_kind<D: Dim>(made: SoftBody<D>, body: &SoftBody<D>) -> Option<SoftBody<D>> {
     let mut world = World::new(WorldConfig::default()).ok()?;
     let id = world.add_soft_body(made);
@@ -196,7 +200,8 @@ fn of_the_same_kind<D: Dim>(made: SoftBody<D>, body: &SoftBody<D>) -> Option<Sof
     world.remove_soft_body(id).ok()
 }
 
-/// How far a body was moved as a whole [m], if that is all that happened to its places: so far that rounding gives the same.
+/// Returns the translation [m] from `made` to `body`, if it reproduces every node position exactly, rounding
+/// included.
 fn place_of<D: Dim>(made: &SoftBody<D>, body: &SoftBody<D>) -> Option<[f32; 3]> {
     let mut at = [0.0; 3];
     let mut ids = made.mesh().nodes().map(|(id, _)| id);
@@ -209,7 +214,8 @@ fn place_of<D: Dim>(made: &SoftBody<D>, body: &SoftBody<D>) -> Option<[f32; 3]> 
     };
     for axis in 0..D::N {
         let fits = |by: f32| both().all(|(from, to)| from[axis] + by == to[axis]);
-        // Where the sum was rounded least the difference is exact, but for the last bit.
+        // The difference is exact except for the last bit where the sum was rounded least: at the node
+        // nearest to 0.
         let lowest = both().min_by(|a, b| a.0[axis].abs().total_cmp(&b.0[axis].abs()));
         let (from, to) = lowest?;
         let by = to[axis] - from[axis];
@@ -219,14 +225,14 @@ fn place_of<D: Dim>(made: &SoftBody<D>, body: &SoftBody<D>) -> Option<[f32; 3]> 
     Some(at)
 }
 
-/// The numbers that materials have among those of the scene; those that are new are added.
+/// Returns the numbers of a body's materials in the list of the scene, and adds new materials to the list.
 fn numbers_in(all: &mut Vec<Material>, own: &[Material]) -> Vec<u8> {
     if all.is_empty() {
         all.extend(own);
     }
     let mut numbers = Vec::new();
     for (index, material) in own.iter().enumerate() {
-        // Where the lists begin alike, the numbers stay what they are.
+        // If both lists begin with the same materials, the numbers do not change.
         let same = all.get(index) == Some(material);
         let known = all.iter().position(|known| known == material);
         let place = if same { Some(index) } else { known };
@@ -244,21 +250,22 @@ fn runs(materials: impl Iterator<Item = u8>) -> String {
     let mut runs = String::new();
     for run in all.chunk_by(|a, b| a == b) {
         let space = if runs.is_empty() { "" } else { " " };
-        // Nothing goes wrong as letters are added.
+        // Writing to a string cannot fail.
         let _ = write!(runs, "{space}{}x{}", run.len(), run[0]);
     }
     runs
 }
 
-/// Writes joints as they were tied, or else as they are now, and looks whether that holds the same.
+/// Describes joints by their original anchors, or else by the current ones, and checks that the scene
+/// reproduces them.
 fn write_joints<D: Dim>(world: &World<D>, scene: &mut Scene) -> Result<(), Wrong> {
     if world.joints().is_empty() {
         return Ok(());
     }
     for (index, (id, joint)) in world.joints().entries().enumerate() {
         let inside = |wrong: Wrong| wrong.inside("joint", index);
-        let gone = || Wrong::new("ends", "expected both ends to be there");
-        let places = world.joint_anchor_positions(id).ok().flatten();
+        let gone = || Wrong::new("ends", "expected two existing bodies, but one was removed");
+        let places = world.joint_places(id).ok().flatten();
         let places = places.ok_or_else(|| inside(gone()))?;
         let tied = joint.ends.each_ref().map(|end| end_text(world, end, None));
         let [first, second] = &joint.ends;
@@ -268,14 +275,14 @@ fn write_joints<D: Dim>(world: &World<D>, scene: &mut Scene) -> Result<(), Wrong
             let text = JointText::of(joint, [first?, second?]);
             holds(scene, &text, places, joint).then_some(text)
         });
-        let moved = "what it holds has moved since it was tied, and words would hold something else: save a snapshot";
+        let moved = "the bodies have moved since the joint was attached, and the scene cannot reproduce it: save a snapshot instead";
         let text = fits.ok_or_else(|| inside(Wrong::new("ends", moved)))?;
         scene.joint.push(text);
     }
     Ok(())
 }
 
-/// Whether a joint in the world of a scene is as strained as it was, at the same places.
+/// Returns whether the scene reproduces the joint: the same joint kind, with anchors at the same positions.
 fn holds(scene: &Scene, text: &JointText, places: [[f32; 3]; 2], joint: &Joint) -> bool {
     let mut scene = scene.clone();
     scene.joint = vec![text.clone()];
@@ -296,7 +303,7 @@ fn only_joint<D: Dim>(world: Result<World<D>, SceneError>) -> Option<([[f32; 3];
     Some((world.joint_anchor_positions(id).ok()??, joint.clone()))
 }
 
-/// An end as it was tied, or at another place.
+/// Returns the text of a joint anchor, at its original position or at `other` [m].
 fn end_text<D: Dim>(
     world: &World<D>,
     end: &JointAnchor,
@@ -327,7 +334,7 @@ fn end_text<D: Dim>(
     })
 }
 
-/// What part of a world there is to look at.
+/// Returns a view of all nodes and dynamic rigid bodies, with a margin of 0.5 m.
 fn view_of<D: Dim>(world: &World<D>) -> [[f32; 3]; 2] {
     let nodes = world.soft_bodies().iter().flat_map(|body| {
         let ids = body.mesh().nodes().map(|(id, _)| id);

@@ -1,9 +1,9 @@
-//! Damage to files: what every import has to survive.
+//! Random damage to files, which every import must survive.
 
 use fuwafuwa::{Dim, VoxelGrid};
 use fuwafuwa_scenes::import::ImportError;
 
-/// A linear congruential generator with the constants of Knuth's MMIX: the same noise every time.
+/// A linear congruential generator with the constants of Knuth's MMIX, for reproducible noise.
 pub struct Noise(pub u64);
 
 impl Noise {
@@ -13,7 +13,7 @@ impl Noise {
         (self.0 >> 33) as usize % limit
     }
 
-    /// A copy with one to four bytes changed: a bit, to an extreme, or altogether.
+    /// Returns a copy with one to four bytes changed: a flipped bit, an extreme value, or a random one.
     pub fn damaged(&mut self, bytes: &[u8]) -> Vec<u8> {
         let mut damaged = bytes.to_vec();
         for _ in 0..=self.below(4) {
@@ -28,7 +28,7 @@ impl Noise {
     }
 }
 
-/// A damaged file may still hold a shape; if it does not, the error names the file.
+/// Checks that a damaged file gives either a shape or an error that names the file.
 pub fn check<D: Dim>(outcome: Result<VoxelGrid<D>, ImportError>) {
     match outcome {
         Ok(grid) => assert!(grid.solid_count() > 0),

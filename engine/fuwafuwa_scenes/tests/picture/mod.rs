@@ -1,8 +1,8 @@
-//! Pictures for tests to read.
+//! Pictures for tests.
 
 use png::{BitDepth, ColorType, Encoder};
 
-/// A PNG file of red, green, blue and alpha, pixel by pixel.
+/// Encodes red, green, blue and alpha of each pixel as a PNG file.
 pub fn png_of(width: u32, height: u32, samples: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, width, height);

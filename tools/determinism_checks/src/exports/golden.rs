@@ -1,36 +1,36 @@
-//! The table of scenes for a program that loads this library as a WebAssembly module.
+//! Access to the table of scenes for a program that loads this library as a WebAssembly module.
 //!
-//! Plain numbers only, so that no generated glue is needed. A scene is named by its place in
-//! [`SCENES`]; a place past the end is a trap, as is a panic in a scene.
-#![allow(unsafe_code)] // names without mangling, and nothing else
+//! The functions use plain numbers only, so that no generated glue code is needed. A scene is named by its
+//! index in [`SCENES`]. An index out of range traps, as does a panic in a scene.
+#![allow(unsafe_code)] // only for unmangled names
 
 use crate::golden::SCENES;
 
-/// How many scenes there are.
+/// Returns the number of scenes.
 #[unsafe(no_mangle)]
 pub extern "C" fn golden_count() -> usize {
     SCENES.len()
 }
 
-/// Where in memory the name of a scene begins, in UTF-8.
+/// Returns the address of a scene's name, in UTF-8.
 #[unsafe(no_mangle)]
 pub extern "C" fn golden_name(scene: usize) -> *const u8 {
     SCENES[scene].name.as_ptr()
 }
 
-/// The length of the name of a scene, in bytes.
+/// Returns the length of a scene's name in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn golden_name_length(scene: usize) -> usize {
     SCENES[scene].name.len()
 }
 
-/// Runs a scene and hashes how it ends.
+/// Runs a scene and returns the hash of its final state.
 #[unsafe(no_mangle)]
 pub extern "C" fn golden_run(scene: usize) -> u64 {
     (SCENES[scene].run)()
 }
 
-/// The hash that a scene must end in.
+/// Returns the expected hash of a scene.
 #[unsafe(no_mangle)]
 pub extern "C" fn golden_hash(scene: usize) -> u64 {
     SCENES[scene].golden
