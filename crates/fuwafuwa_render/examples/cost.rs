@@ -1,4 +1,5 @@
-//! How long a picture takes before the GPU is asked, and on it, in best milliseconds, and what it asks of the GPU.
+//! Measures the time per image before and on the GPU (best of several runs) [ms], and the draw calls and
+//! bytes per image.
 
 use fuwafuwa::Dim2;
 use fuwafuwa_render::frame::ElementColour;
@@ -8,7 +9,7 @@ use std::error::Error;
 use std::time::Instant;
 
 const SIZE: [u32; 2] = [1280, 720];
-/// So many are drawn of each.
+/// Number of images drawn per scene and look.
 const IMAGES: usize = 20;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -57,7 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The best of so many runs [ms].
+/// Returns the shortest time of `count` runs [ms].
 fn best(count: usize, mut run: impl FnMut()) -> f64 {
     let times = (0..count).map(|_| {
         let begin = Instant::now();
