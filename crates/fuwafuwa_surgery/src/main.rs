@@ -76,9 +76,7 @@ fn main() -> ExitCode {
     }
     if arguments.headless || !has_display() {
         if !arguments.headless {
-            eprintln!(
-                "fuwafuwa_surgery: no display found; running without a window"
-            );
+            eprintln!("fuwafuwa_surgery: no display found; running without a window");
         }
         return match headless::operate(&setup.wanted, &arguments.alone) {
             Ok(()) => ExitCode::SUCCESS,

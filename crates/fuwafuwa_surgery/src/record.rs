@@ -75,9 +75,7 @@ pub enum RecordError {
     #[error("{0}")]
     Refused(Refused),
     /// The replay differs from the recording.
-    #[error(
-        "the replay differs from the recording in second {second}"
-    )]
+    #[error("the replay differs from the recording in second {second}")]
     Differs {
         /// Second of the first difference, starting at 0.
         second: usize,
@@ -171,7 +169,9 @@ impl Recording {
             .take(length as u64 + 1)
             .read_to_end(&mut inside);
         if inflated.is_err() || inside.len() != length {
-            return Err(RecordError::Damaged("the contents do not inflate to the length in the header"));
+            return Err(RecordError::Damaged(
+                "the contents do not inflate to the length in the header",
+            ));
         }
         Self::read_inside(&inside)
     }
@@ -185,9 +185,7 @@ impl Recording {
         let (written, rest) = postcard::take_from_bytes::<Written>(inside)
             .map_err(|_| RecordError::Damaged("the contents cannot be decoded"))?;
         if !rest.is_empty() {
-            return Err(RecordError::Damaged(
-                "unexpected bytes after the contents",
-            ));
+            return Err(RecordError::Damaged("unexpected bytes after the contents"));
         }
         written.checked()
     }

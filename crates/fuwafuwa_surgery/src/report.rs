@@ -12,8 +12,7 @@ pub const HEADER: &str = "tick,seconds,tool,x_mm,y_mm,z_mm,force_x_n,force_y_n,f
 torque_x_mnm,torque_y_mnm,torque_z_mnm,area_mm2,work_mj,path_mm,released,pieces,grips";
 
 /// Disclaimer on every output.
-pub const NO_DEVICE: &str =
-    "Not a medical device: for demonstration and teaching only, not for diagnosis, planning or treatment.";
+pub const NO_DEVICE: &str = "Not a medical device: for demonstration and teaching only, not for diagnosis, planning or treatment.";
 
 /// Size of the plots [px].
 const SIZE: (u32, u32) = (900, 760);

@@ -55,10 +55,7 @@ fn automatic_trainees_keep_the_organ_valid_and_its_volume() {
         let whole = procedure.case().grid.solid_count() as f64 * procedure.case().millilitres();
         let parts = parts(procedure.organ(), procedure.case().millilitres());
         let sum: f64 = parts.iter().map(|part| part.millilitres).sum();
-        assert!(
-            (sum / whole - 1.0).abs() < 1e-9,
-            "{sum} of {whole} ml left"
-        );
+        assert!((sum / whole - 1.0).abs() < 1e-9, "{sum} of {whole} ml left");
     }
     assert!(
         cut > 20.0 * 1e-4,
