@@ -124,7 +124,7 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         Some(path) => film_is_gif(path)?,
         None => false,
     };
-    anyhow::ensure!(ticks > 0, "--frames must be at least 1");
+    anyhow::ensure!(ticks > 0, "--frames: expected at least 1, found 0");
     let most = fuwafuwa_scenes::recording::MAX_TICKS as u64;
     anyhow::ensure!(
         arguments.record.is_none() || ticks <= most,

@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let cost = renderer.take_cost();
             let [draws, bytes] = [cost.draws, cost.bytes].map(|sum| sum / IMAGES as u64);
             println!(
-                "{name:8} {look_name:8} {vertices:6} vertices: {gather:6.2} before the GPU, {whole:6.1} an image, {draws} draw calls, {bytes} bytes written"
+                "{name:8} {look_name:8} {vertices:6} vertices: {gather:6.2} ms before the GPU, {whole:6.1} ms per image, {draws} draw calls, {bytes} bytes written"
             );
         }
     }

@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         geometries[2][0].vertex_count()
     );
     for (name, times) in ["skin alone"].iter().chain(&PARTS).zip(&times) {
-        println!("{name}: first look {:.1} ms", times[0].1);
+        println!("{name}: first call {:.1} ms", times[0].1);
         for (state, is_torn) in [("still", false), ("torn", true)] {
             let chosen = times[1..].iter().filter(|(is_new, _)| *is_new == is_torn);
             let mut chosen: Vec<f64> = chosen.map(|(_, time)| *time).collect();

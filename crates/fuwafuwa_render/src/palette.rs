@@ -19,7 +19,7 @@ pub struct Palette {
     pub floor: [Colour; 2],
     /// Frame around the arena (half-spaces).
     pub frame: Colour,
-    /// Bounded rigid bodies such as bars, boxes and pegs.
+    /// Bounded fixed and dynamic rigid bodies such as bars, boxes and pegs.
     pub bar: Colour,
     /// Glow of the basket.
     pub basket: Colour,

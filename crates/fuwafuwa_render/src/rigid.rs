@@ -45,7 +45,7 @@ pub struct DotInstance {
 pub struct RigidShapes {
     /// Outward normal and offset [m] of each half-space.
     pub walls: Vec<[f32; 4]>,
-    /// Bars (every rigid body that is not coupled and not a sensor), then hands, then the basket.
+    /// Bars (fixed and dynamic rigid bodies, except sensors), then hands, then the basket.
     pub shapes: Vec<RigidInstance>,
     /// Number of bars in `shapes`.
     pub bar_count: u32,

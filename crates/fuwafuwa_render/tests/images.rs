@@ -35,7 +35,7 @@ fn take<'a>(
     change(&mut frame);
     let mut renderer = Renderer::new(&device, format);
     let pixels = renderer.render_to_image(&device, &queue, world, &frame, SIZE);
-    let pixels = pixels.expect("an image");
+    let pixels = pixels.expect("rendering an image");
     Some(Picture { camera, pixels })
 }
 
@@ -109,7 +109,7 @@ fn disc_is_warm_on_a_cool_floor_with_a_smooth_edge() {
         let edge = steps
             .into_iter()
             .find(|&radius| warmth(angle, radius) > half);
-        let edge = edge.expect("there is an edge");
+        let edge = edge.expect("an edge along the ray");
         let off = (edge - round).abs() / voxel;
         assert!(off < 0.25, "{off} voxels off at {degree}°");
     }
@@ -368,7 +368,7 @@ fn paint_rigid_draws_hands_but_no_bodies() {
             }
             Step::Inside(pass) => paint(&renderer, pass),
         });
-        let pixels = pixels.expect("an image");
+        let pixels = pixels.expect("rendering an image");
         let picture = Picture { camera, pixels };
         let at = |x| picture.at_pixel(camera.to_pixel([x, 0.5, 0.0], SIZE));
         Some([at(0.52), at(0.8)])
@@ -397,7 +397,7 @@ fn cost_is_equal_for_equal_pictures() {
             ..Frame::new(camera, &PALETTE)
         };
         let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE);
-        image.expect("an image");
+        image.expect("rendering an image");
         renderer.take_cost()
     };
     let bare = cost(&[]);

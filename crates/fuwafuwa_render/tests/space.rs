@@ -30,7 +30,7 @@ fn take<'a>(
     change(&mut frame);
     let mut renderer = Renderer::new(&device, format);
     let pixels = renderer.render_to_image(&device, &queue, world, &frame, SIZE);
-    let (camera, pixels) = (frame.camera, pixels.expect("an image"));
+    let (camera, pixels) = (frame.camera, pixels.expect("rendering an image"));
     Some(Picture { camera, pixels })
 }
 
@@ -114,7 +114,7 @@ fn ball_is_warm_on_a_cool_floor_with_a_round_edge_and_a_shadow() {
             let found = (0..200)
                 .map(|k| 200.0 - k as f32)
                 .find(|&radius| warmth(radius) > 0.2);
-            found.expect("there is an edge")
+            found.expect("an edge along the ray")
         })
         .collect();
     let voxel = edges.iter().sum::<f32>() / 180.0 * 2.0 / 32.0;
@@ -389,7 +389,7 @@ fn unchanged_triangles_are_not_uploaded_again() {
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let mut cost = || {
         let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE);
-        image.expect("an image");
+        image.expect("rendering an image");
         renderer.take_cost()
     };
     let [first, second, third] = [(); 3].map(|()| cost());

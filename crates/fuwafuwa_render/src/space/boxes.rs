@@ -88,7 +88,7 @@ impl Boxes {
             }
             let view = match element.cell.level {
                 0 => small_view(body, id, element, colour),
-                _ => body.element_view(id).expect("it is one of the mesh"),
+                _ => body.element_view(id).expect("the element is in the mesh"),
             };
             let form = (element.cell.level.min(1), element.children);
             let known = forms.iter().position(|known| (known.0, known.1) == form);
