@@ -107,7 +107,10 @@ mod tests {
         for corners in triangles.chunks(3) {
             let [a, b, c] = [corners[0].at, corners[1].at, corners[2].at];
             let area = 0.5 * (b - a).cross(c - a);
-            assert!(area.dot(corners[0].normal) >= 0.0, "a triangle faces into the wall");
+            assert!(
+                area.dot(corners[0].normal) >= 0.0,
+                "a triangle faces into the wall"
+            );
             for corner in corners {
                 assert!(planes.iter().all(|plane| above(plane, corner.at) > -1e-5));
             }
