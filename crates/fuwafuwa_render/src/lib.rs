@@ -1,20 +1,26 @@
 //! Draws worlds of the soft-body engine fuwafuwa with wgpu: the skin of bodies or their elements, in 2D and
 //! 3D.
+//!
 //! [`Frame`] describes as plain data how to show a world. [`Renderer::prepare`] computes the triangles and
 //! draws intermediate images. [`Renderer::paint`] draws the picture into a render pass of a window.
 //! [`Renderer::render_to_image`] draws into an image without a window.
-//! [`Renderer::render_to_image`] draws into an image without a window.
 //!
-//! Data flow: the caller provides a [`palette`] and a [`frame`] → `stairs` and `rest` smooth the shape of a
-//! body at rest → `rings` traces the current smooth outlines → `skin`, `elements` and `rigid` turn a world
-//! into vertices, without a GPU → `geometry` collects them → `gpu` draws them. [`anchor`] and [`ages`] help
-//! callers that paint on top.
+//! Data flow in 2D:
+//!
+//! 1. The caller provides a [`palette`] and a [`frame`].
+//! 2. `stairs` and `rest` smooth the shape of a body at rest.
+//! 3. `rings` traces the current smooth outlines.
+//! 4. `skin`, `elements` and `rigid` turn a world into vertices, without a GPU.
+//! 5. [`geometry`] collects the vertices.
+//! 6. `gpu` draws them.
+//!
+//! [`anchor`] and [`ages`] help callers that paint on top.
 //!
 //! [`space`] does the same for 3D worlds. It shares the palettes, frames, buffers and stages. It has its own
 //! camera, skin and renderer, because a surface cannot be handled like an outline.
 //!
-//! To draw with another renderer, disable the default feature `gpu` and use the vertices, for example of
-//! [`space::Skin`], or [`Rest`], which smooths the voxel staircase of a 2D shape.
+//! To draw with another renderer, disable the default feature `gpu` and use the vertices, for example those
+//! of [`space::Skin`]. [`Rest`] smooths the voxel staircase of a 2D shape.
 //!
 //! The limits of WebGL2, `wgpu::Limits::downlevel_webgl2_defaults`, are sufficient.
 #![deny(unsafe_code)]

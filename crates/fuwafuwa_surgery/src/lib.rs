@@ -1,10 +1,20 @@
 //! Surgery trainer: a trainee cuts a soft organ, made from a scan or a phantom, and feels the knife.
 //!
-//! Modules, each using only those above it: [`case`] organ to be operated on → [`phantom`] synthetic organ →
-//! [`tools`] tools in the hand → [`measures`] measured values → [`procedure`] simulation, tick by tick →
-//! [`trainee`] automatic operator → [`slices`] sections of the deformed organ → [`record`] recordings and
-//! bit-exact replay → [`report`] tables and plots → [`loading`] loading in a background thread → [`save`]
-//! files → [`headless`] procedures without a window → [`app`] the window.
+//! Modules, each using only those above it:
+//!
+//! - [`case`]: organ to be operated on
+//! - [`phantom`]: synthetic organ
+//! - [`tools`]: tools in the hand
+//! - [`measures`]: measured values
+//! - [`procedure`]: simulation, tick by tick
+//! - [`trainee`]: automatic operator
+//! - [`slices`]: sections of the deformed organ
+//! - [`record`]: recordings and bit-exact replay
+//! - [`report`]: tables and plots
+//! - [`loading`]: loading in a background thread
+//! - [`save`]: files
+//! - [`headless`]: procedures without a window
+//! - [`app`]: the window
 //!
 //! Window, stage, timing and devices come from the game, the crate `tamaire`.
 //!

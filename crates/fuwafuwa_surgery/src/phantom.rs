@@ -8,8 +8,12 @@
 //!             ╰────────────────╯               ╰──────────────────╯
 //! ```
 //!
-//! Material 1 is the flesh, 2 a firmer core, 3 a hard growth in the patient's *right* half, in front, and 4 a
-//! tough vessel that runs from front to back through the *left* half.
+//! Materials:
+//!
+//! 1. flesh
+//! 2. a firmer core
+//! 3. a hard growth in the patient's *right* half, in front
+//! 4. a tough vessel that runs from front to back through the *left* half
 
 use crate::case::{Case, CaseError, tissues};
 use fuwafuwa::VoxelGrid;

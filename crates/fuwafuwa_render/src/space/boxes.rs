@@ -54,7 +54,6 @@ impl Boxes {
 
     /// Adds the visible elements of the body at index `place` of the world. Elements with a centre in front
     /// of the cut are left out.
-    /// off.
     pub fn add(
         &mut self,
         place: usize,

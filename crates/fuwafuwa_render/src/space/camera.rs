@@ -11,8 +11,8 @@ pub struct Camera {
     pub target: Vector,
     /// Distance to the target [m].
     pub distance: f32,
-    /// Azimuth [rad]: rotation to the right, seen from above. At 0 the camera looks along the negative third
-    /// axis.
+    /// Azimuth of the camera around the target [rad], positive to the right. At 0 the camera looks along the
+    /// negative third axis.
     pub turn: f32,
     /// Elevation [rad]. At a right angle the camera looks straight down.
     pub rise: f32,

@@ -1,9 +1,13 @@
-//! 3D worlds, with the same data flow as in 2D.
+//! 3D worlds, with the same data flow as in 2D:
 //!
-//! The caller adds a [`camera`] to a [`crate::Frame`] → `rest` smooths the shape of a body at rest → `faces`
-//! finds its bare faces → [`skin`] computes the current smooth surface, `stickers` the marks on it; `cut` the
-//! cut planes → `boxes` the elements → `rounded` and `room` everything rigid → [`geometry`] collects them →
-//! `gpu` draws the shadow map and the sky map, then the picture.
+//! 1. The caller adds a [`camera`] to a [`crate::Frame`].
+//! 2. `rest` smooths the shape of a body at rest.
+//! 3. `faces` finds its bare faces.
+//! 4. [`skin`] computes the current smooth surface, and `stickers` the marks on it.
+//! 5. For the element view, `cut` computes the cut planes, and `boxes` the elements.
+//! 6. `rounded` and `room` turn rigid bodies into instances and polygons.
+//! 7. [`geometry`] collects the vertices.
+//! 8. `gpu` draws the shadow map and the sky map, then the picture.
 //!
 //! Up is the second axis; the sky, the lines below hands and the floor depend on it.
 

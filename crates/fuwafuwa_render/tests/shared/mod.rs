@@ -23,7 +23,7 @@ pub fn device_with(required_limits: wgpu::Limits) -> Option<(wgpu::Device, wgpu:
         required_limits,
         ..Default::default()
     };
-    Some(pollster::block_on(adapter.request_device(&descriptor)).expect("a device with the limits of WebGL2"))
+    Some(pollster::block_on(adapter.request_device(&descriptor)).expect("requested device"))
 }
 
 pub fn is_warm([red, green, blue]: Colour) -> bool {
