@@ -1,5 +1,5 @@
-//! Measures speed and memory. Machines are shared and noisy: everything that is compared runs in
-//! turns in one run, and medians and ratios are what counts.
+//! Measures speed and memory. Because machines are shared and noisy, compared cases run in turns within one
+//! run. Use medians and ratios.
 
 mod rapier;
 
@@ -17,31 +17,31 @@ use serde::Serialize;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Measure speed and memory, in this run and on this machine.
+/// Measure speed and memory in this run, on this machine.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Time the ticks of a scene, by name or file, before and after its first tear, the least of three runs of each tick,
-    /// instead of the usual list. With --against rapier: `stiff`, `soft` or
-    /// `torn` instead of all of them.
+    /// Time the ticks of a scene, given by name or file, before and after its first tear, instead of the
+    /// usual list. Each tick counts with the shortest time of three runs. With --against rapier: run only
+    /// `stiff`, `soft` or `torn`.
     #[arg(long)]
     scene: Option<String>,
-    /// Replace a value of that scene, e.g. most_substeps=8 or body.1.n=64; may be repeated.
+    /// Replace a value of that scene, for example most_substeps=8 or body.1.n=64; repeatable.
     #[arg(long = "set", requires = "scene", conflicts_with = "against")]
     changes: Vec<String>,
-    /// Space dimensions, with --n or --against.
+    /// Number of space dimensions, with --n or --against.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
     dim: u8,
-    /// Measure a ball of so many voxels across, instead of the usual list. With --against: 128 in 2D and 32 in 3D if not
-    /// given.
+    /// Measure a ball with N voxels across, instead of the usual list. With --against the default is 128 in
+    /// 2D and 32 in 3D.
     #[arg(long, value_parser = clap::value_parser!(u16).range(8..=512))]
     n: Option<u16>,
-    /// Threads for large bodies. The bits are the same on any number.
+    /// Number of threads for large bodies. It does not change results.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: u8,
-    /// With --against rapier: frames to run; 300 if not given, 240 of what is torn.
+    /// With --against rapier: number of frames; default 300, or 240 for `torn`.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     frames: Option<u16>,
-    /// What to compare with.
+    /// Opponent of a comparison.
     #[arg(long, value_enum)]
     against: Option<Rival>,
     /// Print JSON instead of a table.
@@ -51,14 +51,14 @@ pub struct Arguments {
 
 #[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
 enum Rival {
-    /// A swinging ball, with the same ball made of elements of single voxels everywhere.
+    /// A swinging ball, graded and with elements of single voxels everywhere.
     Uniform,
-    /// Bodies that fall, and one that is torn, with those of Rapier at equal peak squash. Builds Rapier, which takes
-    /// minutes, from crates/against_rapier.
+    /// Falling bodies and a torn one, against Rapier at equal peak squash. Builds Rapier from
+    /// crates/against_rapier, which takes minutes.
     Rapier,
 }
 
-/// One thing measured.
+/// Result of a measurement.
 #[derive(Clone, Debug, Serialize)]
 struct Measure {
     what: String,
@@ -68,7 +68,7 @@ struct Measure {
     worst: f64,
 }
 
-/// Measures, and prints what it found.
+/// Runs the measurements and prints the results.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     if arguments.against == Some(Rival::Rapier) {
         return rapier::run(&for_rapier(arguments));
@@ -96,7 +96,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The arguments of the program that runs Rapier.
+/// Returns the arguments for the program that runs Rapier.
 fn for_rapier(arguments: &Arguments) -> Vec<String> {
     let mut passed = vec![format!("--dim={}", arguments.dim)];
     passed.extend(arguments.n.map(|n| format!("--n={n}")));
@@ -153,20 +153,20 @@ fn one(measure: Result<Measure>) -> Result<Vec<Measure>> {
     Ok(vec![measure?])
 }
 
-/// A free body that swings: element pass and node pass together.
+/// Measures a freely swinging body: element pass and node pass together.
 fn element_time<D: Dim>(n: usize) -> Result<Measure> {
     let mut body = swinging::<D>(n, Grading::Graded)?;
     let elements = body.mesh().element_count() as f64;
     let times = timed(400, || body.advance(1.0 / 7680.0, [0.0; 3]));
-    let what = format!("{}D ball n = {n}, an element and substep", D::N);
+    let what = format!("{}D ball n = {n}, time per element and substep", D::N);
     Ok(measure(what, "ns", times, 1e9 / elements))
 }
 
-/// Releases in a ball, each at a fresh place near its surface.
+/// Measures releases in a ball, each at another point near its surface.
 fn release_time<D: Dim>(n: usize) -> Result<Measure> {
     let grid = VoxelGrid::<D>::ball(n, 1.0)?;
     let mut body = SoftBody::new(grid, &[Material::default()])?;
-    // Where the surface crosses every third column, counted from the lower left of the ball.
+    // Points where every third column crosses the surface, within the middle half of the ball.
     let columns = || (n / 4..3 * n / 4).step_by(3);
     let rows = if D::N == 3 {
         columns().collect()
@@ -188,7 +188,7 @@ fn release_time<D: Dim>(n: usize) -> Result<Measure> {
     Ok(measure(what, "us", times, 1e6))
 }
 
-/// The ticks of a scene; if it tears, those before and those after the first tear.
+/// Measures the ticks of a scene. If it tears, separates the ticks before and after the first tear.
 fn scene(name: &str, changes: &[String], progress: &Progress) -> Result<Vec<Measure>> {
     let scene = scene_at(name, changes)?;
     let name = [&[name.to_string()], changes].concat().join(" ");
@@ -198,7 +198,8 @@ fn scene(name: &str, changes: &[String], progress: &Progress) -> Result<Vec<Meas
     }
 }
 
-/// A scene runs the same every time: the least of three times of a tick is what it costs, the rest is the machine.
+/// Measures a scene several times. It runs identically each time, so the minimum time of a tick is its cost,
+/// and the rest is noise of the machine.
 fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Vec<Measure>> {
     const RUNS: u64 = 3;
     progress.expect(RUNS * scene.ticks());
@@ -220,12 +221,13 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Ve
         pieces = bodies.map(|body| body.pieces().list.len()).sum();
     }
     if whole == times.len() {
-        let what = format!("scene {name}, a tick; {pieces} pieces in the end");
+        let what = format!("scene {name}, time per tick; {pieces} pieces at the end");
         return Ok(vec![measure(what, "ms", times, 1e3)]);
     }
-    let what = format!("scene {name}, a tick from the first tear on; {pieces} pieces in the end");
+    let what =
+        format!("scene {name}, time per tick from the first tear on; {pieces} pieces at the end");
     let torn = times.split_off(whole);
-    let before = format!("scene {name}, a tick before it tears");
+    let before = format!("scene {name}, time per tick before the first tear");
     let mut measures = vec![measure(what, "ms", torn, 1e3)];
     if !times.is_empty() {
         measures.insert(0, measure(before, "ms", times, 1e3));
@@ -233,7 +235,7 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Ve
     Ok(measures)
 }
 
-/// The ticks of a soft ball on the floor, which a hand pushes down by a third.
+/// Measures the ticks of a soft ball on the floor that a hand pushes down by a third.
 fn pushed_ball<D: Dim>(n: usize) -> Result<Measure> {
     const TICKS: u16 = 60;
     let mut world = World::<D>::new(WorldConfig::default())?;
@@ -255,11 +257,14 @@ fn pushed_ball<D: Dim>(n: usize) -> Result<Measure> {
         world.step();
         times.push(start.elapsed().as_secs_f64());
     }
-    let what = format!("{}D ball n = {n} on the floor, pushed, a tick", D::N);
+    let what = format!(
+        "{}D ball n = {n} pushed onto the floor, time per tick",
+        D::N
+    );
     Ok(measure(what, "ms", times, 1e3))
 }
 
-/// What the process has taken at the most, after a ball of 128 voxels was made and moved.
+/// Measures the peak memory of the process after creating and advancing a ball of 128 voxels.
 fn memory() -> Result<Measure> {
     let mut body = swinging::<Dim3>(128, Grading::Graded)?;
     body.advance(1e-4, [0.0; 3]);
@@ -271,7 +276,7 @@ fn memory() -> Result<Measure> {
     Ok(measure(what, "MB", vec![peak / 1024.0], 1.0))
 }
 
-/// A swinging ball, graded and uniform, a tick's worth of substeps of each in turns.
+/// Measures a swinging ball, graded and uniform, in turns of a tick's worth of substeps.
 fn against_uniform(arguments: &Arguments, progress: &Progress) -> Result<Vec<Measure>> {
     let n = arguments.n.map(usize::from);
     match arguments.dim {
@@ -315,7 +320,7 @@ fn against_uniform_in<D: Dim>(n: usize, progress: &Progress) -> Result<Vec<Measu
     ])
 }
 
-/// A ball 1 m across, stretched a little so that it swings.
+/// Returns a ball 1 m across, slightly stretched so that it swings.
 fn swinging<D: Dim>(n: usize, grading: Grading) -> Result<SoftBody<D>> {
     let grid = VoxelGrid::ball(n, 1.0)?;
     let mut body =
@@ -367,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_asked_for_is_passed_on() {
+    fn for_rapier_passes_all_arguments() {
         check("bench --against rapier", &["--dim=2"]);
         check(
             "bench --against rapier --dim 3 --n 16 --scene soft --frames 9 --json",

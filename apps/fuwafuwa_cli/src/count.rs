@@ -1,4 +1,4 @@
-//! How many elements, nodes and vertices a graded body has, beside the formulas of the paper.
+//! Numbers of elements, nodes and vertices of a graded body, compared with the formulas of the paper.
 
 use crate::report::{self, Progress};
 use anyhow::{Context, Result};
@@ -9,16 +9,16 @@ use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
 use serde::Serialize;
 use std::process::ExitCode;
 
-/// Count voxels, elements, nodes and vertices, beside the formulas of the paper.
+/// Count voxels, elements, nodes and vertices and compare with the formulas of the paper.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Space dimensions: 2 or 3.
+    /// Number of space dimensions, 2 or 3.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u8).range(2..=3))]
     dim: u8,
-    /// What fills the grid; in 2D a square or a disc.
+    /// Shape in the grid; in 2D a square or a disc.
     #[arg(long, value_enum, default_value_t = Form::Ball)]
     shape: Form,
-    /// Voxels across, 3 to 1024; several may be given.
+    /// Voxels across, 3 to 1024; accepts several values.
     #[arg(long, num_args = 1.., default_values_t = [16, 32, 64],
           value_parser = clap::value_parser!(u16).range(3..=1024))]
     n: Vec<u16>,
@@ -27,7 +27,7 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Counts and prints.
+/// Counts and prints the results.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let counts = count(arguments.dim, arguments.shape, &arguments.n)?;
     if arguments.json {
@@ -38,23 +38,24 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What fills the grid.
+/// Shape in the grid.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 enum Form {
-    /// Every voxel: a square in 2D.
+    /// All voxels; a square in 2D.
     Cube,
-    /// The largest ball that fits: a disc in 2D.
+    /// Largest ball that fits; a disc in 2D.
     Ball,
 }
 
-/// How the elements are placed.
+/// Placing of the elements.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 enum Placing {
-    /// Single voxels at the surface: what can be cut.
+    /// Single voxels at the surface, for bodies that can be cut.
     Graded,
-    /// Two voxels at the surface, every lattice point there a vertex: what the paper counts.
+    /// Elements of two voxels at the surface with a vertex at every lattice point there, as counted in the
+    /// paper.
     Coarse,
 }
 
@@ -74,34 +75,34 @@ impl Placing {
     }
 }
 
-/// The counts of one body.
+/// Counts of one body.
 #[derive(Clone, Debug, Serialize)]
 struct Count {
-    /// Space dimensions.
+    /// Number of space dimensions.
     dim: u8,
-    /// What fills the grid.
+    /// Shape in the grid.
     shape: Form,
     /// Voxels across.
     n: u16,
-    /// How the elements are placed.
+    /// Placing of the elements.
     placing: Placing,
-    /// Solid voxels.
+    /// Number of solid voxels.
     voxels: usize,
-    /// Elements of all levels.
+    /// Number of elements on all levels.
     elements: usize,
-    /// Elements on each level, finest first.
+    /// Number of elements on each level, finest first.
     elements_per_level: Vec<usize>,
-    /// Nodes that elements share.
+    /// Number of nodes shared by elements.
     nodes: usize,
-    /// Vertices when each element counts its own, as the paper does in §3.1.
+    /// Number of vertices if each element has its own, as in the paper's §3.1.
     independent_vertices: usize,
-    /// The paper's count without levels, for a full box: 2^d n^d.
+    /// Count of the paper for a full box without levels: 2^d n^d.
     paper_uniform: usize,
-    /// The paper's count with levels, given for a full box in space only: 26 n².
+    /// Count of the paper for a full 3D box with levels: 26 n².
     paper_graded: Option<usize>,
 }
 
-/// Counts bodies of `n` voxels across, with both placings.
+/// Counts bodies with `n` voxels across for both placings.
 fn count(dim: u8, shape: Form, all: &[u16]) -> Result<Vec<Count>> {
     let progress = Progress::new();
     progress.expect(2 * all.len() as u64);
@@ -118,7 +119,7 @@ fn count(dim: u8, shape: Form, all: &[u16]) -> Result<Vec<Count>> {
     Ok(counts)
 }
 
-/// The counts as a table, one row a body.
+/// Formats the counts as a table, one row per body.
 fn table(counts: &[Count]) -> String {
     let levels = counts.iter().map(|count| count.elements_per_level.len());
     let levels = levels.max().unwrap_or(0);
@@ -194,7 +195,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_ball_of_32_voxels_has_the_known_number_of_elements() {
+    fn ball_of_32_voxels_has_the_known_element_count() {
         let counts = count(3, Form::Ball, &[32]).unwrap();
         assert_eq!((counts[0].voxels, counts[0].elements), (15_408, 5_048));
         assert!(table(&counts).contains("5048"));
@@ -203,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn the_plane_has_no_26_n_squared() {
+    fn paper_graded_count_is_absent_in_2d() {
         let counts = count(2, Form::Cube, &[8]).unwrap();
         assert_eq!(counts[0].paper_uniform, 256);
         assert_eq!(counts[0].paper_graded, None);

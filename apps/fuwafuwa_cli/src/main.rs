@@ -1,4 +1,4 @@
-//! Counts, figures and checks of the fuwafuwa library on the command line.
+//! Command line of the fuwafuwa library: counts, figures, checks, benchmarks, scenes and scans.
 //!
 //! ```text
 //! fuwafuwa count --dim 3 --shape ball --n 16 32 64
@@ -23,7 +23,7 @@ use anyhow::Result;
 use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
 
-/// Counts, figures and checks of graded soft bodies.
+/// Run, draw, count, check and measure graded soft bodies.
 #[derive(Parser)]
 #[command(name = "fuwafuwa", version)]
 struct Arguments {
@@ -68,12 +68,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_command_line_is_consistent() {
+    fn command_line_is_consistent() {
         Arguments::command().debug_assert();
     }
 
     #[test]
-    fn values_out_of_range_are_refused() {
+    fn out_of_range_values_are_rejected() {
         let refused = |line: &str| Arguments::try_parse_from(line.split(' ')).is_err();
         assert!(refused("fuwafuwa count --dim 4"));
         assert!(refused("fuwafuwa count --n 2"));

@@ -1,4 +1,4 @@
-//! Runs a recording again and compares the hashes.
+//! Replays a recording and compares the hashes.
 
 use anyhow::{Context, Result};
 use fuwafuwa::{Dim2, Dim3};
@@ -7,17 +7,17 @@ use fuwafuwa_scenes::recording::{MAX_BYTES, Recording};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Run a recording again and compare its hashes; the exit code is 1 when they differ.
+/// Replay a recording and compare its hashes. The exit code is 1 if they differ.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A file written by `fuwafuwa run SCENE --record FILE`.
+    /// File written by `fuwafuwa run SCENE --record FILE`.
     file: PathBuf,
     /// Print JSON instead of a sentence.
     #[arg(long)]
     json: bool,
 }
 
-/// Runs the recording.
+/// Replays the recording and prints the result.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let name = arguments.file.display().to_string();
     let text = text_of(&arguments.file, MAX_BYTES).with_context(|| name.clone())?;
@@ -31,10 +31,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     } else {
         match comparison.differs_at {
             None => println!(
-                "{name}: {} ticks, the same to the last bit",
+                "{name}: {} ticks, identical to the recording",
                 comparison.ticks
             ),
-            Some(tick) => println!("{name}: differs at tick {tick} or in the second before"),
+            Some(tick) => println!(
+                "{name}: differs from the recording at tick {tick} or in the second before it"
+            ),
         }
     }
     Ok(ExitCode::from(u8::from(comparison.differs_at.is_some())))

@@ -1,28 +1,28 @@
-//! How results are shown: aligned tables, outcomes of checks, and a bar for the slow ones.
+//! Output of results: aligned tables, outcomes of checks, and a progress bar.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
-/// A check that is faster than this shows no bar.
+/// Running time from which the progress bar is shown.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// One measured value of a check.
+/// Outcome of a check for one measured value.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
-    /// The check and its case.
+    /// Name of the check and its case.
     pub case: String,
-    /// What was measured.
+    /// Measured value.
     pub value: f64,
-    /// What the value has to fulfil.
+    /// Requirement on the value.
     pub wanted: String,
-    /// Whether it does; `None` where the value is shown for comparison only.
+    /// Whether the value meets the requirement; `None` if it is shown for comparison only.
     pub pass: Option<bool>,
 }
 
 impl Outcome {
-    /// A value that must not differ from `ideal` by more than `tolerance`.
+    /// Creates an outcome that passes if the value differs from `ideal` by at most `tolerance`.
     pub fn near(case: String, value: f64, ideal: f64, tolerance: f64) -> Self {
         Self {
             case,
@@ -32,7 +32,7 @@ impl Outcome {
         }
     }
 
-    /// A value that must lie in a range.
+    /// Creates an outcome that passes if the value lies in a range.
     pub fn within(case: String, value: f64, range: RangeInclusive<f64>) -> Self {
         Self {
             case,
@@ -42,7 +42,7 @@ impl Outcome {
         }
     }
 
-    /// A value that must not exceed a limit; one that is not a number does.
+    /// Creates an outcome that passes if the value is at most `limit`; NaN fails.
     pub fn at_most(case: String, value: f64, limit: f64) -> Self {
         Self {
             case,
@@ -52,7 +52,7 @@ impl Outcome {
         }
     }
 
-    /// A value that is shown for comparison only.
+    /// Creates an outcome without a requirement.
     pub fn shown(case: String, value: f64) -> Self {
         Self {
             case,
@@ -63,14 +63,14 @@ impl Outcome {
     }
 }
 
-/// A bar on the error stream that stays away while a check is quick.
+/// Progress bar on standard error, hidden while a check is quick.
 pub struct Progress {
     start: Instant,
     bar: ProgressBar,
 }
 
 impl Progress {
-    /// A bar that counts from now.
+    /// Creates a hidden bar and starts its timer.
     pub fn new() -> Self {
         let bar = ProgressBar::hidden();
         if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} {elapsed}") {
@@ -82,18 +82,18 @@ impl Progress {
         }
     }
 
-    /// Announces further steps.
+    /// Adds expected steps.
     pub fn expect(&self, steps: u64) {
         self.bar.inc_length(steps);
     }
 
-    /// One step is done.
+    /// Reports a finished step.
     pub fn step(&self) {
         self.bar.inc(1);
         self.look();
     }
 
-    /// Shows the bar once the check has taken too long; cheap enough for inner loops.
+    /// Shows the bar if the check has taken longer than [`PATIENCE`]. Cheap enough for inner loops.
     pub fn look(&self) {
         if self.bar.is_hidden() && self.start.elapsed() > PATIENCE {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
@@ -108,7 +108,7 @@ impl Drop for Progress {
     }
 }
 
-/// The outcomes as a table.
+/// Formats outcomes as a table.
 pub fn outcome_table(outcomes: &[Outcome]) -> String {
     let mut rows = vec![["check", "value", "wanted", ""].map(String::from).to_vec()];
     for outcome in outcomes {
@@ -132,7 +132,7 @@ pub fn outcome_table(outcomes: &[Outcome]) -> String {
     table(&rows, &[false, true, false, false])
 }
 
-/// Rows under a common head, columns padded to their widest entry; `right` aligns to the right.
+/// Formats rows with columns padded to their widest entry. `right` selects right-aligned columns.
 pub fn table(rows: &[Vec<String>], right: &[bool]) -> String {
     let width = |column: usize| {
         let entries = rows.iter().filter_map(|row| row.get(column));

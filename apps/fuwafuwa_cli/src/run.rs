@@ -1,4 +1,4 @@
-//! Runs a scene, films it, and records what its hands did.
+//! Runs a scene, films it, and records the inputs of its hands.
 
 use crate::report::Progress;
 use anyhow::{Context, Result};
@@ -14,34 +14,34 @@ use std::process::ExitCode;
 
 /// Width of a frame [px].
 const WIDTH: u32 = 420;
-/// Moments in a strip.
+/// Number of moments in a strip.
 const MOMENTS: usize = 12;
-/// Ticks between two frames of a GIF, and how long each is shown [1/100 s].
+/// Ticks between two frames of a GIF, and display time of a frame [1/100 s].
 const PACE: u64 = 3;
 const HUNDREDTHS: u16 = 5;
 
-/// Run a scene, by name or from a TOML file.
+/// Run a scene, given by name or TOML file.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A named scene (drop, drop-3d, squeeze, tear, tear-3d, diced, pile, pile-3d, stack, core,
-    /// ring-3d) or a file.
+    /// Named scene (drop, drop-3d, squeeze, tear, tear-3d, diced, pile, pile-3d, stack, core, ring-3d) or
+    /// file.
     scene: String,
-    /// How many ticks of 1/60 s to run; as long as the scene says when left out.
+    /// Number of ticks of 1/60 s; defaults to the duration in the scene.
     #[arg(long)]
     frames: Option<u64>,
-    /// Film it: a strip of moments (.png) or an animation (.gif).
+    /// Film the scene: a strip of moments (.png) or an animation (.gif).
     #[arg(long)]
     film: Option<PathBuf>,
-    /// Write the last moment of a scene of the plane as SVG beside the film, or as SCENE.svg.
+    /// Write the last moment of a 2D scene as SVG beside the film, or as SCENE.svg.
     #[arg(long)]
     svg: bool,
     /// Show elements by level instead of the skin.
     #[arg(long)]
     elements: bool,
-    /// Replace a value of the scene, e.g. material.young=9000 or body.1.n=32; may be repeated.
+    /// Replace a value of the scene, for example material.young=9000 or body.1.n=32; repeatable.
     #[arg(long = "set")]
     changes: Vec<String>,
-    /// Write a recording that `fuwafuwa replay` runs again.
+    /// Write a recording for `fuwafuwa replay`.
     #[arg(long)]
     record: Option<PathBuf>,
     /// Print JSON instead of a table.
@@ -49,7 +49,7 @@ pub struct Arguments {
     json: bool,
 }
 
-/// What became of a scene.
+/// Final state of a scene.
 #[derive(Debug, Serialize)]
 struct Summary {
     scene: String,
@@ -63,9 +63,9 @@ struct Summary {
     hash: String,
 }
 
-/// A world that can be painted.
+/// World that can be painted.
 trait Filmed: Dim {
-    /// The world as it is now, with its view `low` to `high` [m].
+    /// Paints the current state of a world, in the view of its scene.
     fn painted(world: &World<Self>, scene: &Scene, elements: bool) -> Result<Painter>;
 }
 
@@ -124,11 +124,11 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         Some(path) => film_is_gif(path)?,
         None => false,
     };
-    anyhow::ensure!(ticks > 0, "--frames must be at least 1");
+    anyhow::ensure!(ticks > 0, "--frames: expected at least 1, found 0");
     let most = fuwafuwa_scenes::recording::MAX_TICKS as u64;
     anyhow::ensure!(
         arguments.record.is_none() || ticks <= most,
-        "--record takes {most} ticks at most, expected fewer --frames"
+        "--frames: expected at most {most} ticks with --record, found {ticks}"
     );
     for path in arguments.film.iter().chain(&arguments.record) {
         check_folder(path)?;
@@ -165,7 +165,7 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
     if let Some(error) = failure {
         return Err(error);
     }
-    let world = last.context("the scene has no ticks")?;
+    let world = last.context("the scene ran no ticks")?;
     if let Some(path) = &arguments.film {
         let bytes = if is_gif {
             film::gif(&frames, HUNDREDTHS)?
@@ -226,21 +226,24 @@ fn film_is_gif(path: &Path) -> Result<bool> {
     match path.extension().and_then(|end| end.to_str()) {
         Some("png") => Ok(false),
         Some("gif") => Ok(true),
-        _ => anyhow::bail!("{}: a film ends in .png or .gif", path.display()),
+        _ => anyhow::bail!(
+            "{}: expected a film name ending in .png or .gif",
+            path.display()
+        ),
     }
 }
 
-/// Better to hear of a missing folder before a long run than after it.
+/// Checks that the folder of a file exists, so that a long run does not fail at its end.
 pub fn check_folder(path: &Path) -> Result<()> {
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
     let exists = folder.is_none_or(Path::is_dir);
-    anyhow::ensure!(exists, "{}: there is no such folder", path.display());
+    anyhow::ensure!(exists, "{}: no such folder", path.display());
     Ok(())
 }
 
-/// Writes a file and says so.
+/// Writes a file and prints its name.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     std::fs::write(path, bytes).with_context(|| path.display().to_string())?;
     eprintln!("{}", path.display());
@@ -251,7 +254,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
 mod tests {
     use super::*;
 
-    /// Arguments for a small disc, filmed to a file in a folder.
+    /// Arguments for filming a small disc to a file.
     fn filmed(frames: u64, film: PathBuf) -> Arguments {
         Arguments {
             scene: "drop".into(),
@@ -266,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn the_shortest_run_has_a_film() {
+    fn run_of_one_tick_writes_a_film() {
         let folder = tempfile::tempdir().unwrap();
         for name in ["film.gif", "film.png"] {
             let path = folder.path().join(name);
@@ -276,12 +279,12 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_written_is_refused_before_the_run() {
+    fn invalid_outputs_are_rejected_before_the_run() {
         let refused = |frames, film: &str| {
             let error = run(&filmed(frames, film.into())).unwrap_err();
             error.to_string()
         };
-        // So long a run would never end.
+        // A run this long would never end.
         assert!(refused(u64::MAX, "nowhere/film.gif").contains("no such folder"));
         assert!(refused(u64::MAX, "film.mp4").contains(".png or .gif"));
         assert!(refused(0, "film.gif").contains("at least 1"));

@@ -1,4 +1,4 @@
-//! Scans of patients become bodies: what is in them, and files that other commands open.
+//! Converts medical scans to bodies: prints their contents and writes files that other commands open.
 
 use crate::report::{self, Progress};
 use crate::run::{check_folder, write};
@@ -10,10 +10,10 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Steps of the bar for each scan, and for the organ.
+/// Progress steps per scan, and for the organ.
 const STEPS: u64 = 100;
 
-/// Colours of materials in a model, from number 1 on and again from the beginning.
+/// Colours of materials in a model, starting at number 1; they repeat after the last.
 const COLOURS: [[u8; 3]; 6] = [
     [214, 158, 150],
     [242, 228, 208],
@@ -23,26 +23,27 @@ const COLOURS: [[u8; 3]; 6] = [
     [150, 176, 132],
 ];
 
-/// Make voxels with materials of medical scans (NIfTI, .nii or .nii.gz): of one by intensities or labels, of several
-/// as maps that say how probable each material is. This is no medical device.
+/// Convert medical scans (NIfTI, .nii or .nii.gz) to voxels with materials: a single scan by intensities or
+/// labels, several scans as probability maps of one material each. This is not a medical device.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Scans; without thresholds and labels a map for each material, number 1 first.
+    /// Scans; without thresholds and labels, one map per material, number 1 first.
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// Voxels along the longest side, 8 to 256.
+    /// Number of voxels along the longest side, 8 to 256.
     #[arg(long, default_value_t = 64)]
     resolution: usize,
-    /// Intensities of a material, as in 40:120=1 or, without an end, 120:=2; may be repeated, the first counts.
+    /// Intensity range of a material, such as 40:120=1 or, without an upper end, 120:=2; repeatable, the
+    /// first match counts.
     #[arg(long = "threshold", conflicts_with = "labels")]
     thresholds: Vec<Threshold>,
-    /// A label and its material, as in 17=1; may be repeated.
+    /// Label and its material, such as 17=1; repeatable.
     #[arg(long = "label")]
     labels: Vec<Label>,
-    /// Fill what is enclosed.
+    /// Fill enclosed cavities.
     #[arg(long)]
     fill: bool,
-    /// Write a model (.vox), or a scene (.toml) with its model beside it, which `fuwafuwa run` runs.
+    /// Write a model (.vox), or a scene (.toml) for `fuwafuwa run` with its model beside it.
     #[arg(long)]
     out: Option<PathBuf>,
     /// Print JSON instead of a table.
@@ -50,14 +51,14 @@ pub struct Arguments {
     json: bool,
 }
 
-/// What came of scans.
+/// Summary of the imported scans.
 #[derive(Debug, Serialize)]
 struct Summary {
     scans: Vec<Found>,
-    /// To the right, up and to the back [mm].
+    /// Extent to the right, up and to the back [mm].
     sides: [f64; 3],
     grid: [i32; 3],
-    /// [mm]
+    /// Voxel size [mm].
     voxel: f32,
     materials: Vec<Share>,
 }
@@ -66,9 +67,9 @@ struct Summary {
 struct Found {
     file: String,
     size: [usize; 3],
-    /// [mm]
+    /// Voxel spacing [mm].
     spacing: [f64; 3],
-    /// What tells where in the patient it is.
+    /// Header field that gives the position in the patient.
     placed_by: &'static str,
     lowest: f32,
     highest: f32,
@@ -81,7 +82,7 @@ struct Share {
     millilitres: f64,
 }
 
-/// Reads the scans, says what is in them, and writes what was asked for.
+/// Reads the scans, prints a summary, and writes the requested files.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let out = arguments.out.as_deref();
     if let Some(out) = out {
@@ -112,7 +113,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     }
     let is_unplaced = |scan: &Scan| scan.placement().source() == Source::Spacing;
     if scans.iter().any(is_unplaced) {
-        eprintln!("warning: a scan does not say what of it is left and what is right");
+        eprintln!("warning: at least one scan has no orientation: left and right may be swapped");
     }
     if let Some(out) = out {
         write_files(out, &organ, &summary)?;
@@ -120,7 +121,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Moves the bar by as many steps as are done of those of one part.
+/// Returns a callback that advances the bar to a fraction of the steps of one part.
 fn follow(progress: &Progress) -> impl FnMut(f32) {
     let mut shown = 0;
     move |done| {
@@ -201,7 +202,7 @@ fn is_scene(out: &Path) -> Result<bool> {
     match out.extension().and_then(|end| end.to_str()) {
         Some("vox") => Ok(false),
         Some("toml") => Ok(true),
-        _ => anyhow::bail!("{}: expected a name in .vox or .toml", out.display()),
+        _ => anyhow::bail!("{}: expected a name ending in .vox or .toml", out.display()),
     }
 }
 
@@ -217,18 +218,18 @@ fn write_files(out: &Path, organ: &Organ, summary: &Summary) -> Result<()> {
     Ok(())
 }
 
-/// The organ, as large as it is, lets itself down on a table a finger's breadth below.
+/// Returns a scene in which the organ, in its real size, sinks onto a table 1 cm below.
 fn scene(model: &str, summary: &Summary) -> String {
     let last = summary.materials.last().map_or(1, |share| share.material);
     let [right, up, back] = summary.grid.map(|k| k as f32 * summary.voxel / 1000.0);
     let longest = right.max(up).max(back);
     let around = 0.6 * longest;
     let mut text = format!(
-        "# Made by `fuwafuwa scan`. This is no medical device.\n\
+        "# Made by `fuwafuwa scan`. This is not a medical device.\n\
          dim = 3\n\
          seconds = 2.0\n\
          view = [[{:?}, {:?}, {:?}], [{:?}, {:?}, {:?}]]\n\
-         \n# All materials are soft and heavy as organs are, hard to tear, and alike until somebody says more.\n",
+         \n# All materials are as soft and dense as organs, hard to tear, and equal until edited.\n",
         0.5 * right - around,
         0.5 * up - around,
         0.5 * back - around,
@@ -263,7 +264,7 @@ mod tests {
     use fuwafuwa::Dim3;
     use fuwafuwa_scenes::disk::scene_at;
 
-    /// A cube of nine voxels of 2 mm, and around it nothing; NIfTI-1 as it is laid out.
+    /// NIfTI-1 file with a cube of 9³ voxels of 2 mm, surrounded by empty voxels.
     fn cube() -> Vec<u8> {
         let mut bytes = vec![0; 352 + 13 * 13 * 13];
         bytes[..4].copy_from_slice(&348_i32.to_le_bytes());
@@ -287,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scan_becomes_a_scene_that_can_be_built() {
+    fn scan_converts_to_a_scene_that_builds() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("cube.nii");
         std::fs::write(&file, cube()).unwrap();
@@ -304,8 +305,8 @@ mod tests {
         run(&arguments).unwrap();
         let scene = scene_at(&out.display().to_string(), &[]).unwrap();
         let world = scene.build::<Dim3>().unwrap();
-        let body = world.soft_bodies().iter().next();
-        let grid = body.expect("the scene has one").grid();
+        let body = world.bodies().iter().next();
+        let grid = body.expect("the scene has a body").grid();
         assert_eq!(grid.solid_count(), 729);
         assert_eq!(grid.material([5; 3]), 2);
         assert!((grid.voxel_size() - 0.002).abs() < 1e-6);

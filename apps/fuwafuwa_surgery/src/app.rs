@@ -1,4 +1,4 @@
-//! The window: the organ, slices beside it, and what is measured below.
+//! Window with the organ, slices beside it and measurements below.
 
 mod bar;
 mod curves;
@@ -30,27 +30,27 @@ use tamaire::app::NoGpu;
 use tamaire::look::{SpaceStage, Theme, View, dress};
 use tamaire::platform::{Clock, GpuWatch};
 
-/// How far the mouse turns the camera [rad/point], and keys and sticks [rad/s].
+/// Camera rotation by mouse [rad/point], and by keys and sticks [rad/s].
 const DRAG: f32 = 0.006;
 const LOOK: f32 = 1.2;
-/// How far the wheel moves the hand [m/point].
+/// Movement of the hand by the wheel [m/point].
 const WHEEL: f32 = 0.000_03;
-/// A sentence stays for so long [s].
+/// Display time of a message [s].
 const STAYS: f64 = 7.0;
 
-/// What a window is opened with.
+/// Configuration of a window.
 pub struct Setup {
-    /// What lies on the table.
+    /// Organ or recording to open first.
     pub wanted: Wanted,
-    /// Which material is where in scans that are dropped onto it.
+    /// Assignment of materials for scans that are dropped onto the window.
     pub segmentation: Segmentation,
-    /// How organs are made of them.
+    /// Options for making organs from these scans.
     pub options: Options,
-    /// Where to save.
+    /// Folder for saved files.
     pub folder: PathBuf,
 }
 
-/// The window.
+/// State of the window.
 pub struct App {
     setup: Setup,
     loading: Option<Loading>,
@@ -63,16 +63,16 @@ pub struct App {
     colours: Palette,
     clock: Clock,
     before: f64,
-    /// What is said, and until when.
+    /// Current message and the time at which it disappears [s].
     said: Option<(String, f64)>,
     gpu: GpuWatch,
 }
 
 impl App {
-    /// In a window of eframe's.
+    /// Creates the app in an eframe window.
     ///
     /// # Errors
-    /// When the window has no GPU, not even one in software.
+    /// [`NoGpu`] if the window has no GPU, not even a software adapter.
     pub fn new(
         context: &eframe::CreationContext<'_>,
         setup: Setup,
@@ -99,7 +99,7 @@ impl App {
         Ok(app)
     }
 
-    /// An eye on what it is drawn with.
+    /// Returns a watch on the GPU that the app draws with.
     pub fn gpu(&self) -> GpuWatch {
         self.gpu.clone()
     }
@@ -108,7 +108,7 @@ impl App {
         self.said = Some((text, self.clock.now() + STAYS));
     }
 
-    /// Begins to open something; what lies on the table stays until it is there.
+    /// Starts loading. The current session stays until loading has finished.
     fn open(&mut self, wanted: Wanted) {
         match Loading::begin(wanted) {
             Ok(loading) => self.loading = Some(loading),
@@ -134,7 +134,7 @@ impl App {
             Err(error) => {
                 self.say(error.to_string());
                 if self.session.is_none() {
-                    // Something has to lie there.
+                    // The table must not stay empty.
                     self.open(Wanted::Phantom(self.setup.options.resolution));
                 }
             }
@@ -148,7 +148,7 @@ impl App {
         self.session = Some(session);
     }
 
-    /// What was dropped onto the window.
+    /// Opens files that were dropped onto the window.
     fn hear_files(&mut self, ctx: &egui::Context) {
         let files = ctx.input(|input| input.raw.dropped_files.clone());
         let files: Vec<PathBuf> = files.iter().map(|file| file.path().into()).collect();
@@ -201,7 +201,7 @@ impl App {
         }
     }
 
-    /// The same organ, untouched.
+    /// Restarts with the same organ, untouched.
     fn again(&mut self) {
         let Some(session) = &self.session else {
             return;
@@ -216,7 +216,7 @@ impl App {
         }
     }
 
-    /// Lets time pass for the hand and for the organ.
+    /// Advances the hand and the organ.
     fn pass(&mut self, ctx: &egui::Context, seconds: f32) {
         let focused = ctx.input(|input| input.focused);
         let is_typing = ctx.egui_wants_keyboard_input();
@@ -279,12 +279,12 @@ impl App {
     fn cut_forces(&mut self) {
         let is_cut = self.devices.cut_or_restore();
         self.say(match is_cut {
-            true => "All forces are off. F12 switches them on again.".into(),
-            false => "Forces are on again.".into(),
+            true => "All forces are off. Press F12 to switch them on again.".into(),
+            false => "Forces are on.".into(),
         });
     }
 
-    /// Keys that mean something once.
+    /// Handles keys that act once per press.
     fn hear_presses(&mut self, ctx: &egui::Context) {
         let pressed = |key| ctx.input(|input| input.key_pressed(key));
         let keys = [Key::Num1, Key::Num2, Key::Num3];
@@ -361,7 +361,7 @@ impl App {
         }
     }
 
-    /// How far something is that is being opened, and what is said.
+    /// Shows the loading progress and the current message.
     fn show_words(&mut self, ui: &Ui, rect: Rect) {
         let painter = ui.painter().with_clip_rect(rect);
         if let Some(loading) = &self.loading {
@@ -375,7 +375,7 @@ impl App {
             painter.rect_filled(done, 13.0, self.theme.accent);
             let at = whole.center_top() - vec2(0.0, 8.0);
             let (font, ink) = (FontId::proportional(20.0), self.theme.ink);
-            let text = "The organ is laid on the table";
+            let text = "Loading the organ";
             painter.text(at, Align2::CENTER_BOTTOM, text, font, ink);
         }
         if self
@@ -386,7 +386,7 @@ impl App {
             self.said = None;
         }
         let played = self.session.as_ref().and_then(Session::played);
-        let replay = played.map(|share| format!("Recording: {:.0} %", 100.0 * share));
+        let replay = played.map(|share| format!("Replay: {:.0} %", 100.0 * share));
         let said = self.said.as_ref().map(|(text, _)| text.clone());
         if let Some(text) = said.or(replay) {
             let galley = tamaire::screens::fitted(
@@ -423,7 +423,7 @@ impl eframe::App for App {
     }
 }
 
-/// What some files are: a recording, or scans.
+/// Returns what to load for some files: a recording if one is among them, otherwise scans.
 pub fn wanted(files: Vec<PathBuf>, setup: &Setup) -> Wanted {
     let is_recording = |file: &PathBuf| file.extension().is_some_and(|end| end == ENDING);
     match files.iter().find(|file| is_recording(file)) {
@@ -436,8 +436,8 @@ pub fn wanted(files: Vec<PathBuf>, setup: &Setup) -> Wanted {
     }
 }
 
-/// The mouse points at the height of the hand; the wheel raises and lowers it, the left button grips, the right one looks
-/// around.
+/// Handles the mouse. It points at the height of the hand, the wheel raises and lowers the hand, the left
+/// button grips and the right button turns the camera.
 fn hear_mouse(ctx: &egui::Context, view: &View, session: &mut Session, wishes: &mut Wishes) {
     let (at, delta, grips, turns, wheel, twice) = ctx.input(|input| {
         let pointer = &input.pointer;
@@ -465,7 +465,7 @@ fn hear_mouse(ctx: &egui::Context, view: &View, session: &mut Session, wishes: &
     wishes.grips |= grips;
 }
 
-/// Keys that are held; returns how fast the camera is to turn.
+/// Handles held keys and returns the camera's turning speed as a fraction of [`LOOK`].
 fn hear_keys(ctx: &egui::Context, wishes: &mut Wishes) -> Vec2 {
     ctx.input(|input| {
         let held = |keys: &[Key]| f32::from(u8::from(keys.iter().any(|key| input.key_down(*key))));

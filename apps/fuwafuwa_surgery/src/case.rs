@@ -1,4 +1,4 @@
-//! What is operated on: the voxels of an organ, what they are made of, and where in the patient they lay.
+//! The organ to be operated on: its voxels, their materials, and their position in the patient.
 
 use fuwafuwa::world::TICK;
 use fuwafuwa::{
@@ -7,54 +7,54 @@ use fuwafuwa::{
 };
 use fuwafuwa_scan::Organ;
 
-/// An organ lies in saline: of its weight so much is left. A brain of 1400 g weighs some 50 g in its fluid.
+/// Remaining fraction of the weight of an organ in saline. A brain of 1400 g weighs some 50 g in its fluid.
 const AFLOAT: f32 = 0.04;
-/// Share of its speed that everything loses to the saline in a second [1/s].
+/// Drag of the saline: relative loss of speed [1/s].
 const DRAG: f32 = 2.0;
-/// Of its height so much lies in a mould that holds it.
+/// Fraction of the organ's height that is fixed in a mould.
 const HELD: f32 = 0.25;
-/// Up to so many voxels along its longest side an organ has the first number of substeps, beyond the second: what is fine
-/// would take too long otherwise.
+/// Maximum number of voxels along the longest side for the first number of substeps. Finer organs get the
+/// second number, because they would take too long otherwise.
 const FINE: usize = 40;
 const SUBSTEPS: [u32; 2] = [16, 8];
-/// Most letters of the name of a case.
+/// Maximum length of a case name [characters].
 const MOST_LETTERS: usize = 200;
-/// Most materials of one: those that [`tissues`] knows start over.
+/// Maximum number of materials. [`tissues`] repeats the ones it knows.
 const MOST_MATERIALS: usize = 255;
 
-/// What is operated on.
+/// Organ to be operated on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// What it is called.
+    /// Name of the case.
     pub name: String,
-    /// Its voxels, x to the patient's right, y up to the head, z to the back.
+    /// Voxels: x towards the patient's right, y towards the head, z towards the back.
     pub grid: VoxelGrid<Dim3>,
-    /// What they are made of, material number 1 first.
+    /// Materials of the voxels, starting at number 1.
     pub tissues: Vec<Material>,
-    /// Where in the patient the low corner of the grid lies, RAS+ [mm].
+    /// Position of the grid's low corner in the patient, RAS+ [mm].
     pub corner: [f64; 3],
 }
 
-/// Why a case cannot be operated on.
+/// Reason why a case cannot be operated on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CaseError {
-    /// The voxels are none.
+    /// Invalid voxel grid.
     #[error("{0}")]
     Grid(BuildError),
-    /// The materials are none.
+    /// Invalid materials.
     #[error("{0}")]
     Body(BodyError),
-    /// The world does not take it.
+    /// The world rejected the organ.
     #[error("{0}")]
     World(Refused),
     /// A field is out of range.
     #[error("{field}: expected {expected}, found {found}")]
     Field {
-        /// Which.
+        /// Name of the field.
         field: &'static str,
-        /// What was expected.
+        /// Expected value.
         expected: &'static str,
-        /// What was found.
+        /// Given value.
         found: String,
     },
 }
@@ -67,21 +67,21 @@ impl From<Refused> for CaseError {
 
 /// An organ on its table.
 pub struct Table {
-    /// The world that it lies in.
+    /// World of the organ.
     pub world: World<Dim3>,
-    /// The organ.
+    /// Handle of the organ.
     pub organ: SoftBodyHandle,
-    /// Where tools may be: the low and the high corner [m].
+    /// Room for tools: low and high corner [m].
     pub room: [[f32; 3]; 2],
-    /// Where the low corner of the organ's grid is [m], before anything moves.
+    /// Initial position of the low corner of the organ's grid [m].
     pub corner: [f32; 3],
-    /// By what factor tissue moves as if it were heavier, so that few substeps do. It is as stiff as it should be, and at
-    /// rest it weighs as much.
+    /// Mass scaling factor of the tissue, at least 1. It allows few substeps. Stiffness and weight at rest
+    /// are unchanged.
     pub inertia: f32,
 }
 
 impl Case {
-    /// That of an organ from scans.
+    /// Creates the case of an organ from scans.
     pub fn of(name: &str, organ: &Organ) -> Self {
         let corner = organ.patient_at([0.0; 3]);
         let most = organ.grid.voxels().map(|at| organ.grid.material(at)).max();
@@ -93,10 +93,10 @@ impl Case {
         }
     }
 
-    /// Whether it may be operated on, whoever wrote it.
+    /// Checks the case, which may come from an untrusted file.
     ///
     /// # Errors
-    /// [`CaseError`] names what is wrong.
+    /// [`CaseError`] names the invalid field.
     pub fn check(&self) -> Result<(), CaseError> {
         let field = |field, expected, found: String| CaseError::Field {
             field,
@@ -113,7 +113,7 @@ impl Case {
             return Err(field("tissues", expected, self.tissues.len().to_string()));
         }
         if !self.corner.iter().all(|k| k.abs() <= 1e7) {
-            let expected = "a place within ten kilometres of the patient's origin";
+            let expected = "a point within 10 km of the patient's origin";
             return Err(field("corner", expected, format!("{:?}", self.corner)));
         }
         let grid = &self.grid;
@@ -127,16 +127,16 @@ impl Case {
         }
         let long = longest as f32 * grid.voxel_size();
         if !(1e-3..=2.0).contains(&long) {
-            let expected = "an organ of a millimetre to two metres";
+            let expected = "a longest side of 1 mm to 2 m";
             return Err(field("grid", expected, format!("{long} m")));
         }
         Ok(())
     }
 
-    /// Lays it on a table.
+    /// Lays the organ on a table.
     ///
     /// # Errors
-    /// [`CaseError`] says why that cannot be.
+    /// [`CaseError`] if the case is invalid.
     pub fn lay(&self) -> Result<Table, CaseError> {
         self.check()?;
         let voxel = self.grid.voxel_size();
@@ -146,7 +146,7 @@ impl Case {
         let (body, inertia) = self.body(substeps)?;
         let corner = [-0.5 * size[0], 0.0, -0.5 * size[2]];
         let [low, _] = bounds(&body);
-        // The lowest of it is at the height of the table.
+        // Puts the lowest point of the organ at the height of the table.
         let mut body = body.translated([corner[0], -low[1], corner[2]]);
         hold_below(&mut body);
         let mut world = World::new(WorldConfig {
@@ -176,11 +176,12 @@ impl Case {
         })
     }
 
-    /// The organ as a body that so many substeps are enough for, and by how much heavier it moves for that.
+    /// Returns the organ as a body that is stable with the given number of substeps, and its mass scaling
+    /// factor.
     fn body(&self, substeps: u32) -> Result<(SoftBody<Dim3>, f32), CaseError> {
         let wanted = f64::from(TICK) / f64::from(substeps);
         let ratio = wanted / self.longest_substep()?;
-        // Of what is k times as heavy a wave is √k times as slow. A thousandth more, against rounding.
+        // With k times the mass, waves are √k times as slow. A thousandth is added against rounding.
         let inertia = (1.001 * ratio * ratio).max(1.0) as f32;
         let heavier = |tissue: &Material| Material {
             density: tissue.density * inertia,
@@ -191,7 +192,8 @@ impl Case {
         Ok((body, inertia))
     }
 
-    /// The longest substep that its stiffest material bears [s]: that of a row of one voxel of each.
+    /// Returns the longest stable substep of the stiffest material [s], measured on a row of one voxel of
+    /// each.
     fn longest_substep(&self) -> Result<f64, CaseError> {
         let mut is_used = [false; 256];
         for at in self.grid.voxels() {
@@ -206,13 +208,13 @@ impl Case {
         Ok(row.longest_substep())
     }
 
-    /// The volume of a voxel [ml].
+    /// Returns the volume of a voxel [ml].
     pub fn millilitres(&self) -> f64 {
         let edge = 100.0 * f64::from(self.grid.voxel_size());
         edge * edge * edge
     }
 
-    /// The place in the patient, RAS+ [mm], of a place in the grid, from its low corner [m].
+    /// Converts a point in the grid, relative to its low corner [m], to the patient's RAS+ coordinates [mm].
     pub fn patient_at(&self, place: [f32; 3]) -> [f64; 3] {
         let [right, front, up] = self.corner;
         let [x, y, z] = place.map(|k| 1000.0 * f64::from(k));
@@ -220,13 +222,13 @@ impl Case {
     }
 }
 
-/// What the materials of an organ are made of, until somebody says more: they get firmer with their number, and start over.
+/// Returns default materials for an organ. They repeat after the fourth.
 ///
-/// Brain bears 1 to 2 kPa in a slow test, and other soft organs some more. The energies of cuts are rough numbers, chosen so
-/// that a sharp edge cuts before the organ gives way by more than a centimetre. A toughness is the root of such an energy
-/// times Young's modulus.
+/// The stiffness of brain in slow tests is 1 to 2 kPa; other soft organs are somewhat stiffer. The cut
+/// energies are rough values, chosen so that a sharp edge cuts before the organ yields by more than a
+/// centimetre. The toughness is the square root of the cut energy times Young's modulus.
 pub fn tissues(count: usize) -> Vec<Material> {
-    // Young's modulus [Pa], and the energy of an area that is cut [J/m²].
+    // Young's modulus [Pa] and cut energy per area [J/m²].
     const KINDS: [(f64, f32); 4] = [
         (2000.0, 8.0),
         (3000.0, 12.0),
@@ -249,7 +251,7 @@ pub fn tissues(count: usize) -> Vec<Material> {
     kinds.map(tissue).collect()
 }
 
-/// The least and the greatest coordinates of a body's nodes [m].
+/// Returns the low and high corner of the bounding box of a body's nodes [m].
 pub(crate) fn bounds(body: &SoftBody<Dim3>) -> [[f32; 3]; 2] {
     let mut bounds = [[f32::MAX; 3], [f32::MIN; 3]];
     for (id, _) in body.mesh().nodes() {
@@ -262,7 +264,7 @@ pub(crate) fn bounds(body: &SoftBody<Dim3>) -> [[f32; 3]; 2] {
     bounds
 }
 
-/// Holds what lies in the mould.
+/// Fixes the nodes that lie in the mould.
 fn hold_below(body: &mut SoftBody<Dim3>) {
     let [low, high] = bounds(body);
     let top = low[1] + HELD * (high[1] - low[1]);

@@ -1,4 +1,4 @@
-//! A procedure without a window: by itself, or a recording again.
+//! Procedures without a window: an automatic trainee, or a replay of a recording.
 
 use crate::loading::{Loaded, Wanted, load};
 use crate::measures::parts;
@@ -14,33 +14,33 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// What is done without a window.
+/// Options of a procedure without a window.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Options {
-    /// What the trainee does that operates by itself
+    /// Seed of the automatic trainee
     #[arg(long, default_value_t = 0, value_name = "NUMBER")]
     seed: u64,
-    /// For so long at most
+    /// Maximum duration of the procedure
     #[arg(long, default_value_t = 60.0, value_name = "SECONDS")]
     seconds: f32,
-    /// Write the recording
+    /// Write the recording to FILE
     #[arg(long, value_name = "FILE")]
     save: Option<PathBuf>,
-    /// Write a table of all ticks (CSV)
+    /// Write a table of all ticks to FILE (CSV)
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Write plots (SVG)
+    /// Write plots to FILE (SVG)
     #[arg(long, value_name = "FILE")]
     plots: Option<PathBuf>,
-    /// Tell what ticks took of the processor, on this thread: with RAYON_NUM_THREADS=1 that is all of it
+    /// Print the processor time of ticks on this thread; set RAYON_NUM_THREADS=1 to include all of the work
     #[arg(long)]
     bench: bool,
 }
 
-/// Operates as was asked for, and tells what came of it.
+/// Runs a procedure and prints a summary.
 ///
 /// # Errors
-/// What could not be read or written, or why a recording does not come out as it was made.
+/// A message if a file cannot be read or written, or if a replay differs from its recording.
 pub fn operate(wanted: &Wanted, options: &Options) -> Result<(), String> {
     let bar = ProgressBar::new(1000);
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {msg} {elapsed}") {
@@ -66,7 +66,7 @@ pub fn operate(wanted: &Wanted, options: &Options) -> Result<(), String> {
     if options.bench {
         text += &format!("\n{}", told(&procedure, laid, costs));
     }
-    // Who reads it may have gone.
+    // Standard output may be closed.
     let _ = writeln!(std::io::stdout(), "{text}");
     if let Some(path) = &options.save {
         write(path, &Recording::of(&procedure).bytes())?;
@@ -113,11 +113,11 @@ fn again(
         playback.step().map_err(|error| error.to_string())?;
         costs.push(began.elapsed().as_secs_f64());
     }
-    bar.println("it came out as it was made, to the last bit");
+    bar.println("the replay is identical to the recording, bit for bit");
     Ok(playback.into_procedure())
 }
 
-/// What ticks took, but for the first.
+/// Summarizes the computing times of all ticks except the first.
 fn told(procedure: &Procedure, laid: f32, mut costs: Vec<f64>) -> String {
     costs = costs.split_off(costs.len().min(1));
     costs.sort_by(f64::total_cmp);
@@ -127,8 +127,8 @@ fn told(procedure: &Procedure, laid: f32, mut costs: Vec<f64>) -> String {
     };
     let late = costs.iter().filter(|cost| **cost > f64::from(TICK)).count();
     format!(
-        "{} elements, on the table after {laid:.1} s; {} ticks after the first, by processor time: median {:.1} ms, 99 % below {:.1} ms, \
-         longest {:.1} ms, {late} longer than {:.1} ms",
+        "{} elements, loaded in {laid:.1} s; processor time of {} ticks, without the first: median {:.1} ms, 99th percentile {:.1} ms, \
+         maximum {:.1} ms, {late} longer than {:.1} ms",
         procedure.organ().mesh().element_count(),
         costs.len(),
         at(0.5),

@@ -1,18 +1,28 @@
-//! A trainee cuts a soft organ, made from a scan or made up, and feels the knife.
+//! Surgery trainer: a trainee cuts a soft organ, made from a scan or a phantom, and feels the knife.
 //!
-//! The way through, each module using only those above it:
-//! [`case`] what is operated on → [`phantom`] a made-up organ → [`tools`] what is held → [`measures`] what is noted
-//! → [`procedure`] one tick after the other → [`trainee`] what does one by itself → [`slices`] what lies inside now
-//! → [`record`] all of it on file, and again to the same bits → [`report`] tables and plots → [`loading`] scans become a
-//! case beside the window → [`save`] files → [`headless`] a procedure without a window → [`app`] the window.
+//! Modules, each using only those above it:
 //!
-//! It stands on the game's window, stage, pace and devices, the crate `tamaire`.
+//! - [`case`]: organ to be operated on
+//! - [`phantom`]: synthetic organ
+//! - [`tools`]: tools in the hand
+//! - [`measures`]: measured values
+//! - [`procedure`]: simulation, tick by tick
+//! - [`trainee`]: automatic operator
+//! - [`slices`]: sections of the deformed organ
+//! - [`record`]: recordings and bit-exact replay
+//! - [`report`]: tables and plots
+//! - [`loading`]: loading in a background thread
+//! - [`save`]: files
+//! - [`headless`]: procedures without a window
+//! - [`app`]: the window
 //!
-//! **This is no medical device.** It is made to show and to teach. Nothing that comes out of it may be used to judge, to
-//! plan or to treat anybody, and nobody learns to operate by it.
+//! Window, stage, timing and devices come from the game, the crate `tamaire`.
+//!
+//! **This is not a medical device.** It is for demonstration and teaching. Its output must not be used to
+//! diagnose, plan or treat, and it does not teach anyone to operate.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![allow(rustdoc::broken_intra_doc_links)] // units are in brackets: [m]
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
 #[cfg(feature = "window")]

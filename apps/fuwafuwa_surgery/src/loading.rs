@@ -1,4 +1,4 @@
-//! From files to an organ on the table, on a thread of its own while the window lives.
+//! Loads files into an organ on the table, in a background thread of the window.
 
 use crate::case::{Case, CaseError};
 use crate::phantom;
@@ -13,72 +13,72 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::thread;
 
-/// What a recording is called on disk.
+/// File extension of recordings.
 pub const ENDING: &str = "fuwacut";
 
-/// Shares of the progress: scans are read, the organ is made, it is laid on the table.
+/// Progress after reading the scans, and after making the organ.
 const READ: f32 = 0.35;
 const MADE: f32 = 0.9;
 
-/// What is to be opened.
+/// Object to load.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wanted {
-    /// The made-up organ, with so many voxels along its longest side.
+    /// Synthetic organ with a number of voxels along its longest side.
     Phantom(usize),
-    /// The organ in some scans.
+    /// Organ from scans.
     Scans {
-        /// Their files.
+        /// Scan files.
         files: Vec<PathBuf>,
-        /// Which material is where.
+        /// Assignment of materials.
         segmentation: Segmentation,
-        /// How it is made.
+        /// Options for making the organ.
         options: Options,
     },
-    /// A procedure that was recorded.
+    /// Recorded procedure.
     Recording(PathBuf),
 }
 
-/// What came of it.
+/// Result of loading.
 pub enum Loaded {
-    /// A procedure that begins.
+    /// New procedure.
     Procedure(Box<Procedure>),
-    /// One that is played again.
+    /// Replay of a recording.
     Playback(Box<Playback>),
 }
 
-/// Something to be said beside what was loaded.
+/// Warning about a loaded object.
 pub type Warning = &'static str;
 
-/// Why it cannot be opened.
+/// Reason why loading failed.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The file cannot be read.
     #[error("{0}: {1}")]
     File(String, String),
-    /// It is no scan.
+    /// The file is not a valid scan.
     #[error("{0}")]
     Scan(#[from] ImportError),
-    /// There is no organ in it.
+    /// The scans contain no usable organ.
     #[error("{0}")]
     Organ(#[from] OrganError),
     /// The organ cannot be laid on the table.
     #[error("{0}")]
     Case(#[from] CaseError),
-    /// It is no recording that can be played.
+    /// The file is not a valid recording.
     #[error("{0}: {1}")]
     Record(String, RecordError),
-    /// The system has no thread to give.
-    #[error("no thread to read it on: {0}")]
+    /// The loading thread cannot be started.
+    #[error("cannot start the loading thread: {0}")]
     Thread(String),
-    /// Reading broke down.
-    #[error("reading it broke down")]
+    /// The loading thread panicked.
+    #[error("the loading thread panicked")]
     BrokeDown,
 }
 
-/// Opens what is wanted. `progress` hears numbers from 0 to 1.
+/// Loads an object. Calls `progress` with values from 0 to 1.
 ///
 /// # Errors
-/// [`LoadError`] names the file and what is wrong.
+/// [`LoadError`] names the file and the problem.
 pub fn load(
     wanted: &Wanted,
     progress: &mut dyn FnMut(f32),
@@ -115,7 +115,7 @@ pub fn load(
                 progress(READ + (MADE - READ) * done);
             })?;
             let is_unplaced = |scan: &Scan| scan.placement().source() == Source::Spacing;
-            let warning = "A scan does not say what of it is left and what is right.";
+            let warning = "At least one scan has no orientation: left and right may be swapped.";
             let warning = scans.iter().any(is_unplaced).then_some(warning);
             let procedure = begin(Case::of(&name_of(files), &organ))?;
             progress(1.0);
@@ -129,7 +129,7 @@ fn read(file: &std::path::Path, most: u64) -> Result<Vec<u8>, LoadError> {
         .map_err(|error| LoadError::File(file.display().to_string(), error.to_string()))
 }
 
-/// What an organ is called: its first file without folders and endings.
+/// Returns the name of an organ: its first file without folders and extensions.
 fn name_of(files: &[PathBuf]) -> String {
     let name = files.first().and_then(|file| file.file_name());
     let name = name.map(|name| name.to_string_lossy().into_owned());
@@ -138,25 +138,25 @@ fn name_of(files: &[PathBuf]) -> String {
     name.to_owned()
 }
 
-/// Something that is being opened.
+/// Loading in a background thread.
 pub struct Loading {
-    /// How far it is, as the bits of a number from 0 to 1.
+    /// Progress from 0 to 1, as the bits of an `f32`.
     done: Arc<AtomicU32>,
     told: Receiver<Result<(Loaded, Option<Warning>), LoadError>>,
 }
 
 impl Loading {
-    /// Begins to open what is wanted.
+    /// Starts loading.
     ///
     /// # Errors
-    /// [`LoadError::Thread`] when there is none.
+    /// [`LoadError::Thread`] if the thread cannot be started.
     pub fn begin(wanted: Wanted) -> Result<Self, LoadError> {
         let done = Arc::new(AtomicU32::new(0.0f32.to_bits()));
         let (tell, told) = mpsc::channel();
         let share = done.clone();
         let work = move || {
             let mut progress = |part: f32| share.store(part.to_bits(), Ordering::Relaxed);
-            // Who asked may have gone.
+            // The receiver may have been dropped.
             let _ = tell.send(load(&wanted, &mut progress));
         };
         let thread = thread::Builder::new().name("loading".into()).spawn(work);
@@ -164,12 +164,12 @@ impl Loading {
         Ok(Self { done, told })
     }
 
-    /// How far it is, 0 to 1.
+    /// Returns the progress, 0 to 1.
     pub fn progress(&self) -> f32 {
         f32::from_bits(self.done.load(Ordering::Relaxed))
     }
 
-    /// What came of it, once it is there.
+    /// Returns the result once loading has finished.
     pub fn take(&self) -> Option<Result<(Loaded, Option<Warning>), LoadError>> {
         match self.told.try_recv() {
             Ok(result) => Some(result),

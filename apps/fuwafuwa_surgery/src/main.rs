@@ -10,28 +10,30 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use tamaire::desktop::window::{Opened, has_display, open};
 
-/// Cut a soft organ, made from a scan or made up, and feel the knife. This is no medical device.
+/// Cut a soft organ, made from a scan or a phantom, and feel the knife. This is not a medical device.
 #[derive(Parser)]
 #[command(name = "fuwafuwa_surgery", version, after_help = AFTER_HELP)]
 struct Arguments {
-    /// Scans (NIfTI, .nii or .nii.gz), without thresholds and labels a map for each material, or a recording (.fuwacut)
+    /// Scans (NIfTI, .nii or .nii.gz; without thresholds and labels one map per material), or a recording
+    /// (.fuwacut)
     files: Vec<PathBuf>,
-    /// Voxels along the longest side, 8 to 256
+    /// Number of voxels along the longest side, 8 to 256
     #[arg(long, default_value_t = 64)]
     resolution: usize,
-    /// Intensities of a material, as in 40:120=1 or, without an end, 120:=2; may be repeated, the first counts
+    /// Intensity range of a material, such as 40:120=1 or, without an upper end, 120:=2; repeatable, the
+    /// first match counts
     #[arg(long = "threshold", conflicts_with = "labels")]
     thresholds: Vec<Threshold>,
-    /// A label and its material, as in 17=1; may be repeated
+    /// Label and its material, such as 17=1; repeatable
     #[arg(long = "label")]
     labels: Vec<Label>,
-    /// Leave open what is enclosed, instead of filling it
+    /// Leave enclosed cavities open instead of filling them
     #[arg(long)]
     hollow: bool,
-    /// Where the window saves recordings, tables and plots
+    /// Folder in which the window saves recordings, tables and plots
     #[arg(long, default_value = ".", value_name = "FOLDER")]
     out: PathBuf,
-    /// No window: a trainee operates by itself, or a recording is played again
+    /// Run without a window: an automatic trainee operates, or a recording is replayed
     #[arg(long)]
     headless: bool,
     #[command(flatten)]
@@ -46,10 +48,10 @@ Examples:
   fuwafuwa_surgery --headless seven.fuwacut --bench
 
 In the window: the mouse moves the tool, the wheel raises and lowers it, the left button or space grips, the right button
-looks around; 1, 2, 3 take tools; J L, I K, U O turn them, X straightens them; P rests, R begins again, F12 cuts all forces.
+turns the view; 1, 2, 3 take tools; J L, I K, U O turn them, X straightens them; P pauses, R restarts, F12 switches forces off.
 
-Exit status: 0 done; 1 a recording does not come out as it was made, something could not be read or written, or the window
-broke down; 2 the arguments make no sense";
+Exit status: 0 success; 1 a replay differs from its recording, a file could not be read or written, or the window failed;
+2 invalid arguments";
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
@@ -74,9 +76,7 @@ fn main() -> ExitCode {
     }
     if arguments.headless || !has_display() {
         if !arguments.headless {
-            eprintln!(
-                "fuwafuwa_surgery: there is no display here, so a trainee operates by itself"
-            );
+            eprintln!("fuwafuwa_surgery: no display found; running without a window");
         }
         return match headless::operate(&setup.wanted, &arguments.alone) {
             Ok(()) => ExitCode::SUCCESS,
@@ -108,7 +108,7 @@ mod tests {
     use clap::CommandFactory;
 
     #[test]
-    fn the_command_line_is_consistent() {
+    fn command_line_is_consistent() {
         Arguments::command().debug_assert();
     }
 }

@@ -1,45 +1,45 @@
-//! What is noted of a procedure, tick by tick, and what it comes to.
+//! Measurements of a procedure, tick by tick, and volumes of the pieces.
 
 use crate::tools::Tool;
 use fuwafuwa::{Dim3, SoftBody, Vector};
 
-/// What was measured in a tick.
+/// Measurements of a tick.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Sample {
-    /// What was held.
+    /// Tool in the hand.
     pub tool: Tool,
-    /// Where it was [m].
+    /// Position of the tool [m].
     pub at: Vector,
-    /// Mean force of the tissue on it [N].
+    /// Mean force of the tissue on the tool [N].
     pub force: Vector,
-    /// The strongest force within the tick [N].
+    /// Peak force within the tick [N].
     pub peak: f32,
-    /// Mean torque on it about where it works [N m].
+    /// Mean torque on the tool about its working point [N m].
     pub torque: Vector,
-    /// All that was cut so far [m²].
+    /// Total cut area since the start [m²].
     pub area: f64,
-    /// What the knife did on the tissue for that so far [J].
+    /// Total work of the knife for these cuts [J].
     pub work: f64,
-    /// How far the knife went within tissue, so far [m].
+    /// Total path of the knife within tissue [m].
     pub path: f64,
-    /// Nodes that came apart so far, by the knife or by pulling.
+    /// Total number of nodes split by the knife or by pulling.
     pub released: u32,
-    /// Pieces that there are.
+    /// Number of pieces.
     pub pieces: u32,
-    /// Whether tissue is gripped.
+    /// Whether the forceps hold tissue.
     pub grips: bool,
 }
 
-/// A piece of the organ.
+/// Piece of the organ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// Its volume at rest [ml].
+    /// Rest volume [ml].
     pub millilitres: f64,
-    /// The same by material, number 1 first.
+    /// Rest volume by material, starting at number 1 [ml].
     pub by_material: Vec<f64>,
 }
 
-/// The pieces of an organ by volume, the largest first; `voxel` is the volume of a voxel [ml].
+/// Returns the pieces of an organ, largest first. `voxel` is the volume of a voxel [ml].
 pub fn parts(body: &SoftBody<Dim3>, voxel: f64) -> Vec<Part> {
     let materials = body.materials().len();
     let none = Part {
@@ -49,7 +49,7 @@ pub fn parts(body: &SoftBody<Dim3>, voxel: f64) -> Vec<Part> {
     let mut parts = vec![none; body.pieces().list.len()];
     let mesh = body.mesh();
     for (id, element) in mesh.elements() {
-        // Of each child that it fills; at level 0 there is one voxel and no child.
+        // Number of voxels of the filled children. An element of level 0 is one voxel without children.
         let voxels = match element.cell.level {
             0 => 1,
             level => element.children.count_ones() << (3 * (u32::from(level) - 1)),
@@ -65,13 +65,13 @@ pub fn parts(body: &SoftBody<Dim3>, voxel: f64) -> Vec<Part> {
     parts
 }
 
-/// How many pieces an organ has: those that are not empty.
+/// Returns the number of pieces of an organ.
 pub fn pieces(body: &SoftBody<Dim3>) -> u32 {
     let list = &body.pieces().list;
     list.len() as u32
 }
 
-/// How large a force or a torque is.
+/// Returns the magnitude of a force or torque.
 pub fn size(vector: Vector) -> f32 {
     fuwafuwa::vector::length(vector)
 }

@@ -1,5 +1,4 @@
-//! A made-up organ, so that there is something on the table before a scan is read. Left and right, front and back, head
-//! and feet differ:
+//! Synthetic organ (phantom) for use without a scan. Left and right, front and back, head and feet differ:
 //!
 //! ```text
 //!   from behind        S             from the left     S
@@ -9,22 +8,26 @@
 //!             ╰────────────────╯               ╰──────────────────╯
 //! ```
 //!
-//! Material 1 is its flesh, 2 a firmer core, 3 a hard growth in the patient's *right* half, in front, and 4 a tough vessel
-//! that runs from front to back through the *left* half.
+//! Materials:
+//!
+//! 1. flesh
+//! 2. a firmer core
+//! 3. a hard growth in the patient's *right* half, in front
+//! 4. a tough vessel that runs from front to back through the *left* half
 
 use crate::case::{Case, CaseError, tissues};
 use fuwafuwa::VoxelGrid;
 
 /// Half axes [mm]: to the patient's right, to the front, up.
 pub const HALF: [f64; 3] = [48.0, 64.0, 36.0];
-/// The growth: its middle (RAS+) and its radius [mm].
+/// Growth: centre (RAS+) and radius [mm].
 pub const GROWTH: ([f64; 3], f64) = ([22.0, 18.0, 12.0], 11.0);
-/// The vessel: where it runs to the right and up, and its radius [mm].
+/// Vessel: position to the right and up, and radius [mm].
 const VESSEL: ([f64; 2], f64) = ([-20.0, 8.0], 5.0);
-/// How much smaller the core is.
+/// Scale of the core relative to the organ.
 const CORE: f64 = 0.45;
 
-/// The material at a place in the patient, RAS+ [mm]; 0 outside.
+/// Returns the material at a point in the patient, RAS+ [mm]; 0 outside.
 pub fn material(patient: [f64; 3]) -> u8 {
     let [right, front, up] = patient;
     let share = |axis: usize, of: f64| {
@@ -32,7 +35,7 @@ pub fn material(patient: [f64; 3]) -> u8 {
         part * part
     };
     let is_inside = |of: f64| (0..3).map(|axis| share(axis, of)).sum::<f64>() < 1.0;
-    // A furrow parts its halves from above, as in a brain.
+    // A furrow from above separates the two halves, as in a brain.
     let depth = up - 0.45 * HALF[2];
     if !is_inside(1.0) || right.abs() < (0.22 * depth).min(4.0) {
         return 0;
@@ -52,10 +55,10 @@ pub fn material(patient: [f64; 3]) -> u8 {
     }
 }
 
-/// It as a case, with so many voxels along its longest side.
+/// Returns the phantom as a case with `resolution` voxels along its longest side.
 ///
 /// # Errors
-/// [`CaseError`] when the engine takes no such grid.
+/// [`CaseError`] if the engine rejects the grid.
 pub fn case(resolution: usize) -> Result<Case, CaseError> {
     let resolution = resolution.max(8);
     let voxel = 2.0 * HALF[1] / (resolution as f64 - 2.0);
@@ -69,7 +72,7 @@ pub fn case(resolution: usize) -> Result<Case, CaseError> {
         material([corner[0] + x, corner[1] - z, corner[2] + y])
     });
     Ok(Case {
-        name: "made-up organ".into(),
+        name: "phantom".into(),
         grid: grid.map_err(CaseError::Grid)?,
         tissues: tissues(4),
         corner,

@@ -1,4 +1,4 @@
-//! A procedure, tick by tick: what the hand wants goes in, and everything else follows from it.
+//! A procedure, tick by tick. Its state is a function of the case and the inputs.
 
 use crate::case::{Case, CaseError, Table, bounds};
 use crate::measures::{self, Sample};
@@ -9,33 +9,33 @@ use fuwafuwa::{Dim3, Event, Refused, RigidBody, Rotation, SoftBody, StepReport, 
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Goals are written in steps of a hundredth of a millimetre [m].
+/// Resolution of recorded positions [m].
 const STEP: f32 = 1e-5;
-/// A part of a quaternion is written as so many steps for 1.
+/// Recorded value of a quaternion component of 1.
 const PARTS: f32 = 32767.0;
-/// A tool goes no faster than this [m/s], however fast a mouse jumps.
+/// Maximum speed of a tool [m/s], for example after a jump of the mouse.
 const FASTEST: f32 = 0.25;
-/// It turns no faster than this [rad/s].
+/// Maximum angular speed of a tool [rad/s].
 const SPIN: f32 = 5.0;
-/// Tools come in so much of the height of the organ above it, or higher where they are large.
+/// Entry height of tools above the organ, as a fraction of the organ's height. Large tools enter higher.
 const ENTRY: f32 = 0.2;
-/// The most ticks of a procedure: an hour.
+/// Maximum length of a procedure [ticks]: one hour.
 pub const MOST_TICKS: usize = 60 * 60 * 60;
-/// The bluntest knife [µm].
+/// Maximum edge radius of the knife [µm].
 pub const BLUNTEST: u16 = 2000;
 
-/// What the hand wants in a tick. It is written down as it is, so that the same comes of it again.
+/// Input of a tick. It is quantized and recorded, so that a replay gives the same result.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Input {
-    /// What it holds.
+    /// Tool in the hand.
     pub tool: Tool,
-    /// Where to [0.01 mm].
+    /// Target position [0.01 mm].
     pub goal: [i32; 3],
-    /// How it is turned: x, y, z, w of a quaternion, 32767 for 1.
+    /// Target rotation: x, y, z, w of a quaternion, 32767 for 1.
     pub turn: [i16; 4],
-    /// Whether it grips.
+    /// Whether the forceps close.
     pub grips: bool,
-    /// Radius of the knife's edge [µm].
+    /// Edge radius of the knife [µm].
     pub dull: u16,
 }
 
@@ -52,7 +52,7 @@ impl Default for Input {
 }
 
 impl Input {
-    /// The same with a tool somewhere [m], turned so.
+    /// Returns the input with another tool, target position [m] and rotation.
     #[must_use]
     pub fn at(self, tool: Tool, goal: Vector, rotation: Rotation) -> Self {
         Self {
@@ -63,23 +63,23 @@ impl Input {
         }
     }
 
-    /// Where the tool is to be [m].
+    /// Returns the target position [m].
     pub fn place(&self) -> Vector {
         self.goal.map(|k| k as f32 * STEP)
     }
 
-    /// How it is to be turned.
+    /// Returns the target rotation.
     pub fn rotation(&self) -> Rotation {
         Rotation::from_quaternion(self.turn.map(|k| f32::from(k) / PARTS))
     }
 }
 
-/// A procedure as it is now.
+/// Procedure in its current state.
 pub struct Procedure {
     case: Arc<Case>,
     table: Table,
     held: Held,
-    /// Where the tool is sent, and how it is turned there: it follows what is wanted no faster than it may.
+    /// Kinematic target of the tool. It follows the input at limited speed.
     goal: Vector,
     rotation: Rotation,
     inputs: Vec<Input>,
@@ -88,10 +88,10 @@ pub struct Procedure {
 }
 
 impl Procedure {
-    /// One that begins: the organ lies on the table, and a tool hangs above it.
+    /// Starts a procedure, with the organ on the table and a tool above it.
     ///
     /// # Errors
-    /// [`CaseError`] says why the organ cannot be laid there.
+    /// [`CaseError`] if the organ cannot be laid on the table.
     pub fn new(case: Arc<Case>) -> Result<Self, CaseError> {
         let mut table = case.lay()?;
         let [low, high] = table.room;
@@ -120,10 +120,11 @@ impl Procedure {
         })
     }
 
-    /// Lets a tick pass.
+    /// Advances the procedure by a tick.
     ///
     /// # Errors
-    /// [`Refused`] when the world does not take what is wanted: it never does, as that is kept within the room.
+    /// [`Refused`] if the world rejects the target. This does not occur, because targets are clamped to the
+    /// room.
     pub fn step(&mut self, input: Input) -> Result<StepReport, Refused> {
         self.take(input.tool)?;
         self.follow(&input);
@@ -140,72 +141,72 @@ impl Procedure {
         Ok(report)
     }
 
-    /// What is operated on.
+    /// Returns the case.
     pub fn case(&self) -> &Arc<Case> {
         &self.case
     }
 
-    /// The organ on its table.
+    /// Returns the organ on its table.
     pub fn table(&self) -> &Table {
         &self.table
     }
 
-    /// The world that it lies in.
+    /// Returns the world of the organ.
     pub fn world(&self) -> &World<Dim3> {
         &self.table.world
     }
 
-    /// The organ.
+    /// Returns the organ.
     pub fn organ(&self) -> &SoftBody<Dim3> {
         &self.table.world.soft_bodies()[self.table.organ]
     }
 
-    /// What is held.
+    /// Returns the tool in the hand.
     pub fn held(&self) -> &Held {
         &self.held
     }
 
-    /// What follows the hand.
+    /// Returns the rigid body of the tool.
     pub fn tool(&self) -> &RigidBody {
         self.held.rigid(&self.table.world)
     }
 
-    /// Ticks that have passed.
+    /// Returns the number of ticks.
     pub fn ticks(&self) -> usize {
         self.inputs.len()
     }
 
-    /// Whether it has come to its end: it is not written any longer.
+    /// Returns whether the procedure has reached its maximum length.
     pub fn is_full(&self) -> bool {
         self.ticks() >= MOST_TICKS
     }
 
-    /// What the hand wanted, tick by tick.
+    /// Returns the input of each tick.
     pub fn inputs(&self) -> &[Input] {
         &self.inputs
     }
 
-    /// What was measured, tick by tick.
+    /// Returns the measurements of each tick.
     pub fn samples(&self) -> &[Sample] {
         &self.samples
     }
 
-    /// The low and the high corner of what is left of the organ [m].
+    /// Returns the low and high corner of the organ's current bounding box [m].
     pub fn span(&self) -> [Vector; 2] {
         bounds(self.organ())
     }
 
-    /// The height at which a tool comes in [m]: above the organ, and in sight.
+    /// Returns the height at which tools enter [m]: above the organ and in view.
     pub fn entry(&self) -> f32 {
         entry(&self.table)
     }
 
-    /// The world's hash after every sixtieth tick.
+    /// Returns the world hashes, one after every 60 ticks.
     pub fn hashes(&self) -> &[u64] {
         &self.hashes
     }
 
-    /// Takes up another tool. It comes in from above, not amid the tissue.
+    /// Changes the tool. The new one enters from above, not inside tissue.
     fn take(&mut self, tool: Tool) -> Result<(), Refused> {
         if tool == self.held.tool() {
             return Ok(());
@@ -216,7 +217,7 @@ impl Procedure {
         std::mem::replace(&mut self.held, next).put_away(world)
     }
 
-    /// Moves the goal towards what is wanted, no faster than a tool goes, and within the room.
+    /// Moves the kinematic target towards the input, at limited speed and within the room.
     fn follow(&mut self, input: &Input) {
         let [low, high] = self.table.room;
         let wanted = input.place();

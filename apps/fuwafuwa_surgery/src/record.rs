@@ -1,12 +1,13 @@
-//! A procedure on file: the organ as it was laid on the table, and what the hand wanted, tick by tick. All the rest comes out
-//! of that again, to the same bits.
+//! Recording of a procedure: the initial organ and the input of each tick. A replay reproduces everything
+//! else bit for bit.
 //!
 //! ```text
-//! "fuwacut\n"  version u32  checksum u64  length u32  the rest, deflated: postcard
+//! "fuwacut\n"  version u32  checksum u64  length u32  contents, deflated: postcard
 //! ```
 //!
-//! Numbers are little-endian, and the checksum is that of all behind it. A recording holds the voxels of the organ: who
-//! hands on one that was made of a patient's scan hands on part of that scan.
+//! Numbers are little-endian. The checksum covers all bytes after it; the length is that of the uncompressed
+//! contents. A recording contains the voxels of the organ, so one made from a patient's scan contains part of
+//! that scan.
 
 use crate::case::{Case, CaseError};
 use crate::procedure::{Input, MOST_TICKS, Procedure};
@@ -19,76 +20,74 @@ use serde::{Deserialize, Serialize};
 use std::io::{Read, Write};
 use std::sync::Arc;
 
-/// Number of the format. It changes when an older recording would be misread or go another way.
+/// Format version. It changes if older recordings would be misread or replay differently.
 pub const VERSION: u32 = 2;
-/// Most bytes of a recording.
+/// Maximum size of a recording [bytes].
 pub const MOST_BYTES: usize = 1 << 26;
-/// Most bytes of what is in it: the voxels of the finest organ and an hour of inputs.
+/// Maximum size of the uncompressed contents [bytes]: the voxels of the finest organ and an hour of inputs.
 const MOST_INSIDE: usize = 1 << 25;
 const MAGIC: [u8; 8] = *b"fuwacut\n";
-/// Magic, version, checksum, length.
+/// Size of the header: magic, version, checksum, length [bytes].
 const HEADER: usize = 8 + 4 + 8 + 4;
 /// Ticks between two hashes.
 const BETWEEN: usize = 60;
 
-/// A procedure as it was.
+/// Recorded procedure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// What was operated on.
+    /// Organ before the first tick.
     pub case: Arc<Case>,
-    /// What the hand wanted, tick by tick.
+    /// Input of each tick.
     pub inputs: Vec<Input>,
-    /// The world's hash after every sixtieth tick and after the last.
+    /// World hashes after every 60 ticks and after the last one.
     pub hashes: Vec<u64>,
 }
 
-/// Why a recording is not played.
+/// Reason why a recording cannot be read or replayed.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
-    /// It is none.
-    #[error("this is no recording of a procedure: it does not begin as one does")]
+    /// The file is not a recording.
+    #[error("not a recording of a procedure: the header is missing")]
     NotOne,
-    /// It was made by another version.
-    #[error("this recording has format {found}, and this program plays format {VERSION}")]
+    /// The recording has another format version.
+    #[error("unsupported recording: expected format {VERSION}, found format {found}")]
     Version {
-        /// The format it has.
+        /// Format version of the recording.
         found: u32,
     },
-    /// It is longer than any.
-    #[error("{what}: expected {limit} at most, found {found}")]
+    /// A size exceeds its limit.
+    #[error("{what}: expected at most {limit}, found {found}")]
     TooLarge {
-        /// What of it.
+        /// Name of the quantity.
         what: &'static str,
-        /// How much there is.
+        /// Given value.
         found: usize,
-        /// How much there may be.
+        /// Maximum value.
         limit: usize,
     },
-    /// It is not as it was written.
-    #[error("this recording is damaged: {0}")]
+    /// The recording is damaged.
+    #[error("damaged recording: {0}")]
     Damaged(&'static str),
-    /// What was operated on cannot be.
-    #[error("the organ in this recording cannot be: {0}")]
+    /// The organ is invalid.
+    #[error("invalid organ in the recording: {0}")]
     Case(#[from] CaseError),
-    /// The world does not take what was wanted.
+    /// The world rejected an input.
     #[error("{0}")]
     Refused(Refused),
-    /// It does not lead to what it says.
-    #[error(
-        "this recording does not come out as it was made: it goes another way within second {second}"
-    )]
+    /// The replay differs from the recording.
+    #[error("the replay differs from the recording in second {second}")]
     Differs {
-        /// Where.
+        /// Second of the first difference, starting at 0.
         second: usize,
     },
 }
 
-/// What is written.
+/// Serialized contents.
 #[derive(Serialize, Deserialize)]
 struct Written {
     name: String,
     size: [u16; 3],
-    /// [m]
+    /// Voxel size [m].
     voxel: f32,
     materials: Vec<u8>,
     tissues: Vec<Material>,
@@ -98,7 +97,7 @@ struct Written {
 }
 
 impl Recording {
-    /// What was done so far.
+    /// Returns the recording of a procedure up to now.
     pub fn of(procedure: &Procedure) -> Self {
         let mut hashes = procedure.hashes().to_vec();
         if hashes.len() < marks(procedure.ticks()) {
@@ -111,12 +110,12 @@ impl Recording {
         }
     }
 
-    /// Its bytes.
+    /// Returns the recording as bytes of a file.
     pub fn bytes(&self) -> Vec<u8> {
         let inside = self.inside();
         let mut deflated = ZlibEncoder::new(Vec::new(), Compression::default());
         let deflated = deflated.write_all(&inside).and_then(|()| deflated.finish());
-        let deflated = deflated.expect("memory takes all that is written to it");
+        let deflated = deflated.expect("writing to a Vec cannot fail");
         let mut behind = (inside.len() as u32).to_le_bytes().to_vec();
         behind.extend(deflated);
         let mut bytes = MAGIC.to_vec();
@@ -126,7 +125,7 @@ impl Recording {
         bytes
     }
 
-    /// What of them is deflated.
+    /// Returns the uncompressed contents of the file.
     pub fn inside(&self) -> Vec<u8> {
         let grid = &self.case.grid;
         let written = Written {
@@ -139,13 +138,13 @@ impl Recording {
             inputs: self.inputs.clone(),
             hashes: self.hashes.clone(),
         };
-        postcard::to_stdvec(&written).expect("a recording has nothing that postcard cannot write")
+        postcard::to_stdvec(&written).expect("postcard can serialize every recording")
     }
 
-    /// That in the bytes of a file, whoever wrote it.
+    /// Reads a recording from the bytes of an untrusted file.
     ///
     /// # Errors
-    /// [`RecordError`] says what is wrong with it.
+    /// [`RecordError`] names the problem.
     pub fn read(bytes: &[u8]) -> Result<Self, RecordError> {
         limit("bytes", bytes.len(), MOST_BYTES)?;
         if bytes.len() < HEADER || bytes[..8] != MAGIC {
@@ -160,38 +159,38 @@ impl Recording {
             return Err(RecordError::Version { found });
         }
         if bytes[12..20] != Hash::of(&bytes[20..]).to_le_bytes() {
-            return Err(RecordError::Damaged("its checksum does not fit"));
+            return Err(RecordError::Damaged("checksum mismatch"));
         }
         let length = number(20) as usize;
         limit("bytes inside", length, MOST_INSIDE)?;
         let mut inside = Vec::new();
-        // One byte more than there should be tells that there are too many.
+        // One byte beyond the expected length detects contents that are too long.
         let inflated = ZlibDecoder::new(&bytes[HEADER..])
             .take(length as u64 + 1)
             .read_to_end(&mut inside);
         if inflated.is_err() || inside.len() != length {
-            return Err(RecordError::Damaged("it does not inflate as it says"));
+            return Err(RecordError::Damaged(
+                "the contents do not inflate to the length in the header",
+            ));
         }
         Self::read_inside(&inside)
     }
 
-    /// That in what was deflated: for tests, which would never find a checksum.
+    /// Reads a recording from uncompressed contents, for tests that cannot provide a valid checksum.
     ///
     /// # Errors
     /// As [`Recording::read`].
     pub fn read_inside(inside: &[u8]) -> Result<Self, RecordError> {
         limit("bytes inside", inside.len(), MOST_INSIDE)?;
         let (written, rest) = postcard::take_from_bytes::<Written>(inside)
-            .map_err(|_| RecordError::Damaged("what is in it is none"))?;
+            .map_err(|_| RecordError::Damaged("the contents cannot be decoded"))?;
         if !rest.is_empty() {
-            return Err(RecordError::Damaged(
-                "there is more in it than there should be",
-            ));
+            return Err(RecordError::Damaged("unexpected bytes after the contents"));
         }
         written.checked()
     }
 
-    /// Ticks in it.
+    /// Returns the number of ticks.
     pub fn ticks(&self) -> usize {
         self.inputs.len()
     }
@@ -202,7 +201,7 @@ impl Written {
         limit("ticks", self.inputs.len(), MOST_TICKS)?;
         if self.hashes.len() != marks(self.inputs.len()) {
             return Err(RecordError::Damaged(
-                "it has another number of hashes than seconds",
+                "the number of hashes does not match the number of ticks",
             ));
         }
         let size = self.size.map(usize::from);
@@ -222,7 +221,7 @@ impl Written {
     }
 }
 
-/// How many hashes there are of so many ticks.
+/// Returns the number of hashes of a recording with `ticks` ticks.
 fn marks(ticks: usize) -> usize {
     ticks.div_ceil(BETWEEN)
 }
@@ -232,17 +231,17 @@ fn limit(what: &'static str, found: usize, limit: usize) -> Result<(), RecordErr
     (found <= limit).then_some(()).ok_or(error)
 }
 
-/// A recording that is being played.
+/// Replay of a recording.
 pub struct Playback {
     recording: Arc<Recording>,
     procedure: Procedure,
 }
 
 impl Playback {
-    /// One from its start.
+    /// Starts a replay.
     ///
     /// # Errors
-    /// [`RecordError`] when its organ cannot be laid on a table.
+    /// [`RecordError`] if the organ cannot be laid on a table.
     pub fn new(recording: Arc<Recording>) -> Result<Self, RecordError> {
         let procedure = Procedure::new(recording.case.clone())?;
         Ok(Self {
@@ -251,30 +250,30 @@ impl Playback {
         })
     }
 
-    /// The procedure as it is now.
+    /// Returns the procedure in its current state.
     pub fn procedure(&self) -> &Procedure {
         &self.procedure
     }
 
-    /// The same, to go on from there.
+    /// Returns the procedure, to be continued by hand.
     pub fn into_procedure(self) -> Procedure {
         self.procedure
     }
 
-    /// What is played.
+    /// Returns the recording.
     pub fn recording(&self) -> &Arc<Recording> {
         &self.recording
     }
 
-    /// Whether all of it was played.
+    /// Returns whether all ticks were replayed.
     pub fn is_over(&self) -> bool {
         self.procedure.ticks() >= self.recording.ticks()
     }
 
-    /// Plays a tick; past the end nothing happens.
+    /// Replays a tick. Does nothing after the end.
     ///
     /// # Errors
-    /// [`RecordError::Differs`] when it turns out that it does not come out as it was made.
+    /// [`RecordError::Differs`] if the replay differs from the recording.
     pub fn step(&mut self) -> Result<(), RecordError> {
         let Some(&input) = self.recording.inputs.get(self.procedure.ticks()) else {
             return Ok(());

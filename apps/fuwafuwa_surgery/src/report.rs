@@ -1,4 +1,4 @@
-//! What came of a procedure: a table of all ticks (CSV), plots (SVG), and a few lines.
+//! Report of a procedure: a table of all ticks (CSV), plots (SVG), and a summary.
 
 use crate::measures::{Part, Sample, size};
 use crate::procedure::Procedure;
@@ -7,26 +7,25 @@ use plotters::prelude::*;
 use std::error::Error;
 use std::fmt::Write;
 
-/// The first line of the table.
+/// Header line of the table.
 pub const HEADER: &str = "tick,seconds,tool,x_mm,y_mm,z_mm,force_x_n,force_y_n,force_z_n,peak_n,\
 torque_x_mnm,torque_y_mnm,torque_z_mnm,area_mm2,work_mj,path_mm,released,pieces,grips";
 
-/// What stands on everything that comes out.
-pub const NO_DEVICE: &str =
-    "Not a medical device: made to show and to teach, never to judge, plan or treat.";
+/// Disclaimer on every output.
+pub const NO_DEVICE: &str = "Not a medical device: for demonstration and teaching only, not for diagnosis, planning or treatment.";
 
 /// Size of the plots [px].
 const SIZE: (u32, u32) = (900, 760);
-/// Most points of a line: more than there are pixels show nothing.
+/// Maximum number of points of a line. More would not be visible at this resolution.
 const POINTS: usize = 1500;
-/// Labels along an axis, at the most.
+/// Maximum number of labels along an axis.
 const LABELS: usize = 10;
 const INK: RGBColor = RGBColor(0x4A, 0x36, 0x34);
 const LINE: RGBColor = RGBColor(0xE6, 0xD8, 0xC8);
 const RED: RGBColor = RGBColor(0xC8, 0x3A, 0x3A);
 const BLUE: RGBColor = RGBColor(0x2F, 0x6F, 0x9F);
 
-/// The table of all ticks, one a line.
+/// Returns the table of all ticks, one per line.
 pub fn csv(samples: &[Sample]) -> String {
     let mut text = String::from(HEADER);
     text.push('\n');
@@ -36,7 +35,7 @@ pub fn csv(samples: &[Sample]) -> String {
         let [tx, ty, tz] = sample.torque.map(|k| 1000.0 * k);
         let seconds = seconds(tick);
         let tool = sample.tool.name().to_lowercase();
-        // A text takes all that is written to it.
+        // Writing to a String cannot fail.
         let _ = writeln!(
             text,
             "{},{seconds:.4},{tool},{x:.3},{y:.3},{z:.3},{fx:.4},{fy:.4},{fz:.4},{:.4},{tx:.4},{ty:.4},{tz:.4},\
@@ -54,10 +53,10 @@ pub fn csv(samples: &[Sample]) -> String {
     text
 }
 
-/// Force, what was cut, and pieces over time, as SVG.
+/// Plots force, cut area, knife path and pieces over time, as SVG.
 ///
 /// # Errors
-/// What the plotting library says is wrong.
+/// Error of the plotting library.
 pub fn svg(samples: &[Sample]) -> Result<String, Box<dyn Error>> {
     let mut text = String::new();
     {
@@ -68,22 +67,22 @@ pub fn svg(samples: &[Sample]) -> Result<String, Box<dyn Error>> {
         let of = |value: fn(&Sample) -> f64| line(samples, value);
         let force = [
             (
-                "mean of the tick",
+                "mean per tick",
                 RED,
                 of(|sample| f64::from(size(sample.force))),
             ),
-            ("strongest", LINE, of(|sample| f64::from(sample.peak))),
+            ("peak", LINE, of(|sample| f64::from(sample.peak))),
         ];
         draw(&parts[0], "force on the tool [N]", &force, false)?;
         let cut = [
             ("area [mm²]", RED, of(|sample| 1e6 * sample.area)),
             (
-                "way of the knife in tissue [mm]",
+                "path of the knife in tissue [mm]",
                 BLUE,
                 of(|sample| 1e3 * sample.path),
             ),
         ];
-        draw(&parts[1], "what was cut", &cut, false)?;
+        draw(&parts[1], "cut", &cut, false)?;
         let pieces = [("pieces", BLUE, of(|sample| f64::from(sample.pieces)))];
         draw(&parts[2], "pieces", &pieces, true)?;
         area.present()?;
@@ -91,7 +90,8 @@ pub fn svg(samples: &[Sample]) -> Result<String, Box<dyn Error>> {
     Ok(text)
 }
 
-/// A line: seconds and values, the highest of each few ticks where there are very many.
+/// Returns the points of a plot as (seconds, value). Long procedures are reduced to the maximum of every few
+/// ticks.
 fn line(samples: &[Sample], value: fn(&Sample) -> f64) -> Vec<(f64, f64)> {
     let step = samples.len().div_ceil(POINTS).max(1);
     let points = samples.chunks(step).enumerate();
@@ -102,7 +102,7 @@ fn line(samples: &[Sample], value: fn(&Sample) -> f64) -> Vec<(f64, f64)> {
     points.map(point).collect()
 }
 
-/// A line: its name, its colour, and seconds with values.
+/// Line of a plot: name, colour and points (seconds, value).
 type Line<'a> = (&'a str, RGBColor, Vec<(f64, f64)>);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
@@ -117,7 +117,7 @@ fn draw(
     let long = points().map(|point| point.0).fold(1.0, f64::max);
     let high = points().map(|point| point.1).fold(0.0, f64::max);
     let high = if high > 0.0 { 1.1 * high } else { 1.0 };
-    // There is no half of what is counted.
+    // Counts have no fractional labels.
     let labels = match is_count {
         true => (high as usize).min(LABELS - 1) + 1,
         false => LABELS,
@@ -139,7 +139,7 @@ fn draw(
         .x_label_formatter(&label)
         .label_style(("sans-serif", 14).into_font().color(&INK))
         .draw()?;
-    // The last of them lies lowest.
+    // Reverse order, so that the first line is on top.
     for (name, colour, points) in lines.iter().rev() {
         let style = colour.stroke_width(2);
         chart
@@ -159,23 +159,23 @@ fn draw(
     Ok(())
 }
 
-/// A number without what is zero of its end.
+/// Formats a number without trailing zeros.
 fn label(value: &f64) -> String {
     ((1e4 * value).round() / 1e4).to_string()
 }
 
-/// The time at the end of a tick that is so many after the first [s].
+/// Returns the time at the end of a tick [s]. The first tick has index 0.
 fn seconds(tick: usize) -> f32 {
     (tick + 1) as f32 * TICK
 }
 
-/// What came of it, in a few lines.
+/// Returns a summary of the procedure in a few lines.
 pub fn summary(procedure: &Procedure, parts: &[Part]) -> String {
     let last = procedure.samples().last().copied().unwrap_or_default();
     let strongest = procedure.samples().iter().map(|sample| sample.peak);
     let strongest = strongest.fold(0.0, f32::max);
     let mut text = format!(
-        "{}: {:.1} s, strongest force {strongest:.2} N, {:.0} mm² cut over {:.0} mm with {:.1} mJ, {} nodes released\n",
+        "{}: {:.1} s, peak force {strongest:.2} N, {:.0} mm² cut over {:.0} mm with {:.1} mJ, {} nodes released\n",
         procedure.case().name,
         procedure.ticks() as f32 * TICK,
         1e6 * last.area,

@@ -1,4 +1,4 @@
-//! What came of a procedure, as files that overwrite none.
+//! Files of a procedure, saved without overwriting.
 
 use crate::loading::ENDING;
 use crate::procedure::Procedure;
@@ -8,10 +8,11 @@ use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// Writes a recording, a table and plots into a folder, of a name that is free there; returns that of the recording.
+/// Writes a recording, a table and plots into a folder, under an unused name. Returns the path of the
+/// recording.
 ///
 /// # Errors
-/// Which file could not be written, and why.
+/// A message that names the file and the problem.
 pub fn save(folder: &Path, procedure: &Procedure) -> Result<PathBuf, String> {
     let recording = Recording::of(procedure).bytes();
     let table = report::csv(procedure.samples());
@@ -33,10 +34,10 @@ pub fn save(folder: &Path, procedure: &Procedure) -> Result<PathBuf, String> {
     Ok(path)
 }
 
-/// Writes a file, over one of that name.
+/// Writes a file and overwrites an existing one.
 ///
 /// # Errors
-/// Which file could not be written, and why.
+/// A message that names the file and the problem.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
     std::fs::write(path, bytes).map_err(|error| format!("{}: {error}", path.display()))
 }

@@ -1,4 +1,4 @@
-//! Slices through an organ as it is now, deformed and cut: what a radiologist would see of it.
+//! Slices through the deformed and cut organ, as in radiology.
 //!
 //! ```text
 //!   axial, from above     coronal, from behind     sagittal, from the left
@@ -7,47 +7,47 @@
 //!        P                      I                        I
 //! ```
 //!
-//! Left is left, as in the picture beside it, in which the patient is seen from behind; many stations show axial and coronal
-//! slices the other way round. Letters stand at each.
+//! Left is on the left, as in the main view, which shows the patient from behind. Many workstations show
+//! axial and coronal slices mirrored. Every slice is labelled with letters.
 
 use fuwafuwa::vector::{minus, plus, scaled};
 use fuwafuwa::{Dim3, ElementId, SoftBody, Vector};
 
-/// Which way a slice lies.
+/// Orientation of a slice.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Cut {
-    /// Across the long axis of the patient.
+    /// Perpendicular to the long axis of the patient.
     Axial,
-    /// From side to side, along it.
+    /// Perpendicular to the front-back axis.
     Coronal,
-    /// From front to back, along it.
+    /// Perpendicular to the left-right axis.
     Sagittal,
 }
 
-/// A part of a slice that is of one element.
+/// Part of a slice within one element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Patch {
-    /// Its corners, three or four [m], to the right and up.
+    /// Three or four corners in page coordinates (right, up) [m].
     pub corners: Vec<[f32; 2]>,
-    /// Number of its material.
+    /// Material number.
     pub material: u8,
-    /// How far the element is strained: ‖F − R‖.
+    /// Strain ‖F − R‖ of the element.
     pub strain: f32,
 }
 
 /// A slice.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Slice {
-    /// What is cut through.
+    /// Cross-sections of elements.
     pub patches: Vec<Patch>,
-    /// Where the skin is, from point to point [m].
+    /// Segments of the original surface [m].
     pub rim: Vec<[[f32; 2]; 2]>,
-    /// The same of what was inside before it was cut or torn.
+    /// Segments of surfaces created by cutting or tearing [m].
     pub cracks: Vec<[[f32; 2]; 2]>,
 }
 
-/// The tetrahedra that a block of eight corners falls into, all around the diagonal from the first to the last: blocks that
-/// meet in a face part it alike.
+/// Tetrahedra of a block with eight corners, all around the diagonal from the first to the last corner.
+/// Adjacent blocks split their common face alike.
 const TETRAHEDRA: [[usize; 4]; 6] = [
     [0, 1, 3, 7],
     [0, 3, 2, 7],
@@ -58,10 +58,10 @@ const TETRAHEDRA: [[usize; 4]; 6] = [
 ];
 
 impl Cut {
-    /// All of them.
+    /// All orientations.
     pub const ALL: [Self; 3] = [Self::Axial, Self::Coronal, Self::Sagittal];
 
-    /// What it is called.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Axial => "Axial",
@@ -70,7 +70,7 @@ impl Cut {
         }
     }
 
-    /// The engine's axis across it.
+    /// Returns the engine axis perpendicular to the slice.
     pub fn axis(self) -> usize {
         match self {
             Self::Axial => 1,
@@ -79,7 +79,8 @@ impl Cut {
         }
     }
 
-    /// What stands at its left, right, upper and lower edge: left, right, anterior, posterior, superior, inferior.
+    /// Returns the letters at the left, right, upper and lower edge: left, right, anterior, posterior,
+    /// superior, inferior.
     pub fn letters(self) -> [&'static str; 4] {
         match self {
             Self::Axial => ["L", "R", "A", "P"],
@@ -88,7 +89,7 @@ impl Cut {
         }
     }
 
-    /// Where a place [m] is on it, to the right and up.
+    /// Returns the page coordinates (right, up) of a point [m].
     pub fn on_page(self, [x, y, z]: Vector) -> [f32; 2] {
         match self {
             Self::Axial => [x, -z],
@@ -99,7 +100,7 @@ impl Cut {
 }
 
 impl Slice {
-    /// That through an organ at a place along its axis [m].
+    /// Computes the slice through an organ at a coordinate along the perpendicular axis [m].
     pub fn of(organ: &SoftBody<Dim3>, cut: Cut, at: f32) -> Self {
         let mut slice = Self::default();
         let axis = cut.axis();
@@ -148,7 +149,7 @@ impl Slice {
                     material: view.material,
                     strain: view.strain,
                 };
-                // A plane through corners cuts some of them in a line or a point.
+                // A plane through corners cuts some tetrahedra in a line or a point only.
                 if patch.area() > 0.0 {
                     self.patches.push(patch);
                 }
@@ -156,20 +157,20 @@ impl Slice {
         }
     }
 
-    /// The material at a place of it [m]; none outside.
+    /// Returns the material at page coordinates [m], or `None` outside.
     pub fn material_at(&self, at: [f32; 2]) -> Option<u8> {
         let patch = self.patches.iter().find(|patch| patch.holds(at));
         patch.map(|patch| patch.material)
     }
 
-    /// Its area [m²].
+    /// Returns the area [m²].
     pub fn area(&self) -> f32 {
         self.patches.iter().map(Patch::area).sum()
     }
 }
 
 impl Patch {
-    /// Its area [m²].
+    /// Returns the area [m²].
     pub fn area(&self) -> f32 {
         let [first, ..] = self.corners[..] else {
             return 0.0;
@@ -181,7 +182,7 @@ impl Patch {
         0.5 * self.corners.windows(2).map(doubled).sum::<f32>().abs()
     }
 
-    /// Whether a place is in it: on the same side of all its edges.
+    /// Returns whether a point is inside, that is, on the same side of all edges.
     fn holds(&self, at: [f32; 2]) -> bool {
         let count = self.corners.len();
         let sides = (0..count).map(|k| {
@@ -198,13 +199,13 @@ impl Patch {
     }
 }
 
-/// Where the line between two places crosses a plane, which is between them.
+/// Returns the intersection of the line between two points with a plane between them.
 fn crossing(a: Vector, b: Vector, axis: usize, at: f32) -> Vector {
     let share = (at - a[axis]) / (b[axis] - a[axis]);
     plus(a, scaled(minus(b, a), share.clamp(0.0, 1.0)))
 }
 
-/// Where a plane cuts a tetrahedron: three or four corners in their order, or none.
+/// Returns the polygon in which a plane cuts a tetrahedron: three or four corners in order, or none.
 fn section(corners: [Vector; 4], axis: usize, at: f32) -> Vec<Vector> {
     let (above, below): (Vec<Vector>, Vec<Vector>) =
         corners.into_iter().partition(|corner| corner[axis] >= at);
@@ -216,7 +217,7 @@ fn section(corners: [Vector; 4], axis: usize, at: f32) -> Vec<Vector> {
     }
 }
 
-/// Where a plane cuts a triangle.
+/// Returns the segment in which a plane cuts a triangle.
 fn segment(corners: [Vector; 3], axis: usize, at: f32) -> Option<[Vector; 2]> {
     let is_above = corners.map(|corner| corner[axis] >= at);
     let alone = (0..3)
@@ -230,7 +231,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tetrahedron_is_cut_into_a_triangle_or_a_quad() {
+    fn section_of_a_tetrahedron_is_a_triangle_or_a_quad() {
         let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         assert_eq!(section(corners, 2, 0.5).len(), 3);
         assert_eq!(section(corners, 2, 2.0).len(), 0);
@@ -243,7 +244,7 @@ mod tests {
             material: 1,
             strain: 0.0,
         };
-        // Half of each of two edges of length 1 that stand upright on each other.
+        // Each side is half of an edge of length 1; the two are perpendicular.
         assert!((quad.area() - 0.25).abs() < 1e-6, "{quad:?}");
         assert!(quad.holds([0.25, 0.25]) && !quad.holds([0.6, 0.25]));
     }

@@ -1,5 +1,5 @@
-//! What a trainee holds: a knife, forceps, a hook. Each is one rigid thing that follows the hand through a virtual
-//! coupling, so that what it meets is felt.
+//! Tools of the trainee: a knife, forceps and a hook. Each is one rigid body, coupled to the hand by a
+//! virtual coupling, so that the trainee feels its contacts.
 //!
 //! ```text
 //!   knife    ╱╱         forceps  ║ ║          hook  ║
@@ -8,7 +8,7 @@
 //!         that cuts downwards       that grips          that pushes and pulls
 //! ```
 //!
-//! The place of a tool is where it works: the middle of the edge, the tip, the middle of the bar.
+//! The position of a tool is its working point: the middle of the edge, the tip, the middle of the bar.
 
 use fuwafuwa::vector::plus;
 use fuwafuwa::{
@@ -17,7 +17,7 @@ use fuwafuwa::{
 };
 use serde::{Deserialize, Serialize};
 
-/// How a hand holds a tool: it gives way by 2 mm for each newton, and never pushes harder than this [N].
+/// Virtual coupling of a tool to the hand: yields by 2 mm per newton, with a maximum force of 30 N.
 const DRIVE: MotionType = MotionType::Coupled {
     mass: 0.1,
     stiffness: 500.0,
@@ -25,43 +25,43 @@ const DRIVE: MotionType = MotionType::Coupled {
     limit: 30.0,
 };
 
-/// Steel on what is wet.
+/// Friction coefficient of steel on wet tissue.
 const FRICTION: f32 = 0.15;
-/// Half of the length of the knife's edge, how high its blade is and half of how thick that is [m].
+/// Half length of the knife's edge, height of its blade and half its thickness [m].
 const BLADE: [f32; 3] = [0.015, 0.01, 0.0006];
-/// Radius of the tip of the forceps for a fine organ [m].
+/// Tip radius of the forceps for a fine organ [m].
 const TIP: f32 = 0.002;
-/// Tips and bars have a radius of so many voxels at the least: with 1.25, a tip slips in between nodes where it is pressed
-/// in deeply.
+/// Minimum radius of tips and bars [voxels]. A thinner tip slips in between nodes when it is pressed in
+/// deeply.
 const THINNEST: f32 = 1.5;
-/// What is so near to the surface of the tip can be gripped [m].
+/// Maximum distance from the surface of the tip at which tissue is gripped [m].
 const REACH: f32 = 0.004;
-/// Nodes so near to the place that is gripped are held together [m].
+/// Radius around the gripped point within which nodes are held together [m].
 const JAW: f32 = 0.004;
-/// The forceps slip off at this force [N].
+/// Force at which the forceps slip off [N].
 const SLIPS: f32 = 8.0;
-/// Half of the length of the hook's bar, and its radius for a fine organ [m].
+/// Half length of the hook's bar, and its radius for a fine organ [m].
 const BAR: [f32; 2] = [0.014, 0.0025];
-/// How long the handles are that are drawn [m].
+/// Length of the drawn handles [m].
 const HANDLE: f32 = 0.11;
 
-/// A tool.
+/// Kind of tool.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Tool {
-    /// Cuts where its edge passes.
+    /// Cuts along its edge.
     #[default]
     Knife,
-    /// Grips what is at its tip.
+    /// Grips tissue at its tip.
     Forceps,
-    /// A bar that pushes tissue aside.
+    /// Bar that pushes tissue aside.
     Hook,
 }
 
 impl Tool {
-    /// All of them.
+    /// All tools.
     pub const ALL: [Self; 3] = [Self::Knife, Self::Forceps, Self::Hook];
 
-    /// What it is called.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Knife => "Knife",
@@ -71,23 +71,23 @@ impl Tool {
     }
 }
 
-/// A tool in a world.
+/// Tool in a world.
 #[derive(Clone, Debug)]
 pub struct Held {
     tool: Tool,
     holder: RigidBodyHandle,
-    /// Its edge, and how dull that is [µm].
+    /// Knife of the tool and its edge radius [µm].
     edge: Option<(KnifeHandle, u16)>,
     grip: Option<JointHandle>,
-    /// Whether the forceps closed on something or on nothing, and did not open since.
+    /// Whether the forceps are closed, with or without tissue.
     is_closed: bool,
 }
 
 impl Held {
-    /// Puts a tool for an organ into its world, at rest at a place [m].
+    /// Adds a tool to the world of an organ, at rest at a position [m].
     ///
     /// # Errors
-    /// [`Refused`] when the place is out of reach.
+    /// [`Refused`] if the position is out of range.
     pub fn new(
         world: &mut World<Dim3>,
         organ: SoftBodyHandle,
@@ -98,7 +98,7 @@ impl Held {
         let thinnest = thinnest(world.soft_bodies().get(organ)?);
         let mut rigid = RigidBody::new(form(tool, thinnest), at, DRIVE).rotated(rotation);
         rigid.friction = FRICTION;
-        // Of a knife the edge alone touches, and its flat.
+        // A knife has contact only through its edge and its flat sides.
         rigid.is_sensor = tool == Tool::Knife;
         let holder = world.add_rigid_body(rigid)?;
         Ok(Self {
@@ -110,10 +110,10 @@ impl Held {
         })
     }
 
-    /// Takes it out of the world, with what it grips let go.
+    /// Removes the tool from the world and releases gripped tissue.
     ///
     /// # Errors
-    /// [`Refused`] when it is not in this world.
+    /// [`Refused`] if the tool is not in this world.
     pub fn put_away(mut self, world: &mut World<Dim3>) -> Result<(), Refused> {
         self.open(world);
         if let Some((edge, _)) = self.edge.take() {
@@ -123,10 +123,10 @@ impl Held {
         Ok(())
     }
 
-    /// Grinds the knife: its edge is as dull as is said [µm]. One that is within tissue begins anew there.
+    /// Sets the edge radius of the knife [µm]. A knife within tissue restarts its contact there.
     ///
     /// # Errors
-    /// [`Refused`] when that is out of range.
+    /// [`Refused`] if the radius is out of range.
     pub fn grind(&mut self, world: &mut World<Dim3>, dull: u16) -> Result<(), Refused> {
         let is_so = self.edge.is_some_and(|(_, is)| is == dull);
         if self.tool != Tool::Knife || is_so {
@@ -143,25 +143,25 @@ impl Held {
         Ok(())
     }
 
-    /// Which one it is.
+    /// Returns the kind of tool.
     pub fn tool(&self) -> Tool {
         self.tool
     }
 
-    /// What follows the hand.
+    /// Returns the rigid body of the tool.
     pub fn rigid<'a>(&self, world: &'a World<Dim3>) -> &'a RigidBody {
         &world.rigid_bodies()[self.holder]
     }
 
-    /// Whether it holds tissue.
+    /// Returns whether the tool holds tissue.
     pub fn grips(&self) -> bool {
         self.grip.is_some()
     }
 
-    /// Sends it somewhere [m], turned so.
+    /// Sets the kinematic target: position [m] and rotation.
     ///
     /// # Errors
-    /// [`Refused`] when that is out of reach.
+    /// [`Refused`] if the target is out of range.
     pub fn send(
         &self,
         world: &mut World<Dim3>,
@@ -178,7 +178,7 @@ impl Held {
     /// Closes or opens the forceps.
     ///
     /// # Errors
-    /// [`Refused`] when the organ is not in this world.
+    /// [`Refused`] if the organ is not in this world.
     pub fn close(
         &mut self,
         world: &mut World<Dim3>,
@@ -189,7 +189,7 @@ impl Held {
             .grip
             .is_some_and(|grip| world.joints().get(grip).is_err())
         {
-            // It slipped: forceps that are closed take nothing up.
+            // The grip slipped off. Closed forceps do not grip again.
             self.grip = None;
         }
         let begins = closes && !self.is_closed;
@@ -217,18 +217,18 @@ impl Held {
 
     fn open(&mut self, world: &mut World<Dim3>) {
         if let Some(grip) = self.grip.take() {
-            // One that slipped is gone already.
+            // A grip that slipped off was already removed.
             let _ = world.remove_joint(grip);
         }
     }
 
-    /// How strongly the grip pulls [N].
+    /// Returns the pulling force of the grip [N].
     pub fn pull(&self, world: &World<Dim3>) -> f32 {
         let joint = self.grip.and_then(|grip| world.joints().get(grip).ok());
         joint.map_or(0.0, Joint::force)
     }
 
-    /// What of it is drawn beside what touches: shafts and handles.
+    /// Returns the shapes that are drawn but have no contact: shafts and handles.
     pub fn looks(&self, world: &World<Dim3>) -> Vec<Shape> {
         let rigid = self.rigid(world);
         let (at, rotation) = (rigid.position(), rigid.rotation());
@@ -273,18 +273,19 @@ impl Held {
     }
 }
 
-/// What is round is no thinner than this [m].
+/// Returns the minimum radius of round tools [m].
 fn thinnest(organ: &SoftBody<Dim3>) -> f32 {
     THINNEST * organ.grid().voxel_size()
 }
 
-/// So far from an organ no tool touches it, however it is turned [m].
+/// Returns a distance from an organ at which no tool touches it in any rotation [m].
 pub(crate) fn clearance(organ: &SoftBody<Dim3>) -> f32 {
     let [half, radius] = BAR;
     half + radius.max(thinnest(organ)) + organ.grid().voxel_size()
 }
 
-/// What of a tool touches, with its place at the origin; what is round is not thinner than this [m].
+/// Returns the contact shape of a tool with its working point at the origin. `thinnest` is the minimum radius
+/// [m].
 fn form(tool: Tool, thinnest: f32) -> Shape {
     match tool {
         Tool::Knife => {
@@ -309,7 +310,7 @@ fn form(tool: Tool, thinnest: f32) -> Shape {
     }
 }
 
-/// The node of an organ that is nearest to the surface of a tip, if one is within reach: where it is [m].
+/// Returns the position of the node nearest to the surface of a tip [m], if it is within reach.
 fn nearest(world: &World<Dim3>, organ: SoftBodyHandle, tip: &RigidBody) -> Option<Vector> {
     let body = world.soft_bodies().get(organ).ok()?;
     let places = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);

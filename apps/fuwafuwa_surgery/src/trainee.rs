@@ -1,5 +1,4 @@
-//! A procedure by itself: what somebody might do who knows nothing, the same for the same seed. For tests, for
-//! measurements, and to show.
+//! Automatic trainee without skill, deterministic for each seed. For tests, measurements and demonstration.
 
 use crate::procedure::{Input, Procedure};
 use crate::tools::Tool;
@@ -7,7 +6,7 @@ use fuwafuwa::vector::{minus, plus, scaled};
 use fuwafuwa::world::TICK;
 use fuwafuwa::{Rotation, Vector};
 
-/// A way from one place to the next.
+/// Straight motion between two points.
 #[derive(Clone, Debug)]
 struct Leg {
     tool: Tool,
@@ -18,15 +17,15 @@ struct Leg {
     ticks: usize,
 }
 
-/// Somebody who does one thing after the other.
+/// Sequence of motions of an automatic trainee.
 #[derive(Clone, Debug)]
 pub struct Trainee {
     legs: Vec<Leg>,
-    /// Radius of the knife's edge [µm].
+    /// Edge radius of the knife [µm].
     dull: u16,
 }
 
-/// What the legs are put together from.
+/// Sequence of motions under construction.
 struct Plan {
     legs: Vec<Leg>,
     at: Vector,
@@ -34,7 +33,7 @@ struct Plan {
 }
 
 impl Trainee {
-    /// Who does what the seed says to the organ of a procedure that begins.
+    /// Creates the trainee of a seed for the organ of a new procedure.
     pub fn new(procedure: &Procedure, seed: u64) -> Self {
         let [low, high] = procedure.span();
         let middle = scaled(plus(low, high), 0.5);
@@ -55,7 +54,7 @@ impl Trainee {
         }
     }
 
-    /// What it wants in a tick.
+    /// Returns the input of a tick.
     pub fn input(&self, tick: usize) -> Input {
         let dull = self.dull;
         let base = Input {
@@ -77,7 +76,7 @@ impl Trainee {
         last.map_or(base, |leg| base.at(leg.tool, leg.to, leg.rotation))
     }
 
-    /// Ticks until it is done.
+    /// Returns the number of ticks of the sequence.
     pub fn ticks(&self) -> usize {
         self.legs.iter().map(|leg| leg.ticks).sum()
     }
@@ -88,7 +87,7 @@ impl Plan {
         low + (high - low) * self.random.f32()
     }
 
-    /// Goes somewhere at a speed [m/s].
+    /// Adds a motion to a point at a speed [m/s].
     fn go(&mut self, tool: Tool, to: Vector, rotation: Rotation, grips: bool, speed: f32) {
         let far = fuwafuwa::vector::length(minus(to, self.at));
         self.legs.push(Leg {
@@ -102,7 +101,7 @@ impl Plan {
         self.at = to;
     }
 
-    /// Lets the knife down into the organ and draws it along.
+    /// Lowers the knife into the organ and draws it along.
     fn cut(&mut self, middle: Vector, size: Vector, above: f32) {
         let heading = self.between(-1.5, 1.5);
         let turned = Rotation::about([0.0, 1.0, 0.0], heading);
@@ -131,7 +130,7 @@ impl Plan {
         self.go(Tool::Hook, [x, above, z], turned, false, 0.15);
     }
 
-    /// Takes hold of what is on top and pulls.
+    /// Grips the top of the organ and pulls.
     fn pull_up(&mut self, procedure: &Procedure, middle: Vector, size: Vector, above: f32) {
         let x = middle[0] + self.between(-0.2, 0.2) * size[0];
         let z = middle[2] + self.between(-0.2, 0.2) * size[2];
@@ -146,7 +145,7 @@ impl Plan {
     }
 }
 
-/// How high the organ is near a place, seen from above [m].
+/// Returns the height of the organ's top near a point [m].
 fn top_at(procedure: &Procedure, [x, z]: [f32; 2]) -> Option<f32> {
     let organ = procedure.organ();
     let reach = 1.5 * organ.grid().voxel_size();

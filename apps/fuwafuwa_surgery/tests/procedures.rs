@@ -1,4 +1,4 @@
-//! Procedures without a window: they stay whole, come out again as they were, and cut what they should.
+//! Procedures without a window stay valid, replay identically, and cut as expected.
 
 use fuwafuwa::{Rotation, Vector};
 use fuwafuwa_surgery::measures::parts;
@@ -15,13 +15,13 @@ fn procedure(resolution: usize) -> Procedure {
     Procedure::new(Arc::new(phantom::case(resolution).unwrap())).unwrap()
 }
 
-/// That the organ is as an organ has to be.
+/// Checks that the organ and the last sample are valid.
 fn check(procedure: &Procedure, what: &str) {
     let organ = procedure.organ();
     let valid = organ.mesh().validate(organ.grid(), organ.connectivity());
     valid.unwrap_or_else(|defect| panic!("{what}: {defect}"));
     for view in organ.piece_views() {
-        assert!(!view.quarantined, "{what}: a piece went out of hand");
+        assert!(!view.quarantined, "{what}: a piece is quarantined");
         let numbers = [view.centre, view.velocity, view.low, view.high];
         let is_finite = numbers.as_flattened().iter().all(|k| k.is_finite());
         assert!(is_finite || view.element_count == 0, "{what}: {view:?}");
@@ -39,7 +39,7 @@ fn check(procedure: &Procedure, what: &str) {
 }
 
 #[test]
-fn twenty_trainees_leave_an_organ_that_is_whole_or_in_whole_pieces() {
+fn automatic_trainees_keep_the_organ_valid_and_its_volume() {
     let mut cut = 0.0;
     for seed in 0..20 {
         let mut procedure = procedure(18);
@@ -55,19 +55,16 @@ fn twenty_trainees_leave_an_organ_that_is_whole_or_in_whole_pieces() {
         let whole = procedure.case().grid.solid_count() as f64 * procedure.case().millilitres();
         let parts = parts(procedure.organ(), procedure.case().millilitres());
         let sum: f64 = parts.iter().map(|part| part.millilitres).sum();
-        assert!(
-            (sum / whole - 1.0).abs() < 1e-9,
-            "{sum} of {whole} ml are left"
-        );
+        assert!((sum / whole - 1.0).abs() < 1e-9, "{sum} of {whole} ml left");
     }
     assert!(
         cut > 20.0 * 1e-4,
-        "twenty cuts of some square centimetres, not {cut} m²"
+        "expected twenty cuts of some cm² each, found {cut} m² in total"
     );
 }
 
 #[test]
-fn a_recording_comes_out_as_it_was_and_says_when_it_does_not() {
+fn replay_is_identical_and_detects_changed_input() {
     let mut procedure = procedure(16);
     let trainee = Trainee::new(&procedure, 3);
     for tick in 0..trainee.ticks() {
@@ -86,7 +83,7 @@ fn a_recording_comes_out_as_it_was_and_says_when_it_does_not() {
     );
     assert_eq!(playback.procedure().samples(), procedure.samples());
 
-    // Somebody holds the tool a little lower in the third second: it is told within that one.
+    // The tool is held slightly lower in the third second. The replay reports it within that second.
     let mut other = recording.clone();
     for input in &mut other.inputs[150..160] {
         input.goal[1] -= 700;
@@ -96,7 +93,7 @@ fn a_recording_comes_out_as_it_was_and_says_when_it_does_not() {
         if let Err(error) = playback.step() {
             break error;
         }
-        assert!(!playback.is_over(), "nobody noticed");
+        assert!(!playback.is_over(), "the difference was not detected");
     };
     assert!(
         matches!(wrong, RecordError::Differs { second: 2 }),
@@ -104,7 +101,7 @@ fn a_recording_comes_out_as_it_was_and_says_when_it_does_not() {
     );
 }
 
-/// Lets the tool go from where it is from place to place at a pace [m/s]; what was felt most strongly on the way [N].
+/// Moves the tool from its position along a path at a speed [m/s]; returns the maximum force on the way [N].
 fn go(procedure: &mut Procedure, input: Input, way: &[Vector], pace: f32) -> f32 {
     let begun = procedure.samples().len();
     let here = procedure.tool().position();
@@ -135,7 +132,7 @@ fn with(tool: Tool, dull: u16) -> Input {
 }
 
 #[test]
-fn a_knife_cuts_what_it_passes_and_a_dull_one_presses_instead() {
+fn dull_knife_cuts_less_and_presses_more() {
     let (mut felt, mut areas) = (Vec::new(), Vec::new());
     for dull in [20, 800] {
         let mut procedure = procedure(28);
@@ -143,7 +140,7 @@ fn a_knife_cuts_what_it_passes_and_a_dull_one_presses_instead() {
         let way = [[-0.02, 0.1, 0.02], [-0.02, 0.04, 0.02], [0.03, 0.04, 0.02]];
         felt.push(go(&mut procedure, input, &way, 0.06));
         let last = procedure.samples().last().unwrap();
-        // An edge of three centimetres went down some three, and five sideways; a dull one presses before it cuts.
+        // The 3 cm edge moves some 3 cm down and 5 cm sideways. A dull edge presses before it cuts.
         areas.push(1e4 * last.area);
         assert!(last.path > 0.03 && last.work > 0.0, "{last:?}");
         check(&procedure, "cut");
@@ -154,7 +151,7 @@ fn a_knife_cuts_what_it_passes_and_a_dull_one_presses_instead() {
 }
 
 #[test]
-fn forceps_hold_what_they_grip_and_let_it_go() {
+fn forceps_hold_and_release_tissue() {
     let mut procedure = procedure(20);
     let input = with(Tool::Forceps, 0);
     let top = procedure.organ().piece_views()[0].high[1];
@@ -187,7 +184,7 @@ fn forceps_hold_what_they_grip_and_let_it_go() {
         0.01,
     );
     assert!(!procedure.held().grips());
-    // Far off there is nothing to be gripped.
+    // There is nothing to grip far away from the organ.
     go(
         &mut procedure,
         closed,
@@ -198,7 +195,7 @@ fn forceps_hold_what_they_grip_and_let_it_go() {
 }
 
 #[test]
-fn a_hook_feels_what_it_pushes() {
+fn hook_feels_contact_force() {
     let mut procedure = procedure(20);
     let top = procedure.organ().piece_views()[0].high[1];
     let way = [[0.0, top + 0.02, 0.0], [0.0, top - 0.015, 0.0]];
@@ -209,7 +206,7 @@ fn a_hook_feels_what_it_pushes() {
 }
 
 #[test]
-fn what_is_blunt_does_not_slip_in_between_the_nodes_of_a_coarse_organ() {
+fn blunt_tools_do_not_slip_between_nodes_of_coarse_organs() {
     for resolution in [20, 28, 36] {
         for tool in [Tool::Forceps, Tool::Hook] {
             let mut procedure = procedure(resolution);
@@ -225,14 +222,14 @@ fn what_is_blunt_does_not_slip_in_between_the_nodes_of_a_coarse_organ() {
             });
             let force = procedure.samples().last().unwrap().force;
             let what = format!("{tool:?} at {resolution} voxels");
-            assert_eq!(over.count(), 0, "{what}: what it presses is over it");
+            assert_eq!(over.count(), 0, "{what}: nodes are above the pressed tip");
             assert!(force[1] > 0.08, "{what}: {force:?} N");
         }
     }
 }
 
 #[test]
-fn a_tool_comes_in_above_even_the_coarsest_organ() {
+fn tools_enter_clear_of_the_coarsest_organ() {
     for resolution in [8, 12, 48] {
         for tool in Tool::ALL {
             let mut procedure = procedure(resolution);
@@ -255,7 +252,7 @@ fn a_tool_comes_in_above_even_the_coarsest_organ() {
 }
 
 #[test]
-fn tables_and_plots_hold_what_was_measured() {
+fn csv_and_svg_contain_the_measurements() {
     let mut procedure = procedure(12);
     for tick in 0..50 {
         let input =
@@ -285,7 +282,7 @@ fn tables_and_plots_hold_what_was_measured() {
 }
 
 #[test]
-fn what_is_saved_overwrites_nothing() {
+fn save_overwrites_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let mut procedure = procedure(8);
     procedure.step(Input::default()).unwrap();

@@ -1,4 +1,4 @@
-//! Whoever wrote a recording: it is read, or refused with a reason.
+//! Recordings from untrusted files are read, or rejected with a reason.
 
 use fuwafuwa::hash::Hash;
 use fuwafuwa_surgery::phantom;
@@ -14,7 +14,7 @@ fn recording() -> Recording {
     Recording::of(&procedure)
 }
 
-/// The same with a checksum that fits.
+/// The bytes with a valid checksum.
 fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
     let sum = Hash::of(&bytes[20..]).to_le_bytes();
     bytes[12..20].copy_from_slice(&sum);
@@ -22,7 +22,7 @@ fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
 }
 
 #[test]
-fn what_is_cut_off_or_changed_is_refused() {
+fn read_rejects_truncated_and_changed_bytes() {
     let bytes = recording().bytes();
     assert!(Recording::read(&bytes).is_ok());
     for length in 0..bytes.len() {
@@ -36,23 +36,23 @@ fn what_is_cut_off_or_changed_is_refused() {
 }
 
 #[test]
-fn each_refusal_says_why() {
+fn read_errors_name_the_problem() {
     let bytes = recording().bytes();
     let said = |bytes: &[u8]| Recording::read(bytes).unwrap_err().to_string();
-    assert!(said(b"GIF89a").contains("no recording"));
+    assert!(said(b"GIF89a").contains("not a recording"));
     let mut other = bytes.clone();
     other[8] = 9;
     assert!(said(&other).contains("format 9"), "{}", said(&other));
     let mut long = bytes.clone();
     long[20..24].copy_from_slice(&u32::MAX.to_le_bytes());
-    assert!(said(&signed(long)).contains("bytes inside: expected 33554432 at most"));
+    assert!(said(&signed(long)).contains("bytes inside: expected at most 33554432"));
     let mut short = bytes.clone();
     short[20] -= 1;
-    assert!(said(&signed(short)).contains("does not inflate"));
+    assert!(said(&signed(short)).contains("do not inflate"));
     let mut torn = bytes.clone();
     let last = torn.len() - 8;
     torn.truncate(last);
-    assert!(said(&signed(torn)).contains("does not inflate"));
+    assert!(said(&signed(torn)).contains("do not inflate"));
     let huge = vec![0; MOST_BYTES + 1];
     assert!(matches!(
         Recording::read(&huge),
@@ -61,7 +61,7 @@ fn each_refusal_says_why() {
 }
 
 #[test]
-fn numbers_that_cannot_be_are_refused_before_anything_is_laid_down() {
+fn invalid_values_are_rejected_before_the_replay() {
     let good = recording();
     let bad = |change: fn(&mut Recording)| {
         let mut other = good.clone();
@@ -69,7 +69,7 @@ fn numbers_that_cannot_be_are_refused_before_anything_is_laid_down() {
         let read = Recording::read(&other.bytes());
         read.and_then(|read| Playback::new(Arc::new(read)))
             .err()
-            .expect("it is refused")
+            .expect("an invalid recording is rejected")
             .to_string()
     };
     let name = bad(|one| Arc::make_mut(&mut one.case).name = "z".repeat(300));
@@ -88,7 +88,7 @@ fn numbers_that_cannot_be_are_refused_before_anything_is_laid_down() {
 }
 
 #[test]
-fn noise_inside_neither_panics_nor_takes_long() {
+fn random_contents_neither_panic_nor_hang() {
     let inside = recording().inside();
     assert!(Recording::read_inside(&inside).is_ok());
     let mut random = fastrand::Rng::with_seed(7);
@@ -108,7 +108,7 @@ fn noise_inside_neither_panics_nor_takes_long() {
         };
         if let Ok(mut playback) = Playback::new(Arc::new(read)) {
             taken += 1;
-            // Whatever it wants, a tick passes, or it is told that it came out otherwise.
+            // Any input passes a tick or reports a difference.
             let _ = playback.step();
             let organ = playback.procedure().organ();
             organ

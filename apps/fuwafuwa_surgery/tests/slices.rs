@@ -1,4 +1,4 @@
-//! Slices show what is inside, where it is: left on the left, and what was cut open.
+//! Slices show the inside at the right position: left on the left, and cuts.
 
 use fuwafuwa::{Blade, SoftBody};
 use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
@@ -12,7 +12,7 @@ fn table() -> (Case, Table) {
     (case, table)
 }
 
-/// Where a place in the patient, RAS+ [mm], is in the world [m].
+/// World position [m] of a point in the patient, RAS+ [mm].
 fn place(case: &Case, table: &Table, [right, front, up]: [f64; 3]) -> [f32; 3] {
     let own = [
         right - case.corner[0],
@@ -27,7 +27,7 @@ fn organ(table: &Table) -> &SoftBody<fuwafuwa::Dim3> {
 }
 
 #[test]
-fn the_growth_is_on_the_right_in_front_and_above() {
+fn growth_appears_at_its_anatomical_position() {
     let (case, table) = table();
     let (growth, _) = GROWTH;
     let at = place(&case, &table, growth);
@@ -36,14 +36,15 @@ fn the_growth_is_on_the_right_in_front_and_above() {
         let page = cut.on_page(at);
         assert_eq!(slice.material_at(page), Some(3), "{cut:?}");
         let whole = cut.on_page(place(&case, &table, [0.0; 3]));
-        // On the page: right of the middle is the patient's right, but from the left side the back; above is in front or up.
+        // On the page, right of the middle is the patient's right; seen from the left, it is the back. Above
+        // is front or up.
         let beside = page[0] - whole[0];
         let above = page[1] - whole[1];
         match cut {
             Cut::Axial | Cut::Coronal => assert!(beside > 0.015 && above > 0.008, "{cut:?}"),
             Cut::Sagittal => assert!(beside < -0.015 && above > 0.008),
         }
-        // And on the other side there is none.
+        // The mirrored position shows no growth.
         let other = [whole[0] - beside, page[1]];
         assert_ne!(slice.material_at(other), Some(3), "{cut:?}");
         assert_eq!(slice.material_at([page[0] + 1.0, page[1]]), None);
@@ -51,16 +52,16 @@ fn the_growth_is_on_the_right_in_front_and_above() {
 }
 
 #[test]
-fn a_slice_is_as_large_as_the_organ_is_there_and_follows_it() {
+fn slice_area_matches_the_deformed_organ() {
     let (case, mut table) = table();
     let at = place(&case, &table, [0.0, 0.0, -8.0]);
     let [right, front, up] = HALF;
-    // Through an ellipsoid, below its middle.
+    // Through an ellipsoid, below its centre.
     let share = 1.0 - (8.0 / up).powi(2);
     let ellipse = (1e-6 * std::f64::consts::PI * right * front * share) as f32;
     let area = Slice::of(organ(&table), Cut::Axial, at[1]).area();
     assert!((area / ellipse - 1.0).abs() < 0.03, "{area} {ellipse}");
-    // Drawn out by a tenth to the right.
+    // Stretched by a tenth to the right.
     let body = table.world.soft_body_mut(table.organ).unwrap();
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
@@ -78,7 +79,7 @@ fn a_slice_is_as_large_as_the_organ_is_there_and_follows_it() {
 }
 
 #[test]
-fn a_cut_that_is_still_closed_is_seen() {
+fn closed_cut_is_visible() {
     let (case, mut table) = table();
     let at = place(&case, &table, [10.0, 0.0, 0.0]);
     assert!(
@@ -99,14 +100,14 @@ fn a_cut_that_is_still_closed_is_seen() {
         assert!((end[0] - at[0]).abs() < 1.5 * voxel, "{end:?}");
         assert!((end[1] + at[2]).abs() < 0.02 + 1.5 * voxel, "{end:?}");
     }
-    // Nothing of the organ is hidden by it.
+    // The cut hides nothing of the organ.
     let whole = Slice::of(
         &SoftBody::new(case.grid.clone(), &case.tissues).unwrap(),
         Cut::Axial,
         at[1] - table.corner[1],
     );
     assert!((slice.area() / whole.area() - 1.0).abs() < 1e-3);
-    // Beside it there is none.
+    // No cracks beside the cut.
     assert!(
         Slice::of(organ(&table), Cut::Sagittal, at[0] - 0.02)
             .cracks
@@ -114,8 +115,8 @@ fn a_cut_that_is_still_closed_is_seen() {
     );
 }
 
-/// NIfTI-1 as it is laid out: voxels of 2 mm whose first axis runs to the patient's *left*, and among labels 1 one ball of
-/// label 2 on the right.
+/// NIfTI-1 file with 2 mm voxels. Its first axis runs to the patient's *left*; among voxels of label 1 a ball
+/// of label 2 lies on the right.
 fn scan() -> Vec<u8> {
     let side = 32usize;
     let mut bytes = vec![0; 352 + side * side * side];
@@ -155,7 +156,7 @@ fn scan() -> Vec<u8> {
 }
 
 #[test]
-fn a_scan_that_counts_to_the_left_is_shown_with_right_on_the_right() {
+fn scan_with_left_axis_shows_right_on_the_right() {
     let scan = Scan::decode("marked.nii", &scan(), |_| {}).unwrap();
     let options = Options {
         resolution: 32,

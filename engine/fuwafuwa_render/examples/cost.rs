@@ -1,4 +1,5 @@
-//! How long a picture takes before the GPU is asked, and on it, in best milliseconds, and what it asks of the GPU.
+//! Measures the time per image before and on the GPU (best of several runs) [ms], and the draw calls and
+//! bytes per image.
 
 use fuwafuwa::Dim2;
 use fuwafuwa_render::frame::ElementColour;
@@ -8,7 +9,7 @@ use std::error::Error;
 use std::time::Instant;
 
 const SIZE: [u32; 2] = [1280, 720];
-/// So many are drawn of each.
+/// Number of images drawn per scene and look.
 const IMAGES: usize = 20;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -50,14 +51,14 @@ fn main() -> Result<(), Box<dyn Error>> {
             let cost = renderer.take_cost();
             let [draws, bytes] = [cost.draws, cost.bytes].map(|sum| sum / IMAGES as u64);
             println!(
-                "{name:8} {look_name:8} {vertices:6} vertices: {gather:6.2} before the GPU, {whole:6.1} an image, {draws} draw calls, {bytes} bytes written"
+                "{name:8} {look_name:8} {vertices:6} vertices: {gather:6.2} ms before the GPU, {whole:6.1} ms per image, {draws} draw calls, {bytes} bytes written"
             );
         }
     }
     Ok(())
 }
 
-/// The best of so many runs [ms].
+/// Returns the shortest time of `count` runs [ms].
 fn best(count: usize, mut run: impl FnMut()) -> f64 {
     let times = (0..count).map(|_| {
         let begin = Instant::now();

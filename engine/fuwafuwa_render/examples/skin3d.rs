@@ -1,5 +1,5 @@
-//! How long each part of a picture in space takes on the CPU while a hand tears a ball:
-//! `cargo run --release -p fuwafuwa_render --example skin3d -- [body.n=64 …]`.
+//! Measures the CPU time of each part of a 3D picture while a hand tears a ball: `cargo run --release -p
+//! fuwafuwa_render --example skin3d -- [body.n=64 …]`.
 
 use fuwafuwa::vector::scaled;
 use fuwafuwa::{Dim3, PieceId, World};
@@ -12,9 +12,9 @@ use std::f32::consts::TAU;
 use std::time::Instant;
 
 const TICKS: u64 = 150;
-/// Each tick counts with the best of so many goes: others use the machine too.
+/// Repetitions per tick. The fastest one counts, because other processes share the machine.
 const GOES: usize = 3;
-/// What is measured besides the skin alone.
+/// Measured parts besides the skin alone.
 const PARTS: [&str; 4] = [
     "skin in a room",
     "skin and a face",
@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         geometries[2][0].vertex_count()
     );
     for (name, times) in ["skin alone"].iter().chain(&PARTS).zip(&times) {
-        println!("{name}: first look {:.1} ms", times[0].1);
+        println!("{name}: first call {:.1} ms", times[0].1);
         for (state, is_torn) in [("still", false), ("torn", true)] {
             let chosen = times[1..].iter().filter(|(is_new, _)| *is_new == is_torn);
             let mut chosen: Vec<f64> = chosen.map(|(_, time)| *time).collect();
@@ -85,7 +85,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// How long the fastest of several goes takes [ms].
+/// Returns the time of the fastest repetition [ms].
 fn best<T>(goes: &mut [T], mut act: impl FnMut(&mut T)) -> f64 {
     let times = goes.iter_mut().map(|go| {
         let begin = Instant::now();
@@ -95,7 +95,7 @@ fn best<T>(goes: &mut [T], mut act: impl FnMut(&mut T)) -> f64 {
     times.fold(f64::INFINITY, f64::min)
 }
 
-/// Something with as many corners as a face of the game has.
+/// A sticker with as many corners as a face in the game.
 fn face(world: &World<Dim3>) -> Sticker {
     let body = world.soft_bodies().first().unwrap();
     let anchor = anchor(body);

@@ -12,7 +12,7 @@ use std::path::Path;
 use std::time::Instant;
 
 const SIZE: [u32; 2] = [960, 600];
-/// Scenes, and when to look at them [ticks].
+/// Scenes and the ticks at which they are drawn.
 const MOMENTS: [(&str, &[u64]); 5] = [
     ("squeeze", &[1, 90, 130, 170]),
     ("tear", &[20, 60, 90, 140]),
@@ -87,7 +87,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Dust around the largest piece of the first body, to see what particles look like.
+/// Particles around the largest piece of the first body, to show how particles look.
 fn crumbs(world: &World<Dim2>) -> Vec<Particle> {
     let Some(body) = world.soft_bodies().first() else {
         return Vec::new();

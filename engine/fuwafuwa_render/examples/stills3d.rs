@@ -1,6 +1,6 @@
-//! Draws bodies in space, squeezed, torn and crumbled by hands, at several moments into PNG files:
-//! `cargo run --release -p fuwafuwa_render --example stills3d -- FOLDER [PART OF A NAME …]`; with
-//! `WGPU_BACKEND=gl` by OpenGL ES, which is next to what browsers have.
+//! Draws 3D bodies that hands squeeze, tear and crumble, at several moments, into PNG files: `cargo run
+//! --release -p fuwafuwa_render --example stills3d -- FOLDER [PART OF A NAME …]`. With `WGPU_BACKEND=gl` it
+//! uses OpenGL ES, which is closest to browsers.
 
 use fuwafuwa::{Dim3, World};
 use fuwafuwa_render::frame::ElementColour;
@@ -88,7 +88,7 @@ radius = 0.12
 path = [[0.0, 0.5, 1.2, 0.5], [0.8, 0.5, 0.13, 0.5], [1.2, 0.9, 0.13, 0.5], [1.6, 0.1, 0.13, 0.4], [2.5, 0.5, 1.0, 0.5]]
 "#;
 
-/// Shapes that are not round, dropped.
+/// Non-round shapes, dropped onto the floor.
 const SHAPES: &str = r#"
 dim = 3
 gravity = [0.0, -3.0, 0.0]
@@ -136,7 +136,8 @@ radius = 0.1
 path = [[0.0, -0.6, 1.0, 0.3], [0.5, -0.6, 1.0, 0.3], [1.5, -0.6, 0.3, 0.3]]
 "#;
 
-/// What to draw: name, scene if it has none of that name, moments [ticks], and turns [rad].
+/// Pictures to draw: name, scene text (empty: the built-in scene of that name), moments [ticks], camera turn
+/// [rad].
 const TAKES: [(&str, &str, &[u64], f32); 4] = [
     ("tear-3d", "", &[1, 50, 62, 70, 80, 90, 110, 130, 149], 0.5),
     ("room", ROOM, &[1, 60, 100, 140], 0.35),
@@ -235,7 +236,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Dust beside the first hand, to see what particles look like.
+/// Particles beside the first hand, to show how particles look.
 fn dust(world: &World<Dim3>) -> Vec<Particle> {
     let Some((_, hand)) = world.target_followers().next() else {
         return Vec::new();

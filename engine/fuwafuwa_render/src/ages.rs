@@ -1,22 +1,23 @@
-//! How long ago each element was remodelled.
+//! Time since each element was last remodelled.
 
 use fuwafuwa::mesh::Element;
 use fuwafuwa::{Dim, ElementId, SoftBodyHandle, World};
 
-/// What an element is, as far as remodelling changes it.
+/// Properties of an element that remodelling changes: cell position, level and child mask.
 type Form = ([i32; 3], u8, u8);
 
-/// How long ago each element was remodelled, by looking again and again.
+/// Time since each element was last remodelled, found by comparing the mesh between calls.
 #[derive(Clone, Debug, Default)]
 pub struct Ages {
     bodies: Vec<SoftBodyHandle>,
     forms: Vec<Vec<Option<Form>>>,
-    /// [s], by body and element id: what [`crate::Look::Elements`] takes.
+    /// Ages [s], by body and element id, as [`crate::Look::Elements`] takes them.
     pub seconds: Vec<Vec<f32>>,
 }
 
 impl Ages {
-    /// Looks at a world `duration` [s] after it did last. At the first look all elements are old.
+    /// Compares a world with the last call, `duration` [s] ago. In the first call every element counts as
+    /// old.
     pub fn follow<D: Dim>(&mut self, world: &World<D>, duration: f32) {
         let known = std::mem::take(&mut self.bodies);
         let mut forms_before = std::mem::take(&mut self.forms);
@@ -57,8 +58,8 @@ mod tests {
     use fuwafuwa::{Blade, Dim2, Material, SoftBody, VoxelGrid, WorldConfig};
 
     #[test]
-    fn what_a_cut_remodels_is_young_and_grows_old() {
-        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
+    fn age_restarts_for_elements_remodelled_by_a_cut() {
+        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
         let grid = VoxelGrid::ball(32, 1.0).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let mut ages = Ages::default();

@@ -1,28 +1,29 @@
-//! A frame that follows a body, for a face to be painted in.
+//! A coordinate frame that follows a body, for example to paint a face in it.
 
 use fuwafuwa::{Dim, PieceId, SoftBody, Vector};
 use glam::{Mat3, Vec3};
 
-/// Steps towards the turn of a piece. Each doubles its correct digits once it is near.
+/// Iterations of the polar decomposition. Each one doubles the number of correct digits near convergence.
 const STEPS: usize = 12;
-/// What is flatter than this has no turn of its own: its volume, as a share of its length cubed.
+/// Flatness limit: below this determinant, relative to the cubed norm of the matrix, no rotation is defined.
 const FLAT: f32 = 1.0e-7;
 
-/// A frame that follows the largest piece of a body.
+/// Coordinate frame that follows the largest piece of a body.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Anchor {
-    /// Its centre of mass [m].
+    /// Centre of mass of the piece [m].
     pub position: Vector,
-    /// What is along the axes of the body at rest, now; of length 1 and square to each other.
+    /// Current directions of the body's rest axes. Orthonormal.
     pub axes: [Vector; 3],
-    /// Radius of a disc of its area at rest, in space of a ball of its volume [m].
+    /// Radius of a disc (2D) with the piece's rest area or of a ball (3D) with its rest volume [m].
     pub scale: f32,
 }
 
-/// The frame of the largest piece of a body: it moves and turns with it, and does not shear.
+/// Returns the frame of the largest piece of a body. It translates and rotates with the piece and does not
+/// shear.
 ///
-/// The turn is the one that leaves the least of the motion unexplained: the rotation part of
-/// Σ m (x − x̄)(r − r̄)ᵀ over its nodes, x where they are and r where they were at rest.
+/// The rotation is the least-squares fit of the motion: the rotation part of Σ m (x − x̄)(r − r̄)ᵀ over the
+/// piece's nodes, with current positions x and rest positions r.
 pub fn anchor<D: Dim>(body: &SoftBody<D>) -> Anchor {
     let (mesh, pieces) = (body.mesh(), body.pieces());
     let mut masses = vec![0.0f32; pieces.list.len()];
@@ -54,8 +55,9 @@ pub fn anchor<D: Dim>(body: &SoftBody<D>) -> Anchor {
     }
 }
 
-/// Where a place of a piece is [m] and how it is turned, by what of the piece was no farther from it than `reach`, both in
-/// voxels of the body at rest; none where that is too little or too flat to have a turn.
+/// Returns the current position [m] and axes of a rest point `place` of a piece. They are fitted to the nodes
+/// of the piece within `reach` of that point. `place` and `reach` are in voxels of the body at rest. Returns
+/// `None` if these nodes are too few or too flat to define a rotation.
 pub fn anchor_at<D: Dim>(
     body: &SoftBody<D>,
     piece: PieceId,
@@ -80,7 +82,8 @@ pub fn anchor_at<D: Dim>(
     Some((moved.into(), turn.to_cols_array_2d()))
 }
 
-/// The mean place of nodes now and at rest, and their turn, from where each is, was, and how heavy it is.
+/// Returns the mean current and rest positions of nodes and their rotation. Each state is (current position,
+/// rest position, mass).
 fn frame<D: Dim, I: Iterator<Item = (Vec3, Vec3, f32)>>(
     states: impl Fn() -> I,
 ) -> (Vec3, Vec3, Option<Mat3>) {
@@ -99,15 +102,15 @@ fn frame<D: Dim, I: Iterator<Item = (Vec3, Vec3, f32)>>(
     (position, origin, turn_of::<D>(sums))
 }
 
-/// The rotation part of a matrix: the mean of it and of its inverse turned over, again and again [Higham 1986]; none of
-/// what is flat or turned inside out.
+/// Returns the rotation part of a matrix, by repeated averaging with its inverse transpose [Higham 1986].
+/// Returns `None` for flat or inverted matrices.
 fn turn_of<D: Dim>(mut turn: Mat3) -> Option<Mat3> {
     let size = |of: Mat3| {
         let columns = [of.x_axis, of.y_axis, of.z_axis];
         columns.map(Vec3::length_squared).iter().sum::<f32>().sqrt()
     };
     if D::N == 2 {
-        // In the plane it turns around the third axis.
+        // In 2D the rotation is about the third axis.
         turn.z_axis = Vec3::Z * size(turn);
     }
     for _ in 0..STEPS {
@@ -116,7 +119,7 @@ fn turn_of<D: Dim>(mut turn: Mat3) -> Option<Mat3> {
             return None;
         }
         let inverse = turn.inverse().transpose();
-        // Of the same size, both come close to the turn at once.
+        // Scaling both to the same norm makes the iteration converge faster.
         let share = (size(inverse) / large).sqrt();
         turn = 0.5 * (share * turn + inverse / share);
     }
@@ -130,8 +133,8 @@ mod tests {
     use fuwafuwa::{Blade, Dim2, Dim3, Material, NodeId, VoxelGrid, World, WorldConfig};
 
     #[test]
-    fn it_turns_with_the_largest_piece_and_ignores_its_squash() {
-        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
+    fn anchor_rotates_with_largest_piece_and_ignores_squash() {
+        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
         let grid = VoxelGrid::ball(24, 1.0).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let rest = anchor(world.soft_bodies().first().unwrap());
@@ -153,7 +156,7 @@ mod tests {
         let (sin, cos) = 2.5f32.sin_cos();
         for id in ids {
             let [x, y, _] = body.node_state(id).0;
-            // Squashed, turned, and away with what was cut off.
+            // Squashed, rotated and translated; the part that was cut off is moved far away.
             let [x, y] = [x, 0.6 * y];
             let gone = if x < 0.25 { 100.0 } else { 0.0 };
             let place = [cos * x - sin * y + 3.0 + gone, sin * x + cos * y - 7.0, 0.0];
@@ -176,8 +179,8 @@ mod tests {
     }
 
     #[test]
-    fn in_space_it_turns_around_any_axis() {
-        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
+    fn anchor_rotates_about_any_axis_in_3d() {
+        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
         let grid = VoxelGrid::ball(12, 1.0).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let body = world
@@ -185,7 +188,7 @@ mod tests {
             .unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
-            // Half as high, then turned so that x leads to y, y to z and z to x.
+            // Half as high, then rotated so that x maps to y, y to z and z to x.
             let [x, y, z] = body.node_state(id).0;
             body.set_node_state(id, [z, x, 0.5 * y], [0.0; 3]);
         }

@@ -1,4 +1,4 @@
-//! Elements as coloured quads with lines around them.
+//! Elements of 2D bodies as coloured quads with outlines.
 
 use crate::frame::ElementColour;
 use crate::palette::{Colour, Palette, bytes, mix};
@@ -10,18 +10,18 @@ use fuwafuwa::view::{ElementFace, blocks, faces};
 use fuwafuwa::{Dim2, ElementView, SoftBody};
 use glam::Vec2;
 
-/// For how long an element flashes after it was remodelled [s].
+/// Duration of an element's flash after it was remodelled [s].
 const FLASH: f32 = 0.4;
 
-/// A corner of a triangle of the element view.
+/// Vertex of the element view.
 #[repr(C)]
 #[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ElementVertex {
-    /// Where [m].
+    /// Position before the line offset [m].
     pub at: Vec2,
-    /// How far it is moved, for the thickness of a line [px].
+    /// Offset that gives a line its thickness [px].
     pub across: Vec2,
-    /// Distance from the middle of the line and half its width [px].
+    /// Distance from the line's centre and half the line width [px].
     pub line: [f32; 2],
     /// Colour and opacity.
     pub colour: [u8; 4],
@@ -30,13 +30,13 @@ pub struct ElementVertex {
 /// Triangles of the element view.
 #[derive(Clone, Debug)]
 pub struct ElementMesh {
-    /// Corners.
+    /// Vertices.
     pub vertices: Vec<ElementVertex>,
-    /// Three to a triangle.
+    /// Vertex indices, three per triangle.
     pub indices: Vec<u32>,
-    /// By the mask of its children: the faces of an element.
+    /// Faces of an element with children, indexed by its child mask.
     faces: [Vec<ElementFace>; 16],
-    /// Of an element without children.
+    /// Faces of an element without children.
     whole: Vec<ElementFace>,
 }
 
@@ -52,13 +52,13 @@ impl Default for ElementMesh {
 }
 
 impl ElementMesh {
-    /// Forgets all triangles.
+    /// Removes all triangles.
     pub fn clear(&mut self) {
         self.vertices.clear();
         self.indices.clear();
     }
 
-    /// Adds the elements of a body, then their edges, then their nodes.
+    /// Adds the elements of a body, then their edges, then (if `nodes`) their nodes.
     pub fn add(
         &mut self,
         body: &SoftBody<Dim2>,
@@ -72,7 +72,7 @@ impl ElementMesh {
             self.add_fill(view, bytes(colour_of(view, palette, colour, ages), 1.0));
         }
         for view in &views {
-            // The larger an element, the bolder: levels can be told apart without colours.
+            // Larger elements have bolder lines, so that levels can be told apart without colours.
             let level = f32::from(view.level.min(4));
             self.add_edges(
                 view,
@@ -89,7 +89,7 @@ impl ElementMesh {
         }
     }
 
-    /// Adds what an element fills, and nothing else.
+    /// Adds the filled area of an element, without its edges.
     pub fn add_fill(&mut self, view: &ElementView, colour: [u8; 4]) {
         for round in fills(view) {
             let first = self.vertices.len() as u32;
@@ -118,7 +118,7 @@ impl ElementMesh {
         }
     }
 
-    /// A line with square ends; between equal places a square.
+    /// Adds a line with square ends, or a square if both ends are equal.
     fn add_line(&mut self, from: Vec2, to: Vec2, half: f32, colour: [u8; 4]) {
         let along = (to - from).try_normalize().unwrap_or(Vec2::X);
         let first = self.vertices.len() as u32;
@@ -140,7 +140,7 @@ impl ElementMesh {
     }
 }
 
-/// The colour of an element; for a moment after it was remodelled it flashes.
+/// Returns the colour of an element. It flashes white for [`FLASH`] seconds after it was remodelled.
 pub fn colour_of(
     view: &ElementView,
     palette: &Palette,
@@ -156,7 +156,7 @@ pub fn colour_of(
     mix(plain, [1.0; 3], flash)
 }
 
-/// The quads that an element fills [m], anticlockwise.
+/// Returns the quads that an element covers [m], counterclockwise.
 pub fn fills(view: &ElementView) -> impl Iterator<Item = [Vec2; 4]> + '_ {
     blocks::<Dim2>(view.level, view.children).map(|(low, width)| {
         [0, 1, 3, 2].map(|vertex| {
@@ -172,7 +172,7 @@ mod tests {
     use fuwafuwa::{Material, VoxelGrid};
 
     #[test]
-    fn the_fills_of_a_disc_have_its_area() {
+    fn fills_of_a_disc_have_the_disc_area() {
         let grid = VoxelGrid::<Dim2>::ball(32, 1.0).unwrap();
         let voxels = grid.solid_count() as f32;
         let body = SoftBody::new(grid, &[Material::default()]).unwrap();
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn a_young_element_flashes_and_an_old_one_does_not() {
+    fn element_flashes_only_while_young() {
         let grid = VoxelGrid::<Dim2>::from_fn([1, 1, 1], 1.0, |_| 1).unwrap();
         let body = SoftBody::new(grid, &[Material::default()]).unwrap();
         let palette = Palette::candy();

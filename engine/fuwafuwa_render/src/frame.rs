@@ -1,43 +1,46 @@
-//! How to look at a world, as plain data.
+//! The description of a picture as plain data: camera, colours, look and extras.
 
 use crate::palette::{Colour, Palette};
 use crate::plane::flat;
 use fuwafuwa::{Dim3, PieceId, Shape, Vector, World};
 use glam::Vec2;
 
-/// Everything that a picture needs beside the world; for one in space, a camera in space.
+/// Everything that a picture needs besides the world. A 3D picture takes a [`crate::space::Camera`].
 #[derive(Clone, Debug)]
 pub struct Frame<'a, C = Camera> {
-    /// From where.
+    /// Camera.
     pub camera: C,
-    /// In which colours.
+    /// Colours.
     pub palette: &'a Palette,
-    /// The skin, or what is inside.
+    /// View of the bodies: their skin or their elements.
     pub look: Look<'a>,
-    /// The region to get into.
+    /// Target region of the game, if any.
     pub basket: Option<Basket>,
-    /// Crumbs, dust, sparks.
+    /// Particles such as crumbs, dust and sparks.
     pub particles: &'a [Particle],
-    /// What lies on skins in space. In the plane it is painted between the two halves of [`crate::Renderer::paint`].
+    /// Marks on the skins of 3D bodies. In 2D the caller paints between the two halves of
+    /// [`crate::Renderer::paint`].
     pub stickers: &'a [Sticker],
-    /// A world whose bodies and hands are seen through, in space.
+    /// World with bodies and hands to be drawn transparently (3D only).
     pub ghost: Option<&'a World<Dim3>>,
-    /// What is seen beside a world in space and is not in it, such as the handle of what a hand holds; as hands are.
+    /// Objects drawn like hands that are not part of the 3D world, such as the handle of a tool that a hand
+    /// holds.
     pub props: &'a [Prop],
-    /// A clock for slow motion that means nothing, like the march of dashes [s].
+    /// Clock for slow decorative animation, such as marching dashes [s].
     pub seconds: f64,
 }
 
-/// After so long all that moves by the clock is where it was [s]: the shaders count in single precision.
+/// Period of the animation clock [s]. Every clock-driven animation repeats after it, because shaders compute
+/// in single precision.
 const CYCLE: f64 = 16.0;
 
 impl<'a, C> Frame<'a, C> {
-    /// The clock as the shaders have it [s].
+    /// Returns the clock within its period, as the shaders take it [s].
     pub(crate) fn phase(&self) -> f32 {
         self.seconds.rem_euclid(CYCLE) as f32
     }
 
-    /// The skin of a world as it stands, and nothing beside it.
+    /// Creates a frame that shows the skin of a world and nothing else.
     pub fn new(camera: C, palette: &'a Palette) -> Self {
         Self {
             camera,
@@ -53,104 +56,106 @@ impl<'a, C> Frame<'a, C> {
     }
 }
 
-/// A shape that ends somewhere, in its own colour.
+/// A bounded shape with a colour.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Prop {
-    /// Where it is.
+    /// Shape and position.
     pub shape: Shape,
-    /// Its colour.
+    /// Colour.
     pub colour: Colour,
 }
 
-/// Where the camera is. What it looks at fills the target, whatever that measures.
+/// 2D camera. The picture fills the target, whatever its size.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// What is in the middle [m]; in the plane the third coordinate does not count.
+    /// Point in the middle of the picture [m]. The third coordinate is ignored.
     pub centre: Vector,
-    /// How much of the world is to be seen from bottom to top [m].
+    /// Height of the visible region [m].
     pub height: f32,
-    /// By how much it leans to its left [rad].
+    /// Counterclockwise roll of the camera [rad].
     pub tilt: f32,
-    /// By how much it is shaken out of place [m].
+    /// Shake offset of the centre [m].
     pub shake: Vector,
 }
 
-/// What to show of a body.
+/// View of the bodies.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Look<'a> {
-    /// Its skin.
+    /// Smooth skin.
     Skin,
-    /// Its elements.
+    /// Elements.
     Elements {
-        /// What their colour tells.
+        /// Quantity shown by the colour.
         colour: ElementColour,
-        /// How long ago each element was remodelled [s], by body and element id: the young ones
-        /// flash. [`crate::Ages`] keeps count. What is not listed is old.
+        /// Time since each element was remodelled [s], by body and element id, as [`crate::Ages`] computes
+        /// it. Recently remodelled elements flash. Missing entries count as old.
         ages: &'a [Vec<f32>],
-        /// Whether nodes are dots; in space they never are.
+        /// Whether nodes are drawn as dots (2D only).
         nodes: bool,
     },
 }
 
-/// What the colour of an element tells.
+/// Quantity shown by the colour of an element.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum ElementColour {
-    /// Its level.
+    /// Level of the element.
     Level,
-    /// How far it is strained.
+    /// Strain of the element.
     Strain,
 }
 
-/// The region to get into.
+/// Target region of the game.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Basket {
-    /// Where it is; a box, a capsule or a ball.
+    /// Shape of the region: a box, a capsule or a ball.
     pub region: Shape,
-    /// How far it is filled, 0 to 1: it glows the more.
+    /// Fill level, 0 to 1. A fuller basket glows more.
     pub fill: f32,
 }
 
-/// A round, soft dot.
+/// Round soft dot.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Particle {
-    /// Its middle [m].
+    /// Centre [m].
     pub at: Vector,
-    /// [m]
+    /// Radius [m].
     pub radius: f32,
     /// Red, green, blue (sRGB), opacity; 0 to 1.
     pub colour: [f32; 4],
 }
 
-/// A patch of the plane.
+/// Coloured patch of a sticker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
-    /// Its corners, counterclockwise, to the right and up; all between them and their mean belongs to it.
+    /// Corners, counterclockwise, as (right, up). The patch is the union of the triangles between its edges
+    /// and the mean corner.
     pub outline: Vec<[f32; 2]>,
     /// Red, green, blue (sRGB), opacity; 0 to 1.
     pub colour: [f32; 4],
-    /// How far its middle stands out of where it lies, where there is room to: its edge does not.
+    /// Height of the patch's centre above its edge, in coordinates of marks.
     pub bulge: f32,
-    /// How far its edge does.
+    /// Height of the patch's edge above the skin, in coordinates of marks.
     pub lift: f32,
 }
 
-/// Marks on the skin of a piece, each on top of the one before: a face.
+/// Marks on the skin of a piece, each painted over the previous ones, for example a face.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sticker {
-    /// The body, by its place in the world.
+    /// Index of the body in the world.
     pub body: usize,
-    /// Its piece.
+    /// Piece of the body.
     pub piece: PieceId,
-    /// A place inside [m]. The sticker lies on the skin that is seen from there.
+    /// Point inside the piece [m]. The sticker lies on the skin visible from there.
     pub from: Vector,
-    /// To the right, up, and out of the skin; as long as a mark's coordinate 1 is to be [m].
+    /// Axes to the right, up and out of the skin. Their lengths are the size of one unit of mark coordinates
+    /// [m].
     pub axes: [Vector; 3],
-    /// What is on it.
+    /// Marks, bottom first.
     pub marks: Vec<Mark>,
 }
 
 impl Camera {
-    /// The camera that sees all between two corners [m] in a target of `size` pixels.
+    /// Returns the camera that shows the region between two corners [m] in a target of `size` pixels.
     pub fn fit(low: Vector, high: Vector, size: [u32; 2]) -> Self {
         let aspect = size[0].max(1) as f32 / size[1].max(1) as f32;
         let span = flat(high) - flat(low);
@@ -162,7 +167,7 @@ impl Camera {
         }
     }
 
-    /// Where a place [m] of the plane is in a target of `size` pixels, from its upper left corner.
+    /// Returns the pixel of a 2D point [m] in a target of `size` pixels, measured from its upper left corner.
     pub fn to_pixel(&self, at: Vector, size: [u32; 2]) -> [f32; 2] {
         let [right, up] = self.axes();
         let by = flat(at) - self.middle();
@@ -173,7 +178,7 @@ impl Camera {
         ]
     }
 
-    /// The place [m] in the plane at a pixel of a target of `size` pixels.
+    /// Returns the 2D point [m] at a pixel of a target of `size` pixels.
     pub fn to_world(&self, pixel: [f32; 2], size: [u32; 2]) -> Vector {
         let [right, up] = self.axes();
         let scale = self.height / size[1].max(1) as f32;
@@ -184,12 +189,12 @@ impl Camera {
             .into()
     }
 
-    /// What is in the middle of the picture [m].
+    /// Returns the point in the middle of the picture, shake included [m].
     pub(crate) fn middle(&self) -> Vec2 {
         flat(self.centre) + flat(self.shake)
     }
 
-    /// What is to the right and what is up.
+    /// Returns the directions to the right and up.
     pub(crate) fn axes(&self) -> [Vec2; 2] {
         let right = Vec2::from_angle(self.tilt);
         [right, right.perp()]
@@ -201,7 +206,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pixels_and_places_agree() {
+    fn to_world_inverts_to_pixel() {
         let size = [640, 480];
         let mut camera = Camera::fit([-1.0, 0.0, 0.0], [3.0, 1.0, 0.0], size);
         assert_eq!(camera.height, 3.0);

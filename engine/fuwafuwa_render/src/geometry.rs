@@ -1,4 +1,4 @@
-//! A world as vertices: all that is worked out before a GPU is asked.
+//! A 2D world as vertices: all CPU work before the GPU draws.
 
 use crate::elements::ElementMesh;
 use crate::frame::{Frame, Look};
@@ -11,7 +11,7 @@ use fuwafuwa::{Dim2, SoftBody, World};
 use glam::Vec2;
 use std::ops::Range;
 
-/// A world as vertices, with the buffers to make them again and again.
+/// Vertices of a 2D world. Keep the value between frames to reuse its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct Geometry {
     pub(crate) skin: SkinMesh,
@@ -20,23 +20,23 @@ pub struct Geometry {
     pub(crate) rigid: RigidShapes,
     /// Radius of a disc with the area of the largest body at rest [m].
     pub(crate) radius: f32,
-    /// All bodies lie between these corners [m], the low one above the high one if there are none.
+    /// Bounding box of all bodies as low and high corner [m]. Without bodies low is above high.
     pub(crate) bounds: [Vec2; 2],
     rings: Rings,
     rests: Vec<Rest>,
 }
 
-/// Which triangles of the skin belong to a body.
+/// Index ranges of a body in the fans of the skin mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyParts {
-    /// They wind around what is inside.
+    /// Fans that wind around the inside.
     pub fan: Range<u32>,
-    /// They colour what is inside: first all of it, then what is of other materials.
+    /// Quads that colour the inside: first the whole body, then the regions of other materials.
     pub cover: Range<u32>,
 }
 
 impl Geometry {
-    /// Works out the vertices of a world.
+    /// Computes the vertices of a world.
     pub fn gather(&mut self, world: &World<Dim2>, frame: &Frame<'_>) {
         self.skin.clear();
         self.bodies.clear();
@@ -65,7 +65,7 @@ impl Geometry {
         }
     }
 
-    /// How many vertices there are.
+    /// Returns the number of vertices of bodies.
     pub fn vertex_count(&self) -> usize {
         self.skin.vertices.len() + self.elements.vertices.len()
     }
@@ -106,7 +106,7 @@ fn radius(body: &SoftBody<Dim2>) -> f32 {
 
 const NOWHERE: [Vec2; 2] = [Vec2::MAX, Vec2::MIN];
 
-/// The smallest bounds around bounds and a place.
+/// Returns the smallest bounds that contain the given bounds and a point.
 fn around([low, high]: [Vec2; 2], at: Vec2) -> [Vec2; 2] {
     [low.min(at), high.max(at)]
 }

@@ -1,25 +1,32 @@
-//! Draws a world of fuwafuwa with wgpu: the skin of its bodies, or their elements.
+//! Draws worlds of the soft-body engine fuwafuwa with wgpu: the skin of bodies or their elements, in 2D and
+//! 3D.
 //!
-//! [`Frame`] says as plain data how to look at a world. [`Renderer::prepare`] makes triangles of
-//! it and draws what has to be drawn apart; [`Renderer::paint`] puts the picture into a pass of a
-//! window, and [`Renderer::render_to_image`] into an image, without any window.
+//! [`Frame`] describes as plain data how to show a world. [`Renderer::prepare`] computes the triangles and
+//! draws intermediate images. [`Renderer::paint`] draws the picture into a render pass of a window.
+//! [`Renderer::render_to_image`] draws into an image without a window.
 //!
-//! The way through: [`palette`] and [`frame`] are what a caller says → `stairs` and `rest` how a body is smooth
-//! before it moves → `rings` its smooth outlines now → `skin`, `elements`, `rigid` turn a world into vertices, without a GPU →
-//! `geometry` all of them → `gpu` draws them. [`anchor`] and [`ages`] answer questions of those
-//! who paint on top.
+//! Data flow in 2D:
 //!
-//! [`space`] is the same for worlds in space; it shares the themes, frames, buffers and stages, and has
-//! a camera, a skin and a renderer of its own, for a surface is no outline.
+//! 1. The caller provides a [`palette`] and a [`frame`].
+//! 2. `stairs` and `rest` smooth the shape of a body at rest.
+//! 3. `rings` traces the current smooth outlines.
+//! 4. `skin`, `elements` and `rigid` turn a world into vertices, without a GPU.
+//! 5. [`geometry`] collects the vertices.
+//! 6. `gpu` draws them.
 //!
-//! Who draws another way leaves the feature `gpu` out, and takes the vertices: of [`space::Skin`], for one,
-//! or what takes the stairs out of a shape in the plane, [`Rest`].
+//! [`anchor`] and [`ages`] help callers that paint on top.
 //!
-//! It needs no more than WebGL2 has, `wgpu::Limits::downlevel_webgl2_defaults`.
+//! [`space`] does the same for 3D worlds. It shares the palettes, frames, buffers and stages. It has its own
+//! camera, skin and renderer, because a surface cannot be handled like an outline.
+//!
+//! To draw with another renderer, disable the default feature `gpu` and use the vertices, for example those
+//! of [`space::Skin`]. [`Rest`] smooths the voxel staircase of a 2D shape.
+//!
+//! The limits of WebGL2, `wgpu::Limits::downlevel_webgl2_defaults`, are sufficient.
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
-#![cfg_attr(not(feature = "gpu"), allow(dead_code))] // nobody reads most vertices then
+#![allow(rustdoc::broken_intra_doc_links)] // units are in brackets: [m]
+#![cfg_attr(not(feature = "gpu"), allow(dead_code))] // without `gpu`, most vertices are unused
 
 pub mod ages;
 pub mod anchor;

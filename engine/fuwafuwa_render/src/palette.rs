@@ -1,9 +1,9 @@
-//! Which colour everything has.
+//! Colours of everything that is drawn.
 
-/// Red, green and blue as a screen takes them (sRGB), 0 to 1.
+/// Red, green and blue (sRGB), 0 to 1.
 pub type Colour = [f32; 3];
 
-/// The colour of a hexadecimal number, as in `rgb(0xff8a70)`.
+/// Returns the colour of a hexadecimal number, as in `rgb(0xff8a70)`.
 pub const fn rgb(hex: u32) -> Colour {
     [
         (hex >> 16 & 255) as f32 / 255.0,
@@ -12,33 +12,33 @@ pub const fn rgb(hex: u32) -> Colour {
     ]
 }
 
-/// Which colour everything has.
+/// Colours of everything that is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Palette {
-    /// The floor of the arena, in the middle and at its rim.
+    /// Floor of the arena: centre and rim.
     pub floor: [Colour; 2],
-    /// The frame around the arena: half-spaces.
+    /// Frame around the arena (half-spaces).
     pub frame: Colour,
-    /// Bars, boxes, pegs.
+    /// Bounded fixed and dynamic rigid bodies such as bars, boxes and pegs.
     pub bar: Colour,
-    /// The glow of the basket.
+    /// Glow of the basket.
     pub basket: Colour,
-    /// Bodies by the number of their material, number 1 first; they start over after the last.
+    /// Bodies by material number, starting at number 1. The list repeats after its end.
     pub materials: Vec<Colour>,
-    /// The inside of a body, mixed into its own colour where it is torn.
+    /// Inside of a body, mixed into the body's colour on torn surfaces.
     pub fresh: Colour,
-    /// Hands by player; they start over after the last.
+    /// Hands by player. The list repeats after its end.
     pub hands: Vec<Colour>,
-    /// Elements by level, 0 first; the last one serves all above.
+    /// Elements by level, starting at 0. The last colour is used for all higher levels.
     pub levels: Vec<Colour>,
-    /// Elements by strain: none, some, much.
+    /// Elements by strain: none, medium, high.
     pub strains: [Colour; 3],
     /// Lines between elements.
     pub ink: Colour,
 }
 
 impl Palette {
-    /// Warm bodies on a cool floor.
+    /// Returns the default palette: warm bodies on a cool floor.
     pub fn candy() -> Self {
         Self {
             floor: [rgb(0xf3f6ee), rgb(0xcfe6e4)],
@@ -60,7 +60,7 @@ impl Palette {
         }
     }
 
-    /// Colours that people who see few colours can tell apart, by lightness too [Okabe 2008].
+    /// Returns colours that colour-blind people can tell apart, also by lightness [Okabe 2008].
     pub fn colour_safe() -> Self {
         Self {
             floor: [rgb(0xf7f7f5), rgb(0xdde3e8)],
@@ -82,23 +82,23 @@ impl Palette {
         }
     }
 
-    /// The colour of a material, by its number.
+    /// Returns the colour of a material number.
     pub fn material(&self, number: u8) -> Colour {
         among(&self.materials, usize::from(number.max(1)) - 1)
     }
 
-    /// The colour of a player's hand.
+    /// Returns the colour of a player's hand.
     pub fn hand(&self, player: usize) -> Colour {
         among(&self.hands, player)
     }
 
-    /// The colour of a level.
+    /// Returns the colour of a level.
     pub fn level(&self, level: u8) -> Colour {
         let last = self.levels.len().saturating_sub(1);
         among(&self.levels, usize::from(level).min(last))
     }
 
-    /// The colour of a strain ‖F − R‖; 0.5 and above is much.
+    /// Returns the colour of a strain ‖F − R‖. From 0.5 on, it is the colour of high strain.
     pub fn strain(&self, strain: f32) -> Colour {
         let [none, some, much] = self.strains;
         let share = (2.0 * strain).clamp(0.0, 1.0);
@@ -115,19 +115,19 @@ impl Default for Palette {
     }
 }
 
-/// A colour between two.
+/// Interpolates linearly between two colours.
 pub(crate) fn mix(a: Colour, b: Colour, share: f32) -> Colour {
     [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * share)
 }
 
-/// As four bytes.
+/// Converts a colour and an opacity to four bytes.
 pub(crate) fn bytes(colour: Colour, alpha: f32) -> [u8; 4] {
     let byte = |k: f32| (k.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
     let [red, green, blue] = colour.map(byte);
     [red, green, blue, byte(alpha)]
 }
 
-/// One of some colours, which start over after the last.
+/// Returns the colour at an index of a list that repeats after its end; grey if the list is empty.
 pub(crate) fn among(colours: &[Colour], place: usize) -> Colour {
     let some = colours.get(place % colours.len().max(1));
     some.copied().unwrap_or([0.5; 3])
@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_start_over_and_levels_end() {
+    fn colours_repeat_but_levels_saturate() {
         let palette = Palette::candy();
         assert_eq!(palette.hand(0), palette.hand(2));
         assert_ne!(palette.hand(0), palette.hand(1));
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn safe_levels_differ_in_lightness() {
+    fn colour_safe_levels_differ_in_lightness() {
         let palette = Palette::colour_safe();
         let lightness = |c: Colour| 0.3 * c[0] + 0.59 * c[1] + 0.11 * c[2];
         for pair in palette.levels.windows(2) {

@@ -1,9 +1,9 @@
-//! Places in the plane.
+//! 2D points.
 
 use fuwafuwa::Vector;
 use glam::{Vec2, Vec3};
 
-/// Where something is in the plane [m].
+/// Returns the 2D point of a vector [m].
 pub fn flat(at: Vector) -> Vec2 {
     Vec3::from(at).truncate()
 }

@@ -1,37 +1,37 @@
-//! How the stairs of a voxel shape are smoothed, once, before it moves.
+//! Smoothing of the voxel staircase of a 2D shape, computed once for the body at rest.
 //!
-//! Every point of the surface gets an offset, in voxels and in the frame of the body at rest. A
-//! deformed body carries the offsets along by the deformation of its voxels: so the skin is as
-//! smooth after any motion as before, and no squash is smoothed away.
+//! Every point of the surface gets an offset, in voxels and in the frame of the body at rest. A deformed body
+//! carries the offsets along by the deformation of its voxels. So the skin stays equally smooth after any
+//! motion, and no deformation is smoothed away.
 
 use crate::stairs::smoothed;
 use fuwafuwa::{Dim2, VoxelGrid};
 use glam::Vec2;
 
-/// Steps to the four sides, anticlockwise from the right.
+/// Steps along the four sides of a voxel, counterclockwise starting with the one to the right.
 const STEPS: [[i32; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
-/// How far the smoothing reaches, as a standard deviation: this many times the root of the number
-/// of sides of the ring, in sides. The longest stairs of a disc, where it is flat, grow like that.
+/// Standard deviation of the smoothing [sides], as a multiple of the square root of the number of sides of
+/// the ring. The longest steps of a disc, where it is flat, grow by the same law.
 const REACH: f32 = 0.5;
-/// Rings of fewer sides have no stairs, only corners.
+/// Minimum number of sides of a smoothed ring. Smaller rings have no staircase, only corners.
 pub const SMALL: usize = 12;
-/// A point is not moved by more [voxels], so that a nose of a few voxels stays a nose.
+/// Maximum offset of a point [voxels], so that a protrusion of a few voxels survives.
 const FARTHEST: f32 = 0.9;
 
-/// The offsets of a voxel shape.
+/// Smoothing offsets of a voxel shape.
 #[derive(Clone, Debug, Default)]
 pub struct Rest {
-    /// By voxel and direction: the place of a side in `offsets`, or none.
+    /// Index of a side in `offsets` by voxel and direction, or `u32::MAX`.
     sides: Vec<u32>,
-    /// At the start and at the end of a side [voxels].
+    /// Offsets at the start and at the end of each side [voxels].
     offsets: Vec<[Vec2; 2]>,
-    /// The grid they belong to.
+    /// Grid that the offsets belong to.
     grid: Option<VoxelGrid<Dim2>>,
     first_material: u8,
 }
 
 impl Rest {
-    /// Finds the offsets of a grid.
+    /// Computes the offsets of a grid.
     pub fn new(grid: &VoxelGrid<Dim2>) -> Self {
         let mut sides = vec![u32::MAX; 4 * grid.voxels().count()];
         let mut offsets = Vec::new();
@@ -72,17 +72,17 @@ impl Rest {
         }
     }
 
-    /// Whether these are the offsets of a grid.
+    /// Returns whether these offsets belong to a grid.
     pub fn fits(&self, grid: &VoxelGrid<Dim2>) -> bool {
         self.grid.as_ref() == Some(grid)
     }
 
-    /// The lowest number of a material in the grid.
+    /// Returns the lowest material number in the grid.
     pub fn first_material(&self) -> u8 {
         self.first_material
     }
 
-    /// The offsets [voxels] at the start and at the end of a side of the original surface, which
+    /// Returns the offsets [voxels] at the start and at the end of a side of the original surface. The side
     /// runs along `step` with the voxel to its left.
     pub fn offsets(&self, grid: &VoxelGrid<Dim2>, voxel: [i32; 3], step: [i32; 2]) -> [Vec2; 2] {
         let direction = STEPS.iter().position(|&known| known == step);
@@ -93,7 +93,8 @@ impl Rest {
     }
 }
 
-/// Whether the side of a solid voxel that runs in a direction, the voxel to its left, is bare.
+/// Returns whether a side of a solid voxel is on the surface. The side runs in `direction` with the voxel to
+/// its left.
 fn is_bare(grid: &VoxelGrid<Dim2>, voxel: [i32; 3], direction: usize) -> bool {
     grid.is_solid(voxel) && !grid.is_solid(beside(voxel, (direction + 3) % 4))
 }
@@ -103,13 +104,13 @@ fn beside([x, y, z]: [i32; 3], direction: usize) -> [i32; 3] {
     [x + dx, y + dy, z]
 }
 
-/// Where a side of a voxel begins.
+/// Returns the start point of a side of a voxel.
 fn start_of([x, y, _]: [i32; 3], direction: usize) -> Vec2 {
     let [dx, dy] = [[0, 0], [1, 0], [1, 1], [0, 1]][direction];
     Vec2::new((x + dx) as f32, (y + dy) as f32)
 }
 
-/// The side that goes on where one ends. Voxels that only meet in a corner do not hang together.
+/// Returns the side that follows a side. Voxels that touch only in a corner are not connected.
 fn next_side(grid: &VoxelGrid<Dim2>, voxel: [i32; 3], direction: usize) -> ([i32; 3], usize) {
     let ahead = beside(voxel, direction);
     let right = beside(ahead, (direction + 3) % 4);
@@ -122,7 +123,7 @@ fn next_side(grid: &VoxelGrid<Dim2>, voxel: [i32; 3], direction: usize) -> ([i32
     }
 }
 
-/// A closed line without its stairs.
+/// Returns a closed line with its staircase smoothed.
 fn without_stairs(ring: &[Vec2]) -> Vec<Vec2> {
     if ring.len() < SMALL {
         return ring.to_vec();
@@ -131,8 +132,7 @@ fn without_stairs(ring: &[Vec2]) -> Vec<Vec2> {
     smoothed(ring, |ring| blurred(ring, reach))
 }
 
-/// A closed line, each point of it moved to the mean of those around it, by a bell curve of a
-/// standard deviation [points].
+/// Returns a closed line blurred by a Gaussian of standard deviation `sigma` [points].
 fn blurred(ring: &[Vec2], sigma: f32) -> Vec<Vec2> {
     let count = ring.len() as i32;
     let reach = (3.0 * sigma).ceil() as i32;
@@ -152,7 +152,7 @@ fn blurred(ring: &[Vec2], sigma: f32) -> Vec<Vec2> {
 mod tests {
     use super::*;
 
-    /// The smoothed surface of a disc [voxels], as the starts of its sides.
+    /// Smoothed surface of a disc [voxels], as the start points of its sides.
     fn surface(grid: &VoxelGrid<Dim2>) -> Vec<Vec2> {
         let rest = Rest::new(grid);
         let mut points = Vec::new();
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disc_is_round_before_its_curve_smooths_it_further() {
+    fn offsets_make_a_disc_round() {
         for n in [24, 64, 128] {
             let grid = VoxelGrid::<Dim2>::ball(n, 1.0).unwrap();
             let half = 0.5 * n as f32;
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn voxels_that_meet_in_a_corner_stay_apart() {
+    fn rings_separate_voxels_that_touch_in_a_corner() {
         let grid =
             VoxelGrid::<Dim2>::from_fn([2, 2, 1], 1.0, |[x, y, _]| u8::from(x == y)).unwrap();
         let (_, facing) = next_side(&grid, [0, 0, 0], 1);
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn another_shape_does_not_fit() {
+    fn fits_rejects_other_grids() {
         let [disc, larger] = [24, 25].map(|n| VoxelGrid::<Dim2>::ball(n, 1.0).unwrap());
         assert!(Rest::new(&disc).fits(&disc));
         assert!(!Rest::new(&disc).fits(&larger));

@@ -1,4 +1,4 @@
-//! Obstacles, hands and the basket as rectangles that a shader draws shapes into.
+//! Rigid bodies, hands and the basket as rectangles into which a shader draws their shapes.
 
 use crate::frame::{Basket, Particle};
 use crate::palette::{Colour, Palette};
@@ -7,56 +7,56 @@ use bytemuck::{Pod, Zeroable};
 use fuwafuwa::{Dim2, Shape, World};
 use glam::Vec2;
 
-/// Half-spaces that are drawn; more have no place in the uniforms of a small device.
+/// Maximum number of half-spaces drawn, given by the uniform size of small devices.
 pub const MOST_WALLS: usize = 16;
 
-/// A shape with a colour.
+/// Shape with a colour, as an instance for the shader.
 #[repr(C)]
 #[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct RigidInstance {
-    /// One end, or the middle [m].
+    /// Start of a capsule, or the centre [m].
     pub from: Vec2,
-    /// The other end, or half of a box [m].
+    /// End of a capsule, or half extents of a box [m].
     pub to: Vec2,
-    /// [m]; of a box the angle by which it is turned [rad].
+    /// Radius [m], or the rotation angle of a box [rad].
     pub radius: f32,
     /// 0 = capsule, 1 = box, 2 = ball.
     pub form: f32,
-    /// Which player's hand it is, or how far a basket is filled.
+    /// Player number of a hand, or fill level of a basket.
     pub number: f32,
     /// Red, green, blue.
     pub colour: Colour,
 }
 
-/// A round dot.
+/// Round dot.
 #[repr(C)]
 #[derive(Copy, Clone, Debug, PartialEq, Pod, Zeroable)]
 pub struct DotInstance {
-    /// Its middle [m].
+    /// Centre [m].
     pub at: Vec2,
-    /// [m]
+    /// Radius [m].
     pub radius: f32,
     /// Red, green, blue, opacity.
     pub colour: [f32; 4],
 }
 
-/// Everything rigid.
+/// Everything rigid in a picture.
 #[derive(Clone, Debug, Default)]
 pub struct RigidShapes {
-    /// Outward normal and offset of each half-space [m].
+    /// Outward normal and offset [m] of each half-space.
     pub walls: Vec<[f32; 4]>,
-    /// First the bars, then the hands, then the basket.
+    /// Bars (fixed and dynamic rigid bodies, except sensors), then hands, then the basket.
     pub shapes: Vec<RigidInstance>,
-    /// How many of the shapes are bars.
+    /// Number of bars in `shapes`.
     pub bar_count: u32,
-    /// How many are hands.
+    /// Number of hands in `shapes`.
     pub hand_count: u32,
     /// Particles.
     pub dots: Vec<DotInstance>,
 }
 
 impl RigidShapes {
-    /// Forgets what was there and gathers what is.
+    /// Replaces the contents with the current shapes.
     pub fn gather(
         &mut self,
         world: &World<Dim2>,
@@ -98,7 +98,7 @@ impl RigidShapes {
     }
 }
 
-/// A shape that ends somewhere as a rectangle to draw it into.
+/// Returns the rectangle instance of a bounded shape, or `None` for a half-space.
 fn instance(shape: Shape, colour: Colour, number: f32) -> Option<RigidInstance> {
     let (from, to, radius, form) = match shape {
         Shape::HalfSpace { .. } => return None,
@@ -127,8 +127,8 @@ mod tests {
     use fuwafuwa::{RigidBody, Rotation, WorldConfig};
 
     #[test]
-    fn walls_bars_hands_and_basket_each_have_their_place() {
-        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
+    fn gather_sorts_walls_bars_hands_and_basket() {
+        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
         let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);
         world
             .add_rigid_body(RigidBody::fixed(

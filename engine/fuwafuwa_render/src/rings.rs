@@ -1,10 +1,10 @@
-//! The smooth closed lines around all pieces.
+//! Smooth closed outlines of all pieces.
 //!
-//! A ring of bare voxel sides becomes a smooth curve in three steps. Its points move by the
-//! offsets of the shape at rest, carried along by the deformation of their voxels; torn sides have
-//! none. Corners are then planed off, torn ones a little. The result is the control polygon of a
-//! quadratic B-spline, of which the corners get more points than the rest. What is smoothed on
-//! one lip of a crack is smoothed in the same way on the other, so that a closed crack stays closed.
+//! A ring of bare voxel sides becomes a smooth curve in three steps. First its points move by the offsets of
+//! the shape at rest, carried along by the deformation of their voxels; torn sides have no offsets. Then
+//! corners are smoothed, torn ones only a little. The result is the control polygon of a quadratic B-spline,
+//! whose corners get more points than the rest. Both faces of a crack are smoothed alike, so that a closed
+//! crack stays closed.
 
 use crate::plane::flat;
 use crate::rest::{Rest, SMALL};
@@ -12,77 +12,77 @@ use fuwafuwa::ids::IndexVec;
 use fuwafuwa::{Dim2, NodeId, SoftBody};
 use glam::Vec2;
 
-/// The closed curves around the pieces of a body, with the buffers that make them.
+/// Closed curves around the pieces of a body. Keep the value between frames to reuse its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct Rings {
     sides: Vec<Side>,
-    /// The place of the side that starts at a node, or none.
+    /// Index of the side that starts at a node, or `NONE`.
     leaving: IndexVec<NodeId, u32>,
     ring: Vec<Control>,
     planed: Vec<Vec2>,
-    /// All curves, one after another.
+    /// Points of all curves, one curve after another.
     pub points: Vec<RingPoint>,
-    /// Where each curve begins and ends among the points.
+    /// Range of each curve in `points`.
     pub spans: Vec<Span>,
 }
 
-/// A closed curve, its piece to the left.
+/// Closed curve with its piece to the left.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Span {
-    /// Where it begins among the points.
+    /// Index of the first point.
     pub start: usize,
-    /// Where it ends.
+    /// Index after the last point.
     pub end: usize,
-    /// What it encloses [m²], negative when it is a hole.
+    /// Enclosed area [m²]. Negative for a hole.
     pub area: f32,
 }
 
-/// A point of a curve.
+/// Point of a curve.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct RingPoint {
-    /// Where [m].
+    /// Position [m].
     pub at: Vec2,
-    /// Outwards, of length 1.
+    /// Outward unit normal.
     pub normal: Vec2,
-    /// 1 where it was inside before the body tore, 0 on the original surface.
+    /// 1 on surfaces created by tearing, 0 on the original surface.
     pub fresh: f32,
-    /// ‖F − R‖ of the voxels next to it.
+    /// Strain ‖F − R‖ of the adjacent voxels.
     pub strain: f32,
-    /// A number of its own that it keeps, 0 to 1.
+    /// Constant pseudo-random value of the point, 0 to 1.
     pub grain: f32,
 }
 
-/// A bare side of a voxel.
+/// Bare side of a voxel.
 #[derive(Copy, Clone, Debug)]
 struct Side {
     to: NodeId,
-    /// The place of the side that goes on, until it was drawn.
+    /// Index of the following side; `NONE` once the side was drawn.
     next: u32,
     start: Vec2,
-    /// How far its ends move [m].
+    /// Smoothing offsets of both ends [m].
     moved: [Vec2; 2],
     is_fresh: bool,
     strain: f32,
     grain: f32,
 }
 
-/// A corner of the control polygon.
+/// Corner of the control polygon.
 #[derive(Copy, Clone, Debug)]
 struct Control {
     at: Vec2,
-    /// Of the sides before and after it.
+    /// Freshness of the sides before and after the corner.
     fresh: [f32; 2],
     strain: f32,
     grain: f32,
 }
 
 const NONE: u32 = u32::MAX;
-/// How often the points of the original surface and those of torn ones are drawn together.
+/// Smoothing rounds for points of the original surface and for torn points.
 const SURFACE_ROUNDS: usize = 4;
 const TORN_ROUNDS: usize = 1;
 
 impl Rings {
-    /// Finds the curves of a body.
+    /// Computes the curves of a body.
     pub fn trace(&mut self, body: &SoftBody<Dim2>, rest: &Rest) {
         self.points.clear();
         self.spans.clear();
@@ -128,7 +128,8 @@ impl Rings {
         }
     }
 
-    /// The control polygon of the ring that a side belongs to; empty when it was drawn before.
+    /// Collects the control polygon of the ring that contains a side. It is empty if the ring was drawn
+    /// before.
     fn gather_ring(&mut self, first: usize) {
         self.ring.clear();
         let mut at = first;
@@ -144,8 +145,8 @@ impl Rings {
         }
     }
 
-    /// Draws points half-way to the middle of their neighbours: torn ones once, for they are to
-    /// look rough; others more often, for what presses on a surface presses on its stairs.
+    /// Moves points half-way to the midpoint of their neighbours: torn points once, because they should look
+    /// rough; others in more rounds, because contacts press on the voxel staircase.
     fn plane_corners(&mut self) {
         let count = self.ring.len();
         if count < SMALL {
@@ -171,7 +172,7 @@ impl Rings {
         }
     }
 
-    /// Adds the B-spline of the control polygon to the curves.
+    /// Appends the B-spline of the control polygon to the curves.
     fn draw_curve(&mut self) {
         let start = self.points.len();
         let count = self.ring.len();
@@ -228,13 +229,13 @@ impl Control {
     }
 }
 
-/// The mean sides to the right and upwards [m] of a cell with corners in the order of
+/// Returns the mean edges to the right and upwards [m] of a cell with corners in the order of
 /// [`fuwafuwa::dim::corner`].
 pub fn sides([a, b, c, d]: [Vec2; 4]) -> (Vec2, Vec2) {
     (0.5 * (b - a + d - c), 0.5 * (c - a + d - b))
 }
 
-/// ‖F − R‖ of a cell with the given sides and the given size at rest [m].
+/// Returns ‖F − R‖ of a cell with the given edges and rest size [m].
 pub fn strain(right: Vec2, up: Vec2, size: f32) -> f32 {
     let turn = right - up.perp();
     let squared = right.length_squared() + up.length_squared();
@@ -242,7 +243,7 @@ pub fn strain(right: Vec2, up: Vec2, size: f32) -> f32 {
     squared.max(0.0).sqrt()
 }
 
-/// A number that a lattice point keeps, 0 to 1.
+/// Returns a constant pseudo-random value of a lattice point, 0 to 1.
 fn grain([x, y, _]: [i32; 3]) -> f32 {
     let mixed = (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77);
     let mixed = (mixed ^ mixed >> 15).wrapping_mul(0xc2b2_ae3d);
@@ -268,7 +269,7 @@ mod tests {
         world
     }
 
-    /// The radius of a disc of as many voxels [m].
+    /// Radius of the disc with the area of the world's first body [m].
     fn round(world: &World<Dim2>) -> f32 {
         let grid = world.soft_bodies().first().unwrap().grid();
         grid.voxel_size() * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt()
@@ -279,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn the_skin_of_a_disc_is_a_circle() {
+    fn outline_of_a_disc_is_a_circle() {
         let world = disc(64);
         let (rings, round) = (rings(&world), round(&world));
         assert_eq!(rings.spans.len(), 1);
@@ -294,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stretched_disc_is_an_ellipse() {
+    fn outline_of_a_stretched_disc_is_an_ellipse() {
         let mut world = disc(64);
         let round = round(&world);
         let body = world
@@ -314,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn both_lips_of_a_closed_cut_lie_on_each_other() {
+    fn crack_faces_coincide_in_a_closed_cut() {
         let mut world = disc(32);
         let whole = total_area(&rings(&world));
         world
@@ -335,8 +336,8 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_has_a_negative_area_and_a_crumb_is_round() {
-        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
+    fn hole_has_negative_area_and_crumb_is_round() {
+        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
         let grid = VoxelGrid::from_fn([20, 20, 1], 0.05, |[x, y, _]| {
             u8::from(!(8..12).contains(&x) || !(8..12).contains(&y))
         });

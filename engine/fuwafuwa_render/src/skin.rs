@@ -1,4 +1,4 @@
-//! The triangles that fill the curves around pieces, and the bands along them.
+//! Triangles that fill the outlines of pieces, and bands along them.
 
 use crate::elements::fills;
 use crate::plane::flat;
@@ -9,42 +9,42 @@ use fuwafuwa::stencil::slot_index;
 use fuwafuwa::{Dim, Dim2, ElementView, SoftBody};
 use glam::Vec2;
 
-/// Pieces of less area are crumbs [voxels].
+/// Maximum area of a crumb [voxels].
 const CRUMB: f32 = 14.0;
 
-/// A corner of a triangle of the skin.
+/// Vertex of the skin.
 #[repr(C)]
 #[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct SkinVertex {
-    /// Where [m].
+    /// Position [m].
     pub at: Vec2,
     /// Colour and opacity.
     pub colour: [u8; 4],
-    /// Thickness, freshness, strain, and how much these three count; 0 to 255.
+    /// Thickness, freshness, strain and the weight of these three; 0 to 255.
     pub relief: [u8; 4],
 }
 
-/// Triangles of the skin, with indices by what they do.
+/// Triangles of the skin, with separate index lists for fans and bands.
 #[derive(Clone, Debug, Default)]
 pub struct SkinMesh {
-    /// Corners.
+    /// Vertices.
     pub vertices: Vec<SkinVertex>,
-    /// Fans around the curves: what is wound around more often one way than the other is inside.
-    /// Between those of two bodies, what covers the first one.
+    /// Triangle fans around the curves. Non-zero winding means inside. The quads that colour a body follow
+    /// its fans.
     pub fans: Vec<u32>,
     /// Bands along the inner side of the curves.
     pub bands: Vec<u32>,
 }
 
 impl SkinMesh {
-    /// Forgets all triangles.
+    /// Removes all triangles.
     pub fn clear(&mut self) {
         self.vertices.clear();
         self.fans.clear();
         self.bands.clear();
     }
 
-    /// Adds fans and bands of the curves of a body with voxels of a size [m].
+    /// Adds fans and bands of a body's curves. `voxel` is the voxel size of the body [m].
     pub fn add(&mut self, rings: &Rings, voxel: f32) {
         for span in &rings.spans {
             let points = &rings.points[span.start..span.end];
@@ -55,7 +55,7 @@ impl SkinMesh {
                 at: middle,
                 ..SkinVertex::default()
             });
-            // The bands of a crumb meet in its middle, and all of it is fresh.
+            // The bands of a crumb meet in its centre, so all of it looks fresh.
             let is_crumb = (0.0..CRUMB * voxel * voxel).contains(&span.area);
             let count = points.len() as u32;
             for (k, point) in points.iter().enumerate() {
@@ -96,14 +96,14 @@ impl SkinMesh {
         self.add_quad(round, colour, 0.0);
     }
 
-    /// Adds what an element fills.
+    /// Adds the area that an element covers.
     pub fn add_element(&mut self, view: &ElementView, colour: [u8; 4]) {
         for round in fills(view) {
             self.add_quad(round, colour, 0.0);
         }
     }
 
-    /// Adds how far the large elements of a body are strained, whatever their colour.
+    /// Adds the strain of the large elements of a body, without changing their colour.
     pub fn add_strains(&mut self, body: &SoftBody<Dim2>) {
         let (mesh, voxel) = (body.mesh(), body.grid().voxel_size());
         for (_, element) in mesh.elements() {
@@ -145,7 +145,7 @@ mod tests {
     use fuwafuwa::{Material, VoxelGrid};
 
     #[test]
-    fn fans_enclose_what_the_curves_enclose() {
+    fn fans_enclose_the_area_of_the_curves() {
         let grid = VoxelGrid::ball(16, 1.0).unwrap();
         let body = SoftBody::new(grid, &[Material::default()]).unwrap();
         let mut rings = Rings::default();

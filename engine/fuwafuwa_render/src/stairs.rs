@@ -1,9 +1,9 @@
-//! How stairs of voxels go, before a body moves: the same for the lines of the plane and the surfaces of space.
+//! Smoothing of voxel staircases at rest, shared by 2D outlines and 3D surfaces.
 
 use std::ops::{Add, Mul, Sub};
 
-/// Places without their stairs: 3 S − 3 S² + S³ of them, S being a blur. What is much longer than the blur reaches does not
-/// shrink, as it would with S alone [Taubin 1995].
+/// Returns points with their staircase smoothed: (3 S − 3 S² + S³) applied to them, where S is a blur. Unlike
+/// S alone, this does not shrink features much larger than the blur width [Taubin 1995].
 pub fn smoothed<V>(places: &[V], blurred: impl Fn(&[V]) -> Vec<V>) -> Vec<V>
 where
     V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f32, Output = V>,

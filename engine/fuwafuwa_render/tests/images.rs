@@ -1,5 +1,5 @@
-//! Pictures, as any device draws them, Mesa's llvmpipe too. Without a device these tests say so and
-//! pass, unless the environment says CI=1.
+//! 2D pictures on any graphics adapter, Mesa's llvmpipe included. Without an adapter these tests print a
+//! notice and pass, unless CI is set to 1 or true.
 
 mod shared;
 
@@ -18,7 +18,7 @@ use wgpu::TextureFormat;
 const SIZE: [u32; 2] = [480, 480];
 static PALETTE: LazyLock<Palette> = LazyLock::new(Palette::candy);
 
-/// A picture, and what it was taken of.
+/// Picture with its camera.
 struct Picture {
     camera: Camera,
     pixels: Vec<u8>,
@@ -35,12 +35,12 @@ fn take<'a>(
     change(&mut frame);
     let mut renderer = Renderer::new(&device, format);
     let pixels = renderer.render_to_image(&device, &queue, world, &frame, SIZE);
-    let pixels = pixels.expect("an image");
+    let pixels = pixels.expect("rendering an image");
     Some(Picture { camera, pixels })
 }
 
 impl Picture {
-    /// The colour at a pixel, between four.
+    /// Bilinearly interpolated colour at a pixel.
     fn at_pixel(&self, [x, y]: [f32; 2]) -> Colour {
         let limit = |k: f32| k.clamp(0.5, SIZE[0] as f32 - 1.5);
         let (x, y) = (limit(x - 0.5), limit(y - 0.5));
@@ -54,7 +54,7 @@ impl Picture {
         })
     }
 
-    /// The mean colour around a place [m].
+    /// Mean colour around a point [m].
     fn around(&self, at: [f32; 2]) -> Colour {
         let [x, y] = self.camera.to_pixel([at[0], at[1], 0.0], SIZE);
         let mut sum = [0.0; 3];
@@ -84,7 +84,7 @@ fn disc() -> World<Dim2> {
 }
 
 #[test]
-fn a_disc_is_warm_on_a_cool_floor_and_its_edge_has_no_stairs() {
+fn disc_is_warm_on_a_cool_floor_with_a_smooth_edge() {
     let world = disc();
     let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |_| ()) else {
         return;
@@ -104,19 +104,19 @@ fn a_disc_is_warm_on_a_cool_floor_and_its_edge_has_no_stairs() {
     for degree in 0..360 {
         let angle = (degree as f32).to_radians();
         let half = 0.5 * (warmth(angle, round + 2.0 * voxel) + warmth(angle, round - voxel));
-        // From outside to where it is half as warm as inside.
+        // From outside inwards, to the point of half the warmth.
         let steps = (0..400).map(|k| round + (2.0 - 0.01 * k as f32) * voxel);
         let edge = steps
             .into_iter()
             .find(|&radius| warmth(angle, radius) > half);
-        let edge = edge.expect("there is an edge");
+        let edge = edge.expect("an edge along the ray");
         let off = (edge - round).abs() / voxel;
         assert!(off < 0.25, "{off} voxels off at {degree}°");
     }
 }
 
 #[test]
-fn a_torn_face_shows_a_lighter_inside() {
+fn torn_face_is_paler_than_inside() {
     let mut world = disc();
     world
         .cut(
@@ -182,7 +182,7 @@ fn elements_have_the_colour_of_their_level() {
 }
 
 #[test]
-fn bars_hands_walls_basket_and_particles_are_there() {
+fn bars_hands_walls_basket_and_particles_are_visible() {
     let mut world = floating();
     let (from, to, radius) = ([0.2, 0.9, 0.0], [0.8, 0.9, 0.0], 0.06);
     world
@@ -241,7 +241,7 @@ fn bars_hands_walls_basket_and_particles_are_there() {
 }
 
 #[test]
-fn every_format_shows_the_same() {
+fn picture_is_equal_in_every_format() {
     let world = disc();
     let formats = [
         TextureFormat::Rgba8Unorm,
@@ -261,7 +261,7 @@ fn every_format_shows_the_same() {
 }
 
 #[test]
-fn nothing_is_a_picture_too_and_so_is_what_has_no_skin() {
+fn empty_worlds_and_skinless_bodies_render_in_every_size() {
     let Some((device, queue)) = device() else {
         return;
     };
@@ -293,7 +293,7 @@ fn nothing_is_a_picture_too_and_so_is_what_has_no_skin() {
         };
         let bare = image(&floating(), Look::Skin);
         assert_eq!(bare.len(), 4 * (size[0] * size[1]) as usize);
-        // It has elements, but no skin.
+        // The coarse body has elements, but no skin.
         assert_eq!(bare, image(&coarse, Look::Skin));
         let middle = 4 * (size[1] / 2 * size[0] + size[0] / 2) as usize;
         let shown = &image(&coarse, elements)[middle..middle + 3];
@@ -304,7 +304,7 @@ fn nothing_is_a_picture_too_and_so_is_what_has_no_skin() {
 }
 
 #[test]
-fn a_window_wider_than_a_texture_can_be_is_drawn_smaller() {
+fn window_larger_than_the_texture_limit_is_drawn_smaller() {
     let Some((device, queue)) = device() else {
         return;
     };
@@ -325,7 +325,7 @@ fn a_window_wider_than_a_texture_can_be_is_drawn_smaller() {
 }
 
 #[test]
-fn what_is_too_much_for_a_buffer_is_left_out() {
+fn vertices_beyond_the_buffer_limit_are_dropped() {
     let limits = wgpu::Limits {
         max_buffer_size: 50_000,
         ..wgpu::Limits::downlevel_webgl2_defaults()
@@ -357,7 +357,7 @@ fn what_is_too_much_for_a_buffer_is_left_out() {
 }
 
 #[test]
-fn hands_are_in_front_of_what_is_painted_on_bodies() {
+fn paint_rigid_draws_hands_but_no_bodies() {
     let mut world = disc();
     world
         .add_rigid_body(RigidBody::coupled_ball([0.5, 0.5, 0.0], 0.1))
@@ -374,7 +374,7 @@ fn hands_are_in_front_of_what_is_painted_on_bodies() {
             }
             Step::Inside(pass) => paint(&renderer, pass),
         });
-        let pixels = pixels.expect("an image");
+        let pixels = pixels.expect("rendering an image");
         let picture = Picture { camera, pixels };
         let at = |x| picture.at_pixel(camera.to_pixel([x, 0.5, 0.0], SIZE));
         Some([at(0.52), at(0.8)])
@@ -390,7 +390,7 @@ fn hands_are_in_front_of_what_is_painted_on_bodies() {
 }
 
 #[test]
-fn the_same_picture_costs_the_same_each_time() {
+fn cost_is_equal_for_equal_pictures() {
     let Some((device, queue)) = device() else {
         return;
     };
@@ -403,7 +403,7 @@ fn the_same_picture_costs_the_same_each_time() {
             ..Frame::new(camera, &PALETTE)
         };
         let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE);
-        image.expect("an image");
+        image.expect("rendering an image");
         renderer.take_cost()
     };
     let bare = cost(&[]);
@@ -415,13 +415,13 @@ fn the_same_picture_costs_the_same_each_time() {
         colour: [1.0; 4],
     };
     let [one, ten] = [1, 10].map(|count| cost(&vec![speck; count]));
-    // However many there are, they are drawn at once.
+    // All particles are drawn in one call.
     assert_eq!([one.draws, ten.draws], [bare.draws; 2]);
     assert_eq!(ten.bytes - bare.bytes, 10 * (one.bytes - bare.bytes));
 }
 
 #[test]
-fn a_renderer_can_lie_among_what_egui_keeps_for_callbacks() {
+fn renderer_is_send_sync_static() {
     fn is_kept<T: Send + Sync + 'static>() {}
     is_kept::<Renderer>();
 }

@@ -1,5 +1,5 @@
-//! Pictures of worlds in space, as any device draws them, Mesa's llvmpipe too. Without a device these
-//! tests say so and pass, unless the environment says CI=1.
+//! 3D pictures on any graphics adapter, Mesa's llvmpipe included. Without an adapter these tests print a
+//! notice and pass, unless CI is set to 1 or true.
 
 mod shared;
 
@@ -16,7 +16,7 @@ use wgpu::TextureFormat;
 const SIZE: [u32; 2] = [480, 480];
 static PALETTE: LazyLock<Palette> = LazyLock::new(Palette::candy);
 
-/// A picture, and what it was taken of.
+/// Picture with its camera.
 struct Picture {
     camera: Camera,
     pixels: Vec<u8>,
@@ -32,12 +32,12 @@ fn take<'a>(
     change(&mut frame);
     let mut renderer = Renderer::new(&device, format);
     let pixels = renderer.render_to_image(&device, &queue, world, &frame, SIZE);
-    let (camera, pixels) = (frame.camera, pixels.expect("an image"));
+    let (camera, pixels) = (frame.camera, pixels.expect("rendering an image"));
     Some(Picture { camera, pixels })
 }
 
 impl Picture {
-    /// The mean colour around a pixel.
+    /// Mean colour around a pixel.
     fn at_pixel(&self, [x, y]: [f32; 2], reach: i32) -> Colour {
         let mut sum = [0.0; 3];
         let count = ((2 * reach + 1) * (2 * reach + 1)) as f32;
@@ -54,7 +54,7 @@ impl Picture {
         sum
     }
 
-    /// The mean colour around what is seen of a place [m].
+    /// Mean colour around the pixel of a point [m].
     fn around(&self, at: [f32; 3]) -> Colour {
         self.at_pixel(self.camera.to_pixel(at, SIZE).unwrap(), 2)
     }
@@ -84,7 +84,7 @@ fn lightness([red, green, blue]: Colour) -> f32 {
 }
 
 #[test]
-fn a_ball_is_warm_on_a_cool_floor_with_a_round_edge_and_a_shadow() {
+fn ball_is_warm_on_a_cool_floor_with_a_round_edge_and_a_shadow() {
     let Some(picture) = take(&ball(), TextureFormat::Rgba8Unorm, |_| ()) else {
         return;
     };
@@ -104,7 +104,8 @@ fn a_ball_is_warm_on_a_cool_floor_with_a_round_edge_and_a_shadow() {
         "{below:?} {floor:?}"
     );
 
-    // The edge is where warmth ends: nowhere is it off a circle by what stairs would be off.
+    // The edge is the radius where warmth ends. It deviates from a circle by less than a voxel staircase
+    // would.
     let edges: Vec<f32> = (0..180)
         .map(|k| {
             let (sin, cos) = (k as f32 / 180.0 * std::f32::consts::TAU).sin_cos();
@@ -115,7 +116,7 @@ fn a_ball_is_warm_on_a_cool_floor_with_a_round_edge_and_a_shadow() {
             let found = (0..200)
                 .map(|k| 200.0 - k as f32)
                 .find(|&radius| warmth(radius) > 0.2);
-            found.expect("there is an edge")
+            found.expect("an edge along the ray")
         })
         .collect();
     let voxel = edges.iter().sum::<f32>() / 180.0 * 2.0 / 32.0;
@@ -127,7 +128,7 @@ fn a_ball_is_warm_on_a_cool_floor_with_a_round_edge_and_a_shadow() {
 }
 
 #[test]
-fn a_torn_face_shows_a_paler_inside_and_no_gap_where_it_begins() {
+fn torn_face_is_paler_and_closed_cut_shows_no_gap() {
     let mut world = ball();
     let (from, across, along) = ([0.5, -0.2, -0.2], [0.0, 1.4, 0.0], [0.0, 0.0, 1.4]);
     world
@@ -161,7 +162,7 @@ fn a_torn_face_shows_a_paler_inside_and_no_gap_where_it_begins() {
     else {
         return;
     };
-    // What is cut but closed looks whole: its skin is warm all along the cut.
+    // A closed cut looks whole: the skin is warm all along it.
     for k in 0..20 {
         let rise = -0.4 + 0.07 * k as f32;
         let at = [0.5, 0.5 + 0.48 * rise.sin(), 0.5 + 0.48 * rise.cos()];
@@ -181,7 +182,7 @@ fn a_torn_face_shows_a_paler_inside_and_no_gap_where_it_begins() {
 }
 
 #[test]
-fn a_cut_through_the_elements_shows_their_levels() {
+fn cut_element_view_shows_the_colour_of_levels() {
     let world = ball();
     let picture = take(&world, TextureFormat::Rgba8Unorm, |frame| {
         frame.look = Look::Elements {
@@ -204,7 +205,7 @@ fn a_cut_through_the_elements_shows_their_levels() {
         let width =
             world.soft_bodies().first().unwrap().grid().voxel_size() * f32::from(1u8 << view.level);
         let [x, y, z] = view.slots[13];
-        // Those whose front lies in the cut.
+        // Only elements with their front face in the cut.
         if view.level < 2 || view.children != 255 || (z + 0.5 * width - 0.5).abs() > 1e-3 {
             continue;
         }
@@ -221,7 +222,7 @@ fn a_cut_through_the_elements_shows_their_levels() {
 }
 
 #[test]
-fn a_sticker_is_seen_from_its_side_and_not_through_a_bar() {
+fn sticker_is_visible_from_its_side_and_not_through_a_bar() {
     let outline = [[-0.3, -0.3], [0.3, -0.3], [0.3, 0.3], [-0.3, 0.3]].to_vec();
     let mark = Mark {
         outline,
@@ -259,7 +260,7 @@ fn a_sticker_is_seen_from_its_side_and_not_through_a_bar() {
 }
 
 #[test]
-fn a_ghost_is_seen_through_and_not_where_the_body_is() {
+fn ghost_is_transparent_and_hidden_by_an_equal_body() {
     let (world, mut ghost) = (floating(), floating());
     let grid = VoxelGrid::ball(16, 1.0).unwrap();
     ghost.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
@@ -280,7 +281,7 @@ fn a_ghost_is_seen_through_and_not_where_the_body_is() {
 }
 
 #[test]
-fn bars_hands_walls_basket_and_particles_are_there() {
+fn bars_hands_walls_basket_and_particles_are_visible() {
     let mut world = floating();
     let (from, to, radius) = ([0.1, 0.1, 0.2], [0.4, 0.1, 0.2], 0.06);
     let bar = Shape::Capsule { from, to, radius };
@@ -311,7 +312,7 @@ fn bars_hands_walls_basket_and_particles_are_there() {
     let bar = picture.around([0.2, 0.09, 0.26]);
     let [first, second] = [0.3, 0.7].map(|x| picture.around([x, 0.9, -0.1]));
     let (basket, dust) = (picture.around([0.9, 0.1, 0.3]), picture.around(particle.at));
-    // The shadow straight below a hand.
+    // Shadow straight below a hand.
     let below = picture.around([0.3, 0.0, -0.1]);
     let wall = picture.around([0.5, 0.05, -0.6]);
     for (name, seen) in [
@@ -332,7 +333,7 @@ fn bars_hands_walls_basket_and_particles_are_there() {
 }
 
 #[test]
-fn every_format_shows_the_same() {
+fn picture_is_equal_in_every_format() {
     let formats = [
         TextureFormat::Rgba8Unorm,
         TextureFormat::Bgra8Unorm,
@@ -353,7 +354,7 @@ fn every_format_shows_the_same() {
 }
 
 #[test]
-fn small_targets_and_small_buffers_are_drawn_as_far_as_they_go() {
+fn small_targets_and_small_buffers_render_without_error() {
     let limits = wgpu::Limits {
         max_buffer_size: 100_000,
         ..wgpu::Limits::downlevel_webgl2_defaults()
@@ -377,13 +378,13 @@ fn small_targets_and_small_buffers_are_drawn_as_far_as_they_go() {
 }
 
 #[test]
-fn a_renderer_can_lie_among_what_egui_keeps_for_callbacks() {
+fn renderer_is_send_sync_static() {
     fn is_kept<T: Send + Sync + 'static>() {}
     is_kept::<Renderer>();
 }
 
 #[test]
-fn what_stays_as_it_is_is_not_written_again() {
+fn unchanged_triangles_are_not_uploaded_again() {
     let Some((device, queue)) = device() else {
         return;
     };
@@ -392,7 +393,7 @@ fn what_stays_as_it_is_is_not_written_again() {
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let mut cost = || {
         let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE);
-        image.expect("an image");
+        image.expect("rendering an image");
         renderer.take_cost()
     };
     let [first, second, third] = [(); 3].map(|()| cost());

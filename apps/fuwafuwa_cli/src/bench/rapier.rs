@@ -1,22 +1,23 @@
-//! The comparison with Rapier. Rapier takes minutes to build and nothing else needs it, so that it stands in a program
-//! of its own, which cargo builds when it is first asked for. That program runs both engines and prints.
+//! Comparison with Rapier. Only this command needs Rapier, which takes minutes to build. So it is a separate
+//! program, which cargo builds on first use; it runs both engines and prints the results.
 
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// The place of this crate. What is handed out must not depend on the folder that it was built in, and gets another name for it.
+/// Source folder of this crate. Release builds set another path, so that they do not depend on the build
+/// folder.
 const HERE: &str = match option_env!("FUWAFUWA_SOURCES") {
     Some(path) => path,
     None => env!("CARGO_MANIFEST_DIR"),
 };
 
-/// Builds and runs it with these arguments.
+/// Builds the program and runs it with the arguments.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let manifest = manifest();
     if !manifest.exists() {
         bail!(
-            "{} is missing: the comparison needs the sources that this program was built from",
+            "{} not found: the comparison needs the source folder that this program was built from",
             manifest.display()
         );
     }
@@ -27,14 +28,14 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         .arg("--")
         .args(arguments)
         .status()
-        .context("cargo, which builds Rapier, could not be started")?;
+        .context("cannot start cargo, which builds Rapier")?;
     Ok(match status.success() {
         true => ExitCode::SUCCESS,
         false => ExitCode::FAILURE,
     })
 }
 
-/// The program's place beside this crate.
+/// Returns the manifest of the program, in the folder beside this crate.
 fn manifest() -> PathBuf {
     Path::new(HERE).join("../../tools/against_rapier/Cargo.toml")
 }
@@ -44,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_program_is_there() {
+    fn manifest_exists() {
         assert!(manifest().exists());
     }
 }

@@ -1,4 +1,4 @@
-//! Bending: the tip of a graded cantilever against Timoshenko's theory.
+//! Bending: tip deflection of a graded cantilever against Timoshenko's theory.
 //!
 //! ```text
 //!   ▓┌──────────────────────┐
@@ -6,7 +6,7 @@
 //!   ▓└──────────────────────┘
 //! ```
 //!
-//! The load is small, so the law is linearised at rest: see [`Statics`].
+//! The load is small, so the law is linearised at rest; see [`Statics`].
 
 use super::parallel;
 use super::statics::Statics;
@@ -17,14 +17,14 @@ use fuwafuwa::pyramid::{CellHierarchy, Grading};
 use fuwafuwa::sharing::Connectivity;
 use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
 
-/// Thickness of a beam in voxels.
+/// Thickness of a beam [voxels].
 const THICKNESS: usize = 16;
-/// Lengths of the beams in thicknesses.
+/// Lengths of the beams [thicknesses].
 const LENGTHS: [usize; 3] = [4, 6, 8];
-/// Largest deviation of the ratio from 1.
+/// Maximum deviation of the ratio from 1.
 const TOLERANCE: f64 = 0.02;
 
-/// A cantilever to be bent.
+/// Cantilever.
 #[derive(Copy, Clone, Debug)]
 struct Beam {
     dim: usize,
@@ -33,7 +33,7 @@ struct Beam {
     poisson: f64,
 }
 
-/// Tip deflection of beams in the plane and in space, by theory.
+/// Compares tip deflections of 2D and 3D beams with theory.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let mut beams = Vec::new();
     for dim in [2, 3] {
@@ -67,7 +67,7 @@ impl Beam {
         }
     }
 
-    /// Tip deflection of the graded mesh by Timoshenko's.
+    /// Returns the tip deflection of the graded mesh relative to Timoshenko's theory.
     fn ratio_in<D: Dim>(self, progress: &Progress) -> Result<f64> {
         let elasticity = Elasticity::new(1000.0, self.poisson)?;
         let size = [self.length, self.thickness, D::depth(self.thickness)];
@@ -82,12 +82,12 @@ impl Beam {
         let load = self.load(&mesh);
         let guess = self.guess(&mesh, elasticity);
         let moved = statics.solve(&load, guess, progress)?;
-        // The load adds up to 1, so its work is the deflection.
+        // The load sums to 1, so its work equals the deflection.
         let deflection: f64 = moved.iter().zip(&load).map(|(u, f)| u * f).sum();
         Ok(deflection / self.timoshenko(D::N, self.length as f64, elasticity))
     }
 
-    /// Deflection at `x` under a unit load at the tip.
+    /// Returns the deflection at `x` under a unit load at the tip.
     fn timoshenko(self, dim: usize, x: f64, elasticity: Elasticity) -> f64 {
         let (t, length) = (self.thickness as f64, self.length as f64);
         let depth = if dim == 3 { t } else { 1.0 };
@@ -97,7 +97,7 @@ impl Beam {
         x * x * (3.0 * length - x) / (6.0 * modulus * inertia) + x / shear
     }
 
-    /// A unit load across the end face, each node by its share of the face.
+    /// Returns a unit load on the end face, distributed to nodes by their share of the face.
     fn load<D: Dim>(self, mesh: &Mesh<D>) -> Vec<f64> {
         let mut load = vec![0.0; mesh.node_capacity() * D::N];
         for (_, element) in mesh.elements() {
@@ -114,7 +114,7 @@ impl Beam {
         load.iter().map(|share| share / total).collect()
     }
 
-    /// The motion that the theory expects: it saves most of the rounds.
+    /// Returns the displacement expected by theory, as an initial guess that saves most iterations.
     fn guess<D: Dim>(self, mesh: &Mesh<D>, elasticity: Elasticity) -> Vec<f64> {
         let mut moved = vec![0.0; mesh.node_capacity() * D::N];
         for (id, node) in mesh.nodes() {
@@ -130,7 +130,7 @@ impl Beam {
     }
 }
 
-/// Young's modulus that a beam bends with: a plane-strain beam cannot contract sideways.
+/// Returns the effective modulus in bending. A plane-strain beam cannot contract sideways.
 fn bending_modulus(dim: usize, elasticity: Elasticity) -> f64 {
     if dim == 2 {
         elasticity.young / (1.0 - elasticity.poisson * elasticity.poisson)
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_small_plane_beam_bends_as_it_should() {
+    fn small_plane_beam_matches_timoshenko() {
         let beam = Beam {
             dim: 2,
             length: 48,

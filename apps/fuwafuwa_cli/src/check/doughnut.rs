@@ -1,4 +1,4 @@
-//! Doughnut: a ring that two hands squeeze shut does not pass through itself.
+//! Doughnut: a ring squeezed shut by two hands must not pass through itself.
 
 use super::motion::material;
 use super::parallel;
@@ -10,8 +10,8 @@ use fuwafuwa::{
     WorldConfig,
 };
 
-/// Dimensions, voxels across, and how fast each hand comes [m/s]: at the fastest one side of the hole comes to the other by ten
-/// widths of the ring a second.
+/// Dimensions, voxels across, and speed of each hand [m/s]. At the highest speed, the sides of the hole
+/// approach each other by ten ring widths per second.
 const CASES: [(usize, usize, f32); 12] = [
     (2, 24, 0.25),
     (2, 24, 2.0),
@@ -28,32 +28,32 @@ const CASES: [(usize, usize, f32); 12] = [
 ];
 /// Radius of the hands [m].
 const HAND: f32 = 0.4;
-/// How far apart the hands stay [m]; both sides of the ring together are 0.5 m thick, so the hole is shut
+/// Final distance between the hands [m]. Both sides of the ring together are 0.5 m thick, so the hole is shut
 /// before.
 const LEFT: f32 = 0.4;
-/// How long the hands wait then [s].
+/// Waiting time at the final distance [s].
 const WAIT: f32 = 2.0;
-/// Half the width of the middle of the ring, where one side is above the other [m].
+/// Half width of the middle of the ring, where one side is above the other [m].
 const MIDDLE: f32 = 0.1;
-/// How far one side of the hole may be pressed into the other, in voxels.
+/// Maximum penetration of one side of the hole into the other [voxels].
 const DEPTH: f64 = 0.5;
-/// How far apart they may be when it is shut, in voxels: less says that it was never squeezed.
+/// Maximum gap between the sides [voxels]. A larger gap means that the hole was not squeezed shut.
 const SHUT: f64 = 2.0;
 
-/// Rings of several sizes, squeezed slowly and fast.
+/// Squeezes rings of several sizes, slowly and fast.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let depths = parallel::each(&CASES, progress, |&(dim, n, speed)| match dim {
         2 => squeeze::<Dim2>(n, speed),
         _ => squeeze::<Dim3>(n, speed),
     })?;
     let outcome = |(&(dim, n, speed), depth): (&(usize, usize, f32), f64)| {
-        let case = format!("doughnut {dim}D n = {n}, {speed} m/s, voxels into itself");
+        let case = format!("doughnut {dim}D n = {n}, {speed} m/s, self-penetration in voxels");
         Outcome::within(case, depth, -SHUT..=DEPTH)
     };
     Ok(CASES.iter().zip(depths).map(outcome).collect())
 }
 
-/// How far the upper side of the hole goes into the lower one at most, in voxels.
+/// Returns the maximum penetration of the upper side of the hole into the lower one [voxels].
 fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
     let mut world = World::<D>::new(WorldConfig {
         gravity: [0.0; 3],
@@ -84,21 +84,21 @@ fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
             world.set_target_position(hand, middle_of(side, apart))?;
         }
         let report = world.step();
-        ensure!(report.quarantined == 0, "the ring went out of hand");
+        ensure!(report.quarantined == 0, "the ring was quarantined");
         let [low, high] = holes
             .each_ref()
             .map(|nodes| places(&world.soft_bodies()[ring], nodes));
         let slips = |at: &Vector| (at[2] - plane).abs() > voxel;
         ensure!(
             !low.iter().chain(&high).any(slips),
-            "one side of the ring slips past the other"
+            "one side of the ring slipped past the other"
         );
         deepest = deepest.max(overlap(&low, &high));
     }
     Ok(f64::from(deepest / voxel))
 }
 
-/// Where the middle of a ring is along the third axis [m].
+/// Returns the third coordinate of the middle of a ring [m].
 fn plane_of<D: Dim>(grid: &VoxelGrid<D>) -> f32 {
     match D::N {
         2 => 0.0,
@@ -106,7 +106,8 @@ fn plane_of<D: Dim>(grid: &VoxelGrid<D>) -> f32 {
     }
 }
 
-/// The nodes below or above the middle of the hole that stand on its side, in space in its plane.
+/// Returns the surface nodes of the hole below (side −1) or above (side 1) its middle; in 3D, only those in
+/// its mid-plane.
 fn hole_side<D: Dim>(body: &SoftBody<D>, side: f32) -> Vec<NodeId> {
     let (voxel, plane) = (body.grid().voxel_size(), plane_of(body.grid()));
     let nodes = body.mesh().nodes().filter(|(id, node)| {
@@ -119,14 +120,15 @@ fn hole_side<D: Dim>(body: &SoftBody<D>, side: f32) -> Vec<NodeId> {
     nodes.map(|(id, _)| id).collect()
 }
 
-/// Where nodes are, from left to right.
+/// Returns the positions of nodes, from left to right.
 fn places<D: Dim>(body: &SoftBody<D>, nodes: &[NodeId]) -> Vec<Vector> {
     let mut places: Vec<Vector> = nodes.iter().map(|&id| body.node_state(id).0).collect();
     places.sort_by(|a, b| a[0].total_cmp(&b[0]));
     places
 }
 
-/// How far a line of places is above a higher one at most, around the middle; less than 0 when it is below.
+/// Returns the maximum height of the `low` line above the `high` one around the middle. Negative if it is
+/// below everywhere.
 fn overlap(low: &[Vector], high: &[Vector]) -> f32 {
     let is_amid = |at: &&Vector| (at[0] - 0.5).abs() < MIDDLE;
     let mut deepest = f32::NEG_INFINITY;
@@ -147,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn overlaps_are_seen() {
+    fn overlap_is_positive_only_for_crossed_lines() {
         let line = |y| (0..5u8).map(move |k| [0.3 + 0.1 * f32::from(k), y, 0.0]);
         let (low, high): (Vec<Vector>, Vec<Vector>) = (line(0.4).collect(), line(0.6).collect());
         assert!((overlap(&low, &high) + 0.2).abs() < 1e-6);
@@ -165,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_at_rest_has_a_hole() {
+    fn overlap_is_negative_for_a_ring_at_rest() {
         check_rest::<Dim2>();
         check_rest::<Dim3>();
     }

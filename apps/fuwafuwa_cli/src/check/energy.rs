@@ -1,18 +1,18 @@
-//! The energy stored in a deformed body, whose slope is the force of the default law:
+//! Elastic energy of a deformed body. Its negative gradient is the force of the default law:
 //!
 //! ```text
 //! E = V (μ ‖F − R‖² + λ/2 (tr RᵀF − d)²) + k/2 Σ w_i |h_i|²
 //! ```
 //!
-//! with the names of `fuwafuwa::law`. The resistance of an element that is squashed flat is left
-//! out: the bodies of the checks are nowhere near that.
+//! with the names of `fuwafuwa::law`. The extra resistance of an element that is squashed flat is left out,
+//! because the bodies of the checks are never deformed that far.
 
 use fuwafuwa::law::{Elasticity, Matrix};
 use fuwafuwa::stencil::{ElementClass, Vector64};
 use fuwafuwa::vector::{cross, dot, minus, plus, scaled};
 use fuwafuwa::{Dim, NodeId, SoftBody};
 
-/// The energy stored in a body [J].
+/// Returns the elastic energy of a body [J].
 pub fn of_body<D: Dim>(body: &SoftBody<D>) -> f64 {
     let elements = body.mesh().elements().map(|(_, element)| {
         let place = |&node: &NodeId| body.node_state(node).0.map(f64::from);
@@ -24,7 +24,7 @@ pub fn of_body<D: Dim>(body: &SoftBody<D>) -> f64 {
     elements.sum()
 }
 
-/// The energy stored in an element of width `size` [m] with its nodes at `positions` [m].
+/// Returns the elastic energy of an element of width `size` [m] with its nodes at `positions` [m].
 fn of_element<D: Dim>(
     elasticity: Elasticity,
     stencil: &ElementClass<D>,
@@ -67,7 +67,8 @@ fn of_element<D: Dim>(
     volume * density + 0.5 * stiffness * hourglass
 }
 
-/// The rotation in a matrix of positive determinant, by Newton's iteration towards its polar factor.
+/// Returns the rotation part of a matrix with positive determinant, by Newton's iteration for the polar
+/// factor.
 fn rotation_of(matrix: &Matrix) -> Matrix {
     let mut rotation = *matrix;
     for _ in 0..30 {
@@ -88,7 +89,7 @@ mod tests {
     use fuwafuwa::stencil::{cell_corners, closure};
     use fuwafuwa::{Dim2, Dim3};
 
-    /// The force is the slope of the energy, also for elements with mid nodes.
+    /// The force is the negative gradient of the energy, also for elements with mid nodes.
     fn check_slope<D: Dim>(children: u8, slots: u32) {
         let elasticity = Elasticity::new(1000.0, 0.3).unwrap();
         let stencil = ElementClass::<D>::new(children, slots).unwrap();
@@ -117,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn the_force_is_the_slope_of_the_energy() {
+    fn force_is_the_negative_gradient_of_the_energy() {
         check_slope::<Dim2>(15, cell_corners::<Dim2>() | 1 << 1);
         check_slope::<Dim2>(0b0111, closure::<Dim2>(0b0111));
         check_slope::<Dim3>(255, cell_corners::<Dim3>() | 1 << 4);

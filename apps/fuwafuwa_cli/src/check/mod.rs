@@ -1,4 +1,4 @@
-//! The mechanics against references; the exit code is 1 when a check fails.
+//! Checks of the mechanics against references. The exit code is 1 if a check fails.
 
 mod beam;
 mod doughnut;
@@ -21,10 +21,10 @@ use anyhow::Result;
 use clap::ValueEnum;
 use std::process::ExitCode;
 
-/// Check the mechanics against references; the exit code is 1 when a check fails.
+/// Check the mechanics against references. The exit code is 1 if a check fails.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Which check.
+    /// Check to run.
     #[arg(value_enum)]
     which: Which,
     /// Print JSON instead of a table.
@@ -34,33 +34,33 @@ pub struct Arguments {
 
 #[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
 enum Which {
-    /// Uniform strain of random cut shapes must leave inner nodes at rest.
+    /// Under uniform strain, inner nodes of random cut shapes must stay at rest.
     Patch,
-    /// Graded cantilevers must bend as Timoshenko's theory says.
+    /// Graded cantilevers must bend according to Timoshenko's theory.
     Beam,
-    /// Graded bodies must sag under their weight as uniform ones do, boxes as one that is fine enough.
+    /// Graded bodies must sag under their weight like uniform ones; boxes, like a converged uniform one.
     Sag,
-    /// Graded bodies must ring as uniform ones do, and keep their energy.
+    /// Graded bodies must ring like uniform ones and keep their energy.
     Period,
-    /// A free body must keep its spin, and so must the halves of one that was cut.
+    /// A free body must keep its angular momentum, and so must the halves of a body that was cut.
     Spin,
-    /// Releases must leave mass and momentum as they are.
+    /// Releases must preserve mass and momentum.
     Momentum,
-    /// Bars must break at the load their material bears, at any resolution.
+    /// Bars must break at the load given by their material's strength, at any resolution.
     Tear,
-    /// Dust must come to rest, and none of it be lost.
+    /// Dust must come to rest, and none may be lost.
     Pile,
     /// A stack of bodies must stand still.
     Stack,
     /// A ring squeezed shut must not pass through itself.
     Doughnut,
-    /// All of them.
+    /// All checks.
     All,
 }
 
 type Check = fn(&Progress) -> Result<Vec<Outcome>>;
 
-/// Runs the checks and prints what they found.
+/// Runs the checks and prints their outcomes.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let checks: [(Which, Check); 10] = [
         (Which::Patch, patch::check),

@@ -1,4 +1,4 @@
-//! Momentum: neither releases nor remodelling push or turn a body.
+//! Momentum: releases and remodelling must not change the momentum of a body.
 
 use super::motion::{arrange, ball, length, material};
 use super::parallel;
@@ -11,14 +11,14 @@ use fuwafuwa::{Dim2, Dim3};
 
 /// Dimensions and voxels across of the bodies.
 const BODIES: [(usize, usize); 3] = [(2, 32), (3, 12), (3, 16)];
-/// Releases, each at a random point along a random axis.
+/// Number of releases, each at a random point along a random axis.
 const RELEASES: usize = 1000;
-/// A step is taken after so many releases.
+/// Number of releases per simulated substep.
 const BETWEEN_STEPS: usize = 10;
-/// Largest change, relative to the momentum at the start.
+/// Maximum change relative to the initial value.
 const TOLERANCE: f64 = 1e-4;
 
-/// Drift of linear and angular momentum through random releases.
+/// Measures the drift of mass, linear and angular momentum over random releases.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let found = parallel::each(&BODIES, progress, |&(dim, n)| match dim {
         2 => drifts::<Dim2>(n, RELEASES),
@@ -37,7 +37,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(outcomes)
 }
 
-/// Relative changes of mass, linear and angular momentum.
+/// Returns the relative changes of mass, linear and angular momentum.
 fn drifts<D: Dim>(n: usize, releases: usize) -> Result<[f64; 3]> {
     let mut body = ball::<D>(n, material(), Grading::Graded)?;
     arrange(&mut body, |[x, y, z]| {
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_hundred_releases_leave_the_momentum() {
+    fn releases_preserve_mass_and_momentum() {
         let drifts = drifts::<Dim3>(8, 100).unwrap();
         assert!(drifts.iter().all(|&drift| drift <= TOLERANCE), "{drifts:?}");
     }

@@ -1,4 +1,4 @@
-//! What the checks of moving bodies have in common.
+//! Helpers shared by the checks of moving bodies.
 
 use anyhow::Result;
 use fuwafuwa::law::{Elasticity, Law};
@@ -6,7 +6,7 @@ use fuwafuwa::pyramid::Grading;
 use fuwafuwa::shape::Vector;
 use fuwafuwa::{Dim, Material, NodeId, SoftBody, VoxelGrid};
 
-/// A soft body that rings without damping and does not tear.
+/// Returns a soft material that rings without damping and does not tear.
 pub fn material() -> Material {
     Material {
         elasticity: Elasticity {
@@ -20,7 +20,7 @@ pub fn material() -> Material {
     }
 }
 
-/// A disc or a ball 1 m across, of `n` voxels.
+/// Returns a disc or a ball 1 m across with `n` voxels across.
 pub fn ball<D: Dim>(n: usize, material: Material, grading: Grading) -> Result<SoftBody<D>> {
     let grid = VoxelGrid::ball(n, 1.0)?;
     Ok(SoftBody::with_options(
@@ -31,8 +31,8 @@ pub fn ball<D: Dim>(n: usize, material: Material, grading: Grading) -> Result<So
     )?)
 }
 
-/// Sets position [m] and velocity [m/s] of every node by its place at rest [m], which is measured
-/// from the middle of a body 1 m across.
+/// Sets position [m] and velocity [m/s] of every node as a function of its rest position [m], relative to the
+/// centre of a body 1 m across.
 pub fn arrange<D: Dim>(body: &mut SoftBody<D>, state: impl Fn(Vector) -> (Vector, Vector)) {
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
@@ -41,7 +41,7 @@ pub fn arrange<D: Dim>(body: &mut SoftBody<D>, state: impl Fn(Vector) -> (Vector
     }
 }
 
-/// Where a node is at rest, measured from the middle of a body 1 m across [m].
+/// Returns the rest position of a node relative to the centre of a body 1 m across [m].
 pub fn at_rest<D: Dim>(body: &SoftBody<D>, id: NodeId) -> Vector {
     let (at, size) = (body.mesh().node(id).at, body.grid().voxel_size());
     [0, 1, 2].map(|axis| match axis {
@@ -50,7 +50,7 @@ pub fn at_rest<D: Dim>(body: &SoftBody<D>, id: NodeId) -> Vector {
     })
 }
 
-/// Length of a vector.
+/// Returns the length of a vector.
 pub fn length(v: [f64; 3]) -> f64 {
     v.iter().map(|k| k * k).sum::<f64>().sqrt()
 }

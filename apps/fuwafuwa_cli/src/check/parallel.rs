@@ -1,14 +1,14 @@
-//! Cases of a check shared out among threads.
+//! Distribution of the cases of a check over threads.
 
 use crate::report::Progress;
 use anyhow::{Result, anyhow};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What `work` finds for each case, in their order; the last ones, as a rule the slowest, come
-/// first.
+/// Returns the results of `work` for all cases, in their order. Starts with the last cases, which are usually
+/// the slowest.
 ///
 /// # Errors
-/// The first error among the cases, or when one of them panicked.
+/// The first error of a case, or an error if a case panicked.
 pub fn each<Case: Sync, Found: Send>(
     cases: &[Case],
     progress: &Progress,
@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn findings_keep_the_order_of_their_cases() {
+    fn results_keep_the_order_of_cases() {
         let cases: Vec<u32> = (0..100).collect();
         let squares = each(&cases, &Progress::new(), |case| Ok(case * case)).unwrap();
         assert!(

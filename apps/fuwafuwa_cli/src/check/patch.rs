@@ -1,4 +1,4 @@
-//! The patch test: under uniform strain no inner node may feel a force, whatever the shape and cuts.
+//! Patch test: under uniform strain, inner nodes feel no force for any shape and any cuts.
 
 use super::random::Random;
 use crate::report::{Outcome, Progress};
@@ -9,23 +9,23 @@ use fuwafuwa::pyramid::{CellHierarchy, Grading};
 use fuwafuwa::sharing::Connectivity;
 use fuwafuwa::{Dim, Dim2, Dim3, Mesh, NodeId, Point, VoxelGrid};
 
-/// Largest residual of the default law, relative to stress times the face of a voxel.
+/// Maximum residual of the default law, relative to stress × face area of a voxel.
 const LIMIT: f64 = 1e-5;
 
-/// How many random shapes are tried in the plane and in space.
+/// Number of random shapes in 2D and in 3D.
 #[derive(Copy, Clone, Debug)]
 struct Shapes {
     plane: u64,
     space: u64,
 }
 
-/// What the command line runs.
+/// Numbers for the command line.
 const FULL: Shapes = Shapes {
     plane: 1000,
     space: 400,
 };
 
-/// Worst residual of both laws over random cut shapes.
+/// Returns the maximum residual of both laws over random cut shapes.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     check_shapes(FULL, progress)
 }
@@ -70,7 +70,8 @@ fn check_dim<D: Dim>(
     ])
 }
 
-/// Worst force on an inner node under a uniform strain, relative to stress times a voxel's face.
+/// Returns the maximum force on an inner node under uniform strain, relative to stress × face area of a
+/// voxel.
 fn residual<D: Dim>(mesh: &Mesh<D>, sharing: &Connectivity<D>, law: Law) -> Result<f64> {
     let elasticity = Elasticity::new(1000.0, 0.3)?;
     let strain = [[1.12, 0.07, 0.0], [-0.21, 0.91, 0.05], [0.0, 0.11, 1.04]];
@@ -98,7 +99,7 @@ fn residual<D: Dim>(mesh: &Mesh<D>, sharing: &Connectivity<D>, law: Law) -> Resu
     for (id, node) in mesh.nodes() {
         if node.group == D::ALL_CORNERS && !sharing.is_open(node.at) {
             for force in sums[id.index()] {
-                // f64::max would drop a NaN.
+                // f64::max would ignore a NaN.
                 let force = if force.is_nan() { f64::INFINITY } else { force };
                 worst = worst.max(force.abs() / stress);
             }
@@ -107,7 +108,7 @@ fn residual<D: Dim>(mesh: &Mesh<D>, sharing: &Connectivity<D>, law: Law) -> Resu
     Ok(worst)
 }
 
-/// A union of balls and boxes less one ball, of one or two materials; `None` when nothing is left.
+/// Returns a union of balls and boxes minus one ball, of one or two materials; `None` if it is empty.
 fn random_shape<D: Dim>(random: &mut Random, n: i32) -> Option<VoxelGrid<D>> {
     let parts: Vec<(Point, i32, bool)> = (0..4)
         .map(|_| {
@@ -133,7 +134,7 @@ fn random_shape<D: Dim>(random: &mut Random, n: i32) -> Option<VoxelGrid<D>> {
     .ok()
 }
 
-/// Releases a few single points or whole rectangles, as a crack or a knife would.
+/// Releases a few single points or whole rectangles, like a crack or a knife.
 fn random_cut<D: Dim>(sharing: &mut Connectivity<D>, random: &mut Random, n: i32) {
     let axis = random.below(D::N as i32) as usize;
     let side = (0..D::CORNERS).fold(0u8, |mask, octant| {
@@ -160,7 +161,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_default_law_passes_and_the_papers_does_not() {
+    fn default_law_passes_and_paper_law_fails() {
         let shapes = Shapes {
             plane: 40,
             space: 20,

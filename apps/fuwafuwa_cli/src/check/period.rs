@@ -1,4 +1,5 @@
-//! Period and energy: a squashed ball rings freely, graded against uniform, and rings on.
+//! Period and energy: a squashed ball rings freely. Compares graded with uniform bodies and checks that the
+//! energy is kept.
 
 use super::motion::{arrange, at_rest, ball, material};
 use super::{energy, parallel};
@@ -12,18 +13,18 @@ use std::ops::RangeInclusive;
 
 /// Dimensions and voxels across of the bodies.
 const BODIES: [(usize, usize); 5] = [(2, 16), (2, 64), (3, 16), (2, 128), (3, 32)];
-/// Largest deviation from the uniform body.
+/// Maximum deviation from the uniform body.
 const TOLERANCE: f64 = 0.03;
-/// Share of the energy that may be left in the end.
+/// Allowed range of the final energy relative to the initial one.
 const KEPT: RangeInclusive<f64> = 0.95..=1.02;
-/// How much of its height a body is squashed by.
+/// Initial squash, as a fraction of the height.
 const SQUASH: f32 = 0.08;
-/// How long it rings [s].
+/// Simulated time [s].
 const DURATION: f64 = 5.0;
-/// Energies are averaged over the last seconds [s], for they waver from step to step.
+/// Period at the end over which energies are averaged [s], because they fluctuate between substeps.
 const LAST: f64 = 0.5;
 
-/// Period of graded bodies relative to that of uniform ones, and how much energy both keep.
+/// Compares periods of graded and uniform bodies, and checks the energy of both.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let found = parallel::each(&BODIES, progress, |&(dim, n)| match dim {
         2 => rings::<Dim2>(n, progress),
@@ -49,12 +50,12 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(outcomes)
 }
 
-/// How a body rang.
+/// Measurements of a ringing body.
 #[derive(Copy, Clone, Debug)]
 struct Ring {
-    /// [s]
+    /// Period [s].
     period: f64,
-    /// Share of the energy that is left in the end.
+    /// Final energy relative to the initial one.
     kept: f64,
 }
 
@@ -95,7 +96,7 @@ fn ring<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<Ring>
     }
     ensure!(
         crossings.len() > 4,
-        "the body of {n} voxels across does not ring"
+        "the body with {n} voxels across does not oscillate"
     );
     let halves = crossings.len() - 1;
     let about = 2.0 * (crossings[halves] - crossings[0]) / halves as f64;
@@ -105,9 +106,8 @@ fn ring<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<Ring>
     })
 }
 
-/// Takes a step of `duration` [s]; returns the energy [J] before it. A step kicks velocities over
-/// a whole duration from half of one before to half of one after, so the speed that goes with the
-/// places is the mean of both.
+/// Takes a step of `duration` [s] and returns the energy [J] before it. Velocities are known half a step
+/// before and half a step after the positions, so the mean of both is the velocity at the positions.
 fn advance_and_weigh<D: Dim>(body: &mut SoftBody<D>, duration: f64) -> f64 {
     let stored = energy::of_body(body);
     let velocity = |body: &SoftBody<D>, id| body.node_state(id).1.map(f64::from);
@@ -121,10 +121,9 @@ fn advance_and_weigh<D: Dim>(body: &mut SoftBody<D>, duration: f64) -> f64 {
     stored + moving.sum::<f64>()
 }
 
-/// The period near `about` [s] that is strongest in a signal with a value every `duration` [s].
+/// Returns the period near `about` [s] with the largest amplitude in a signal sampled every `duration` [s].
 ///
-/// A window that starts and ends at 0 keeps the other modes of the body apart from this one
-/// [Harris 1978, the Hann window].
+/// The Hann window, which is 0 at both ends, separates other modes of the body from this one [Harris 1978].
 fn strongest_period(signal: &[f64], duration: f64, about: f64) -> f64 {
     let count = signal.len() as f64;
     let strength = |period: f64| {
@@ -138,7 +137,7 @@ fn strongest_period(signal: &[f64], duration: f64, about: f64) -> f64 {
         real * real + imaginary * imaginary
     };
     let (mut low, mut high) = (0.9 * about, 1.1 * about);
-    // Thirds of an interval with a single peak.
+    // Ternary search in an interval with a single peak.
     for _ in 0..40 {
         let (a, b) = ((2.0 * low + high) / 3.0, (low + 2.0 * high) / 3.0);
         if strength(a) < strength(b) {
@@ -150,7 +149,7 @@ fn strongest_period(signal: &[f64], duration: f64, about: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// How far a body is squashed: its height at rest against its height now, weighed by mass.
+/// Returns the squash of a body: relative reduction of its height, weighted by mass.
 fn squash_of<D: Dim>(body: &SoftBody<D>) -> f64 {
     let (mut sum, mut whole) = (0.0, 0.0);
     for (id, _) in body.mesh().nodes() {
@@ -166,7 +165,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_period_is_found_beside_a_stronger_trend() {
+    fn strongest_period_ignores_offset_and_second_mode() {
         let value = |k: usize| {
             let t = k as f64 * 0.002;
             (TAU * t / 0.3).cos() + 0.5 * (TAU * t / 0.17).sin() + 0.2
@@ -176,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_small_ball_rings_like_its_voxels() {
+    fn small_graded_ball_rings_like_a_uniform_one() {
         let [graded, uniform] = rings::<Dim3>(12, &Progress::new()).unwrap();
         assert!(
             (graded.period / uniform.period - 1.0).abs() < TOLERANCE,

@@ -1,4 +1,4 @@
-//! Piles: dust falls into a bin and comes to rest; none of it is lost.
+//! Piles: dust falls into a bin and comes to rest; no piece is lost.
 
 use super::parallel;
 use crate::report::{Outcome, Progress};
@@ -7,18 +7,18 @@ use fuwafuwa::{Dim, Dim2, Dim3, World};
 use fuwafuwa_scenes::Scene;
 
 const SCENES: [&str; 2] = ["pile", "pile-3d"];
-/// How long a pile may take to come to rest [s].
+/// Maximum time until a pile is at rest [s].
 const PATIENCE: f64 = 10.0;
-/// How far a crumb may be pressed into a wall, in voxels.
+/// Maximum penetration of a crumb into a wall [voxels].
 const DEPTH: f64 = 0.5;
 
-/// What became of a pile.
+/// Measurements of a pile.
 struct Pile {
     pieces: usize,
     lost: usize,
-    /// Deepest overlap with a wall, in voxels.
+    /// Maximum penetration into a wall [voxels].
     depth: f64,
-    /// When all slept [s].
+    /// Time at which all pieces were asleep [s].
     asleep: f64,
 }
 
@@ -44,7 +44,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
             0.0..=DEPTH,
         ));
         outcomes.push(Outcome::within(
-            case("asleep after, s"),
+            case("seconds until asleep"),
             pile.asleep,
             0.0..=PATIENCE,
         ));
@@ -58,26 +58,26 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
         world
             .soft_bodies()
             .first()
-            .expect("it has a body")
+            .expect("the scene has a body")
             .piece_views()
             .len()
     };
     let before = count(&world);
     let mass = world
-        .soft_bodies()
+        .bodies()
         .first()
-        .expect("it has a body")
+        .expect("the scene has a body")
         .total_mass();
     let mut asleep = f64::INFINITY;
     let mut depth = 0.0f64;
     for tick in 0..(PATIENCE * 60.0) as usize {
         let report = world.step();
-        anyhow::ensure!(report.quarantined == 0, "a piece went out of hand");
+        anyhow::ensure!(report.quarantined == 0, "a piece was quarantined");
         depth = depth.max(deepest(&world));
         if world
             .soft_bodies()
             .first()
-            .expect("it has a body")
+            .expect("the scene has a body")
             .pieces()
             .list
             .iter()
@@ -88,15 +88,15 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
         }
     }
     let views = world
-        .soft_bodies()
+        .bodies()
         .first()
-        .expect("it has a body")
+        .expect("the scene has a body")
         .piece_views();
     let size = f64::from(
         world
             .soft_bodies()
             .first()
-            .expect("it has a body")
+            .expect("the scene has a body")
             .grid()
             .voxel_size(),
     );
@@ -105,14 +105,14 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
         obstacles.any(|obstacle| obstacle.shape().distance(view.centre).0 < 0.0)
     });
     let kept = world
-        .soft_bodies()
+        .bodies()
         .first()
-        .expect("it has a body")
+        .expect("the scene has a body")
         .total_mass()
         / mass;
     anyhow::ensure!(
         (kept - 1.0).abs() < 1e-6,
-        "mass changed to {kept} of what it was"
+        "the mass changed by a factor of {kept}"
     );
     Ok(Pile {
         pieces: views.len(),
@@ -122,9 +122,9 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
     })
 }
 
-/// How deep the deepest node is in a wall [m].
+/// Returns the maximum penetration of a node into a wall [m].
 fn deepest<D: Dim>(world: &World<D>) -> f64 {
-    let body = world.soft_bodies().first().expect("it has a body");
+    let body = world.bodies().first().expect("the scene has a body");
     let mut deepest = 0.0f32;
     for (id, _) in body.mesh().nodes() {
         let at = body.node_state(id).0;

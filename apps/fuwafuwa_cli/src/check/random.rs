@@ -1,15 +1,15 @@
-//! Numbers that look random and are the same everywhere.
+//! Pseudo-random numbers that are equal on every platform.
 
-/// A small repeatable stream of numbers (xorshift64*).
+/// Repeatable pseudo-random number generator (xorshift64*).
 pub struct Random(u64);
 
 impl Random {
-    /// The stream of a seed.
+    /// Creates a generator from a seed.
     pub fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
     }
 
-    /// The next number, at least 0 and below `bound`.
+    /// Returns the next number, from 0 to below `bound`.
     pub fn below(&mut self, bound: i32) -> i32 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;

@@ -1,14 +1,13 @@
-//! Sag: how far the top of a disc, a ball or a box sinks under its weight, graded against uniform.
+//! Sag: sinking of the top of a disc, a ball or a box under its weight, graded against uniform.
 //!
-//! The lowest layer of nodes is held. A graded disc is compared with a uniform one of the same voxels,
-//! for a disc of few voxels is another disc than one of many, and stands on another foot: what is
-//! compared is the placing of elements and nothing else. A box stands on the same face whatever its
-//! voxels are, so all graded boxes are compared with one uniform box that is as good as converged. The
-//! weight is small, so the law is linearised at rest; the sag that is shown is that for a game's
-//! material and a gravity of 1 m/s².
+//! The lowest layer of nodes is fixed. A graded disc is compared with a uniform one of equal voxels, because
+//! the voxel shape and its footprint depend on the resolution; so only the placing of elements differs. A box
+//! has the same face at the bottom at any resolution, so all graded boxes are compared with one nearly
+//! converged uniform box. The weight is small, so the law is linearised at rest. The reported sag is for a
+//! game's material and a gravity of 1 m/s².
 //!
-//! The uniform body has by far the most elements, but each side of it mirrors the other: a half of
-//! the disc and a quarter of the ball, whose nodes stay in the planes of the cuts, sag as the whole.
+//! The uniform body has by far the most elements, but it is symmetric. A half of the disc or a quarter of the
+//! ball, with the nodes in the symmetry planes fixed along the normal, sags like the whole.
 
 use super::motion::material;
 use super::parallel;
@@ -23,9 +22,9 @@ use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
 const DISCS: [usize; 5] = [16, 32, 64, 128, 256];
 /// Voxels across the balls.
 const BALLS: [usize; 4] = [8, 16, 32, 64];
-/// Largest deviation from the uniform body.
+/// Maximum deviation from the uniform body.
 const TOLERANCE: f64 = 0.02;
-/// Dimensions, voxels across, and largest deviation of the boxes.
+/// Dimensions, voxels across, and maximum deviation of the boxes.
 const BOXES: [(usize, usize, f64); 7] = [
     (2, 16, 0.05),
     (2, 32, TOLERANCE),
@@ -35,12 +34,12 @@ const BOXES: [(usize, usize, f64); 7] = [
     (3, 32, TOLERANCE),
     (3, 64, TOLERANCE),
 ];
-/// Voxels across the uniform box that stands for all, by dimension; one of half as many must sag as it
-/// does to this share.
+/// Voxels across the uniform reference box, by dimension. The convergence check compares it with a box of
+/// half the resolution; their sags may differ by at most `CONVERGED`.
 const REFERENCES: [(usize, usize); 2] = [(2, 256), (3, 64)];
 const CONVERGED: f64 = 0.01;
 
-/// Sag of graded bodies relative to that of uniform ones.
+/// Compares the sag of graded bodies with that of uniform ones.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let mut outcomes = check_round(progress)?;
     outcomes.extend(check_boxes(progress)?);
@@ -68,7 +67,7 @@ fn check_boxes(progress: &Progress) -> Result<Vec<Outcome>> {
         outcomes.push(Outcome::near(case, half / reference, 1.0, CONVERGED));
         let graded = BOXES.iter().zip(&found[2 * REFERENCES.len()..]);
         for (&(_, n, tolerance), sag) in graded.filter(|((of, ..), _)| *of == dim) {
-            let case = format!("sag of a box {dim}D, n = {n}, graded / that");
+            let case = format!("sag of a box {dim}D, n = {n}, graded / uniform reference");
             outcomes.push(Outcome::near(case, sag / reference, 1.0, tolerance));
         }
     }
@@ -83,7 +82,7 @@ fn check_round(progress: &Progress) -> Result<Vec<Outcome>> {
         .iter()
         .flat_map(|&body| gradings.map(|grading| (body, grading)))
         .collect();
-    // The slowest last.
+    // The slowest cases come last.
     cases.sort_by_key(|&((dim, n), _)| n.pow(dim as u32) * n);
     let found = parallel::each(&cases, progress, |&((dim, n), grading)| match dim {
         2 => sag(&VoxelGrid::<Dim2>::ball(n, 1.0)?, grading, progress),
@@ -109,7 +108,7 @@ fn check_round(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(bodies.iter().map(outcome).collect())
 }
 
-/// How far the top sinks [m]; the body is an even number of voxels across.
+/// Returns the sinking of the top [m]. The body must have an even number of voxels across.
 fn sag<D: Dim>(whole: &VoxelGrid<D>, grading: Grading, progress: &Progress) -> Result<f64> {
     match grading {
         Grading::Uniform => sag_between(whole, grading, whole.size()[0] / 2, progress),
@@ -117,8 +116,8 @@ fn sag<D: Dim>(whole: &VoxelGrid<D>, grading: Grading, progress: &Progress) -> R
     }
 }
 
-/// As [`sag`], by the part of the body that lies beyond `mirror` on each level axis. Nodes in a
-/// mirror stay in it; 0 stands for none.
+/// Like [`sag`], with only the part of the body beyond `mirror` on each horizontal axis. Nodes in the
+/// symmetry planes stay in them. 0 means no symmetry planes.
 fn sag_between<D: Dim>(
     whole: &VoxelGrid<D>,
     grading: Grading,
@@ -157,12 +156,12 @@ fn sag_between<D: Dim>(
     let moved = statics.solve(&load, still, progress)?;
     let (mut sunk, mut count) = (0.0, 0.0);
     for (id, node) in mesh.nodes().filter(|(_, node)| node.at[1] == highest) {
-        // As much as the voxels below it show of the top; those below a mirror's nodes are half of them.
+        // Weighted by the number of adjacent voxels, so nodes in a symmetry plane count half.
         let weight = f64::from(node.group.count_ones());
         sunk -= weight * moved[id.index() * D::N + 1];
         count += weight;
     }
-    // In voxels: a load grows with their volume, a stiffness with their width in space only.
+    // In voxels, the load scales with the voxel volume, and the stiffness (in 3D only) with the voxel width.
     let voxel = f64::from(grid.voxel_size());
     Ok(sunk / count * voxel * voxel)
 }
@@ -172,7 +171,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_small_disc_sags_like_its_voxels() {
+    fn small_graded_disc_sags_like_a_uniform_one() {
         let progress = Progress::new();
         let disc = VoxelGrid::<Dim2>::ball(16, 1.0).unwrap();
         let [graded, uniform] =
@@ -182,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_between_mirrors_sags_like_the_whole() {
+    fn part_between_symmetry_planes_sags_like_the_whole() {
         fn check<D: Dim>(body: VoxelGrid<D>) {
             let between = |mirror| {
                 let sag = sag_between(&body, Grading::Uniform, mirror, &Progress::new());

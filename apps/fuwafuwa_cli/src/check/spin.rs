@@ -1,4 +1,4 @@
-//! Spin: a free body that turns keeps its angular momentum, and so does each half of one that was cut.
+//! Spin: a rotating free body keeps its angular momentum, and so does each half of a body that was cut.
 
 use super::motion::{arrange, ball, length, material};
 use super::parallel;
@@ -11,15 +11,15 @@ use fuwafuwa::{Blade, Dim, Dim2, Dim3, Material, PieceId, SoftBody, World, World
 
 /// Dimensions, voxels across, and damping of the bodies.
 const BODIES: [(usize, usize, f32); 4] = [(2, 32, 0.0), (2, 32, 0.08), (3, 24, 0.0), (3, 24, 0.08)];
-/// Share of the angular momentum that must be left.
+/// Minimum fraction of the angular momentum that is kept.
 const KEPT: f64 = 0.999;
-/// How long a body spins [s].
+/// Simulated time [s].
 const DURATION: f32 = 5.0;
-/// Bodies that are cut in two as they spin, and when their halves are apart [s].
+/// Bodies that are cut in two while spinning, and the time at which the halves are separated [s].
 const TORN: [(usize, usize); 2] = [(2, 32), (3, 16)];
 const APART: f32 = 1.0;
 
-/// Angular momentum along its first direction, after some seconds at 5 rad/s.
+/// Measures the angular momentum along its initial direction after some seconds at 5 rad/s.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let found = parallel::each(&BODIES, progress, |&(dim, n, damping)| match dim {
         2 => kept::<Dim2>(n, damping),
@@ -40,32 +40,32 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         let spin = |what, value| Outcome::within(case(what), value, kept.clone());
         outcomes.push(spin("spin of a torn half", halves.spin));
         outcomes.push(spin("momentum of a torn half", halves.momentum));
-        outcomes.push(spin("spin of both", halves.both));
+        outcomes.push(spin("spin of both halves", halves.both));
     }
     Ok(outcomes)
 }
 
-/// What was kept of the motion of two halves; of two, by the one that kept it worse.
+/// Kept fractions of angular momentum and momentum of two halves; the worse half counts.
 struct Halves {
     spin: f64,
     momentum: f64,
     both: f64,
 }
 
-/// Cuts a body that spins in two. The halves part by themselves, each spinning as the whole did.
+/// Cuts a spinning body in two. The halves separate by themselves, each spinning like the whole.
 fn halves<D: Dim>(n: usize) -> Result<Halves> {
     let mut world = spinning::<D>(n, material())?;
     let whole = world
         .soft_bodies()
         .first()
-        .expect("it has a body")
+        .expect("the world has a body")
         .momentum()
         .angular;
     let (across, along) = ([0.0, 3.0, 0.0], [0.0, 0.0, 3.0]);
     let from = [0.0, -1.5, -1.5];
     let cut = world
         .cut(
-            world.nth_soft_body(0).expect("it has a body"),
+            world.nth_body(0).expect("the world has a body"),
             &Blade {
                 from,
                 across,
@@ -82,15 +82,18 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
     let pieces = world
         .soft_bodies()
         .first()
-        .expect("it has a body")
+        .expect("the world has a body")
         .pieces()
         .list
         .len();
-    ensure!(pieces == 2, "{cut} nodes cut left {pieces} pieces");
+    ensure!(
+        pieces == 2,
+        "expected 2 pieces after cutting {cut} nodes, found {pieces}"
+    );
     let motions = |world: &World<D>| {
         [0, 1].map(|piece| {
             motion(
-                world.soft_bodies().first().expect("it has a body"),
+                world.bodies().first().expect("the world has a body"),
                 PieceId(piece),
             )
         })
@@ -110,14 +113,14 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
             world
                 .soft_bodies()
                 .first()
-                .expect("it has a body")
+                .expect("the world has a body")
                 .momentum()
                 .angular,
         ),
     })
 }
 
-/// The momentum of a piece, and its angular momentum about its own centre.
+/// Returns the momentum of a piece, and its angular momentum about its centre of mass.
 fn motion<D: Dim>(body: &SoftBody<D>, piece: PieceId) -> ([f64; 3], [f64; 3]) {
     let nodes = body.mesh().nodes().map(|(id, _)| id);
     let nodes = nodes.filter(|&id| body.pieces().of_node(id) == piece);
@@ -139,7 +142,7 @@ fn motion<D: Dim>(body: &SoftBody<D>, piece: PieceId) -> ([f64; 3], [f64; 3]) {
     (linear, angular)
 }
 
-/// How much of a vector another one still has along it.
+/// Returns the component of `after` along `before`, relative to the length of `before`.
 fn along_first(before: [f64; 3], after: [f64; 3]) -> f64 {
     let along: f64 = (0..3).map(|axis| before[axis] * after[axis]).sum();
     along / (length(before) * length(before))
@@ -154,7 +157,7 @@ fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
     let before = world
         .soft_bodies()
         .first()
-        .expect("it has a body")
+        .expect("the world has a body")
         .momentum()
         .angular;
     for _ in 0..(DURATION / TICK).round() as usize {
@@ -165,13 +168,13 @@ fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
         world
             .soft_bodies()
             .first()
-            .expect("it has a body")
+            .expect("the world has a body")
             .momentum()
             .angular,
     ))
 }
 
-/// A free body that spins.
+/// Returns a world with one freely spinning body.
 fn spinning<D: Dim>(n: usize, material: Material) -> Result<World<D>> {
     let mut body = ball::<D>(n, material, Grading::Graded)?;
     // 5 rad/s about (0, 4, 3) / 5; in 2D about the third axis.
@@ -203,12 +206,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_small_ball_keeps_its_spin() {
+    fn small_ball_keeps_its_angular_momentum() {
         assert!(kept::<Dim3>(8, 0.0).unwrap() > KEPT);
     }
 
     #[test]
-    fn halves_of_a_small_disc_keep_their_spin() {
+    fn halves_of_a_small_disc_keep_their_angular_momentum() {
         let halves = halves::<Dim2>(8).unwrap();
         for kept in [halves.spin, halves.momentum, halves.both] {
             assert!((kept - 1.0).abs() < 1.0 - KEPT, "{kept}");

@@ -1,4 +1,4 @@
-//! Stack: ten boxes on each other stand still.
+//! Stack: ten boxes on top of each other stand still.
 
 use super::motion::material;
 use super::parallel;
@@ -10,28 +10,28 @@ use fuwafuwa::{
     Dim, Dim2, Dim3, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
 };
 
-/// Bodies in a stack, voxels across each, and its width [m].
+/// Number of bodies in a stack, voxels across each, and width of a body [m].
 const BODIES: usize = 10;
 const VOXELS: usize = 4;
 const WIDTH: f32 = 0.1;
-/// Stiff enough that a column as high as the stack would not buckle under its own weight [Pa]: that takes
-/// ρ g A h³ / (7.84 I) [Greenhill 1881], which is 1.5e5 here.
+/// Young's modulus [Pa], high enough that the stack does not buckle under its own weight. A column of this
+/// height needs ρ g A h³ / (7.84 I) [Greenhill 1881], which is 1.5e5 Pa here.
 const YOUNG: f64 = 2.4e5;
-/// How long they stand, and from when on still [s].
+/// Simulated time, and time after which the stack must be still [s].
 const DURATION: f32 = 60.0;
 const SETTLED: f32 = 5.0;
-/// How far a body may come to stand from where it was put, sideways, and how far it may go when it has
-/// settled; in widths.
+/// Maximum sideways deviation from the initial position, and maximum motion after settling; in widths of a
+/// body.
 const LEANING: f64 = 0.05;
 const MOTION: f64 = 0.01;
 
-/// What became of a stack, in widths of a body.
+/// Measurements of a stack, in widths of a body.
 struct Stack {
     leaning: f64,
     motion: f64,
 }
 
-/// Stacks of boxes in both dimensions.
+/// Simulates stacks of boxes in 2D and 3D.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let found = parallel::each(&[2, 3], progress, |&dim| match dim {
         2 => stand::<Dim2>(BODIES, DURATION),
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn two_bodies_stand_on_each_other() {
+    fn stack_of_two_bodies_stands_still() {
         let stack = stand::<Dim2>(2, SETTLED + 1.0).unwrap();
         assert!(stack.leaning <= LEANING && stack.motion <= MOTION);
     }

@@ -1,7 +1,7 @@
-//! Bodies at rest under small loads: the law linearised, and solved.
+//! Static equilibrium under small loads, with the law linearised at rest.
 //!
-//! Each class of element has a stiffness matrix, by central differences of [`forces`]; the sum
-//! over all elements is never formed.
+//! Each element class has a stiffness matrix, computed by central differences of [`forces`]. The global
+//! matrix is never assembled.
 
 use crate::report::Progress;
 use anyhow::{Result, ensure};
@@ -11,33 +11,33 @@ use fuwafuwa::stencil::ElementClass;
 use fuwafuwa::{Dim, Mesh};
 use std::collections::BTreeMap;
 
-/// Residual at which the gradients stop, relative to the load.
+/// Relative residual at which the solver stops.
 const CONVERGED: f64 = 1e-8;
-/// Conjugate gradients give up after so many rounds.
+/// Maximum number of iterations of conjugate gradients.
 const MOST_ROUNDS: usize = 20_000;
-/// Half the step of the central differences, in half widths of an element.
+/// Step of the central differences to each side, in half widths of an element.
 const STEP: f64 = 1e-6;
 
-/// A body linearised at rest, some of its nodes held. Lengths are in voxels.
+/// Body linearised at rest, with some fixed nodes. Lengths are in voxels.
 pub struct Statics {
-    /// Row-major stiffness of each class, for an element of width 2.
+    /// Row-major stiffness matrix of each element class, for an element of width 2.
     classes: BTreeMap<u32, Vec<f64>>,
     elements: Vec<Part>,
     held: Vec<bool>,
     diagonal: Vec<f64>,
 }
 
-/// One element of the operator.
+/// Element of the operator.
 struct Part {
     class: u32,
-    /// How its stiffness compares with that of its class.
+    /// Stiffness relative to that of its class.
     scale: f64,
-    /// The places of its coordinates.
+    /// Indices of its coordinates.
     places: Vec<u32>,
 }
 
 impl Statics {
-    /// The body of a mesh; `is_held` tells whether a node is held along an axis.
+    /// Creates the operator of a mesh. `is_held` returns whether a node is fixed along an axis.
     pub fn new<D: Dim>(
         mesh: &Mesh<D>,
         elasticity: Elasticity,
@@ -73,7 +73,7 @@ impl Statics {
                 places,
             });
         }
-        // Elements of a class together keep its matrix in the cache.
+        // Grouping elements by class keeps the class's matrix in the cache.
         elements.sort_by_key(|part| part.class);
         Self {
             classes,
@@ -83,10 +83,11 @@ impl Statics {
         }
     }
 
-    /// How far every coordinate moves under a load, by conjugate gradients scaled by the diagonal.
+    /// Returns the displacement of every coordinate under a load, by conjugate gradients with diagonal
+    /// preconditioning.
     ///
     /// # Errors
-    /// When the gradients do not converge.
+    /// If the iteration does not converge.
     pub fn solve(&self, load: &[f64], guess: Vec<f64>, progress: &Progress) -> Result<Vec<f64>> {
         let free = |value: f64, held: bool| if held { 0.0 } else { value };
         let mut moved: Vec<f64> = guess
@@ -127,12 +128,12 @@ impl Statics {
         }
         ensure!(
             dot(&residual, &residual).sqrt() <= goal,
-            "the body did not settle in {MOST_ROUNDS} rounds"
+            "conjugate gradients did not converge in {MOST_ROUNDS} iterations"
         );
         Ok(moved)
     }
 
-    /// image = K moved; held places stay 0.
+    /// Computes image = K · moved. Fixed coordinates stay 0.
     fn apply(&self, moved: &[f64], image: &mut [f64]) {
         image.fill(0.0);
         let mut local = Vec::new();
@@ -140,7 +141,7 @@ impl Statics {
             let matrix = &self.classes[&part.class];
             local.clear();
             local.resize(part.places.len(), 0.0);
-            // Column by column, the matrix being symmetric: sums that need not wait for each other.
+            // By columns, because the matrix is symmetric and the sums are then independent of each other.
             for (column, &place) in matrix.chunks_exact(local.len()).zip(&part.places) {
                 let along = part.scale * moved[place as usize];
                 for (sum, entry) in local.iter_mut().zip(column) {
@@ -159,7 +160,7 @@ impl Statics {
     }
 }
 
-/// −∂f/∂x at rest for an element of width 2, by central differences, made symmetric.
+/// Returns −∂f/∂x at rest for an element of width 2, by central differences, symmetrised.
 fn stiffness<D: Dim>(stencil: &ElementClass<D>, elasticity: Elasticity) -> Vec<f64> {
     let count = stencil.slots.len() * D::N;
     let mut matrix = vec![0.0; count * count];
@@ -173,7 +174,7 @@ fn stiffness<D: Dim>(stencil: &ElementClass<D>, elasticity: Elasticity) -> Vec<f
         for row in 0..count {
             let (node, axis) = (row / D::N, row % D::N);
             let slope = (behind[node][axis] - ahead[node][axis]) / (2.0 * STEP);
-            // Conjugate gradients need K = Kᵀ to the last bit; differences leave some rounding.
+            // Conjugate gradients need exact symmetry; the differences contain rounding errors.
             matrix[row * count + column] += 0.5 * slope;
             matrix[column * count + row] += 0.5 * slope;
         }

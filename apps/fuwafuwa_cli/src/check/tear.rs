@@ -1,4 +1,4 @@
-//! Tearing: bars that are pulled apart break at the load their material bears, at any resolution.
+//! Tearing: bars pulled apart break at the load given by their material's strength, at any resolution.
 
 use super::parallel;
 use crate::report::{Outcome, Progress};
@@ -18,17 +18,17 @@ const BARS: [(usize, usize, bool); 10] = [
     (3, 16, true),
     (3, 32, true),
 ];
-/// How far loads may be from what they should be.
+/// Maximum relative deviation of loads from their reference.
 const TOLERANCE: f64 = 0.03;
-/// Speed at which the end of a bar is pulled, unnotched and notched [m/s]: slow enough that
-/// neither inertia nor damping carries a share of the load.
+/// Pulling speed of unnotched and notched bars [m/s], low enough that inertia and damping carry no share of
+/// the load.
 const SPEEDS: [f32; 2] = [0.03, 0.01];
-/// Strain that a bar starts with, relative to strength / Young's modulus. A whole bar is in balance
-/// then. PointNeighbourhood a notch the strain has yet to gather, and overshoots as it does: start at less
-/// than half of what that bar bears.
+/// Initial strain relative to strength / Young's modulus, for unnotched and notched bars. An unnotched bar is
+/// then in equilibrium. Around a notch the strain first has to concentrate and overshoots, so a notched bar
+/// starts below half of its breaking load.
 const STARTS: [f32; 2] = [0.85, 0.08];
 
-/// Loads of unnotched bars against strength × area, of notched ones against each other.
+/// Compares loads of unnotched bars with strength × area, and loads of notched bars with each other.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let loads = parallel::each(&BARS, progress, |&(dim, n, notched)| match dim {
         2 => load::<Dim2>(n, notched),
@@ -38,7 +38,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     for (&(dim, n, notched), &load) in BARS.iter().zip(&loads) {
         let what = if notched { "notched" } else { "whole" };
         let case = format!("tear {dim}D, n = {n}, {what}, load / reference");
-        // The ideal load of a whole bar 1 m across; a notched one has the mean of its sisters.
+        // The ideal load of an unnotched bar 1 m across. For notched bars, the mean over all resolutions.
         let reference = if notched {
             let sisters = BARS
                 .iter()
@@ -57,7 +57,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(outcomes)
 }
 
-/// The greatest load [N] on a bar 1 m across whose ends are pulled apart until it breaks.
+/// Pulls the ends of a bar 1 m across apart until it breaks, and returns the maximum load [N].
 fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
     let length = if notched { 2 } else { 3 };
     let size = [length * n, n, D::depth(n)];
@@ -67,7 +67,7 @@ fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
         ..Material::default()
     };
     if !notched {
-        // Ends that are held cannot grow thin: without bulging, the strain is the same everywhere.
+        // Fixed ends cannot contract sideways. Without lateral contraction, the strain is uniform.
         material.elasticity.poisson = 0.0;
     }
     let mut body = SoftBody::new(grid, &[material])?;
@@ -106,12 +106,12 @@ fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
     let mut peak = 0.0f64;
     for _ in 0..6000 {
         world.step();
-        let body = world.soft_bodies().first().expect("it has a body");
+        let body = world.bodies().first().expect("the world has a body");
         let load: f64 = held.iter().map(|&id| f64::from(body.force_on(id)[0])).sum();
         peak = peak.max(load);
         if peak > 10.0 && load < 0.3 * peak {
             return Ok(peak);
         }
     }
-    anyhow::bail!("the bar of {n} voxels did not break")
+    anyhow::bail!("the bar with {n} voxels across did not break")
 }

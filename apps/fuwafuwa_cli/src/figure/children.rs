@@ -1,4 +1,4 @@
-//! Figures 4 and 5: when a child is generated, and what that changes.
+//! Figures 4 and 5: conditions for generating a child, and the resulting changes.
 
 use super::square::{MIDDLE, Release, draw, draw_nodes, mark, points, views};
 use anyhow::Result;
@@ -8,7 +8,7 @@ use fuwafuwa::pyramid::Cell;
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Frame, Painter, Role, Sample};
 
-/// Figure 4: when a child is generated.
+/// Draws figure 4: the conditions for generating a child.
 pub fn conditions() -> Result<Painter> {
     let mut painter = Painter::new(1120, 736);
     let voxel = Release::at(1)?;
@@ -91,7 +91,7 @@ pub fn conditions() -> Result<Painter> {
     Ok(painter)
 }
 
-/// Figure 5: children generated and parents rebuilt, before and after a release.
+/// Draws figure 5: generated children and rebuilt parents, before and after a release.
 pub fn children() -> Result<Painter> {
     let mut painter = Painter::new(1120, 1260);
     for (row, height) in [1, 2].into_iter().enumerate() {
@@ -141,7 +141,7 @@ pub fn children() -> Result<Painter> {
     Ok(painter)
 }
 
-/// The frames of figures 4 and 5, which show the lower part of the square.
+/// Returns the frames of figures 4 and 5, which show the lower part of the square.
 fn frame_of(column: usize, row: usize) -> Frame {
     Frame {
         origin: [6.0 + 560.0 * column as f32, 612.0 + 590.0 * row as f32],
@@ -163,7 +163,7 @@ fn released(painter: &mut Painter, frame: Frame, height: i32) {
     painter.cross(frame.spot(at), 6.5, Role::Removed);
 }
 
-/// A child that is not there yet.
+/// Draws a child that does not exist yet.
 fn square(painter: &mut Painter, frame: Frame, low: Point, width: i32) {
     let corners = [[0, 0, 0], [width, 0, 0], [width, width, 0], [0, width, 0]];
     let spots = corners.map(|by| frame.spot(add(low, by).map(|k| k as f32)));

@@ -1,4 +1,4 @@
-//! What a body at rest is made of: a graded disc, its look-up table, and a ball cut open.
+//! Structure of a body at rest: a graded disc, its look-up table, and a ball cut open.
 
 use super::legend::level_entries;
 use anyhow::Result;
@@ -16,11 +16,11 @@ const ACROSS: usize = 32;
 /// Voxels across the ball.
 const BALL: usize = 32;
 
-/// Figure 1: a graded disc, its elements by level and their nodes.
+/// Draws figure 1: a graded disc, its elements by level and their nodes.
 pub fn elements() -> Result<Painter> {
     let body = disc()?;
     let mut painter = Painter::new(1000, 1050);
-    // A body 1 m across; an empty voxel surrounds the disc.
+    // The body is 1 m across; an empty voxel surrounds the disc.
     let frame = Frame {
         origin: [20.0, 970.0],
         unit: 960.0,
@@ -45,7 +45,7 @@ pub fn elements() -> Result<Painter> {
     Ok(painter)
 }
 
-/// Figure 2: the levels of the disc's look-up table side by side.
+/// Draws figure 2: the levels of the disc's look-up table side by side.
 pub fn table() -> Result<Painter> {
     const PANEL: f32 = 288.0;
     const PITCH: [f32; 2] = [330.0, 356.0];
@@ -80,7 +80,7 @@ pub fn table() -> Result<Painter> {
         (Sample::Area(Role::Paper, Role::Guide), "no cell"),
         (
             Sample::Area(Role::HandedOn, Role::Faded),
-            "cell, all of it handed on",
+            "cell without an element",
         ),
         (
             Sample::Area(Role::Level(1), Role::Edge),
@@ -92,7 +92,7 @@ pub fn table() -> Result<Painter> {
     Ok(painter)
 }
 
-/// Figure 1 in space: a ball from which the front quarter was lifted, elements by level.
+/// Draws figure 1 in 3D: a ball without its front quarter, elements by level.
 pub fn opened_ball() -> Result<Painter> {
     let (width, height) = (900, 880);
     let body = SoftBody::<Dim3>::new(VoxelGrid::ball(BALL, 1.0)?, &[Material::default()])?;
@@ -134,7 +134,7 @@ fn disc() -> Result<SoftBody<Dim2>> {
     Ok(SoftBody::new(grid, &[Material::default()])?)
 }
 
-/// The table of one level: its places, the cells that exist, and the elements they own.
+/// Draws one level of the table: all cell positions, the existing cells, and their elements.
 fn draw_level(
     painter: &mut Painter,
     frame: Frame,
@@ -162,14 +162,14 @@ fn draw_level(
     for view in body.element_views().filter(|view| view.level == level) {
         worlds::plane_element(painter, frame, &view, 1.3);
     }
-    // The body's outline ties the panels together.
+    // The outline of the body makes the panels comparable.
     for line in body.outlines() {
         let spots = line.points.iter().map(|&at| frame.spot(at)).collect();
         painter.ring(spots, 1.4, Role::Ink);
     }
 }
 
-/// Nodes in the middle of a straight side of some element.
+/// Returns the nodes in the middle of a straight side of an element.
 fn hanging_nodes(mesh: &Mesh<Dim2>) -> BTreeSet<NodeId> {
     let mut hanging = BTreeSet::new();
     for (_, element) in mesh.elements() {

@@ -1,8 +1,8 @@
-//! What legends have in common.
+//! Helpers shared by the legends.
 
 use fuwafuwa_painter::{Role, Sample};
 
-/// The levels of a legend.
+/// Returns legend entries for the levels.
 pub fn level_entries(levels: u8) -> Vec<(Sample, &'static str)> {
     const NAMES: [&str; 6] = [
         "level 0", "level 1", "level 2", "level 3", "level 4", "level 5",

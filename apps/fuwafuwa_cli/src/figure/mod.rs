@@ -1,4 +1,4 @@
-//! The figures of the paper, drawn from live data.
+//! Figures of the paper, drawn from live data.
 
 mod children;
 mod disc;
@@ -16,18 +16,18 @@ use std::process::ExitCode;
 /// Draw the figures of the paper from live data, each as SVG and PNG.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Which figure.
+    /// Figure to draw.
     #[arg(value_enum)]
     which: Which,
-    /// Folder for the files; it is made when it does not exist.
+    /// Folder for the files; created if it does not exist.
     #[arg(long)]
     out: PathBuf,
 }
 
-/// Which figure to draw.
+/// Figure to draw.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
 enum Which {
-    /// A graded disc, elements by level; and a ball cut open.
+    /// A graded disc with elements by level, and a ball cut open.
     #[value(name = "1")]
     Levels,
     /// The levels of the look-up table.
@@ -36,16 +36,16 @@ enum Which {
     /// The phases of remodelling.
     #[value(name = "3")]
     Phases,
-    /// When a child is generated.
+    /// The conditions for generating a child.
     #[value(name = "4")]
     Conditions,
-    /// Children generated and parents rebuilt, before and after a release.
+    /// Generated children and rebuilt parents, before and after a release.
     #[value(name = "5")]
     Children,
-    /// A cutting sequence, in the plane and in space, also as films.
+    /// A cutting sequence in 2D and 3D, also as films.
     #[value(name = "6")]
     Sequence,
-    /// All of them.
+    /// All figures.
     All,
 }
 
@@ -55,7 +55,7 @@ impl Which {
     }
 }
 
-/// Draws into a folder and prints the files written.
+/// Draws into a folder and prints the names of the files.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     for path in write(arguments.which, &arguments.out)? {
         println!("{}", path.display());
@@ -63,10 +63,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Draws into a folder; returns the files written.
+/// Draws into a folder and returns the written files.
 fn write(which: Which, folder: &Path) -> Result<Vec<PathBuf>> {
     std::fs::create_dir_all(folder)
-        .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+        .with_context(|| format!("cannot create the folder {}", folder.display()))?;
     let mut files = Files {
         folder,
         written: Vec::new(),
@@ -98,7 +98,7 @@ fn write(which: Which, folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(files.written)
 }
 
-/// A folder that is being filled.
+/// Output folder with the files written to it.
 struct Files<'a> {
     folder: &'a Path,
     written: Vec<PathBuf>,
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn figures_are_written_and_not_empty() {
+    fn write_creates_non_empty_figures() {
         let folder = tempfile::tempdir().unwrap();
         for which in [
             Which::Table,

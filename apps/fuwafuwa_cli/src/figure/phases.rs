@@ -11,7 +11,7 @@ use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Frame, Painter, Role, Sample};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Figure 3: what remodelling does, phase by phase.
+/// Draws figure 3: remodelling, phase by phase.
 pub fn phases() -> Result<Painter> {
     const PANEL: f32 = 348.0;
     let release = Release::at(2)?;
@@ -121,7 +121,7 @@ pub fn phases() -> Result<Painter> {
     Ok(painter)
 }
 
-/// The lattice points of all slots of an element, and where they are.
+/// Returns the lattice points and positions of all slots of an element.
 fn slots_of(element: &Element, view: &ElementView) -> Vec<(Point, [f32; 3])> {
     let (low, half) = (element.cell.first_voxel(), element.cell.width() / 2);
     let place = |slot: usize| (add(low, scale(slot_at(slot), half)), view.slots[slot]);

@@ -1,4 +1,4 @@
-//! A body being cut: in the plane by a hand that pushes, in space by a blade.
+//! A body being cut: in 2D by a pushing hand, in 3D by a blade.
 
 use super::legend::level_entries;
 use crate::report::Progress;
@@ -13,14 +13,14 @@ use fuwafuwa_painter::solid::{Camera, Solid};
 use fuwafuwa_painter::worlds::{self, DrawPlane, DrawSpace};
 use fuwafuwa_painter::{Frame, PaintError, Painter, Pixmap, Role, Sample, film};
 
-/// How long a frame of a film is shown [1/100 s].
+/// Display time of a film frame [1/100 s].
 pub const HUNDREDTHS: u16 = 6;
 /// Width and height of a frame [px].
 const SIZE: u32 = 400;
 /// Ticks between two frames.
 const PACE: usize = 4;
 
-/// Figure 6: a hand tears its way through a disc; the strip and the frames of the film.
+/// Draws figure 6: a hand tears through a disc. Returns the strip and the frames of the film.
 pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
     const TICKS: usize = 200;
     let material = Material {
@@ -71,8 +71,8 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
     Ok((strip, frames.collect::<Result<_, PaintError>>()?))
 }
 
-/// Figure 6 in space: a blade runs through a ball that lies on the floor, and its halves part.
-/// The strip shows the skin above and a section through the elements below, the film the skin.
+/// Draws figure 6 in 3D: a blade cuts through a ball on the floor, and the halves separate. The strip shows
+/// the skin above and a section through the elements below; the film shows the skin.
 pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
     const TICKS: usize = 108;
     const ACROSS: usize = 24;
@@ -124,7 +124,7 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
     Ok((strip, skins))
 }
 
-/// Elements whose cells lie behind the middle of the body, at rest.
+/// Draws the elements with cells behind the middle of the body at rest.
 fn draw_section(solid: &mut Solid, body: &SoftBody<Dim3>) {
     let middle = body.grid().size()[2] / 2;
     worlds::space_elements(solid, body, |view| {
@@ -163,7 +163,7 @@ fn write_time(painter: &mut Painter, tick: usize) {
     painter.text([16.0, 16.0], 14.0, Role::Ink, &seconds);
 }
 
-/// Some of the frames, each given by its share of the way from the first to the last.
+/// Selects frames, each given by its position from 0 (first) to 1 (last).
 fn moments(frames: &[Pixmap], at: &[f32]) -> Vec<Pixmap> {
     let last = (frames.len() - 1) as f32;
     at.iter()

@@ -1,8 +1,8 @@
-//! The body of figures 3 to 5: a square of 14 voxels is cut upwards along its middle, one node at a time:
+//! Body of figures 3 to 5: a square of 14 voxels is cut upwards along its middle, one node at a time:
 //!
 //! ```text
-//!   ┌───────┬───────┐        A parent on each side loses the child beside the crack: first those
-//!   │   2   │   2   │        of level 1, whose children are voxels, then those of level 2, whose
+//!   ┌───────┬───────┐        A parent on each side loses the child beside the crack: first parents
+//!   │   2   │   2   │        of level 1, whose children are voxels, then parents of level 2, whose
 //!   │       ┆       │        children are of level 1.
 //!   └───────┃───────┘
 //! ```
@@ -16,27 +16,27 @@ use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Frame, Painter, Role};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Voxels across the square and the empty rim around it, which seats it like the disc of figure 1.
+/// Voxels across the square and its empty rim. The rim centres it in the grid like the disc of figure 1.
 pub const ACROSS: i32 = 16;
-/// Where the crack runs.
+/// Position of the crack.
 pub const MIDDLE: i32 = 8;
-/// The octants to the right of a lattice point.
+/// Octants to the right of a lattice point.
 const RIGHT: u8 = 0b1010;
-/// How far the crack gapes on each side at its mouth, in voxels a voxel of its length.
+/// Opening of the crack to each side at its mouth, relative to its length.
 const GAPE: f32 = 0.16;
 
 /// The square before and after one release.
 pub struct Release {
-    /// Before.
+    /// Body before the release.
     pub before: SoftBody<Dim2>,
-    /// Afterwards.
+    /// Body after the release.
     pub after: SoftBody<Dim2>,
-    /// The height of the node that is released.
+    /// Height of the released node.
     pub height: i32,
 }
 
 impl Release {
-    /// Releases the node at a height, those below it having been released before.
+    /// Releases the node at a height, after all nodes below it.
     pub fn at(height: i32) -> Result<Self> {
         let solid = 1..ACROSS - 1;
         let size = [ACROSS as usize, ACROSS as usize, 1];
@@ -58,14 +58,14 @@ impl Release {
         })
     }
 
-    /// The same, the new crack open as well.
+    /// Returns the body after the release with the new crack opened.
     pub fn opened(&self) -> SoftBody<Dim2> {
         let mut body = self.after.clone();
         gape(&mut body, self.height + 1);
         body
     }
 
-    /// Cells that have an element before and another one, or none, afterwards.
+    /// Returns the cells with an element that changes or disappears in the release.
     pub fn parents(&self) -> BTreeSet<Cell> {
         let after = filled(&self.after);
         let changed =
@@ -76,7 +76,7 @@ impl Release {
             .collect()
     }
 
-    /// Cells that have an element only afterwards.
+    /// Returns the cells that have an element only after the release.
     pub fn children(&self) -> BTreeSet<Cell> {
         let before = filled(&self.before);
         let cells = filled(&self.after).into_keys();
@@ -112,7 +112,7 @@ pub fn mark(
     }
 }
 
-/// The elements of some cells, each with its view.
+/// Returns the elements of some cells, each with its view.
 pub fn views<'a>(
     body: &'a SoftBody<Dim2>,
     cells: &BTreeSet<Cell>,
@@ -122,7 +122,7 @@ pub fn views<'a>(
     wanted.map(|((_, element), view)| (element, view)).collect()
 }
 
-/// The cells that have elements, and the children these fill.
+/// Returns the cells that have elements, with the children that these fill.
 fn filled(body: &SoftBody<Dim2>) -> BTreeMap<Cell, u8> {
     let mut filled = BTreeMap::new();
     for (_, element) in body.mesh().elements() {
@@ -131,12 +131,12 @@ fn filled(body: &SoftBody<Dim2>) -> BTreeMap<Cell, u8> {
     filled
 }
 
-/// The lattice points of the nodes.
+/// Returns the lattice points of the nodes.
 pub fn points(body: &SoftBody<Dim2>) -> BTreeSet<Point> {
     body.mesh().nodes().map(|(_, node)| node.at).collect()
 }
 
-/// Opens the crack below a height like a wedge, so that it can be seen.
+/// Opens the crack below a height like a wedge, to make it visible.
 fn gape(body: &mut SoftBody<Dim2>, height: i32) {
     let nodes: Vec<_> = body.mesh().nodes().collect();
     for (id, node) in nodes {

@@ -1,4 +1,4 @@
-//! The tools, and what else can be asked for.
+//! Tool bar with the tools and other actions.
 
 use super::section::{Shown, Slices};
 use super::session::Session;
@@ -8,27 +8,27 @@ use egui::{RichText, Slider, Ui, vec2};
 use tamaire::look::Theme;
 use tamaire::screens::{Weight, button};
 
-/// Something that is asked for.
+/// Action chosen in the bar.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Ask {
-    /// A tool.
+    /// Take up a tool.
     Take(Tool),
-    /// A rest, or on.
+    /// Pause or resume.
     Rest,
-    /// The organ as it was.
+    /// Restart with the untouched organ.
     Again,
-    /// All of it once more.
+    /// Replay the procedure from the start.
     Watch,
-    /// To go on by hand where a recording is.
+    /// Continue by hand from the current point of a replay.
     TakeOver,
-    /// Files.
+    /// Save files.
     Save,
 }
 
-/// How high buttons are.
+/// Height of buttons [points].
 const HIGH: f32 = 48.0;
 
-/// Shows them in a row; returns what was asked for.
+/// Shows the bar and returns the chosen action.
 pub fn show(
     ui: &mut Ui,
     theme: &Theme,
@@ -52,17 +52,21 @@ pub fn show(
             }
             ui.vertical(|ui| {
                 ui.add_space(2.0);
-                ui.label(RichText::new("Edge").size(15.0).color(theme.ink));
+                ui.label(
+                    RichText::new("Sharpness (radius)")
+                        .size(15.0)
+                        .color(theme.ink),
+                );
                 let slider = Slider::new(&mut session.hand.dull, 0..=BLUNTEST).suffix(" µm");
                 ui.add(slider);
             });
         } else {
             press(ui, "Take over", 130.0, false, Ask::TakeOver);
         }
-        let rest = if session.rests { "Go on" } else { "Rest" };
+        let rest = if session.rests { "Resume" } else { "Pause" };
         press(ui, rest, 90.0, session.rests, Ask::Rest);
-        press(ui, "Again", 90.0, false, Ask::Again);
-        press(ui, "Watch", 90.0, false, Ask::Watch);
+        press(ui, "Restart", 90.0, false, Ask::Again);
+        press(ui, "Replay", 90.0, false, Ask::Watch);
         press(ui, "Save", 90.0, false, Ask::Save);
     });
     if let Some(slices) = slices {
@@ -85,7 +89,7 @@ pub fn show(
             } else {
                 Weight::Other
             };
-            if button(ui, theme, "At tool", vec2(104.0, HIGH), weight).clicked() {
+            if button(ui, theme, "Slices follow tool", vec2(104.0, HIGH), weight).clicked() {
                 slices.follows = !slices.follows;
             }
         });

@@ -1,4 +1,4 @@
-//! What was measured, over time.
+//! Plots of the measurements over time.
 
 use super::pictures::RED;
 use super::session::Session;
@@ -8,16 +8,16 @@ use fuwafuwa::vector::length;
 use fuwafuwa::world::TICK;
 use tamaire::look::Theme;
 
-/// So many seconds are seen.
+/// Time span of the plots [s].
 const SPAN: f32 = 20.0;
 const BLUE: Color32 = Color32::from_rgb(47, 111, 159);
 
-/// A curve: its name, how its value is written, and the value itself.
+/// Plot of a quantity: name, unit and value.
 struct Curve {
     name: &'static str,
     unit: &'static str,
     colour: Color32,
-    /// The axis reaches so far at least.
+    /// Minimum upper end of the axis.
     least: f32,
     value: fn(&Sample) -> f32,
 }
@@ -39,7 +39,7 @@ const CURVES: [Curve; 2] = [
     },
 ];
 
-/// Draws the curves side by side, and numbers beside them.
+/// Draws the plots side by side, with numbers beside them.
 pub fn show(ui: &mut Ui, session: &Session, theme: &Theme) {
     let rect = ui.available_rect_before_wrap();
     let wide = 0.36 * rect.width();
@@ -82,7 +82,7 @@ fn draw(ui: &Ui, rect: Rect, curve: &Curve, samples: &[Sample], theme: &Theme) {
     let font = FontId::proportional(20.0);
     painter.text(room.left_top(), Align2::LEFT_TOP, text, font, curve.colour);
     let font = FontId::proportional(14.0);
-    let text = format!("to {top:.digits$} {}, {SPAN:.0} s", curve.unit);
+    let text = format!("scale {top:.digits$} {}, {SPAN:.0} s", curve.unit);
     painter.text(room.right_top(), Align2::RIGHT_TOP, text, font, theme.faint);
 }
 
@@ -90,7 +90,7 @@ fn numbers(ui: &Ui, rect: Rect, session: &Session, theme: &Theme) {
     let painter = ui.painter().with_clip_rect(rect);
     let sample = session.last();
     let mut rows = vec![format!(
-        "{:.1} s   knife in tissue {:.0} mm",
+        "{:.1} s   knife path in tissue {:.0} mm",
         session.procedure().ticks() as f32 * TICK,
         1e3 * sample.path
     )];
@@ -113,10 +113,10 @@ fn numbers(ui: &Ui, rect: Rect, session: &Session, theme: &Theme) {
     let inertia = session.procedure().table().inertia;
     if inertia > 1.0 {
         rows.push(format!(
-            "moves as if {inertia:.0} times as heavy; as stiff as it is"
+            "mass scaled ×{inertia:.0} for speed; stiffness unchanged"
         ));
     }
-    rows.push(format!("{:.1} ms a tick", 1e3 * session.cost()));
+    rows.push(format!("{:.1} ms per tick", 1e3 * session.cost()));
     let step = (rect.height() / rows.len() as f32).min(26.0);
     for (number, row) in rows.iter().enumerate() {
         let at = pos2(rect.left(), rect.top() + step * number as f32);

@@ -1,4 +1,4 @@
-//! Sticks and pads: what they ask for, and what they are made to feel.
+//! Sticks and gamepads: their input and their force feedback.
 
 use super::hand::Wishes;
 use egui::Vec2;
@@ -8,45 +8,45 @@ use sticks::{Change, Control, Device, DeviceId, Direction, PadButton, Snapshot, 
 use tamaire::haptics::on_stick;
 use tamaire::platform::{Forces, Pads};
 
-/// A stick that leans less than this does nothing, and one that leans more than the second leans fully.
+/// Dead zone of a stick, and the deflection that counts as full; as fractions of its range.
 const DEAD: f32 = 0.15;
 const RIM: f32 = 0.95;
-/// This much is full force on a device [N]: a knife in soft tissue meets one to a few.
+/// Contact force shown as full force on a device [N]. A knife in soft tissue meets one to a few newtons.
 const FULL: f32 = 5.0;
-/// A device that was not used for so long is not felt [s], unless it pushes back.
+/// Time without input after which a device gets no feedback [s]. Devices with real force feedback are exempt.
 const RESTED: f32 = 1.5;
-/// How much a device feels of each node that comes apart, and at most.
+/// Feedback strength per split node, and its maximum.
 const TEAR: f32 = 0.04;
 const TORN: f32 = 0.6;
 
-/// What is pressed once.
+/// Action triggered once per press.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Press {
-    /// The next tool.
+    /// Take up the next tool.
     NextTool,
-    /// A rest, or on.
+    /// Pause or resume.
     Pause,
-    /// All forces off, or on again.
+    /// Switch all forces off or on.
     CutForces,
 }
 
-/// Sticks and pads.
+/// Sticks and gamepads in use.
 pub struct Devices {
     pads: Pads,
     forces: Forces,
     said: Snapshot,
-    /// What moved the hand last, and how long ago [s].
+    /// Device that moved the hand last, and the time since then [s].
     used: Option<DeviceId>,
     rested: f32,
 }
 
 impl Devices {
-    /// Those that are plugged in.
+    /// Opens all connected devices.
     pub fn open() -> Self {
         Self::of(Pads::open())
     }
 
-    /// These.
+    /// Creates the state for the given devices.
     pub fn of(pads: Pads) -> Self {
         Self {
             pads,
@@ -57,8 +57,9 @@ impl Devices {
         }
     }
 
-    /// Hears what they say: adds to what is asked for, and returns what was pressed, and how fast the camera is to turn, to
-    /// the right and up. A stick that pushes back points at a place of a room, from corner to corner [m].
+    /// Reads the devices: adds their input to `wishes` and returns the pressed actions and the camera's
+    /// turning speed (right, up). The axes of a device with force feedback point at a position in the room,
+    /// from `low` to `high` [m].
     pub fn hear(
         &mut self,
         wishes: &mut Wishes,
@@ -106,8 +107,8 @@ impl Devices {
         (presses, look.clamp(Vec2::splat(-1.0), Vec2::splat(1.0)))
     }
 
-    /// Lets the device that moved the hand last feel what touches it [N], as a camera sees it that went around by `turn`
-    /// [rad]; or says why there is nothing.
+    /// Sends the contact force [N] to the device that moved the hand last, rotated by the camera's azimuth
+    /// `turn` [rad]. If `silence` is given, all devices are silent for that reason.
     pub fn feel(&mut self, contact: Vector, turn: f32, silence: Option<Stop>) {
         self.forces.attend(&self.said, &self.pads, |_| {
             Some(Settings {
@@ -136,14 +137,14 @@ impl Devices {
         self.forces.update();
     }
 
-    /// So many nodes came apart.
+    /// Sends feedback for `nodes` split nodes.
     pub fn tear(&self, nodes: u32) {
         if let (Some(device), true) = (self.used, nodes > 0) {
             self.forces.tear(device, (TEAR * nodes as f32).min(TORN));
         }
     }
 
-    /// Cuts all forces, or takes that back; whether they are cut then.
+    /// Switches all forces off, or on again. Returns whether they are off afterwards.
     pub fn cut_or_restore(&mut self) -> bool {
         match self.forces.is_cut() {
             true => self.forces.restore(),
@@ -152,23 +153,23 @@ impl Devices {
         self.forces.is_cut()
     }
 
-    /// What is felt, in words.
+    /// Describes the feedback of the device in use.
     pub fn told(&self) -> String {
         let device = self.used.and_then(|id| self.said.device(id));
         let Some(device) = device else {
-            return "no stick or pad in use: forces are shown only".into();
+            return "no stick or gamepad in use: forces are displayed only".into();
         };
         let report = self.forces.report(device.id);
         let able = match report.map(|report| report.ability) {
-            Some(Ability::Force) => "pushes back along the table",
+            Some(Ability::Force) => "force feedback in the plane of the table",
             Some(Ability::Rumble) => "rumbles with the force",
-            _ => "cannot be felt",
+            _ => "no force feedback",
         };
         format!("{}: {able}", device.about.name)
     }
 }
 
-/// What a device asks for.
+/// Input of a device.
 #[derive(Default)]
 struct Asked {
     lean: Vec2,

@@ -1,4 +1,4 @@
-//! What mouse, keys and sticks ask for becomes what the hand wants.
+//! Converts input of mouse, keys and sticks into the input of the procedure.
 
 use crate::procedure::{BLUNTEST, Input};
 use crate::tools::Tool;
@@ -8,45 +8,45 @@ use fuwafuwa::{Rotation, Vector};
 use std::f32::consts::PI;
 use tamaire::input::Manner;
 
-/// How fast a key or a stick that leans fully moves the hand [m/s], and how fast it rises.
+/// Speed of the hand at full deflection of a key or stick [m/s]: in the plane, and upwards.
 const PACE: f32 = 0.06;
 const RISE: f32 = 0.04;
-/// How fast it turns [rad/s].
+/// Turning speed [rad/s].
 const TURN: f32 = 1.5;
 
-/// What is asked for in a tick.
+/// Requested motion in a tick.
 #[derive(Clone, Debug, Default)]
 pub struct Wishes {
-    /// To be at a place; its height does not count [m].
+    /// Target position; its height is ignored [m].
     pub place: Option<Vector>,
-    /// To go to the right and away, at full pace where this is 1 long.
+    /// Velocity to the right and away from the camera; length 1 is full speed.
     pub lean: Vec2,
-    /// To rise, at full pace where this is 1.
+    /// Upward speed; 1 is full speed.
     pub lift: f32,
-    /// To be higher at once [m].
+    /// Immediate change of height [m].
     pub wheel: f32,
-    /// To turn, at full pace where a part is 1: around to the left, up, over to the left.
+    /// Turning speed about three axes: yaw to the left, pitch up, roll to the left; 1 is full speed.
     pub turn: Vector,
-    /// To close the forceps.
+    /// Whether the forceps close.
     pub grips: bool,
 }
 
-/// Where the hand wants to be, and what it holds.
+/// Target pose of the hand, and its tool.
 #[derive(Clone, Debug)]
 pub struct Hand {
-    /// What it holds.
+    /// Tool in the hand.
     pub tool: Tool,
-    /// Radius of the knife's edge [µm].
+    /// Edge radius of the knife [µm].
     pub dull: u16,
-    /// Where it wants to be [m].
+    /// Target position [m].
     pub goal: Vector,
-    /// By how much it is turned around, up and over [rad].
+    /// Yaw, pitch and roll [rad].
     pub turned: Vector,
     grips: bool,
 }
 
 impl Hand {
-    /// One that is somewhere [m] with a tool.
+    /// Creates a hand at a position [m] with a tool.
     pub fn at(goal: Vector, tool: Tool) -> Self {
         Self {
             tool,
@@ -57,7 +57,7 @@ impl Hand {
         }
     }
 
-    /// One that is somewhere [m] and holds a tool as it was held last.
+    /// Creates a hand at a position [m] with the tool and rotation of the last input.
     pub fn holding(goal: Vector, last: &Input) -> Self {
         let rotation = last.rotation();
         let [x, y, z] =
@@ -72,7 +72,7 @@ impl Hand {
         }
     }
 
-    /// Takes up a tool, which comes in from a height [m].
+    /// Takes up a tool, which enters at `height` [m].
     pub fn take(&mut self, tool: Tool, height: f32) {
         if tool != self.tool {
             self.tool = tool;
@@ -80,7 +80,8 @@ impl Hand {
         }
     }
 
-    /// Does what is asked for, for `seconds`, within a room from corner to corner [m]; the camera went around by `turn`.
+    /// Moves the hand for `seconds` within a room from corner to corner [m]. `turn` is the azimuth of the
+    /// camera [rad].
     pub fn pass(&mut self, wishes: &Wishes, [low, high]: [Vector; 2], turn: f32, seconds: f32) {
         if let Some([x, _, z]) = wishes.place {
             self.goal = [x, self.goal[1], z];
@@ -93,12 +94,12 @@ impl Hand {
         }
         let by = scaled(wishes.turn, TURN * seconds);
         let [around, up, over] = plus(self.turned, by);
-        // Around as often as one likes, up and over no further than upside down.
+        // Yaw is unlimited; pitch and roll stop upside down.
         self.turned = [wrapped(around), up.clamp(-PI, PI), over.clamp(-PI, PI)];
         self.grips = wishes.grips;
     }
 
-    /// How it is turned.
+    /// Returns the rotation of the tool.
     pub fn rotation(&self) -> Rotation {
         let [around, up, over] = self.turned;
         let over = Rotation::about([0.0, 0.0, 1.0], over);
@@ -106,7 +107,7 @@ impl Hand {
         over.then(up).then(Rotation::about([0.0, 1.0, 0.0], around))
     }
 
-    /// What it wants in a tick.
+    /// Returns the input for a tick.
     pub fn input(&self) -> Input {
         let input = Input {
             grips: self.grips,
@@ -117,7 +118,7 @@ impl Hand {
     }
 }
 
-/// The same angle between −π and π.
+/// Returns the equivalent angle between −π and π.
 fn wrapped(angle: f32) -> f32 {
     angle - 2.0 * PI * (angle / (2.0 * PI)).round()
 }
@@ -133,14 +134,14 @@ mod tests {
     }
 
     #[test]
-    fn it_stays_in_the_room_and_goes_as_the_camera_sees_it() {
+    fn hand_moves_in_camera_directions_and_stays_in_the_room() {
         let mut hand = hand();
         let wishes = Wishes {
             lean: egui::vec2(0.0, 9.0),
             wheel: -1.0,
             ..Wishes::default()
         };
-        // From the right side away leads to the left.
+        // Seen from the right side, away means to the left.
         hand.pass(&wishes, ROOM, 0.5 * PI, 0.5);
         assert!((hand.goal[0] + 0.03).abs() < 1e-6 && hand.goal[2].abs() < 1e-6);
         assert_eq!(hand.goal[1], 0.0);
@@ -154,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tool_that_is_taken_up_comes_from_above() {
+    fn take_raises_the_hand_to_the_entry_height() {
         let mut hand = hand();
         hand.take(Tool::Hook, 0.2);
         assert_eq!(hand.goal[1], 0.1);
@@ -163,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_turned_around_is_turned_about_what_is_up() {
+    fn yaw_rotates_about_the_vertical_axis() {
         let mut hand = hand();
         let wishes = Wishes {
             turn: [1.0, 0.0, 0.0],
@@ -175,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hand_that_takes_over_holds_the_tool_as_it_was_held() {
+    fn holding_restores_rotation_and_sharpness() {
         let turned = [[0.3, -0.8, 0.5], [-2.9, 1.2, 3.0], [0.0; 3]];
         for turned in turned {
             let before = Hand {

@@ -1,4 +1,4 @@
-//! The organ on its table, the tool, and the force on it.
+//! Picture of the organ on its table, with the tool and the force on it.
 
 use super::session::Session;
 use egui::{Align2, Color32, FontId, Painter, Rect, Stroke, Ui, vec2};
@@ -7,16 +7,17 @@ use fuwafuwa_render::palette::rgb;
 use fuwafuwa_render::{Frame, Palette, Prop};
 use tamaire::look::{SpaceStage, View};
 
-/// How long the arrow is for a newton, as a share of how far away the organ is seen from.
+/// Length of the force arrow per newton, as a fraction of the camera distance.
 const LONG: f32 = 0.045;
-/// What is weaker is not shown [N].
+/// Minimum force that is shown [N].
 const WEAK: f32 = 0.02;
-/// Steel.
+/// Colour of the tools.
 const STEEL: u32 = 0xbfc8d2;
-/// The arrow.
+/// Colour of the force arrow.
 pub const RED: Color32 = Color32::from_rgb(200, 52, 52);
 
-/// Flesh on a green cloth. The colours of materials are those of [`crate::phantom`], and start over.
+/// Colours of flesh on a green cloth. The material colours match [`crate::phantom`] and repeat after the
+/// last.
 pub fn palette() -> Palette {
     Palette {
         floor: [rgb(0xbfdcd4), rgb(0x8fbab2)],
@@ -30,7 +31,7 @@ pub fn palette() -> Palette {
     }
 }
 
-/// Draws the organ into a part of the window; gives back how it is seen.
+/// Draws the organ into a part of the window and returns the view.
 pub fn show(
     ui: &Ui,
     rect: Rect,
@@ -58,7 +59,7 @@ pub fn show(
     view
 }
 
-/// An arrow as long as the force of the tissue on the tool, and how much that is.
+/// Draws an arrow for the force of the tissue on the tool, with its magnitude.
 fn draw_force(painter: &Painter, session: &Session, view: &View) {
     let sample = session.last();
     let newtons = length(sample.force);

@@ -1,4 +1,4 @@
-//! Slices beside the organ.
+//! Slice views beside the organ.
 
 use super::pictures::RED;
 use crate::procedure::Procedure;
@@ -8,40 +8,40 @@ use fuwafuwa::Vector;
 use fuwafuwa::vector::minus;
 use fuwafuwa_render::{Colour, Palette};
 
-/// Behind a slice.
+/// Background of a slice.
 const DARK: Color32 = Color32::from_rgb(28, 26, 32);
 const PALE: Color32 = Color32::from_rgb(226, 222, 214);
 const SKIN: Color32 = Color32::from_rgb(250, 240, 226);
 const CRACK: Color32 = Color32::from_rgb(255, 70, 60);
 
-/// Around what is seen, for what is written [points].
+/// Margin around a slice for its labels [points].
 const ROOM: egui::Vec2 = vec2(26.0, 28.0);
 
-/// What colours tell.
+/// Quantity shown by colours.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum Shown {
-    /// What it is made of.
+    /// Material.
     #[default]
     Materials,
-    /// How far it is strained.
+    /// Strain.
     Strain,
 }
 
-/// The three slices.
+/// Three orthogonal slices.
 pub struct Slices {
-    /// A place that all three go through [m].
+    /// Common point of all slices [m].
     through: Vector,
-    /// Whether they go through where the tool works.
+    /// Whether that point follows the tool.
     pub follows: bool,
-    /// What colours tell.
+    /// Quantity shown by colours.
     pub shown: Shown,
     slices: [Slice; 3],
-    /// Which one is made anew next: one a frame.
+    /// Index of the slice that is updated next, one per frame.
     next: usize,
 }
 
 impl Slices {
-    /// Through a place [m].
+    /// Creates slices through a point [m].
     pub fn new(through: Vector) -> Self {
         Self {
             through,
@@ -58,7 +58,7 @@ impl Slices {
         }
     }
 
-    /// Makes one of them anew.
+    /// Updates one of the slices.
     pub fn refresh(&mut self, procedure: &Procedure) {
         if self.follows {
             self.through = procedure.tool().position();
@@ -68,7 +68,7 @@ impl Slices {
         self.next = (self.next + 1) % Cut::ALL.len();
     }
 
-    /// Draws them below each other; a press into one puts the others there.
+    /// Draws the slices below each other. Pressing into one moves the other two to that point.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -146,7 +146,7 @@ impl Slices {
     }
 }
 
-/// Where a slice lies in the patient, whose place is RAS+ [mm]: as in `R 12 mm`.
+/// Describes the position of a slice for a point of the patient in RAS+ [mm], as in `R 12 mm`.
 fn place_in_words(cut: Cut, [right, front, up]: [f64; 3]) -> String {
     let (along, [less, more]) = match cut {
         Cut::Axial => (up, ["I", "S"]),
@@ -162,11 +162,11 @@ fn screen(colour: Colour) -> Color32 {
     Color32::from_rgb(red, green, blue)
 }
 
-/// A slice on the screen.
+/// Mapping of a slice to the screen.
 struct Page {
     rect: Rect,
     cut: Cut,
-    /// What is in its middle [m], and points for each metre.
+    /// World position at the centre [m], and scale [points/m].
     middle: [f32; 2],
     scale: f32,
 }
@@ -190,7 +190,7 @@ impl Page {
         pos2(centre.x + self.scale * u, centre.y - self.scale * v)
     }
 
-    /// Puts a place where the screen is pressed, but for its place across the slice.
+    /// Sets the two coordinates of `place` within the slice from a screen position.
     fn point(&self, at: Pos2, place: &mut Vector) {
         let way = (at - self.rect.center()) / self.scale;
         let [u, v] = [self.middle[0] + way.x, self.middle[1] - way.y];
@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_press_finds_the_place_that_is_seen_there() {
+    fn point_inverts_the_page_mapping() {
         let seen = [[-0.05, 0.0, -0.07], [0.05, 0.12, 0.07]];
         let rect = Rect::from_min_size(pos2(20.0, 30.0), vec2(300.0, 200.0));
         for cut in Cut::ALL {

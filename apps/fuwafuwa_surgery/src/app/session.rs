@@ -1,4 +1,4 @@
-//! A procedure in time: done by hand, or played again.
+//! A procedure running in real time: by hand, or as a replay.
 
 use super::hand::Hand;
 use crate::measures::{Part, Sample, parts};
@@ -11,49 +11,50 @@ use tamaire::look::CameraRig;
 use tamaire::pace::Pace;
 use tamaire::platform::Clock;
 
-/// Ticks between two looks at how large the pieces are.
+/// Ticks between two measurements of the pieces.
 const LOOKS: usize = 20;
-/// Around the organ so much of its size is seen to the sides, below and above; and in slices.
+/// Margins around the organ to the sides, below and above, as fractions of its size: in the main view and in
+/// slices.
 const SEEN: [f32; 3] = [0.12, 0.0, 0.5];
 const SLICED: [f32; 3] = [0.1, 0.05, 0.25];
 
-/// Who moves the tool.
+/// Source of the tool's motion.
 enum Course {
     Hand(Box<Procedure>),
     Again(Box<Playback>),
 }
 
-/// A procedure in time.
+/// Procedure running in real time.
 pub struct Session {
     course: Course,
     pace: Pace,
-    /// The hand that moves the tool, where one does.
+    /// Hand that moves the tool; unused in a replay.
     pub hand: Hand,
-    /// From where it is seen.
+    /// Camera of the main view.
     pub camera: CameraRig,
-    /// What is seen: from corner to corner [m].
+    /// Region of the main view: low and high corner [m].
     pub seen: [Vector; 2],
-    /// What slices show.
+    /// Region of the slices: low and high corner [m].
     pub sliced: [Vector; 2],
-    /// Whether it rests.
+    /// Whether the procedure is paused.
     pub rests: bool,
-    /// The pieces, as of a moment ago.
+    /// Pieces as of the last measurement.
     pub parts: Vec<Part>,
     looked: usize,
-    /// What is to be said of a recording that was played, or of why it does not go on.
+    /// Message at the end of a replay, or the error that stopped the procedure.
     pub verdict: Option<String>,
-    /// Whether that was the end.
+    /// Whether the procedure has ended.
     has_ended: bool,
     torn: u32,
 }
 
 impl Session {
-    /// One by hand.
+    /// Creates a session by hand.
     pub fn new(procedure: Procedure) -> Self {
         Self::of(Course::Hand(Box::new(procedure)))
     }
 
-    /// One that was recorded.
+    /// Creates a session that replays a recording.
     pub fn again(playback: Playback) -> Self {
         Self::of(Course::Again(Box::new(playback)))
     }
@@ -85,7 +86,7 @@ impl Session {
         }
     }
 
-    /// The procedure as it is now.
+    /// Returns the procedure in its current state.
     pub fn procedure(&self) -> &Procedure {
         match &self.course {
             Course::Hand(procedure) => procedure,
@@ -93,12 +94,12 @@ impl Session {
         }
     }
 
-    /// Whether it is done by hand.
+    /// Returns whether the tool is moved by hand.
     pub fn is_by_hand(&self) -> bool {
         matches!(self.course, Course::Hand(_))
     }
 
-    /// How much of a recording was played, 0 to 1.
+    /// Returns the played fraction of a recording, 0 to 1; `None` by hand.
     pub fn played(&self) -> Option<f32> {
         match &self.course {
             Course::Hand(_) => None,
@@ -109,18 +110,18 @@ impl Session {
         }
     }
 
-    /// What was measured last.
+    /// Returns the last sample.
     pub fn last(&self) -> Sample {
         let samples = self.procedure().samples();
         samples.last().copied().unwrap_or_default()
     }
 
-    /// What a tick takes [s].
+    /// Returns the computing time of a tick [s].
     pub fn cost(&self) -> f64 {
         self.pace.cost()
     }
 
-    /// Goes on by hand from where a recording is.
+    /// Continues by hand from the current point of a replay.
     pub fn take_over(self) -> Self {
         match self.course {
             Course::Hand(_) => self,
@@ -133,12 +134,12 @@ impl Session {
         }
     }
 
-    /// What is needed to begin again.
+    /// Returns the recording of the procedure up to now.
     pub fn recording(&self) -> Arc<Recording> {
         Arc::new(Recording::of(self.procedure()))
     }
 
-    /// Lets `seconds` pass.
+    /// Advances the procedure by `seconds`.
     pub fn pass(&mut self, clock: &Clock, seconds: f64) {
         if self.rests || self.is_over() {
             self.pace.forget();
@@ -158,12 +159,12 @@ impl Session {
         }
     }
 
-    /// How many nodes came apart since this was asked last.
+    /// Returns the number of nodes split since the last call.
     pub fn take_torn(&mut self) -> u32 {
         std::mem::take(&mut self.torn)
     }
 
-    /// Whether there is nothing more to come.
+    /// Returns whether no more ticks can follow.
     pub fn is_over(&self) -> bool {
         match &self.course {
             _ if self.has_ended => true,
@@ -182,7 +183,8 @@ impl Session {
             }
             Course::Again(playback) => match playback.step() {
                 Ok(()) if playback.is_over() => {
-                    self.verdict = Some("It came out as it was made, to the last bit.".into());
+                    self.verdict =
+                        Some("The replay is identical to the recording, bit for bit.".into());
                 }
                 Ok(()) => {}
                 Err(error) => self.verdict = Some(error.to_string()),
@@ -193,7 +195,7 @@ impl Session {
     }
 }
 
-/// A box and so much of its size around it: to the sides, below and above.
+/// Returns a box enlarged by fractions of its size: to the sides, below and above.
 fn around([low, high]: [Vector; 2], [sides, below, above]: [f32; 3]) -> [Vector; 2] {
     let share = |k: [f32; 3]| [0, 1, 2].map(|axis: usize| k[axis] * (high[axis] - low[axis]));
     let least = minus(low, share([sides, below, sides]));

@@ -1,11 +1,11 @@
-//! Buffers that grow, as far as the device lets them.
+//! Growing GPU buffers, limited by the maximum buffer size of the device.
 
 use super::cost::Gpu;
 use bytemuck::Pod;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, Device};
 
-/// A buffer on the GPU that is written anew every frame and grows when it must. What is more than a
-/// buffer of the device can hold is left out.
+/// GPU buffer that is rewritten every frame and grows as needed. Values beyond the maximum buffer size of the
+/// device are dropped.
 pub struct GrowingBuffer {
     buffer: Buffer,
     label: &'static str,
@@ -24,7 +24,7 @@ impl GrowingBuffer {
         }
     }
 
-    /// Writes values to its beginning.
+    /// Writes values to the start of the buffer.
     pub fn write<T: Pod>(&mut self, gpu: Gpu<'_>, values: &[T]) {
         let most = gpu.device.limits().max_buffer_size;
         let fit = (most / size_of::<T>() as u64).min(values.len() as u64);
@@ -40,7 +40,7 @@ impl GrowingBuffer {
         gpu.meter.write(gpu.queue, &self.buffer, 0, bytes);
     }
 
-    /// How many values it holds.
+    /// Returns the number of values in the buffer.
     pub fn count(&self) -> u32 {
         self.count
     }
@@ -50,8 +50,8 @@ impl GrowingBuffer {
     }
 }
 
-/// Of triangles, given by three indices each, those before the first whose vertices are not all among
-/// the first `there`.
+/// Returns the triangles (three indices each) before the first one that uses a vertex beyond the first
+/// `there`.
 pub fn drawable<'a, T>(indices: &'a [u32], vertices: &[T], there: u32) -> &'a [u32] {
     if vertices.len() == there as usize {
         return indices;

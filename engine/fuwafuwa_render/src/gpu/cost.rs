@@ -1,15 +1,15 @@
-//! What pictures cost the GPU: every draw call and every write goes through here.
+//! Counters of GPU work. Every draw call and every buffer write goes through [`Meter`].
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use wgpu::{Buffer, Device, Queue, RenderPass};
 
-/// What pictures asked of the GPU.
+/// Work requested from the GPU.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// Draw calls, those of nothing too.
+    /// Draw calls, including those without vertices.
     pub draws: u64,
-    /// What was written to buffers [bytes].
+    /// Data written to buffers [bytes].
     pub bytes: u64,
 }
 
@@ -22,7 +22,7 @@ impl std::iter::Sum for Cost {
     }
 }
 
-/// Counts what is asked of the GPU.
+/// Counts draw calls and buffer writes.
 #[derive(Default)]
 pub struct Meter {
     draws: AtomicU64,
@@ -30,7 +30,7 @@ pub struct Meter {
 }
 
 impl Meter {
-    /// The cost since this was asked last.
+    /// Returns the cost since the last call and resets it.
     pub fn take(&self) -> Cost {
         let [draws, bytes] = [&self.draws, &self.bytes].map(|count| count.swap(0, Relaxed));
         Cost { draws, bytes }
@@ -57,7 +57,7 @@ impl Meter {
     }
 }
 
-/// Where buffers are made and written.
+/// Device, queue and meter for creating and writing buffers.
 #[derive(Copy, Clone)]
 pub struct Gpu<'a> {
     pub device: &'a Device,

@@ -1,4 +1,4 @@
-//! A picture without a window.
+//! Rendering into an image without a window.
 
 use super::Renderer;
 use super::targets::{clear, new_texture};
@@ -10,25 +10,25 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::{Poll, Waker};
 use wgpu::*;
 
-/// Why there is no image.
+/// Reason why an image could not be rendered.
 #[derive(Debug)]
 pub enum ImageError {
-    /// The renderer draws in a format that is not four bytes of colour.
+    /// The renderer's target format is neither Rgba8 nor Bgra8.
     Format(TextureFormat),
-    /// The device takes no image that large.
+    /// The image is larger than the device allows.
     Size {
-        /// Asked for [px].
+        /// Requested size [px].
         size: [u32; 2],
-        /// Most pixels on a side.
+        /// Maximum side length [px].
         side: u32,
-        /// Most bytes in all.
+        /// Maximum buffer size [bytes].
         bytes: u64,
     },
-    /// The device did not finish.
+    /// Waiting for the device failed.
     Poll(PollError),
-    /// What it drew cannot be read.
+    /// Mapping the image buffer failed.
     Map(BufferAsyncError),
-    /// What it drew lies where nothing can be read.
+    /// Reading the mapped image buffer failed.
     Range(MapRangeError),
 }
 
@@ -37,7 +37,7 @@ impl fmt::Display for ImageError {
         match self {
             Self::Format(format) => write!(
                 f,
-                "an image needs a renderer for Rgba8 or Bgra8, this one is for {format:?}"
+                "unsupported image format: expected Rgba8 or Bgra8, the renderer draws in {format:?}"
             ),
             Self::Size {
                 size: [width, height],
@@ -45,11 +45,11 @@ impl fmt::Display for ImageError {
                 bytes,
             } => write!(
                 f,
-                "an image of {width} x {height} pixels is too large for the device, which takes {side} on a side and {bytes} bytes in all"
+                "image too large: {width} x {height} pixels requested, the device allows {side} pixels per side and {bytes} bytes in total"
             ),
-            Self::Poll(error) => write!(f, "the device did not finish drawing: {error}"),
-            Self::Map(error) => write!(f, "the image cannot be read from the device: {error}"),
-            Self::Range(error) => write!(f, "the image cannot be read from the device: {error}"),
+            Self::Poll(error) => write!(f, "waiting for the GPU failed: {error}"),
+            Self::Map(error) => write!(f, "mapping the image buffer failed: {error}"),
+            Self::Range(error) => write!(f, "reading the image buffer failed: {error}"),
         }
     }
 }
@@ -57,12 +57,12 @@ impl fmt::Display for ImageError {
 impl std::error::Error for ImageError {}
 
 impl Renderer {
-    /// Draws a world into an image of `size` pixels: red, green, blue and opacity of each, row by
-    /// row from the upper left corner. Waits until it is there.
+    /// Draws a world into an image of `size` pixels and waits for the result. Returns red, green, blue and
+    /// opacity of each pixel, row by row from the upper left corner.
     ///
     /// # Errors
-    /// [`ImageError`] when the format is none for images, when the device takes none of that size, or
-    /// when it fails.
+    /// [`ImageError`] if the renderer's format is not an image format, if the device does not support the
+    /// size, or if the device fails.
     pub fn render_to_image(
         &mut self,
         device: &Device,
@@ -79,16 +79,17 @@ impl Renderer {
     }
 }
 
-/// What there is to draw an image into: first what is drawn apart, then the image itself.
+/// Stage of drawing an image: first the intermediate images, then the image itself.
 pub enum Step<'a> {
-    /// Before the pass of the image.
+    /// Before the render pass of the image.
     Before(&'a mut CommandEncoder),
-    /// The pass of the image.
+    /// Inside the render pass of the image.
     Inside(&'a mut RenderPass<'static>),
 }
 
-/// An image of a format and a size in pixels, as `draw` draws it in two steps: red, green, blue and opacity of each pixel,
-/// row by row from the upper left corner. Waits until it is there. For who draws something over a world, or beside it.
+/// Draws an image of a format and a size [px] with `draw`, which is called once per stage, and waits for the
+/// result. Returns red, green, blue and opacity of each pixel, row by row from the upper left corner. Callers
+/// can draw over a world or beside it.
 ///
 /// # Errors
 /// As [`Renderer::render_to_image`].
@@ -103,11 +104,12 @@ pub fn image(
         .poll(PollType::wait_indefinitely())
         .map_err(ImageError::Poll)?;
     let mapped = drawn.answer().result.take();
-    // A finished device has called back, but for those of browsers.
+    // After polling, a device has called back, except in browsers.
     drawn.pixels(mapped.unwrap_or(Err(BufferAsyncError)))
 }
 
-/// The same where nobody may wait, as in a browser: it is there once the device was used for something else.
+/// Draws like [`image`] without blocking, as browsers require. The future completes once the caller polls or
+/// uses the device again.
 ///
 /// # Errors
 /// As [`Renderer::render_to_image`].
@@ -127,17 +129,17 @@ pub async fn image_later(
     drawn.pixels(mapped)
 }
 
-/// An image on its way from the device.
+/// Image that is being copied from the device.
 struct Drawn {
     buffer: Buffer,
     size: [u32; 2],
-    /// Bytes from one row to the next.
+    /// Bytes per row, padding included.
     row: usize,
     is_bgra: bool,
     answer: Arc<Mutex<Answer>>,
 }
 
-/// Whether it has arrived, and who waits for that.
+/// Result of mapping the buffer, and the waker of the task that waits for it.
 #[derive(Default)]
 struct Answer {
     result: Option<Result<(), BufferAsyncError>>,
@@ -233,7 +235,7 @@ impl Drawn {
     }
 }
 
-/// A pass that fills an image, clear at first: what renderers paint into where there is no window.
+/// Begins a render pass that clears and fills an image. Renderers paint into it when there is no window.
 pub fn pass_into(encoder: &mut CommandEncoder, view: &TextureView) -> RenderPass<'static> {
     let pass = encoder.begin_render_pass(&RenderPassDescriptor {
         label: Some("image"),

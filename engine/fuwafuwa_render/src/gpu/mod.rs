@@ -1,4 +1,4 @@
-//! Vertices on the GPU: passes of their own, then the window's.
+//! 2D drawing on the GPU: passes into intermediate images, then the window's pass.
 
 pub(crate) mod buffer;
 pub(crate) mod cost;
@@ -18,13 +18,13 @@ use std::ops::Range;
 use targets::{NARROW, REACH, Targets, bind, clear, new_uniforms};
 use wgpu::*;
 
-/// Standard deviation of the wide blur, which makes a body look thick, as a share of the radius
-/// of the largest body. Smaller makes pancakes of balls, larger makes all pieces look flat.
+/// Standard deviation of the wide blur, which makes a body look thick, as a multiple of the radius of the
+/// largest body. Smaller values make balls look flat; larger values make all pieces look flat.
 const THICKNESS: f32 = 0.30;
-/// That of the narrow blur, which rounds the edges of every piece.
+/// Standard deviation of the narrow blur, which rounds the edges of every piece, in the same unit.
 const EDGE: f32 = 0.038;
 
-/// Draws worlds.
+/// Draws 2D worlds.
 pub struct Renderer {
     format: TextureFormat,
     pipelines: Pipelines,
@@ -32,8 +32,8 @@ pub struct Renderer {
     geometry: Geometry,
     uniforms: Buffer,
     globals: BindGroup,
-    /// Low and high corner of what is drawn of bodies, blurs included, as shares of the picture
-    /// from its upper left corner; none when there are no bodies in it.
+    /// Region covered by bodies, blurs included: low and high corner as fractions of the picture from its
+    /// upper left corner. `None` if no body is visible.
     covered: Option<[[f32; 2]; 2]>,
     skin_vertices: GrowingBuffer,
     fans: GrowingBuffer,
@@ -45,7 +45,7 @@ pub struct Renderer {
     meter: Meter,
 }
 
-/// What every shader knows; see `globals.wgsl`.
+/// Uniforms of every shader; see `globals.wgsl`.
 #[repr(C)]
 #[derive(Copy, Clone, Debug, Pod, Zeroable)]
 struct Globals {
@@ -63,8 +63,8 @@ struct Globals {
 }
 
 impl Renderer {
-    /// A renderer for passes with a single target of a format, best one without `Srgb`, as egui
-    /// has them; no depth and no multisampling.
+    /// Creates a renderer for passes with a single colour target, without depth and multisampling. Formats
+    /// without `Srgb`, as egui uses them, are preferred.
     pub fn new(device: &Device, target_format: TextureFormat) -> Self {
         let pipelines = Pipelines::new(device, target_format);
         let uniforms = new_uniforms(device, "globals", size_of::<Globals>() as u64);
@@ -90,8 +90,8 @@ impl Renderer {
         }
     }
 
-    /// Makes a picture of a world ready for a target of `target_size` pixels: works out and
-    /// uploads its vertices, and draws the bodies into images of their own.
+    /// Prepares a picture of a world for a target of `target_size` pixels: computes and uploads its vertices
+    /// and draws the bodies into intermediate images.
     pub fn prepare(
         &mut self,
         device: &Device,
@@ -111,18 +111,20 @@ impl Renderer {
         self.blur(encoder);
     }
 
-    /// Puts the picture that was made ready into a pass, filling its viewport.
+    /// Paints the prepared picture into a pass, filling its viewport.
     pub fn paint(&self, pass: &mut RenderPass<'static>) {
         self.paint_bodies(pass);
         self.paint_rigid(pass);
     }
 
-    /// Gives back the images that it draws into, which are as large as the last picture; the next one makes new ones.
+    /// Releases the intermediate images, which are as large as the last picture. The next picture creates new
+    /// ones.
     pub fn forget_images(&mut self, device: &Device) {
         self.targets = Targets::new(device, &self.pipelines, [1, 1]);
     }
 
-    /// The first half of [`Renderer::paint`]: the floor, the basket and the bodies. What is on these is painted next.
+    /// First half of [`Renderer::paint`]: floor, basket and bodies. Callers may paint on the bodies
+    /// afterwards.
     pub fn paint_bodies(&self, pass: &mut RenderPass<'static>) {
         let (pipelines, [_, _, basket]) = (&self.pipelines, self.kinds());
         pass.set_bind_group(0, &self.globals, &[]);
@@ -140,7 +142,7 @@ impl Renderer {
         self.meter.draw(pass, 0..4, basket);
     }
 
-    /// The second half: bars, hands and particles, which are in front.
+    /// Second half of [`Renderer::paint`]: bars, hands and particles, which are in front of the bodies.
     pub fn paint_rigid(&self, pass: &mut RenderPass<'static>) {
         let (pipelines, [bars, hands, _]) = (&self.pipelines, self.kinds());
         pass.set_bind_group(0, &self.globals, &[]);
@@ -158,12 +160,12 @@ impl Renderer {
         self.meter.draw(pass, 0..4, 0..self.dots.count());
     }
 
-    /// What was prepared and painted since this was asked last cost the GPU.
+    /// Returns the GPU cost of all pictures since the last call.
     pub fn take_cost(&self) -> Cost {
         self.meter.take()
     }
 
-    /// Which shapes are bars, hands and the basket, as far as the device has room for them.
+    /// Returns the instance ranges of bars, hands and basket, limited to the instances in the buffer.
     fn kinds(&self) -> [Range<u32>; 3] {
         let (rigid, there) = (&self.geometry.rigid, self.shapes.count());
         let bars = 0..rigid.bar_count.min(there);
@@ -254,7 +256,7 @@ impl Renderer {
             frame: colour(palette.frame),
             fresh: colour(palette.fresh),
             bounds: {
-                // Edges reach half a pixel further.
+                // Antialiased edges extend half a pixel beyond the vertices.
                 let margin = 2.0 * camera.height / size[1];
                 let [low, high] = [bounds[0] - margin, bounds[1] + margin];
                 [low.x, low.y, high.x, high.y]

@@ -1,4 +1,4 @@
-//! What the GPU is to do with each kind of vertex.
+//! Render pipelines for each kind of 2D vertex.
 
 use super::program::{
     InMemory, OVER, Program, SAMPLES, Target, layout, module, sampler, texture, uniform, wgsl,
@@ -8,31 +8,31 @@ use crate::rigid::{DotInstance, RigidInstance};
 use crate::skin::SkinVertex;
 use wgpu::*;
 
-/// Colours and coverage of bodies.
+/// Format of the body images: colour with coverage, and relief.
 pub const SKIN_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
-/// The same, blurred: eight bits would show as steps in the slope.
+/// Format of the blurred body images. Eight bits would show as steps in the slope.
 pub const SOFT_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-/// What is wound around by a curve.
+/// Format of the stencil that counts windings.
 pub const STENCIL_FORMAT: TextureFormat = TextureFormat::Depth24PlusStencil8;
 
-/// All of them, and what they are bound to.
+/// All render pipelines and their bind group layouts.
 pub struct Pipelines {
     pub globals_layout: BindGroupLayout,
     pub blur_layout: BindGroupLayout,
     pub shape_layout: BindGroupLayout,
     pub body_layout: BindGroupLayout,
-    /// Counts how often curves wind around a place.
+    /// Counts the windings of the curves in the stencil.
     pub fan: RenderPipeline,
-    /// Colours what is wound around.
+    /// Colours pixels with a non-zero winding number.
     pub cover: RenderPipeline,
-    /// Forgets what was wound around.
+    /// Resets the stencil.
     pub wipe: RenderPipeline,
-    /// Changes what is coloured along its edges.
+    /// Changes the relief of coloured pixels along the edges.
     pub band: RenderPipeline,
     pub element: RenderPipeline,
     pub shrink: RenderPipeline,
     pub soften: RenderPipeline,
-    /// Finds slopes and thickness where bodies are blurred.
+    /// Computes slopes and thickness from the blurred bodies.
     pub shape: RenderPipeline,
     pub arena: RenderPipeline,
     pub body: RenderPipeline,
@@ -44,7 +44,7 @@ pub struct Pipelines {
     pub particle: RenderPipeline,
 }
 
-/// Over what is there, and only where something is.
+/// Blends over the target, only where the target is covered.
 const ONTO: BlendState = BlendState {
     color: BlendComponent {
         src_factor: BlendFactor::DstAlpha,
@@ -170,7 +170,8 @@ impl Pipelines {
     }
 }
 
-/// Passes where the stencil compares to 0; what happens to it where triangles face us, or away.
+/// Returns a stencil state that compares with 0 and applies an operation to front-facing and to back-facing
+/// triangles.
 fn stencil(
     compare: CompareFunction,
     front: StencilOperation,

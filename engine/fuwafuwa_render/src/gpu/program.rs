@@ -1,8 +1,8 @@
-//! What a pipeline is made of.
+//! Building blocks of render pipelines.
 
 use wgpu::*;
 
-/// The text of a shader, from files in `shaders`.
+/// Concatenates shader sources from `src/shaders`.
 macro_rules! wgsl {
     ($($file:literal),*) => {
         concat!($(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/shaders/", $file))),*)
@@ -10,12 +10,12 @@ macro_rules! wgsl {
 }
 pub(crate) use wgsl;
 
-/// Samples of a pixel of bodies.
+/// Samples per pixel of bodies.
 pub const SAMPLES: u32 = 4;
-/// Over what is there, colours being multiplied by their opacity.
+/// Blends premultiplied colours over the target.
 pub const OVER: BlendState = BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
-/// Shaders of a pipeline and what they are bound to; where there is no target, the second says nothing.
+/// Shader entry points and layout of a pipeline. Without colour targets the fragment entry point is ignored.
 pub struct Program<'a> {
     device: &'a Device,
     layout: PipelineLayout,
@@ -23,7 +23,7 @@ pub struct Program<'a> {
     entries: (&'a str, &'a str),
 }
 
-/// What a pipeline reads and writes.
+/// Inputs and outputs of a pipeline.
 #[derive(Clone)]
 pub struct Target<'a> {
     pub buffers: &'a [Option<VertexBufferLayout<'a>>],
@@ -37,7 +37,7 @@ pub struct Target<'a> {
 }
 
 impl<'a> Target<'a> {
-    /// Triangles without vertices, over what is there: no depth, no blending.
+    /// Returns a target for triangles without vertex buffers that overwrite it: no depth, no blending.
     pub fn of(formats: &'a [TextureFormat]) -> Self {
         Self {
             buffers: &[],
@@ -53,7 +53,7 @@ impl<'a> Target<'a> {
 }
 
 impl<'a> Program<'a> {
-    /// Shaders that are bound to the globals, and maybe to something else.
+    /// Creates a program that binds the globals and optionally one more bind group.
     pub fn new(
         device: &'a Device,
         globals: &BindGroupLayout,
@@ -161,7 +161,7 @@ pub fn module(device: &Device, label: &str, text: &'static str) -> ShaderModule 
     })
 }
 
-/// How vertices lie in memory.
+/// Memory layout of vertices and instances.
 pub trait InMemory: Sized {
     const ATTRIBUTES: &'static [VertexAttribute];
     const STEP: VertexStepMode;

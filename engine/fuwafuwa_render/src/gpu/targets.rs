@@ -1,4 +1,4 @@
-//! The images that bodies are drawn into, apart from the window.
+//! Intermediate images that 2D bodies are drawn into.
 
 use super::cost::Gpu;
 use super::pipelines::{Pipelines, SKIN_FORMAT, SOFT_FORMAT, STENCIL_FORMAT};
@@ -6,40 +6,42 @@ use super::program::SAMPLES;
 use bytemuck::{Pod, Zeroable};
 use wgpu::*;
 
-/// Pixels off the screen at most: on larger targets bodies are drawn smaller and stretched.
+/// Maximum number of pixels of an intermediate image. For larger windows, bodies are drawn smaller and
+/// stretched.
 const MOST_PIXELS: f32 = 2.6e6;
-/// By what the images for the narrow and for the wide blur are smaller.
+/// Size divisors of the images for the narrow and the wide blur.
 pub const NARROW: u32 = 4;
 const WIDE: u32 = 16;
-/// How far a blur reaches, in standard deviations.
+/// Reach of a blur [standard deviations].
 pub const REACH: f32 = 2.6;
-/// Room between the uniforms of the blurs, as the smallest devices ask for.
+/// Distance between the uniforms of the blur steps, the largest offset alignment that devices require
+/// [bytes].
 const STRIDE: u64 = 256;
 
-/// An image with its coverage, and an image with the relief.
+/// Image of colour and coverage, and image of the relief.
 type Pair = [TextureView; 2];
 
-/// The images that bodies are drawn into, and what is bound to draw from one into the next.
+/// Intermediate images and the bind groups for drawing from one into the next.
 pub struct Targets {
-    /// Of the window this is for [px].
+    /// Size of the window [px].
     pub window: [u32; 2],
-    /// Of the skin [px].
+    /// Size of the skin images [px].
     pub size: [u32; 2],
     pub rough: Pair,
     pub stencil: TextureView,
     pub skin: Pair,
     pub narrow: [Pair; 2],
     pub wide: [Pair; 2],
-    /// Skin → narrow, along, across, narrow → wide, along, across.
+    /// Bind groups of the blur steps: skin → narrow, blur along x, along y, narrow → wide, along x, along y.
     pub steps: [BindGroup; 6],
-    /// What the step that finds the shape of the blurred bodies reads.
+    /// Inputs of the shape step, which computes the shape of the blurred bodies.
     pub shape: BindGroup,
-    /// All that the window's pass reads.
+    /// Inputs of the window's pass.
     pub body: BindGroup,
     uniforms: Buffer,
 }
 
-/// What a step of the blur is told.
+/// Uniforms of a blur step; see `blur.wgsl`.
 #[repr(C)]
 #[derive(Copy, Clone, Debug, Default, Pod, Zeroable)]
 struct Blur {
@@ -126,14 +128,14 @@ impl Targets {
         }
     }
 
-    /// What each step of the blur draws into, and by what that is smaller than the skin.
+    /// Returns the target of each blur step and its size divisor relative to the skin.
     pub fn drawn_into(&self) -> [(&Pair, u32); 6] {
         let narrow = [0, 1, 0].map(|k| (&self.narrow[k], NARROW));
         let wide = [0, 1, 0].map(|k| (&self.wide[k], WIDE));
         [narrow[0], narrow[1], narrow[2], wide[0], wide[1], wide[2]]
     }
 
-    /// Tells the blurs how far to reach, in pixels of the skin.
+    /// Sets the standard deviations of both blurs, in pixels of the skin.
     pub fn set_blur(&self, gpu: Gpu<'_>, narrow: f32, wide: f32) {
         let texel = |divisor: u32| self.size.map(|side| 1.0 / side.div_ceil(divisor) as f32);
         let shrink = |divisor: u32| Blur {
@@ -166,8 +168,8 @@ impl Targets {
     }
 }
 
-/// The size [px] of what is drawn apart for a window: not more than the device has, nor more than it
-/// can be asked for at every frame.
+/// Returns the size [px] of intermediate images for a window, limited by the device's maximum texture size
+/// and by [`MOST_PIXELS`].
 pub fn within(device: &Device, window: [u32; 2]) -> [u32; 2] {
     let [width, height] = window.map(|side| side as f32);
     let longest = device.limits().max_texture_dimension_2d as f32 / width.max(height);
@@ -175,7 +177,7 @@ pub fn within(device: &Device, window: [u32; 2]) -> [u32; 2] {
     window.map(|side| ((side as f32 * shrunk.min(1.0)) as u32).max(1))
 }
 
-/// An image to draw into, seen as a whole.
+/// Creates a texture to draw into and returns a view of all of it.
 pub fn new_image(
     device: &Device,
     label: &str,
@@ -188,7 +190,7 @@ pub fn new_image(
     texture.create_view(&TextureViewDescriptor::default())
 }
 
-/// An image to draw into.
+/// Creates a texture to draw into.
 pub fn new_texture(
     device: &Device,
     label: &str,
@@ -213,7 +215,7 @@ pub fn new_texture(
     })
 }
 
-/// What a pass draws into, clear at first; `smoothed` is where its samples are put together, if it has several.
+/// Returns a cleared colour attachment. `smoothed` is the resolve target of a multisampled view.
 pub fn clear<'a>(
     view: &'a TextureView,
     smoothed: Option<&'a TextureView>,
@@ -232,7 +234,7 @@ pub fn clear<'a>(
     })
 }
 
-/// Room for so many bytes that shaders are told.
+/// Creates a uniform buffer of `size` bytes.
 pub fn new_uniforms(device: &Device, label: &str, size: u64) -> Buffer {
     device.create_buffer(&BufferDescriptor {
         label: Some(label),
@@ -242,7 +244,7 @@ pub fn new_uniforms(device: &Device, label: &str, size: u64) -> Buffer {
     })
 }
 
-/// Looks between the pixels of an image.
+/// Creates a sampler with linear filtering.
 pub fn smooth(device: &Device) -> Sampler {
     device.create_sampler(&SamplerDescriptor {
         label: Some("smooth"),

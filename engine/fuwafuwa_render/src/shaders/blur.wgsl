@@ -1,10 +1,10 @@
-// Makes the two images of the bodies smaller and softer.
+// Shrinks and blurs the two images of the bodies.
 struct Blur {
-    // One texel of what is read, along the direction of the blur or across a texel of the target.
+    // One texel of the source along the blur direction; in `shrink`, half a texel of the target per axis.
     step: vec2f,
     // Standard deviation [texels].
     sigma: f32,
-    // How many texels to each side count.
+    // Number of texels to each side that are summed.
     reach: f32,
 }
 @group(1) @binding(0) var colours: texture_2d<f32>;
@@ -17,7 +17,7 @@ struct Images {
     @location(1) relief: vec4f,
 }
 
-// The mean of four places inside a texel of the target.
+// Mean of four points inside a texel of the target.
 @fragment
 fn shrink(in: Covering) -> Images {
     var images = Images(vec4f(0.0), vec4f(0.0));

@@ -7,8 +7,8 @@
 @group(1) @binding(5) var shapes: texture_2d<f32>;
 @group(1) @binding(6) var smooth_sampler: sampler;
 
-// Over the picture or a part of it, and the place [m] that is seen there. It is handed on, though it follows from `uv`:
-// where it was worked out of that for each pixel, Mesa's llvmpipe 22.3 lost memory with each frame.
+// Vertex of the picture or a part of it, with the world point [m] seen there. The point is interpolated,
+// though it follows from `uv`: computing it per pixel made Mesa's llvmpipe 22.3 leak memory with each frame.
 struct Placed {
     @builtin(position) clip: vec4f,
     @location(0) uv: vec2f,
@@ -21,7 +21,7 @@ fn placed(@builtin(vertex_index) index: u32) -> Placed {
     return Placed(vec4f(clip, 0.0, 1.0), to_uv(clip), to_world(clip));
 }
 
-// The rectangle around all bodies.
+// Bounding rectangle of all bodies.
 @vertex
 fn bounding(@builtin(vertex_index) index: u32) -> Placed {
     let at = mix(globals.bounds.xy, globals.bounds.zw, vec2f(f32(index & 1u), f32(index >> 1u)));
@@ -29,7 +29,7 @@ fn bounding(@builtin(vertex_index) index: u32) -> Placed {
     return Placed(clip, to_uv(clip.xy), at);
 }
 
-// How deep inside the arena a place is [m], its corners a little rounded, and the way inside.
+// Inward direction (xy) and depth inside the arena [m] (z) of a point. Corners are slightly rounded.
 fn depth(at: vec2f) -> vec3f {
     let count = i32(globals.tune.y);
     let round = 0.02;
@@ -42,7 +42,7 @@ fn depth(at: vec2f) -> vec3f {
     return vec3f(sum.xy / sum.z, -round * log(sum.z));
 }
 
-// Where shadows fall from: bodies float a little above the floor.
+// Shadow strength of the bodies at a pixel, 0 to 1. Bodies float a little above the floor.
 fn shadow(uv: vec2f) -> f32 {
     let metre = 1.0 / (globals.view.z * vec2f(globals.view.w, -1.0));
     let away = globals.scale.x * vec2f(0.13, -0.19);
@@ -59,10 +59,10 @@ fn arena(in: Placed) -> @location(0) vec4f {
     let centred = (in.uv - 0.5) * vec2f(globals.view.w, 1.0);
     let rim = smoothstep(0.1, 0.85, length(centred) / max(1.0, 0.75 * globals.view.w));
     var floor_light = to_linear(mix(globals.floor_middle.rgb, globals.floor_rim.rgb, rim));
-    // Dots on a grid show how things move.
+    // Dots on a grid make motion visible.
     let grid = abs(fract(at / 0.125) - 0.5) * 0.125;
     floor_light *= 0.93 + 0.07 * smoothstep(0.006 - pixel, 0.006 + pixel, length(grid));
-    // The frame throws a shadow from above and from the left.
+    // The frame casts a shadow from above and from the left.
     let facing = dot(inside.xy, normalize(LIGHT.xy));
     let shade = inside.z + 0.04 * facing;
     floor_light *= 1.0 - 0.22 * (1.0 - smoothstep(-0.04, 0.05, shade)) - 0.10 * exp(-max(inside.z, 0.0) / 0.06);
@@ -106,15 +106,15 @@ fn body(in: Placed) -> @location(0) vec4f {
     let towards = mirrored(normal, vec3f(0.0, 0.0, 1.0));
     let rim = (1.0 - normal.z) * sqrt(1.0 - normal.z);
     let low = clamp(dot(normal.xy, -normalize(LIGHT.xy)), 0.0, 1.0);
-    // What is torn is rough: its light comes from all sides.
+    // Torn surfaces are rough and scatter light in all directions.
     colour *= mix(mix(0.50, 1.13, smoothstep(0.1, 1.0, wrapped)), 1.0, 0.7 * torn);
-    // Light that went through comes out on the far side.
+    // Light transmitted through the body leaves on the far side.
     colour += base * vec3f(1.0, 0.62, 0.5) * rim * low * 0.9 * (1.0 - torn);
-    // Reflections: a soft one, and a sharp one on what is round enough.
+    // Reflections: a soft one, and a sharp one where the surface is round enough.
     let wet = 1.0 - 0.7 * torn;
     colour += vec3f(1.0, 0.97, 0.94) * wet * (0.24 * pow12(towards) * smoothstep(0.0, 0.25, 1.0 - normal.z)
         + 0.6 * smoothstep(0.974, 0.994, towards) * smoothstep(0.75, 0.95, soft.a));
-    // A thin line of deeper colour holds the shape together.
+    // A thin line of deeper colour along the edge makes the shape clearer.
     colour *= mix(0.74, 1.0, smoothstep(0.2, 0.7, soft.a + 0.3 * torn));
     return shown(colour, alpha);
 }

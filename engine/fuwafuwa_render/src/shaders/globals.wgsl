@@ -1,12 +1,12 @@
-// What every shader knows. Places are in metres, colours as a screen takes them (sRGB).
+// Uniforms of every 2D shader. Positions are in metres, colours in sRGB.
 struct Globals {
-    // What is to the right and what is up in the world.
+    // Right and up directions of the camera in the world.
     axes: vec4f,
-    // The middle of the view, its height [m], its width over its height.
+    // Centre of the view [m], its height [m], its aspect ratio (width / height).
     view: vec4f,
-    // The targets off the screen and the target of the window [px].
+    // Sizes of the intermediate images and of the window's target [px].
     size: vec4f,
-    // Seconds, count of walls, 1 if the target wants linear light, 1 if skins are to be seen.
+    // Clock [s]; number of walls; 1 if the target takes linear light; 1 if skins are shown.
     tune: vec4f,
     // Radius of the largest body [m]; standard deviation of the narrow and of the wide blur [m].
     scale: vec4f,
@@ -14,18 +14,18 @@ struct Globals {
     floor_rim: vec4f,
     frame: vec4f,
     fresh: vec4f,
-    // Low and high corner of all bodies.
+    // Low and high corner of the bounding box of all bodies.
     bounds: vec4f,
     // Outward normal and offset of half-spaces.
     walls: array<vec4f, 16>,
 }
 @group(0) @binding(0) var<uniform> globals: Globals;
 
-// Five breaths in the sixteen seconds after which the clock begins anew [rad/s].
+// Angular speed of the basket's pulsing glow [rad/s]: five cycles in the 16 s period of the clock.
 const BREATHS = 1.9634954;
 const LIGHT = vec3f(-0.47, 0.62, 0.63);
 
-// To the coordinates of the picture, -1 to 1.
+// Converts a world point to clip coordinates, -1 to 1.
 fn to_clip(at: vec2f) -> vec4f {
     let by = at - globals.view.xy;
     let seen = vec2f(dot(by, globals.axes.xy), dot(by, globals.axes.zw));

@@ -1,10 +1,10 @@
-// How light falls on things.
-// Squares and roots stand for the curves of sRGB: they are close, and pow is slow without a GPU.
+// Lighting of 2D and 3D surfaces. Squares and square roots approximate the sRGB curves, because pow is slow
+// without a GPU.
 fn to_linear(colour: vec3f) -> vec3f {
     return colour * colour;
 }
 
-// A colour in linear light with an opacity, as the target takes it.
+// Converts linear light with an opacity to the target's encoding.
 fn shown(light: vec3f, alpha: f32) -> vec4f {
     let soft = clamp(light, vec3f(0.0), vec3f(1.0));
     if globals.tune.z > 0.5 {
@@ -13,12 +13,12 @@ fn shown(light: vec3f, alpha: f32) -> vec4f {
     return vec4f(sqrt(soft) * alpha, alpha);
 }
 
-// How far a surface is turned to the light, from 0 for its back to 1: light goes around soft things.
+// Wrapped diffuse term, from 0 (facing away from the light) to 1: light wraps around soft bodies.
 fn around(normal: vec3f) -> f32 {
     return clamp(dot(normal, normalize(LIGHT)) * 0.5 + 0.5, 0.0, 1.0);
 }
 
-// How closely a surface mirrors the light into an eye in a direction, 0 to 1.
+// Cosine of the half-vector angle between light and eye direction, clamped to 0 to 1.
 fn mirrored(normal: vec3f, eye: vec3f) -> f32 {
     return max(dot(normal, normalize(normalize(LIGHT) + eye)), 0.0);
 }
@@ -28,20 +28,20 @@ fn pow12(base: f32) -> f32 {
     return fourth * fourth * fourth;
 }
 
-// Flesh before light falls on it, how thick, squashed and torn it is from 0 to 1.
+// Unlit colour of a body's flesh. `thick`, `squashed` and `torn` are 0 to 1.
 fn flesh_colour(base: vec3f, thick: f32, squashed: f32, torn: f32) -> vec3f {
-    // Thin places are deep in colour, thick ones milky.
+    // Thin parts are deep in colour, thick parts milky.
     let deep = base * mix(vec3f(1.0), base, 0.25) * vec3f(1.06, 0.86, 0.92);
     let milky = mix(base, vec3f(1.0, 0.93, 0.86), 0.22);
     var colour = mix(deep, milky, thick);
-    // Where it is squashed, it blushes.
+    // Squashed parts blush.
     colour = mix(colour, colour * vec3f(1.0, 0.55, 0.62), 0.75 * squashed);
-    // The inside, where it is fresh.
+    // Torn surfaces show the inside colour.
     return mix(colour, mix(to_linear(globals.fresh.rgb), base, 0.15), 0.9 * torn);
 }
 
-// A lacquered surface, as the eye sees it from a direction: soft light, a soft and a sharp reflection,
-// a brighter rim.
+// Lacquered surface seen from direction `eye`: soft diffuse light, a soft and a sharp reflection, a brighter
+// rim.
 fn lacquered(base: vec3f, normal: vec3f, eye: vec3f, gloss: f32) -> vec3f {
     let wrapped = around(normal);
     let towards = mirrored(normal, eye);

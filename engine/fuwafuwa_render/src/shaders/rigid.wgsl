@@ -1,7 +1,7 @@
-// Bars, hands, the basket and particles: a rectangle each, into which a shape is drawn.
+// Bars, hands, the basket and particles. Each shape is drawn into a rectangle.
 struct Shape {
     @location(0) from_to: vec4f,
-    // Radius [m], of a box the angle by which it is turned; form, number.
+    // Radius [m] or rotation angle of a box [rad]; form (0 capsule, 1 box, 2 ball); number.
     @location(1) form: vec3f,
     @location(2) colour: vec3f,
 }
@@ -14,7 +14,7 @@ struct ShapeCorner {
     @location(3) @interpolate(flat) colour: vec3f,
 }
 
-// A place as seen from the middle of a box, along its own axes.
+// Position of a point relative to the centre of a box, along the box axes.
 fn within(at: vec2f, from_to: vec4f, angle: f32) -> vec2f {
     let place = at - from_to.xy;
     let way = vec2f(cos(angle), sin(angle));
@@ -84,7 +84,7 @@ fn shadow(in: ShapeCorner) -> @location(0) vec4f {
 fn bar(in: ShapeCorner) -> @location(0) vec4f {
     let inside = -distance_to(in.at, in);
     let alpha = smoothstep(-0.5, 0.5, inside / pixel());
-    // A box has rounded edges, all else is as thick as it is wide.
+    // A box has rounded edges; other shapes are as thick as they are wide.
     let round = select(in.form.x, min(0.03, min(in.from_to.z, in.from_to.w)), in.form.y == 1.0);
     let steep = clamp(1.0 - inside / round, 0.0, 0.98);
     let normal = normalize(vec3f(outwards(in.at, in) * steep, sqrt(1.0 - steep * steep)));
@@ -109,7 +109,7 @@ fn hand(in: ShapeCorner) -> @location(0) vec4f {
     let steep = min(length(place), 0.985);
     let normal = vec3f(place * steep / max(length(place), 1e-6), sqrt(1.0 - steep * steep));
     let soft = 1.5 * pixel() / in.form.x;
-    // Patterns lie on the ball: a ring for the first player, stripes for the second, then dots.
+    // Patterns on the ball: a ring for the first player, stripes for the second, then dots.
     let player = i32(in.form.z) % 3;
     var pattern = 0.0;
     let polar = acos(clamp(normal.z, -1.0, 1.0));
@@ -127,7 +127,7 @@ fn hand(in: ShapeCorner) -> @location(0) vec4f {
     return shown(lacquered(base, normal, vec3f(0.0, 0.0, 1.0), 1.0), alpha);
 }
 
-// Dashes around the border of the region march slowly.
+// Dashes that march slowly around the border of the region.
 fn dashes(at: vec2f, in: ShapeCorner) -> f32 {
     let place = select(at - in.from_to.xy, within(at, in.from_to, in.form.x), in.form.y == 1.0);
     var along = atan2(place.y, place.x) * in.form.x;

@@ -1,4 +1,4 @@
-// The shape that blurred bodies make one believe: how they slope, how thick they are.
+// Apparent relief of the blurred bodies: slope and thickness.
 @group(1) @binding(0) var narrow_colour: texture_2d<f32>;
 @group(1) @binding(1) var narrow_relief: texture_2d<f32>;
 @group(1) @binding(2) var wide_colour: texture_2d<f32>;
@@ -6,13 +6,13 @@
 @group(1) @binding(4) var smooth_sampler: sampler;
 
 struct Images {
-    // What shines through, and how far inside a piece it is.
+    // Colour that shines through, and distance from the edge of the piece.
     @location(0) colour: vec4f,
     // Slope to the right and upwards, thickness, strain.
     @location(1) shape: vec4f,
 }
 
-// Between texels by B-splines, so that slopes are smooth too.
+// Samples with cubic B-splines, so that slopes are smooth too.
 fn smooth_texel(image: texture_2d<f32>, uv: vec2f) -> vec4f {
     let size = vec2f(textureDimensions(image));
     let at = uv * size - 0.5;
@@ -33,7 +33,7 @@ fn smooth_texel(image: texture_2d<f32>, uv: vec2f) -> vec4f {
     return mix(mix(d, c, left), mix(b, a, left), above);
 }
 
-// How a value of an image rises to the right and upwards [1/m].
+// Gradient of the red channel to the right and upwards [1/m].
 fn slope_of(image: texture_2d<f32>, uv: vec2f) -> vec2f {
     let texel = 0.5 / vec2f(textureDimensions(image));
     let metres = 2.0 * texel * globals.view.z * vec2f(globals.view.w, 1.0);
@@ -44,7 +44,7 @@ fn slope_of(image: texture_2d<f32>, uv: vec2f) -> vec2f {
     return vec2f(right, up) / metres;
 }
 
-// A round edge is steep where its blurred coverage is 0.5 and flat where it is 1.
+// Slope factor of a round edge: steep at blurred coverage 0.5, flat at 1.
 fn roundness(covered: f32) -> f32 {
     let beyond = 1.0 - clamp((covered - 0.42) / 0.58, 0.03, 1.0);
     return beyond / sqrt(1.0 - beyond * beyond);
@@ -56,7 +56,7 @@ fn shape(in: Covering) -> Images {
     let narrow = textureSampleLevel(narrow_relief, smooth_sampler, in.uv, 0.0);
     let far = smooth_texel(wide_colour, in.uv);
     let wide = smooth_texel(wide_relief, in.uv);
-    // The colour of what lies around shines through.
+    // The colour of the surroundings shines through.
     let colour = mix(near.rgb / max(near.a, 0.01), far.rgb / max(far.a, 0.01), 0.25);
     let slope = globals.scale.z * (1.3 + 0.9 * roundness(wide.r)) * slope_of(wide_relief, in.uv)
         + globals.scale.y * 1.2 * roundness(narrow.r) * slope_of(narrow_relief, in.uv);

@@ -1,4 +1,4 @@
-// Bodies into two images of their own: colour and coverage; thickness, freshness and strain.
+// Draws bodies into two images: colour with coverage; thickness, freshness and strain.
 struct Images {
     @location(0) colour: vec4f,
     @location(1) relief: vec4f,

@@ -1,24 +1,24 @@
-// What every shader of space knows. Places are in metres, colours as a screen takes them (sRGB).
+// Uniforms of every 3D shader. Positions are in metres, colours in sRGB.
 struct Globals {
     to_clip: mat4x4f,
-    // To the shadow map, and to the map of what is open to the sky.
+    // To the shadow map, and to the sky map.
     to_light: mat4x4f,
     to_sky: mat4x4f,
-    // Where the camera is.
+    // Position of the camera.
     eye: vec4f,
-    // What it looks at, and how far that is.
+    // Target point of the camera, and its distance.
     look: vec4f,
-    // Seconds, count of walls, 0: the image is not in linear light, count of hands.
+    // Clock [s]; number of walls; 0, because the image is not in linear light; number of hands.
     tune: vec4f,
     // Size of the image [px].
     size: vec4f,
-    // Of both maps: width of a texel [m]; how soft its shadows are, as a share of the map.
+    // For the shadow and the sky map: texel width [m]; shadow softness as a fraction of the map.
     soft: vec4f,
     floor_middle: vec4f,
     floor_rim: vec4f,
     frame: vec4f,
     fresh: vec4f,
-    // Middle and radius of the hands.
+    // Centres and radii of the hands.
     hands: array<vec4f, 4>,
     hand_colours: array<vec4f, 4>,
     // Outward normal and offset of half-spaces.
@@ -26,6 +26,6 @@ struct Globals {
 }
 @group(0) @binding(0) var<uniform> globals: Globals;
 
-// Five breaths in the sixteen seconds after which the clock begins anew [rad/s].
+// Angular speed of the basket's pulsing glow [rad/s]: five cycles in the 16 s period of the clock.
 const BREATHS = 1.9634954;
 const LIGHT = vec3f(-0.42, 0.80, 0.45);

@@ -1,26 +1,26 @@
-// How light falls on things in space.
+// Lighting of 3D surfaces.
 @group(1) @binding(0) var shadow_map: texture_depth_2d;
 @group(1) @binding(1) var sky_map: texture_depth_2d;
 @group(1) @binding(2) var shadow_sampler: sampler_comparison;
 
-// Points of a disc, evenly spread.
+// Evenly distributed points of a disc.
 fn spread(k: i32, count: i32) -> vec2f {
     let turn = 2.399963 * f32(k);
     return sqrt((f32(k) + 0.5) / f32(count)) * vec2f(cos(turn), sin(turn));
 }
 
-// Depth in the shadow map has a sixth of the scale of what lies across; see `seen_by`.
+// Scale of the depth axis of the shadow map relative to the other axes; see `seen_by`.
 const SQUEEZED = 1.0 / 6.0;
 
-// By how much the depth in the shadow map grows along a surface, to the right and down in the map: what is flat throws no
-// shadow onto itself, however far its neighbourhood is asked.
+// Depth gradient of the shadow map along a surface, to the right and down in the map. With it, a flat surface
+// does not shadow itself, however wide the sampled neighbourhood is.
 fn leaning(normal: vec3f) -> vec2f {
     let turned = (globals.to_light * vec4f(normal, 0.0)).xyz;
     let slope = SQUEEZED * SQUEEZED * turned.xy / max(-turned.z, 1e-9);
     return vec2f(2.0, -2.0) * clamp(slope, vec2f(-3.0 * SQUEEZED), vec2f(3.0 * SQUEEZED));
 }
 
-// How much of the light's disc is seen from a place, 0 to 1.
+// Visible fraction of the light's disc at a point, 0 to 1.
 fn open_to_light(at: vec3f, normal: vec3f) -> f32 {
     let seen = globals.to_light * vec4f(at + normal * 1.5 * globals.soft.x, 1.0);
     if max(max(abs(seen.x), abs(seen.y)), seen.z) >= 1.0 {
@@ -35,7 +35,7 @@ fn open_to_light(at: vec3f, normal: vec3f) -> f32 {
     return sum / 16.0;
 }
 
-// How much of the sky is seen from a place, 0 to 1, as far as what stands straight above tells.
+// Visible fraction of the sky at a point, 0 to 1, estimated from objects straight above.
 fn open_to_sky(at: vec3f, normal: vec3f) -> f32 {
     let seen = globals.to_sky * vec4f(at + normal * 2.0 * globals.soft.z, 1.0);
     if max(max(abs(seen.x), abs(seen.y)), seen.z) >= 1.0 {
@@ -49,8 +49,8 @@ fn open_to_sky(at: vec3f, normal: vec3f) -> f32 {
     return sum / 16.0;
 }
 
-// Light that is left under hands: each throws a round shadow straight down onto what faces up, with a
-// ring around it in its colour.
+// Adds the shadows of hands. Each hand casts a round shadow straight down onto surfaces that face up, with a
+// ring in its colour.
 fn under_hands(colour: vec3f, at: vec3f, normal: vec3f) -> vec3f {
     var light = colour;
     let up = smoothstep(0.4, 0.75, normal.y);
@@ -66,7 +66,7 @@ fn under_hands(colour: vec3f, at: vec3f, normal: vec3f) -> vec3f {
     return light;
 }
 
-// Light from all around: more from above, some from the floor.
+// Ambient light: more from above, some from the floor.
 fn from_around(at: vec3f, normal: vec3f) -> f32 {
     return mix(0.80, 1.0, 0.5 + 0.5 * normal.y) * mix(0.72, 1.0, open_to_sky(at, normal));
 }
@@ -81,7 +81,7 @@ fn chance3(at: vec3f) -> f32 {
     return chance(at.xy + 17.31 * at.z);
 }
 
-// Smooth noise in space, 0 to 1.
+// Smooth 3D noise, 0 to 1.
 fn noise3(at: vec3f) -> f32 {
     let cell = floor(at);
     let inside = smoothstep(vec3f(0.0), vec3f(1.0), at - cell);
@@ -93,7 +93,7 @@ fn noise3(at: vec3f) -> f32 {
     return mix(mix(rows[0], rows[1], inside.y), mix(rows[2], rows[3], inside.y), inside.z);
 }
 
-// A direction that differs from place to place, each coordinate −1 to 1.
+// Smooth noise vector, each coordinate −1 to 1.
 fn rough3(at: vec3f) -> vec3f {
     return 2.0 * vec3f(noise3(at), noise3(at + 31.7), noise3(at + 73.1)) - 1.0;
 }
@@ -102,7 +102,7 @@ fn towards_eye(at: vec3f) -> vec3f {
     return normalize(globals.eye.xyz - at);
 }
 
-// Flesh that light goes into: `fresh` 1 where it is torn, 0 on the skin.
+// Translucent flesh. `fresh` is 1 on torn surfaces and 0 on the skin.
 fn flesh(base: vec3f, fresh: f32, strain: f32, at: vec3f, normal: vec3f, facing: vec3f) -> vec3f {
     let eye = towards_eye(at);
     let open = open_to_light(at, facing);
@@ -110,17 +110,17 @@ fn flesh(base: vec3f, fresh: f32, strain: f32, at: vec3f, normal: vec3f, facing:
     var colour = flesh_colour(base, thick, smoothstep(0.05, 0.6, strain), fresh);
 
     let wrapped = around(normal);
-    // Red goes around the edge of the shadow farther than blue.
+    // Red light reaches farther into the edge of a shadow than blue.
     let share = wrapped * mix(0.5, 1.0, open);
     let lit = smoothstep(vec3f(0.02, 0.1, 0.12), vec3f(0.95, 1.0, 1.0), vec3f(share));
-    // What is torn is rough: its light comes from all sides.
+    // Torn surfaces are rough and scatter light in all directions.
     let shade = mix(vec3f(0.76, 0.50, 0.52), vec3f(1.16, 1.14, 1.12), lit);
     colour *= mix(shade, vec3f(1.0), 0.3 * fresh) * from_around(at, facing);
-    // Light that went through comes out on the far side.
+    // Light transmitted through the body leaves on the far side.
     let away = 1.0 - clamp(dot(normal, eye), 0.0, 1.0);
     let rim = away * away * away;
     colour += base * vec3f(1.0, 0.62, 0.5) * rim * (1.0 - wrapped) * 0.55 * (1.0 - fresh);
-    // Reflections: a soft one, and a sharp one, on what is lit.
+    // Reflections on lit surfaces: a soft one and a sharp one.
     let towards = mirrored(normal, eye);
     let wet = (1.0 - fresh) * open;
     colour += vec3f(1.0, 0.97, 0.94) * wet * (0.16 * pow12(towards) + 0.24 * smoothstep(0.970, 0.999, towards));

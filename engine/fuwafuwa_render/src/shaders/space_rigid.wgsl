@@ -1,4 +1,4 @@
-// Floor, walls, and everything that is a drawn-out ball: bars, hands, crumbs, dust, lines, the basket.
+// Floor, walls, and everything drawn as a stretched ball: bars, hands, crumbs, dust, lines, the basket.
 struct RoomCorner {
     @builtin(position) clip: vec4f,
     @location(0) at: vec3f,
@@ -18,7 +18,8 @@ fn room(in: RoomCorner) -> @location(0) vec4f {
     let rim = smoothstep(0.05, 0.75, away);
     var light = to_linear(mix(globals.floor_middle.rgb, globals.floor_rim.rgb, rim));
     if is_floor {
-        // Dots on a grid show how things move; in worlds that one looks at closely they stand closer.
+        // Dots on a grid make motion visible. In worlds viewed closely (camera distance up to 1 m) they are
+        // ten times denser.
         let unit = select(0.1, 1.0, globals.look.w > 1.0);
         let across = in.at.xz / unit;
         let grid = abs(fract(across / 0.125) - 0.5) * 0.125;
@@ -40,7 +41,7 @@ fn room(in: RoomCorner) -> @location(0) vec4f {
     light *= mix(vec3f(0.62, 0.60, 0.72), vec3f(1.0), open);
     light *= mix(vec3f(0.66, 0.60, 0.66), vec3f(1.0), open_to_sky(in.at, normal));
     light = under_hands(light, in.at, normal);
-    // What is far off, and walls high up, are one with the background.
+    // Distant parts and high walls fade into the background.
     let above = (in.at.y - globals.look.y) / globals.look.w;
     let gone = max(smoothstep(0.7, 1.7, away), select(smoothstep(0.04, 0.32, above), 0.0, is_floor));
     return shown(mix(light, background(in.clip.xy), gone), 1.0);
@@ -57,7 +58,7 @@ fn sky(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
 }
 
 struct Instance {
-    // Its middle and the radius of its edges.
+    // Centre of the instance and radius of its edges.
     @location(2) centre: vec4f,
     @location(3) first: vec3f,
     @location(4) second: vec3f,
@@ -71,12 +72,12 @@ struct RoundedCorner {
     @builtin(position) clip: vec4f,
     @location(0) at: vec3f,
     @location(1) normal: vec3f,
-    // Where it is along the axes of the thing, and how far that reaches.
+    // Position along the axes of the instance, and half its extent along them.
     @location(2) own: vec3f,
     @location(3) @interpolate(flat) reach: vec3f,
     @location(4) @interpolate(flat) colour: vec4f,
     @location(5) @interpolate(flat) number: f32,
-    // The normal along the axes of the thing.
+    // Normal along the axes of the instance.
     @location(6) own_normal: vec3f,
 }
 
@@ -95,7 +96,7 @@ fn plain_corner(@location(0) normal: vec3f, @location(1) eighth: vec3f, instance
     return corner_of(normal, eighth, instance, instance.centre.w);
 }
 
-// No two rough balls are alike.
+// The instance number makes every rough ball look different.
 @vertex
 fn rough_corner(@location(0) normal: vec3f, @location(1) eighth: vec3f, instance: Instance) -> RoundedCorner {
     let bump = noise3(1.9 * normal + 7.7 * instance.number) - 0.5;
@@ -111,7 +112,7 @@ fn in_light(colour: vec3f, at: vec3f, normal: vec3f) -> vec3f {
 @fragment
 fn bar(in: RoundedCorner) -> @location(0) vec4f {
     let normal = normalize(in.normal);
-    // Rings of wood run along the longest axis.
+    // Wood rings run along the longest axis.
     let longest = max(in.reach.x, max(in.reach.y, in.reach.z));
     var wood = in.own.zxy;
     if in.reach.x == longest {
@@ -130,7 +131,7 @@ fn bar(in: RoundedCorner) -> @location(0) vec4f {
 @fragment
 fn hand(in: RoundedCorner) -> @location(0) vec4f {
     let normal = normalize(in.normal);
-    // As in the plane: a ring for the first player, stripes for the second, then dots.
+    // Patterns as in 2D: a ring for the first player, stripes for the second, then dots.
     let up = in.own_normal.y;
     let soft = 1.5 * fwidth(up) + 0.002;
     let player = i32(in.number) % 3;
@@ -147,7 +148,7 @@ fn hand(in: RoundedCorner) -> @location(0) vec4f {
     return shown(lit * mix(0.80, 1.0, 0.5 + 0.5 * normal.y), 1.0);
 }
 
-// A hand behind something: one still sees where it is.
+// Silhouette of a hand behind other objects, so that its position stays visible.
 @fragment
 fn hidden_hand(in: RoundedCorner) -> @location(0) vec4f {
     let away = 1.0 - abs(dot(normalize(in.normal), towards_eye(in.at)));
@@ -173,7 +174,7 @@ fn dust(in: RoundedCorner) -> @location(0) vec4f {
 
 @fragment
 fn line(in: RoundedCorner) -> @location(0) vec4f {
-    // Dashes that hang from the hand.
+    // Dashed line from the hand to the ground.
     let dash = abs(fract(in.at.y / 0.06) - 0.5);
     let alpha = 1.0 - smoothstep(0.26, 0.30, dash);
     return shown(to_linear(in.colour.rgb), 0.7 * alpha);
@@ -182,7 +183,8 @@ fn line(in: RoundedCorner) -> @location(0) vec4f {
 @fragment
 fn glow(in: RoundedCorner, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
     let beyond = in.reach - abs(in.own);
-    // On a side of a box one of these is 0; the next one leads to the nearest edge, along the last.
+    // On a face of the box the smallest component is 0; the middle one is the distance to the nearest edge,
+    // which runs along the axis of the largest one.
     let least = min(beyond.x, min(beyond.y, beyond.z));
     let most = max(beyond.x, max(beyond.y, beyond.z));
     let edge = beyond.x + beyond.y + beyond.z - least - most;
@@ -196,7 +198,7 @@ fn glow(in: RoundedCorner, @builtin(front_facing) is_front: bool) -> @location(0
     }
     let dash = abs(fract(along / 0.07 - 0.25 * globals.tune.x) - 0.5);
     let border = (1.0 - smoothstep(0.008, 0.012, edge)) * (1.0 - smoothstep(0.28, 0.32, dash));
-    // The near sides are clear, so that one looks in.
+    // Front faces are transparent, so that the inside is visible.
     let alpha = strength * (select(0.6, 0.0, is_front) + 1.5 * exp(-edge / 0.05));
     let colour = to_linear(in.colour.rgb);
     return shown(mix(mix(vec3f(1.0, 0.96, 0.85), colour, 0.7), 0.72 * colour, border), max(alpha, 0.85 * border));

@@ -1,4 +1,4 @@
-// Skins and elements of bodies in space.
+// Skins and elements of 3D bodies.
 struct SkinCorner {
     @builtin(position) clip: vec4f,
     @location(0) at: vec3f,
@@ -19,7 +19,7 @@ fn skin_corner(
     return SkinCorner(globals.to_clip * vec4f(at, 1.0), at, rest, normal, colour, other);
 }
 
-// The colour of its material: between two of them runs a line that is sharp however close one looks.
+// Colour of the material. The border between two materials is sharp at any viewing distance.
 fn material(in: SkinCorner) -> vec3f {
     let beyond = (in.other.a - 0.5) / max(fwidth(in.other.a), 1e-4);
     return mix(to_linear(in.colour.rgb), to_linear(in.other.rgb), clamp(beyond + 0.5, 0.0, 1.0));
@@ -32,14 +32,14 @@ fn skin(in: SkinCorner) -> @location(0) vec4f {
     var normal = facing;
     let base = material(in);
     if fresh > 0.01 {
-        // Crumbly: bumps in two sizes that stay in their place.
+        // Crumbly: bumps of two sizes, fixed to the material.
         let bumps = rough3(0.9 * in.rest) + 0.7 * rough3(2.3 * in.rest);
         normal = normalize(facing + 0.30 * fresh * bumps);
     }
     return shown(flesh(base, fresh, in.normal.w, in.at, normal, facing), 1.0);
 }
 
-// Paint that shines a little.
+// Slightly glossy paint.
 @fragment
 fn sticker(in: SkinCorner) -> @location(0) vec4f {
     let normal = normalize(in.normal.xyz);
@@ -52,7 +52,7 @@ fn sticker(in: SkinCorner) -> @location(0) vec4f {
     return shown(under_hands(colour, in.at, normal), in.colour.a);
 }
 
-// A body that is seen through, more so where it faces the eye.
+// Transparent body, more transparent where it faces the eye.
 @fragment
 fn ghost(in: SkinCorner) -> @location(0) vec4f {
     let away = 1.0 - abs(dot(normalize(in.normal.xyz), towards_eye(in.at)));
@@ -81,7 +81,7 @@ fn box_side(in: BoxCorner) -> @location(0) vec4f {
     let open = open_to_light(in.at, normal);
     var colour = to_linear(in.colour.rgb);
     colour *= mix(0.55, 1.1, min(around(normal), mix(0.4, 1.0, open))) * from_around(in.at, normal);
-    // Lines along the edges, a pixel and a half wide.
+    // Lines along the edges, 1.7 pixels wide.
     let lines = smoothstep(vec4f(0.0), 1.7 * fwidth(in.sides) + 0.015, in.sides);
     colour *= mix(0.55, 1.0, min(min(lines.x, lines.y), min(lines.z, lines.w)));
     return shown(under_hands(colour, in.at, normal), 1.0);

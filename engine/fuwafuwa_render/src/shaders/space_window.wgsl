@@ -1,4 +1,4 @@
-// The finished picture into the pass of a window.
+// Copies the finished picture into the window's pass.
 @group(1) @binding(0) var picture: texture_2d<f32>;
 @group(1) @binding(1) var smooth_sampler: sampler;
 
@@ -7,7 +7,7 @@ fn window(in: Covering) -> @location(0) vec4f {
     return textureSampleLevel(picture, smooth_sampler, in.uv, 0.0);
 }
 
-// For targets that want linear light.
+// For targets that take linear light.
 @fragment
 fn linear_window(in: Covering) -> @location(0) vec4f {
     let colour = textureSampleLevel(picture, smooth_sampler, in.uv, 0.0);

@@ -1,10 +1,10 @@
-// Over the whole picture.
+// Vertex of a triangle over the whole picture.
 struct Covering {
     @builtin(position) clip: vec4f,
     @location(0) uv: vec2f,
 }
 
-// A triangle that covers the picture.
+// Corner of a triangle that covers the picture.
 fn covering(index: u32) -> vec2f {
     return vec2f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0);
 }

@@ -1,4 +1,4 @@
-//! Elements as boxes that have gone out of shape with them.
+//! Elements of 3D bodies as deformed boxes.
 
 use super::camera::Cut;
 use super::cut::planes;
@@ -14,45 +14,46 @@ use fuwafuwa::view::{ElementFace, faces};
 use fuwafuwa::{Dim3, ElementId, ElementView, SoftBody, Vector};
 use glam::Vec3;
 
-/// How far a box stays inside its element [voxels]: so neighbours are told apart.
+/// Distance between a box and the faces of its element [voxels], so that neighbours can be told apart.
 const GAP: f32 = 0.03;
-/// An element whose middle is so far behind the cut, in its own widths, has all its neighbours: the middle of one
-/// towards the cut, which is twice as wide at most, is that much closer to it.
+/// Depth of an element's centre behind the cut [element widths] from which all its neighbours are kept, so
+/// that its covered faces need not be drawn. A neighbour towards the cut is at most twice as wide, so its
+/// centre is at most 1.5 widths closer.
 const DEEP: f32 = 1.51;
 
-/// A corner of a triangle of the element view.
+/// Vertex of the element view.
 #[repr(C)]
 #[derive(Copy, Clone, Debug, PartialEq, Pod, Zeroable)]
 pub struct BoxVertex {
-    /// Where [m].
+    /// Position [m].
     pub at: Vec3,
-    /// How far it is from the four sides of its quad, 255 being the width of the quad; 255 also from
-    /// a side behind which the element goes on.
+    /// Distance from the four sides of the quad, 255 being the width of the quad. Also 255 for a side behind
+    /// which the element continues.
     pub sides: [u8; 4],
-    /// Red, green, blue; the last one says nothing.
+    /// Red, green, blue; the last component is unused.
     pub colour: [u8; 4],
 }
 
 /// Boxes of elements.
 #[derive(Clone, Debug, Default)]
 pub struct Boxes {
-    /// Corners.
+    /// Vertices.
     pub vertices: Vec<BoxVertex>,
-    /// Three to a triangle.
+    /// Vertex indices, three per triangle.
     pub indices: Vec<u32>,
-    /// By body and piece: across which axis it was cut last, and on which side.
+    /// Axis and side of the last cut, by body and piece.
     sides: Vec<Vec<(usize, f32)>>,
 }
 
 impl Boxes {
-    /// Forgets all boxes.
+    /// Removes all boxes.
     pub fn clear(&mut self) {
         self.vertices.clear();
         self.indices.clear();
     }
 
-    /// Adds the elements of the body at a place of the world whose middle is not cut off, as far as something of them can be
-    /// seen.
+    /// Adds the visible elements of the body at index `place` of the world. Elements with a centre in front
+    /// of the cut are left out.
     pub fn add(
         &mut self,
         place: usize,
@@ -86,7 +87,7 @@ impl Boxes {
             }
             let view = match element.cell.level {
                 0 => small_view(body, id, element, colour),
-                _ => body.element_view(id).expect("it is one of the mesh"),
+                _ => body.element_view(id).expect("the element is in the mesh"),
             };
             let form = (element.cell.level.min(1), element.children);
             let known = forms.iter().position(|known| (known.0, known.1) == form);
@@ -98,7 +99,7 @@ impl Boxes {
             let (centre, share) = (Vec3::from(view.slots[13]), GAP / width);
             let shrunk = view.slots.map(|at| Vec3::from(at).lerp(centre, share));
             for (number, face) in forms[place].2.iter().enumerate() {
-                // At level 0 they are the faces of a voxel.
+                // For level 0 these are the faces of a voxel.
                 if is_at_cut || bare >> number & 1 == 1 {
                     self.add_quad(&shrunk, face, shown);
                 }
@@ -110,7 +111,7 @@ impl Boxes {
         let first = self.vertices.len() as u32;
         for (k, &slot) in face.slots.iter().enumerate() {
             let at = places[slot];
-            // Side k leads from corner k to the next one.
+            // Side k runs from corner k to the next corner.
             let is_on = |side: usize| side == k || (side + 1) % 4 == k;
             let is_line = |side: usize| face.is_edge[side] && is_on(side);
             let sides = [0, 1, 2, 3].map(|side| if is_line(side) { 0 } else { 255 });
@@ -120,8 +121,8 @@ impl Boxes {
     }
 }
 
-/// What [`Body::element_view`] says of an element of level 0, as far as it is shown: most are such, and have no slots to be
-/// worked out but their corners and their middle.
+/// Returns the shown fields of [`Body::element_view`] for an element of level 0. Most elements have level 0;
+/// for them only the corner slots and the centre are needed, which is faster.
 fn small_view(
     body: &SoftBody<Dim3>,
     id: ElementId,
@@ -155,8 +156,8 @@ mod tests {
     use fuwafuwa::{Material, RigidBody, Shape, VoxelGrid, World, WorldConfig};
 
     #[test]
-    fn small_elements_look_as_the_body_says() {
-        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
+    fn small_view_matches_element_view() {
+        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
         let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let hand = RigidBody::coupled_ball([0.5, 1.3, 0.5], 0.3);
@@ -182,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_fill_what_is_left_of_a_body_however_it_lies() {
+    fn boxes_fill_the_uncut_part_in_any_orientation() {
         let grid = VoxelGrid::<Dim3>::cube(8, 1.0).unwrap();
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
@@ -219,7 +220,7 @@ mod tests {
         );
         assert!((0.84..0.97).contains(&volume(&world, 1.0).0));
         assert_eq!(volume(&world, 0.0).0, 0.0);
-        // It lies on its side, away from where it was.
+        // Rotates the body onto its side and moves it away.
         let body = world
             .soft_body_mut(world.nth_soft_body(0).unwrap())
             .unwrap();

@@ -1,51 +1,51 @@
-//! From where a world in space is seen. Up is the second axis.
+//! Camera of a 3D picture. The second axis points up.
 
 use fuwafuwa::Vector;
 use glam::camera::rh::proj::directx::perspective;
 use glam::{Mat3, Mat4, Vec3};
 
-/// A camera that goes around what it looks at.
+/// Camera that orbits a target.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// What is in the middle [m].
+    /// Target point, in the middle of the picture [m].
     pub target: Vector,
-    /// How far away it is [m].
+    /// Distance to the target [m].
     pub distance: f32,
-    /// By how much it went around to the right, seen from above [rad]; at 0 it looks against the
-    /// third axis.
+    /// Azimuth of the camera around the target [rad], positive to the right. At 0 the camera looks along the
+    /// negative third axis.
     pub turn: f32,
-    /// By how much it went up [rad]; a right angle looks straight down.
+    /// Elevation [rad]. At a right angle the camera looks straight down.
     pub rise: f32,
-    /// The angle that is seen from bottom to top [rad]. 0.6 looks at toys; more than 1 distorts.
+    /// Vertical field of view [rad]. The usual value is 0.6; values above 1 distort.
     pub field: f32,
-    /// By how much it is shaken out of place [m].
+    /// Shake offset of camera and target [m].
     pub shake: Vector,
-    /// In the element view, what is left out of bodies, so that one looks into them.
+    /// Cut through the bodies, for the element view only.
     pub cut: Option<Cut>,
 }
 
-/// Pieces that are cut open, each along the plane of its own grid that faces a direction most: so elements stay whole,
-/// and what was cut stays so while a body rolls and trembles.
+/// Cut through pieces, along the plane of each piece's own grid that best faces a direction. So elements stay
+/// whole, and the cut stays fixed in a body that rolls or trembles.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Cut {
-    /// Where what is left out would be, of length 1.
+    /// Unit vector towards the removed part.
     pub towards: Vector,
-    /// How much of a piece is left, 0 to 1.
+    /// Remaining fraction of a piece, 0 to 1.
     pub share: f32,
 }
 
-/// What is nearer than this share of the distance is not seen.
+/// Near clipping plane, in multiples of the viewing distance.
 const NEAR: f32 = 0.1;
-/// What is farther than so many distances is not seen.
+/// Far clipping plane, in multiples of the viewing distance.
 const FAR: f32 = 12.0;
 
 impl Camera {
-    /// The camera that sees a box between two corners [m] from the front, a little from above, in a
-    /// target of `size` pixels.
+    /// Returns the camera that shows a box between two corners [m] in a target of `size` pixels, from the
+    /// front and a little from above.
     pub fn fit(low: Vector, high: Vector, size: [u32; 2]) -> Self {
         let field = 0.6f32;
         let aspect = size[0].max(1) as f32 / size[1].max(1) as f32;
-        // The ball around the box fits into the narrower of the two angles.
+        // The bounding sphere of the box must fit into the narrower of the two angles.
         let across = (0.5 * field).tan() * aspect.min(1.0);
         let (low, high) = (Vec3::from(low), Vec3::from(high));
         let radius = 0.5 * low.distance(high);
@@ -60,12 +60,12 @@ impl Camera {
         }
     }
 
-    /// Where it is [m].
+    /// Returns the position of the camera [m].
     pub fn eye(&self) -> Vector {
         self.place().into()
     }
 
-    /// What is to its right, what is up for it, and what is behind it; of length 1.
+    /// Returns the unit vectors to the right, up and backwards.
     pub fn axes(&self) -> [Vector; 3] {
         self.turned().to_cols_array_2d()
     }
@@ -79,8 +79,8 @@ impl Camera {
         target + shake + self.distance * self.turned().z_axis
     }
 
-    /// Where a place [m] is in a target of `size` pixels, from its upper left corner; none when it is
-    /// behind the camera.
+    /// Returns the pixel of a point [m] in a target of `size` pixels, measured from its upper left corner.
+    /// Returns `None` for points behind the camera.
     pub fn to_pixel(&self, at: Vector, size: [u32; 2]) -> Option<[f32; 2]> {
         let seen = self.turned().transpose() * (Vec3::from(at) - self.place());
         let [x, y, z] = seen.to_array();
@@ -89,8 +89,7 @@ impl Camera {
         (z < 0.0).then(|| [left - x / z * scale, top + y / z * scale])
     }
 
-    /// Where the ray through a pixel of a target of `size` pixels begins [m], and its direction, of
-    /// length 1.
+    /// Returns the origin [m] and the unit direction of the ray through a pixel of a target of `size` pixels.
     pub fn ray(&self, pixel: [f32; 2], size: [u32; 2]) -> (Vector, Vector) {
         let scale = 2.0 * (0.5 * self.field).tan() / size[1].max(1) as f32;
         let right = (pixel[0] - 0.5 * size[0] as f32) * scale;
@@ -99,7 +98,7 @@ impl Camera {
         (self.eye(), towards.normalize().into())
     }
 
-    /// From metres to the coordinates of a target of `size` pixels that shaders want.
+    /// Returns the matrix from world coordinates [m] to clip coordinates of a target of `size` pixels.
     pub(crate) fn to_clip(self, size: [u32; 2]) -> Mat4 {
         let aspect = size[0].max(1) as f32 / size[1].max(1) as f32;
         let (near, far) = (NEAR * self.distance, FAR * self.distance);
@@ -107,7 +106,7 @@ impl Camera {
     }
 }
 
-/// From metres to the coordinates of something at a place with axes of its own, of length 1.
+/// Returns the view matrix of an observer at `eye` with orthonormal axes.
 pub(crate) fn seen_from(eye: Vec3, axes: Mat3) -> Mat4 {
     Mat4::from_mat3(axes.transpose()) * Mat4::from_translation(-eye)
 }
@@ -128,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_rays_and_shaders_agree() {
+    fn to_pixel_agrees_with_ray_and_clip_matrix() {
         let camera = camera();
         let at = [0.3, 0.8, -0.4];
         let pixel = camera.to_pixel(at, SIZE).unwrap();
@@ -146,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_that_is_fitted_is_seen_whole_from_everywhere() {
+    fn fit_shows_the_whole_box_from_every_side() {
         for turn in 0..6 {
             let camera = Camera {
                 turn: turn as f32,

@@ -1,34 +1,35 @@
-//! Where the pieces of a body are cut open, so that one looks into them.
+//! Cut planes of the pieces of a body for the element view.
 
 use super::camera::Cut;
 use fuwafuwa::vector::three;
 use fuwafuwa::{Dim3, SoftBody};
 use glam::{Mat3, Vec3};
 
-/// A piece is cut across another axis once that faces so much better, as a cosine: what trembles does not flicker.
+/// Cosine by which another axis must face the cut direction better before the cut changes to it. Prevents
+/// flickering when a piece trembles.
 const BETTER: f32 = 0.15;
-/// What is thinner has no inside to be looked into [voxels].
+/// Minimum width of a piece that is cut [voxels].
 const THIN: f32 = 6.0;
 
-/// Where a piece is cut, in its body at rest [voxels].
+/// Cut plane of a piece, in the rest frame of its body [voxels].
 #[derive(Copy, Clone, Debug)]
 pub struct Plane {
-    /// Across which axis.
+    /// Axis normal to the plane.
     pub axis: usize,
-    /// 1 or −1: on which side it is cut off.
+    /// Removed side: 1 or −1 along the axis.
     pub side: f32,
-    /// Where, along the axis towards that side.
+    /// Position of the plane along the axis, times `side`.
     at: f32,
 }
 
 impl Plane {
-    /// How far a place at rest is behind it [voxels].
+    /// Returns the depth of a rest point behind the plane [voxels].
     pub fn depth(&self, rest: Vec3) -> f32 {
         self.at - self.side * rest[self.axis]
     }
 }
 
-/// Where each piece of a body is cut; `before` has the axes and sides of the last time.
+/// Returns the cut plane of each piece of a body. `before` has the axis and side of each piece's last cut.
 pub fn planes(body: &SoftBody<Dim3>, cut: Cut, before: &[(usize, f32)]) -> Vec<Plane> {
     let nodes = || {
         body.mesh().nodes().map(|(id, node)| {
@@ -47,7 +48,7 @@ pub fn planes(body: &SoftBody<Dim3>, cut: Cut, before: &[(usize, f32)]) -> Vec<P
         (*low, *high) = (low.min(rest), high.max(rest));
         (*sum, *count) = (*sum + at, *count + 1.0);
     }
-    // By piece and axis: in which direction, more or less, the axis leads now.
+    // Approximate current directions of the grid axes, by piece.
     let mut axes = vec![Mat3::ZERO; spans.len()];
     for (piece, at, rest) in nodes() {
         let (low, high, sum, count) = spans[piece];
@@ -84,7 +85,7 @@ mod tests {
     use fuwafuwa::{Material, VoxelGrid};
 
     #[test]
-    fn a_cut_keeps_its_axis_until_another_one_faces_clearly_better() {
+    fn cut_keeps_its_axis_until_another_faces_clearly_better() {
         let grid = VoxelGrid::<Dim3>::cube(8, 1.0).unwrap();
         let body = SoftBody::new(grid, &[Material::default()]).unwrap();
         let mut before = Vec::new();

@@ -1,9 +1,9 @@
-//! The bare faces of a body, the points where they meet and the vertices that are drawn there.
+//! Bare faces of a body, the surface points at their corners and the vertices drawn there.
 //!
-//! Faces hang on elements, points on nodes. [`Faces::follow`] asks the body what changed since the last look, and
-//! takes down and puts up only what differs; of a body that was loaded or replaced it looks at everything. A point at the mouth of a
-//! crack, where the original surface meets the inside, has two vertices in the same place: one
-//! with the normal and the colour of each.
+//! Faces belong to elements, points to nodes. [`Faces::follow`] asks the body for the changes since the last
+//! call and updates only these; for a body that was loaded or replaced it checks everything. A point at the
+//! mouth of a crack, where the original surface meets the inside, has two vertices at the same position: one
+//! with the normal and the colour of each surface.
 
 use super::pool::Pool;
 use super::rest::Rest;
@@ -13,104 +13,105 @@ use fuwafuwa::ids::IndexVec;
 use fuwafuwa::{Bookmark, Dim3, ElementId, NodeId, Point, SoftBody};
 use glam::Vec3;
 
-/// No place.
+/// Null index.
 pub const NONE: u32 = u32::MAX;
-/// No node.
+/// Null node.
 pub const NO_NODE: NodeId = NodeId(u32::MAX);
-/// The faces of a voxel that hangs together with nothing.
+/// Face mask of a voxel without neighbours in its piece.
 const ALL_FACES: u8 = 0b11_1111;
 
-/// The bare faces of a body and all that hangs on them.
+/// Bare faces of a body with their points, vertices and triangles.
 #[derive(Clone, Debug, Default)]
 pub struct Faces {
-    /// What was taken up of each element.
+    /// Last known form of each element.
     forms: IndexVec<ElementId, Form>,
-    /// The point of each node, or none.
+    /// Index of the point of each node, or `NONE`.
     of_node: IndexVec<NodeId, u32>,
-    /// Faces; those that are gone have no points.
+    /// Faces. Removed faces have no points.
     pub faces: Pool<Face>,
-    /// Points; those that are gone have no node.
+    /// Points. Removed points have no node.
     pub points: Pool<SkinPoint>,
-    /// What is drawn at the points.
+    /// Vertices drawn at the points.
     pub vertices: Pool<Corner>,
-    /// Two triangles of vertices for each face; those that are gone are of no area.
+    /// Two triangles per face. Those of removed faces have no area.
     pub indices: Vec<u32>,
-    /// The elements that are crumbs: they have points and faces no more.
+    /// Elements that are crumbs. They have no points and faces.
     pub crumbs: Vec<ElementId>,
-    /// Points to look at again.
+    /// Indices of points to be updated.
     dirty: Vec<u32>,
     followed: Bookmark,
     palette: Vec<Colour>,
 }
 
-/// A bare face of a voxel.
+/// Bare face of a voxel.
 #[derive(Copy, Clone, Debug)]
 pub struct Face {
     /// Its points, counterclockwise seen from outside.
     pub points: [u32; 4],
     /// Its vertices.
     pub vertices: [u32; 4],
-    /// At each of its points: the next corner of a face there, as 4 · face + place, or none.
+    /// For each corner: the next face corner at the same point, as 4 · face + corner, or `NONE`.
     next: [u32; 4],
     element: ElementId,
-    /// Which of the faces of the element: 2 · axis + side.
+    /// Number of the face within the element: 2 · axis + side.
     side: u8,
     is_fresh: bool,
 }
 
-/// A node of the surface.
+/// Node on the surface.
 #[derive(Copy, Clone, Debug)]
 pub struct SkinPoint {
-    /// Its node, or none.
+    /// Its node, or [`NO_NODE`].
     pub node: NodeId,
-    /// The nodes of a voxel that it belongs to, and that carries its offset.
+    /// Nodes of the adjacent voxel whose deformation carries the offset.
     pub voxel: [NodeId; 8],
-    /// How far it is moved [voxels], in the frame of the voxel.
+    /// Smoothing offset in the frame of the voxel [voxels].
     pub offset: Vec3,
-    /// The points that it is smoothed with.
+    /// Neighbour points for smoothing.
     pub near: [u32; 6],
-    /// How many these are.
+    /// Number of neighbour points.
     pub near_count: u8,
-    /// What it lies on.
+    /// Kind of surface at the point.
     pub ground: Ground,
-    /// The first corner of a face at it.
+    /// First face corner at the point.
     first: u32,
-    /// Its vertices on the original surface and inside.
+    /// Vertices on the original surface and on the torn surface.
     vertices: [u32; 2],
     is_dirty: bool,
 }
 
-/// What a point lies on.
+/// Kind of surface at a point.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Ground {
-    /// The original surface.
+    /// Original surface.
     Skin,
-    /// The mouth of a crack.
+    /// Mouth of a crack, where original and torn surface meet.
     Mouth,
-    /// What was inside.
+    /// Surface created by tearing.
     Torn,
 }
 
-/// What is drawn at a point, whatever its motion.
+/// Motion-independent data of a vertex.
 #[derive(Copy, Clone, Debug)]
 pub struct Corner {
-    /// The point, or none.
+    /// Index of its point, or `NONE`.
     pub point: u32,
-    /// Where it was [voxels].
+    /// Rest position [voxels].
     pub rest: Vec3,
-    /// Red, green, blue of a material; in the last place 255 where it was inside.
+    /// Red, green, blue of the material; the last component is 255 on torn surfaces.
     pub colour: [u8; 4],
-    /// Red, green, blue of the material beyond the nearest border; in the last place 128 on that, more beyond.
+    /// Red, green, blue of the material beyond the nearest border; the last component is 128 on the border,
+    /// more beyond it.
     pub other: [u8; 4],
 }
 
-/// What of an element counts for its faces.
+/// Properties of an element that determine its faces.
 #[derive(Copy, Clone, Debug, PartialEq)]
 struct Form {
     bare: u8,
     at: Point,
     nodes: [NodeId; 8],
-    /// The places of its faces, or none.
+    /// Indices of its faces, or `NONE`.
     faces: [u32; 6],
 }
 
@@ -147,12 +148,12 @@ const NO_CORNER: Corner = Corner {
 };
 
 impl Faces {
-    /// Takes up what changed since the last look; `palette` has the colours of the materials, number
-    /// 1 first. Returns whether anything did.
+    /// Updates everything that changed since the last call. `palette` has the colours of the materials,
+    /// starting at number 1. Returns whether anything changed.
     pub fn follow(&mut self, body: &SoftBody<Dim3>, rest: &Rest, palette: &[Colour]) -> bool {
         let mesh = body.mesh();
         let (elements, nodes) = (mesh.element_capacity(), mesh.node_capacity());
-        // Ids are never given up by a body: this is another one.
+        // A body never reuses ids, so smaller capacities mean that this is another body.
         if elements < self.forms.len() || nodes < self.of_node.len() {
             *self = Self::default();
         }
@@ -188,7 +189,7 @@ impl Faces {
         any
     }
 
-    /// Which elements differ from what they were, and what they are now.
+    /// Returns the changed elements with their new forms.
     fn compare(&mut self, body: &SoftBody<Dim3>) -> Vec<(ElementId, Form)> {
         let (mut stale, mut has_lost) = (Vec::new(), false);
         let changes = body.changes_since(&mut self.followed);
@@ -227,7 +228,7 @@ impl Faces {
         stale
     }
 
-    /// Looks at all points again when the colours have changed.
+    /// Marks all points for an update if the colours have changed.
     fn repaint(&mut self, palette: &[Colour]) {
         if self.palette != palette {
             self.palette = palette.to_vec();
@@ -295,7 +296,7 @@ impl Faces {
         self.faces[corner / 4].next[corner as usize % 4]
     }
 
-    /// The corners of faces at a point.
+    /// Returns the face corners at a point.
     fn corners(&self, point: u32) -> impl Iterator<Item = (Face, usize)> {
         let mut at = self.points[point].first;
         std::iter::from_fn(move || {
@@ -305,7 +306,7 @@ impl Faces {
         })
     }
 
-    /// Works out again what follows from the faces at a point.
+    /// Recomputes everything at a point that depends on its faces.
     fn refresh(&mut self, body: &SoftBody<Dim3>, rest: &Rest, place: u32) {
         let mut point = self.points[place];
         point.is_dirty = false;
@@ -330,7 +331,7 @@ impl Faces {
             octant = 7 - vertex;
             near[ground].add(face.points[(k + 1) % 4]);
             near[ground].add(face.points[(k + 3) % 4]);
-            // The offset is carried by the voxel that it leads into, or away from least.
+            // The offset is carried by the voxel that it points into, or else points out of least.
             let offset = rest.offset(at, octant);
             let inwards = Vec3::from(corner(vertex).map(|end| 1.0 - 2.0 * end as f32));
             let towards = (inwards * offset).min(Vec3::ZERO).element_sum();
@@ -387,7 +388,7 @@ impl Faces {
     }
 }
 
-/// Points beside a point, each once; more than six meet only where sheets do.
+/// Distinct neighbours of a point. More than six occur only where sheets meet; the rest is ignored.
 #[derive(Copy, Clone, Debug)]
 struct Near {
     points: [u32; 6],

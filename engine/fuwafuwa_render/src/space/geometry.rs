@@ -1,4 +1,4 @@
-//! A world in space as vertices: all that is worked out before a GPU is asked.
+//! A 3D world as vertices: all CPU work before the GPU draws.
 
 use super::boxes::Boxes;
 use super::camera::Camera;
@@ -14,29 +14,30 @@ use fuwafuwa::{Dim3, ElementId, RigidBody, Shape, SoftBody, Vector, World};
 use glam::{Mat3, Vec3};
 use std::ops::Range;
 
-/// How far the floor goes, in distances of the camera.
+/// Half extent of the floor, in multiples of the camera distance.
 const REACH: f32 = 3.0;
-/// Radius of a crumb, in widths of its voxel: a little more than a ball of its volume has.
+/// Radius of a crumb [voxel widths], equal to that of a ball with the volume of a voxel.
 const CRUMB: f32 = 0.62;
-/// Thickness of the line that hangs from a hand [m], at most such a share of how far away the camera is.
+/// Radius of the line below a hand [m], and its maximum as a multiple of the camera distance.
 const LINE: f32 = 0.004;
 const LINE_SHARE: f32 = 0.002;
 
-/// A world in space as vertices, with the buffers to make them again and again.
+/// Vertices of a 3D world. Keep the value between frames to reuse its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct Geometry {
     pub(crate) skins: Vec<Skin>,
-    /// Which skins have other triangles than before.
+    /// Whether the triangles of each skin changed.
     pub(crate) renewed: Vec<bool>,
-    /// The same of the ghost.
+    /// Skins of the ghost world.
     pub(crate) ghosts: Vec<Skin>,
     pub(crate) renewed_ghosts: Vec<bool>,
     pub(crate) boxes: Boxes,
     pub(crate) stickers: Stickers,
     pub(crate) room: Vec<RoomVertex>,
-    /// Outward normal and offset of each half-space [m].
+    /// Outward normal and offset [m] of each half-space.
     pub(crate) walls: Vec<[f32; 4]>,
-    /// Bars, hands, crumbs, dust, lines below hands, and the basket.
+    /// Instances of bars, hands, props, ghost hands, crumbs, dust, lines below hands, and the basket, in this
+    /// order.
     pub(crate) rounded: Vec<RoundedInstance>,
     pub(crate) bars: Range<u32>,
     pub(crate) hands: Range<u32>,
@@ -49,7 +50,7 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Works out the vertices of a world.
+    /// Computes the vertices of a world.
     pub fn gather(&mut self, world: &World<Dim3>, frame: &Frame<'_, Camera>) {
         self.gather_room(world, &frame.camera);
         self.rounded.clear();
@@ -101,7 +102,7 @@ impl Geometry {
             }
         }
         self.crumbs = first..self.rounded.len() as u32;
-        // Elements have no skin that something could lie on.
+        // In the element view there is no skin to put stickers on.
         if frame.look == Look::Skin {
             let eye = frame.camera.eye();
             for sticker in frame.stickers {
@@ -132,7 +133,7 @@ impl Geometry {
         self.basket = append(&mut self.rounded, basket);
     }
 
-    /// How many vertices bodies have.
+    /// Returns the number of vertices of bodies.
     pub fn vertex_count(&self) -> usize {
         let skins = self.skins.iter().map(|skin| skin.vertices().len());
         skins.sum::<usize>() + self.boxes.vertices.len()
@@ -147,7 +148,7 @@ impl Geometry {
         add_planes(&mut self.room, &self.walls, camera.target, reach);
     }
 
-    /// Where a place falls to, if there is a floor [m].
+    /// Returns the point of the floor straight below a point [m], or `None` without a floor below it.
     fn ground_below(&self, at: Vector) -> Option<Vector> {
         let floors = self.walls.iter().filter(|wall| wall[1] > 0.5);
         let heights = floors.map(|[x, y, z, offset]| (offset - x * at[0] - z * at[2]) / y);
@@ -156,7 +157,7 @@ impl Geometry {
     }
 }
 
-/// The hands of a world.
+/// Returns the instances of a world's hands.
 fn balls(world: &World<Dim3>, palette: &Palette) -> impl Iterator<Item = RoundedInstance> {
     let hands = world.target_followers().enumerate();
     hands.filter_map(|(player, (_, hand))| {
@@ -164,7 +165,7 @@ fn balls(world: &World<Dim3>, palette: &Palette) -> impl Iterator<Item = Rounded
     })
 }
 
-/// Adds instances; returns where they are.
+/// Appends instances and returns their index range.
 fn append(
     all: &mut Vec<RoundedInstance>,
     more: impl IntoIterator<Item = RoundedInstance>,
@@ -183,7 +184,7 @@ fn ball(centre: Vector, radius: f32, number: f32) -> RoundedInstance {
     }
 }
 
-/// A voxel that is a piece of its own: a ball that is squashed as it is.
+/// Returns the instance of a crumb: a ball deformed like its voxel.
 fn crumb(
     body: &SoftBody<Dim3>,
     id: ElementId,
@@ -216,8 +217,8 @@ mod tests {
     use fuwafuwa::{Material, VoxelGrid, WorldConfig};
 
     #[test]
-    fn everything_has_its_place() {
-        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
+    fn gather_places_room_bars_hands_crumbs_and_lines() {
+        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0, -0.5, 0.0]);
         world.add_rigid_body(RigidBody::fixed(floor, 0.2)).unwrap();
         let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);

@@ -1,11 +1,15 @@
-//! Worlds in space: the same way through as in the plane.
+//! 3D worlds, with the same data flow as in 2D:
 //!
-//! [`camera`] is what a caller says beside the rest of a [`crate::Frame`] → `rest` how a body is smooth
-//! before it moves → `faces` what of it is bare → [`skin`] its smooth surface now, `stickers` what lies on
-//! it; `cut` where it is opened → `boxes` its elements → `rounded` and `room` everything rigid → [`geometry`] all of them → `gpu`
-//! draws them: first what the light and the sky see, then the picture.
+//! 1. The caller adds a [`camera`] to a [`crate::Frame`].
+//! 2. `rest` smooths the shape of a body at rest.
+//! 3. `faces` finds its bare faces.
+//! 4. [`skin`] computes the current smooth surface, and `stickers` the marks on it.
+//! 5. For the element view, `cut` computes the cut planes, and `boxes` the elements.
+//! 6. `rounded` and `room` turn rigid bodies into instances and polygons.
+//! 7. [`geometry`] collects the vertices.
+//! 8. `gpu` draws the shadow map and the sky map, then the picture.
 //!
-//! Up is the second axis: the sky, the lines below hands and the floor go by it.
+//! Up is the second axis; the sky, the lines below hands and the floor depend on it.
 
 mod boxes;
 pub mod camera;

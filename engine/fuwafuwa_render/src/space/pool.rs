@@ -1,11 +1,11 @@
-//! Places that are given back and used again.
+//! Pool of reusable slots.
 
 use std::ops::{Index, IndexMut};
 
-/// Things at places that they keep; a place that was given back is the next one to be taken.
+/// Values in slots with stable indices. The slot released last is reused first.
 #[derive(Clone, Debug)]
 pub struct Pool<T> {
-    /// All places, taken or not.
+    /// All slots, in use or free.
     pub all: Vec<T>,
     free: Vec<u32>,
 }
@@ -20,7 +20,7 @@ impl<T> Default for Pool<T> {
 }
 
 impl<T> Pool<T> {
-    /// Takes a place for something.
+    /// Stores a value and returns its slot.
     pub fn take(&mut self, thing: T) -> u32 {
         match self.free.pop() {
             Some(place) => {
@@ -34,7 +34,7 @@ impl<T> Pool<T> {
         }
     }
 
-    /// Gives a place back; `nothing` stands there until it is taken again.
+    /// Releases a slot. It contains `nothing` until it is reused.
     pub fn give_back(&mut self, place: u32, nothing: T) {
         self.all[place as usize] = nothing;
         self.free.push(place);

@@ -1,7 +1,7 @@
-//! How the stairs of a voxel shape in space are smoothed, once, before it moves.
+//! Smoothing of the voxel staircase of a 3D shape, computed once for the body at rest.
 //!
-//! As in the plane: every point of the surface gets an offset, in voxels and in the frame of the
-//! body at rest, and a deformed body carries the offsets along.
+//! As in 2D, every point of the surface gets an offset, in voxels and in the frame of the body at rest; a
+//! deformed body carries the offsets along.
 
 use crate::stairs::smoothed;
 use fuwafuwa::dim::{add, corner, face_corners, points_in, voxel_around};
@@ -9,68 +9,69 @@ use fuwafuwa::sharing::{Connectivity, Groups};
 use fuwafuwa::{Dim, Dim3, Point, VoxelGrid};
 use glam::Vec3;
 
-/// The variance of the smoothing [voxels²] as a share of the root of the number of faces of the
-/// surface. The widest terraces of a ball, where it is flat, grow like that.
+/// Variance of the smoothing [voxels²], as a multiple of the square root of the number of faces of the
+/// surface. The widest terraces of a ball, where it is flat, grow by the same law.
 const REACH: f32 = 0.45;
-/// What a round adds to the variance of a flat surface [voxels²]: half of the way to the mean of four
+/// Variance that one round adds on a flat surface [voxels²]: it moves a point half-way to the mean of four
 /// neighbours, of which two are a voxel away along each axis.
 const VARIANCE: f32 = 0.25;
-/// Rounds at most, so that the largest bodies are ready in a moment.
+/// Maximum number of rounds; bounds the loading time of the largest bodies.
 const MOST_ROUNDS: usize = 200;
-/// A point is not moved by more [voxels] where the body is thin and where it is thick around it: so a
-/// nose of a few voxels stays a nose.
+/// Maximum offset of a point [voxels] where the body is thin and where it is thick, so that a protrusion of a
+/// few voxels survives.
 const FARTHEST: [f32; 2] = [0.3, 0.8];
-/// What is thin and what is thick: the share of voxels that are solid around a point, out to `AROUND`.
-/// A flat surface has 0.5, an edge and a limb three voxels wide have 0.25.
+/// Thresholds of thin and thick: fraction of solid voxels around a point, out to `AROUND` voxels. It is 0.5
+/// on a flat surface and 0.25 on an edge or a limb three voxels wide.
 const SOLID: [f32; 2] = [0.22, 0.32];
 const AROUND: i32 = 3;
-/// Rounds in which the materials of neighbours are mixed: stairs between two of them go as far as that reaches.
+/// Rounds of mixing material shares between neighbours. Staircases of material borders are smoothed within
+/// this reach.
 const TINT_ROUNDS: usize = 12;
-/// A point in the midst of a material keeps so much of it, and one apart from it gets no more than what is left of 1: so a
-/// dot of few voxels stays one.
+/// Minimum share of its own material for a point surrounded by it; a point without it gets at most 1 −
+/// `KEPT`. So a dot of few voxels survives.
 const KEPT: f32 = 0.52;
-/// A point with less of a second material is not beside a border.
+/// Minimum share of a second material at a point beside a border.
 const BESIDE: f32 = 0.1;
-/// How much the voxels around a point inside count, along each axis.
+/// Weights of the voxels around an inner point, along each axis.
 const AROUND_INSIDE: [f32; 4] = [1.0, 3.0, 3.0, 1.0];
-/// How far points inside the body are moved off the lattice at most, along each axis [voxels]: more
-/// looks rougher, and lets faces turn over.
+/// Maximum offset of inner points from the lattice, along each axis [voxels]. Larger values look rougher, but
+/// faces may turn over.
 const ROUGHNESS: f32 = 0.45;
 
-/// The offsets of a voxel shape.
+/// Smoothing offsets of a voxel shape.
 #[derive(Clone, Debug, Default)]
 pub struct Rest {
-    /// By lattice point: the first of its entries in `points`, or none.
+    /// Index of the first entry in `points` by lattice point, or `NONE`.
     first: Vec<u32>,
-    /// Lattice point by lattice point.
+    /// Surface points, ordered by lattice point.
     points: Vec<RestPoint>,
-    /// The grid they belong to.
+    /// Grid that the offsets belong to.
     grid: Option<VoxelGrid<Dim3>>,
-    /// The greatest number of a material in it.
+    /// Highest material number in the grid.
     materials: u8,
 }
 
-/// What the voxels of a group around a lattice point share on the surface.
+/// Surface point shared by a group of connected voxels around a lattice point.
 #[derive(Copy, Clone, Debug)]
 struct RestPoint {
     at: Point,
-    /// The voxels, as a mask of octants.
+    /// Voxels of the group, as a mask of octants.
     group: u8,
-    /// [voxels]
+    /// Smoothing offset [voxels].
     offset: Vec3,
     tint: Tint,
 }
 
-/// The materials around a point, smoothed too, so that the border of two is a line without stairs.
+/// Smoothed materials around a point, so that material borders have no staircase.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Tint {
-    /// The numbers of the two that there is most of, the lower one first; away from a border the same twice.
+    /// Numbers of the two most frequent materials, the lower one first; equal away from a border.
     pub materials: [u8; 2],
-    /// On which side of their border it is: towards 0 on that of the first one, 0.5 on the border.
+    /// Position across the border: 0.5 on it, towards 0 on the side of the first material.
     pub side: f32,
 }
 
-/// The two materials that there is most of, and how much there is.
+/// The two most frequent materials with their shares.
 #[derive(Copy, Clone, Debug, Default)]
 struct Most([(u8, f32); 2]);
 
@@ -99,7 +100,7 @@ impl Most {
 const NONE: u32 = u32::MAX;
 
 impl Rest {
-    /// Finds the offsets of a grid.
+    /// Computes the offsets of a grid.
     pub fn new(grid: &VoxelGrid<Dim3>) -> Self {
         let sharing = Connectivity::new(grid);
         let materials = grid.voxels().map(|voxel| grid.material(voxel));
@@ -134,13 +135,14 @@ impl Rest {
         rest
     }
 
-    /// Whether these are the offsets of a grid.
+    /// Returns whether these offsets belong to a grid.
     pub fn fits(&self, grid: &VoxelGrid<Dim3>) -> bool {
         self.grid.as_ref() == Some(grid)
     }
 
-    /// How far a point is moved [voxels], as the voxel in an octant of it sees it: on the original
-    /// surface so that stairs go, inside so that it is rough. It is the same on both lips of a crack.
+    /// Returns the offset of a point [voxels] as seen from the voxel in one of its octants: the smoothing
+    /// offset on the original surface, a pseudo-random roughness inside. Both faces of a crack get the same
+    /// offset.
     pub fn offset(&self, at: Point, octant: usize) -> Vec3 {
         match self.find(at, octant) {
             Some(found) => self.points[found as usize].offset,
@@ -151,7 +153,7 @@ impl Rest {
         }
     }
 
-    /// The materials of a point, as the voxel in an octant of it sees it.
+    /// Returns the materials of a point as seen from the voxel in one of its octants.
     pub fn tint(&self, at: Point, octant: usize) -> Tint {
         match self.find(at, octant) {
             Some(found) => self.points[found as usize].tint,
@@ -208,7 +210,7 @@ impl Rest {
         }
     }
 
-    /// The neighbours of each point along the edges of bare faces, and how many faces there are.
+    /// Returns the neighbours of each point along the edges of bare faces, and the number of these faces.
     fn neighbours(&self, grid: &VoxelGrid<Dim3>) -> (Vec<Vec<u32>>, usize) {
         let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); self.points.len()];
         let mut face_count = 0;
@@ -243,7 +245,7 @@ fn place(at: Point) -> Vec3 {
     at.map(|k| k as f32).into()
 }
 
-/// A surface after some rounds, in each of which every point goes half of the way to the mean of its neighbours.
+/// Returns a surface after some rounds of moving every point half-way to the mean of its neighbours.
 fn blurred(places: &[Vec3], neighbours: &[Vec<u32>], rounds: usize) -> Vec<Vec3> {
     let mut now = places.to_vec();
     let mut next = now.clone();
@@ -257,7 +259,7 @@ fn blurred(places: &[Vec3], neighbours: &[Vec<u32>], rounds: usize) -> Vec<Vec3>
     now
 }
 
-/// The shares of a material after the rounds in which neighbours mix theirs.
+/// Returns the shares of a material after mixing them between neighbours.
 fn mingled(own: &[f32], neighbours: &[Vec<u32>]) -> Vec<f32> {
     let mut shares = own.to_vec();
     for _ in 0..TINT_ROUNDS {
@@ -275,7 +277,7 @@ fn mingled(own: &[f32], neighbours: &[Vec<u32>]) -> Vec<f32> {
     shares
 }
 
-/// How far a point may be moved [voxels].
+/// Returns the maximum offset of a point [voxels].
 fn farthest(grid: &VoxelGrid<Dim3>, at: Point) -> f32 {
     let low = at.map(|k| k - AROUND);
     let high = at.map(|k| k + AROUND - 1);
@@ -287,7 +289,7 @@ fn farthest(grid: &VoxelGrid<Dim3>, at: Point) -> f32 {
     FARTHEST[0] + (FARTHEST[1] - FARTHEST[0]) * thick
 }
 
-/// A number that a lattice point keeps for each axis, 0 to 1.
+/// Returns a constant pseudo-random value of a lattice point for each axis, 0 to 1.
 fn grain(at: Point, axis: u32) -> f32 {
     let [x, y, z] = at.map(|k| k as u32);
     let mixed =
@@ -304,7 +306,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_ball_is_round() {
+    fn offsets_make_a_ball_round() {
         for n in [12, 32] {
             let grid = VoxelGrid::<Dim3>::ball(n, 1.0).unwrap();
             let rest = Rest::new(&grid);
@@ -321,7 +323,7 @@ mod tests {
         }
     }
 
-    /// How far into the second material of a grid points of its surface are, by what their tints say.
+    /// Position of surface points across the border of two materials, from 0 (first) to 1 (second).
     fn sides(grid: &VoxelGrid<Dim3>) -> Vec<(Point, f32)> {
         let rest = Rest::new(grid);
         let side = |point: &RestPoint| match point.tint.materials {
@@ -336,8 +338,8 @@ mod tests {
     }
 
     #[test]
-    fn the_border_of_two_materials_has_no_stairs() {
-        // It rises by one voxel in four.
+    fn material_border_has_no_staircase() {
+        // The border rises by one voxel in four.
         let half = |[x, y, _]: Point| 1 + u8::from(4 * y > x + 20);
         let grid = VoxelGrid::<Dim3>::from_fn([40, 30, 4], 1.0, half).unwrap();
         let sides = sides(&grid);
@@ -360,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dot_of_four_voxels_stays_and_so_does_a_painted_surface() {
+    fn tint_keeps_dots_of_four_voxels() {
         let dot =
             |[x, y, z]: Point| 1 + u8::from(z == 9 && (4..6).contains(&x) && (4..6).contains(&y));
         let grid = VoxelGrid::<Dim3>::from_fn([10, 10, 10], 1.0, dot).unwrap();
@@ -382,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn voxels_that_meet_along_an_edge_stay_apart() {
+    fn points_separate_voxels_that_touch_along_an_edge() {
         let grid =
             VoxelGrid::<Dim3>::from_fn([2, 2, 1], 1.0, |[x, y, _]| u8::from(x == y)).unwrap();
         let rest = Rest::new(&grid);

@@ -1,21 +1,21 @@
-//! The room: where half-spaces end, as flat pieces of floor and walls.
+//! The room: boundary planes of half-spaces as polygons of floor and walls.
 
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::{Shape, Vector};
 use glam::{Vec3, Vec4};
 
-/// A corner of a triangle of the room.
+/// Vertex of the room.
 #[repr(C)]
 #[derive(Copy, Clone, Debug, PartialEq, Pod, Zeroable)]
 pub struct RoomVertex {
-    /// Where [m].
+    /// Position [m].
     pub at: Vec3,
-    /// Out of the wall, of length 1.
+    /// Outward unit normal of the wall.
     pub normal: Vec3,
 }
 
-/// Adds the triangles of all planes, each given by its outward normal and its offset [m], as far as no
-/// other hides them and not much farther than `reach` [m] from a middle.
+/// Adds the triangles of all planes, each given by its outward normal and offset [m]. Each plane is clipped
+/// by the other half-spaces and limited to a square around `middle` with half extent `reach` [m].
 pub fn add_planes(
     triangles: &mut Vec<RoomVertex>,
     planes: &[[f32; 4]],
@@ -35,7 +35,7 @@ pub fn add_planes(
     }
 }
 
-/// The outward normal and the offset of a half-space; nothing for what ends somewhere.
+/// Returns the outward normal and offset of a half-space, or `None` for bounded shapes.
 pub fn plane(shape: &Shape) -> Option<[f32; 4]> {
     match *shape {
         Shape::HalfSpace { normal, offset } => Some([normal[0], normal[1], normal[2], offset]),
@@ -43,7 +43,7 @@ pub fn plane(shape: &Shape) -> Option<[f32; 4]> {
     }
 }
 
-/// How far outside a plane a place is [m].
+/// Returns the signed distance of a point outside a plane [m].
 fn above(plane: &[f32; 4], at: Vec3) -> f32 {
     normal(plane).dot(at) - plane[3]
 }
@@ -52,7 +52,7 @@ fn normal(plane: &[f32; 4]) -> Vec3 {
     Vec4::from(*plane).truncate()
 }
 
-/// A large square of a plane, counterclockwise seen from outside.
+/// Returns a large square of a plane, counterclockwise seen from outside.
 fn sheet(plane: &[f32; 4], middle: Vec3, reach: f32) -> Vec<Vec3> {
     let normal = normal(plane);
     let foot = middle - above(plane, middle) * normal;
@@ -72,7 +72,7 @@ fn sheet(plane: &[f32; 4], middle: Vec3, reach: f32) -> Vec<Vec3> {
     ]
 }
 
-/// What of a polygon is outside a plane.
+/// Returns the part of a polygon outside a half-space.
 fn clipped(polygon: &[Vec3], plane: &[f32; 4]) -> Vec<Vec3> {
     let mut rest = Vec::new();
     for (k, &to) in polygon.iter().enumerate() {
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn five_planes_make_a_room_without_a_lid() {
+    fn five_planes_form_an_open_room() {
         let planes = [
             [0.0, 1.0, 0.0, 0.0],
             [1.0, 0.0, 0.0, -1.0],
@@ -107,7 +107,10 @@ mod tests {
         for corners in triangles.chunks(3) {
             let [a, b, c] = [corners[0].at, corners[1].at, corners[2].at];
             let area = 0.5 * (b - a).cross(c - a);
-            assert!(area.dot(corners[0].normal) >= 0.0, "it faces inwards");
+            assert!(
+                area.dot(corners[0].normal) >= 0.0,
+                "a triangle faces into the wall"
+            );
             for corner in corners {
                 assert!(planes.iter().all(|plane| above(plane, corner.at) > -1e-5));
             }

@@ -1,8 +1,8 @@
-//! One mesh for everything that is rigid: a ball that can be drawn out into capsules and boxes.
+//! One mesh for all bounded rigid shapes: a ball that can be stretched into capsules and boxes.
 //!
 //! ```text
-//!   ╭─╮      ╭┬───┬╮      Each eighth of the ball has vertices of its own, which move away from the
-//!   │┼│  →   ├┼───┼┤      middle together; between them are faces that have no area in a ball.
+//!   ╭─╮      ╭┬───┬╮      Each octant of the ball has its own vertices, which move away from
+//!   │┼│  →   ├┼───┼┤      the centre together. The faces between octants have no area in a ball.
 //!   ╰─╯      ╰┴───┴╯
 //! ```
 
@@ -10,43 +10,42 @@ use bytemuck::{Pod, Zeroable};
 use fuwafuwa::Shape;
 use glam::{Mat3, Vec3};
 
-/// How round the edges of boxes are [m], if they are that large.
+/// Edge radius of boxes [m], at most the smallest half extent.
 const EDGE: f32 = 0.02;
 
-/// A corner of the mesh.
+/// Vertex of the mesh.
 #[repr(C)]
 #[derive(Copy, Clone, Debug, PartialEq, Pod, Zeroable)]
 pub struct RoundedVertex {
-    /// Outwards, of length 1.
+    /// Outward unit normal.
     pub normal: Vec3,
-    /// Which eighth it belongs to: −1 or 1 along each axis.
+    /// Octant of the vertex: −1 or 1 along each axis.
     pub eighth: Vec3,
 }
 
-/// A ball, a capsule or a box with round edges, to be drawn.
+/// Instance of a ball, a capsule or a box with rounded edges.
 #[repr(C)]
 #[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct RoundedInstance {
-    /// Its middle [m].
+    /// Centre [m].
     pub centre: Vec3,
-    /// Of its edges, in lengths of its axes.
+    /// Radius of its edges, in lengths of its axes.
     pub radius: f32,
-    /// Its axes [m].
+    /// Axes [m].
     pub axes: Mat3,
-    /// How far the middles of its round edges are from its middle, in lengths of its axes.
+    /// Half extents of the box of edge centres, in lengths of its axes.
     pub half: Vec3,
     /// Red, green, blue, opacity.
     pub colour: [f32; 4],
-    /// Which player's hand it is, how far a basket is filled, or what makes a crumb differ from
-    /// others.
+    /// Player number of a hand, fill level of a basket, or variation seed of a crumb.
     pub number: f32,
 }
 
-/// The mesh, each eighth in `fine` × `fine` faces three times; triangles as indices.
+/// Returns vertices and triangle indices of the mesh, with 3 · `fine` × `fine` faces per octant.
 pub fn mesh(fine: usize) -> (Vec<RoundedVertex>, Vec<u32>) {
     let (mut vertices, mut indices) = (Vec::new(), Vec::new());
     let side = 2 * (fine + 1);
-    // From −1 to 1, the middle twice.
+    // Parameters from −1 to 1, with 0 twice.
     let along = |k: usize| match k > fine {
         false => (k as f32 / fine as f32 - 1.0, -1.0),
         true => ((k - fine - 1) as f32 / fine as f32, 1.0),
@@ -54,7 +53,7 @@ pub fn mesh(fine: usize) -> (Vec<RoundedVertex>, Vec<u32>) {
     for face in 0..6 {
         let axis = face / 2;
         let end = if face % 2 == 1 { 1.0 } else { -1.0 };
-        // The other two axes, so that triangles turn around the outward normal.
+        // The other two axes, ordered so that triangles turn around the outward normal.
         let (u, v) = match face % 2 {
             1 => ((axis + 1) % 3, (axis + 2) % 3),
             _ => ((axis + 2) % 3, (axis + 1) % 3),
@@ -82,13 +81,13 @@ pub fn mesh(fine: usize) -> (Vec<RoundedVertex>, Vec<u32>) {
     (vertices, indices)
 }
 
-/// Spreads places on the side of a cube so that they are about as far apart on the ball.
+/// Maps a coordinate on a cube face so that points are about equally spaced on the ball.
 fn bent(k: f32) -> f32 {
     (k * std::f32::consts::FRAC_PI_4).tan()
 }
 
 impl RoundedInstance {
-    /// A shape that ends somewhere.
+    /// Returns the instance of a bounded shape, or `None` for a half-space.
     pub fn of(shape: Shape, [red, green, blue]: crate::Colour, number: f32) -> Option<Self> {
         let plain = Self {
             colour: [red, green, blue, 1.0],
@@ -136,7 +135,7 @@ impl RoundedInstance {
     }
 }
 
-/// Three axes square to each other, of length 1, the first of them along a direction.
+/// Returns orthonormal axes, the first of them along a direction.
 fn frame_along(direction: Vec3) -> Mat3 {
     let first = direction.try_normalize().unwrap_or(Vec3::X);
     let aside = if first.y.abs() < 0.9 {
@@ -153,7 +152,7 @@ mod tests {
     use super::*;
     use fuwafuwa::vector::length;
 
-    /// What the mesh encloses when it is drawn out to an instance.
+    /// Enclosed volume of the mesh after stretching it to an instance.
     fn volume(instance: &RoundedInstance) -> f32 {
         let (vertices, indices) = mesh(8);
         let place = |index: u32| {
@@ -171,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_have_their_volume() {
+    fn mesh_has_the_volume_of_each_shape() {
         let pi = std::f32::consts::PI;
         let (centre, radius) = ([1.0, 2.0, -1.0], 0.5);
         let ball = Shape::Ball { centre, radius };

@@ -1,8 +1,8 @@
-//! The smooth surface of a body in space, as vertices.
+//! Smooth surface of a 3D body, as vertices.
 //!
-//! Every tick all points of the surface go where their voxels carry them, and are then smoothed by a
-//! few rounds: what presses on a body presses on its stairs. What is smoothed on one lip of a crack
-//! is smoothed in the same way on the other, so that a closed crack stays closed.
+//! In every call all surface points move with their voxels and are then smoothed by a few rounds, because
+//! contacts press on the voxel staircase. Both faces of a crack are smoothed alike, so that a closed crack
+//! stays closed.
 
 use super::faces::{Faces, Ground, NO_NODE, NONE, SkinPoint};
 use super::rest::Rest;
@@ -12,9 +12,9 @@ use fuwafuwa::ids::IndexVec;
 use fuwafuwa::{Dim3, ElementId, NodeId, PieceId, SoftBody};
 use glam::{Vec3, Vec4};
 
-/// By how much of the way to the mean of its neighbours a point goes in each round: on the original
-/// surface, at the mouth of a crack, inside. Rounds that go away from it give back the size that the
-/// others take, so that small torn pieces do not shrink [Taubin 1995].
+/// Fraction of the way to the mean of its neighbours that a point moves in each round: on the original
+/// surface, at the mouth of a crack, inside. The negative rounds undo the shrinking of the positive ones, so
+/// that small torn pieces keep their size [Taubin 1995].
 const ROUNDS: [[f32; 3]; 4] = [
     [0.5, 0.5, 0.5],
     [0.5, 0.5, -0.5],
@@ -22,28 +22,29 @@ const ROUNDS: [[f32; 3]; 4] = [
     [0.5, 0.5, -0.5],
 ];
 
-/// A corner of a triangle of the skin.
+/// Vertex of the skin.
 #[repr(C)]
 #[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct SkinVertex {
-    /// Where [m].
+    /// Position [m].
     pub at: [f32; 3],
-    /// Where it was in the grid [voxels].
+    /// Rest position in the grid [voxels].
     pub rest: [f32; 3],
-    /// Outwards, of length 32767; and ‖F − R‖ of its voxel, 32767 being 1.
+    /// Outward normal of length 32767; last component: strain ‖F − R‖ of the voxel, 32767 being 1.
     pub normal: [i16; 4],
-    /// Red, green, blue of a material; in the last place 255 where it was inside.
+    /// Red, green, blue of the material; the last component is 255 on torn surfaces.
     pub colour: [u8; 4],
-    /// Red, green, blue of the material beyond the nearest border; in the last place 128 on that, more beyond.
+    /// Red, green, blue of the material beyond the nearest border; the last component is 128 on the border,
+    /// more beyond it.
     pub other: [u8; 4],
 }
 
-/// The surface of a body.
+/// Surface of a body.
 #[derive(Clone, Debug, Default)]
 pub struct Skin {
     rest: Rest,
     faces: Faces,
-    /// By point: where it is, and last how far its voxel is strained.
+    /// Position and, as last component, voxel strain of each point.
     places: Vec<Vec4>,
     smoothed: Vec<Vec4>,
     normals: Vec<Vec3>,
@@ -51,8 +52,8 @@ pub struct Skin {
 }
 
 impl Skin {
-    /// Brings the surface up to date with a body; `palette` has the colours of its materials, number
-    /// 1 first. Returns whether the triangles are others than before.
+    /// Updates the surface to the current state of a body. `palette` has the colours of its materials,
+    /// starting at number 1. Returns whether the triangles changed.
     pub fn follow(&mut self, body: &SoftBody<Dim3>, palette: &[Colour]) -> bool {
         if !self.rest.fits(body.grid()) {
             *self = Self {
@@ -68,22 +69,22 @@ impl Skin {
         is_new
     }
 
-    /// Its vertices. Some belong to no triangle.
+    /// Returns the vertices. Some belong to no triangle.
     pub fn vertices(&self) -> &[SkinVertex] {
         &self.vertices
     }
 
-    /// Its triangles, three vertices each. Some have no area.
+    /// Returns the vertex indices, three per triangle. Some triangles have no area.
     pub fn indices(&self) -> &[u32] {
         &self.faces.indices
     }
 
-    /// The elements that are a piece each: they are no part of the surface.
+    /// Returns the crumbs: elements that are pieces of their own and not part of the surface.
     pub fn crumbs(&self) -> &[ElementId] {
         &self.faces.crumbs
     }
 
-    /// Its vertices on a piece, as of the last look.
+    /// Returns the vertices on a piece, as of the last [`Skin::follow`].
     pub(super) fn vertices_of<'a>(
         &'a self,
         body: &'a SoftBody<Dim3>,
@@ -99,7 +100,7 @@ impl Skin {
         own.map(|(_, vertex)| vertex)
     }
 
-    /// Puts all points where their voxels carry them.
+    /// Moves all points with their voxels.
     fn place(&mut self, body: &SoftBody<Dim3>) {
         let (positions, size) = (body.positions(), body.grid().voxel_size());
         self.places.clear();
@@ -134,7 +135,7 @@ impl Skin {
         std::mem::swap(&mut self.places, &mut self.smoothed);
     }
 
-    /// Adds up the normals of the faces at each vertex, the larger ones weighing more.
+    /// Sums the normals of the faces at each vertex, weighted by area.
     fn find_normals(&mut self) {
         self.normals.clear();
         self.normals
@@ -175,8 +176,8 @@ impl Skin {
     }
 }
 
-/// Where a point is: its node moved by its offset, as the mean deformation of its voxel turns and
-/// stretches it. Behind that ‖F − R‖, to first order.
+/// Returns the position of a point: its node plus the offset, transformed by the mean deformation of its
+/// voxel. The last component is ‖F − R‖ to first order.
 #[inline]
 fn carried(
     point: &SkinPoint,
@@ -195,7 +196,7 @@ fn carried(
     place
 }
 
-/// The mean edges of a voxel along its axes [m].
+/// Returns the mean edges of a voxel along its axes [m].
 #[inline]
 fn edges(voxel: &[NodeId; 8], positions: &IndexVec<NodeId, [f32; 4]>) -> [Vec4; 3] {
     let corners = voxel.map(|id| Vec4::from(positions[id]));
@@ -252,7 +253,7 @@ mod tests {
             triangles.map(|t| [0, 1, 2].map(|k| self.vertices[t[k] as usize]))
         }
 
-        /// What its triangles enclose [m³].
+        /// Volume enclosed by the triangles [m³].
         fn volume(&self) -> f32 {
             let sixfold = |[a, b, c]: [SkinVertex; 3]| dot(a.at, cross(b.at, c.at));
             self.corners().map(sixfold).sum::<f32>() / 6.0
@@ -260,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn the_skin_of_a_ball_is_a_sphere() {
+    fn skin_of_a_ball_is_a_sphere() {
         let world = ball(32);
         let count = world.soft_bodies().first().unwrap().grid().solid_count() as f32;
         let round = (0.75 * count / std::f32::consts::PI).cbrt() / 32.0;
@@ -275,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stretched_ball_is_an_ellipsoid_and_knows_its_strain() {
+    fn skin_of_a_stretched_ball_is_an_ellipsoid_with_strain() {
         let mut world = ball(32);
         let whole = skin(&world).volume();
         let body = world
@@ -288,7 +289,7 @@ mod tests {
         }
         let skin = skin(&world);
         assert!((skin.volume() / whole - 1.5).abs() < 0.01);
-        // F − R is 0.5, half of FᵀF − 1 is 0.625.
+        // F − R is 0.5 here, half of FᵀF − 1 is 0.625.
         let strains = skin
             .vertices()
             .iter()
@@ -297,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn halves_that_lie_together_fill_the_ball_and_are_fresh_inside() {
+    fn closed_cut_preserves_volume_and_marks_torn_faces() {
         let mut world = ball(24);
         let whole = skin(&world).volume();
         cut(&mut world, 0.47);
@@ -317,11 +318,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_up_to_date_is_as_if_made_anew() {
+    fn follow_matches_a_new_skin_after_each_cut() {
         let mut world = ball(16);
         let mut kept = skin(&world);
-        // Where faces were is the same to the last bit; where they are follows from voxels that may
-        // be others of the same point.
+        // Rest positions are equal to the last bit; current positions depend on the voxel chosen at each
+        // point.
         let sorted = |skin: &Skin| {
             let rest = |corner: SkinVertex| (corner.rest.map(f32::to_bits), corner.colour);
             let mut triangles: Vec<_> = skin.corners().map(|corners| corners.map(rest)).collect();
@@ -346,7 +347,7 @@ mod tests {
         let safe = Palette::colour_safe().materials;
         assert!(kept.follow(world.soft_bodies().first().unwrap(), &safe));
         assert!(!kept.follow(world.soft_bodies().first().unwrap(), &safe));
-        // Another body with a grid of its own, and an untorn one with the same.
+        // Another body with its own grid, and an untorn one with an equal grid.
         for n in [16, 20] {
             let other = ball(n);
             kept.follow(
@@ -358,8 +359,8 @@ mod tests {
     }
 
     #[test]
-    fn a_voxel_on_its_own_is_a_crumb() {
-        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
+    fn isolated_voxel_is_a_crumb() {
+        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
         let grid = VoxelGrid::from_fn([3, 1, 1], 1.0, |[x, ..]| u8::from(x != 1)).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let skin = skin(&world);

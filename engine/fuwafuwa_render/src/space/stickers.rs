@@ -1,9 +1,9 @@
-//! Stickers as vertices: every mark a cushion that lies on the skin, however that has gone out of shape.
+//! Stickers as vertices. Every mark is a cushion on the deformed skin.
 //!
 //! ```text
-//!        out            The skin is seen as heights over the plane of the sticker, which are found
-//!      ╭──┼──╮          anew each time: so a sticker needs to know nothing of tears, and lies on
-//!    ╭╯   ┼   ╰╮        what is outermost there now.
+//!        out            The skin is treated as a height field over the plane of the sticker. It is
+//!      ╭──┼──╮          computed again in each call, so stickers need no knowledge of cracks and
+//!    ╭╯   ┼   ╰╮        lie on the outermost current surface.
 //!   ╱    from   ╲
 //! ```
 
@@ -13,35 +13,35 @@ use crate::palette::bytes;
 use fuwafuwa::{Dim3, SoftBody, Vector};
 use glam::{Mat3, Vec2, Vec3};
 
-/// The heights of the skin reach so far to each side, in coordinates of marks, and are so many in a row.
+/// Half extent of the height field [mark units], and its number of samples per side.
 const REACH: f32 = 1.2;
 const SIDE: usize = 25;
-/// A height is the mean of what is so near, in coordinates of marks and in voxels: what of both is more.
+/// Radius over which a height is averaged, in mark units and in voxels; the larger one applies.
 const NEAR: [f32; 2] = [0.12, 1.1];
-/// Skin that is lower than another by so much, in coordinates of marks, lies below a fold.
+/// Depth below another part of the skin from which skin counts as hidden by a fold [mark units].
 const FOLD: f32 = 0.3;
-/// So much closer to the eye than its place on the skin is a mark, in coordinates of marks: no bump shows through.
+/// Offset of marks from the skin towards the eye [mark units], so that no bump of the skin shows through.
 const CLOSER: f32 = 0.06;
-/// The rings of a cushion, as shares of the way from its middle to its edge.
+/// Rings of a cushion, as fractions of the distance from its centre to its edge.
 const RINGS: [f32; 5] = [1.0, 0.94, 0.8, 0.55, 0.25];
 
-/// Stickers as vertices, with the buffers to make them again and again.
+/// Stickers as vertices. Keep the value between frames to reuse its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct Stickers {
-    /// Corners; their place at rest says nothing, and the last of their colour is their opacity.
+    /// Vertices. Their rest position is unused, and the last component of the colour is the opacity.
     pub vertices: Vec<SkinVertex>,
-    /// Three to a triangle.
+    /// Vertex indices, three per triangle.
     pub indices: Vec<u32>,
 }
 
 impl Stickers {
-    /// Forgets all stickers.
+    /// Removes all stickers.
     pub fn clear(&mut self) {
         self.vertices.clear();
         self.indices.clear();
     }
 
-    /// Adds a sticker, as it is seen from a place [m].
+    /// Adds a sticker, seen from the point `eye` [m].
     pub fn add(&mut self, sticker: &Sticker, skin: &Skin, body: &SoftBody<Dim3>, eye: Vector) {
         let Some(heights) = Heights::new(sticker, skin, body) else {
             return;
@@ -105,11 +105,11 @@ impl Stickers {
     }
 }
 
-/// The skin around a sticker, as heights over its plane, in coordinates of marks.
+/// Height field of the skin over the plane of a sticker [mark units].
 struct Heights([f32; SIDE * SIDE]);
 
 impl Heights {
-    /// Finds it; none where there is no skin.
+    /// Computes the height field. Returns `None` where there is no skin.
     fn new(sticker: &Sticker, skin: &Skin, body: &SoftBody<Dim3>) -> Option<Self> {
         let axes = sticker.axes.map(Vec3::from);
         let square = axes.map(Vec3::length_squared);
@@ -128,7 +128,7 @@ impl Heights {
                 seen.push(at);
             }
         }
-        // Where there is no skin, the plane goes on where the skin ended.
+        // Outside the skin, the height field continues at its lowest height.
         let lowest = seen.iter().map(|at| at.z).reduce(f32::min)?;
         let reach = 2.0 * near;
         let mut tops = [lowest; SIDE * SIDE];
@@ -147,7 +147,7 @@ impl Heights {
         Some(Self(std::array::from_fn(|k| sums[k] / weights[k])))
     }
 
-    /// The height at a place.
+    /// Returns the interpolated height at a point of the plane.
     fn at(&self, place: Vec2) -> f32 {
         let last = SIDE as f32 - 1.0;
         let place = 0.5 * last * (place / REACH + 1.0);
@@ -162,7 +162,7 @@ impl Heights {
     }
 }
 
-/// Does something with all heights that are closer to a place than `reach`, and by how much they are, 0 to 1.
+/// Calls `act` with the index and the weight (0 to 1) of each sample within `reach` of a point.
 fn around(place: Vec3, reach: f32, mut act: impl FnMut(usize, f32)) {
     let step = 2.0 * REACH / (SIDE - 1) as f32;
     let range = |k: usize| {
@@ -189,8 +189,8 @@ mod tests {
     use fuwafuwa::{Blade, Material, PieceId, VoxelGrid, World, WorldConfig};
 
     #[test]
-    fn a_sticker_lies_on_the_skin_and_on_what_is_left_of_it() {
-        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
+    fn sticker_lies_on_the_skin_and_on_torn_faces() {
+        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
         let grid = VoxelGrid::ball(32, 1.0).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let outline = [[-0.6, -0.6], [0.6, -0.6], [0.6, 0.6], [-0.6, 0.6]].to_vec();
@@ -219,11 +219,11 @@ mod tests {
         assert_eq!(whole.vertices.len(), 21);
         for vertex in &whole.vertices {
             let away = length(minus(vertex.at, [0.5; 3]));
-            // As far out as the skin, and no more than a bump of it closer to the eye.
+            // On the skin, offset towards the eye by at most `CLOSER`.
             assert!((0.485..0.53).contains(&away), "{away}");
             assert!(vertex.normal[2] > 20000, "{vertex:?}");
         }
-        // A slice is cut off: the sticker lies on the torn face of what is left.
+        // After a slice was cut off, the sticker lies on the torn face of the rest.
         let (from, across, along) = ([-0.2, -0.2, 0.75], [1.4, 0.0, 0.0], [0.0, 1.4, 0.0]);
         let blade = Blade {
             from,
@@ -241,7 +241,7 @@ mod tests {
         for vertex in stuck(&world, &sticker).vertices {
             assert!((0.73..0.81).contains(&vertex.at[2]), "{vertex:?}");
         }
-        // What is not there has no stickers.
+        // Missing pieces have no stickers.
         sticker.piece = PieceId(99);
         assert!(stuck(&world, &sticker).indices.is_empty());
     }

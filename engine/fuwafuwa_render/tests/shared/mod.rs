@@ -1,8 +1,8 @@
-//! What the tests of pictures have in common.
+//! Helpers shared by the picture tests.
 
 use fuwafuwa_render::Colour;
 
-/// A device with what WebGL2 has and nothing more; none where there is no adapter.
+/// Device with exactly the limits of WebGL2; `None` without a graphics adapter.
 pub fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
     device_with(wgpu::Limits::downlevel_webgl2_defaults())
 }
@@ -14,16 +14,16 @@ pub fn device_with(required_limits: wgpu::Limits) -> Option<(wgpu::Device, wgpu:
         let is_ci = std::env::var("CI").is_ok_and(|value| value == "1" || value == "true");
         assert!(
             !is_ci,
-            "no graphics adapter; mesa-vulkan-drivers brings one"
+            "no graphics adapter; install one, for example mesa-vulkan-drivers"
         );
-        eprintln!("skipped: no graphics adapter; mesa-vulkan-drivers brings one");
+        eprintln!("skipped: no graphics adapter; install one, for example mesa-vulkan-drivers");
         return None;
     };
     let descriptor = wgpu::DeviceDescriptor {
         required_limits,
         ..Default::default()
     };
-    Some(pollster::block_on(adapter.request_device(&descriptor)).expect("a modest device"))
+    Some(pollster::block_on(adapter.request_device(&descriptor)).expect("requested device"))
 }
 
 pub fn is_warm([red, green, blue]: Colour) -> bool {

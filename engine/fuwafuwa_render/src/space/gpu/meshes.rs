@@ -1,4 +1,4 @@
-//! Vertices and triangles on the GPU, in two buffers.
+//! Vertex and index buffer of a mesh on the GPU.
 
 use crate::gpu::buffer::{GrowingBuffer, drawable};
 use crate::gpu::cost::{Gpu, Meter};
@@ -7,13 +7,13 @@ use bytemuck::Pod;
 use std::ops::Range;
 use wgpu::{BufferUsages, Device, IndexFormat, RenderPass};
 
-/// Room for vertices and triangles.
+/// Creates empty vertex and index buffers.
 pub(super) fn mesh_buffers(device: &Device, label: &'static str) -> [GrowingBuffer; 2] {
     [BufferUsages::VERTEX, BufferUsages::INDEX]
         .map(|usage| GrowingBuffer::new(device, label, usage))
 }
 
-/// Writes skins; those that were not renewed have the triangles that they had.
+/// Writes skins. Index buffers of skins that are not renewed keep their contents.
 pub(super) fn write_skins(
     gpu: Gpu<'_>,
     buffers: &mut Vec<[GrowingBuffer; 2]>,
@@ -27,7 +27,7 @@ pub(super) fn write_skins(
     for (place, is_new) in renewed.iter().enumerate() {
         let (skin, [vertices, indices]) = (&skins[place], &mut buffers[place]);
         vertices.write(gpu, skin.vertices());
-        // A body that is gone leaves its buffers to the next one.
+        // The next body takes over the buffers of a removed body; its triangles differ.
         if *is_new || indices.count() as usize != skin.indices().len() {
             let there = drawable(skin.indices(), skin.vertices(), vertices.count());
             indices.write(gpu, there);
@@ -35,7 +35,7 @@ pub(super) fn write_skins(
     }
 }
 
-/// Writes vertices, and as many triangles as there is room for their corners.
+/// Writes vertices, and the triangles whose vertices all fit into the buffer.
 pub(super) fn write_mesh<T: Pod>(
     gpu: Gpu<'_>,
     [vertices, indices]: &mut [GrowingBuffer; 2],
@@ -47,7 +47,7 @@ pub(super) fn write_mesh<T: Pod>(
     indices.write(gpu, there);
 }
 
-/// Draws it so many times; nothing where it is empty.
+/// Draws a mesh for a range of instances. Draws nothing if the mesh or the range is empty.
 pub(super) fn draw_mesh(
     meter: &Meter,
     pass: &mut RenderPass<'_>,

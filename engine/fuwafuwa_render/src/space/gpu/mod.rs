@@ -1,4 +1,4 @@
-//! Vertices on the GPU: the shadow map, the picture, then the window's pass.
+//! 3D drawing on the GPU: the shadow and sky maps, the picture, then the window's pass.
 
 mod meshes;
 mod pipelines;
@@ -22,29 +22,29 @@ use std::ops::Range;
 use targets::{SHADOW_SIDES, Shadows, Targets};
 use wgpu::*;
 
-/// Where the light comes from; `LIGHT` in `space.wgsl` says the same.
+/// Direction towards the light; equals `LIGHT` in `space.wgsl`.
 const LIGHT: Vec3 = Vec3::new(-0.42, 0.80, 0.45);
-/// The sky is above.
+/// Direction towards the sky.
 const SKY: Vec3 = Vec3::Y;
-/// Half of what the light shines on from side to side, in distances of the camera.
+/// Half extent of the lit region, in multiples of the camera distance.
 const LIT: f32 = 0.55;
-/// How far shadows of the light and of the sky are blurred, as shares of their maps: more makes them
-/// softer, until single samples show as steps.
+/// Blur width of light and sky shadows, as fractions of their maps. Larger values make shadows softer, until
+/// single samples show as steps.
 const SOFTNESS: [f32; 2] = [0.006, 0.035];
-/// Hands that throw shadows; more have no place in the uniforms of a small device.
+/// Maximum number of hands that cast shadows, given by the uniform size of small devices.
 const MOST_HANDS: usize = 4;
-/// How fine balls are that may be large, and small ones.
+/// Faces per octant side of balls that may be large, and of small balls.
 const FINE: usize = 12;
 const COARSE: usize = 3;
 
-/// Draws worlds in space.
+/// Draws 3D worlds.
 pub struct Renderer {
     format: TextureFormat,
     pipelines: Pipelines,
     targets: Targets,
     shadows: Shadows,
     geometry: Geometry,
-    /// For the picture, then for both shadow maps.
+    /// Uniforms of the picture and of both shadow maps.
     uniforms: [Buffer; 3],
     globals: [BindGroup; 3],
     /// Vertices and triangles of each body.
@@ -59,7 +59,7 @@ pub struct Renderer {
     meter: Meter,
 }
 
-/// What every shader knows; see `space.wgsl`.
+/// Uniforms of every shader; see `space.wgsl`.
 #[repr(C)]
 #[derive(Copy, Clone, Debug, Pod, Zeroable)]
 struct Globals {
@@ -81,8 +81,8 @@ struct Globals {
 }
 
 impl Renderer {
-    /// A renderer for passes with a single target of a format, best one without `Srgb`, as egui
-    /// has them; no depth and no multisampling.
+    /// Creates a renderer for passes with a single colour target, without depth and multisampling. Formats
+    /// without `Srgb`, as egui uses them, are preferred.
     pub fn new(device: &Device, target_format: TextureFormat) -> Self {
         let pipelines = Pipelines::new(device, target_format);
         let uniforms =
@@ -111,8 +111,8 @@ impl Renderer {
         }
     }
 
-    /// Makes a picture of a world ready for a target of `target_size` pixels: works out and
-    /// uploads its vertices, and draws it into an image of its own.
+    /// Prepares a picture of a world for a target of `target_size` pixels: computes and uploads its vertices
+    /// and draws it into an intermediate image.
     pub fn prepare(
         &mut self,
         device: &Device,
@@ -132,7 +132,7 @@ impl Renderer {
         self.draw_picture(encoder);
     }
 
-    /// Puts the picture that was made ready into a pass, filling its viewport.
+    /// Paints the prepared picture into a pass, filling its viewport.
     pub fn paint(&self, pass: &mut RenderPass<'static>) {
         pass.set_pipeline(&self.pipelines.window);
         pass.set_bind_group(0, &self.globals[0], &[]);
@@ -140,20 +140,20 @@ impl Renderer {
         self.meter.draw(pass, 0..3, 0..1);
     }
 
-    /// As [`crate::Renderer::forget_images`].
+    /// Releases the intermediate images, as [`crate::Renderer::forget_images`].
     pub fn forget_images(&mut self, device: &Device) {
         self.targets = Targets::new(device, &self.pipelines, [1, 1]);
     }
 
-    /// As [`crate::Renderer::take_cost`].
+    /// Returns the GPU cost since the last call, as [`crate::Renderer::take_cost`].
     pub fn take_cost(&self) -> Cost {
         self.meter.take()
     }
 
-    /// Draws a world into an image, as [`crate::Renderer::render_to_image`] does in the plane.
+    /// Draws a world into an image, like the 2D renderer's [`crate::Renderer::render_to_image`].
     ///
     /// # Errors
-    /// As there.
+    /// As [`crate::Renderer::render_to_image`].
     pub fn render_to_image(
         &mut self,
         device: &Device,
@@ -327,7 +327,7 @@ impl Renderer {
                 (&pipelines.dust, &self.coarse, &geometry.dust),
             ],
         );
-        // Of a ghost one sees what is in front; so that is found first.
+        // Only the front surface of a ghost is visible, so its depth is drawn first.
         for pipeline in [&pipelines.ghost_depth, &pipelines.ghost] {
             pass.set_pipeline(pipeline);
             for buffers in &self.ghosts {
@@ -351,26 +351,27 @@ impl Renderer {
     }
 
     fn draw_skins(&self, pass: &mut RenderPass<'_>) {
-        // In the element view there are none.
+        // In the element view no skins are drawn.
         for buffers in &self.skins[..self.geometry.renewed.len()] {
             draw_mesh(&self.meter, pass, buffers, 0..1);
         }
     }
 
-    /// Instances, as far as the device has room for them.
+    /// Limits an instance range to the instances in the buffer.
     fn there(&self, instances: &Range<u32>) -> Range<u32> {
         let count = self.rounded.count();
         instances.start.min(count)..instances.end.min(count)
     }
 }
 
-/// From metres to the coordinates of a shadow map that sees `half` [m] around a middle, from where a
-/// light comes.
+/// Returns the matrix to the coordinates of a shadow map that covers `half` [m] around a centre, seen from a
+/// light direction.
 fn seen_by(light: Vec3, middle: Vec3, half: f32) -> Mat4 {
     let back = light.normalize();
     let right = Vec3::NEG_Z.cross(back).normalize();
     let seen = seen_from(middle, Mat3::from_cols(right, back.cross(right), back));
-    // Things in front of what is lit throw shadows onto it as well.
+    // A sixth of the scale in depth includes objects between the light and the lit region, which cast shadows
+    // too.
     let scale = Vec3::new(1.0, 1.0, -1.0 / 6.0) / half;
     Mat4::from_translation(0.5 * Vec3::Z) * Mat4::from_scale(scale) * seen
 }

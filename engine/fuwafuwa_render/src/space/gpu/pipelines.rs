@@ -1,4 +1,4 @@
-//! What the GPU is to do with each kind of vertex of a world in space.
+//! Render pipelines for each kind of 3D vertex.
 
 use crate::gpu::program::{
     InMemory, OVER, Program, SAMPLES, Target, entry, layout, module, sampler, texture, uniform,
@@ -10,14 +10,14 @@ use crate::space::rounded::{RoundedInstance, RoundedVertex};
 use crate::space::skin::SkinVertex;
 use wgpu::*;
 
-/// The picture, as screens take it.
+/// Format of the picture, as screens take it.
 pub const PICTURE_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
-/// How far away everything is.
+/// Format of the depth seen from the camera.
 pub const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth24Plus;
-/// How far from the light everything is.
+/// Format of the depth seen from the light.
 pub const SHADOW_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 
-/// All of them, and what they are bound to.
+/// All render pipelines and their bind group layouts.
 pub struct Pipelines {
     pub globals_layout: BindGroupLayout,
     pub shadow_layout: BindGroupLayout,
@@ -37,12 +37,12 @@ pub struct Pipelines {
     pub dust: RenderPipeline,
     pub line: RenderPipeline,
     pub glow: RenderPipeline,
-    /// What throws shadows, seen from the light.
+    /// Shadow casters, seen from the light.
     pub skin_shadow: RenderPipeline,
     pub element_shadow: RenderPipeline,
     pub bar_shadow: RenderPipeline,
     pub crumb_shadow: RenderPipeline,
-    /// The finished picture into a window.
+    /// Copies the finished picture into a window.
     pub window: RenderPipeline,
 }
 
@@ -124,7 +124,7 @@ impl Pipelines {
             }),
             ..clear.clone()
         };
-        // Of two things in the same place, which is behind: by how many steps of depth.
+        // Depth bias in steps; it decides which of two coincident surfaces is behind.
         let moved = |steps: i32, is_written| {
             Some(DepthStencilState {
                 bias: DepthBiasState {
@@ -135,7 +135,8 @@ impl Pipelines {
                 ..depth_state(DEPTH_FORMAT, is_written)
             })
         };
-        // A ghost is a little behind a body, and not seen; the bottom of a basket is in front of the floor.
+        // A ghost is slightly behind a body in the same position and thus hidden. The bottom of a basket is
+        // in front of the floor.
         let farther = |is_written| moved(16, is_written);
         let both_sides = Target {
             depth: moved(-16, false),
@@ -164,7 +165,7 @@ impl Pipelines {
                 &solid,
             ),
             skin: drawn(&skin, ("skin_corner", "skin"), &skins, &solid),
-            // No mark of a sticker hides another: they are painted on top of each other.
+            // Marks of a sticker are painted on top of each other and do not write depth.
             sticker: drawn(&skin, ("skin_corner", "sticker"), &skins, &clear),
             ghost_depth: drawn(&skin, ("skin_corner", "ghost"), &skins, &ghost_depth),
             ghost: drawn(&skin, ("skin_corner", "ghost"), &skins, &ghost),

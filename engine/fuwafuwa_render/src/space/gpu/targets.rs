@@ -1,18 +1,18 @@
-//! The images that a world in space is drawn into, apart from the window.
+//! Intermediate images that a 3D world is drawn into.
 
 use super::pipelines::{DEPTH_FORMAT, PICTURE_FORMAT, Pipelines, SHADOW_FORMAT};
 use crate::gpu::program::SAMPLES;
 use crate::gpu::targets::{bind, new_image, smooth, within};
 use wgpu::*;
 
-/// The sides of what the light sees and of what the sky sees [px]: the latter is blurred far more.
+/// Side lengths of the shadow map and of the sky map [px]. The sky map is blurred far more.
 pub const SHADOW_SIDES: [u32; 2] = [1024, 128];
 
-/// The images of a picture, and what is bound to put it into a window.
+/// Images of a picture, and the bind group for copying it into a window.
 pub struct Targets {
-    /// Of the window this is for [px].
+    /// Size of the window [px].
     pub window: [u32; 2],
-    /// Of the picture [px].
+    /// Size of the picture [px].
     pub size: [u32; 2],
     pub rough: TextureView,
     pub depth: TextureView,
@@ -20,7 +20,7 @@ pub struct Targets {
     pub shown: BindGroup,
 }
 
-/// What the light sees and what the sky sees, and what is bound to look into both.
+/// Shadow map and sky map, and the bind group for reading both.
 pub struct Shadows {
     pub maps: [TextureView; 2],
     pub read: BindGroup,
