@@ -20,7 +20,7 @@ fn flight_stick_reports_all_axes_buttons_and_hats() {
     let sticks = open();
     let stick = sticks
         .plug_in_stick("Wing", 7, 32, 2)
-        .expect("the device can be plugged in");
+        .expect("valid device");
     for axis in 0..7 {
         assert!(stick.axis(axis, axis as f32 / 3.0 - 1.0));
     }
@@ -54,7 +54,7 @@ fn missing_controls_are_refused() {
     let sticks = open();
     let stick = sticks
         .plug_in_stick("Small", 2, 1, 1)
-        .expect("the device can be plugged in");
+        .expect("valid device");
     assert!(!stick.axis(2, 1.0));
     assert!(!stick.button(1, true));
     assert!(!stick.hat(1, &[]));
@@ -69,9 +69,7 @@ fn missing_controls_are_refused() {
 #[test]
 fn pad_has_the_standard_layout() {
     let sticks = open();
-    let pad = sticks
-        .plug_in_pad("Pad")
-        .expect("the device can be plugged in");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     for (axis, value) in [0.5, -0.25, -1.0, 1.0, 1.0, 0.0].into_iter().enumerate() {
         assert!(pad.axis(axis, value));
     }
@@ -104,9 +102,7 @@ fn pad_has_the_standard_layout() {
 #[test]
 fn pad_at_rest_reports_zeros() {
     let sticks = open();
-    let pad = sticks
-        .plug_in_pad("Pad")
-        .expect("the device can be plugged in");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let layout = device(&sticks, &pad).pad.expect("SDL knows its layout");
     assert_eq!(
         (layout.left, layout.right, layout.triggers),
@@ -119,7 +115,7 @@ fn presses_between_two_polls_are_counted() {
     let sticks = open();
     let stick = sticks
         .plug_in_stick("Stick", 2, 2, 1)
-        .expect("the device can be plugged in");
+        .expect("valid device");
     let before = sticks.snapshot();
     for _press in 0..5 {
         stick.button(1, true);
@@ -154,7 +150,7 @@ fn snapshots_report_connections_and_disconnections() {
     let none = sticks.snapshot();
     let first = sticks
         .plug_in_stick("First", 2, 1, 0)
-        .expect("the device can be plugged in");
+        .expect("valid device");
     let one = sticks.snapshot();
     assert_eq!(one.since(&none), [Change::Connected(first.id())]);
 
@@ -162,7 +158,7 @@ fn snapshots_report_connections_and_disconnections() {
     drop(first);
     let second = sticks
         .plug_in_stick("First", 2, 1, 0)
-        .expect("the device can be plugged in");
+        .expect("valid device");
     assert_ne!(second.id(), id, "another connection has another id");
     assert_eq!(
         sticks.snapshot().since(&one),
@@ -173,12 +169,10 @@ fn snapshots_report_connections_and_disconnections() {
 #[test]
 fn device_unplugged_while_held_disappears() {
     let sticks = open();
-    let pad = sticks
-        .plug_in_pad("Pad")
-        .expect("the device can be plugged in");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let stick = sticks
         .plug_in_stick("Stick", 2, 1, 0)
-        .expect("the device can be plugged in");
+        .expect("valid device");
     pad.axis(0, 1.0);
     pad.pad_button(PadButton::South, true);
     stick.button(0, true);
@@ -196,11 +190,7 @@ fn device_unplugged_while_held_disappears() {
 #[test]
 fn equal_devices_have_separate_states() {
     let sticks = open();
-    let [one, two] = [0, 1].map(|_| {
-        sticks
-            .plug_in_pad("Same")
-            .expect("the device can be plugged in")
-    });
+    let [one, two] = [0, 1].map(|_| sticks.plug_in_pad("Same").expect("valid device"));
     one.axis(0, 1.0);
     two.axis(0, -1.0);
     two.pad_button(PadButton::Start, true);
@@ -218,11 +208,7 @@ fn equal_devices_have_separate_states() {
 fn twelve_devices_can_be_connected() {
     let sticks = open();
     let puppets: Vec<_> = (0..12)
-        .map(|_| {
-            sticks
-                .plug_in_pad("Pad")
-                .expect("the device can be plugged in")
-        })
+        .map(|_| sticks.plug_in_pad("Pad").expect("valid device"))
         .collect();
     assert_eq!(sticks.snapshot().devices.len(), 12);
     drop(puppets);
@@ -236,9 +222,7 @@ fn sticks_open_once_at_a_time_and_can_be_reopened() {
     drop(first);
     for _again in 0..20 {
         let sticks = open();
-        let pad = sticks
-            .plug_in_pad("Pad")
-            .expect("the device can be plugged in");
+        let pad = sticks.plug_in_pad("Pad").expect("valid device");
         assert!(device(&sticks, &pad).pad.is_some());
     }
 }
@@ -246,9 +230,7 @@ fn sticks_open_once_at_a_time_and_can_be_reopened() {
 #[test]
 fn puppet_may_outlive_the_sticks() {
     let sticks = open();
-    let pad = sticks
-        .plug_in_pad("Pad")
-        .expect("the device can be plugged in");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let last = sticks.latest.clone();
     drop(sticks);
     assert!(!pad.pad_button(PadButton::South, true));
@@ -258,9 +240,7 @@ fn puppet_may_outlive_the_sticks() {
 #[test]
 fn panic_on_the_thread_releases_all_buttons() {
     let sticks = open();
-    let pad = sticks
-        .plug_in_pad("Pad")
-        .expect("the device can be plugged in");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     pad.pad_button(PadButton::South, true);
     let orders = sticks
         .owner
@@ -289,9 +269,7 @@ fn panic_on_the_thread_releases_all_buttons() {
 #[test]
 fn snapshots_miss_no_press_while_a_device_moves() {
     let sticks = open();
-    let pad = sticks
-        .plug_in_pad("Pad")
-        .expect("the device can be plugged in");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let start = sticks.snapshot();
     let seen = thread::scope(|scope| {
         let reader = scope.spawn(|| {
@@ -315,9 +293,7 @@ fn snapshots_miss_no_press_while_a_device_moves() {
 #[test]
 fn navigator_works_with_a_pad() {
     let sticks = open();
-    let pad = sticks
-        .plug_in_pad("Pad")
-        .expect("the device can be plugged in");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let mut navigator = Navigator::default();
     pad.pad_button(PadButton::Down, true);
     assert!(

@@ -16,9 +16,7 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
 #[test]
 fn pad_rumble_ends_by_itself_and_on_drop() {
     let sticks = open();
-    let pad = sticks
-        .plug_in_pad("Pad")
-        .expect("the device can be plugged in");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let mut haptic = sticks.haptic(pad.id());
     until("the pad can rumble", || haptic.ability() == Ability::Rumble);
     assert_eq!(haptic.aim(), Ok([0.0; 2]));
@@ -58,9 +56,7 @@ fn pad_rumble_ends_by_itself_and_on_drop() {
 #[test]
 fn new_sink_works_after_the_old_one_is_dropped() {
     let sticks = open();
-    let pad = sticks
-        .plug_in_pad("Pad")
-        .expect("the device can be plugged in");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let old = sticks.haptic(pad.id());
     // As when a line is replaced: the new sink is created first, since the old one is dropped on another
     // thread.
@@ -80,9 +76,7 @@ fn new_sink_works_after_the_old_one_is_dropped() {
 #[test]
 fn obsolete_output_is_not_played() {
     let sticks = open();
-    let pad = sticks
-        .plug_in_pad("Pad")
-        .expect("the device can be plugged in");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let mut haptic = sticks.haptic(pad.id());
     until("the pad can rumble", || haptic.ability() == Ability::Rumble);
     let orders = sticks
@@ -112,16 +106,14 @@ fn force_output_does_not_rumble() {
     let sticks = open();
     let stick = sticks
         .plug_in_stick("Stick", 2, 1, 0)
-        .expect("the device can be plugged in");
+        .expect("valid device");
     let mut haptic = sticks.haptic(stick.id());
     until("a virtual stick can only rumble", || {
         haptic.ability() == Ability::Rumble
     });
     assert!(haptic.play(Output::Force([1.0, 0.0])).is_ok());
     sticks.snapshot();
-    let pad = sticks
-        .plug_in_pad("Later")
-        .expect("the device can be plugged in");
+    let pad = sticks.plug_in_pad("Later").expect("valid device");
     assert_eq!(stick.rumble(), [0, 0]);
     assert_eq!(pad.rumble(), [0, 0]);
 }
@@ -129,11 +121,7 @@ fn force_output_does_not_rumble() {
 #[test]
 fn force_thread_drives_pads_until_they_are_unplugged() {
     let sticks = open();
-    let pads = ["One", "Two"].map(|name| {
-        sticks
-            .plug_in_pad(name)
-            .expect("the device can be plugged in")
-    });
+    let pads = ["One", "Two"].map(|name| sticks.plug_in_pad(name).expect("valid device"));
     let force = Force::start(250).expect("a thread can be started");
     let lines = [&pads[0], &pads[1]]
         .map(|pad| force.add(Box::new(sticks.haptic(pad.id())), Settings::default()));
@@ -175,9 +163,7 @@ fn force_thread_drives_pads_until_they_are_unplugged() {
 #[test]
 fn sink_of_a_missing_device_does_nothing() {
     let sticks = open();
-    let pad = sticks
-        .plug_in_pad("Pad")
-        .expect("the device can be plugged in");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let id = pad.id();
     drop(pad);
     let mut haptic = sticks.haptic(id);

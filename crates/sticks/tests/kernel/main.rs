@@ -52,9 +52,7 @@ impl Game {
         until("there is a stick", || self.id().is_some());
         let haptic = self.sticks.haptic(self.id().expect("there is a stick"));
         let line = self.force.add(Box::new(haptic), settings());
-        until("the device can push", || {
-            line.report().ability == Ability::Force
-        });
+        until("force ready", || line.report().ability == Ability::Force);
         self.line = Some(line);
     }
 

@@ -117,7 +117,7 @@ impl Stick {
         let mut setup: uinput_setup = zeroed();
         // USB, with a vendor and product id without an owner.
         (setup.id.bustype, setup.id.vendor, setup.id.product) = (3, 0x1209, 1);
-        for (to, from) in setup.name.iter_mut().zip(b"Stick of nothing") {
+        for (to, from) in setup.name.iter_mut().zip(b"Virtual stick") {
             *to = *from as _;
         }
         setup.ff_effects_max = 16;
