@@ -1,4 +1,4 @@
-//! The same scenes in fuwafuwa.
+//! The scenes in fuwafuwa.
 
 use fuwafuwa::law::Elasticity;
 use fuwafuwa::world::{FEWEST_SUBSTEPS, TICK};
@@ -7,11 +7,11 @@ use fuwafuwa::{Body, Dim, Material, Rigid, Settings, Shape, VoxelGrid, World};
 use crate::world::{Falling, Span};
 use crate::{Drop, Result, WIDTH};
 
-/// What the settings of a world allow.
+/// Maximum of the engine's settings.
 const MOST_SUBSTEPS: u32 = 1024;
 
-/// A body without damping and strong enough for anything, above a half-space. It gets so many substeps, or as few as leave it
-/// unsoftened, see [`Body::stiffness_scale`].
+/// Builds a world with an undamped, unbreakable body above a half-space. It gets `substeps` substeps or, for
+/// `None`, the fewest that do not soften it, see [`Body::stiffness_scale`].
 pub fn world<D: Dim>(scene: &Drop, substeps: Option<usize>) -> Result<World<D>> {
     let material = Material {
         elasticity: Elasticity {

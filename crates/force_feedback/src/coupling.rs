@@ -33,7 +33,6 @@
 //! **The cost:** nothing pushes a hand that holds still. The player only gets back the energy put in, which
 //! is a sound rule for a toy in public. A stick that steers has its proxy fixed in the middle and does feel
 //! approaching bodies.
-//! a toy in public is not the worst of rules. A stick that steers has its proxy in the middle, and does feel what comes.
 
 use crate::Settings;
 
