@@ -54,7 +54,7 @@ impl<D: Dim> Falling for World<D> {
         let elements = self
             .bodies()
             .first()
-            .expect("it has a body")
+            .expect("world with a body")
             .mesh()
             .element_count();
         format!("fuwafuwa, {elements} elements")
@@ -65,7 +65,7 @@ impl<D: Dim> Falling for World<D> {
     }
 
     fn span(&self) -> Span {
-        span(self.bodies().first().expect("it has a body"))
+        span(self.bodies().first().expect("world with a body"))
     }
 
     fn substeps(&self) -> usize {
@@ -75,21 +75,26 @@ impl<D: Dim> Falling for World<D> {
     fn stiffness_scale(&self) -> f64 {
         self.bodies()
             .first()
-            .expect("it has a body")
+            .expect("world with a body")
             .stiffness_scale()
     }
 
     fn pieces(&self) -> usize {
         self.bodies()
             .first()
-            .expect("it has a body")
+            .expect("world with a body")
             .pieces()
             .list
             .len()
     }
 
     fn asleep(&self) -> f64 {
-        let pieces = &self.bodies().first().expect("it has a body").pieces().list;
+        let pieces = &self
+            .bodies()
+            .first()
+            .expect("world with a body")
+            .pieces()
+            .list;
         let asleep = pieces.iter().filter(|piece| piece.asleep).count();
         asleep as f64 / pieces.len() as f64
     }

@@ -25,7 +25,11 @@ pub fn compare_tear(scene: &Drop, pitch: usize, effort: Effort) -> Result<[Side;
     let mut theirs = disc(scene, effort)?;
     cut_to_pieces(&mut theirs, scene, pitch, 0.0);
     let mut ours = ours::world::<Dim2>(scene, None)?;
-    let whole = ours.bodies().first().expect("it has a body").piece_views()[0];
+    let whole = ours
+        .bodies()
+        .first()
+        .expect("world with a body")
+        .piece_views()[0];
     let middle = 0.5 * (whole.low[0] + whole.high[0]);
     cut_to_pieces(&mut ours, scene, pitch, middle);
     Ok(fall([Box::new(ours), Box::new(theirs)], scene.frames))
@@ -59,7 +63,7 @@ trait Cut: Falling {
 impl Cut for World<Dim2> {
     fn cut_all(&mut self, [from, to]: [[f32; 2]; 2]) {
         self.cut(
-            self.nth_body(0).expect("it has a body"),
+            self.nth_body(0).expect("world with a body"),
             &Blade::segment(from, to),
         )
         .unwrap();

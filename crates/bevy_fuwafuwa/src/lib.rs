@@ -63,7 +63,7 @@
 //! not be carried out.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![allow(rustdoc::broken_intra_doc_links)] // units are given in brackets: [m]
 
 pub mod asset;
 mod colours;

@@ -42,7 +42,7 @@
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![allow(rustdoc::broken_intra_doc_links)] // units are given in brackets: [m]
 
 mod chain;
 mod coupling;

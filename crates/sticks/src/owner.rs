@@ -89,7 +89,7 @@ impl Owner {
         match started.recv_timeout(PATIENCE) {
             Ok(Ok(())) => Ok(owner),
             Ok(Err(error)) => Err(NoSticks::Sdl(error)),
-            Err(RecvTimeoutError::Disconnected) => Err(NoSticks::Sdl("its thread panicked".into())),
+            Err(RecvTimeoutError::Disconnected) => Err(NoSticks::Sdl("SDL thread panicked".into())),
             Err(RecvTimeoutError::Timeout) => {
                 // Joining would block as long. If SDL starts later, the thread finds its inbox closed and
                 // ends.

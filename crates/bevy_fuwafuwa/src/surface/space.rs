@@ -20,7 +20,7 @@ const CRUMB: f32 = 0.85;
 /// Threshold of `SkinVertex::other` above which a vertex belongs to the other material.
 const BORDER: u8 = 128;
 
-/// The surface of a body in space.
+/// Surface of a 3D body.
 #[derive(Default)]
 pub struct Hull {
     skin: Skin,

@@ -126,7 +126,10 @@ fn fixed_body_is_rotated_by_its_transform() {
     let ball = spawn(&mut app, (RigidBody3d::free(ball, 1.0), at(0.0, 0.4)));
     run(&mut app, 30);
     let down = transform(&app, ball).translation;
-    assert!(down.x > 0.3 && down.y < 0.3, "it rolls down: {down}");
+    assert!(
+        down.x > 0.3 && down.y < 0.3,
+        "the ball does not roll down: {down}"
+    );
     let before = app.world().get::<RigidBodyId>(slope).copied();
     // The slope becomes so steep that the ball falls; the id of the slope stays.
     let upright = at(0.0, 0.0).with_rotation(Quat::from_rotation_z(1.5));
