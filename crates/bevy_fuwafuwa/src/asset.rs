@@ -86,8 +86,9 @@ impl From<ImportError> for VoxelsError {
     }
 }
 
-/// Reads PNG files as [`Voxels<Dim2>`]: dark pixels, or pixels that are not transparent, are solid. Bevy's
-/// own loader still reads PNG files as images: the requested asset type selects the loader.
+/// Reads PNG files as [`Voxels<Dim2>`]. Opaque pixels are solid if the picture has transparency, otherwise
+/// dark or strongly coloured pixels are. Bevy's own loader still reads PNG files as images: the requested
+/// asset type selects the loader.
 #[derive(Copy, Clone, Debug, Default, TypePath)]
 pub struct SilhouetteLoader;
 
