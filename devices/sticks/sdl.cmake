@@ -1,25 +1,25 @@
-# How SDL is built: what `.cargo/config.toml` names as CMake's toolchain file, since the sdl3-sys crate passes on no option of
-# these. Without it SDL is built just as well, but in 115 s of processor time in debug and 300 s in release instead of 70 s.
+# Options for building SDL. `.cargo/config.toml` names this file as CMake's toolchain file, since the sdl3-sys crate does not
+# pass on these options. Without it SDL builds too, but in 115 s (debug) or 300 s (release) of processor time instead of 70 s.
 
-# Nobody links the shared library or the test library.
+# The shared library and the test library are not used.
 set(SDL_SHARED OFF CACHE BOOL "")
 set(SDL_TEST_LIBRARY OFF CACHE BOOL "")
 
-# Failed assertions would ask at the terminal what to do, and the thread would wait for the answer.
+# Failed assertions would ask on the terminal and block the thread.
 set(SDL_ASSERTIONS "release" CACHE STRING "")
 
-# Not for sticks, and only found on some machines.
+# Not needed for sticks, and only present on some machines.
 set(SDL_DBUS OFF CACHE BOOL "")
 set(SDL_IBUS OFF CACHE BOOL "")
 set(SDL_LIBURING OFF CACHE BOOL "")
 set(SDL_PIPEWIRE OFF CACHE BOOL "")
 
-# Reading sticks needs no optimising compiler, nor the debug information of SDL.
+# Reading sticks needs neither optimisation nor debug information in SDL.
 foreach(build DEBUG RELEASE RELWITHDEBINFO MINSIZEREL)
     set(CMAKE_C_FLAGS_${build} "" CACHE STRING "")
 endforeach()
 
-# A toolchain file keeps the cmake crate from saying which system is meant, and SDL would be built for this one.
+# With a toolchain file the cmake crate does not set the target system, and SDL would be built for the host.
 if("$ENV{TARGET}" STREQUAL "x86_64-pc-windows-gnu" AND NOT CMAKE_HOST_WIN32)
     set(CMAKE_SYSTEM_NAME Windows)
     set(CMAKE_SYSTEM_PROCESSOR x86_64)

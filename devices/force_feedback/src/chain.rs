@@ -1,33 +1,34 @@
-//! From newtons to what a device may be told.
+//! Converts newtons to a safe device force.
 
 use crate::Settings;
 
-/// How long the force takes to come up after the first that is worth feeling [s].
+/// Time over which the force ramps up after the first noticeable one [s].
 const ARMING: f32 = 1.0;
-/// From this on a force is worth feeling [full forces].
+/// Threshold of a noticeable force [full forces].
 const WORTH: f32 = 0.01;
-/// A step counts as no longer than this [s]: a thread that was held up must not make up for it with a jerk.
+/// Longest step [s]. A thread that was delayed must not catch up with a jerk.
 const LONGEST: f32 = 0.01;
 
-/// Gain → soft clip → slew limit → clamp → check. Along both axes, at most one full force.
+/// Safety chain: gain → soft clip → slew limit → clamp → finite check. Both axes, each at most one full
+/// force.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Chain {
-    /// How far it is armed, 0 to 1; none before the first force.
+    /// Progress of the ramp-up, 0 to 1; `None` before the first noticeable force.
     armed: Option<f32>,
-    /// What it said last [full forces].
+    /// Last output [full forces].
     force: [f32; 2],
 }
 
 impl Chain {
-    /// Forgets the last force and has to be armed again. The next step starts from zero.
+    /// Resets the chain: the next step starts from zero and ramps up again.
     pub fn rest(&mut self) {
         *self = Self::default();
     }
 
-    /// What the stick is to be pushed with [full forces] when the simulation pushes with `newtons`, `duration` [s] after
-    /// the last step. `settings` must be [bounded](Settings::bounded).
+    /// Returns the force on the stick [full forces] for the force `newtons` [N] of the simulation, `duration`
+    /// [s] after the last step. `settings` must be [bounded](Settings::bounded).
     pub fn step(&mut self, newtons: [f32; 2], settings: &Settings, duration: f32) -> [f32; 2] {
-        // Compared this way round, a duration that is no number is none.
+        // Comparisons with NaN are false, so a NaN duration becomes 0.
         let duration = if duration > 0.0 {
             duration.min(LONGEST)
         } else {
@@ -42,7 +43,7 @@ impl Chain {
             let next = *force + (wish - *force).clamp(-most, most);
             *force = next.clamp(-settings.clamp, settings.clamp);
         }
-        // Nothing above can break this; it is the last door, and nobody else's.
+        // Last safeguard: the code above never gives a non-finite value.
         self.force = finite(self.force);
         self.force
     }
@@ -57,13 +58,13 @@ impl Chain {
     }
 }
 
-/// Almost the same if it is small, and shorter than 1 however long it is. The direction stays.
+/// Soft clip: keeps small forces almost unchanged, limits the length to less than 1 and keeps the direction.
 fn soft_clip(force: [f32; 2]) -> [f32; 2] {
     let longer = force[0].hypot(force[1]).hypot(1.0);
     finite(force.map(|k| k / longer))
 }
 
-/// Nothing, unless both are numbers.
+/// Returns zero unless both components are finite.
 fn finite(force: [f32; 2]) -> [f32; 2] {
     if force.iter().all(|k| k.is_finite()) {
         force

@@ -1,93 +1,99 @@
-//! The virtual coupling [Colgate 1995] between a stick and the simulation's hand, evaluated at the rate of the device.
+//! Virtual coupling [Colgate 1995] between a stick and the simulated hand, evaluated at the rate of the
+//! device.
 //!
-//! A spring and a damper lead from where the stick points *now* to a **proxy**, F = K (proxy − stick) + B Δv. The proxy
-//! stays where it is while the simulation's hand is pushed at least as strongly as the spring would pull, and else slips
-//! after the stick until the spring pulls no more than that; across the push it always slips. In free space it is where
-//! the stick is, and nothing is felt; at a wall it stops; a soft body lets it slip as far as it gives way; when that
-//! tears, it slips at once.
+//! A spring and a damper connect the *current* stick position to a **proxy**: F = K (proxy − stick) + B Δv.
+//! Along the contact force the proxy stays fixed while the spring force is at most the contact force.
+//! Otherwise it slips towards the stick until the spring force equals the contact force. Across the contact
+//! force it always slips. In free space the proxy follows the stick and there is no force; at a wall it
+//! stops; on a soft body it slips as far as the body yields; when the body tears, it slips at once.
 //!
 //! ```text
 //!      stick ──/\/\/\── proxy ──▐slips at the contact force▌── ground
 //!            ──[ B  ]──
 //! ```
 //!
-//! **Why not a spring to the hand itself?** The simulation speaks 60 times a second at best, and late. A spring to where
-//! the hand was then is hard or loose as frames come and go, and its far end, moving late, can push. Here the simulation
-//! only says how much the slider bears, and a spring on a slider takes out energy whatever that is, however late or rough
-//! it comes: slipping is always in the direction of the pull. (The set of pulls that it bears, from none to the contact
-//! force, is convex and holds zero; the pull is the nearest to what the spring wants.)
+//! **Why no spring to the simulated hand itself?** The simulation reports at most 60 times a second, with a
+//! delay. A spring to an old hand position becomes harder and softer with the frame times, and its moving end
+//! can push. Here the simulation only sets the slip limit, and a spring with a slider is dissipative for
+//! every limit, even if it is late or noisy: slip is always in the direction of the pull. (The set of allowed
+//! pulls, from zero to the contact force, is convex and contains zero. The actual pull is the one nearest to
+//! the spring force.)
 //!
-//! **Why the damper.** From a push to its being felt pass up to T ≈ 20 ms of driver and wire, and half an update. A
-//! spring that answers T late has a damper of −K T in it. B = `LEAD` · K makes up for that, and K ends at [`HARDEST`](crate::HARDEST),
-//! where what is left is less than what hinge and hand take out, and where a damper that answers late does not yet swing
-//! by itself. `tests/hand/closed_loop.rs` has the sticks that this is good for; one that takes out less than they do by
-//! hinge and hand (damping × travel / full force below 8 ms) and answers 20 ms late can still swing a little.
+//! **Damper.** Between computing a force and feeling it pass up to T ≈ 20 ms in driver and cable, plus half
+//! an update. A spring with delay T acts like one with an additional damper −K T. B = `LEAD` · K compensates
+//! for that. K is limited to [`HARDEST`](crate::HARDEST): up to there, hinge and hand dissipate more than the
+//! remaining negative damping, and a delayed damper does not oscillate by itself. `tests/hand/closed_loop.rs`
+//! lists the sticks for which this holds. A stick with less damping in hinge and hand (damping × travel /
+//! full force below 8 ms) and a delay of 20 ms can still oscillate a little.
 //!
-//! **Why it drags across the push too.** The direction of a contact turns as the hand slides over what is round, and comes
-//! late. Nothing else would take out the swing to the sides that this can feed from the spring.
+//! **Damping across the contact force.** The contact direction changes while the hand slides over a round
+//! surface, and it arrives late. Only the damper dissipates the sideways oscillation that this can excite
+//! through the spring.
 //!
-//! **What is given up for it:** nothing pushes a hand that holds still. It only ever gets back what it put in, which for
-//! a toy in public is not the worst of rules. A stick that steers has its proxy in the middle, and does feel what comes.
+//! **The cost:** nothing pushes a hand that holds still. The player only gets back the energy put in, which
+//! is a sound rule for a toy in public. A stick that steers has its proxy fixed in the middle and does feel
+//! approaching bodies.
 
 use crate::Settings;
 
-/// The damper of the coupling over its spring [s]; about what lies between a push and its being felt.
+/// Damping over stiffness [s]: about the delay between computing a force and feeling it.
 const LEAD: f32 = 0.03;
-/// Over this time the speed of the stick is taken [s]. Longer lags, shorter feels the steps of a coarse axis.
+/// Time constant of the stick velocity [s]. A larger value lags; with a smaller one the steps of a coarse
+/// axis are felt.
 const SPEED: f32 = 0.008;
-/// Over this time the contact force is smoothed [s]: one tick, which would else be felt as a hum.
+/// Time constant of the contact force filter [s]: one tick. Without it the tick rate is felt as a hum.
 const TICK: f32 = 0.016;
-/// From this contact force on the damper is there in full [full forces].
+/// Contact force from which the damper acts fully [full forces].
 const TOUCHING: f32 = 0.02;
 
-/// What the simulation said last.
+/// Last state reported by the simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    /// With what everything that the hand touches pushes it, averaged over the last tick [N]. x to the right, y away from
-    /// the player, like the stick.
+    /// Sum of the contact forces on the simulated hand, averaged over the last tick [N]. x to the right, y
+    /// away from the player, as for the stick.
     pub contact: [f32; 2],
-    /// What the stick means to the hand.
+    /// Meaning of the stick position.
     pub manner: Manner,
 }
 
-/// What it means that a stick leans.
+/// Meaning of the stick position for the simulated hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Manner {
-    /// It points at a place.
+    /// The stick gives a position.
     CellIndexing,
-    /// It says how fast to go. Its proxy never leaves the middle.
+    /// The stick gives a velocity. The proxy stays in the middle.
     Steers,
-    /// Nothing: it is pushed, whatever it does. For a [`Measurement`](crate::Measurement), and for nothing that depends on
-    /// where the stick is, since that could swing.
+    /// The stick gives nothing: the contact force is passed on unchanged. Only for a
+    /// [`Measurement`](crate::Measurement); a force that depends on the stick position could oscillate.
     Yields,
 }
 
-/// A spring, a damper and a slider.
+/// Spring, damper and slider.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Coupling {
-    /// None at the start.
+    /// `None` before the first step.
     memory: Option<Memory>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Memory {
-    /// Where the stick pointed, and the same smoothed.
+    /// Last stick position, and the same low-pass filtered.
     aim: [f32; 2],
     slow_aim: [f32; 2],
-    /// The smoothed contact force [full forces].
+    /// Filtered contact force [full forces].
     contact: [f32; 2],
-    /// How the spring pulls the stick [full forces].
+    /// Spring force on the stick [full forces].
     pull: [f32; 2],
 }
 
 impl Coupling {
-    /// Forgets what was.
+    /// Resets the coupling.
     pub fn rest(&mut self) {
         self.memory = None;
     }
 
-    /// What the stick is to be pushed with [N], `duration` [s] after the last step, while it leans to `aim`: x to the
-    /// right, y away from the player, each -1 to 1.
+    /// Returns the force on the stick [N], `duration` [s] after the last step, for the stick position `aim`:
+    /// x to the right, y away from the player, each −1 to 1.
     pub fn step(
         &mut self,
         state: &State,
@@ -122,35 +128,35 @@ impl Coupling {
         approach(&mut memory.slow_aim, aim, share);
         let damper = spring * LEAD * (bears / TOUCHING).min(1.0);
         let drag = late.map(|k| damper * k / (SPEED + duration));
-        // What touches pushes, and never pulls.
+        // A contact only pushes: removes a resulting pull along the contact force.
         let back = (dot(drag, along) - pull).max(0.0);
         [0, 1].map(|axis| (memory.pull[axis] - drag[axis] + back * along[axis]) * settings.full)
     }
 }
 
-/// How a tear is felt, beside what it does to the contact force: what was pushed against gives way for a moment. It takes
-/// from a force and never adds to one, so it cannot push anybody.
+/// Feedback of a tear, in addition to its effect on the contact force: the force drops for a moment. It only
+/// reduces a force, so it cannot push the player.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Give(f32);
 
 impl Give {
-    /// How long a tear is felt [s].
+    /// Duration of the feedback [s].
     pub const TIME: f32 = 0.06;
-    /// What the largest tear takes of a force.
+    /// Fraction by which the largest tear reduces the force.
     const DEPTH: f32 = 0.7;
 
-    /// Something tore; 1 is as large as a tear gets.
+    /// Reports a tear of a size from 0 to 1.
     pub fn tear(&mut self, size: f32) {
         self.0 = self.0.max(size.clamp(0.0, 1.0));
     }
 
-    /// The force that is left after `duration` [s] more.
+    /// Returns the reduced force after another `duration` [s].
     pub fn step(&mut self, force: [f32; 2], duration: f32) -> [f32; 2] {
         self.0 = (self.0 - duration / Self::TIME).max(0.0);
         force.map(|k| k * (1.0 - Self::DEPTH * self.0))
     }
 
-    /// How much of the tear is left, 0 to 1.
+    /// Returns the remaining strength of the feedback, 0 to 1.
     pub fn left(&self) -> f32 {
         self.0
     }

@@ -1,14 +1,14 @@
-//! All of it for one device, a step at a time.
+//! The complete calculation for one device, one step at a time.
 
 use crate::{
     Ability, Chain, Coupling, Give, Mail, OLDEST, Output, Settings, State, Stop, Watchdog,
 };
 use std::time::Duration;
 
-/// Contact forces are not believed to be larger than this along an axis [N].
+/// Largest accepted contact force per axis [N].
 const MOST: f32 = 1e6;
 
-/// What one hand feels.
+/// Force calculation of one device.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Feel {
     coupling: Coupling,
@@ -17,25 +17,25 @@ pub struct Feel {
     before: Option<Duration>,
 }
 
-/// What came out of a step.
+/// Result of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Felt {
-    /// What the device is to be told.
+    /// Output for the device.
     pub output: Output,
-    /// What there would be to feel [N], before it is made safe.
+    /// Force before the safety chain [N].
     pub newtons: [f32; 2],
-    /// Why there is nothing, if something forbids it.
+    /// Reason for silence, if any.
     pub silent: Option<Stop>,
 }
 
 impl Feel {
-    /// Something tore; 1 is as large as a tear gets.
+    /// Reports a tear of a size from 0 to 1.
     pub fn tear(&mut self, size: f32) {
         self.give.tear(size);
     }
 
-    /// What the device is to be told at the time `now`, while it leans to `aim`. A stop works at once, past the slew limit:
-    /// to let go of a hand does not jerk it.
+    /// Returns the output at the time `now` for the stick position `aim`. A stop takes effect at once,
+    /// without the slew limit: removing a force does not jerk the hand.
     pub fn step(
         &mut self,
         watchdog: &Watchdog,
@@ -53,7 +53,8 @@ impl Feel {
             .before
             .map_or(Duration::ZERO, |before| now.saturating_sub(before));
         if duration > OLDEST {
-            // The thread was held up, as in a process that was stopped. Its hand has long been let go, and is elsewhere.
+            // The thread was delayed, for example because the process was stopped. The hand was released long
+            // ago and may have moved.
             *self = Self::default();
             duration = Duration::ZERO;
         }
@@ -89,7 +90,7 @@ impl Feel {
         }
     }
 
-    /// Stops at once and forgets what was.
+    /// Stops at once and resets the calculation.
     pub fn rest(&mut self, ability: Ability, why: Stop) -> Felt {
         *self = Self::default();
         Felt {
@@ -100,7 +101,7 @@ impl Feel {
     }
 }
 
-/// Both within these bounds, if they are numbers.
+/// Clamps both values; `None` if one is NaN.
 fn sane(both: [f32; 2], most: f32) -> Option<[f32; 2]> {
     let are_numbers = both.iter().all(|k| !k.is_nan());
     are_numbers.then(|| both.map(|k| k.clamp(-most, most)))

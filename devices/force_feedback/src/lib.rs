@@ -1,7 +1,7 @@
-//! Forces for the hand that holds a stick, and all that keeps them safe.
+//! Force feedback for joysticks, with the safety functions that it needs.
 //!
-//! Nothing here knows of soft bodies or of drivers. Newtons and places come in, a device's own units go out. The way
-//! through, which is the reading order too:
+//! This crate knows neither soft bodies nor drivers: it takes newtons and positions and gives device units.
+//! Data flow, which is also the reading order:
 //!
 //! ```text
 //! the game, at its own pace                        one thread, 125 to 250 times a second
@@ -11,18 +11,19 @@
 //! Line::stop(why)
 //! ```
 //!
-//! - [`Settings`]: what people and games may choose, and within which bounds.
-//! - [`Chain`]: newtons → full forces: gain, soft clip, slew limit, clamp; armed gently after each stop.
-//! - [`Watchdog`]: why there is no force now. Old mail is one reason, a stop that was asked for another.
-//! - [`Coupling`]: a spring with a damper from where the stick points *now* to a proxy that the contact force holds, so
-//!   that a slow frame makes the stick neither hard nor loose.
-//! - [`Feel`]: those together for one device, a step at a time, with no clock: what a headless run and the tests use.
-//! - [`Measurement`]: how a device is built in, found out by pushing it.
-//! - [`Sink`]: a device, as seen from here. [`Recording`] and [`Nothing`] stand in for one.
-//! - [`Force`]: the thread that owns all sinks. A [`Line`] leads from the game to one of them; to drop it, as a panic does,
-//!   is to stop.
+//! - [`Settings`]: user and game settings with their ranges.
+//! - [`Chain`]: newtons → full forces: gain, soft clip, slew limit, clamp; ramps up after each stop.
+//! - [`Watchdog`]: blocks forces, because of a requested stop or because the last state is too old.
+//! - [`Coupling`]: spring and damper from the *current* stick position to a proxy that the contact force
+//!   holds. A slow frame makes the stick neither harder nor softer.
+//! - [`Feel`]: all of these for one device, one step at a time, without a clock. Used by headless runs and
+//!   tests.
+//! - [`Measurement`]: finds out how the motors of a device are mounted by pushing the stick.
+//! - [`Sink`]: interface of a device. [`Recording`] and [`Nothing`] are stand-ins.
+//! - [`Force`]: the thread that owns all sinks. A [`Line`] connects the game to one sink; dropping it, also
+//!   by a panic, stops the device.
 //!
-//! What a sink is told lasts [`LENGTH`] and is told again before that is over, so that a force cannot outlive this thread.
+//! An output lasts [`LENGTH`] and is repeated before that time, so that no force outlives the thread.
 //!
 //! ```
 //! use force_feedback::{Force, Manner, Recording, Settings, State, Stop};
@@ -41,7 +42,7 @@
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![allow(rustdoc::broken_intra_doc_links)] // units are given in brackets: [m]
 
 mod chain;
 mod coupling;

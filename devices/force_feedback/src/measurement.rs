@@ -1,55 +1,56 @@
-//! How a device is built in, found out by pushing it a little.
+//! Measures how the motors of a device are mounted by pushing the stick a little.
 //!
-//! Each motor pushes both ways, gently and for no longer than it takes to see where the stick goes; then all of that again.
-//! A push begins only when the stick is still, and one that moves before it can have been pushed begins anew. A hand that
-//! plays with the stick meanwhile would have to wait eight times and then go along, twice in the same way.
+//! Each motor pushes in both directions, gently and only until the stick has moved enough; then everything is
+//! repeated once. A push begins only after the stick was still for a while. If the stick moves before the
+//! push can have moved it, the wait begins again. A hand on the stick could only fake a result by waiting
+//! eight times and then moving with the push, twice in the same way.
 
 use crate::{Calibration, Settings};
 
-/// Which way the motors push in turn [full forces].
+/// Directions of the pushes, in turn [full forces].
 const PUSHES: [[f32; 2]; 4] = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
-/// How often all of them are tried.
+/// Number of repetitions of all pushes.
 const ROUNDS: usize = 2;
-/// The strongest push, and what moves no stick [full forces].
+/// Strongest push, and the largest force that moves no stick [full forces].
 const MOST: f32 = 0.4;
 const LEAST: f32 = 0.03;
-/// Over this time a push becomes as strong as it gets [s].
+/// Time over which a push ramps up [s].
 const RISE: f32 = 1.5;
-/// Before a push the stick is still for so long [s].
+/// Time for which the stick must be still before a push [s].
 const REST: f32 = 0.5;
-/// It is still while it stays so near to a place, and has been moved far enough when it is so far from it [ways from the
-/// middle to the rim].
+/// Stick travel from the middle to the rim = 1. `NEAR`: largest movement of a stick that counts as still.
+/// `FAR`: movement that ends a push.
 const NEAR: f32 = 0.04;
 const FAR: f32 = 0.25;
-/// After this time nobody waits any more [s].
+/// Maximum duration of a measurement [s].
 const PATIENCE: f32 = 45.0;
 
-/// Pushes a device and watches where its stick goes.
+/// Pushes a device and observes the stick.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measurement {
-    /// How many pushes are over.
+    /// Number of completed pushes.
     done: usize,
-    /// Since this push, or the rest before it, began [s], and since all of it did.
+    /// Time since the start of this push including its wait [s], and since the start of the measurement [s].
     time: f32,
     all: f32,
-    /// Where the stick was when this push began, and how far the others moved it.
+    /// Stick position at the start of this push, and the movements of the completed pushes.
     start: [f32; 2],
     moves: [[f32; 2]; ROUNDS * PUSHES.len()],
 }
 
-/// How far a measurement has come.
+/// Progress of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measured {
-    /// Push the stick with this [full forces], with [`Manner::Yields`](crate::Manner::Yields) and
-    /// [`Measurement::SETTINGS`], and tell where it is.
+    /// Push the stick with this force [full forces], with [`Manner::Yields`](crate::Manner::Yields) and
+    /// [`Measurement::SETTINGS`], and report its position.
     Pushing([f32; 2]),
-    /// It is known. None if that is not clear: somebody held the stick, or nothing pushed it.
+    /// Result. `None` if it is unclear, for example because the stick was held or no motor pushed.
     Known(Option<Calibration>),
 }
 
 impl Measurement {
-    /// What a device is measured with: as if it were built in as usual, and never strongly. `full` is 1 N, so that full
-    /// forces and newtons are the same.
+    /// Settings for a measurement: default mounting, limited force. `full` is 1 N, so that full forces equal
+    /// newtons.
     pub const SETTINGS: Settings = Settings {
         strength: 1.0,
         full: 1.0,
@@ -59,7 +60,7 @@ impl Measurement {
         calibration: Calibration::USUAL,
     };
 
-    /// What to do now that the stick leans to `aim`, `duration` [s] after the last step.
+    /// Returns the next action for the stick position `aim`, `duration` [s] after the last step.
     pub fn step(&mut self, aim: [f32; 2], duration: f32) -> Measured {
         self.all += duration;
         if self.done == self.moves.len() || self.all > PATIENCE {
@@ -83,7 +84,7 @@ impl Measurement {
         Measured::Pushing([0.0; 2])
     }
 
-    /// How much of it is over, 0 to 1.
+    /// Returns the progress, 0 to 1.
     pub fn progress(&self) -> f32 {
         let this = (self.time / (REST + RISE)).min(1.0);
         ((self.done as f32 + this) / self.moves.len() as f32).min(1.0)
@@ -99,13 +100,14 @@ impl Measurement {
     }
 }
 
-/// What the four pushes of a round tell.
+/// Returns the result of the four pushes of a round.
 fn of_one_round(moves: &[[f32; 2]]) -> Option<Calibration> {
     let of_motor = |there: [f32; 2], back: [f32; 2]| {
         let half = |sign: f32| [0, 1].map(|axis| 0.5 * (there[axis] + sign * back[axis]));
         let long = |[x, y]: [f32; 2]| x.hypot(y);
         let (pushed, lost) = (half(-1.0), half(1.0));
-        // What went the same way both times was no motor. A stick that lies at its rim can go one way only.
+        // Movement in the same direction for both pushes is not caused by the motor. A stick at its rim can
+        // only move in one direction.
         let is_at_rim = long(there).min(long(back)) < 2.0 * NEAR;
         (is_at_rim || long(lost) < 0.5 * long(pushed)).then_some(pushed)
     };
@@ -121,8 +123,8 @@ mod tests {
     use crate::{Ability, Feel, Mail, Manner, Output, State, Watchdog};
     use std::time::Duration;
 
-    /// Measures a light stick with a soft spring, told through all of `Feel`, whose motors are built in so; `hand` is what
-    /// somebody adds to where it leans.
+    /// Measures a light stick with a soft spring through all of `Feel`. `built` maps motor forces to stick
+    /// forces; `hand` is added to the stick position.
     fn measure(
         built: impl Fn([f32; 2]) -> [f32; 2],
         hand: impl Fn(f32) -> [f32; 2],
@@ -146,7 +148,7 @@ mod tests {
             let (lean, watchdog) = ((aim, Ability::Force), Watchdog::default());
             let felt = feel.step(&watchdog, &mail, lean, &Measurement::SETTINGS, now);
             let Output::Force(force) = felt.output else {
-                panic!("it was asked for a force")
+                panic!("the output is not a force")
             };
             assert!(force.iter().all(|k| k.abs() <= MOST));
             let force = built(force);
@@ -155,11 +157,11 @@ mod tests {
                 at[axis] += 0.004 * speed[axis];
             }
         }
-        panic!("it never ends")
+        panic!("the measurement does not end")
     }
 
     #[test]
-    fn it_finds_out_how_a_stick_is_built_in() {
+    fn measurement_finds_swapped_and_inverted_axes() {
         for swap in [false, true] {
             for invert in [[false, false], [true, false], [false, true], [true, true]] {
                 let built = |[x, y]: [f32; 2]| {
@@ -167,9 +169,9 @@ mod tests {
                     let along = [sign(0) * x, sign(1) * y];
                     if swap { [along[1], along[0]] } else { along }
                 };
-                let found = measure(built, |_| [0.0; 2]).expect("nobody is in its way");
+                let found = measure(built, |_| [0.0; 2]).expect("the stick moves freely");
                 assert_eq!((found.swap, found.invert), (swap, invert));
-                // What it found makes the stick go where it is pushed.
+                // The calibration makes the stick move in the direction of the force.
                 let push = [0.3, -0.7];
                 assert_eq!(built(found.apply(push)), push);
             }
@@ -177,26 +179,26 @@ mod tests {
     }
 
     #[test]
-    fn a_limp_stick_that_lies_at_its_rim_is_measured_too() {
+    fn measurement_works_for_a_limp_stick_at_its_rim() {
         for lies in [[0.9, 0.0], [-0.8, 0.8], [0.0, -1.0]] {
             let mut measurement = Measurement::default();
             let mut at = lies;
             let found = loop {
                 match measurement.step(at, 0.016) {
                     Measured::Pushing([x, y]) => {
-                        // It goes where it is pushed and stays there.
+                        // The stick moves with the push and stays there.
                         at = [at[0] - 0.1 * y, at[1] + 0.1 * x].map(|k: f32| k.clamp(-1.0, 1.0));
                     }
-                    Measured::Known(found) => break found.expect("nobody is in its way"),
+                    Measured::Known(found) => break found.expect("the stick moves freely"),
                 }
             };
             assert_eq!((found.swap, found.invert), (true, [false, true]));
         }
     }
 
-    /// A hand that stirs, or that waits for each push and then goes its own way.
+    /// A hand that stirs, or that waits for each push and then moves independently.
     #[test]
-    fn a_hand_that_plays_with_the_stick_is_not_taken_for_its_motors() {
+    fn measurement_fails_when_a_hand_moves_the_stick() {
         for rate in 1..60 {
             for phase in 0..12 {
                 let (rate, phase) = (0.25 * rate as f32, 0.5 * phase as f32);
@@ -213,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn it_does_not_guess() {
+    fn measurement_fails_without_clear_motors() {
         let usual = |force| force;
         assert_eq!(measure(|_| [0.0; 2], |_| [0.0; 2]), None, "no motor");
         assert_eq!(measure(|[x, _]| [x, x], |_| [0.0; 2]), None, "one motor");

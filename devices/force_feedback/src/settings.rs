@@ -1,39 +1,40 @@
-//! What people and games may choose about one device.
+//! User and game settings of a device.
 
 use std::ops::RangeInclusive;
 
-/// The stiffest that a coupling may be [full forces for the way of the stick from its middle to its rim].
+/// Maximum stiffness of a coupling [full forces per stick travel from the middle to the rim].
 pub const HARDEST: f32 = 0.4;
 
-/// How strongly and how quickly a device may push.
+/// Strength and speed limits of the forces of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Share of the force that is played, 0 to 1: the slider. At 0 nothing is sent at all.
+    /// Overall strength, 0 to 1 (the slider in the menu). At 0 nothing is sent.
     pub strength: f32,
-    /// This much is full force [N], 1 to 10,000; about 150. Less makes everything stronger and sooner clipped.
+    /// Simulated force that gives full force [N], 1 to 10,000; about 150. A smaller value makes forces
+    /// stronger and clips them earlier.
     pub full: f32,
-    /// Stiffness of the coupling [full forces for the way of the stick from its middle to its rim], 0 to [`HARDEST`].
-    /// Less makes everything softer.
+    /// Stiffness of the coupling [full forces per stick travel from the middle to the rim], 0 to [`HARDEST`].
+    /// A smaller value makes all contacts softer.
     pub stiffness: f32,
-    /// The force changes no faster than this [full forces/s], 10 to 100; about 30. Slower lags behind the hand and swings,
-    /// faster jerks.
+    /// Maximum rate of change of the force [full forces/s], 10 to 100; about 30. A smaller value lags behind
+    /// the hand and oscillates; a larger one jerks.
     pub slew: f32,
-    /// No axis ever gets more than this [full forces], 0 to 1.
+    /// Maximum force per axis [full forces], 0 to 1.
     pub clamp: f32,
-    /// How the device is built in.
+    /// Mounting of the motors.
     pub calibration: Calibration,
 }
 
-/// How the axes of a device's motors lie to those of its stick.
+/// Relation between the motor axes and the stick axes of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct Calibration {
-    /// The motor that is called x pushes along y, and the other way round.
+    /// The x motor pushes along y, and the y motor along x.
     pub swap: bool,
-    /// This motor pushes the wrong way; after `swap`.
+    /// The motor pushes in the opposite direction. Applied after `swap`.
     pub invert: [bool; 2],
-    /// Share of the force that this motor gets, 0 to 1, to make a strong one as weak as the other; after `swap`.
+    /// Gain per motor, 0 to 1, to weaken the stronger one. Applied after `swap`.
     pub gain: [f32; 2],
 }
 
@@ -57,16 +58,16 @@ impl Default for Calibration {
 }
 
 impl Settings {
-    /// Bounds of `strength`, `clamp` and the gains.
+    /// Range of `strength`, `clamp` and the gains.
     pub const SHARE: RangeInclusive<f32> = 0.0..=1.0;
-    /// Bounds of `full` [N].
+    /// Range of `full` [N].
     pub const FULL: RangeInclusive<f32> = 1.0..=10_000.0;
-    /// Bounds of `stiffness`.
+    /// Range of `stiffness`.
     pub const STIFFNESS: RangeInclusive<f32> = 0.0..=HARDEST;
-    /// Bounds of `slew` [full forces/s].
+    /// Range of `slew` [full forces/s].
     pub const SLEW: RangeInclusive<f32> = 10.0..=100.0;
 
-    /// The same within all bounds. What is no number at all becomes what is felt least.
+    /// Clamps all values to their ranges. NaN becomes the value with the weakest effect.
     pub fn bounded(self) -> Self {
         Self {
             strength: within(self.strength, Self::SHARE, 0.0),
@@ -79,31 +80,32 @@ impl Settings {
     }
 }
 
-/// A value within its bounds, or this if it is no number.
+/// Clamps a value to a range; NaN becomes `otherwise`.
 fn within(value: f32, range: RangeInclusive<f32>, otherwise: f32) -> f32 {
     let value = if value.is_nan() { otherwise } else { value };
     value.clamp(*range.start(), *range.end())
 }
 
 impl Calibration {
-    /// Nothing to put right.
+    /// No correction.
     pub const USUAL: Self = Self {
         swap: false,
         invert: [false; 2],
         gain: [1.0; 2],
     };
 
-    /// The same with gains within their bounds.
+    /// Clamps the gains to their range.
     pub fn bounded(self) -> Self {
         let gain = self.gain.map(|gain| within(gain, Settings::SHARE, 0.0));
         Self { gain, ..self }
     }
 
-    /// How a device is built in whose stick moved by `moves[0]` when the motor x pushed and by `moves[1]` when the motor y
-    /// did. None if that is not clear: somebody held it too firmly, or nothing pushed.
+    /// Returns the calibration for measured stick movements: `moves[0]` when the x motor pushed and
+    /// `moves[1]` when the y motor pushed. Returns `None` if the result is unclear, for example because the
+    /// stick was held or no motor pushed.
     ///
-    /// Better measured than guessed: a stick that is pushed the wrong way runs away from the hand, as far and as strongly
-    /// as the clamp lets it.
+    /// A wrong guess would be dangerous: a stick pushed in the wrong direction runs away from the hand,
+    /// limited only by its travel and the clamp.
     pub fn measured(moves: [[f32; 2]; 2]) -> Option<Self> {
         let main = moves.map(|[x, y]| usize::from(y.abs() > x.abs()));
         let is_clear = |motor: usize| {
@@ -120,7 +122,7 @@ impl Calibration {
         })
     }
 
-    /// What the motors are told so that the stick is pushed by `force`.
+    /// Returns the motor forces that push the stick with `force`.
     pub fn apply(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         let swapped = if self.swap { [y, x] } else { [x, y] };
         [0, 1].map(|axis| {

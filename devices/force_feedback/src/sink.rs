@@ -1,61 +1,62 @@
-//! Devices, as seen from here.
+//! Interface of a device.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use web_time::Instant;
 
-/// What is played ends by itself after this time, unless it is told again: the second deadman. Kernels stop the forces of
-/// a process that dies, not of one that hangs.
+/// Duration of an output unless it is repeated: the second dead man's switch. Kernels stop the forces of
+/// a process that dies, but not of one that hangs.
 pub const LENGTH: Duration = Duration::from_millis(500);
 
-/// What a device can do.
+/// Capability of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ability {
-    /// It pushes the stick along two axes.
+    /// Pushes the stick along two axes.
     Force,
-    /// It has a slow and a fast motor that shake it.
+    /// Rumbles with a slow and a fast motor.
     Rumble,
-    /// It cannot be felt.
+    /// No feedback.
     Nothing,
 }
 
-/// What a device is told.
+/// Output to a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Output {
-    /// To push the stick: x to the right, y away from the player [full forces], each -1 to 1.
+    /// Force on the stick: x to the right, y away from the player [full forces], each −1 to 1.
     Force([f32; 2]),
-    /// To shake, each 0 to 1.
+    /// Rumble strengths, each 0 to 1.
     Rumble {
-        /// The slow, strong motor.
+        /// Slow, strong motor.
         low: f32,
-        /// The fast, weak one.
+        /// Fast, weak motor.
         high: f32,
     },
 }
 
-/// The device is not there any more.
+/// Error: the device was unplugged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gone;
 
-/// A device. It is called on one thread, 125 to 250 times a second, and must not wait for anything.
+/// Device. All methods are called on one thread, 125 to 250 times a second, and must not block.
 pub trait Sink: Send {
-    /// What it can do. May become better when a driver is ready at last.
+    /// Returns the capability. It may improve once a driver is ready.
     fn ability(&self) -> Ability;
 
-    /// Where the stick points now: x to the right, y away from the player, each -1 to 1.
+    /// Returns the current stick position: x to the right, y away from the player, each −1 to 1.
     ///
     /// # Errors
-    /// [`Gone`], and nothing is played any more.
+    /// [`Gone`] if the device was unplugged; nothing is played any more.
     fn aim(&mut self) -> Result<[f32; 2], Gone>;
 
-    /// Plays this at once, instead of what was before, for [`LENGTH`]. The same may come again, and starts anew then.
+    /// Plays an output at once for [`LENGTH`], instead of the previous one. Repeating the same output
+    /// restarts its duration.
     ///
     /// # Errors
-    /// [`Gone`], and nothing is played any more.
+    /// [`Gone`] if the device was unplugged; nothing is played any more.
     fn play(&mut self, output: Output) -> Result<(), Gone>;
 }
 
-/// A device that does nothing.
+/// Device without any feedback.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Nothing;
 
@@ -73,16 +74,16 @@ impl Sink for Nothing {
     }
 }
 
-/// A device that writes down what it is told. Clones are the same device.
+/// Device that records its outputs. Clones share the recording.
 #[derive(Clone, Debug)]
 pub struct Recording(Arc<Mutex<Tape>>);
 
-/// One thing that a [`Recording`] was told.
+/// Output recorded by a [`Recording`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Played {
-    /// When, since the recording was made.
+    /// Time since the recording was created.
     pub at: Duration,
-    /// What.
+    /// Output.
     pub output: Output,
 }
 
@@ -101,7 +102,7 @@ impl Default for Recording {
 }
 
 impl Recording {
-    /// A device that can do this, upright.
+    /// Creates a device with a capability; its stick is in the middle.
     pub fn new(ability: Ability) -> Self {
         Self(Arc::new(Mutex::new(Tape {
             start: Instant::now(),
@@ -111,12 +112,12 @@ impl Recording {
         })))
     }
 
-    /// Leans it, or unplugs it.
+    /// Sets the stick position, or unplugs the device.
     pub fn lean(&self, aim: Result<[f32; 2], Gone>) {
         self.tape(|tape| tape.aim = aim);
     }
 
-    /// All that it was told since this was asked last.
+    /// Returns all outputs since the last call.
     pub fn take(&self) -> Vec<Played> {
         self.tape(|tape| std::mem::take(&mut tape.played))
     }
@@ -145,7 +146,7 @@ impl Sink for Recording {
 }
 
 impl Output {
-    /// Nothing, for a device that can do this.
+    /// Returns the zero output for a capability.
     pub fn zero(ability: Ability) -> Self {
         match ability {
             Ability::Force | Ability::Nothing => Self::Force([0.0; 2]),
@@ -156,17 +157,17 @@ impl Output {
         }
     }
 
-    /// Both numbers as drivers count, -32767 to 32767.
+    /// Returns both values in driver units, −32767 to 32767.
     pub fn levels(&self) -> [i16; 2] {
         let both = match *self {
             Self::Force(both) => both,
             Self::Rumble { low, high } => [low, high],
         };
-        // A float that is out of range or no number at all ends up within it.
+        // The cast saturates out-of-range values and turns NaN into 0.
         both.map(|k| (k.clamp(-1.0, 1.0) * 32767.0).round() as i16)
     }
 
-    /// Whether it does nothing.
+    /// Returns whether the output is zero in driver units.
     pub fn is_zero(&self) -> bool {
         self.levels() == [0; 2]
     }

@@ -1,4 +1,4 @@
-//! Who owns all sinks, a thread or where there is none the caller, and how the game speaks to it.
+//! Thread that owns all sinks (or the caller, where there are no threads), and its interface to the game.
 
 use crate::{Ability, Feel, Felt, Mail, Output, Settings, Sink, State, Stop, Watchdog};
 use std::collections::BTreeMap;
@@ -8,37 +8,37 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 use web_time::Instant;
 
-/// How often a second the devices may be updated. Slower is felt as steps; most devices take no more.
+/// Allowed update rates [Hz]. Steps are felt at lower rates; most devices accept no higher ones.
 pub const RATES: RangeInclusive<u32> = 125..=250;
-/// What stays the same is told again after this time, well before [`LENGTH`](crate::LENGTH) is over.
+/// Interval at which an unchanged output is repeated, well below [`LENGTH`](crate::LENGTH).
 const AGAIN: Duration = Duration::from_millis(200);
 
-/// Owns all sinks, or the thread that does. Dropping it stops everything and waits for that.
-#[must_use = "nothing is felt any more when it is dropped"]
+/// Owner of all sinks or of the thread that has them. Dropping it stops all devices and waits for that.
+#[must_use = "dropping it stops the force feedback"]
 pub struct Force {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
-    /// Those that no thread owns.
+    /// Sinks that are not owned by a thread.
     outlets: Vec<Outlet>,
 }
 
-/// Leads to one device. Dropping it, as a panic does, is to let go of the device.
-#[must_use = "nothing is felt any more when it is dropped"]
+/// Connection to one device. Dropping it, also by a panic, stops and releases the device.
+#[must_use = "dropping it stops the force feedback"]
 pub struct Line {
     shared: Arc<Shared>,
     key: u64,
 }
 
-/// What happens on a line.
+/// State of a connection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
-    /// What the device can do.
+    /// Capability of the device.
     pub ability: Ability,
-    /// What it plays.
+    /// Current output.
     pub output: Output,
-    /// What there would be to feel [N], before it is made safe.
+    /// Force before the safety chain [N].
     pub newtons: [f32; 2],
-    /// Why nothing is played, if something forbids it.
+    /// Reason for silence, if any.
     pub silent: Option<Stop>,
 }
 
@@ -48,21 +48,20 @@ struct Shared {
     news: Condvar,
 }
 
-/// What both sides read and write; locked for no longer than it takes to copy. It holds the latest of everything, and no
-/// queue.
+/// Data shared by the game and the thread; locked only for copying. It holds the latest values and no queue.
 #[derive(Default)]
 struct Desk {
     watchdog: Watchdog,
     posts: BTreeMap<u64, Post>,
     arrivals: Vec<Outlet>,
     next_key: u64,
-    /// Something must not wait until the next update.
+    /// Wakes the thread before its next update.
     is_urgent: bool,
     is_closing: bool,
     has_ended: bool,
 }
 
-/// What the game said about a device, and what came of it.
+/// Last commands of the game for a device, and the resulting state.
 #[derive(Clone, Copy)]
 struct Post {
     mail: Mail,
@@ -71,7 +70,7 @@ struct Post {
     report: Report,
 }
 
-/// A device, on the thread.
+/// Device, owned by the thread.
 struct Outlet {
     key: u64,
     sink: Box<dyn Sink>,
@@ -81,10 +80,10 @@ struct Outlet {
 }
 
 impl Force {
-    /// Starts the thread; `rate` is how often a second it updates the devices, see [`RATES`].
+    /// Starts the thread; `rate` is its update rate [Hz], clamped to [`RATES`].
     ///
     /// # Errors
-    /// The system has no thread left.
+    /// Returns an error if the system cannot start a thread.
     pub fn start(rate: u32) -> std::io::Result<Self> {
         let mut force = Self::without_thread();
         let period = Duration::from_secs(1) / rate.clamp(*RATES.start(), *RATES.end());
@@ -96,7 +95,7 @@ impl Force {
         Ok(force)
     }
 
-    /// The same where there are no threads, as in a browser: devices are updated by [`Force::update`] alone.
+    /// Creates an owner without a thread, as in a browser: only [`Force::update`] updates the devices.
     pub fn without_thread() -> Self {
         Self {
             shared: Arc::new(Shared {
@@ -109,14 +108,14 @@ impl Force {
         }
     }
 
-    /// Updates the devices once, where no thread does.
+    /// Updates the devices once if there is no thread.
     pub fn update(&mut self) {
         if self.thread.is_none() {
             self.shared.update(self.shared.desk(), &mut self.outlets);
         }
     }
 
-    /// Takes a device over.
+    /// Takes over a device.
     pub fn add(&self, sink: Box<dyn Sink>, settings: Settings) -> Line {
         let report = Report {
             ability: sink.ability(),
@@ -147,7 +146,7 @@ impl Force {
         }
     }
 
-    /// Stops all devices, until the next state is told to each.
+    /// Stops each device until its next state.
     pub fn stop(&self, why: Stop) {
         let mail = self.shared.mail(Err(why));
         let mut desk = self.shared.desk();
@@ -157,14 +156,14 @@ impl Force {
         self.shared.hurry(desk);
     }
 
-    /// Stops all devices, whatever is told to them, until [`Force::release`].
+    /// Stops all devices and ignores new states until [`Force::release`].
     pub fn emergency_stop(&self) {
         let mut desk = self.shared.desk();
         desk.watchdog.latch();
         self.shared.hurry(desk);
     }
 
-    /// Ends an emergency stop. What was told during it is forgotten.
+    /// Ends an emergency stop. States reported during the stop are discarded.
     pub fn release(&self) {
         let mut desk = self.shared.desk();
         desk.watchdog.release();
@@ -180,25 +179,25 @@ impl Drop for Force {
         desk.is_closing = true;
         self.shared.hurry(desk);
         if let Some(thread) = self.thread.take() {
-            // If it panicked, it said so, and the sinks are at zero.
+            // If the thread panicked, the message was printed and the sinks are at zero.
             let _ = thread.join();
         }
     }
 }
 
 impl Line {
-    /// What there is to feel now. Say it after each step of the simulation.
+    /// Reports the current state. Call it after each step of the simulation.
     pub fn feel(&self, state: State) {
         let mail = self.shared.mail(Ok(state));
         self.post(|post| post.mail = mail);
     }
 
-    /// Something tore; 1 is as large as a tear gets.
+    /// Reports a tear of a size from 0 to 1.
     pub fn tear(&self, size: f32) {
         self.post(|post| post.tear = post.tear.max(size));
     }
 
-    /// Stops this device until the next state is told. To say it again costs next to nothing.
+    /// Stops this device until the next state. Repeated calls are cheap.
     pub fn stop(&self, why: Stop) {
         let mail = self.shared.mail(Err(why));
         let before = self.post(|post| std::mem::replace(&mut post.mail, mail));
@@ -207,12 +206,12 @@ impl Line {
         }
     }
 
-    /// Goes on with other settings.
+    /// Changes the settings.
     pub fn set(&self, settings: Settings) {
         self.post(|post| post.settings = settings);
     }
 
-    /// What happens, as of the last update.
+    /// Returns the state as of the last update.
     pub fn report(&self) -> Report {
         let has_ended = self.shared.desk().has_ended;
         let mut report = self.post(|post| Report {
@@ -228,7 +227,7 @@ impl Line {
     fn post<R>(&self, act: impl FnOnce(&mut Post) -> R) -> R {
         let mut desk = self.shared.desk();
         let post = desk.posts.get_mut(&self.key);
-        act(post.expect("a line takes its post away when it is dropped, and nobody else does"))
+        act(post.expect("only dropping the line removes its post"))
     }
 }
 
@@ -250,7 +249,7 @@ impl Shared {
         Mail { wish, at }
     }
 
-    /// Has the thread look at once.
+    /// Wakes the thread for an immediate update.
     fn hurry(&self, mut desk: MutexGuard<'_, Desk>) {
         desk.is_urgent = true;
         drop(desk);
@@ -271,17 +270,17 @@ impl Shared {
                 return;
             }
             let now = self.update(desk, &mut outlets);
-            // What was missed is not made up for.
+            // Missed updates are not made up for.
             next = (next + period).max(now);
         }
     }
 
-    /// Updates all devices, as of now.
+    /// Updates all devices and returns the time of the update.
     fn update(&self, mut desk: MutexGuard<'_, Desk>, outlets: &mut Vec<Outlet>) -> Duration {
         desk.is_urgent = false;
         outlets.append(&mut desk.arrivals);
         let watchdog = desk.watchdog;
-        // A post that has gone leaves a stop behind, and its outlet is dropped outside the lock.
+        // For a removed post `None` is kept, and its outlet is dropped outside the lock.
         let posts: Vec<Option<Post>> = outlets
             .iter()
             .map(|outlet| {
@@ -312,7 +311,7 @@ impl Shared {
     }
 }
 
-/// Tells the lines that nobody plays any more, however the thread ends.
+/// Informs the lines that the thread has ended, also after a panic.
 struct End<'a>(&'a Shared);
 
 impl Drop for End<'_> {
@@ -344,7 +343,7 @@ impl Outlet {
         }
     }
 
-    /// Tells the device, if it is news or the last was long ago. Nothing need not be told twice.
+    /// Sends an output to the device if it changed or if it is nonzero and due for repetition.
     fn tell(&mut self, felt: Felt, now: Duration) -> Felt {
         let Felt { output, .. } = felt;
         let is_news = output.levels() != self.told.levels();
@@ -360,11 +359,11 @@ impl Outlet {
     }
 }
 
-/// However it ends, by unwinding too, the device is let go.
+/// Releases the device on drop, also by unwinding.
 impl Drop for Outlet {
     fn drop(&mut self) {
         if !self.told.is_zero() {
-            // If it has gone, there is nothing to let go of.
+            // Ignores the error: an unplugged device needs no release.
             let _ = self.sink.play(Output::zero(self.sink.ability()));
         }
     }

@@ -1,36 +1,36 @@
-//! Why there is no force.
+//! Reasons for silence.
 
 use crate::State;
 use std::fmt;
 use std::time::Duration;
 
-/// Mail that is older counts for nothing. Two updates at the slowest rate below the 100 ms that it must never outlast.
+/// Maximum age of a state. Two updates at the slowest rate below the limit of 100 ms.
 pub const OLDEST: Duration = Duration::from_millis(84);
 
-/// Why nothing is played.
+/// Reason for silence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// Nothing was said yet.
+    /// No state was reported yet.
     Unheard,
-    /// Nobody plays with it.
+    /// No player uses the device.
     Idle,
-    /// The game rests.
+    /// The game is paused.
     Paused,
-    /// Another window has the keyboard.
+    /// The window lost the focus.
     FocusLost,
     /// A menu is open.
     Menu,
-    /// It is won: nobody pushes any more.
+    /// The round is won and the hand is no longer controlled.
     Won,
-    /// The world starts again, and the hand is elsewhere.
+    /// The world restarts, with the hand at another position.
     Reset,
-    /// The device has gone.
+    /// The device was unplugged.
     Unplugged,
-    /// What the simulation said last is older than [`OLDEST`].
+    /// The last state is older than [`OLDEST`].
     Stale,
-    /// Somebody pressed the key for it. Lasts until it is released.
+    /// Emergency stop; lasts until it is released.
     Emergency,
-    /// The thread that plays has ended.
+    /// The thread has ended.
     Ended,
 }
 
@@ -52,16 +52,16 @@ impl fmt::Display for Stop {
     }
 }
 
-/// The latest that the game said about one device, and when, on a clock that both sides share.
+/// Last command of the game for a device, with its time on a shared clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mail {
-    /// What there is to feel, or why there is nothing.
+    /// State, or a reason for silence.
     pub wish: Result<State, Stop>,
-    /// When it was said.
+    /// Time of the command.
     pub at: Duration,
 }
 
-/// Says no.
+/// Blocks forces.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Watchdog {
     emergency: bool,
@@ -77,20 +77,20 @@ impl Default for Mail {
 }
 
 impl Watchdog {
-    /// Holds everything back from now on.
+    /// Blocks all forces from now on.
     pub fn latch(&mut self) {
         self.emergency = true;
     }
 
-    /// Lets through again what comes.
+    /// Ends the block.
     pub fn release(&mut self) {
         self.emergency = false;
     }
 
-    /// What there is to feel at the time `now`.
+    /// Returns the state to be felt at the time `now`.
     ///
     /// # Errors
-    /// Why there is nothing.
+    /// Returns the reason for silence.
     pub fn pass(&self, mail: &Mail, now: Duration) -> Result<State, Stop> {
         if self.emergency {
             return Err(Stop::Emergency);

@@ -1,11 +1,11 @@
-//! The chain, whatever it is fed with.
+//! The safety chain with arbitrary input.
 
 use fastrand::Rng;
 use force_feedback::{Ability, Calibration, Feel, Mail, Manner, Output, Settings, State, Watchdog};
 use force_feedback::{Chain, HARDEST};
 use std::time::Duration;
 
-/// Anything that fits into a float, and more often than by chance what is awkward.
+/// Returns an arbitrary float, special values more often than by chance.
 fn number(rng: &mut Rng) -> f32 {
     match rng.u8(..12) {
         0 => f32::NAN,
@@ -39,7 +39,7 @@ fn settings(rng: &mut Rng) -> Settings {
 }
 
 #[test]
-fn no_history_of_forces_breaks_slew_or_clamp() {
+fn chain_keeps_slew_and_clamp_for_arbitrary_forces() {
     let mut rng = Rng::with_seed(4);
     let mut strongest = 0.0f32;
     for history in 0..10_000 {
@@ -70,12 +70,15 @@ fn no_history_of_forces_breaks_slew_or_clamp() {
             before = force;
         }
     }
-    assert!(strongest > 0.5, "some of it is felt: {strongest}");
+    assert!(
+        strongest > 0.5,
+        "the strongest force is too weak: {strongest}"
+    );
 }
 
-/// The same from the outside: whatever the simulation says and wherever the stick is said to point.
+/// The same limits hold through `Feel`, for arbitrary states and stick positions.
 #[test]
-fn no_history_of_states_breaks_them_either() {
+fn feel_keeps_slew_and_clamp_for_arbitrary_states() {
     let mut rng = Rng::with_seed(5);
     for _history in 0..2000 {
         let settings = settings(&mut rng);
@@ -105,7 +108,7 @@ fn no_history_of_states_breaks_them_either() {
             }
             let felt = feel.step(&watchdog, &mail, (aim, Ability::Force), &settings, now);
             let Output::Force(force) = felt.output else {
-                panic!("it was asked for a force")
+                panic!("the output is not a force")
             };
             for axis in 0..2 {
                 assert!(force[axis].abs() <= bounded.clamp);
@@ -119,7 +122,7 @@ fn no_history_of_states_breaks_them_either() {
 }
 
 #[test]
-fn it_recovers_from_what_is_no_number() {
+fn feel_recovers_from_nan() {
     let settings = Settings::default();
     let (watchdog, mut feel) = (Watchdog::default(), Feel::default());
     let mut felt = None;
@@ -154,7 +157,7 @@ fn it_recovers_from_what_is_no_number() {
 }
 
 #[test]
-fn the_first_force_comes_gently() {
+fn first_force_ramps_up() {
     let settings = Settings::default();
     let mut chain = Chain::default();
     for step in 0..=250 {
@@ -169,7 +172,7 @@ fn the_first_force_comes_gently() {
 }
 
 #[test]
-fn no_strength_is_nothing() {
+fn chain_gives_zero_without_strength() {
     let settings = Settings {
         strength: 0.0,
         ..Settings::default()

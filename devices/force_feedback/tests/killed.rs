@@ -1,4 +1,4 @@
-//! A process that is killed while it pushes: the last that it told ends by itself.
+//! A process killed while it pushes: its last output ends by itself.
 
 use force_feedback::{Ability, Force, Gone, LENGTH, Manner, Output, Settings, Sink, State};
 use std::fs::File;
@@ -6,11 +6,11 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// Where the child writes.
+/// Environment variable with the output path of the child.
 const PATH: &str = "FORCE_FEEDBACK_TEST_PATH";
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Writes down in ms when what it is told begins and when it ends, as a device would have it in its memory.
+/// Writes the begin and end of each output in ms, as a device would store them.
 struct Device(File);
 
 impl Sink for Device {
@@ -38,10 +38,10 @@ impl Sink for Device {
 fn now() -> Duration {
     SystemTime::now()
         .duration_since(UNIX_EPOCH)
-        .expect("it is later than 1970")
+        .expect("the time is after 1970")
 }
 
-/// What the device was told: when, until when and how strongly.
+/// Returns the outputs of the device: begin, end and strength.
 fn told(path: &std::path::Path) -> Vec<[i128; 3]> {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     // The last line may be half written.
@@ -61,11 +61,11 @@ fn push_until_killed() {
     let Some(path) = std::env::var_os(PATH) else {
         return;
     };
-    let file = File::create(path).expect("the parent made a place for it");
-    let force = Force::start(250).expect("the system has a thread");
+    let file = File::create(path).expect("the file can be created");
+    let force = Force::start(250).expect("a thread can be started");
     let line = force.add(Box::new(Device(file)), Settings::default());
     let start = std::time::Instant::now();
-    // If the parent has gone, so that nobody kills it, it ends.
+    // Ends by itself if the parent is gone and cannot kill it.
     while start.elapsed() < PATIENCE {
         line.feel(State {
             contact: [-300.0, 0.0],
@@ -76,31 +76,34 @@ fn push_until_killed() {
 }
 
 #[test]
-fn a_killed_process_pushes_for_half_a_second_at_most() {
+fn force_of_a_killed_process_ends_within_half_a_second() {
     let path = std::env::temp_dir().join(format!("force_feedback_{}", std::process::id()));
-    let mut child = Command::new(std::env::current_exe().expect("this is running"))
+    let mut child = Command::new(std::env::current_exe().expect("the path of the test is known"))
         .args(["--exact", "push_until_killed", "--ignored"])
         .env(PATH, &path)
         .stdout(Stdio::null())
         .spawn()
-        .expect("this test can be started");
+        .expect("the child can be started");
     let start = now();
     while told(&path).last().is_none_or(|last| last[2] > -5000) {
-        assert!(now() - start < PATIENCE, "it never pushed");
+        assert!(now() - start < PATIENCE, "the child never pushed");
         std::thread::sleep(Duration::from_millis(5));
     }
     // SIGKILL: no handler runs, and nothing is dropped.
-    child.kill().expect("it runs");
-    child.wait().expect("it was killed");
+    child.kill().expect("the child runs");
+    child.wait().expect("the child can be waited for");
     let killed = now().as_millis() as i128;
     let before = told(&path);
     std::thread::sleep(LENGTH);
     let after = told(&path);
-    std::fs::remove_file(&path).expect("it was just read");
+    std::fs::remove_file(&path).expect("the file can be removed");
 
-    assert_eq!(after, before, "nobody tells it anything any more");
-    let last = after.last().expect("it was told");
-    assert_ne!(last[2], 0, "it was killed while it pushed");
+    assert_eq!(after, before, "an output arrived after the kill");
+    let last = after.last().expect("there was an output");
+    assert_ne!(last[2], 0, "the last output is zero");
     assert!(last[1] <= killed + LENGTH.as_millis() as i128);
-    assert!(now().as_millis() as i128 >= last[1], "it is over by now");
+    assert!(
+        now().as_millis() as i128 >= last[1],
+        "the last output still lasts"
+    );
 }

@@ -1,4 +1,4 @@
-//! Every way in which a force has to end, on a simulated clock and on a real thread.
+//! All ways in which a force must end, on a simulated clock and on a real thread.
 
 use force_feedback::{
     Ability, Feel, Felt, Force, Gone, LENGTH, Line, Mail, Manner, Nothing, Output, Played, RATES,
@@ -19,10 +19,11 @@ const REASONS: [Stop; 6] = [
     Stop::Unplugged,
 ];
 const MS: Duration = Duration::from_millis(1);
-/// How long a thread of a busy machine may sleep on; nothing here has to be as quick as that.
+/// Timeout on a busy machine for everything without a tighter limit.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// A hand that leans into something, stepped at a rate for a while, as told by a game at 60 Hz. Ends right after a step.
+/// A hand that leans into something, with updates at a given rate and states at 60 Hz. Ends right after an
+/// update.
 struct Simulated {
     feel: Feel,
     watchdog: Watchdog,
@@ -47,7 +48,7 @@ impl Simulated {
             }
             felt = Some(this.step());
         }
-        let felt = felt.expect("it was stepped");
+        let felt = felt.expect("there was a step");
         assert!(!felt.output.is_zero() && felt.silent.is_none(), "{felt:?}");
         this
     }
@@ -66,10 +67,10 @@ impl Simulated {
 }
 
 #[test]
-fn a_thread_that_was_held_up_begins_gently() {
+fn force_ramps_up_after_a_delayed_update() {
     let mut simulated = Simulated::pushed(250);
     simulated.now += 1500 * MS;
-    // The simulation was held up too, and wakes first: nothing is stale.
+    // The simulation was delayed too and resumes first: the state is not stale.
     simulated.say(Ok(PUSH));
     for _ in 0..5 {
         let felt = simulated.step();
@@ -82,7 +83,7 @@ fn a_thread_that_was_held_up_begins_gently() {
 }
 
 #[test]
-fn each_reason_ends_it_in_the_next_step() {
+fn each_stop_reason_takes_effect_in_the_next_step() {
     for rate in [*RATES.start(), 200, *RATES.end()] {
         for reason in REASONS {
             let mut simulated = Simulated::pushed(rate);
@@ -96,7 +97,7 @@ fn each_reason_ends_it_in_the_next_step() {
 }
 
 #[test]
-fn it_comes_back_gently() {
+fn force_ramps_up_after_a_stop() {
     let mut simulated = Simulated::pushed(250);
     simulated.say(Err(Stop::Paused));
     simulated.step();
@@ -105,14 +106,14 @@ fn it_comes_back_gently() {
     assert!(felt.output.is_zero() && felt.silent.is_none());
     for _step in 0..5 {
         let Output::Force([force, _]) = simulated.step().output else {
-            panic!("it was asked for a force")
+            panic!("the output is not a force")
         };
         assert!(force.abs() < 0.02, "{force}");
     }
 }
 
 #[test]
-fn a_simulation_that_says_no_more_is_forgotten_within_100_ms() {
+fn force_ends_within_100_ms_of_the_last_state() {
     for rate in RATES {
         let mut simulated = Simulated::pushed(rate);
         simulated.say(Ok(PUSH));
@@ -124,7 +125,7 @@ fn a_simulation_that_says_no_more_is_forgotten_within_100_ms() {
                 break simulated.now - said;
             }
         };
-        // A frame of 50 ms is slow, and no reason to let go.
+        // A slow frame of 50 ms must not cause a stop.
         assert!(
             silent > 50 * MS && silent <= 100 * MS,
             "{silent:?} at {rate} Hz"
@@ -133,7 +134,7 @@ fn a_simulation_that_says_no_more_is_forgotten_within_100_ms() {
 }
 
 #[test]
-fn an_emergency_stop_lasts_until_it_is_released() {
+fn emergency_stop_lasts_until_released() {
     let mut simulated = Simulated::pushed(250);
     simulated.watchdog.latch();
     for _step in 0..1000 {
@@ -149,7 +150,7 @@ fn an_emergency_stop_lasts_until_it_is_released() {
 
 /// A real thread that pushes a recording.
 fn pushed() -> (Force, Line, Recording) {
-    let force = Force::start(250).expect("the system has a thread");
+    let force = Force::start(250).expect("a thread can be started");
     let recording = Recording::default();
     recording.lean(Ok([1.0, 0.0]));
     let line = force.add(Box::new(recording.clone()), Settings::default());
@@ -157,7 +158,7 @@ fn pushed() -> (Force, Line, Recording) {
     (force, line, recording)
 }
 
-/// Says for a while that there is something, until there is something to be felt.
+/// Reports a contact for a while, and at least until there is a force.
 fn push(line: &Line, time: Duration) {
     let start = Instant::now();
     while start.elapsed() < time || line.report().output.is_zero() {
@@ -167,18 +168,18 @@ fn push(line: &Line, time: Duration) {
     }
 }
 
-/// Waits until the device was told to do nothing. What it was told, and how long it took.
+/// Waits for a zero output. Returns the outputs and the time that it took.
 fn zero(recording: &Recording, since: Instant) -> (Vec<Played>, Duration) {
     let mut played = recording.take();
     while played.last().is_none_or(|last| !last.output.is_zero()) {
-        assert!(since.elapsed() < PATIENCE, "nothing told it to let go");
+        assert!(since.elapsed() < PATIENCE, "no zero output arrived");
         std::thread::sleep(MS / 10);
         played.extend(recording.take());
     }
     (played, since.elapsed())
 }
 
-/// Of several tries the quickest: the others are the machine's.
+/// Uses the quickest of several tries, since a busy machine only adds time.
 fn check_quick(most: Duration, what: &str, mut once: impl FnMut() -> Duration) {
     let mut quickest = Duration::MAX;
     for _try in 0..20 {
@@ -191,7 +192,7 @@ fn check_quick(most: Duration, what: &str, mut once: impl FnMut() -> Duration) {
 }
 
 #[test]
-fn a_thread_lets_go_within_20_ms_for_each_reason() {
+fn thread_stops_within_20_ms_for_each_reason() {
     for reason in REASONS {
         check_quick(20 * MS, "stopped", || {
             let (force, line, recording) = pushed();
@@ -210,7 +211,7 @@ fn a_thread_lets_go_within_20_ms_for_each_reason() {
 }
 
 #[test]
-fn a_thread_lets_go_of_what_is_dropped_or_stopped_in_an_emergency() {
+fn thread_stops_on_drop_and_emergency_stop() {
     check_quick(20 * MS, "the line was dropped", || {
         let (_force, line, recording) = pushed();
         let start = Instant::now();
@@ -232,7 +233,10 @@ fn a_thread_lets_go_of_what_is_dropped_or_stopped_in_an_emergency() {
         let time = zero(&recording, start).1;
         line.feel(PUSH);
         std::thread::sleep(30 * MS);
-        assert!(recording.take().is_empty(), "it is latched");
+        assert!(
+            recording.take().is_empty(),
+            "an output arrived during the emergency stop"
+        );
         force.release();
         push(&line, Duration::ZERO);
         time
@@ -240,26 +244,26 @@ fn a_thread_lets_go_of_what_is_dropped_or_stopped_in_an_emergency() {
 }
 
 #[test]
-fn a_thread_lets_go_when_the_game_panics() {
-    check_quick(20 * MS, "it panicked", || {
+fn thread_stops_when_the_game_panics() {
+    check_quick(20 * MS, "the game panicked", || {
         let (_force, line, recording) = pushed();
         let game = std::thread::spawn(move || {
             line.feel(PUSH);
             std::panic::panic_any(Instant::now());
         });
-        let payload = game.join().expect_err("it panicked");
+        let payload = game.join().expect_err("the game panics");
         let start = *payload
             .downcast::<Instant>()
-            .expect("that is what it threw");
+            .expect("the payload is the time");
         zero(&recording, start).1
     });
 }
 
 #[test]
-fn a_thread_lets_go_when_the_game_stalls() {
-    check_quick(100 * MS, "it stalled", || {
+fn thread_stops_when_the_game_stalls() {
+    check_quick(100 * MS, "the game stalled", || {
         let (_force, line, recording) = pushed();
-        // It holds the line and says nothing more.
+        // The thread keeps the line and reports nothing more.
         let (stall, stalled) = std::sync::mpsc::channel::<()>();
         line.feel(PUSH);
         let start = Instant::now();
@@ -269,13 +273,13 @@ fn a_thread_lets_go_when_the_game_stalls() {
         });
         let (_, time) = zero(&recording, start);
         drop(stall);
-        game.join().expect("it only waited");
+        game.join().expect("the thread does not panic");
         time
     });
 }
 
 #[test]
-fn a_device_that_goes_is_left_alone() {
+fn unplugged_device_gets_no_output() {
     let (_force, line, recording) = pushed();
     recording.lean(Err(Gone));
     let start = Instant::now();
@@ -289,9 +293,9 @@ fn a_device_that_goes_is_left_alone() {
     assert!(recording.take().is_empty());
 }
 
-/// A device whose driver panics takes the thread with it, and no other device stays on.
+/// A device with a panicking driver ends the thread; all other devices must be stopped.
 #[test]
-fn a_driver_that_panics_leaves_nothing_on() {
+fn panicking_driver_stops_all_devices() {
     struct Bad(bool);
     impl Sink for Bad {
         fn ability(&self) -> Ability {
@@ -299,7 +303,7 @@ fn a_driver_that_panics_leaves_nothing_on() {
         }
         fn aim(&mut self) -> Result<[f32; 2], Gone> {
             if self.0 {
-                std::panic::resume_unwind(Box::new("on purpose"));
+                std::panic::resume_unwind(Box::new("intended panic"));
             }
             self.0 = true;
             Ok([0.0; 2])
@@ -319,12 +323,12 @@ fn a_driver_that_panics_leaves_nothing_on() {
 }
 
 #[test]
-fn what_does_not_change_is_told_again_in_time_and_no_more_often() {
-    let force = Force::start(250).expect("the system has a thread");
+fn unchanged_output_is_repeated_before_it_ends() {
+    let force = Force::start(250).expect("a thread can be started");
     let recording = Recording::default();
     recording.lean(Ok([1.0, 0.0]));
     let settings = Settings {
-        // Clamped, so that nothing changes once it is armed.
+        // Clamped, so that the force is constant after the ramp-up.
         clamp: 0.05,
         ..Settings::default()
     };
@@ -337,14 +341,15 @@ fn what_does_not_change_is_told_again_in_time_and_no_more_often() {
     let pauses = played.windows(2).map(|pair| pair[1].at - pair[0].at);
     let mut pauses: Vec<Duration> = pauses.collect();
     pauses.sort();
-    // The clocks of who tells and who notes are read one after the other; and a busy machine may be late once.
+    // Recording and thread read their clocks at slightly different times, and a busy machine may be late
+    // once.
     assert!(pauses[0] >= 190 * MS, "{pauses:?}");
     assert!(pauses[pauses.len() / 2] < LENGTH, "{pauses:?}");
 }
 
 #[test]
-fn no_strength_and_nothing_to_feel_send_nothing() {
-    let force = Force::start(250).expect("the system has a thread");
+fn nothing_is_sent_without_strength_or_contact() {
+    let force = Force::start(250).expect("a thread can be started");
     let [weak, free] = [Recording::default(), Recording::default()];
     let none = Settings {
         strength: 0.0,
@@ -370,7 +375,7 @@ fn no_strength_and_nothing_to_feel_send_nothing() {
 }
 
 #[test]
-fn a_pad_hums_with_the_force_and_ticks_with_a_tear() {
+fn rumble_follows_force_and_tears() {
     let (watchdog, mut feel) = (Watchdog::default(), Feel::default());
     let mut heard = Vec::new();
     for step in 0..500u32 {
@@ -385,7 +390,7 @@ fn a_pad_hums_with_the_force_and_ticks_with_a_tear() {
         let lean = ([0.0; 2], Ability::Rumble);
         let felt = feel.step(&watchdog, &mail, lean, &Settings::default(), now);
         let Output::Rumble { low, high } = felt.output else {
-            panic!("it was asked to rumble")
+            panic!("the output is not a rumble")
         };
         heard.push((low, high));
     }
@@ -401,11 +406,11 @@ fn a_pad_hums_with_the_force_and_ticks_with_a_tear() {
         heard[399]
     );
     assert!(heard[400].1 > 0.7, "{:?}", heard[400]);
-    assert_eq!(heard[400 + 16].1, 0.0, "60 ms later it is over");
+    assert_eq!(heard[400 + 16].1, 0.0, "the tear is still felt after 60 ms");
 }
 
 #[test]
-fn without_a_thread_whoever_updates_is_enough() {
+fn update_works_without_a_thread() {
     let mut force = Force::without_thread();
     let recording = Recording::default();
     recording.lean(Ok([0.9, 0.0]));
@@ -413,7 +418,7 @@ fn without_a_thread_whoever_updates_is_enough() {
     let start = Instant::now();
     let mut played = Vec::new();
     while played.iter().all(|played: &Played| played.output.is_zero()) {
-        assert!(start.elapsed() < PATIENCE, "nothing is felt");
+        assert!(start.elapsed() < PATIENCE, "there is no force");
         line.feel(PUSH);
         force.update();
         played.extend(recording.take());
@@ -421,7 +426,7 @@ fn without_a_thread_whoever_updates_is_enough() {
     }
     line.stop(Stop::Paused);
     force.update();
-    let last = recording.take().pop().expect("a stop is told");
+    let last = recording.take().pop().expect("the stop gives an output");
     assert!(last.output.is_zero(), "{last:?}");
     assert_eq!(line.report().silent, Some(Stop::Paused));
 }

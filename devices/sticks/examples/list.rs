@@ -1,4 +1,4 @@
-//! Prints what sticks and pads say, for as long as they say something: `cargo run -p sticks --example list`.
+//! Prints the state of all sticks and pads until interrupted: `cargo run -p sticks --example list`.
 
 use std::sync::Arc;
 use std::thread::sleep;
@@ -8,7 +8,7 @@ use sticks::{Change, Device, Snapshot, Sticks};
 
 fn main() -> Result<(), sticks::NoSticks> {
     let sticks = Sticks::open()?;
-    println!("Plug in a stick or a pad, push it, press its buttons. Ctrl+C ends this.");
+    println!("Plug in a stick or a pad, move it, press its buttons. Ctrl+C exits.");
     let mut before = Arc::new(Snapshot::default());
     loop {
         let now = sticks.snapshot();

@@ -1,5 +1,5 @@
-//! Stands in for `owner` in a browser: pads through the Gamepad API (W3C), looked at whenever a snapshot is asked for. A
-//! browser shows a pad only after one of its buttons was pressed.
+//! `owner` for browsers: reads pads through the Gamepad API (W3C) each time a snapshot is taken. A browser
+//! shows a pad only after one of its buttons was pressed.
 
 use crate::latest::{Latest, NoSticks};
 use crate::{About, Button, Device, DeviceId, Labels, PadButton, Snapshot};
@@ -50,7 +50,7 @@ extern "C" {
     pub fn reset(this: &Actuator) -> Result<JsValue, JsValue>;
 }
 
-/// The buttons of the standard layout in the order of the API. Its triggers, 6 and 7, are buttons there.
+/// Buttons of the standard layout in the order of the API. The API treats the triggers, 6 and 7, as buttons.
 const STANDARD: [Option<PadButton>; 17] = {
     use PadButton::*;
     [
@@ -75,10 +75,10 @@ const STANDARD: [Option<PadButton>; 17] = {
 };
 const TRIGGERS: [usize; 2] = [6, 7];
 
-/// Looks at the browser's pads.
+/// Reader of the browser's pads.
 pub struct Owner {
     latest: Latest,
-    /// The place in the browser's list of each device of the last snapshot, and how many there ever were.
+    /// Index in the browser's list of each device of the last snapshot, and the number of devices ever seen.
     places: Mutex<(Vec<(DeviceId, u32)>, u32)>,
 }
 
@@ -117,7 +117,7 @@ impl Owner {
     }
 }
 
-/// The pads that the browser shows; none where the page may not look.
+/// Returns the connected pads; none if the page lacks permission.
 pub fn pads() -> Vec<Gamepad> {
     let list = get_gamepads().unwrap_or_default();
     let there = list.iter().filter(|pad| !pad.is_falsy());
@@ -163,7 +163,7 @@ fn device(id: DeviceId, pad: &Gamepad, before: Option<&Device>) -> Device {
     }
 }
 
-/// The same button a moment later.
+/// Updates a button and counts a new press.
 fn counted(mut button: Button, is_down: bool) -> Button {
     if is_down && !button.down {
         button.press();
@@ -172,8 +172,8 @@ fn counted(mut button: Button, is_down: bool) -> Button {
     button
 }
 
-/// What the browser's name of a pad tells. Chromium writes `Name (STANDARD GAMEPAD Vendor: 045e Product: 02ea)`, Firefox
-/// `045e-02ea-Name`.
+/// Parses the browser's name of a pad. Chromium writes `Name (STANDARD GAMEPAD Vendor: 045e Product: 02ea)`,
+/// Firefox `045e-02ea-Name`.
 fn about(id: &str) -> About {
     let chromium = || -> Option<_> {
         let (name, rest) = id.split_once(" (")?;
@@ -200,7 +200,8 @@ fn about(id: &str) -> About {
     } else {
         Labels::Unknown
     };
-    // The first half is like that of SDL; a pad without numbers is known by the beginning of its name.
+    // Like the first half of SDL's GUID. A pad without vendor and product numbers uses the beginning of its
+    // name.
     let known = match vendor {
         "" => name.bytes().map(|byte| format!("{byte:02x}")).collect(),
         _ => format!("0000{vendor}0000{product}"),

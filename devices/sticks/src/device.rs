@@ -1,68 +1,69 @@
-//! What devices say, as plain values: anybody may make them up, a test or a replay for instance.
+//! Device states as plain values, which tests and replays can also create.
 
 use std::sync::Arc;
 
-/// A device from when it is plugged in until it is unplugged; plugged in again it has another.
+/// Id of a device while it is plugged in. Plugging it in again gives another id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct DeviceId(pub u32);
 
-/// What all devices said at one time.
+/// State of all devices at one time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Snapshot {
-    /// In the order in which they were plugged in.
+    /// Devices in the order in which they were plugged in.
     pub devices: Vec<Device>,
 }
 
-/// What one device said, and how often its buttons were pressed since it was plugged in.
+/// State of one device, with press counters since it was plugged in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Device {
     pub id: DeviceId,
     pub about: Arc<About>,
-    /// Each axis from -1 to 1, as the device numbers them. On sticks the first two are usually x, growing to the right,
-    /// and y, growing towards the player. A lever reports 0 until it is first moved if its driver does not tell earlier.
+    /// Axes, each from −1 to 1, in the numbering of the device. On sticks the first two are usually x,
+    /// increasing to the right, and y, increasing towards the player. Unless the driver reports a lever's
+    /// position earlier, a lever is 0 until it is first moved.
     pub axes: Vec<f32>,
-    /// All buttons, as the device numbers them.
+    /// All buttons, in the numbering of the device.
     pub buttons: Vec<Button>,
     pub hats: Vec<Hat>,
-    /// The same again in the standard layout, if SDL knows where things are on this device. Then it is a pad.
+    /// State in the standard layout, if SDL knows the layout of this device. The device then is a pad.
     pub pad: Option<Pad>,
 }
 
-/// What stays the same while a device is plugged in.
+/// Properties that do not change while a device is plugged in.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct About {
-    /// For people.
+    /// Human-readable name.
     pub name: String,
-    /// Names the model, not the single device, as 32 hexadecimal digits: what to store a mapping or a calibration under.
-    /// Differs from platform to platform.
+    /// Id of the model, not of the single device, as 32 hexadecimal digits: a key for storing mappings or
+    /// calibrations. Differs between platforms.
     pub guid: String,
-    /// What its maker printed on its buttons, if it is a pad.
+    /// Labels printed on the buttons of a pad.
     pub labels: Labels,
 }
 
-/// What the maker of a pad printed on its buttons.
+/// Labels printed on the buttons of a pad.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Labels {
-    /// Nobody knows.
+    /// Unknown labels.
     #[default]
     Unknown,
-    /// A lowest, as on pads for Xbox and most others.
+    /// A at the bottom, as on Xbox pads and most others.
     Letters,
-    /// B lowest, as on pads for Nintendo's consoles.
+    /// B at the bottom, as on Nintendo pads.
     Mirrored,
-    /// A cross lowest, as on pads for PlayStation.
+    /// A cross at the bottom, as on PlayStation pads.
     Shapes,
 }
 
-/// A button, or anything else that is pressed.
+/// Button or other control that can be pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Button {
     pub down: bool,
-    /// How often it went down since the device was plugged in. Wraps around.
+    /// Number of presses since the device was plugged in. Wraps around.
     pub presses: u32,
 }
 
-/// One of the four ways in which a focus moves.
+/// Direction of a hat or of focus movement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Direction {
     Up,
@@ -71,26 +72,26 @@ pub enum Direction {
     Left,
 }
 
-/// A small stick for the thumb that knows eight directions, as four buttons of which two may be down.
+/// Thumb hat with eight directions, as four buttons of which two may be down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hat {
     buttons: [Button; Direction::ALL.len()],
 }
 
-/// The standard layout of pads, whoever made the pad.
+/// State of a pad in the standard layout, independent of its maker.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pad {
-    /// x to the right and y up, each from -1 to 1. Diagonals may be longer than 1.
+    /// Left stick: x to the right and y up, each from −1 to 1. Diagonals may be longer than 1.
     pub left: [f32; 2],
-    /// As `left`.
+    /// Right stick, as `left`.
     pub right: [f32; 2],
-    /// Left and right, from 0 at rest to 1.
+    /// Left and right trigger, from 0 at rest to 1.
     pub triggers: [f32; 2],
     buttons: [Button; PadButton::ALL.len()],
 }
 
-/// A button of the standard layout. The four under the right thumb are named for where they are, since makers disagree
-/// about their letters.
+/// Button of the standard layout. The four under the right thumb are named by position, since their letters
+/// differ between makers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PadButton {
     South,
@@ -100,9 +101,9 @@ pub enum PadButton {
     Back,
     Guide,
     Start,
-    /// The left stick pressed down.
+    /// Left stick pressed down.
     LeftStick,
-    /// The right stick pressed down.
+    /// Right stick pressed down.
     RightStick,
     LeftShoulder,
     RightShoulder,
@@ -110,9 +111,9 @@ pub enum PadButton {
     Down,
     Left,
     Right,
-    /// Share, capture, microphone: whatever else there is.
+    /// Additional button, such as share, capture or microphone.
     Misc,
-    /// The upper or first one at the back, as the next three.
+    /// Upper or first right paddle on the back; the next three are paddles too.
     RightPaddle,
     LeftPaddle,
     LowerRightPaddle,
@@ -120,23 +121,23 @@ pub enum PadButton {
     Touchpad,
 }
 
-/// Something that can be pressed.
+/// Control that can be pressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Control {
-    /// A button of a device that is no pad.
+    /// Button of a device that is not a pad.
     Button(usize),
-    /// A direction of a hat of a device that is no pad.
+    /// Direction of a hat of a device that is not a pad.
     Hat(usize, Direction),
-    /// A button of a pad.
+    /// Button of a pad.
     Pad(PadButton),
 }
 
-/// What makes a snapshot differ from an earlier one.
+/// Difference between two snapshots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     Connected(DeviceId),
     Disconnected(DeviceId),
-    /// Comes once for each press.
+    /// A press of a control; one entry per press.
     Pressed {
         device: DeviceId,
         control: Control,
@@ -144,12 +145,13 @@ pub enum Change {
 }
 
 impl Snapshot {
-    /// The device with this id, while it is plugged in.
+    /// Returns the device with this id while it is plugged in.
     pub fn device(&self, id: DeviceId) -> Option<&Device> {
         self.devices.iter().find(|device| device.id == id)
     }
 
-    /// What happened since an earlier snapshot: first who left, then device by device who came and what was pressed.
+    /// Returns the changes since an earlier snapshot: first the disconnected devices, then per device its
+    /// connection and its presses.
     pub fn since(&self, before: &Snapshot) -> Vec<Change> {
         let left = before
             .devices
@@ -175,7 +177,7 @@ impl Snapshot {
 }
 
 impl Device {
-    /// A device with these many axes, buttons and hats, all at rest.
+    /// Creates a device with `n` axes, buttons and hats, all at rest.
     pub fn at_rest(id: DeviceId, about: About, axes: usize, buttons: usize, hats: usize) -> Device {
         Device {
             id,
@@ -187,8 +189,8 @@ impl Device {
         }
     }
 
-    /// Where the stick points that a hand holds: a pad's left one, else the first two axes. x to the right, y up (away
-    /// from the player), each from -1 to 1.
+    /// Returns the position of the main stick: the left one of a pad, otherwise the first two axes. x to the
+    /// right, y up (away from the player), each from −1 to 1.
     pub fn aim(&self) -> [f32; 2] {
         match (&self.pad, self.axes.as_slice()) {
             (Some(pad), _) => pad.left,
@@ -197,7 +199,7 @@ impl Device {
         }
     }
 
-    /// The d-pad of a pad, or all hats taken together.
+    /// Returns the d-pad of a pad, or all hats combined.
     pub fn hat(&self, direction: Direction) -> Button {
         if let Some(pad) = &self.pad {
             return pad.button(direction.into());
@@ -211,7 +213,7 @@ impl Device {
         all
     }
 
-    /// The button at a place; one at rest if the device has no such place.
+    /// Returns the state of a control; at rest if the device has no such control.
     pub fn control(&self, control: Control) -> Button {
         let button = match control {
             Control::Button(index) => self.buttons.get(index).copied(),
@@ -221,7 +223,7 @@ impl Device {
         button.unwrap_or_default()
     }
 
-    /// Everything that can be pressed: on pads the standard layout, on other devices the buttons and hats.
+    /// Returns all controls: on pads those of the standard layout, on other devices the buttons and hats.
     pub fn controls(&self) -> impl Iterator<Item = (Control, Button)> {
         let is_pad = self.pad.is_some();
         let pad = PadButton::ALL
@@ -238,12 +240,12 @@ impl Device {
 }
 
 impl Button {
-    /// How often it went down since an earlier time.
+    /// Returns the number of presses since an earlier state.
     pub fn presses_since(self, before: Button) -> u32 {
         self.presses.wrapping_sub(before.presses)
     }
 
-    /// Takes note that it went down.
+    /// Records a press.
     pub fn press(&mut self) {
         self.down = true;
         self.presses = self.presses.wrapping_add(1);
@@ -251,7 +253,7 @@ impl Button {
 }
 
 impl Direction {
-    /// Clockwise from the top.
+    /// All directions, clockwise from the top.
     pub const ALL: [Direction; 4] = [
         Direction::Up,
         Direction::Right,
@@ -259,7 +261,7 @@ impl Direction {
         Direction::Left,
     ];
 
-    /// x to the right, y up.
+    /// Returns the unit vector: x to the right, y up.
     pub const fn vector(self) -> [f32; 2] {
         match self {
             Direction::Up => [0.0, 1.0],
@@ -291,7 +293,7 @@ impl Pad {
 }
 
 impl PadButton {
-    /// What stands on it, where that is known and is a word or a sign.
+    /// Returns the label of a button, if it is known and is a word or a sign.
     pub fn label(self, labels: Labels) -> Option<&'static str> {
         let place = match self {
             PadButton::South => 0,
@@ -313,7 +315,7 @@ impl PadButton {
         Some(all[place])
     }
 
-    /// All of them, in the order of SDL.
+    /// All buttons, in the order of SDL.
     pub const ALL: [PadButton; 21] = [
         PadButton::South,
         PadButton::East,

@@ -1,17 +1,17 @@
-//! What a person means by what a stick says: functions of numbers and of time, without a device.
+//! Interpretation of stick input: pure functions of values and time.
 
 use crate::{Button, Device, DeviceId, Direction};
 
-/// When to do something again that is held down, as keyboards do with letters.
+/// Timer that repeats a held direction, as keyboards repeat keys.
 #[derive(Clone, Debug, Default)]
 pub struct Repeat {
     held: Option<Direction>,
-    /// Until it is next repeated, s.
+    /// Time until the next repetition [s].
     left: f32,
 }
 
-/// Moves a focus through a menu with a device: a step for each press of the d-pad or hat and each push of the stick, and
-/// further ones while it is held.
+/// Moves the focus of a menu with a device: one step per press of the d-pad or hat and per push of the stick,
+/// and further steps while it is held.
 #[derive(Clone, Debug, Default)]
 pub struct Navigator {
     device: Option<DeviceId>,
@@ -20,10 +20,10 @@ pub struct Navigator {
     repeat: Repeat,
 }
 
-/// Takes away the middle, where a stick trembles or does not come back to 0, and the rim, which few sticks reach. Up to
-/// the length `inner` (usually 0.1 to 0.2) the answer is 0, from `outer` (usually 0.95) on it has length 1, and between
-/// them it grows evenly from 0, with the direction kept: an axis-wise dead zone would catch the stick on the axes.
-/// What is not finite is 0.
+/// Applies a radial dead zone in the middle, where a stick jitters or does not return to 0, and at the rim,
+/// which few sticks reach. Up to the length `inner` (usually 0.1 to 0.2) the result is 0, from `outer`
+/// (usually 0.95) on it has length 1. Between them it grows linearly from 0 and keeps the direction; a dead
+/// zone per axis would make the stick snap to the axes. Non-finite input gives 0.
 pub fn radial_dead_zone(stick: [f32; 2], inner: f32, outer: f32) -> [f32; 2] {
     let length = (stick[0] * stick[0] + stick[1] * stick[1]).sqrt();
     if !length.is_finite() || length <= inner || length == 0.0 {
@@ -38,8 +38,8 @@ pub fn radial_dead_zone(stick: [f32; 2], inner: f32, outer: f32) -> [f32; 2] {
 }
 
 impl Direction {
-    /// Where a stick leans that leaned `before`. It has to be pushed farther to lean than to go on leaning, so that neither
-    /// a trembling hand nor a diagonal makes it flicker.
+    /// Returns the direction of a stick, given the previous direction. Starting a direction needs a larger
+    /// deflection than keeping it, so that neither a trembling hand nor a diagonal makes it flicker.
     pub fn of(stick: [f32; 2], before: Option<Direction>) -> Option<Direction> {
         const BEGINS: f32 = 0.6;
         const ENDS: f32 = 0.4;
@@ -57,13 +57,14 @@ impl Direction {
 }
 
 impl Repeat {
-    /// Until the first repetition, s. Shorter, and a slow finger moves two steps; longer, and it feels stuck.
+    /// Delay before the first repetition [s]. With a shorter one a slow finger moves two steps; a longer one
+    /// feels unresponsive.
     pub const DELAY: f32 = 0.4;
-    /// Between repetitions, s.
+    /// Interval between repetitions [s].
     pub const INTERVAL: f32 = 0.12;
 
-    /// Whether what is held has to be done again now, `seconds` after the last call. The first time, when it begins to be
-    /// held, is not a repetition. Once a call at most, so that a frame that took long does not run through a menu.
+    /// Returns whether to repeat now, `seconds` after the last call. Starting to hold is not a repetition. At
+    /// most one repetition per call, so that a slow frame does not run through a menu.
     pub fn step(&mut self, held: Option<Direction>, seconds: f32) -> bool {
         if held.is_none() || held != self.held {
             self.held = held;
@@ -80,8 +81,8 @@ impl Repeat {
 }
 
 impl Navigator {
-    /// The steps to take now, `seconds` after the last call. A device seen for the first time moves nothing: whoever
-    /// joins with a button does not choose with it.
+    /// Returns the steps to take now, `seconds` after the last call. The first call with a device moves
+    /// nothing: the button press with which a player joins does not choose anything.
     pub fn step(&mut self, device: &Device, seconds: f32) -> Vec<Direction> {
         let hat = Direction::ALL.map(|direction| device.hat(direction));
         if self.device != Some(device.id) {
@@ -120,7 +121,7 @@ mod tests {
     use crate::About;
 
     #[test]
-    fn the_dead_zone_is_round_and_keeps_the_direction() {
+    fn dead_zone_is_round_and_keeps_the_direction() {
         assert_eq!(radial_dead_zone([0.1, -0.1], 0.15, 0.95), [0.0, 0.0]);
         assert_eq!(radial_dead_zone([0.15, 0.0], 0.15, 0.95), [0.0, 0.0]);
         near(radial_dead_zone([0.55, 0.0], 0.15, 0.95), [0.5, 0.0]);
@@ -135,13 +136,13 @@ mod tests {
     }
 
     #[test]
-    fn the_dead_zone_begins_and_ends_without_a_step() {
+    fn dead_zone_is_continuous_at_both_ends() {
         near(radial_dead_zone([0.1501, 0.0], 0.15, 0.95), [0.0, 0.0]);
         near(radial_dead_zone([0.9499, 0.0], 0.15, 0.95), [1.0, 0.0]);
     }
 
     #[test]
-    fn what_is_not_finite_is_at_rest() {
+    fn non_finite_input_is_at_rest() {
         for broken in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             assert_eq!(radial_dead_zone([broken, 0.5], 0.1, 0.9), [0.0; 2]);
             assert_eq!(radial_dead_zone([0.5, broken], 0.1, 0.9), [0.0; 2]);
@@ -152,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stick_leans_one_way_at_a_time() {
+    fn direction_has_hysteresis() {
         assert_eq!(Direction::of([0.0, 0.5], None), None);
         assert_eq!(Direction::of([0.0, 0.7], None), Some(Direction::Up));
         assert_eq!(
@@ -175,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_is_repeated_after_a_delay() {
+    fn repeat_begins_after_a_delay() {
         let mut repeat = Repeat::default();
         let at: Vec<_> = (0..10)
             .map(|_| repeat.step(Some(Direction::Up), 0.11))
@@ -189,7 +190,7 @@ mod tests {
         );
         assert!(
             !repeat.step(Some(Direction::Down), 0.5),
-            "another direction begins anew"
+            "another direction starts a new delay"
         );
         assert!(!repeat.step(None, 0.5));
         assert!(!repeat.step(Some(Direction::Down), 0.5));
@@ -201,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn a_push_of_the_stick_is_one_step_and_holding_it_more() {
+    fn navigator_steps_once_per_push_and_repeats_while_held() {
         let (mut navigator, mut stick) = (Navigator::default(), stick(1));
         let mut steps = Vec::new();
         for tick in 0..60 {
@@ -226,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn taps_between_two_calls_all_move() {
+    fn navigator_counts_all_taps_between_two_calls() {
         let (mut navigator, mut stick) = (Navigator::default(), stick(1));
         navigator.step(&stick, 0.0);
         for direction in [Direction::Left, Direction::Left, Direction::Up] {
@@ -240,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn another_device_moves_nothing_at_first() {
+    fn navigator_ignores_the_first_call_of_another_device() {
         let (mut navigator, mut one, mut two) = (Navigator::default(), stick(1), stick(2));
         navigator.step(&one, 0.016);
         two.axes[0] = 1.0;
@@ -248,7 +249,7 @@ mod tests {
         assert!(navigator.step(&two, 0.016).is_empty());
         assert!(
             navigator.step(&two, 0.016).is_empty(),
-            "it leans and holds as before"
+            "its state is unchanged"
         );
         one.axes[0] = -1.0;
         assert!(navigator.step(&one, 0.016).is_empty());

@@ -1,4 +1,4 @@
-//! A pad that can be felt, in a browser: browsers rumble, and know no other force.
+//! Feedback of pads in browsers, which support rumble only.
 
 use crate::latest::Latest;
 use crate::owner::{Actuator, Gamepad, pads};
@@ -8,7 +8,7 @@ use js_sys::{Object, Promise, Reflect};
 use wasm_bindgen::JsValue;
 use wasm_bindgen_futures::JsFuture;
 
-/// A pad to be felt, for `force_feedback`: browsers rumble, and know no other force.
+/// Pad as a sink of `force_feedback`; browsers support rumble only.
 pub struct Haptic {
     id: DeviceId,
     place: Option<u32>,
@@ -16,7 +16,7 @@ pub struct Haptic {
 }
 
 impl Sticks {
-    /// Takes hold of a device to be felt; one that is not there, or has no motors, does nothing.
+    /// Returns the sink of a device. A missing device or one without motors does nothing.
     pub fn haptic(&self, id: DeviceId) -> Haptic {
         let (place, latest) = (self.owner.place(id), self.latest.clone());
         Haptic { id, place, latest }
@@ -53,7 +53,7 @@ impl Sink for Haptic {
             return Ok(());
         };
         if output.is_zero() {
-            // A browser that cannot lets it run out.
+            // In a browser without `reset` the effect ends by itself.
             return actuator.reset().map_or(Ok(()), forget);
         }
         let parameters = Object::new();
@@ -63,16 +63,16 @@ impl Sink for Haptic {
             ("weakMagnitude", f64::from(high.clamp(0.0, 1.0))),
         ];
         for (name, number) in numbers {
-            // An object of our own refuses nothing.
+            // Setting a property of a new object cannot fail.
             let _ = Reflect::set(&parameters, &JsValue::from(name), &JsValue::from(number));
         }
-        // It answers when it is over, or was taken over by the next.
+        // The promise resolves when the effect ends or is replaced.
         let played = actuator.play_effect("dual-rumble", &parameters);
         played.map_err(|_| Gone).and_then(forget)
     }
 }
 
-/// Whatever comes of a promise: pads that cannot rumble refuse it later.
+/// Ignores the result of a promise: pads that cannot rumble reject it later.
 fn forget(promise: JsValue) -> Result<(), Gone> {
     wasm_bindgen_futures::spawn_local(async move {
         let _ = JsFuture::from(Promise::resolve(&promise)).await;

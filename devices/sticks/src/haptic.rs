@@ -1,4 +1,4 @@
-//! A device that can be felt: where forces go on their way to the thread that owns SDL.
+//! Sink of a device; sends outputs to the thread that owns SDL.
 
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, Weak};
@@ -11,9 +11,9 @@ use crate::latest::Latest;
 use crate::owner::{Hub, Order};
 use crate::{DeviceId, Sticks};
 
-/// A device to be felt, for `force_feedback`. Dropping it lets go of the device, unless it was taken hold of anew since; so
-/// have one at a time of each, but for the moment in which one follows another. Forces overtake each other: only the
-/// latest is on its way.
+/// Device as a sink of `force_feedback`. Dropping it releases the device, unless a newer sink of the device
+/// exists. Have only one sink per device at a time, except while one replaces another. Only the latest output
+/// is sent; it replaces pending ones.
 pub struct Haptic {
     id: DeviceId,
     latest: Latest,
@@ -22,8 +22,8 @@ pub struct Haptic {
 }
 
 impl Sticks {
-    /// Takes hold of a device to be felt. What it can do is known some ms later; until then, and if it is not there, that
-    /// is nothing.
+    /// Returns the sink of a device. Its ability is known some ms later; until then, and for a missing
+    /// device, it is [`Ability::Nothing`].
     pub fn haptic(&self, id: DeviceId) -> Haptic {
         let haptic = Haptic {
             id,
@@ -74,7 +74,7 @@ impl Sink for Haptic {
         let (id, slot) = (self.id, self.slot.clone());
         self.order(move |hub| {
             let wish = lock(&slot).wish.take();
-            // A process that was stopped for a while finds one on its way that nobody means any more.
+            // After the process was stopped for a while, a pending output is obsolete.
             let fresh = wish.filter(|(_, since)| since.elapsed() < LENGTH);
             if let (Some((output, _)), Some((open, held))) = (fresh, hub.held(id)) {
                 held.play(open, output);
@@ -87,7 +87,7 @@ impl Sink for Haptic {
 impl Drop for Haptic {
     fn drop(&mut self) {
         let (id, slot) = (self.id, self.slot.clone());
-        // If the thread has ended, the device was let go.
+        // If the thread has ended, the device is already released.
         let _ = self.order(move |hub| {
             if let Some((open, held)) = hub.held(id) {
                 held.let_rest(open);

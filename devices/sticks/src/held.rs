@@ -1,4 +1,4 @@
-//! What can be felt of a device, on the thread that owns SDL.
+//! Feedback state of a device, on the thread that owns SDL.
 
 use std::sync::{Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
@@ -8,27 +8,27 @@ use force_feedback::{Ability, LENGTH, Output};
 use crate::sdl::motors::Motors;
 use crate::sdl::{Open, Sdl};
 
-/// After this time a force that goes on is started again. Some drivers, and wheels of Moza, let only a start prolong it,
-/// and no change of its level; to start it with each change would be felt.
+/// Interval at which a continuing force is started again. Some drivers, and Moza wheels, extend a force only
+/// by a start, not by a change of level. Starting it at each change would be felt.
 const START_AGAIN: Duration = Duration::from_millis(150);
 
-/// Makers, by their USB numbers, whose devices need forces without an end: they drop those that have one. Then this
-/// thread is the one that ends them. 0x346e is Moza; what is known of its bases is in PCSX2's pull requests 11906, 11915.
+/// USB vendor ids of devices that ignore effects of finite length. For these, this thread ends the effects.
+/// 0x346e is Moza; the behaviour of its bases is documented in the pull requests 11906 and 11915 of PCSX2.
 const ENDLESS: [u16; 1] = [0x346e];
 
 pub struct Slot {
     pub ability: Ability,
-    /// What is on its way, and since when.
+    /// Pending output and its time.
     pub wish: Option<(Output, Instant)>,
 }
 
-/// What can be felt of a device, on the thread. It is taken hold of when it is first asked for.
+/// Feedback state of a device. The device is opened at the first request.
 #[derive(Default)]
 pub struct Held<'sdl> {
     body: Option<Body<'sdl>>,
-    /// Of whoever took hold of it last.
+    /// Slot of the latest sink.
     pub holder: Weak<Mutex<Slot>>,
-    /// When the last was told that did something.
+    /// Time of the last nonzero output.
     told: Option<Instant>,
     started: Option<Instant>,
 }
@@ -57,7 +57,7 @@ impl<'sdl> Held<'sdl> {
         }
     }
 
-    /// A device that does not take it goes on or ends by itself; nobody could do more about it.
+    /// Plays an output. Errors are ignored: the effect ends by itself, and nothing more can be done here.
     pub fn play(&mut self, open: &Open<'sdl>, output: Output) {
         let now = Instant::now();
         let is_over = |since: Option<Instant>| since.is_none_or(|since| now - since >= START_AGAIN);
@@ -79,7 +79,7 @@ impl<'sdl> Held<'sdl> {
         self.told = (!output.is_zero()).then_some(now);
     }
 
-    /// Ends what was told too long ago, where the device does not.
+    /// Ends an output that was not repeated in time, for devices that do not end it themselves.
     pub fn expire(&mut self, open: &Open<'sdl>) {
         if self.told.is_some_and(|told| told.elapsed() >= LENGTH) {
             self.let_rest(open);

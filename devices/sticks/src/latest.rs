@@ -1,21 +1,21 @@
-//! Where the latest snapshot is left, and why there may never be one.
+//! Latest snapshot, and errors of opening.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::Snapshot;
 
-/// Why no device can be read. The game goes on without.
+/// Error of opening. The game can continue without devices.
 #[derive(Debug, thiserror::Error)]
 pub enum NoSticks {
-    #[error("sticks and pads are being read already: a process can open them only once at a time")]
+    #[error("sticks and pads are already open: a process can open them only once at a time")]
     AlreadyOpen,
     #[error("SDL cannot read sticks and pads: {0}")]
     Sdl(String),
-    #[error("no thread could be started to read sticks and pads: {0}")]
+    #[error("cannot start the thread that reads sticks and pads: {0}")]
     Thread(#[from] std::io::Error),
 }
 
-/// Where the owner leaves the latest snapshot. The lock is held only to exchange a pointer.
+/// Latest snapshot, published by the owner. The lock is held only to exchange a pointer.
 #[derive(Clone, Default)]
 pub struct Latest(Arc<Mutex<Arc<Snapshot>>>);
 

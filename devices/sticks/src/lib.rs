@@ -1,8 +1,8 @@
 //! Joysticks, flight sticks and pads.
 //!
-//! [`Sticks::open`] starts one thread that owns all of SDL: no other thread calls it, and it touches neither the window's
-//! events nor signals. Whatever happens there ends up in the latest [`Snapshot`], which any thread may take at any time.
-//! Presses are counted, so that whoever compares two snapshots misses none, however far apart they are:
+//! [`Sticks::open`] starts one thread that owns SDL: no other thread calls SDL, and it does not use window
+//! events or signals. The thread publishes the latest [`Snapshot`], which any thread can take at any time.
+//! Presses are counted, so comparing two snapshots misses none, even if they are far apart:
 //!
 //! ```
 //! use sticks::{Change, Snapshot, Sticks};
@@ -23,11 +23,11 @@
 //! # Ok::<(), sticks::NoSticks>(())
 //! ```
 //!
-//! What a device says is not tampered with: no dead zone, no calibration. Those are functions of numbers, such as
-//! [`radial_dead_zone`] and [`Navigator`], and the caller's choice.
+//! Device values are raw: without dead zone or calibration. [`radial_dead_zone`], [`Navigator`] and similar
+//! functions are the caller's choice.
 //!
-//! With the feature `haptic` `Sticks::haptic` lets a device be felt through `force_feedback`: by forces along two axes if it
-//! has motors for them, else by rumbling.
+//! With the feature `haptic`, `Sticks::haptic` connects a device to `force_feedback`: with forces along two
+//! axes if the device has motors for them, otherwise with rumble.
 
 #![deny(unsafe_code)]
 
@@ -80,7 +80,7 @@ pub use latest::NoSticks;
 ))]
 pub use puppet::Puppet;
 
-/// All sticks and pads that are plugged in. Dropping it closes them.
+/// All connected sticks and pads. Dropping it closes them.
 pub struct Sticks {
     latest: Latest,
     #[allow(dead_code, reason = "held for its drop, which ends the thread")]
@@ -88,8 +88,9 @@ pub struct Sticks {
 }
 
 impl Sticks {
-    /// Starts to look for devices, which takes some ms; those that are there already appear within the first snapshot.
-    /// No device is no error. Where SDL is left out none is ever found; a browser shows pads once one of their buttons was pressed.
+    /// Starts the thread, which takes some ms; devices already connected appear in the first snapshot.
+    /// Finding no device is not an error. Builds without SDL never find one; a browser shows a pad once one
+    /// of its buttons was pressed.
     pub fn open() -> Result<Sticks, NoSticks> {
         let latest = Latest::default();
         Ok(Sticks {
@@ -98,8 +99,8 @@ impl Sticks {
         })
     }
 
-    /// What all devices say now; at most 2 ms old, 100 ms while no device is there, unless a driver holds SDL up. Costs a
-    /// lock and a count.
+    /// Returns the state of all devices. It is at most 2 ms old (100 ms while no device is connected), unless
+    /// a driver delays SDL. Cheap: takes a lock and counts a reference.
     pub fn snapshot(&self) -> Arc<Snapshot> {
         #[cfg(target_family = "wasm")]
         self.owner.look();

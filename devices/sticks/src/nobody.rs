@@ -1,4 +1,4 @@
-//! Stands in for `owner` where there is no SDL: finds no device.
+//! `owner` for builds without SDL: finds no device.
 
 use crate::latest::{Latest, NoSticks};
 

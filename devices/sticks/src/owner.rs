@@ -1,4 +1,4 @@
-//! The one thread that owns SDL: it pumps, keeps what the devices say, and publishes it when that changed.
+//! The thread that owns SDL: it pumps events, keeps the device states, and publishes changed ones.
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -14,24 +14,25 @@ use crate::latest::{Latest, NoSticks};
 use crate::sdl::{HatBits, Open, Part, Sdl, Turn, What};
 use crate::{Button, Device, DeviceId, Direction, Hat, Pad, PadButton, Snapshot};
 
-/// How old a snapshot may get while a device is there. Longer is felt as lag; at 1 ms the thread costs twice as much.
+/// Maximum age of a snapshot while a device is connected. A larger value is felt as lag; at 1 ms the thread
+/// costs twice as much.
 const PERIOD: Duration = Duration::from_millis(2);
-/// How long it may take to notice the first device. Nobody feels it, and until then the thread costs next to nothing.
+/// Maximum time to notice the first device. The delay is not felt, and the idle thread costs almost nothing.
 const IDLE_PERIOD: Duration = Duration::from_millis(100);
-/// How long SDL may take to start. A broken device can hold it up for ever, and the game is to go on without.
+/// Timeout for starting SDL. A broken device can block SDL forever; the game must continue without it.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Holds the thread; dropping it ends the thread and waits for that.
+/// Owner of the thread; dropping it ends the thread and waits for that.
 pub struct Owner {
-    /// None only while it is dropped.
+    /// `None` only during drop.
     orders: Option<Arc<Sender<Order>>>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// Something to do on the thread that owns SDL.
+/// Task for the thread that owns SDL.
 pub type Order = Box<dyn FnOnce(&mut Hub<'_>) + Send>;
 
-/// What the thread works on.
+/// State of the thread.
 pub struct Hub<'sdl> {
     pub sdl: &'sdl Sdl,
     connected: Vec<Connected<'sdl>>,
@@ -40,7 +41,7 @@ pub struct Hub<'sdl> {
 }
 
 struct Connected<'sdl> {
-    /// Before `open`, so that it is dropped first.
+    /// Declared before `open`, so that it is dropped first.
     #[cfg(feature = "haptic")]
     held: crate::held::Held<'sdl>,
     open: Open<'sdl>,
@@ -53,7 +54,7 @@ impl Owner {
         Owner::start_with(turn, latest, |_, _| true)
     }
 
-    /// Starts the thread and waits until it has seen the devices that are there already.
+    /// Starts the thread and waits until it has seen the connected devices.
     pub fn start_with(
         turn: Turn,
         latest: Latest,
@@ -73,7 +74,7 @@ impl Owner {
                             accepts,
                         };
                         hub.pump();
-                        // Nobody listens any more only if the caller panicked; the inbox is closed then too.
+                        // Fails only if the caller panicked; the inbox is then closed too.
                         let _ = ready.send(Ok(()));
                         hub.run(&inbox);
                     }
@@ -88,18 +89,20 @@ impl Owner {
         match started.recv_timeout(PATIENCE) {
             Ok(Ok(())) => Ok(owner),
             Ok(Err(error)) => Err(NoSticks::Sdl(error)),
-            Err(RecvTimeoutError::Disconnected) => Err(NoSticks::Sdl("its thread panicked".into())),
+            Err(RecvTimeoutError::Disconnected) => Err(NoSticks::Sdl("SDL thread panicked".into())),
             Err(RecvTimeoutError::Timeout) => {
-                // To join it would take as long. Should SDL start after all, it finds no orders and ends.
+                // Joining would block as long. If SDL starts later, the thread finds its inbox closed and
+                // ends.
                 owner.thread = None;
                 let seconds = PATIENCE.as_secs();
-                let reason = format!("it did not start within {seconds} s; is a device broken?");
+                let reason =
+                    format!("SDL did not start within {seconds} s; a device may be broken");
                 Err(NoSticks::Sdl(reason))
             }
         }
     }
 
-    /// Where to have something done on the thread. Weak, since the thread runs while somebody may still give orders.
+    /// Returns a sender for tasks. Weak, since the thread runs as long as a sender exists.
     #[cfg(any(test, feature = "virtual", feature = "haptic"))]
     pub fn orders(&self) -> std::sync::Weak<Sender<Order>> {
         self.orders.as_ref().map(Arc::downgrade).unwrap_or_default()
@@ -110,14 +113,14 @@ impl Drop for Owner {
     fn drop(&mut self) {
         self.orders = None;
         if let Some(thread) = self.thread.take() {
-            // If it panicked, it said so, and the devices are gone.
+            // If the thread panicked, the message was printed and the devices are closed.
             let _ = thread.join();
         }
     }
 }
 
 impl<'sdl> Hub<'sdl> {
-    /// Until the owner is dropped. An order interrupts the wait, and however many come, they do not put it off.
+    /// Runs until the owner is dropped. Orders are handled at once and do not delay the pumping.
     fn run(&mut self, inbox: &Receiver<Order>) {
         let mut pumped = Instant::now();
         loop {
@@ -142,7 +145,7 @@ impl<'sdl> Hub<'sdl> {
         }
     }
 
-    /// A device, and what can be felt of it.
+    /// Returns a device and its feedback state.
     #[cfg(feature = "haptic")]
     pub fn held(&mut self, id: DeviceId) -> Option<(&Open<'sdl>, &mut crate::held::Held<'sdl>)> {
         let mut all = self.connected.iter_mut();
@@ -150,7 +153,7 @@ impl<'sdl> Hub<'sdl> {
         Some((&connected.open, &mut connected.held))
     }
 
-    /// Takes in all that happened and publishes it.
+    /// Reads all events and publishes changed states.
     pub fn pump(&mut self) {
         let mut news = false;
         self.sdl.pump(|id, what| {
@@ -180,7 +183,7 @@ impl<'sdl> Hub<'sdl> {
         }
     }
 
-    /// A device that cannot be opened, most often for want of permission, is as good as absent.
+    /// Opens a device. One that cannot be opened, usually for lack of permission, is treated as absent.
     fn add(&mut self, id: DeviceId) {
         let is_known = self
             .connected
@@ -214,7 +217,7 @@ impl<'sdl> Hub<'sdl> {
     }
 }
 
-/// However the thread ends, nobody is left with a button that is held for ever.
+/// Publishes an empty snapshot at the end of the thread, also after a panic, so that no button stays down.
 impl Drop for Hub<'_> {
     fn drop(&mut self) {
         self.latest.set(Snapshot::default());
@@ -244,7 +247,8 @@ impl Connected<'_> {
         }
     }
 
-    /// What is down and where axes are. Presses are counted from events, since one may begin and end between two reads.
+    /// Reads buttons and axes. Presses are counted from events, since one may begin and end between two
+    /// reads.
     fn read(&mut self) {
         let Connected { open, device, .. } = self;
         for (number, axis) in device.axes.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! Devices made of nothing, for tests: they go through all of SDL, and only the driver is not real.
+//! Virtual devices for tests: they go through all of SDL, and only the driver is simulated.
 
 use std::sync::Weak;
 use std::sync::mpsc::{self, Sender};
@@ -9,7 +9,7 @@ use crate::sdl::puppets::{PuppetAct, PuppetForm, Rumble};
 use crate::sdl::{HatBits, Sdl, Turn};
 use crate::{DeviceId, Direction, NoSticks, PadButton, Sticks};
 
-/// A device made of nothing. Dropping it unplugs it. What is done with it is in the snapshot when the call returns.
+/// Virtual device. Dropping it unplugs the device. Each change is in the snapshot when the call returns.
 #[must_use = "a puppet is unplugged when it is dropped"]
 pub struct Puppet {
     id: DeviceId,
@@ -18,8 +18,8 @@ pub struct Puppet {
 }
 
 impl Sticks {
-    /// Sees puppets and no real device, so that it is the same wherever a test runs. Waits until no other is open in this
-    /// process: tests that open one run one after the other.
+    /// Opens virtual devices only, so that tests do not depend on real devices. Waits until no other `Sticks`
+    /// is open in this process: tests that use it run one after the other.
     pub fn open_for_puppets() -> Result<Sticks, NoSticks> {
         let latest = Latest::default();
         Ok(Sticks {
@@ -28,7 +28,7 @@ impl Sticks {
         })
     }
 
-    /// Plugs in a pad, with every button that the standard layout has.
+    /// Plugs in a pad with all buttons of the standard layout.
     pub fn plug_in_pad(&self, name: &str) -> Result<Puppet, NoSticks> {
         self.plug_in(name, PuppetForm::Pad)
     }
@@ -57,7 +57,7 @@ impl Sticks {
         let rumble = Rumble::default();
         let felt = rumble.clone();
         let id = done(&owner, move |hub| hub.sdl.plug_in(&name, form, &felt))
-            .unwrap_or_else(|| Err("its thread has ended".into()))
+            .unwrap_or_else(|| Err("the SDL thread has ended".into()))
             .map_err(NoSticks::Sdl)?;
         Ok(Puppet { id, owner, rumble })
     }
@@ -68,28 +68,30 @@ impl Puppet {
         self.id
     }
 
-    /// Moves an axis, -1 to 1, as the device numbers them: on pads 0 and 1 are the left stick, 2 and 3 the right one,
-    /// both growing towards the player, and 4 and 5 the triggers, -1 at rest. Whether there is such an axis.
+    /// Moves an axis, −1 to 1, in the numbering of the device. On pads 0 and 1 are the left stick, 2 and 3
+    /// the right one (y increases towards the player), 4 and 5 the triggers (−1 at rest). Returns whether the
+    /// axis exists.
     pub fn axis(&self, axis: usize, value: f32) -> bool {
         self.act(PuppetAct::Axis(axis, (value * 32767.0) as i16))
     }
 
-    /// Presses a button down or lets it go. Whether there is such a button.
+    /// Presses or releases a button. Returns whether the button exists.
     pub fn button(&self, button: usize, down: bool) -> bool {
         self.act(PuppetAct::Button(button, down))
     }
 
-    /// As `button`, on a pad.
+    /// Presses or releases a pad button, as `button`.
     pub fn pad_button(&self, button: PadButton, down: bool) -> bool {
         self.button(button as usize, down)
     }
 
-    /// Pushes a hat to a direction or, between two, to both; to none lets it go. Whether there is such a hat.
+    /// Moves a hat to one direction, to two adjacent ones, or to none to release it. Returns whether the hat
+    /// exists.
     pub fn hat(&self, hat: usize, directions: &[Direction]) -> bool {
         self.act(PuppetAct::Hat(hat, HatBits::of(directions)))
     }
 
-    /// How strongly its slow and its fast motor rumble now, 0 to 65535.
+    /// Returns the strength of the slow and the fast motor, 0 to 65535.
     pub fn rumble(&self) -> [u16; 2] {
         self.rumble.get()
     }
@@ -106,12 +108,12 @@ impl Puppet {
 impl Drop for Puppet {
     fn drop(&mut self) {
         let id = self.id;
-        // If the thread has ended, so has the puppet.
+        // If the thread has ended, the device is already unplugged.
         let _ = done(&self.owner, move |hub| hub.sdl.unplug(id));
     }
 }
 
-/// Has something done on the thread and taken in; None if the thread has ended.
+/// Runs a task on the thread and publishes its effects. Returns `None` if the thread has ended.
 fn done<R: Send + 'static>(
     owner: &Weak<Sender<Order>>,
     act: impl FnOnce(&mut Hub<'_>) -> R + Send + 'static,
@@ -120,7 +122,7 @@ fn done<R: Send + 'static>(
     let order = Box::new(move |hub: &mut Hub<'_>| {
         let result = act(hub);
         hub.pump();
-        // Its receiver waits below.
+        // The receiver waits below, so the send succeeds.
         let _ = answer.send(result);
     });
     owner.upgrade()?.send(order).ok()?;

@@ -1,15 +1,18 @@
-//! All that is called in SDL, and with it all unsafe code of this crate, behind types that cannot be misused.
+//! All calls of SDL, and all unsafe code of this crate, behind a safe interface.
 //!
-//! Why it is sound, for every block below:
-//! - **One thread.** SDL is process-wide state, and its event pump belongs to the thread that started it. An [`Sdl`] needs
-//!   the one [`Turn`] there is, so there is one at a time; it is neither `Send` nor `Sync`, and neither are the [`Open`]
-//!   devices that borrow it. So all calls come from the thread that started SDL, between `SDL_Init` and `SDL_Quit`.
-//! - **Pointers.** An `Open` holds pointers that SDL gave it, counted by SDL for each open call, and gives them back once,
-//!   when it is dropped. SDL keeps them valid until then, also when the device is unplugged: reads then give 0 or false.
-//!   Indices out of range do too. They cannot outlive SDL, since `Open` borrows `Sdl`.
-//! - **Strings** from SDL are null or end in a zero, and are copied at once, before the next call that might change them.
-//! - **Events** are a union of plain data, zeroed here before SDL writes to it; a member is read only after the type that
-//!   stands for it was seen.
+//! Safety of every block below:
+//! - **One thread.** SDL is process-wide state, and its event pump belongs to the thread that started it. An
+//!   [`Sdl`] needs the only [`Turn`], so there is one at a time. It is neither `Send` nor `Sync`, and neither
+//!   are the [`Open`] devices that borrow it. So all calls come from the thread that started SDL, between
+//!   `SDL_Init` and `SDL_Quit`.
+//! - **Pointers.** An `Open` holds pointers from SDL, reference-counted per open call, and returns them once,
+//!   when it is dropped. SDL keeps them valid until then, even if the device is unplugged: reads then give 0
+//!   or false. Indices out of range also give 0 or false. The pointers cannot outlive SDL, since `Open`
+//!   borrows `Sdl`.
+//! - **Strings** from SDL are null or zero-terminated. They are copied at once, before the next call that
+//!   might change them.
+//! - **Events** are a union of plain data, zeroed before SDL writes to it. A member is read only after
+//!   checking the event type that belongs to it.
 
 #![allow(unsafe_code)]
 
@@ -52,26 +55,26 @@ use sdl3_sys::joystick::{
 
 use crate::{About, DeviceId, Direction, Labels, PadButton};
 
-/// The right to run SDL, of which a process has one.
+/// Permission to run SDL, which exists once per process.
 pub struct Turn(());
 
-/// SDL, running on this thread, reading devices and nothing else.
+/// SDL, running on this thread, reading devices only.
 pub struct Sdl {
     _turn: Turn,
-    /// Whether it can push back.
+    /// Whether force feedback is available.
     #[cfg(feature = "haptic")]
     feels: bool,
     _stays_on_this_thread: PhantomData<*const ()>,
 }
 
-/// A device that is held open.
+/// An open device.
 pub struct Open<'sdl> {
     joystick: NonNull<SDL_Joystick>,
     gamepad: Option<NonNull<SDL_Gamepad>>,
     _sdl: PhantomData<&'sdl Sdl>,
 }
 
-/// What SDL saw happen to a device.
+/// Event of a device.
 #[derive(Clone, Copy, Debug)]
 pub enum What {
     Added,
@@ -79,32 +82,32 @@ pub enum What {
     Moved(Part),
 }
 
-/// What moved on a device.
+/// Changed part of a device.
 #[derive(Clone, Copy, Debug)]
 pub enum Part {
     ButtonDown(usize),
     PadButtonDown(usize),
     Hat(usize, HatBits),
-    /// Comes last, and stands for all that happened at once, named before or not.
+    /// Comes last and stands for all simultaneous changes, including those already reported.
     All,
 }
 
-/// The directions of a hat that are down.
+/// Pressed directions of a hat, as bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HatBits(pub u8);
 
-/// Whether it may be taken.
+/// Whether the permission is available.
 static TURN: Mutex<bool> = Mutex::new(true);
 static GIVEN_BACK: Condvar = Condvar::new();
 
 impl Turn {
-    /// None while somebody else has it. It is given back by being dropped.
+    /// Takes the permission; `None` if it is in use. Dropping it returns it.
     pub fn take() -> Option<Turn> {
         let mut free = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         std::mem::take(&mut *free).then(|| Turn(()))
     }
 
-    /// Waits until nobody else has it.
+    /// Waits until the permission is available and takes it.
     #[cfg(any(test, feature = "virtual"))]
     pub fn wait() -> Turn {
         let free = TURN.lock().unwrap_or_else(PoisonError::into_inner);
@@ -123,17 +126,18 @@ impl Drop for Turn {
 
 impl Sdl {
     pub fn start(turn: Turn) -> Result<Sdl, String> {
-        #[allow(unused_mut, reason = "only what can push back changes")]
+        #[allow(unused_mut, reason = "changed only with the feature haptic")]
         let mut sdl = Sdl {
             _turn: turn,
             #[cfg(feature = "haptic")]
             feels: false,
             _stays_on_this_thread: PhantomData,
         };
-        // SAFETY: see the module; the hints are constants that end in a zero. SDL has no window, so it would never think
-        // itself in the background, but drivers ask for it. Signals belong to the program. Wheels of Logitech go through the
-        // kernel: SDL 3.4 reads the wrong structure where it compares a haptic device of its own driver with another. On
-        // Linux all do: the kernel ends what a program left behind that was killed, and SDL's own drivers cannot.
+        // SAFETY: see the module; the hints are zero-terminated constants. Background events: without a
+        // window SDL never considers itself in the background, but drivers check the hint. Signals belong to
+        // the program. Logitech wheels use the kernel driver: SDL 3.4 reads the wrong structure when it
+        // compares a haptic device of its own driver with another. On Linux all devices use the kernel
+        // driver: the kernel ends the effects of a killed process, which SDL's own drivers cannot.
         let started = unsafe {
             SDL_SetHintWithPriority(
                 SDL_HINT_NO_SIGNAL_HANDLERS,
@@ -163,12 +167,12 @@ impl Sdl {
         Ok(sdl)
     }
 
-    /// Lets SDL look at all devices and tells what happened since the last call.
+    /// Reads the events since the last call.
     pub fn pump(&self, mut happened: impl FnMut(DeviceId, What)) {
         // SAFETY: see the module.
         unsafe { SDL_PumpEvents() };
         let mut event = SDL_Event::default();
-        // SAFETY: there is room for the one event asked for.
+        // SAFETY: there is room for the one requested event.
         while unsafe {
             SDL_PeepEvents(
                 &mut event,
@@ -185,10 +189,11 @@ impl Sdl {
         }
     }
 
-    /// Holds a device open, as a pad if SDL knows its layout. None if it is gone again or may not be read.
+    /// Opens a device, as a pad if SDL knows its layout. Returns `None` if it was unplugged or may not be
+    /// read.
     pub fn open(&self, id: DeviceId) -> Option<Open<'_>> {
         let id = SDL_JoystickID(id.0);
-        // SAFETY: see the module; an id that SDL does not know gives null.
+        // SAFETY: see the module; an unknown id gives null.
         let joystick = NonNull::new(unsafe { SDL_OpenJoystick(id) })?;
         // SAFETY: as above.
         let gamepad = if unsafe { SDL_IsGamepad(id) } {
@@ -219,7 +224,7 @@ impl Drop for Sdl {
 impl Open<'_> {
     pub fn about(&self) -> About {
         let mut guid = [0 as c_char; 33];
-        // SAFETY: see the module; 33 is the room that a GUID needs with its zero, and SDL is told of it.
+        // SAFETY: see the module; a GUID with its terminating zero needs 33 bytes, and SDL gets the length.
         unsafe {
             let guid_of = SDL_GetJoystickGUID(self.joystick.as_ptr());
             SDL_GUIDToString(guid_of, guid.as_mut_ptr(), guid.len() as c_int);
@@ -231,7 +236,7 @@ impl Open<'_> {
         }
     }
 
-    /// By what stands on the lowest of the four buttons under the right thumb.
+    /// Returns the label set, from the label of the lowest of the four buttons under the right thumb.
     fn labels(&self) -> Labels {
         let Some(gamepad) = self.gamepad else {
             return Labels::Unknown;
@@ -260,7 +265,7 @@ impl Open<'_> {
         count(unsafe { SDL_GetNumJoystickHats(self.joystick.as_ptr()) })
     }
 
-    /// From -1 to 1.
+    /// Returns an axis, −1 to 1.
     pub fn axis(&self, axis: usize) -> f32 {
         // SAFETY: see the module, as in the next two.
         unit(unsafe { SDL_GetJoystickAxis(self.joystick.as_ptr(), axis as c_int) })
@@ -278,7 +283,7 @@ impl Open<'_> {
         self.gamepad.is_some()
     }
 
-    /// From -1 to 1, y towards the player; 0 if this is no pad.
+    /// Returns a pad axis, −1 to 1, y towards the player; 0 if the device is not a pad.
     pub fn pad_axis(&self, axis: SDL_GamepadAxis) -> f32 {
         // SAFETY: see the module.
         self.gamepad.map_or(0.0, |pad| {
@@ -296,7 +301,7 @@ impl Open<'_> {
 
 impl Drop for Open<'_> {
     fn drop(&mut self) {
-        // SAFETY: see the module; each is closed as often as it was opened.
+        // SAFETY: see the module; each pointer is closed as often as it was opened.
         unsafe {
             if let Some(gamepad) = self.gamepad {
                 SDL_CloseGamepad(gamepad.as_ptr());
@@ -321,7 +326,7 @@ impl HatBits {
     }
 }
 
-/// The event, if it is one that matters here.
+/// Converts an event; `None` for irrelevant ones.
 fn read(event: &SDL_Event) -> Option<(DeviceId, What)> {
     // SAFETY: SDL fills in the member that belongs to the type of the event.
     let (id, what) = unsafe {
@@ -347,23 +352,23 @@ fn read(event: &SDL_Event) -> Option<(DeviceId, What)> {
     Some((DeviceId(id.0), what))
 }
 
-/// -32768 to 32767 as -1 to 1, with 0 kept.
+/// Maps −32768 to 32767 to −1 to 1 and keeps 0.
 fn unit(value: i16) -> f32 {
     f32::from(value) / if value < 0 { 32768.0 } else { 32767.0 }
 }
 
-/// SDL's counts are -1 for a device that it does not know.
+/// Converts a count; SDL gives −1 for an unknown device.
 fn count(number: c_int) -> usize {
     usize::try_from(number).unwrap_or(0)
 }
 
 /// # Safety
-/// It is null, or a string that ends in a zero and stays as it is during the call.
+/// `from` is null, or a zero-terminated string that does not change during the call.
 unsafe fn text(from: *const c_char) -> String {
     if from.is_null() {
         return String::new();
     }
-    // SAFETY: the caller's, and it is not null.
+    // SAFETY: guaranteed by the caller, and it is not null.
     unsafe { CStr::from_ptr(from) }
         .to_string_lossy()
         .into_owned()

@@ -1,4 +1,4 @@
-//! Devices made of nothing, through all of SDL.
+//! Virtual devices through all of SDL.
 
 #[cfg(feature = "haptic")]
 mod felt;
@@ -11,16 +11,16 @@ use crate::{
 };
 
 #[test]
-fn nothing_is_plugged_in() {
+fn snapshot_is_empty_without_devices() {
     assert!(open().snapshot().devices.is_empty());
 }
 
 #[test]
-fn a_flight_stick_tells_everything_it_has() {
+fn flight_stick_reports_all_axes_buttons_and_hats() {
     let sticks = open();
     let stick = sticks
         .plug_in_stick("Wing", 7, 32, 2)
-        .expect("SDL takes it");
+        .expect("valid device");
     for axis in 0..7 {
         assert!(stick.axis(axis, axis as f32 / 3.0 - 1.0));
     }
@@ -50,11 +50,11 @@ fn a_flight_stick_tells_everything_it_has() {
 }
 
 #[test]
-fn what_a_device_does_not_have_is_refused() {
+fn missing_controls_are_refused() {
     let sticks = open();
     let stick = sticks
         .plug_in_stick("Small", 2, 1, 1)
-        .expect("SDL takes it");
+        .expect("valid device");
     assert!(!stick.axis(2, 1.0));
     assert!(!stick.button(1, true));
     assert!(!stick.hat(1, &[]));
@@ -67,9 +67,9 @@ fn what_a_device_does_not_have_is_refused() {
 }
 
 #[test]
-fn a_pad_has_the_standard_layout() {
+fn pad_has_the_standard_layout() {
     let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("SDL takes it");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     for (axis, value) in [0.5, -0.25, -1.0, 1.0, 1.0, 0.0].into_iter().enumerate() {
         assert!(pad.axis(axis, value));
     }
@@ -100,9 +100,9 @@ fn a_pad_has_the_standard_layout() {
 }
 
 #[test]
-fn a_pad_at_rest_is_at_rest() {
+fn pad_at_rest_reports_zeros() {
     let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("SDL takes it");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let layout = device(&sticks, &pad).pad.expect("SDL knows its layout");
     assert_eq!(
         (layout.left, layout.right, layout.triggers),
@@ -115,7 +115,7 @@ fn presses_between_two_polls_are_counted() {
     let sticks = open();
     let stick = sticks
         .plug_in_stick("Stick", 2, 2, 1)
-        .expect("SDL takes it");
+        .expect("valid device");
     let before = sticks.snapshot();
     for _press in 0..5 {
         stick.button(1, true);
@@ -145,12 +145,12 @@ fn presses_between_two_polls_are_counted() {
 }
 
 #[test]
-fn devices_come_and_go() {
+fn snapshots_report_connections_and_disconnections() {
     let sticks = open();
     let none = sticks.snapshot();
     let first = sticks
         .plug_in_stick("First", 2, 1, 0)
-        .expect("SDL takes it");
+        .expect("valid device");
     let one = sticks.snapshot();
     assert_eq!(one.since(&none), [Change::Connected(first.id())]);
 
@@ -158,7 +158,7 @@ fn devices_come_and_go() {
     drop(first);
     let second = sticks
         .plug_in_stick("First", 2, 1, 0)
-        .expect("SDL takes it");
+        .expect("valid device");
     assert_ne!(second.id(), id, "another connection has another id");
     assert_eq!(
         sticks.snapshot().since(&one),
@@ -167,12 +167,12 @@ fn devices_come_and_go() {
 }
 
 #[test]
-fn a_device_unplugged_while_held_is_gone() {
+fn device_unplugged_while_held_disappears() {
     let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("SDL takes it");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let stick = sticks
         .plug_in_stick("Stick", 2, 1, 0)
-        .expect("SDL takes it");
+        .expect("valid device");
     pad.axis(0, 1.0);
     pad.pad_button(PadButton::South, true);
     stick.button(0, true);
@@ -183,14 +183,14 @@ fn a_device_unplugged_while_held_is_gone() {
     assert_eq!(now.since(&before), [Change::Disconnected(id)]);
     assert!(
         device(&sticks, &stick).buttons[0].down,
-        "the other one goes on"
+        "the other device changed"
     );
 }
 
 #[test]
-fn two_of_a_kind_are_told_apart() {
+fn equal_devices_have_separate_states() {
     let sticks = open();
-    let [one, two] = [0, 1].map(|_| sticks.plug_in_pad("Same").expect("SDL takes it"));
+    let [one, two] = [0, 1].map(|_| sticks.plug_in_pad("Same").expect("valid device"));
     one.axis(0, 1.0);
     two.axis(0, -1.0);
     two.pad_button(PadButton::Start, true);
@@ -205,10 +205,10 @@ fn two_of_a_kind_are_told_apart() {
 }
 
 #[test]
-fn many_devices_at_once() {
+fn twelve_devices_can_be_connected() {
     let sticks = open();
     let puppets: Vec<_> = (0..12)
-        .map(|_| sticks.plug_in_pad("Pad").expect("SDL takes it"))
+        .map(|_| sticks.plug_in_pad("Pad").expect("valid device"))
         .collect();
     assert_eq!(sticks.snapshot().devices.len(), 12);
     drop(puppets);
@@ -216,36 +216,40 @@ fn many_devices_at_once() {
 }
 
 #[test]
-fn only_one_at_a_time_and_again_afterwards() {
+fn sticks_open_once_at_a_time_and_can_be_reopened() {
     let first = open();
     assert!(matches!(Sticks::open(), Err(NoSticks::AlreadyOpen)));
     drop(first);
     for _again in 0..20 {
         let sticks = open();
-        let pad = sticks.plug_in_pad("Pad").expect("SDL takes it");
+        let pad = sticks.plug_in_pad("Pad").expect("valid device");
         assert!(device(&sticks, &pad).pad.is_some());
     }
 }
 
 #[test]
-fn a_puppet_may_outlive_the_sticks() {
+fn puppet_may_outlive_the_sticks() {
     let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("SDL takes it");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let last = sticks.latest.clone();
     drop(sticks);
     assert!(!pad.pad_button(PadButton::South, true));
-    assert!(last.get().devices.is_empty(), "nothing stays held");
+    assert!(last.get().devices.is_empty(), "a button is still held");
 }
 
 #[test]
-fn a_panic_on_the_thread_leaves_nothing_held() {
+fn panic_on_the_thread_releases_all_buttons() {
     let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("SDL takes it");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     pad.pad_button(PadButton::South, true);
-    let orders = sticks.owner.orders().upgrade().expect("its thread runs");
+    let orders = sticks
+        .owner
+        .orders()
+        .upgrade()
+        .expect("the SDL thread runs");
     orders
-        .send(Box::new(|_hub| panic!("on purpose, for a test")))
-        .expect("its thread runs");
+        .send(Box::new(|_hub| panic!("intended panic of a test")))
+        .expect("the SDL thread runs");
     let end = Instant::now() + Duration::from_secs(5);
     while !sticks.snapshot().devices.is_empty() {
         assert!(
@@ -258,14 +262,14 @@ fn a_panic_on_the_thread_leaves_nothing_held() {
     drop((pad, sticks));
     assert!(
         open().snapshot().devices.is_empty(),
-        "it can be opened again"
+        "old devices after reopening"
     );
 }
 
 #[test]
-fn snapshots_are_taken_while_a_device_moves() {
+fn snapshots_miss_no_press_while_a_device_moves() {
     let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("SDL takes it");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let start = sticks.snapshot();
     let seen = thread::scope(|scope| {
         let reader = scope.spawn(|| {
@@ -281,20 +285,20 @@ fn snapshots_are_taken_while_a_device_moves() {
             pad.pad_button(PadButton::East, true);
             pad.pad_button(PadButton::East, false);
         }
-        reader.join().expect("it only reads")
+        reader.join().expect("the reader does not panic")
     });
     assert_eq!(seen, 200);
 }
 
 #[test]
-fn a_menu_is_walked_with_a_pad() {
+fn navigator_works_with_a_pad() {
     let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("SDL takes it");
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let mut navigator = Navigator::default();
     pad.pad_button(PadButton::Down, true);
     assert!(
         navigator.step(&device(&sticks, &pad), 0.0).is_empty(),
-        "what was down before does not move it"
+        "a button that was already down moves the focus"
     );
     pad.pad_button(PadButton::Down, false);
     for _tap in 0..2 {
@@ -314,20 +318,17 @@ fn a_menu_is_walked_with_a_pad() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn signals_are_left_alone() {
+fn sdl_leaves_signal_handlers_alone() {
     let _sticks = open();
-    let status = std::fs::read_to_string("/proc/self/status").expect("Linux has it");
+    let status =
+        std::fs::read_to_string("/proc/self/status").expect("/proc/self/status can be read");
     let caught = status
         .lines()
         .find_map(|line| line.strip_prefix("SigCgt:"))
-        .expect("it has the caught signals");
-    let caught = u64::from_str_radix(caught.trim(), 16).expect("as hexadecimal bits");
+        .expect("the status has SigCgt");
+    let caught = u64::from_str_radix(caught.trim(), 16).expect("SigCgt is hexadecimal");
     let (interrupt, terminate) = (1 << (2 - 1), 1 << (15 - 1));
-    assert_eq!(
-        caught & (interrupt | terminate),
-        0,
-        "Ctrl+C still ends the program"
-    );
+    assert_eq!(caught & (interrupt | terminate), 0, "SDL caught a signal");
 }
 
 fn open() -> Sticks {
@@ -338,7 +339,7 @@ fn device(sticks: &Sticks, puppet: &Puppet) -> Device {
     sticks
         .snapshot()
         .device(puppet.id())
-        .expect("it is plugged in")
+        .expect("the device is plugged in")
         .clone()
 }
 

@@ -1,4 +1,4 @@
-//! Writes what the game can sound like as WAV files, to listen to.
+//! Writes WAV files of all sounds of the game.
 //!
 //! `cargo run --release -p tamaire_sound --example listen -- folder`
 
@@ -7,11 +7,13 @@ use tamaire_sound::{Cue, Menu, Press, Route, Soundscape, Synth};
 
 const RATE: u32 = 48_000;
 
-/// What happens in a tick of 1/60 s.
+/// Sounds of a tick of 1/60 s.
 type Story = fn(tick: u32, synth: &mut Synth) -> Soundscape;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let folder = std::env::args().nth(1).ok_or("name a folder to write to")?;
+    let folder = std::env::args()
+        .nth(1)
+        .ok_or("missing argument: the output folder")?;
     std::fs::create_dir_all(&folder)?;
     let stories: [(&str, u32, Story); 9] = [
         ("press", 240, press),
@@ -49,7 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Pressed harder and harder, then rubbed back and forth, then let go.
+/// Presses harder and harder, then rubs back and forth, then releases.
 fn press(tick: u32, _: &mut Synth) -> Soundscape {
     let time = tick as f32 / 60.0;
     let force = if time < 3.5 {
@@ -69,7 +71,7 @@ fn press(tick: u32, _: &mut Synth) -> Soundscape {
     }
 }
 
-/// Onto a wall, each harder than the last, and leaning on it between.
+/// Impacts on a wall, each harder than the last, with resting contact in between.
 fn thuds(tick: u32, synth: &mut Synth) -> Soundscape {
     let heavy = (tick / 40) as f32;
     let lean = if tick.is_multiple_of(40) { 1.0 } else { 0.4 };
@@ -82,7 +84,7 @@ fn thuds(tick: u32, synth: &mut Synth) -> Soundscape {
     Soundscape::default()
 }
 
-/// Single releases, then a rip with many in each tick, as the engine's scene `tear` has them.
+/// Single tears, then a rip with many tears per tick, as in the engine's scene `tear`.
 fn tears(tick: u32, synth: &mut Synth) -> Soundscape {
     let x = tick as f32 / 120.0 - 1.0;
     if tick < 120 && tick.is_multiple_of(20) {
@@ -120,7 +122,7 @@ fn wobble(tick: u32, _: &mut Synth) -> Soundscape {
     }
 }
 
-/// Nearly, lost, and then to the end.
+/// A hold that is almost complete, lost, and then completed.
 fn hold(tick: u32, synth: &mut Synth) -> Soundscape {
     let hold = match tick {
         0..40 => tick as f32 / 60.0,

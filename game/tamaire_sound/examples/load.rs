@@ -1,4 +1,4 @@
-//! Measures what the sound costs: the share of one core that it takes while it plays.
+//! Measures the processor time of the sound while it plays, as a share of one core.
 //!
 //! `cargo run --release -p tamaire_sound --example load`
 

@@ -1,7 +1,7 @@
-//! Ten seconds of everything that can be heard, as this machine plays them: what the module is compared with.
+//! Renders ten seconds of all sounds on this machine, as the reference for the module.
 //!
-//! Writes to standard output, for each 128 frames, little-endian: the length of a message u32, the message, left and
-//! right in turns 256 × f32.
+//! Writes to standard output, for each 128 frames, little-endian: the length of a message u32, the message,
+//! interleaved left and right samples 256 × f32.
 //!
 //! `cargo run --release -p tamaire_sound --features worklet --example reference > reference.bin`
 
@@ -18,7 +18,7 @@ fn main() -> io::Result<()> {
     let mut told = 0;
     for block in 0..SECONDS * RATE / MOST_FRAMES {
         let mut message = Message::default();
-        // As a game of 60 frames a second tells it.
+        // Messages at 60 Hz, as from the game.
         if told * RATE <= block * MOST_FRAMES * 60 {
             tell(told, &mut message);
             told += 1;
@@ -35,7 +35,8 @@ fn main() -> io::Result<()> {
     out.flush()
 }
 
-/// What there is to hear in a tick: hands rub for five seconds, then hold; bits tear off; all is won in the end.
+/// Adds the sounds of a tick: hands rub for five seconds, then hold; pieces tear off; the round is won at the
+/// end.
 fn tell(tick: usize, message: &mut Message) {
     let seconds = tick as f32 / 60.0;
     let stroke = (3.0 * seconds).sin();

@@ -1,4 +1,4 @@
-//! Plays a few seconds on the sound device, or says why it cannot.
+//! Plays a few seconds on the sound device, or prints why it cannot.
 //!
 //! `cargo run --release -p tamaire_sound --features output --example speaker`
 
@@ -8,10 +8,10 @@ use tamaire_sound::{Cue, Press, Route, Soundscape, Speaker, Volumes};
 fn main() {
     let speaker = match Speaker::open() {
         Ok(speaker) => speaker,
-        Err(why) => return println!("Nothing will be heard: {why}."),
+        Err(why) => return println!("No sound: {why}."),
     };
     if let Some(why) = speaker.trouble() {
-        println!("Nothing is heard just now: {why}.");
+        println!("No sound at present: {why}.");
     }
     for tick in 0..300 {
         let time = tick as f32 / 60.0;

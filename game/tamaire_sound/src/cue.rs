@@ -1,64 +1,64 @@
-//! What is heard at a moment.
+//! Momentary sounds.
 
 use crate::part::clean;
 
-/// Something that happened, and sounds once. Values that are no numbers count as nothing.
+/// Event with a single sound. Non-finite values are replaced or clamped.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Cue {
-    /// A body pressed on something rigid. May be sent every tick that it does: only a sudden rise is heard.
+    /// A body hit a rigid body. May be sent in every tick of a contact: only a sudden rise is heard.
     Thud {
-        /// Along the normals, over the tick [N s]; 1 is a soft landing, 30 a heavy one.
+        /// Normal impulse over the tick [N s]; 1 is a soft landing, 30 a heavy one.
         impulse: f32,
-        /// Where, from -1 at the left edge of the picture to 1 at the right.
+        /// Position, from −1 at the left edge of the picture to 1 at the right.
         x: f32,
     },
-    /// Something tore: one release, or all those of a tick together.
+    /// A tear: one node split, or all of a tick together.
     Tear {
-        /// Elastic energy set free [J]; 0.1 is a small release, 10 a rip right through.
+        /// Released elastic energy [J]; 0.1 for a small split, 10 for a rip through the whole body.
         energy: f32,
-        /// Where, from -1 to 1.
+        /// Position, from −1 to 1.
         x: f32,
     },
     /// A crumb landed.
     Crumb {
-        /// How fast [m/s]; about 1.
+        /// Impact speed [m/s]; about 1.
         speed: f32,
-        /// Where, from -1 to 1.
+        /// Position, from −1 to 1.
         x: f32,
     },
-    /// The round was won, this way.
+    /// The round was won.
     Won(Route),
-    /// Something was done in a menu.
+    /// An action in a menu.
     Menu(Menu),
 }
 
-/// How a round was won.
+/// Way in which a round was won.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Route {
     /// The body went in whole.
     Squeeze,
-    /// Bits were torn off until it fitted.
+    /// Parts were torn off until the body fitted.
     Shave,
-    /// Some of both.
+    /// A mix of both.
     Mix,
 }
 
-/// What was done in a menu.
+/// Action in a menu.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Menu {
-    /// Another entry is chosen.
+    /// Another entry was selected.
     Move,
-    /// The entry was taken.
+    /// The entry was confirmed.
     Confirm,
-    /// One screen back.
+    /// Back to the previous screen.
     Back,
 }
 
 impl Cue {
-    /// The same with every number in range.
+    /// Returns the cue with all numbers clamped to their ranges.
     pub(crate) fn cleaned(self) -> Self {
         let place = |x| clean(x, -1.0, 1.0);
         match self {

@@ -1,14 +1,14 @@
-//! Short sounds: every cue is made of them, and so is the music.
+//! Short sounds, the building blocks of all cues and of the music.
 
 use crate::part::{Band, Noise, Stereo, Tone, panned};
 
-/// As many grains sound at once.
+/// Maximum number of simultaneous grains.
 pub(crate) const MOST_VOICES: usize = 64;
 
-/// Samples that are worked out together; filters are tuned as often.
+/// Samples rendered per block; filters are retuned once per block.
 pub(crate) const CHUNK: usize = 32;
 
-/// What has a volume of its own.
+/// Group of sounds with its own volume.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Bus {
     Effects,
@@ -16,34 +16,34 @@ pub(crate) enum Bus {
     Interface,
 }
 
-/// As many as there are.
+/// Number of buses.
 pub(crate) const BUSES: usize = 3;
 
-/// A chunk of each bus.
+/// A block of samples per bus.
 pub(crate) type Buses = [[Stereo; CHUNK]; BUSES];
 
-/// A tone and a band of noise that rise together, fall off together, and glide in pitch together.
+/// A tone and a band of noise with a common envelope and pitch glide.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct Grain {
     pub(crate) bus: Bus,
-    /// Until it begins [s].
+    /// Delay before the start [s].
     pub(crate) delay: f32,
-    /// Until it is at its loudest [s]. Less than 0.001 clicks.
+    /// Rise time to the maximum [s]. Less than 0.001 clicks.
     pub(crate) attack: f32,
-    /// From then on, until it has fallen to 1/e [s].
+    /// Decay time from the maximum to 1/e [s].
     pub(crate) decay: f32,
-    /// At its loudest, 0 to 1.
+    /// Maximum amplitude, 0 to 1.
     pub(crate) gain: f32,
-    /// From -1 at the left to 1 at the right.
+    /// Position, from −1 at the left to 1 at the right.
     pub(crate) x: f32,
-    /// At its beginning and in the end [Hz].
+    /// Initial and final frequency [Hz].
     pub(crate) pitch: [f32; 2],
-    /// In which most of the way between them is made [s].
+    /// Time constant of the glide between both frequencies [s].
     pub(crate) glide: f32,
-    /// How loud the tone is, 0 to 1, and how edgy.
+    /// Amplitude of the tone, 0 to 1, and its overtone content.
     pub(crate) tone: f32,
     pub(crate) edge: f32,
-    /// How loud the noise is, 0 to 1, how high above the tone, and how sharp its band.
+    /// Amplitude of the noise, 0 to 1, frequency ratio to the tone, and sharpness of its band.
     pub(crate) noise: f32,
     pub(crate) above: f32,
     pub(crate) sharpness: f32,
@@ -69,11 +69,11 @@ impl Default for Grain {
     }
 }
 
-/// The grains that sound, or will soon.
+/// Grains that are playing or waiting for their start.
 pub(crate) struct Voices {
     rate: f32,
     voices: Vec<Voice>,
-    /// What was sounding where a grain was cut off; fades, so that there is no click.
+    /// Last samples of grains that were cut off; they fade out, which avoids clicks.
     cut: [Stereo; BUSES],
 }
 
@@ -90,7 +90,7 @@ impl Voices {
         self.voices.len()
     }
 
-    /// Begins a grain; if there are too many, in place of the faintest, or not at all.
+    /// Starts a grain. At the limit it replaces the faintest one, or is dropped if it is fainter.
     pub(crate) fn start(&mut self, grain: Grain) {
         let voice = Voice::new(grain, self.rate);
         if self.voices.len() < MOST_VOICES {
@@ -101,7 +101,7 @@ impl Voices {
             .voices
             .iter_mut()
             .min_by(|a, b| a.loudness().total_cmp(&b.loudness()));
-        let faintest = faintest.expect("as many voices as there may be are more than none");
+        let faintest = faintest.expect("the voice list is full, so it is not empty");
         if faintest.loudness() < grain.gain {
             let cut = &mut self.cut[faintest.grain.bus as usize];
             *cut = [cut[0] + faintest.last[0], cut[1] + faintest.last[1]];
@@ -109,7 +109,7 @@ impl Voices {
         }
     }
 
-    /// Adds what sounds to the first `count` samples of each bus.
+    /// Adds all grains to the first `count` samples of each bus.
     pub(crate) fn add(&mut self, noise: &mut Noise, buses: &mut Buses, count: usize) {
         for voice in &mut self.voices {
             let bus = voice.grain.bus as usize;
@@ -132,19 +132,19 @@ impl Voices {
     }
 }
 
-/// A grain that sounds.
+/// Grain that is playing.
 struct Voice {
     grain: Grain,
     sides: Stereo,
-    /// Samples until it begins.
+    /// Samples until the start.
     wait: u32,
-    /// How loud it is now, and whether it still rises.
+    /// Current envelope, and whether it is still rising.
     envelope: f32,
     rises: bool,
-    /// What a sample adds to a rising envelope, and what it leaves of a falling one.
+    /// Increment per sample of a rising envelope, and factor per sample of a falling one.
     rise: f32,
     fall: f32,
-    /// Turns a sample; now, in the end, and what a sample leaves of the difference.
+    /// Frequency [cycles/sample]: current, final, and factor of their difference per sample.
     frequency: f32,
     frequency_end: f32,
     approach: f32,
@@ -173,12 +173,12 @@ impl Voice {
         }
     }
 
-    /// How much would be lost without it.
+    /// Returns the present loudness, or the future one while the grain rises.
     fn loudness(&self) -> f32 {
         self.grain.gain * if self.rises { 1.0 } else { self.envelope }
     }
 
-    /// 80 dB below full scale.
+    /// Returns whether the grain has faded to 80 dB below full scale.
     fn is_over(&self) -> bool {
         !self.rises && self.loudness() < 1e-4
     }

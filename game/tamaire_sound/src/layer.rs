@@ -1,29 +1,28 @@
-//! Sounds that last for as long as something does.
+//! Continuous sounds.
 
 use crate::part::{Band, Drift, Noise, Smooth, Stereo, Tone, note, panned, share};
 use crate::soundscape::Press;
 use std::f32::consts::{PI, TAU};
 
-/// A hand that rubs and squashes rubber: a squeak, whose pitch follows the force, in a mouth that
-/// opens with it, and the wet noise of what is pushed about.
+/// Sound of a hand that rubs and squashes rubber: a squeak with a pitch that follows the force, through a
+/// mouth-like filter that opens with the force, and wet noise of the displaced material.
 pub(crate) struct Squeak {
     rate: f32,
-    /// How firmly, how fast, where.
+    /// Smoothed force, slip speed and position.
     firm: Smooth,
     slide: Smooth,
     x: Smooth,
-    /// Follows `firm` late: the difference tells how the force stirs.
+    /// Delayed copy of `firm`; the difference shows how the force changes.
     late: Smooth,
     stir: Smooth,
-    /// How much of the present squeak is over, 0 to 1, and how many there would be in a second of
-    /// very fast slip.
+    /// Phase of the present squeak, 0 to 1, and squeaks per second at very fast slip.
     squeak: f32,
     hurry: f32,
-    /// Rubber grips and slips within each squeak, too.
+    /// Modulation within a squeak: stick-slip of the rubber.
     jerk: Drift,
     tone: Tone,
     mouth: Band,
-    /// Two in a row, so that little hisses above them.
+    /// Two filters in a row, to suppress hiss above the band.
     wet: [Band; 2],
 }
 
@@ -55,7 +54,7 @@ impl Squeak {
         }
     }
 
-    /// Whether nothing was heard of late.
+    /// Returns whether the sound has faded out.
     fn is_silent(&self) -> bool {
         self.firm.value == 0.0 && self.late.value == 0.0 && self.stir.value == 0.0
     }
@@ -78,7 +77,7 @@ impl Squeak {
             self.stir.target = (4.0 * (firm - self.late.next())).abs().min(1.0);
             let stir = self.stir.next();
             let moves = 1.0 - (1.0 - slide) * (1.0 - 0.6 * stir);
-            // One squeak for a few centimetres, no two of them alike.
+            // One squeak per few centimetres, with random spacing.
             self.squeak += slide * self.hurry / self.rate;
             if self.squeak >= 1.0 {
                 self.squeak -= 1.0;
@@ -86,7 +85,7 @@ impl Squeak {
             }
             let swell = (PI * self.squeak).sin();
             let jerk = 0.75 + 0.25 * self.jerk.next(noise);
-            // Each squeak rises as it swells.
+            // The pitch of each squeak rises.
             let frequency = height * (0.85 + 0.3 * self.squeak) / self.rate;
             let tone = self.tone.next(frequency, 0.3 + 0.4 * firm);
             let voice = 0.45 * tone + 0.8 * self.mouth.next(tone);
@@ -100,12 +99,12 @@ impl Squeak {
     }
 }
 
-/// The wobble of something like mochi: a weight on a spring follows the squash, overshoots, and is
-/// heard as it moves.
+/// Wobble of a mochi-like body: a weight on a spring follows the squash, overshoots, and sounds according to
+/// its speed.
 pub(crate) struct Wobble {
     rate: f32,
     squash: Smooth,
-    /// Of the weight [squash], [squash/s].
+    /// Position [squash] and speed [squash/s] of the weight.
     place: f32,
     speed: f32,
     gain: Smooth,
@@ -129,7 +128,7 @@ impl Wobble {
     }
 
     pub(crate) fn add(&mut self, out: &mut [Stereo]) {
-        /// Swings a second, and the share of critical damping.
+        /// Angular frequency [rad/s] and damping ratio.
         const SWING: f32 = TAU * 5.5;
         const DAMPING: f32 = 0.16;
         let still = self.squash.value == self.squash.target && self.gain.is_silent();
@@ -141,7 +140,7 @@ impl Wobble {
             let push = SWING * SWING * away - 2.0 * DAMPING * SWING * self.speed;
             self.speed += push / self.rate;
             self.place += self.speed / self.rate;
-            // Squared, so that what trembles a little is not heard.
+            // Squared, so that a slight tremor is not heard.
             let quick = self.speed * self.speed;
             self.gain.target = share(quick, 3.0);
             let frequency = 88.0 * (1.0 + 0.9 * self.place) / self.rate;
@@ -151,11 +150,11 @@ impl Wobble {
     }
 }
 
-/// Four voices that come in one after the other and rise while the body rests in the basket.
+/// Four voices that start one after the other and rise in pitch while the body rests in the basket.
 pub(crate) struct Chord {
     rate: f32,
     hold: Smooth,
-    /// How high it has risen; stays when the hold is lost, until it has faded.
+    /// Highest hold reached; kept after the hold is lost until the sound has faded.
     risen: f32,
     shimmer: f32,
     tones: [Tone; 4],
@@ -177,7 +176,7 @@ impl Chord {
     }
 
     pub(crate) fn add(&mut self, out: &mut [Stereo]) {
-        /// From G to the C with which the jingles begin.
+        /// Rises from G to the C with which the jingles begin.
         const LOWEST: f32 = 55.0;
         const RISE: f32 = 5.0;
         const ABOVE: [f32; 4] = [0.0, 4.0, 7.0, 12.0];

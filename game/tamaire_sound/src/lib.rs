@@ -1,11 +1,11 @@
-//! The sounds of tamaire, all of them synthesised. It knows nothing of soft bodies: the game says
-//! each frame what there is to hear.
+//! Synthesised sounds of tamaire. The crate does not depend on soft bodies: in each frame the game reports
+//! the sounds to play.
 //!
-//! - [`Soundscape`] is what lasts: hands that press and slip, squash, time held in the basket.
-//! - [`Cue`] is what happens at a moment: a thud, a tear, a crumb, a menu, a win.
-//! - [`Synth`] makes samples of both. It is a pure computation: the same calls, the same samples.
-//! - [`Message`] says all that to a synth elsewhere, as bytes (feature `serde`).
-//! - [`Speaker`] plays them on the machine's sound device (feature `output`).
+//! - [`Soundscape`]: continuous sounds: hands that press and slip, squash, time held in the basket.
+//! - [`Cue`]: momentary sounds: thud, tear, crumb, menu, win.
+//! - [`Synth`]: renders both to samples. It is deterministic: equal calls give equal samples.
+//! - [`Message`]: the calls of a remote synthesiser as bytes (feature `serde`).
+//! - [`Speaker`]: playback on the sound device (feature `output`).
 //!
 //! ```
 //! use tamaire_sound::{Cue, Press, Soundscape, Synth};
@@ -20,7 +20,7 @@
 //! ```
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![allow(rustdoc::broken_intra_doc_links)] // units are given in brackets: [m]
 
 mod cue;
 mod part;

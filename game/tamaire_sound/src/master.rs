@@ -1,13 +1,13 @@
-//! What all sounds go through in the end: a little room, and a limit.
+//! Final processing of all sounds: a small reverb and a limiter.
 
 use crate::part::Stereo;
 
-/// A small room: four echoes that feed each other [Jot 1991].
+/// Small room: a feedback delay network of four lines [Jot 1991].
 pub(crate) struct Room {
     lines: [Line; 4],
 }
 
-/// An echo, duller each time round.
+/// Delay line with a low-pass filter.
 struct Line {
     samples: Vec<f32>,
     place: usize,
@@ -16,7 +16,7 @@ struct Line {
 
 impl Room {
     pub(crate) fn new(rate: f32) -> Self {
-        // No two have a common multiple soon, so that no pitch stands out.
+        // The delays have no small common multiple, so that no pitch stands out.
         let line = |seconds: f32| Line {
             samples: vec![0.0; (seconds * rate) as usize],
             place: 0,
@@ -27,10 +27,10 @@ impl Room {
         }
     }
 
-    /// What comes back, when this goes in.
+    /// Returns the reverberation for an input sample.
     pub(crate) fn next(&mut self, dry: Stereo) -> Stereo {
         let [a, b, c, d] = self.lines.each_ref().map(|line| line.samples[line.place]);
-        // Rows of a Hadamard matrix: each echo feeds all, and none is louder for it.
+        // Rows of a Hadamard matrix: each line feeds all lines, without a change of total energy.
         let mixed = [a + b + c + d, a - b + c - d, a + b - c - d, a - b - c + d];
         for (place, (line, mixed)) in self.lines.iter_mut().zip(mixed).enumerate() {
             line.dull += 0.55 * (mixed - line.dull);
@@ -44,14 +44,15 @@ impl Room {
     }
 }
 
-/// Keeps back what is too low to hear, as the mean of an edgy tone, which would push the limiter.
+/// High-pass filter for inaudible low frequencies, such as the mean of a tone with many overtones. They would
+/// drive the limiter.
 #[derive(Default)]
 pub(crate) struct Floor {
     mean: Stereo,
 }
 
 impl Floor {
-    /// Up to about 15 Hz, when asked `rate` times a second.
+    /// Removes frequencies below about 15 Hz, at `rate` samples per second.
     pub(crate) fn next(&mut self, sample: Stereo, rate: f32) -> Stereo {
         [0, 1].map(|side| {
             let mean = self.mean[side] + 100.0 / rate * (sample[side] - self.mean[side]);
@@ -61,7 +62,7 @@ impl Floor {
     }
 }
 
-/// Turns down what is too loud, at once but without a jump, and up again slowly.
+/// Limiter: fast attack without a jump, slow release.
 pub(crate) struct Limiter {
     peak: f32,
     attack: f32,
@@ -78,9 +79,9 @@ impl Limiter {
         }
     }
 
-    /// Never beyond -1 to 1.
+    /// Returns a sample within −1 to 1.
     pub(crate) fn next(&mut self, sample: Stereo) -> Stereo {
-        /// Up to here nothing is changed.
+        /// Level up to which nothing is changed.
         const CLEAN: f32 = 0.7;
         let loud = sample[0].abs().max(sample[1].abs());
         let pace = if loud > self.peak {
@@ -90,7 +91,7 @@ impl Limiter {
         };
         self.peak += pace * (loud - self.peak);
         let gain = CLEAN / self.peak.max(CLEAN);
-        // What was too quick for that is bent.
+        // Peaks too fast for the attack are soft-clipped.
         let bent = |side: f32| {
             let over = (gain * side.abs() - CLEAN).max(0.0) / (1.0 - CLEAN);
             (gain * side.abs()).min(CLEAN) + (1.0 - CLEAN) * over.tanh()

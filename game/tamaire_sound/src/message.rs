@@ -1,22 +1,23 @@
-//! What a game tells a synth that is elsewhere, such as in an audio worklet of a browser: one thing
-//! after the other in postcard's format, so that whoever hears it needs no memory for it.
+//! Messages from a game to a remote synthesiser, such as one in an audio worklet. They use postcard's format,
+//! entry after entry, so that the receiver needs no memory allocation.
 
 use crate::cue::Cue;
 use crate::soundscape::{Soundscape, Volumes};
 use crate::synth::Synth;
 use serde::{Deserialize, Serialize};
 
-/// A cue of the world is dropped where less is left [bytes]: the rest is kept for menus and
-/// jingles, which are few and must not be lost.
+/// Space reserved for menus and jingles [bytes]. A cue of the world is dropped if less would remain. Menus
+/// and jingles are few and must not be lost.
 const FOR_MENUS: usize = 512;
 
-/// A menu or a jingle is dropped where less is left [bytes]: several times what a soundscape takes.
+/// Space reserved for soundscapes and volumes [bytes], several times the size of a soundscape. A menu or
+/// jingle cue is dropped if less would remain.
 const FOR_WHAT_LASTS: usize = 128;
 
-/// Longer than any one thing that is told [bytes].
+/// Upper bound of the size of an entry [bytes].
 const LONGEST: usize = 64;
 
-/// Written by one side and read by the other, which must be of the same build.
+/// Entry of a message. Sender and receiver must come from the same build.
 #[derive(Deserialize, Serialize)]
 enum News {
     Soundscape(Soundscape),
@@ -24,25 +25,25 @@ enum News {
     Cue(Cue),
 }
 
-/// What a synth is to be told, gathered over a frame.
+/// Calls for a synthesiser, collected over a frame.
 #[derive(Default)]
 pub struct Message(Vec<u8>);
 
 impl Message {
-    /// None is longer [bytes]; what does not fit is dropped.
+    /// Maximum size [bytes]; entries beyond it are dropped.
     pub const MOST_BYTES: usize = 4096;
 
-    /// As [`Synth::hear`].
+    /// Records a call of [`Synth::hear`].
     pub fn hear(&mut self, soundscape: &Soundscape) {
         self.put(&News::Soundscape(*soundscape), 0);
     }
 
-    /// As [`Synth::set_volumes`].
+    /// Records a call of [`Synth::set_volumes`].
     pub fn set_volumes(&mut self, volumes: &Volumes) {
         self.put(&News::Volumes(*volumes), 0);
     }
 
-    /// As [`Synth::play`].
+    /// Records a call of [`Synth::play`].
     pub fn play(&mut self, cue: Cue) {
         let kept_free = match cue {
             Cue::Thud { .. } | Cue::Tear { .. } | Cue::Crumb { .. } => FOR_MENUS,
@@ -51,19 +52,20 @@ impl Message {
         self.put(&News::Cue(cue), kept_free);
     }
 
-    /// What [`Synth::take`] takes.
+    /// Returns the bytes for [`Synth::take`].
     pub fn bytes(&self) -> &[u8] {
         &self.0
     }
 
-    /// Begins the next one.
+    /// Clears the message for the next frame.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 
     fn put(&mut self, news: &News, kept_free: usize) {
         let mut longest = [0; LONGEST];
-        let bytes = postcard::to_slice(news, &mut longest).expect("longer than any news");
+        let bytes =
+            postcard::to_slice(news, &mut longest).expect("an entry fits into LONGEST bytes");
         if self.0.len() + bytes.len() + kept_free <= Self::MOST_BYTES {
             self.0.extend_from_slice(bytes);
         }
@@ -71,7 +73,8 @@ impl Message {
 }
 
 impl Synth {
-    /// Takes a [`Message`]. From where its bytes mean nothing the rest is ignored. Allocates nothing.
+    /// Executes the calls of a [`Message`]. Ignores everything after the first invalid entry. Allocates
+    /// nothing.
     pub fn take(&mut self, mut message: &[u8]) {
         while let Ok((news, rest)) = postcard::take_from_bytes(message) {
             match news {
@@ -151,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_message_says_what_calls_say() {
+    fn message_has_the_effect_of_the_calls() {
         let mut synth = Synth::new(48_000);
         synth.hear(&SOUNDSCAPE);
         synth.set_volumes(&VOLUMES);
@@ -160,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn all_that_there_is_to_tell_is_told_as_it_was() {
+    fn message_round_trip_keeps_all_values() {
         let hushes = [Hush::Nothing, Hush::World, Hush::Everything];
         let mut message = Message::default();
         for hush in hushes {
@@ -187,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn a_message_that_is_cut_short_says_what_it_had_said_by_then() {
+    fn truncated_message_keeps_its_complete_entries() {
         let message = everything();
         for length in 0..message.bytes().len() {
             after(&message.bytes()[..length]);
@@ -199,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn any_bytes_are_taken() {
+    fn synth_accepts_arbitrary_bytes() {
         let message = everything();
         for place in 0..message.bytes().len() {
             for byte in 0..=255 {
@@ -218,14 +221,14 @@ mod tests {
     }
 
     #[test]
-    fn a_flood_of_tears_leaves_room_for_the_win_and_for_what_lasts() {
+    fn many_tears_leave_room_for_a_win_and_the_soundscape() {
         let mut flood = Message::default();
         let tear = CUES[1];
         (0..10_000).for_each(|_| flood.play(tear));
         let tears = flood.bytes().len();
         let win = Cue::Won(Route::Shave);
         (0..10_000).for_each(|_| flood.play(win));
-        assert!(flood.bytes().len() > tears, "a win fits");
+        assert!(flood.bytes().len() > tears, "no space was left for a win");
         flood.hear(&SOUNDSCAPE);
         flood.set_volumes(&VOLUMES);
         assert!(flood.bytes().len() <= Message::MOST_BYTES);

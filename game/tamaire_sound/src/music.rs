@@ -1,15 +1,14 @@
-//! Music for the background: slow chords, and a few notes that happen to fall on them. It never
-//! repeats and never hurries.
+//! Background music: slow chords and a few random notes that fit them. It never repeats.
 
 use crate::grain::{Bus, Grain, Voices};
 use crate::part::{Noise, note};
 use crate::recipe::{bell, strike};
 
-/// Seconds of a beat, and beats of a chord.
+/// Duration of a beat [s], and beats per chord.
 const BEAT: f32 = 0.42;
 const BEATS: u32 = 12;
 
-/// Notes of the chords: C, A minor, F, G, all with room between.
+/// Notes of the chords C, A minor, F and G, in wide spacing.
 const CHORDS: [[f32; 3]; 4] = [
     [48.0, 55.0, 64.0],
     [45.0, 52.0, 60.0],
@@ -17,16 +16,16 @@ const CHORDS: [[f32; 3]; 4] = [
     [43.0, 55.0, 62.0],
 ];
 
-/// Notes that go with all of them.
+/// Notes that fit all chords.
 const SCALE: [f32; 6] = [67.0, 69.0, 72.0, 74.0, 76.0, 79.0];
 
-/// Decides note by note what is played.
+/// Generator of the notes.
 pub(crate) struct Music {
     rate: f32,
     /// Samples until the next beat.
     left: f32,
     beat: u32,
-    /// Place in the scale of the last note.
+    /// Index in the scale of the last note.
     place: i32,
 }
 
@@ -40,7 +39,7 @@ impl Music {
         }
     }
 
-    /// Begins what comes in the next `count` samples.
+    /// Starts the notes of the next `count` samples.
     pub(crate) fn play(&mut self, noise: &mut Noise, voices: &mut Voices, count: usize) {
         if self.left < count as f32 {
             let delay = self.left.max(0.0) / self.rate;
@@ -50,7 +49,7 @@ impl Music {
                     voices.start(pad(*number, delay, 0.6 * (place as f32 - 1.0)));
                 }
             }
-            // Rather on the beat than off it.
+            // Notes are more likely on the beat.
             let chance = [0.55, 0.15, 0.35, 0.2][self.beat as usize % 4];
             if noise.between(0.0, 1.0) < chance {
                 let walk = noise.between(-2.5, 2.5).round() as i32;
@@ -75,7 +74,7 @@ impl Music {
     }
 }
 
-/// A note that swells and fades over a whole chord.
+/// Note that swells and fades over a whole chord.
 fn pad(number: f32, delay: f32, x: f32) -> Grain {
     let chord = BEAT * BEATS as f32;
     Grain {

@@ -1,11 +1,11 @@
-//! What sounds are made of: noise, tones, filters, and values that change without a jump.
+//! Basic building blocks: noise, tones, filters, and smoothed values.
 
 use std::f32::consts::{PI, TAU};
 
-/// Left and right.
+/// Left and right sample.
 pub(crate) type Stereo = [f32; 2];
 
-/// `value` within `low..=high`; what is not a number counts as `low`, or as 0 where that is in range.
+/// Clamps `value` to `low..=high`; NaN becomes 0 if that is in range, otherwise `low`.
 pub(crate) fn clean(value: f32, low: f32, high: f32) -> f32 {
     if value.is_nan() {
         low.max(0.0)
@@ -14,24 +14,24 @@ pub(crate) fn clean(value: f32, low: f32, high: f32) -> f32 {
     }
 }
 
-/// From 0 for nothing over 0.5 for `usual` towards 1 for any amount.
+/// Maps an amount to 0..1: 0 for 0, 0.5 for `usual`, towards 1 for large amounts.
 pub(crate) fn share(amount: f32, usual: f32) -> f32 {
     amount / (amount + usual)
 }
 
-/// How loud something at `x` (-1 to 1) is on the left and on the right, at equal power. Never on one
-/// side alone, which is tiresome with headphones.
+/// Returns the gains of left and right for a position `x`, −1 to 1, at equal power. Neither side becomes
+/// silent, which would be tiring with headphones.
 pub(crate) fn panned(x: f32) -> Stereo {
     let angle = PI / 4.0 * (1.0 + 0.7 * x);
     [angle.cos(), angle.sin()]
 }
 
-/// The frequency of a note of the piano [Hz]; 69 is the A of 440 Hz.
+/// Returns the frequency of a MIDI note number [Hz]; 69 is A at 440 Hz.
 pub(crate) fn note(number: f32) -> f32 {
     440.0 * ((number - 69.0) / 12.0).exp2()
 }
 
-/// White noise, the same one every time [Marsaglia 2003].
+/// Deterministic white noise [Marsaglia 2003].
 pub(crate) struct Noise(u32);
 
 impl Noise {
@@ -39,7 +39,7 @@ impl Noise {
         Self(0x2545_f491)
     }
 
-    /// From -1 to 1.
+    /// Returns a number from −1 to 1.
     pub(crate) fn next(&mut self) -> f32 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 17;
@@ -47,13 +47,13 @@ impl Noise {
         self.0 as i32 as f32 / 2_147_483_648.0
     }
 
-    /// From `low` to `high`.
+    /// Returns a number from `low` to `high`.
     pub(crate) fn between(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * (0.5 + 0.5 * self.next())
     }
 }
 
-/// A value that follows its target without a jump.
+/// Value that follows its target without a jump.
 #[derive(Copy, Clone)]
 pub(crate) struct Smooth {
     pub(crate) value: f32,
@@ -62,7 +62,7 @@ pub(crate) struct Smooth {
 }
 
 impl Smooth {
-    /// Comes to within 1/e of its target in `seconds`, if asked `rate` times a second.
+    /// Creates a value with the time constant `seconds`, for `rate` calls of `next` per second.
     pub(crate) fn new(seconds: f32, rate: f32) -> Self {
         Self {
             value: 0.0,
@@ -73,7 +73,7 @@ impl Smooth {
 
     pub(crate) fn next(&mut self) -> f32 {
         let left = self.target - self.value;
-        // Arrives at last, so that silence is silence: 0.00001 is 100 dB below full scale.
+        // Reaches the target exactly, so that silence is exact: 0.00001 is 100 dB below full scale.
         self.value = if left.abs() < 1e-5 {
             self.target
         } else {
@@ -82,34 +82,34 @@ impl Smooth {
         self.value
     }
 
-    /// Whether it is nothing and stays so.
+    /// Returns whether the value is zero and stays zero.
     pub(crate) fn is_silent(&self) -> bool {
         self.value == 0.0 && self.target == 0.0
     }
 }
 
-/// A sine that is fed back into its own phase: with more `edge` it nears a sawtooth, with
-/// overtones that fall off before they alias [Tomisawa 1981].
+/// Sine with phase feedback: a larger `edge` approaches a sawtooth, with overtones that fall off before they
+/// alias [Tomisawa 1981].
 #[derive(Copy, Clone, Default)]
 pub(crate) struct Tone {
-    /// In turns, 0 to 1.
+    /// Phase [cycles], 0 to 1.
     phase: f32,
     last: f32,
 }
 
 impl Tone {
-    /// `frequency` in turns a sample, `edge` from 0 for a sine to 1.
+    /// Returns the next sample. `frequency` in cycles per sample, `edge` from 0 (sine) to 1.
     pub(crate) fn next(&mut self, frequency: f32, edge: f32) -> f32 {
         self.phase = (self.phase + frequency).fract();
-        // Fed back is a running mean: the last sample alone hunts at high frequencies.
+        // Feeds back a running mean; the last sample alone oscillates at high frequencies.
         let out = (TAU * self.phase + edge * self.last).sin();
         self.last = 0.5 * (self.last + out);
         out
     }
 }
 
-/// A band-pass with two poles that may be tuned while it sounds: a state-variable filter with
-/// trapezoidal integrators [Simper 2013].
+/// Two-pole band-pass that can be retuned while it plays: a state-variable filter with trapezoidal
+/// integrators [Simper 2013].
 #[derive(Copy, Clone, Default)]
 pub(crate) struct Band {
     gains: [f32; 3],
@@ -119,45 +119,45 @@ pub(crate) struct Band {
 }
 
 impl Band {
-    /// Passes `frequency` [turns a sample]; the band is 1/`sharpness` of it wide.
+    /// Sets the centre `frequency` [cycles/sample]; the bandwidth is `frequency`/`sharpness`.
     pub(crate) fn tune(&mut self, frequency: f32, sharpness: f32) {
         let g = (PI * frequency.clamp(1e-4, 0.45)).tan();
         self.width = 1.0 / sharpness;
         let first = 1.0 / (1.0 + g * (g + self.width));
         self.gains = [first, g * first, g * g * first];
-        // Of white noise a band of this kind passes π·frequency/sharpness of the power.
+        // Such a band passes π·frequency/sharpness of the power of white noise.
         self.lift = (sharpness / (PI * frequency.max(1e-4))).sqrt();
     }
 
-    /// A band of noise, as loud as the noise was.
+    /// Returns band-passed noise at the level of the unfiltered noise.
     pub(crate) fn hiss(&mut self, noise: &mut Noise) -> f32 {
         self.lift * self.next(noise.next())
     }
 
-    /// The middle of the band passes as loud as it was.
+    /// Filters a sample, with unit gain at the centre frequency.
     pub(crate) fn next(&mut self, sample: f32) -> f32 {
         let [a, b, c] = self.gains;
         let [one, two] = self.state;
         let rest = sample - two;
         let band = a * one + b * rest;
         let low = two + b * one + c * rest;
-        // Below 1e-15 numbers become subnormal soon, and those are slow.
+        // Flushes values below 1e-15, which would soon become subnormal and slow.
         self.state =
             [2.0 * band - one, 2.0 * low - two].map(|k| if k.abs() < 1e-15 { 0.0 } else { k });
         self.width * band
     }
 }
 
-/// A random walk between -1 and 1, smooth.
+/// Smooth random walk between −1 and 1.
 pub(crate) struct Drift {
     value: Smooth,
-    /// Samples from one goal to the next, and those that are left.
+    /// Samples between two targets, and samples left until the next one.
     pace: u32,
     left: u32,
 }
 
 impl Drift {
-    /// About `times` turns a second.
+    /// Creates a walk with about `times` targets per second.
     pub(crate) fn new(times: f32, rate: f32) -> Self {
         Self {
             value: Smooth::new(0.5 / times, rate),

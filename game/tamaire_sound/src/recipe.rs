@@ -1,10 +1,10 @@
-//! Which grains a cue is made of.
+//! Grains of each cue.
 
 use crate::cue::{Cue, Menu, Route};
 use crate::grain::{Bus, Grain, Voices};
 use crate::part::{Noise, note, share};
 
-/// Begins the grains of a cue. What is one of many differs a little each time.
+/// Starts the grains of a cue. Frequent cues vary randomly.
 pub(crate) fn start(cue: Cue, noise: &mut Noise, voices: &mut Voices) {
     match cue {
         Cue::Thud { impulse, x } => thud(impulse, x, noise, voices),
@@ -15,7 +15,7 @@ pub(crate) fn start(cue: Cue, noise: &mut Noise, voices: &mut Voices) {
     }
 }
 
-/// A pillow: a low tone that sinks, under a breath of dull noise. Lower and longer if heavy.
+/// Pillow-like: a low, falling tone with soft, dull noise. Lower and longer for heavy impacts.
 fn thud(impulse: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     let heavy = share(impulse, 10.0);
     let pitch = (150.0 - 60.0 * heavy) * noise.between(0.93, 1.07);
@@ -34,11 +34,11 @@ fn thud(impulse: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     });
 }
 
-/// Wet: a band of noise that falls as the gap opens, a drop that springs up, and sparks of crackle;
-/// a large one pops too.
+/// Wet sound: a band of noise that falls as the gap opens, a rising drop, and random crackles. A large tear
+/// also pops.
 fn tear(energy: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     let strong = share(energy, 1.0);
-    // In a crowd each is fainter, or a rip would drown all else.
+    // Fainter the more grains are playing, so that a long rip does not drown everything else.
     let crowd = 1.0 + 0.03 * voices.count() as f32;
     let gain = (0.07 + 0.43 * strong) / crowd;
     let high = noise.between(900.0, 2200.0);
@@ -94,7 +94,7 @@ fn tear(energy: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     }
 }
 
-/// A grain of rice on felt.
+/// Like a grain of rice falling on felt.
 fn crumb(speed: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     let fast = share(speed, 1.0);
     let pitch = noise.between(1300.0, 2800.0);
@@ -112,10 +112,10 @@ fn crumb(speed: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     });
 }
 
-/// Seconds until a note of a jingle, and the note.
+/// Notes of a jingle: start time [s] and note number.
 type Tune = &'static [(f32, f32)];
 
-/// Squeezed in: a slide up to a broad chord, as round as the body.
+/// Squeezed in: a run up to a broad chord, as round as the body.
 const SQUEEZE: Tune = &[
     (0.0, 60.0),
     (0.09, 64.0),
@@ -142,7 +142,7 @@ const SHAVE: Tune = &[
     (0.72, 91.0),
 ];
 
-/// Some of both: up like the one, hops like the other.
+/// A mix: the run of the first, then hops like the second.
 const MIX: Tune = &[
     (0.0, 60.0),
     (0.09, 64.0),
@@ -154,7 +154,7 @@ const MIX: Tune = &[
     (0.54, 84.0),
 ];
 
-/// Whether a note is of the chord at the end, of which the top may come a little later.
+/// Returns whether a note belongs to the final chord; its top note may start a little later.
 fn is_last(tune: Tune, delay: f32) -> bool {
     delay >= tune[tune.len() - 2].0
 }
@@ -210,7 +210,7 @@ fn blip(menu: Menu, voices: &mut Voices) {
     }
 }
 
-/// A note as of a marimba.
+/// Marimba-like note.
 pub(crate) fn bell(number: f32, delay: f32, gain: f32, ring: f32) -> Grain {
     Grain {
         delay,
@@ -223,7 +223,7 @@ pub(crate) fn bell(number: f32, delay: f32, gain: f32, ring: f32) -> Grain {
     }
 }
 
-/// The wood of the bar: two octaves higher, and soon gone.
+/// Attack of the wooden bar: two octaves higher, and short.
 pub(crate) fn strike(bell: Grain) -> Grain {
     Grain {
         decay: 0.12 * bell.decay + 0.01,
@@ -238,7 +238,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_whole_chord_at_the_end_rings_on() {
+    fn final_chord_of_each_jingle_rings_longer() {
         let notes = [SQUEEZE, SHAVE, MIX].map(|tune| {
             let last = tune.iter().filter(|(delay, _)| is_last(tune, *delay));
             last.count()

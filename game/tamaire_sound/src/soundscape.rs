@@ -1,20 +1,21 @@
-//! What is heard for as long as it lasts, and how loud.
+//! Continuous sounds and volumes.
 
 use crate::part::clean;
 
-/// What lasts. To be told anew each frame: after half a second without news it falls silent.
+/// Continuous sounds. Must be reported in every frame: they fall silent after half a second without an
+/// update.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Soundscape {
-    /// What the hands of up to two players do.
+    /// Hands of up to two players.
     pub presses: [Press; 2],
-    /// How much the body is squashed, from 0 for not at all to 1 for flat. A change of it wobbles.
+    /// Squash of the body, from 0 (none) to 1 (flat). Changes cause a wobble.
     pub squash: f32,
-    /// How much of the time is over for which the body must rest in the basket, from 0 to 1.
+    /// Elapsed share of the time for which the body must rest in the basket, from 0 to 1.
     pub hold: f32,
-    /// Whether there is music in the background.
+    /// Whether background music plays.
     pub music: bool,
-    /// What is to be silent for a while.
+    /// Sounds that are muted for a while.
     pub hush: Hush,
 }
 
@@ -22,36 +23,36 @@ pub struct Soundscape {
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Press {
-    /// How hard it presses [N]; about 400. Louder and higher with more.
+    /// Contact force [N]; about 400. Louder and higher with larger forces.
     pub force: f32,
-    /// How fast it slips along the body [m/s]; about 0.5. It squeaks only where it slips or stirs.
+    /// Slip speed along the body [m/s]; about 0.5. It squeaks only if the hand slips or the force changes.
     pub slip: f32,
-    /// Where, from -1 at the left edge of the picture to 1 at the right.
+    /// Position, from −1 at the left edge of the picture to 1 at the right.
     pub x: f32,
 }
 
-/// What is to be silent for a while.
+/// Sounds that are muted for a while.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Hush {
-    /// Nothing.
+    /// Nothing is muted.
     #[default]
     Nothing,
-    /// What the world does, while the game stands still; menus and music go on.
+    /// Sounds of the world are muted, while the game is paused; menus and music continue.
     World,
-    /// Everything, while the window is in the background.
+    /// Everything is muted, while the window is in the background.
     Everything,
 }
 
-/// How loud, each from 0 to 1.
+/// Volumes, each from 0 to 1.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Volumes {
-    /// All of it.
+    /// Overall volume.
     pub master: f32,
-    /// What the world does.
+    /// Sounds of the world.
     pub effects: f32,
-    /// The music in the background.
+    /// Background music.
     pub music: f32,
     /// Menus and jingles.
     pub interface: f32,
@@ -69,7 +70,7 @@ impl Default for Volumes {
 }
 
 impl Soundscape {
-    /// The same with every number in range.
+    /// Returns the soundscape with all numbers clamped to their ranges.
     pub(crate) fn cleaned(self) -> Self {
         let press = |press: Press| Press {
             force: clean(press.force, 0.0, 1e6),

@@ -1,8 +1,8 @@
-//! Plays on the machine's sound device.
+//! Playback on the sound device.
 //!
-//! Three threads meet at a mailbox: the game leaves there what is to be heard; the device's own
-//! thread takes it, and goes on with what it has while the game is just writing; a keeper opens the
-//! device, and goes on trying while there is none.
+//! Three threads share a mailbox. The game writes sounds into it. The thread of the device reads them, and
+//! continues with its old state while the game is writing. A keeper thread opens the device and retries until
+//! it succeeds.
 
 mod device;
 mod mailbox;
@@ -17,17 +17,17 @@ use std::sync::mpsc;
 use std::sync::{Arc, Mutex};
 use std::thread;
 
-/// The machine's sound device. Falls silent when dropped.
+/// Connection to the sound device. Dropping it ends the sound.
 pub struct Speaker {
     mailbox: Arc<Mutex<Mailbox>>,
 }
 
 impl Speaker {
-    /// Opens the device that the system prefers. It may take a moment, at most three seconds. While
-    /// there is none, [`Speaker::trouble`] says so, and it is looked for again and again.
+    /// Opens the default device, which takes at most three seconds. While there is no device,
+    /// [`Speaker::trouble`] gives the reason, and opening is retried.
     ///
     /// # Errors
-    /// [`NoSound`] when there is no thread to be had for it.
+    /// [`NoSound`] if no thread can be started.
     pub fn open() -> Result<Self, NoSound> {
         let mailbox = Arc::new(Mutex::new(Mailbox {
             trouble: Some(NoSound::NoAnswer),
@@ -39,12 +39,12 @@ impl Speaker {
             .name("sound".to_owned())
             .spawn(move || keep_open(&keeper, opened, |lost| open_stream(&keeper, lost)))
             .map_err(|error| NoSound::Refused(error.to_string()))?;
-        // Whatever became of it stands in the mailbox.
+        // The result is in the mailbox.
         let _ = answer.recv_timeout(PATIENCE);
         Ok(Self { mailbox })
     }
 
-    /// Tells what lasts and how loud it is to be. To be called each frame.
+    /// Sets continuous sounds and volumes. To be called in every frame.
     pub fn update(&self, soundscape: &Soundscape, volumes: &Volumes) {
         let mut mailbox = lock(&self.mailbox);
         mailbox.soundscape = *soundscape;
@@ -52,13 +52,13 @@ impl Speaker {
         mailbox.number += 1;
     }
 
-    /// Begins what sounds once.
+    /// Starts a momentary sound.
     pub fn play(&self, cue: Cue) {
         lock(&self.mailbox).put(cue);
     }
 
-    /// Why nothing is heard just now, if so: the device was unplugged, say. It is looked for again
-    /// every few seconds.
+    /// Returns the reason for silence, if any, such as an unplugged device. Opening is retried every few
+    /// seconds.
     pub fn trouble(&self) -> Option<NoSound> {
         lock(&self.mailbox).trouble.clone()
     }
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_game_tells_is_heard_in_the_next_block() {
+    fn updates_and_cues_are_heard_in_the_next_block() {
         let (speaker, mut source) = speaker();
         assert_eq!(loudest(&mut source), 0.0);
         let press = Press {
@@ -107,17 +107,17 @@ mod tests {
     }
 
     #[test]
-    fn a_game_that_is_writing_does_not_hold_up_the_device() {
+    fn locked_mailbox_does_not_block_the_device() {
         let (speaker, mut source) = speaker();
         speaker.play(Cue::Menu(Menu::Confirm));
-        let writing = speaker.mailbox.lock().expect("nobody panicked");
+        let writing = speaker.mailbox.lock().expect("the mailbox is not poisoned");
         assert_eq!(loudest(&mut source), 0.0);
         drop(writing);
         assert!(loudest(&mut source) > 0.01);
     }
 
     #[test]
-    fn a_flood_of_tears_leaves_room_for_the_win() {
+    fn many_tears_leave_room_for_a_win() {
         let (speaker, source) = speaker();
         for _ in 0..10_000 {
             speaker.play(Cue::Tear {
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn cues_of_a_time_without_device_are_not_heard_later() {
+    fn cues_without_a_device_are_discarded() {
         let (speaker, mut source) = speaker();
         let weak = Arc::downgrade(&speaker.mailbox);
         speaker.play(Cue::Won(Route::Shave));
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_device_that_comes_later_is_found() {
+    fn device_plugged_in_later_is_opened() {
         let (speaker, _) = speaker();
         let weak = Arc::downgrade(&speaker.mailbox);
         let (opened, answer) = mpsc::channel();
@@ -156,7 +156,7 @@ mod tests {
                 Ok::<_, NoSound>(lost)
             });
         });
-        assert!(answer.recv().is_err(), "the first attempt is over");
+        assert!(answer.recv().is_err(), "the first attempt has not ended");
         assert_eq!(speaker.trouble(), Some(NoSound::NoDevice));
         plug.send(()).unwrap();
         let patience = Instant::now() + 5 * PAUSE;
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn it_falls_silent_when_dropped() {
+    fn speaker_falls_silent_when_dropped() {
         let (speaker, mut source) = speaker();
         speaker.play(Cue::Won(Route::Squeeze));
         assert!(loudest(&mut source) > 0.01);
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn any_number_of_channels_is_filled() {
+    fn source_fills_any_number_of_channels() {
         for channels in [1, 2, 6] {
             let (speaker, mut source) = speaker();
             speaker.play(Cue::Menu(Menu::Confirm));

@@ -1,4 +1,4 @@
-//! From what there is to hear to samples.
+//! Renders sounds to samples.
 
 use crate::cue::Cue;
 use crate::grain::{BUSES, Bus, Buses, CHUNK, Voices};
@@ -9,17 +9,17 @@ use crate::part::{Noise, Smooth, clean};
 use crate::recipe;
 use crate::soundscape::{Hush, Soundscape, Volumes};
 
-/// Seconds without news after which what lasts falls silent: the game hangs, or is gone.
+/// Time without updates after which continuous sounds end [s]: the game hangs or has ended.
 const STALE: f32 = 0.5;
 
-/// How much of a bus goes into the room, by [`Bus`].
+/// Reverb send level of each [`Bus`].
 const INTO_ROOM: [f32; BUSES] = [0.1, 0.3, 0.12];
 
-/// Makes samples. The same calls bring the same samples, on the same machine.
+/// Synthesiser. Equal calls give equal samples on the same machine.
 pub struct Synth {
     rate: f32,
     soundscape: Soundscape,
-    /// Samples since it was told.
+    /// Samples since the last update.
     age: usize,
     volumes: Volumes,
     squeaks: [Squeak; 2],
@@ -29,7 +29,7 @@ pub struct Synth {
     voices: Voices,
     thuds: Thuds,
     noise: Noise,
-    /// Volume of each bus, by [`Bus`].
+    /// Volume of each [`Bus`].
     gains: [Smooth; BUSES],
     master: Smooth,
     room: Room,
@@ -39,7 +39,7 @@ pub struct Synth {
 }
 
 impl Synth {
-    /// One for a device that takes `rate` samples a second, about 48,000; within 8,000 to 400,000.
+    /// Creates a synthesiser with a sample rate [Hz], about 48,000; clamped to 8,000 to 400,000.
     pub fn new(rate: u32) -> Self {
         let rate = rate.clamp(8_000, 400_000) as f32;
         let mut synth = Self {
@@ -68,20 +68,20 @@ impl Synth {
         synth
     }
 
-    /// Tells what lasts.
+    /// Sets the continuous sounds.
     pub fn hear(&mut self, soundscape: &Soundscape) {
         self.soundscape = soundscape.cleaned();
         self.age = 0;
         self.aim();
     }
 
-    /// Tells how loud it is to be.
+    /// Sets the volumes.
     pub fn set_volumes(&mut self, volumes: &Volumes) {
         self.volumes = *volumes;
         self.aim();
     }
 
-    /// Begins what sounds once.
+    /// Starts a momentary sound.
     pub fn play(&mut self, cue: Cue) {
         let cue = cue.cleaned();
         if let Cue::Thud { impulse, .. } = cue
@@ -92,7 +92,7 @@ impl Synth {
         recipe::start(cue, &mut self.noise, &mut self.voices);
     }
 
-    /// Fills `out` with left and right in turns. Allocates nothing and takes no lock.
+    /// Fills `out` with interleaved left and right samples. Allocates nothing and takes no lock.
     pub fn render(&mut self, out: &mut [f32]) {
         for chunk in out.chunks_mut(2 * CHUNK) {
             let count = chunk.len().div_ceil(2);
@@ -104,12 +104,12 @@ impl Synth {
         }
     }
 
-    /// How many short sounds are under way; never more than a bound.
+    /// Returns the number of active grains, which is bounded.
     pub fn voice_count(&self) -> usize {
         self.voices.count()
     }
 
-    /// Works out a chunk of every bus.
+    /// Renders a block of every bus.
     fn fill_buses(&mut self, count: usize) {
         self.age += count;
         if self.age as f32 > STALE * self.rate {
@@ -129,7 +129,7 @@ impl Synth {
         self.voices.add(&mut self.noise, &mut self.buses, count);
     }
 
-    /// Sample `place` of the chunk, as it is heard.
+    /// Mixes sample `place` of the block.
     fn mix(&mut self, place: usize) -> [f32; 2] {
         let (mut dry, mut into_room) = ([0.0; 2], [0.0; 2]);
         for ((bus, gain), into) in self.buses.iter().zip(&mut self.gains).zip(INTO_ROOM) {
@@ -145,7 +145,7 @@ impl Synth {
         self.limiter.next(self.floor.next(all, self.rate))
     }
 
-    /// Hands on to all parts what was told.
+    /// Passes soundscape and volumes on to all parts.
     fn aim(&mut self) {
         let Soundscape {
             presses,
@@ -160,7 +160,7 @@ impl Synth {
         self.wobble.hear(squash);
         self.chord.hear(hold);
         let volumes = &self.volumes;
-        // Ears tell ratios: half way down the slider is to sound half as loud.
+        // Squared, so that half of the slider sounds about half as loud.
         let loudness = |is_on, volume| {
             if is_on {
                 clean(volume, 0.0, 1.0).powi(2)
@@ -175,10 +175,10 @@ impl Synth {
     }
 }
 
-/// Which presses on a wall are impacts: those much harder than what was before.
+/// Detector of impacts: an impulse much larger than the recent ones.
 #[derive(Default)]
 struct Thuds {
-    /// Of late [N s].
+    /// Largest recent impulse, decaying [N s].
     usual: f32,
 }
 

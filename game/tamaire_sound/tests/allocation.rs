@@ -1,22 +1,22 @@
-//! The device's thread must never wait for memory: neither cues nor samples take any.
+//! The device thread must never allocate memory: neither cues nor rendering do.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use tamaire_sound::{Cue, Press, Route, Soundscape, Synth};
 
-/// Counts how often a thread takes memory: that of the test harness may do so meanwhile.
+/// Allocator that counts allocations per thread, since the test harness may allocate meanwhile.
 struct Counting;
 
 thread_local! {
     static TAKEN: Cell<usize> = const { Cell::new(0) };
 }
 
-// SAFETY: hands everything on to the system's allocator.
+// SAFETY: forwards everything to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // A thread that ends may take memory when this is gone.
+        // A thread may allocate while it ends, after the counter was destroyed.
         let _ = TAKEN.try_with(|taken| taken.set(taken.get() + 1));
-        // SAFETY: the caller keeps the same promises.
+        // SAFETY: the caller fulfils the same contract.
         unsafe { System.alloc(layout) }
     }
 
@@ -30,7 +30,7 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 #[test]
-fn playing_takes_no_memory() {
+fn playing_allocates_no_memory() {
     let mut synth = Synth::new(48_000);
     let mut samples = [0.0; 1600];
     let press = Press {

@@ -1,10 +1,10 @@
-//! What the synthesiser makes, measured.
+//! Measurements of rendered samples.
 
 use tamaire_sound::{Cue, Hush, Menu, Press, Route, Soundscape, Synth, Volumes};
 
 const RATE: u32 = 48_000;
 
-/// One of each cue, loud.
+/// Each kind of cue, loud.
 const CUES: [Cue; 9] = [
     Cue::Thud {
         impulse: 30.0,
@@ -35,7 +35,7 @@ fn pressed(force: f32, slip: f32) -> Soundscape {
     }
 }
 
-/// Renders tick by tick with a soundscape for each, and gives the left side.
+/// Renders with a soundscape per tick and returns the left channel.
 fn render(synth: &mut Synth, seconds: f32, soundscape: impl Fn(f32) -> Soundscape) -> Vec<f32> {
     let mut left = Vec::new();
     let mut tick = [0.0; 2 * RATE as usize / 60];
@@ -44,7 +44,7 @@ fn render(synth: &mut Synth, seconds: f32, soundscape: impl Fn(f32) -> Soundscap
         synth.render(&mut tick);
         assert!(
             tick.iter().all(|sample| sample.abs() <= 1.0),
-            "beyond full scale, or no number"
+            "beyond full scale, or not finite"
         );
         left.extend(tick.iter().step_by(2));
     }
@@ -59,21 +59,21 @@ fn loudness(samples: &[f32]) -> f32 {
     (samples.iter().map(|k| k * k).sum::<f32>() / samples.len() as f32).sqrt()
 }
 
-/// The mean frequency by power [Hz]: the power of the difference to that of the samples.
+/// Returns the power-weighted frequency [Hz], from the power of the differences and that of the samples.
 fn centroid(samples: &[f32]) -> f32 {
     let power: f32 = samples.iter().map(|k| k * k).sum();
     let difference: f32 = samples.windows(2).map(|k| (k[1] - k[0]).powi(2)).sum();
     (difference / power).sqrt() * RATE as f32 / std::f32::consts::TAU
 }
 
-/// The widest step from one sample to the next: a click has one, a loud sound far less.
+/// Returns the largest step between two samples: large for a click, far smaller for a loud sound.
 fn roughest(samples: &[f32]) -> f32 {
     let step = |k: &[f32]| (k[1] - k[0]).abs();
     samples.windows(2).map(step).fold(0.0, f32::max)
 }
 
 #[test]
-fn nothing_is_heard_when_nothing_happens() {
+fn synth_is_silent_without_sounds() {
     let mut synth = Synth::new(RATE);
     assert!(
         steady(&mut synth, 0.5, Soundscape::default())
@@ -83,7 +83,7 @@ fn nothing_is_heard_when_nothing_happens() {
 }
 
 #[test]
-fn after_everything_it_falls_silent() {
+fn synth_falls_silent_after_all_sounds() {
     let mut synth = Synth::new(RATE);
     for cue in CUES {
         synth.play(cue);
@@ -102,7 +102,7 @@ fn after_everything_it_falls_silent() {
 }
 
 #[test]
-fn a_firmer_press_is_louder_and_higher() {
+fn press_is_louder_and_higher_with_more_force() {
     let heard = [50.0, 200.0, 500.0, 1200.0].map(|force| {
         let samples = steady(&mut Synth::new(RATE), 1.5, pressed(force, 0.5));
         (loudness(&samples), centroid(&samples))
@@ -114,15 +114,15 @@ fn a_firmer_press_is_louder_and_higher() {
 }
 
 #[test]
-fn a_press_that_slips_is_louder_than_one_that_rests() {
+fn slipping_press_is_louder_than_a_resting_one() {
     let [rests, slips] = [0.0, 0.5].map(|slip| {
         loudness(&steady(&mut Synth::new(RATE), 1.5, pressed(400.0, slip))[RATE as usize / 2..])
     });
-    assert!(slips > 3.0 * rests, "{slips} after {rests}");
+    assert!(slips > 3.0 * rests, "slipping {slips}, resting {rests}");
 }
 
 #[test]
-fn more_is_louder() {
+fn cues_are_louder_with_larger_amounts() {
     let loud = |cue| {
         let mut synth = Synth::new(RATE);
         synth.play(cue);
@@ -141,7 +141,7 @@ fn more_is_louder() {
 }
 
 #[test]
-fn the_chord_rises_with_the_hold() {
+fn chord_rises_with_the_hold() {
     let at = |hold| {
         let samples = steady(
             &mut Synth::new(RATE),
@@ -161,7 +161,7 @@ fn the_chord_rises_with_the_hold() {
 }
 
 #[test]
-fn a_squash_wobbles_and_dies_away() {
+fn squash_causes_a_decaying_wobble() {
     let squash = |time| Soundscape {
         squash: if time < 0.1 { 0.0 } else { 0.4 },
         ..Soundscape::default()
@@ -170,11 +170,14 @@ fn a_squash_wobbles_and_dies_away() {
     let second = RATE as usize;
     assert!(loudness(&samples[second / 10..second / 2]) > 0.02);
     assert!(loudness(&samples[2 * second..]) < 1e-4);
-    assert!(centroid(&samples[..second / 2]) < 300.0, "low");
+    assert!(
+        centroid(&samples[..second / 2]) < 300.0,
+        "the pitch is too high"
+    );
 }
 
 #[test]
-fn changes_do_not_click() {
+fn soundscape_changes_do_not_click() {
     let states = [
         pressed(0.0, 0.0),
         pressed(1500.0, 1.0),
@@ -198,7 +201,7 @@ fn changes_do_not_click() {
     let usual = roughest(&steady(&mut Synth::new(RATE), 2.0, pressed(1500.0, 1.0)));
     for from in states {
         for to in states {
-            // At several moments: a tone that is cut off while it passes zero does not click.
+            // At several moments, since a tone cut off at a zero crossing does not click.
             let change = |time: f32| {
                 if (4.0 * time).fract() < 0.5 { from } else { to }
             };
@@ -209,12 +212,12 @@ fn changes_do_not_click() {
             );
         }
     }
-    // A sine of 1 kHz at half scale is at 0.065.
+    // Reference: a sine of 1 kHz at half scale has 0.065.
     assert!(usual < 0.1, "{usual}");
 }
 
 #[test]
-fn volumes_and_cut_off_voices_do_not_click() {
+fn volume_changes_and_cut_off_voices_do_not_click() {
     let mut synth = Synth::new(RATE);
     let mut samples = Vec::new();
     for tick in 0..60 {
@@ -223,20 +226,20 @@ fn volumes_and_cut_off_voices_do_not_click() {
             master,
             ..Volumes::default()
         });
-        // More than there are voices, so that sounding ones are cut off.
+        // More than the maximum number of voices, so that some are cut off.
         for _ in 0..100 {
             synth.play(Cue::Menu(Menu::Confirm));
         }
         samples.extend(steady(&mut synth, 1.0 / 60.0, Soundscape::default()));
     }
-    // High tones at full scale have steep slopes, but those do not change at once.
+    // High tones at full scale have steep slopes, but no sudden change of slope.
     let slopes: Vec<f32> = samples.windows(2).map(|k| k[1] - k[0]).collect();
     let found = roughest(&slopes);
     assert!(found < 0.1, "{found}");
 }
 
 #[test]
-fn a_cue_is_heard_within_a_millisecond_or_two() {
+fn cue_is_heard_within_64_frames_without_a_click() {
     for cue in CUES {
         let mut synth = Synth::new(RATE);
         synth.play(cue);
@@ -252,7 +255,7 @@ fn a_cue_is_heard_within_a_millisecond_or_two() {
 }
 
 #[test]
-fn ten_thousand_cues_are_bounded() {
+fn voice_count_is_bounded() {
     let mut synth = Synth::new(RATE);
     let mut most = 0;
     for _ in 0..10 {
@@ -266,7 +269,7 @@ fn ten_thousand_cues_are_bounded() {
 }
 
 #[test]
-fn numbers_that_are_none_do_no_harm() {
+fn non_finite_numbers_are_harmless() {
     let mut synth = Synth::new(0);
     let bad = [
         f32::NAN,
@@ -305,13 +308,13 @@ fn numbers_that_are_none_do_no_harm() {
     synth.set_volumes(&Volumes::default());
     steady(&mut synth, 3.0, Soundscape::default());
     let after = steady(&mut synth, 0.5, Soundscape::default());
-    assert!(after.iter().all(|k| *k == 0.0), "silent again");
+    assert!(after.iter().all(|k| *k == 0.0), "not silent");
     let after = steady(&mut synth, 0.5, pressed(400.0, 0.5));
-    assert!(loudness(&after) > 0.01, "and not for good");
+    assert!(loudness(&after) > 0.01, "silent after valid input");
 }
 
 #[test]
-fn a_press_on_the_left_is_louder_there() {
+fn press_on_the_left_is_louder_on_the_left() {
     let mut synth = Synth::new(RATE);
     let press = Press {
         force: 400.0,
@@ -338,7 +341,7 @@ fn a_press_on_the_left_is_louder_there() {
 }
 
 #[test]
-fn leaning_on_a_wall_thuds_once() {
+fn resting_contact_thuds_once() {
     let thuds = |impulse: fn(u32) -> f32| {
         let mut synth = Synth::new(RATE);
         let mut started = 0;
@@ -358,7 +361,7 @@ fn leaning_on_a_wall_thuds_once() {
 }
 
 #[test]
-fn volumes_and_hush_are_obeyed() {
+fn volumes_and_hush_mute_their_sounds() {
     let heard = |volumes: Volumes, hush| {
         let mut synth = Synth::new(RATE);
         synth.set_volumes(&volumes);
@@ -400,7 +403,7 @@ fn volumes_and_hush_are_obeyed() {
 }
 
 #[test]
-fn a_game_that_hangs_is_not_heard_for_ever() {
+fn sound_of_a_hanging_game_ends() {
     let mut synth = Synth::new(RATE);
     synth.hear(&pressed(600.0, 0.5));
     let mut samples = vec![0.0; 4 * RATE as usize];
@@ -410,7 +413,7 @@ fn a_game_that_hangs_is_not_heard_for_ever() {
 }
 
 #[test]
-fn the_same_calls_bring_the_same_samples() {
+fn equal_calls_give_equal_samples() {
     let run = || {
         let mut synth = Synth::new(44_100);
         CUES.iter().for_each(|cue| synth.play(*cue));

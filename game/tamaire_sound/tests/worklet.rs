@@ -1,23 +1,23 @@
-//! The worklet beside a synth; and the browser's audio thread must never wait for memory.
+//! Compares the worklet with a synthesiser, and checks that the audio thread never allocates memory.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use tamaire_sound::worklet::{MOST_FRAMES, Worklet};
 use tamaire_sound::{Cue, Menu, Message, Press, Soundscape, Synth};
 
-/// Counts how often a thread takes memory: that of the test harness may do so meanwhile.
+/// Allocator that counts allocations per thread, since the test harness may allocate meanwhile.
 struct Counting;
 
 thread_local! {
     static TAKEN: Cell<usize> = const { Cell::new(0) };
 }
 
-// SAFETY: hands everything on to the system's allocator.
+// SAFETY: forwards everything to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // A thread that ends may take memory when this is gone.
+        // A thread may allocate while it ends, after the counter was destroyed.
         let _ = TAKEN.try_with(|taken| taken.set(taken.get() + 1));
-        // SAFETY: the caller keeps the same promises.
+        // SAFETY: the caller fulfils the same contract.
         unsafe { System.alloc(layout) }
     }
 
@@ -54,7 +54,7 @@ fn loudest(samples: &[f32]) -> f32 {
 }
 
 #[test]
-fn it_plays_what_a_synth_plays() {
+fn worklet_plays_the_same_as_a_synth() {
     let mut worklet = Worklet::new(44_100);
     let mut synth = Synth::new(44_100);
     let mut message = Message::default();
@@ -72,7 +72,7 @@ fn it_plays_what_a_synth_plays() {
 }
 
 #[test]
-fn without_news_it_falls_silent() {
+fn worklet_falls_silent_without_messages() {
     let mut worklet = Worklet::new(48_000);
     let mut message = Message::default();
     let music = false;
@@ -92,7 +92,7 @@ fn without_news_it_falls_silent() {
 }
 
 #[test]
-fn lengths_that_are_none_do_no_harm() {
+fn invalid_lengths_and_rates_are_clamped() {
     let mut worklet = Worklet::new(0);
     worklet.message().fill(2);
     worklet.take(usize::MAX);
@@ -102,7 +102,7 @@ fn lengths_that_are_none_do_no_harm() {
 }
 
 #[test]
-fn neither_news_nor_samples_take_memory() {
+fn messages_and_rendering_allocate_no_memory() {
     let mut worklet = Worklet::new(48_000);
     let mut message = Message::default();
     for _ in 0..1000 {

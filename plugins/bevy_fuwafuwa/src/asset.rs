@@ -1,4 +1,4 @@
-//! Shapes from files: silhouettes from PNG for the plane, models of MagicaVoxel (`.vox`) for space.
+//! Shapes from files: PNG silhouettes in 2D, MagicaVoxel models (`.vox`) in 3D.
 //!
 //! ```no_run
 //! # use bevy_asset::AssetServer;
@@ -6,15 +6,15 @@
 //! # use bevy_fuwafuwa::{SoftBody2d, SoftBody3d};
 //! # let assets: &AssetServer = unimplemented!();
 //! let dice = SoftBody3d::asset(assets.load("dice.vox"));
-//! // Of other than the usual size:
+//! Other than the default voxel size:
 //! let small = |settings: &mut VoxelsSettings| settings.voxel_size = 0.01;
 //! let cat = SoftBody2d::asset(assets.load_builder().with_settings(small).load("cat.png"));
 //! ```
 //!
-//! A file may come from anywhere. Whatever its bytes are, the answer is a grid or an error that says where in the file
-//! what was expected; sizes are compared with their limits before memory is taken, [`MAX_FILE_BYTES`] at most. In a .vox
-//! the palette index of a voxel is the number of its material, and a body without
-//! [`crate::component::SoftColours`] has the colours of the file.
+//! Files are untrusted input. Every file gives either a grid or an error that names the byte position and the
+//! expected content. Sizes are checked against their limits before memory is allocated; a file has at most
+//! [`MAX_FILE_BYTES`]. In a `.vox` file the palette index of a voxel is its material number. A body without
+//! [`crate::component::SoftColours`] uses the colours of the file.
 
 use bevy_asset::io::Reader;
 use bevy_asset::{Asset, AssetLoader, AsyncReadExt, LoadContext};
@@ -25,23 +25,23 @@ pub use fuwafuwa_scenes::import::{ImportError, MAX_FILE_BYTES};
 use serde::{Deserialize, Serialize};
 use std::{fmt, io};
 
-/// The voxels in a file.
+/// Voxels loaded from a file.
 #[derive(Asset, Clone, Debug)]
 pub struct Voxels<D: Dim> {
-    /// Which are solid, and of which material.
+    /// Solid voxels and their materials.
     pub grid: VoxelGrid<D>,
-    /// The colours of the materials, number 1 first, as in [`crate::component::SoftColours`]; empty where the file says
-    /// nothing.
+    /// Colours of the materials, number 1 first, as in [`crate::component::SoftColours`]. Empty if the file
+    /// has none.
     pub colours: Vec<[f32; 3]>,
 }
 
-/// How a file becomes voxels.
+/// Settings for converting a file to voxels.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VoxelsSettings {
-    /// How wide a voxel is [m]; usually 1/32, so that what is 32 voxels across is a metre across.
+    /// Edge length of a voxel [m]. Default 1/32: a shape 32 voxels across is 1 m across.
     pub voxel_size: f32,
-    /// A picture with more pixels on its longer side is scaled down to so many voxels; usually 64. Each level of
-    /// detail costs: twice as many take four times as long. Models are taken as they are.
+    /// Maximum number of voxels along the longer side of a picture, default 64. Larger pictures are scaled
+    /// down. Doubling it makes simulation about four times as slow. Models are not scaled.
     pub most_across: usize,
 }
 
@@ -54,19 +54,19 @@ impl Default for VoxelsSettings {
     }
 }
 
-/// Why a file gives no shape.
+/// Error of loading voxels from a file.
 #[derive(Debug)]
 pub enum VoxelsError {
-    /// It cannot be read.
+    /// The file could not be read.
     Unreadable(io::Error),
-    /// What stands in it is no shape.
+    /// The contents are not a valid shape.
     Import(ImportError),
 }
 
 impl fmt::Display for VoxelsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Unreadable(error) => write!(f, "it cannot be read: {error}"),
+            Self::Unreadable(error) => write!(f, "cannot read the file: {error}"),
             Self::Import(error) => error.fmt(f),
         }
     }
@@ -86,12 +86,13 @@ impl From<ImportError> for VoxelsError {
     }
 }
 
-/// Reads PNG files as [`Voxels<Dim2>`]: what is drawn, or what is not transparent. Bevy's own loader still reads them as
-/// images: the type that is asked for decides.
+/// Reads PNG files as [`Voxels<Dim2>`]. Opaque pixels are solid if the picture has transparency, otherwise
+/// dark or strongly coloured pixels are. Bevy's own loader still reads PNG files as images: the requested
+/// asset type selects the loader.
 #[derive(Copy, Clone, Debug, Default, TypePath)]
 pub struct SilhouetteLoader;
 
-/// Reads files of MagicaVoxel as [`Voxels<Dim3>`]: the first model in them.
+/// Reads the first model of a MagicaVoxel file as [`Voxels<Dim3>`].
 #[derive(Copy, Clone, Debug, Default, TypePath)]
 pub struct ModelLoader;
 
@@ -146,7 +147,7 @@ impl AssetLoader for ModelLoader {
     }
 }
 
-/// The bytes of a file, and of one that is too long just enough to see that.
+/// Reads at most one byte more than the limit, which is enough to detect a file that is too long.
 async fn bytes_of(reader: &mut dyn Reader) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut beginning = AsyncReadExt::take(reader, MAX_FILE_BYTES + 1);
@@ -154,7 +155,7 @@ async fn bytes_of(reader: &mut dyn Reader) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Written out, since the engine's dimensions know nothing of Bevy.
+/// Written by hand because the engine's dimension types do not implement `TypePath`.
 impl<D: Dim> TypePath for Voxels<D> {
     fn type_path() -> &'static str {
         match D::N {

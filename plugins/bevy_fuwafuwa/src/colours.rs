@@ -1,14 +1,13 @@
-//! Which colour a soft body has.
+//! Colours of soft bodies.
 
 use bevy_ecs::component::Component;
 
-/// The colours of its materials, number 1 first, and of what was inside before it tore; red, green and blue as screens
-/// take them (sRGB), 0 to 1. They start over after the last. Counts when the body enters.
+/// Colours of a soft body: sRGB red, green and blue, 0 to 1. Read when the body enters the world.
 #[derive(Component, Clone, Debug, PartialEq)]
 pub struct SoftColours {
-    /// By material.
+    /// Colours by material, number 1 first. Material numbers beyond the end start again at the first colour.
     pub materials: Vec<[f32; 3]>,
-    /// Of what was inside, mixed half and half into that of its material.
+    /// Colour of fresh crack faces, mixed half and half with the colour of the material.
     pub fresh: [f32; 3],
 }
 

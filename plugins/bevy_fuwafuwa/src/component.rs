@@ -1,4 +1,4 @@
-//! What entities have.
+//! Components of soft and rigid bodies.
 
 use crate::asset::Voxels;
 pub use crate::colours::SoftColours;
@@ -13,8 +13,9 @@ use bevy_transform::components::Transform;
 use fuwafuwa::{BodyId, BuildError, MotionType, Layers, Material, RigidId, Shape, VoxelGrid};
 use std::marker::PhantomData;
 
-/// A soft body: the voxels that it is made from. It enters the world at the beginning of the next tick, where its
-/// `Transform` says, and gets [`SoftBodyId`] and a mesh. Inserted again it is made anew; removed or despawned it leaves.
+/// Soft body, made from voxels. It enters the world at the beginning of the next tick, at the pose of its
+/// `Transform`, and gets [`SoftBodyId`] and a mesh. Inserting the component again replaces the body; removing
+/// it or despawning the entity removes the body.
 #[derive(Component, Clone, Debug)]
 #[component(on_insert = soft_body_arrives::<D>, on_discard = soft_body_leaves::<D>)]
 #[require(Transform, SoftMaterials)]
@@ -22,103 +23,108 @@ pub struct SoftBody<D: Dimension> {
     pub(crate) source: Source<D>,
 }
 
-/// Where the voxels of a body come from.
+/// Source of the voxels of a body.
 #[derive(Clone, Debug)]
 pub(crate) enum Source<D: Dimension> {
     Grid(Result<VoxelGrid<D>, BuildError>),
     Asset(Handle<Voxels<D>>),
 }
 
-/// What a soft body is made of: material number 1 first; the last one serves all above. Counts when the body enters.
+/// Materials of a soft body, number 1 first. The last one is used for all higher numbers. Read when the body
+/// enters the world.
 #[derive(Component, Clone, Debug, PartialEq)]
 pub struct SoftMaterials(pub Vec<Material>);
 
-/// How fast a soft body moves as a whole, or something rigid. It has this velocity when it enters; after each tick this is
-/// what it has. What you change is added to a soft body in the next one, and what is free of the rigid things has it then;
-/// others it only tells.
+/// Velocity of a soft body as a whole, or of a rigid body. It is the initial velocity when the body enters
+/// the world and is updated after each tick. Changing it adds the difference to a soft body in the next tick
+/// and sets the velocity of a dynamic rigid body. For other rigid bodies it is read-only.
 #[derive(Component, Copy, Clone, Debug, Default, PartialEq)]
 pub struct Velocity {
-    /// Of its centre of mass [m/s].
+    /// Velocity of the centre of mass [m/s].
     pub linear: Vec3,
-    /// About its centre of mass [rad/s]; in the plane z alone counts.
+    /// Angular velocity about the centre of mass [rad/s]. In 2D only z is used.
     pub angular: Vec3,
 }
 
-/// An impulse for a soft body, or for something rigid that is free, given in the next tick; the component is removed then.
+/// Impulse applied to a soft body or a dynamic rigid body in the next tick, which removes the component.
 #[derive(Component, Copy, Clone, Debug, PartialEq)]
 pub struct ExternalImpulse {
-    /// [N s]
+    /// Impulse [N s].
     pub impulse: Vec3,
-    /// Where in the world [m].
+    /// Point of application, world space [m].
     pub at: Vec3,
-    /// All nodes of a soft body within this distance share it [m]; where there is none, the nearest one has it alone, which
-    /// tears most bodies.
+    /// Radius within which the nodes of a soft body share the impulse [m]. If no node is within it, the
+    /// nearest node gets the whole impulse, which tears most bodies.
     pub radius: f32,
 }
 
-/// How strongly gravity pulls on a soft body, in shares of the usual, −100 to 100.
+/// Gravity multiplier of a soft body, −100 to 100; 1 without this component.
 #[derive(Component, Copy, Clone, Debug, PartialEq)]
 pub struct GravityScale(pub f32);
 
-/// A soft body without a mesh: for a server, or for who draws it another way. Counts when the body enters.
+/// Marks a soft body without a mesh, for servers or custom rendering. Read when the body enters the world.
 #[derive(Component, Copy, Clone, Debug, Default)]
 pub struct WithoutMesh;
 
-/// Which body of the engine an entity is. See also [`crate::SoftWorld::entity_of_body`].
+/// Engine id of the soft body of an entity. See also [`crate::SoftWorld::entity_of_body`].
 #[derive(Component, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct SoftBodyId(pub BodyId);
 
-/// Something rigid: an obstacle that stands, a hand that moves, or what is free to fall. The shape is as it would be at the
-/// origin, best with its middle there; its `Transform` moves, turns and scales it when it enters. From then on its size
-/// stays, as does all that is said here: insert it again for another one.
+/// Rigid body: fixed, kinematic, coupled or dynamic. The shape is given in the frame of the entity, best
+/// centred on the origin; the `Transform` scales, rotates and translates it when it enters the world. After
+/// that the size and all fields stay fixed: insert the component again to change them.
 ///
-/// What moves it is [`MotionType`]:
-/// - Nothing moves what is [`MotionType::Fixed`].
-/// - [`MotionType::Kinematic`] is where its `Transform` says at the end of the next tick, and moves and turns there evenly.
-/// - [`MotionType::Coupled`] is pulled to its [`Goal`] without turning; its `Transform` says how far it got.
-/// - [`MotionType::Dynamic`] falls, turns, and is pushed by what it touches; its `Transform` follows. See [`RigidBody::free`].
+/// [`Drive`] selects the type of motion:
+/// - [`Drive::Fixed`] bodies do not move.
+/// - [`Drive::Kinematic`] bodies reach the pose of their `Transform` at the end of the next tick, at constant
+///   velocity.
+/// - [`Drive::Coupled`] bodies are pulled to their [`Goal`] without rotating; `Transform` is the position
+///   reached.
+/// - [`Drive::Free`] bodies are dynamic: they fall, rotate and are pushed by contacts; `Transform` follows
+///   them. See [`RigidBody::free`].
 ///
-/// All but what is kinematic are put at once where you write that they are, with the velocity that they have.
+/// Writing the `Transform` of a body that is not kinematic teleports it and keeps its velocity.
 #[derive(Component, Clone, Debug, PartialEq)]
 #[component(on_insert = rigid_body_arrives::<D>, on_discard = rigid_body_leaves::<D>)]
 #[require(Transform)]
 pub struct RigidBody<D: Dimension> {
-    /// As it would be at the origin.
+    /// Shape in the frame of the entity.
     pub shape: Shape,
-    /// Coulomb friction with what it touches; about 0.2.
+    /// Coefficient of Coulomb friction; about 0.2.
     pub friction: f32,
-    /// Share of its speed with which it bounces off what is rigid, 0 to 1, where one of both is free; the larger one
-    /// counts.
+    /// Coefficient of restitution, 0 to 1, between two rigid bodies of which at least one is dynamic. The
+    /// larger of the two values is used.
     pub restitution: f32,
-    /// Whether it touches nobody, and tells who comes and goes: [`Entered`](crate::message::Entered).
+    /// Whether the body is a sensor: it has no contact response and sends
+    /// [`Entered`](crate::message::Entered) and [`Left`](crate::message::Left).
     pub is_sensor: bool,
-    /// Who touches it.
+    /// Collision layers.
     pub layers: Layers,
-    /// What moves it.
+    /// Type of motion.
     pub drive: MotionType,
     dim: PhantomData<D>,
 }
 
-/// Where a hand that is [`MotionType::Coupled`] is pulled [m].
+/// Target position of a [`Drive::Coupled`] rigid body, world space [m].
 #[derive(Component, Copy, Clone, Debug, PartialEq)]
 pub struct Goal(pub Vec3);
 
-/// Which rigid thing of the engine an entity is. See also [`crate::SoftWorld::entity_of_rigid`].
+/// Engine id of the rigid body of an entity. See also [`crate::SoftWorld::entity_of_rigid`].
 #[derive(Component, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct RigidBodyId(pub RigidId);
 
 impl<D: Dimension> SoftBody<D> {
-    /// A disc or ball, `across` voxels wide and `diameter` metres large.
+    /// Disc (2D) or ball (3D), `across` voxels wide, with a diameter in metres.
     pub fn ball(across: usize, diameter: f32) -> Self {
         VoxelGrid::ball(across, diameter).into()
     }
 
-    /// A square or cube, `across` voxels and `width` metres wide.
+    /// Square (2D) or cube (3D), `across` voxels wide, with a width in metres.
     pub fn cube(across: usize, width: f32) -> Self {
         VoxelGrid::cube(across, width).into()
     }
 
-    /// Of a file, once it is loaded: see [`crate::asset`].
+    /// Soft body from a file; it enters the world once the file is loaded. See [`crate::asset`].
     pub fn asset(voxels: Handle<Voxels<D>>) -> Self {
         Self {
             source: Source::Asset(voxels),
@@ -132,7 +138,7 @@ impl<D: Dimension> From<VoxelGrid<D>> for SoftBody<D> {
     }
 }
 
-/// What could not be built is told when it enters, like all else that is wrong with it.
+/// Keeps a failed grid; the error is reported when the body enters the world.
 impl<D: Dimension> From<Result<VoxelGrid<D>, BuildError>> for SoftBody<D> {
     fn from(grid: Result<VoxelGrid<D>, BuildError>) -> Self {
         Self {
@@ -154,7 +160,7 @@ impl From<Material> for SoftMaterials {
 }
 
 impl<D: Dimension> RigidBody<D> {
-    /// An obstacle of a shape, of friction 0.2.
+    /// Fixed rigid body with friction 0.2.
     pub fn fixed(shape: Shape) -> Self {
         Self {
             shape,
@@ -167,36 +173,36 @@ impl<D: Dimension> RigidBody<D> {
         }
     }
 
-    /// All below y = 0, of friction 0.5.
+    /// Fixed half-space below y = 0 with friction 0.5.
     pub fn floor() -> Self {
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
         Self::fixed(floor).with_friction(0.5)
     }
 
-    /// A disc or ball of a radius [m] that is where its `Transform` says.
+    /// Kinematic disc (2D) or ball (3D) of a radius [m], moved by its `Transform`.
     pub fn hand(radius: f32) -> Self {
         let centre = [0.0; 3];
         Self::fixed(Shape::Ball { centre, radius }).with_drive(MotionType::Kinematic)
     }
 
-    /// What falls and turns, of a mass [kg] that is spread evenly over a ball, box or bar, and of friction 0.5. It turns
-    /// about the middle of its shape, wherever that is.
+    /// Dynamic rigid body with friction 0.5. The shape must be a ball, box or capsule; the mass [kg] is
+    /// spread evenly over it. The body rotates about the middle of its shape, even if that is not the origin.
     pub fn free(shape: Shape, mass: f32) -> Self {
         let drive = MotionType::Dynamic { mass };
         Self::fixed(shape).with_friction(0.5).with_drive(drive)
     }
 
-    /// The same with another drive.
+    /// Sets the type of motion.
     pub fn with_drive(self, drive: MotionType) -> Self {
         Self { drive, ..self }
     }
 
-    /// The same with another friction.
+    /// Sets the friction.
     pub fn with_friction(self, friction: f32) -> Self {
         Self { friction, ..self }
     }
 
-    /// The same as a sensor.
+    /// Makes it a sensor.
     pub fn as_sensor(self) -> Self {
         Self {
             is_sensor: true,
@@ -204,12 +210,12 @@ impl<D: Dimension> RigidBody<D> {
         }
     }
 
-    /// The same in other layers.
+    /// Sets the collision layers.
     pub fn with_layers(self, layers: Layers) -> Self {
         Self { layers, ..self }
     }
 
-    /// The same with another restitution.
+    /// Sets the restitution.
     pub fn with_restitution(self, restitution: f32) -> Self {
         Self {
             restitution,

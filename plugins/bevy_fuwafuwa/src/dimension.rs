@@ -1,4 +1,4 @@
-//! What differs between the plane and space on the side of Bevy.
+//! Differences between 2D and 3D in the plugin.
 
 use crate::asset::{ModelLoader, SilhouetteLoader};
 use crate::surface::Surface;
@@ -10,21 +10,21 @@ use bevy_ecs::world::EntityWorldMut;
 use bevy_mesh::{Mesh, Mesh2d, Mesh3d};
 use fuwafuwa::{Dim, Dim2, Dim3};
 
-/// The plane or space: [`Dim2`] or [`Dim3`], and no other.
+/// Number of dimensions: [`Dim2`] or [`Dim3`].
 pub trait Dimension: Dim {
     #[doc(hidden)]
     #[allow(private_bounds)]
     type Surface: Surface<Self>;
 
-    /// Gives an entity a mesh to be drawn.
+    /// Adds the mesh component to an entity.
     #[doc(hidden)]
     fn show(entity: &mut EntityWorldMut<'_>, mesh: Handle<Mesh>);
 
-    /// Takes that away.
+    /// Removes the mesh component.
     #[doc(hidden)]
     fn hide(entity: &mut EntityWorldMut<'_>);
 
-    /// Reads files as shapes.
+    /// Registers the asset loader of the dimension.
     #[doc(hidden)]
     fn read_files(app: &mut App);
 }

@@ -1,4 +1,4 @@
-//! The mesh of a body, brought up to date in place.
+//! Mesh of a body, updated in place.
 
 use crate::colours::SoftColours;
 use crate::dimension::Dimension;
@@ -10,13 +10,13 @@ use bevy_math::Vec3;
 use bevy_mesh::{Indices, Mesh, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues};
 use fuwafuwa::Body;
 
-/// The mesh of a body, and what it is drawn from.
+/// Mesh of a body and the surface from which it is written.
 #[derive(Component)]
 pub struct Drawn<D: Dimension> {
     mesh: Handle<Mesh>,
     colours: SoftColours,
     surface: D::Surface,
-    /// From where it was written last, once it was while all of it slept.
+    /// Pose at the last write if the whole body slept then.
     asleep_at: Option<Pose>,
 }
 
@@ -44,7 +44,8 @@ impl<D: Dimension> Drawn<D> {
         self.mesh.clone()
     }
 
-    /// Writes the mesh of a body that is seen from a pose; nothing where nothing can have changed.
+    /// Writes the mesh of a body relative to a pose. Does nothing if the body sleeps and the pose is
+    /// unchanged.
     pub fn follow(&mut self, body: &Body<D>, pose: &Pose, meshes: &mut Assets<Mesh>) {
         let is_asleep = body.pieces().list.iter().all(|piece| piece.asleep);
         if is_asleep && self.asleep_at == Some(*pose) {
@@ -52,7 +53,7 @@ impl<D: Dimension> Drawn<D> {
         }
         self.asleep_at = is_asleep.then_some(*pose);
         let Some(mut mesh) = meshes.get_mut(&self.mesh) else {
-            // Somebody took it away.
+            // The mesh asset was removed.
             return;
         };
         let is_new = self.surface.follow(body, &self.colours);
@@ -63,7 +64,7 @@ impl<D: Dimension> Drawn<D> {
     }
 
     fn write_places(&self, mesh: &mut Mesh, pose: &Pose) {
-        // A place that nobody has is in the midst of the body, so that bounds are no wider for it.
+        // Unused vertices lie at the origin, inside the body, so that they do not enlarge the bounds.
         let local = |vertex: Option<Vertex>| vertex.map_or(Vec3::ZERO, |own| pose.local(own.at));
         let back = pose.rotation.inverse();
         let normal = |vertex: Option<Vertex>| vertex.map_or(Vec3::Z, |own| back * own.normal);
@@ -96,7 +97,7 @@ fn overwrite(
     }
 }
 
-/// Other contents in the same memory, as long as that is enough.
+/// Replaces the contents of a vector and reuses its memory.
 fn refill<T>(known: &mut Vec<T>, values: impl Iterator<Item = T>) {
     known.clear();
     known.extend(values);

@@ -1,4 +1,4 @@
-//! Who enters the world and who leaves it, in the order in which that was asked for.
+//! Adds entities to the world and removes them, in the order of the requests.
 
 use crate::asset::Voxels;
 use crate::component::{
@@ -22,16 +22,16 @@ use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
 use fuwafuwa::{Body, MotionType, Material, RigidBody, Shape, VoxelGrid};
 
-/// What becomes of somebody who wants to enter.
+/// Outcome of a request to enter the world.
 enum Entry {
     Entered,
-    /// Its asset is not there yet.
+    /// The asset is still loading.
     Waits,
-    /// It is no more.
+    /// The component or the entity no longer exists, or the body was removed.
     Left,
 }
 
-/// Lets in and out all who asked for it since the last tick.
+/// Handles all requests to enter or leave since the last tick.
 pub fn enter_and_leave<D: Dimension>(world: &mut World) {
     let Some(mut queue) = world.get_resource_mut::<Queue<D>>() else {
         return;
@@ -43,7 +43,7 @@ pub fn enter_and_leave<D: Dimension>(world: &mut World) {
             Request::AddBody => add_body::<D>(world, entity),
             Request::AddRigid => add_rigid::<D>(world, entity),
             Request::RemoveBody => {
-                // Who leaves before its shape is there waits no longer.
+                // An entity that leaves before its asset is loaded stops waiting.
                 waiting.retain(|request| *request != (entity, Request::AddBody));
                 remove_body::<D>(world, entity)
             }
@@ -101,7 +101,7 @@ fn add_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Pr
         outcome = outcome.and_then(|()| engine.set_gravity_scale(id, scale));
     }
     if let Err(refused) = outcome {
-        // It entered in this very moment: nothing leant on it, and nobody saw it.
+        // The body was added a moment ago, so nothing is in contact with it and no message refers to it.
         soft_world.remove_body(entity);
         return Err(refused.into());
     }
@@ -115,7 +115,7 @@ fn add_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Pr
     Ok(Entry::Entered)
 }
 
-/// What the voxels of a grid are made of; the last material serves all above.
+/// Returns the materials of a grid; the last one is repeated for all higher numbers.
 fn materials_of<D: Dimension>(world: &World, entity: Entity, grid: &VoxelGrid<D>) -> Vec<Material> {
     let materials = world.get::<SoftMaterials>(entity).cloned();
     let SoftMaterials(mut materials) = materials.unwrap_or_default();
@@ -127,7 +127,7 @@ fn materials_of<D: Dimension>(world: &World, entity: Entity, grid: &VoxelGrid<D>
     materials
 }
 
-/// The voxels of an asset, if it is there already.
+/// Returns the voxels of an asset if it is loaded.
 fn find_voxels<D: Dimension>(
     world: &World,
     handle: &Handle<Voxels<D>>,
@@ -141,12 +141,12 @@ fn find_voxels<D: Dimension>(
     let server = world.get_resource::<AssetServer>();
     match server.and_then(|server| server.get_load_state(handle)) {
         Some(LoadState::Failed(error)) => Err(Problem::Asset(error.to_string())),
-        Some(LoadState::NotLoaded) | None => Err(Problem::Asset("nobody loads it".into())),
+        Some(LoadState::NotLoaded) | None => Err(Problem::Asset("asset is not loading".into())),
         Some(LoadState::Loading | LoadState::Loaded) => Ok(None),
     }
 }
 
-/// Gives a body that entered a mesh, where meshes are drawn at all: the one that it has, when it was made anew.
+/// Gives a new body a mesh if the app has meshes. A body that replaces another reuses its mesh.
 fn show<D: Dimension>(world: &mut World, entity: Entity, of_file: Vec<[f32; 3]>) {
     let is_shown = world.get::<WithoutMesh>(entity).is_none();
     let mut usual = SoftColours::default();
@@ -205,21 +205,22 @@ fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, P
     Ok(Entry::Entered)
 }
 
-/// What the engine has at the origin of something rigid: the middle of what is free, about which it turns.
+/// Returns the point of the shape that becomes the origin in the engine: the middle of a dynamic body, about
+/// which it rotates.
 fn middle_of(form: &Shape, drive: MotionType) -> Vec3 {
     let [low, high] = form.bounds().map(Vec3::from);
     let middle = 0.5 * (low + high);
     match drive {
-        // What has no end has no middle, and is refused for that.
+        // An unbounded shape has no middle; the engine rejects it.
         MotionType::Dynamic { .. } if middle.is_finite() => middle,
         _ => Vec3::ZERO,
     }
 }
 
 fn remove_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Problem> {
-    // One that was taken out of the engine by hand is gone already.
+    // Ignores the error if the body was already removed through the engine.
     let _ = world.resource_mut::<SoftWorld<D>>().remove_body(entity);
-    // It may live on, and may have got a new body since.
+    // The entity may still exist and may have a new body.
     if let Ok(mut entity) = world.get_entity_mut(entity) {
         entity.remove::<(SoftBodyId, Followed)>();
         if !entity.contains::<SoftBody<D>>() {
@@ -238,13 +239,13 @@ fn remove_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry
     Ok(Entry::Left)
 }
 
-/// Where an entity that is about to enter is to be put.
+/// Returns the transform of an entity that is about to enter.
 fn transform_of(world: &World, entity: Entity) -> Result<Transform, Problem> {
     if world.get::<SoftBodyId>(entity).is_some() || world.get::<RigidBodyId>(entity).is_some() {
         return Err(Problem::Twice);
     }
     if world.get::<ChildOf>(entity).is_some() {
-        return Err(Problem::Pose("be that of an entity without a parent"));
+        return Err(Problem::Pose("belong to an entity without a parent"));
     }
     Ok(world.get::<Transform>(entity).copied().unwrap_or_default())
 }

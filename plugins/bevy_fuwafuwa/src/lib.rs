@@ -1,4 +1,4 @@
-//! Soft bodies for Bevy that squash, tear and crumble: [fuwafuwa] as a plugin.
+//! Soft bodies for Bevy that squash, tear and crumble: a plugin for the engine [fuwafuwa].
 //!
 //! ```
 //! use bevy_app::App;
@@ -6,8 +6,8 @@
 //! use bevy_transform::components::Transform;
 //!
 //! let mut app = App::new();
-//! // In a program with a window: DefaultPlugins first, FixedPostUpdate instead of Update, which is where it runs
-//! // unless told otherwise, and `Time::<Fixed>::from_hz(60.0)`.
+//! In a program with a window: add DefaultPlugins first, leave out `in_schedule` (the default is
+//! FixedPostUpdate), and insert `Time::<Fixed>::from_hz(60.0)`.
 //! app.add_plugins(FuwafuwaPlugin3d::default().in_schedule(bevy_app::Update));
 //! app.world_mut().spawn(RigidBody3d::floor());
 //! let ball = SoftBody3d::ball(12, 1.0);
@@ -17,45 +17,53 @@
 //! assert!(height < 2.0, "it falls");
 //! ```
 //!
-//! # The way through
-//! [`component`] is what entities have → [`FuwafuwaPlugin`] what makes them move → [`SoftWorld`] the engine itself, for all
-//! that has no component → [`message`] what happened → [`SoftQueries`] what is where → [`asset`] shapes from files.
-//! Behind them: `queue` who comes and goes → `enter` lets them → `push` and `steer` do what was asked
-//! of them → `step` → `write` tells
-//! them where they are; `surface` is a body as vertices, `drawn` the mesh that is written from them, `pose` what a
-//! `Transform` can say of something soft.
+//! # Modules
+//! - [`component`]: components of entities.
+//! - [`FuwafuwaPlugin`]: the plugin.
+//! - [`SoftWorld`]: the engine, for everything without a component.
+//! - [`message`]: events of a tick.
+//! - [`SoftQueries`]: ray casts, nearest points, overlaps.
+//! - [`asset`]: shapes from files.
+//!
+//! Internal modules, in the order of a tick: `queue` collects requests to enter and leave, `enter` handles
+//! them, `push` and `steer` apply changed components, `step` runs the tick, `write` updates the components.
+//! `surface` turns a body into vertices, `drawn` writes them into a mesh, and `pose` converts between a
+//! `Transform` and a soft body.
 //!
 //! # Time
-//! A run of the schedule is a tick of the engine, 1/60 s whatever the clock says. It runs in `FixedPostUpdate`, of which
-//! Bevy has 64 in a second unless told otherwise: `insert_resource(Time::<Fixed>::from_hz(60.0))` makes a second a second.
-//! What you do in `FixedUpdate` counts in the same tick. [`SoftWorld::pause`] stops it.
+//! Each run of the schedule is one tick of the engine, by default 1/60 s, independent of the clock. The
+//! default schedule is `FixedPostUpdate`, which Bevy runs at 64 Hz;
+//! `insert_resource(Time::<Fixed>::from_hz(60.0))` makes the simulation run in real time. Changes made in
+//! `FixedUpdate` take effect in the same tick. [`SoftWorld::pause`] stops the simulation.
 //!
 //! # Coordinates
-//! Metres, y up. The origin of a soft body is the middle of its voxel grid. Its `Transform` says how it is put into the
-//! world: turned, moved, and scaled by the same factor on all axes. From then on it follows the largest piece, as if that
-//! were rigid; what you write into it moves and turns the body at once, and leaves its velocity. Bodies have no parents;
-//! they may have children, which go with them, and then want `Visibility` from the start. What is rigid is the same, but
-//! has no mesh of its own: give it one. In the plane only turns about z count, and z is yours.
+//! Metres, y up. The origin of a soft body is the middle of its voxel grid. Its `Transform` gives the initial
+//! rotation, translation and uniform scale. After that the `Transform` follows the largest piece as if that
+//! piece were rigid. Writing to it moves and rotates the body at once and leaves its velocity unchanged.
+//! Bodies must not have parents. They may have children, which follow them and need `Visibility` from the
+//! start. Rigid bodies work the same way, but get no mesh: add your own. In 2D only rotation about z is used,
+//! and the z coordinate is never changed by the plugin.
 //!
 //! # Meshes
-//! A soft body gets one `Mesh`, as `Mesh3d` or `Mesh2d`; the material is yours, and colours of vertices tell what it is
-//! made of. The mesh is made once. After that each tick writes positions and normals over the old ones, in the same
-//! buffers; what was released is asked of [`fuwafuwa::Body::changes_since`], and only the triangles at those elements are
-//! taken down and put up, at the places that became free. Indices and colours are written only in such ticks, and nothing
-//! at all while a body sleeps. `Assets<Mesh>` says `Modified` of it, no more than once a tick.
+//! A soft body gets one `Mesh`, as `Mesh3d` or `Mesh2d`. Add your own material; vertex colours show the voxel
+//! materials. The mesh is created once. After that each tick overwrites positions and normals in the same
+//! buffers. Split nodes come from [`fuwafuwa::Body::changes_since`]; only the triangles of the affected
+//! elements are removed and added, in the free slots. Indices and colours are written only in such ticks, and
+//! nothing is written while a body sleeps. `Assets<Mesh>` sends `Modified` at most once a tick.
 //!
-//! # Same input, same bits
-//! Bodies and rigid things enter the world in the order in which their components were inserted, and leave it in the order
-//! in which they were removed or despawned, at the beginning of the next tick. The same commands give the same
-//! [`fuwafuwa::World::hash`] as the same calls of the engine. Bodies whose shape is an asset enter when it is there: wait
-//! for it where bits matter.
+//! # Determinism
+//! Soft and rigid bodies enter the world in the order in which their components were inserted. They leave in
+//! the order in which they were removed or despawned. Both take effect at the beginning of the next tick. The
+//! same commands give the same [`fuwafuwa::World::hash`] as the same calls of the engine. Bodies with an
+//! asset as shape enter once it is loaded: wait for it where determinism matters.
 //!
-//! # What cannot be
-//! A body that cannot be made does not enter, and nothing else minds: its entity gets [`Rejected`], and
-//! [`message::Rejection`] says why. The same message tells of what was asked and not done.
+//! # Errors
+//! A body that cannot be made does not enter the world; everything else continues. Its entity gets
+//! [`Rejected`], and [`message::Rejection`] gives the reason. The same message reports requests that could
+//! not be carried out.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![allow(rustdoc::broken_intra_doc_links)] // units are given in brackets: [m]
 
 pub mod asset;
 mod colours;
@@ -87,20 +95,20 @@ pub use fuwafuwa;
 
 use fuwafuwa::{Dim2, Dim3};
 
-/// The plugin for the plane.
+/// Plugin for 2D.
 pub type FuwafuwaPlugin2d = FuwafuwaPlugin<Dim2>;
-/// The plugin for space.
+/// Plugin for 3D.
 pub type FuwafuwaPlugin3d = FuwafuwaPlugin<Dim3>;
-/// A soft body in the plane.
+/// Soft body in 2D.
 pub type SoftBody2d = SoftBody<Dim2>;
-/// A soft body in space.
+/// Soft body in 3D.
 pub type SoftBody3d = SoftBody<Dim3>;
-/// Something rigid in the plane.
+/// Rigid body in 2D.
 pub type RigidBody2d = RigidBody<Dim2>;
-/// Something rigid in space.
+/// Rigid body in 3D.
 pub type RigidBody3d = RigidBody<Dim3>;
 
-/// What most programs need.
+/// The items that most programs need.
 pub mod prelude {
     pub use crate::component::{
         ExternalImpulse, Goal, GravityScale, RigidBody, SoftBody, SoftColours, SoftMaterials,

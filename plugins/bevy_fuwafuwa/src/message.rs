@@ -1,7 +1,7 @@
-//! What happened in a tick, with the entities it happened to.
+//! Events of a tick, with the entities involved.
 //!
-//! They are Bevy's buffered messages, for a `MessageReader`. Bodies that have no entity, because they were put into the
-//! engine by hand, send none; the engine's own events are `SoftWorld::engine().events()`.
+//! These are Bevy's buffered messages, read with a `MessageReader`. Bodies without an entity, which were
+//! added directly to the engine, send none; `SoftWorld::engine().events()` has the events of all bodies.
 
 use crate::problem::Problem;
 use bevy_ecs::entity::Entity;
@@ -9,155 +9,155 @@ use bevy_ecs::message::Message;
 use bevy_math::Vec3;
 use fuwafuwa::{JointId, KnifeId, PieceId};
 
-/// Voxels stopped sharing a node: a crack went on.
+/// A node was split: a crack grew.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
 pub struct Torn {
     /// The soft body.
     pub body: Entity,
-    /// Where in the world [m].
+    /// Position, world space [m].
     pub at: Vec3,
-    /// Elastic energy set free [J]; 0 where it was cut on purpose.
+    /// Released elastic energy [J]; 0 if the split was an explicit cut.
     pub energy: f32,
 }
 
-/// A piece came off.
+/// A piece was detached.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Parted {
     /// The soft body.
     pub body: Entity,
-    /// Number of the new piece.
+    /// Id of the new piece.
     pub piece: PieceId,
 }
 
-/// Something soft pressed on something in the tick, or something rigid that is free on something rigid.
+/// Contact force during the tick, of a soft body on another body, or of a dynamic rigid body on a rigid body.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
 pub struct Touched {
-    /// The soft body, or what is free.
+    /// The soft body or dynamic rigid body.
     pub body: Entity,
-    /// Number of its piece; what is rigid has none.
+    /// Piece of `body`; `None` for a rigid body.
     pub piece: Option<PieceId>,
-    /// What it pressed on: something rigid, a soft body, or itself; none where that has no entity.
+    /// The other body: rigid, soft, or `body` itself. `None` if it has no entity.
     pub with: Option<Entity>,
-    /// Number of the piece that it pressed on, of a soft body.
+    /// Piece of `with` if it is a soft body.
     pub with_piece: Option<PieceId>,
-    /// Where in the world, at the strongest contact [m].
+    /// Position of the strongest contact, world space [m].
     pub at: Vec3,
-    /// Which way it got away from that there, of length 1.
+    /// Unit normal at the strongest contact; points away from `with`.
     pub normal: Vec3,
-    /// Along the normals, over the whole tick [N s].
+    /// Normal impulse, summed over the tick [N s].
     pub impulse: f32,
 }
 
-/// Two began to touch.
+/// Two bodies came into contact.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
 pub struct ContactBegan {
-    /// Who.
+    /// The two bodies.
     pub both: [Entity; 2],
-    /// Numbers of their pieces; what is rigid has none.
+    /// Their pieces; `None` for a rigid body.
     pub pieces: [Option<PieceId>; 2],
-    /// Where in the world, at the strongest contact [m].
+    /// Position of the strongest contact, world space [m].
     pub at: Vec3,
-    /// Which way the first got away from the second there, of length 1.
+    /// Unit normal at the strongest contact; points from the second body to the first.
     pub normal: Vec3,
-    /// How fast they approached each other [m/s].
+    /// Approach speed [m/s].
     pub speed: f32,
 }
 
-/// Two touch no more. What rests side by side still touches; of what was despawned nothing is told.
+/// A contact between two bodies ended. Resting contacts persist. Not sent if one of the bodies was despawned.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct ContactEnded {
-    /// Who.
+    /// The two bodies.
     pub both: [Entity; 2],
-    /// Numbers of their pieces; what is rigid has none.
+    /// Their pieces; `None` for a rigid body.
     pub pieces: [Option<PieceId>; 2],
 }
 
-/// Somebody came into a sensor.
+/// A body entered a sensor.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Entered {
     /// The sensor.
     pub sensor: Entity,
-    /// Who.
+    /// The body that entered.
     pub who: Entity,
-    /// Number of the piece; what is rigid has none.
+    /// Its piece; `None` for a rigid body.
     pub piece: Option<PieceId>,
 }
 
-/// Somebody left a sensor; of what was despawned nothing is told.
+/// A body left a sensor. Not sent if one of the two was despawned.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Left {
     /// The sensor.
     pub sensor: Entity,
-    /// Who.
+    /// The body that left.
     pub who: Entity,
-    /// Number of the piece; what is rigid has none.
+    /// Its piece; `None` for a rigid body.
     pub piece: Option<PieceId>,
 }
 
-/// A joint of the engine's world broke, or lost an end, and is gone.
+/// A joint of the engine broke or lost one of its bodies, and was removed.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct JointBroke {
-    /// Which one it was.
+    /// The removed joint.
     pub joint: JointId,
 }
 
-/// A knife of the engine's world went on through a soft body.
+/// A knife of the engine cut through a soft body.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
 pub struct Cut {
     /// The knife.
     pub knife: KnifeId,
     /// The soft body.
     pub body: Entity,
-    /// Where in the world [m].
+    /// Position, world space [m].
     pub at: Vec3,
-    /// How much it cut since it told of that last, of all bodies that it was in [m²].
+    /// Area cut since the previous message of this knife, summed over all bodies [m²].
     pub area: f32,
-    /// The work that it did in that time, in all of them [J].
+    /// Work done since the previous message of this knife, summed over all bodies [J].
     pub work: f32,
 }
 
-/// A piece, a soft body or something rigid was taken out of the engine's world by hand. It is told in the next tick, and the
-/// entity stays.
+/// A piece, a soft body or a rigid body was removed through the engine. Sent in the next tick; the entity
+/// stays.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Removed {
-    /// The soft body, or what is rigid.
+    /// The soft or rigid body.
     pub body: Entity,
-    /// Number of the piece; none when nothing is left.
+    /// The removed piece; `None` if the whole body was removed.
     pub piece: Option<PieceId>,
 }
 
-/// A piece came to rest, or something rigid that is free.
+/// A piece or a dynamic rigid body fell asleep.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct FellAsleep {
-    /// The soft body, or what is rigid.
+    /// The soft or rigid body.
     pub body: Entity,
-    /// Number of the piece; what is rigid has none.
+    /// The piece; `None` for a rigid body.
     pub piece: Option<PieceId>,
 }
 
-/// A resting piece was disturbed, or something rigid that is free.
+/// A sleeping piece or dynamic rigid body woke up.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Woke {
-    /// The soft body, or what is rigid.
+    /// The soft or rigid body.
     pub body: Entity,
-    /// Number of the piece; what is rigid has none.
+    /// The piece; `None` for a rigid body.
     pub piece: Option<PieceId>,
 }
 
-/// A piece went out of hand and was stopped for good.
+/// A piece became non-finite and was stopped permanently.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Quarantined {
     /// The soft body.
     pub body: Entity,
-    /// Number of the piece.
+    /// The piece.
     pub piece: PieceId,
 }
 
-/// Something was asked and not done; all else went on.
+/// A request could not be carried out and was ignored.
 #[derive(Message, Clone, Debug, PartialEq)]
 pub struct Rejection {
-    /// Who it was asked for; none when it was settings.
+    /// Entity of the request; `None` for settings.
     pub entity: Option<Entity>,
-    /// Why it was not done.
+    /// Reason.
     pub problem: Problem,
 }

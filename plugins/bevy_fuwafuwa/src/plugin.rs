@@ -1,4 +1,4 @@
-//! What makes soft bodies move.
+//! Plugin and system sets.
 
 use crate::asset::Voxels;
 use crate::component::SoftBody;
@@ -23,8 +23,8 @@ use bevy_mesh::Mesh;
 use fuwafuwa::Settings;
 use std::marker::PhantomData;
 
-/// Soft bodies in the plane or in space. Add it after `DefaultPlugins`: without an `AssetPlugin` before it there are no
-/// meshes and no files, for servers and tests.
+/// Plugin for soft bodies in 2D or 3D. Add it after `DefaultPlugins`. Without a preceding `AssetPlugin` there
+/// are no meshes and no files, which suits servers and tests.
 #[derive(Debug)]
 pub struct FuwafuwaPlugin<D: Dimension> {
     schedule: Interned<dyn ScheduleLabel>,
@@ -32,19 +32,19 @@ pub struct FuwafuwaPlugin<D: Dimension> {
     dim: PhantomData<D>,
 }
 
-/// What happens in a run of the schedule, one after the other.
+/// System sets of a run of the schedule, in this order.
 #[derive(SystemSet, Copy, Clone, Debug, PartialEq, Eq, Hash)]
 pub enum FuwafuwaSystems {
-    /// Entities enter and leave, and what was asked of them is done.
+    /// Adds and removes bodies and applies changed components.
     Prepare,
-    /// A tick passes, and messages tell what happened.
+    /// Runs a tick and sends messages.
     Step,
-    /// Transforms, velocities and meshes follow.
+    /// Updates transforms, velocities and meshes.
     Writeback,
 }
 
 impl<D: Dimension> Default for FuwafuwaPlugin<D> {
-    /// In `FixedPostUpdate`, with the engine's usual settings.
+    /// Runs in `FixedPostUpdate`, with the default settings of the engine.
     fn default() -> Self {
         Self {
             schedule: FixedPostUpdate.intern(),
@@ -55,19 +55,19 @@ impl<D: Dimension> Default for FuwafuwaPlugin<D> {
 }
 
 impl<D: Dimension> FuwafuwaPlugin<D> {
-    /// The same in another schedule; each run of it is a tick, as long as [`Settings::tick`] says: 1/60 s unless
-    /// told otherwise.
+    /// Runs the plugin in another schedule. Each run is one tick of length [`Settings::tick`], by default
+    /// 1/60 s.
     pub fn in_schedule(self, schedule: impl ScheduleLabel) -> Self {
         let schedule = schedule.intern();
         Self { schedule, ..self }
     }
 
-    /// The same with other settings; [`SoftSettings`] is where to change them later.
+    /// Sets the initial settings; change [`SoftSettings`] later.
     pub fn with_settings(self, settings: Settings) -> Self {
         Self { settings, ..self }
     }
 
-    /// The same with another gravity [m/s²].
+    /// Sets gravity [m/s²].
     pub fn with_gravity(self, gravity: Vec3) -> Self {
         let settings = Settings {
             gravity: gravity.into(),

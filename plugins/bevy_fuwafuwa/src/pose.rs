@@ -1,36 +1,36 @@
-//! Where a body is as a whole, which way round, and how fast: what a `Transform` can say of it.
+//! Position, rotation and velocity of a body as a whole, as a `Transform` expresses them.
 
 use crate::problem::Problem;
 use bevy_math::{Mat3, Quat, Vec3};
 use bevy_transform::components::Transform;
 use fuwafuwa::{Body, Dim, NodeId, Rotation, Shape, VoxelGrid};
 
-/// Rounds in which a rotation is found; from tick to tick one or two are enough.
+/// Maximum number of iterations for the rotation. From tick to tick one or two suffice.
 const ROUNDS: usize = 20;
-/// A rotation that differs by less [rad] is found.
+/// Convergence tolerance of the rotation [rad].
 const NEAR: f32 = 1e-6;
 
-/// Where the origin of a body is, and how it is turned and scaled.
+/// Position of the origin of a body, its rotation and scale.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Pose {
-    /// [m]
+    /// Translation [m].
     pub translation: Vec3,
     pub rotation: Quat,
     pub scale: f32,
 }
 
-/// What is found about a body as a whole.
+/// Pose and velocity of a body as a whole.
 #[derive(Copy, Clone, Debug)]
 pub struct Motion {
     pub pose: Pose,
-    /// Of the centre of mass [m/s].
+    /// Velocity of the centre of mass [m/s].
     pub linear: Vec3,
-    /// About it [rad/s].
+    /// Angular velocity about the centre of mass [rad/s].
     pub angular: Vec3,
 }
 
 impl Pose {
-    /// What a transform says, if a body can be put so.
+    /// Converts a transform, or returns the reason why a body cannot have it.
     pub fn of(transform: &Transform) -> Result<Self, Problem> {
         let Transform {
             translation,
@@ -64,12 +64,12 @@ impl Pose {
         }
     }
 
-    /// A place of the world [m], as seen from the body.
+    /// Converts a point from world space [m] to the frame of the body.
     pub fn local(&self, at: Vec3) -> Vec3 {
         self.rotation.inverse() * (at - self.translation) / self.scale
     }
 
-    /// Puts a new body of a grid that was scaled here: the middle of the grid is the origin.
+    /// Moves a new body of a scaled grid to this pose. The origin of the pose is the middle of the grid.
     pub fn place<D: Dim>(&self, body: Body<D>) -> Body<D> {
         let middle = middle(body.grid());
         body.moved((-middle).into())
@@ -77,7 +77,7 @@ impl Pose {
             .moved(self.translation.into())
     }
 
-    /// A shape that is scaled, but neither turned nor moved.
+    /// Scales a shape, without rotation or translation.
     pub fn form(&self, shape: Shape) -> Shape {
         let scaled = |vector: [f32; 3]| vector.map(|k| k * self.scale);
         match shape {
@@ -111,13 +111,14 @@ impl Pose {
     }
 }
 
-/// The rotation as the engine has it.
+/// Converts a rotation to the type of the engine.
 pub fn engine_rotation(rotation: Quat) -> Rotation {
     Rotation::from_quaternion(rotation.to_array())
 }
 
-/// Where a body is as a whole: the rigid motion from rest that is nearest to that of its largest piece, by mass; the
-/// rotation as its own, from the one before [Mueller 2016]. Its velocity is that of all of it.
+/// Returns pose and velocity of a body. The pose is the rigid motion from rest that fits the nodes of the
+/// largest piece best, weighted by mass. The rotation is found iteratively from the previous one [Mueller
+/// 2016]. The velocity is that of the whole body.
 pub fn motion_of<D: Dim>(body: &Body<D>, before: Pose) -> Motion {
     let (size, middle) = (body.grid().voxel_size(), middle(body.grid()));
     let nodes = || body.mesh().nodes();
@@ -126,7 +127,7 @@ pub fn motion_of<D: Dim>(body: &Body<D>, before: Pose) -> Motion {
     for (id, _) in nodes() {
         masses[pieces.of_node(id).index()] += body.node_state(id).2;
     }
-    // The first of the largest, so that equal halves do not take turns.
+    // The first of the largest pieces, so that equal halves do not alternate.
     let most = masses.iter().fold(0.0f32, |most, &mass| most.max(mass));
     let largest = masses.iter().position(|&mass| mass == most).unwrap_or(0);
 
@@ -161,7 +162,7 @@ pub fn motion_of<D: Dim>(body: &Body<D>, before: Pose) -> Motion {
     }
 }
 
-/// The middle of the box of a grid, from its low corner [m].
+/// Returns the middle of the grid, relative to its low corner [m].
 fn middle<D: Dim>(grid: &VoxelGrid<D>) -> Vec3 {
     let size = grid.size().map(|k| 0.5 * k as f32 * grid.voxel_size());
     match D::N {
@@ -170,7 +171,8 @@ fn middle<D: Dim>(grid: &VoxelGrid<D>) -> Vec3 {
     }
 }
 
-/// The rotation R that makes tr(Rᵀ A) greatest: turned by the torque of A's columns on R's until there is none.
+/// Returns the rotation R that maximises tr(Rᵀ A): rotates R by the torque of the columns of A on those of R
+/// until it vanishes.
 fn nearest_rotation(moment: Mat3, before: Quat) -> Quat {
     let mut rotation = before;
     for _ in 0..ROUNDS {
@@ -186,14 +188,14 @@ fn nearest_rotation(moment: Mat3, before: Quat) -> Quat {
         if !angle.is_finite() || angle < NEAR {
             break;
         }
-        // More than half a turn is no nearer.
+        // Limits the step to about a quarter turn, so that it does not overshoot.
         let by = Quat::from_axis_angle(turn / angle, angle.min(1.5));
         rotation = (by * rotation).normalize();
     }
     rotation
 }
 
-/// How fast all of a body moves and turns; not at all where it cannot be told.
+/// Returns the velocity and angular velocity of a whole body; zero where the result is not finite.
 fn velocity_of<D: Dim>(body: &Body<D>) -> (Vec3, Vec3) {
     let centre = Vec3::from(body.centre_of_mass());
     let (mut mass, mut linear, mut spin) = (0.0, Vec3::ZERO, Vec3::ZERO);

@@ -1,27 +1,28 @@
-//! Why something was not done.
+//! Reasons why a request failed.
 
 use bevy_ecs::component::Component;
 use fuwafuwa::{BodyError, BuildError, Refused};
 use std::fmt;
 
-/// Why something was not done.
+/// Reason why a request failed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Problem {
-    /// There is no such voxel grid.
+    /// The voxel grid is invalid.
     Grid(BuildError),
-    /// There is no such body.
+    /// The body is invalid.
     Body(BodyError),
-    /// The world does not take it.
+    /// The engine refused the operation.
     World(Refused),
-    /// The asset of its shape could not be loaded, or is gone.
+    /// The asset of the shape could not be loaded or was removed.
     Asset(String),
-    /// It cannot be put there: what is wrong with its `Transform`.
+    /// The `Transform` is invalid.
     Pose(&'static str),
-    /// Its entity is something else in a world already.
+    /// The entity is already another body.
     Twice,
 }
 
-/// Its entity is not in the world, and this is why. Insert the component anew when that is mended.
+/// Marks an entity that did not enter the world, with the reason. Insert the body component again after
+/// correcting the problem.
 #[derive(Component, Clone, Debug, PartialEq)]
 pub struct Rejected(pub Problem);
 
@@ -31,9 +32,9 @@ impl fmt::Display for Problem {
             Self::Grid(error) => error.fmt(f),
             Self::Body(error) => error.fmt(f),
             Self::World(error) => error.fmt(f),
-            Self::Asset(error) => write!(f, "its shape could not be loaded: {error}"),
-            Self::Pose(error) => write!(f, "its transform must {error}"),
-            Self::Twice => write!(f, "its entity is something soft or rigid already"),
+            Self::Asset(error) => write!(f, "cannot load the shape: {error}"),
+            Self::Pose(error) => write!(f, "invalid transform: it must {error}"),
+            Self::Twice => write!(f, "the entity already has a soft or rigid body"),
         }
     }
 }

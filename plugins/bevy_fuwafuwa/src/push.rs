@@ -1,4 +1,4 @@
-//! What was asked of soft bodies that are in the world: to be elsewhere, to go faster, to be pushed.
+//! Applies changed components to soft bodies: pose, velocity, impulse, gravity.
 
 use crate::component::{ExternalImpulse, GravityScale, SoftBodyId, Velocity};
 use crate::dimension::Dimension;
@@ -14,7 +14,7 @@ use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
 use fuwafuwa::BodyId;
 
-/// Takes settings over that were changed.
+/// Passes changed settings to the engine.
 pub fn change_settings<D: Dimension>(
     settings: Res<SoftSettings>,
     mut world: ResMut<SoftWorld<D>>,
@@ -29,7 +29,7 @@ pub fn change_settings<D: Dimension>(
     }
 }
 
-/// What a soft body may have been asked for.
+/// Components of a soft body that can request a change.
 type Asked<'a> = (
     &'a SoftBodyId,
     &'a mut Transform,
@@ -39,7 +39,7 @@ type Asked<'a> = (
     Option<&'a GravityScale>,
 );
 
-/// Moves, turns, throws and pushes soft bodies as was asked since the last tick.
+/// Applies the changes of pose, velocity, gravity and impulse since the last tick to soft bodies.
 pub fn push_bodies<D: Dimension>(
     mut world: ResMut<SoftWorld<D>>,
     mut bodies: Query<Asked<'_>>,
@@ -62,7 +62,8 @@ pub fn push_bodies<D: Dimension>(
         let mut before = followed.velocity;
         if !followed.is_at(&transform) {
             match displace(&mut world, id, &transform, &mut followed) {
-                // All of it was turned, and how it moves too; of that nobody spoke.
+                // The engine rotated the velocity along with the body. That was not requested, so the
+                // difference is undone below.
                 Ok(turn) => {
                     before.linear = turn * before.linear;
                     before.angular = turn * before.angular;
@@ -110,7 +111,7 @@ pub fn push_bodies<D: Dimension>(
     }
 }
 
-/// Moves and turns a body from where it was last to where a transform says; by how much it was turned.
+/// Moves and rotates a body from its last pose to that of a transform. Returns the rotation applied.
 fn displace<D: Dimension>(
     world: &mut SoftWorld<D>,
     id: BodyId,
@@ -131,7 +132,7 @@ fn displace<D: Dimension>(
     if by != Vec3::ZERO {
         engine.move_body(id, by.into())?;
     }
-    // What was not written is not turned, not even by what rounding leaves.
+    // Without a change by the user the body is not rotated at all, so that no rounding error accumulates.
     let mut turn = Quat::IDENTITY;
     if transform.rotation == followed.transform.rotation {
         to.rotation = from.rotation;

@@ -1,4 +1,4 @@
-//! What is where, with entities.
+//! Spatial queries that return entities.
 
 use crate::dimension::Dimension;
 use crate::world::SoftWorld;
@@ -8,31 +8,31 @@ use bevy_ecs::system::SystemParam;
 use bevy_math::Vec3;
 use fuwafuwa::{Found, PieceId, Queries, Shape, Thing};
 
-/// Answers about the world as it is now. Each question looks at all bare faces first; who has many takes
-/// [`SoftQueries::engine`], and asks that.
+/// Spatial queries on the current state. Each query first gathers all bare faces; use [`SoftQueries::engine`]
+/// for many queries at the same time.
 #[derive(SystemParam)]
 pub struct SoftQueries<'w, D: Dimension> {
     world: Res<'w, SoftWorld<D>>,
 }
 
-/// What was found.
+/// Result of a query.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Hit {
-    /// Whose it is; none where that has no entity.
+    /// Entity of the body; `None` if the body has none.
     pub entity: Option<Entity>,
-    /// Number of the piece, of a soft body.
+    /// Piece of a soft body; `None` for a rigid body.
     pub piece: Option<PieceId>,
-    /// Where [m].
+    /// Position, world space [m].
     pub at: Vec3,
-    /// Out of it, of length 1.
+    /// Outward unit normal.
     pub normal: Vec3,
-    /// How far it is from where it was looked for [m].
+    /// Distance from the start of the query [m].
     pub distance: f32,
 }
 
 impl<D: Dimension> SoftQueries<'_, D> {
-    /// The first surface that a ray meets, no further than `most` [m], which may be infinite. Nothing when the direction
-    /// has no length or a number is not finite.
+    /// Returns the first surface hit by a ray within the distance `most` [m], which may be infinite. Returns
+    /// `None` if the direction has length 0 or a value is not finite.
     pub fn ray(&self, from: Vec3, direction: Vec3, most: f32) -> Option<Hit> {
         let found = self
             .engine()
@@ -40,13 +40,13 @@ impl<D: Dimension> SoftQueries<'_, D> {
         Some(self.hit(found))
     }
 
-    /// The place on any surface that is nearest, no further than `most` [m].
+    /// Returns the nearest point of any surface within the distance `most` [m].
     pub fn nearest(&self, at: Vec3, most: f32) -> Option<Hit> {
         let found = self.engine().nearest(at.into(), most, &|_| true)?;
         Some(self.hit(found))
     }
 
-    /// The entities that overlap a shape, each once, in no order that means anything but the same each time.
+    /// Returns the entities that overlap a shape, each once, sorted.
     pub fn overlapping(&self, shape: &Shape) -> Vec<Entity> {
         let things = self.engine().overlapping(shape).into_iter();
         let mut entities: Vec<Entity> = things.filter_map(|thing| self.entity(thing)).collect();
@@ -55,12 +55,12 @@ impl<D: Dimension> SoftQueries<'_, D> {
         entities
     }
 
-    /// The engine's own, for many questions about the same moment.
+    /// Returns the engine's query object, which serves many queries at the same time.
     pub fn engine(&self) -> Queries<'_, D> {
         Queries::new(self.world.engine())
     }
 
-    /// The entity of what the engine found.
+    /// Returns the entity of an object found by the engine.
     pub fn entity(&self, thing: Thing) -> Option<Entity> {
         match thing {
             Thing::RigidBody(rigid) => self.world.entity_of_rigid(rigid),

@@ -1,4 +1,4 @@
-//! Who wants to enter the world and who wants to leave it, in the order in which that was asked for.
+//! Requests to enter and leave the world, in order.
 
 use bevy_ecs::entity::Entity;
 use bevy_ecs::resource::Resource;
@@ -6,14 +6,14 @@ use bevy_ecs::world::DeferredWorld;
 use fuwafuwa::Dim;
 use std::marker::PhantomData;
 
-/// What components were inserted and removed since the last tick.
+/// Body components inserted and removed since the last tick.
 #[derive(Resource, Debug)]
 pub struct Queue<D: Dim> {
     requests: Vec<(Entity, Request)>,
     dim: PhantomData<D>,
 }
 
-/// What an entity asks for.
+/// Request of an entity.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Request {
     AddBody,
@@ -30,24 +30,24 @@ impl<D: Dim> Default for Queue<D> {
 }
 
 impl<D: Dim> Queue<D> {
-    /// Hands the queue of a world to `ask`, if there is one.
+    /// Calls `ask` with the queue of a world, if it has one.
     pub fn of(world: &mut DeferredWorld<'_>, ask: impl FnOnce(&mut Self)) {
         if let Some(mut queue) = world.get_resource_mut::<Self>() {
             ask(&mut queue);
         }
     }
 
-    /// Notes what an entity asks for.
+    /// Appends a request.
     pub fn add(&mut self, entity: Entity, request: Request) {
         self.requests.push((entity, request));
     }
 
-    /// All that was asked for, in order.
+    /// Removes and returns all requests, in order.
     pub fn take(&mut self) -> Vec<(Entity, Request)> {
         std::mem::take(&mut self.requests)
     }
 
-    /// Puts those back who have to wait, before all who asked since.
+    /// Puts waiting requests back, before all newer requests.
     pub fn wait(&mut self, mut waiting: Vec<(Entity, Request)>) {
         waiting.append(&mut self.requests);
         self.requests = waiting;

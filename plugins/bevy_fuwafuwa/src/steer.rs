@@ -1,4 +1,4 @@
-//! What was asked of rigid things that are in the world: to go somewhere, to be somewhere, to go faster, to be pushed.
+//! Applies changed components to rigid bodies: target, pose, velocity, impulse.
 
 use crate::component::{ExternalImpulse, Goal, RigidBodyId, SoftBodyId, Velocity};
 use crate::dimension::Dimension;
@@ -15,7 +15,7 @@ use bevy_math::Vec3;
 use bevy_transform::components::Transform;
 use fuwafuwa::{MotionType, RigidId};
 
-/// What something rigid may have been asked for.
+/// Components of a rigid body that can request a change.
 type Asked<'a> = (
     &'a RigidBodyId,
     &'a mut Transform,
@@ -25,7 +25,7 @@ type Asked<'a> = (
     Option<&'a Goal>,
 );
 
-/// Sends hands to their goals, puts what was moved where it is now, and throws and pushes what is free.
+/// Applies the changes of target, pose, velocity and impulse since the last tick to rigid bodies.
 pub fn steer_rigids<D: Dimension>(
     mut world: ResMut<SoftWorld<D>>,
     mut rigids: Query<Asked<'_>, Without<SoftBodyId>>,
@@ -51,7 +51,7 @@ pub fn steer_rigids<D: Dimension>(
         };
         if !followed.is_at(&transform) {
             if check(put(&mut world, id, &transform, &followed)) {
-                // It is pulled from there.
+                // Forgets the goal, so that it is sent again from the new position.
                 (followed.transform, followed.goal) = (*transform, None);
             } else {
                 *transform = followed.transform;
@@ -64,7 +64,7 @@ pub fn steer_rigids<D: Dimension>(
             if let (Some(goal), MotionType::Coupled { .. }) = (goal, engine.rigids()[id].drive) {
                 check(engine.set_goal(id, goal.into()).map_err(Problem::from));
             }
-            // Once, and not again in each tick.
+            // Also set on failure, so that the error is reported only once.
             followed.goal = goal;
         }
         if let Some(mut velocity) = velocity
@@ -86,7 +86,7 @@ pub fn steer_rigids<D: Dimension>(
     }
 }
 
-/// Puts something rigid where a transform says, or lets it go there if it is kinematic.
+/// Moves a rigid body to the pose of a transform; a kinematic one gets it as its target.
 fn put<D: Dimension>(
     world: &mut SoftWorld<D>,
     id: RigidId,
@@ -96,7 +96,7 @@ fn put<D: Dimension>(
     let pose = Pose::of(transform)?;
     if transform.scale != followed.transform.scale {
         return Err(Problem::Pose(
-            "keep its scale: what is rigid is of one size once it has entered",
+            "keep its scale: the size of a rigid body is fixed once it has entered",
         ));
     }
     let engine = world.engine_mut();
@@ -111,7 +111,7 @@ fn put<D: Dimension>(
         engine.set_goal_rotation(id, rotation)?;
         return Ok(());
     }
-    // What was not written is not turned, not even by what rounding leaves.
+    // Without a change by the user the body is not rotated at all, so that no rounding error accumulates.
     let is_turned = transform.rotation != followed.transform.rotation;
     let rotation = if is_turned {
         rotation

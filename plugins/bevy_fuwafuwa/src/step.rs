@@ -1,4 +1,4 @@
-//! A tick, and what happened in it.
+//! Runs a tick and sends its events as messages.
 
 use crate::dimension::Dimension;
 use crate::message::{
@@ -11,7 +11,7 @@ use bevy_ecs::message::MessageWriter;
 use bevy_ecs::system::SystemParam;
 use fuwafuwa::{Event, ObjectRef};
 
-/// Where all that happened is written down.
+/// Writers of all messages.
 #[derive(SystemParam)]
 pub struct Writers<'w> {
     torn: MessageWriter<'w, Torn>,
@@ -29,7 +29,7 @@ pub struct Writers<'w> {
     removed: MessageWriter<'w, Removed>,
 }
 
-/// Lets a tick pass, unless time stands still.
+/// Runs a tick unless the world is paused.
 pub fn step<D: Dimension>(mut world: ResMut<SoftWorld<D>>, mut writers: Writers<'_>) {
     let before = world.untold();
     if world.tick() {
@@ -47,7 +47,7 @@ pub fn step<D: Dimension>(mut world: ResMut<SoftWorld<D>>, mut writers: Writers<
 }
 
 impl Writers<'_> {
-    /// Tells of an event, where whoever it happened to has an entity.
+    /// Sends an event as a message, unless a body of it has no entity.
     fn tell<D: Dimension>(&mut self, world: &SoftWorld<D>, event: Event) -> Option<()> {
         let of_body = |body| world.entity_of_body(body);
         let of = |party: ObjectRef| match party {

@@ -1,4 +1,4 @@
-//! The engine's world as a resource, and which entity is which thing in it.
+//! The engine's world as a resource, and the mapping between entities and bodies.
 
 use crate::dimension::Dimension;
 use bevy_ecs::entity::Entity;
@@ -7,31 +7,32 @@ use fuwafuwa::handle::Gone;
 use fuwafuwa::{BodyId, Event, RigidBody, RigidId, Settings, StepReport, World};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What holds for all worlds of an app: gravity, drag, substeps. Change it whenever you like; what the engine refuses is
-/// told by [`crate::message::Rejection`] and changes nothing.
+/// Settings of all worlds of an app, such as gravity, drag and substeps. They can be changed at any time.
+/// Settings that the engine refuses are reported by [`crate::message::Rejection`] and have no effect.
 #[derive(Resource, Copy, Clone, Debug, Default, PartialEq)]
 pub struct SoftSettings(pub Settings);
 
-/// The engine's world, and which entity is which thing in it.
+/// The engine's world, and the mapping between entities and bodies.
 ///
-/// Whatever has no component is done here, between two ticks: cuts, snapshots, energies, forces on hands. Things that you
-/// put into the engine by hand move and collide as others do; they have no entity, and send no messages.
+/// It gives access to everything without a component, between two ticks: cuts, snapshots, energies, forces on
+/// rigid bodies. Bodies that you add directly to the engine move and collide as usual, but have no entity and
+/// send no messages.
 #[derive(Resource, Debug)]
 pub struct SoftWorld<D: Dimension> {
     engine: World<D>,
     bodies: Pairs<BodyId>,
     rigids: Pairs<RigidId>,
-    /// What is rigid and slept after the last tick.
+    /// Rigid bodies that slept after the last tick.
     sleepers: BTreeSet<RigidId>,
     is_paused: bool,
     single_ticks: u32,
     has_ticked: bool,
-    /// How many events of the last tick were told.
+    /// Number of events of the last tick already sent as messages.
     told: usize,
     report: StepReport,
 }
 
-/// Which entity has which id, both ways.
+/// Bidirectional map between entities and ids.
 #[derive(Debug)]
 struct Pairs<Id> {
     ids: BTreeMap<Entity, Id>,
@@ -65,7 +66,7 @@ impl<Id: Copy + Ord> Pairs<Id> {
 impl<D: Dimension> Default for SoftWorld<D> {
     fn default() -> Self {
         Self {
-            engine: World::new(Settings::default()).expect("the default is in range"),
+            engine: World::new(Settings::default()).expect("the default settings are valid"),
             bodies: Pairs::default(),
             rigids: Pairs::default(),
             sleepers: BTreeSet::new(),
@@ -79,62 +80,62 @@ impl<D: Dimension> Default for SoftWorld<D> {
 }
 
 impl<D: Dimension> SoftWorld<D> {
-    /// The engine's world.
+    /// Returns the engine's world.
     pub fn engine(&self) -> &World<D> {
         &self.engine
     }
 
-    /// The engine's world, to be changed. An entity whose body you remove there stays, and has none.
+    /// Returns the engine's world for changes. If you remove a body there, its entity stays without a body.
     pub fn engine_mut(&mut self) -> &mut World<D> {
         &mut self.engine
     }
 
-    /// The body of an entity, once it has entered.
+    /// Returns the body of an entity, once it has entered.
     pub fn body_of(&self, entity: Entity) -> Option<BodyId> {
         self.bodies.ids.get(&entity).copied()
     }
 
-    /// The entity of a body.
+    /// Returns the entity of a soft body.
     pub fn entity_of_body(&self, body: BodyId) -> Option<Entity> {
         self.bodies.entities.get(&body).copied()
     }
 
-    /// The rigid thing of an entity, once it has entered.
+    /// Returns the rigid body of an entity, once it has entered.
     pub fn rigid_of(&self, entity: Entity) -> Option<RigidId> {
         self.rigids.ids.get(&entity).copied()
     }
 
-    /// The entity of a rigid thing.
+    /// Returns the entity of a rigid body.
     pub fn entity_of_rigid(&self, rigid: RigidId) -> Option<Entity> {
         self.rigids.entities.get(&rigid).copied()
     }
 
-    /// Stops time: entities still enter and leave.
+    /// Pauses the simulation; entities still enter and leave.
     pub fn pause(&mut self) {
         self.is_paused = true;
     }
 
-    /// Lets time go on.
+    /// Resumes the simulation.
     pub fn resume(&mut self) {
         self.is_paused = false;
     }
 
-    /// Whether time stands still.
+    /// Returns whether the simulation is paused.
     pub fn is_paused(&self) -> bool {
         self.is_paused
     }
 
-    /// Lets one tick pass the next time, though time stands still.
+    /// Requests a single tick at the next run, even if paused.
     pub fn step_once(&mut self) {
         self.single_ticks += 1;
     }
 
-    /// What the last tick did.
+    /// Returns the report of the last tick.
     pub fn report(&self) -> StepReport {
         self.report
     }
 
-    /// Lets a tick pass, if it may; whether it did.
+    /// Runs a tick unless paused. Returns whether a tick ran.
     pub(crate) fn tick(&mut self) -> bool {
         self.has_ticked = !self.is_paused || self.single_ticks > 0;
         if self.has_ticked {
@@ -145,7 +146,7 @@ impl<D: Dimension> SoftWorld<D> {
         self.has_ticked
     }
 
-    /// What happened since the last tick, by what was asked of the engine by hand.
+    /// Returns the events since the last tick, caused by direct calls of the engine.
     pub(crate) fn untold(&self) -> Vec<Event> {
         self.engine
             .events()
@@ -154,12 +155,12 @@ impl<D: Dimension> SoftWorld<D> {
             .to_vec()
     }
 
-    /// Whether a tick passed the last time.
+    /// Returns whether the last run of the schedule ran a tick.
     pub(crate) fn has_ticked(&self) -> bool {
         self.has_ticked
     }
 
-    /// The rigid entities that fell asleep or woke since this was asked last, and whether they sleep.
+    /// Returns the rigid entities that fell asleep or woke since the last call, and whether they sleep.
     pub(crate) fn follow_sleep(&mut self) -> Vec<(Entity, bool)> {
         let asleep = self.engine.rigids().entries();
         let asleep = asleep.filter(|(_, rigid)| rigid.is_asleep());
@@ -171,13 +172,13 @@ impl<D: Dimension> SoftWorld<D> {
         told.collect()
     }
 
-    /// The bodies of entities, in the order of their ids.
+    /// Returns soft bodies and their entities, in the order of ids.
     pub(crate) fn soft_entities(&self) -> Vec<(BodyId, Entity)> {
         let entities = self.bodies.entities.iter();
         entities.map(|(&id, &entity)| (id, entity)).collect()
     }
 
-    /// The rigid things of entities, in the order of their ids.
+    /// Returns rigid bodies and their entities, in the order of ids.
     pub(crate) fn rigid_entities(&self) -> Vec<(RigidId, Entity)> {
         let entities = self.rigids.entities.iter();
         entities.map(|(&id, &entity)| (id, entity)).collect()
@@ -199,13 +200,13 @@ impl<D: Dimension> SoftWorld<D> {
         Ok(id)
     }
 
-    /// Takes the body of an entity out, if it has one that is still there.
+    /// Removes the soft body of an entity. `None` if it has none.
     pub(crate) fn remove_body(&mut self, entity: Entity) -> Option<Result<(), Gone>> {
         let id = self.bodies.take(entity)?;
         Some(self.engine.remove_body(id).map(drop))
     }
 
-    /// Takes the rigid thing of an entity out, if it has one that is still there.
+    /// Removes the rigid body of an entity. `None` if it has none.
     pub(crate) fn remove_rigid(&mut self, entity: Entity) -> Option<Result<(), Gone>> {
         let id = self.rigids.take(entity)?;
         Some(self.engine.remove_rigid(id).map(drop))

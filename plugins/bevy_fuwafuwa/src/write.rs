@@ -1,4 +1,4 @@
-//! What a tick did, written to entities.
+//! Writes the results of a tick to components.
 
 use crate::component::{GravityScale, RigidBodyId, SoftBodyId, Velocity};
 use crate::dimension::Dimension;
@@ -15,18 +15,18 @@ use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
 use fuwafuwa::MotionType;
 
-/// What an entity was told last: what differs from it was changed by somebody else.
+/// Values last written to the entity. A component that differs was changed by the user.
 #[derive(Component, Copy, Clone, Debug)]
 pub struct Followed {
     pub pose: Pose,
     pub transform: Transform,
     pub velocity: Velocity,
     pub gravity: f32,
-    /// From its origin to what the engine has there, where it is not turned [m]; of what is rigid.
+    /// Offset from the entity's origin to the engine's origin of a rigid body, before rotation [m].
     pub middle: Vec3,
-    /// Where a hand was sent last.
+    /// Target last sent to the engine, world space [m].
     pub goal: Option<Vec3>,
-    /// Whether all of it slept then.
+    /// Whether the whole body slept then.
     pub is_settled: bool,
 }
 
@@ -48,7 +48,8 @@ impl Followed {
         }
     }
 
-    /// Whether a transform is what it was told, to the last bit: what is no number is told once, and not in each tick.
+    /// Returns whether a transform is bitwise equal to the last one. Comparing bits makes a NaN count as
+    /// changed only once.
     pub fn is_at(&self, transform: &Transform) -> bool {
         let bits = |transform: &Transform| {
             let (translation, scale) = (transform.translation, transform.scale);
@@ -59,7 +60,7 @@ impl Followed {
     }
 }
 
-/// Tells soft bodies where they are and how fast.
+/// Writes pose and velocity of soft bodies.
 pub fn write_bodies<D: Dimension>(
     world: Res<SoftWorld<D>>,
     mut bodies: Query<(
@@ -101,7 +102,7 @@ pub fn write_bodies<D: Dimension>(
     }
 }
 
-/// Tells what is rigid and moves where it is and how fast; where what is kinematic is, its owner knows.
+/// Writes pose and velocity of moving rigid bodies; the transform of a kinematic one belongs to the user.
 pub fn write_rigids<D: Dimension>(
     world: Res<SoftWorld<D>>,
     mut rigids: Query<
@@ -151,7 +152,7 @@ pub fn write_rigids<D: Dimension>(
     }
 }
 
-/// Brings meshes up to date.
+/// Updates the meshes.
 pub fn write_meshes<D: Dimension>(
     world: Res<SoftWorld<D>>,
     meshes: Option<ResMut<Assets<Mesh>>>,

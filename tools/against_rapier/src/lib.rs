@@ -1,41 +1,40 @@
-//! fuwafuwa beside the soft bodies of [Rapier](https://rapier.rs) 0.36, on the same scenes.
+//! Benchmark of fuwafuwa against the soft bodies of [Rapier](https://rapier.rs) 0.36, on the same scenes.
 //!
-//! A body 1 m wide, made of the same voxels as fuwafuwa's, falls on a plane. The time of every frame is taken, and the
-//! *peak squash*, how flat the body gets: a solver with a fixed number of iterations is softer than its material
-//! says, and the more so the finer the body, so that times compare only where the squash is the same
-//! ([`compare_drop`]).
+//! A body 1 m wide, made of the same voxels in both engines, falls on a plane. Each frame is timed. The *peak
+//! squash* is the largest relative loss of height of the body. A solver with a fixed number of iterations is
+//! softer than its material, and the error grows with the resolution. Times are therefore compared at equal
+//! peak squash ([`compare_drop`]).
 //!
-//! # How Rapier is set up
+//! # Setup of Rapier
 //!
-//! On one thread (without its feature `parallel`), with the solver that its documentation calls the cheap one.
-//! Everything not listed is Rapier's default.
+//! Rapier runs on one thread (without its feature `parallel`), with the solver that its documentation calls
+//! the cheap one. Everything not listed is Rapier's default.
 //!
-//! | setting | is | because |
+//! | setting | value | reason |
 //! | --- | --- | --- |
-//! | cells in 2D | corotational triangles, 2 a voxel | take Young's modulus and Poisson's ratio, and cost the least there |
-//! | cells in 3D | 5 tetrahedra a voxel, each a volume constraint, and springs on their edges | at equal squash a third to a quarter of the time of corotational tetrahedra; Poisson's ratio then follows from the lattice of springs and is about 0.2 |
-//! | damping | none | the material has none; Rapier's own (critical) damping makes the body softer still |
-//! | sweeps over the constraints | 1, 2, 4 or 8 a substep, whichever is fastest at equal squash | 4 is Rapier's default; the more sweeps, the fewer substeps it needs |
-//! | contact skin | a tenth of a voxel | the pieces of a cut body lie closer than Rapier's half voxel; and Rapier adds up to four substeps by itself while the body hits faster than a skin a substep: with the thin skin it does so in time, and the median frame at equal squash takes 20 to 50 % less than without the additions |
-//! | sleep | off for a body in one piece | every frame is a frame of a moving body |
+//! | cells in 2D | corotational triangles, 2 per voxel | take Young's modulus and Poisson's ratio, and are the fastest cells in 2D |
+//! | cells in 3D | 5 tetrahedra per voxel, each with a volume constraint, and springs on their edges | at equal squash a third to a quarter of the time of corotational tetrahedra; Poisson's ratio follows from the spring lattice and is about 0.2 |
+//! | damping | none | the material has none; Rapier's default (critical) damping makes the body softer |
+//! | iterations over the constraints | 1, 2, 4 or 8 per substep, the fastest of them at equal squash | 4 is Rapier's default; more iterations need fewer substeps |
+//! | contact skin | a tenth of a voxel | the pieces of a cut body lie closer than Rapier's default of half a voxel; Rapier adds up to four substeps while the body moves by more than a skin per substep, and the thin skin triggers them in time |
+//! | sleep | off for a body in one piece | every timed frame has a moving body |
 //! | floor | a half-space | |
 //!
-//! Two features of Rapier are left out: `simd8`, since only its rigid bodies are solved several lanes at a time (four,
-//! without being asked) and its soft bodies by scalar code, whose times `-C target-cpu=native` did not change either; and
-//! `fem`, an implicit solver that is cheaper in the air but far dearer on the floor, where each contact costs a solve
-//! over the whole body. At 7 to 9 % of squash and with 32 voxels in 2D a frame on the floor took it 41 ms, against 10;
-//! with 64 voxels 390 ms, against 70.
+//! Two features of Rapier are not used. `simd8` affects only rigid bodies; soft bodies use scalar code. `fem`
+//! is an implicit solver that is cheaper in the air but several times slower on the floor, where each contact
+//! requires a solve over the whole body.
 //!
-//! # How it is measured
+//! # Measurement
 //!
-//! Both engines run in one process, on one thread, a frame of the one and a frame of the other in turns. Times are
-//! processor time of `World::step` and `PhysicsWorld::step` alone. How deep a body should be squashed is found with as many
-//! substeps of fuwafuwa as its stiffness asks for, so that it is not softened. Then each engine gets as few as it can do
-//! with and not be squashed more than 2 percentage points deeper; fuwafuwa no fewer than the eight that any world has, and in
-//! the torn scene, where there is no squash to compare, as many as its stiffness asks for.
+//! Both engines run in one process on one thread, alternating frame by frame. Times are processor times of
+//! `World::step` and `PhysicsWorld::step` alone. The reference squash comes from fuwafuwa with as many
+//! substeps as the stiffness requires, so that the body is not softened. Then each engine gets the fewest
+//! substeps for which its squash exceeds the reference by at most 2 percentage points. fuwafuwa never gets
+//! fewer than eight, the minimum of any world. The torn scene has no squash to compare; there fuwafuwa gets
+//! as many substeps as its stiffness requires.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-// Units stand in brackets: [m].
+// Doc comments give units in brackets: [m].
 #![allow(rustdoc::broken_intra_doc_links)]
 
 mod mesh;
@@ -58,40 +57,39 @@ use mesh::Simplices;
 pub use world::Effort;
 use world::{Falling, Law, plane, space};
 
-/// Width of the body [m], empty voxels at the rim included.
+/// Width of the body [m], including empty voxels at the rim.
 const WIDTH: f32 = 1.0;
-/// Length of a frame [s].
+/// Duration of a frame [s].
 const FRAME: f32 = 1.0 / 60.0;
 
-/// A soft disc or ball, 1 m wide, that falls on a plane.
+/// Scene: a soft disc or ball, 1 m wide, that falls on a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drop {
-    /// 2 for a disc, 3 for a ball.
+    /// Number of dimensions: 2 for a disc, 3 for a ball.
     pub dim: u8,
     /// Voxels across the body.
     pub n: usize,
-    /// Young's modulus [Pa]; in 2D of a body 1 m thick.
+    /// Young's modulus [Pa]; in 2D for a body 1 m thick.
     pub young: f32,
-    /// Poisson's ratio, from 0 up to but not including 0.5. Without effect on Rapier's side in 3D, see the crate's
-    /// documentation.
+    /// Poisson's ratio, at least 0 and below 0.5. No effect on Rapier in 3D, see the crate documentation.
     pub poisson: f32,
     /// Density [kg/m³].
     pub density: f32,
-    /// Gap between the body and the plane at the start [m].
+    /// Initial gap between the body and the plane [m].
     pub height: f32,
-    /// Acceleration of free fall [m/s²].
+    /// Gravitational acceleration [m/s²].
     pub gravity: f32,
     /// Coefficient of friction between the body and the plane, and between pieces of the body.
     pub friction: f32,
-    /// Frames of 1/60 s to run.
+    /// Number of frames of 1/60 s.
     pub frames: usize,
-    /// Whether what rests may fall asleep, on Rapier's side; fuwafuwa always lets it, and a comparison of a body in one
-    /// piece ends when it does.
+    /// Whether bodies may sleep in Rapier. fuwafuwa always lets them sleep; a comparison of a body in one
+    /// piece ends when it falls asleep.
     pub sleeps: bool,
 }
 
 impl Drop {
-    /// A body of 4·10⁵ Pa falls 1 m, and is squashed by 7 to 8 %.
+    /// A body of 4·10⁵ Pa that falls 1 m; its peak squash is 7 to 8 %.
     pub fn stiff(dim: u8, n: usize) -> Self {
         Self {
             dim,
@@ -107,7 +105,7 @@ impl Drop {
         }
     }
 
-    /// A body as soft as in a game, 5000 Pa, falls gently, from so high that it is squashed by about 10 %.
+    /// A body of 5000 Pa, as soft as in the game, that falls gently; its peak squash is about 10 %.
     pub fn soft(dim: u8, n: usize) -> Self {
         Self {
             young: 5000.0,
@@ -117,7 +115,7 @@ impl Drop {
         }
     }
 
-    /// The soft body falls fast, to be cut into pieces before.
+    /// The soft body, cut into pieces before a fast fall.
     pub fn diced(n: usize) -> Self {
         Self {
             height: 0.2,
@@ -129,20 +127,20 @@ impl Drop {
     }
 }
 
-/// Why a scene could not be run.
+/// Error of running a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
-    /// The voxels of the body could not be made.
+    /// The voxel grid of the body is invalid.
     Shape(BuildError),
-    /// The body could not be made of them.
+    /// The body is invalid.
     Body(BodyError),
-    /// The world refused something.
+    /// The world refused an operation.
     World(Refused),
-    /// A field of the scene has a value that makes no sense.
+    /// A field of the scene is out of range.
     Scene {
-        /// Its name.
+        /// Name of the field.
         field: &'static str,
-        /// What would have made sense.
+        /// Expected range.
         expected: &'static str,
     },
 }
@@ -150,11 +148,11 @@ pub enum Error {
 impl fmt::Display for Error {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Error::Shape(error) => write!(formatter, "the body cannot be made: {error}"),
-            Error::Body(error) => write!(formatter, "the body cannot be made: {error}"),
-            Error::World(error) => write!(formatter, "the world refuses it: {error}"),
+            Error::Shape(error) => write!(formatter, "cannot build the body: {error}"),
+            Error::Body(error) => write!(formatter, "cannot build the body: {error}"),
+            Error::World(error) => write!(formatter, "the world refused the operation: {error}"),
             Error::Scene { field, expected } => {
-                write!(formatter, "`{field}` of the scene has to be {expected}")
+                write!(formatter, "invalid scene: `{field}` must be {expected}")
             }
         }
     }
@@ -180,10 +178,10 @@ impl From<Refused> for Error {
     }
 }
 
-/// What a scene gives, or why it could not be run.
+/// Result of running a scene.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// The scene in Rapier.
+/// Builds the scene in Rapier.
 fn theirs(scene: &Drop, effort: Effort) -> Result<Box<dyn Falling>> {
     if scene.dim == 2 {
         return Ok(Box::new(disc(scene, effort)?));
@@ -201,7 +199,8 @@ fn disc(scene: &Drop, effort: Effort) -> Result<plane::World> {
     Ok(plane::World::new(&mesh, scene, effort, law))
 }
 
-/// The scene in fuwafuwa, with so many substeps or as many as its stiffness asks for.
+/// Builds the scene in fuwafuwa, with `substeps` substeps or, for `None`, with as many as its stiffness
+/// requires.
 fn ours(scene: &Drop, substeps: Option<usize>) -> Result<Box<dyn Falling>> {
     scene.check()?;
     Ok(match scene.dim {
@@ -243,7 +242,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_scene_without_sense_is_refused_by_name() {
+    fn invalid_scene_is_refused_with_field_name() {
         let scene = Drop {
             poisson: 0.5,
             ..Drop::stiff(2, 8)
@@ -251,7 +250,7 @@ mod tests {
         let error = ours(&scene, None).err().expect("a Poisson's ratio of 0.5");
         assert_eq!(
             error.to_string(),
-            "`poisson` of the scene has to be from 0 to below 0.5"
+            "invalid scene: `poisson` must be from 0 to below 0.5"
         );
         assert_eq!(theirs(&scene, Effort::default()).err(), Some(error));
         let empty = Drop::stiff(3, 0);

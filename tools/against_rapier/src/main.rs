@@ -1,5 +1,5 @@
-//! Prints how long a frame takes in fuwafuwa and in Rapier, measured in turns in one run. `fuwafuwa bench --against
-//! rapier` starts it.
+//! Prints the frame times of fuwafuwa and Rapier, measured alternately in one run. Started by `fuwafuwa bench
+//! --against rapier`.
 
 use std::process::ExitCode;
 
@@ -7,22 +7,22 @@ use against_rapier::{Drop, Effort, Result, Side, compare_drop, compare_tear};
 use clap::{Parser, ValueEnum};
 use serde::Serialize;
 
-/// Voxels along the edge of a piece of the torn disc: 390 pieces of a disc of 64 voxels.
+/// Voxels along the edge of a piece of the torn disc; gives 390 pieces for a disc of 64 voxels.
 const PITCH: usize = 3;
-/// fuwafuwa and Rapier side by side.
+/// Compare the frame times of fuwafuwa and Rapier.
 #[derive(Parser)]
 #[command(name = "against_rapier", version)]
 struct Arguments {
-    /// Space dimensions.
+    /// Number of dimensions.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
     dim: u8,
-    /// Voxels across; if not given, 128 in 2D (64 where it is torn) and 32 in 3D.
+    /// Voxels across; default 128 in 2D (64 in the torn scene) and 32 in 3D.
     #[arg(long, value_parser = clap::value_parser!(u16).range(8..=512))]
     n: Option<u16>,
-    /// Only this scene.
+    /// Run only this scene.
     #[arg(long, value_enum)]
     scene: Option<Scene>,
-    /// Frames of 1/60 s; if not given 300, or 240 where the disc is torn.
+    /// Number of frames of 1/60 s; default 300, or 240 in the torn scene.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     frames: Option<u16>,
     /// Print JSON instead of a table.
@@ -41,23 +41,23 @@ enum Scene {
     Torn,
 }
 
-/// A scene in both engines.
+/// Result of a scene in both engines.
 #[derive(Serialize)]
 struct Comparison {
     scene: Scene,
     dim: u8,
     n: usize,
-    /// Frames of each side.
+    /// Frames per engine.
     frames: usize,
-    /// fuwafuwa's side and Rapier's.
+    /// Results of fuwafuwa and of Rapier.
     sides: [Side; 2],
-    /// Median time of a frame on each side [ms].
+    /// Median frame time of each engine [ms].
     median: [f64; 2],
-    /// Time of the slowest frame on each side [ms].
+    /// Slowest frame time of each engine [ms].
     worst: [f64; 2],
-    /// Rapier's median over fuwafuwa's.
+    /// Median of Rapier divided by median of fuwafuwa.
     ratio: f64,
-    /// Whether the peak squash of a body in one piece is equal within 2 percentage points.
+    /// Whether the peak squash of a body in one piece agrees within 2 percentage points.
     equal_squash: Option<bool>,
 }
 
@@ -111,7 +111,7 @@ fn compare_in(scene: Scene, arguments: &Arguments) -> Result<Comparison> {
     };
     drop.frames = arguments.frames.map_or(drop.frames, usize::from);
     let sides = if scene == Scene::Torn {
-        // Its small pieces are stiff enough with the usual effort.
+        // The small pieces are stiff enough with the default effort.
         compare_tear(&drop, PITCH, Effort::default())?
     } else {
         compare_drop(&drop, |Effort { substeps, sweeps }| {
@@ -141,7 +141,7 @@ fn print(comparison: &Comparison) {
     println!("{dim}D n = {n}: {}", what.unwrap_or_default());
     println!(
         "{:<64}{:>9}{:>10}{:>8}{:>8}{:>11}{:>11}",
-        "  frames of 1/60 s in turns, one thread",
+        "  alternating frames of 1/60 s, one thread",
         "substeps",
         "stiffness_scale",
         "squash",
@@ -171,7 +171,7 @@ fn print(comparison: &Comparison) {
         _ => "",
     };
     println!(
-        "  Rapier takes {:.1} times as long a frame ({} frames){remark}\n",
+        "  Rapier: {:.1} times the frame time of fuwafuwa ({} frames){remark}\n",
         comparison.ratio, comparison.frames
     );
 }

@@ -1,21 +1,22 @@
-//! From voxels to the triangles and tetrahedra that Rapier's soft bodies are made of.
+//! Splits voxels into the triangles and tetrahedra of Rapier's soft bodies.
 
 use fuwafuwa::dim::{add, corner};
 use fuwafuwa::{Dim, Dim2, Dim3, Point, VoxelGrid};
 
-/// Simplices with `K` corners that fill the solid voxels of a grid, without gaps or overlaps.
+/// Simplices with `K` corners that fill the solid voxels of a grid without gaps or overlaps.
 pub struct Simplices<const K: usize> {
     /// Edge length of a voxel [m].
     pub voxel_size: f32,
-    /// The nodes [m], the middle of the grid at the origin, but the lowest node at height 0.
+    /// Node positions [m]. The middle of the grid is at the origin, except that the lowest node has height 0.
     pub positions: Vec<[f32; 3]>,
-    /// Share of each node in the volume (2D: area) of the voxels around it [m³ or m²].
+    /// Share of each node in the volume (2D: area) of its voxels [m³ or m²].
     pub volumes: Vec<f32>,
-    /// The corners of each simplex.
+    /// Corner nodes of each simplex.
     pub cells: Vec<[u32; K]>,
 }
 
-/// Diagonals alternate from voxel to voxel, so that the body has no grain.
+/// Triangles of a voxel. Diagonals alternate from voxel to voxel, so that the mesh has no preferred
+/// direction.
 ///
 /// ```text
 ///   ┌────┬────┐
@@ -26,8 +27,8 @@ pub struct Simplices<const K: usize> {
 /// ```
 const TRIANGLES: [&[[usize; 3]]; 2] = [&[[0, 1, 3], [0, 3, 2]], &[[0, 1, 2], [1, 3, 2]]];
 
-/// Five tetrahedra, mirrored from voxel to voxel, so that the diagonals of a face agree from both sides: the same as
-/// in Rapier's own `SoftBodyBuilder::cuboid`.
+/// Five tetrahedra of a voxel, mirrored from voxel to voxel, so that neighbours agree on the diagonals of
+/// shared faces. Same as in Rapier's `SoftBodyBuilder::cuboid`.
 const TETRAHEDRA: [&[[usize; 4]]; 2] = [
     &[
         [0, 3, 5, 6],
@@ -46,21 +47,21 @@ const TETRAHEDRA: [&[[usize; 4]]; 2] = [
 ];
 
 impl Simplices<3> {
-    /// Two triangles a voxel.
+    /// Two triangles per voxel.
     pub fn triangles(grid: &VoxelGrid<Dim2>) -> Self {
         Self::fill(grid, TRIANGLES)
     }
 }
 
 impl Simplices<4> {
-    /// Five tetrahedra a voxel.
+    /// Five tetrahedra per voxel.
     pub fn tetrahedra(grid: &VoxelGrid<Dim3>) -> Self {
         Self::fill(grid, TETRAHEDRA)
     }
 }
 
 impl<const K: usize> Simplices<K> {
-    /// `splits` are those of voxels with an even and with an odd sum of coordinates.
+    /// Fills a grid. `splits` are the cells of voxels with an even and an odd sum of coordinates.
     fn fill<D: Dim>(grid: &VoxelGrid<D>, splits: [&[[usize; K]]; 2]) -> Self {
         let voxel_size = grid.voxel_size();
         let share = voxel_size.powi(D::N as i32) / D::CORNERS as f32;
@@ -101,10 +102,10 @@ impl<const K: usize> Simplices<K> {
     }
 }
 
-/// The lattice points in use, numbered in the order in which they were first asked for.
+/// Lattice points in use, numbered in the order of first use.
 struct Nodes {
     size: Point,
-    /// The number of each lattice point, or [`u32::MAX`].
+    /// Number of each lattice point, or [`u32::MAX`].
     numbers: Vec<u32>,
     points: Vec<Point>,
 }
@@ -135,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn simplices_fill_the_voxels() {
+    fn simplices_fill_the_solid_voxels() {
         let disc = VoxelGrid::<Dim2>::ball(16, 1.0).expect("a disc of 16 voxels");
         let triangles = Simplices::triangles(&disc);
         assert_eq!(triangles.cells.len(), 2 * disc.solid_count());
@@ -166,9 +167,9 @@ mod tests {
         );
     }
 
-    /// The side of a tetrahedron that two voxels share has to be the same triangle for both.
+    /// The triangle between two voxels must be the same on both sides.
     #[test]
-    fn tetrahedra_of_neighbours_agree_on_the_diagonal_between_them() {
+    fn neighbouring_tetrahedra_share_their_faces() {
         let pair = VoxelGrid::<Dim3>::from_fn([2, 1, 1], 1.0, |_| 1).expect("two voxels");
         let mesh = Simplices::tetrahedra(&pair);
         let on_the_border = |cell: &[u32; 4]| {

@@ -1,4 +1,4 @@
-//! The same scenes in fuwafuwa.
+//! The scenes in fuwafuwa.
 
 use fuwafuwa::law::Elasticity;
 use fuwafuwa::world::{FEWEST_SUBSTEPS, TICK};
@@ -7,11 +7,11 @@ use fuwafuwa::{Body, Dim, Material, RigidBody, Settings, Shape, VoxelGrid, World
 use crate::world::{Falling, Span};
 use crate::{Drop, Result, WIDTH};
 
-/// What the settings of a world allow.
+/// Maximum of the engine's settings.
 const MOST_SUBSTEPS: u32 = 1024;
 
-/// A body without damping and strong enough for anything, above a half-space. It gets so many substeps, or as few as leave it
-/// unsoftened, see [`Body::stiffness_scale`].
+/// Builds a world with an undamped, unbreakable body above a half-space. It gets `substeps` substeps or, for
+/// `None`, the fewest that do not soften it, see [`Body::stiffness_scale`].
 pub fn world<D: Dim>(scene: &Drop, substeps: Option<usize>) -> Result<World<D>> {
     let material = Material {
         elasticity: Elasticity {
@@ -54,7 +54,7 @@ impl<D: Dim> Falling for World<D> {
         let elements = self
             .bodies()
             .first()
-            .expect("it has a body")
+            .expect("world with a body")
             .mesh()
             .element_count();
         format!("fuwafuwa, {elements} elements")
@@ -65,7 +65,7 @@ impl<D: Dim> Falling for World<D> {
     }
 
     fn span(&self) -> Span {
-        span(self.bodies().first().expect("it has a body"))
+        span(self.bodies().first().expect("world with a body"))
     }
 
     fn substeps(&self) -> usize {
@@ -75,21 +75,26 @@ impl<D: Dim> Falling for World<D> {
     fn stiffness_scale(&self) -> f64 {
         self.bodies()
             .first()
-            .expect("it has a body")
+            .expect("world with a body")
             .stiffness_scale()
     }
 
     fn pieces(&self) -> usize {
         self.bodies()
             .first()
-            .expect("it has a body")
+            .expect("world with a body")
             .pieces()
             .list
             .len()
     }
 
     fn asleep(&self) -> f64 {
-        let pieces = &self.bodies().first().expect("it has a body").pieces().list;
+        let pieces = &self
+            .bodies()
+            .first()
+            .expect("world with a body")
+            .pieces()
+            .list;
         let asleep = pieces.iter().filter(|piece| piece.asleep).count();
         asleep as f64 / pieces.len() as f64
     }

@@ -1,54 +1,54 @@
-//! What is measured of each engine while worlds run in turns.
+//! Measurements of each engine, with worlds that run alternately.
 
 use serde::Serialize;
 
 use crate::world::Falling;
 
-/// How far the peak squash of one engine may be from the other's: 2 percentage points.
+/// Allowed difference of the peak squash: 2 percentage points.
 pub const TOLERANCE: f64 = 0.02;
 
-/// How a scene went in one of the engines.
+/// Result of a scene in one engine.
 #[derive(Clone, Debug, Serialize)]
 pub struct Side {
-    /// Its name and version, and what its bodies are made of.
+    /// Name and version of the engine, and the elements of its bodies.
     pub engine: String,
-    /// Substeps of the solver in each frame. Rapier adds up to 4 while a body hits fast.
+    /// Substeps per frame. Rapier adds up to 4 during fast impacts.
     pub substeps: usize,
-    /// Factor by which the engine itself lowered Young's modulus.
+    /// Factor by which the engine lowered Young's modulus.
     pub stiffness_scale: f64,
-    /// Pieces at the start.
+    /// Number of pieces at the start.
     pub pieces: usize,
-    /// Share of the pieces that sleeps in the end.
+    /// Fraction of the pieces that sleep at the end.
     pub asleep: f64,
-    /// 1 − least height / height at the start of all that is soft, over all frames.
+    /// 1 − smallest height / initial height of all soft bodies, over all frames.
     pub peak_squash: f64,
-    /// Whether every node stayed at a finite place.
+    /// True if all node positions stayed finite.
     pub finite: bool,
-    /// Time that the processor worked on each frame [ms].
+    /// Processor time of each frame [ms].
     #[serde(skip)]
     pub milliseconds: Vec<f64>,
 }
 
 impl Side {
-    /// Whether the peak squash of both is the same, within 2 percentage points.
+    /// Returns whether the peak squash agrees within 2 percentage points.
     pub fn equals(&self, other: &Self) -> bool {
         (self.peak_squash - other.peak_squash).abs() <= TOLERANCE
     }
 
-    /// Median time of a frame [ms].
+    /// Returns the median frame time [ms].
     pub fn median(&self) -> f64 {
         let mut sorted = self.milliseconds.clone();
         sorted.sort_by(f64::total_cmp);
         sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
     }
 
-    /// Time of the slowest frame [ms].
+    /// Returns the slowest frame time [ms].
     pub fn worst(&self) -> f64 {
         self.milliseconds.iter().copied().fold(f64::NAN, f64::max)
     }
 }
 
-/// Runs worlds frame by frame in turns, until one of them sleeps as a whole.
+/// Runs worlds alternately, frame by frame, until one of them sleeps completely.
 pub fn fall<const K: usize>(worlds: [Box<dyn Falling>; K], frames: usize) -> [Side; K] {
     let mut watched = worlds.map(Watched::new);
     for _ in 0..frames {
@@ -60,16 +60,16 @@ pub fn fall<const K: usize>(worlds: [Box<dyn Falling>; K], frames: usize) -> [Si
     watched.map(|watched| watched.side)
 }
 
-/// A world, and what was seen of it so far.
+/// A world and its measurements.
 pub struct Watched {
     world: Box<dyn Falling>,
     height: f32,
-    /// What was seen.
+    /// Measurements.
     pub side: Side,
 }
 
 impl Watched {
-    /// A world as it is now.
+    /// Starts the measurements of a world.
     pub fn new(world: Box<dyn Falling>) -> Self {
         Self {
             height: world.span().height(),
@@ -87,7 +87,7 @@ impl Watched {
         }
     }
 
-    /// Runs it for a frame.
+    /// Runs a frame.
     pub fn step(&mut self) {
         self.side.milliseconds.push(self.world.timed_step());
         let span = self.world.span();

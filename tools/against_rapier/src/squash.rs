@@ -1,4 +1,5 @@
-//! Comparing at equal quality: both engines get the fewest substeps with which the body is as stiff as its material.
+//! Comparison at equal quality: each engine gets the fewest substeps for which the body is as stiff as its
+//! material.
 
 use std::ops::Range;
 
@@ -8,19 +9,20 @@ use crate::side::{Side, TOLERANCE, Watched, fall};
 use crate::world::Falling;
 use crate::{Drop, Effort, FRAME, Result, WIDTH, ours, theirs};
 
-/// How often Rapier may go over its constraints in a substep; its default first, which is seldom far off.
+/// Candidates for Rapier's solver iterations per substep; the default first, since it is seldom far from the
+/// best.
 const SWEEPS: [usize; 4] = [4, 8, 2, 1];
-/// Where raising the substeps ends.
+/// Maximum number of substeps tried.
 const MOST_SUBSTEPS: usize = 128;
 
-/// A body falls in both engines, a frame of fuwafuwa's and a frame of Rapier's in turns; returns fuwafuwa's side and
-/// Rapier's. Each gets so few substeps that its peak squash is just within 2 percentage points of the exact one, which is
-/// ours where nothing is softened, or below that; Rapier with the number of sweeps that is fastest then. `trying`
-/// hears of all that Rapier tries before. They run until the deepest squash is over, even if that takes more frames than the
-/// scene has.
+/// Lets a body fall in both engines, alternating frame by frame; returns the results of fuwafuwa and of
+/// Rapier. Each engine gets the fewest substeps with a peak squash at most 2 percentage points above the
+/// exact one, which is that of unsoftened fuwafuwa. Rapier gets the number of iterations that is then
+/// fastest. `trying` is called before each trial of Rapier. The run lasts at least until the deepest squash
+/// is over, even if that exceeds the frames of the scene.
 ///
 /// # Errors
-/// [`Error`](crate::Error) when the scene makes no sense.
+/// [`Error`](crate::Error) if the scene is invalid.
 pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[Side; 2]> {
     let frames = frames_to_peak(scene);
     let [exact] = fall([ours(scene, None)?], frames);
@@ -49,7 +51,7 @@ pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[Sid
     Ok(fall([ours, theirs(scene, effort)?], frames))
 }
 
-/// Whether a body is never squashed deeper than `limit`, and the median time of a frame [ms] up to where it is.
+/// Returns whether the peak squash stays within `limit`, and the median frame time [ms] until then.
 fn stiff(world: Box<dyn Falling>, frames: usize, limit: f64) -> (bool, f64) {
     let mut watched = Watched::new(world);
     let is_stiff = (0..frames).all(|_| {
@@ -59,15 +61,15 @@ fn stiff(world: Box<dyn Falling>, frames: usize, limit: f64) -> (bool, f64) {
     (is_stiff, watched.side.median())
 }
 
-/// The fewest substeps of these with which a body is stiff, as it is with more of them, and the median time of a frame with so
-/// many [ms]: raised by a quarter at a time until they are enough, then halved between those and the last that were not.
-/// Nothing if that is not faster than `fastest` [ms], or none of them are enough.
+/// Returns the fewest substeps in `range` for which a body is stiff, and their median frame time [ms]. Raises
+/// the substeps by a quarter until they suffice, then bisects. Returns `None` if the result is not faster
+/// than `fastest` [ms] or no number suffices.
 fn enough(
     range: Range<usize>,
     fastest: f64,
     mut stiff: impl FnMut(usize) -> Result<(bool, f64)>,
 ) -> Result<Option<(usize, f64)>> {
-    // The most that were too few, and the fewest that were enough.
+    // The largest number known to be too small, and the smallest known to suffice.
     let (mut few, mut found) = (range.start - 1, None);
     let mut substeps = range.start;
     while few + 1 < found.map_or(range.end, |(enough, _)| enough) {
@@ -87,8 +89,9 @@ fn enough(
     Ok(found.filter(|&(_, median)| median < fastest))
 }
 
-/// Frames until the first impact is over, and with it the deepest squash: the fall, the time in which sound crosses the
-/// body six times (one under a free end swings back after four), and some more for a solver softer than the material.
+/// Returns the frames until the first impact and its deepest squash are over: the fall, six times the time in
+/// which sound crosses the body (a bar with a free end rebounds after four), and some more for a solver
+/// softer than the material.
 fn frames_to_peak(scene: &Drop) -> usize {
     const SOFTER: f32 = 0.25;
     let fall = (2.0 * scene.height / scene.gravity).sqrt();
@@ -109,11 +112,11 @@ mod tests {
     }
 
     #[test]
-    fn both_engines_squash_a_body_alike() {
+    fn both_engines_have_equal_peak_squash() {
         for scene in [small(2, 12), small(3, 8)] {
-            let [exact] = fall([ours(&scene, None).expect("the scene makes sense")], 1);
+            let [exact] = fall([ours(&scene, None).expect("the scene is valid")], 1);
             assert_eq!(exact.stiffness_scale, 1.0);
-            let [ours, theirs] = compare_drop(&scene, |_| ()).expect("the scene makes sense");
+            let [ours, theirs] = compare_drop(&scene, |_| ()).expect("the scene is valid");
             for side in [&ours, &theirs] {
                 assert!(side.milliseconds.len() >= 40);
                 assert!(side.finite);
@@ -124,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn substeps_are_as_few_as_are_enough() {
+    fn enough_returns_the_fewest_stiff_substeps() {
         let median = |substeps| substeps as f64;
         for (range, least) in [(1..129, 1), (1..129, 51), (8..31, 25), (8..31, 30)] {
             let mut tried = Vec::new();
@@ -140,20 +143,20 @@ mod tests {
             });
             assert_eq!(slow, Ok(None));
         }
-        // The first that are enough are too slow, and yet the fewest are not.
+        // The first sufficient number is too slow, but the smallest one is fast enough.
         let stiff = |substeps| Ok((substeps >= 25, median(substeps)));
         assert_eq!(enough(8..31, 26.0, stiff), Ok(Some((25, 25.0))));
         let never = |substeps| Ok((false, median(substeps)));
         assert_eq!(enough(8..31, f64::INFINITY, never), Ok(None));
-        // Nothing is left to try.
+        // An empty range.
         assert_eq!(enough(8..8, f64::INFINITY, never), Ok(None));
     }
 
     #[test]
-    fn fewer_substeps_make_a_body_softer_in_either_engine() {
+    fn fewer_substeps_soften_a_body_in_both_engines() {
         let scene = small(2, 16);
         let squash = |world: Result<Box<dyn Falling>>| {
-            let [side] = fall([world.expect("the scene makes sense")], 40);
+            let [side] = fall([world.expect("the scene is valid")], 40);
             side.peak_squash
         };
         let theirs = |substeps| {

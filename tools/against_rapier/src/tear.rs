@@ -1,4 +1,4 @@
-//! A disc in many pieces that touch.
+//! A disc cut into many pieces in contact.
 
 use fuwafuwa::{Blade, Dim2, World};
 use rapier2d::prelude::{SoftBodyHandle, Vector};
@@ -7,12 +7,12 @@ use crate::side::{Side, fall};
 use crate::world::{Falling, plane};
 use crate::{Drop, Effort, Error, Result, WIDTH, disc, ours};
 
-/// Cuts a disc along the vertical and then along the horizontal lines of a square lattice, and lets the pieces fall, a
-/// frame of fuwafuwa's and a frame of Rapier's in turns; returns fuwafuwa's side and Rapier's. The pieces touch each
-/// other as they touch the floor. Each is `pitch` voxels wide, or less at the rim.
+/// Cuts a disc along the vertical and then the horizontal lines of a square lattice and lets the pieces fall,
+/// alternating frame by frame. Returns the results of fuwafuwa and of Rapier. The pieces have contact with
+/// each other as with the floor. Each is `pitch` voxels wide, or less at the rim.
 ///
 /// # Errors
-/// [`Error`] when the scene makes no sense.
+/// [`Error`] if the scene is invalid.
 pub fn compare_tear(scene: &Drop, pitch: usize, effort: Effort) -> Result<[Side; 2]> {
     for (field, holds, expected) in [
         ("dim", scene.dim == 2, "2"),
@@ -25,14 +25,18 @@ pub fn compare_tear(scene: &Drop, pitch: usize, effort: Effort) -> Result<[Side;
     let mut theirs = disc(scene, effort)?;
     cut_to_pieces(&mut theirs, scene, pitch, 0.0);
     let mut ours = ours::world::<Dim2>(scene, None)?;
-    let whole = ours.bodies().first().expect("it has a body").piece_views()[0];
+    let whole = ours
+        .bodies()
+        .first()
+        .expect("world with a body")
+        .piece_views()[0];
     let middle = 0.5 * (whole.low[0] + whole.high[0]);
     cut_to_pieces(&mut ours, scene, pitch, middle);
     Ok(fall([Box::new(ours), Box::new(theirs)], scene.frames))
 }
 
-/// Cuts a disc with its middle at `middle` [m]. The lines lie on borders between voxels, so that no triangle is cut and
-/// no piece has a frayed rim.
+/// Cuts a disc with its middle at `middle` [m]. The lines lie on voxel borders, so that no triangle is cut
+/// and no piece has a frayed rim.
 fn cut_to_pieces(world: &mut impl Cut, scene: &Drop, pitch: usize, middle: f32) {
     let lowest = world.span().lowest;
     let voxel = WIDTH / scene.n as f32;
@@ -50,16 +54,16 @@ fn cut_to_pieces(world: &mut impl Cut, scene: &Drop, pitch: usize, middle: f32) 
     }
 }
 
-/// A world with something soft that can be cut.
+/// World with soft bodies that can be cut.
 trait Cut: Falling {
-    /// Cuts everything along a segment.
+    /// Cuts all soft bodies along a segment.
     fn cut_all(&mut self, blade: [[f32; 2]; 2]);
 }
 
 impl Cut for World<Dim2> {
     fn cut_all(&mut self, [from, to]: [[f32; 2]; 2]) {
         self.cut(
-            self.nth_body(0).expect("it has a body"),
+            self.nth_body(0).expect("world with a body"),
             &Blade::segment(from, to),
         )
         .unwrap();
@@ -67,7 +71,7 @@ impl Cut for World<Dim2> {
 }
 
 impl Cut for plane::World {
-    /// Each piece has a call of its own.
+    /// Rapier cuts one piece per call.
     fn cut_all(&mut self, blade: [[f32; 2]; 2]) {
         let blade = blade.map(|[x, y]| Vector::new(x, y));
         let bodies = self.rapier.soft_bodies();
@@ -83,17 +87,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_disc_falls_in_as_many_pieces_as_the_lines_make() {
+    fn cut_disc_has_the_expected_number_of_pieces() {
         let scene = Drop {
             height: 0.05,
             frames: 10,
             ..Drop::diced(8)
         };
-        // 32 voxels: rows of 4, 6, 6, 6, 6 and 4, which no line of pitch 1 leaves together.
-        // One line each way through the middle makes four quarters.
+        // 32 voxels, in rows of 4, 6, 6, 6, 6 and 4: pitch 1 separates all of them. One line in each
+        // direction through the middle gives four quarters.
         for (pitch, pieces) in [(1, 32), (4, 4)] {
-            for side in
-                compare_tear(&scene, pitch, Effort::default()).expect("the scene makes sense")
+            for side in compare_tear(&scene, pitch, Effort::default()).expect("the scene is valid")
             {
                 assert_eq!(side.pieces, pieces);
                 assert!(side.finite && side.milliseconds.len() == 10);

@@ -1,4 +1,4 @@
-//! Rapier's worlds, in 2D and in 3D. They are two crates with the same names in them, hence the macro.
+//! Rapier's worlds in 2D and 3D. They are two crates with equal names, hence the macro.
 
 use std::f32::consts::PI;
 
@@ -6,25 +6,25 @@ use cpu_time::ThreadTime;
 
 use crate::Drop;
 
-/// How a cell resists.
+/// Constitutive model of a cell.
 #[derive(Clone, Copy, Debug)]
 pub enum Law {
-    /// Linear elasticity in the frame that turns with the cell.
+    /// Linear elasticity in the corotated frame of the cell.
     Corotational,
-    /// Springs along the edges of the cells, and a constraint on each cell's volume.
+    /// Springs along the edges of the cells, and a volume constraint per cell.
     Springs {
-        /// Natural frequency of a spring between two nodes that have nothing else [Hz].
+        /// Natural frequency of a spring between two otherwise free nodes [Hz].
         frequency: f32,
     },
 }
 
 impl Law {
-    /// The springs that make a block of tetrahedra as stiff as the scene wants it.
+    /// Returns springs that make a block of tetrahedra as stiff as the scene requires.
     ///
-    /// Each voxel of edge h has three axial springs and three on face diagonals, all with the same constant k. Under a
-    /// strain along one axis an axial spring stores ½kh² of energy and two diagonals half as much each, so C11 = 2k/h;
-    /// likewise C12 = k/2h. Hence E = C11 − 2·C12²/(C11 + C12) = 1.8 k/h, and Poisson's ratio is C12/(C11 + C12) = 0.2.
-    /// Two nodes of mass m = ρh³ swing on one spring at (2πf)² = 2k/m.
+    /// Each voxel of edge h has three axial springs and three on face diagonals, all with the same constant
+    /// k. Under a uniaxial strain an axial spring stores ½kh² of energy and two diagonals half as much each,
+    /// so C11 = 2k/h; likewise C12 = k/2h. Hence E = C11 − 2·C12²/(C11 + C12) = 1.8 k/h, and Poisson's ratio
+    /// is C12/(C11 + C12) = 0.2. Two nodes of mass m = ρh³ on one spring oscillate at (2πf)² = 2k/m.
     pub fn springs(scene: &Drop, voxel_size: f32) -> Self {
         let stiffness = scene.young * voxel_size / 1.8;
         let mass = scene.density * voxel_size.powi(3);
@@ -34,17 +34,17 @@ impl Law {
     }
 }
 
-/// How much Rapier works on a frame.
+/// Solver effort of Rapier per frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Substeps of the solver, to which Rapier adds up to 4 while a body hits fast. More make a body stiffer.
+    /// Substeps of the solver. Rapier adds up to 4 during fast impacts. More substeps make a body stiffer.
     pub substeps: usize,
-    /// How often it goes over its constraints in each of them. More make a body stiffer, too.
+    /// Iterations over the constraints per substep. More iterations make a body stiffer, too.
     pub sweeps: usize,
 }
 
 impl Default for Effort {
-    /// Rapier's own.
+    /// Rapier's defaults.
     fn default() -> Self {
         Self {
             substeps: 4,
@@ -53,19 +53,19 @@ impl Default for Effort {
     }
 }
 
-/// How far up and down a body reaches.
+/// Vertical extent of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Span {
     /// Height of the lowest node [m].
     pub lowest: f32,
     /// Height of the highest node [m].
     pub highest: f32,
-    /// Whether all nodes are at finite places; if not, the heights mean nothing.
+    /// Whether all node positions are finite; otherwise the heights are meaningless.
     pub finite: bool,
 }
 
 impl Span {
-    /// Over nodes at these heights [m].
+    /// Returns the extent of nodes at these heights [m].
     pub fn of(heights: impl Iterator<Item = f32>) -> Self {
         let nothing = Self {
             lowest: f32::INFINITY,
@@ -79,39 +79,39 @@ impl Span {
         })
     }
 
-    /// From the lowest to the highest node [m].
+    /// Distance from the lowest to the highest node [m].
     pub fn height(&self) -> f32 {
         self.highest - self.lowest
     }
 }
 
-/// A world in which something falls.
+/// World with a falling body.
 pub trait Falling {
-    /// Its name and version, and what its bodies are made of.
+    /// Name and version of the engine, and the elements of its bodies.
     fn engine(&self) -> String;
 
-    /// One frame.
+    /// Runs a frame.
     fn step(&mut self);
 
-    /// How far up and down everything soft reaches.
+    /// Vertical extent of all soft bodies.
     fn span(&self) -> Span;
 
-    /// Substeps in a frame.
+    /// Substeps per frame.
     fn substeps(&self) -> usize;
 
-    /// Factor by which the engine itself lowered Young's modulus.
+    /// Factor by which the engine lowered Young's modulus.
     fn stiffness_scale(&self) -> f64 {
         1.0
     }
 
-    /// How many pieces there are.
+    /// Number of pieces.
     fn pieces(&self) -> usize;
 
-    /// Share of the pieces that sleep.
+    /// Fraction of the pieces that sleep.
     fn asleep(&self) -> f64;
 
-    /// One frame, and the time that the processor worked on it [ms]. By the clock on the wall a long frame of the one
-    /// engine would suffer more from whatever else the machine does than a short one of the other.
+    /// Runs a frame and returns its processor time [ms]. Wall-clock time would penalise the slower engine
+    /// more for other load on the machine.
     fn timed_step(&mut self) -> f64 {
         let start = ThreadTime::now();
         self.step();
@@ -119,7 +119,7 @@ pub trait Falling {
     }
 }
 
-/// Width of the contact skin, in voxels.
+/// Thickness of the contact skin [voxels].
 const SKIN: f32 = 0.1;
 
 macro_rules! world {
@@ -130,15 +130,15 @@ macro_rules! world {
         use $rapier::na::Unit;
         use $rapier::prelude::*;
 
-        /// A soft body above a half-space.
+        /// Soft body above a half-space.
         pub struct World {
-            /// Rapier's own world.
+            /// World of Rapier.
             pub rapier: PhysicsWorld,
             effort: Effort,
         }
 
         impl World {
-            /// The body of `mesh`, at rest, as high above the floor as the scene wants it.
+            /// Builds a world with the body of `mesh` at rest, at the initial height of the scene.
             pub fn new(mesh: &Simplices<$corners>, scene: &Drop, effort: Effort, law: Law) -> Self {
                 let mut rapier = PhysicsWorld::new();
                 rapier.gravity = Vector::Y * -scene.gravity;
@@ -173,7 +173,7 @@ macro_rules! world {
                 elastic_damping_ratio: 0.0,
                 ..softness.map_or_else(SoftBodyMaterial::default, SoftBodyMaterial::uniform)
             };
-            // Rapier puts the body's own surface in place of the ball.
+            // Rapier replaces the ball by the surface of the body.
             let surface = ColliderBuilder::ball(skin).friction(scene.friction);
             SoftBodyBuilder::new(mesh.positions.iter().map(|&at| vector(at) + up).collect())
                 .masses(
@@ -224,7 +224,7 @@ macro_rules! world {
 }
 
 pub mod plane {
-    //! Rapier's plane.
+    //! Rapier in 2D.
     world!(
         rapier2d,
         3,
@@ -234,7 +234,7 @@ pub mod plane {
 }
 
 pub mod space {
-    //! Rapier's space.
+    //! Rapier in 3D.
     world!(
         rapier3d,
         4,

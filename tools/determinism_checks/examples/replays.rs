@@ -1,8 +1,8 @@
-//! What browsers verify, and what verifies what they recorded.
+//! Records replays for browsers, and verifies replays recorded in browsers.
 //!
-//! `cargo run --release -p determinism_checks --example replays -- record FOLDER` plays a series of rounds and writes their
-//! replays into a folder; `… -- verify FOLDER` plays the replays of a folder, and fails where one goes another way than
-//! it says, or where there is none.
+//! `cargo run --release -p browser_checks --example replays -- record FOLDER` plays a series of rounds and
+//! writes their replays into a folder. `… -- verify FOLDER` plays the replays of a folder; it fails if one
+//! differs from its recorded hashes or if the folder has none.
 
 use determinism_checks::rounds::{record, series, verify};
 use std::env;
@@ -45,13 +45,13 @@ fn verify_all(folder: &Path) -> Result<(), Box<dyn Error>> {
     files.retain(|file| file.extension().is_some_and(|name| name == "tamaire"));
     files.sort();
     if files.is_empty() {
-        return Err(told(folder, "there is no replay").into());
+        return Err(told(folder, "the folder has no replay (*.tamaire)").into());
     }
     for file in &files {
         let bytes = fs::read(file).map_err(|error| told(file, error))?;
         verify(&bytes).map_err(|error| told(file, error))?;
     }
-    println!("natively: {} replays go as they say", files.len());
+    println!("native: {} replays verified", files.len());
     Ok(())
 }
 

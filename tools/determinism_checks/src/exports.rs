@@ -1,15 +1,19 @@
-//! The checks for a program that loads this library as a WebAssembly module; the golden scenes are in
-//! [`fuwafuwa_golden::exports`].
+//! Exports of the checks for a program that loads this library as a WebAssembly module. The golden scenes are
+//! in [`fuwafuwa_golden::exports`].
 //!
-//! Plain numbers only, so that no generated glue is needed. Text goes in and out through a buffer each, in UTF-8. What
-//! can fail returns 1 when it went well and 0 when not; what came of it, or the reason, is in the output then.
-#![allow(unsafe_code)] // names without mangling, and nothing else
+//! The interface uses plain numbers only, so that no generated glue is needed. Text goes through an input and
+//! an output buffer, in UTF-8. Fallible functions return 1 for success and 0 for failure; the output then has
+//! the result or the reason.
+#![allow(unsafe_code)] // only for `no_mangle`
 
 pub mod golden;
 
 use crate::rounds::{Game, MOST_TICKS, record, series, verify};
 use std::cell::RefCell;
 use std::ptr::null_mut;
+
+// An unused crate is not linked, and neither are its exports.
+pub use fuwafuwa_golden::exports as golden;
 
 #[derive(Default)]
 struct State {
@@ -27,7 +31,7 @@ impl State {
         std::str::from_utf8(&self.input).map_err(|error| error.to_string())
     }
 
-    /// Puts what came of it into the output, or the reason.
+    /// Stores the result or the reason in the output.
     fn answer(&mut self, came: Result<String, String>) -> u32 {
         let went_well = came.is_ok();
         self.output = came.unwrap_or_else(|reason| reason);
@@ -35,7 +39,7 @@ impl State {
     }
 }
 
-/// Makes room for an input of so many bytes. Returns where it is; 0 where there is no room.
+/// Allocates an input of `length` bytes. Returns its address; 0 if there is not enough memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_input(length: usize) -> *mut u8 {
     STATE.with_borrow_mut(|state| {
@@ -48,37 +52,37 @@ pub extern "C" fn checks_input(length: usize) -> *mut u8 {
     })
 }
 
-/// Where the output begins.
+/// Returns the address of the output.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_output() -> *const u8 {
     STATE.with_borrow(|state| state.output.as_ptr())
 }
 
-/// Bytes of the output.
+/// Returns the length of the output [bytes].
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_output_length() -> usize {
     STATE.with_borrow(|state| state.output.len())
 }
 
-/// Ticks of the longest round of a series.
+/// Returns the maximum number of ticks of a round of a series.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_most_ticks() -> usize {
     MOST_TICKS
 }
 
-/// Puts out what to play in a series, a round a line.
+/// Outputs the rounds of a series, one per line.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_series(number: usize) {
     STATE.with_borrow_mut(|state| state.output = series(number).join("\n"));
 }
 
-/// Plays a round of a series, which is the input, and puts out its replay.
+/// Plays the round named by the input and outputs its replay.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_record() -> u32 {
     STATE.with_borrow_mut(|state| state.answer(state.text().and_then(record)))
 }
 
-/// Plays a replay, which is the input, and puts out the world's last hash, in hexadecimal.
+/// Plays the replay in the input and outputs the final hash of the world in hexadecimal.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_verify() -> u32 {
     STATE.with_borrow_mut(|state| {
@@ -87,7 +91,7 @@ pub extern "C" fn checks_verify() -> u32 {
     })
 }
 
-/// Begins the round that is the input, to be played tick by tick.
+/// Starts the round named by the input, to be played tick by tick.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_begin() -> u32 {
     STATE.with_borrow_mut(|state| match state.text().and_then(Game::begin) {
@@ -105,7 +109,7 @@ pub extern "C" fn checks_ask() {
     STATE.with_borrow_mut(|state| state.game.iter_mut().for_each(Game::ask));
 }
 
-/// Lets a tick pass. Returns 1 while the round goes on.
+/// Runs a tick. Returns 1 while the round continues.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_step() -> u32 {
     STATE.with_borrow_mut(|state| state.game.as_mut().is_some_and(Game::step).into())

@@ -1,27 +1,27 @@
-//! What a browser has to get right and be fast enough at, without the game around it: the golden scenes, and rounds
-//! that bots play, recorded here and verified there.
+//! Checks that browsers compute correctly and fast enough, without the game: golden scenes, and rounds played
+//! by bots, recorded natively and verified in the browser (and the reverse).
 //!
-//! `cargo xtask wasm` and `web --test` build it as a WebAssembly module with the profile of the game. `xtask/golden.mjs` runs it
-//! under Node, `xtask/web/test/bits.mjs` and `xtask/web/test/speed.mjs` load it into browsers through the [`exports`];
-//! natively the example `replays` does the same.
+//! `cargo xtask wasm` and `web --test` build it as a WebAssembly module with the profile of the game.
+//! `xtask/golden.mjs` runs it under Node; `xtask/web/test/bits.mjs` and `xtask/web/test/speed.mjs` load it
+//! into browsers through the [`exports`]. Natively the example `replays` does the same.
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{AnyRound, Bot, BotKind, InputFrame, Level, Playback, Replay};
 
 /// Rounds in a series.
 pub const ROUNDS: usize = 20;
-/// Ticks of the longest round of a series: ten seconds, in which a body tears where it is going to.
+/// Maximum number of ticks of a round of a series: ten seconds, enough for a body to tear.
 pub const MOST_TICKS: usize = 600;
 
-/// What to play in a series, as [`Game::begin`] reads it: every level, in the plane and in space, by other bots than in
-/// the series before and after it, and by seeds of its own.
+/// Returns the rounds of a series, in the format of [`Game::begin`]: every level in 2D and 3D, with other
+/// bots than in the previous and next series, and with distinct seeds.
 pub fn series(number: usize) -> Vec<String> {
     let levels: Vec<&str> = NAMED.iter().chain(&NAMED_3D).map(|(id, _)| *id).collect();
     let game = |round: usize| {
         let (level, lap) = (levels[round % levels.len()], round / levels.len());
         let routes = Level::open(level).map_or(0, |level| level.routes().len());
         let bot = match (routes, (round + lap + number) % 2) {
-            // Without a basket the others have nothing to do.
+            // Bots other than `random` need a basket.
             (0, _) => "random",
             (_, 0) => "squeeze",
             _ => "shave",
@@ -31,19 +31,19 @@ pub fn series(number: usize) -> Vec<String> {
     (0..ROUNDS).map(game).collect()
 }
 
-/// A round that a bot plays.
+/// Round played by a bot.
 pub struct Game {
     round: AnyRound,
     bot: Bot,
-    /// What the bot wants in the next tick.
+    /// Input of the bot for the next tick.
     frame: InputFrame,
 }
 
 impl Game {
-    /// The start of a round, from `LEVEL BOT SEED`, such as `classic shave 1`.
+    /// Starts a round from `LEVEL BOT SEED`, such as `classic shave 1`.
     ///
     /// # Errors
-    /// What was expected, where the text says something else.
+    /// Returns the expected format if `text` does not match it.
     pub fn begin(text: &str) -> Result<Self, String> {
         let words: Vec<&str> = text.split(' ').collect();
         let [level, bot, seed] = words[..] else {
@@ -53,7 +53,7 @@ impl Game {
         let kind = BotKind::NAMED.iter().find(|(name, _)| *name == bot);
         let (_, kind) = kind.ok_or_else(|| format!("there is no bot {bot:?}"))?;
         let seed = seed.parse();
-        let seed = seed.map_err(|error| format!("the seed of {text:?}: {error}"))?;
+        let seed = seed.map_err(|error| format!("the seed of {text:?} is invalid: {error}"))?;
         Ok(Self {
             round: AnyRound::new(Arc::new(level)),
             bot: Bot::new(*kind, seed),
@@ -66,23 +66,23 @@ impl Game {
         self.frame = self.round.ask(&mut self.bot);
     }
 
-    /// Lets a tick pass. Returns whether the round goes on.
+    /// Runs a tick. Returns whether the round continues.
     pub fn step(&mut self) -> bool {
         self.round.step(self.frame);
         self.round.progress().outcome.is_none()
     }
 
-    /// What was played so far, as a text.
+    /// Returns the replay of the round until now, as text.
     ///
     /// # Errors
-    /// Why nobody could watch it again.
+    /// Returns the reason why the replay could not be played again.
     pub fn replay(&self) -> Result<String, String> {
         let replay = self.round.replay();
         replay.text_to_keep().map_err(|error| error.to_string())
     }
 }
 
-/// Plays a round of a series; its replay as a text.
+/// Plays a round of a series and returns its replay as text.
 ///
 /// # Errors
 /// As [`Game::begin`] and [`Game::replay`].
@@ -97,10 +97,10 @@ pub fn record(text: &str) -> Result<String, String> {
     game.replay()
 }
 
-/// Plays a replay to its end. Returns the world's last hash.
+/// Plays a replay to its end and returns the final hash of the world.
 ///
 /// # Errors
-/// Why it is none, or where it goes another way than it says.
+/// Returns the reason why the replay is invalid, or the first deviation from its recorded hashes.
 pub fn verify(bytes: &[u8]) -> Result<u64, String> {
     let wrong = |error: tamaire_play::ReplayError| error.to_string();
     let replay = Replay::of_bytes(bytes).map_err(wrong)?;

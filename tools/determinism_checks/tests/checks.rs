@@ -1,4 +1,4 @@
-//! The checks natively: what they play, and that they would notice.
+//! The checks run natively: they cover all rounds, and they detect errors.
 
 use determinism_checks::rounds::{Game, ROUNDS, record, series, verify};
 use std::collections::BTreeSet;
@@ -12,27 +12,27 @@ fn two_series_play_every_level_with_both_bots() {
         Some(pair)
     });
     let pairs: BTreeSet<&str> = pairs.collect();
-    // 14 levels; those two without a basket are played by one bot alone.
+    // 14 levels; the two without a basket are played by only one bot.
     assert_eq!(pairs.len(), 14 + 12, "{pairs:?}");
     let all: BTreeSet<&String> = first.iter().chain(&second).collect();
-    assert_eq!(all.len(), 2 * ROUNDS, "no round twice");
+    assert_eq!(all.len(), 2 * ROUNDS, "a round occurs twice");
 }
 
 #[test]
-fn what_was_recorded_is_verified_and_what_was_changed_is_not() {
-    let text = record("hoop squeeze 1").expect("it is played");
-    verify(text.as_bytes()).expect("it goes as it says");
-    let at = text.find("hashes = [").expect("it has hashes") + "hashes = [\"".len();
+fn verify_accepts_a_recording_and_rejects_a_changed_hash() {
+    let text = record("hoop squeeze 1").expect("the round can be played");
+    verify(text.as_bytes()).expect("the replay is valid");
+    let at = text.find("hashes = [").expect("the replay has hashes") + "hashes = [\"".len();
     let mut bytes = text.into_bytes();
     bytes[at] = if bytes[at] == b'0' { b'1' } else { b'0' };
-    let reason = verify(&bytes).expect_err("its first hash was changed");
+    let reason = verify(&bytes).expect_err("the first hash was changed");
     assert!(reason.contains("goes another way at second 1"), "{reason}");
 }
 
 #[test]
-fn what_cannot_be_played_is_told() {
+fn invalid_rounds_and_replays_are_refused() {
     let check = |text, expect| {
-        let reason = Game::begin(text).err().expect("there is no such round");
+        let reason = Game::begin(text).err().expect("the round is invalid");
         assert!(reason.contains(expect), "{text:?}: {reason}");
     };
     check("", "expected LEVEL BOT SEED");

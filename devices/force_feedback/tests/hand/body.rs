@@ -1,4 +1,4 @@
-//! A real soft body to push at.
+//! A simulated soft body to push against.
 
 use crate::stick::Other;
 use fuwafuwa::{
@@ -13,14 +13,14 @@ pub struct Disc {
 }
 
 impl Disc {
-    /// Of this stiffness [Pa], and so many times as strong as usual.
+    /// Creates a disc with a Young's modulus [Pa] and `strength` times the default strength.
     pub fn new(young: f64, strength: f32) -> Self {
         let mut world = World::new(WorldSettings {
             gravity: [0.0; 3],
             drag: 1.0,
             ..WorldSettings::default()
         })
-        .expect("they are within bounds");
+        .expect("the settings are valid");
         let usual = Material::default();
         let material = Material {
             elasticity: Elasticity {
@@ -31,9 +31,9 @@ impl Disc {
             toughness: strength * usual.toughness,
             ..usual
         };
-        let grid = VoxelGrid::ball(12, 1.0).expect("it is small");
-        world.add_soft_body(SoftBody::new(grid, &[material]).expect("it is a disc"));
-        // In a corner from which it does not roll away.
+        let grid = VoxelGrid::ball(12, 1.0).expect("the grid is valid");
+        world.add_body(Body::new(grid, &[material]).expect("the body is valid"));
+        // The walls form a corner that keeps the disc from rolling away.
         for (normal, at) in [
             ([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]),
             ([0.0, 1.0, 0.0], [0.0; 3]),
@@ -41,12 +41,11 @@ impl Disc {
         ] {
             let wall = Shape::half_space(normal, at);
             world
-                .add_rigid_body(RigidBody::fixed(wall, 0.5))
-                .expect("it is a shape");
+                .add_rigid(Rigid::fixed(wall, 0.5))
+                .expect("the wall is valid");
         }
-        let hand =
-            RigidBody::coupled_ball([-0.3, 0.5, 0.0], 0.15).with_motion_type(MotionType::default());
-        let hand = world.add_rigid_body(hand).expect("it is a hand");
+        let hand = Rigid::hand([-0.3, 0.5, 0.0], 0.15).with_drive(Drive::default());
+        let hand = world.add_rigid(hand).expect("the hand is valid");
         Self { world, hand }
     }
 }
@@ -54,8 +53,8 @@ impl Disc {
 impl Other for Disc {
     fn tick(&mut self, goal: [f32; 2]) -> ([f32; 2], [f32; 2]) {
         self.world
-            .set_target_position(self.hand, [goal[0], 0.5 + goal[1], 0.0])
-            .expect("it is a place");
+            .set_goal(self.hand, [goal[0], 0.5 + goal[1], 0.0])
+            .expect("the goal is valid");
         self.world.step();
         let hand = &self.world.rigid_bodies()[self.hand];
         let all = hand.reactions();

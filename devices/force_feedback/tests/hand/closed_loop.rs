@@ -1,11 +1,11 @@
-//! Sticks in hands, in closed loop: nothing that a user can set makes one swing.
+//! Sticks in hands, in closed loop: no setting makes a stick oscillate.
 
 use crate::body::Disc;
 use crate::stick::{Other, Play, Stick, Trace, Wall, play};
 use force_feedback::{Calibration, HARDEST, Settings};
 
-/// A consumer's stick at a finger's tip, in a loose, a usual and a firm hand, and a strong one that is driven quickly: mass
-/// [kg], damping [N s/m], grip [N/m], full force [N], travel [m] and the longest delay [ms].
+/// Consumer sticks measured at the fingertip, held loosely, normally and firmly, and a strong stick with a
+/// fast driver: mass [kg], damping [N s/m], grip [N/m], full force [N], travel [m] and longest delay [ms].
 const STICKS: [(f64, f64, f64, f64, f64, u32); 5] = [
     (0.15, 1.5, 5.0, 7.0, 0.05, 20),
     (0.15, 1.5, 30.0, 7.0, 0.05, 20),
@@ -30,8 +30,8 @@ fn sticks() -> impl Iterator<Item = Stick> {
         })
 }
 
-/// Into what stands in the way, a hard knock, and then held still. Who steers lets go after a while: a hand that goes on
-/// has a force that goes on.
+/// Moves into the obstacle, knocks hard against the stick and then holds still. A steering player releases
+/// the stick after a while, since holding it would increase the force further.
 fn knock(stick: &Stick, other: &mut dyn Other, how: &Play) -> Trace {
     let full = stick.full;
     play(
@@ -55,13 +55,17 @@ fn check_calm(stick: &Stick, how: &Play, trace: &Trace) {
     for axis in 0..2 {
         let of = || trace.force[last..].iter().map(|force| force[axis]);
         let swing = of().fold(f32::MIN, f32::max) - of().fold(f32::MAX, f32::min);
-        assert!(swing < 0.01, "it swings by {swing}: {}", what());
+        assert!(swing < 0.01, "the force oscillates by {swing}: {}", what());
     }
-    // What a full force does along the way of the stick.
+    // Work of a full force along the travel of the stick.
     let unit = stick.full * stick.travel;
     let moves = trace.kinetic[last..].iter().copied().fold(0.0, f64::max);
-    assert!(moves < 1e-4 * unit, "it moves, {moves} J: {}", what());
-    // Once nobody knocks any more, it calms down.
+    assert!(
+        moves < 1e-4 * unit,
+        "the stick moves, {moves} J: {}",
+        what()
+    );
+    // After the knock the energy must decrease.
     let window = how.rate as usize / 2;
     let quiet = (if how.steers { 3.1 } else { 2.1 }) * f64::from(how.rate);
     let mut before = f64::INFINITY;
@@ -74,7 +78,7 @@ fn check_calm(stick: &Stick, how: &Play, trace: &Trace) {
 }
 
 #[test]
-fn a_wall_never_makes_a_stick_swing() {
+fn stick_at_a_wall_does_not_oscillate() {
     let mut strongest = 0.0f32;
     for stick in sticks() {
         for (strength, clamp, gain) in [(1.0, 1.0, 1.0), (0.3, 1.0, 0.5), (1.0, 0.1, 1.0)] {
@@ -92,7 +96,7 @@ fn a_wall_never_makes_a_stick_swing() {
                         calibration,
                         ..Settings::default()
                     };
-                    // Each wall with its own pace and scale, so that there is some of everything.
+                    // Each wall has its own rate, frame length and scale, to cover many combinations.
                     for (wall, full, rate, frame, steers, reach) in [
                         (100.0, 1.0, 125, 1, false, 1.0),
                         (100.0, 1000.0, 125, 3, true, 3.0),
@@ -122,11 +126,11 @@ fn a_wall_never_makes_a_stick_swing() {
             }
         }
     }
-    assert!(strongest > 0.3, "there is a wall to be felt: {strongest}");
+    assert!(strongest > 0.3, "the wall is felt too weakly: {strongest}");
 }
 
 #[test]
-fn a_soft_body_never_makes_a_stick_swing() {
+fn stick_at_a_soft_body_does_not_oscillate() {
     let mut strongest = 0.0f32;
     for stick in sticks() {
         for (young, full, frame, steers, reach) in [
@@ -158,12 +162,12 @@ fn a_soft_body_never_makes_a_stick_swing() {
             }
         }
     }
-    assert!(strongest > 0.1, "there is a body to be felt: {strongest}");
+    assert!(strongest > 0.1, "the body is felt too weakly: {strongest}");
 }
 
-/// A device that is built in another way round is felt the same, once it is calibrated.
+/// A device with differently mounted motors feels the same after calibration.
 #[test]
-fn what_was_measured_makes_it_right() {
+fn calibration_undoes_swapped_and_inverted_motors() {
     for (swap, invert) in [
         (false, [false, false]),
         (false, [true, false]),
@@ -175,7 +179,7 @@ fn what_was_measured_makes_it_right() {
             invert,
             ..Calibration::default()
         };
-        // The device does to what it is told what a calibration has to undo, and more of it along y.
+        // The device applies the mapping that the calibration must undo, with a stronger y motor.
         let moves = |[x, y]: [f32; 2]| {
             let [x, y] = [0, 1].map(|axis| [x, y][axis] * if invert[axis] { -0.1 } else { 0.1 });
             if swap {
@@ -199,10 +203,10 @@ fn what_was_measured_makes_it_right() {
     }
 }
 
-/// Hands and sticks of all kinds, as long as they take out some of a swing by themselves: with a damping ratio of 0.25 at
-/// least, and at least 8 ms of damping × travel / full force.
+/// Random hands and sticks with some damping of their own: a damping ratio of at least 0.25, and damping ×
+/// travel / full force of at least 8 ms.
 #[test]
-fn sticks_of_all_kinds_calm_down() {
+fn random_damped_sticks_settle() {
     let mut rng = fastrand::Rng::with_seed(4);
     let mut between = |low: f64, high: f64| low * (high / low).powf(rng.f64());
     let mut tried = 0;
@@ -252,7 +256,7 @@ fn sticks_of_all_kinds_calm_down() {
             });
             swings[0].max(swings[1])
         });
-        // A body in a corner may itself still move a little, and be felt.
+        // A body in a corner may itself still move a little, which is felt.
         let most = if is_body { 0.025 } else { 0.01 };
         let is_calm = now < most || now < 0.9 * before;
         assert!(is_calm, "{now} after {before}: {stick:?}, {how:?}");

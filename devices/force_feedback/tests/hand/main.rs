@@ -1,4 +1,4 @@
-//! What a hand feels that holds a stick.
+//! Forces felt by a hand that holds a stick.
 
 mod body;
 mod closed_loop;

@@ -1,4 +1,4 @@
-//! What a hand feels of a real soft body: steady while it rests, and never a jump.
+//! Forces of a simulated soft body: steady at rest, without jumps.
 
 use crate::body::Disc;
 use crate::stick::Other;
@@ -6,10 +6,10 @@ use force_feedback::{Ability, Feel, Mail, Manner, Output, Settings, State, Watch
 use fuwafuwa::Event;
 use std::time::Duration;
 
-/// Of the device; as often as the simulation has substeps.
+/// Update rate of the device [Hz], equal to the substep rate of the simulation.
 const RATE: u32 = 960;
 
-/// What a stick is pushed with, 960 times a second, while it leans as said; and how much tore.
+/// Returns the forces on a stick at 960 Hz for a given stick motion, and the number of split nodes.
 fn feel(disc: &mut Disc, manner: Manner, lean: impl Fn(f32) -> f32) -> (Vec<[f32; 2]>, usize) {
     let (watchdog, mut feel) = (Watchdog::default(), Feel::default());
     let mut mail = Mail::default();
@@ -34,7 +34,7 @@ fn feel(disc: &mut Disc, manner: Manner, lean: impl Fn(f32) -> f32) -> (Vec<[f32
         let lean = (aim, Ability::Force);
         let felt = feel.step(&watchdog, &mail, lean, &Settings::default(), now);
         let Output::Force(force) = felt.output else {
-            panic!("it was asked for a force")
+            panic!("the output is not a force")
         };
         forces.push(force);
     }
@@ -42,14 +42,17 @@ fn feel(disc: &mut Disc, manner: Manner, lean: impl Fn(f32) -> f32) -> (Vec<[f32
 }
 
 #[test]
-fn at_rest_it_is_steady() {
-    for manner in [Manner::CellIndexing, Manner::Steers] {
+fn force_of_a_body_at_rest_is_steady() {
+    for manner in [Manner::Places, Manner::Steers] {
         for young in [1000.0, 5000.0, 20_000.0] {
             let mut disc = Disc::new(young, f32::INFINITY);
             let (forces, _) = feel(&mut disc, manner, |time| (0.5 * time - 0.4).min(0.3));
             let rest = &forces[3 * RATE as usize..];
             let mean = rest.iter().map(|force| force[0]).sum::<f32>() / rest.len() as f32;
-            assert!(mean < -0.02, "it is felt: {mean}, {young} Pa, {manner:?}");
+            assert!(
+                mean < -0.02,
+                "the mean force is too weak: {mean}, {young} Pa, {manner:?}"
+            );
             for force in rest {
                 let off = (force[0] - mean).hypot(force[1]);
                 assert!(
@@ -62,14 +65,17 @@ fn at_rest_it_is_steady() {
 }
 
 #[test]
-fn a_tear_is_no_jump() {
+fn tears_cause_no_force_jump() {
     let slew = Settings::default().slew;
     for manner in [Manner::CellIndexing, Manner::Steers] {
         let mut disc = Disc::new(5000.0, 0.05);
         let (forces, torn) = feel(&mut disc, manner, |time| (0.8 * time - 0.4).min(0.9));
-        assert!(torn > 10, "it tore {torn} times");
+        assert!(torn > 10, "only {torn} tears");
         let strongest = forces.iter().map(|force| -force[0]).fold(0.0, f32::max);
-        assert!(strongest > 0.05, "it is felt: {strongest}");
+        assert!(
+            strongest > 0.05,
+            "the strongest force is too weak: {strongest}"
+        );
         for pair in forces.windows(2) {
             let jumps = [0, 1].map(|axis| (pair[1][axis] - pair[0][axis]).abs());
             let most = slew / RATE as f32 * 1.001;

@@ -1,4 +1,4 @@
-//! A simulated stick in a simulated hand, in closed loop with all of `Feel` and with something that pushes back.
+//! A simulated stick in a simulated hand, in closed loop with all of `Feel` and an obstacle.
 
 use force_feedback::{Ability, Feel, Felt, Mail, Manner, Output, Settings, State, Stop, Watchdog};
 use std::collections::VecDeque;
@@ -6,45 +6,46 @@ use std::time::Duration;
 
 /// One tick of the simulation [s].
 pub const TICK: f64 = 1.0 / 60.0;
-/// One step of the stick [s].
+/// Time step of the stick [s].
 const STEP: f64 = 0.25e-3;
 
-/// A stick, and the hand that holds it. Metres and newtons are those at the grip.
+/// Stick and the hand that holds it. Lengths and forces are those at the grip.
 #[derive(Clone, Copy, Debug)]
 pub struct Stick {
     pub mass: f64,
-    /// Of hinges and hand [N s/m].
+    /// Damping of hinge and hand [N s/m].
     pub damping: f64,
-    /// How firmly the hand holds it where it wants it [N/m].
+    /// Stiffness of the hand around its target [N/m].
     pub grip: f64,
     /// Full force of the motors [N].
     pub full: f64,
-    /// From the middle to the rim [m].
+    /// Travel from the middle to the rim [m].
     pub travel: f64,
-    /// From a push to its being felt [s].
+    /// Delay between computing a force and feeling it [s].
     pub delay: f64,
 }
 
-/// What is at the other end.
+/// Obstacle at the other end.
 pub trait Other {
-    /// Lets a tick pass in which the hand is drawn towards `goal` [m]. Where it is [m], and what pushes it [N].
+    /// Runs a tick in which the simulated hand is pulled towards `goal` [m]. Returns its position [m] and the
+    /// contact force [N].
     fn tick(&mut self, goal: [f32; 2]) -> ([f32; 2], [f32; 2]);
 }
 
-/// How it is played.
+/// Settings of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Play {
     pub settings: Settings,
     pub rate: u32,
-    /// How many ticks pass at once.
+    /// Ticks per frame.
     pub frame: u32,
     pub steers: bool,
-    /// How far the stick reaches [m], or how fast it goes [2 m/s].
+    /// Range of the stick [m], or its maximum speed [2 m/s].
     pub reach: f32,
     pub seconds: f64,
 }
 
-/// What became of it, step by step of the device.
+/// Results by device update.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     pub force: Vec<[f32; 2]>,
@@ -52,7 +53,7 @@ pub struct Trace {
     pub kinetic: Vec<f64>,
 }
 
-/// Plays with a hand that wants the stick at `wish(time)` and is pushed with `nudge(time)` [N] by somebody else.
+/// Runs a hand that wants the stick at `wish(time)`, with the disturbance `nudge(time)` [N].
 pub fn play(
     stick: &Stick,
     other: &mut dyn Other,
@@ -72,7 +73,7 @@ pub fn play(
     let steps = (play.seconds / STEP) as usize;
     for step in 0..steps {
         let time = step as f64 * STEP;
-        // Of ten bits, as consumers' sticks have.
+        // 10 bit axes, as in consumer sticks.
         let aim =
             place.map(|k| ((k / stick.travel).clamp(-1.0, 1.0) * 512.0).round() as f32 / 512.0);
         if time >= next_frame {
@@ -109,9 +110,9 @@ pub fn play(
             let now = Duration::from_secs_f64(time);
             let Felt { output, silent, .. } =
                 feel.step(&watchdog, &mail, (aim, Ability::Force), &play.settings, now);
-            assert_ne!(silent, Some(Stop::Stale), "frames are quick enough here");
+            assert_ne!(silent, Some(Stop::Stale), "a frame takes too long");
             let Output::Force(told) = output else {
-                panic!("it was asked for a force")
+                panic!("the output is not a force")
             };
             force = told;
             trace.force.push(force);
@@ -120,12 +121,12 @@ pub fn play(
             next_update += 1.0 / f64::from(play.rate);
         }
         wire.push_back(force);
-        let arrived = wire.pop_front().expect("one was just put in");
+        let arrived = wire.pop_front().expect("the delay line is not empty");
         let (wish, nudge) = (wish(time), nudge(time));
         for axis in 0..2 {
             let motor = f64::from(arrived[axis]) * stick.full;
             let grip = stick.grip * (wish[axis] * stick.travel - place[axis]);
-            // A soft rim; an update is long to hit a hard one.
+            // Soft rim; the time step is too long for a hard one.
             let beyond = place[axis].abs() - stick.travel;
             let rim = if beyond > 0.0 {
                 -(5e4 * beyond * place[axis].signum() + 20.0 * velocity[axis])
@@ -140,12 +141,12 @@ pub fn play(
     trace
 }
 
-/// A wall at x = 0, and the simulation's hand before it, on the usual coupling.
+/// Wall at x = 0 and a simulated hand with the default coupling.
 #[derive(Clone, Copy, Debug)]
 pub struct Wall {
-    /// [N/m]
+    /// Stiffness [N/m].
     pub stiffness: f32,
-    /// [N s/m]
+    /// Damping [N s/m].
     pub damping: f32,
     hand: [f32; 2],
     velocity: [f32; 2],

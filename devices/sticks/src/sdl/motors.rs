@@ -1,4 +1,4 @@
-//! The part of SDL that pushes back.
+//! Force feedback of SDL.
 
 use std::ffi::{c_int, c_void};
 use std::marker::PhantomData;
@@ -22,37 +22,37 @@ use sdl3_sys::properties::SDL_GetBooleanProperty;
 
 use super::{Open, Sdl};
 
-/// What SDL does when one of its own assumptions fails, as for a device that it did not list when it started: go on. In
-/// debug it would else ask on the terminal, and this thread would wait for the answer.
+/// Assertion handler of SDL: continues after a failed assertion, such as for a device that was not listed at
+/// the start. In debug builds SDL would otherwise ask on the terminal and block this thread.
 unsafe extern "C" fn go_on(_: *const SDL_AssertData, _: *mut c_void) -> SDL_AssertState {
     SDL_ASSERTION_ALWAYS_IGNORE
 }
 
-/// Two constant forces of a device that is held open, along x and y. They go when this is dropped.
+/// Two constant forces of an open device, along x and y. Dropping it removes the effects.
 pub struct Motors<'sdl> {
     haptic: NonNull<SDL_Haptic>,
     effects: [SDL_HapticEffectID; 2],
-    /// Of the effects [ms].
+    /// Duration of the effects [ms].
     length: u32,
     _sdl: PhantomData<&'sdl Sdl>,
 }
 
-/// Where the forces come from that push to the right and away from the player: x to the right, y towards the player.
-/// They stay; drivers start an effect again whose direction changes.
+/// Origins of the forces that push to the right and away from the player: x to the right, y towards the
+/// player. They are constant, since drivers restart an effect whenever its direction changes.
 const FROM: [[i32; 3]; 2] = [[-1, 0, 0], [0, 1, 0]];
 
 impl Sdl {
-    /// Where this fails, devices can still be read.
+    /// Starts the haptic subsystem. If it fails, devices can still be read.
     pub(super) fn start_to_feel(&mut self) {
-        // SAFETY: see the module; the handler is one for as long as the program runs.
+        // SAFETY: see the module; the handler is a function of the program and stays valid.
         self.feels = unsafe {
             SDL_SetAssertionHandler(Some(go_on), std::ptr::null_mut());
             SDL_InitSubSystem(SDL_INIT_HAPTIC)
         };
     }
 
-    /// Takes hold of the motors of a device and lets them do nothing. None if it has none that push along two axes. Pads
-    /// have none, SDL says. It must be dropped before the device.
+    /// Opens the motors of a device and uploads zero forces. Returns `None` if it has no two-axis force
+    /// feedback; according to SDL, pads have none. `Motors` must be dropped before the device.
     pub fn motors<'sdl>(
         &'sdl self,
         open: &Open<'sdl>,
@@ -61,8 +61,8 @@ impl Sdl {
         if !self.feels {
             return None;
         }
-        // SAFETY: see the module; what is no haptic device gives null. SDL closes in `drop` what it opens here. The spring
-        // that pulls some sticks to the middle goes off with this, and the gain goes up.
+        // SAFETY: see the module; a device without haptics gives null. `drop` closes it. Opening also turns
+        // off the centring spring of some sticks and sets the gain to maximum.
         let haptic = unsafe { SDL_OpenHapticFromJoystick(open.joystick.as_ptr()) };
         let mut motors = Motors {
             haptic: NonNull::new(haptic)?,
@@ -86,7 +86,7 @@ impl Sdl {
 }
 
 impl Open<'_> {
-    /// Who made it and what it is, as USB numbers them; 0 where nobody knows.
+    /// Returns USB vendor and product id; 0 if unknown.
     pub fn model(&self) -> (u16, u16) {
         let joystick = self.joystick.as_ptr();
         // SAFETY: see the module.
@@ -99,14 +99,14 @@ impl Open<'_> {
     }
 
     pub fn can_rumble(&self) -> bool {
-        // SAFETY: see the module; the name is a constant that ends in a zero.
+        // SAFETY: see the module; the name is a zero-terminated constant.
         unsafe {
             let properties = SDL_GetJoystickProperties(self.joystick.as_ptr());
             SDL_GetBooleanProperty(properties, SDL_PROP_JOYSTICK_CAP_RUMBLE_BOOLEAN, false)
         }
     }
 
-    /// Shakes it for a time [ms]. Whether it could.
+    /// Rumbles for a duration [ms]. Returns whether it succeeded.
     pub fn rumble(&self, low: u16, high: u16, length: u32) -> bool {
         // SAFETY: see the module.
         unsafe { SDL_RumbleJoystick(self.joystick.as_ptr(), low, high, length) }
@@ -114,12 +114,12 @@ impl Open<'_> {
 }
 
 impl Motors<'_> {
-    /// Pushes; `anew` also lets the time run again after which it ends. Whether it could.
+    /// Changes the forces; `anew` also restarts their duration. Returns whether it succeeded.
     pub fn push(&self, levels: [i16; 2], anew: bool) -> bool {
         let haptic = self.haptic.as_ptr();
         let mut could = true;
         for (axis, level) in levels.into_iter().enumerate() {
-            // SAFETY: see the module; the effect is one of this device, and SDL copies what it becomes.
+            // SAFETY: see the module; the effect belongs to this device, and SDL copies the new values.
             unsafe {
                 let effect = self.effects[axis];
                 could &= SDL_UpdateHapticEffect(haptic, effect, &self.effect(axis, level));
@@ -160,7 +160,7 @@ impl Motors<'_> {
 
 impl Drop for Motors<'_> {
     fn drop(&mut self) {
-        // SAFETY: see the module; it is closed as often as it was opened, and SDL takes its effects away first.
+        // SAFETY: see the module; it is closed as often as it was opened, and SDL removes its effects first.
         unsafe { SDL_CloseHaptic(self.haptic.as_ptr()) };
     }
 }

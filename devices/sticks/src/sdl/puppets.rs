@@ -1,4 +1,4 @@
-//! The part of SDL that makes devices of nothing.
+//! Virtual devices of SDL.
 
 use std::ffi::{CString, c_int, c_void};
 use std::sync::Arc;
@@ -14,19 +14,19 @@ use sdl3_sys::joystick::{
 use super::{HatBits, Open, Sdl};
 use crate::{DeviceId, Direction, PadButton};
 
-/// What a device made of nothing looks like.
+/// Type and size of a virtual device.
 #[derive(Clone, Copy, Debug)]
 pub enum PuppetForm {
     Pad,
     Stick { axes: u16, buttons: u16, hats: u16 },
 }
 
-/// How strongly a device made of nothing rumbles, as SDL last told it.
+/// Rumble strengths that SDL last sent to a virtual device.
 #[derive(Clone, Debug, Default)]
 pub struct Rumble(Arc<AtomicU32>);
 
 impl Rumble {
-    /// The slow motor and the fast one.
+    /// Returns the strengths of the slow and the fast motor.
     pub fn get(&self) -> [u16; 2] {
         let both = self.0.load(Ordering::Relaxed);
         [(both >> 16) as u16, both as u16]
@@ -34,22 +34,22 @@ impl Rumble {
 }
 
 /// # Safety
-/// `rumble` is what `plug_in` gave away.
+/// `rumble` is the pointer given to SDL by `plug_in`.
 unsafe extern "C" fn take_rumble(rumble: *mut c_void, low: u16, high: u16) -> bool {
-    // SAFETY: the caller's; it is there until `clean_up`.
+    // SAFETY: guaranteed by the caller; valid until `clean_up`.
     let rumble = unsafe { &*rumble.cast::<AtomicU32>() };
     rumble.store(u32::from(low) << 16 | u32::from(high), Ordering::Relaxed);
     true
 }
 
 /// # Safety
-/// As for `take_rumble`, and it is not called any more.
+/// As for `take_rumble`; the pointer is not used afterwards.
 unsafe extern "C" fn clean_up(rumble: *mut c_void) {
-    // SAFETY: the caller's.
+    // SAFETY: guaranteed by the caller.
     drop(unsafe { Arc::from_raw(rumble.cast_const().cast::<AtomicU32>()) });
 }
 
-/// What is moved on a device made of nothing, and where to.
+/// Change of a control of a virtual device.
 #[derive(Clone, Copy, Debug)]
 pub enum PuppetAct {
     Axis(usize, i16),
@@ -58,7 +58,7 @@ pub enum PuppetAct {
 }
 
 impl Sdl {
-    /// Plugs in a device made of nothing, which lasts until it is unplugged or SDL ends.
+    /// Plugs in a virtual device, which lasts until it is unplugged or SDL ends.
     pub fn plug_in(
         &self,
         name: &str,
@@ -82,9 +82,9 @@ impl Sdl {
         wish.userdata = given;
         wish.Rumble = Some(take_rumble);
         wish.Cleanup = Some(clean_up);
-        // SAFETY: see the module; SDL copies the wish and its name, and its callbacks are functions of the program. What is
-        // given away SDL gives back when the device goes. When it refuses, it may have done so or not: then a few bytes of a
-        // test are lost rather than freed twice.
+        // SAFETY: see the module; SDL copies the description and its name, and the callbacks are functions of
+        // the program. SDL returns `userdata` when the device is removed. If SDL refuses the device, it may
+        // or may not have returned it: then a test leaks a few bytes rather than freeing them twice.
         match unsafe { SDL_AttachVirtualJoystick(&wish) } {
             SDL_JoystickID(0) => Err(self.error()),
             SDL_JoystickID(id) => Ok(DeviceId(id)),
@@ -92,7 +92,7 @@ impl Sdl {
     }
 
     pub fn unplug(&self, id: DeviceId) {
-        // SAFETY: see the module; an id that SDL does not know is refused.
+        // SAFETY: see the module; an unknown id is refused.
         unsafe { SDL_DetachVirtualJoystick(SDL_JoystickID(id.0)) };
     }
 
@@ -103,10 +103,10 @@ impl Sdl {
 }
 
 impl Open<'_> {
-    /// Moves a part of a device made of nothing. Whether it has that part.
+    /// Changes a control of a virtual device. Returns whether the control exists.
     pub fn act(&self, act: PuppetAct) -> bool {
         let joystick = self.joystick.as_ptr();
-        // SAFETY: see the module; SDL refuses other devices and indices that they do not have.
+        // SAFETY: see the module; SDL refuses other devices and indices out of range.
         unsafe {
             match act {
                 PuppetAct::Axis(axis, value) => {

@@ -1,4 +1,4 @@
-//! What a hand feels of a device that was told this, as a device of the kernel plays it, and what must always hold.
+//! Forces that a kernel device plays for a sequence of commands, and the invariants of such a sequence.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -9,12 +9,12 @@ use crate::uinput::{Effect, Told, What};
 
 const TO_THE_RIGHT: u16 = 0xc000;
 const AWAY: u16 = 0x8000;
-/// What goes on is started again this often.
+/// Interval at which a continuing force is started again.
 const START_AGAIN: Duration = Duration::from_millis(150);
-/// The time by which one thing may be told later than another on a slow machine.
+/// Maximum difference of delays between two commands on a slow machine.
 const LATE: Duration = Duration::from_millis(30);
 
-/// Such that the bounds are met soon, and are seen in spite of `LATE`.
+/// Settings with limits that are reached soon and are visible despite `LATE`.
 pub fn settings() -> Settings {
     Settings {
         slew: *Settings::SLEW.start(),
@@ -43,17 +43,17 @@ impl Hand {
                 motor.effect = effect;
             }
             What::Play { id, times } => {
-                let motor = self.0.get_mut(&id).expect("only what is there is played");
+                let motor = self.0.get_mut(&id).expect("a missing effect is played");
                 motor.started = (times > 0).then_some(told.at);
             }
             What::Erase { id } => {
-                self.0.remove(&id).expect("only what is there is erased");
+                self.0.remove(&id).expect("a missing effect is erased");
             }
             What::Autocentre(_) | What::Gain(_) => {}
         }
     }
 
-    /// x to the right, y away from the player [full forces].
+    /// Returns the force, x to the right, y away from the player [full forces].
     fn force(&self, at: Instant) -> [f32; 2] {
         let mut force = [0.0; 2];
         for motor in self.0.values().filter(|motor| motor.plays(at)) {
@@ -61,7 +61,7 @@ impl Hand {
             match motor.effect.direction {
                 TO_THE_RIGHT => force[0] += level,
                 AWAY => force[1] += level,
-                other => panic!("nobody asked for the direction {other:#x}"),
+                other => panic!("unexpected direction {other:#x}"),
             }
         }
         force
@@ -76,7 +76,7 @@ impl Motor {
     }
 }
 
-/// What is felt at a time, which may be yet to come, of a device that is told no more than this.
+/// Returns the force at a time, which may be in the future if no further commands arrive.
 pub fn force_at(told: &[Told], at: Instant) -> [f32; 2] {
     let mut hand = Hand::default();
     for told in told.iter().take_while(|told| told.at <= at) {
@@ -85,7 +85,7 @@ pub fn force_at(told: &[Told], at: Instant) -> [f32; 2] {
     hand.force(at)
 }
 
-/// What was felt right after each of these.
+/// Returns the force right after each command.
 pub fn forces(told: &[Told]) -> Vec<[f32; 2]> {
     let mut hand = Hand::default();
     let force = |told: &Told| {
@@ -95,14 +95,14 @@ pub fn forces(told: &[Told]) -> Vec<[f32; 2]> {
     told.iter().map(force).collect()
 }
 
-/// Since when the device was told to do nothing. None while it still is to do something, or if it never was.
+/// Returns the time since which the force is zero. `None` while it is nonzero, or if it always was zero.
 pub fn quiet_since(told: &[Told]) -> Option<Instant> {
     let last_loud = forces(told).iter().rposition(|force| *force != [0.0; 2])?;
     told.get(last_loud + 1).map(|told| told.at)
 }
 
-/// What must hold for whatever one line tells a device: no spring to the middle; two effects that end by themselves and
-/// keep their directions; they are started again in time and no more often than that; levels that keep their bounds.
+/// Checks the commands of one line: the centring spring is off; there are two effects of finite length with
+/// constant directions; they are restarted in time and not more often; levels keep their limits.
 pub fn check(told: &[Told]) {
     let centred = told
         .iter()
@@ -112,7 +112,7 @@ pub fn check(told: &[Told]) {
         .position(|told| matches!(told.what, What::Upload(_)));
     assert!(
         centred < first && centred.is_some(),
-        "autocentre goes off first"
+        "autocentre is not turned off first"
     );
 
     let mut motors: BTreeMap<i16, Vec<Told>> = BTreeMap::new();
@@ -129,7 +129,7 @@ pub fn check(told: &[Told]) {
     assert_eq!(directions, [TO_THE_RIGHT, AWAY]);
 }
 
-/// Of what one effect was told. Returns its direction.
+/// Checks the commands of one effect and returns its direction.
 fn check_motor(told: &[Told]) -> u16 {
     let effects: Vec<(Instant, Effect)> = told
         .iter()
@@ -149,10 +149,10 @@ fn check_motor(told: &[Told]) -> u16 {
         .map(|(at, effect)| (*at, f32::from(effect.level) / 32767.0))
         .collect();
     for many in levels.windows(5) {
-        // What stays the same is not told: the first of these may have lasted until the next began.
+        // Unchanged levels are not sent: the first of these may have lasted until the next.
         let (from, before, (at, to)) = (many[0].1, many[1].0, many[4]);
         let most = settings.slew * (at - before + LATE).as_secs_f32();
-        // To stop is not to slew.
+        // A stop is exempt from the slew limit.
         let is_slow = to == 0.0 || (to - from).abs() <= most;
         assert!(is_slow, "from {from} to {to} in {:?}", at - before);
         assert!(to.abs() <= settings.clamp + 1e-4, "{to}");
@@ -166,7 +166,10 @@ fn check_motor(told: &[Told]) -> u16 {
             What::Play { times, .. } => {
                 assert_eq!(times, 1);
                 if let Some(before) = starts.last() {
-                    assert!(rested || told.at - *before < LENGTH, "a push was cut short");
+                    assert!(
+                        rested || told.at - *before < LENGTH,
+                        "a push ended too early"
+                    );
                 }
                 rested = false;
                 starts.push(told.at);

@@ -1,9 +1,9 @@
-//! Sticks, motors and all that keeps them safe, against the force feedback of a real kernel: a stick of nothing is plugged
-//! in, pushed by a game that is not there, and writes down what its driver is told.
+//! Sticks, motors and all safety functions, tested against the force feedback of a real kernel: a virtual
+//! stick is plugged in, pushed by a simulated game, and records the commands of its driver.
 //!
-//! `cargo xtask kernel` runs this in a machine of its own, since it needs /dev/uinput, no udev, and nobody else at the
-//! devices. There a processor is made of software, ten times as slow, and held up now and then; so where a time is promised,
-//! the quicker ones of several tries have to keep it.
+//! `cargo xtask kernel` runs this in a virtual machine, since it needs /dev/uinput, no udev, and exclusive
+//! devices. The emulated processor is ten times as slow and is sometimes delayed. Time limits therefore apply
+//! to the quicker ones of several tries.
 
 #![cfg(target_os = "linux")]
 
@@ -20,16 +20,16 @@ use sticks::{Control, DeviceId, Sticks};
 use uinput::{Stick, Told, What};
 
 const MS: Duration = Duration::from_millis(1);
-/// How long a slow machine may take for what has no hurry.
+/// Timeout on a slow machine for everything without a tighter limit.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// Set for a process that only plays, until it is killed.
+/// Environment variable of a process that only plays until it is killed.
 const PLAYS: &str = "STICKS_KERNEL_TEST_PLAYS";
 
 const LEFT: [f32; 2] = [-1.0, 0.0];
 const RIGHT: [f32; 2] = [1.0, 0.0];
 const WAYS: [[f32; 2]; 4] = [LEFT, RIGHT, [0.0, -1.0], [0.0, 1.0]];
 
-/// A game that plays with one stick.
+/// Simulated game with one stick.
 struct Game {
     line: Option<Line>,
     force: Force,
@@ -40,24 +40,24 @@ impl Game {
     fn start() -> Game {
         let mut game = Game {
             line: None,
-            force: Force::start(250).expect("the system has a thread"),
+            force: Force::start(250).expect("a thread can be started"),
             sticks: Sticks::open().expect("SDL starts"),
         };
         game.take_hold();
         game
     }
 
-    /// Of the stick that was plugged in last.
+    /// Connects to the stick that was plugged in last.
     fn take_hold(&mut self) {
         until("there is a stick", || self.id().is_some());
         let haptic = self.sticks.haptic(self.id().expect("there is a stick"));
         let line = self.force.add(Box::new(haptic), settings());
-        until("it can push", || line.report().ability == Ability::Force);
+        until("force ready", || line.report().ability == Ability::Force);
         self.line = Some(line);
     }
 
     fn line(&self) -> &Line {
-        self.line.as_ref().expect("it took hold of a stick")
+        self.line.as_ref().expect("the game has a stick")
     }
 
     fn id(&self) -> Option<DeviceId> {
@@ -70,14 +70,14 @@ impl Game {
         snapshot.devices.last().map(|device| device.aim())
     }
 
-    /// Leans the stick against something that pushes it back, until it is felt this strongly. Returns when the simulation
-    /// said so last.
+    /// Leans the stick against an obstacle until the force has a given strength. Returns the time of the last
+    /// reported state.
     fn is_pushed(&self, stick: &Stick, push: [f32; 2], strength: f32) -> Instant {
         let aim = push.map(|k| -k);
-        stick.lean(aim).expect("it is plugged in");
-        until("it leans", || self.aim() == Some(aim));
+        stick.lean(aim).expect("the stick is plugged in");
+        until("the stick leans", || self.aim() == Some(aim));
         let mut last = Instant::now();
-        until("it pushes", || {
+        until("the force is felt", || {
             last = simulate(self.line(), push, 50 * MS);
             let felt = force_at(&stick.told(), Instant::now());
             felt[0] * push[0] + felt[1] * push[1] >= strength
@@ -86,7 +86,7 @@ impl Game {
     }
 }
 
-/// A simulation that goes on for this long, whose hand is pushed by what it touches. Returns when it last said so.
+/// Simulates a contact for a duration. Returns the time of the last reported state.
 fn simulate(line: &Line, push: [f32; 2], duration: Duration) -> Instant {
     let start = Instant::now();
     loop {
@@ -103,7 +103,7 @@ fn simulate(line: &Line, push: [f32; 2], duration: Duration) -> Instant {
 }
 
 fn plug_in() -> Stick {
-    Stick::plug_in().expect("there is /dev/uinput")
+    Stick::plug_in().expect("/dev/uinput exists")
 }
 
 fn until(what: &str, mut holds: impl FnMut() -> bool) {
@@ -114,48 +114,48 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
     }
 }
 
-/// Since when nothing is felt any more.
+/// Waits for a zero force. Returns the time since which the force is zero.
 fn until_quiet(stick: &Stick) -> Instant {
     let quiet = || quiet_since(&stick.told());
-    // The whole machine may have been held up and gone on, with a pause that nobody asked for: that one does not last.
-    until("it rests", || {
+    // The whole machine may have been delayed, which causes a short unintended pause.
+    until("the force is zero", || {
         quiet().is_some_and(|since| since.elapsed() > 50 * MS)
     });
-    quiet().expect("nobody says any more that there is something to feel")
+    quiet().expect("the force is still zero")
 }
 
 fn until_erased(stick: &Stick) {
     let is_erasing = |told: &Told| matches!(told.what, What::Erase { .. });
-    until("both effects are taken away", || {
+    until("both effects are erased", || {
         stick.told().into_iter().filter(is_erasing).count() == 2
     });
 }
 
-/// Prints how long it took, and sees whether the quicker tries keep what was promised: the machine only ever adds to it.
+/// Prints the times and checks that the quicker tries keep the limit: the machine only adds time.
 fn took(what: &str, mut times: Vec<Duration>, promised: Duration) {
     times.sort();
     let [quick, middle, longest] = [1, 2, 4].map(|k| times[(times.len() - 1) * k / 4]);
-    println!("{what}: {quick:.1?} when quick, {middle:.1?} mostly, {longest:.1?} at most");
+    println!("{what}: {quick:.1?} lower quartile, {middle:.1?} median, {longest:.1?} maximum");
     assert!(
         quick <= promised,
-        "{what}: {promised:?} was promised, not {times:.1?}"
+        "{what}: limit {promised:?}, measured {times:.1?}"
     );
 }
 
 #[test]
 #[ignore = "cargo xtask kernel"]
-fn what_the_stick_says_is_read() {
+fn axes_and_presses_are_read() {
     let stick = plug_in();
     let game = Game::start();
     for aim in [[1.0, 0.0], [0.0, 1.0], [-0.5, -1.0]] {
-        stick.lean(aim).expect("it is plugged in");
-        until("it leans", || {
+        stick.lean(aim).expect("the stick is plugged in");
+        until("the stick leans", || {
             let near = |[x, y]: [f32; 2]| (x - aim[0]).abs() + (y - aim[1]).abs() < 0.01;
             game.aim().is_some_and(near)
         });
     }
     for _ in 0..3 {
-        stick.press(2).expect("it is plugged in");
+        stick.press(2).expect("the stick is plugged in");
     }
     until("three presses are counted", || {
         let snapshot = game.sticks.snapshot();
@@ -166,7 +166,7 @@ fn what_the_stick_says_is_read() {
 
 #[test]
 #[ignore = "cargo xtask kernel"]
-fn the_stick_is_pushed_the_way_that_the_hand_is() {
+fn force_has_the_direction_of_the_contact() {
     let stick = plug_in();
     let game = Game::start();
     for push in WAYS {
@@ -188,14 +188,14 @@ fn the_stick_is_pushed_the_way_that_the_hand_is() {
 
 #[test]
 #[ignore = "cargo xtask kernel"]
-fn a_stick_that_is_shaken_keeps_its_bounds() {
+fn shaken_stick_keeps_the_limits() {
     let stick = plug_in();
     let game = Game::start();
-    // As strongly as it may be.
+    // The strongest allowed force.
     game.is_pushed(&stick, LEFT, settings().clamp - 0.001);
     for turn in 0..30 {
         let (way, back) = (WAYS[turn % 2], WAYS[(turn + 1) % 2]);
-        stick.lean(back).expect("it is plugged in");
+        stick.lean(back).expect("the stick is plugged in");
         simulate(game.line(), way, 80 * MS);
     }
     game.line().stop(Stop::Menu);
@@ -205,8 +205,8 @@ fn a_stick_that_is_shaken_keeps_its_bounds() {
 
 #[test]
 #[ignore = "cargo xtask kernel"]
-fn every_way_to_stop_is_quick() {
-    /// Stops it, and returns when that began.
+fn every_stop_takes_at_most_20_ms() {
+    /// Stops the force and returns the start time of the stop.
     type Way = fn(&mut Game) -> Instant;
     let pause: Way = |game| {
         let start = Instant::now();
@@ -219,16 +219,16 @@ fn every_way_to_stop_is_quick() {
         start
     };
     let panic: Way = |game| {
-        let line = game.line.take().expect("it is pushed");
+        let line = game.line.take().expect("the game has a line");
         let (tell, told) = std::sync::mpsc::channel();
         let thread = std::thread::spawn(move || {
             simulate(&line, LEFT, 50 * MS);
-            tell.send(Instant::now()).expect("the test waits for it");
-            // A panic, but for what it prints.
+            tell.send(Instant::now()).expect("the test waits");
+            // Like a panic, but without printing a message.
             std::panic::resume_unwind(Box::new(()));
         });
-        thread.join().expect_err("it panics");
-        told.recv().expect("it told when")
+        thread.join().expect_err("the thread panics");
+        told.recv().expect("the thread sent the time")
     };
     let emergency: Way = |game| {
         let start = Instant::now();
@@ -237,15 +237,15 @@ fn every_way_to_stop_is_quick() {
     };
     let drop_thread: Way = |game| {
         let start = Instant::now();
-        game.force = Force::start(250).expect("the system has a thread");
+        game.force = Force::start(250).expect("a thread can be started");
         start
     };
     let ways = [
-        ("to pause", pause),
-        ("to drop the line", drop_line),
-        ("to panic", panic),
-        ("an emergency stop", emergency),
-        ("to drop the thread", drop_thread),
+        ("pause", pause),
+        ("drop of the line", drop_line),
+        ("panic", panic),
+        ("emergency stop", emergency),
+        ("drop of the thread", drop_thread),
     ];
     for (what, way) in ways {
         let times = (0..7).map(|_try| {
@@ -261,30 +261,30 @@ fn every_way_to_stop_is_quick() {
 
 #[test]
 #[ignore = "cargo xtask kernel"]
-fn a_simulation_that_stalls_stops_within_a_tenth_of_a_second() {
+fn force_ends_within_100_ms_of_a_stall() {
     let stick = plug_in();
     let game = Game::start();
     let times = (0..7).map(|_try| {
         let last = game.is_pushed(&stick, LEFT, 0.08);
-        // This is the thread that simulates, and here it hangs.
+        // This thread is the simulation, and it hangs here.
         sleep(300 * MS);
         assert_eq!(game.line().report().silent, Some(Stop::Stale));
         until_quiet(&stick).saturating_duration_since(last)
     });
-    took("a stall", times.collect(), 100 * MS);
+    took("stall", times.collect(), 100 * MS);
     check(&stick.told());
 }
 
 #[test]
 #[ignore = "cargo xtask kernel"]
-fn a_device_that_is_let_go_keeps_nothing_and_can_be_taken_again() {
+fn released_device_keeps_no_effect_and_can_be_reused() {
     let stick = plug_in();
     let mut game = Game::start();
     game.is_pushed(&stick, LEFT, 0.05);
     game.line = None;
     until_erased(&stick);
     for _try in 0..5 {
-        // Nobody waits here until the one before has let go.
+        // Does not wait until the previous sink has released the device.
         game.line = None;
         game.take_hold();
         game.is_pushed(&stick, LEFT, 0.05);
@@ -293,14 +293,14 @@ fn a_device_that_is_let_go_keeps_nothing_and_can_be_taken_again() {
 
 #[test]
 #[ignore = "cargo xtask kernel"]
-fn a_device_that_is_unplugged_and_plugged_in_again_pushes_again() {
+fn device_pushes_again_after_being_replugged() {
     let mut stick = plug_in();
     let mut game = Game::start();
     for _try in 0..3 {
         let before = game.id();
         game.is_pushed(&stick, LEFT, 0.05);
         drop(stick);
-        until("the line says so", || {
+        until("the line reports it", || {
             simulate(game.line(), LEFT, 30 * MS);
             game.line().report().silent == Some(Stop::Unplugged)
         });
@@ -322,17 +322,17 @@ fn a_device_that_is_unplugged_and_plugged_in_again_pushes_again() {
 struct Process(Child);
 
 impl Process {
-    /// Starts it, and waits until it pushes.
+    /// Starts the process and waits until it pushes.
     fn start(stick: &Stick) -> Process {
-        stick.lean(RIGHT).expect("it is plugged in");
-        let child = Command::new(std::env::current_exe().expect("this is running"))
+        stick.lean(RIGHT).expect("the stick is plugged in");
+        let child = Command::new(std::env::current_exe().expect("the path of the test is known"))
             .args(["--exact", "the_process_that_plays", "--ignored"])
             .env(PLAYS, "1")
             .stdout(Stdio::null())
             .spawn()
-            .expect("this can be started");
+            .expect("the process can be started");
         let process = Process(child);
-        until("it pushes", || {
+        until("the force is felt", || {
             force_at(&stick.told(), Instant::now())[0] < -0.1
         });
         process
@@ -347,7 +347,7 @@ impl Process {
 
 impl Drop for Process {
     fn drop(&mut self) {
-        // It may have been killed already.
+        // Ignores the error if the process was already killed.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
@@ -364,13 +364,13 @@ fn the_process_that_plays() {
 
 #[test]
 #[ignore = "cargo xtask kernel"]
-fn the_kernel_stops_a_process_that_is_killed() {
+fn kernel_stops_the_force_of_a_killed_process() {
     let stick = plug_in();
     let mut process = Process::start(&stick);
     let start = Instant::now();
     // SIGKILL: no handler runs, and nothing is dropped.
-    process.0.kill().expect("it runs");
-    process.0.wait().expect("it was killed");
+    process.0.kill().expect("the process runs");
+    process.0.wait().expect("the process can be waited for");
     let time = until_quiet(&stick) - start;
     until_erased(&stick);
     let told = stick.told();
@@ -379,33 +379,41 @@ fn the_kernel_stops_a_process_that_is_killed() {
         .filter(|told| told.at > start)
         .map(|told| told.what)
         .collect();
-    println!("to be killed: {time:.1?}; the device was told {after:?}");
+    println!("kill: {time:.1?}; commands afterwards: {after:?}");
     assert!(time < LENGTH);
 }
 
 #[test]
 #[ignore = "cargo xtask kernel"]
-fn a_process_that_hangs_pushes_for_half_a_second_and_begins_gently_when_it_goes_on() {
+fn force_of_a_hanging_process_ends_and_later_ramps_up() {
     let stick = plug_in();
     let process = Process::start(&stick);
     process.signal("-STOP");
-    // What was on its way arrives.
+    // Pending commands arrive.
     sleep(50 * MS);
     let (start, hung) = (Instant::now(), stick.told());
-    assert_ne!(force_at(&hung, start), [0.0; 2], "it hangs while it pushes");
+    assert_ne!(
+        force_at(&hung, start),
+        [0.0; 2],
+        "the process hangs without a force"
+    );
     let ends = (0..=500).find(|ms| force_at(&hung, start + *ms * MS) == [0.0; 2]);
-    println!("to hang: the push ends by itself after {ends:?} ms");
+    println!("hang: the force ends by itself after {ends:?} ms");
     assert!(ends.is_some());
     sleep(3 * LENGTH);
-    assert_eq!(stick.told().len(), hung.len(), "nobody prolongs it");
+    assert_eq!(
+        stick.told().len(),
+        hung.len(),
+        "the hanging process sent commands"
+    );
 
     process.signal("-CONT");
-    until("it pushes again", || {
+    until("the force is felt again", || {
         force_at(&stick.told(), Instant::now()) != [0.0; 2]
     });
     let told = stick.told();
     let felt = forces(&told).split_off(hung.len());
     let first = felt.iter().find(|force| **force != [0.0; 2]);
-    println!("to go on: it begins with {first:.3?}");
+    println!("continue: first force {first:.3?}");
     assert!(first.is_some_and(|[x, _]| x.abs() < 0.02), "{felt:.3?}");
 }

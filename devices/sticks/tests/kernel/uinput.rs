@@ -1,6 +1,6 @@
-//! A stick with motors, made of nothing, in front of a real kernel: what drivers see, written down with its time.
+//! Virtual stick with motors for a real kernel: records the commands of the driver with their times.
 //!
-//! After the kernel's `Documentation/input/uinput.rst` and `Documentation/input/ff.rst`.
+//! See the kernel's `Documentation/input/uinput.rst` and `Documentation/input/ff.rst`.
 
 use std::ffi::c_int;
 use std::fs::{File, OpenOptions};
@@ -20,7 +20,7 @@ const EV_SYN: u16 = 0;
 const EV_KEY: u16 = 1;
 const EV_ABS: u16 = 3;
 const EV_FF: u16 = 0x15;
-/// Not from a program: the kernel asks the device to take something.
+/// Event from the kernel, not from a program: a request to the device.
 const EV_UINPUT: u16 = 0x101;
 const UI_FF_UPLOAD: u16 = 1;
 const UI_FF_ERASE: u16 = 2;
@@ -43,23 +43,23 @@ const UI_END_FF_UPLOAD: Ioctl = _IOW::<uinput_ff_upload>(U, 201);
 const UI_BEGIN_FF_ERASE: Ioctl = _IOWR::<uinput_ff_erase>(U, 202);
 const UI_END_FF_ERASE: Ioctl = _IOW::<uinput_ff_erase>(U, 203);
 
-/// How far an axis goes to each side, as the device counts.
+/// Range of an axis to each side, in device units.
 const RIM: f32 = 1000.0;
 
-/// A stick that is plugged in until it is dropped.
+/// Virtual stick, plugged in until it is dropped.
 pub struct Stick {
     desk: Arc<Desk>,
     listener: Option<JoinHandle<()>>,
 }
 
-/// What both threads work on.
+/// Data shared by both threads.
 struct Desk {
     file: File,
     told: Mutex<Vec<Told>>,
     is_plugged_in: AtomicBool,
 }
 
-/// Something that the driver was told.
+/// Command of the driver.
 #[derive(Clone, Copy, Debug)]
 pub struct Told {
     pub at: Instant,
@@ -68,32 +68,32 @@ pub struct Told {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum What {
-    /// An effect is new or changes.
+    /// Creates or changes an effect.
     Upload(Effect),
-    /// An effect starts, so many times over; 0 ends it.
+    /// Starts an effect, `times` times; 0 ends it.
     Play { id: i16, times: i32 },
-    /// An effect is taken away.
+    /// Removes an effect.
     Erase { id: i16 },
-    /// The strength of the spring to the middle.
+    /// Strength of the centring spring.
     Autocentre(i32),
-    /// The strength of everything.
+    /// Overall gain.
     Gain(i32),
 }
 
-/// A constant force.
+/// Constant force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effect {
     pub id: i16,
-    /// 0 pushes towards the player, 0x4000 to the left, 0x8000 away, 0xc000 to the right.
+    /// Direction: 0 pushes towards the player, 0x4000 to the left, 0x8000 away, 0xc000 to the right.
     pub direction: u16,
     pub level: i16,
-    /// It ends this long after its start; zero is never.
+    /// Duration after the start; zero is unlimited.
     pub length: Duration,
     pub delay: Duration,
 }
 
 impl Stick {
-    /// Plugs one in, upright, that has two axes, four buttons and room for 16 effects.
+    /// Plugs in an upright stick with two axes, four buttons and room for 16 effects.
     pub fn plug_in() -> io::Result<Stick> {
         let file = OpenOptions::new()
             .read(true)
@@ -115,9 +115,9 @@ impl Stick {
             structure(&file, UI_ABS_SETUP, &mut axis)?;
         }
         let mut setup: uinput_setup = zeroed();
-        // USB, and numbers that belong to nobody.
+        // USB, with a vendor and product id without an owner.
         (setup.id.bustype, setup.id.vendor, setup.id.product) = (3, 0x1209, 1);
-        for (to, from) in setup.name.iter_mut().zip(b"Stick of nothing") {
+        for (to, from) in setup.name.iter_mut().zip(b"Virtual stick") {
             *to = *from as _;
         }
         setup.ff_effects_max = 16;
@@ -137,16 +137,16 @@ impl Stick {
         })
     }
 
-    /// Leans it: x to the right, y away from the player, each -1 to 1.
+    /// Moves the stick: x to the right, y away from the player, each −1 to 1.
     pub fn lean(&self, [x, y]: [f32; 2]) -> io::Result<()> {
-        // Kernels count y towards the player.
+        // In the kernel y increases towards the player.
         for (code, place) in [(0, x), (1, -y)] {
             self.say(EV_ABS, code, (place * RIM) as i32)?;
         }
         self.say(EV_SYN, 0, 0)
     }
 
-    /// Presses a button and lets it go.
+    /// Presses and releases a button.
     pub fn press(&self, button: u16) -> io::Result<()> {
         for value in [1, 0] {
             self.say(EV_KEY, BTN_TRIGGER + button, value)?;
@@ -155,7 +155,7 @@ impl Stick {
         Ok(())
     }
 
-    /// All that the driver was told so far.
+    /// Returns all commands of the driver.
     pub fn told(&self) -> Vec<Told> {
         self.desk.told().clone()
     }
@@ -167,23 +167,23 @@ impl Stick {
     }
 }
 
-/// Unplugs it.
+/// Unplugs the stick.
 impl Drop for Stick {
     fn drop(&mut self) {
         self.desk.is_plugged_in.store(false, Ordering::Relaxed);
-        nothing(&self.desk.file, UI_DEV_DESTROY).expect("it was created");
+        nothing(&self.desk.file, UI_DEV_DESTROY).expect("the device was created");
         if let Some(listener) = self.listener.take() {
             let heard = listener.join();
             if !std::thread::panicking() {
-                heard.expect("the device understood all that it was told");
+                heard.expect("the listener understood all commands");
             }
         }
     }
 }
 
 impl Desk {
-    /// Takes whatever the kernel brings, until the device is destroyed: that fails any answer, but wakes nobody who waits
-    /// to read.
+    /// Handles the kernel's requests until the device is destroyed. Destruction makes every answer fail, but
+    /// does not wake a blocked read.
     fn listen(&self) {
         while self.is_plugged_in.load(Ordering::Relaxed) {
             let has_answered = !is_readable(&self.file) || self.answer().is_ok();
@@ -233,7 +233,10 @@ impl Desk {
 
 impl Effect {
     fn read(effect: &ff_effect) -> Effect {
-        assert_eq!(effect.type_, FF_CONSTANT, "nothing else was offered");
+        assert_eq!(
+            effect.type_, FF_CONSTANT,
+            "only constant forces are supported"
+        );
         // `struct ff_constant_effect` begins with its level.
         let [first, second, ..] = effect.u[0].to_ne_bytes();
         Effect {
@@ -247,46 +250,46 @@ impl Effect {
 }
 
 /// # Safety
-/// A structure of numbers only, of which all bytes may be zero.
+/// A structure of numbers only, valid with all bytes zero.
 unsafe trait Plain {}
-// SAFETY: see libc; these are what the kernel reads and writes.
+// SAFETY: see libc; these are the structures that the kernel reads and writes.
 unsafe impl Plain for input_event {}
 unsafe impl Plain for uinput_setup {}
 unsafe impl Plain for uinput_abs_setup {}
 unsafe impl Plain for uinput_ff_upload {}
 unsafe impl Plain for uinput_ff_erase {}
 
-/// A structure of the kernel with nothing in it.
+/// Returns a zeroed kernel structure.
 fn zeroed<T: Plain>() -> T {
-    // SAFETY: `Plain` promises that this is one.
+    // SAFETY: guaranteed by `Plain`.
     unsafe { std::mem::zeroed() }
 }
 
 fn bytes_of(event: &mut input_event) -> &mut [u8] {
     let length = size_of_val(event);
-    // SAFETY: it has numbers of 8, 8, 2, 2 and 4 bytes, with no hole between them, that may be anything.
+    // SAFETY: it has numbers of 8, 8, 2, 2 and 4 bytes, without padding, and all bit patterns are valid.
     unsafe { std::slice::from_raw_parts_mut(std::ptr::from_mut(event).cast(), length) }
 }
 
-/// Whether there is something to read now or within a moment.
+/// Returns whether data can be read now or within 20 ms.
 fn is_readable(file: &File) -> bool {
     let mut poll = pollfd {
         fd: file.as_raw_fd(),
         events: POLLIN,
         revents: 0,
     };
-    // SAFETY: it is told of one, and there is one.
+    // SAFETY: the count of one matches the one structure.
     let status = unsafe { libc::poll(&mut poll, 1, 20) };
     status > 0
 }
 
 fn nothing(file: &File, request: Ioctl) -> io::Result<()> {
-    // SAFETY: it takes no argument.
+    // SAFETY: the request takes no argument.
     outcome(unsafe { libc::ioctl(file.as_raw_fd(), request) })
 }
 
 fn number(file: &File, request: Ioctl, number: u16) -> io::Result<()> {
-    // SAFETY: it takes a number and follows no pointer.
+    // SAFETY: the request takes a number and follows no pointer.
     outcome(unsafe { libc::ioctl(file.as_raw_fd(), request, c_int::from(number)) })
 }
 

@@ -1,4 +1,4 @@
-//! The device that the system prefers: found, kept open, and looked for again when it is lost.
+//! Default sound device: opened, kept open, and reopened after a loss.
 
 use super::mailbox::{Mailbox, NoSound, lock};
 use super::source::Source;
@@ -9,13 +9,13 @@ use std::sync::{Mutex, Weak};
 use std::thread;
 use std::time::Duration;
 
-/// Until a device that does not answer counts as none.
+/// Timeout after which a device that does not answer is treated as missing.
 pub(super) const PATIENCE: Duration = Duration::from_secs(3);
 
-/// Between two attempts to open a device.
+/// Pause between two attempts to open a device.
 pub(super) const PAUSE: Duration = Duration::from_secs(2);
 
-/// Keeps a device open until the speaker is gone, and drops `opened` after the first attempt.
+/// Keeps a device open until the speaker is dropped. Drops `opened` after the first attempt.
 pub(super) fn keep_open<Stream>(
     mailbox: &Weak<Mutex<Mailbox>>,
     opened: Sender<()>,
@@ -53,19 +53,19 @@ pub(super) fn report(mailbox: &Weak<Mutex<Mailbox>>, trouble: Option<NoSound>) {
     }
 }
 
-/// Plays on the device that the system prefers, until dropped; tells `lost` when it no longer can.
+/// Opens a stream on the default device, which plays until dropped. A loss of the device is sent to `lost`.
 pub(super) fn open_stream(
     mailbox: &Weak<Mutex<Mailbox>>,
     lost: Sender<NoSound>,
 ) -> Result<cpal::Stream, NoSound> {
-    // ALSA would write to the terminal what it tries in vain; what matters comes back as an error.
+    // Stops ALSA from printing failed attempts; relevant errors are returned.
     #[cfg(target_os = "linux")]
     let _ = alsa::Output::local_error_handler();
     let device = cpal::default_host()
         .default_output_device()
         .ok_or(NoSound::NoDevice)?;
     let supported = device.default_output_config()?;
-    // With the buffer that the system prefers: ALSA's way to PulseAudio stalls with a size of our choice.
+    // Uses the default buffer size: ALSA's PulseAudio plugin stalls with other sizes.
     let config = supported.config();
     let source = Source::new(mailbox.clone(), config.sample_rate);
     let build = match supported.sample_format() {
@@ -81,7 +81,7 @@ pub(super) fn open_stream(
         SampleFormat::U64 => build::<u64>,
         SampleFormat::F32 => build::<f32>,
         SampleFormat::F64 => build::<f64>,
-        other => return Err(NoSound::Refused(format!("its samples are {other}"))),
+        other => return Err(NoSound::Refused(format!("sample format {other}"))),
     };
     let stream = build(&device, config, source, lost)?;
     stream.play()?;
@@ -99,9 +99,9 @@ fn build<T: SizedSample + FromSample<f32>>(
         config,
         move |out: &mut [T], _| source.fill(out, channels),
         move |error| match error.kind() {
-            // It plays on.
+            // Playback continues.
             ErrorKind::DeviceChanged | ErrorKind::Xrun | ErrorKind::RealtimeDenied => {}
-            // The keeper may have heard of it already, and be gone from the channel.
+            // The send fails if the keeper has already closed the channel.
             _ => drop(lost.send(error.into())),
         },
         Some(PATIENCE),

@@ -1,38 +1,38 @@
-//! What the game leaves for the device, and what it hears of it.
+//! Data shared by the game and the device.
 
 use crate::cue::Cue;
 use crate::soundscape::{Soundscape, Volumes};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// As many cues may wait for the device; a tick of heavy tearing has some hundred.
+/// Maximum number of waiting cues; a tick of heavy tearing has some hundred.
 const MOST_CUES: usize = 256;
 
-/// As many of them may be of the world. The rest are kept for menus and jingles, which are few and
+/// Maximum number of waiting cues of the world. The rest is reserved for menus and jingles, which are few and
 /// must not be lost.
 pub const MOST_CUES_OF_THE_WORLD: usize = 240;
 
-/// Why nothing is heard. The game goes on without.
+/// Reason for missing sound. The game continues without.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoSound {
-    /// There is none.
+    /// No device was found.
     #[error("no sound device was found")]
     NoDevice,
-    /// Another program has it for itself.
+    /// Another program uses the device exclusively.
     #[error("the sound device is in use by another program")]
     Busy,
-    /// It neither works nor fails.
+    /// The device does not respond.
     #[error("the sound device does not answer")]
     NoAnswer,
-    /// Something else, in the words of the system.
+    /// Another error, with the message of the system.
     #[error("the sound device cannot be used: {0}")]
     Refused(String),
 }
 
-/// What the game leaves for the device.
+/// Data from the game for the device, and the state of the device.
 pub struct Mailbox {
     pub soundscape: Soundscape,
     pub volumes: Volumes,
-    /// Counts what was told, so that the device sees what is new.
+    /// Incremented by each update, so that the device detects it.
     pub number: u64,
     pub cues: Vec<Cue>,
     pub trouble: Option<NoSound>,
@@ -49,7 +49,7 @@ impl Mailbox {
         }
     }
 
-    /// Drops a cue for which there is no room, or no device: it would come too late.
+    /// Adds a cue. Drops it if there is no space, or no device: it would be heard too late.
     pub fn put(&mut self, cue: Cue) {
         let most = match cue {
             Cue::Thud { .. } | Cue::Tear { .. } | Cue::Crumb { .. } => MOST_CUES_OF_THE_WORLD,
@@ -61,7 +61,7 @@ impl Mailbox {
     }
 }
 
-/// Nothing in the mailbox can be half done, so a thread that panicked does no harm.
+/// Locks the mailbox. It is consistent at all times, so poisoning is ignored.
 pub fn lock(mailbox: &Mutex<Mailbox>) -> MutexGuard<'_, Mailbox> {
     mailbox.lock().unwrap_or_else(PoisonError::into_inner)
 }

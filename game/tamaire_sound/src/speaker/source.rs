@@ -1,4 +1,4 @@
-//! What the device plays.
+//! Sample source of the device.
 
 use super::mailbox::Mailbox;
 use crate::soundscape::{Hush, Soundscape};
@@ -6,14 +6,14 @@ use crate::synth::Synth;
 use cpal::{FromSample, SizedSample};
 use std::sync::{Mutex, TryLockError, Weak};
 
-/// Frames that are worked out at a time.
+/// Frames rendered at a time.
 const FRAMES: usize = 256;
 
-/// What the device's thread owns: it must never wait, nor allocate.
+/// State of the device thread, which must never block or allocate.
 pub struct Source {
     mailbox: Weak<Mutex<Mailbox>>,
     synth: Synth,
-    /// Of the last news that it heard.
+    /// Number of the last update read.
     number: u64,
 }
 
@@ -26,7 +26,8 @@ impl Source {
         }
     }
 
-    /// Fills frames of `channels` samples: all after the second are silent, and a single one gets both.
+    /// Fills frames of `channels` samples. Channels after the second are silent; a single channel gets the
+    /// mean.
     pub fn fill<T: SizedSample + FromSample<f32>>(&mut self, out: &mut [T], channels: usize) {
         self.listen();
         let mut stereo = [0.0; 2 * FRAMES];
@@ -46,7 +47,7 @@ impl Source {
         }
     }
 
-    /// Takes what is new. If the game is just writing, that has time until the next call.
+    /// Reads updates and cues. If the mailbox is locked, they are read in the next call.
     fn listen(&mut self) {
         let Some(mailbox) = self.mailbox.upgrade() else {
             let hush = Hush::Everything;

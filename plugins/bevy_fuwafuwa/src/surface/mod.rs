@@ -1,4 +1,4 @@
-//! The surface of a body as vertices: what every mesh is written from.
+//! Surface of a body as vertices and triangles, from which its mesh is written.
 
 pub mod plane;
 mod pool;
@@ -8,31 +8,31 @@ use crate::colours::SoftColours;
 use bevy_math::Vec3;
 use fuwafuwa::{Body, Dim};
 
-/// A corner of a triangle, in the world.
+/// Vertex of a triangle, in world space.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Vertex {
-    /// Where [m].
+    /// Position [m].
     pub at: Vec3,
-    /// Outwards, of length 1.
+    /// Outward unit normal.
     pub normal: Vec3,
 }
 
-/// What follows a body with triangles.
+/// Triangulated surface that follows a body.
 pub trait Surface<D: Dim>: Default + Send + Sync + 'static {
-    /// Brings it up to date with a body. Returns whether triangles or colours are others than before.
+    /// Updates the surface to a body. Returns whether triangles or colours changed.
     fn follow(&mut self, body: &Body<D>, colours: &SoftColours) -> bool;
 
-    /// Its vertices; nothing at places that nobody has.
+    /// Returns the vertices; `None` for unused slots.
     fn vertices(&self) -> impl Iterator<Item = Option<Vertex>>;
 
-    /// Their colours, as light (linear).
+    /// Returns the vertex colours, linear RGBA.
     fn colours(&self, colours: &SoftColours) -> impl Iterator<Item = [f32; 4]>;
 
-    /// Its triangles, three vertices each. Some have no area.
+    /// Returns the triangles, three vertex indices each. Some are degenerate.
     fn indices(&self) -> impl Iterator<Item = u32>;
 }
 
-/// The colour of a material, as light.
+/// Returns the colour of a material, linear RGBA.
 fn light_of(colours: &SoftColours, material: u8, is_fresh: bool) -> [f32; 4] {
     let count = colours.materials.len().max(1);
     let place = usize::from(material.max(1) - 1) % count;
@@ -44,7 +44,7 @@ fn light_of(colours: &SoftColours, material: u8, is_fresh: bool) -> [f32; 4] {
     [light[0], light[1], light[2], 1.0]
 }
 
-/// The share of light that a screen makes of a number, 0 to 1 [IEC 61966-2-1].
+/// Converts an sRGB component to linear, 0 to 1 [IEC 61966-2-1].
 fn linear(value: f32) -> f32 {
     match value <= 0.040_45 {
         true => value / 12.92,

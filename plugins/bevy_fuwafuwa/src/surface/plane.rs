@@ -1,14 +1,15 @@
-//! A body in the plane as a sheet of triangles: a vertex for each node, and the elements between them.
+//! Triangulated surface of a 2D body: one vertex per node, with the elements between them.
 //!
 //! ```text
-//!   o───o─o─o      A whole element is a fan of the nodes around it, hanging ones too; where one was remodelled each child
-//!   │   ├─o─o      that is left is a square of its own, and a corner without a node stands where the mean of its
-//!   o───o─o─o      neighbours is.
+//!   o───o─o─o      A whole element is a triangle fan of the nodes around it, hanging nodes included. In a remodelled
+//!   │   ├─o─o      element each remaining child is a square; a corner without a node lies at the mean of its
+//!   o───o─o─o      neighbours.
 //! ```
 //!
-//! The points of the outline are moved by what takes the stairs out of the shape at rest, carried along by their voxels.
-//! Then it is drawn together and apart by turns, for what presses on a body presses on its stairs; that leaves the area as
-//! it is [Taubin 1995].
+//! The outline is smoothed in two steps. First, `Rest` moves its points by offsets that remove the stair
+//! steps of the voxels in the rest shape; the offsets deform with the voxels. Then alternating shrinking and
+//! growing rounds smooth the deformed outline, because contacts press on the stair steps; they keep the area
+//! [Taubin 1995].
 
 use super::pool::Pool;
 use super::{Surface, Vertex, light_of};
@@ -21,59 +22,60 @@ use fuwafuwa::stencil::{slot_at, slot_index};
 use fuwafuwa::{Body, Bookmark, Changes, Dim, Dim2, ElementId, NodeId};
 use fuwafuwa_render::Rest;
 
-/// By how much of the way to the middle of its neighbours a point of the outline goes in each round.
+/// Factor of each smoothing round: fraction of the way from a point of the outline to the midpoint of its
+/// neighbours.
 const ROUNDS: [f32; 6] = [0.5, -0.5, 0.5, -0.5, 0.5, -0.5];
-/// No vertex.
+/// Index of a missing vertex.
 const NONE: u32 = u32::MAX;
-/// The sides of a voxel that hangs together with nothing.
+/// Bare faces of a voxel without neighbours.
 const ALL_SIDES: u8 = 0b1111;
-/// The slots around an element, counterclockwise, the middle of an edge first.
+/// Slots around an element, counterclockwise, beginning with the middle of an edge.
 const AROUND: [usize; 8] = [1, 2, 5, 8, 7, 6, 3, 0];
 
-/// A body in the plane as triangles.
+/// Triangles of a 2D body.
 #[derive(Default)]
 pub struct Sheet {
     vertices: Pool<Place>,
     triangles: Pool<[u32; 3]>,
-    /// What was put up for each element.
+    /// Triangles, vertices and sides of each element.
     forms: Table<ElementId, Form>,
-    /// The vertex of each node, or none.
+    /// Vertex of each node, or `NONE`.
     of_node: Table<NodeId, u32>,
-    /// The sides of the outline that begin and end at each node.
+    /// Side of the outline that begins (`next`) or ends (`last`) at each node.
     next: Table<NodeId, Side>,
     last: Table<NodeId, Side>,
-    /// How the stairs of the shape are smoothed.
+    /// Smoothing of the stair steps in the rest shape.
     rest: Rest,
     places: Vec<Vec2>,
     smoothed: Vec<Vec2>,
     followed: Bookmark,
 }
 
-/// What a vertex stands for: the mean of eight nodes, the same one eight times for one of its own.
+/// Definition of a vertex: the mean of eight nodes, or one node eight times.
 #[derive(Copy, Clone, Debug)]
 struct Place {
     nodes: [NodeId; 8],
     material: u8,
 }
 
-/// What was put up for an element.
+/// Triangles, vertices and sides of an element.
 #[derive(Clone, Debug, Default)]
 struct Form {
     triangles: Vec<u32>,
-    /// Vertices that stand for no node.
+    /// Vertices without a node of their own.
     means: Vec<u32>,
     sides: Vec<[NodeId; 2]>,
 }
 
-/// A side of the outline, seen from one of its ends.
+/// Side of the outline, seen from one of its ends.
 #[derive(Copy, Clone, Debug)]
 struct Side {
-    /// The vertex at its other end, or none.
+    /// Vertex at the other end, or `NONE`.
     to: u32,
     is_fresh: bool,
-    /// How far its end is moved [voxels], in the frame of the voxel.
+    /// Smoothing offset of this end [voxels], in the frame of the voxel.
     offset: Vec2,
-    /// The corners of the voxel.
+    /// Corner nodes of the voxel.
     corners: [NodeId; 4],
 }
 
@@ -88,7 +90,7 @@ impl Surface<Dim2> for Sheet {
     fn follow(&mut self, body: &Body<Dim2>, _: &SoftColours) -> bool {
         let changes = body.changes_since(&mut self.followed);
         let changes = changes.unwrap_or_else(|| {
-            // A new reader, or too much: all of it is looked at.
+            // First call, or too many changes to list: rebuilds everything.
             let rest = std::mem::take(&mut self.rest);
             *self = Self {
                 followed: self.followed,
@@ -138,7 +140,7 @@ impl Surface<Dim2> for Sheet {
 }
 
 impl Sheet {
-    /// Takes down what is no more, and puts up what is new.
+    /// Removes the triangles of changed elements and nodes and adds the new ones.
     fn change(&mut self, body: &Body<Dim2>, changes: &Changes) {
         let mesh = body.mesh();
         self.forms.resize(mesh.element_capacity(), Form::default());
@@ -213,7 +215,7 @@ impl Sheet {
         self.forms[id] = form;
     }
 
-    /// Notes the bare sides of an element; a voxel on its own is small enough to keep its corners.
+    /// Adds the bare sides of an element. An isolated voxel is small enough to keep its corners.
     fn add_sides(&mut self, body: &Body<Dim2>, id: ElementId, element: &Element, form: &mut Form) {
         let bare = body.bare_faces(id);
         if bare == ALL_SIDES {
@@ -284,7 +286,7 @@ impl Sheet {
     }
 }
 
-/// The corners of each child that is left, counterclockwise, as slots.
+/// Returns the corner slots of each remaining child, counterclockwise.
 fn squares(children: u8) -> Vec<Vec<usize>> {
     let left = (0..Dim2::CORNERS).filter(|child| children >> child & 1 == 1);
     let square = |child| {
@@ -294,7 +296,8 @@ fn squares(children: u8) -> Vec<Vec<usize>> {
     left.map(square).collect()
 }
 
-/// The nodes whose mean a slot without one is: the ends of its edge, or the middles around the centre.
+/// Returns the nodes that average to a slot without a node: the ends of its edge, or the edge midpoints
+/// around the centre.
 fn mean_of(slot: usize, nodes: &[Option<NodeId>; 9]) -> Option<[NodeId; 8]> {
     let halves = |slot: usize, axis: usize| {
         [0, 2].map(|end| {

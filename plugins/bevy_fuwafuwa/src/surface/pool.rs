@@ -1,9 +1,9 @@
-//! Places that are given back and used again.
+//! Arena with reusable slots.
 
-/// Things at places that they keep; a place that was given back is the next one to be taken.
+/// Items with stable slots. The slot freed last is reused first.
 #[derive(Clone, Debug)]
 pub struct Pool<T> {
-    /// All places; nothing at those that nobody has.
+    /// All slots; `None` for free ones.
     pub all: Vec<Option<T>>,
     free: Vec<u32>,
 }
@@ -16,7 +16,7 @@ impl<T> Default for Pool<T> {
 }
 
 impl<T> Pool<T> {
-    /// Takes a place for something.
+    /// Stores an item and returns its slot.
     pub fn take(&mut self, thing: T) -> u32 {
         match self.free.pop() {
             Some(place) => {
@@ -30,7 +30,7 @@ impl<T> Pool<T> {
         }
     }
 
-    /// Gives a place back.
+    /// Frees a slot.
     pub fn give_back(&mut self, place: u32) {
         self.all[place as usize] = None;
         self.free.push(place);

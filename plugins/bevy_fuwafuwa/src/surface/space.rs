@@ -1,11 +1,11 @@
-//! The surface of a body in space: the smooth skin that the game draws, and behind it a small box for each crumb.
+//! Surface of a 3D body: the smooth skin that the game also draws, followed by a small box per crumb.
 //!
 //! ```text
-//!   vertices   │ skin ············ │ crumbs: 8 each │      The skin keeps its places; crumbs move up when it grows,
-//!   triangles  │ skin: 2 a face ·· │ crumbs: 12 each│      in a tick in which something tore.
+//!   vertices   │ skin ············ │ crumbs: 8 each │      The slots of the skin are stable; the crumbs shift when
+//!   triangles  │ skin: 2 a face ·· │ crumbs: 12 each│      it grows, in a tick in which a node was split.
 //! ```
 //!
-//! So there are two triangles for each bare face of the body, crumbs or not.
+//! Each bare face of the body thus has two triangles, also on crumbs.
 
 use super::{Surface, Vertex};
 use crate::colours::SoftColours;
@@ -15,12 +15,12 @@ use fuwafuwa::{Body, Dim3, ElementId};
 use fuwafuwa_render::space::Skin;
 use fuwafuwa_render::space::skin::SkinVertex;
 
-/// A crumb is so much smaller than its voxel that with its round shading it looks like a grain.
+/// Size of a drawn crumb relative to its voxel. With its rounded shading it then looks like a grain.
 const CRUMB: f32 = 0.85;
-/// `SkinVertex::other` is beyond the border between two materials from here on.
+/// Threshold of `SkinVertex::other` above which a vertex belongs to the other material.
 const BORDER: u8 = 128;
 
-/// The surface of a body in space.
+/// Surface of a 3D body.
 #[derive(Default)]
 pub struct Hull {
     skin: Skin,
@@ -101,7 +101,7 @@ impl Crumb {
     }
 }
 
-/// Whether somebody has the place of a vertex: the skin writes nothing but noughts to the others.
+/// Returns whether a vertex slot is in use: the skin fills unused slots with zeros.
 fn is_used(corner: &SkinVertex) -> bool {
     *corner != SkinVertex::default()
 }

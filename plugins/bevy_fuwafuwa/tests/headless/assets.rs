@@ -14,7 +14,7 @@ use bevy_mesh::{Mesh, VertexAttributeValues};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// An app whose only files are these.
+/// An app with exactly these files.
 fn app_with<D: Dimension>(files: &[(&str, Vec<u8>)]) -> App {
     let folder = Dir::default();
     for (name, bytes) in files {
@@ -32,12 +32,12 @@ fn app_with<D: Dimension>(files: &[(&str, Vec<u8>)]) -> App {
     app
 }
 
-/// Lets the app run until a body has entered, or has been told why not.
+/// Runs the app until a body has entered or was rejected.
 fn settle<D: Dimension>(app: &mut App, entity: Entity) {
     let late = Instant::now() + Duration::from_secs(60);
     while world::<D>(app).body_of(entity).is_none() && app.world().get::<Rejected>(entity).is_none()
     {
-        assert!(Instant::now() < late, "it neither loads nor fails");
+        assert!(Instant::now() < late, "the asset neither loads nor fails");
         std::thread::sleep(Duration::from_millis(1));
         app.update();
     }
@@ -67,12 +67,12 @@ fn png() -> Vec<u8> {
     encoder.set_color(png::ColorType::Grayscale);
     let mut writer = encoder.write_header().expect("the header can be written");
     writer.write_image_data(&pixels).expect("the pixels fit");
-    writer.finish().expect("it ends");
+    writer.finish().expect("the file can be finished");
     bytes
 }
 
-/// A model of 2 × 1 × 3 voxels (z up), a corner of it of palette index 2, blue, the rest of 1, red, but for
-/// one that is empty.
+/// A model of 2 × 1 × 3 voxels (z up): one corner has palette index 2 (blue), one voxel is empty, the others
+/// have index 1 (red).
 fn vox() -> Vec<u8> {
     let chunk = |name: &[u8; 4], contents: &[u8], children: &[u8]| {
         let lengths = [contents.len() as u32, children.len() as u32].map(u32::to_le_bytes);
@@ -103,7 +103,7 @@ fn vox() -> Vec<u8> {
 }
 
 #[test]
-fn a_picture_becomes_a_body() {
+fn png_asset_becomes_a_body_with_default_and_custom_settings() {
     let mut app = app_with::<Dim2>(&[("stroke.png", png())]);
     let server = app.world().resource::<AssetServer>().clone();
     let usual = SoftBody2d::asset(server.load("stroke.png"));
@@ -128,7 +128,7 @@ fn a_picture_becomes_a_body() {
 }
 
 #[test]
-fn a_model_becomes_a_body_of_two_materials() {
+fn vox_asset_becomes_a_body_with_two_materials() {
     let mut app = app_with::<Dim3>(&[("dice.vox", vox())]);
     let server = app.world().resource::<AssetServer>().clone();
     let dice = SoftBody3d::asset(server.load("dice.vox"));
@@ -144,7 +144,7 @@ fn a_model_becomes_a_body_of_two_materials() {
     let mesh = super::mesh(&app, dice);
     let Some(VertexAttributeValues::Float32x4(colours)) = mesh.attribute(Mesh::ATTRIBUTE_COLOR)
     else {
-        panic!("it has colours");
+        panic!("the mesh has no colours");
     };
     for pure in [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]] {
         assert!(colours.contains(&pure), "{colours:?}");
@@ -152,7 +152,7 @@ fn a_model_becomes_a_body_of_two_materials() {
 }
 
 #[test]
-fn a_bad_file_is_told_with_its_name_and_place() {
+fn invalid_file_is_rejected_with_its_name_and_position() {
     let whole = vox();
     let huge = [&b"VOX \x96\0\0\0MAIN"[..], &[255; 8]].concat();
     let files = [

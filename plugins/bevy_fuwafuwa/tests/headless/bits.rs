@@ -1,11 +1,11 @@
-//! Same input, same bits.
+//! Determinism: the app and the engine give the same hash.
 
 use super::{app, at, run, world};
 use bevy_fuwafuwa::fuwafuwa::{Body, RigidBody, Settings, World};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::Vec3;
 
-/// Balls of different sizes, and a hand that comes down on them.
+/// Balls of different sizes: voxels across, x and y [m].
 const BALLS: [(usize, f32, f32); 3] = [(16, 0.0, 0.6), (12, 0.7, 1.6), (8, -0.4, 2.6)];
 const TICKS: usize = 90;
 
@@ -16,7 +16,7 @@ fn hand_at(tick: usize) -> Vec3 {
 fn hash_of_app() -> u64 {
     let mut app = app::<Dim2>();
     app.world_mut().spawn(RigidBody2d::floor());
-    // What entities have besides makes another archetype of each, which must not change the order.
+    // An additional component puts one entity into another archetype, which must not change the order.
     for (n, (across, x, y)) in BALLS.into_iter().enumerate() {
         let mut ball = app
             .world_mut()
@@ -36,7 +36,7 @@ fn hash_of_app() -> u64 {
 }
 
 #[test]
-fn an_app_has_the_bits_of_the_engine() -> Result<(), Box<dyn std::error::Error>> {
+fn app_has_the_hash_of_the_engine() -> Result<(), Box<dyn std::error::Error>> {
     let mut world = World::<Dim2>::new(Settings::default())?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
     world.add_rigid(RigidBody::fixed(floor, 0.5))?;
@@ -53,19 +53,22 @@ fn an_app_has_the_bits_of_the_engine() -> Result<(), Box<dyn std::error::Error>>
         world.set_goal(hand, hand_at(tick).into())?;
         released += world.step().released;
     }
-    assert!(released > 0, "nothing tore, and nothing was compared");
+    assert!(
+        released > 0,
+        "no node was split, so the comparison proves nothing"
+    );
     assert_eq!(hash_of_app(), world.hash());
     Ok(())
 }
 
 #[test]
-fn what_is_written_back_changes_no_bits() {
+fn writeback_does_not_change_the_hash() {
     let mut app = app::<Dim2>();
     let ball = (SoftBody2d::ball(16, 1.0), at(0.0, 2.0), Velocity::default());
     let ball = app.world_mut().spawn(ball).id();
     app.world_mut().spawn(RigidBody2d::floor());
     run(&mut app, 20);
-    // Writing what is there already asks for nothing.
+    // Writing the current value requests nothing.
     let same = super::transform(&app, ball);
     app.world_mut().entity_mut(ball).insert(same);
     run(&mut app, 20);

@@ -1,4 +1,4 @@
-//! What is told of contacts and sensors, with the entities that they are of.
+//! Messages of contacts and sensors, with their entities.
 
 use super::{app, at, messages};
 use bevy_ecs::entity::Entity;
@@ -12,7 +12,7 @@ fn block() -> Shape {
 }
 
 #[test]
-fn a_box_that_falls_begins_to_touch_the_floor_once_and_passes_a_gate() {
+fn falling_box_passes_a_sensor_and_begins_one_contact_with_the_floor() {
     let mut app = app::<Dim3>();
     let floor = app.world_mut().spawn(RigidBody3d::floor()).id();
     let gate = RigidBody3d::fixed(block()).as_sensor();
@@ -48,7 +48,7 @@ fn a_box_that_falls_begins_to_touch_the_floor_once_and_passes_a_gate() {
 }
 
 #[test]
-fn layers_let_a_box_fall_through_the_floor() {
+fn box_falls_through_the_floor_when_layers_exclude_it() {
     let mut app = app::<Dim3>();
     app.world_mut().spawn(RigidBody3d::floor());
     let ghost = Layers {

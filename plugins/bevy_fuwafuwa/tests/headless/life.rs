@@ -1,4 +1,4 @@
-//! Who enters, who leaves, and when time passes.
+//! Entering and leaving the world, pausing, queries, and removals.
 
 use super::{app, at, messages, run, transform, world};
 use bevy_app::{App, Update};
@@ -18,12 +18,14 @@ fn ball(app: &mut App, height: f32) -> Entity {
 }
 
 #[test]
-fn who_is_despawned_or_loses_the_component_leaves_the_world() {
+fn body_leaves_the_world_when_despawned_or_its_component_is_removed() {
     let mut app = app::<Dim2>();
     let floor = app.world_mut().spawn(RigidBody2d::floor()).id();
     let [low, high, top] = [1.0, 3.0, 5.0].map(|height| ball(&mut app, height));
     app.update();
-    let id = world::<Dim2>(&app).body_of(high).expect("it has entered");
+    let id = world::<Dim2>(&app)
+        .body_of(high)
+        .expect("the body has entered");
     assert_eq!(world::<Dim2>(&app).entity_of_body(id), Some(high));
     assert_eq!(app.world().get::<SoftBodyId>(high), Some(&SoftBodyId(id)));
 
@@ -42,7 +44,7 @@ fn who_is_despawned_or_loses_the_component_leaves_the_world() {
     let entity = app.world().entity(high);
     assert!(!entity.contains::<SoftBodyId>() && !entity.contains::<Mesh2d>());
 
-    // One that never entered leaves without a trace, and one that is inserted again is made anew.
+    // A body despawned before the tick leaves no trace; a body inserted again is replaced.
     let brief = ball(&mut app, 9.0);
     app.world_mut().despawn(brief);
     app.world_mut()
@@ -58,7 +60,7 @@ fn who_is_despawned_or_loses_the_component_leaves_the_world() {
 }
 
 #[test]
-fn time_stands_still_while_it_is_paused() {
+fn paused_world_runs_only_requested_ticks() {
     let mut app = app::<Dim2>();
     let ball = ball(&mut app, 1.0);
     run(&mut app, 5);
@@ -84,7 +86,7 @@ fn time_stands_still_while_it_is_paused() {
 struct Seen(Vec<Option<(Entity, f32)>>);
 
 #[test]
-fn rays_find_entities() {
+fn queries_return_entities() {
     let mut app = app::<Dim2>();
     app.init_resource::<Seen>();
     let look = |queries: SoftQueries<Dim2>, mut seen: ResMut<Seen>| {
@@ -108,7 +110,7 @@ fn rays_find_entities() {
     let Some([Some(down), Some(beside), Some(inside)]) =
         app.world().resource::<Seen>().0.first_chunk::<3>()
     else {
-        panic!("three answers");
+        panic!("expected three hits");
     };
     assert!(down.0 == ball && (6.5..6.7).contains(&down.1), "{down:?}");
     assert!(
@@ -119,7 +121,7 @@ fn rays_find_entities() {
 }
 
 #[test]
-fn what_a_knife_cuts_and_what_is_taken_out_is_told() {
+fn knife_cuts_and_engine_removals_send_messages() {
     let mut app = app::<Dim2>();
     app.world_mut().spawn(RigidBody2d::floor());
     let cube = SoftBody2d::cube(16, 1.0);
@@ -127,8 +129,8 @@ fn what_a_knife_cuts_and_what_is_taken_out_is_told() {
     app.update();
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
     let engine = world.engine_mut();
-    let mut hand = RigidBody::hand([0.03, 1.2, 0.0], 0.05);
-    hand.is_sensor = true; // the edge alone touches
+    let mut hand = Rigid::hand([0.03, 1.2, 0.0], 0.05);
+    hand.is_sensor = true; // only the cutting edge has contact
     let hand = engine.add_rigid(hand).unwrap();
     let knife = Knife::new(hand, [[0.0; 3]; 2], [0.0, -1.0, 0.0]);
     let knife = engine.add_knife(knife).unwrap();
@@ -146,7 +148,7 @@ fn what_a_knife_cuts_and_what_is_taken_out_is_told() {
     );
     assert!(cuts.iter().map(|cut| cut.area).sum::<f32>() > 0.8);
 
-    // What is done by hand between two ticks is told in the next.
+    // Events of direct engine calls between two ticks are sent in the next tick.
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
     let body = world.body_of(cube).unwrap();
     let across = Blade::segment([-2.0, 0.3], [2.0, 0.3]);
@@ -165,5 +167,5 @@ fn what_a_knife_cuts_and_what_is_taken_out_is_told() {
     };
     assert!(removed.len() > 1 && removed.contains(&gone), "{removed:?}");
     app.update();
-    assert_eq!(messages::<Removed>(&app), [], "it is told once");
+    assert_eq!(messages::<Removed>(&app), [], "sent more than once");
 }

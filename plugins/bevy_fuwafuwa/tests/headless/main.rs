@@ -1,4 +1,4 @@
-//! The plugin in apps without a window.
+//! Tests of the plugin in apps without a window.
 
 mod assets;
 mod bits;
@@ -18,7 +18,7 @@ use bevy_fuwafuwa::{Dimension, fuwafuwa::Body};
 use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
 
-/// An app in which each update is a tick.
+/// An app in which each update runs one tick.
 fn app<D: Dimension>() -> App {
     let mut app = App::new();
     app.add_plugins((TaskPoolPlugin::default(), AssetPlugin::default()));
@@ -35,7 +35,9 @@ fn at(x: f32, y: f32) -> Transform {
 }
 
 fn transform(app: &App, entity: Entity) -> Transform {
-    *app.world().get::<Transform>(entity).expect("it has one")
+    *app.world()
+        .get::<Transform>(entity)
+        .expect("the entity has a transform")
 }
 
 fn world<D: Dimension>(app: &App) -> &SoftWorld<D> {
@@ -44,7 +46,7 @@ fn world<D: Dimension>(app: &App) -> &SoftWorld<D> {
 
 fn body<D: Dimension>(app: &App, entity: Entity) -> &Body<D> {
     let world = world::<D>(app);
-    let id = world.body_of(entity).expect("it has entered");
+    let id = world.body_of(entity).expect("the body has entered");
     &world.engine().bodies()[id]
 }
 
@@ -52,12 +54,12 @@ fn mesh(app: &App, entity: Entity) -> &Mesh {
     let entity = app.world().entity(entity);
     let flat = entity.get::<bevy_mesh::Mesh2d>().map(|mesh| &mesh.0);
     let deep = entity.get::<bevy_mesh::Mesh3d>().map(|mesh| &mesh.0);
-    let handle = flat.or(deep).expect("it has a mesh");
+    let handle = flat.or(deep).expect("the entity has a mesh");
     let meshes = app.world().resource::<Assets<Mesh>>();
-    meshes.get(handle).expect("the mesh is there")
+    meshes.get(handle).expect("the mesh asset exists")
 }
 
-/// All messages of a kind of the last two ticks.
+/// All messages of a type of the last update.
 fn messages<M: Message + Clone>(app: &App) -> Vec<M> {
     let messages = app.world().resource::<Messages<M>>();
     messages.iter_current_update_messages().cloned().collect()

@@ -16,10 +16,10 @@ fn positions(mesh: &Mesh) -> &[[f32; 3]] {
     }
 }
 
-/// Its triangles that have an area, as places of its vertices.
+/// Triangles with an area, as vertex indices.
 fn triangles(mesh: &Mesh) -> Vec<[u32; 3]> {
     let Some(Indices::U32(indices)) = mesh.indices() else {
-        panic!("it has indices");
+        panic!("the mesh has no indices");
     };
     let all = indices
         .chunks_exact(3)
@@ -47,7 +47,7 @@ fn volume(mesh: &Mesh) -> f32 {
 
 fn cut<D: bevy_fuwafuwa::Dimension>(app: &mut bevy_app::App, ball: Entity, blade: &Blade) {
     let mut world = app.world_mut().resource_mut::<SoftWorld<D>>();
-    let id = world.body_of(ball).expect("it has entered");
+    let id = world.body_of(ball).expect("the body has entered");
     assert!(
         world
             .engine_mut()
@@ -57,7 +57,7 @@ fn cut<D: bevy_fuwafuwa::Dimension>(app: &mut bevy_app::App, ball: Entity, blade
 }
 
 #[test]
-fn a_disc_has_a_vertex_for_each_node_and_keeps_its_buffers() {
+fn disc_mesh_has_a_vertex_per_node_and_keeps_its_buffers() {
     let mut app = app::<Dim2>();
     let ball = app
         .world_mut()
@@ -65,7 +65,8 @@ fn a_disc_has_a_vertex_for_each_node_and_keeps_its_buffers() {
         .id();
     run(&mut app, 2);
     let own = body::<Dim2>(&app, ball).mesh();
-    // Elements that fill a part of their cell have corners without a node, and a vertex of their own there.
+    // Elements that fill only a part of their cell have corners without a node; these get a vertex of their
+    // own.
     let parts = own
         .elements()
         .filter(|(_, element)| element.children != Dim2::ALL_CORNERS);
@@ -83,7 +84,7 @@ fn a_disc_has_a_vertex_for_each_node_and_keeps_its_buffers() {
     let before = positions(mesh(&app, ball)).to_vec();
     run(&mut app, 30);
     assert_eq!(positions(mesh(&app, ball)).as_ptr(), buffer);
-    // It falls: its transform does, and as seen from there it stays as it is.
+    // The transform falls with the ball; in its frame the mesh does not change.
     assert!(transform(&app, ball).translation.y < 8.5);
     let after = positions(mesh(&app, ball));
     let moved = before
@@ -94,7 +95,7 @@ fn a_disc_has_a_vertex_for_each_node_and_keeps_its_buffers() {
 }
 
 #[test]
-fn a_disc_that_is_cut_again_and_again_is_as_if_it_were_looked_at_for_the_first_time() {
+fn disc_mesh_updated_after_cuts_equals_a_rebuilt_mesh() {
     let mut app = app::<Dim2>();
     let ball = app
         .world_mut()
@@ -121,7 +122,7 @@ fn a_disc_that_is_cut_again_and_again_is_as_if_it_were_looked_at_for_the_first_t
             followed.len(),
             anew.len()
         );
-        // Where a crack runs the outline is drawn in by less than a voxel on both sides.
+        // Along a crack the outline is smoothed inwards by less than a voxel on both sides.
         assert!(
             (area(&now) / (0.25 * std::f32::consts::PI) - 0.93).abs() < 0.06,
             "{}",
@@ -135,7 +136,7 @@ fn rounded(value: f32) -> i32 {
     (value * 1e5).round() as i32
 }
 
-/// The same triangle, its least corner first.
+/// Rotates the corners of a triangle so that the smallest comes first.
 fn first_first([a, b, c]: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
     [[a, b, c], [b, c, a], [c, a, b]]
         .into_iter()
@@ -143,12 +144,12 @@ fn first_first([a, b, c]: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
         .expect("there are three")
 }
 
-/// The mesh that somebody draws of a body who has never looked at it before.
+/// Returns the mesh after a complete rebuild.
 fn of_new_reader(app: &mut bevy_app::App, ball: Entity) -> Mesh {
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
     world.pause();
-    let id = world.body_of(ball).expect("it has entered");
-    // Whoever changes a body from outside makes all readers begin anew.
+    let id = world.body_of(ball).expect("the body has entered");
+    // Changing a body from outside forces all readers to rebuild.
     assert!(world.engine_mut().body_mut(id).is_ok());
     app.update();
     app.world_mut().resource_mut::<SoftWorld<Dim2>>().resume();
@@ -156,7 +157,7 @@ fn of_new_reader(app: &mut bevy_app::App, ball: Entity) -> Mesh {
 }
 
 #[test]
-fn a_ball_has_two_triangles_for_each_bare_face_whatever_tears() {
+fn ball_mesh_has_two_triangles_per_bare_face_while_it_tears() {
     let mut app = app::<Dim3>();
     let handle = {
         app.world_mut().spawn(RigidBody3d::floor());
@@ -195,7 +196,7 @@ fn a_ball_has_two_triangles_for_each_bare_face_whatever_tears() {
     assert!(torn > 0 && parted > 0, "{torn} {parted}");
     assert!(is_even(&app) > before);
     assert_eq!(body::<Dim3>(&app, ball).pieces().list.len(), 1 + parted);
-    // It fell on the floor in pieces, and its mesh with it.
+    // The ball fell onto the floor in pieces, and the mesh followed.
     let pose = transform(&app, ball);
     let heights = corners(mesh(&app, ball))
         .flatten()
@@ -205,7 +206,7 @@ fn a_ball_has_two_triangles_for_each_bare_face_whatever_tears() {
 }
 
 #[test]
-fn a_mesh_is_written_once_a_tick_and_not_at_all_in_sleep() {
+fn mesh_is_written_once_a_tick_and_never_while_asleep() {
     let mut app = app::<Dim3>();
     app.world_mut().spawn(RigidBody3d::floor());
     let cube = (SoftBody3d::cube(4, 0.5), at(0.0, 0.3));
@@ -226,7 +227,7 @@ fn a_mesh_is_written_once_a_tick_and_not_at_all_in_sleep() {
             .all(|piece| piece.asleep)
     );
     assert_eq!(writes(&app), 0);
-    // Moved in its sleep, it is where it was put.
+    // A body moved in its sleep is drawn at its new position.
     app.world_mut().entity_mut(cube).insert(at(2.0, 2.0));
     run(&mut app, 2);
     assert_eq!(writes(&app), 1);

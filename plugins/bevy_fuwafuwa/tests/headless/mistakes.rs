@@ -1,4 +1,4 @@
-//! What cannot be is told, and nothing else minds.
+//! Invalid requests are reported and leave everything else unchanged.
 
 use super::{app, at, messages, run, transform, world};
 use bevy_app::{App, Update};
@@ -13,7 +13,7 @@ use bevy_fuwafuwa::{Problem, Rejected};
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
 
-/// What becomes of an entity in a world with a ball.
+/// Spawns an invalid bundle beside a ball and returns the reported problem.
 fn rejected(bad: impl Bundle) -> String {
     let mut app = app::<Dim2>();
     let ball = app
@@ -23,7 +23,7 @@ fn rejected(bad: impl Bundle) -> String {
     let bad = app.world_mut().spawn(bad).id();
     app.update();
     let Some(Rejected(problem)) = app.world().get::<Rejected>(bad).cloned() else {
-        panic!("it was let in");
+        panic!("the invalid body was accepted");
     };
     let told = messages::<Rejection>(&app);
     let texts = |own: &Rejection| (own.entity, own.problem.to_string());
@@ -45,7 +45,7 @@ fn rejected(bad: impl Bundle) -> String {
 }
 
 #[test]
-fn who_cannot_be_does_not_enter_and_hears_why() {
+fn invalid_body_is_rejected_with_a_reason() {
     let ball = || SoftBody2d::ball(8, 1.0);
     let check = |problem: String, expect: &str| assert!(problem.contains(expect), "{problem}");
     check(rejected(SoftBody2d::ball(0, 1.0)), "empty");
@@ -80,7 +80,7 @@ fn who_cannot_be_does_not_enter_and_hears_why() {
     check(rejected((ball(), fast)), "velocity");
     check(rejected((ball(), GravityScale(1e9))), "gravity scale");
     let nowhere = Handle::<Voxels<Dim2>>::default();
-    check(rejected(SoftBody2d::asset(nowhere)), "nobody loads it");
+    check(rejected(SoftBody2d::asset(nowhere)), "asset is not loading");
     check(rejected(RigidBody2d::hand(-1.0)), "radius");
     let (centre, half) = ([0.0; 3], [1.0; 3]);
     let free = |mass| RigidBody2d::free(Shape::Box { centre, half }, mass);
@@ -107,7 +107,7 @@ fn who_cannot_be_does_not_enter_and_hears_why() {
 }
 
 #[test]
-fn what_is_free_stays_as_it_was_when_it_cannot_be_done() {
+fn rigid_body_is_unchanged_after_an_invalid_request() {
     let mut app = app::<Dim2>();
     app.insert_resource(SoftSettings(Settings {
         gravity: [0.0; 3],
@@ -133,7 +133,7 @@ fn what_is_free_stays_as_it_was_when_it_cannot_be_done() {
         assert!(texts.len() == 1 && texts[0].contains(expect), "{texts:?}");
         assert_eq!(transform(app, free), before);
         app.update();
-        assert_eq!(messages::<Rejection>(app), [], "it is told once");
+        assert_eq!(messages::<Rejection>(app), [], "reported more than once");
     };
     check(&mut app, free, Bad::Place(at(f32::NAN, 0.0)), "finite");
     check(&mut app, free, Bad::Place(at(1e9, 0.0)), "position");
@@ -163,7 +163,7 @@ fn what_is_free_stays_as_it_was_when_it_cannot_be_done() {
     assert_eq!(transform(&app, wall), there);
 }
 
-/// What is asked and cannot be done.
+/// Invalid request for a body.
 enum Bad {
     Place(Transform),
     Velocity(Velocity),
@@ -171,7 +171,7 @@ enum Bad {
 }
 
 #[test]
-fn what_cannot_be_done_to_who_is_there_is_told_and_leaves_it_as_it_was() {
+fn soft_body_is_unchanged_after_an_invalid_request() {
     let mut app = app::<Dim3>();
     app.insert_resource(SoftSettings(Settings {
         gravity: [0.0; 3],
@@ -216,16 +216,20 @@ fn what_cannot_be_done_to_who_is_there_is_told_and_leaves_it_as_it_was() {
     app.world_mut().resource_mut::<SoftSettings>().0.drag = -1.0;
     check(&mut app, "drag");
     app.update();
-    assert_eq!(messages::<Rejection>(&app), [], "each is told once");
+    assert_eq!(
+        messages::<Rejection>(&app),
+        [],
+        "each problem is reported once"
+    );
     assert_ne!(
         world::<Dim3>(&app).engine().hash(),
         hash_without,
-        "time went on"
+        "the simulation continues"
     );
 }
 
 #[test]
-fn nobody_is_two_things() {
+fn entity_with_soft_and_rigid_body_is_rejected() {
     let mut app = app::<Dim2>();
     let both = (SoftBody2d::ball(8, 1.0), RigidBody2d::floor());
     let both = app.world_mut().spawn(both).id();
@@ -237,7 +241,7 @@ fn nobody_is_two_things() {
 }
 
 #[test]
-fn who_is_mended_enters() {
+fn rejected_body_enters_after_correction() {
     let mut app = app::<Dim2>();
     let ball = app.world_mut().spawn(SoftBody2d::ball(0, 1.0)).id();
     app.update();
@@ -252,7 +256,7 @@ fn who_is_mended_enters() {
 }
 
 #[test]
-fn without_assets_there_are_bodies_and_no_meshes() {
+fn bodies_have_no_mesh_without_assets_or_with_without_mesh() {
     let mut app = App::new();
     app.add_plugins(FuwafuwaPlugin2d::default().in_schedule(Update));
     let ball = app.world_mut().spawn(SoftBody2d::ball(8, 1.0)).id();

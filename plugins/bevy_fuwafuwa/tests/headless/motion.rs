@@ -1,4 +1,4 @@
-//! What entities are told of how they move, and what they ask for.
+//! Motion written to entities, and motion requested by entities.
 
 use super::{app, at, body, messages, run, transform, world};
 use bevy_fuwafuwa::component::RigidBodyId;
@@ -7,7 +7,7 @@ use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
 
 #[test]
-fn a_ball_falls_rests_and_sleeps() {
+fn ball_falls_touches_the_floor_and_sleeps() {
     let mut app = app::<Dim2>();
     let floor = app.world_mut().spawn(RigidBody2d::floor()).id();
     let ball = (SoftBody2d::ball(16, 1.0), at(3.0, 1.0), Velocity::default());
@@ -39,7 +39,7 @@ fn a_ball_falls_rests_and_sleeps() {
 }
 
 #[test]
-fn a_transform_turns_moves_and_scales_what_enters_and_follows_it() {
+fn transform_places_a_new_body_and_then_follows_it() {
     let mut app = app::<Dim3>();
     app.insert_resource(SoftSettings(bevy_fuwafuwa::fuwafuwa::Settings {
         gravity: [0.0; 3],
@@ -60,7 +60,7 @@ fn a_transform_turns_moves_and_scales_what_enters_and_follows_it() {
         .spawn((SoftBody3d::from(grid), pose, spin))
         .id();
     app.update();
-    // A metre long, half a metre thick.
+    // 1 m long, 0.5 m thick.
     let volume = body::<Dim3>(&app, stick).total_mass() / 100.0;
     assert!((volume - 0.25).abs() < 1e-4, "{volume}");
     run(&mut app, 59);
@@ -83,7 +83,7 @@ fn a_transform_turns_moves_and_scales_what_enters_and_follows_it() {
         "{velocity:?}"
     );
 
-    // What is written moves and turns it at once.
+    // Writing the transform moves and rotates the body at once.
     let there = Transform {
         translation: Vec3::new(-5.0, 1.0, 0.0),
         rotation: Quat::from_rotation_x(0.5),
@@ -104,7 +104,7 @@ fn a_transform_turns_moves_and_scales_what_enters_and_follows_it() {
 }
 
 #[test]
-fn an_impulse_is_given_once_and_a_scale_of_gravity_lifts() {
+fn impulse_is_applied_once_and_negative_gravity_scale_lifts() {
     let mut app = app::<Dim2>();
     let push = ExternalImpulse {
         impulse: Vec3::new(20.0, 0.0, 0.0),
@@ -130,7 +130,7 @@ fn an_impulse_is_given_once_and_a_scale_of_gravity_lifts() {
 }
 
 #[test]
-fn hands_go_to_their_goals_and_obstacles_where_they_are_put() {
+fn coupled_body_reaches_its_goal_and_fixed_body_its_transform() {
     let mut app = app::<Dim3>();
     let hand = app
         .world_mut()
@@ -152,7 +152,7 @@ fn hands_go_to_their_goals_and_obstacles_where_they_are_put() {
     let place = |entity| {
         let id = world::<Dim3>(&app)
             .rigid_of(entity)
-            .expect("it has entered");
+            .expect("the body has entered");
         assert_eq!(
             app.world().get::<RigidBodyId>(entity),
             Some(&RigidBodyId(id))

@@ -1,4 +1,4 @@
-//! Rigid things that are free, and what turns.
+//! Dynamic rigid bodies and rotation.
 
 use super::{app, at, messages, run, transform, world};
 use bevy_app::App;
@@ -25,7 +25,7 @@ fn slab() -> Shape {
     Shape::Box { centre, half }
 }
 
-/// An app in which nothing falls.
+/// An app without gravity.
 fn weightless<D: Dimension>() -> App {
     let mut app = app::<D>();
     app.insert_resource(SoftSettings(Settings {
@@ -41,12 +41,12 @@ fn spawn(app: &mut App, bundle: impl Bundle) -> Entity {
 
 fn rigid<D: Dimension>(app: &App, entity: Entity) -> &RigidBody {
     let world = world::<D>(app);
-    let id = world.rigid_of(entity).expect("it has entered");
+    let id = world.rigid_of(entity).expect("the body has entered");
     assert_eq!(world.entity_of_rigid(id), Some(entity));
     &world.engine().rigids()[id]
 }
 
-/// A box falls askew and sleeps on the floor; its transform is what the engine says.
+/// A tilted box falls and sleeps on the floor; its transform equals the pose in the engine.
 fn falls_and_sleeps<D: Dimension>() {
     let mut app = app::<D>();
     spawn(&mut app, RigidBody::<D>::floor());
@@ -81,13 +81,13 @@ fn falls_and_sleeps<D: Dimension>() {
 }
 
 #[test]
-fn a_box_falls_and_sleeps_where_the_engine_says() {
+fn box_transform_equals_the_engine_until_it_sleeps() {
     falls_and_sleeps::<Dim2>();
     falls_and_sleeps::<Dim3>();
 }
 
 #[test]
-fn a_soft_ball_is_touched_by_the_entity_of_a_box() {
+fn soft_ball_contact_names_the_entity_of_the_box() {
     let mut app = app::<Dim3>();
     spawn(&mut app, RigidBody3d::floor());
     let firm = SoftMaterials::from(SoftMaterial {
@@ -110,12 +110,12 @@ fn a_soft_ball_is_touched_by_the_entity_of_a_box() {
     assert!(touches > 5, "{touches}");
     assert!(
         (0.8..1.2).contains(&heights[59]),
-        "it lies on it: {heights:?}"
+        "the box rests on the ball: {heights:?}"
     );
 }
 
 #[test]
-fn walls_are_turned_as_their_transform_is() {
+fn fixed_body_is_rotated_by_its_transform() {
     let mut app = app::<Dim3>();
     let slope = at(0.0, 0.0).with_rotation(Quat::from_rotation_z(-0.5));
     let slope = spawn(&mut app, (RigidBody3d::fixed(slab()), slope));
@@ -126,9 +126,12 @@ fn walls_are_turned_as_their_transform_is() {
     let ball = spawn(&mut app, (RigidBody3d::free(ball, 1.0), at(0.0, 0.4)));
     run(&mut app, 30);
     let down = transform(&app, ball).translation;
-    assert!(down.x > 0.3 && down.y < 0.3, "it rolls down: {down}");
+    assert!(
+        down.x > 0.3 && down.y < 0.3,
+        "the ball does not roll down: {down}"
+    );
     let before = app.world().get::<RigidBodyId>(slope).copied();
-    // So steep that what lay on it falls; its id stays.
+    // The slope becomes so steep that the ball falls; the id of the slope stays.
     let upright = at(0.0, 0.0).with_rotation(Quat::from_rotation_z(1.5));
     app.world_mut().entity_mut(slope).insert(upright);
     run(&mut app, 60);
@@ -138,7 +141,7 @@ fn walls_are_turned_as_their_transform_is() {
 }
 
 #[test]
-fn a_turning_table_takes_a_box_along() {
+fn rotating_kinematic_table_carries_a_box() {
     let mut app = app::<Dim3>();
     let table = RigidBody3d::fixed(slab())
         .with_drive(MotionType::Kinematic)
@@ -162,9 +165,9 @@ fn a_turning_table_takes_a_box_along() {
 }
 
 #[test]
-fn what_is_written_into_a_transform_puts_it_there() {
+fn written_transform_moves_the_body_at_once() {
     let mut app = weightless::<Dim3>();
-    // Its middle is a metre beside its origin, about which a transform turns it.
+    // The middle of the box is 1 m from the origin about which the transform rotates it.
     let shape = block().moved([1.0, 0.0, 0.0]);
     let spin = Velocity {
         linear: Vec3::Y,
@@ -187,7 +190,7 @@ fn what_is_written_into_a_transform_puts_it_there() {
     let velocity = Vec3::from(rigid::<Dim3>(&app, thrown).velocity());
     assert!(velocity.distance(Vec3::Y) < 1e-3, "{velocity}");
 
-    // So is a hand, which then is pulled to its goal again.
+    // A coupled body is also moved at once, and then pulled back to its goal.
     let hand = RigidBody3d::hand(0.1).with_drive(MotionType::default());
     let hand = spawn(&mut app, (hand, at(0.0, 9.0), Goal(Vec3::Y * 9.0)));
     run(&mut app, 5);
@@ -201,7 +204,7 @@ fn what_is_written_into_a_transform_puts_it_there() {
 }
 
 #[test]
-fn in_the_plane_z_is_the_owners() {
+fn plugin_keeps_z_in_2d() {
     let mut app = weightless::<Dim2>();
     let flat = (RigidBody2d::free(block(), 1.0), at(0.0, 0.0));
     let flat = spawn(&mut app, flat);
@@ -210,7 +213,10 @@ fn in_the_plane_z_is_the_owners() {
     let behind = Transform::from_xyz(0.0, 0.0, -3.0);
     app.world_mut().entity_mut(flat).insert(behind);
     app.update();
-    assert!(rigid::<Dim2>(&app, flat).is_asleep(), "nothing moved it");
+    assert!(
+        rigid::<Dim2>(&app, flat).is_asleep(),
+        "a change of z woke it"
+    );
     let moved = behind.with_rotation(Quat::from_rotation_z(0.2));
     app.world_mut().entity_mut(flat).insert(moved);
     run(&mut app, 2);
@@ -221,7 +227,7 @@ fn in_the_plane_z_is_the_owners() {
 }
 
 #[test]
-fn a_sleeping_box_is_thrown_and_pushed() {
+fn sleeping_box_accepts_impulse_and_velocity() {
     let mut app = weightless::<Dim3>();
     let resting = (
         RigidBody3d::free(block(), 2.0),
@@ -255,7 +261,7 @@ fn a_sleeping_box_is_thrown_and_pushed() {
 }
 
 #[test]
-fn who_leant_on_what_is_despawned_falls() {
+fn box_falls_when_its_support_is_despawned() {
     let mut app = app::<Dim2>();
     let floor = spawn(&mut app, RigidBody2d::floor());
     let low = (RigidBody2d::free(block(), 1.0), at(0.0, 0.5 * SIDE));
@@ -275,7 +281,7 @@ fn who_leant_on_what_is_despawned_falls() {
     assert_eq!(world::<Dim2>(&app).engine().rigids().len(), 1);
 }
 
-/// The angle of a tower's boxes, and the table under them as it turns.
+/// Angle of the boxes of a tower.
 fn askew(n: usize) -> f32 {
     0.1 * n as f32
 }
@@ -328,7 +334,7 @@ fn hash_of_engine<D: Dimension>() -> Result<u64, Box<dyn std::error::Error>> {
 }
 
 #[test]
-fn free_boxes_have_the_bits_of_the_engine() -> Result<(), Box<dyn std::error::Error>> {
+fn dynamic_boxes_have_the_hash_of_the_engine() -> Result<(), Box<dyn std::error::Error>> {
     assert_eq!(hash_of_app::<Dim2>(), hash_of_engine::<Dim2>()?);
     assert_eq!(hash_of_app::<Dim3>(), hash_of_engine::<Dim3>()?);
     Ok(())

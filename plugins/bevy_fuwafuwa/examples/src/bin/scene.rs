@@ -1,9 +1,9 @@
-//! Soft bodies on a table, one of them with a face, a tower of wooden boxes, and a hand that presses through the face. What
-//! comes off knocks on the tower. Arrow keys move the hand, Q and Z
-//! lift and lower it; it goes by itself until then.
+//! Soft bodies on a table, one of them with a face, a tower of wooden boxes, and a hand that presses through
+//! the face. The detached pieces hit the tower. The arrow keys move the hand, Q and Z raise and lower it;
+//! before the first key it moves by itself.
 //!
-//! `cargo run -p bevy_fuwafuwa_examples --bin scene`, in `crates/bevy_fuwafuwa`. With `-- FOLDER` behind it writes pictures
-//! of some moments into a folder, as fast as the machine can, and ends.
+//! `cargo run -p bevy_fuwafuwa_examples --bin scene`, in `crates/bevy_fuwafuwa`. With `-- FOLDER` at the end
+//! it writes pictures of some moments into a folder, at maximum speed, and exits.
 
 use bevy::asset::RenderAssetUsages;
 use bevy::core_pipeline::tonemapping::Tonemapping;
@@ -16,25 +16,25 @@ use bevy_fuwafuwa::prelude::*;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// A frame takes so long when pictures are taken [s].
+/// Frame time when taking pictures [s].
 const TICK: f64 = 1.0 / 60.0;
-/// The moments of pictures [ticks].
+/// Times of the pictures [ticks].
 const MOMENTS: [u32; 8] = [2, 14, 45, 85, 115, 135, 170, 280];
-/// Frames before the first tick, in which shaders are made ready.
+/// Frames before the first tick, for compiling shaders.
 const START: u32 = 120;
-/// Where the hand is pressed through [m].
+/// Start position of the hand [m].
 const HAND: Vec3 = Vec3::new(0.02, 1.5, 0.0);
 const HAND_RADIUS: f32 = 0.16;
-/// Where the tower stands, and how wide a box of it is [m].
+/// Position of the tower and width of a box [m].
 const TOWER: Vec3 = Vec3::new(0.36, 0.0, 0.26);
 const BOX: f32 = 0.18;
-/// Width of the picture on each of their sides.
+/// Texture width of a box side [pixels].
 const PIXELS: u32 = 128;
 
 #[derive(Component)]
 struct Hand;
 
-/// Where pictures go, and how many frames there were.
+/// Output folder of the pictures, and the number of frames until now.
 #[derive(Resource)]
 struct Album(PathBuf, u32);
 
@@ -149,7 +149,7 @@ fn put_bodies(
         ..default()
     };
     let tough = firm(8000.0);
-    // Children go with a soft body: this one has eyes. Who has children is to have `Visibility` before its mesh is there.
+    // Children follow a soft body: this one has eyes. A parent needs `Visibility` before its mesh exists.
     let ball = (SoftBody3d::ball(28, 1.1), SoftMaterials::from(firm(2600.0)));
     commands
         .spawn((
@@ -231,13 +231,13 @@ fn stack_boxes(
     }
 }
 
-/// The side of a box: boards in a frame.
+/// Texture of a box side: boards in a frame.
 fn wood() -> Image {
     let pixel = |index: u32| {
         let [x, y] = [index % PIXELS, index / PIXELS].map(|k| k as f32 / PIXELS as f32);
         let edge = x.min(y).min(1.0 - x).min(1.0 - y);
         let is_frame = edge < 0.13;
-        // Along a board, and across it.
+        // Coordinates along and across a board.
         let is_upright = is_frame && x.min(1.0 - x) < y.min(1.0 - y);
         let (along, across) = if is_upright { (y, x) } else { (x, y) };
         let board = (across * 4.0).floor();
@@ -267,7 +267,7 @@ fn wood() -> Image {
     )
 }
 
-/// Presses the hand down through the ball and lifts it again, until somebody takes it.
+/// Presses the hand down through the ball and lifts it again, until the first key press.
 fn move_hand(
     keys: Res<ButtonInput<KeyCode>>,
     world: Res<SoftWorld<Dim3>>,
@@ -322,7 +322,7 @@ fn take_pictures(
             .spawn(Screenshot::primary_window())
             .observe(save_to_disk(file));
     }
-    // A picture comes some frames later.
+    // A screenshot is saved some frames after its request.
     if tick > MOMENTS[MOMENTS.len() - 1] + 20 {
         exit.write(AppExit::Success);
     }

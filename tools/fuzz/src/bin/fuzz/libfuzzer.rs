@@ -1,5 +1,6 @@
-//! libFuzzer at one door, which the environment names: `DOOR=level`. With `SEEDS=folder` it only writes good bytes for
-//! each door there, to begin with, and beside them the words that they are made of.
+//! Runs libFuzzer on one entry point of `hostile`, selected by the environment: `DOOR=level`. With
+//! `SEEDS=folder` it only writes valid seed inputs for each entry point into the folder, and next to them
+//! dictionaries of their tokens.
 
 use fuzz_targets::{Door, noise};
 use std::path::Path;
@@ -11,7 +12,7 @@ static DOOR: LazyLock<&Door> = LazyLock::new(|| {
     Door::named(&name).unwrap_or_else(|| {
         let names: Vec<&str> = fuzz_targets::DOORS.iter().map(|door| door.name).collect();
         eprintln!(
-            "there is no door {name:?}; the doors are {}",
+            "unknown DOOR {name:?}, expected one of: {}",
             names.join(", ")
         );
         process::exit(2);
@@ -21,8 +22,8 @@ static DOOR: LazyLock<&Door> = LazyLock::new(|| {
 libfuzzer_sys::fuzz_target!(
     init: {
         if let Some(folder) = env::var_os("SEEDS") {
-            for door in fuzz_targets::DOORS {
-                write_seeds(door, Path::new(&folder)).expect("a folder to write to");
+            for door in hostile::DOORS {
+                write_seeds(door, Path::new(&folder)).expect("cannot write to SEEDS");
             }
             process::exit(0);
         }
