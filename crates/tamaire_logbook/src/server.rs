@@ -49,7 +49,9 @@ impl Server {
     #[cfg(feature = "postgres")]
     pub(crate) fn config(&self) -> Result<postgres::Config, String> {
         let config = self.address.parse();
-        config.map_err(|error: postgres::Error| format!("invalid server address: {error}"))
+        config.map_err(|error: postgres::Error| {
+            format!("the address of the server is invalid: {error}")
+        })
     }
 }
 

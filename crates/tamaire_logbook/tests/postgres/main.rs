@@ -385,7 +385,7 @@ fn tables_of_a_newer_version_are_left_alone(server: &Postgres) {
 fn an_address_that_is_none_is_told(server: &Postgres) {
     let (_folder, path) = place();
     for (address, expected) in [
-        ("hots=hall", "invalid server address"),
+        ("hots=hall", "the address of the server is invalid"),
         (
             "host=/nowhere user=stand password=secret",
             "cannot send the logbook",
