@@ -30,7 +30,7 @@ pub const SNAPSHOT_HEADER: [u8; 8] = {
 /// A scene with features that the built-in scenes lack.
 const RICH: &str = include_str!("rich.toml");
 
-/// Width of the small bodies [voxels].
+/// Number of voxels across the small bodies.
 const FEW: usize = 8;
 
 pub fn scenes() -> Vec<Vec<u8>> {

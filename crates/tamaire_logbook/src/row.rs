@@ -173,7 +173,7 @@ impl Kind {
         match (self, known) {
             (Self::Other(text), _) => text,
             (_, Some((text, _))) => text,
-            (_, None) => unreachable!("KINDS lists every kind; a test checks this"),
+            (_, None) => unreachable!("KINDS lists every kind but Other"),
         }
     }
 }

@@ -64,7 +64,7 @@ pub enum LevelError {
         String,
     ),
     /// No built-in level has this name.
-    #[error("unknown level {id:?}, expected one of {known}")]
+    #[error("no level or file {id:?}, expected one of {known}")]
     Unknown {
         /// The requested name.
         id: String,

@@ -351,7 +351,7 @@ mod tests {
         let mut unknown = classic();
         unknown.id = "clasic".into();
         let unknown = refusal(LEVEL, &unknown);
-        assert!(unknown.contains("unknown level \"clasic\""), "{unknown}");
+        assert!(unknown.contains("no level or file \"clasic\""), "{unknown}");
     }
 
     #[test]

@@ -50,7 +50,7 @@ pub enum ReplayError {
     #[error("cannot read the replay: {0}")]
     Unreadable(String),
     /// The text is no replay.
-    #[error("this is not a replay: {0}")]
+    #[error("this is no replay: {0}")]
     Text(String),
     /// The replay has another version of the rules.
     #[error("this replay has version {found}, but this game plays version {VERSION}")]
