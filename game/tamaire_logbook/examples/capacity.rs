@@ -1,4 +1,4 @@
-//! How fast a logbook is, and how large: `capacity [ROUNDS]`, a million unless told.
+//! Measures speed and size of a logbook: `capacity [ROUNDS]`, by default with a million rounds.
 
 use std::env;
 use std::error::Error;
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = folder.path().join("logbook.sqlite");
     let (mut book, _) = Logbook::open(&path, "hall 2")?;
 
-    // As at a stand: a flush each.
+    // One commit per entry, as at a stand.
     let single: Vec<Entry> = (0..40)
         .flat_map(|visit| entries(visit, Moment::now()))
         .collect();
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     single.iter().try_for_each(|entry| book.write(entry))?;
     let each = start.elapsed() / single.len() as u32;
     println!(
-        "an entry, flushed: {each:?}, {:.0} a second",
+        "one entry per commit: {each:?}, {:.0} entries/s",
         1.0 / each.as_secs_f64()
     );
 
@@ -40,11 +40,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let took = start.elapsed().as_secs_f64();
     println!(
-        "entries, a flush for each visit: {:.0} a second",
+        "one visit per commit: {:.0} entries/s",
         written as f64 / took
     );
     println!(
-        "a round: {} bytes",
+        "size of a round: {} bytes",
         (book.bytes() - before) / u64::from(rounds)
     );
 
@@ -53,25 +53,29 @@ fn main() -> Result<(), Box<dyn Error>> {
         let start = Instant::now();
         let today = book.today(since)?;
         println!(
-            "today, of {name}: {:?}, {} rounds",
+            "today over {name}: {:?}, {} rounds",
             start.elapsed(),
             today.rounds
         );
         let start = Instant::now();
         let best = book.best(since, "classic", None, 5)?;
-        println!("best, of {name}: {:?}, {}", start.elapsed(), best.len());
+        println!(
+            "best over {name}: {:?}, {} rounds",
+            start.elapsed(),
+            best.len()
+        );
         let (mut seen, start) = (0, Instant::now());
         book.rounds(since.., |_| {
             seen += 1;
             Ok::<_, tamaire_logbook::Error>(())
         })?;
-        println!("rounds, of {name}: {:?}, {seen}", start.elapsed());
+        println!("rounds over {name}: {:?}, {seen} rounds", start.elapsed());
     }
     drop(book);
     let start = Instant::now();
     let (mut book, _) = Logbook::open(&path, "hall 2")?;
     println!(
-        "open and check: {:?}, {} bytes",
+        "opening and checking: {:?}, {} bytes",
         start.elapsed(),
         book.bytes()
     );
@@ -84,7 +88,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A visit of five rounds, the last of which is won.
+/// Returns the entries of a visit of five rounds, of which the last is won.
 fn entries(visit: i64, began: Moment) -> Vec<Entry> {
     let visit = Visit {
         id: Id::random(),
@@ -95,7 +99,7 @@ fn entries(visit: i64, began: Moment) -> Vec<Entry> {
     };
     let round = |number| {
         let won = (number == ROUNDS_A_VISIT).then_some(Route::Squeeze);
-        // As long as what most rounds of half a minute come to.
+        // A typical length for a round of half a minute.
         let replay = (0..1500).map(|_| fastrand::alphanumeric()).collect();
         Entry::Round(Round {
             id: Id::random(),

@@ -1,56 +1,57 @@
-//! Why a logbook does not do what it is asked.
+//! Errors of a logbook.
 
 use std::path::PathBuf;
 
-/// Why a logbook was not opened, read or written.
+/// Reason why opening, reading or writing a logbook failed.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// It was written by a later version: nothing in it was changed.
+    /// A later version of the program wrote the file. Nothing in it was changed.
     #[error(
-        "{path}: this logbook is of version {found}, and this program knows {known} at most: it needs a newer tamaire"
+        "{path}: logbook of version {found}: this program supports up to version {known}; install a newer tamaire"
     )]
     Newer {
-        /// Which file.
+        /// Path of the logbook.
         path: PathBuf,
-        /// Its version.
+        /// Version of the file.
         found: i64,
-        /// The newest that is known here.
+        /// Newest version that this program supports.
         known: i64,
     },
-    /// Another program has it open and does not let go. It may be tried again.
-    #[error("{0}: another program is writing in this logbook")]
+    /// Another program holds a lock on the file. The caller may try again.
+    #[error("{0}: another program is writing to this logbook")]
     Locked(
-        /// Which file.
+        /// Path of the logbook.
         PathBuf,
     ),
-    /// There is no room for more. It may be tried again.
+    /// The disk is full, or the file has reached its size limit. The caller may try again.
     #[error("{0}: the disk is full")]
     Full(
-        /// Which file.
+        /// Path of the logbook.
         PathBuf,
     ),
-    /// It may not be written, or the disk fails. It may be tried again.
-    #[error("{path}: it cannot be opened, read or written: {reason}")]
+    /// The file cannot be accessed, for example because of its permissions or a failing disk. The caller may
+    /// try again.
+    #[error("{path}: the logbook cannot be opened, read or written: {reason}")]
     Unusable {
-        /// Which file.
+        /// Path of the logbook.
         path: PathBuf,
-        /// What the system says.
+        /// Message of the operating system or of SQLite.
         reason: String,
     },
-    /// It is no logbook, or is broken.
-    #[error("{path}: this is no logbook, or a damaged one: {reason}")]
+    /// The file is no logbook, or it is damaged.
+    #[error("{path}: not a logbook, or a damaged one: {reason}")]
     Damaged {
-        /// Which file.
+        /// Path of the logbook.
         path: PathBuf,
-        /// What is wrong.
+        /// Description of the damage.
         reason: String,
     },
-    /// It did not take this entry, but goes on with others.
-    #[error("{path}: it did not take this: {reason}")]
+    /// SQLite rejected this entry, for example by a constraint. Other entries can still be written.
+    #[error("{path}: the logbook rejected an entry: {reason}")]
     Refused {
-        /// Which file.
+        /// Path of the logbook.
         path: PathBuf,
-        /// What is wrong.
+        /// Reason for the rejection.
         reason: String,
     },
 }

@@ -1,29 +1,30 @@
-//! What a row is known by.
+//! Unique identifiers of rows.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
-/// By what a row is known, at every stand and on every server: 128 random bits. As text, 32 hexadecimal digits.
+/// Identifier of a row, unique across all stands and servers: 128 random bits. Its text form has 32
+/// hexadecimal digits.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Id(pub u128);
 
-/// Why a text is no [`Id`].
+/// Error of parsing an [`Id`] from a text.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("expected an id of 32 hexadecimal digits, found {0:?}")]
 pub struct NoId(
-    /// The text.
+    /// The text that was given.
     pub String,
 );
 
 impl Id {
-    /// A new one, which nobody else has.
+    /// Returns a new random id.
     pub fn random() -> Self {
         let mut bytes = [0; 16];
         match getrandom::fill(&mut bytes) {
             Ok(()) => Self(u128::from_be_bytes(bytes)),
-            // A machine without randomness of its own has at least a clock and addresses.
+            // Without a system source of randomness, fastrand's seed (time and thread) has to do.
             Err(_) => Self(fastrand::u128(..)),
         }
     }
@@ -63,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_id_is_written_as_hexadecimal_digits_and_read_again() {
+    fn id_round_trips_as_32_hexadecimal_digits() {
         let id = Id(0xab);
         assert_eq!(id.to_string(), "000000000000000000000000000000ab");
         assert_eq!(id.to_string().parse(), Ok(id));

@@ -1,10 +1,18 @@
-//! What happened at a stand, kept in SQLite: visits, rounds and events, week after week, and nothing about who it was.
+//! Record of a stand's visits, rounds and events in an SQLite file. It holds nothing that identifies a
+//! visitor.
 //!
-//! The way through, each module using only those above it: [`id`] and [`moment`] by what and when something is known →
-//! [`row`] what is kept → [`error`] why it could not be → [`today`] what came of a day → [`logbook`] the file → [`server`] where it may
-//! be sent → `sender` a thread that sends it (feature `postgres`) → [`recorder`] a thread that writes it while people play.
+//! The modules, each of which uses only those above it:
 //!
-//! What orders rows is the sequence in which they came, never the clock, which may be set.
+//! - [`id`] and [`moment`]: identifiers and times
+//! - [`row`]: the records
+//! - [`error`]: the errors
+//! - [`today`]: the summary of a day
+//! - [`logbook`]: the file
+//! - [`server`]: the address of an optional PostgreSQL server
+//! - `sender`: the thread that sends the rows to that server (feature `postgres`)
+//! - [`recorder`]: the thread that writes the file during play
+//!
+//! Rows are ordered by the sequence in which they were written, never by the clock, which may be changed.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [ms]

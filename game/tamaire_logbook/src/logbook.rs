@@ -1,4 +1,4 @@
-//! The file, over one connection.
+//! The logbook file, accessed through one connection.
 
 mod file;
 mod read;
@@ -17,7 +17,7 @@ use std::fs::{self, File};
 use std::ops::RangeBounds;
 use std::path::{Path, PathBuf};
 
-/// A file of SQLite with what happened at a stand.
+/// SQLite file with the visits, rounds and events of a stand.
 ///
 /// ```
 /// use tamaire_logbook::{Entry, Error, Event, Id, Kind, Logbook, Moment};
@@ -46,13 +46,15 @@ pub struct Logbook {
 }
 
 impl Logbook {
-    /// Opens a stand's logbook to write it, and begins one, with its folder, where there is none. A file that is damaged or
-    /// something else is set aside under a name with the date, and a new one begins: that is told beside it. All of it is
-    /// read for that, a second for each gigabyte or so.
+    /// Opens the logbook of a stand for writing. Creates the file and its folder if they do not exist.
+    ///
+    /// A file that is damaged or no logbook is renamed with the date in its name, and a new logbook is
+    /// created; the second value returned describes the renamed file. The check reads the whole file, about
+    /// one second per gigabyte.
     ///
     /// # Errors
-    /// [`Error::Newer`], with nothing changed; [`Error::Locked`], [`Error::Full`] and [`Error::Unusable`], after which
-    /// it may be tried again.
+    /// [`Error::Newer`] if a later version wrote the file, which is left unchanged. [`Error::Locked`],
+    /// [`Error::Full`] and [`Error::Unusable`]; after these the caller may try again.
     pub fn open(path: &Path, stand: &str) -> Result<(Self, Option<SetAside>), Error> {
         let opened = file::open(path);
         let (connection, set_aside) = match opened {
@@ -68,36 +70,39 @@ impl Logbook {
         Ok((book, set_aside))
     }
 
-    /// Opens a logbook to read it: a stand's own while it writes, or a copy with what stood beside it (`-wal`).
+    /// Opens a logbook for reading: a stand's own file while it is written, or a copy of it together with its
+    /// `-wal` file.
     ///
     /// # Errors
-    /// [`Error::Newer`], [`Error::Damaged`] and [`Error::Unusable`]. Nothing is changed or set aside.
+    /// [`Error::Newer`], [`Error::Damaged`] and [`Error::Unusable`]. The file is neither changed nor renamed.
     pub fn read(path: &Path) -> Result<Self, Error> {
         Ok(Self::over(path, file::read(path)?))
     }
 
-    /// Writes an entry, once, however often it is told: what is written when this returns outlasts a program that is killed
-    /// and a power cut. A round or an end of a visit that is not known yet brings it along.
+    /// Writes an entry. Writing the same entry again has no effect.
+    ///
+    /// When this function returns, the entry is on the disk: it survives a killed process and a power cut. A
+    /// round, or the end of a visit, whose visit is unknown creates that visit.
     ///
     /// # Errors
-    /// [`Error`]; then nothing of it is written.
+    /// [`Error`]; then nothing of the entry is written.
     pub fn write(&mut self, entry: &Entry) -> Result<(), Error> {
         self.write_all(std::slice::from_ref(entry))
     }
 
-    /// Writes all of these, or none.
+    /// Writes all entries in one transaction.
     ///
     /// # Errors
-    /// [`Error`]; then nothing of them is written.
+    /// [`Error`]; then none of the entries is written.
     pub fn write_all(&mut self, entries: &[Entry]) -> Result<(), Error> {
         let written = write::write(&mut self.connection, entries);
         self.told(written)
     }
 
-    /// Hands over the visits that began in a range, in the order in which they came, one at a time.
+    /// Calls `each` for every visit that began in `range`, in the order in which they were written.
     ///
     /// # Errors
-    /// [`Error`], and what the function returns, which ends it.
+    /// [`Error`], or the first error of `each`, which stops the iteration.
     pub fn visits<E: From<Error>>(
         &self,
         range: impl RangeBounds<Moment>,
@@ -106,10 +111,10 @@ impl Logbook {
         self.stream(&read::VISITS, range, each)
     }
 
-    /// Hands over the rounds that began in a range, in the order in which they came, one at a time.
+    /// Calls `each` for every round that began in `range`, in the order in which they were written.
     ///
     /// # Errors
-    /// [`Error`], and what the function returns, which ends it.
+    /// [`Error`], or the first error of `each`, which stops the iteration.
     pub fn rounds<E: From<Error>>(
         &self,
         range: impl RangeBounds<Moment>,
@@ -118,10 +123,10 @@ impl Logbook {
         self.stream(&read::ROUNDS, range, each)
     }
 
-    /// Hands over the events of a range, in the order in which they came, one at a time.
+    /// Calls `each` for every event in `range`, in the order in which they were written.
     ///
     /// # Errors
-    /// [`Error`], and what the function returns, which ends it.
+    /// [`Error`], or the first error of `each`, which stops the iteration.
     pub fn events<E: From<Error>>(
         &self,
         range: impl RangeBounds<Moment>,
@@ -130,7 +135,7 @@ impl Logbook {
         self.stream(&read::EVENTS, range, each)
     }
 
-    /// What happened since a moment.
+    /// Returns the summary of everything that began at `since` or later.
     ///
     /// # Errors
     /// [`Error`].
@@ -138,8 +143,8 @@ impl Logbook {
         self.told(read::today(&self.connection, since.utc_ms))
     }
 
-    /// The fastest rounds of a level that were won since a moment and have a replay, the fastest first; where a hash is
-    /// given, of that very level.
+    /// Returns the `most` fastest won rounds of a level that began at `since` or later and have a replay,
+    /// fastest first. With `level_hash`, only rounds of exactly that version of the level.
     ///
     /// # Errors
     /// [`Error`].
@@ -154,7 +159,7 @@ impl Logbook {
         self.told(read::best(&self.connection, since, level, level_hash, most))
     }
 
-    /// Forgets what began before a moment, but for what a server has not got yet.
+    /// Deletes rows that began before `moment`, except rows that the server has not received yet.
     ///
     /// # Errors
     /// [`Error`].
@@ -162,21 +167,22 @@ impl Logbook {
         self.told(write::forget_before(&self.connection, moment.utc_ms))
     }
 
-    /// How much room it takes on the disk, with what stands beside it [bytes].
+    /// Returns the size on the disk of the file and of SQLite's files beside it [bytes].
     pub fn bytes(&self) -> u64 {
         file::bytes(&self.path)
     }
 
-    /// Makes a copy that is a single file, while others may write. What is at that path already stays.
+    /// Writes a copy as a single file. Other connections may write meanwhile. An existing file at `path` is
+    /// not overwritten.
     ///
     /// # Errors
-    /// [`Error`], of the copy's path too, where something is there already.
+    /// [`Error`]; [`Error::Unusable`] with the path of the copy if a file exists there.
     pub fn export(&self, path: &Path) -> Result<(), Error> {
         let failed = |error: std::io::Error| file::unusable(path, &error);
         if path.exists() {
             return Err(failed(std::io::ErrorKind::AlreadyExists.into()));
         }
-        // Under another name until all of it is on the disk.
+        // The copy gets its final name only when all of it is on the disk.
         let part = path.with_added_extension("part");
         let _ = fs::remove_file(&part);
         let name = part.to_string_lossy();
@@ -198,7 +204,7 @@ impl Logbook {
         copied
     }
 
-    /// The stand that wrote it last.
+    /// Returns the name of the stand that opened the file for writing last.
     ///
     /// # Errors
     /// [`Error`].
@@ -207,7 +213,7 @@ impl Logbook {
         self.told(self.connection.query_row(sql, [], |row| row.get(0)))
     }
 
-    /// Holds it to a size [bytes]: where more would be written, it is as with a full disk.
+    /// Limits the size of the file [bytes]. Writing beyond the limit returns [`Error::Full`].
     ///
     /// # Errors
     /// [`Error`].
@@ -223,7 +229,7 @@ impl Logbook {
         self.told(limit())
     }
 
-    /// When the oldest row is from, by the clock.
+    /// Returns the time of the oldest row by the clock [ms of UTC].
     pub(crate) fn oldest(&self) -> Result<Option<i64>, Error> {
         let sql = "SELECT min(began) FROM (SELECT min(began) AS began FROM visits
             UNION ALL SELECT min(began) FROM rounds UNION ALL SELECT min(at) FROM events)";
@@ -231,7 +237,8 @@ impl Logbook {
         self.told(found.optional().map(Option::flatten))
     }
 
-    /// Keeps from now on what this server has not got yet, however old it is; or nothing for any.
+    /// Sets the server whose missing rows [`Logbook::forget_before`] keeps, however old they are; `None`
+    /// keeps no row for a server.
     pub(crate) fn await_server(&self, server: Option<&str>) -> Result<(), Error> {
         self.told(sent::await_server(&self.connection, server))
     }
@@ -261,15 +268,15 @@ impl Logbook {
     }
 }
 
-/// For who sends it to a server.
+/// Functions for the sender.
 #[cfg(feature = "postgres")]
 impl Logbook {
-    /// Opens one that is in use already.
+    /// Opens a logbook that the recorder has opened and checked already.
     pub(crate) fn attach(path: &Path) -> Result<Self, Error> {
         Ok(Self::over(path, file::attach(path)?))
     }
 
-    /// Up to where the server has got it.
+    /// Returns the position up to which the server has received the file.
     pub(crate) fn sent(&self) -> Result<Sent, Error> {
         self.told(sent::sent(&self.connection))
     }
@@ -278,12 +285,13 @@ impl Logbook {
         self.told(sent::set_sent(&self.connection, server, sent))
     }
 
-    /// How many rows the server has not got yet.
+    /// Returns the number of rows that the server has not received yet.
     pub(crate) fn unsent(&self) -> Result<u64, Error> {
         self.told(sent::unsent(&self.connection))
     }
 
-    /// What changed after a change, in the order in which it did: the number of the change, that of the row, the row.
+    /// Returns at most `most` rows that changed after change number `after`, in the order of their changes:
+    /// the change number, the row number and the row.
     pub(crate) fn changes(
         &self,
         after: i64,

@@ -1,4 +1,4 @@
-//! When something was.
+//! Points in time.
 
 use jiff::tz::{Offset, TimeZone};
 use jiff::{Timestamp, Zoned};
@@ -6,29 +6,29 @@ use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;
 
-/// A moment by the clock on the wall, which may have been wrong, and where that wall was. Moments are equal, and come before
-/// each other, by their time in UTC alone.
+/// A time of the system clock, which may have been wrong, with the local offset from UTC. Moments are
+/// compared by their UTC time only.
 #[derive(Copy, Clone, Debug, Serialize, Deserialize)]
 pub struct Moment {
-    /// Since the beginning of 1970 in UTC [ms].
+    /// Time since 1970-01-01 00:00 UTC [ms].
     pub utc_ms: i64,
-    /// How far local time was ahead of UTC, summer time included [s].
+    /// Offset of local time from UTC, daylight saving time included [s]. East of Greenwich is positive.
     pub offset_s: i32,
 }
 
 impl Moment {
-    /// By this machine's clock, in its time zone.
+    /// Returns the current time of the system clock, in its time zone.
     pub fn now() -> Self {
         Self::of(&Zoned::now())
     }
 
-    /// As long after this one [ms]; before it if negative.
+    /// Returns the moment `ms` later [ms]; earlier if negative.
     pub fn after(self, ms: i64) -> Self {
         let utc_ms = self.utc_ms.saturating_add(ms);
         Self { utc_ms, ..self }
     }
 
-    /// The midnight at which the day of this moment began, in its own local time.
+    /// Returns the midnight at which the local day of this moment began.
     pub fn midnight(self) -> Self {
         const DAY: i64 = 86_400_000;
         let local = self.utc_ms.saturating_add(1000 * i64::from(self.offset_s));
@@ -42,14 +42,14 @@ impl Moment {
         }
     }
 
-    /// Local time; nothing of a moment that no calendar has.
+    /// Returns the local time; `None` if it is outside the calendar's range.
     fn zoned(self) -> Option<Zoned> {
         let offset = Offset::from_seconds(self.offset_s).ok()?;
         let time = Timestamp::from_millisecond(self.utc_ms).ok()?;
         Some(time.to_zoned(TimeZone::fixed(offset)))
     }
 
-    /// In local time, as digits that are fit for the name of a file: `2026-11-23-101502`.
+    /// Formats the local time for file names: `2026-11-23-101502`.
     pub(crate) fn file_stem(self) -> String {
         let time = self.zoned();
         time.map_or_else(String::new, |time| {
@@ -58,7 +58,7 @@ impl Moment {
     }
 }
 
-/// Local time with its offset, `2026-11-23 10:15:02+01:00`.
+/// Formats the local time with its offset: `2026-11-23 10:15:02+01:00`.
 impl fmt::Display for Moment {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.zoned() {
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_moment_is_told_in_the_time_of_its_place() {
+    fn moment_is_formatted_in_its_local_time() {
         let moment = Moment {
             utc_ms: 1_795_428_902_345,
             offset_s: 3600,
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_moment_that_no_calendar_has_is_borne() {
+    fn moment_outside_the_calendar_is_formatted_in_milliseconds() {
         for utc_ms in [i64::MIN, i64::MAX] {
             let moment = Moment {
                 utc_ms,

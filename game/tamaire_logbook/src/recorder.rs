@@ -1,4 +1,5 @@
-//! A thread that writes a logbook while people play: whoever records never waits, whatever the disk does.
+//! A thread that writes the logbook during play. Recording never blocks the caller, even if the disk is slow
+//! or full.
 
 #[cfg(not(feature = "postgres"))]
 mod absent;
@@ -21,36 +22,40 @@ use crate::sender::Sender;
 #[cfg(not(feature = "postgres"))]
 use absent::Sender;
 
-/// A thread with a logbook. When it is dropped, what waits is written, as by [`Recorder::finish`].
+/// Handle of the thread that writes a logbook. Dropping it writes the waiting entries, as
+/// [`Recorder::finish`] does, within 3 s.
 #[derive(Debug)]
 pub struct Recorder {
     desk: Arc<Desk>,
     sender: Option<Sender>,
 }
 
-/// For so long what waits is written when a recorder is dropped.
+/// Time limit for writing the waiting entries when a recorder is dropped.
 const LAST: Duration = Duration::from_secs(3);
 
 impl Recorder {
-    /// Begins to record for a stand, into this file. It is opened on the thread, which tries again when that fails.
+    /// Starts recording for a stand into the file at `path`. The thread opens the file, and tries again if
+    /// that fails.
     pub fn begin(path: &Path, stand: &str, options: Options) -> Self {
         let desk = Arc::new(Desk::default());
         let writer = Writer::new(Arc::clone(&desk), path, stand, options.clone());
         let thread = thread::Builder::new().name("logbook".into());
         if let Err(error) = thread.spawn(move || writer.run()) {
-            desk.close(format!("there is no thread to write the logbook: {error}"));
+            desk.close(format!(
+                "cannot start the thread that writes the logbook: {error}"
+            ));
         }
         let sender = options.server.as_ref();
         let sender = sender.map(|server| Sender::begin(path, stand, server));
         Self { desk, sender }
     }
 
-    /// Has an entry written soon. Never waits.
+    /// Queues an entry for writing. Never blocks on the disk.
     pub fn record(&self, entry: Entry) {
         self.desk.put(entry);
     }
 
-    /// How it is now.
+    /// Returns the current state of the recorder.
     pub fn health(&self) -> Health {
         let mut health = self.desk.health();
         if let Some(sender) = &self.sender {
@@ -61,17 +66,18 @@ impl Recorder {
         health
     }
 
-    /// Asks what happened since a moment; [`Recorder::today`] has it a little later.
+    /// Requests the summary of everything since a moment; [`Recorder::today`] returns it a little later.
     pub fn ask_today(&self, since: Moment) {
         self.desk.ask(|questions| questions.today = Some(since));
     }
 
-    /// The last answer to [`Recorder::ask_today`].
+    /// Returns the last answer to [`Recorder::ask_today`].
     pub fn today(&self) -> Option<Today> {
         self.desk.answer(|answers| answers.today.clone())
     }
 
-    /// Asks for the best rounds, as [`crate::Logbook::best`]; [`Recorder::best`] has them a little later.
+    /// Requests the best rounds, as [`crate::Logbook::best`] does; [`Recorder::best`] returns them a little
+    /// later.
     pub fn ask_best(&self, since: Moment, level: &str, level_hash: Option<u64>, most: usize) {
         let level = level.into();
         let best = Best {
@@ -83,22 +89,25 @@ impl Recorder {
         self.desk.ask(|questions| questions.best = Some(best));
     }
 
-    /// The last answer to [`Recorder::ask_best`].
+    /// Returns the last answer to [`Recorder::ask_best`].
     pub fn best(&self) -> Option<Vec<Round>> {
         self.desk.answer(|answers| answers.best.clone())
     }
 
-    /// Asks for a copy, as [`crate::Logbook::export`]; [`Recorder::exported`] tells how it went a little later.
+    /// Requests a copy, as [`crate::Logbook::export`] does; [`Recorder::exported`] returns the result a
+    /// little later.
     pub fn ask_export(&self, path: PathBuf) {
         self.desk.ask(|questions| questions.export = Some(path));
     }
 
-    /// How the last [`Recorder::ask_export`] went, once: the copy, or why there is none.
+    /// Takes the result of the last [`Recorder::ask_export`]: the path of the copy, or the reason why it
+    /// failed.
     pub fn exported(&self) -> Option<Result<PathBuf, String>> {
         self.desk.answer(|answers| answers.export.take())
     }
 
-    /// Writes what waits, for no longer than this. How it is then: what waits still is lost.
+    /// Writes the waiting entries for at most `within`, then stops. Returns the final state: entries still
+    /// waiting then are lost.
     pub fn finish(self, within: Duration) -> Health {
         self.desk.finish(Instant::now() + within);
         self.health()

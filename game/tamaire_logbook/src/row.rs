@@ -1,129 +1,130 @@
-//! What is kept of a day at a stand. Nothing in it says who somebody was.
+//! Records of a day at a stand. None of them identifies a visitor.
 
 use crate::{Id, Moment};
 use serde::{Deserialize, Serialize};
 use tamaire_play::Route;
 
-/// What happens between two times at which the stand attracts: somebody, or some, came, played and went.
+/// A visit: from the first touch until the stand is idle again, by one player or a group.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Visit {
-    /// By what it is known.
+    /// Unique identifier.
     pub id: Id,
-    /// The stand's name, as its settings have it.
+    /// Name of the stand, from its settings.
     pub stand: String,
-    /// When somebody touched the stick.
+    /// Time of the first touch of the stick.
     pub began: Moment,
-    /// When the stand went back to attracting. A visit without was cut off, by power or a crash, or goes on.
+    /// Time at which the stand went idle again. `None` if the visit goes on, or if power or the program
+    /// failed during it.
     pub ended: Option<Moment>,
-    /// The language that was shown last, such as `de`.
+    /// Language shown last, such as `de`.
     pub language: String,
 }
 
-/// One go at a level.
+/// One attempt at a level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Round {
-    /// By what it is known.
+    /// Unique identifier.
     pub id: Id,
-    /// The visit that it is of.
+    /// Visit to which the round belongs.
     pub visit: Id,
-    /// The stand's name.
+    /// Name of the stand.
     pub stand: String,
-    /// Which of its visit, from 1.
+    /// Number of the round within its visit, from 1.
     pub number: u32,
-    /// When it began.
+    /// Time at which the round began.
     pub began: Moment,
-    /// How long it was played [s], pauses aside.
+    /// Playing time without pauses [s].
     pub seconds: f32,
-    /// The level's name.
+    /// Name of the level.
     pub level: String,
-    /// [`tamaire_play::Level::hash`]: the same level made easier has another one.
+    /// Hash of the level, [`tamaire_play::Level::hash`]. An easier variant of the level has another one.
     pub level_hash: u64,
-    /// How many people played.
+    /// Number of players.
     pub players: u8,
-    /// How it ended.
+    /// End of the round.
     pub end: End,
-    /// By which route it was won, if it was.
+    /// Route by which the round was won; `None` if it was not won.
     pub route: Option<Route>,
-    /// The mass in the largest piece of each body, as a share of what that was at the start.
+    /// Mass of the largest piece of each body, as a share of the mass at the start.
     pub kept: f32,
-    /// Share of the mass that rested in the basket at the end.
+    /// Share of the mass at rest in the basket at the end.
     pub inside: f32,
     /// Number of pieces at the end.
     pub pieces: u32,
-    /// How many of them were not in the basket, crumbs aside.
+    /// Number of pieces outside the basket at the end, without crumbs.
     pub lost: u32,
-    /// The other route, where it was suggested before this round.
+    /// The other route, if the game suggested it before this round.
     pub dare: Option<Route>,
-    /// What [`tamaire_play::Replay::fragment`] made of it, a few kilobytes.
+    /// Replay as text from [`tamaire_play::Replay::fragment`], a few kilobytes. Empty if there is no replay.
     pub replay: String,
 }
 
-/// How a round ended.
+/// End of a round.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum End {
-    /// It was won.
+    /// The player won.
     Won,
-    /// It was begun again.
+    /// The player restarted the round.
     Retried,
-    /// Whoever played chose something else, or went away.
+    /// The player chose another level or left.
     Left,
-    /// The game ended under it.
+    /// The game ended during the round.
     Cut,
 }
 
-/// Something that whoever looks after a stand may want to know.
+/// An event that matters to the staff of a stand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// By what it is known.
+    /// Unique identifier.
     pub id: Id,
-    /// The stand's name.
+    /// Name of the stand.
     pub stand: String,
-    /// When it happened.
+    /// Time of the event.
     pub at: Moment,
-    /// What happened.
+    /// Kind of the event.
     pub kind: Kind,
-    /// More about it, for people; of no more than [`MAX_TEXT_BYTES`].
+    /// Details as a sentence, of at most [`MAX_TEXT_BYTES`].
     pub text: String,
 }
 
-/// What happened at a stand.
+/// Kind of an event.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
 pub enum Kind {
-    /// The program was started.
+    /// The program started.
     Began,
-    /// The program ended as it was told to.
+    /// The program ended normally.
     Ended,
-    /// The program broke down.
+    /// The program crashed.
     Crashed,
-    /// The program stood still and was started anew.
+    /// The program hung and was restarted.
     Hung,
     /// The GPU or the window was lost.
     LostGraphics,
-    /// What starts the program anew did so no more.
+    /// The watchdog stopped restarting the program after too many failures.
     GaveUp,
-    /// There was no room left on the disk.
+    /// The disk was full.
     FullDisk,
-    /// A file could not be used and was set aside.
+    /// A damaged file was set aside.
     DamagedFile,
-    /// The clock was set to another time.
+    /// The clock was changed.
     ClockChanged,
-    /// A stick or pad was unplugged.
+    /// A stick or gamepad was unplugged.
     DeviceLost,
-    /// A stick or pad was plugged in.
+    /// A stick or gamepad was plugged in.
     DeviceFound,
-    /// Somebody opened what is for the staff.
+    /// The staff menu was opened.
     StaffIn,
-    /// Somebody tried to, and was refused.
+    /// A wrong PIN was entered for the staff menu.
     StaffRefused,
     /// The staff changed the settings.
     SettingsChanged,
-    /// What a later version wrote.
+    /// A kind that a later version of the program wrote.
     Other(String),
 }
 
-/// Something to write down.
+/// An entry to be written to a logbook.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Entry {
@@ -131,23 +132,23 @@ pub enum Entry {
     VisitBegan(Visit),
     /// A visit ended.
     VisitEnded {
-        /// Which.
+        /// Id of the visit.
         id: Id,
-        /// When.
+        /// Time of the end.
         at: Moment,
-        /// The language that was shown last; empty leaves it as it was when the visit began.
+        /// Language shown last; an empty text keeps the language from the beginning of the visit.
         language: String,
     },
     /// A round ended.
     Round(Round),
-    /// Something else happened.
+    /// An event happened.
     Event(Event),
 }
 
-/// Most bytes of a text in a row, replays aside: what is longer is cut short.
+/// Maximum length of a text in a row, replays excepted [bytes]. Longer texts are truncated.
 pub const MAX_TEXT_BYTES: usize = 1 << 14;
 
-/// The texts on file. They stay as they are.
+/// Names of the kinds in the file. They are a file format and must not be changed.
 const KINDS: [(&str, Kind); 14] = [
     ("began", Kind::Began),
     ("ended", Kind::Ended),
@@ -166,13 +167,13 @@ const KINDS: [(&str, Kind); 14] = [
 ];
 
 impl Kind {
-    /// As it stands on file.
+    /// Returns the name of the kind in the file.
     pub fn text(&self) -> &str {
         let known = KINDS.iter().find(|(_, kind)| kind == self);
         match (self, known) {
             (Self::Other(text), _) => text,
             (_, Some((text, _))) => text,
-            (_, None) => unreachable!("a test asks for the text of each"),
+            (_, None) => unreachable!("KINDS lists every kind but Other"),
         }
     }
 }
@@ -191,7 +192,7 @@ impl From<Kind> for String {
 }
 
 impl End {
-    /// As it stands on file.
+    /// Returns the name of the ending in the file.
     pub fn text(self) -> &'static str {
         match self {
             Self::Won => "won",
@@ -207,7 +208,7 @@ impl End {
     }
 }
 
-/// A route as it stands on file.
+/// Returns the name of a route in the file.
 pub fn route_text(route: Route) -> &'static str {
     match route {
         Route::Squeeze => "squeeze",
@@ -221,7 +222,7 @@ pub(crate) fn read_route(text: &str) -> Option<Route> {
     all.into_iter().find(|route| route_text(*route) == text)
 }
 
-/// What an entry takes in memory [bytes], much as it is.
+/// Returns the approximate size of an entry in memory [bytes].
 pub(crate) fn room_of(entry: &Entry) -> usize {
     let texts = match entry {
         Entry::VisitBegan(visit) => visit.stand.len() + visit.language.len(),

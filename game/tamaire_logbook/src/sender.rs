@@ -1,8 +1,10 @@
-//! A thread that sends what is in a logbook to a PostgreSQL server, each row at least once and kept there once.
+//! A thread that sends the rows of a logbook to a PostgreSQL server. Each row is sent at least once and
+//! stored once.
 //!
-//! Rows go in the order of their changes, some hundred in a transaction, and with them the number of the last change: the server
-//! says itself up to where it has got a file. When it is away, it is tried again and again; when it comes back without what it had
-//! got (another one, or one from a backup), all that is still in the file is sent again.
+//! Rows are sent in the order of their changes, up to 200 in a transaction, together with the number of the
+//! last change. The server thus stores its own position in a file. While it cannot be reached, the thread
+//! keeps trying. If the server lost rows, because it is another one or was restored from a backup, all rows
+//! after its position that are still in the file are sent again.
 
 mod tables;
 
@@ -17,25 +19,25 @@ use std::thread;
 use std::time::Duration;
 use tables::Inserts;
 
-/// A thread that sends. It ends when this is dropped; what was not sent yet is sent by the next one.
+/// Handle of the sending thread. Dropping it ends the thread; the next sender sends the remaining rows.
 #[derive(Debug)]
 pub struct Sender {
     progress: Arc<Mutex<Progress>>,
-    /// Hung up to end it.
+    /// Dropping this channel ends the thread.
     _end: mpsc::Sender<()>,
 }
 
-/// Most rows in a transaction.
+/// Maximum number of rows in a transaction.
 const BATCH: usize = 200;
-/// New rows are looked for so often.
+/// Interval between two searches for new rows, and first delay after a failure.
 const LOOK: Duration = Duration::from_secs(1);
-/// After so much trouble in a row the rest between two attempts is not doubled any more: a minute.
+/// Number of failures in a row after which the delay, doubled at each failure, stays at half a minute.
 const MOST_DOUBLINGS: u32 = 6;
-/// Most that is waited for a server that says nothing.
+/// Time limit for an answer of the server.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 impl Sender {
-    /// Begins to send what is in this file, and what others write into it.
+    /// Starts sending the rows of the file at `path`, and those that are added to it later.
     pub fn begin(path: &Path, stand: &str, server: &Server) -> Self {
         let progress = Arc::new(Mutex::default());
         let (end, ended) = mpsc::channel();
@@ -49,7 +51,7 @@ impl Sender {
         let told = Arc::clone(&progress);
         let run = move || errand.run(&ended, |now| set(&told, now));
         if let Err(error) = thread.spawn(run) {
-            let trouble = format!("there is no thread to send the logbook: {error}");
+            let trouble = format!("cannot start the thread that sends the logbook: {error}");
             set(
                 &progress,
                 Progress {
@@ -64,7 +66,7 @@ impl Sender {
         }
     }
 
-    /// How it goes.
+    /// Returns the current progress.
     pub fn progress(&self) -> Progress {
         let progress = self.progress.lock();
         progress.unwrap_or_else(PoisonError::into_inner).clone()
@@ -82,17 +84,17 @@ struct Errand {
     line: Option<Line>,
 }
 
-/// A connection to the server, and up to where it has got the file.
+/// Connection to the server, with the position up to which it has received the file.
 struct Line {
     client: Client,
     inserts: Inserts,
     sent: Sent,
 }
 
-/// Why nothing was sent.
+/// Reason why nothing was sent.
 #[derive(Debug)]
 enum Trouble {
-    /// With the file, which others see to: it may not even be there yet.
+    /// The file cannot be used at present, or does not exist yet. The recorder reports this.
     Book,
     Server(String),
 }
@@ -102,7 +104,7 @@ impl Errand {
         let (mut failures, mut unsent) = (0, 0);
         loop {
             let step = self.step();
-            // It is opened anew each time: a damaged one is set aside under others.
+            // The file is opened again each time, because the recorder may have set aside a damaged one.
             unsent = Logbook::attach(&self.path)
                 .and_then(|book| book.unsent())
                 .unwrap_or(unsent);
@@ -125,7 +127,7 @@ impl Errand {
         }
     }
 
-    /// Sends a batch; how many rows it had.
+    /// Sends one batch and returns its number of rows.
     fn step(&mut self) -> Result<usize, Trouble> {
         let name = self.server.name().map_err(Trouble::Server)?;
         let book = Logbook::attach(&self.path)?;
@@ -139,7 +141,7 @@ impl Errand {
             }
         };
         let changes = book.changes(line.sent.change, BATCH)?;
-        // Nobody waits for this file while a server does not answer.
+        // Closes the file, so that no lock is held while the server does not answer.
         drop(book);
         let Some((last, ..)) = changes.last() else {
             return Ok(0);
@@ -177,7 +179,7 @@ impl Line {
         })
     }
 
-    /// All of it, or nothing.
+    /// Sends changes in one transaction.
     fn send(
         &mut self,
         stand: &str,

@@ -1,24 +1,24 @@
-//! Where a logbook may be sent.
+//! The server to which a logbook may be sent.
 
 /// A PostgreSQL server.
 #[derive(Clone, PartialEq)]
 pub struct Server {
-    /// As the `postgres` crate reads it: `host=… user=… password=… dbname=…`, or `postgresql://…`. There is no TLS: a server that
-    /// is not in the same house is reached through a tunnel.
+    /// Address as the `postgres` crate parses it: `host=… user=… password=… dbname=…`, or `postgresql://…`.
+    /// The connection has no TLS: a server outside the local network needs a tunnel.
     pub address: String,
 }
 
-/// How it goes with a server.
+/// Progress of sending rows to a server.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Progress {
-    /// How many rows it has not got yet.
+    /// Number of rows that the server has not received yet.
     pub unsent: u64,
-    /// Why not: a sentence.
+    /// Reason why sending fails, as a sentence.
     pub trouble: Option<String>,
 }
 
 impl Server {
-    /// By what it is known in a file: its address without what is secret.
+    /// Returns the name of the server in the file: its address without user and password.
     #[cfg(feature = "postgres")]
     pub(crate) fn name(&self) -> Result<String, String> {
         let config = self.config()?;
@@ -40,19 +40,22 @@ impl Server {
 
     #[cfg(not(feature = "postgres"))]
     pub(crate) fn name(&self) -> Result<String, String> {
-        Err("this program was built without what sends to a server".into())
+        Err(
+            "this program was built without the feature `postgres` and cannot send to a server"
+                .into(),
+        )
     }
 
     #[cfg(feature = "postgres")]
     pub(crate) fn config(&self) -> Result<postgres::Config, String> {
         let config = self.address.parse();
         config.map_err(|error: postgres::Error| {
-            format!("the address of the server cannot be read: {error}")
+            format!("the address of the server is invalid: {error}")
         })
     }
 }
 
-/// Without the address, which may hold a password.
+/// Omits the address, which may contain a password.
 impl std::fmt::Debug for Server {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         formatter.write_str("Server")

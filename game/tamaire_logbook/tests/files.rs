@@ -1,4 +1,4 @@
-//! Files that cannot be used, and copies that others made.
+//! Tests of unusable files and of copies.
 
 mod common;
 
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use tamaire_logbook::{Error, Logbook};
 
-/// Writes some days, and leaves the file without anything beside it.
+/// Writes the rows of 30 visits and closes the logbook, so that no other files are left beside it.
 fn fill(path: &Path) {
     let mut book = open(path);
     for _ in 0..30 {
@@ -24,10 +24,11 @@ fn beside(path: &Path, ending: &str) -> PathBuf {
         .into()
 }
 
-/// What is in a file that was set aside, and what the new one is like.
+/// Expects that opening sets the file aside and that the new logbook works. Returns the content of the file
+/// set aside.
 fn expect_set_aside(path: &Path, reason: &str) -> Vec<u8> {
     let (mut book, set_aside) = Logbook::open(path, STAND).unwrap();
-    let set_aside = set_aside.expect("it cannot be used");
+    let set_aside = set_aside.expect("the file must be set aside");
     assert!(set_aside.reason.contains(reason), "{set_aside:?}");
     let name = set_aside.path.file_name().unwrap().to_str().unwrap();
     assert!(
@@ -42,12 +43,12 @@ fn expect_set_aside(path: &Path, reason: &str) -> Vec<u8> {
 }
 
 #[test]
-fn what_is_no_logbook_is_set_aside() {
+fn open_sets_aside_files_that_are_no_logbooks() {
     let (_folder, path) = place();
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     fs::write(&path, "").unwrap();
     assert_eq!(expect_set_aside(&path, "empty"), b"");
-    // Another one in the same second gets another name.
+    // A second file set aside within the same second gets another name.
     for text in ["Dear diary", &"no database. ".repeat(1000)] {
         fs::write(&path, text).unwrap();
         assert_eq!(expect_set_aside(&path, "not a database"), text.as_bytes());
@@ -58,8 +59,8 @@ fn what_is_no_logbook_is_set_aside() {
         .execute_batch("CREATE TABLE recipes (text TEXT)")
         .unwrap();
     drop(other);
-    expect_set_aside(&path, "something else");
-    // One that says that it is one, and has other tables.
+    expect_set_aside(&path, "another program");
+    // A logbook by its application id, but with other tables.
     let other = Connection::open(&path).unwrap();
     other
         .execute_batch("DROP TABLE replays; ALTER TABLE rounds DROP COLUMN inside")
@@ -72,9 +73,9 @@ fn what_is_no_logbook_is_set_aside() {
     expect_set_aside(&path, "no rows");
 }
 
-/// Whoever comes first, all of them write the same one.
+/// All threads must write into the same file, in whichever order they open it.
 #[test]
-fn one_that_several_begin_at_once_is_one() {
+fn open_from_several_threads_creates_one_file() {
     let (_folder, path) = place();
     thread::scope(|scope| {
         for _ in 0..8 {
@@ -92,7 +93,7 @@ fn one_that_several_begin_at_once_is_one() {
 }
 
 #[test]
-fn a_file_that_was_cut_short_is_set_aside_as_it_was() {
+fn open_sets_aside_a_truncated_file_unchanged() {
     let (_folder, path) = place();
     fill(&path);
     let whole = fs::read(&path).unwrap();
@@ -114,9 +115,10 @@ fn a_file_that_was_cut_short_is_set_aside_as_it_was() {
     }
 }
 
-/// Whatever happened to its bytes, it is opened, or set aside as it was; and then it is written and read without a panic.
+/// A file with changed bytes is either opened, or set aside unchanged; then writing and reading must not
+/// panic.
 #[test]
-fn a_file_of_which_bytes_were_changed_is_borne() {
+fn open_handles_changed_bytes_without_panic() {
     let (_folder, path) = place();
     fill(&path);
     let whole = fs::read(&path).unwrap();
@@ -124,7 +126,8 @@ fn a_file_of_which_bytes_were_changed_is_borne() {
     let (mut aside, mut silent) = (0, 0);
     for attempt in 0..300 {
         let mut changed = whole.clone();
-        // The header and the roots first, each byte of them; then anywhere, one or many.
+        // Attempts 0 to 99 change one byte of the header each, 100 to 199 one byte of the first 12 pages; the
+        // others change up to 600 bytes anywhere.
         match attempt {
             0..100 => changed[attempt] ^= 0xff,
             100..200 => {
@@ -144,7 +147,7 @@ fn a_file_of_which_bytes_were_changed_is_borne() {
                 fs::remove_file(&set_aside.path).unwrap();
                 book.write_all(&entries(MORNING)).unwrap();
             }
-            // What is not seen at once may be seen later, and is told.
+            // Damage that the check does not find may appear later and must then be reported.
             Ok((mut book, None)) => {
                 silent += 1;
                 let written = book.write_all(&entries(MORNING));
@@ -169,7 +172,7 @@ fn a_file_of_which_bytes_were_changed_is_borne() {
 }
 
 #[test]
-fn what_stood_beside_a_damaged_file_goes_with_it() {
+fn set_aside_also_renames_the_write_ahead_log() {
     let (_folder, path) = place();
     fill(&path);
     let mut book = open(&path);
@@ -187,23 +190,23 @@ fn what_stood_beside_a_damaged_file_goes_with_it() {
     assert_eq!(
         all(&book).unwrap().rounds.len(),
         0,
-        "an old log is never taken for a new file's"
+        "an old -wal file must not be used for a new database"
     );
     assert_eq!(fs::read(&aside).unwrap(), file[..file.len() / 2]);
     assert_eq!(fs::read(beside(&aside, "-wal")).unwrap(), log);
     drop(book);
-    // The same where the file is gone altogether.
+    // The same if the database file is missing altogether.
     fs::remove_file(&path).unwrap();
     fs::write(beside(&path, "-wal"), &log).unwrap();
     let (book, set_aside) = Logbook::open(&path, STAND).unwrap();
     let set_aside = set_aside.unwrap();
-    assert!(set_aside.reason.contains("gone"), "{set_aside:?}");
+    assert!(set_aside.reason.contains("missing"), "{set_aside:?}");
     assert_eq!(all(&book).unwrap().rounds.len(), 0);
     assert_eq!(fs::read(beside(&set_aside.path, "-wal")).unwrap(), log);
 }
 
 #[test]
-fn what_a_newer_version_wrote_is_left_alone() {
+fn open_leaves_a_newer_version_unchanged() {
     let (_folder, path) = place();
     fill(&path);
     let later = Connection::open(&path).unwrap();
@@ -217,7 +220,7 @@ fn what_a_newer_version_wrote_is_left_alone() {
         Logbook::read(&path).map(drop),
     ] {
         let error = error.unwrap_err().to_string();
-        let expected = "this logbook is of version 2, and this program knows 1 at most";
+        let expected = "logbook of version 2: this program supports up to version 1";
         assert!(
             error.contains(expected) && error.contains("logbook.sqlite"),
             "{error}"
@@ -234,7 +237,7 @@ fn what_a_newer_version_wrote_is_left_alone() {
 }
 
 #[test]
-fn one_that_another_program_holds_is_told_and_can_be_tried_again() {
+fn write_reports_a_locked_file_and_succeeds_after_the_lock_is_released() {
     let (_folder, path) = place();
     let mut book = open(&path);
     let other = Connection::open(&path).unwrap();
@@ -251,14 +254,14 @@ fn one_that_another_program_holds_is_told_and_can_be_tried_again() {
 }
 
 #[test]
-fn one_that_is_full_goes_on_when_there_is_room() {
+fn write_reports_a_full_file_and_succeeds_after_the_limit_is_raised() {
     let (_folder, path) = place();
     fill(&path);
     let mut book = open(&path);
     let before = all(&book).unwrap();
     book.limit(1).unwrap();
     let refused = (0..1000).find_map(|_| book.write_all(&entries(MORNING)).err());
-    let refused = refused.expect("there is an end to it");
+    let refused = refused.expect("the size limit must be reached");
     assert!(matches!(refused, Error::Full(_)), "{refused}");
     assert!(
         refused.to_string().ends_with("the disk is full"),
@@ -268,7 +271,7 @@ fn one_that_is_full_goes_on_when_there_is_room() {
     assert_eq!(
         kept.rounds.len() % 3,
         0,
-        "all of what is told at once, or nothing"
+        "write_all must write all of its entries or none"
     );
     assert!(kept.rounds.len() >= before.rounds.len());
     book.limit(1 << 30).unwrap();
@@ -277,7 +280,7 @@ fn one_that_is_full_goes_on_when_there_is_room() {
 }
 
 #[test]
-fn what_cannot_be_written_or_found_is_told() {
+fn open_and_read_report_missing_and_unwritable_paths() {
     let (folder, path) = place();
     fs::write(
         folder.path().join("kept"),
@@ -289,7 +292,7 @@ fn what_cannot_be_written_or_found_is_told() {
     assert!(
         error
             .to_string()
-            .contains("kept/logbook.sqlite: it cannot be"),
+            .contains("kept/logbook.sqlite: the logbook cannot be"),
         "{error}"
     );
     let error = Logbook::read(&folder.path().join("none")).unwrap_err();
@@ -298,9 +301,9 @@ fn what_cannot_be_written_or_found_is_told() {
     assert!(matches!(error, Error::Damaged { .. }), "{error}");
     assert!(
         folder.path().join("kept").is_file(),
-        "reading sets nothing aside"
+        "reading must not rename the file"
     );
-    // A folder in which nobody may write.
+    // Folders without write permission.
     #[cfg(target_os = "linux")]
     for name in ["/proc/none/logbook.sqlite", "/proc/logbook.sqlite", "/proc"] {
         let error = Logbook::open(Path::new(name), STAND).unwrap_err();
@@ -308,9 +311,9 @@ fn what_cannot_be_written_or_found_is_told() {
     }
 }
 
-/// A file and its log, copied while both are in use, are read with all that was committed, and the original goes on.
+/// A database and its log, copied while in use, contain all committed rows. The original stays usable.
 #[test]
-fn a_copy_taken_while_it_is_written_is_read() {
+fn read_accepts_a_copy_taken_during_writing() {
     let (folder, path) = place();
     fill(&path);
     let mut book = open(&path);
@@ -324,7 +327,7 @@ fn a_copy_taken_while_it_is_written_is_read() {
         let copy = Logbook::read(&copy).unwrap();
         assert_eq!(all(&copy).unwrap().rounds.len(), told);
     }
-    // Without its log it is read as far as it goes.
+    // Without its log, a copy contains the rows up to the last checkpoint.
     let copy = folder.path().join("alone");
     fs::copy(&path, &copy).unwrap();
     assert_eq!(

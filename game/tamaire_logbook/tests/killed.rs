@@ -1,4 +1,4 @@
-//! What was told to be written outlasts a program that is killed.
+//! Written rows survive a killed process.
 #![cfg(unix)]
 
 mod common;
@@ -13,10 +13,11 @@ use std::thread;
 use std::time::Duration;
 use tamaire_logbook::{Entry, Kind, Logbook};
 
-/// Set in the program that is killed: where it writes.
+/// Environment variable, set in the process to be killed: path of its logbook.
 const VICTIM: &str = "LOGBOOK_OF_VICTIM";
 
-/// In the victim, writes until it is killed, and says of each round that it is written. Elsewhere there is nothing to do.
+/// In the child process, writes until it is killed and prints the id of each written round. Does nothing
+/// without the variable.
 #[test]
 fn victim() {
     let Some(path) = env::var_os(VICTIM) else {
@@ -43,7 +44,7 @@ fn victim() {
 }
 
 #[test]
-fn what_was_committed_outlasts_a_kill() {
+fn committed_rows_survive_a_killed_process() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("logbook.sqlite");
     let mut random = fastrand::Rng::with_seed(5);
@@ -58,7 +59,7 @@ fn what_was_committed_outlasts_a_kill() {
         let mut lines = BufReader::new(victim.stdout.take().unwrap())
             .lines()
             .map_while(Result::ok);
-        // Every fifth is killed while it opens the file, as far as that goes; the others between two rounds or in one.
+        // Every fifth child is killed while it opens the file, the others during or between two rounds.
         let count = if attempt % 5 == 0 {
             0
         } else {
@@ -83,7 +84,7 @@ fn what_was_committed_outlasts_a_kill() {
     assert_eq!(ids.len(), kept.len());
     assert!(told.is_subset(&ids), "{} of {}", ids.len(), told.len());
     assert!(told.len() > 200, "{}", told.len());
-    // At most one of each victim was written and not told of any more.
+    // Each child may have written one more round without printing it.
     assert!(
         ids.len() <= told.len() + 30,
         "{} of {}",

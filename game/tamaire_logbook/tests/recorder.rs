@@ -1,4 +1,4 @@
-//! Playing goes on whatever the disk does, and what was recorded gets on file as soon as it can.
+//! Recording never blocks the game, and entries reach the file as soon as the disk allows it.
 
 mod common;
 
@@ -17,7 +17,7 @@ fn begin(path: &Path) -> Recorder {
     Recorder::begin(path, STAND, Options::default())
 }
 
-/// Waits until it is as it should be.
+/// Waits until `is_so` holds.
 fn wait_for(recorder: &Recorder, what: &str, is_so: impl Fn(&Health) -> bool) -> Health {
     let start = Instant::now();
     loop {
@@ -30,7 +30,7 @@ fn wait_for(recorder: &Recorder, what: &str, is_so: impl Fn(&Health) -> bool) ->
     }
 }
 
-/// Records, and sees that nobody waits for it.
+/// Records entries and checks that no call blocks.
 fn record(recorder: &Recorder, entries: Vec<Entry>) {
     for entry in entries {
         let start = Instant::now();
@@ -41,7 +41,7 @@ fn record(recorder: &Recorder, entries: Vec<Entry>) {
 }
 
 #[test]
-fn what_is_recorded_is_on_file_and_summed_up() {
+fn recorder_writes_entries_and_answers_requests() {
     let (folder, path) = place();
     let recorder = begin(&path);
     record(&recorder, entries(MORNING));
@@ -79,7 +79,7 @@ fn what_is_recorded_is_on_file_and_summed_up() {
         assert!(start.elapsed() < LONG);
     };
     assert_eq!(exported, Ok(copy.clone()));
-    assert_eq!(recorder.exported(), None, "once");
+    assert_eq!(recorder.exported(), None, "taken only once");
     recorder.ask_export(copy.clone());
     record(&recorder, vec![Entry::Event(event(MORNING, Kind::Ended))]);
     let health = recorder.finish(LONG);
@@ -96,7 +96,7 @@ fn what_is_recorded_is_on_file_and_summed_up() {
 }
 
 #[test]
-fn many_record_at_once_and_a_drop_writes_what_waits() {
+fn drop_writes_the_waiting_entries_of_several_threads() {
     let (_folder, path) = place();
     let recorder = begin(&path);
     thread::scope(|scope| {
@@ -115,7 +115,7 @@ fn many_record_at_once_and_a_drop_writes_what_waits() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_is_tried_again() {
+fn recorder_retries_an_unwritable_folder() {
     let (folder, path) = place();
     fs::write(folder.path().join("kept"), "in the way").unwrap();
     let recorder = begin(&path);
@@ -126,7 +126,7 @@ fn a_folder_that_cannot_be_written_is_tried_again() {
         health
             .trouble
             .unwrap()
-            .contains("logbook.sqlite: it cannot be")
+            .contains("logbook.sqlite: the logbook cannot be")
     );
     fs::remove_file(folder.path().join("kept")).unwrap();
     let health = wait_for(&recorder, "mended", |health| health.waiting == 0);
@@ -141,7 +141,7 @@ fn a_folder_that_cannot_be_written_is_tried_again() {
 }
 
 #[test]
-fn one_that_another_program_holds_is_waited_for() {
+fn recorder_waits_for_a_locked_file() {
     let (_folder, path) = place();
     open(&path);
     let recorder = begin(&path);
@@ -155,7 +155,7 @@ fn one_that_another_program_holds_is_waited_for() {
     assert_eq!(recorder.health().waiting, 10);
     other.execute_batch("COMMIT").unwrap();
     wait_for(&recorder, "free", |health| health.waiting == 0);
-    // To end is not to wait for others longer than one may.
+    // `finish` must return after its time limit, even if the file is locked.
     other.execute_batch("BEGIN IMMEDIATE").unwrap();
     record(&recorder, entries(MORNING));
     let start = Instant::now();
@@ -170,7 +170,7 @@ fn one_that_another_program_holds_is_waited_for() {
 }
 
 #[test]
-fn a_full_disk_is_waited_for_and_noted() {
+fn recorder_waits_for_space_and_notes_a_full_disk() {
     let (_folder, path) = place();
     let mut book = open(&path);
     for day in 1..50 {
@@ -204,7 +204,7 @@ fn a_full_disk_is_waited_for_and_noted() {
     let health = recorder.health();
     assert!(!health.is_recording && health.waiting > 0, "{health:?}");
     record(&recorder, entries(Moment::now()));
-    // Somebody makes room.
+    // Deletes rows, so that there is space again.
     book.forget_before(Moment::now().after(-DAY / 2)).unwrap();
     wait_for(&recorder, "room", |health| {
         health.is_recording && health.waiting == 0
@@ -214,11 +214,11 @@ fn a_full_disk_is_waited_for_and_noted() {
     let kept = all(&open(&path)).unwrap();
     assert_eq!(kept.rounds.len(), told + 3);
     let kinds: Vec<_> = kept.events.iter().map(|event| event.kind.clone()).collect();
-    assert_eq!(kinds, [Kind::FullDisk], "once");
+    assert_eq!(kinds, [Kind::FullDisk], "noted only once");
 }
 
 #[test]
-fn a_damaged_file_is_set_aside_and_noted() {
+fn recorder_sets_aside_a_damaged_file_and_notes_it() {
     let (_folder, path) = place();
     open(&path);
     let whole = fs::read(&path).unwrap();
@@ -235,7 +235,7 @@ fn a_damaged_file_is_set_aside_and_noted() {
 }
 
 #[test]
-fn a_file_that_breaks_while_it_is_written_is_set_aside() {
+fn recorder_sets_aside_a_file_damaged_during_recording() {
     let (_folder, path) = place();
     let recorder = begin(&path);
     record(&recorder, entries(MORNING));
@@ -259,7 +259,7 @@ fn a_file_that_breaks_while_it_is_written_is_set_aside() {
 }
 
 #[test]
-fn a_newer_file_is_left_alone_and_what_waits_has_a_bound() {
+fn recorder_leaves_a_newer_file_unchanged_and_limits_waiting_entries() {
     let (_folder, path) = place();
     drop(open(&path));
     let later = Connection::open(&path).unwrap();
@@ -270,7 +270,7 @@ fn a_newer_file_is_left_alone_and_what_waits_has_a_bound() {
         health
             .trouble
             .as_ref()
-            .is_some_and(|text| text.contains("it needs a newer tamaire"))
+            .is_some_and(|text| text.contains("install a newer tamaire"))
     });
     let mut long = round(&visit(MORNING), 1, None);
     long.replay = "r".repeat(1 << 25);
@@ -278,7 +278,11 @@ fn a_newer_file_is_left_alone_and_what_waits_has_a_bound() {
         recorder.record(Entry::Round(long.clone()));
     }
     let health = recorder.health();
-    assert_eq!((health.waiting, health.dropped), (1, 2), "no more bytes");
+    assert_eq!(
+        (health.waiting, health.dropped),
+        (1, 2),
+        "the limit in bytes"
+    );
     for _ in 0..70_000 {
         recorder.record(Entry::Event(event(MORNING, Kind::Began)));
     }
@@ -292,9 +296,9 @@ fn a_newer_file_is_left_alone_and_what_waits_has_a_bound() {
     assert_eq!(rows, Ok(0));
 }
 
-/// A clock that is years ahead costs some days of the oldest, not all.
+/// If the clock is years ahead, only a few days of rows are deleted.
 #[test]
-fn what_is_old_is_forgotten_some_days_at_a_time() {
+fn recorder_deletes_old_rows_a_few_days_at_a_time() {
     let (_folder, path) = place();
     let mut book = open(&path);
     for day in 0..40 {

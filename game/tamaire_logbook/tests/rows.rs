@@ -1,4 +1,4 @@
-//! What is written is read, once, in the order in which it came, whatever the clock says.
+//! Rows are read once each, in the order in which they were written, even if the clock was changed.
 
 mod common;
 
@@ -12,7 +12,7 @@ use tamaire_logbook::{End, Entry, Error, Kind, Logbook, Moment, Today};
 use tamaire_play::Route;
 
 #[test]
-fn what_was_written_is_read() {
+fn written_entries_are_read_back() {
     let (_folder, path) = place();
     let mut book = open(&path);
     let mut came = visit(MORNING);
@@ -57,7 +57,7 @@ fn what_was_written_is_read() {
 }
 
 #[test]
-fn what_no_database_takes_is_made_fit() {
+fn write_adapts_values_that_databases_reject() {
     let (_folder, path) = place();
     let mut book = open(&path);
     let mut odd = event(MORNING, Kind::Other("a\0b".into()));
@@ -81,9 +81,9 @@ fn what_no_database_takes_is_made_fit() {
     assert_eq!((round.level_hash, round.replay.as_str()), (u64::MAX, ""));
 }
 
-/// Any entries, in any order, any of them several times: what is kept is the same as of each once.
+/// Shuffled entries, some of them written several times, give the same rows as each written once.
 #[test]
-fn to_write_twice_is_to_write_once() {
+fn writing_an_entry_again_has_no_effect() {
     let mut random = fastrand::Rng::with_seed(7);
     for _ in 0..10 {
         let mut told = entries(MORNING);
@@ -103,7 +103,8 @@ fn to_write_twice_is_to_write_once() {
         let kept = all(&once).unwrap();
         assert_eq!(kept, all(&often).unwrap());
         assert_eq!((kept.visits.len(), kept.rounds.len()), (2, 6));
-        // Whoever came first brought the visit along; what it lacked was told later.
+        // The first round or end of a visit creates it; the entry of its beginning fills in the missing
+        // values.
         let mut found = kept.visits.clone();
         found.sort_by_key(|visit| visit.began);
         assert_eq!(
@@ -119,7 +120,7 @@ fn to_write_twice_is_to_write_once() {
 }
 
 #[test]
-fn a_clock_that_is_set_loses_and_doubles_nothing() {
+fn rows_keep_their_order_when_the_clock_is_changed() {
     let (_folder, path) = place();
     let mut book = open(&path);
     let hours = [0, 1, 25, 2, -24, -23, 24 * 365, 3, -24 * 365 * 60];
@@ -132,11 +133,11 @@ fn a_clock_that_is_set_loses_and_doubles_nothing() {
         book.write_all(&entries(moment)).unwrap();
     }
     let kept = all(&book).unwrap();
-    assert_eq!(kept.events, told, "in the order in which they came");
+    assert_eq!(kept.events, told, "in the order of writing");
     let began = kept.visits.iter().map(|visit| visit.began);
     assert_eq!(began.collect::<Vec<_>>(), moments);
     assert_eq!(kept.rounds.len(), 3 * moments.len());
-    // A visit whose end is before its beginning is one all the same.
+    // A visit that ends before it begins is kept.
     let visit = visit(MORNING);
     let id = visit.id;
     let at = MORNING.after(-DAY);
@@ -150,7 +151,7 @@ fn a_clock_that_is_set_loses_and_doubles_nothing() {
 }
 
 #[test]
-fn a_range_is_read_by_time_and_ordered_by_sequence() {
+fn range_selects_by_time_and_orders_by_sequence() {
     let (_folder, path) = place();
     let mut book = open(&path);
     let minutes = [0, 5, 3, 9, 1];
@@ -179,7 +180,7 @@ fn a_range_is_read_by_time_and_ordered_by_sequence() {
 }
 
 #[test]
-fn whoever_reads_may_stop() {
+fn error_of_the_callback_stops_the_iteration() {
     let (_folder, path) = place();
     let mut book = open(&path);
     book.write_all(&entries(MORNING)).unwrap();
@@ -199,12 +200,12 @@ fn whoever_reads_may_stop() {
 }
 
 #[test]
-fn a_day_is_summed_up() {
+fn today_sums_up_a_day() {
     let (_folder, path) = place();
     let mut book = open(&path);
     assert_eq!(book.today(MORNING).unwrap(), Today::default());
     book.write_all(&entries(MORNING.after(-DAY))).unwrap();
-    // To the first win: 11, 11 + 12, 11 + 12 + 13 s. A later win counts for nothing there, nor does who never won.
+    // Times to the first win: 11, 11 + 12, 11 + 12 + 13 s. Later wins and visits without a win do not count.
     let routes = [Route::Squeeze, Route::Shave, Route::Mix];
     for (place, route) in routes.into_iter().enumerate() {
         let visit = visit(MORNING.after(place as i64 * MINUTE));
@@ -236,7 +237,7 @@ fn a_day_is_summed_up() {
 }
 
 #[test]
-fn the_best_are_the_fastest_that_can_be_shown() {
+fn best_returns_the_fastest_rounds_with_a_replay() {
     let (_folder, path) = place();
     let mut book = open(&path);
     let visit = visit(MORNING);
@@ -270,7 +271,7 @@ fn the_best_are_the_fastest_that_can_be_shown() {
 }
 
 #[test]
-fn what_is_old_is_forgotten() {
+fn forget_before_deletes_old_rows() {
     let (_folder, path) = place();
     let mut book = open(&path);
     for day in 0..5 {
@@ -279,7 +280,7 @@ fn what_is_old_is_forgotten() {
         book.write(&Entry::Event(event(began, Kind::Began)))
             .unwrap();
     }
-    // One whose beginning is to be forgotten, and one of whose rounds is not.
+    // A visit that began before the limit, with a round after it.
     let long = visit(MORNING);
     let mut late = round(&long, 1, None);
     late.began = MORNING.after(3 * DAY);
@@ -295,13 +296,13 @@ fn what_is_old_is_forgotten() {
     assert!(kept.visits.contains(&long));
     book.forget_before(MORNING.after(9 * DAY)).unwrap();
     assert_eq!(all(&book).unwrap(), All::default());
-    // The sequence goes on, and so does everything else.
+    // Writing goes on afterwards.
     book.write_all(&entries(MORNING)).unwrap();
     assert_eq!(all(&book).unwrap().rounds.len(), 3);
 }
 
 #[test]
-fn whoever_reads_and_whoever_writes_do_not_wait_for_each_other() {
+fn readers_and_writers_do_not_block_each_other() {
     let (_folder, path) = place();
     let mut book = open(&path);
     book.write_all(&entries(MORNING)).unwrap();
@@ -323,7 +324,7 @@ fn whoever_reads_and_whoever_writes_do_not_wait_for_each_other() {
             .unwrap();
     }
     assert!(reader.join().unwrap() >= 3);
-    // In the middle of reading too.
+    // The same during an iteration.
     let reader = Logbook::read(&path).unwrap();
     let mut seen = 0;
     reader
@@ -332,12 +333,12 @@ fn whoever_reads_and_whoever_writes_do_not_wait_for_each_other() {
             book.write_all(&entries(MORNING))
         })
         .unwrap();
-    assert_eq!(seen, 303, "what was there as it began");
+    assert_eq!(seen, 303, "the rows present when the iteration began");
     assert_eq!(all(&reader).unwrap().rounds.len(), 303 + 3 * 303);
 }
 
 #[test]
-fn a_copy_is_a_single_file() {
+fn export_writes_a_single_file() {
     let (folder, path) = place();
     let mut book = open(&path);
     book.write_all(&entries(MORNING)).unwrap();

@@ -1,10 +1,10 @@
-//! How often a bot wins a level as it is meant, and how.
+//! Measures how often a bot wins a level as intended.
 //!
 //! `cargo run --release -p tamaire_play --example bots -- LEVEL|all squeeze|shave FROM TO` lets the bot play
-//! by the seeds FROM to TO, a minute at most, two rounds at a time, and prints a row a level: how many
-//! rounds it won by its route, by another one, or not, and by which seeds; of those won the medians of the
-//! seconds, of the share kept in one piece, and of the pieces. `all` stands for the levels that come along
-//! and offer the route. `--rounds` prints a row for each round, too.
+//! with the seeds FROM to TO, for at most a minute each, on two threads, and prints a row per level. It has
+//! the number of rounds won by the bot's route, won by another route, and lost, with the seeds of the latter
+//! two; and the medians of seconds, of the share kept in one piece, and of the pieces of the won rounds.
+//! `all` stands for all built-in levels that offer the route. `--rounds` also prints a row per round.
 
 use clap::Parser;
 use std::error::Error;
@@ -16,38 +16,38 @@ use std::thread;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{AnyRound, Bot, BotKind, Level, Outcome, Route};
 
-/// Ticks of the longest round.
+/// Time limit of a round [ticks].
 const MINUTE: usize = 60 * 60;
-/// Rounds that are played at a time.
+/// Number of threads.
 const THREADS: usize = 2;
-/// The bots that are after a route.
+/// Bots and their routes by name.
 const ROUTES: [(&str, BotKind, Route); 2] = [
     ("squeeze", BotKind::Squeeze, Route::Squeeze),
     ("shave", BotKind::Shave, Route::Shave),
 ];
 
-/// How often a bot wins a level as it is meant, and how.
+/// Measures how often a bot wins a level as intended.
 #[derive(Parser)]
 struct Options {
-    /// A level, or `all` that come along and offer the route.
+    /// Name of a level, or `all` for all built-in levels that offer the route.
     level: String,
-    /// Which bot plays: squeeze or shave.
+    /// Bot to play: squeeze or shave.
     bot: String,
-    /// It plays by the seeds from this …
+    /// First seed.
     from: u64,
-    /// … to this.
+    /// Last seed.
     to: u64,
-    /// Prints a row for each round, too.
+    /// Also prints a row per round.
     #[arg(long)]
     rounds: bool,
 }
 
-/// How the round of a seed ended, if it was won.
+/// Seed of a round, and its outcome if it was won.
 type Ending = (u64, Option<Outcome>);
 
 fn main() -> ExitCode {
     match play_all(&Options::parse()) {
-        // Who read may have seen enough.
+        // A closed pipe is no failure.
         Err(error) if !is_closed(&*error) => {
             eprintln!("bots: {error}");
             ExitCode::FAILURE
@@ -90,7 +90,7 @@ fn play_all(options: &Options) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The level that is asked for, or all that offer a route.
+/// Returns the requested level, or all that offer a route.
 fn levels(asked: &str, route: Route) -> Result<Vec<Level>, Box<dyn Error>> {
     let offers = |level: &Level| level.routes().contains(&route);
     if asked != "all" {
@@ -105,7 +105,7 @@ fn levels(asked: &str, route: Route) -> Result<Vec<Level>, Box<dyn Error>> {
     Ok(all.into_iter().filter(offers).collect())
 }
 
-/// How the rounds end, by seed.
+/// Returns the endings of the rounds by seed.
 fn endings(level: &Arc<Level>, kind: BotKind, from: u64, to: u64) -> Vec<Ending> {
     let seeds: Vec<u64> = (from..=to).collect();
     let next = AtomicUsize::new(0);
@@ -120,7 +120,7 @@ fn endings(level: &Arc<Level>, kind: BotKind, from: u64, to: u64) -> Vec<Ending>
         let threads: Vec<_> = (0..THREADS).map(|_| scope.spawn(play_on)).collect();
         let joined = threads.into_iter().map(|thread| thread.join());
         joined
-            .flat_map(|part| part.expect("no round panics"))
+            .flat_map(|part| part.expect("a round must not panic"))
             .collect()
     });
     endings.sort_by_key(|(seed, _)| *seed);
@@ -150,7 +150,7 @@ fn tell_rounds(id: &str, endings: &[Ending]) -> io::Result<()> {
     Ok(())
 }
 
-/// A row about a level.
+/// Prints the row of a level.
 fn tell(id: &str, route: Route, endings: &[Ending]) -> io::Result<()> {
     let won: Vec<Outcome> = endings.iter().filter_map(|(_, outcome)| *outcome).collect();
     let of = |wanted: &dyn Fn(&Outcome) -> bool| -> Vec<u64> {
@@ -179,7 +179,7 @@ fn tell(id: &str, route: Route, endings: &[Ending]) -> io::Result<()> {
     )
 }
 
-/// The middle one, or 0 of none.
+/// Returns the middle value; 0 without values.
 fn median(values: impl Iterator<Item = f32>) -> f32 {
     let mut sorted: Vec<f32> = values.collect();
     sorted.sort_by(f32::total_cmp);

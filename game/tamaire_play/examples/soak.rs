@@ -1,8 +1,8 @@
-//! Two hands that do anything, for minutes: nothing may break, leak or leave the room.
+//! Soak test: two hands that move at random for minutes. Nothing may break, leak or leave the room.
 //!
 //! `cargo run --release -p tamaire_play --example soak -- [MINUTES [LEVEL …]]`, or `cargo xtask soak` with
-//! the same words, plays ten minutes of every level that comes along, unless told otherwise, each level
-//! on a thread. It prints a row for each minute of a level, and fails if anything was wrong.
+//! the same arguments, plays the given levels (by default all built-in ones) for the given time (by default
+//! ten minutes), each on its own thread. It prints a row per minute and level, and fails if a check failed.
 
 use fuwafuwa::{Dim, Dim2, Dim3, Vector};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -15,28 +15,29 @@ use std::time::Instant;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{Bot, BotKind, Level, Round};
 
-/// Minutes on each level if nobody says how many, and the most.
+/// Default and maximum number of minutes per level.
 const USUAL_MINUTES: usize = 10;
 const MOST_MINUTES: usize = 60;
-/// How the hands play.
+/// Seed of the hands' movement.
 const SEED: u64 = 7;
 
-/// Ticks in a minute, and from one look at the room and the memory to the next.
+/// Number of ticks in a minute, and between two checks of the room and the memory.
 const MINUTE: usize = 60 * 60;
 const LOOK: usize = 60;
 
-/// So far into a wall is not out of the room, in terms of a voxel: a crumb between a hand and a wall
-/// is pressed flat, and a bit into the wall.
+/// Tolerated depth of a piece in a wall, in voxels. A crumb between a hand and a wall is pressed flat and
+/// slightly into the wall.
 const MARGIN: f32 = 1.0;
-/// The same for a hand, and for the middle of a piece [m].
+/// Tolerated depth of a hand, and of the centre of a piece [m].
 const HAND_MARGIN: f32 = 1e-3;
 
-/// The most that is held for an element or a node [bytes]. What tears gets more of both.
+/// Maximum memory per element or node [bytes]. Tearing adds both.
 const MOST_EACH: f32 = 1200.0;
-/// How much more of it there may be late than early: lists double now and then.
+/// Maximum growth of the memory per element or node from the first half to the second. Vectors double their
+/// capacity now and then.
 const GROWTH: f32 = 1.3;
 
-/// Counts the memory that each thread holds.
+/// Allocator that counts the memory held by each thread.
 struct Counting;
 
 thread_local! {
@@ -44,15 +45,15 @@ thread_local! {
 }
 
 fn count(change: impl Fn(usize) -> usize) {
-    // A thread that ends gives back memory when this is gone.
+    // A thread may free memory after its thread-local counter was destroyed.
     let _ = HELD.try_with(|held| held.set(change(held.get())));
 }
 
-// SAFETY: hands everything on to the system's allocator.
+// SAFETY: forwards all calls to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(|held| held.wrapping_add(layout.size()));
-        // SAFETY: the caller keeps the same promises.
+        // SAFETY: the caller upholds the same contract.
         unsafe { System.alloc(layout) }
     }
 
@@ -81,7 +82,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// How many minutes of which levels are asked for; or why that cannot be.
+/// Returns the number of minutes and the levels, or an error message.
 fn parse(words: &[String]) -> Result<(usize, Vec<Level>), String> {
     let minutes = match words.first() {
         None => USUAL_MINUTES,
@@ -89,7 +90,7 @@ fn parse(words: &[String]) -> Result<(usize, Vec<Level>), String> {
             .filter(|minutes| (1..=MOST_MINUTES).contains(minutes))
             .ok_or_else(|| format!("expected 1 to {MOST_MINUTES} minutes first, found {word:?}"))?,
     };
-    // Those in space take longest.
+    // 3D levels take longest and start first.
     let all = NAMED_3D.iter().chain(&NAMED).map(|(id, _)| id.to_string());
     let named = words.iter().skip(1).cloned();
     let ids: Vec<String> = match words.len() {
@@ -100,7 +101,7 @@ fn parse(words: &[String]) -> Result<(usize, Vec<Level>), String> {
     Ok((minutes, levels.map_err(|error| error.to_string())?))
 }
 
-/// Plays all at once; what was wrong with which.
+/// Plays all levels in parallel, and returns the failures.
 fn play_all(minutes: usize, levels: Vec<Level>) -> Vec<String> {
     let heads = format!(
         "{:12} {:>6} {:>6} {:>6} {:>8} {:>7} {:>8} | {:>8} {:>8} | into walls",
@@ -111,9 +112,7 @@ fn play_all(minutes: usize, levels: Vec<Level>) -> Vec<String> {
         let start = |level: Level| (level.id.clone(), scope.spawn(move || soak(level, minutes)));
         let threads: Vec<_> = levels.into_iter().map(start).collect();
         let ends = threads.into_iter().filter_map(|(id, thread)| {
-            let end = thread
-                .join()
-                .unwrap_or(Err("it panicked, see above".into()));
+            let end = thread.join().unwrap_or(Err("panicked, see above".into()));
             end.err().map(|reason| format!("{id}: {reason}"))
         });
         ends.collect()
@@ -127,7 +126,7 @@ fn soak(level: Level, minutes: usize) -> Result<(), String> {
     }
 }
 
-/// Plays a level, and says what was wrong first.
+/// Plays a level, and returns the first failure.
 fn play<D: Dim>(level: Level, minutes: usize) -> Result<(), String> {
     let id = level.id.clone();
     let mut round = Round::<D>::new(Arc::new(level));
@@ -140,7 +139,7 @@ fn play<D: Dim>(level: Level, minutes: usize) -> Result<(), String> {
         times.push(1e3 * start.elapsed().as_secs_f32());
         let wrong = |reason| format!("tick {tick}, seed {SEED}: {reason}");
         if report.quarantined > 0 {
-            return Err(wrong("a piece went out of hand".to_string()));
+            return Err(wrong("a piece was quarantined".to_string()));
         }
         if !tick.is_multiple_of(LOOK) {
             continue;
@@ -161,14 +160,14 @@ fn play<D: Dim>(level: Level, minutes: usize) -> Result<(), String> {
     match most(late) <= allowed {
         true => Ok(()),
         false => Err(format!(
-            "held {:.0} bytes for each element and node, then {:.0}, where {allowed:.0} are allowed",
+            "memory per element and node grew from {:.0} to {:.0} bytes, expected at most {allowed:.0}",
             most(early),
             most(late)
         )),
     }
 }
 
-/// How deep the worst node is in a wall [m], or what is out of the room or not finite.
+/// Returns the depth of the deepest node in a wall [m]. Fails if something is outside the room or not finite.
 fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
     let [low, high] = round.level().arena();
     let beyond = |from: Vector, to: Vector| {
@@ -186,11 +185,11 @@ fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
     for body in round.world().soft_bodies() {
         for piece in body.piece_views() {
             let depth = beyond(piece.low, piece.high);
-            // What is not finite shows in the middle: low and high pass it over.
+            // Non-finite values appear in the centre only: the bounds ignore them.
             let is_finite = piece.centre.iter().all(|k| k.is_finite());
             let middle = beyond(piece.centre, piece.centre);
             if !is_finite || depth > MARGIN * body.grid().voxel_size() || middle > HAND_MARGIN {
-                return Err(format!("{depth} m out of the room: {piece:?}"));
+                return Err(format!("a piece is {depth} m out of the room: {piece:?}"));
             }
             deepest = deepest.max(depth);
         }
@@ -198,22 +197,22 @@ fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
     Ok(deepest)
 }
 
-/// How many elements and nodes there are.
+/// Returns the number of elements and of nodes.
 fn parts<D: Dim>(round: &Round<D>) -> [usize; 2] {
     let meshes = || round.world().soft_bodies().iter().map(|body| body.mesh());
     let elements = meshes().map(|mesh| mesh.element_count()).sum();
     [elements, meshes().map(|mesh| mesh.node_count()).sum()]
 }
 
-/// What this thread holds for each of them [bytes], apart from the record of what was played.
+/// Returns the memory that this thread holds per element or node [bytes], without the recorded input.
 fn held_each<D: Dim>(round: &Round<D>) -> f32 {
-    // A list that grows is up to twice as long.
+    // The capacity of a growing vector is up to twice its length.
     let record = 2 * size_of_val(round.frames()) + 2 * size_of_val(round.hashes());
     let rest = HELD.get().saturating_sub(record);
     rest as f32 / parts(round).iter().sum::<usize>() as f32
 }
 
-/// A row about a minute.
+/// Prints the row of a minute.
 fn tell<D: Dim>(id: &str, minute: usize, round: &Round<D>, [half, worst, deepest]: [f32; 3]) {
     let bodies = round.world().soft_bodies().iter();
     let pieces = bodies.flat_map(|body| &body.pieces().list);
@@ -227,7 +226,7 @@ fn tell<D: Dim>(id: &str, minute: usize, round: &Round<D>, [half, worst, deepest
     ));
 }
 
-/// A line. Where nobody reads on, the rounds still have to be played to their end.
+/// Prints a line. The rounds continue even if the output is closed.
 fn say(line: &str) {
     let _ = writeln!(io::stdout(), "{line}");
 }

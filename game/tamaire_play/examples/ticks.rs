@@ -1,10 +1,10 @@
-//! What the ticks of levels cost.
+//! Measures the cost of ticks.
 //!
-//! `cargo run --release -p tamaire_play --example ticks -- all` lets three bots play every level for 60 s
-//! at most by the seeds 1 to 5, and prints milliseconds: a row a round, one a level, one for all. Each
-//! round is played three times (`--runs`) and is the same every time: the least of three times of a tick
-//! is what it costs, the rest is the machine. `--rules` tells engine and rules apart, in twice the time;
-//! `--json` prints an object a line in place of each row. `--help` tells the rest.
+//! `cargo run --release -p tamaire_play --example ticks -- all` lets three bots play every level for at most
+//! 60 s with the seeds 1 to 5. It prints milliseconds: a row per round, one per level and one for all. Each
+//! round is played three times (`--runs`) with the same result. The minimum of the three times of a tick is
+//! its cost; the rest is noise of the machine. `--rules` separates engine and rules, in twice the time.
+//! `--json` prints one object per line instead of the rows. `--help` lists all options.
 
 use clap::Parser;
 use fuwafuwa::{Dim, Dim2, Dim3, RigidBodyHandle, StepReport, Vector};
@@ -19,34 +19,33 @@ use tamaire_play::{Bot, BotKind, Level, Round};
 
 const TICKS_A_SECOND: usize = 60;
 
-/// What the ticks of levels cost, in milliseconds.
+/// Measures the cost of the ticks of levels, in milliseconds.
 #[derive(Parser)]
 struct Options {
-    /// Levels or files of levels; `all` stands for all that come along.
+    /// Names of built-in levels; `all` for all of them.
     #[arg(default_value = "classic")]
     levels: Vec<String>,
-    /// Bots play by the seeds 1 to this.
+    /// Number of seeds: bots play with the seeds 1 to this.
     #[arg(long, default_value_t = 5)]
     seeds: u64,
-    /// How often each round is played: a tick takes the least of its times.
+    /// Number of times each round is played. The cost of a tick is the minimum of its times.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..))]
     runs: u64,
-    /// How long a round takes at most.
+    /// Time limit of a round [s].
     #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=3600))]
     seconds: u64,
-    /// Which bots play.
+    /// Bots to play.
     #[arg(long, value_delimiter = ',', default_value = "squeeze,shave,random")]
     bots: Vec<String>,
-    /// Measures engine and rules apart, too.
+    /// Also measures engine and rules separately.
     #[arg(long)]
     rules: bool,
-    /// Prints one JSON object a line.
+    /// Prints one JSON object per line.
     #[arg(long)]
     json: bool,
 }
 
-/// What happened in a tick, where the hands wanted to be, and what it took [ms]: as a whole, and the
-/// engine's part.
+/// A tick: its report, the targets of the hands, and its duration [ms], in total and of the engine alone.
 struct Tick {
     report: StepReport,
     goals: Vec<Vector>,
@@ -54,24 +53,24 @@ struct Tick {
     engine: f64,
 }
 
-/// What is told of a round, or of several.
+/// Output row of a round, or of several rounds.
 #[derive(Serialize)]
 struct Row {
     level: String,
     bot: String,
-    /// 0 for several.
+    /// Seed of the round; 0 for several rounds.
     seed: u64,
     ticks: usize,
     pieces: usize,
     milliseconds: Ranks,
-    /// The part of the rules.
+    /// Duration of the rules alone.
     rules: Option<Ranks>,
-    /// Which tick was the worst, and how many nodes were released in it.
+    /// Index of the slowest tick, and number of nodes split in it.
     worst_tick: usize,
     worst_released: u32,
 }
 
-/// The median of some times, what 99 % of them stay below, and the greatest [ms].
+/// Median, 99th percentile and maximum of durations [ms].
 #[derive(Serialize)]
 struct Ranks {
     median: f64,
@@ -81,7 +80,7 @@ struct Ranks {
 
 fn main() -> ExitCode {
     match measure(&Options::parse()) {
-        // Who read may have seen enough.
+        // A closed pipe is no failure.
         Err(error) if !is_closed(&*error) => {
             eprintln!("ticks: {error}");
             ExitCode::FAILURE
@@ -108,7 +107,7 @@ fn measure(options: &Options) -> Result<(), Box<dyn Error>> {
     let mut bots = Vec::new();
     for name in &options.bots {
         let bot = BotKind::NAMED.iter().find(|(known, _)| known == name);
-        bots.push(*bot.ok_or_else(|| format!("there is no bot {name:?}"))?);
+        bots.push(*bot.ok_or_else(|| format!("unknown bot {name:?}"))?);
     }
     if !options.json {
         writeln!(
@@ -137,7 +136,7 @@ fn measure(options: &Options) -> Result<(), Box<dyn Error>> {
     }
 }
 
-/// Returns what each tick of all rounds took [ms].
+/// Measures a level, and returns the duration of each tick of all rounds [ms].
 fn measure_level<D: Dim>(
     level: &Arc<Level>,
     bots: &[(&str, BotKind)],
@@ -170,7 +169,7 @@ fn measure_level<D: Dim>(
     Ok(all)
 }
 
-/// What is told of many rounds together.
+/// Returns the row of many rounds together.
 fn summary(level: &str, times: &[f64]) -> Row {
     Row {
         level: level.into(),
@@ -210,7 +209,8 @@ fn tell(row: &Row, options: &Options) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A round, each tick with the least of its times, and in how many pieces it ends.
+/// Plays a round several times. Returns its ticks with their minimum durations, and its final number of
+/// pieces.
 fn least<D: Dim>(
     level: &Arc<Level>,
     kind: BotKind,
@@ -228,14 +228,17 @@ fn least<D: Dim>(
         }
         let (again, _) = play::<D>(level, kind, seed, most);
         for (tick, again) in ticks.iter_mut().zip(again) {
-            assert_eq!(tick.report, again.report, "rounds repeat");
+            assert_eq!(
+                tick.report, again.report,
+                "a repeated round must be identical"
+            );
             tick.whole = tick.whole.min(again.whole);
         }
     }
     (ticks, pieces)
 }
 
-/// A round, and in how many pieces it ends.
+/// Plays a round. Returns its ticks and its final number of pieces.
 fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64, most: usize) -> (Vec<Tick>, usize) {
     let mut round = Round::<D>::new(level.clone());
     let mut bot = Bot::new(kind, seed);
@@ -256,28 +259,30 @@ fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64, most: usize) -> (V
     (ticks, round.progress().pieces)
 }
 
-/// The world of a round alone, whose hands want what they wanted in it: what a tick of the round takes
-/// more goes to the rules. Not beside the round, where both would have to share the caches.
+/// Steps the world of a round alone, with the recorded targets; the difference to the duration of the round's
+/// tick is the cost of the rules. It does not run beside the round, because both would then share the caches.
 fn step_alone<D: Dim>(level: &Arc<Level>, ticks: &mut [Tick]) {
     let mut world = Round::<D>::new(level.clone()).world().clone();
     let mut hands: Vec<RigidBodyHandle> = world.target_followers().map(|(hand, _)| hand).collect();
     for tick in ticks {
         for player in hands.len()..tick.goals.len() {
             let scene = level.scene().build::<D>();
-            let scene = scene.expect("the level was built once");
-            let hand = scene
-                .nth_target_follower(player)
-                .expect("the level has one");
-            let joins = world.add_rigid_body(scene.rigid_bodies()[hand].clone());
-            hands.push(joins.expect("it is in the round"));
+            let scene = scene.expect("the level was built before");
+            let hand = scene.nth_hand(player).expect("the level has this hand");
+            let joins = world.add_rigid(scene.rigids()[hand].clone());
+            hands.push(joins.expect("the round accepted this hand"));
         }
         for (&hand, &goal) in hands.iter().zip(&tick.goals) {
             world
-                .set_target_position(hand, goal)
-                .expect("it was one in the round");
+                .set_goal(hand, goal)
+                .expect("the hand and target were valid in the round");
         }
         let start = Instant::now();
-        assert_eq!(world.step(), tick.report, "both worlds are the same");
+        assert_eq!(
+            world.step(),
+            tick.report,
+            "the world must behave as in the round"
+        );
         tick.engine = tick.engine.min(milliseconds(start));
     }
 }

@@ -1,19 +1,19 @@
-//! Rounds whose dimension is that of their level: for those who do not look into bodies.
+//! Rounds with the dimension chosen at run time, for callers that do not access the bodies.
 
 use crate::{InputFrame, Level, Progress, Round};
 use fuwafuwa::{Dim2, Dim3, Event, RigidBody, Shape, StepReport, Vector};
 use std::sync::Arc;
 
-/// A round in the plane or in space.
+/// A round in 2D or in 3D.
 #[derive(Clone, Debug)]
 pub enum AnyRound {
-    /// dim = 2
+    /// 2D round.
     Plane(Round<Dim2>),
-    /// dim = 3
+    /// 3D round.
     Space(Round<Dim3>),
 }
 
-/// The same for both.
+/// Evaluates an expression for either variant.
 macro_rules! both {
     ($any:expr, $one:ident => $act:expr) => {
         match $any {
@@ -24,7 +24,7 @@ macro_rules! both {
 }
 
 impl AnyRound {
-    /// The start of a round.
+    /// Starts a round of a level.
     pub fn new(level: Arc<Level>) -> Self {
         match level.scene().dim {
             2 => Self::Plane(Round::new(level)),
@@ -50,7 +50,7 @@ impl AnyRound {
     /// See [`Round::start`].
     ///
     /// # Panics
-    /// When the level has no such hand.
+    /// If the level has no such hand.
     pub fn start(&self, player: usize) -> Vector {
         both!(self, round => round.start(player))
     }
@@ -75,17 +75,17 @@ impl AnyRound {
         both!(self, round => round.hands().collect())
     }
 
-    /// What happened in the last tick.
+    /// Returns the events of the last tick.
     pub fn events(&self) -> &[Event] {
         both!(self, round => round.world().events())
     }
 
-    /// How many ticks have passed, those after a win too.
+    /// Returns the number of ticks, including those after a win.
     pub fn ticks(&self) -> u64 {
         both!(self, round => round.world().ticks())
     }
 
-    /// The world's hash as it is now.
+    /// Returns the hash of the world's current state.
     pub fn hash(&self) -> u64 {
         both!(self, round => round.world().hash())
     }

@@ -1,4 +1,5 @@
-//! Levels made easier. What was made easier stands in the level itself, so that a round, its replay and its record say so.
+//! Assists, which make a level easier. They are stored in the level itself, so that the level of a round or a
+//! replay tells which assists were used.
 
 use crate::level::LevelError;
 use crate::{Assist, Level, Route};
@@ -6,27 +7,27 @@ use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{BoxText, ObstacleText};
 use std::collections::BTreeSet;
 
-/// By so much of its half width a basket grows on each side.
+/// Growth of a basket on each side, as a share of its half width.
 const WIDER: f32 = 0.25;
-/// How much room, in terms of that, must be behind a side that moves: a bar has to stand there.
+/// Minimum space behind a side that moves, as a multiple of that growth. A bar must fit in there.
 const ROOM: f32 = 2.5;
 
 impl Level {
-    /// The same level with some things made easier, besides those that are already.
+    /// Returns the level with these assists applied, in addition to those that it has already.
     ///
     /// # Errors
-    /// [`LevelError`] when what came of it cannot be played.
+    /// [`LevelError`] if the resulting level cannot be played.
     pub fn assisted(&self, assists: &BTreeSet<Assist>) -> Result<Self, LevelError> {
         Self::of(&self.id, assisted(self.scene(), assists))
     }
 
-    /// Whether this is the level of that name, with or without something made easier.
+    /// Returns whether this is the level `plain`, with or without assists.
     pub fn is_version_of(&self, plain: &Level) -> bool {
         self.id == plain.id && *self.scene() == assisted(plain.scene(), &self.game().assists)
     }
 }
 
-/// See [`Level::assisted`].
+/// Returns the scene with these assists applied; see [`Level::assisted`].
 pub(crate) fn assisted(scene: &Scene, assists: &BTreeSet<Assist>) -> Scene {
     let mut scene = scene.clone();
     for &assist in assists {
@@ -42,7 +43,7 @@ pub(crate) fn assisted(scene: &Scene, assists: &BTreeSet<Assist>) -> Scene {
     scene
 }
 
-/// Lets nothing tear, so that shaving is no way.
+/// Makes all materials unbreakable, which rules out shaving.
 fn mend(scene: &mut Scene) {
     for material in &mut scene.material {
         (material.strength, material.toughness) = (None, None);
@@ -53,7 +54,7 @@ fn mend(scene: &mut Scene) {
     }
 }
 
-/// Moves the sides of the basket apart, and with them what stands around it: across the way in which things fall.
+/// Moves the sides of the basket apart, together with the obstacles around it, on every axis without gravity.
 fn widen(scene: &mut Scene) {
     let Some(basket) = scene.game.as_mut().and_then(|game| game.basket.as_mut()) else {
         return;
@@ -70,10 +71,10 @@ fn widen(scene: &mut Scene) {
     }
 }
 
-/// Where things go on an axis when a basket grows: it is stretched, what is between it and the ends of the arena gives way, and
-/// those ends stay where they are.
+/// Piecewise linear map of coordinates on an axis for a wider basket. The basket is stretched, the space on
+/// both sides is compressed, and the ends of the arena stay in place.
 struct Stretch {
-    /// Low end of the arena, low and high side of the basket, high end of the arena [m].
+    /// Low end of the arena, low and high side of the basket, high end of the arena, before the change [m].
     from: [f32; 4],
     to: [f32; 4],
 }
@@ -99,7 +100,8 @@ impl Stretch {
         self.to[k] + share * (self.to[k + 1] - self.to[k])
     }
 
-    /// Where the middle of something goes that reaches so far to all sides: with the side that looks at the basket.
+    /// Returns the new centre of an object with radius `reach`. Its side that faces the basket follows the
+    /// map.
     fn middle(&self, x: f32, reach: f32) -> f32 {
         let out = x - 0.5 * (self.from[1] + self.from[2]);
         let side = out.clamp(-reach, reach);
@@ -145,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn bars_stand_further_apart_and_the_arena_stays() {
+    fn wider_basket_moves_the_bars_but_not_the_arena() {
         let [plain, wide] = [
             with("classic", &[]),
             with("classic", &[Assist::WiderBasket]),
@@ -153,7 +155,7 @@ mod tests {
         let basket = |level: &Level| level.game().basket.clone().unwrap();
         let [before, after] = [basket(&plain), basket(&wide)];
         assert!((after.half[1] - 1.25 * before.half[1]).abs() < 1e-5);
-        // No room is left behind the bar at the end.
+        // At the end there is no space behind the bar, so that side stays.
         let end = |basket: &BoxText| basket.centre[0] + basket.half[0];
         assert!((end(&after) - end(&before)).abs() < 1e-5);
         assert_eq!(plain.arena(), wide.arena());
@@ -168,12 +170,12 @@ mod tests {
         assert_eq!(
             plain.scene().obstacle[3..],
             wide.scene().obstacle[3..],
-            "walls stay"
+            "walls must not move"
         );
     }
 
     #[test]
-    fn no_bar_gets_into_a_wider_basket() {
+    fn wider_basket_is_free_of_bars() {
         for (id, _) in NAMED.iter().chain(&NAMED_3D) {
             let [plain, wide] = [with(id, &[]), with(id, &[Assist::WiderBasket])];
             let (Some(before), Some(after)) = (&plain.game().basket, &wide.game().basket) else {
@@ -189,7 +191,7 @@ mod tests {
                 size(after) > 1.2 * size(before),
                 "{id}: {before:?}, {after:?}"
             );
-            // Of a bar of the same level no more reaches into the basket than before.
+            // No bar reaches further into the basket than before.
             let into = |level: &Level| -> Vec<f32> {
                 let basket = level.game().basket.as_ref().unwrap();
                 let bars = level
@@ -218,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_unbreakable_is_squeezed_in_and_says_so() {
+    fn unbreakable_level_offers_squeezing_only() {
         for id in ["classic", "biscuit", "core", "pudding"] {
             let level = with(id, &[Assist::Unbreakable]);
             assert_eq!(level.routes(), [Route::Squeeze], "{id}");
@@ -228,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn a_round_with_help_is_no_round_of_the_plain_level() {
+    fn assisted_round_is_not_of_the_plain_level() {
         let plain = Arc::new(Level::open("classic").unwrap());
         let all = BTreeSet::from([Assist::WiderBasket, Assist::Unbreakable]);
         let easy = Arc::new(plain.assisted(&all).unwrap());
@@ -237,7 +239,11 @@ mod tests {
         let replay = round.replay();
         assert!(replay.is_of(&easy) && !replay.is_of(&plain));
         assert_eq!(replay.level().unwrap().game().assists, all);
-        assert_eq!(easy.assisted(&all).unwrap(), *easy, "once is enough");
+        assert_eq!(
+            easy.assisted(&all).unwrap(),
+            *easy,
+            "repeated assists must have no effect"
+        );
         assert_eq!(plain.assisted(&BTreeSet::new()).unwrap(), *plain);
     }
 }

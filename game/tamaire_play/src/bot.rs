@@ -1,4 +1,4 @@
-//! Players that are programs. They see the world that a person sees and answer with the same
+//! Players that are programs. They see the same world as a human player and answer with the same
 //! [`InputFrame`].
 
 mod map;
@@ -10,48 +10,50 @@ use fuwafuwa::world::TICK;
 use fuwafuwa::{Dim, Vector};
 use sight::{Sight, split};
 
-/// How fast a bot's hand goes where nothing is in the way, and when it pushes [m/s].
+/// Speed of a bot's hand on a free path (`BRISK`), and when it pushes (`GENTLE`) [m/s].
 const BRISK: f32 = 3.0;
 const GENTLE: f32 = 0.7;
-/// How fast it begins to let go [m/s].
+/// Initial speed of a bot's hand when it withdraws from the body [m/s].
 const CAREFUL: f32 = 0.2;
-/// A bot that gets nowhere for so many ticks looks at another piece.
+/// Number of ticks without progress after which a bot turns to another piece.
 const PATIENCE: u32 = 210;
-/// How far off the middle of a piece its first strokes pass, in terms of its reach: in the plane, where a
-/// hand cuts off all that it passes, and in space, where it would only plough a furrow so far out.
+/// Offset of the first strokes from the centre of a piece, as a share of its reach, in 2D and in 3D. In 2D a
+/// stroke cuts off all that it passes; in 3D, a stroke so far out would only plough a furrow.
 const GRAZING: [f32; 2] = [0.78, 0.55];
-/// After a stroke that took nothing off they pass so much closer to the middle.
+/// Factor on the offset after a stroke that took nothing off.
 const CLOSER: f32 = 0.85;
-/// In space strokes that are to pass so close and took nothing off are given up for a while: what is left may
-/// go in as it is. In the plane they end up going through the middle.
+/// Minimum offset of strokes, in 2D and in 3D. In 3D, when strokes this close to the centre take nothing off,
+/// the bot stops shaving for a while, because the rest may fit as it is. In 2D the strokes end up through the
+/// centre.
 const CLOSEST: [f32; 2] = [0.0, 0.4];
-/// In space heavy pieces lie on a floor. Who gathers there has waited for so many ticks less whenever one came
-/// so much nearer to the mouth [m], and pushes ever harder until it does: so much deeper than gently [m].
+/// Rules for 3D, where heavy pieces lie on a floor. Whenever a piece came `NEARER` to the mouth [m], the
+/// gathering bot's waiting time is reduced by `ON_ITS_WAY` ticks. Until then it pushes ever harder: up to
+/// `FIRMER` deeper than at first [m], in 2D and in 3D.
 const NEARER: f32 = 0.05;
 const ON_ITS_WAY: u32 = 20;
 const FIRMER: [f32; 2] = [0.12, 0.3];
-/// The shaving bot gathers when the largest pieces have this share of what they had.
+/// Share of the initial mass in the largest pieces at which the shaving bot starts to gather.
 const SMALL_ENOUGH: f32 = 0.92;
-/// With so much of all mass in the basket, strokes are no faster than brisk.
+/// Share of the total mass in the basket above which strokes are limited to the speed `BRISK`.
 const IN_THE_MOUTH: f32 = 0.1;
-/// It presses for so many ticks when enough is in the basket, and lets go.
+/// Number of ticks that a bot keeps pressing after enough mass is in the basket.
 const LONG_ENOUGH: u32 = 30;
 
-/// What a bot is after.
+/// Strategy of a bot.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum BotKind {
-    /// To push the body in whole.
+    /// Pushes the whole body in.
     Squeeze,
-    /// To tear bits off until it fits.
+    /// Tears bits off until the body fits.
     Shave,
-    /// Nothing: it goes here and there, now slowly, now fast.
+    /// Moves to random positions, slowly or fast.
     Random,
-    /// Nothing at all.
+    /// Does nothing.
     Idle,
 }
 
 impl BotKind {
-    /// All, with the names by which they are called up.
+    /// All kinds with their names on the command line.
     pub const NAMED: [(&'static str, Self); 4] = [
         ("squeeze", Self::Squeeze),
         ("shave", Self::Shave),
@@ -65,42 +67,42 @@ impl BotKind {
 pub struct Bot {
     kind: BotKind,
     random: fastrand::Rng,
-    /// How it differs from one with another seed, each -1 to 1.
+    /// Random variations of the behaviour by seed, each from -1 to 1.
     temper: [f32; 3],
-    /// Where a random bot wants to go, and for how many ticks more, by player.
+    /// Target and remaining ticks of a random bot, by player.
     whims: [(Vector, u32); crate::PLAYERS],
     stroke: Stroke,
     strokes: u32,
-    /// How far off the middle they pass, in terms of what the first did; and how many pieces there were
-    /// before the last.
+    /// Offset of the strokes from the centre, relative to the first one; and the number of pieces before the
+    /// last stroke.
     off: f32,
     pieces: usize,
     gathers: bool,
-    /// Share of the mass in the largest pieces, as it was at the start, at which it gathers.
+    /// Share of the initial mass in the largest pieces at which the bot starts to gather.
     aim: f32,
-    /// The most that was in the basket, for how many ticks nothing got better, and how many pieces
-    /// were given up for it.
+    /// Largest share in the basket yet, number of ticks since the last progress, and number of pieces given
+    /// up.
     best: f32,
     waited: u32,
     skips: usize,
-    /// How near to the mouth the piece that matters has come since then [m].
+    /// Minimum distance of the current piece from the mouth since the last progress [m].
     near: f32,
-    /// For how many ticks enough has been in the basket.
+    /// Number of ticks for which enough mass has been in the basket.
     pressed: u32,
 }
 
-/// What the shaving hand is at.
+/// Phase of a shaving stroke.
 #[derive(Copy, Clone, Debug, PartialEq)]
 enum Stroke {
     Rest,
-    /// On its way to where the next stroke begins, as seen from the piece [m], for so many ticks more.
+    /// Moving to the start of the next stroke, relative to the piece [m], for at most this number of ticks.
     Reach(Vector, u32),
-    /// On its way to where the stroke ends [m], for so many ticks more.
+    /// Moving to the end of the stroke [m], for at most this number of ticks.
     Cut(Vector, u32),
 }
 
 impl AnyRound {
-    /// What a bot does in its next tick.
+    /// Returns the bot's input for the next tick.
     pub fn ask(&self, bot: &mut Bot) -> InputFrame {
         match self {
             Self::Plane(round) => bot.frame(round),
@@ -108,7 +110,7 @@ impl AnyRound {
         }
     }
 
-    /// Lets a bot play until it is won, for so many ticks at most; how it was won, if it was.
+    /// Lets a bot play until it wins, for at most `ticks` ticks. Returns the outcome if it won.
     pub fn play(&mut self, bot: &mut Bot, ticks: usize) -> Option<Outcome> {
         for _ in 0..ticks {
             let frame = self.ask(bot);
@@ -122,7 +124,7 @@ impl AnyRound {
 }
 
 impl Bot {
-    /// A bot of a kind; those with different seeds play differently.
+    /// Creates a bot. Bots with different seeds play differently.
     pub fn new(kind: BotKind, seed: u64) -> Self {
         let mut random = fastrand::Rng::with_seed(seed);
         let temper = [0; 3].map(|_: i32| 2.0 * random.f32() - 1.0);
@@ -132,7 +134,7 @@ impl Bot {
             temper,
             whims: Default::default(),
             stroke: Stroke::Rest,
-            // The first goes along one side or the other.
+            // Half of the bots start on the one side, half on the other.
             strokes: u32::from(temper[0] > 0.0),
             off: 1.0,
             pieces: 0,
@@ -146,7 +148,7 @@ impl Bot {
         }
     }
 
-    /// What it does in the next tick.
+    /// Returns the input for the next tick.
     pub fn frame<D: Dim>(&mut self, round: &Round<D>) -> InputFrame {
         match self.kind {
             BotKind::Idle => InputFrame::default(),
@@ -162,13 +164,13 @@ impl Bot {
         }
     }
 
-    /// Looks at the piece that matters; at the next smaller one when nothing got better for long.
+    /// Chooses the most important piece, or the next smaller one after a long time without progress.
     fn look<D: Dim>(&mut self, round: &Round<D>) -> Option<Sight> {
         let inside = round.progress().inside;
         self.waited += 1;
         if inside > self.best + 0.02 {
             self.wait_from(inside);
-            // In the tick before, who shaves may decide to go on shaving instead.
+            // One tick later than in `shave`, which may decide first to go on shaving.
         } else if self.waited > PATIENCE + 1 {
             self.wait_from(inside);
             self.skips = (self.skips + 1) % 4;
@@ -181,7 +183,7 @@ impl Bot {
         Some(sight)
     }
 
-    /// Begins to wait for more in the basket than there is.
+    /// Restarts the waiting time for progress.
     fn wait_from(&mut self, inside: f32) {
         (self.best, self.waited, self.near) = (inside, 0, f32::INFINITY);
     }
@@ -201,7 +203,7 @@ impl Bot {
         frame
     }
 
-    /// From behind, towards the basket; away once enough is in.
+    /// Pushes the piece from behind towards the basket, and withdraws once enough mass is inside.
     fn push<D: Dim>(&mut self, sight: &Sight) -> Vector {
         let lets_go = self.pressed > LONG_ENOUGH;
         self.pressed = match sight.surplus > if lets_go { 0.0 } else { 0.05 } {
@@ -209,7 +211,7 @@ impl Bot {
             false => 0,
         };
         if self.pressed > LONG_ENOUGH {
-            // First slowly: what was pressed together follows the hand without a spring.
+            // Slowly at first: compressed pieces expand and follow the hand.
             let pace = CAREFUL + 0.004 * (self.pressed - LONG_ENOUGH) as f32;
             return self.go(sight, sight.away, pace.min(BRISK));
         }
@@ -219,14 +221,14 @@ impl Bot {
         if !is_behind && length(minus(sight.hand, piece.behind)) > 0.05 {
             return self.go(sight, piece.behind, BRISK);
         }
-        // What is in pieces is pushed gently, and harder only when nothing moves.
+        // Torn bodies are pushed gently, and harder only without progress.
         let firm = (2.0 * self.waited as f32 / PATIENCE as f32 - 1.0).max(0.0);
         let depth = match self.gathers {
             true => 0.15 + FIRMER[D::N - 2] * firm,
             false => 0.25,
         } + 0.02 * self.temper[1];
         let goal = plus(piece.centre, scaled(piece.way, depth - piece.reach));
-        // What is wedged in the mouth goes in corner by corner.
+        // A piece wedged in the mouth is pushed in corner by corner.
         let side = match (firm > 0.0 && !piece.fits, self.waited / 30 % 2) {
             (false, _) => 0.0,
             (true, 0) => -0.35,
@@ -236,12 +238,12 @@ impl Bot {
         straight(sight, goal, GENTLE * (1.0 + 0.1 * self.temper[2]))
     }
 
-    /// Strokes past the middle of the largest piece, now on one side of it, now on the other, until
-    /// it is small enough; then gathers what is needed.
+    /// Strokes past the centre of the largest piece on alternate sides until it is small enough, then gathers
+    /// the required mass.
     fn shave<D: Dim>(&mut self, sight: &Sight) -> Vector {
         self.gathers |= sight.kept < self.aim;
-        // What is stuck in front of the mouth has to be smaller still; not what is looked at for want of
-        // something better, nor when so little is missing that the next piece may do.
+        // A piece stuck in front of the mouth must become smaller. This does not apply to a piece chosen
+        // after others failed, nor if so little mass is missing that the next piece may suffice.
         let is_stuck = self.skips == 0 && !sight.piece.fits && sight.surplus < -0.05;
         if self.gathers && self.waited > PATIENCE && is_stuck {
             (self.gathers, self.aim) = (false, SMALL_ENOUGH * sight.kept);
@@ -250,7 +252,7 @@ impl Bot {
         if self.gathers {
             return self.push::<D>(sight);
         }
-        // Patience is for gathering, which begins with the largest piece every time.
+        // The waiting time counts only while gathering, which always starts with the largest piece.
         self.wait_from(0.0);
         self.skips = 0;
         let Sight {
@@ -290,7 +292,7 @@ impl Bot {
                     true => Stroke::Rest,
                     false => Stroke::Cut(to, patience - 1),
                 };
-                // In the mouth nothing gives way: a hand at full force would break the piece up.
+                // Inside the mouth a piece cannot yield, and a hand at full force would break it up.
                 match sight.within > IN_THE_MOUTH {
                     true => straight(sight, to, BRISK),
                     false => to,
@@ -299,13 +301,13 @@ impl Bot {
         }
     }
 
-    /// The next goal on the way to a place around what is in the way, at a pace [m/s].
+    /// Returns the next target on the way to a position around obstacles, at the speed `pace` [m/s].
     fn go(&self, sight: &Sight, place: Vector, pace: f32) -> Vector {
         straight(sight, sight.map.next(sight.hand, place), pace)
     }
 }
 
-/// The next goal on the straight way to a place, at a pace [m/s].
+/// Returns the next target on the straight line to a position, at the speed `pace` [m/s].
 fn straight(sight: &Sight, place: Vector, pace: f32) -> Vector {
     let way = minus(place, sight.goal);
     let step = (pace * TICK / length(way).max(1e-6)).min(1.0);

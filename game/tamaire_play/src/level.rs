@@ -1,4 +1,4 @@
-//! Where a round is played: a scene with a table `[game]`, in a text file that a person can write.
+//! Levels: a scene with a table `[game]`, in a text file.
 
 mod room;
 
@@ -12,18 +12,19 @@ use std::any::Any;
 use std::io;
 use std::sync::{Arc, OnceLock};
 
-/// A level, checked: its world can be built.
+/// A checked level: its world can be built.
 #[derive(Clone, Debug)]
 pub struct Level {
-    /// The name by which it is called up, or that of its file.
+    /// Name of a built-in level, or name of the file.
     pub id: String,
     scene: Scene,
     game: GameText,
-    /// The [`Start`] in its dimension, once somebody needed it: to build one takes far longer than to copy it.
+    /// The [`Start`] in the level's dimension, built at first use, because copying it is far faster than
+    /// building it.
     start: Arc<OnceLock<Box<dyn Any + Send + Sync>>>,
 }
 
-/// The world at the start, and its basket.
+/// World at the start, and basket.
 type Start<D> = (World<D>, Option<Shape>);
 
 impl PartialEq for Level {
@@ -32,58 +33,58 @@ impl PartialEq for Level {
     }
 }
 
-/// Why there is no such level.
+/// Reason why a level cannot be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum LevelError {
-    /// The scene in it is wrong.
+    /// The scene is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// A picture or a model that was to become a body cannot.
-    #[error("no body can be made of {0}")]
+    /// No body can be made from a picture or a model.
+    #[error("cannot make a body from {0}")]
     NoBody(
-        /// The file, where in it, and what was expected there.
+        /// File, position in it, and expected content.
         String,
     ),
-    /// It can be watched, not played.
+    /// The scene is valid, but cannot be played.
     #[error("{id}: {field}: {reason}")]
     NoGame {
-        /// The level.
+        /// Name of the level.
         id: String,
-        /// What is missing or wrong.
+        /// Missing or invalid field.
         field: &'static str,
-        /// What was expected.
+        /// Expected value.
         reason: String,
     },
-    /// It cannot be read, or is no text.
+    /// The file cannot be read, or is no text.
     #[error("{0}: {1}")]
     Unreadable(
-        /// The file.
+        /// Name of the file.
         String,
-        /// Why.
+        /// Reason.
         String,
     ),
-    /// There is no level and no file of this name.
-    #[error("there is no level or file {id:?}; the levels are {known}")]
+    /// No built-in level has this name.
+    #[error("no level or file {id:?}, expected one of {known}")]
     Unknown {
-        /// What was asked for.
+        /// The requested name.
         id: String,
-        /// What there is.
+        /// Names of the built-in levels.
         known: String,
     },
 }
 
-/// Most voxels in the grids of all bodies of a level together, solid or not: eight squares of 64, or a
-/// ball of 32. Even crumbled or diced into single voxels, they are there within seconds and move, if
-/// slowly, and one buffer of the GPU holds them.
+/// Maximum number of voxels in the grids of all bodies of a level, solid or not: eight squares of 64, or a
+/// ball of 32. Even split into single voxels, they are built within seconds and move, if slowly, and fit into
+/// one GPU buffer.
 pub const MAX_VOXELS: usize = 1 << 15;
-/// The same in space where all bodies begin whole, and with large elements inside: a ball of 64. Of
-/// eight times as many voxels it has five times as many elements.
+/// Maximum number of voxels in 3D, if all bodies start whole and with large elements inside: a ball of 64.
+/// Eight times as many voxels then give only five times as many elements.
 pub const MAX_WHOLE_VOXELS: usize = 1 << 18;
 
-/// Most bytes of a level that is kept, with all that it is made from.
+/// Maximum size of a stored level with its embedded files [bytes].
 pub const MAX_KEPT_BYTES: u64 = 1 << 23;
 
-/// The levels in the plane that come along, in the order in which they are offered.
+/// Built-in 2D levels in menu order: name and text.
 pub const NAMED: [(&str, &str); 10] = [
     ("classic", include_str!("../levels/classic.toml")),
     ("gravity", include_str!("../levels/gravity.toml")),
@@ -97,7 +98,7 @@ pub const NAMED: [(&str, &str); 10] = [
     ("sandbox", include_str!("../levels/sandbox.toml")),
 ];
 
-/// Those in space, in the order in which they are offered.
+/// Built-in 3D levels in menu order: name and text.
 pub const NAMED_3D: [(&str, &str); 4] = [
     ("classic-3d", include_str!("../levels/classic-3d.toml")),
     ("hoop", include_str!("../levels/hoop.toml")),
@@ -105,20 +106,20 @@ pub const NAMED_3D: [(&str, &str); 4] = [
     ("sandbox-3d", include_str!("../levels/sandbox-3d.toml")),
 ];
 
-/// Pictures and models that those levels are made from.
+/// Pictures and models of the built-in levels.
 const FILES: [(&str, &[u8]); 2] = [
     ("cat.png", include_bytes!("../levels/cat.png")),
     ("pudding.vox", include_bytes!("../levels/pudding.vox")),
 ];
 
-/// The levels that a picture and a model are put into, in place of the body.
+/// Level into which a picture or a model is put as the body, by file extension.
 const FRAMES: [(&str, &str); 2] = [("png", "classic"), ("vox", "classic-3d")];
 
 impl Level {
-    /// The level of a name, of those that come along.
+    /// Opens a built-in level.
     ///
     /// # Errors
-    /// [`LevelError::Unknown`] when there is none.
+    /// [`LevelError::Unknown`] if there is no built-in level of this name.
     pub fn open(id: &str) -> Result<Self, LevelError> {
         let mut named = NAMED.iter().chain(&NAMED_3D);
         let Some((_, text)) = named.find(|(known, _)| *known == id) else {
@@ -133,15 +134,16 @@ impl Level {
             known.map_or_else(nothing, |(_, bytes)| Ok(bytes.to_vec()))
         };
         scene.embed_files(&fetch)?;
-        // The tests build it.
+        // Not built here, because the tests build every built-in level.
         Self::unbuilt(id, scene)
     }
 
-    /// The level in the bytes of a file of this name: a scene with a table `[game]` (.toml), a picture (.png) whose
-    /// silhouette becomes the body, or a model of MagicaVoxel (.vox) that becomes one. What a scene names is fetched.
+    /// Reads a level from the bytes of a file named `id`: a scene with a table `[game]` (.toml), a picture
+    /// whose silhouette becomes the body (.png), or a MagicaVoxel model (.vox). `fetch` loads the files that
+    /// a scene names.
     ///
     /// # Errors
-    /// [`LevelError`] says what is wrong, and in which line.
+    /// [`LevelError`] with the problem and its line.
     pub fn read(id: &str, bytes: &[u8], fetch: Fetch) -> Result<Self, LevelError> {
         let ending = ending_of(id);
         if let Some((_, frame)) = FRAMES.iter().find(|(made_from, _)| *made_from == ending) {
@@ -153,7 +155,7 @@ impl Level {
         Self::of(id, scene)
     }
 
-    /// The level that was kept with [`Level::text_to_keep`].
+    /// Reads a level that was stored with [`Level::text_to_keep`].
     ///
     /// # Errors
     /// As [`Level::read`].
@@ -162,17 +164,17 @@ impl Level {
         Self::of(id, plain(Scene::read(id, text, &[])?))
     }
 
-    /// It as a text that needs no file, if that can be read again.
+    /// Returns the level as a text with all files embedded, for [`Level::read_kept`].
     ///
     /// # Errors
-    /// [`LevelError::Unreadable`] when it is too long.
+    /// [`LevelError::Unreadable`] if the text is too long.
     pub fn text_to_keep(&self) -> Result<String, LevelError> {
         let text = text_of(&self.scene);
         text_in(&self.id, text.as_bytes(), MAX_KEPT_BYTES)?;
         Ok(text)
     }
 
-    /// A usual level with a body that is made from a file.
+    /// Puts a body made from a file into a built-in level.
     fn framed(frame: &str, id: &str, bytes: &[u8]) -> Result<Self, LevelError> {
         let mut level = Self::open(frame)?;
         level.id = id.into();
@@ -180,7 +182,7 @@ impl Level {
         if let Some(body) = level.scene.body.first_mut() {
             (body.shape, body.file) = (None, Some(name.into()));
             if level.scene.dim == 3 {
-                // A model has voxels of its own; whatever their colours are, it is soft.
+                // A model has its own resolution. All of its colours get the soft material.
                 let all = (1..=u8::MAX).map(|index| (index.to_string(), 1));
                 (body.n, body.colours) = (None, all.collect());
             }
@@ -192,10 +194,10 @@ impl Level {
         Self::of(id, level.scene)
     }
 
-    /// The level that a scene is.
+    /// Checks a scene and makes it a level.
     ///
     /// # Errors
-    /// [`LevelError`] says what is wrong with it.
+    /// [`LevelError`] with the problem.
     pub fn of(id: &str, scene: Scene) -> Result<Self, LevelError> {
         let level = Self::unbuilt(id, scene)?;
         let checked = match level.scene.dim {
@@ -210,7 +212,7 @@ impl Level {
         checked.map(|()| level).map_err(wrong)
     }
 
-    /// The same, without a look at what takes a world to be seen.
+    /// Makes a level without the checks that need its world.
     fn unbuilt(id: &str, scene: Scene) -> Result<Self, LevelError> {
         let missing = |field, reason: &str| LevelError::NoGame {
             id: id.into(),
@@ -225,10 +227,13 @@ impl Level {
             return Err(missing("hand", &reason));
         }
         if scene.body.is_empty() {
-            return Err(missing("body", "expected a table [[body]] at least"));
+            return Err(missing("body", "expected at least one table [[body]]"));
         }
         if scene.tick != fuwafuwa::world::TICK {
-            return Err(missing("tick", "expected none: ticks are of 1/60 s"));
+            return Err(missing(
+                "tick",
+                "expected no tick: a tick of a level is 1/60 s",
+            ));
         }
         let falls = |drive| matches!(drive, DriveText::Fixed | DriveText::Free);
         if !{ scene.rigid.iter() }.all(|rigid| falls(rigid.drive) && rigid.state.is_none()) {
@@ -236,7 +241,7 @@ impl Level {
         }
         let [low, high] = scene.view;
         if low.iter().chain(&high).any(|k| k.abs() > 3.9) {
-            let reason = "expected corners within 3.9 m of the origin: it is the arena";
+            let reason = "expected coordinates from -3.9 to 3.9 m: the view is the arena";
             return Err(missing("view", reason));
         }
         let (id, start) = (id.into(), Arc::default());
@@ -259,18 +264,18 @@ impl Level {
         Ok(level)
     }
 
-    /// The scene.
+    /// Returns the scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// What makes a game of it.
+    /// Returns the table `[game]`.
     pub fn game(&self) -> &GameText {
         &self.game
     }
 
-    /// The routes by which it can be won: none without a basket, not by shaving where nothing tears, and
-    /// only those that it states where it does.
+    /// Returns the routes by which the level can be won: none without a basket, no shaving if nothing tears,
+    /// and only the stated ones if the level states some.
     pub fn routes(&self) -> &[Route] {
         match self.game.routes.as_slice() {
             [] => self.possible_routes(),
@@ -278,7 +283,7 @@ impl Level {
         }
     }
 
-    /// The routes that its basket and its materials allow; a mix is some of both, and no route of its own.
+    /// Returns the routes that the basket and the materials allow. `Mix` is not listed as a route of its own.
     fn possible_routes(&self) -> &'static [Route] {
         let materials = self.scene.materials();
         let can_tear = materials.iter().any(|m| m.strength.is_finite());
@@ -289,25 +294,25 @@ impl Level {
         }
     }
 
-    /// Low and high corner of the room in which hands may move [m].
+    /// Returns the low and the high corner of the room in which hands can move [m].
     pub fn arena(&self) -> [[f32; 3]; 2] {
         self.scene.view
     }
 
-    /// A number that two levels share only if they are the same.
+    /// Returns a hash of the level, assists included. Equal hashes mean equal levels.
     pub fn hash(&self) -> u64 {
         hash_of(&self.scene)
     }
 
-    /// Its world at the start, and its basket.
+    /// Returns a copy of the world at the start, and the basket.
     pub(crate) fn build<D: Dim>(&self) -> Start<D> {
         let start = self.start::<D>();
         start
-            .expect("the tests build those that come along, a check all others")
+            .expect("tests build the built-in levels, Level::of all others")
             .clone()
     }
 
-    /// The same to be looked at; built once.
+    /// Returns the world at the start, which is built once, and the basket.
     fn start<D: Dim>(&self) -> Result<&Start<D>, SceneError> {
         let known = match self.start.get() {
             Some(known) => known,
@@ -323,16 +328,17 @@ impl Level {
     }
 }
 
-/// See [`Level::hash`].
+/// Returns the hash of a scene; see [`Level::hash`].
 pub(crate) fn hash_of(scene: &Scene) -> u64 {
     Hash::of(text_of(scene).as_bytes())
 }
 
 pub(crate) fn text_of(scene: &Scene) -> String {
-    toml::to_string(scene).expect("a scene that was read can be written")
+    toml::to_string(scene).expect("a scene that was read can be serialized")
 }
 
-/// What a stranger says was made easier was not: only rounds tell so of their level.
+/// Removes the assists that an untrusted scene claims to have. Only rounds may state the assists of their
+/// level.
 pub(crate) fn plain(mut scene: Scene) -> Scene {
     if let Some(game) = &mut scene.game {
         game.assists.clear();
@@ -340,19 +346,19 @@ pub(crate) fn plain(mut scene: Scene) -> Scene {
     scene
 }
 
-/// Whoever gets a replay has no business in the folders of who made it.
+/// Removes the folders from file names, so that a replay does not reveal them.
 fn forget_folders(scene: &mut Scene) {
     for file in scene.body.iter_mut().filter_map(|body| body.file.as_mut()) {
         *file = file_name(file).into();
     }
 }
 
-/// A name without its folders.
+/// Returns the name of a file without its folders.
 fn file_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
-/// The name of a level without its folders and its ending.
+/// Returns the name of a level without folders and extension.
 pub(crate) fn stem(id: &str) -> &str {
     let name = file_name(id);
     let stem = name.rsplit_once('.').map(|(stem, _)| stem);
@@ -363,21 +369,21 @@ fn nothing() -> io::Result<Vec<u8>> {
     Err(io::ErrorKind::NotFound.into())
 }
 
-/// The text in the bytes of a file, of so many at most.
+/// Returns the bytes of a file as a text of at most `most` bytes.
 fn text_in<'a>(id: &str, bytes: &'a [u8], most: u64) -> Result<&'a str, LevelError> {
     let wrong = |reason: String| LevelError::Unreadable(id.into(), reason);
     let found = bytes.len() as u64;
     if found > most {
         return Err(wrong(format!(
-            "expected {most} bytes at most, found {found}"
+            "expected at most {most} bytes, found {found}"
         )));
     }
     let text = std::str::from_utf8(bytes);
     text.map_err(|error| wrong(format!("expected a text in UTF-8: {error}")))
 }
 
-/// What is wrong with a body that is made from a file is wrong with the file: of the level around it nobody
-/// has heard.
+/// Attributes errors in a body made from a file to that file, because the player did not choose the level
+/// around it.
 fn blame(file: &str, error: LevelError) -> LevelError {
     match error {
         LevelError::Scene(SceneError::Shape { mut error, .. }) => {
@@ -404,7 +410,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_that_come_along_can_be_opened() {
+    fn every_built_in_level_opens() {
         for (id, _) in NAMED.iter().chain(&NAMED_3D) {
             let level = Level::open(id);
             let scene = level.map(|level| level.scene);
@@ -414,7 +420,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_has_the_routes_that_its_material_allows() {
+    fn routes_follow_from_the_material() {
         let routes = |id| Level::open(id).unwrap().routes().to_vec();
         let both = [Route::Squeeze, Route::Shave];
         for (id, expected) in [
@@ -433,7 +439,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_states_only_routes_that_it_can_have() {
+    fn level_with_an_impossible_route_is_rejected() {
         let (_, rubber) = NAMED[7];
         let refused = refusal("rubber", rubber, &["game.routes=[\"shave\"]"]);
         let expected = "rubber: game.routes: expected some of [Squeeze], found [Shave]";
@@ -441,15 +447,16 @@ mod tests {
     }
 
     #[test]
-    fn a_body_that_no_hand_can_reach_is_refused() {
+    fn level_with_an_unreachable_body_is_rejected() {
         let (_, twins) = NAMED[3];
         let refused = refusal("twins", twins, &["body.2.at=[2.0, 0.0, 0.0]"]);
-        let expected = "twins: body: expected bodies in the view; of body 2 the middle is not";
+        let expected =
+            "twins: body: expected all bodies in the view; the centre of body 2 is outside";
         assert_eq!(refused.as_deref(), Some(expected));
     }
 
     #[test]
-    fn a_copy_of_the_start_is_a_start() {
+    fn worlds_built_from_one_level_are_independent_and_equal() {
         let level = Level::open("twins").unwrap();
         let built = level.scene.build::<Dim2>().unwrap();
         let mut rounds = [0, 1].map(|_| level.build::<Dim2>().0);
@@ -462,7 +469,7 @@ mod tests {
         );
     }
 
-    /// What is said of a level with changes.
+    /// Returns the error of a level with these changes.
     fn refusal(id: &str, text: &str, changes: &[&str]) -> Option<String> {
         let changes: Vec<String> = changes.iter().map(|change| change.to_string()).collect();
         let scene = Scene::read(id, text, &changes).unwrap();
@@ -470,7 +477,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_has_no_more_voxels_than_the_game_can_move() {
+    fn level_with_too_many_voxels_is_rejected() {
         let [(id, flat), (id_3d, solid)] = [NAMED[0], NAMED_3D[0]];
         let few = "body 1, n: expected 32768 voxels at most";
         let many = "body 1, n: expected 262144 voxels at most";

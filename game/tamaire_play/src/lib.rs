@@ -1,12 +1,20 @@
-//! The game without a window: push a soft body into a basket that is smaller than it.
+//! The game without a window: push a soft body into a basket that is smaller than the body.
 //!
-//! The way through, each module using only those above it:
-//! [`input`] what players do in a tick → [`level`] where they do it → [`assists`] the same made easier → [`rules`] what
-//! counts as won, and how → [`round`] one go at a level → [`any`] the same, whatever its dimension → [`replay`] the same again → [`link`] the same behind an address → [`bot`] players that are programs.
+//! The modules, each of which uses only those above it:
 //!
-//! A window, a bot and a replay play alike: they hand one [`InputFrame`] a tick to [`Round::step`]
-//! and look at what came of it. A round in the plane is a `Round<Dim2>`, one in space a `Round<Dim3>`;
-//! [`AnyRound`] is whichever its level asks for:
+//! - [`input`]: input of the players in a tick
+//! - [`level`]: levels
+//! - [`assists`]: easier variants of levels
+//! - [`rules`]: conditions and routes of a win
+//! - [`round`]: a round of a level
+//! - [`any`]: a round with its dimension chosen at run time
+//! - [`replay`]: recorded rounds
+//! - [`link`]: rounds and levels as links
+//! - [`bot`]: players that are programs
+//!
+//! A window, a bot and a replay play in the same way: they pass one [`InputFrame`] per tick to
+//! [`Round::step`] and read the resulting state. A 2D round is a `Round<Dim2>`, a 3D round a `Round<Dim3>`;
+//! [`AnyRound`] has the dimension of its level:
 //!
 //! ```
 //! use std::sync::Arc;

@@ -1,5 +1,5 @@
-//! Rounds and levels as links: what stands behind the `#` of an address never leaves the browser, so a round travels without
-//! anybody keeping it.
+//! Rounds and levels as links. The part of an address behind its `#` never leaves the browser, so that a
+//! round can be shared without a server that stores it.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -14,7 +14,7 @@
 //! assert!(sent.starts_with("https://example.org/play/#r1") && sent.len() < 200);
 //!
 //! let Link::Round(replay) = Link::read(&sent)? else {
-//!     panic!("it was a round");
+//!     panic!("expected a round");
 //! };
 //! let mut playback = Playback::new(Arc::new(replay))?;
 //! while !playback.is_over() {
@@ -24,9 +24,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A fragment is a letter for what it is, a digit for the format, bytes in base64url [RFC 4648, §5] and a `z`: after a `-` or a
-//! `_` at its end many programs that find addresses in a text would stop too early. The bytes are a checksum and what postcard
-//! makes of `SentRound` or `SentLevel`. For a QR code the bytes are told in decimal digits instead, behind a `0`. Of a level that comes along only the name and a hash travel.
+//! A fragment consists of a letter for its kind, a digit for its format, bytes in base64url [RFC 4648, §5],
+//! and a final `z`, because many programs that detect addresses in a text stop before a `-` or `_` at the
+//! end. The bytes are a checksum and a postcard encoding of `SentRound` or `SentLevel`. For a QR code, the
+//! bytes are written in decimal digits, with the format `0`. A built-in level is sent as its name and a hash
+//! only.
 
 mod coder;
 mod digits;
@@ -47,14 +49,14 @@ use fuwafuwa::hash::Hash;
 use level::SentLevel;
 use serde::{Deserialize, Serialize};
 
-/// The formats of a fragment: in base64url, and in digits.
+/// Formats of a fragment: base64url (`FORMAT`) and decimal digits (`DIGITS`).
 const FORMAT: char = '1';
 const DIGITS: char = '0';
 const ROUND: char = 'r';
 const LEVEL: char = 'l';
 const END: char = 'z';
 
-/// What a link brings.
+/// Content of a link.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Link {
     /// A round to watch or to race.
@@ -64,11 +66,11 @@ pub enum Link {
 }
 
 impl Link {
-    /// What an address, or what stands behind its `#`, brings. A level is built to see whether it can be; a round shows when
-    /// it is played whether it goes as it says.
+    /// Reads an address or its fragment. The world of a level is built to check it; a round is checked
+    /// against its hashes during playback.
     ///
     /// # Errors
-    /// [`LinkError`] when it is no link, did not arrive as it was sent, or brings nothing that can be played.
+    /// [`LinkError`] if the text is no link, is damaged, or has content that cannot be played.
     pub fn read(text: &str) -> Result<Self, LinkError> {
         let fragment = text.split_once('#').map_or(text, |(_, fragment)| fragment);
         let fragment = fragment.trim();
@@ -83,26 +85,27 @@ impl Link {
 }
 
 impl Replay {
-    /// It as what stands behind the `#` of an address. Of the hashes four digits each travel: by them it is still seen
-    /// when it goes another way.
+    /// Returns the replay as the fragment of a link. Each hash is shortened to four digits, which still
+    /// detect a diverging replay.
     ///
     /// # Errors
-    /// [`LinkError`] when it is too long, or could not be read again.
+    /// [`LinkError`] if the fragment is too long, or if it could not be read again.
     pub fn link(&self) -> Result<String, LinkError> {
         let fragment = self.fragment()?;
         check_length(fragment.len())?;
         Ok(fragment)
     }
 
-    /// The same however long it is, for whoever keeps many rounds.
+    /// Returns the replay as a fragment of any length, for storing rounds.
     ///
     /// # Errors
-    /// [`LinkError`] when it could not be read again.
+    /// [`LinkError`] if the fragment could not be read again.
     pub fn fragment(&self) -> Result<String, LinkError> {
         Ok(packed(ROUND, &(VERSION, self.sent()?)))
     }
 
-    /// The same in digits, which take less room in a QR code, and more elsewhere.
+    /// Returns the replay as a fragment in decimal digits, which take less space in a QR code and more
+    /// elsewhere.
     ///
     /// # Errors
     /// As [`Replay::link`].
@@ -136,10 +139,10 @@ impl Replay {
         })
     }
 
-    /// The round in what [`Replay::fragment`] gave.
+    /// Reads a round from a fragment made by [`Replay::fragment`].
     ///
     /// # Errors
-    /// As [`Link::read`], but that it may be as long as a replay on file.
+    /// As [`Link::read`], except that the fragment may be as long as a stored replay.
     pub fn of_fragment(fragment: &str) -> Result<Self, LinkError> {
         if fragment.len() > MAX_BYTES {
             return Err(LinkError::TooLong {
@@ -155,10 +158,10 @@ impl Replay {
 }
 
 impl Level {
-    /// It as what stands behind the `#` of an address.
+    /// Returns the level as the fragment of a link.
     ///
     /// # Errors
-    /// [`LinkError`] when it is too long.
+    /// [`LinkError`] if the fragment is too long.
     pub fn link(&self) -> Result<String, LinkError> {
         let id: String = stem(&self.id).chars().take(MAX_NAME).collect();
         let fragment = packed(LEVEL, &SentLevel::of(&id, self.scene())?);
@@ -167,19 +170,19 @@ impl Level {
     }
 }
 
-/// An address that brings what a fragment holds: that of the page, whatever it brought itself, and the fragment.
+/// Returns the address of a page with a fragment. A fragment in `page` is replaced.
 pub fn address(page: &str, fragment: &str) -> String {
     let page = page.split_once('#').map_or(page, |(page, _)| page);
     format!("{page}#{fragment}")
 }
 
-/// A round on its way, behind the number of its rules.
+/// Encoded round; in the bytes, the version of the rules precedes it.
 #[derive(Debug, Serialize, Deserialize)]
 struct SentRound {
     game: String,
     level: SentLevel,
     outcome: Option<Outcome>,
-    /// The last four digits of each.
+    /// The last four hexadecimal digits of each hash.
     hashes: Vec<[u8; 2]>,
     ticks: u32,
     frames: Vec<u8>,
@@ -217,13 +220,13 @@ impl SentRound {
     }
 }
 
-/// The last four hexadecimal digits of a hash.
+/// Returns the last four hexadecimal digits of a hash.
 fn last_digits(hash: &str) -> [u8; 2] {
     let number = u64::from_str_radix(hash, 16);
-    (number.expect("that it is one was checked") as u16).to_be_bytes()
+    (number.expect("check() verified the hexadecimal digits") as u16).to_be_bytes()
 }
 
-/// Of what kind a fragment is, and the rest of it.
+/// Splits a fragment into its kind and the rest.
 fn parts(fragment: &str) -> Result<(char, &str), LinkError> {
     let mut letters = fragment.chars();
     let kind = letters.next().filter(|kind| [ROUND, LEVEL].contains(kind));
@@ -240,13 +243,13 @@ fn packed(kind: char, sent: &impl Serialize) -> String {
     format!("{kind}{FORMAT}{}{END}", BASE64.encode(sealed(kind, sent)))
 }
 
-/// What is sent as bytes, behind their checksum.
+/// Encodes a value as bytes, preceded by their checksum.
 fn sealed(kind: char, sent: &impl Serialize) -> Vec<u8> {
-    let payload = postcard::to_stdvec(sent).expect("a vector takes all");
+    let payload = postcard::to_stdvec(sent).expect("serialization into a vector cannot fail");
     [&checksum(kind, &payload)[..], &payload].concat()
 }
 
-/// What the rest of a fragment of this kind was made from.
+/// Decodes the rest of a fragment and verifies its checksum.
 fn unpacked(kind: char, rest: &str) -> Result<Vec<u8>, LinkError> {
     let (format, body) = rest.split_at(1);
     let body = body.strip_suffix(END).ok_or(LinkError::CutShort)?;
@@ -260,7 +263,7 @@ fn unpacked(kind: char, rest: &str) -> Result<Vec<u8>, LinkError> {
     is_whole.then_some(payload).ok_or(LinkError::Damaged)
 }
 
-/// Of the kind and all that follows. It keeps out accidents, not strangers.
+/// Checksum of the kind and the payload. It detects accidental changes, not forgery.
 fn checksum(kind: char, payload: &[u8]) -> [u8; 4] {
     let bytes = [&[kind as u8], payload].concat();
     (Hash::of(&bytes) as u32).to_le_bytes()
@@ -310,9 +313,9 @@ mod tests {
     }
 
     #[test]
-    fn what_a_stranger_packed_well_is_checked_all_the_same() {
+    fn links_with_a_valid_checksum_are_still_checked() {
         let damaged = LinkError::Damaged.to_string();
-        // Eight megabytes.
+        // Eight megabytes before compression.
         let bomb = whole(&" ".repeat(8 << 20));
         assert_eq!(refusal(LEVEL, &bomb), damaged);
         assert_eq!(refusal(ROUND, &(VERSION, round(bomb, 1, vec![0]))), damaged);
@@ -322,7 +325,7 @@ mod tests {
         assert_eq!(
             refusal(LEVEL, &(classic(), 1_u8)),
             damaged,
-            "something follows"
+            "trailing bytes must be rejected"
         );
         assert_eq!(
             refusal(ROUND, &(VERSION, round(classic(), 1, vec![]))),
@@ -352,30 +355,30 @@ mod tests {
     }
 
     #[test]
-    fn what_would_not_be_read_is_not_sent() {
+    fn scene_too_large_for_a_link_is_rejected() {
         let mut scene = Level::open("cat").unwrap().scene().clone();
         scene.body[0].content = Some("AAAA".repeat(MAX_SCENE_BYTES / 3));
         let error = SentLevel::of("mine", &scene).unwrap_err().to_string();
-        let expected = "mine: for a link, expected 131072 bytes at most, found 13";
+        let expected = "mine: for a link, expected at most 131072 bytes, found 13";
         assert!(error.starts_with(expected), "{error}");
     }
 
     #[test]
-    fn what_other_rules_and_levels_made_is_told_so() {
-        let later = refusal(ROUND, &(VERSION + 1, "whatever comes then"));
+    fn links_of_other_rules_or_levels_are_rejected() {
+        let later = refusal(ROUND, &(VERSION + 1, "a later format"));
         assert_eq!(later, LinkError::Newer.to_string());
-        let earlier = refusal(ROUND, &(VERSION - 1, "whatever was then"));
-        assert!(earlier.contains("this replay is of version"), "{earlier}");
+        let earlier = refusal(ROUND, &(VERSION - 1, "an earlier format"));
+        assert!(earlier.contains("this replay has version"), "{earlier}");
         let mut level = classic();
         if let Content::Known { hash, .. } = &mut level.content {
             *hash ^= 1;
         }
         let other = refusal(LEVEL, &level);
-        assert!(other.contains("\"classic\" is not what it was"), "{other}");
+        assert!(other.contains("\"classic\" has changed"), "{other}");
     }
 
     #[test]
-    fn the_longest_round_of_few_bytes_is_read_at_once() {
+    fn longest_round_in_few_bytes_is_read_quickly() {
         let mut random = fastrand::Rng::with_seed(1);
         for way in [0, 1, 30, 31] {
             let told = (0..100).map(|_| random.u8(..));
@@ -393,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn the_most_that_fits_into_a_level_is_read_soon() {
+    fn largest_level_in_a_link_is_read_quickly() {
         let (_, classic) = crate::level::NAMED[0];
         let ball = "[[obstacle]]\nball = { centre = [9.0, 9.0, 9.0], radius = 0.1 }\n";
         let room = MAX_SCENE_BYTES - classic.len() - 9;

@@ -1,4 +1,4 @@
-//! A round on file, to be watched, raced and shared.
+//! Recorded rounds, to be stored, watched, raced and shared.
 
 use crate::level::{LevelError, stem};
 use crate::round::MAX_TICKS;
@@ -10,74 +10,74 @@ use serde::{Deserialize, Serialize};
 use std::str::Utf8Error;
 use std::sync::Arc;
 
-/// Number of the format and of the rules; it changes when an older round would run differently.
+/// Version of the format and the rules. It changes when an older round would run differently.
 pub const VERSION: u32 = 6;
 
-/// Most bytes of a replay: what is longer is not read.
+/// Maximum size of a replay; longer ones are not read [bytes].
 pub const MAX_BYTES: usize = 1 << 25;
-/// Most letters of the name of a level in one.
+/// Maximum length of the level name in a replay [characters].
 pub(crate) const MAX_NAME: usize = 200;
-/// Fewest digits of a hash in one: so many are left of it in a link.
+/// Minimum number of hexadecimal digits of a hash, as in a link.
 const FEW_DIGITS: usize = 4;
 
-/// A round: the level itself, what was played in it, and what came of it.
+/// A recorded round: its level, its input and its outcome.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Replay {
-    /// Number of the format.
+    /// Version of the format and the rules, [`VERSION`].
     pub version: u32,
     /// Version of the game.
     pub game: String,
-    /// The level's name.
+    /// Name of the level.
     pub level: String,
-    /// The level's hash, in hexadecimal.
+    /// Hash of the level in hexadecimal.
     pub level_hash: String,
-    /// How it was won, if it was.
+    /// Outcome, if the round was won.
     pub outcome: Option<Outcome>,
-    /// The world's hash after every sixtieth tick and after the last, in hexadecimal: its last digits, four or more. All
-    /// sixteen are there unless it came as a link.
+    /// Last hexadecimal digits of the world's hash after every sixtieth tick and after the last one: all
+    /// sixteen, or four if the replay came from a link.
     pub hashes: Vec<String>,
-    /// What was played: for each tick the goals of the hands.
+    /// Input: a row of target positions for each tick.
     pub(crate) frames: Vec<Vec<i16>>,
-    /// The level.
+    /// Scene of the level.
     pub(crate) scene: Scene,
 }
 
-/// Why a replay is not played.
+/// Reason why a replay cannot be played.
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
-    /// It cannot be read.
-    #[error("it cannot be read: {0}")]
+    /// The file cannot be read.
+    #[error("cannot read the replay: {0}")]
     Unreadable(String),
-    /// It is no replay.
+    /// The text is no replay.
     #[error("this is no replay: {0}")]
     Text(String),
-    /// It was made by another version.
-    #[error("this replay is of version {found}, and this game plays version {VERSION}")]
+    /// The replay has another version of the rules.
+    #[error("this replay has version {found}, but this game plays version {VERSION}")]
     Version {
-        /// Its version.
+        /// Version of the replay.
         found: u32,
     },
-    /// Its level is broken.
+    /// The level of the replay is invalid.
     #[error(transparent)]
     Level(#[from] LevelError),
-    /// Its level is not the one that was played.
+    /// The level does not match its hash.
     #[error("the level in this replay was changed")]
     LevelChanged,
-    /// It does not lead to what it says.
+    /// The world diverges from the recorded hashes.
     #[error("this replay was changed: it goes another way at second {second}")]
     Differs {
-        /// Where.
+        /// Time of the first different hash, in seconds from the start.
         second: usize,
     },
-    /// It does not end as it says.
-    #[error("this replay was changed: it does not end as it says")]
+    /// The outcome differs from the recorded one.
+    #[error("this replay was changed: its result differs from the recorded one")]
     OutcomeDiffers,
 }
 
 impl Replay {
-    /// What was played in a round so far. Of one that is longer than [`MAX_TICKS`] it is the beginning,
-    /// which was not won.
+    /// Records a round. If it is longer than [`MAX_TICKS`], only its beginning is recorded, without an
+    /// outcome.
     pub fn of<D: Dim>(round: &Round<D>) -> Self {
         let (level, outcome) = (round.level(), round.progress().outcome);
         let mut hashes = round.hashes().to_vec();
@@ -87,7 +87,7 @@ impl Replay {
         Self {
             version: VERSION,
             game: env!("CARGO_PKG_VERSION").into(),
-            // Of a file not its folders, which are nobody else's business.
+            // The folders of a file are private and left out.
             level: stem(&level.id).chars().take(MAX_NAME).collect(),
             level_hash: format!("{:016x}", level.hash()),
             outcome: outcome.filter(|outcome| outcome.ticks == round.frames().len() as u64),
@@ -97,7 +97,7 @@ impl Replay {
         }
     }
 
-    /// The replay in the bytes of a file.
+    /// Reads a replay from the bytes of a file.
     ///
     /// # Errors
     /// As [`Replay::read`].
@@ -107,10 +107,10 @@ impl Replay {
         Self::read(std::str::from_utf8(bytes).map_err(no_text)?)
     }
 
-    /// The replay in a text.
+    /// Reads a replay from a text.
     ///
     /// # Errors
-    /// [`ReplayError`] when it is none, or one of another version.
+    /// [`ReplayError`] if the text is no replay, or one of another version.
     pub fn read(text: &str) -> Result<Self, ReplayError> {
         check_length(text.len())?;
         #[derive(Deserialize)]
@@ -118,7 +118,7 @@ impl Replay {
             version: u32,
         }
         let wrong = |error: toml::de::Error| ReplayError::Text(shortened(error.message(), 400));
-        // Another version may have other fields: that it is one must be seen before them.
+        // The version is checked first, because other versions may have other fields.
         let Header { version } = toml::from_str(text).map_err(wrong)?;
         if version != VERSION {
             return Err(ReplayError::Version { found: version });
@@ -128,16 +128,16 @@ impl Replay {
         Ok(replay)
     }
 
-    /// Whether all that depends on each other fits, and nothing is too long.
+    /// Checks that all parts match and that nothing is too long.
     pub(crate) fn check(&self) -> Result<(), ReplayError> {
         let letters = self.level.chars().count();
         if letters > MAX_NAME {
-            let reason = format!("level: expected {MAX_NAME} letters at most, found {letters}");
+            let reason = format!("level: expected at most {MAX_NAME} characters, found {letters}");
             return Err(ReplayError::Text(reason));
         }
         let ticks = self.frames.len();
         if ticks > MAX_TICKS {
-            let reason = format!("expected {MAX_TICKS} ticks at most, found {ticks}");
+            let reason = format!("expected at most {MAX_TICKS} ticks, found {ticks}");
             return Err(ReplayError::Text(reason));
         }
         if let Some(tick) = self
@@ -162,57 +162,57 @@ impl Replay {
         }
         let mut bodies = self.scene.body.iter();
         if bodies.any(BodyText::lacks_content) {
-            // Whose replay it is does not say which files are opened.
-            let reason = "expected the content of every body that has a file".into();
+            // A replay must not name files that would be opened.
+            let reason = "expected embedded content for every body with a file".into();
             return Err(ReplayError::Text(reason));
         }
         Ok(())
     }
 
-    /// It as a text.
+    /// Returns the replay as a text.
     pub fn text(&self) -> String {
-        toml::to_string(self).expect("a replay has nothing that cannot be written")
+        toml::to_string(self).expect("every field of a replay can be serialized")
     }
 
-    /// The same, if it can be read and watched again.
+    /// Returns the replay as a text, after checking that it can be read and watched again.
     ///
     /// # Errors
-    /// [`ReplayError`] says why not.
+    /// [`ReplayError`] with the reason otherwise.
     pub fn text_to_keep(&self) -> Result<String, ReplayError> {
         let text = self.text();
         Self::read(&text)?.level()?;
         Ok(text)
     }
 
-    /// Number of ticks.
+    /// Returns the number of ticks.
     pub fn ticks(&self) -> usize {
         self.frames.len()
     }
 
-    /// What was played in a tick; nothing after the last.
+    /// Returns the input of a tick; an empty frame after the last.
     pub fn frame(&self, tick: usize) -> InputFrame {
         let row = self.frames.get(tick);
         row.map_or_else(InputFrame::default, |row| InputFrame::of_row(row))
     }
 
-    /// The level it was played in.
+    /// Returns the level of the replay.
     ///
     /// # Errors
-    /// [`ReplayError`] when it is broken, or not the one that was played.
+    /// [`ReplayError`] if the level is invalid, or does not match its hash.
     pub fn level(&self) -> Result<Level, ReplayError> {
         let level = Level::of(&self.level, self.scene.clone())?;
         let is_same = self.is_of(&level);
         is_same.then_some(level).ok_or(ReplayError::LevelChanged)
     }
 
-    /// Whether it was played in this level, by whatever name.
+    /// Returns whether the replay was played in this level, under any name.
     pub fn is_of(&self, level: &Level) -> bool {
         self.level_hash == format!("{:016x}", level.hash())
     }
 }
 
 impl AnyRound {
-    /// What was played in it so far.
+    /// Records the round up to now.
     pub fn replay(&self) -> Replay {
         match self {
             Self::Plane(round) => Replay::of(round),
@@ -221,18 +221,18 @@ impl AnyRound {
     }
 }
 
-/// How many hashes there are of so many ticks.
+/// Returns the number of hashes for a number of ticks.
 fn marks(ticks: usize) -> usize {
     ticks.div_ceil(60)
 }
 
 fn check_length(found: usize) -> Result<(), ReplayError> {
-    let reason = format!("expected {MAX_BYTES} bytes at most, found {found}");
+    let reason = format!("expected at most {MAX_BYTES} bytes, found {found}");
     let good = found <= MAX_BYTES;
     good.then_some(()).ok_or(ReplayError::Text(reason))
 }
 
-/// A replay that is being played.
+/// Playback of a replay.
 #[derive(Clone, Debug)]
 pub struct Playback {
     replay: Arc<Replay>,
@@ -241,10 +241,10 @@ pub struct Playback {
 }
 
 impl Playback {
-    /// A replay from its start.
+    /// Starts the playback of a replay.
     ///
     /// # Errors
-    /// [`ReplayError`] when its level is broken or another one.
+    /// [`ReplayError`] if the level is invalid, or does not match its hash.
     pub fn new(replay: Arc<Replay>) -> Result<Self, ReplayError> {
         let round = AnyRound::new(Arc::new(replay.level()?));
         let tick = 0;
@@ -255,7 +255,7 @@ impl Playback {
         })
     }
 
-    /// The same from its start.
+    /// Returns a playback of the same replay from its start.
     pub fn again(&self) -> Self {
         Self {
             replay: self.replay.clone(),
@@ -264,20 +264,20 @@ impl Playback {
         }
     }
 
-    /// The round as it is now.
+    /// Returns the round in its current state.
     pub fn round(&self) -> &AnyRound {
         &self.round
     }
 
-    /// Whether all of it was played.
+    /// Returns whether all recorded ticks were played.
     pub fn is_over(&self) -> bool {
         self.tick >= self.replay.ticks()
     }
 
-    /// Plays a tick. Past the end the world goes on by itself.
+    /// Plays a tick. After the last recorded tick the world continues without input.
     ///
     /// # Errors
-    /// [`ReplayError`] when it turns out that the replay was tampered with.
+    /// [`ReplayError`] if the world diverges from the replay.
     pub fn step(&mut self) -> Result<(), ReplayError> {
         let was_over = self.is_over();
         self.round.step(self.replay.frame(self.tick));
@@ -307,7 +307,7 @@ mod tests {
     use fuwafuwa::Dim2;
 
     #[test]
-    fn what_is_no_replay_is_refused_briefly() {
+    fn invalid_replay_gives_a_short_error() {
         let long = "z".repeat(1 << 20);
         let level = Arc::new(Level::open("classic").unwrap());
         let text = Replay::of(&Round::<Dim2>::new(level)).text();
@@ -324,21 +324,21 @@ mod tests {
     }
 
     #[test]
-    fn what_could_not_be_read_again_is_not_kept() {
+    fn text_to_keep_rejects_what_could_not_be_read_again() {
         let level = Arc::new(Level::open("classic").unwrap());
         let mut replay = Replay::of(&Round::<Dim2>::new(level));
         assert_eq!(replay.text_to_keep().unwrap(), replay.text());
         replay.game = "z".repeat(MAX_BYTES);
         let error = replay.text_to_keep().unwrap_err().to_string();
-        assert!(error.contains("bytes at most"), "{error}");
+        assert!(error.contains("expected at most"), "{error}");
         replay.game = String::new();
         replay.level = "z".repeat(MAX_NAME + 1);
         let error = replay.text_to_keep().unwrap_err().to_string();
-        assert!(error.contains("letters at most"), "{error}");
+        assert!(error.contains("characters, found"), "{error}");
     }
 
     #[test]
-    fn a_replay_brings_its_files_along() {
+    fn replay_embeds_its_files() {
         let level = Arc::new(Level::open("cat").unwrap());
         let text = Replay::of(&Round::<Dim2>::new(level)).text();
         assert!(Replay::read(&text).is_ok());

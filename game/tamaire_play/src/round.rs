@@ -1,21 +1,21 @@
-//! One go at a level.
+//! Rounds of a level.
 
 use crate::{InputFrame, Level, PLAYERS, Progress};
 use fuwafuwa::world::TICK;
 use fuwafuwa::{Dim, RigidBody, RigidBodyHandle, Shape, StepReport, Vector, World};
 use std::sync::Arc;
 
-/// A hand's goal moves no faster than this [m/s]: what is much faster than a wave in the body
-/// throws it aside before it can give way.
+/// Maximum speed of a hand's target [m/s]. A hand much faster than a wave in the body would throw the body
+/// aside before it can deform.
 pub const TOP_SPEED: f32 = 6.0;
-/// A goal is never further from its hand than this [m]: there the coupling pulls as strongly as it
-/// can, and a hand that comes free has no long way to shoot.
+/// Maximum distance between a hand and its target [m]. At this distance the coupling has its maximum force,
+/// and a hand that is suddenly free does not shoot far.
 pub const LEASH: f32 = 0.4;
 
-/// Most ticks that are recorded: an hour. A round may go on for longer.
+/// Maximum number of recorded ticks: an hour. A round may last longer.
 pub const MAX_TICKS: usize = 60 * 60 * 60;
 
-/// One go at a level, from the first tick on.
+/// A round of a level.
 #[derive(Clone, Debug)]
 pub struct Round<D: Dim> {
     level: Arc<Level>,
@@ -23,25 +23,25 @@ pub struct Round<D: Dim> {
     basket: Option<Shape>,
     progress: Progress,
     starts: Vec<RigidBody>,
-    /// The hand of each player who has joined.
+    /// Hands of the players that have joined.
     players: Vec<RigidBodyHandle>,
     frames: Vec<InputFrame>,
     hashes: Vec<u64>,
 }
 
 impl<D: Dim> Round<D> {
-    /// The start of a round. `level` must be of this dimension.
+    /// Starts a round of a level, which must have the dimension `D`.
     ///
     /// # Panics
-    /// When the level is of another dimension.
+    /// If the level has another dimension.
     pub fn new(level: Arc<Level>) -> Self {
         let (mut world, basket) = level.build::<D>();
         let hands: Vec<RigidBodyHandle> = world.target_followers().map(|(id, _)| id).collect();
         let starts = hands.iter().map(|&id| world.rigid_bodies()[id].clone());
         let starts: Vec<RigidBody> = starts.collect();
-        // The others come in when their players join.
+        // The other hands are added when their players join.
         for &hand in hands.iter().skip(1) {
-            world.remove_rigid_body(hand).expect("it is in the world");
+            world.remove_rigid(hand).expect("the world has this hand");
         }
         Self {
             players: hands.into_iter().take(1).collect(),
@@ -55,13 +55,13 @@ impl<D: Dim> Round<D> {
         }
     }
 
-    /// Lets a tick pass in which the players want what `frame` says.
+    /// Simulates a tick with the input `frame`.
     pub fn step(&mut self, frame: InputFrame) -> StepReport {
         self.let_players_in(&frame);
         for player in 0..self.players.len() {
             let goal = self.reachable(player, frame.goal(player));
-            let sent = self.world.set_target_position(self.players[player], goal);
-            sent.expect("a hand is in the world, and its goal in the arena");
+            let sent = self.world.set_goal(self.players[player], goal);
+            sent.expect("the hand is in the world, and its target in the arena");
         }
         let report = self.world.step();
         if self.progress.outcome.is_some() {
@@ -78,43 +78,43 @@ impl<D: Dim> Round<D> {
         report
     }
 
-    /// The level.
+    /// Returns the level.
     pub fn level(&self) -> &Arc<Level> {
         &self.level
     }
 
-    /// The world as it is now.
+    /// Returns the world in its current state.
     pub fn world(&self) -> &World<D> {
         &self.world
     }
 
-    /// The hands of the players who have joined, in their order.
+    /// Returns the hands of the players that have joined, in their order.
     pub fn hands(&self) -> impl ExactSizeIterator<Item = &RigidBody> {
         self.players
             .iter()
             .map(|&hand| &self.world.rigid_bodies()[hand])
     }
 
-    /// The region that has to be filled, where the level has one.
+    /// Returns the region to be filled, if the level has one.
     pub fn basket(&self) -> Option<&Shape> {
         self.basket.as_ref()
     }
 
-    /// Where a player's hand comes in [m].
+    /// Returns the start position of a player's hand [m].
     ///
     /// # Panics
-    /// When the level has no such hand.
+    /// If the level has no such hand.
     pub fn start(&self, player: usize) -> Vector {
         self.starts[player].position()
     }
 
-    /// How far it has come.
+    /// Returns the current progress.
     pub fn progress(&self) -> &Progress {
         &self.progress
     }
 
-    /// For which share of the time that it has to rest in the basket enough has rested there; 1 once
-    /// it is won.
+    /// Returns the time for which enough mass has rested in the basket, as a share of the required time; 1
+    /// after the win.
     pub fn share_held(&self) -> f32 {
         match self.progress.outcome {
             Some(_) => 1.0,
@@ -122,12 +122,12 @@ impl<D: Dim> Round<D> {
         }
     }
 
-    /// What was played until it was won, tick by tick; [`MAX_TICKS`] at most.
+    /// Returns the input of each tick until the win, at most [`MAX_TICKS`].
     pub fn frames(&self) -> &[InputFrame] {
         &self.frames
     }
 
-    /// The world's hash after every sixtieth of those ticks, and after the last when it was won.
+    /// Returns the world's hash after every sixtieth recorded tick, and after the winning one.
     pub fn hashes(&self) -> &[u64] {
         &self.hashes
     }
@@ -138,13 +138,13 @@ impl<D: Dim> Round<D> {
                 break;
             }
             let hand = self.starts[player].clone();
-            let added = self.world.add_rigid_body(hand);
-            let added = added.expect("it was in this world when the level was checked");
+            let added = self.world.add_rigid(hand);
+            let added = added.expect("the world accepted this hand when the level was checked");
             self.players.push(added);
         }
     }
 
-    /// The place nearest to a wish to which a goal can move in a tick.
+    /// Returns the position nearest to `wish` that the target can reach in a tick.
     fn reachable(&self, player: usize, wish: Option<Vector>) -> Vector {
         let hand = &self.world.rigid_bodies()[self.players[player]];
         let [low, high] = self.level.arena();
@@ -160,7 +160,7 @@ impl<D: Dim> Round<D> {
     }
 }
 
-/// The place nearest to `wish` that is no further than `most` from `from`.
+/// Returns the position nearest to `wish` within the distance `most` of `from`.
 fn near(from: Vector, wish: Vector, most: f32) -> Vector {
     let way = [0, 1, 2].map(|axis| wish[axis] - from[axis]);
     let distance = way.iter().map(|k| k * k).sum::<f32>().sqrt();
@@ -179,7 +179,7 @@ mod tests {
     use fuwafuwa::Dim2;
 
     #[test]
-    fn what_goes_on_for_ever_is_recorded_for_an_hour() {
+    fn recording_stops_after_an_hour() {
         let mut round = Round::<Dim2>::new(Arc::new(Level::open("sandbox").unwrap()));
         round.frames = vec![InputFrame::default(); MAX_TICKS - 1];
         for _ in 0..3 {
@@ -187,7 +187,7 @@ mod tests {
         }
         assert_eq!((round.frames.len(), round.hashes.len()), (MAX_TICKS, 1));
 
-        // Won after that, which the record does not show.
+        // A win after the end of the recording is not recorded.
         round.progress.outcome = Some(crate::Outcome {
             ticks: MAX_TICKS as u64 + 1,
             route: Route::Squeeze,

@@ -1,4 +1,4 @@
-//! What counts as won, and by which route.
+//! Conditions and routes of a win.
 
 use crate::{Level, Route, Wish};
 use fuwafuwa::vector::minus;
@@ -6,71 +6,71 @@ use fuwafuwa::world::TICK;
 use fuwafuwa::{Dim, ElementId, PieceView, Shape, SoftBody, World};
 use serde::{Deserialize, Serialize};
 
-/// What moves faster than this does not rest in the basket [m/s].
+/// Speed below which a node counts as resting in the basket [m/s].
 const RESTING: f32 = 0.4;
-/// What has less than this share of the mass is a crumb, which may get lost on the way.
+/// Share of the mass below which a piece is a crumb. Crumbs may get lost.
 pub const CRUMB: f32 = 0.002;
-/// Share of the mass that must still hang together for a body to count as whole.
+/// Minimum share of the mass in the largest pieces for a body to count as whole.
 const WHOLE: f32 = 0.99;
-/// What is strained by so much more than its own weight does it, on the mean while it rests, is held squeezed
-/// by the bars.
+/// Mean strain at rest, beyond the strain by its own weight, above which a body counts as held squeezed by
+/// the bars.
 const SQUEEZED: f32 = 0.08;
-/// The strain is looked at this often [ticks]: squeezing in takes longer.
+/// Interval between two evaluations of the strain [ticks]. Squeezing a body in takes longer.
 const LOOK: u64 = 4;
 
-/// How far a round has come.
+/// Progress of a round.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
-    /// Mass of all bodies at the start [kg].
+    /// Total mass of all bodies at the start [kg].
     pub mass: f32,
-    /// Share of it that rests in the basket.
+    /// Share of the mass at rest in the basket.
     pub inside: f32,
-    /// Share of it in the basket, whether it rests or moves.
+    /// Share of the mass in the basket, at rest or moving.
     pub within: f32,
-    /// The mass in the largest piece of each body, as a share of what that was at the start: a body may
-    /// begin in parts.
+    /// Mass of the largest piece of each body, as a share of the mass of these pieces at the start. A body
+    /// may start in several pieces.
     pub kept: f32,
     /// Number of pieces.
     pub pieces: usize,
-    /// For how long enough has rested in the basket [s].
+    /// Time for which enough mass has rested in the basket [s].
     pub held: f32,
-    /// Whether nothing squeezed what is in the basket at some moment since enough rests there: then the
-    /// bars do not hold it when nobody pushes.
+    /// Whether the content of the basket was unsqueezed at some moment since enough mass rests there. If so,
+    /// the bars do not clamp it once the hand withdraws.
     pub relaxed: bool,
-    /// How it ended, if it has.
+    /// Outcome, if the round was won.
     pub outcome: Option<Outcome>,
     bodies: usize,
-    /// What rests and is strained by more than this on the mean is held squeezed.
+    /// Mean strain at rest above which a body counts as squeezed.
     squeezed: f32,
-    /// Mass of the largest piece of each body at the start, all together [kg].
+    /// Sum of the masses of each body's largest piece at the start [kg].
     whole: f32,
 }
 
-/// How a round was won.
+/// Outcome of a won round.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Outcome {
-    /// Ticks from the start.
+    /// Number of ticks from the start.
     pub ticks: u64,
-    /// By squeezing, by shaving, or some of both.
+    /// Route of the win.
     pub route: Route,
-    /// The mass in the largest piece of each body, as a share of what that was at the start.
+    /// Mass of the largest piece of each body, as a share of the mass at the start.
     pub kept: f32,
     /// Share of the mass in the basket.
     pub inside: f32,
     /// Number of pieces.
     pub pieces: usize,
-    /// How many of them are not in the basket, crumbs aside.
+    /// Number of pieces outside the basket, without crumbs.
     pub lost: usize,
 }
 
 impl Outcome {
-    /// How long it took [s].
+    /// Returns the duration of the round [s].
     pub fn seconds(&self) -> f32 {
         self.ticks as f32 * TICK
     }
 
-    /// Whether a wish of the level came true.
+    /// Returns whether the outcome meets a wish of the level.
     pub fn fulfils(&self, wish: &Wish) -> bool {
         wish.seconds.is_none_or(|most| self.seconds() <= most)
             && wish.kept.is_none_or(|least| self.kept >= least)
@@ -101,7 +101,7 @@ impl Progress {
         }
     }
 
-    /// Looks at the world after a tick.
+    /// Updates the progress after a tick.
     pub(crate) fn watch<D: Dim>(
         &mut self,
         level: &Level,
@@ -141,7 +141,7 @@ impl Progress {
         }
     }
 
-    /// Named from what happened, not from what was meant.
+    /// Returns the route by the result, not by the player's intention.
     fn route(&self, lost: usize) -> Route {
         let is_whole = self.kept >= WHOLE && lost == 0;
         match (is_whole, self.relaxed) {
@@ -160,7 +160,7 @@ fn views_of<D: Dim>(world: &World<D>) -> Vec<Vec<PieceView>> {
         .collect()
 }
 
-/// Mass of the largest piece of each body, all together [kg].
+/// Returns the sum of the masses of each body's largest piece [kg].
 fn greatest(views: &[Vec<PieceView>]) -> f32 {
     let greatest = views
         .iter()
@@ -168,8 +168,9 @@ fn greatest(views: &[Vec<PieceView>]) -> f32 {
     greatest.sum()
 }
 
-/// The mean strain of the body that its own weight strains most: of a column as high as it is, of its heaviest
-/// and softest material, whose foot bears ρ g h and whose top nothing.
+/// Returns the largest mean strain of a body under its own weight. The estimate is a column of the body's
+/// height and of its material with the largest ratio of density to stiffness: the stress is ρ g h at the foot
+/// and zero at the top.
 fn own_strain<D: Dim>(world: &World<D>, views: &[Vec<PieceView>]) -> f32 {
     let gravity = world.config().gravity;
     let of = |(body, pieces): (&SoftBody<D>, &Vec<PieceView>)| {
@@ -194,7 +195,7 @@ fn total_mass<D: Dim>(world: &World<D>) -> f32 {
         .sum()
 }
 
-/// The mass in a region [kg]: of the nodes that rest, and of all.
+/// Returns the mass in a region [kg]: that of nodes at rest, and that of all nodes.
 fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
     let inside = |body: &SoftBody<D>| {
         let (mut resting, mut all) = (0.0, 0.0);
@@ -215,7 +216,8 @@ fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
     bodies.fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1))
 }
 
-/// The mean strain, by volume, of the pieces whose middle is in a region and that are more than crumbs.
+/// Returns the mean strain, weighted by volume, of pieces of more than 50 elements whose centre is in a
+/// region.
 fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Shape) -> f32 {
     let (mut sum, mut volume) = (0.0, 0.0);
     for (body, pieces) in world.soft_bodies().iter().zip(views) {
@@ -237,7 +239,7 @@ fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Sh
     if volume > 0.0 { sum / volume } else { 0.0 }
 }
 
-/// Whether a place is in a region. Of a box, as all baskets are, this is told without a root.
+/// Returns whether a position is in a region. For a box, the shape of all baskets, this needs no square root.
 fn is_inside(region: &Shape, [x, y, z, _]: [f32; 4]) -> bool {
     match *region {
         Shape::Box { centre, half } => {
@@ -256,7 +258,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn what_is_inside_is_so_by_its_distance() {
+    fn is_inside_agrees_with_the_distance() {
         let (centre, half) = ([1.05, 0.3, 0.0], [0.43, 0.3, 0.425]);
         let basket = Shape::Box { centre, half };
         let mut count = 0;
@@ -271,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn what_moves_in_the_basket_is_within_and_what_rests_is_inside() {
+    fn moving_mass_counts_as_within_only() {
         let mut round = Round::<Dim2>::new(Arc::new(Level::open("classic").unwrap()));
         let mut bot = Bot::new(BotKind::Squeeze, 1);
         let mut moved = 0.0_f32;
@@ -286,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn what_only_its_own_weight_strains_is_not_squeezed() {
+    fn body_strained_by_its_own_weight_is_not_squeezed() {
         let mut round = Round::<Dim3>::new(Arc::new(Level::open("hoop").unwrap()));
         for _ in 0..120 {
             round.step(InputFrame::default());

@@ -1,14 +1,14 @@
-//! What is made easier is easier: a bot that pushes the body in whole wins every level.
+//! With all assists, a bot that pushes the whole body in wins every level.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{AnyRound, Assist, Bot, BotKind, Level, Outcome, Route};
 
-/// Nobody should take longer than a minute.
+/// Time limit of a round: a minute [ticks].
 const MINUTE: usize = 60 * 60;
 
-/// How a round of a level ends that is made easier by `assists`.
+/// Returns the outcome of a round of a level with `assists`.
 fn squeezed(level: &Level, assists: &[Assist], seed: u64) -> Option<Outcome> {
     let easy = level.assisted(&BTreeSet::from_iter(assists.iter().copied()));
     let mut round = AnyRound::new(Arc::new(easy.unwrap()));
@@ -16,7 +16,7 @@ fn squeezed(level: &Level, assists: &[Assist], seed: u64) -> Option<Outcome> {
 }
 
 #[test]
-fn every_level_can_be_squeezed_with_all_help() {
+fn squeezing_wins_every_level_with_all_assists() {
     for (id, _) in NAMED.iter().chain(&NAMED_3D) {
         let level = Level::open(id).unwrap();
         if level.game().basket.is_none() {
@@ -30,7 +30,7 @@ fn every_level_can_be_squeezed_with_all_help() {
 }
 
 #[test]
-fn a_wider_basket_is_won_sooner() {
+fn wider_basket_is_won_sooner() {
     let twins = Level::open("twins").unwrap();
     let ticks = |assists: &[Assist]| -> u64 {
         let won = (301..306).map(|seed| squeezed(&twins, assists, seed));
@@ -38,5 +38,5 @@ fn a_wider_basket_is_won_sooner() {
             .sum()
     };
     let [plain, wide] = [ticks(&[]), ticks(&[Assist::WiderBasket])];
-    assert!(wide < plain, "{wide} ticks, without help {plain}");
+    assert!(wide < plain, "{wide} ticks, without assist {plain}");
 }

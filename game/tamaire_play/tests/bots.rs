@@ -1,4 +1,4 @@
-//! The bots play through the same input as a person: what they can do is possible.
+//! Bots use the same input as human players, so whatever they achieve is possible for a player.
 
 use fuwafuwa::{Dim, Dim2, Dim3};
 use std::ops::RangeInclusive;
@@ -7,10 +7,10 @@ use std::thread;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{Bot, BotKind, Level, Outcome, Round, Route};
 
-/// Nobody should take longer than a minute.
+/// Time limit of a round: a minute [ticks].
 const MINUTE: usize = 60 * 60;
 
-/// The bot that wins a level as it is meant, and how.
+/// Bot and route that win each level as intended.
 const WINNERS: [(&str, BotKind, Route); 12] = [
     ("classic", BotKind::Squeeze, Route::Squeeze),
     ("gravity", BotKind::Squeeze, Route::Squeeze),
@@ -26,7 +26,7 @@ const WINNERS: [(&str, BotKind, Route); 12] = [
     ("pudding", BotKind::Squeeze, Route::Squeeze),
 ];
 
-/// How a bot's rounds of a level end, by seed, a round a thread.
+/// Returns the outcomes of a bot's rounds of a level, by seed. Each round has its own thread.
 fn outcomes(
     id: &str,
     kind: BotKind,
@@ -66,7 +66,7 @@ fn outcome<D: Dim>(level: Arc<Level>, kind: BotKind, seed: u64, ticks: usize) ->
     round.progress().outcome
 }
 
-/// That a bot wins all rounds of a level by a route.
+/// Checks that a bot wins all rounds of a level by a route.
 fn wins(id: &str, kind: BotKind, route: Route, seeds: RangeInclusive<u64>) {
     let outcomes = outcomes(id, kind, seeds.clone(), MINUTE);
     let others: Vec<_> = seeds
@@ -87,18 +87,18 @@ fn shaving_wins_twenty_of_twenty() {
 }
 
 #[test]
-fn both_ways_win_twenty_of_twenty_in_space() {
+fn both_routes_win_twenty_of_twenty_in_3d() {
     wins("classic-3d", BotKind::Squeeze, Route::Squeeze, 1..=20);
     wins("classic-3d", BotKind::Shave, Route::Shave, 1..=20);
 }
 
-/// The levels in the plane, or in space, that offer shaving.
+/// Returns the names of the levels that offer shaving.
 fn shaved(named: &[(&'static str, &str)]) -> Vec<&'static str> {
     let offers = |id: &&str| Level::open(id).unwrap().routes().contains(&Route::Shave);
     named.iter().map(|(id, _)| *id).filter(offers).collect()
 }
 
-/// That shaving wins so many rounds of a level as it is meant.
+/// Checks that the shaving bot wins at least `least` rounds of a level by shaving.
 fn is_shaved(id: &str, seeds: RangeInclusive<u64>, least: usize) {
     let outcomes = outcomes(id, BotKind::Shave, seeds, MINUTE);
     let won = outcomes.iter().flatten();
@@ -106,11 +106,11 @@ fn is_shaved(id: &str, seeds: RangeInclusive<u64>, least: usize) {
     assert!(count >= least, "{id}: {count}, {outcomes:?}");
 }
 
-/// The levels of which the bot shaves fewer than eighteen of twenty, and how many it does.
+/// Levels of which the bot shaves fewer than eighteen of twenty, with the required number.
 const FALLS_SHORT: [(&str, usize); 1] = [("twins", 12)];
 
 #[test]
-fn what_can_be_shaved_in_the_plane_is_shaved() {
+fn shaving_wins_every_2d_level_that_offers_it() {
     for id in shaved(&NAMED) {
         is_shaved(id, 2..=3, 2);
     }
@@ -118,7 +118,7 @@ fn what_can_be_shaved_in_the_plane_is_shaved() {
 
 #[test]
 #[ignore = "takes minutes: cargo test --release -p tamaire_play --test bots -- --ignored"]
-fn what_can_be_shaved_is_shaved_eighteen_times_of_twenty() {
+fn shaving_wins_eighteen_of_twenty_on_every_level_that_offers_it() {
     for id in shaved(&NAMED).into_iter().chain(shaved(&NAMED_3D)) {
         let short = FALLS_SHORT.iter().find(|(known, _)| *known == id);
         is_shaved(id, 1..=20, short.map_or(18, |(_, least)| *least));
@@ -126,7 +126,7 @@ fn what_can_be_shaved_is_shaved_eighteen_times_of_twenty() {
 }
 
 #[test]
-fn every_level_with_a_basket_can_be_won_as_it_is_meant() {
+fn every_level_with_a_basket_is_won_as_intended() {
     for (id, _) in NAMED.iter().chain(&NAMED_3D) {
         let has_basket = Level::open(id).unwrap().game().basket.is_some();
         let is_listed = WINNERS.iter().any(|(known, ..)| known == id);
@@ -139,7 +139,7 @@ fn every_level_with_a_basket_can_be_won_as_it_is_meant() {
 }
 
 #[test]
-fn who_does_nothing_never_wins_and_who_does_anything_rarely() {
+fn idle_bot_never_wins_and_random_bot_rarely() {
     for (id, ..) in WINNERS {
         assert_eq!(outcomes(id, BotKind::Idle, 1..=1, 600), [None], "{id}");
     }

@@ -1,4 +1,4 @@
-//! Every level that comes along, and levels and replays that are broken.
+//! Tests of every built-in level, and of invalid levels and replays.
 
 use fuwafuwa::{Dim, Dim2, Dim3};
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use tamaire_play::replay::VERSION;
 use tamaire_play::{Bot, BotKind, InputFrame, Level, Playback, Replay, ReplayError, Round};
 
 #[test]
-fn nothing_tears_by_itself_and_everything_stays_in_the_room() {
+fn bodies_stay_whole_without_input_and_in_the_room_with_input() {
     for (id, _) in NAMED {
         stays_whole_and_in_the_room::<Dim2>(id, 180);
     }
@@ -17,7 +17,7 @@ fn nothing_tears_by_itself_and_everything_stays_in_the_room() {
 }
 
 #[test]
-fn every_room_is_closed() {
+fn arena_is_closed_on_every_side() {
     for (id, _) in NAMED {
         is_closed::<Dim2>(id);
     }
@@ -26,7 +26,7 @@ fn every_room_is_closed() {
     }
 }
 
-/// That there is something rigid on all sides of the arena, wherever one looks out of it.
+/// Checks that all sides of the arena are covered by rigid bodies.
 fn is_closed<D: Dim>(id: &str) {
     const STEPS: i32 = 20;
     let level = Arc::new(Level::open(id).unwrap());
@@ -47,7 +47,7 @@ fn is_closed<D: Dim>(id: &str) {
             for (side, sign) in [(low, -1.0), (high, 1.0)] {
                 let mut out = at;
                 out[axis] = side[axis] + 0.001 * sign;
-                assert!(is_rigid(out), "{id}: a hole in a wall at {out:?}");
+                assert!(is_rigid(out), "{id}: no rigid body at {out:?}");
             }
         }
     }
@@ -75,7 +75,7 @@ fn stays_whole_and_in_the_room<D: Dim>(id: &str, ticks: usize) {
     }
 }
 
-/// So many ticks of a round with both hands.
+/// Returns a replay of `ticks` random ticks with both hands.
 fn played<D: Dim>(id: &str, ticks: usize) -> Replay {
     let mut round = Round::<D>::new(Arc::new(Level::open(id).unwrap()));
     let mut bot = Bot::new(BotKind::Random, 3);
@@ -96,7 +96,7 @@ fn play(replay: Replay) -> Result<(), ReplayError> {
 }
 
 #[test]
-fn a_replay_goes_as_it_went_and_a_changed_one_is_found_out() {
+fn replay_reproduces_the_round_and_detects_changes() {
     let replay = played::<Dim2>("classic", 130);
     let text = replay.text();
     let read = Replay::read(&text).unwrap();
@@ -126,7 +126,7 @@ fn a_replay_goes_as_it_went_and_a_changed_one_is_found_out() {
 }
 
 #[test]
-fn a_replay_is_played_in_its_own_dimension() {
+fn replay_of_a_3d_level_reproduces_the_round() {
     let replay = played::<Dim3>("pudding", 70);
     let read = Replay::read(&replay.text()).unwrap();
     assert_eq!(read, replay);
@@ -134,7 +134,7 @@ fn a_replay_is_played_in_its_own_dimension() {
 }
 
 #[test]
-fn a_minute_of_two_hands_is_a_small_file() {
+fn replay_of_two_hands_is_small() {
     let mut round = Round::<Dim2>::new(Arc::new(Level::open("classic").unwrap()));
     let mut bot = Bot::new(BotKind::Random, 3);
     for _ in 0..60 {
@@ -146,7 +146,7 @@ fn a_minute_of_two_hands_is_a_small_file() {
 }
 
 #[test]
-fn what_is_wrong_with_a_level_is_said_with_its_line() {
+fn invalid_level_is_reported_with_its_line() {
     let (_, classic) = NAMED[0];
     let nothing = |_: &str| Err(std::io::ErrorKind::NotFound.into());
     let refused = |text: &str| {

@@ -1,4 +1,4 @@
-//! Rounds and levels that travel behind an address. `--nocapture` shows how long they are.
+//! Rounds and levels as links. `--nocapture` prints their lengths.
 
 use fastrand::Rng;
 use std::collections::BTreeSet;
@@ -10,7 +10,7 @@ use tamaire_play::{
     ReplayError,
 };
 
-/// A usual round of Classic has no more characters.
+/// Maximum length of the link to a typical round of Classic [characters].
 const USUAL: usize = 2_000;
 
 fn open(id: &str) -> Arc<Level> {
@@ -25,7 +25,7 @@ fn changed(id: &str, from: &str, to: &str) -> Arc<Level> {
     Arc::new(Level::read("mine.toml", text.as_bytes(), &nothing).unwrap())
 }
 
-/// What a bot plays, for so many ticks at most.
+/// Lets a bot play at most `ticks` ticks.
 fn played(level: &Arc<Level>, kind: BotKind, seed: u64, ticks: usize) -> Replay {
     let mut round = AnyRound::new(level.clone());
     round.play(&mut Bot::new(kind, seed), ticks);
@@ -58,7 +58,7 @@ fn frames(replay: &Replay) -> Vec<InputFrame> {
     (0..replay.ticks()).map(|tick| replay.frame(tick)).collect()
 }
 
-/// That a round comes back from its link, which it returns.
+/// Checks that a round is restored from its link, and returns the link.
 fn check(replay: &Replay) -> String {
     let link = replay.link().unwrap();
     let read = read_round(&link);
@@ -73,11 +73,11 @@ fn check(replay: &Replay) -> String {
 fn tell(what: &str, ticks: usize, link: &str) {
     let (seconds, length) = (ticks as f32 / 60.0, link.len());
     let rate = length as f32 / seconds;
-    println!("{what:>24} {seconds:5.1} s {length:6} characters, {rate:5.1} a second");
+    println!("{what:>24} {seconds:5.1} s {length:6} characters, {rate:5.1} per second");
 }
 
 #[test]
-fn a_usual_round_of_classic_fits_into_a_message_and_can_be_watched() {
+fn link_of_a_typical_round_is_short_and_playable() {
     let classic = open("classic");
     for (name, kind) in [("squeeze", BotKind::Squeeze), ("shave", BotKind::Shave)] {
         for seed in 1..=4 {
@@ -93,8 +93,9 @@ fn a_usual_round_of_classic_fits_into_a_message_and_can_be_watched() {
     }
 }
 
-/// Minimum-jerk strokes [Flash 1985] and rests, with a tremor of some 9 Hz: where a hand is that plays by mouse, read so many
-/// times a second and rounded to a whole number of `grain`, 1/8192 m as all frames are or coarser.
+/// Returns the positions of a hand that plays by mouse: minimum-jerk strokes [Flash 1985] and rests, with a
+/// tremor of about 9 Hz. They are sampled at `rate` [Hz] and rounded to multiples of `grain`, in units of
+/// 1/8192 m.
 fn hand(seed: u64, seconds: usize, rate: f32, grain: f32) -> Vec<InputFrame> {
     const STEPS: usize = 1000;
     let mut random = Rng::with_seed(seed);
@@ -120,7 +121,7 @@ fn hand(seed: u64, seconds: usize, rate: f32, grain: f32) -> Vec<InputFrame> {
         }));
         here = there;
     }
-    // A resonator that noise keeps going.
+    // A resonator driven by noise.
     let (pull, decay) = (
         2.0 * (std::f32::consts::TAU * 9.0 / STEPS as f32).cos(),
         0.99,
@@ -135,7 +136,7 @@ fn hand(seed: u64, seconds: usize, rate: f32, grain: f32) -> Vec<InputFrame> {
         }
     }
     let frame = |tick: usize| {
-        // A mouse tells where it was when it was last read.
+        // The position at the last time the mouse was read.
         let read = (tick as f32 / 60.0 * rate).floor() / rate;
         let [x, y] = way[(read * STEPS as f32) as usize];
         let rounded = |k: f32| (k * 8192.0 / grain).round() * grain / 8192.0;
@@ -154,7 +155,7 @@ fn played_by_hand(frames: Vec<InputFrame>) -> Replay {
 }
 
 #[test]
-fn what_a_hand_plays_comes_back_bit_by_bit() {
+fn link_reproduces_a_hand_played_by_mouse_exactly() {
     let rows = [
         (20, 125.0, 8.0, 80.0),
         (20, 125.0, 1.0, 135.0),
@@ -174,12 +175,12 @@ fn what_a_hand_plays_comes_back_bit_by_bit() {
             &link,
         );
         let length = link.len() as f32 / seconds as f32;
-        assert!(length < most, "{rate} Hz: {length} characters a second");
+        assert!(length < most, "{rate} Hz: {length} characters per second");
     }
 }
 
 #[test]
-fn two_hands_that_come_and_go_come_back() {
+fn link_reproduces_two_hands_that_come_and_go() {
     for id in ["classic", "classic-3d"] {
         let mut round = AnyRound::new(open(id));
         let mut random = Rng::with_seed(7);
@@ -204,7 +205,7 @@ fn two_hands_that_come_and_go_come_back() {
 }
 
 #[test]
-fn levels_that_come_along_travel_by_name() {
+fn link_of_a_built_in_level_has_its_name_only() {
     for (id, _) in NAMED.iter().chain(&NAMED_3D) {
         let level = open(id);
         let link = level.link().unwrap();
@@ -214,7 +215,7 @@ fn levels_that_come_along_travel_by_name() {
 }
 
 #[test]
-fn a_round_with_help_says_so_when_it_arrives() {
+fn link_keeps_the_assists_of_a_round() {
     let all = BTreeSet::from([Assist::WiderBasket, Assist::Unbreakable]);
     for level in [
         open("classic"),
@@ -230,10 +231,10 @@ fn a_round_with_help_says_so_when_it_arrives() {
 }
 
 #[test]
-fn a_level_of_ones_own_comes_along() {
+fn link_contains_a_custom_level() {
     let level = changed("classic", "drag = 1.0", "drag = 0.9");
     let link = level.link().unwrap();
-    println!("a level of one's own: {} characters", link.len());
+    println!("custom level: {} characters", link.len());
     assert!(link.len() < USUAL);
     let read = read_level(&link);
     assert_eq!(
@@ -243,7 +244,7 @@ fn a_level_of_ones_own_comes_along() {
     let replay = played(&level, BotKind::Squeeze, 1, 130);
     watch(read_round(&check(&replay))).unwrap();
 
-    // By the name of one that comes along, whose place it must not take.
+    // A custom level with the name of a built-in one, which it must not replace.
     let mut other = (*level).clone();
     other.id = "classic".into();
     let read = read_level(&other.link().unwrap());
@@ -254,7 +255,7 @@ fn a_level_of_ones_own_comes_along() {
 }
 
 #[test]
-fn pictures_and_models_come_along_if_they_fit() {
+fn link_contains_pictures_and_models_that_fit() {
     let nothing = |_: &str| Err(std::io::ErrorKind::NotFound.into());
     let made_of = |id: &str, bytes: &[u8]| Level::read(id, bytes, &nothing).unwrap();
     for level in [
@@ -267,7 +268,7 @@ fn pictures_and_models_come_along_if_they_fit() {
         assert_eq!(read_level(&link).id, "tom.toml");
     }
 
-    // Noise cannot be made shorter.
+    // Noise cannot be compressed.
     let level = Arc::new(made_of("noise.png", &noise()));
     let replay = played(&level, BotKind::Idle, 1, 1);
     for refused in [level.link(), replay.link()] {
@@ -278,7 +279,7 @@ fn pictures_and_models_come_along_if_they_fit() {
     }
 }
 
-/// A picture without any order.
+/// Returns a picture of random pixels.
 fn noise() -> Vec<u8> {
     const SIDE: u32 = 128;
     let mut random = Rng::with_seed(1);
@@ -293,7 +294,7 @@ fn noise() -> Vec<u8> {
 }
 
 #[test]
-fn an_address_is_read_whole_or_from_its_sign_on() {
+fn link_is_read_from_an_address_or_its_fragment() {
     let link = open("donut").link().unwrap();
     let at = |page: &str| address(page, &link);
     assert_eq!(
@@ -314,7 +315,7 @@ fn an_address_is_read_whole_or_from_its_sign_on() {
 }
 
 #[test]
-fn what_did_not_arrive_as_it_was_sent_is_refused() {
+fn damaged_links_are_rejected() {
     let classic = open("classic");
     let links = [
         played(&classic, BotKind::Squeeze, 1, 130).link().unwrap(),
@@ -340,23 +341,23 @@ fn what_did_not_arrive_as_it_was_sent_is_refused() {
 }
 
 #[test]
-fn what_is_no_link_is_told_so() {
+fn invalid_links_give_the_matching_error() {
     let link = open("classic").link().unwrap();
     let long = format!("r1{}z", "A".repeat(MAX_LENGTH));
     for (text, expected) in [
-        ("", "no link"),
-        ("#", "no link"),
-        ("https://example.org/play", "no link"),
-        ("https://example.org/#readme", "no link"),
-        ("r", "no link"),
-        ("ü1", "no link"),
+        ("", "not a link"),
+        ("#", "not a link"),
+        ("https://example.org/play", "not a link"),
+        ("https://example.org/#readme", "not a link"),
+        ("r", "not a link"),
+        ("ü1", "not a link"),
         ("r1", "end of this link is missing"),
-        ("r1z", "was changed on its way"),
-        ("r1💾z", "was changed on its way"),
+        ("r1z", "damaged or incomplete"),
+        ("r1💾z", "damaged or incomplete"),
         (&link[..link.len() - 1], "end of this link is missing"),
-        (&link.replace("l1", "r1"), "was changed on its way"),
+        (&link.replace("l1", "r1"), "damaged or incomplete"),
         (&link.replace("l1", "l2"), "by a newer tamaire"),
-        (&long, "16000 characters at most, and this one has 16003"),
+        (&long, "expected at most 16000 characters, found 16003"),
     ] {
         let error = Link::read(text).unwrap_err().to_string();
         assert!(error.contains(expected), "{text}: {error}");
@@ -364,7 +365,7 @@ fn what_is_no_link_is_told_so() {
 }
 
 #[test]
-fn a_round_that_goes_another_way_is_found_out_when_it_is_watched() {
+fn playback_of_a_link_detects_a_diverging_round() {
     let replay = played(&open("classic"), BotKind::Squeeze, 1, 130);
     let text = replay.text();
     let lie = |from: &str, to: &str| {
@@ -380,11 +381,14 @@ fn a_round_that_goes_another_way_is_found_out_when_it_is_watched() {
     assert!(hash.contains("another way at second 1"), "{hash}");
     let outcome = "\n[outcome]\nticks = 130\nroute = \"mix\"\nkept = 1.0\ninside = 1.0\npieces = 1\nlost = 0\n\n[scene]";
     let won = lie("\n[scene]", outcome);
-    assert!(won.contains("does not end as it says"), "{won}");
+    assert!(
+        won.contains("result differs from the recorded one"),
+        "{won}"
+    );
 }
 
 #[test]
-fn a_round_that_came_as_a_link_can_be_kept() {
+fn round_from_a_link_can_be_stored() {
     let replay = played(&open("classic"), BotKind::Squeeze, 1, 130);
     let read = read_round(&replay.link().unwrap());
     assert_eq!(read.hashes[0], replay.hashes[0][12..]);
@@ -395,7 +399,7 @@ fn a_round_that_came_as_a_link_can_be_kept() {
 }
 
 #[test]
-fn what_could_not_be_read_again_makes_no_link() {
+fn link_rejects_what_could_not_be_read_again() {
     let text = played(&open("classic"), BotKind::Idle, 1, 61).text();
     let refused = |from: &str, to: &str| {
         let replay = Replay::read(&text.replacen(from, to, 1)).unwrap();
@@ -408,7 +412,7 @@ fn what_could_not_be_read_again_makes_no_link() {
     );
     let game = format!("game = \"{}", "z".repeat(MAX_LENGTH));
     let long = refused("game = \"", &game);
-    assert!(long.contains("16000 characters at most"), "{long}");
+    assert!(long.contains("at most 16000 characters"), "{long}");
     let hash = Replay::read(&text.replacen("hashes = [\"", "hashes = [\"g", 1));
     let hash = hash.unwrap_err().to_string();
     assert!(
@@ -418,7 +422,7 @@ fn what_could_not_be_read_again_makes_no_link() {
 }
 
 #[test]
-fn a_round_that_is_too_long_for_a_link_can_be_kept_all_the_same() {
+fn round_too_long_for_a_link_can_be_stored_as_fragment() {
     let mut round = AnyRound::new(Arc::new(Level::open("classic").unwrap()));
     let mut random = fastrand::Rng::with_seed(1);
     for _ in 0..3000 {
@@ -445,7 +449,7 @@ fn a_round_that_is_too_long_for_a_link_can_be_kept_all_the_same() {
 }
 
 #[test]
-fn a_round_in_digits_is_the_same_round() {
+fn round_in_digits_equals_the_linked_round() {
     let mut round = AnyRound::new(Arc::new(Level::open("classic").unwrap()));
     for tick in 0..120 {
         round.step(InputFrame::towards([0.01 * tick as f32, 0.2, 0.0]));

@@ -1,23 +1,23 @@
-//! The models among the levels are not drawn by hand: here is what they are.
+//! The generated models of the built-in levels.
 
 use std::path::PathBuf;
 use tamaire_play::{InputFrame, Level, Replay, Round};
 
-/// A crème caramel of 26 voxels across and 16 high: custard of colour 1 under caramel of colour 2.
+/// Returns a crème caramel, 26 voxels wide and 16 high: custard (colour 1) under caramel (colour 2).
 fn pudding() -> Vec<u8> {
     const ACROSS: u8 = 26;
     const HIGH: u8 = 16;
     let mut voxels = Vec::new();
     for z in 0..HIGH {
         let height = (f32::from(z) + 0.5) / f32::from(HIGH);
-        // A truncated cone with a round upper edge.
+        // Truncated cone with a rounded upper edge.
         let rounding = (height - 0.85).max(0.0) / 0.15;
         let half = 0.5 * f32::from(ACROSS);
         let radius = half * (1.0 - 0.28 * height - 0.125 * rounding * rounding);
         for (y, x) in (0..ACROSS).flat_map(|y| (0..ACROSS).map(move |x| (y, x))) {
             let [a, b] = [x, y].map(|k| f32::from(k) + 0.5 - half);
             let from_axis = (a * a + b * b).sqrt();
-            // The caramel has run down a little at its rim.
+            // The caramel has run down a little at the rim.
             let caramel = 0.84 - 0.12 * (from_axis / (0.75 * half)).powi(4).min(1.0);
             if from_axis < radius {
                 voxels.push([x, y, z, 1 + u8::from(height > caramel)]);
@@ -30,7 +30,7 @@ fn pudding() -> Vec<u8> {
     model([ACROSS, ACROSS, HIGH], &voxels, &colours)
 }
 
-/// A file of MagicaVoxel: its sizes, its voxels with their colours from 1 on, and these colours.
+/// Returns a MagicaVoxel file with a size, voxels with colour indices from 1, and a palette.
 fn model(size: [u8; 3], voxels: &[[u8; 4]], colours: &[[u8; 4]; 256]) -> Vec<u8> {
     let size = size.map(|extent| u32::from(extent).to_le_bytes());
     let count = (voxels.len() as u32).to_le_bytes();
@@ -53,7 +53,7 @@ fn chunk(name: &[u8; 4], contents: &[u8], children: &[u8]) -> Vec<u8> {
     [name, lengths.as_flattened(), contents, children].concat()
 }
 
-/// None of them names a file.
+/// Fails for every file: the models name none.
 fn nothing(_: &str) -> std::io::Result<Vec<u8>> {
     Err(std::io::ErrorKind::NotFound.into())
 }
@@ -63,11 +63,11 @@ fn place() -> PathBuf {
 }
 
 #[test]
-fn the_pudding_is_what_is_said_here() {
+fn pudding_file_matches_its_generator() {
     let found = std::fs::read(place()).unwrap();
     assert!(
         found == pudding(),
-        "write it anew: cargo test -p tamaire_play --test models -- --ignored"
+        "write the file again: cargo test -p tamaire_play --test models -- --ignored"
     );
 }
 
@@ -78,7 +78,7 @@ fn write_the_pudding() {
 }
 
 #[test]
-fn a_model_of_any_colours_becomes_the_body_of_a_level() {
+fn model_of_any_colours_becomes_the_body_of_a_level() {
     let level = Level::read("pudding.vox", &pudding(), &nothing).unwrap();
     assert_eq!(level.game().name.en, "pudding");
     assert_eq!(level.scene().dim, 3);
@@ -93,14 +93,17 @@ fn a_model_of_any_colours_becomes_the_body_of_a_level() {
     assert!(wide.contains("expected 262144 voxels at most"), "{wide}");
     let torn = refused(&pudding()[..1000]);
     for (said, place) in [(&wide, ": "), (&torn, ", byte 20: expected ")] {
-        let begin = format!("no body can be made of wide.VOX{place}");
+        let begin = format!("cannot make a body from wide.VOX{place}");
         assert!(said.starts_with(&begin), "{said}");
-        assert!(!said.contains("classic"), "nobody asked for it: {said}");
+        assert!(
+            !said.contains("classic"),
+            "the error must not name the level around the body: {said}"
+        );
     }
 }
 
 #[test]
-fn a_replay_does_not_tell_the_folders_of_who_made_it() {
+fn replay_does_not_reveal_folders() {
     let shape = "shape = \"ball\"\nn = 24";
     let (_, classic) = tamaire_play::level::NAMED_3D[0];
     assert!(classic.contains(shape), "{classic}");
@@ -126,7 +129,7 @@ fn a_replay_does_not_tell_the_folders_of_who_made_it() {
 }
 
 #[test]
-fn a_model_in_two_parts_is_kept_as_it_began() {
+fn model_in_two_parts_counts_as_whole() {
     let cubes = (0..24u8).filter(|x| !(10..14).contains(x));
     let voxels = cubes.flat_map(|x| (0..100).map(move |k| [x, k % 10, k / 10, 1]));
     let voxels: Vec<_> = voxels.collect();

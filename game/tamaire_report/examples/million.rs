@@ -1,8 +1,9 @@
-//! A logbook of a million rounds, and how long a report on it takes.
+//! Makes a logbook of a million rounds, and measures a report on it.
 //!
-//! `cargo run --release -p tamaire_report --example million -- make a.logbook 1000000 300` lets bots play 300 rounds and
-//! writes them again and again, at other times, as visits such as there may be; `… -- report a.logbook out` makes a report of
-//! it and tells how long that took and how much memory; with `ja` behind it in Japanese, with `rerun` all rounds are run again.
+//! `cargo run --release -p tamaire_report --example million -- make a.logbook 1000000 300` lets bots play 300
+//! rounds and writes copies of them as plausible visits at many times. `… -- report a.logbook out` makes a
+//! report of it and prints its duration and peak memory. With `ja` the report is in Japanese; with `rerun`
+//! all rounds are run again.
 
 use fastrand::Rng;
 use std::error::Error;
@@ -15,7 +16,7 @@ use tamaire_logbook::{End, Entry, Event, Id, Kind, Logbook, Moment, Round, Visit
 use tamaire_play::{AnyRound, Bot, BotKind, Level, Route};
 use tamaire_report::{Language, Options, report};
 
-/// What bots play, and for how many ticks at most.
+/// Level, bot and maximum number of ticks of the rounds played.
 const PLAYED: [(&str, BotKind, usize); 8] = [
     ("classic", BotKind::Squeeze, 3600),
     ("classic", BotKind::Shave, 3600),
@@ -26,7 +27,7 @@ const PLAYED: [(&str, BotKind, usize); 8] = [
     ("donut", BotKind::Random, 1200),
     ("hoop", BotKind::Squeeze, 1800),
 ];
-/// Visits in each hour of the day, from 10:00 on: more before noon, and after lunch.
+/// Relative number of visits in each hour from 10:00 on, with peaks before noon and in the afternoon.
 const CROWD: [u32; 8] = [6, 11, 7, 5, 10, 12, 9, 4];
 const DAY_MS: i64 = 86_400_000;
 
@@ -63,16 +64,16 @@ fn tell(file: PathBuf, out: &Path, more: &[&str]) -> Result<(), Box<dyn Error>> 
     Ok(())
 }
 
-/// The most memory that this program had.
+/// Returns the peak memory of this process.
 fn peak() -> String {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with("VmHWM"));
-    line.unwrap_or("peak memory is not known here").into()
+    line.unwrap_or("peak memory unknown on this system").into()
 }
 
 fn make(file: &Path, count: usize, bots: usize) -> Result<(), Box<dyn Error>> {
     let played = play(bots);
-    println!("{} rounds were played", played.len());
+    println!("{} rounds played", played.len());
     let (mut book, _) = Logbook::open(file, "Stand 1")?;
     let mut random = Rng::with_seed(1);
     let days = (count as i64 / 1200).clamp(3, 365);
@@ -88,7 +89,7 @@ fn make(file: &Path, count: usize, bots: usize) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What bots made of levels, on all cores.
+/// Lets bots play `bots` rounds on all cores.
 fn play(bots: usize) -> Vec<Round> {
     let next = AtomicUsize::new(0);
     let work = || {
@@ -111,7 +112,7 @@ fn play(bots: usize) -> Vec<Round> {
 }
 
 fn play_one(name: &str, kind: BotKind, ticks: usize, seed: u64) -> Round {
-    let level = Arc::new(Level::open(name).expect("it comes along"));
+    let level = Arc::new(Level::open(name).expect("built-in level"));
     let mut round = AnyRound::new(level.clone());
     let mut bot = Bot::new(kind, seed);
     while round.frames().len() < ticks && round.progress().outcome.is_none() {
@@ -144,11 +145,15 @@ fn play_one(name: &str, kind: BotKind, ticks: usize, seed: u64) -> Round {
         pieces: progress.pieces as u32,
         lost: outcome.map_or(0, |won| won.lost as u32),
         dare: None,
-        replay: round.replay().fragment().expect("it was just played"),
+        replay: round
+            .replay()
+            .fragment()
+            .expect("a played round has a replay"),
     }
 }
 
-/// A visit: who came learns, and often tries the other way. How many rounds?
+/// Adds the entries of a visit, in which players learn and often try the other way. Returns its number of
+/// rounds.
 fn visit(random: &mut Rng, played: &[Round], days: i64, entries: &mut Vec<Entry>) -> usize {
     let began = moment(random, days);
     let id = Id(random.u128(..));
@@ -203,11 +208,11 @@ fn visit(random: &mut Rng, played: &[Round], days: i64, entries: &mut Vec<Entry>
     number as usize
 }
 
-/// One of the rounds that were played, such as may come so late in a visit.
+/// Returns a copy of one of the rounds played, with a result that is plausible for the number of the round.
 fn chosen(random: &mut Rng, played: &[Round], number: u32, dare: Option<Route>) -> Round {
     let wins = random.f32() < [0.35, 0.5, 0.6, 0.65][(number as usize - 1).min(3)];
     let tries_dare = random.f32() < 0.4;
-    // Classic comes first.
+    // The classic level is chosen most often.
     let is_classic = random.f32() < 0.6;
     for _ in 0..200 {
         let round = &played[random.usize(..played.len())];
@@ -221,7 +226,7 @@ fn chosen(random: &mut Rng, played: &[Round], number: u32, dare: Option<Route>) 
     played[random.usize(..played.len())].clone()
 }
 
-/// In the opening hours of one of the days up to 2026-11-23, in Japan.
+/// Returns a moment within the opening hours of one of the last `days` days up to 2026-11-23, in Japan.
 fn moment(random: &mut Rng, days: i64) -> Moment {
     let midnight = 1_795_359_600_000 - DAY_MS * random.i64(0..days);
     let mut place = random.u32(0..CROWD.iter().sum::<u32>());

@@ -1,4 +1,4 @@
-//! Runs all rounds again, on all cores, and says of each whether it counts.
+//! Runs all rounds again on all cores and checks each result.
 
 use crate::Error;
 use crate::figures::Reason;
@@ -10,27 +10,28 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use tamaire_logbook::{End, Round};
 
-/// Why what a row says cannot all be true.
+/// Returns the reason why a row contradicts itself, if it does.
 pub fn contradiction(round: &Round) -> Option<(Reason, String)> {
     let is_won = round.end == End::Won;
     let what = if is_won && round.route.is_none() {
-        "won, but by no route"
+        "won, but without a route"
     } else if !is_won && round.route.is_some() {
-        "not won, but by a route"
+        "not won, but with a route"
     } else if !round.seconds.is_finite() || round.seconds < 0.0 {
-        "it took no time that there is"
+        "seconds is negative or not finite"
     } else if round.number == 0 {
-        "it is round 0 of its visit"
+        "number is 0, expected 1 or more"
     } else {
         return None;
     };
     Some((Reason::Contradictory, what.into()))
 }
 
-/// Runs the rounds again that `each` hands over and that nothing is kept about; what comes of them is kept.
+/// Runs those rounds of `each` again that have a replay and no stored result, and stores the results. `done`
+/// receives the number of finished rounds.
 ///
 /// # Errors
-/// [`Error`], also what `each` returns.
+/// [`Error`], also an error of `each`.
 pub fn run_all(
     kept: &mut Kept,
     mut done: impl FnMut(u64),
@@ -50,7 +51,7 @@ pub fn run_all(
             let (jobs, tell) = (jobs.clone(), tell.clone());
             scope.spawn(move || work(&jobs, &tell));
         }
-        // Threads end when nobody hands them rounds any more, or nobody hears them.
+        // The threads end when the channel of rounds or that of results is closed.
         drop((jobs, tell));
         let all = each(&mut |round| {
             for (round, result) in results.try_iter() {
@@ -60,7 +61,8 @@ pub fn run_all(
             if round.replay.is_empty() || !kept.lacks(&round) {
                 is_done();
             } else {
-                send.send(round).expect("threads wait for rounds");
+                send.send(round)
+                    .expect("the worker threads receive until the channel is closed");
             }
             Ok(())
         });
@@ -76,7 +78,7 @@ pub fn run_all(
 
 fn keep(kept: &mut Kept, round: &Round, result: Rerun) -> Result<(), Error> {
     match result {
-        // Another program may know its level.
+        // Not stored: another version of the program may support this level.
         Rerun::Foreign(_) => Ok(()),
         result => kept.add(round, result),
     }

@@ -1,24 +1,24 @@
-//! The best rounds of the last day as films.
+//! Clips of the best rounds of the last day.
 
 use crate::figures::Figures;
 use crate::options::Clip;
 use crate::rerun::Rerun;
 use tamaire_play::Replay;
 
-/// A film that is larger does not come into the page [bytes].
+/// Maximum size of a clip; larger ones are left out of the page [bytes].
 const MOST_BYTES: usize = 6 << 20;
 
-/// Films of best rounds.
+/// Clips of the best rounds.
 #[derive(Debug, Default)]
 pub struct Clips {
-    /// The place of each in [`Figures::best`], and an animated GIF.
+    /// Index into [`Figures::best`] and animated GIF of each clip.
     pub films: Vec<(usize, Vec<u8>)>,
-    /// Why there is none of another.
+    /// Reason for each missing clip, with the id of the round.
     pub missing: Vec<String>,
 }
 
 impl Clips {
-    /// Those of the last day, one for each route. `replays` are those of [`Figures::best`].
+    /// Makes the clips of the last day, one for each route. `replays` are the replays of [`Figures::best`].
     pub fn of(
         figures: &Figures,
         replays: &[String],
@@ -39,10 +39,10 @@ impl Clips {
     }
 }
 
-/// Films what comes out as it was written, and nothing else.
+/// Makes a clip of a replay that gives its recorded result.
 fn film(fragment: &str, clip: Clip<'_>) -> Result<Vec<u8>, String> {
     if fragment.is_empty() {
-        return Err("it has no replay, or a very long one".into());
+        return Err("the round has no replay, or a very long one".into());
     }
     match Rerun::of(fragment) {
         Rerun::Ran(_) => {}
@@ -52,9 +52,9 @@ fn film(fragment: &str, clip: Clip<'_>) -> Result<Vec<u8>, String> {
     let gif = clip(&replay)?;
     match gif.len() {
         found if found > MOST_BYTES => Err(format!(
-            "expected {MOST_BYTES} bytes at most, found {found}"
+            "clip too large: expected at most {MOST_BYTES} bytes, found {found}"
         )),
-        _ if !gif.starts_with(b"GIF8") => Err("this is no GIF".into()),
+        _ if !gif.starts_with(b"GIF8") => Err("the clip is no GIF".into()),
         _ => Ok(gif),
     }
 }

@@ -1,8 +1,8 @@
-//! Tables for spreadsheets and programs [RFC 4180].
+//! CSV tables for spreadsheets and programs [RFC 4180].
 
 use std::fmt::Display;
 
-/// Rows of a table.
+/// Row of a table as text.
 #[derive(Debug, Default)]
 pub struct Row {
     text: String,
@@ -10,7 +10,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// The names of columns.
+    /// Returns the header row with the names of the columns.
     pub fn names(names: &[&str]) -> Self {
         let row = names
             .iter()
@@ -18,11 +18,11 @@ impl Row {
         row.end()
     }
 
-    /// A cell with a text that may come from anybody. Where a spreadsheet would take it for a formula, an apostrophe stands
-    /// before it.
+    /// Appends a cell with an untrusted text. An apostrophe is put before a text that a spreadsheet would
+    /// take for a formula.
     pub fn text(mut self, text: &str) -> Self {
         let formula = ['=', '+', '-', '@', '\t', '\r', '\n'];
-        // Full-width signs are taken for the same by some.
+        // Some programs treat full-width signs like ASCII ones.
         let wide = ['＝', '＋', '－', '＠'];
         let is_formula = text.starts_with(formula) || text.starts_with(wide);
         let guard = if is_formula { "'" } else { "" };
@@ -36,15 +36,15 @@ impl Row {
         self
     }
 
-    /// A cell with a number or another word of our own.
+    /// Appends a cell with a number or a trusted word.
     pub fn value(mut self, value: impl Display) -> Self {
         use std::fmt::Write;
         self.separate();
-        write!(self.text, "{value}").expect("a string takes all");
+        write!(self.text, "{value}").expect("writing to a string cannot fail");
         self
     }
 
-    /// The same, empty where there is nothing.
+    /// Appends a cell with a value, or an empty cell for `None`.
     pub fn maybe(self, value: Option<impl Display>) -> Self {
         match value {
             Some(value) => self.value(value),
@@ -52,13 +52,13 @@ impl Row {
         }
     }
 
-    /// The row as it stands in the file.
+    /// Ends the row.
     pub fn end(mut self) -> Self {
         self.text += "\r\n";
         self
     }
 
-    /// Its bytes.
+    /// Returns the bytes of the row.
     pub fn bytes(&self) -> &[u8] {
         self.text.as_bytes()
     }
@@ -75,7 +75,7 @@ mod tests {
     use super::Row;
 
     #[test]
-    fn cells_are_quoted_and_no_formula_is_left() {
+    fn cells_are_quoted_and_formulas_are_escaped() {
         let row = Row::default()
             .text("")
             .text("a,b")

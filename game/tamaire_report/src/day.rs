@@ -1,32 +1,32 @@
-//! Days and hours, as the clock on a stand's wall shows them.
+//! Days and hours in the local time of a stand.
 
 use jiff::civil::Date;
 use std::fmt;
 use std::str::FromStr;
 use tamaire_logbook::Moment;
 
-/// The first of January 1970.
+/// 1 January 1970.
 const EPOCH: Date = Date::constant(1970, 1, 1);
 const DAY_MS: i64 = 86_400_000;
 const HOUR_MS: i64 = 3_600_000;
 
-/// A day of the calendar, at whatever place.
+/// Day of the calendar, without a time zone.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Day(
-    /// Since the first of January 1970 [days].
+    /// Days since 1 January 1970.
     pub i32,
 );
 
-/// Why a text is no [`Day`].
+/// Error of parsing a [`Day`] from a text.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("expected a day such as 2026-11-23, found {0:?}")]
 pub struct NoDay(
-    /// The text.
+    /// The text that was given.
     pub String,
 );
 
 impl Day {
-    /// The day of a moment, in the local time that the moment itself tells.
+    /// Returns the day of a moment in its local time.
     pub fn of(moment: Moment) -> Self {
         let days = local_ms(moment).div_euclid(DAY_MS);
         Self(days.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
@@ -38,7 +38,7 @@ impl Day {
     }
 }
 
-/// The hour of a moment, 0 to 23, in the local time that the moment itself tells.
+/// Returns the hour of a moment in its local time, 0 to 23.
 pub fn hour(moment: Moment) -> usize {
     (local_ms(moment).rem_euclid(DAY_MS) / HOUR_MS) as usize
 }
@@ -48,7 +48,7 @@ fn local_ms(moment: Moment) -> i64 {
     moment.utc_ms.saturating_add(offset)
 }
 
-/// As `2026-11-23`.
+/// Formats the day as `2026-11-23`.
 impl fmt::Display for Day {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.date() {
@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_day_is_written_and_read() {
+    fn day_round_trips_as_text() {
         for text in ["1970-01-01", "2026-11-23", "1969-12-31", "2028-02-29"] {
             assert_eq!(text.parse::<Day>().unwrap().to_string(), text);
         }
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn a_moment_is_of_the_day_and_hour_of_its_place() {
+    fn day_and_hour_are_in_local_time() {
         let at = |utc_ms, offset_s| Moment { utc_ms, offset_s };
         let late = 1_795_474_800_000; // 2026-11-23 23:00 UTC
         let days = [0, 3600, -7200].map(|offset| Day::of(at(late, offset)).to_string());

@@ -1,11 +1,11 @@
-//! Files that are there when all of them are whole, and not before.
+//! Files that appear in a folder only when all of them are complete.
 
 use crate::Error;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Files on their way into a folder. What was not kept by [`Drafts::keep`] goes when this does.
+/// Temporary files of a folder. [`Drafts::keep`] gives them their names; otherwise they are deleted on drop.
 #[derive(Debug)]
 pub struct Drafts {
     folder: PathBuf,
@@ -13,7 +13,7 @@ pub struct Drafts {
     all: Vec<(PathBuf, NamedTempFile)>,
 }
 
-/// A file that is written.
+/// A file being written.
 #[derive(Debug)]
 pub struct Draft {
     path: PathBuf,
@@ -21,7 +21,7 @@ pub struct Draft {
 }
 
 impl Drafts {
-    /// In a folder, which is made where there is none.
+    /// Starts in a folder, which is created if it does not exist.
     ///
     /// # Errors
     /// [`Error::Unwritable`].
@@ -36,25 +36,25 @@ impl Drafts {
             is_new,
             all,
         };
-        // Better known now than after an hour.
+        // Fails now if the folder is not writable, not after an hour of work.
         draft_in(&drafts.folder)?;
         Ok(drafts)
     }
 
-    /// Begins a file.
+    /// Starts a file.
     ///
     /// # Errors
     /// [`Error::Unwritable`].
     pub fn begin(&self, name: &str) -> Result<Draft, Error> {
         let path = self.folder.join(name);
         if path.is_dir() {
-            return Err(Error::unwritable(&path, "it is a folder"));
+            return Err(Error::unwritable(&path, "a folder has this name"));
         }
         let file = BufWriter::new(draft_in(&self.folder)?);
         Ok(Draft { path, file })
     }
 
-    /// Takes a file that is whole.
+    /// Adds a complete file.
     ///
     /// # Errors
     /// [`Error::Unwritable`].
@@ -68,7 +68,7 @@ impl Drafts {
         Ok(())
     }
 
-    /// Gives all of them their names, in place of what had them.
+    /// Gives all files their names, replacing existing files. Returns their paths.
     ///
     /// # Errors
     /// [`Error::Unwritable`].
@@ -85,7 +85,7 @@ impl Drafts {
 }
 
 impl Draft {
-    /// Writes what comes next.
+    /// Appends bytes.
     ///
     /// # Errors
     /// [`Error::Unwritable`].
@@ -99,7 +99,7 @@ impl Drop for Drafts {
     fn drop(&mut self) {
         self.all.clear();
         if self.is_new {
-            // It stays where something is in it.
+            // Fails if the folder is not empty; then it is kept.
             let _ = std::fs::remove_dir(&self.folder);
         }
     }
@@ -111,7 +111,7 @@ fn draft_in(folder: &Path) -> Result<NamedTempFile, Error> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // As any new file: others may read the report.
+        // The mode of an ordinary new file, so that other users can read the report.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     let file = builder.tempfile_in(folder);

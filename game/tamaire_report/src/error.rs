@@ -1,36 +1,37 @@
-//! Why there is no report.
+//! Errors of a report.
 
 use std::path::PathBuf;
 
-/// Why a report was not made. Then nothing of it is left, but for rounds that were run again: a next time goes on there.
+/// Reason why a report was not made. No file of the report is left, except `reruns.jsonl`, from which the
+/// next report continues.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// No logbook was named.
-    #[error("expected one logbook or more, found none")]
+    /// No logbook was given.
+    #[error("expected at least one logbook, found none")]
     NoFiles,
-    /// A file is not there.
-    #[error("{0}: there is no such file")]
+    /// A file does not exist.
+    #[error("{0}: file not found")]
     Missing(
-        /// Which file.
+        /// Path of the file.
         PathBuf,
     ),
     /// A file is no logbook, or cannot be read.
     #[error(transparent)]
     Logbook(#[from] tamaire_logbook::Error),
-    /// The days are the wrong way round.
-    #[error("expected a first day that is not after the last, found {from} and {to}")]
+    /// The first day is after the last.
+    #[error("expected a first day not after the last day, found {from} and {to}")]
     Days {
-        /// The first.
+        /// First day.
         from: crate::Day,
-        /// The last.
+        /// Last day.
         to: crate::Day,
     },
     /// The report cannot be written.
-    #[error("{path}: it cannot be written: {reason}")]
+    #[error("{path}: cannot be written: {reason}")]
     Unwritable {
-        /// Which file or folder.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// Message of the operating system.
         reason: String,
     },
 }

@@ -1,11 +1,12 @@
-//! All that a report knows: the figures of `report.json`, described in `docs/report.md`. Their names stay as they are.
+//! All figures of a report, as written to `report.json` and described in `docs/report.md`. The names are a
+//! file format and must not be changed.
 
 use crate::Day;
 use serde::Serialize;
 use tamaire_logbook::Id;
 use tamaire_play::Route;
 
-/// Number of the format of `report.json`. It changes when a name goes or means something else.
+/// Version of the format of `report.json`. It changes when a name is removed or changes its meaning.
 pub const FORMAT: u32 = 1;
 
 /// All figures.
@@ -13,276 +14,278 @@ pub const FORMAT: u32 = 1;
 pub struct Figures {
     /// [`FORMAT`].
     pub format: u32,
-    /// The number of the rules by which this program plays: [`tamaire_play::replay::VERSION`].
+    /// Version of the game's rules in this program, [`tamaire_play::replay::VERSION`].
     pub rules: u32,
-    /// The first day that was asked for.
+    /// First day selected by the options.
     pub from: Option<Day>,
-    /// The last day that was asked for.
+    /// Last day selected by the options.
     pub to: Option<Day>,
-    /// The day of the first visit that counts.
+    /// Day of the first counted visit.
     pub first_day: Option<Day>,
-    /// The day of the last visit that counts.
+    /// Day of the last counted visit.
     pub last_day: Option<Day>,
-    /// Everything together.
+    /// Totals over all stands and days.
     pub total: Totals,
-    /// The same for each stand, by name.
+    /// Totals by stand, sorted by name.
     pub stands: Vec<StandTotals>,
-    /// The same for each day on which there was a visit.
+    /// Totals by day, without days that had no visit.
     pub days: Vec<DayTotals>,
-    /// Visits by the language that was shown last.
+    /// Number of visits by the language shown last.
     pub languages: Vec<Count>,
-    /// What began in each hour of the day, from midnight on, in the local time of its stand.
+    /// Visits and rounds by the hour in which they began, from midnight, in the local time of the stand.
     pub hours: Vec<Hour>,
-    /// Each level that was played, the one with most rounds first.
+    /// Figures of each level that was played, the one with most rounds first.
     pub levels: Vec<LevelFigures>,
-    /// Rounds by which of their visit they were: first, second, third, fourth or later.
+    /// Rounds by their number within the visit: first, second, third, and fourth or later.
     pub tries: Vec<Wins>,
-    /// Visits by how many rounds they had: 0, 1, 2 … and in the last place, 20, as many or more.
+    /// Number of visits with 0, 1, 2 … rounds. The last entry, 20, includes visits with more rounds.
     pub rounds_per_visit: Vec<u64>,
-    /// How long it took to win for the first time.
+    /// Playing time up to the first win.
     pub to_first_win: Times,
-    /// By which route a visit won for the first and for the second time.
+    /// Routes of a visit's first and second win.
     pub switching: Switching,
-    /// Rounds before which the other route was suggested.
+    /// Rounds before which the game suggested the other route.
     pub dares: Dares,
     /// Rounds by the number of pieces at their end.
     pub pieces: Vec<Pieces>,
-    /// How rounds ended.
+    /// Number of rounds by ending.
     pub ends: Vec<Count>,
-    /// The fastest win by each route of each day.
+    /// Fastest win of each day by each route.
     pub best: Vec<Best>,
-    /// Events by kind.
+    /// Number of events by kind.
     pub events: Vec<Count>,
-    /// What the figures rest on.
+    /// Data on which the figures are based.
     pub basis: Basis,
 }
 
 /// Visits, rounds and wins.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Totals {
-    /// Visits.
+    /// Number of visits.
     pub visits: u64,
-    /// Visits with a round.
+    /// Number of visits with at least one round.
     pub visits_played: u64,
-    /// Visits with a round that was won.
+    /// Number of visits with at least one won round.
     pub visits_won: u64,
-    /// How many of all visits that is, 0 to 1; nothing without a visit.
+    /// `visits_won` as a share of `visits`, 0 to 1; `None` without a visit.
     pub share_won: Option<f64>,
-    /// Rounds, and how they were won.
+    /// Rounds by result.
     pub rounds: Wins,
-    /// Half of the visits that won had played for so long, or less, when they first did [s].
+    /// Median playing time to the first win, of visits with a win [s]. For an even count, the lower of the
+    /// two middle values.
     pub median_to_first_win: Option<f64>,
 }
 
-/// Those of one stand.
+/// Totals of a stand.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StandTotals {
-    /// Its name.
+    /// Name of the stand.
     pub stand: String,
-    /// What happened there.
+    /// Totals of the stand.
     #[serde(flatten)]
     pub totals: Totals,
 }
 
-/// Those of one day.
+/// Totals of a day.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DayTotals {
-    /// The day on which the visits began.
+    /// Day on which the visits began.
     pub day: Day,
-    /// What happened in them.
+    /// Totals of the visits.
     #[serde(flatten)]
     pub totals: Totals,
 }
 
-/// Rounds, and how many of them were won by which route; the others were not won.
+/// Number of rounds by the route of the win. The other rounds were not won.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Wins {
-    /// All, won or not.
+    /// All rounds, won or not.
     pub all: u64,
-    /// Won whole.
+    /// Rounds won by squeezing the whole body in.
     pub squeeze: u64,
-    /// Won by shaving.
+    /// Rounds won by shaving.
     pub shave: u64,
-    /// Won by some of both.
+    /// Rounds won by a mix of both.
     pub mix: u64,
 }
 
-/// How many of a kind there are.
+/// Number of items of a kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Count {
-    /// Which kind.
+    /// Name of the kind.
     pub name: String,
-    /// How many.
+    /// Number of items.
     pub count: u64,
 }
 
-/// What began in an hour of the day.
+/// Visits and rounds that began in an hour of the day.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Hour {
-    /// Visits.
+    /// Number of visits.
     pub visits: u64,
-    /// Rounds.
+    /// Number of rounds.
     pub rounds: u64,
 }
 
-/// What was played in a level.
+/// Figures of a level.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LevelFigures {
-    /// Its name, as it stands in the logbooks.
+    /// Name of the level in the logbooks.
     pub level: String,
-    /// Its hash, in hexadecimal: the same level made easier has another one.
+    /// Hash of the level in hexadecimal. An easier variant of the level has another one.
     pub level_hash: String,
-    /// Rounds.
+    /// Rounds by result.
     pub rounds: Wins,
-    /// Half of its rounds that were won took so long, or less [s].
+    /// Median playing time of its won rounds [s]. For an even count, the lower of the two middle values.
     pub median_win: Option<f64>,
-    /// Where hands were, if its rounds were run again.
+    /// Map of the hand positions, if rounds were run again.
     pub hands: Option<Heat>,
 }
 
-/// Where hands were: the room of a level in square cells.
+/// Map of the hand positions: time spent in each square cell of a level's room.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Heat {
-    /// How many rounds this is of.
+    /// Number of rounds in the map.
     pub rounds: u64,
-    /// The axis across and the axis up the map: x and y in the plane; in space, seen from above, x and z.
+    /// Horizontal and vertical axis of the map: x and y in 2D; x and z in 3D, which is seen from above.
     pub axes: [usize; 2],
-    /// Least coordinates of the room along them [m].
+    /// Minimum coordinates of the room along these axes [m].
     pub low: [f32; 2],
     /// Width of a cell [m].
     pub cell: f32,
     /// Number of cells along the first axis.
     pub columns: usize,
-    /// For how long a hand was in each cell, all rounds together [s]: row by row along the first axis, the least
-    /// coordinates first.
+    /// Time that hands spent in each cell, summed over all rounds [s]. Row-major along the first axis,
+    /// minimum coordinates first.
     pub seconds: Vec<f64>,
 }
 
-/// How long it took.
+/// Distribution of times.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Times {
-    /// Of how many visits this is known.
+    /// Number of visits with a known time.
     pub visits: u64,
-    /// A tenth took so long, or less; a quarter; half; three quarters; nine tenths [s].
+    /// Quantiles 0.1, 0.25, 0.5, 0.75 and 0.9 [s].
     pub quantiles: Option<[f64; 5]>,
-    /// Visits by time.
+    /// Number of visits by time.
     pub bins: Vec<Bin>,
 }
 
-/// Visits that took at least and less than so long.
+/// Number of visits with a time from `from` (inclusive) to `to` (exclusive).
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
 pub struct Bin {
-    /// At least so long [s].
+    /// Lower limit, inclusive [s].
     pub from: f64,
-    /// Less than that [s]; for the last bin there is no limit.
+    /// Upper limit, exclusive [s]; `None` for the last bin.
     pub to: Option<f64>,
-    /// How many visits.
+    /// Number of visits.
     pub visits: u64,
 }
 
-/// The route of a visit's first win, and that of its next one.
+/// Routes of the first and the second win of visits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Switching {
-    /// By the route of the first win (squeeze, shave, mix): all visits that won so, and by which route they won next; the
-    /// others did not win again.
+    /// For each route of the first win (squeeze, shave, mix): the visits, by the route of their second win.
+    /// The remaining visits did not win again.
     pub after: [Wins; 3],
-    /// Visits whose next win went another way than the first.
+    /// Number of visits whose second win took another route than the first.
     pub switched: u64,
-    /// How many of them nobody had suggested it to, in a round after the first win and up to the next.
+    /// Number of those visits without a suggestion from the game after the first win, up to and including the
+    /// round of the second.
     pub switched_undared: u64,
 }
 
-/// What came of a suggestion to try the other route.
+/// Rounds and visits in which the game suggested the other route.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Dares {
-    /// Rounds before which it was made.
+    /// Number of rounds before which the game made the suggestion.
     pub rounds: u64,
-    /// Won as it was suggested.
+    /// Rounds of these that were won by the suggested route.
     pub won_as_dared: u64,
-    /// Won another way.
+    /// Rounds of these that were won by another route.
     pub won_otherwise: u64,
-    /// Visits in which it was made.
+    /// Number of visits in which the game made the suggestion.
     pub visits: u64,
-    /// Visits that won as was suggested, in a round before which it was.
+    /// Visits that won by the suggested route, in a round before which it was suggested.
     pub visits_as_dared: u64,
 }
 
-/// Rounds that ended in so many pieces.
+/// Rounds by the number of pieces at their end.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Pieces {
-    /// At least so many.
+    /// Minimum number of pieces.
     pub from: u32,
-    /// At most so many; for the last there is no limit.
+    /// Maximum number of pieces; `None` for the last entry.
     pub to: Option<u32>,
-    /// The rounds.
+    /// Rounds by result.
     pub rounds: Wins,
 }
 
-/// A fast win.
+/// A fastest win.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Best {
-    /// The day of its visit.
+    /// Day of the visit.
     pub day: Day,
-    /// By which route.
+    /// Route of the win.
     pub route: Route,
-    /// How long it took [s].
+    /// Playing time [s].
     pub seconds: f64,
-    /// The round.
+    /// Id of the round.
     pub round: Id,
-    /// Its level.
+    /// Name of the level.
     pub level: String,
-    /// [`LevelFigures::level_hash`].
+    /// Hash of the level, as [`LevelFigures::level_hash`].
     pub level_hash: String,
-    /// Its stand.
+    /// Name of the stand.
     pub stand: String,
 }
 
-/// What the figures rest on.
+/// Data on which the figures are based.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Basis {
-    /// Logbooks that were read.
+    /// Number of logbooks read.
     pub files: u64,
-    /// Rows that stood in one of them already.
+    /// Number of rows whose id had been read already; they are counted once.
     pub repeated_rows: u64,
-    /// Visits without an end: they were cut off, or go on.
+    /// Number of visits without an end: interrupted, or still going on.
     pub visits_without_end: u64,
-    /// Visits during which the clock went backwards.
+    /// Number of visits during which the clock went backwards.
     pub visits_with_clock_back: u64,
     /// Whether rounds were run again.
     pub is_rerun: bool,
-    /// Rounds that came out as they were written.
+    /// Number of rounds that gave the recorded result when run again.
     pub rerun: u64,
-    /// Rounds that were counted although they could not be run again: they have no replay, or other rules or another level
-    /// than this program.
+    /// Number of rounds counted unchecked: without a replay, or with other rules or another level than this
+    /// program has.
     pub not_rerun: u64,
-    /// Rounds that were not counted anywhere.
+    /// Rounds that were not counted.
     pub refused: Vec<Refused>,
 }
 
 /// A round that was not counted.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Refused {
-    /// Which.
+    /// Id of the round.
     pub round: Id,
-    /// Its stand.
+    /// Name of the stand.
     pub stand: String,
-    /// Why.
+    /// Reason for not counting it.
     pub reason: Reason,
-    /// More about it.
+    /// Details of the reason.
     pub detail: String,
 }
 
-/// Why a round was not counted.
+/// Reason why a round was not counted.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reason {
-    /// What it says of itself cannot all be true.
+    /// The values of its row contradict each other.
     Contradictory,
-    /// Its replay cannot be read.
+    /// Its replay cannot be decoded.
     Unreadable,
-    /// Its replay goes another way than it was written.
+    /// Its replay diverges from the recorded hashes when run again.
     Astray,
-    /// Its replay ends another way than its row says.
+    /// Its replay ends with another result than its row.
     Differs,
 }
 
@@ -298,12 +301,12 @@ impl Wins {
         }
     }
 
-    /// Those that were won.
+    /// Returns the number of won rounds.
     pub fn won(&self) -> u64 {
         self.squeeze + self.shave + self.mix
     }
 
-    /// By squeezing, by shaving, by both, and not won.
+    /// Returns the rounds won by squeezing, by shaving and by both, and those not won.
     pub fn parts(&self) -> [u64; 4] {
         let lost = self.all.saturating_sub(self.won());
         [self.squeeze, self.shave, self.mix, lost]

@@ -1,4 +1,4 @@
-//! Where hands were in the rounds of a level.
+//! Maps of the hand positions by level.
 
 use crate::figures::Heat;
 use crate::rerun::{Ran, TICK};
@@ -8,14 +8,14 @@ use std::collections::HashMap;
 use tamaire_logbook::Round;
 use tamaire_play::{Level, Replay};
 
-/// Maps that are drawn together, by level.
+/// Maps by level, summed over rounds.
 #[derive(Debug, Default)]
 pub struct Heats(HashMap<LevelKey, Sum>);
 
 #[derive(Debug)]
 struct Sum {
     rounds: u64,
-    /// For how many ticks a hand was in each cell.
+    /// Number of ticks that a hand spent in each cell.
     ticks: Vec<u64>,
     level: Level,
 }
@@ -47,7 +47,7 @@ impl Heats {
         }
     }
 
-    /// The map of a level, and what stands in it.
+    /// Removes the map of a level, and returns it with the objects of the level's room.
     pub fn take(&mut self, name: &str, hash: &str) -> Option<(Heat, Vec<Stroke>)> {
         let hash = u64::from_str_radix(hash, 16).ok()?;
         let sum = self.0.remove(&(name.into(), hash))?;

@@ -1,11 +1,11 @@
-//! What a page is put together from. Texts are escaped here, whoever wrote them.
+//! HTML elements of the page. All texts are escaped here.
 
 use crate::plot::Fill;
 
-/// A text from a logbook that is longer is cut short on a page [letters].
+/// Maximum length of a text in a table cell [characters].
 const LONG: usize = 80;
 
-/// A text as it may stand between tags and in attributes.
+/// Escapes a text for element content and attributes.
 pub fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -15,7 +15,7 @@ pub fn escaped(text: &str) -> String {
             '>' => safe += "&gt;",
             '"' => safe += "&quot;",
             '\'' => safe += "&#39;",
-            // What turns the direction of writing would turn the rest of the page.
+            // Removes bidirectional control characters, which would affect the rest of the page.
             '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}' => {}
             _ if letter.is_control() => safe.push(' '),
             _ => safe.push(letter),
@@ -24,7 +24,7 @@ pub fn escaped(text: &str) -> String {
     safe
 }
 
-/// The beginning of a text from a logbook.
+/// Truncates a text to `most` characters.
 pub fn brief(text: &str, most: usize) -> String {
     let mut letters = text.chars();
     let mut brief: String = letters.by_ref().take(most).collect();
@@ -34,14 +34,14 @@ pub fn brief(text: &str, most: usize) -> String {
     brief
 }
 
-/// A plot with a title, a legend and a caption.
+/// Returns a plot with a title, a legend and a caption.
 pub fn figure(title: &str, legend: &str, plot: &str, caption: &str) -> String {
     let title = escaped(title);
     let caption = escaped(caption);
     format!("<figure><h2>{title}</h2>{legend}{plot}<figcaption>{caption}</figcaption></figure>\n")
 }
 
-/// What fills stand for.
+/// Returns a legend of fills and their names.
 pub fn legend(entries: &[(Fill, &str)]) -> String {
     let entry = |(fill, name): &(Fill, &str)| {
         let (paint, edge, name) = (fill.paint(), fill.edge(), escaped(name));
@@ -53,7 +53,7 @@ pub fn legend(entries: &[(Fill, &str)]) -> String {
     format!("<ul class=\"legend\">{entries}</ul>")
 }
 
-/// A table, whose cells are numbers from a column on.
+/// Returns a table. Cells from column `numbers_from` on are aligned as numbers.
 pub fn table<const N: usize>(head: [&str; N], numbers_from: usize, rows: &[[String; N]]) -> String {
     let line = |tag: &str, cells: &[String; N]| {
         let cells = cells.iter().enumerate().map(|(k, text)| {
@@ -71,12 +71,12 @@ pub fn table<const N: usize>(head: [&str; N], numbers_from: usize, rows: &[[Stri
     format!("<div class=\"scroll\"><table>{head}{rows}</table></div>")
 }
 
-/// A paragraph.
+/// Returns a paragraph.
 pub fn paragraph(text: &str) -> String {
     format!("<p>{}</p>\n", escaped(text))
 }
 
-/// A part of the page.
+/// Returns a section with a title.
 pub fn section(title: &str, inside: &str) -> String {
     format!("<section><h2>{}</h2>\n{inside}</section>\n", escaped(title))
 }
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_text_stays_a_text() {
+    fn text_is_escaped_and_truncated() {
         let hostile = "<script>alert(\"&'\")</script>\u{202E}\u{0}";
         let safe = "&lt;script&gt;alert(&quot;&amp;&#39;&quot;)&lt;/script&gt; ";
         assert_eq!(escaped(hostile), safe);

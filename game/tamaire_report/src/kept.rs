@@ -1,4 +1,5 @@
-//! What came of rounds that were run again, in a file that a next time goes on with: a line of JSON for each.
+//! Stored results of rounds that were run again. The file has one line of JSON per round; an interrupted
+//! report continues from it.
 
 use crate::Error;
 use crate::rerun::Rerun;
@@ -11,17 +12,17 @@ use std::path::{Path, PathBuf};
 use tamaire_logbook::{Id, Round};
 use tamaire_play::replay::VERSION;
 
-/// Rounds that were run again, by what they are known by, under which rules, and what was run.
+/// Stored results, by round and replay, for the current rules.
 #[derive(Debug)]
 pub struct Kept {
     path: PathBuf,
     file: File,
-    /// Where each line begins, and how long it is [bytes].
+    /// Offset and length of each line [bytes].
     places: HashMap<Key, (u64, usize)>,
     end: u64,
 }
 
-/// The round, and a hash of its replay.
+/// Round id and hash of its replay.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 struct Key {
     round: Id,
@@ -52,8 +53,8 @@ impl Key {
 }
 
 impl Kept {
-    /// Opens the file, and begins it where there is none. A line at its end that is not whole, as that of a program that was
-    /// killed, is taken off.
+    /// Opens the file, and creates it if it does not exist. An incomplete line at its end, left by a killed
+    /// program, is removed.
     ///
     /// # Errors
     /// [`Error::Unwritable`].
@@ -71,15 +72,15 @@ impl Kept {
         Ok(kept)
     }
 
-    /// Whether there is nothing about a round yet.
+    /// Returns whether there is no stored result of a round.
     pub fn lacks(&self, round: &Round) -> bool {
         !self.places.contains_key(&Key::of(round))
     }
 
-    /// What came of a round.
+    /// Returns the stored result of a round.
     ///
     /// # Errors
-    /// [`Error::Unwritable`], as the file is one that this program writes.
+    /// [`Error::Unwritable`] if the file cannot be read.
     pub fn get(&mut self, round: &Round) -> Result<Option<Rerun>, Error> {
         let Some(&(at, length)) = self.places.get(&Key::of(round)) else {
             return Ok(None);
@@ -93,7 +94,7 @@ impl Kept {
             .map(|line| line.result))
     }
 
-    /// Keeps what came of a round.
+    /// Stores the result of a round.
     ///
     /// # Errors
     /// [`Error::Unwritable`].
@@ -104,7 +105,7 @@ impl Kept {
             key,
         };
         let line = Line { head, result };
-        let mut text = serde_json::to_vec(&line).expect("all of it can be written");
+        let mut text = serde_json::to_vec(&line).expect("every result can be serialized");
         text.push(b'\n');
         let written = self.file.seek(SeekFrom::Start(self.end));
         let written = written.and_then(|_| self.file.write_all(&text));
@@ -123,7 +124,7 @@ impl Kept {
             if line.last() != Some(&b'\n') {
                 break;
             }
-            // What another version wrote stays, and is not looked at.
+            // Lines with other rules are kept in the file but not used.
             if let Ok(Line { head, .. }) = serde_json::from_slice(&line)
                 && head.rules == VERSION
             {

@@ -1,14 +1,18 @@
-//! What visitors did, from the logbooks of any number of stands and days: a page to be read by whoever looks after a stand,
-//! and figures for whoever analyses them.
+//! Reports on visits, from the logbooks of any number of stands and days: an HTML page for operators, and
+//! figures for analysis.
 //!
-//! The way through, each module using only those above it. What is asked for: [`day`] days and hours of a wall → [`error`] why
-//! there is no report → [`options`] what it is to have. What is counted: [`figures`] all that it knows → `spread` medians and
-//! bins → `visits` each once → `story` what became of one → `tally` rows in, figures out. What is run again: `room` the map
-//! of a level → `rerun` a round → `kept` what came of it, on file → `check` all of them → `heat` where hands were. What is
-//! written: `drafts` files that are whole or not there → `csv`, `tables` for analysts → `plot` as SVG → `html` →
-//! `reading` what was seen in 2004 → `words` → `clips` → `page`. [`report`](mod@report) puts all of it in order.
+//! The modules, each of which uses only those above it:
 //!
-//! Rows are read one at a time, and of each no more is kept than its visit asks for.
+//! - Input: [`day`] days and hours in local time, [`error`] errors, [`options`] the options of a report
+//! - Counting: [`figures`] all figures, `spread` medians and bins, `visits` each visit once, `story` summary
+//!   of a visit, `tally` from rows to figures
+//! - Running rounds again: `room` map of a level, `rerun` one round, `kept` stored results, `check` all
+//!   rounds, `heat` hand positions
+//! - Output: `drafts` files that appear when complete, `csv` and `tables` for analysis, `plot` SVG plots,
+//!   `html` elements, `reading` comparison with 2004, `words` texts, `clips`, `page`
+//! - [`report`](mod@report): all steps in order
+//!
+//! Rows are read one at a time, and only the values that the summary of their visit needs are kept in memory.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [s]

@@ -1,31 +1,32 @@
-//! What is asked for.
+//! Options and progress of a report.
 
 use crate::Day;
 use tamaire_play::Replay;
 
-/// Makes an animated GIF of a round, a small one.
+/// Function that makes a small animated GIF of a round.
 pub type Clip<'a> = &'a dyn Fn(&Replay) -> Result<Vec<u8>, String>;
 
-/// What a report is to have.
+/// Options of a report.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
-    /// In which language the page is.
+    /// Language of the page.
     pub language: Language,
-    /// `visits.csv`, `rounds.csv` and `events.csv` beside the page.
+    /// Whether `visits.csv`, `rounds.csv` and `events.csv` are written beside the page.
     pub csv: bool,
-    /// `report.json` beside the page: all figures.
+    /// Whether `report.json`, which has all figures, is written beside the page.
     pub json: bool,
-    /// The first day that counts. A visit is of the day on which it began, in the local time of its stand, with all that
-    /// was played in it.
+    /// First day to count. A visit belongs to the day on which it began, in the local time of its stand, with
+    /// all of its rounds. `None` sets no limit.
     pub from: Option<Day>,
-    /// The last day that counts.
+    /// Last day to count. `None` sets no limit.
     pub to: Option<Day>,
-    /// Whether all rounds are run again: what does not come out as it was written is not counted, and where hands moved is
-    /// drawn. Rounds that were run again are kept in `reruns.jsonl` beside the page, so that a next time goes on there.
+    /// Whether all rounds are run again. Rounds with another result than recorded are not counted, and the
+    /// page shows the hand positions. Results are stored in `reruns.jsonl` beside the page, so that a later
+    /// report continues from there.
     pub rerun: bool,
 }
 
-/// The language of a page.
+/// Language of a page.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum Language {
     /// English.
@@ -36,31 +37,31 @@ pub enum Language {
 }
 
 impl Language {
-    /// All, with the names by which they are chosen.
+    /// All languages with their codes on the command line.
     pub const NAMED: [(&'static str, Self); 2] = [("en", Self::English), ("ja", Self::Japanese)];
 }
 
-/// How far a report has come.
+/// Progress of a report.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// What is done.
+    /// Current stage.
     pub stage: Stage,
-    /// So many of them are done.
+    /// Number of finished items.
     pub done: u64,
-    /// So many there are, where that is known before.
+    /// Total number of items, if known in advance.
     pub all: Option<u64>,
 }
 
-/// What is done for a report, in this order.
+/// Stage of a report, in order.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Visits are read.
+    /// Reading visits.
     Visits,
-    /// Rounds are run again.
+    /// Running rounds again.
     Rerun,
-    /// Rounds are counted.
+    /// Counting rounds.
     Rounds,
-    /// Clips are drawn.
+    /// Making clips.
     Clips,
 }
 

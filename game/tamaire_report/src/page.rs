@@ -1,4 +1,4 @@
-//! The page: numbers first, then what was read of them, then plots.
+//! The HTML page: numbers first, then the comparison with 2004, then plots and tables.
 
 use crate::clips::Clips;
 use crate::figures::{Figures, LevelFigures, Totals, Wins};
@@ -11,14 +11,15 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use tamaire_play::{Level, Route};
 
-/// Most levels that are drawn.
+/// Maximum number of levels in plots.
 const LEVELS: usize = 12;
-/// Most rows of a table, and most rounds that do not count.
+/// Maximum number of rows of a table and of listed rounds that do not count.
 const ROWS: usize = 40;
-/// Nothing is loaded, whatever stands in a logbook.
+/// Content security policy: the page loads nothing, even if a text from a logbook gets past the escaping.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 
-/// The page. `strokes` are what stands in the rooms of levels, in their order, where there is a map.
+/// Returns the page. `strokes` are the objects in the rooms of the levels, in the order of
+/// [`Figures::levels`]; empty without a map.
 pub fn page(words: &Words, figures: &Figures, strokes: &[Vec<Stroke>], clips: &Clips) -> String {
     let (code, title) = (words.code, escaped(words.title));
     let css = include_str!("page.css");
@@ -143,7 +144,7 @@ fn first_win(words: &Words, figures: &Figures) -> String {
         return String::new();
     };
     let wide = first.to.unwrap_or(1.0);
-    // Every second one, where they are many.
+    // With many bins, every second one has a label.
     let label = |(k, from): (usize, f64)| match k % 2 {
         1 if times.bins.len() > 9 => String::new(),
         _ => format!("{from}"),
@@ -205,7 +206,7 @@ fn dares(words: &Words, figures: &Figures) -> String {
 }
 
 fn per_visit(words: &Words, figures: &Figures) -> String {
-    // As far as there is something, and never fewer than a handful.
+    // Up to the last entry with a visit, but at least to five rounds.
     let last = figures
         .rounds_per_visit
         .iter()
@@ -436,7 +437,8 @@ fn title_of(words: &Words, level: &LevelFigures) -> String {
     level_title(words, &level.level, &level.level_hash)
 }
 
-/// The title of a level that comes along, or its name; with four digits where it is not the one that comes along.
+/// Returns the title of a built-in level, or the name of another one. Four digits of the hash follow unless
+/// it is the built-in version.
 fn level_title(words: &Words, name: &str, hash: &str) -> String {
     let digits = &hash[hash.len().saturating_sub(4)..];
     let Ok(level) = Level::open(name) else {

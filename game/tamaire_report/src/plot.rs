@@ -1,4 +1,4 @@
-//! Plots as SVG, to stand in a page.
+//! SVG plots for the page.
 
 use crate::figures::Heat;
 use crate::room::{Stroke, Thing};
@@ -7,19 +7,19 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::error::Error;
 
-/// Width of a plot: so wide it fits a phone with letters that can still be read [px].
+/// Width of a plot [px]. Narrow enough that its text is legible on a phone.
 const WIDTH: u32 = 440;
-/// Height of a plot of columns [px].
+/// Height of a column plot [px].
 const HEIGHT: u32 = 270;
-/// Size of letters, in what plotters takes for 14 px.
+/// Font size in units of plotters; gives 14 px.
 const LETTERS: f64 = 14.0 * 1.24;
 const INK: RGBColor = RGBColor(0x4A, 0x36, 0x34);
 const LINE: RGBColor = RGBColor(0xE6, 0xD8, 0xC8);
-/// Around what is pale.
+/// Outline of pale areas.
 const EDGE: RGBColor = RGBColor(0xC2, 0xAD, 0x98);
 const WOOD: RGBColor = RGBColor(0x92, 0x7A, 0x70);
 
-/// From few to much.
+/// Colours of a map, from little time to much.
 const SHADES: [RGBColor; 6] = [
     RGBColor(0xFD, 0xE6, 0xCF),
     RGBColor(0xFB, 0xC9, 0xA6),
@@ -32,24 +32,24 @@ const SHADES: [RGBColor; 6] = [
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), Box<dyn Error>>;
 
-/// How an area is filled. All are told apart by their patterns too.
+/// Fill of an area. The fills also differ by pattern, for colour-blind readers.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Fill {
-    /// Plain and warm: squeezed, and visits.
+    /// Plain red: squeezed, and visits.
     Squeeze,
     /// Blue with stripes: shaved.
     Shave,
-    /// Yellow with dots: some of both.
+    /// Yellow with dots: a mix of both.
     Mix,
     /// Pale: not won, and rounds.
     Pale,
 }
 
 impl Fill {
-    /// In the order of [`crate::figures::Wins::parts`].
+    /// All fills in the order of [`crate::figures::Wins::parts`].
     pub const ALL: [Self; 4] = [Self::Squeeze, Self::Shave, Self::Mix, Self::Pale];
 
-    /// The colour by which plotters is told, and what stands for it in the page.
+    /// Returns the colour used in plotters, and the SVG paint that replaces it in the page.
     fn colour(self) -> (RGBColor, &'static str) {
         match self {
             Self::Squeeze => (RGBColor(0xF0, 0x6C, 0x62), "#F06C62"),
@@ -59,19 +59,19 @@ impl Fill {
         }
     }
 
-    /// A rectangle so filled, with an edge where it would hardly be seen.
+    /// Returns a filled rectangle, with an outline if the fill is pale.
     fn rectangles<C: Clone>(self, corners: [C; 2]) -> Vec<Rectangle<C>> {
         let filled = Rectangle::new(corners.clone(), self.colour().0.filled());
         let edge = (self == Self::Pale).then(|| Rectangle::new(corners, EDGE));
         [filled].into_iter().chain(edge).collect()
     }
 
-    /// What stands for it in SVG, where [`PATTERNS`] are in the page.
+    /// Returns the SVG paint. It requires [`PATTERNS`] in the page.
     pub fn paint(self) -> &'static str {
         self.colour().1
     }
 
-    /// What is around it.
+    /// Returns the SVG paint of the outline.
     pub fn edge(self) -> &'static str {
         if self == Self::Pale {
             "#C2AD98"
@@ -81,32 +81,32 @@ impl Fill {
     }
 }
 
-/// The patterns of [`Fill`], once in a page.
+/// SVG patterns of [`Fill`], included once in a page.
 pub const PATTERNS: &str = r##"<svg width="0" height="0" style="position:absolute" aria-hidden="true"><defs>
 <pattern id="stripes" width="7" height="7" patternUnits="userSpaceOnUse" patternTransform="rotate(45)"><rect width="7" height="7" fill="#2F6F9F"/><rect width="2.2" height="7" fill="#BFDDF0"/></pattern>
 <pattern id="dots" width="8" height="8" patternUnits="userSpaceOnUse"><rect width="8" height="8" fill="#F3C969"/><circle cx="2" cy="2" r="1.3" fill="#7A5310"/><circle cx="6" cy="6" r="1.3" fill="#7A5310"/></pattern>
 </defs></svg>
 "##;
 
-/// Columns beside or on each other.
+/// Column plot, grouped or stacked.
 #[derive(Debug)]
 pub struct Columns<'a> {
-    /// What stands under each; nothing where there is no room.
+    /// Label of each column; empty labels are not drawn.
     pub labels: Vec<String>,
-    /// Whether labels stand under the left edge of their column, as for times, or under its middle.
+    /// Whether labels stand at the left edge of their column, as for times, or at its centre.
     pub is_edge: bool,
-    /// How high they are.
+    /// Fill and heights of each series.
     pub series: Vec<(Fill, Vec<u64>)>,
-    /// Whether they stand on each other.
+    /// Whether the series are stacked.
     pub is_stacked: bool,
-    /// What the axes are.
+    /// Titles of the horizontal and the vertical axis.
     pub axes: [&'a str; 2],
-    /// A line across, in columns from the left edge, and what stands at it.
+    /// Vertical line: its position in columns from the left edge, and its label.
     pub mark: Option<(f64, String)>,
 }
 
 impl Columns<'_> {
-    /// The plot.
+    /// Returns the plot as SVG.
     pub fn svg(&self) -> String {
         svg(HEIGHT, |area| self.draw(area))
     }
@@ -188,7 +188,7 @@ impl Columns<'_> {
     }
 }
 
-/// A bar for each row, as long as all the others, parted by share; a text above each.
+/// Returns a plot with a bar of full width for each row, divided by share, with a label above it.
 pub fn shares(rows: &[(String, [u64; 4])], axis: &str) -> String {
     const ROW: u32 = 46;
     let height = 50 + ROW * rows.len() as u32;
@@ -240,16 +240,16 @@ pub fn shares(rows: &[(String, [u64; 4])], axis: &str) -> String {
     })
 }
 
-/// Where hands were, and what stands in the room.
+/// Returns a map of the hand positions and the objects in the room.
 pub fn map(heat: &Heat, strokes: &[Stroke], axes: [&str; 2]) -> String {
     let rows = heat.seconds.len() / heat.columns.max(1);
     let [wide, high] = [heat.columns, rows].map(|count| count as f32 * heat.cell);
     let inner = WIDTH - 66 - 14;
-    // A room may be a corridor.
+    // A room may be long and narrow.
     let height = (inner as f32 * high / wide).clamp(60.0, 900.0);
     let scale = inner as f32 / wide;
     let [low, far] = [heat.low, [heat.low[0] + wide, heat.low[1] + high]];
-    // Seen from above, what is nearer to the player stands lower.
+    // Seen from above, points nearer to the player are drawn lower.
     let sign = if heat.axes[1] == 1 { 1.0 } else { -1.0 };
     let flip = |[x, y]: [f32; 2]| (x, sign * y);
     let vertical = if sign > 0.0 {
@@ -303,7 +303,8 @@ pub fn map(heat: &Heat, strokes: &[Stroke], axes: [&str; 2]) -> String {
     })
 }
 
-/// Cells of one shade beside each other: their row, the first and the last column, and the shade. What is empty is left out.
+/// Merges adjacent cells of one shade in a row: row, first and last column, shade. Cells without time are
+/// left out.
 fn runs(heat: &Heat) -> Vec<(usize, usize, usize, usize)> {
     let most = heat.seconds.iter().copied().fold(0.0, f64::max);
     let shade = |seconds: f64| {
@@ -326,7 +327,7 @@ fn runs(heat: &Heat) -> Vec<(usize, usize, usize, usize)> {
     runs
 }
 
-/// A whole number with its thousands apart.
+/// Formats a number with commas between thousands.
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -343,7 +344,7 @@ fn letters(size: f64) -> TextStyle<'static> {
     ("sans-serif", size).into_font().color(&INK)
 }
 
-/// Writes a text, its top at a place.
+/// Draws a text with its top at `at`.
 fn write(area: &Area, text: &str, at: (i32, i32), side: HPos) -> Drawn {
     let style = letters(LETTERS).pos(Pos::new(side, VPos::Top));
     area.draw(&Text::new(text.to_string(), at, style))?;
@@ -354,15 +355,15 @@ fn svg(height: u32, draw: impl FnOnce(&Area) -> Drawn) -> String {
     let mut text = String::new();
     {
         let area = SVGBackend::with_string(&mut text, (WIDTH, height)).into_drawing_area();
-        draw(&area).expect("a string takes all");
-        area.present().expect("a string takes all");
+        draw(&area).expect("drawing into a string cannot fail");
+        area.present().expect("drawing into a string cannot fail");
     }
     for fill in [Fill::Shave, Fill::Mix] {
         let (RGBColor(red, green, blue), paint) = fill.colour();
         let told = format!("fill=\"#{red:02X}{green:02X}{blue:02X}\"");
         text = text.replace(&told, &format!("fill=\"{paint}\""));
     }
-    // As wide as there is room.
+    // Without a fixed size the plot takes the available width.
     let size = format!("width=\"{WIDTH}\" height=\"{height}\" ");
     text.replacen(&size, "", 1)
 }

@@ -1,51 +1,51 @@
-//! What the authors saw in 2004, asked of the figures [Endo 2004, §4.3]: two strategies appeared, nobody needed an
-//! explanation, and who had won one way tried the other.
+//! Comparison with the observations of 2004 [Endo 2004, §4.3]: two strategies appeared, visitors needed no
+//! explanation, and those who had won one way tried the other.
 
 use crate::figures::Figures;
 use crate::spread::interval;
 use tamaire_play::Route;
 
-/// With fewer than this nothing is said of shares.
+/// Minimum number of wins or visits for a statement about shares.
 const FEW: u64 = 20;
-/// A route that fewer of the wins went did not appear.
+/// Minimum share of the wins for a route to count as a strategy that appeared.
 const RARE: f64 = 0.05;
 
-/// Which strategies appeared.
+/// Strategies that appeared.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Strategies {
-    /// There are too few wins to tell.
+    /// Too few wins to tell.
     Few,
-    /// Both.
+    /// Both strategies.
     Both,
-    /// Hardly any but this one.
+    /// Almost only this route.
     Only(Route),
 }
 
-/// Whether people won without an explanation from the game.
+/// Whether visitors won without an explanation.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Unexplained {
-    /// There are too few visits to tell.
+    /// Too few visits to tell.
     Few,
-    /// More than half of all visits won, surely.
+    /// More than half of all visits won: the 95 % interval lies above one half.
     Most,
-    /// About half did.
+    /// The 95 % interval contains one half.
     Half,
-    /// Less than half did, surely.
+    /// Less than half of all visits won: the 95 % interval lies below one half.
     Minority,
 }
 
-/// Whether there are enough visits that won twice to speak of the other way.
+/// Returns whether enough visits won twice for a statement about switching.
 pub fn tells_switching(figures: &Figures) -> bool {
     won_again(figures) >= FEW
 }
 
-/// Visits that won more than once.
+/// Returns the number of visits that won more than once.
 pub fn won_again(figures: &Figures) -> u64 {
     let after = figures.switching.after.iter();
     after.map(|after| after.won()).sum()
 }
 
-/// Which strategies appeared.
+/// Returns the strategies that appeared.
 pub fn strategies(figures: &Figures) -> Strategies {
     let wins = figures.total.rounds;
     let least = (RARE * wins.won() as f64).max(3.0);
@@ -59,7 +59,7 @@ pub fn strategies(figures: &Figures) -> Strategies {
     }
 }
 
-/// Whether people won without an explanation from the game.
+/// Returns whether visitors won without an explanation.
 pub fn unexplained(figures: &Figures) -> Unexplained {
     let total = &figures.total;
     let [low, high] = interval(total.visits_won, total.visits);

@@ -17,26 +17,27 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use tamaire_logbook::{Id, Logbook, Round};
 
-/// Progress is told after so many rows.
+/// Number of rows between two calls of the progress function.
 const OFTEN: u64 = 1000;
 
-/// What was made.
+/// A finished report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// The page, to be opened in a browser.
+    /// Path of the page, to be opened in a browser.
     pub page: PathBuf,
-    /// All files that were written, the page among them.
+    /// All files that were written, including the page.
     pub files: Vec<PathBuf>,
-    /// What they tell.
+    /// Figures of the report.
     pub figures: Figures,
 }
 
-/// Writes a report on logbooks into a folder, which is made where there is none: `index.html`, and what else is asked for.
-/// A row that stands in several files counts once. Where a clip can be made, the page shows the best of the last day.
+/// Writes a report on logbooks into the folder `out`, which is created if it does not exist: `index.html`,
+/// and the files chosen by the options. A row that occurs in several logbooks counts once. With `clip`, the
+/// page shows the best rounds of the last day.
 ///
 /// # Errors
-/// [`Error`]; then what was in the folder before is still there as it was, but for rounds that were run again: a next time
-/// goes on there.
+/// [`Error`]; then the files in the folder are unchanged, except `reruns.jsonl`, from which the next report
+/// continues.
 pub fn report(
     files: &[PathBuf],
     out: &Path,
@@ -96,7 +97,7 @@ pub fn report(
     let text = page(words, &figures, &strokes, &clips.unwrap_or_default());
     write(&mut drafts, "index.html", text.as_bytes())?;
     if options.json {
-        let text = serde_json::to_vec_pretty(&figures).expect("figures can be written");
+        let text = serde_json::to_vec_pretty(&figures).expect("figures can be serialized");
         write(&mut drafts, "report.json", &text)?;
     }
     if let Some(tables) = tables {
@@ -109,20 +110,20 @@ pub fn report(
     })
 }
 
-/// What rounds are counted with.
+/// State of counting.
 struct Count {
     tally: Tally,
     kept: Option<Kept>,
     tables: Option<Tables>,
     heats: Heats,
     refused: Vec<Refused>,
-    /// How many came out as they were written, and how many were not run again.
+    /// Number of rounds that gave the recorded result, and number of rounds that were not run again.
     ran: [u64; 2],
     keeps_replays: bool,
 }
 
 impl Count {
-    /// Counts all rounds, each once. How many stood in a file already?
+    /// Counts each round once. Returns the number of repeated rows.
     fn rounds(
         &mut self,
         books: &[Logbook],
@@ -178,7 +179,7 @@ impl Count {
         });
     }
 
-    /// Counts all events, each once. How many stood in a file already?
+    /// Counts each event once. Returns the number of repeated rows.
     fn events(&mut self, books: &[Logbook], visits: &Visits) -> Result<u64, Error> {
         let mut known = HashSet::new();
         let mut repeated = 0;
@@ -267,7 +268,7 @@ fn run_again(
     })
 }
 
-/// Hands over the rounds of all logbooks, each once. How many stood in one already?
+/// Calls `each` once for every round of the logbooks. Returns the number of repeated rows.
 fn each_round(
     books: &[Logbook],
     mut each: impl FnMut(Round) -> Result<(), Error>,
@@ -286,7 +287,7 @@ fn each_round(
     Ok(repeated)
 }
 
-/// Puts the maps of hands to their levels. What stands in the room of each?
+/// Moves the maps of hand positions to their levels. Returns the objects in the room of each level.
 fn draw(figures: &mut Figures, heats: &mut Heats) -> Vec<Vec<Stroke>> {
     let levels = figures.levels.iter_mut();
     let drawn = levels.map(|level| match heats.take(&level.level, &level.level_hash) {

@@ -1,4 +1,4 @@
-//! A round, run again.
+//! Running a recorded round again.
 
 use crate::figures::Reason;
 use crate::room::Grid;
@@ -10,26 +10,26 @@ use tamaire_play::level::LevelError;
 use tamaire_play::link::LinkError;
 use tamaire_play::{Outcome, Playback, Replay, ReplayError};
 
-/// One over the rate of ticks [s].
+/// Duration of a tick [s].
 pub const TICK: f64 = 1.0 / 60.0;
-/// A row may be so much off in time [s]: it was told in single precision.
+/// Tolerance of the playing time in a row, which was stored in single precision [s].
 const SAME_TIME: f64 = 0.05;
 
-/// How a replay went when it was run again.
+/// Result of running a replay again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rerun {
-    /// As it was written, and where it led.
+    /// The replay matched its hashes; its final state.
     Ran(Ran),
-    /// Not as it was written, and why.
+    /// The replay diverged from its hashes; the reason.
     Astray(String),
-    /// It cannot be read, and why.
+    /// The replay cannot be decoded; the reason.
     Unreadable(String),
-    /// It is of other rules or of a level that is another one in this program.
+    /// The replay has other rules or another level than this program; the reason.
     Foreign(String),
 }
 
-/// Where a replay led.
+/// Final state of a replay.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ran {
     level: String,
@@ -39,25 +39,25 @@ pub struct Ran {
     kept: f32,
     inside: f32,
     pieces: usize,
-    /// Whether what was played goes on after its end: only so much of a round is recorded.
+    /// Whether the round went on after its recorded part, whose length is limited.
     is_cut: bool,
-    /// For how many ticks a hand was in a cell of the level's [`Grid`].
+    /// Number of ticks that a hand spent in each cell of the level's [`Grid`].
     pub cells: Vec<(u16, u32)>,
 }
 
 impl Rerun {
-    /// Runs what stands in a row.
+    /// Runs the replay of a row.
     pub fn of(fragment: &str) -> Self {
         let run = || match Replay::of_fragment(fragment) {
             Ok(replay) => run(replay),
             Err(error) => Self::of_error(&error),
         };
-        // What a stranger wrote and no check has thought of is no reason to stop.
+        // A hostile replay may get past all checks and cause a panic, which must not stop the report.
         let result = std::panic::catch_unwind(run);
-        result.unwrap_or_else(|_| Self::Unreadable("it breaks the simulation".into()))
+        result.unwrap_or_else(|_| Self::Unreadable("the replay makes the simulation panic".into()))
     }
 
-    /// Why a row does not count, as its replay was run again so.
+    /// Returns the reason why a row with this result does not count, if it does not.
     pub fn objection(&self, row: &Round) -> Option<(Reason, String)> {
         match self {
             Self::Ran(ran) => ran.difference(row).map(|what| (Reason::Differs, what)),
@@ -114,10 +114,10 @@ fn run(replay: Replay) -> Rerun {
 }
 
 impl Ran {
-    /// What a row says otherwise.
+    /// Returns the first difference between a row and the replay.
     fn difference(&self, row: &Round) -> Option<String> {
         let told = |what: &str, row: String, run: String| {
-            (row != run).then(|| format!("{what}: the row has {row}, the replay {run}"))
+            (row != run).then(|| format!("{what}: {row} in the row, {run} in the replay"))
         };
         let number = |k: f32| format!("{k:.4}");
         let won = self.outcome.as_ref();

@@ -1,20 +1,20 @@
-//! The room of a level as a map: its cells, and what stands in it.
+//! Map of a level's room: its cells and the objects in it.
 
 use fuwafuwa::vector::plus;
 use fuwafuwa::{Dim, Shape, Vector, World};
 use tamaire_play::{AnyRound, Level};
 
-/// So many cells along the longer side of a room.
+/// Number of cells along the longer side of a room.
 const CELLS: f32 = 64.0;
 
-/// The cells of a map.
+/// Grid of a map.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// The axes across and up the map: x and y in the plane; in space, seen from above, x and z.
+    /// Horizontal and vertical axis of the map: x and y in 2D; x and z in 3D, which is seen from above.
     pub axes: [usize; 2],
-    /// Least coordinates along them [m].
+    /// Minimum coordinates along these axes [m].
     pub low: [f32; 2],
-    /// Greatest coordinates along them [m].
+    /// Maximum coordinates along these axes [m].
     pub high: [f32; 2],
     /// Width of a cell [m].
     pub cell: f32,
@@ -22,30 +22,30 @@ pub struct Grid {
     pub counts: [usize; 2],
 }
 
-/// Something in a room, as a line through places of its map.
+/// Object in a room, drawn as a line on its map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
-    /// What it is of.
+    /// Kind of the object.
     pub of: Thing,
-    /// The places [m].
+    /// Points of the line [m].
     pub points: Vec<[f32; 2]>,
-    /// How wide it is [m]; nothing for a hairline.
+    /// Width of the line [m]; 0 for a hairline.
     pub width: f32,
 }
 
-/// What is drawn on a map.
+/// Kind of an object on a map.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Thing {
-    /// What stands still.
+    /// Fixed rigid body.
     Obstacle,
-    /// The basket.
+    /// Basket.
     Basket,
-    /// A body as it begins.
+    /// Soft body in its initial state.
     Body,
 }
 
 impl Grid {
-    /// That of a level.
+    /// Returns the grid of a level.
     pub fn of(level: &Level) -> Self {
         let axes = if level.scene().dim == 2 {
             [0, 1]
@@ -64,7 +64,7 @@ impl Grid {
         }
     }
 
-    /// The cell in which a place is, or the one nearest to it.
+    /// Returns the index of the cell that contains a position, or of the nearest one.
     pub fn cell_at(&self, place: Vector) -> usize {
         let [column, row] = [0, 1].map(|k| {
             let cells = (place[self.axes[k]] - self.low[k]) / self.cell;
@@ -74,7 +74,7 @@ impl Grid {
     }
 }
 
-/// What is in the room of a level as a round begins.
+/// Returns the objects in the room of a level at the start of a round.
 pub fn strokes(level: Level) -> Vec<Stroke> {
     let grid = Grid::of(&level);
     let round = AnyRound::new(level.into());
@@ -114,7 +114,8 @@ fn of_world<D: Dim>(grid: Grid, world: &World<D>) -> Vec<Stroke> {
     fixed.chain(bodies).collect()
 }
 
-/// Walls and floors are the border of a map already.
+/// Returns the outline of a shape. Half-spaces are left out, because walls and floors coincide with the
+/// border of the map.
 fn of_shape(grid: Grid, shape: &Shape, of: Thing) -> Option<Stroke> {
     let on_map = |at: Vector| grid.axes.map(|axis| at[axis]);
     match *shape {
@@ -135,7 +136,7 @@ fn of_shape(grid: Grid, shape: &Shape, of: Thing) -> Option<Stroke> {
                 let own = [0, 1, 2].map(|axis: usize| sign(axis) * half[axis].min(1e6));
                 plus(centre, rotation.apply(own))
             };
-            // In the plane the third axis does not count.
+            // In 2D the third axis is projected away.
             let corners: Vec<Vector> = (0..8).map(corner).collect();
             Some(closed(of, hull(flat(grid, &corners))))
         }
@@ -166,7 +167,8 @@ fn closed(of: Thing, mut points: Vec<[f32; 2]>) -> Stroke {
     }
 }
 
-/// The convex line around some places, from the left to the right below them and back above [Andrew 1979].
+/// Returns the convex hull of points: along the lower side to the right, and back along the upper one [Andrew
+/// 1979].
 fn hull(mut points: Vec<[f32; 2]>) -> Vec<[f32; 2]> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let there = half_hull(points.iter().copied());
@@ -195,7 +197,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_place_has_a_cell_and_every_level_a_map() {
+    fn grid_has_a_cell_for_every_position_and_strokes_for_every_kind() {
         for name in ["classic", "hoop"] {
             let level = Level::open(name).unwrap();
             let grid = Grid::of(&level);
@@ -213,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn the_hull_of_a_square_is_its_corners() {
+    fn hull_of_a_square_is_its_corners() {
         let points = vec![
             [0.0, 0.0],
             [1.0, 1.0],

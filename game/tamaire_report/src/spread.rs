@@ -1,25 +1,25 @@
-//! How numbers are spread.
+//! Quantiles, histograms and confidence intervals.
 
 use crate::figures::{Bin, Times};
 
-/// The bins of times: so many at most, and one for what took longer.
+/// Maximum number of bins; one more holds longer times.
 const MOST_BINS: f64 = 15.0;
-/// How wide a bin may be [s].
+/// Possible widths of a bin [s].
 const WIDTHS: [f64; 8] = [2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 300.0, 1800.0];
 
-/// The least of some numbers that are sorted, such that this share of them is that small or smaller.
+/// Returns the smallest of the sorted numbers such that at least this share of all numbers is not larger.
 pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let place = (share * sorted.len() as f64).ceil() as usize;
     sorted.get(place.saturating_sub(1)).copied()
 }
 
-/// Half of the numbers are that small or smaller, to a thousandth.
+/// Returns the median, rounded to a thousandth. For an even count, the lower of the two middle values.
 pub fn median(mut numbers: Vec<f64>) -> Option<f64> {
     numbers.sort_by(f64::total_cmp);
     quantile(&numbers, 0.5).map(thousandth)
 }
 
-/// How times are spread.
+/// Returns the quantiles and the histogram of times.
 pub fn times(mut seconds: Vec<f64>) -> Times {
     seconds.sort_by(f64::total_cmp);
     let quantiles = [0.1, 0.25, 0.5, 0.75, 0.9].map(|share| quantile(&seconds, share));
@@ -48,12 +48,12 @@ pub fn times(mut seconds: Vec<f64>) -> Times {
     }
 }
 
-/// To a thousandth: a third of a second in single precision has many digits that mean nothing.
+/// Rounds to a thousandth. Further digits of times in single precision are meaningless.
 pub fn thousandth(number: f64) -> f64 {
     (1000.0 * number).round() / 1000.0
 }
 
-/// Between which two shares the true one lies, 19 times of 20, where so many of all were seen to do something [Wilson 1927].
+/// Returns the 95 % confidence interval of a share, if `some` of `all` were counted [Wilson 1927].
 pub fn interval(some: u64, all: u64) -> [f64; 2] {
     const Z: f64 = 1.96;
     let n = all.max(1) as f64;
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn half_are_no_longer_than_the_median() {
+    fn median_is_the_lower_middle_value() {
         assert_eq!(median(vec![]), None);
         assert_eq!(median(vec![3.0]), Some(3.0));
         assert_eq!(median(vec![4.0, 1.0]), Some(1.0));
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn every_time_is_in_a_bin() {
+    fn times_fall_into_exactly_one_bin() {
         for scale in [0.0, 0.01, 1.0, 7.0, 100.0, 1e4, 1e9] {
             let seconds: Vec<f64> = (0..100).map(|k| scale * f64::from(k * k) / 1e4).collect();
             let times = times(seconds.clone());
@@ -92,8 +92,8 @@ mod tests {
     }
 
     #[test]
-    fn a_share_of_few_is_known_badly() {
-        // Ten of twenty, as the tables have it.
+    fn interval_is_wide_for_few_visits() {
+        // Ten of twenty, compared with published tables.
         let [low, high] = interval(10, 20);
         assert!(
             (low - 0.299).abs() < 0.001 && (high - 0.701).abs() < 0.001,

@@ -1,49 +1,49 @@
-//! What became of a visit, from its rounds.
+//! Summary of a visit from its rounds.
 
 use tamaire_play::Route;
 
-/// What is kept of a round until its visit is told.
+/// Values of a round that the summary of its visit needs.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Play {
-    /// The place of its visit.
+    /// Index of the visit.
     pub visit: u32,
-    /// Which of its visit it was.
+    /// Number of the round within the visit, from 1.
     pub number: u32,
-    /// When it began [ms].
+    /// Time at which the round began [ms of UTC].
     pub began_ms: i64,
-    /// How long it was played [s].
+    /// Playing time [s].
     pub seconds: f32,
-    /// How it was won, if it was.
+    /// Route by which the round was won, if it was.
     pub route: Option<Route>,
-    /// The route that was suggested before it.
+    /// Route suggested before the round.
     pub dare: Option<Route>,
 }
 
-/// What became of a visit.
+/// Summary of a visit.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Story {
-    /// Rounds.
+    /// Number of rounds.
     pub rounds: u64,
-    /// Rounds that were won.
+    /// Number of won rounds.
     pub wins: u64,
-    /// The route of the first win.
+    /// Route of the first win.
     pub first: Option<Route>,
-    /// For how long was played up to the first win [s].
+    /// Playing time up to the first win [s].
     pub to_first_win: Option<f64>,
-    /// The route of the next win.
+    /// Route of the second win.
     pub next: Option<Route>,
-    /// Whether a route was suggested between those two wins.
+    /// Whether a route was suggested between these two wins.
     pub is_next_dared: bool,
-    /// Whether a route was suggested at all.
+    /// Whether a route was suggested in any round.
     pub is_dared: bool,
-    /// Whether a round was won as was suggested before it.
+    /// Whether a round was won by the route suggested before it.
     pub is_won_as_dared: bool,
-    /// Whether a round began, by the clock, before an earlier one did.
+    /// Whether a round began, by the clock, before the round preceding it.
     pub is_clock_back: bool,
 }
 
 impl Story {
-    /// The story of all rounds of a visit, in the order of their numbers.
+    /// Returns the summary of all rounds of a visit, which must be sorted by number.
     pub fn of(plays: &[Play]) -> Self {
         let mut story = Self::default();
         let mut played = 0.0;
@@ -74,7 +74,7 @@ impl Story {
         story
     }
 
-    /// Whether the next win went another way than the first.
+    /// Returns whether the second win took another route than the first.
     pub fn is_switched(&self) -> bool {
         self.next.is_some() && self.next != self.first
     }

@@ -1,4 +1,4 @@
-//! The tables for analysts: what each column is stands in `docs/report.md`.
+//! CSV tables for analysis. `docs/report.md` describes their columns.
 
 use crate::Error;
 use crate::csv::Row;
@@ -46,7 +46,7 @@ const ROUNDS: [&str; 18] = [
 ];
 const EVENTS: [&str; 6] = ["id", "stand", "at", "at_utc_ms", "kind", "text"];
 
-/// `visits.csv`, `rounds.csv` and `events.csv`, as they are written.
+/// `visits.csv`, `rounds.csv` and `events.csv`, being written.
 #[derive(Debug)]
 pub struct Tables {
     visits: Draft,
@@ -55,7 +55,7 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// Begins them.
+    /// Starts the tables with their header rows.
     ///
     /// # Errors
     /// [`Error::Unwritable`].
@@ -137,7 +137,7 @@ impl Tables {
         self.events.write(row.end().bytes())
     }
 
-    /// They are whole.
+    /// Completes the tables.
     ///
     /// # Errors
     /// [`Error::Unwritable`].

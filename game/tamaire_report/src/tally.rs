@@ -1,4 +1,4 @@
-//! Rows in, figures out. Of a row no more is kept than its visit asks for.
+//! From rows to figures. Only the values that the summary of a visit needs are kept of a row.
 
 use crate::day::hour;
 use crate::figures::{Best, Count, Figures, Hour, LevelFigures, Pieces, Totals, Wins};
@@ -11,17 +11,17 @@ use std::collections::{BTreeMap, HashMap};
 use tamaire_logbook::{End, Event, Round};
 use tamaire_play::Route;
 
-/// The last place of [`Figures::rounds_per_visit`].
+/// Last index of [`Figures::rounds_per_visit`].
 const MOST_ROUNDS: usize = 20;
-/// With more pieces than this [`Figures::pieces`] has one place for all.
+/// Number of pieces above which [`Figures::pieces`] has a single entry.
 const MOST_PIECES: u32 = 128;
-/// A replay that is longer than this is none of a fast win [bytes].
+/// Maximum length of a stored replay [bytes]. Replays of fast wins are shorter.
 const LONG_REPLAY: usize = 1 << 16;
 
-/// By what a level is known: its name and its hash.
+/// Key of a level: its name and its hash.
 pub type LevelKey = (String, u64);
 
-/// What was counted so far.
+/// Running counts.
 #[derive(Debug)]
 pub struct Tally {
     figures: Figures,
@@ -38,7 +38,7 @@ struct LevelTally {
     won_in: Vec<f32>,
 }
 
-/// Totals, and what their median is made of.
+/// Totals, and the times for their median.
 #[derive(Default)]
 struct Sum {
     totals: Totals,
@@ -46,7 +46,7 @@ struct Sum {
 }
 
 impl Tally {
-    /// Nothing.
+    /// Returns a tally without counts.
     pub fn new() -> Self {
         let pieces = |k: u32| Pieces {
             from: if k == 0 { 1 } else { (1 << (k - 1)) + 1 },
@@ -78,7 +78,7 @@ impl Tally {
         }
     }
 
-    /// Counts a round of the visit with this place and note.
+    /// Counts a round of the visit with this index and note.
     pub fn round(&mut self, round: &Round, (place, visit): (u32, &Note), keeps_replays: bool) {
         let route = round.route;
         self.plays.push(Play {
@@ -95,7 +95,9 @@ impl Tally {
         figures.tries[(round.number.max(1) as usize - 1).min(3)].add(route);
         let is_in = |bin: &&mut Pieces| bin.to.is_none_or(|to| round.pieces <= to);
         let bin = figures.pieces.iter_mut().find(is_in);
-        bin.expect("the last takes all").rounds.add(route);
+        bin.expect("the last bin has no upper limit")
+            .rounds
+            .add(route);
         *self.ends.entry(round.end.text()).or_default() += 1;
         if let Some(dare) = round.dare {
             let dares = &mut figures.dares;
@@ -117,10 +119,11 @@ impl Tally {
         }
     }
 
-    /// The figures, and the replays of [`Figures::best`]. Tells the story of each visit that counts on the way.
+    /// Returns the figures and the replays of [`Figures::best`]. Calls `each` with the summary of every
+    /// counted visit.
     ///
     /// # Errors
-    /// What the function returns.
+    /// The first error of `each`.
     pub fn finish<E>(
         mut self,
         visits: &Visits,
@@ -217,7 +220,7 @@ impl Tally {
         self.best.insert((day, route), (best, replay));
     }
 
-    /// Counts what a visit as a whole is counted for.
+    /// Counts a visit as a whole.
     fn tell(&mut self, note: &Note, plays: &[Play], story: &Story) {
         let figures = &mut self.figures;
         figures.hours[hour(note.began)].visits += 1;
@@ -277,7 +280,7 @@ impl Sum {
     }
 }
 
-/// The most frequent first.
+/// Returns the counts, largest first.
 fn counts(of: BTreeMap<impl Into<String>, u64>) -> Vec<Count> {
     let named = |(name, count): (_, u64)| Count {
         name: Into::into(name),

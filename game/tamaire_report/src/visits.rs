@@ -1,43 +1,43 @@
-//! The visits that were met, each once, whichever files it stands in.
+//! The visits of all logbooks, each once, even if several files contain it.
 
 use crate::{Day, Options};
 use std::collections::HashMap;
 use tamaire_logbook::{Id, Moment, Round, Visit};
 
-/// What is kept of a visit while rounds are counted.
+/// Values of a visit that are kept in memory while rounds are counted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Note {
-    /// By what it is known.
+    /// Id of the visit.
     pub id: Id,
-    /// The number of its stand.
+    /// Number of the stand in [`Visits::stands`].
     pub stand: u32,
-    /// The number of its language.
+    /// Number of the language in [`Visits::languages`].
     pub language: u32,
-    /// When it began.
+    /// Time at which the visit began.
     pub began: Moment,
-    /// When it ended, if that is known.
+    /// Time at which the visit ended, if known.
     pub ended: Option<Moment>,
-    /// Whether it is of the days that were asked for.
+    /// Whether the visit began on one of the selected days.
     pub counts: bool,
 }
 
-/// The visits that were met.
+/// All visits read.
 #[derive(Debug, Default)]
 pub struct Visits {
-    /// In the order in which they were met.
+    /// Visits in the order of reading.
     pub notes: Vec<Note>,
-    /// The names of stands, by number.
+    /// Names of stands by number.
     pub stands: Names,
-    /// Languages, by number.
+    /// Languages by number.
     pub languages: Names,
-    /// Rows that were met before.
+    /// Number of repeated rows.
     pub repeated: u64,
     places: HashMap<Id, u32>,
     from: Option<Day>,
     to: Option<Day>,
 }
 
-/// Texts by number.
+/// Interned texts.
 #[derive(Debug, Default)]
 pub struct Names {
     texts: Vec<String>,
@@ -45,7 +45,7 @@ pub struct Names {
 }
 
 impl Visits {
-    /// Of the days that options ask for.
+    /// Returns an empty set with the selected days of the options.
     pub fn new(options: &Options) -> Self {
         Self {
             from: options.from,
@@ -54,8 +54,8 @@ impl Visits {
         }
     }
 
-    /// Takes a row. Of one that stands in several files the first counts, but for one without a language: that was brought
-    /// along by a round, and another tells when it began. How it ended is taken from whichever tells it first.
+    /// Adds a row. Of repeated rows the first counts, unless its language is empty: a round created that row,
+    /// and another row has the true beginning. The end is taken from the first row that has one.
     pub fn add(&mut self, visit: &Visit) {
         let language = self.languages.number(&visit.language);
         let Some(&place) = self.places.get(&visit.id) else {
@@ -73,8 +73,8 @@ impl Visits {
         }
     }
 
-    /// Where the visit of a round stands among those met, if it counts. One without a row began with the first of its rounds
-    /// that is met.
+    /// Returns the index of a round's visit, if the visit counts. A visit without a row is created, beginning
+    /// with the first of its rounds that is read.
     pub fn of(&mut self, round: &Round) -> Option<u32> {
         let place = match self.places.get(&round.visit) {
             Some(&place) => place,
@@ -86,7 +86,7 @@ impl Visits {
         self.notes[place as usize].counts.then_some(place)
     }
 
-    /// Whether a moment is of the days that were asked for.
+    /// Returns whether a moment is on one of the selected days.
     pub fn is_asked(&self, moment: Moment) -> bool {
         let day = Day::of(moment);
         self.from.is_none_or(|from| from <= day) && self.to.is_none_or(|to| day <= to)
@@ -117,7 +117,7 @@ impl Visits {
 }
 
 impl Names {
-    /// The number of a text.
+    /// Returns the number of a text; adds the text if it is new.
     pub fn number(&mut self, text: &str) -> u32 {
         if let Some(&number) = self.numbers.get(text) {
             return number;
@@ -128,7 +128,7 @@ impl Names {
         number
     }
 
-    /// The text of a number that [`Names::number`] gave.
+    /// Returns the text with a number from [`Names::number`].
     pub fn text(&self, number: u32) -> &str {
         &self.texts[number as usize]
     }

@@ -1,4 +1,4 @@
-//! What the page says, in each language.
+//! Texts of the page in each language.
 
 mod en;
 mod ja;
@@ -10,132 +10,132 @@ use crate::figures::{Basis, Dares, Figures, Reason, Switching};
 use crate::reading::{Strategies, Unexplained};
 use tamaire_play::Route;
 
-/// What the page says.
+/// Texts of the page.
 pub struct Words {
-    /// The code of the language.
+    /// Code of the language.
     pub code: &'static str,
-    /// The name of the page.
+    /// Title of the page.
     pub title: &'static str,
-    /// From when to when; nothing where there was no visit.
+    /// Range of days; empty without a visit.
     pub days: fn(&Figures) -> String,
-    /// Where nothing was found.
+    /// Text of a page without a visit.
     pub nothing: &'static str,
-    /// Visits, rounds, the share that wins, the median time to the first win.
+    /// Labels of the four numbers: visits, rounds, share that won, median time to the first win.
     pub numbers: [&'static str; 4],
-    /// So many of so many, below a number.
+    /// Text below a share: `some` of `all`.
     pub of: fn(u64, u64) -> String,
-    /// In place of a number that there is not.
+    /// Replacement for a missing number.
     pub none: &'static str,
-    /// A time [s].
+    /// Formats a time [s].
     pub time: fn(f64) -> String,
-    /// Squeezed, shaved, some of both, not won.
+    /// Results of a round: squeezed, shaved, a mix of both, not won.
     pub parts: [&'static str; 4],
-    /// The name of a route.
+    /// Name of a route.
     pub route: fn(Route) -> &'static str,
-    /// What rounds are called as the first, second, third, and later of a visit.
+    /// Names of the first, second, third, and later rounds of a visit.
     pub tries: [&'static str; 4],
-    /// So many rounds.
+    /// Formats a number of rounds.
     pub rounds: fn(u64) -> String,
-    /// The reading of 2004.
+    /// Comparison with 2004.
     pub reading: Reading,
-    /// When people came: its title, its axes, its series and its caption.
+    /// Plot of visits and rounds by hour.
     pub hours: Plot<fn(&Figures) -> String>,
-    /// Visits and rounds, as they stand in a legend.
+    /// Legend of that plot: visits, rounds.
     pub hour_series: [&'static str; 2],
-    /// How rounds ended, by level.
+    /// Plot of results by level.
     pub by_level: Plot<&'static str>,
-    /// How rounds ended, by try.
+    /// Plot of results by number of the round within its visit.
     pub by_try: Plot<&'static str>,
-    /// How long until the first win.
+    /// Plot of the time to the first win.
     pub first_win: Plot<fn(&Figures) -> String>,
-    /// What stands at the median.
+    /// Label of the median in that plot.
     pub median: fn(f64) -> String,
-    /// How many rounds visits had.
+    /// Plot of rounds per visit.
     pub per_visit: Plot<fn(&Figures) -> String>,
-    /// First win and next win.
+    /// Plot of the routes of the first and the second win.
     pub switching: Plot<fn(&Switching) -> String>,
-    /// What comes before the name of a route and the number of visits.
+    /// Label of a bar: route of the first win and number of visits.
     pub after: fn(Route, u64) -> String,
-    /// The part that did not win again.
+    /// Name of the part that did not win again.
     pub no_more: &'static str,
-    /// What came of dares.
+    /// Plot of rounds with a suggestion from the game.
     pub dares: Plot<fn(&Dares) -> String>,
-    /// Won as dared, won otherwise, not won.
+    /// Parts of that plot: won as suggested, won another way, not won.
     pub dare_parts: [&'static str; 3],
-    /// How many pieces there were.
+    /// Plot of the number of pieces.
     pub pieces: Plot<fn(&Figures) -> String>,
-    /// Where hands were; the axes are across and up in the plane. The caption tells how many rounds, for how long a hand was in
-    /// the darkest cell in each [s], and how wide a cell is [cm].
+    /// Map of the hand positions, with the axes in 2D. The arguments of the caption are the number of rounds,
+    /// the time per round in the darkest cell [s] and the width of a cell [cm].
     pub hands: Plot<fn(u64, f64, f64) -> String>,
-    /// The vertical axis of a map that is seen from above, and what is said of it then.
+    /// Vertical axis of a map seen from above, and the sentence added to its caption.
     pub from_above: [&'static str; 2],
-    /// Why there is no map.
+    /// Explanation for missing maps.
     pub no_hands: &'static str,
-    /// The best.
+    /// Table of the best rounds.
     pub best: Plot<&'static str>,
-    /// The columns of its table: day, route, level, time, stand.
+    /// Columns of that table: day, route, level, time, stand.
     pub best_columns: [&'static str; 5],
-    /// What is said where no clip was made of a best round.
+    /// Text before the id of a round without a clip and the reason.
     pub no_clip: &'static str,
-    /// Tables: stands, days, languages, events.
+    /// Titles of the tables: stands, days, languages, events.
     pub tables: [&'static str; 4],
-    /// The columns of tables: visits, rounds, share that won, median.
+    /// Columns of the tables: visits, rounds, share that won, median.
     pub columns: [&'static str; 4],
-    /// What a table leaves out.
+    /// Note on the number of rows left out of a table.
     pub more: fn(usize) -> String,
-    /// A language by its code.
+    /// Name of a language by its code.
     pub language: fn(&str) -> Option<&'static str>,
-    /// An event by its kind.
+    /// Name of an event by its kind.
     pub event: fn(&str) -> Option<&'static str>,
-    /// What the figures rest on: title and sentences.
+    /// Section on the data: title and sentences.
     pub basis: (&'static str, fn(&Basis) -> Vec<String>),
-    /// What comes before the list of rounds that do not count.
+    /// Text before the list of rounds that do not count.
     pub refused: fn(usize) -> String,
-    /// Why a round does not count.
+    /// Name of a reason why a round does not count.
     pub reason: fn(Reason) -> &'static str,
-    /// What the last line says.
+    /// Footer.
     pub foot: &'static str,
 }
 
-/// A plot: its title, its axes with their units, and its caption.
+/// Texts of a plot.
 pub struct Plot<C> {
-    /// Its title.
+    /// Title.
     pub title: &'static str,
-    /// The horizontal axis and the vertical one.
+    /// Horizontal and vertical axis with their units.
     pub axes: [&'static str; 2],
-    /// What is seen.
+    /// Caption.
     pub caption: C,
 }
 
-/// The reading of 2004.
+/// Texts of the comparison with 2004.
 pub struct Reading {
-    /// Its title.
+    /// Title.
     pub title: &'static str,
-    /// What was seen in 2004.
+    /// Observations of 2004.
     pub then: &'static str,
-    /// Which strategies appeared.
+    /// Sentence on the strategies that appeared.
     pub strategies: fn(Strategies, &Figures) -> String,
-    /// Whether people won without an explanation.
+    /// Sentence on whether visitors won without an explanation.
     pub unexplained: fn(Unexplained, &Figures) -> String,
-    /// Whether who had won tried another way; whether there are enough to tell.
+    /// Sentence on whether winners tried another way; the first argument tells whether the data suffice.
     pub switching: fn(bool, &Figures) -> String,
-    /// What the logbooks do not know.
+    /// Limits of the logbooks.
     pub unknown: &'static str,
 }
 
-/// A share in percent; 0 where there is nothing.
+/// Formats a share in percent; 0 if `all` is 0.
 fn percent(some: u64, all: u64) -> String {
     format!("{:.0}", 100.0 * some as f64 / all.max(1) as f64)
 }
 
-/// The share that wins in percent, and between which numbers it is 19 times of 20.
+/// Formats a share and its 95 % confidence interval in percent: share, lower limit, upper limit.
 fn sure(some: u64, all: u64) -> [String; 3] {
     let [low, high] = crate::spread::interval(some, all);
     let percents = [some as f64 / all.max(1) as f64, low, high];
     percents.map(|share| format!("{:.0}", 100.0 * share))
 }
 
-/// The hour in which most visits began.
+/// Returns the hour in which most visits began, and their number.
 fn busiest(figures: &Figures) -> Option<(usize, u64)> {
     let hours = figures.hours.iter().enumerate();
     let most = hours.rev().max_by_key(|(_, hour)| hour.visits);
@@ -143,7 +143,7 @@ fn busiest(figures: &Figures) -> Option<(usize, u64)> {
         .filter(|(_, visits)| *visits > 0)
 }
 
-/// Rounds that ended in two pieces, and in more than 128.
+/// Returns the rounds that ended in two pieces, and in more than 128.
 fn halves_and_dust(figures: &Figures) -> [u64; 2] {
     let of = |from: u32| {
         let bin = figures.pieces.iter().find(|bin| bin.from == from);
@@ -152,7 +152,7 @@ fn halves_and_dust(figures: &Figures) -> [u64; 2] {
     [of(2), of(129)]
 }
 
-/// Visits with one round alone, and with several.
+/// Returns the visits with exactly one round, and with several.
 fn once_and_often(figures: &Figures) -> [u64; 2] {
     let often = figures.rounds_per_visit.iter().skip(2).sum();
     [figures.rounds_per_visit.get(1).copied().unwrap_or(0), often]

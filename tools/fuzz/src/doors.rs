@@ -1,4 +1,4 @@
-//! What becomes of bytes behind each door.
+//! Handling of untrusted bytes by each door.
 
 use crate::seeds::{CAT, PUDDING, SNAPSHOT_HEADER};
 use crate::tick::{FEW_VOXELS, play, step};
@@ -20,8 +20,8 @@ pub fn scene(bytes: &[u8]) -> bool {
     let Some(mut scene) = text(bytes).and_then(|text| Scene::read("a.toml", text, &[]).ok()) else {
         return false;
     };
-    let written = toml::to_string(&scene).expect("a scene that was read can be written");
-    let again = Scene::read("a.toml", &written, &[]).expect("and read again");
+    let written = toml::to_string(&scene).expect("a scene that was read can be serialized");
+    let again = Scene::read("a.toml", &written, &[]).expect("what was written can be read");
     assert_eq!(toml::to_string(&again).ok(), Some(written));
     if scene.embed_files(&fetch).is_err() {
         return false;
@@ -36,8 +36,10 @@ pub fn level(bytes: &[u8]) -> bool {
     let Ok(level) = Level::read("a.toml", bytes, &fetch) else {
         return false;
     };
-    let text = level.text_to_keep().expect("a short one is not too long");
-    let again = Level::read_kept("a.toml", text.as_bytes()).expect("it can be read again");
+    let text = level
+        .text_to_keep()
+        .expect("a short level is not too long to keep");
+    let again = Level::read_kept("a.toml", text.as_bytes()).expect("what was stored can be read");
     assert_eq!(again.text_to_keep().ok(), Some(text));
     begin(level);
     true
@@ -91,12 +93,13 @@ pub fn replay(bytes: &[u8]) -> bool {
         return false;
     };
     let text = replay.text();
-    let again = Replay::read(&text).expect("what was read can be read again");
+    let again = Replay::read(&text).expect("the text of a replay can be read");
     assert_eq!(again.text(), text);
     watch(replay)
 }
 
-/// The bytes are the letter of what is sent and what follows the checksum, which keeps out accidents, not strangers.
+/// The bytes are the letter for the kind and the payload. The checksum is added here, because it detects
+/// accidental changes only.
 pub fn link(bytes: &[u8]) -> bool {
     let Some((&kind, sent)) = bytes.split_first() else {
         return false;
@@ -107,11 +110,11 @@ pub fn link(bytes: &[u8]) -> bool {
         return false;
     };
     match written(&read) {
-        // What a stranger left out of the text of a scene stands in it now.
+        // The text of a scene has default values written out, which may make it too long.
         Err(LinkError::TooLong { .. } | LinkError::Level(_)) => {}
         again => {
-            let again = again.expect("what was read can be written again");
-            let read = Link::read(&again).expect("and read again");
+            let again = again.expect("a link that was read can be written");
+            let read = Link::read(&again).expect("what was written can be read");
             assert_eq!(written(&read).ok(), Some(again));
         }
     }
@@ -129,8 +132,10 @@ pub fn recording(bytes: &[u8]) -> bool {
     let Some(mut recording) = text.and_then(|text| Recording::read("a.toml", text).ok()) else {
         return false;
     };
-    let written = recording.text().expect("what was read is not too long");
-    Recording::read("a.toml", &written).expect("it can be read again");
+    let written = recording
+        .text()
+        .expect("a recording that was read is not too long");
+    Recording::read("a.toml", &written).expect("what was stored can be read");
     recording.goals.truncate(2);
     match recording.scene.dim {
         2 => play::<Dim2>(&recording.scene) && recording.replay::<Dim2>(|_| {}).is_ok(),
@@ -138,13 +143,14 @@ pub fn recording(bytes: &[u8]) -> bool {
     }
 }
 
-/// The bytes are what is deflated in a recording of a procedure: no noise would ever find its checksum.
+/// The bytes are the inflated content of a procedure's recording: noise would never match its checksum.
 pub fn procedure(bytes: &[u8]) -> bool {
     let Ok(recording) = Procedure::read_inside(bytes) else {
         return false;
     };
-    let again = Procedure::read(&recording.bytes()).expect("what was read can be written and read");
-    // A number that is none is not like itself.
+    let again = Procedure::read(&recording.bytes())
+        .expect("a recording that was read can be written and read");
+    // Compared as bytes, because NaN is not equal to itself.
     assert_eq!(again.inside(), recording.inside());
     if recording.case.grid.voxels().count() > FEW_VOXELS {
         return false;
@@ -159,7 +165,8 @@ pub fn procedure(bytes: &[u8]) -> bool {
     is_as_it_was
 }
 
-/// The bytes are the dimension and what follows the header: a checksum keeps out accidents, not strangers.
+/// The bytes are the dimension and the state after the header. The checksum is added here, because it detects
+/// accidental changes only.
 pub fn snapshot(bytes: &[u8]) -> bool {
     let Some((&dim, state)) = bytes.split_first() else {
         return false;
@@ -181,7 +188,7 @@ fn written(link: &Link) -> Result<String, LinkError> {
     }
 }
 
-/// Plays a tick of a level.
+/// Plays a tick of a small level.
 fn begin(level: Level) {
     if is_small(&level) {
         let mut round = AnyRound::new(Arc::new(level));
@@ -189,7 +196,7 @@ fn begin(level: Level) {
     }
 }
 
-/// Plays the beginning of a round; whether it goes as it says.
+/// Plays the first ticks of a replay. Returns whether they match it.
 fn watch(replay: Replay) -> bool {
     let Ok(mut playback) = Playback::new(Arc::new(replay)) else {
         return false;
@@ -206,7 +213,7 @@ fn text(bytes: &[u8]) -> Option<&str> {
     std::str::from_utf8(bytes).ok()
 }
 
-/// What scenes may name.
+/// Loads the files that scenes may name.
 fn fetch(name: &str) -> io::Result<Vec<u8>> {
     match name {
         "cat.png" => Ok(CAT.to_vec()),
@@ -221,14 +228,14 @@ fn is_small(level: &Level) -> bool {
     bodies.len() <= 4 && bodies.iter().all(|body| across(body) <= 12)
 }
 
-/// Puts a shape into a world and plays a tick.
+/// Adds a body of this shape to a world and plays a tick.
 fn drop_in<D: Dim>(grid: VoxelGrid<D>) {
     if grid.solid_count() > FEW_VOXELS {
         return;
     }
-    let mut world = World::new(WorldConfig::default()).expect("the usual settings are good");
-    if let Ok(body) = SoftBody::new(grid, &[Material::default(); 255]) {
-        world.add_soft_body(body);
+    let mut world = World::new(Settings::default()).expect("the default settings are valid");
+    if let Ok(body) = Body::new(grid, &[Material::default(); 255]) {
+        world.add_body(body);
         step(&mut world);
     }
 }
@@ -237,7 +244,8 @@ fn go_on<D: Dim>(bytes: &[u8]) -> bool {
     let Ok(mut world) = snapshot::load::<D>(bytes) else {
         return false;
     };
-    let again = snapshot::load::<D>(&snapshot::save(&world)).expect("it can be loaded again");
+    let again =
+        snapshot::load::<D>(&snapshot::save(&world)).expect("a saved snapshot can be loaded");
     assert_eq!(again.hash(), world.hash());
     let voxels: usize = world
         .soft_bodies()

@@ -1,9 +1,9 @@
-//! What strangers hand over. A [`Door`] takes bytes as a stranger would bring them, all the way: they are read, checked,
-//! and where they make a world it plays a tick. Nothing may panic or take long, and what was taken must survive being
-//! written and read again.
+//! Robustness tests with untrusted input. A [`Door`] is an entry point for bytes from outside. It reads and
+//! checks them, and if they make a world, plays a tick. It must neither panic nor take long, and accepted
+//! input must survive being written and read again.
 //!
-//! Tests send some noise through each door; `cargo xtask fuzz` sends millions of inputs that look for new ways through
-//! the program. Both begin with the same seeds, and with what was once found to go wrong (`found`).
+//! Tests send some noise through each door. `cargo xtask fuzz` sends millions of inputs and looks for new
+//! paths through the program. Both start with the same seeds and with earlier failures (folder `found`).
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
@@ -13,18 +13,18 @@ mod notes;
 mod seeds;
 mod tick;
 
-/// A way in for bytes.
+/// An entry point for untrusted bytes.
 #[derive(Copy, Clone)]
 pub struct Door {
-    /// What comes in by it.
+    /// Name of the input.
     pub name: &'static str,
-    /// Good bytes to begin with, small enough that thousands of them are quick.
+    /// Valid input to start from, small enough that thousands of variants are fast.
     pub seeds: fn() -> Vec<Vec<u8>>,
-    /// Brings bytes in; whether they were taken.
+    /// Processes bytes. Returns whether they were accepted.
     pub enter: fn(&[u8]) -> bool,
 }
 
-/// All of them.
+/// All doors.
 pub const DOORS: &[Door] = &[
     Door {
         name: "scene",
@@ -89,7 +89,7 @@ pub const DOORS: &[Door] = &[
 ];
 
 impl Door {
-    /// The door of this name.
+    /// Returns the door of this name.
     pub fn named(name: &str) -> Option<&'static Self> {
         DOORS.iter().find(|door| door.name == name)
     }

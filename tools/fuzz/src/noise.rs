@@ -1,9 +1,9 @@
-//! Damage to good bytes: the same every time.
+//! Reproducible damage to valid bytes.
 
 use fastrand::Rng;
 use std::collections::BTreeSet;
 
-/// What is written where a number was.
+/// Replacements for numbers.
 const NUMBERS: [&str; 14] = [
     "0",
     "-1",
@@ -21,7 +21,7 @@ const NUMBERS: [&str; 14] = [
     "0.0",
 ];
 
-/// Makes bad bytes of good ones.
+/// Generator of damaged bytes.
 pub struct Noise {
     rng: Rng,
     seeds: Vec<Vec<u8>>,
@@ -29,14 +29,14 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// Noise on these bytes.
+    /// Creates a generator from valid bytes and a seed for the random numbers.
     pub fn of(seeds: Vec<Vec<u8>>, number: u64) -> Self {
         let words = words(&seeds).into_iter().map(Vec::from).collect();
         let rng = Rng::with_seed(number);
         Self { rng, seeds, words }
     }
 
-    /// Bytes with one to four things changed.
+    /// Returns bytes with one to four changes.
     pub fn bytes(&mut self) -> Vec<u8> {
         let mut bytes = self.any_seed();
         for _ in 0..self.rng.usize(1..=4) {
@@ -82,7 +82,7 @@ impl Noise {
         }
     }
 
-    /// Writes another number in place of the next one.
+    /// Replaces the next number.
     fn replace_number(&mut self, bytes: &mut Vec<u8>, at: usize) {
         let is_part = |byte: &u8| byte.is_ascii_digit() || b".-".contains(byte);
         let Some(start) = bytes[at..].iter().position(u8::is_ascii_digit) else {
@@ -96,7 +96,7 @@ impl Noise {
     }
 }
 
-/// The words that good texts are made of.
+/// Returns the words that occur in valid texts, and some syntax of TOML.
 pub fn words(seeds: &[Vec<u8>]) -> BTreeSet<&[u8]> {
     let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || b"_-".contains(byte);
     let words = seeds

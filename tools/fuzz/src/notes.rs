@@ -1,4 +1,4 @@
-//! What the game itself writes down, and somebody may have changed.
+//! Files that the game itself writes, and which may have been edited.
 
 use crate::seeds::small_levels;
 use tamaire::records::Records;

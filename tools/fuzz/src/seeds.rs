@@ -1,4 +1,4 @@
-//! Good bytes for each door, and small: what is large is tested where it is read.
+//! Small valid input for each door. Large input is tested in the crate that reads it.
 
 use base64::Engine;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
@@ -21,16 +21,16 @@ use tamaire_play::{AnyRound, InputFrame, Level, Replay};
 pub const CAT: &[u8] = include_bytes!("../../../game/tamaire_play/levels/cat.png");
 pub const PUDDING: &[u8] = include_bytes!("../../../game/tamaire_play/levels/pudding.vox");
 
-/// The four letters and the number of the format.
+/// Magic number and version of a snapshot.
 pub const SNAPSHOT_HEADER: [u8; 8] = {
     let [a, b, c, d] = snapshot::VERSION.to_le_bytes();
     [b'f', b'u', b'w', b'a', a, b, c, d]
 };
 
-/// A scene with what those that come along lack.
+/// A scene with features that the built-in scenes lack.
 const RICH: &str = include_str!("rich.toml");
 
-/// Voxels across.
+/// Number of voxels across the small bodies.
 const FEW: usize = 8;
 
 pub fn scenes() -> Vec<Vec<u8>> {
@@ -70,8 +70,10 @@ pub fn scans() -> Vec<Vec<u8>> {
     let plain = [scan(false), scan(true)];
     let zipped = plain.each_ref().map(|bytes| {
         let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
-        encoder.write_all(bytes).expect("a vector takes all");
-        encoder.finish().expect("a vector takes all")
+        encoder
+            .write_all(bytes)
+            .expect("writing to a vector cannot fail");
+        encoder.finish().expect("writing to a vector cannot fail")
     });
     plain.into_iter().chain(zipped).collect()
 }
@@ -86,14 +88,14 @@ pub fn links() -> Vec<Vec<u8>> {
     let rounds = small_rounds().into_iter().map(|round| round.link());
     levels
         .chain(rounds)
-        .map(|link| sent(&link.expect("it is short")))
+        .map(|link| sent(&link.expect("a short link")))
         .collect()
 }
 
-/// What [`crate::DOORS`] takes of a link.
+/// Returns the part of a link that the door takes: kind and payload.
 fn sent(link: &str) -> Vec<u8> {
     let bytes = BASE64.decode(&link[2..link.len() - 1]);
-    let bytes = bytes.expect("a link is made of base64url");
+    let bytes = bytes.expect("a link consists of base64url");
     [&link.as_bytes()[..1], &bytes[4..]].concat()
 }
 
@@ -120,24 +122,24 @@ pub fn recordings() -> Vec<Vec<u8>> {
         2 => Recording::of::<Dim2>(scene, 2, |_| {}),
         _ => Recording::of::<Dim3>(scene, 2, |_| {}),
     };
-    let text = |scene| recorded(&scene).expect("it can be built").text();
+    let text = |scene| recorded(&scene).expect("a small scene can be built").text();
     let texts = small_scenes().into_iter().map(text);
     texts
-        .map(|text| text.expect("it is short").into_bytes())
+        .map(|text| text.expect("a short recording").into_bytes())
         .collect()
 }
 
 pub fn procedures() -> Vec<Vec<u8>> {
-    let case = Arc::new(phantom::case(8).expect("the engine takes it"));
+    let case = Arc::new(phantom::case(8).expect("the phantom is a valid body"));
     let inside = |tool: Tool| {
-        let mut procedure = Procedure::new(case.clone()).expect("it can be laid on a table");
+        let mut procedure = Procedure::new(case.clone()).expect("the phantom can be operated on");
         for tick in 0..3 {
             let at = [0.0, 0.06 - 0.01 * tick as f32, 0.0];
             let input = Input {
                 grips: tick > 1,
                 ..Input::default().at(tool, at, Rotation::about([0.0, 1.0, 0.0], 0.1))
             };
-            procedure.step(input).expect("it is within the room");
+            procedure.step(input).expect("the tool is within the room");
         }
         fuwafuwa_surgery::record::Recording::of(&procedure).inside()
     };
@@ -154,12 +156,13 @@ pub fn snapshots() -> Vec<Vec<u8>> {
     scenes.map(saved).chain(tied).collect()
 }
 
-/// The same of a world with what scenes have none of: things that fall, sensors, joints.
+/// Returns the snapshot of a world with features that scenes lack: dynamic rigid bodies, sensors, joints, a
+/// knife.
 fn tied<D: Dim>() -> Vec<u8> {
-    let mut world = World::<D>::new(WorldConfig::default()).expect("the usual settings are good");
-    let ball = VoxelGrid::ball(FEW, 1.0).expect("it is small");
-    let ball = SoftBody::new(ball, &[Material::default()]).expect("it has its material");
-    let body = world.add_soft_body(ball);
+    let mut world = World::<D>::new(Settings::default()).expect("the default settings are valid");
+    let ball = VoxelGrid::ball(FEW, 1.0).expect("a small ball is a valid grid");
+    let ball = Body::new(ball, &[Material::default()]).expect("the material is given");
+    let body = world.add_body(ball);
     let cube = |height: f32| Shape::Box {
         centre: [0.5, height, 0.5],
         half: [0.2; 3],
@@ -167,9 +170,9 @@ fn tied<D: Dim>() -> Vec<u8> {
     let turned = Rotation::about([1.0, 2.0, 3.0], 0.4);
     let mut gate = RigidBody::fixed(cube(-0.5), 0.5).rotated(turned);
     gate.is_sensor = true;
-    world.add_rigid_body(gate).expect("it can be");
-    let free = RigidBody::dynamic(cube(1.3), 1.0).rotated(turned);
-    let rigid = world.add_rigid_body(free).expect("it can be");
+    world.add_rigid(gate).expect("a valid rigid body");
+    let free = Rigid::free(cube(1.3), 1.0).rotated(turned);
+    let rigid = world.add_rigid(free).expect("a valid rigid body");
     let ends = [
         JointAnchor::Soft {
             body,
@@ -190,69 +193,67 @@ fn tied<D: Dim>() -> Vec<u8> {
     let rope = JointKind::Rope { length: 0.8 };
     for (first, second, tie) in [(0, 1, JointKind::Pin), (1, 2, spring), (0, 2, rope)] {
         let joint = Joint::new([ends[first], ends[second]], tie);
-        world.add_joint(joint).expect("its ends are there");
+        world.add_joint(joint).expect("both anchors exist");
     }
     let mut holder = RigidBody::coupled_ball([0.5, 0.9, 0.5], 0.1);
     holder.is_sensor = true;
-    let holder = world.add_rigid_body(holder).expect("it can be");
+    let holder = world.add_rigid(holder).expect("a valid rigid body");
     let edge = [[0.0, 0.0, -0.3], [0.0, 0.0, 0.3]];
     let knife = Knife::new(holder, edge, [0.0, -1.0, 0.0]);
-    world.add_knife(knife).expect("it can be held");
+    world.add_knife(knife).expect("the holder exists");
     let below = [0.5, 0.5, 0.5];
-    world
-        .set_target_position(holder, below)
-        .expect("it is near");
+    world.set_goal(holder, below).expect("the target is near");
     for _ in 0..5 {
         world.step();
     }
     state_of(&world)
 }
 
-/// The scenes that come along, with small bodies.
+/// Returns the built-in scenes with small bodies.
 fn small_scenes() -> Vec<Scene> {
     let small = |name: &str| {
         let mut changes = vec![format!("body.n={FEW}"), "seconds=0.1".into()];
         if name == "diced" {
             changes.push("body.diced=0.5".into());
         }
-        Scene::open(name, &changes).expect("it comes along")
+        Scene::open(name, &changes).expect("a built-in scene or level")
     };
     scene::NAMED.iter().map(|(name, _)| small(name)).collect()
 }
 
-/// The levels that come along, with small bodies where their size can be chosen.
+/// Returns the built-in levels, with small bodies where the size can be chosen.
 pub fn small_levels() -> Vec<Level> {
     let small = |(id, text): &(&str, &str)| {
-        let level = Level::open(id).expect("it comes along");
+        let level = Level::open(id).expect("a built-in scene or level");
         if level.scene().body[0].file.is_some() {
             return level;
         }
         let scene = Scene::read(id, text, &[format!("body.n={FEW}")]);
-        Level::of(id, scene.expect("it comes along")).expect("it can be smaller")
+        Level::of(id, scene.expect("a built-in scene or level")).expect("a smaller body is valid")
     };
     NAMED.iter().chain(&NAMED_3D).map(small).collect()
 }
 
 fn text_of(scene: &Scene) -> Vec<u8> {
     let text = toml::to_string(scene);
-    text.expect("a scene that was read can be written")
+    text.expect("a scene that was read can be serialized")
         .into_bytes()
 }
 
-/// What [`crate::DOORS`] takes of a snapshot.
+/// Returns the snapshot of a scene after a tick, as the door takes it.
 fn saved<D: Dim>(scene: &Scene) -> Vec<u8> {
-    let mut world = scene.build::<D>().expect("it can be built");
+    let mut world = scene.build::<D>().expect("a small scene can be built");
     world.step();
     state_of(&world)
 }
 
-/// Of a snapshot the dimension, and what follows the checksum.
+/// Returns the part of a snapshot that the door takes: the dimension, and the state after the checksum.
 fn state_of<D: Dim>(world: &World<D>) -> Vec<u8> {
     let bytes = snapshot::save(world);
     [&bytes[8..9], &bytes[17..]].concat()
 }
 
-/// Some pixels of a kind.
+/// Returns a PNG picture of this colour type and bit depth.
 fn picture(colour: ColorType, depth: BitDepth) -> Vec<u8> {
     const SIDE: usize = 9;
     let mut bytes = Vec::new();
@@ -265,15 +266,17 @@ fn picture(colour: ColorType, depth: BitDepth) -> Vec<u8> {
     }
     let row = (SIDE * colour.samples() * depth as usize).div_ceil(8);
     let samples: Vec<u8> = (0..SIDE * row).map(|k| (k * k * 37) as u8).collect();
-    let mut writer = encoder.write_header().expect("a vector takes all");
+    let mut writer = encoder
+        .write_header()
+        .expect("writing to a vector cannot fail");
     writer
         .write_image_data(&samples)
-        .expect("a vector takes all");
-    writer.finish().expect("a vector takes all");
+        .expect("writing to a vector cannot fail");
+    writer.finish().expect("writing to a vector cannot fail");
     bytes
 }
 
-/// A model of MagicaVoxel.
+/// Returns a MagicaVoxel model.
 fn model(side: u32, voxels: &[[u8; 4]]) -> Vec<u8> {
     let chunk = |name: &[u8; 4], contents: &[u8], children: &[u8]| {
         let lengths = [contents, children].map(|part| (part.len() as u32).to_le_bytes());
@@ -289,7 +292,7 @@ fn model(side: u32, voxels: &[[u8; 4]]) -> Vec<u8> {
     [b"VOX ", &150_u32.to_le_bytes()[..], &main].concat()
 }
 
-/// A scan in NIfTI-1, the highest byte of each number first or last.
+/// Returns a scan in NIfTI-1, in either byte order.
 fn scan(is_big_endian: bool) -> Vec<u8> {
     const SIDE: i16 = 6;
     let mut bytes = vec![0; 352];
@@ -312,7 +315,7 @@ fn scan(is_big_endian: bool) -> Vec<u8> {
     ] {
         put(at, &i16::to_le_bytes(number));
     }
-    // Where the voxels begin, two numbers that scale, and a matrix: a little askew.
+    // Offset of the voxels, slope and intercept of the values, and an affine matrix with some shear.
     let reals = [
         (108, 352.0),
         (112, 0.5),

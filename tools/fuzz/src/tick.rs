@@ -1,18 +1,18 @@
-//! A tick of a world that a stranger described.
+//! Ticks of untrusted worlds.
 
 use fuwafuwa::{Dim, World};
 use fuwafuwa_scenes::Scene;
 
-/// More voxels than so many take a while to be placed: that they can be is tested elsewhere.
+/// Maximum number of voxels of a world to be built. Larger worlds take long and are tested elsewhere.
 pub const FEW_VOXELS: usize = 1 << 12;
 
-/// Builds a scene and plays a tick; whether it can be built.
+/// Builds a scene and plays a tick. Returns whether the scene could be built.
 pub fn play<D: Dim>(scene: &Scene) -> bool {
     let world = scene.build_within::<D>(FEW_VOXELS);
     world.map(|mut world| step(&mut world)).is_ok()
 }
 
-/// Plays a tick, after which no mesh may contradict itself.
+/// Plays a tick, and checks that every mesh is consistent afterwards.
 pub fn step<D: Dim>(world: &mut World<D>) {
     world.step();
     for body in world.soft_bodies() {

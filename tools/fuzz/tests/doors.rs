@@ -1,4 +1,4 @@
-//! Each door, with good bytes, with what once went wrong, and with noise.
+//! Every door with valid bytes, with earlier failures, and with noise.
 
 use fuzz_targets::noise::Noise;
 use fuzz_targets::{DOORS, Door};
@@ -8,31 +8,33 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Instant;
 
-/// How many inputs with noise a door is tried with. `cargo xtask fuzz` tries millions.
+/// Number of noisy inputs per door. `cargo xtask fuzz` tries millions.
 const INPUTS: usize = 5000;
 
 fn found() -> BTreeMap<String, Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("found");
-    let files = fs::read_dir(folder).expect("it is there").flatten();
+    let files = fs::read_dir(folder)
+        .expect("the folder `found` exists")
+        .flatten();
     let files = files.map(|file| {
         let name = file.file_name().to_string_lossy().into_owned();
-        (name, fs::read(file.path()).expect("a file"))
+        (name, fs::read(file.path()).expect("a readable file"))
     });
     files.collect()
 }
 
-/// Brings bytes in; what panics is named and kept.
+/// Passes bytes through a door. If it panics, saves them and names the file.
 fn enter(door: &Door, bytes: &[u8]) -> bool {
     let entered = catch_unwind(AssertUnwindSafe(|| (door.enter)(bytes)));
     entered.unwrap_or_else(|_| {
         let place = std::env::temp_dir().join(format!("{}-found", door.name));
-        fs::write(&place, bytes).expect("a folder for what is found");
-        panic!("{}: {} brings it down", door.name, place.display());
+        fs::write(&place, bytes).expect("the temporary folder is writable");
+        panic!("{}: {} causes a panic", door.name, place.display());
     })
 }
 
 #[test]
-fn good_bytes_are_taken() {
+fn every_door_accepts_its_seeds() {
     for door in DOORS {
         let seeds = (door.seeds)();
         assert!(!seeds.is_empty());
@@ -43,26 +45,30 @@ fn good_bytes_are_taken() {
     }
 }
 
-/// A file is named after its door: `settings-one-bad-value-of-thousands`.
+/// Each file is named after its door, for example `settings-one-bad-value-of-thousands`.
 #[test]
-fn what_once_went_wrong_does_so_no_more() {
+fn earlier_failures_are_handled_quickly() {
     for (name, bytes) in found() {
         let door = name.split('-').next().and_then(Door::named);
-        let door = door.unwrap_or_else(|| panic!("{name} names no door"));
+        let door = door.unwrap_or_else(|| panic!("the name of {name} does not begin with a door"));
         let start = Instant::now();
         enter(door, &bytes);
         let seconds = start.elapsed().as_secs_f32();
-        // In debug, and while other tests run.
+        // Generous limit: debug builds, with other tests in parallel.
         assert!(seconds < 20.0, "{name}: {seconds} s");
     }
 }
 
 #[test]
-fn noise_comes_in_by_no_door() {
+fn noise_causes_no_panic() {
     for door in DOORS {
         let mut noise = Noise::of((door.seeds)(), 1);
         let taken = (0..INPUTS).filter(|_| enter(door, &noise.bytes())).count();
-        // Else it is noise alone, and nothing behind the first check is tried.
-        assert!(taken > INPUTS / 200, "{}: {taken} were taken", door.name);
+        // With fewer accepted inputs, the code behind the first check would not be tested.
+        assert!(
+            taken > INPUTS / 200,
+            "{}: only {taken} inputs were accepted",
+            door.name
+        );
     }
 }

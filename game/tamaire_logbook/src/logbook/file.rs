@@ -1,4 +1,4 @@
-//! Whether a file can be used, and where it goes if not.
+//! Opening and checking the file, and setting a damaged one aside.
 
 use super::read;
 use super::schema::{self, APPLICATION_ID, VERSION};
@@ -11,26 +11,26 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// A file that could not be used, and where it is now, with what stood beside it.
+/// A damaged file that was renamed, together with SQLite's files beside it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetAside {
-    /// Its name now.
+    /// Path after the renaming.
     pub path: PathBuf,
-    /// What was wrong.
+    /// Description of the damage.
     pub reason: String,
 }
 
-/// For so long another program is waited for.
+/// Time for which SQLite waits for another program's lock.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// What stands beside a file of SQLite, by what is added to its name.
+/// Suffixes of the files that SQLite creates beside a database.
 const BESIDE: [&str; 3] = ["-wal", "-shm", "-journal"];
-/// Versions that far ahead are those of a damaged file.
+/// Number of versions ahead from which a version number counts as damage.
 const FAR: i64 = 1000;
 
-/// Opens a file to write it, and begins one where there is none.
+/// Opens a file for writing, and creates it if it does not exist.
 ///
 /// # Errors
-/// [`Error::Damaged`] where it cannot be used: it was not changed then.
+/// [`Error::Damaged`] if the file cannot be used; then it was not changed.
 pub fn open(path: &Path) -> Result<Connection, Error> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(|error| unusable(path, &error))?;
@@ -39,13 +39,13 @@ pub fn open(path: &Path) -> Result<Connection, Error> {
     if !is_there && size(&beside(path, BESIDE[0])) > 0 {
         return Err(damaged(
             path,
-            "the file is gone, and only what stood beside it is left",
+            "the file is missing, and only its -wal file is left",
         ));
     }
     if !is_there {
         create(path)?;
     } else if size(path) == 0 {
-        return Err(damaged(path, "it is empty"));
+        return Err(damaged(path, "the file is empty"));
     }
     let mut connection = connect(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
     check(path, &connection)?;
@@ -55,13 +55,13 @@ pub fn open(path: &Path) -> Result<Connection, Error> {
     {
         let opened = File::options().write(true).open(path);
         opened.map_err(|error| unusable(path, &error))?;
-        return Err(damaged(path, "its header says that it may not be written"));
+        return Err(damaged(path, "its header marks it as read-only"));
     }
     begin(&mut connection).map_err(|error| told(path, error))?;
     Ok(connection)
 }
 
-/// Opens a file that was checked already, to write it.
+/// Opens a file for writing that was checked already.
 #[cfg(feature = "postgres")]
 pub fn attach(path: &Path) -> Result<Connection, Error> {
     let mut connection = connect(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
@@ -70,15 +70,15 @@ pub fn attach(path: &Path) -> Result<Connection, Error> {
     Ok(connection)
 }
 
-/// Opens a file to read it.
+/// Opens a file for reading.
 pub fn read(path: &Path) -> Result<Connection, Error> {
     let found = fs::metadata(path).map_err(|error| unusable(path, &error))?;
     if found.len() == 0 {
-        return Err(damaged(path, "it is empty"));
+        return Err(damaged(path, "the file is empty"));
     }
     let connection = connect(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
     let connection = match check(path, &connection) {
-        // Where nothing can be written, there is no room for what readers tell each other.
+        // In a folder without write permission SQLite cannot create the shared-memory file that readers need.
         Err(Error::Unusable { .. }) if size(&beside(path, BESIDE[0])) == 0 => {
             let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI;
             let connection = connect(&unchanging(path), flags)?;
@@ -87,7 +87,7 @@ pub fn read(path: &Path) -> Result<Connection, Error> {
         }
         Err(Error::Unusable { reason, .. }) => {
             let reason =
-                format!("{reason}; copy it, and what stands beside it, to where it can be written");
+                format!("{reason}; copy the file and those beside it to a writable folder");
             let path = path.into();
             return Err(Error::Unusable { path, reason });
         }
@@ -97,19 +97,20 @@ pub fn read(path: &Path) -> Result<Connection, Error> {
         VERSION => Ok(connection),
         _ => Err(damaged(
             path,
-            "it is of an older version: the game brings it up to date as it opens it",
+            "the logbook has an older version: the game updates it when it opens it",
         )),
     }
 }
 
-/// Gives a file that cannot be used, and what stands beside it, a name with the date.
+/// Renames a damaged file, and SQLite's files beside it, to a name with the date.
 pub fn set_aside(path: &Path, reason: String) -> Result<SetAside, Error> {
     let aside = name_aside(path, Moment::now());
     let rename = |from: &Path, to: &Path| match fs::rename(from, to) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(unusable(from, &error)),
         _ => Ok(()),
     };
-    // The file first: what is left beside no file is found and renamed the next time, and never taken for a new one's.
+    // The database is renamed first. If only its `-wal` file is left behind, the next start finds and renames
+    // that file; it is never used for a new database.
     rename(path, &aside)?;
     for ending in BESIDE {
         rename(&beside(path, ending), &beside(&aside, ending))?;
@@ -120,13 +121,13 @@ pub fn set_aside(path: &Path, reason: String) -> Result<SetAside, Error> {
     })
 }
 
-/// What it takes on the disk, with what stands beside it [bytes].
+/// Returns the size on the disk of the file and of SQLite's files beside it [bytes].
 pub fn bytes(path: &Path) -> u64 {
     let others = BESIDE.map(|ending| size(&beside(path, ending)));
     size(path) + others.iter().sum::<u64>()
 }
 
-/// What an error of SQLite means for who keeps this file.
+/// Maps an error of SQLite to an [`Error`] of this file.
 pub fn told(path: &Path, error: rusqlite::Error) -> Error {
     use rusqlite::Error as Sql;
     let (path, reason) = (path.to_path_buf(), error.to_string());
@@ -144,7 +145,7 @@ pub fn told(path: &Path, error: rusqlite::Error) -> Error {
             let reason = reason.clone();
             Error::Damaged { path, reason }
         }
-        // What should be in it is not, or is something else.
+        // The tables lack expected values, or hold values of another type.
         (_, Sql::QueryReturnedNoRows | Sql::Utf8Error(..))
         | (_, Sql::InvalidColumnType(..) | Sql::IntegralValueOutOfRange(..))
         | (_, Sql::FromSqlConversionFailure(..)) => Error::Damaged { path, reason },
@@ -152,7 +153,7 @@ pub fn told(path: &Path, error: rusqlite::Error) -> Error {
     }
 }
 
-/// Whether what SQLite says is that a file is not as it should be.
+/// Returns whether a message of SQLite means that the file does not have the expected tables.
 fn lacks(reason: &str) -> bool {
     let texts = [
         "no such table",
@@ -173,7 +174,8 @@ fn damaged(path: &Path, reason: &str) -> Error {
     Error::Damaged { path, reason }
 }
 
-/// Begins a file: under another name until all of it is there, so that nobody ever finds a part of one.
+/// Creates a file under a temporary name and renames it when it is complete, so that no program opens a
+/// partial one.
 fn create(path: &Path) -> Result<(), Error> {
     let new = path.with_added_extension(format!("new-{}", Id::random()));
     let make = || {
@@ -181,13 +183,14 @@ fn create(path: &Path) -> Result<(), Error> {
             &new,
             OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE,
         )?;
-        // As all will write it: whoever first had to change how, while others wait for the same, might wait in vain.
+        // Sets the journal mode here. If the first writer had to change it while other connections wait to do
+        // so, it might wait in vain.
         begin(&mut connection).map_err(|error| told(path, error))?;
         drop(connection);
         match fs::hard_link(&new, path) {
-            // Others may have been faster: then it is theirs.
+            // Another program has created the file meanwhile: that file is used.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
-            // Not every disk has links.
+            // Not every file system supports hard links.
             Err(_) => fs::rename(&new, path).map_err(|error| unusable(path, &error)),
             Ok(()) => Ok(()),
         }
@@ -202,7 +205,7 @@ fn connect(path: &Path, flags: OpenFlags) -> Result<Connection, Error> {
         let flags = flags | OpenFlags::SQLITE_OPEN_NO_MUTEX;
         let connection = Connection::open_with_flags(path, flags)?;
         connection.busy_timeout(PATIENCE)?;
-        // Nothing that somebody else put into a file is run, and a file that cannot be used stays as it is.
+        // Never runs triggers or functions stored in a file, and leaves an unusable file unchanged.
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_TRUSTED_SCHEMA, false)?;
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_ENABLE_TRIGGER, false)?;
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
@@ -211,15 +214,15 @@ fn connect(path: &Path, flags: OpenFlags) -> Result<Connection, Error> {
     open().map_err(|error| told(path, error))
 }
 
-/// Whether it is a whole logbook that is known here. All of it is read.
+/// Checks that the file is an undamaged logbook of a supported version. Reads the whole file.
 fn check(path: &Path, connection: &Connection) -> Result<(), Error> {
     check_kind(path, connection)?;
     let page = connection.pragma_query_value(None, "page_size", |row| row.get(0));
     let page: u64 = page.map_err(|error| told(path, error))?;
-    // While there is a log, the end of the file may be in there.
+    // With a write-ahead log, the last pages may be in that log only.
     let has_log = size(&beside(path, BESIDE[0])) > 0;
     if !has_log && !size(path).is_multiple_of(page) {
-        return Err(damaged(path, "its end is missing"));
+        return Err(damaged(path, "the end of the file is missing"));
     }
     let check = "PRAGMA quick_check(1)";
     let found: rusqlite::Result<String> = connection.query_row(check, [], |row| row.get(0));
@@ -242,12 +245,12 @@ fn check_kind(path: &Path, connection: &Connection) -> Result<(), Error> {
             let (path, known) = (path.into(), VERSION);
             Err(Error::Newer { path, found, known })
         }
-        (APPLICATION_ID, _) => Err(damaged(path, "its version is none")),
-        _ => Err(damaged(path, "it is a database of something else")),
+        (APPLICATION_ID, _) => Err(damaged(path, "its version number is invalid")),
+        _ => Err(damaged(path, "the database belongs to another program")),
     }
 }
 
-/// Whether what is read and written is there.
+/// Checks that all columns that this version reads and writes exist.
 fn check_tables(connection: &Connection) -> rusqlite::Result<()> {
     if schema::version(connection)? < VERSION {
         return Ok(());
@@ -264,8 +267,8 @@ fn check_tables(connection: &Connection) -> rusqlite::Result<()> {
     Ok(())
 }
 
-/// Brings a file that was checked to where rows can be written: what is committed is on the disk then, and outlasts a power
-/// cut (`synchronous = FULL`: the log is flushed with every commit).
+/// Prepares a checked file for writing. With `synchronous = FULL` the log is flushed at every commit, so
+/// committed rows survive a power cut.
 fn begin(connection: &mut Connection) -> rusqlite::Result<()> {
     const MOST_LOG: i64 = 1 << 24;
     connection.pragma_update_and_check(None, "journal_mode", "wal", |_| Ok(()))?;
@@ -287,7 +290,8 @@ fn size(path: &Path) -> u64 {
     fs::metadata(path).map_or(0, |found| found.len())
 }
 
-/// `logbook.damaged-2026-11-23-101502.sqlite`, with a number where there is one already.
+/// Returns a free name such as `logbook.damaged-2026-11-23-101502.sqlite`; a counter follows the date if that
+/// name is taken.
 fn name_aside(path: &Path, now: Moment) -> PathBuf {
     let part = |part: Option<&std::ffi::OsStr>| {
         part.map_or_else(String::new, |part| part.to_string_lossy().into_owned())
@@ -303,10 +307,10 @@ fn name_aside(path: &Path, now: Moment) -> PathBuf {
     });
     let mut paths = names.map(|name| path.with_file_name(name));
     let is_free = |path: &PathBuf| !path.exists() && !beside(path, BESIDE[0]).exists();
-    paths.find(is_free).expect("numbers do not end")
+    paths.find(is_free).expect("the counter is unbounded")
 }
 
-/// A file as an address that tells SQLite that nobody writes it.
+/// Returns the URI of a file with the flag that tells SQLite that no program writes the file.
 fn unchanging(path: &Path) -> PathBuf {
     let mut address = String::from("file:");
     for byte in path.as_os_str().as_encoded_bytes() {

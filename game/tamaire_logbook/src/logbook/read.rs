@@ -1,4 +1,4 @@
-//! Rows out of the tables.
+//! Reading rows from the tables.
 
 use crate::row::read_route;
 use crate::{End, Event, Id, Kind, Moment, Round, Today, Visit};
@@ -7,14 +7,14 @@ use rusqlite::{Connection, Row, params};
 use std::ops::{Bound, RangeBounds};
 use tamaire_play::Route;
 
-/// Rows of a kind, as they are read: which columns, from which table, and what is made of them.
+/// Description of a table for reading: its columns, its name and the conversion of a row.
 #[derive(Debug)]
 pub struct Kept<T> {
     columns: &'static str,
     table: &'static str,
-    /// The column that says when.
+    /// Name of the column with the time of a row.
     time: &'static str,
-    /// Makes one of a row.
+    /// Converts a row.
     pub read: fn(&Row<'_>) -> rusqlite::Result<T>,
 }
 
@@ -41,8 +41,10 @@ pub const EVENTS: Kept<Event> = Kept {
 };
 
 impl<T> Kept<T> {
-    /// Asks for those from one time to another, both of them too, in the order in which they came. That is much like the order of
-    /// times: between the first and the last there are few others, and nothing has to be sorted.
+    /// Returns the SQL for all rows with a time from `?1` to `?2` inclusive, ordered by `seq`.
+    ///
+    /// Rows are mostly written in the order of time. Between the first and the last match lie few other rows,
+    /// so scanning that range of `seq` needs no sorting.
     pub fn in_range(&self) -> String {
         let Self {
             columns,
@@ -60,7 +62,7 @@ impl<T> Kept<T> {
         )
     }
 
-    /// Asks for one.
+    /// Returns the SQL for the row with `seq = ?1`.
     #[cfg(feature = "postgres")]
     pub fn one(&self) -> String {
         let Self { columns, table, .. } = self;
@@ -68,7 +70,8 @@ impl<T> Kept<T> {
     }
 }
 
-/// The first and the last time in a range [ms of UTC]; of one with nothing in it, the first is after the last.
+/// Returns the first and the last time in a range [ms of UTC]. For an empty range the first is after the
+/// last.
 pub fn ends(range: &impl RangeBounds<Moment>) -> (i64, i64) {
     let first = match range.start_bound() {
         Bound::Included(moment) => Some(moment.utc_ms),
@@ -106,7 +109,8 @@ pub fn today(connection: &Connection, since: i64) -> rusqlite::Result<Today> {
     Ok(today)
 }
 
-/// By time: SQLite would rather go through all that ever was, visit by visit.
+/// SQL for the playing time to the first win of each visit [s]. The index by time is forced: otherwise SQLite
+/// scans all rounds by visit.
 const TO_FIRST_WIN: &str = "
     SELECT (SELECT sum(seconds) FROM rounds WHERE rounds.visit = first.visit AND rounds.seq <= first.seq)
     FROM (
@@ -189,7 +193,7 @@ fn id(row: &Row<'_>, column: usize) -> rusqlite::Result<Id> {
     row.get(column).map(u128::from_be_bytes).map(Id)
 }
 
-/// In this column and the next.
+/// Reads a moment from `column` (time) and the column after it (offset).
 fn moment(row: &Row<'_>, column: usize) -> rusqlite::Result<Moment> {
     Ok(Moment {
         utc_ms: row.get(column)?,
@@ -214,7 +218,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_day_costs_no_more_when_years_lie_before_it() {
+    fn median_to_first_win_reads_only_rounds_since_the_start_of_the_range() {
         let mut connection = Connection::open_in_memory().unwrap();
         migrate(&mut connection).unwrap();
         let sql = format!("EXPLAIN QUERY PLAN {TO_FIRST_WIN}");

@@ -1,19 +1,21 @@
-//! What is in the file.
+//! Tables of the file and their migrations.
 
 use rusqlite::{Connection, Transaction, TransactionBehavior};
 
-/// Of this project's logbooks, among all files of SQLite: the letters `tmlb`.
+/// SQLite application id of logbook files: the letters `tmlb`.
 pub const APPLICATION_ID: i64 = 0x746d_6c62;
 
 /// The newest version of the tables.
 pub const VERSION: i64 = MIGRATIONS.len() as i64;
 
-/// What leads from each version of the tables to the next. What was released stays as it is.
+/// Statements that migrate the tables from each version to the next. Released statements must not be changed.
 const MIGRATIONS: &[&str] = &[TABLES];
 
-/// Moments are milliseconds of UTC beside seconds of offset; ids 16 bytes. One sequence numbers the rows of all tables, and
-/// the changes of visits: `seq` orders, `change` says what a server has not got yet. Replays stand apart, so that who goes through
-/// rounds does not go through them.
+/// Tables of version 1.
+///
+/// Moments are milliseconds of UTC and an offset in seconds; ids are 16 bytes. One sequence numbers the rows
+/// of all tables and the changes of visits: `seq` gives the order, `change` tells which changes the server
+/// has not received yet. Replays have their own table, so that a scan of the rounds does not read them.
 const TABLES: &str = "
 CREATE TABLE book (
     one INTEGER PRIMARY KEY CHECK (one = 1),
@@ -79,7 +81,7 @@ CREATE TABLE events (
 CREATE INDEX events_by_time ON events (at);
 ";
 
-/// Brings the tables to the newest version, from whichever they have, or from nothing: all the way, or not at all.
+/// Migrates the tables from any version, or from an empty file, to the newest one in a single transaction.
 pub fn migrate(connection: &mut Connection) -> rusqlite::Result<()> {
     migrate_by(connection, MIGRATIONS)
 }
@@ -90,7 +92,7 @@ fn migrate_by(connection: &mut Connection, migrations: &[&str]) -> rusqlite::Res
         return Ok(());
     }
     let transaction = Transaction::new(connection, TransactionBehavior::Immediate)?;
-    // Another program may have come first.
+    // Another program may have migrated the file before the lock was taken.
     let from = version(&transaction)?.clamp(0, newest);
     for step in &migrations[from as usize..] {
         transaction.execute_batch(step)?;
@@ -100,12 +102,12 @@ fn migrate_by(connection: &mut Connection, migrations: &[&str]) -> rusqlite::Res
     transaction.commit()
 }
 
-/// The version of the tables; 0 where there are none.
+/// Returns the version of the tables; 0 if there are no tables.
 pub fn version(connection: &Connection) -> rusqlite::Result<i64> {
     number(connection, "user_version")
 }
 
-/// Whose file it is.
+/// Returns the application id of the file.
 pub fn application(connection: &Connection) -> rusqlite::Result<i64> {
     number(connection, "application_id")
 }
@@ -119,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tables_are_brought_to_the_newest_version_from_any() {
+    fn migration_reaches_the_newest_version_or_changes_nothing() {
         let column = "ALTER TABLE events ADD COLUMN weather TEXT NOT NULL DEFAULT 'fair';";
         let text = |connection: &Connection| {
             let text = "SELECT text || weather FROM events";
@@ -143,7 +145,11 @@ mod tests {
 
         let broken = "CREATE TABLE more (one INTEGER); CREATE TABLE more (one INTEGER);";
         assert!(migrate_by(&mut old, &[TABLES, column, broken]).is_err());
-        assert_eq!(version(&old).unwrap(), 2, "all the way, or not at all");
+        assert_eq!(
+            version(&old).unwrap(),
+            2,
+            "a failed migration must change nothing"
+        );
         assert!(old.prepare("SELECT * FROM more").is_err());
     }
 }

@@ -1,11 +1,12 @@
-//! What a server has got, and what not yet.
+//! Record of the rows that the server has received.
 
 #[cfg(feature = "postgres")]
 pub use since::{Change, Sent, changes, sent, set_sent, unsent};
 
 use rusqlite::{Connection, params};
 
-/// Keeps from now on what this server has not got, or no server. One that was not the last one has got nothing.
+/// Sets the server for which unsent rows are kept. A server other than the last one starts with nothing
+/// received.
 pub fn await_server(connection: &Connection, server: Option<&str>) -> rusqlite::Result<()> {
     let sql = "UPDATE book SET server = ?1, sent = CASE WHEN ?1 IS NULL THEN sent ELSE 0 END WHERE server IS NOT ?1";
     connection.execute(sql, params![server])?;
@@ -18,7 +19,7 @@ mod since {
     use crate::{Event, Id, Round, Visit};
     use rusqlite::{Connection, params};
 
-    /// A row that a server has not got as it is now.
+    /// A new or changed row that the server has not received yet.
     #[derive(Debug)]
     pub enum Change {
         Visit(Visit),
@@ -26,16 +27,17 @@ mod since {
         Event(Event),
     }
 
-    /// Up to where the server has got what is in a file.
+    /// Position up to which the server has received a file.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Sent {
-        /// By what the file is known.
+        /// Id of the file.
         pub book: Id,
-        /// The number of the last change that it has got.
+        /// Number of the last change that the server has received.
         pub change: i64,
     }
 
-    /// Changes after a number, in their order: the number of each, that of the row, and the row.
+    /// Returns at most `most` changes after number `after`, in their order: the change number, the row number
+    /// and the row.
     pub fn changes(
         connection: &Connection,
         after: i64,
@@ -46,7 +48,7 @@ mod since {
             UNION ALL SELECT seq, seq, 1 FROM rounds WHERE seq > ?1
             UNION ALL SELECT seq, seq, 2 FROM events WHERE seq > ?1
             ORDER BY 1 LIMIT ?2";
-        // What is read is of one moment, whoever writes beside it.
+        // One read transaction: all rows are of the same state, even if another connection writes meanwhile.
         let moment = connection.unchecked_transaction()?;
         let mut statement = moment.prepare_cached(sql)?;
         let numbers = statement.query_map(params![after, most as i64], |row| {
@@ -73,14 +75,14 @@ mod since {
         })
     }
 
-    /// Notes what this server has got, unless the file has another one now.
+    /// Stores the server's position. Has no effect if the file or its server is another one by now.
     pub fn set_sent(connection: &Connection, server: &str, sent: &Sent) -> rusqlite::Result<()> {
         let sql = "UPDATE book SET sent = ?1 WHERE id = ?2 AND server = ?3";
         connection.execute(sql, params![sent.change, sent.book.0.to_be_bytes(), server])?;
         Ok(())
     }
 
-    /// How many rows wait for the server.
+    /// Returns the number of rows that wait for the server.
     pub fn unsent(connection: &Connection) -> rusqlite::Result<u64> {
         let sql = "
             SELECT (SELECT count(*) FROM visits WHERE change > sent) + (SELECT count(*) FROM rounds WHERE seq > sent)

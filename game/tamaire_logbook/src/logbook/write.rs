@@ -1,4 +1,4 @@
-//! Entries into the tables.
+//! Writing entries into the tables.
 
 use crate::row::{MAX_TEXT_BYTES, route_text};
 use crate::{Entry, Event, Id, Moment, Round, Visit};
@@ -6,10 +6,10 @@ use rusqlite::{Connection, Transaction, TransactionBehavior, named_params, param
 use std::borrow::Cow;
 use tamaire_play::replay::MAX_BYTES;
 
-/// Rows that are forgotten in one transaction: others may write in between.
+/// Number of rows deleted per transaction, so that other connections can write between two of them.
 const CHUNK: i64 = 1000;
 
-/// Writes all of these, or none; what is there already stays as it is.
+/// Writes all entries in one transaction. Rows whose id exists already are left unchanged.
 pub fn write(connection: &mut Connection, entries: &[Entry]) -> rusqlite::Result<()> {
     let transaction = Transaction::new(connection, TransactionBehavior::Immediate)?;
     let sql = "SELECT changes, stand FROM book";
@@ -31,7 +31,8 @@ pub fn write(connection: &mut Connection, entries: &[Entry]) -> rusqlite::Result
     transaction.commit()
 }
 
-/// One that was brought along by what belongs to it has no language, and gets its beginning now.
+/// Inserts a visit. If a round or an end has created the visit already (its language is empty then), the
+/// beginning is filled in.
 fn begin_visit(connection: &Connection, change: i64, visit: &Visit) -> rusqlite::Result<bool> {
     let sql = "
         INSERT INTO visits VALUES (:change, :change, :id, :stand, :began, :began_offset, :ended, :ended_offset, :language)
@@ -75,7 +76,8 @@ fn end_visit(
     Ok(changed > 0)
 }
 
-/// Its visit may have been dropped while the disk was full: then it is put in, without a language, and takes a number too.
+/// Inserts a round. If its visit is missing, because it was dropped while the disk was full, the visit is
+/// created without a language and takes a change number too.
 fn add_round(connection: &Connection, changes: &mut i64, round: &Round) -> rusqlite::Result<bool> {
     let sql = "INSERT INTO visits VALUES (?1, ?1, ?2, ?3, ?4, ?5, NULL, NULL, '') ON CONFLICT (id) DO NOTHING";
     let brought = connection.prepare_cached(sql)?.execute(params![
@@ -101,7 +103,7 @@ fn add_round(connection: &Connection, changes: &mut i64, round: &Round) -> rusql
         ":began_offset": round.began.offset_s,
         ":seconds": number(round.seconds),
         ":level": clean(&round.level),
-        // SQLite has no numbers without a sign: the same bits.
+        // SQLite has no unsigned integers: the bits are stored as a signed one.
         ":level_hash": round.level_hash as i64,
         ":players": round.players,
         ":ending": round.end.text(),
@@ -135,7 +137,8 @@ fn add_event(connection: &Connection, seq: i64, event: &Event) -> rusqlite::Resu
     Ok(changed > 0)
 }
 
-/// Forgets what began earlier [ms of UTC], but for what a server waits for and visits of rounds that stay.
+/// Deletes rows that began before `utc_ms` [ms of UTC], except rows that wait for a server and visits with
+/// remaining rounds.
 pub fn forget_before(connection: &Connection, utc_ms: i64) -> rusqlite::Result<()> {
     let tables = [
         ("rounds", "began < ?1 AND seq <= ?2"),
@@ -156,7 +159,8 @@ pub fn forget_before(connection: &Connection, utc_ms: i64) -> rusqlite::Result<(
     Ok(())
 }
 
-/// As it may stand in a text of a database: no longer than [`MAX_TEXT_BYTES`], and without zero bytes, which servers refuse.
+/// Returns a text fit for the database: at most [`MAX_TEXT_BYTES`] long, and without zero bytes, which
+/// PostgreSQL refuses.
 fn clean(text: &str) -> Cow<'_, str> {
     let end = text.floor_char_boundary(MAX_TEXT_BYTES);
     let text = &text[..end];
@@ -166,7 +170,7 @@ fn clean(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// SQLite takes what is no number for nothing.
+/// Replaces NaN by 0, because SQLite stores NaN as NULL.
 fn number(value: f32) -> f32 {
     if value.is_nan() { 0.0 } else { value }
 }

@@ -1,4 +1,4 @@
-//! What there is of a sender where nothing was built that sends.
+//! Stand-in for the sender in builds without the feature `postgres`.
 
 use crate::Server;
 use crate::server::Progress;

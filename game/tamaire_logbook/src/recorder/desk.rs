@@ -1,4 +1,4 @@
-//! What whoever records and the thread that writes leave for each other.
+//! State shared between the recorder and its writing thread.
 
 use crate::row::room_of;
 use crate::{Entry, Moment, Round, SetAside, Today};
@@ -7,35 +7,36 @@ use std::path::PathBuf;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// How a recorder is.
+/// State of a recorder.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Health {
-    /// Whether what is recorded now gets on file.
+    /// Whether new entries reach the file at present.
     pub is_recording: bool,
-    /// Why not, or why nothing gets to the server: a sentence.
+    /// Reason why entries do not reach the file or the server, as a sentence.
     pub trouble: Option<String>,
-    /// How many entries wait to be written.
+    /// Number of entries that wait to be written.
     pub waiting: usize,
-    /// How many had to be dropped since it began, because too many waited or one was refused.
+    /// Number of entries dropped since the start, because too many waited or because SQLite rejected them.
     pub dropped: u64,
-    /// How much room the file takes [bytes].
+    /// Size of the file [bytes].
     pub bytes: u64,
-    /// How many rows the server has not got yet; none without a server.
+    /// Number of rows that the server has not received yet; 0 without a server.
     pub unsent: u64,
-    /// The file that was set aside last, since it began.
+    /// The last damaged file that was set aside since the start.
     pub set_aside: Option<SetAside>,
 }
 
-/// Most entries that wait, and most bytes of them: weeks of visits, in the memory of any machine that plays.
+/// Limits of the waiting entries, in number and in bytes: weeks of visits, small enough for the memory of any
+/// machine that runs the game.
 const MOST_WAITING: usize = 1 << 16;
 const MOST_BYTES: usize = 1 << 26;
-/// Most entries that are written at once.
+/// Maximum number of entries written in one transaction.
 const BATCH: usize = 256;
 
 #[derive(Debug, Default)]
 pub struct Desk {
     state: Mutex<State>,
-    /// Told when there is something to do, and when all is done.
+    /// Notified when there is new work, and when the thread has finished.
     bell: Condvar,
 }
 
@@ -53,7 +54,7 @@ struct State {
     is_closed: bool,
 }
 
-/// What is asked for and not answered yet.
+/// Requests that were not answered yet.
 #[derive(Debug, Default)]
 pub struct Questions {
     pub today: Option<Moment>,
@@ -61,7 +62,7 @@ pub struct Questions {
     pub export: Option<PathBuf>,
 }
 
-/// Which rounds are asked for.
+/// Arguments of a request for the best rounds.
 #[derive(Debug)]
 pub struct Best {
     pub since: Moment,
@@ -70,7 +71,7 @@ pub struct Best {
     pub most: usize,
 }
 
-/// What was answered last.
+/// Last answers.
 #[derive(Debug, Default)]
 pub struct Answers {
     pub today: Option<Today>,
@@ -78,7 +79,7 @@ pub struct Answers {
     pub export: Option<Result<PathBuf, String>>,
 }
 
-/// How the file is.
+/// State of the file.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     pub is_recording: bool,
@@ -87,7 +88,7 @@ pub struct Report {
 }
 
 impl Desk {
-    /// Leaves an entry to be written; where too much waits already, it is dropped and counted.
+    /// Queues an entry for writing. If a limit is reached, drops the entry and counts it.
     pub fn put(&self, entry: Entry) {
         let mut state = self.state();
         let size = room_of(&entry);
@@ -106,7 +107,7 @@ impl Desk {
         self.bell.notify_all();
     }
 
-    /// What is asked for, which counts as answered from now on.
+    /// Takes the open requests.
     pub fn questions(&self) -> Questions {
         std::mem::take(&mut self.state().questions)
     }
@@ -129,7 +130,8 @@ impl Desk {
         }
     }
 
-    /// Waits until there is something to do, or until a time; and, where trouble rests until then, for nothing else. Whether to go on.
+    /// Waits for work, but at most until `until`. With `is_resting`, new work does not end the wait. Returns
+    /// `false` when the thread must end.
     pub fn wait(&self, until: Instant, is_resting: bool) -> bool {
         let mut state = self.state();
         loop {
@@ -148,7 +150,7 @@ impl Desk {
         }
     }
 
-    /// Takes a handful of what waits; it counts as waiting until it is [`Desk::put_down`].
+    /// Takes the next batch of entries. They count as waiting until [`Desk::put_down`] is called.
     pub fn take(&self) -> Vec<Entry> {
         let mut state = self.state();
         let count = state.queue.len().min(BATCH);
@@ -158,7 +160,7 @@ impl Desk {
         batch
     }
 
-    /// All that was taken is written, but for some that had to be dropped.
+    /// Reports that the batch is written, except `dropped` entries.
     pub fn put_down(&self, dropped: u64) {
         let mut state = self.state();
         state.in_hand = 0;
@@ -173,12 +175,12 @@ impl Desk {
         self.state().set_aside = Some(set_aside);
     }
 
-    /// By when all is to be written, if it is to end.
+    /// Returns the deadline for writing the remaining entries, if the thread is to end.
     pub fn finish_by(&self) -> Option<Instant> {
         self.state().finish_by
     }
 
-    /// Nothing is written from now on.
+    /// Ends recording: later entries are dropped.
     pub fn close(&self, trouble: String) {
         let mut state = self.state();
         state.is_closed = true;
@@ -188,7 +190,7 @@ impl Desk {
         self.bell.notify_all();
     }
 
-    /// Waits until all is written and nothing is written any more, or until a time.
+    /// Waits until the thread has written all entries and ended, but at most until `by`.
     pub fn finish(&self, by: Instant) {
         let mut state = self.state();
         let by = *state.finish_by.get_or_insert(by);

@@ -1,4 +1,4 @@
-//! The thread that writes.
+//! The thread that writes the logbook.
 
 use super::desk::{Desk, Report};
 use crate::{Entry, Error, Event, Id, Kind, Logbook, Moment, Server};
@@ -6,26 +6,26 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// What a recorder is to do beside writing.
+/// Options of a recorder. The default keeps all rows, sets no size limit and uses no server.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
-    /// What is older is forgotten [days]; nothing is where there is no number.
+    /// Age after which rows are deleted [days]; `None` keeps all rows.
     pub keep_days: Option<u32>,
-    /// Most that the file may take [bytes]: past it, it is as with a full disk.
+    /// Maximum size of the file [bytes]. Beyond it, writing fails as on a full disk. `None` sets no limit.
     pub most_bytes: Option<u64>,
-    /// Where it is sent.
+    /// Server to which the rows are sent.
     pub server: Option<Server>,
 }
 
-/// After trouble it is tried again so much later.
+/// Delay before another attempt after an error.
 const REST: Duration = Duration::from_secs(3);
-/// The same when it is to end.
+/// Delay before another attempt after an error while the recorder ends.
 const LAST_REST: Duration = Duration::from_millis(100);
-/// What is old is looked for so often.
+/// Interval between two searches for old rows.
 const SWEEP: Duration = Duration::from_secs(3600);
-/// Most days that are forgotten at once: a clock that is years ahead does not cost all of it.
+/// Maximum number of days deleted in one search. Limits the loss if the clock is years ahead.
 const SWEPT_DAYS: i64 = 7;
-/// [ms].
+/// Length of a day [ms].
 const DAY: i64 = 86_400_000;
 
 #[derive(Debug)]
@@ -35,7 +35,7 @@ pub struct Writer {
     stand: String,
     options: Options,
     book: Option<Logbook>,
-    /// What is being written.
+    /// Entries being written.
     batch: Vec<Entry>,
     trouble: Option<Error>,
     refused: Option<Error>,
@@ -72,7 +72,7 @@ impl Writer {
         self.desk.close(String::new());
     }
 
-    /// Writes what waits while there is time.
+    /// Writes the remaining entries until the deadline.
     fn end(&mut self) {
         loop {
             self.attempt();
@@ -87,11 +87,11 @@ impl Writer {
         }
     }
 
-    /// Does all that is to be done, as far as it goes.
+    /// Does all pending work, up to the first error.
     fn attempt(&mut self) {
         let result = self.work();
         if let Err(error) = &result {
-            // What is wrong with it is found as it is opened again.
+            // The file is opened and checked again at the next attempt.
             if !matches!(error, Error::Locked(_) | Error::Full(_)) {
                 self.book = None;
             }
@@ -114,7 +114,7 @@ impl Writer {
 
     fn work(&mut self) -> Result<(), Error> {
         self.open()?;
-        // First, so that there is room; but even where that fails there may be some.
+        // Old rows are deleted first, because that makes room. Entries are written even if it fails.
         let swept = self.sweep();
         self.write()?;
         self.answer()?;
@@ -137,7 +137,8 @@ impl Writer {
         match self.options.server.as_ref().map(Server::name) {
             None => book.await_server(None)?,
             Some(Ok(name)) => book.await_server(Some(&name))?,
-            // Whichever it was before may be meant.
+            // With an unreadable address, the rows of the last server are kept, because that server may be
+            // meant.
             Some(Err(_)) => {}
         }
         self.book = Some(book);
@@ -154,7 +155,7 @@ impl Writer {
             };
             let mut dropped = 0;
             match book.write_all(&self.batch) {
-                // One of them is at fault: the others are written.
+                // One entry of the batch was rejected: the others are written one by one.
                 Err(Error::Refused { .. }) => {
                     for entry in &self.batch {
                         match book.write(entry) {
@@ -196,7 +197,7 @@ impl Writer {
         Ok(())
     }
 
-    /// Forgets what is too old, some days of it at a time.
+    /// Deletes rows that are too old, a few days of them at a time.
     fn sweep(&mut self) -> Result<(), Error> {
         let now = Instant::now();
         let (Some(book), Some(days)) = (&mut self.book, self.options.keep_days) else {
@@ -215,7 +216,7 @@ impl Writer {
         book.forget_before(Moment { utc_ms, ..before })
     }
 
-    /// Writes down what happened to the logbook itself.
+    /// Records an event about the logbook itself.
     fn note(&self, kind: Kind, text: String) {
         self.desk.put(Entry::Event(Event {
             id: Id::random(),

@@ -1,4 +1,4 @@
-//! The tables on the server, and how rows get there.
+//! Tables on the server, and writing rows into them.
 
 use crate::logbook::Change;
 use crate::row::route_text;
@@ -6,14 +6,17 @@ use postgres::types::ToSql;
 use postgres::{Client, Statement, Transaction};
 use std::error::Error as _;
 
-/// What leads from each version of the tables to the next. What was released stays as it is.
+/// Statements that migrate the tables from each version to the next. Released statements must not be changed.
 const MIGRATIONS: &[&str] = &[TABLES];
 
-/// Whoever makes tables at the same time waits: any number does that only tamaire uses.
+/// Key of the advisory lock that lets only one stand create tables at a time. Any number not used by other
+/// programs will do.
 const LOCK: i64 = 0x746d_6c62;
 
-/// `to_timestamp(began_ms / 1000.0)` is a time. A round can be here before its visit, which changes once more as it ends. `seq`
-/// orders the rows of one book, which is a file at a stand.
+/// Tables of version 1.
+///
+/// `to_timestamp(began_ms / 1000.0)` gives a time. A round may arrive before its visit, which is sent again
+/// when it ends. `seq` orders the rows of one book, which is a file of a stand.
 const TABLES: &str = "
 CREATE SCHEMA IF NOT EXISTS tamaire;
 CREATE TABLE tamaire.version (version INTEGER NOT NULL);
@@ -73,12 +76,12 @@ CREATE TABLE tamaire.events (
 CREATE INDEX ON tamaire.events (at_ms);
 ";
 
-/// Values of several types, to be handed over.
+/// Makes an array of references to values of several types.
 macro_rules! refs {
     ($($value:expr),*) => { [$(&$value as &(dyn ToSql + Sync)),*] };
 }
 
-/// The statements that put rows there.
+/// Prepared statements that insert or update rows.
 pub struct Inserts {
     visit: Statement,
     round: Statement,
@@ -86,7 +89,7 @@ pub struct Inserts {
     sent: Statement,
 }
 
-/// Sees to it that the tables are there, and of a version that is known here.
+/// Creates or migrates the tables, and checks that this program supports their version.
 pub fn begin(client: &mut Client) -> Result<Inserts, String> {
     begin_by(client, MIGRATIONS)
 }
@@ -95,7 +98,7 @@ fn begin_by(client: &mut Client, migrations: &[&str]) -> Result<Inserts, String>
     let encoding: String = of(client.query_one("SHOW server_encoding", &[]))?.get(0);
     if encoding != "UTF8" {
         return Err(format!(
-            "the server's database is in {encoding}: it takes one in UTF8"
+            "the server's database has the encoding {encoding}: expected UTF8"
         ));
     }
     let newest = migrations.len();
@@ -114,14 +117,14 @@ fn begin_by(client: &mut Client, migrations: &[&str]) -> Result<Inserts, String>
     }
     if found > newest {
         return Err(format!(
-            "the server's tables are of version {found}, and this program knows {newest} at most: it needs a newer tamaire"
+            "the server's tables have version {found}: this program supports up to version {newest}; install a newer tamaire"
         ));
     }
     let prepared = Inserts::prepare(client);
     of(prepared)
 }
 
-/// 0 where there are no tables.
+/// Returns the version of the tables; 0 if there are no tables.
 fn version(client: &mut impl postgres::GenericClient) -> Result<usize, postgres::Error> {
     let sql = "SELECT to_regclass('tamaire.version') IS NOT NULL";
     let is_there: bool = client.query_one(sql, &[])?.get(0);
@@ -152,7 +155,8 @@ impl Inserts {
         })
     }
 
-    /// Up to which change the server has got a file of a stand.
+    /// Returns the number of the last change that the server has received of a stand's file; 0 if it has
+    /// received none.
     pub fn sent(
         &self,
         client: &mut Client,
@@ -248,7 +252,7 @@ impl Inserts {
     }
 }
 
-/// What puts a row of an id there, or what changed of one that is there.
+/// Returns the SQL that inserts a row, or updates the row with its id.
 fn upsert(table: &str, columns: &str) -> String {
     let columns: Vec<&str> = columns.split_whitespace().collect();
     let places: Vec<String> = (1..=columns.len() + 1)
@@ -266,14 +270,14 @@ fn upsert(table: &str, columns: &str) -> String {
     )
 }
 
-/// What went wrong, as a sentence.
+/// Formats an error as a sentence.
 pub fn told(error: &postgres::Error) -> String {
     let reason = match (error.as_db_error(), error.source()) {
         (Some(error), _) => error.message().to_string(),
         (None, Some(source)) => format!("{error}: {source}"),
         (None, None) => error.to_string(),
     };
-    format!("the server does not take the logbook: {reason}")
+    format!("cannot send the logbook to the server: {reason}")
 }
 
 fn of<T>(result: Result<T, postgres::Error>) -> Result<T, String> {

@@ -1,5 +1,5 @@
-//! Rows as a stand has them.
-#![allow(dead_code)] // no test uses all of it
+//! Example rows of a stand.
+#![allow(dead_code)] // no test file uses all of these
 
 use std::path::PathBuf;
 use tamaire_logbook::{End, Entry, Error, Event, Id, Kind, Logbook, Moment, Round, Visit};
@@ -15,7 +15,8 @@ pub const MORNING: Moment = Moment {
 pub const MINUTE: i64 = 60_000;
 pub const DAY: i64 = 24 * 60 * MINUTE;
 
-/// A folder for a logbook, and its name in there: in memory where that can be, for a disk may be busy.
+/// Returns a folder and the path of a logbook in it. The folder is in memory if possible, because the disk
+/// may be busy.
 pub fn place() -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir());
     let folder = folder.unwrap();
@@ -23,7 +24,7 @@ pub fn place() -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-/// A new one.
+/// Opens a new logbook.
 pub fn open(path: &std::path::Path) -> Logbook {
     let (book, set_aside) = Logbook::open(path, STAND).unwrap();
     assert_eq!(set_aside, None);
@@ -68,11 +69,11 @@ pub fn event(at: Moment, kind: Kind) -> Event {
         stand: STAND.into(),
         at,
         kind,
-        text: "what happened, at length".into(),
+        text: "details of the event".into(),
     }
 }
 
-/// A visit of three rounds, the last of which was won, and its end.
+/// Returns the entries of a visit of three rounds, of which the last is won, with its end.
 pub fn entries(began: Moment) -> Vec<Entry> {
     let visit = visit(began);
     let at = began.after(10 * MINUTE);
@@ -86,13 +87,13 @@ pub fn entries(began: Moment) -> Vec<Entry> {
     all
 }
 
-/// A replay as long as most.
+/// Returns a replay of typical length.
 pub fn long_replay() -> String {
     let letters = (0..3000).map(|k: u32| char::from(b'a' + (k * k % 23) as u8));
     format!("r1{}z", letters.collect::<String>())
 }
 
-/// All that is in it.
+/// All rows of a logbook.
 #[derive(Debug, Default, PartialEq)]
 pub struct All {
     pub visits: Vec<Visit>,

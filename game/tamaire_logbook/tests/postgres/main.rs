@@ -1,4 +1,4 @@
-//! What a stand keeps gets to a server, whatever happens to either: on a real one.
+//! Rows reach a real PostgreSQL server, despite failures of the server or the stand.
 #![cfg(unix)]
 
 #[path = "../common/mod.rs"]
@@ -37,7 +37,7 @@ fn wait_for(recorder: &Recorder, what: &str, is_so: impl Fn(&Health) -> bool) ->
     }
 }
 
-/// Waits until the server has so many rows, and nothing waits.
+/// Waits until the server has `rows` rows and no entry is waiting.
 fn wait_for_rows(recorder: &Recorder, client: &mut Client, rows: i64) {
     let start = Instant::now();
     let count = |client: &mut Client| {
@@ -58,13 +58,13 @@ fn wait_for_rows(recorder: &Recorder, client: &mut Client, rows: i64) {
         thread::sleep(Duration::from_millis(20));
     }
     assert_eq!(count(client), rows);
-    let health = wait_for(recorder, "all is sent", |health| {
+    let health = wait_for(recorder, "everything sent", |health| {
         health.unsent == 0 && health.waiting == 0
     });
     assert_eq!(health.trouble, None);
 }
 
-/// The ids of a table, each of which is there once.
+/// Returns the ids of a table and checks that none occurs twice.
 fn ids(client: &mut Client, table: &str) -> BTreeSet<String> {
     let rows = client
         .query(&format!("SELECT id FROM tamaire.{table}"), &[])
@@ -81,10 +81,10 @@ fn count(client: &mut Client, what: &str) -> i64 {
         .get(0)
 }
 
-/// A server that is not there yet, then is, goes for long, and is killed in the middle of what it gets, again and again, while the
-/// stand is ended and begun again too.
+/// The server is missing at first, then started, stopped, and killed several times while it receives rows.
+/// The recorder is ended and started again meanwhile.
 #[test]
-fn nothing_is_lost_or_doubled_while_a_server_comes_and_goes() {
+fn rows_arrive_exactly_once_when_server_and_recorder_restart() {
     let Some(mut server) = Postgres::find() else {
         return;
     };
@@ -99,7 +99,7 @@ fn nothing_is_lost_or_doubled_while_a_server_comes_and_goes() {
     });
     let trouble = health.trouble.unwrap();
     assert!(
-        trouble.starts_with("the server does not take the logbook: "),
+        trouble.starts_with("cannot send the logbook to the server: "),
         "{trouble}"
     );
     assert!(health.is_recording);
@@ -150,7 +150,7 @@ fn nothing_is_lost_or_doubled_while_a_server_comes_and_goes() {
     assert_eq!(
         count(&mut client, "visits WHERE ended_ms IS NULL"),
         0,
-        "ends that came later came too"
+        "later ends of visits must arrive"
     );
     assert_eq!(
         count(
@@ -161,10 +161,11 @@ fn nothing_is_lost_or_doubled_while_a_server_comes_and_goes() {
     );
 }
 
-/// `AWAY=60 cargo test -p tamaire_logbook --features postgres --test postgres -- --ignored --nocapture` takes a minute.
+/// Run it for one minute instead: `AWAY=60 cargo test -p tamaire_logbook --features postgres --test postgres
+/// -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes an hour"]
-fn a_server_that_is_away_for_an_hour_gets_all_of_it() {
+fn server_receives_all_rows_after_an_hour_offline() {
     let Some(mut server) = Postgres::find() else {
         return;
     };
@@ -200,12 +201,12 @@ fn a_server_that_is_away_for_an_hour_gets_all_of_it() {
     let back = Instant::now();
     let rows = record(minute + 1);
     let mut client = server.ask("postgres");
-    wait_for(&recorder, "all is sent", |health| {
+    wait_for(&recorder, "everything sent", |health| {
         health.unsent == 0 && health.waiting == 0
     });
     wait_for_rows(&recorder, &mut client, rows);
     println!(
-        "{rows} rows, all there {:.1?} after it was back",
+        "{rows} rows, all received {:.1?} after the server was back",
         back.elapsed()
     );
     drop(recorder);
@@ -214,9 +215,9 @@ fn a_server_that_is_away_for_an_hour_gets_all_of_it() {
     assert_eq!(ids(&mut client, "rounds"), expected.collect());
 }
 
-/// What does not need a server of its own.
+/// Cases that can share one server.
 #[test]
-fn what_a_stand_keeps_gets_to_a_server() {
+fn sender_transfers_rows_to_a_running_server() {
     let Some(mut server) = Postgres::find() else {
         return;
     };
@@ -272,7 +273,7 @@ fn every_column_arrives(server: &Postgres) {
         .unwrap();
     assert_eq!(row.get::<_, String>("kind"), "weather");
     assert_eq!(row.get::<_, String>("text"), odd.text.replace('\0', ""));
-    // An end that comes later, by a clock that was set back.
+    // The end of the visit, recorded later and with the clock set back.
     let at = MORNING.after(-DAY);
     let (id, language) = (visit.id, String::new());
     recorder.record(Entry::VisitEnded { id, at, language });
@@ -375,7 +376,7 @@ fn tables_of_a_newer_version_are_left_alone(server: &Postgres) {
     let health = wait_for(&recorder, "refused", |health| {
         health.trouble.is_some() && health.unsent == 4
     });
-    let expected = "the server's tables are of version 7, and this program knows 1 at most: it needs a newer tamaire";
+    let expected = "the server's tables have version 7: this program supports up to version 1; install a newer tamaire";
     assert_eq!(health.trouble.as_deref(), Some(expected));
     assert!(health.is_recording);
     assert_eq!(count(&mut client, "visits"), 1);
@@ -384,10 +385,10 @@ fn tables_of_a_newer_version_are_left_alone(server: &Postgres) {
 fn an_address_that_is_none_is_told(server: &Postgres) {
     let (_folder, path) = place();
     for (address, expected) in [
-        ("hots=hall", "the address of the server cannot be read"),
+        ("hots=hall", "the address of the server is invalid"),
         (
             "host=/nowhere user=stand password=secret",
-            "does not take the logbook",
+            "cannot send the logbook",
         ),
         (
             &server.named("missing").address,
@@ -405,6 +406,6 @@ fn an_address_that_is_none_is_told(server: &Postgres) {
             "{trouble}"
         );
         assert!(!format!("{recorder:?} {address:?}").contains("secret"));
-        wait_for(&recorder, "it records", |health| health.is_recording);
+        wait_for(&recorder, "recording", |health| health.is_recording);
     }
 }

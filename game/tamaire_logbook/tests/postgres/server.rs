@@ -1,4 +1,4 @@
-//! A real PostgreSQL server, in a folder of its own, on a socket that nobody else knows.
+//! A real PostgreSQL server in its own folder, on a private socket.
 
 use postgres::{Client, NoTls};
 use std::env;
@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use tamaire_logbook::Server;
 use tempfile::TempDir;
 
-/// The server refuses to be run by root: then by nobody.
+/// User id that runs the server if the test runs as root, which PostgreSQL refuses: the user `nobody`.
 const NOBODY: u32 = 65534;
 
 pub struct Postgres {
@@ -22,10 +22,11 @@ pub struct Postgres {
 }
 
 impl Postgres {
-    /// One that was never started; nothing, with a sentence, where none is installed.
+    /// Creates a server that is not started yet. Without an installed PostgreSQL, prints a message and
+    /// returns `None`.
     pub fn find() -> Option<Self> {
         let Some(programs) = programs() else {
-            eprintln!("skipped: there is no PostgreSQL server here (Debian: postgresql)");
+            eprintln!("skipped: no PostgreSQL server is installed (Debian package: postgresql)");
             return None;
         };
         let folder = tempfile::tempdir().unwrap();
@@ -56,7 +57,7 @@ impl Postgres {
         Some(server)
     }
 
-    /// Starts it, and waits until it answers.
+    /// Starts the server and waits until it answers.
     pub fn start(&mut self) {
         let start = Instant::now();
         loop {
@@ -67,10 +68,11 @@ impl Postgres {
                 .arg("-k")
                 .arg(self.folder.path());
             serve.args(["-c", "listen_addresses=", "-c", "max_connections=20"]);
-            // What this test kills is the server, not the machine: what it commits need not be flushed.
+            // The tests kill the server, not the machine: commits need not be flushed.
             serve.args(["-c", "fsync=off", "-c", "shared_buffers=16MB"]);
             let mut child = serve.spawn().unwrap();
-            // After a kill the ports and the memory of the last one are taken until all of its children are gone.
+            // After a kill, the socket and the shared memory stay in use until all child processes of the old
+            // server have ended.
             while child.try_wait().unwrap().is_none() {
                 if Client::connect(&self.address("postgres"), NoTls).is_ok() {
                     self.child = Some(child);
@@ -80,13 +82,13 @@ impl Postgres {
             }
             assert!(
                 start.elapsed() < Duration::from_secs(60),
-                "it does not start"
+                "the server does not start"
             );
             thread::sleep(Duration::from_millis(50));
         }
     }
 
-    /// As kill -9 does.
+    /// Kills the server as `kill -9` does.
     pub fn kill(&mut self) {
         if let Some(mut child) = self.child.take() {
             child.kill().unwrap();
@@ -94,7 +96,7 @@ impl Postgres {
         }
     }
 
-    /// A new database on it.
+    /// Creates a database on the server.
     pub fn database(&self, name: &str) -> Server {
         self.ask("postgres")
             .batch_execute(&format!("CREATE DATABASE {name}"))
@@ -145,7 +147,8 @@ impl Drop for Postgres {
     }
 }
 
-/// The folder of `initdb` and `postgres`: Debian has one for each version, and none of them is in the path.
+/// Returns the folder of `initdb` and `postgres`. Debian has one folder per version, and none of them is in
+/// `PATH`.
 fn programs() -> Option<PathBuf> {
     let debian = fs::read_dir("/usr/lib/postgresql").into_iter().flatten();
     let mut folders: Vec<PathBuf> = debian

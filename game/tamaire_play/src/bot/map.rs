@@ -1,27 +1,27 @@
-//! Ways through a room, around what stands and lies in it.
+//! Path finding in a room, around obstacles and pieces.
 
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim, Vector};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Width of a cell [m] in the plane, and in space, where narrow ones would be too many.
+/// Width of a cell in 2D and in 3D, where smaller cells would be too many [m].
 const CELL: [f32; 2] = [0.1, 0.15];
-/// The cost of the shortest step, so that costs are whole numbers, which have an order.
+/// Cost of a step of one cell, in integer units, because integers can be ordered in a heap.
 const UNIT: f32 = 10.0;
 
-/// What a step costs everywhere in a room.
+/// Cost of a step for each cell of a room.
 pub(super) struct Map {
     low: Vector,
     /// Width of a cell [m].
     cell: f32,
-    /// Number of cells on each axis; 1 on one that does not count.
+    /// Number of cells on each axis; 1 on an unused axis.
     size: [usize; 3],
-    /// For each cell: 1 where nothing is in the way.
+    /// Cost of each cell; 1 for a free cell.
     costs: Vec<f32>,
 }
 
-/// What the cheapest way to a place costs from everywhere.
+/// Minimum cost of reaching a position from each cell.
 pub(super) struct Ways<'a> {
     map: &'a Map,
     to: Vector,
@@ -29,12 +29,13 @@ pub(super) struct Ways<'a> {
 }
 
 impl Map {
-    /// The map of a room from its low to its high corner [m] in which a step costs so much.
+    /// Builds the map of a room from its low to its high corner [m]. `cost` is evaluated at the centre of
+    /// each cell.
     pub(super) fn new<D: Dim>([mut low, high]: [Vector; 2], cost: impl Fn(Vector) -> f32) -> Self {
         let cell = CELL[D::N - 2];
         let mut size =
             [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / cell).ceil().max(1.0) as usize);
-        // The middle of the only cell on an axis that does not count is at 0.
+        // On an unused axis the centre of the only cell is at 0.
         size[D::N..].fill(1);
         low[D::N..].fill(-0.5 * cell);
         let costs = Vec::new();
@@ -50,24 +51,25 @@ impl Map {
         map
     }
 
-    /// Makes the steps costlier in a cell and those around it.
+    /// Adds to the cost of a cell and of its neighbours.
     pub(super) fn add(&mut self, at: Vector, cost: f32) {
         let cell = self.cell(at);
         self.costs[cell] += cost;
         around(self.size, cell, |next, _| self.costs[next] += cost);
     }
 
-    /// The cheapest ways to a place from everywhere.
+    /// Returns the minimum costs of reaching a position from all cells.
     pub(super) fn ways_to(&self, to: Vector) -> Ways<'_> {
         self.ways(to, None)
     }
 
-    /// The next goal on the cheapest way from one place to another.
+    /// Returns the next target on the cheapest path from one position to another.
     pub(super) fn next(&self, from: Vector, to: Vector) -> Vector {
         self.ways(to, Some(self.cell(from))).next(from)
     }
 
-    /// The cheapest ways to a place; where they lead from a single cell, only what is nearer is known.
+    /// Runs Dijkstra's algorithm from the target. With `from`, it stops at that cell, and only costs below
+    /// its own are final.
     fn ways(&self, to: Vector, from: Option<usize>) -> Ways<'_> {
         let mut costs = vec![u32::MAX; self.costs.len()];
         let goal = self.cell(to);
@@ -106,7 +108,7 @@ impl Map {
         [0, 1, 2].map(|axis| self.low[axis] + (steps[axis] as f32 + 0.5) * self.cell)
     }
 
-    /// What it costs to go straight.
+    /// Returns the cost of the straight line.
     fn straight(&self, from: Vector, to: Vector) -> f32 {
         let way = minus(to, from);
         let steps = (length(way) / self.cell).ceil();
@@ -118,7 +120,7 @@ impl Map {
 }
 
 impl Ways<'_> {
-    /// The place furthest along the way from `from` to which one can go straight.
+    /// Returns the furthest position on the path from `from` that can be reached on a straight line.
     pub(super) fn next(&self, from: Vector) -> Vector {
         let start = self.map.cell(from);
         let straight = self.map.straight(from, self.to);
@@ -138,7 +140,7 @@ impl Ways<'_> {
         best.unwrap_or(self.to)
     }
 
-    /// The first of the cheapest cells next to one.
+    /// Returns the neighbour with the lowest cost; the first one of equals.
     fn cheapest_around(&self, cell: usize) -> usize {
         let (mut cheapest, mut least) = (cell, u32::MAX);
         around(self.map.size, cell, |next, _| {
@@ -150,18 +152,18 @@ impl Ways<'_> {
     }
 }
 
-/// The number of the cell so many steps from the low corner.
+/// Returns the index of the cell at these coordinates.
 fn number(size: [usize; 3], [x, y, z]: [usize; 3]) -> usize {
     x + size[0] * (y + size[1] * z)
 }
 
-/// How many steps from the low corner a cell is.
+/// Returns the coordinates of a cell.
 fn steps(size: [usize; 3], cell: usize) -> [usize; 3] {
     let row = cell / size[0];
     [cell % size[0], row % size[1], row / size[1]]
 }
 
-/// Visits the cells next to one, and says how far each is [cells].
+/// Calls `visit` with each neighbour of a cell and its distance [cells].
 fn around(size: [usize; 3], cell: usize, mut visit: impl FnMut(usize, f32)) {
     const FAR: [f32; 4] = [0.0, 1.0, 1.414, 1.732];
     let at = steps(size, cell);
@@ -185,9 +187,9 @@ mod tests {
     use fuwafuwa::{Dim2, Dim3};
 
     #[test]
-    fn a_way_leads_around_a_wall_and_straight_where_nothing_is() {
+    fn path_leads_around_a_wall_and_straight_through_free_space() {
         let arena = [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]];
-        // A wall across the middle with a gap at the top.
+        // A wall across the centre with a gap at the top.
         let wall = |at: Vector| at[0].abs() < 0.1 && at[1] < 0.7;
         let map = Map::new::<Dim2>(arena, |at| if wall(at) { 1000.0 } else { 1.0 });
         let ways = map.ways_to([0.8, 0.0, 0.0]);
@@ -204,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn in_space_a_way_leads_over_a_wall() {
+    fn path_in_3d_leads_over_a_wall() {
         let arena = [[-1.0, 0.0, -1.0], [1.0, 1.5, 1.0]];
         let wall = |at: Vector| at[0].abs() < 0.15 && at[1] < 0.8;
         let map = Map::new::<Dim3>(arena, |at| if wall(at) { 1000.0 } else { 1.0 });

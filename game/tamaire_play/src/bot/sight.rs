@@ -1,4 +1,4 @@
-//! What a bot sees: the basket, the piece that matters, and what is in the way.
+//! A bot's view of a round: the basket, the most important piece, and the obstacles.
 
 use super::map::Map;
 use crate::Round;
@@ -6,71 +6,72 @@ use fuwafuwa::vector::{dot, length, minus, plus, scaled};
 use fuwafuwa::{Dim, PieceView, RigidBody, Shape, Vector};
 use std::cell::LazyCell;
 
-/// Pieces with less than this share of the mass are not worth the way.
+/// Share of the total mass below which a piece is ignored.
 const CRUMB: f32 = 0.003;
-/// Of the others, as many are looked at as matter most.
+/// Maximum number of pieces to consider, in order of mass.
 const MOST: usize = 12;
-/// What a step costs through something rigid, and how much more through all of the mass.
+/// Cost of a step through an obstacle (`RIGID`), and additional cost of a step through the total mass
+/// (`SOFT`).
 const RIGID: f32 = 1000.0;
 const SOFT: f32 = 400.0;
 
-/// What a bot looks at.
+/// A bot's view of a round.
 pub(super) struct Sight {
-    /// Into the basket, of length 1.
+    /// Unit vector into the basket.
     pub axis: Vector,
-    /// Along its mouth, of length 1; level where the mouth is not.
+    /// Unit vector along the mouth; horizontal in 3D.
     pub across: Vector,
-    /// The piece that matters.
+    /// The most important piece.
     pub piece: Piece,
-    /// The mass in the largest piece of each body, as a share of what that was at the start.
+    /// Mass of the largest piece of each body, as a share of the mass at the start.
     pub kept: f32,
     /// Number of pieces.
     pub pieces: usize,
-    /// Share of it in the basket.
+    /// Share of the mass in the basket.
     pub within: f32,
-    /// Share of it in the basket beyond what is needed, moving or not.
+    /// Share of the mass in the basket beyond the required one, at rest or not.
     pub surplus: f32,
-    /// Where the hand is, and where it is to go [m].
+    /// Position and target of the hand [m].
     pub hand: Vector,
     pub goal: Vector,
-    /// Where the hand waits: in front of the basket, as far as it can [m].
+    /// Waiting position of the hand: in front of the basket, as far away as possible [m].
     pub away: Vector,
-    /// Where a hand can go, and what is in its way.
+    /// Costs for the path of a hand.
     pub map: Map,
 }
 
-/// A piece, and what a hand has to do with it.
+/// A piece, and the positions for pushing it.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Piece {
-    /// Its middle [m].
+    /// Centre [m].
     pub centre: Vector,
-    /// Where it has to go, of length 1.
+    /// Unit vector in the direction to push.
     pub way: Vector,
-    /// From its middle to that of a hand that touches it from behind [m].
+    /// Distance between its centre and that of a hand that touches it from behind [m].
     pub reach: f32,
-    /// Where a hand begins to push it [m].
+    /// Position from which a hand starts to push [m].
     pub behind: Vector,
-    /// How far its middle is from that of the mouth [m].
+    /// Distance between its centre and that of the mouth [m].
     pub far: f32,
-    /// Whether it is no wider than the mouth.
+    /// Whether the piece is narrower than the mouth.
     pub fits: bool,
 }
 
-/// The basket as a bot sees it.
+/// A bot's view of the basket.
 struct Basket {
-    /// Into it, of length 1.
+    /// Unit vector into the basket.
     axis: Vector,
-    /// Middle of its mouth [m].
+    /// Centre of the mouth [m].
     mouth: Vector,
-    /// Half of its width on each axis across that counts [m]; else infinite.
+    /// Half width on each used axis across the mouth [m]; infinite on other axes.
     half: Vector,
-    /// The same of what goes through between the bars of its mouth [m].
+    /// Half width of the opening between the bars of the mouth, on the same axes [m].
     opening: Vector,
 }
 
 impl Sight {
-    /// What there is to see; `skips` = how many pieces that matter more are passed over, `off` = how
-    /// far off the middle of the mouth a wide piece may be to be pushed straight in [m].
+    /// Looks at a round. `skips` is the number of more important pieces to pass over. A wide piece is pushed
+    /// straight in if its centre is at most `off` beside that of the mouth [m].
     pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
         let (world, arena) = (round.world(), round.level().arena());
         let region = round.basket()?;
@@ -98,7 +99,7 @@ impl Sight {
         if pieces.is_empty() {
             pieces.push(Piece::of::<D>(largest, &basket, &ahead, off, radius));
         }
-        // Stays in order of mass otherwise.
+        // The sort is stable: pieces remain ordered by mass otherwise.
         pieces.sort_by_key(|piece| clearance(piece.behind, obstacles) < 0.5 * radius);
         let piece = pieces[skips % pieces.len()];
 
@@ -130,7 +131,7 @@ impl Sight {
 }
 
 impl Piece {
-    /// `ahead`: the next place on the way from one to the front of the basket.
+    /// `ahead` returns the next position on the path from a position to the front of the basket.
     fn of<D: Dim>(
         view: &PieceView,
         basket: &Basket,
@@ -142,13 +143,13 @@ impl Piece {
         let half = scaled(minus(view.high, view.low), 0.5);
         let (along, aside) = split(minus(centre, basket.mouth), basket.axis);
         let spare = basket.spare(half);
-        // In space what fits on one of the axes across needs to be moved along the other only: what
-        // lies on a floor is not lifted.
+        // In 3D, a piece that fits on one of the two axes across the mouth is moved on the other one only. So
+        // a piece on a floor is not lifted.
         let fits =
             |axis: usize| D::N == 3 && spare[axis].is_finite() && aside[axis].abs() < spare[axis];
         let off_mouth = length([0, 1, 2].map(|axis| if fits(axis) { 0.0 } else { aside[axis] }));
         let narrowest = spare.into_iter().fold(f32::INFINITY, f32::min);
-        // Straight in, or first to a place in front of the mouth.
+        // Straight in, or first to a position in front of the mouth.
         let target = match off_mouth > narrowest.max(off) {
             true => ahead(centre),
             false => plus(basket.mouth, scaled(basket.axis, along + 0.6)),
@@ -194,18 +195,18 @@ impl Basket {
         })
     }
 
-    /// How much wider it is on each axis than something, half by half [m]; negative where it is too
-    /// narrow.
+    /// Returns the half width of the basket minus `half` on each axis [m]; negative where the basket is
+    /// narrower.
     fn spare(&self, half: Vector) -> Vector {
         minus(self.half, half)
     }
 
-    /// A place in front of its mouth [m].
+    /// Returns a position in front of the mouth [m].
     fn front(&self) -> Vector {
         minus(self.mouth, scaled(self.axis, 0.5))
     }
 
-    /// Whether all of a piece is in it.
+    /// Returns whether the whole piece is in the basket.
     fn holds(&self, piece: &PieceView) -> bool {
         let half = scaled(minus(piece.high, piece.low), 0.5);
         let middle = scaled(plus(piece.high, piece.low), 0.5);
@@ -215,7 +216,7 @@ impl Basket {
     }
 }
 
-/// The way into a basket: against the direction in which one sees farthest out of it.
+/// Returns the direction into a basket: opposite to the direction with the longest line of sight out of it.
 fn inwards<D: Dim>(centre: Vector, half: Vector, obstacles: &[&Shape]) -> Vector {
     const WAYS: [Vector; 6] = [
         [1.0, 0.0, 0.0],
@@ -232,10 +233,11 @@ fn inwards<D: Dim>(centre: Vector, half: Vector, obstacles: &[&Shape]) -> Vector
     };
     let ways = WAYS.into_iter().take(2 * D::N);
     ways.max_by(|a, b| sees(a).total_cmp(&sees(b)))
-        .expect("there are four at least")
+        .expect("there are at least four directions")
 }
 
-/// How far one sees on an axis across, from the middle of a mouth and a bit before and behind it [m].
+/// Returns the half width of the opening on an axis across the mouth [m]: the shortest line of sight to an
+/// obstacle from points near the mouth's centre.
 fn opening(mouth: Vector, axis: Vector, across: usize, obstacles: &[&Shape]) -> f32 {
     let sees = |from: Vector, way: Vector| {
         let mut far = 0.0;
@@ -256,20 +258,21 @@ fn opening(mouth: Vector, axis: Vector, across: usize, obstacles: &[&Shape]) -> 
     least
 }
 
-/// A direction across an axis: from the first axis to the last that counts, and else to the first.
+/// Returns a direction perpendicular to an axis: the last used axis for the first one, otherwise the first
+/// axis.
 fn across<D: Dim>(axis: Vector) -> Vector {
     let mut across = [-axis[1] - axis[2], 0.0, 0.0];
     across[D::N - 1] = axis[0];
     across
 }
 
-/// How far the nearest obstacle is [m]; negative in it.
+/// Returns the distance to the nearest obstacle [m]; negative inside one.
 fn clearance(at: Vector, obstacles: &[&Shape]) -> f32 {
     let distances = obstacles.iter().map(|shape| shape.distance(at).0);
     distances.fold(f32::INFINITY, f32::min)
 }
 
-/// The place nearest to one that is in the room.
+/// Returns the nearest position within the room.
 fn clamped(place: Vector, [low, high]: [Vector; 2], margin: f32) -> Vector {
     [0, 1, 2].map(|axis| {
         let margin = margin.min(0.5 * (high[axis] - low[axis]));
@@ -277,13 +280,13 @@ fn clamped(place: Vector, [low, high]: [Vector; 2], margin: f32) -> Vector {
     })
 }
 
-/// The share of a vector along an axis of length 1, and the rest.
+/// Splits a vector into its component along a unit vector and the remainder.
 pub(super) fn split(v: Vector, axis: Vector) -> (f32, Vector) {
     let along = dot(v, axis);
     (along, minus(v, scaled(axis, along)))
 }
 
-/// The same direction, of length 1.
+/// Returns the vector normalized to length 1.
 pub(super) fn unit(v: Vector) -> Vector {
     scaled(v, 1.0 / length(v).max(1e-6))
 }

@@ -1,9 +1,10 @@
-//! Whether what a level begins with can be played.
+//! Checks whether the start of a level can be played.
 
 use fuwafuwa::vector::{plus, scaled};
 use fuwafuwa::{Dim, SoftBody, Vector, World};
 
-/// Checks that in the arena hands can move and bodies can be reached; else which field is wrong, and what was expected.
+/// Checks that hands can move in the arena and that bodies can be reached. Returns the invalid field and the
+/// expected value otherwise.
 pub(super) fn check<D: Dim>(
     world: &World<D>,
     [low, high]: [Vector; 2],
@@ -11,10 +12,10 @@ pub(super) fn check<D: Dim>(
     let room = (0..D::N).map(|axis| high[axis] - low[axis]);
     let room = room.fold(f32::INFINITY, f32::min);
     if widest_hand(world) > 0.9 * room {
-        let reason = format!("expected hands that can move in the view, {room} m wide");
+        let reason = format!("expected hands that fit into the view, which is {room} m wide");
         return Err(("hand", reason));
     }
-    // What is above may fall in.
+    // A body may start outside if it falls in.
     let fall = world.config().gravity;
     let is_out = |middle: Vector, k: usize| {
         middle[k] < low[k] && fall[k] <= 0.0 || middle[k] > high[k] && fall[k] >= 0.0
@@ -25,7 +26,7 @@ pub(super) fn check<D: Dim>(
         None => Ok(()),
         Some(index) => {
             let reason = format!(
-                "expected bodies in the view; of body {} the middle is not",
+                "expected all bodies in the view; the centre of body {} is outside",
                 index + 1
             );
             Err(("body", reason))
@@ -33,7 +34,7 @@ pub(super) fn check<D: Dim>(
     }
 }
 
-/// The middle of the nodes of a body [m].
+/// Returns the mean position of the nodes of a body [m].
 fn middle<D: Dim>(body: &SoftBody<D>) -> Vector {
     let positions = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);
     let (sum, count) = positions.fold(([0.0; 3], 0.0), |(sum, count), at| {
@@ -42,7 +43,7 @@ fn middle<D: Dim>(body: &SoftBody<D>) -> Vector {
     scaled(sum, 1.0 / count)
 }
 
-/// How wide the widest hand is on any axis [m].
+/// Returns the width of the widest hand on any axis [m].
 fn widest_hand<D: Dim>(world: &World<D>) -> f32 {
     let widths = world.target_followers().flat_map(|(_, hand)| {
         let [low, high] = hand.form().bounds();

@@ -1,16 +1,16 @@
-//! Bits in less room than they take: a binary arithmetic coder without carries [Mahoney 2005]. All bits together are one
-//! number between 0 and 1; each narrows down where it lies, the less the better it was guessed.
+//! Binary arithmetic coder without carries [Mahoney 2005]. A sequence of bits is coded as a number between 0
+//! and 1. Each bit narrows the interval of that number, the less the better the bit was predicted.
 
-/// How likely the next bit is a one, learned from those before it.
+/// Probability that the next bit is a one, learned from the preceding bits.
 #[derive(Copy, Clone, Debug)]
 pub struct Chance {
-    /// In 1/65536, never none of them nor all.
+    /// Probability in units of 1/65536, never 0 or 1.
     one: u16,
-    /// How many bits it has learned from, up to [`MEMORY`].
+    /// Number of bits learned from, at most [`MEMORY`].
     seen: u8,
 }
 
-/// About so many bits are remembered: with more, what changes is noticed late.
+/// Approximate number of remembered bits. With more, the model adapts to changes too slowly.
 const MEMORY: u8 = 120;
 
 impl Default for Chance {
@@ -23,7 +23,8 @@ impl Default for Chance {
 }
 
 impl Chance {
-    /// Of n bits the next one changes it by 1/(n + 1.5) of what is missing: nearly their mean, and never certain.
+    /// After n bits, the next one changes the probability by 1/(n + 1.5) of the error: nearly their mean, and
+    /// never certain.
     fn learn(&mut self, bit: bool) {
         let wish = if bit { i32::from(u16::MAX) } else { 0 };
         let one = i32::from(self.one);
@@ -33,13 +34,15 @@ impl Chance {
     }
 }
 
-/// A way for bits: what is written and what is read passes through the same model.
+/// Coder of bits. Writing and reading use the same model code.
 pub trait Bits {
-    /// Lets the next bit pass. A writer takes the one that is given, a reader knows better.
+    /// Codes the next bit. A writer encodes `bit` and returns it; a reader ignores `bit` and returns the
+    /// decoded one.
     fn bit(&mut self, chance: &mut Chance, bit: bool) -> bool;
 }
 
-/// The numbers, as 32 bits after the point, between which the rest lies: both are among them, and their first bytes differ.
+/// Interval of the remaining number, as 32 bits after the binary point, both ends included. The first bytes
+/// of the ends differ.
 #[derive(Copy, Clone, Debug)]
 struct Range {
     low: u32,
@@ -52,7 +55,7 @@ impl Range {
         high: u32::MAX,
     };
 
-    /// The last number that stands for a one.
+    /// Returns the last number that codes a one.
     fn split(self, chance: &Chance) -> u32 {
         let width = u64::from(self.high - self.low);
         self.low + ((width * u64::from(chance.one)) >> 16) as u32
@@ -65,7 +68,7 @@ impl Range {
         }
     }
 
-    /// The next byte, once it is certain.
+    /// Returns the next byte, if it is certain.
     fn next(&mut self) -> Option<u8> {
         let [low, high] = [self.low, self.high].map(|end| end >> 24);
         (low == high).then(|| {
@@ -76,7 +79,7 @@ impl Range {
     }
 }
 
-/// Makes bytes of bits.
+/// Encoder of bits.
 #[derive(Debug)]
 pub struct Writer {
     range: Range,
@@ -91,10 +94,10 @@ impl Writer {
         }
     }
 
-    /// All that was written. Zeros follow, as far as anybody reads.
+    /// Ends the encoding and returns the bytes. A reader takes missing bytes as zeros.
     pub fn finish(mut self) -> Vec<u8> {
         if self.range.low > 0 {
-            // The first bytes of the ends differ: the least number with one byte more lies between them.
+            // The first bytes of the ends differ: the smallest number with one more byte lies between them.
             self.bytes.push((self.range.low >> 24) as u8 + 1);
         }
         self.bytes
@@ -112,7 +115,8 @@ impl Bits for Writer {
     }
 }
 
-/// Makes bits of bytes. Any bytes are some bits, and there is no end to them: who reads knows when to stop.
+/// Decoder of bits. Any bytes are valid, and the sequence has no end: the caller must know the number of
+/// bits.
 #[derive(Debug)]
 pub struct Reader<'a> {
     range: Range,
@@ -167,9 +171,10 @@ mod tests {
     }
 
     #[test]
-    fn bits_come_back_in_little_more_room_than_their_chances_ask_for() {
+    fn bits_round_trip_close_to_their_entropy() {
         let mut random = fastrand::Rng::with_seed(1);
-        // One in so many is a one. The entropy of 10,000 of them [bytes], by H(p) = −p·log₂ p − (1−p)·log₂(1−p).
+        // One in `one_in` bits is a one. Entropy of 10,000 of them [bytes], by H(p) = −p·log₂ p −
+        // (1−p)·log₂(1−p).
         for (one_in, entropy) in [(2, 1250.0), (10, 586.2), (1000, 14.3)] {
             let bits: Vec<bool> = (0..10_000).map(|_| random.u32(..one_in) == 0).collect();
             let (read, bytes) = passed(&bits);

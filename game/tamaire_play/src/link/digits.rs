@@ -1,10 +1,12 @@
-//! Bytes as decimal digits: a QR code holds three of them in ten bits, and a letter of base64 in eight.
+//! Bytes as decimal digits. A QR code stores three digits in ten bits, but one character of base64 in eight
+//! bits.
 
-/// Seven bytes take seventeen digits; so many digits take the bytes that are left over, by their number.
+/// Number of digits for 0 to 7 bytes. Seven bytes take seventeen digits; the other entries are for the
+/// remaining bytes.
 const DIGITS: [usize; 8] = [0, 3, 5, 8, 10, 13, 15, 17];
 const BYTES: usize = DIGITS.len() - 1;
 
-/// Bytes as digits.
+/// Encodes bytes as digits.
 pub(super) fn write(bytes: &[u8]) -> String {
     let chunks = bytes.chunks(BYTES).map(|chunk| {
         let number = chunk
@@ -15,7 +17,7 @@ pub(super) fn write(bytes: &[u8]) -> String {
     chunks.collect()
 }
 
-/// The bytes that [`write`] made them of; nothing of what it never makes.
+/// Decodes digits from [`write`]; `None` if they are invalid.
 pub(super) fn read(digits: &str) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(digits.len() / 2);
     for chunk in digits.as_bytes().chunks(DIGITS[BYTES]) {
@@ -37,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_come_back_in_little_more_room_than_they_need() {
+    fn bytes_round_trip_close_to_the_minimum_length() {
         let mut random = fastrand::Rng::with_seed(5);
         for length in (0..40).chain([1000]) {
             for byte in [None, Some(0), Some(255)] {

@@ -1,53 +1,53 @@
-//! What can be wrong with a link.
+//! Errors of links.
 
 use crate::ReplayError;
 use crate::level::LevelError;
 use serde::Deserialize;
 
-/// Most characters of a fragment, the `#` aside: browsers and chat programs bear as many.
+/// Maximum length of a fragment without the `#` [characters]. Browsers and chat programs accept this length.
 pub const MAX_LENGTH: usize = 16_000;
 
-/// Why there is no such link.
+/// Reason why a link cannot be made or read.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
-    /// It is the address of something else.
-    #[error("this is no link to a round or a level of tamaire")]
+    /// The text is no link to a round or a level.
+    #[error("this is not a link to a round or a level of tamaire")]
     Other,
-    /// Its format is a later one, or its round was played by later rules.
+    /// The format of the link, or the rules of its round, are of a later version.
     #[error("this link was made by a newer tamaire")]
     Newer,
-    /// Not all of it arrived.
+    /// The end of the link is missing.
     #[error("the end of this link is missing")]
     CutShort,
-    /// It is not what was sent.
-    #[error("this link was changed on its way, or is not all of it")]
+    /// The link was changed.
+    #[error("this link is damaged or incomplete")]
     Damaged,
-    /// There is too much in it.
-    #[error("a link has {MAX_LENGTH} characters at most, and this one has {found}")]
+    /// The link is too long.
+    #[error("this link is too long: expected at most {MAX_LENGTH} characters, found {found}")]
     TooLong {
-        /// How many characters it has, or would have.
+        /// Length of the link [characters].
         found: usize,
     },
-    /// It was played in a level that is another one here.
-    #[error("the level {0:?} is not what it was when this link was made")]
+    /// The built-in level in the link differs from the one in this program.
+    #[error("the level {0:?} has changed since this link was made")]
     LevelDiffers(
-        /// The level.
+        /// Name of the level.
         String,
     ),
-    /// The round is broken.
+    /// The round is invalid.
     #[error(transparent)]
     Round(#[from] ReplayError),
-    /// The level is broken.
+    /// The level is invalid.
     #[error(transparent)]
     Level(#[from] LevelError),
 }
 
-/// The first value in the bytes, and the rest.
+/// Decodes the first value in the bytes, and returns it with the rest.
 pub(super) fn taken<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<(T, &'a [u8]), LinkError> {
     postcard::take_from_bytes(bytes).map_err(|_| LinkError::Damaged)
 }
 
-/// The value that the bytes are.
+/// Decodes a value from all of the bytes.
 pub(super) fn all<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, LinkError> {
     let (value, rest) = taken(bytes)?;
     rest.is_empty().then_some(value).ok_or(LinkError::Damaged)

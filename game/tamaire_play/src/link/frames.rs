@@ -1,10 +1,10 @@
-//! What was played in few bytes. A hand goes on as it went, or rests: what it does is told as the difference to that, and how
-//! large that is going to be is learned on the way.
+//! Compressed input frames. Each position is predicted: the hand keeps its velocity, or it rests. The
+//! prediction errors are coded with a model that learns their size while coding.
 
 use super::coder::{Bits, Chance, Reader, Writer};
 use crate::{InputFrame, PLAYERS};
 
-/// The frames in bytes: one that says in which way, and what is told so.
+/// Encodes frames: a byte with the method, followed by the coded frames.
 pub fn write(frames: &[InputFrame]) -> Vec<u8> {
     let unit = common_unit(frames);
     let ways = [false, true].map(|goes_on| Way { goes_on, unit });
@@ -17,10 +17,10 @@ pub fn write(frames: &[InputFrame]) -> Vec<u8> {
         [vec![way.byte()], writer.finish()].concat()
     });
     let shorter = told.into_iter().min_by_key(Vec::len);
-    shorter.expect("there are two ways")
+    shorter.expect("there are two methods")
 }
 
-/// So many frames of the bytes, if those say in which way.
+/// Decodes `count` frames; `None` if the method is invalid.
 pub fn read(bytes: &[u8], count: usize) -> Option<Vec<InputFrame>> {
     let (&first, told) = bytes.split_first()?;
     let mut model = Model::new(Way::of(first)?);
@@ -33,13 +33,13 @@ pub fn read(bytes: &[u8], count: usize) -> Option<Vec<InputFrame>> {
     )
 }
 
-/// In which way frames are told.
+/// Method of coding frames.
 #[derive(Copy, Clone, Debug)]
 struct Way {
-    /// Whether a hand is expected to go on at its pace, or to rest where it is: a slow screen brings a mouse's place for several
-    /// ticks at once, and then hands go by leaps.
+    /// Whether a hand is predicted to keep its velocity instead of resting. On a slow screen a mouse position
+    /// arrives only every few ticks; then hands move in jumps, and resting is the better prediction.
     goes_on: bool,
-    /// All numbers are multiples of 2 to this.
+    /// Exponent of the power of two that divides all coordinates.
     unit: u32,
 }
 
@@ -54,45 +54,45 @@ impl Way {
     }
 }
 
-/// The largest power of two that divides all numbers, as its exponent.
+/// Returns the exponent of the largest power of two that divides all coordinates.
 fn common_unit(frames: &[InputFrame]) -> u32 {
     let goals = frames.iter().flat_map(|frame| frame.goals).flatten();
     let units = goals.flatten().map(i16::trailing_zeros);
     units.min().unwrap_or(0).min(u16::BITS - 1)
 }
 
-/// Classes of how surprising a hand was of late.
+/// Number of classes of recent prediction errors.
 const CLASSES: usize = 2 * 19;
-/// As many first digits of a number are guessed from those before them; further ones all alike.
+/// Number of prefixes of leading digits with a learned probability. Digits with a longer prefix share one.
 const GUESSED: usize = 64;
 
-/// What is expected next. Whoever writes and whoever reads learn the same.
+/// Adaptive model of the frames. Writer and reader learn the same probabilities.
 struct Model {
     way: Way,
-    /// Whether a player has a goal, by whether they had one.
+    /// Probability that a player has a target, by player and by whether they had one in the last frame.
     present: [[Chance; 2]; PLAYERS],
     was_present: [bool; PLAYERS],
-    /// For each axis of each hand.
+    /// State of each axis of each hand.
     tracks: [[Track; 3]; PLAYERS],
     axes: [Differences; 3],
 }
 
-/// What a hand did on an axis.
+/// Recent coordinates of a hand on an axis.
 #[derive(Copy, Clone, Default)]
 struct Track {
-    /// The last two places, the latest first.
+    /// The last two coordinates, the latest first.
     past: Option<[i16; 2]>,
-    /// By how much they were off what was expected, the latest first.
+    /// The last three prediction errors, the latest first.
     off: [i16; 3],
 }
 
-/// What is known about differences on an axis. All arithmetic is that of 16 bits, around whose ends it goes.
+/// Probabilities of the prediction errors on an axis. All arithmetic wraps around at 16 bits.
 struct Differences {
-    /// Whether a number has more than so many binary digits, by class.
+    /// Probability that a number has more than `index` binary digits, by class.
     longer: [[Chance; 16]; CLASSES],
-    /// Whether it is below zero, by the sign of the last.
+    /// Probability that a number is negative, by the sign of the last one.
     negative: [Chance; 3],
-    /// The next digit, by how many there are and by those before it.
+    /// Probability of the next digit, by number of digits and by the digits before it.
     digits: [[Chance; GUESSED]; 17],
 }
 
@@ -112,7 +112,7 @@ impl Model {
         }
     }
 
-    /// Lets the next frame pass: a writer takes the one that is given, a reader knows better.
+    /// Codes the next frame. A writer encodes `frame`; a reader ignores it and returns the decoded one.
     fn pass(&mut self, bits: &mut impl Bits, frame: InputFrame) -> InputFrame {
         let mut passed = InputFrame::default();
         for player in 0..PLAYERS {
@@ -155,7 +155,7 @@ impl Track {
         self.off = [off, self.off[0], self.off[1]];
     }
 
-    /// How surprising it was of late, and whether that grew.
+    /// Returns the class of the recent prediction errors, by their size and by whether they grow.
     fn class(&self) -> usize {
         let [last, before, third] = self.off.map(|off| u32::from(off.unsigned_abs()));
         let size = u32::BITS - (2 * last + before + third).leading_zeros();
@@ -184,7 +184,7 @@ impl Differences {
             let is_one = bits.bit(chance, given >> digit & 1 == 1);
             size = size << 1 | u16::from(is_one);
         }
-        // 2¹⁵ is its own negative.
+        // 2¹⁵ is its own negative in 16 bits.
         if is_negative {
             size.wrapping_neg() as i16
         } else {
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn any_frames_come_back() {
+    fn arbitrary_frames_round_trip() {
         let ends = [i16::MIN, i16::MAX, 0, -1, 1];
         let wild = ends
             .iter()
@@ -216,12 +216,16 @@ mod tests {
             let bytes = write(frames);
             assert_eq!(read(&bytes, frames.len()).as_deref(), Some(frames));
         }
-        assert_eq!(write(&coarse)[0] >> 1, 12, "all are multiples of 4096");
+        assert_eq!(
+            write(&coarse)[0] >> 1,
+            12,
+            "all coordinates are multiples of 4096"
+        );
     }
 
-    /// Else links that were sent can be read no more: then `FORMAT` has to change.
+    /// If these bytes change, existing links become unreadable, and `FORMAT` must change.
     #[test]
-    fn the_same_frames_are_the_same_bytes_for_ever() {
+    fn encoding_of_frames_never_changes() {
         let goal = |tick: i16| [tick * tick - 900, 91 * (tick % 40), tick & 3];
         let frames: Vec<InputFrame> = (0..60)
             .map(|tick| frame([Some(goal(tick)), (tick > 9).then(|| goal(60 - tick))]))

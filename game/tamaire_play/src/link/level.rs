@@ -1,4 +1,4 @@
-//! Levels that travel: by name where they come along, else whole.
+//! Levels in links: a built-in level by name, any other one in full.
 
 use super::error::{LinkError, all};
 use crate::assists::assisted;
@@ -13,12 +13,13 @@ use miniz_oxide::{deflate, inflate};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// Most bytes of a scene in one before they are deflated: an honest one that fits is smaller.
+/// Maximum size of a scene in a link before compression [bytes]. Any genuine scene that fits into a link is
+/// smaller.
 pub(super) const MAX_SCENE_BYTES: usize = 1 << 17;
-/// How hard deflate looks for repetitions, 0 to 10.
+/// Compression level of deflate, 0 to 10.
 pub(super) const EFFORT: u8 = 9;
 
-/// A level on its way.
+/// Encoded level.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct SentLevel {
     pub(super) id: String,
@@ -27,13 +28,13 @@ pub(super) struct SentLevel {
 
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Content {
-    /// It comes along, with some things made easier.
+    /// A built-in level with assists.
     Known {
         assists: BTreeSet<Assist>,
-        /// Half of its hash.
+        /// Lower half of its hash.
         hash: u32,
     },
-    /// A [`WholeScene`], deflated.
+    /// A deflated [`WholeScene`].
     Whole(Vec<u8>),
 }
 
@@ -58,7 +59,7 @@ impl SentLevel {
         if sent.id.chars().count() > MAX_NAME {
             return Err(LinkError::Damaged);
         }
-        // One that somebody made never takes the place of one that comes along.
+        // The extension prevents a custom level from taking the name of a built-in one.
         let is_made = matches!(sent.content, Content::Whole(_)) && !sent.id.contains('.');
         let id = sent.id.clone() + if is_made { ".toml" } else { "" };
         Ok(Level::of(&id, plain(sent.scene()?))?)
@@ -77,18 +78,17 @@ impl SentLevel {
     }
 }
 
-/// The text of a scene without the files that its bodies are made from, and those: their bytes are told in less room than
-/// their letters.
+/// Text of a scene without the files of its bodies, and those files as bytes, which are shorter than base64.
 pub(super) type WholeScene = (String, Vec<Option<Vec<u8>>>);
 
 fn deflated(id: &str, scene: &Scene) -> Result<Vec<u8>, LinkError> {
     let mut scene = scene.clone();
     let files = scene.body.iter_mut().map(take_file).collect();
     let whole: WholeScene = (text_of(&scene), files);
-    let bytes = postcard::to_stdvec(&whole).expect("a vector takes all");
+    let bytes = postcard::to_stdvec(&whole).expect("serialization into a vector cannot fail");
     let found = bytes.len();
     if found > MAX_SCENE_BYTES {
-        let reason = format!("for a link, expected {MAX_SCENE_BYTES} bytes at most, found {found}");
+        let reason = format!("for a link, expected at most {MAX_SCENE_BYTES} bytes, found {found}");
         return Err(LevelError::Unreadable(id.into(), reason).into());
     }
     Ok(deflate::compress_to_vec(&bytes, EFFORT))
@@ -106,7 +106,7 @@ fn inflated(id: &str, deflated: &[u8]) -> Result<Scene, LinkError> {
     Ok(scene)
 }
 
-/// Takes out the bytes of the file that a body is made from; what is no base64 stays.
+/// Removes the file content of a body and returns its bytes. Content that is not base64 stays in the text.
 fn take_file(body: &mut BodyText) -> Option<Vec<u8>> {
     let bytes = BASE64_STANDARD.decode(body.content.as_ref()?).ok()?;
     body.content = None;

@@ -1,4 +1,4 @@
-//! English
+//! English.
 
 use super::{Plot, Reading, Words, busiest, halves_and_dust, once_and_often, percent, sure};
 use crate::figures::{Basis, Dares, Figures, Reason, Switching};
@@ -6,10 +6,10 @@ use crate::plot::grouped;
 use crate::reading::{Strategies, Unexplained, won_again};
 use tamaire_play::Route;
 
-/// What the page says in English.
+/// Texts of the page in English.
 pub static ENGLISH: Words = Words {
     code: "en",
-    title: "What visitors did",
+    title: "Visitor report",
     days: |figures| match (figures.first_day, figures.last_day) {
         (Some(first), Some(last)) if first == last => first.to_string(),
         (Some(first), Some(last)) => format!(
@@ -18,7 +18,7 @@ pub static ENGLISH: Words = Words {
         ),
         _ => String::new(),
     },
-    nothing: "There is no visit in these logbooks in the days that were asked for. So there is nothing to show yet.",
+    nothing: "There is no visit in these logbooks for the selected days, so there is nothing to show yet.",
     numbers: [
         "visits",
         "rounds",
@@ -31,31 +31,31 @@ pub static ENGLISH: Words = Words {
     parts: [
         "squeezed in whole",
         "shaved to fit",
-        "some of both",
+        "a mix of both",
         "not won",
     ],
     route,
     tries: ["1st round", "2nd round", "3rd round", "4th round and later"],
     rounds: |count| plural(count, "round"),
     reading: Reading {
-        title: "What was seen in 2004, and what is seen here",
-        then: "In 2004 people at a media festival were told no more than to put the body into the region between three bars. \
-            Two strategies appeared: to squeeze it in without breaking it, and to shave it down until it fitted. Many who had \
+        title: "Compared with 2004",
+        then: "In 2004, visitors of a media festival were only told to put the body into the region between three bars. Two \
+            strategies appeared: squeezing it in without breaking it, and shaving it down until it fit. Many people who had \
             won one way then tried the other.",
         strategies,
         unexplained,
         switching: reading_of_switching,
-        unknown: "Logbooks do not know whether somebody stood by and explained, or whether two visits were of the same \
+        unknown: "The logbooks do not record whether someone explained the game, or whether two visits were by the same \
             person. The game itself shows a pale hand at first, and may suggest the other way after a win.",
     },
     hours: Plot {
-        title: "When people came",
+        title: "Visits by hour",
         axes: ["hour of the day, local time of the stand", "number"],
         caption: |figures| {
             let most = busiest(figures);
             let most = most.map(|(hour, visits)| {
                 format!(
-                    " Most visits, {}, began between {hour}:00 and {}:00.",
+                    " The busiest hour had {} visits, beginning between {hour}:00 and {}:00.",
                     grouped(visits),
                     hour + 1
                 )
@@ -68,26 +68,26 @@ pub static ENGLISH: Words = Words {
     },
     hour_series: ["visits", "rounds"],
     by_level: Plot {
-        title: "How rounds ended, by level",
+        title: "Results by level",
         axes: ["share of the level's rounds [%]", ""],
-        caption: "Each bar is all rounds of a level, parted by how they ended. The level with most rounds comes first. A level \
-            that was made easier, or that is another version, has four digits behind its name.",
+        caption: "Each bar shows all rounds of a level, split by result. The most played level comes first. Four digits after a \
+            name mark an easier or another version of the level.",
     },
     by_try: Plot {
-        title: "How rounds ended, by try",
+        title: "Results by attempt",
         axes: ["share of these rounds [%]", ""],
-        caption: "The same by whether it was the first, second or third round of a visit, or a later one. What people learn \
-            shows as less that is not won from bar to bar.",
+        caption: "The same results for the first, second, third and later rounds of a visit. As visitors learn, the share that \
+            is not won shrinks from bar to bar.",
     },
     first_win: Plot {
-        title: "How long it took to win",
-        axes: ["time played up to the first win [s]", "visits"],
+        title: "Time to the first win",
+        axes: ["playing time to the first win [s]", "visits"],
         caption: |figures| {
             let quantiles = figures.to_first_win.quantiles.unwrap_or_default();
             let rest = figures.total.visits - figures.to_first_win.visits;
             format!(
-                "Visits by how long they had played when they first won; the last column is all that took longer. Half of those \
-                 who won did it within {}, nine of ten within {}. {} never won and {} not in the plot.",
+                "Visits by playing time to their first win; the last column holds all longer times. Half of the visits with a \
+                 win needed at most {}, nine out of ten at most {}. {} without a win {} not shown.",
                 time(quantiles[2]),
                 time(quantiles[4]),
                 plural(rest, "visit"),
@@ -97,25 +97,25 @@ pub static ENGLISH: Words = Words {
     },
     median: |seconds| format!("median {}", time(seconds)),
     per_visit: Plot {
-        title: "Rounds in a visit",
-        axes: ["rounds in a visit", "visits"],
+        title: "Rounds per visit",
+        axes: ["rounds per visit", "visits"],
         caption: |figures| {
             let [once, often] = once_and_often(figures);
             let all = figures.total.visits;
             format!(
-                "Visits by how many rounds they had, won or not. {}% played once, {}% several times.",
+                "Visits by their number of rounds, won or not. {}% played once, {}% several times.",
                 percent(once, all),
                 percent(often, all),
             )
         },
     },
     switching: Plot {
-        title: "Another way the next time?",
+        title: "Another way the second time?",
         axes: ["share of these visits [%]", ""],
         caption: |switching: &Switching| {
             format!(
-                "Visits by the route of their first win, parted by the route of their next one. In {}, the next win went \
-                 another way than the first. Without a suggestion from the game since the first win: {}.",
+                "Visits by the route of their first win, split by the route of their second. In {}, the second win took another \
+                 route. Of these, visits without a suggestion from the game in between: {}.",
                 plural(switching.switched, "visit"),
                 grouped(switching.switched_undared),
             )
@@ -124,24 +124,24 @@ pub static ENGLISH: Words = Words {
     after: |first, visits| format!("first win: {} ({})", route(first), plural(visits, "visit")),
     no_more: "no further win",
     dares: Plot {
-        title: "Was the dare taken up?",
-        axes: ["share of rounds with a dare [%]", ""],
+        title: "Was the suggestion followed?",
+        axes: ["share of rounds with a suggestion [%]", ""],
         caption: |dares: &Dares| {
             format!(
-                "Rounds before which the game suggested the other way. It did so in {}, and {} of these won as was suggested.",
+                "Rounds before which the game suggested the other way. It did so in {}, and {} of these won that way.",
                 plural(dares.visits, "visit"),
                 grouped(dares.visits_as_dared),
             )
         },
     },
-    dare_parts: ["won as dared", "won another way", "not won"],
+    dare_parts: ["won as suggested", "won another way", "not won"],
     pieces: Plot {
         title: "Pieces at the end",
         axes: ["pieces at the end of a round, up to", "rounds"],
         caption: |figures| {
             let [halves, dust] = halves_and_dust(figures);
             format!(
-                "Rounds by how many pieces there were when they ended. {} ended in exactly two pieces, {} in more than 128: dust.",
+                "Rounds by the number of pieces at their end. {} ended in exactly two pieces, {} in more than 128.",
                 plural(halves, "round"),
                 grouped(dust),
             )
@@ -149,33 +149,38 @@ pub static ENGLISH: Words = Words {
     },
     hands: Plot {
         title: "Where hands moved",
-        axes: ["across the room [m]", "height [m]"],
+        axes: ["width [m]", "height [m]"],
         caption: |rounds, most, wide| {
             format!(
-                "The darker, the longer hands were there: up to {most:.2} s of a round in a cell of {wide:.0} cm, and not at all \
-                 where it is white. Thin line: the body as it begins; thick line: the basket; brown: what stands in the way. Of \
+                "The darker a cell, the longer hands were there: up to {most:.2} s per round in a cell of {wide:.0} cm. White \
+                 cells were never reached. Thin line: the body at the start; thick line: the basket; brown: obstacles. Based on \
                  {} that were run again.",
                 plural(rounds, "round"),
             )
         },
     },
-    from_above: ["depth, front below [m]", "Seen from above."],
-    no_hands: "Where hands moved is not shown: for that, rounds have to be run again. Make this report with --rerun; it also \
-        checks that every round comes out as it was written.",
+    from_above: ["depth, front at the bottom [m]", "Seen from above."],
+    no_hands: "This map requires running the rounds again. Create the report with --rerun, which also checks that every round \
+        gives its recorded result.",
     best: Plot {
-        title: "The best",
+        title: "Best rounds",
         axes: ["", ""],
-        caption: "The fastest win by each route, on each day. Films are of the last day.",
+        caption: "The fastest win by each route on each day. Clips are from the last day.",
     },
     best_columns: ["day", "route", "level", "time", "stand"],
-    no_clip: "Without a film:",
+    no_clip: "No clip of round",
     tables: [
         "By stand",
         "By day",
         "Languages shown",
-        "What happened to the stands",
+        "Events at the stands",
     ],
-    columns: ["visits", "rounds", "visits that won", "median to first win"],
+    columns: [
+        "visits",
+        "rounds",
+        "visits with a win",
+        "median time to first win",
+    ],
     more: |count| format!("and {count} more, in report.json"),
     language: |code| match code {
         "en" => Some("English"),
@@ -185,30 +190,30 @@ pub static ENGLISH: Words = Words {
         "zh" => Some("Chinese"),
         "ko" => Some("Korean"),
         "es" => Some("Spanish"),
-        "" => Some("not known"),
+        "" => Some("unknown"),
         _ => None,
     },
     event: |kind| match kind {
-        "began" => Some("the program was started"),
-        "ended" => Some("the program ended as it was told to"),
-        "crashed" => Some("the program broke down"),
-        "hung" => Some("the program stood still and was started anew"),
-        "lost_graphics" => Some("the GPU or the window was lost"),
-        "gave_up" => Some("the program was not started anew any more"),
-        "full_disk" => Some("the disk was full"),
-        "damaged_file" => Some("a file was damaged and set aside"),
-        "clock_changed" => Some("the clock was set"),
-        "device_lost" => Some("a stick or pad was unplugged"),
-        "device_found" => Some("a stick or pad was plugged in"),
-        "staff_in" => Some("the staff's screen was opened"),
-        "staff_refused" => Some("somebody was refused at the staff's screen"),
-        "settings_changed" => Some("settings were changed"),
+        "began" => Some("program started"),
+        "ended" => Some("program ended normally"),
+        "crashed" => Some("program crashed"),
+        "hung" => Some("program hung and was restarted"),
+        "lost_graphics" => Some("GPU or window lost"),
+        "gave_up" => Some("out of order: no more restarts"),
+        "full_disk" => Some("disk full"),
+        "damaged_file" => Some("damaged file set aside"),
+        "clock_changed" => Some("clock changed"),
+        "device_lost" => Some("stick or gamepad unplugged"),
+        "device_found" => Some("stick or gamepad plugged in"),
+        "staff_in" => Some("staff screen opened"),
+        "staff_refused" => Some("wrong PIN at the staff screen"),
+        "settings_changed" => Some("settings changed"),
         _ => None,
     },
-    basis: ("What this rests on", basis),
+    basis: ("About these figures", basis),
     refused: |count| {
         format!(
-            "{} not counted anywhere:",
+            "{} not counted:",
             if count == 1 {
                 "One round is".into()
             } else {
@@ -217,19 +222,19 @@ pub static ENGLISH: Words = Words {
         )
     },
     reason: |reason| match reason {
-        Reason::Contradictory => "contradicts itself",
-        Reason::Unreadable => "cannot be read",
-        Reason::Astray => "goes another way when run again",
-        Reason::Differs => "ends another way than was written",
+        Reason::Contradictory => "contradictory record",
+        Reason::Unreadable => "unreadable replay",
+        Reason::Astray => "replay takes another course",
+        Reason::Differs => "replay ends with another result",
     },
-    foot: "Made by tamaire from its logbooks. They hold nothing about who anybody was.",
+    foot: "Made by tamaire from its logbooks, which hold nothing that identifies a visitor.",
 };
 
 fn route(route: Route) -> &'static str {
     match route {
         Route::Squeeze => "squeezed in",
         Route::Shave => "shaved",
-        Route::Mix => "some of both",
+        Route::Mix => "a mix of both",
     }
 }
 
@@ -257,22 +262,22 @@ fn strategies(strategies: Strategies, figures: &Figures) -> String {
     let all = plural(wins.won(), "win");
     match strategies {
         Strategies::Few => format!(
-            "Which strategies appear cannot be told yet: there are {all}, and it takes some twenty."
+            "It is too early to tell which strategies appear: this takes about twenty wins, and the logbooks have {all}."
         ),
         Strategies::Both => format!(
             "Both strategies appeared here too. Of {all}, {squeeze}% were squeezed in whole and {shave}% shaved to fit; {mix}% \
-             were some of both."
+             were a mix of both."
         ),
         Strategies::Only(Route::Squeeze) => format!(
-            "Only one of the two strategies appeared: of {all}, {squeeze}% were squeezed in whole, and hardly any, {shave}%, shaved \
-             to fit ({mix}% were some of both)."
+            "Only one of the two strategies appeared: of {all}, {squeeze}% were squeezed in whole, and only {shave}% shaved to \
+             fit ({mix}% were a mix of both)."
         ),
         Strategies::Only(Route::Shave) => format!(
-            "Only one of the two strategies appeared: of {all}, {shave}% were shaved to fit, and hardly any, {squeeze}%, squeezed \
-             in whole ({mix}% were some of both)."
+            "Only one of the two strategies appeared: of {all}, {shave}% were shaved to fit, and only {squeeze}% squeezed in \
+             whole ({mix}% were a mix of both)."
         ),
         Strategies::Only(Route::Mix) => format!(
-            "The two strategies did not appear apart: of {all}, {mix}% were some of both, {squeeze}% squeezed in whole and {shave}% \
+            "The two strategies were mostly mixed: of {all}, {mix}% were a mix of both, {squeeze}% squeezed in whole and {shave}% \
              shaved to fit."
         ),
     }
@@ -282,22 +287,22 @@ fn unexplained(unexplained: Unexplained, figures: &Figures) -> String {
     let total = &figures.total;
     let [share, low, high] = sure(total.visits_won, total.visits);
     let seen = format!(
-        "{} of {} won, which is {share}% (95% interval {low} to {high}%)",
+        "{} of {} won, which is {share}% (95% confidence interval {low} to {high}%)",
         grouped(total.visits_won),
         plural(total.visits, "visit"),
     );
     let soon = total
         .median_to_first_win
-        .map(|median| format!(" Half of those who won had done so after {}.", time(median)));
+        .map(|median| format!(" The median time to the first win was {}.", time(median)));
     let soon = soon.unwrap_or_default();
     match unexplained {
-        Unexplained::Few => format!("Whether an explanation is needed cannot be told yet: {seen}."),
-        Unexplained::Most => format!("It seems that no explanation was needed: {seen}.{soon}"),
+        Unexplained::Few => format!("It is too early to say if an explanation is needed: {seen}."),
+        Unexplained::Most => format!("Most visitors seem to need no explanation: {seen}.{soon}"),
         Unexplained::Half => format!(
-            "Whether an explanation was needed is open: {seen}, so whether more than half win is not known.{soon}"
+            "Whether visitors need an explanation remains open: {seen}, so it is uncertain whether more than half win.{soon}"
         ),
         Unexplained::Minority => format!(
-            "That no explanation was needed does not show here: {seen}. Most visits ended without a win.{soon}"
+            "Some visitors may need an explanation: {seen}. Most visits ended without a win.{soon}"
         ),
     }
 }
@@ -307,13 +312,13 @@ fn reading_of_switching(is_known: bool, figures: &Figures) -> String {
     let again_text = plural(again, "visit");
     if !is_known {
         return format!(
-            "Whether people try the other way cannot be told yet: {again_text} won more than once."
+            "It is too early to tell whether visitors try the other way: {again_text} won more than once."
         );
     }
     let switched = switching.switched;
     format!(
-        "Of {again_text} that won more than once, {} ({}%) won the second time another way than the first. Without a suggestion \
-         from the game in between: {}.",
+        "Of {again_text} that won more than once, {} ({}%) took another route the second time. Of these, visits without a \
+         suggestion from the game in between: {}.",
         grouped(switched),
         percent(switched, again),
         grouped(switching.switched_undared),
@@ -322,8 +327,8 @@ fn reading_of_switching(is_known: bool, figures: &Figures) -> String {
 
 fn basis(basis: &Basis) -> Vec<String> {
     let mut said = vec![format!(
-        "{}. A visit is what happens between two times at which a stand attracts; it is of the day on which it began, in the \
-         local time of the stand, with all that was played in it.",
+        "Based on {}. A visit lasts from the first touch until the stand is idle again. With all of its rounds, it counts for \
+         the day on which it began, in the local time of the stand.",
         plural(basis.files, "logbook"),
     )];
     let mut say = |count: u64, text: String| {
@@ -335,7 +340,7 @@ fn basis(basis: &Basis) -> Vec<String> {
     say(
         count,
         format!(
-            "{} stood in more than one place and counted once.",
+            "{} occurred again and counted only once.",
             plural(count, "row")
         ),
     );
@@ -343,7 +348,7 @@ fn basis(basis: &Basis) -> Vec<String> {
     say(
         count,
         format!(
-            "{} without an end: cut off by power or a crash, or going on.",
+            "{} without an end: interrupted by a power cut or a crash, or still going on.",
             plural(count, "visit")
         ),
     );
@@ -351,24 +356,24 @@ fn basis(basis: &Basis) -> Vec<String> {
     say(
         count,
         format!(
-            "During {} the clock went backwards. Hours and days are by the clock; all else goes by the order of rounds.",
+            "During {} the clock went backwards. Hours and days follow the clock; all other figures follow the order of rounds.",
             plural(count, "visit")
         ),
     );
     if basis.is_rerun {
         said.push(format!(
-            "{} were run again and came out as they were written.",
+            "{} run again with the recorded result.",
             plural(basis.rerun, "round")
         ));
         if basis.not_rerun > 0 {
             said.push(format!(
-                "{} could not be run again, having no replay, other rules or an unknown level, and are counted unchecked.",
+                "{} counted unchecked, because of a missing replay, other rules or an unknown level.",
                 plural(basis.not_rerun, "round"),
             ));
         }
     } else {
         said.push(
-            "Rounds were not run again: that they came out as they were written was not checked."
+            "Rounds were not run again, so their recorded results were not checked for this report."
                 .into(),
         );
     }

@@ -1,4 +1,4 @@
-//! Files and texts that nobody meant.
+//! Invalid files and hostile texts.
 
 use crate::made_up::{Rows, rows};
 use crate::{logbooks, report_on};
@@ -15,7 +15,7 @@ fn all() -> Options {
     }
 }
 
-/// What is in a folder.
+/// Returns the names of the files in a folder.
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let mut names: Vec<String> = entries
@@ -26,14 +26,14 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn what_cannot_be_read_is_named_and_nothing_is_left() {
+fn report_names_unreadable_files_and_leaves_no_output() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let good = logbooks(&at("good"), &[rows(1, 3)]).remove(0);
     fs::write(at("letter.txt"), "Dear logbook,").unwrap();
     fs::write(at("empty"), "").unwrap();
     fs::copy(&good, at("newer")).unwrap();
-    // The version of a file of SQLite stands at byte 60.
+    // An SQLite file has its user version at byte 60.
     let mut bytes = fs::read(at("newer")).unwrap();
     bytes[60..64].copy_from_slice(&999_u32.to_be_bytes());
     fs::write(at("newer"), &bytes).unwrap();
@@ -53,7 +53,7 @@ fn what_cannot_be_read_is_named_and_nothing_is_left() {
     let error = report_on(&[], &at("report"), &all())
         .unwrap_err()
         .to_string();
-    assert!(error.contains("one logbook or more"), "{error}");
+    assert!(error.contains("at least one logbook"), "{error}");
     let days = Options {
         from: Some("2026-11-02".parse().unwrap()),
         to: Some("2026-11-01".parse().unwrap()),
@@ -66,7 +66,7 @@ fn what_cannot_be_read_is_named_and_nothing_is_left() {
 }
 
 #[test]
-fn what_cannot_be_written_is_named_and_the_last_report_stays() {
+fn report_names_unwritable_files_and_keeps_the_last_report() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let files = logbooks(&at("good"), &[rows(1, 3)]);
@@ -83,7 +83,7 @@ fn what_cannot_be_written_is_named_and_the_last_report_stays() {
     fs::create_dir(out.join("report.json")).unwrap();
     let error = report_on(&files, &out, &all()).unwrap_err().to_string();
     assert!(
-        error.contains("report.json: it cannot be written: it is a folder"),
+        error.contains("report.json: cannot be written: a folder has this name"),
         "{error}"
     );
     assert_eq!(names(&out), ["index.html", "report.json"]);
@@ -105,7 +105,7 @@ fn what_cannot_be_written_is_named_and_the_last_report_stays() {
 }
 
 #[test]
-fn texts_of_strangers_stay_texts() {
+fn hostile_texts_are_escaped_in_page_and_tables() {
     let hostile = "=1+1</title><script>alert('\"&')</script><img src=http://example.org/x onerror=alert(1)>\u{202E}";
     let mut rows = rows(1, 40);
     for visit in &mut rows.visits {
@@ -130,7 +130,7 @@ fn texts_of_strangers_stay_texts() {
         for wrong in ["<script", "<img", "\u{202E}"] {
             assert!(!page.contains(wrong), "{wrong}");
         }
-        // But for the names of what SVG is, it has no address.
+        // Apart from the SVG namespace, the page contains no address.
         let bare = page
             .replace("xmlns=\"http://www.w3.org/2000/svg\"", "")
             .replace("src=http://example.org/x", "");
@@ -151,12 +151,12 @@ fn texts_of_strangers_stay_texts() {
 }
 
 #[test]
-fn an_empty_logbook_has_an_honest_page() {
+fn report_on_an_empty_logbook_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let files = logbooks(folder.path(), &[Rows::default()]);
     for (language, nothing) in [
         (Language::English, "no visit"),
-        (Language::Japanese, "まだ来場者がいません"),
+        (Language::Japanese, "来場の記録がありません"),
     ] {
         let options = Options { language, ..all() };
         let report = report_on(&files, &folder.path().join("out"), &options).unwrap();

@@ -1,4 +1,4 @@
-//! What analysts are told.
+//! Completeness of the documentation for analysts.
 
 use crate::made_up::rows;
 use crate::{logbooks, report_on};
@@ -20,7 +20,7 @@ fn names(value: &Value, found: &mut BTreeSet<String>) {
 }
 
 #[test]
-fn all_names_are_described() {
+fn every_name_in_the_output_is_documented() {
     let described = include_str!("../../../../docs/report.md");
     let folder = tempfile::tempdir().unwrap();
     let files = logbooks(folder.path(), &[rows(4, 60)]);

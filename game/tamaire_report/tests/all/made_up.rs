@@ -1,4 +1,4 @@
-//! Days at stands that never were.
+//! Synthetic days at stands.
 
 use fastrand::Rng;
 use std::path::Path;
@@ -24,7 +24,8 @@ pub fn write(path: &Path, rows: &Rows) {
     book.write_all(&all).unwrap();
 }
 
-/// The days around the end of summer time of 2026 in central Europe, at one stand there and at one in Japan.
+/// Returns the days around the end of daylight saving time 2026 in central Europe, at one stand there and one
+/// in Japan.
 pub fn rows(seed: u64, visits: usize) -> Rows {
     let mut random = Rng::with_seed(seed);
     let mut rows = Rows::default();
@@ -77,7 +78,7 @@ pub fn rows(seed: u64, visits: usize) -> Rows {
     rows
 }
 
-/// Mostly few rounds, sometimes none, sometimes very many.
+/// Returns a number of rounds: mostly few, sometimes none, sometimes many.
 fn rounds_of(random: &mut Rng) -> u32 {
     match random.u8(..20) {
         0 => 0,
@@ -92,7 +93,7 @@ fn moment(random: &mut Rng, first: i64, is_japan: bool) -> Moment {
     Moment { utc_ms, offset_s }
 }
 
-/// Summer time ends on 2026-10-25 at 1:00 UTC.
+/// Daylight saving time in Berlin ends on 2026-10-25 at 1:00 UTC.
 fn offset_at(utc_ms: i64, is_japan: bool) -> i32 {
     match is_japan {
         true => 9 * 3600,

@@ -1,4 +1,4 @@
-//! Reports on logbooks that were made up, against the same worked out another way; and what must not go wrong with files.
+//! Reports on synthetic logbooks, compared with a reference implementation, and tests with invalid files.
 
 mod bad;
 mod documented;
@@ -10,12 +10,12 @@ use made_up::{Rows, write};
 use std::path::{Path, PathBuf};
 use tamaire_report::{Error, Options, Report, report};
 
-/// A report without films and progress.
+/// Makes a report without clips and progress.
 fn report_on(files: &[PathBuf], out: &Path, options: &Options) -> Result<Report, Error> {
     report(files, out, options, None, &mut |_| {})
 }
 
-/// Logbooks in a folder.
+/// Writes logbooks into a folder.
 fn logbooks(folder: &Path, all: &[Rows]) -> Vec<PathBuf> {
     let path = |k: usize| folder.join(format!("{k}.logbook"));
     for (k, rows) in all.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The same figures worked out slowly, each from the raw rows.
+//! Slow reference implementation of the figures, from the raw rows.
 
 use crate::made_up::{Rows, rows};
 use crate::{logbooks, report_on};
@@ -22,7 +22,7 @@ fn day(moment: Moment) -> String {
     local(moment).date().to_string()
 }
 
-/// A visit with its rounds, in order.
+/// A visit with its rounds in order.
 type Told<'a> = (&'a Visit, Vec<&'a Round>);
 
 fn told<'a>(rows: &'a Rows, [from, to]: [Option<&str>; 2]) -> Vec<Told<'a>> {
@@ -302,7 +302,7 @@ fn compare(figures: &Figures, told: &[Told]) {
     );
 }
 
-/// With what a stand says of its own day.
+/// Compares the figures with the stand's own summary of the day.
 fn compare_with_stand(figures: &Figures, file: &Path) {
     let ever = Moment {
         utc_ms: 0,
@@ -327,7 +327,8 @@ fn compare_with_stand(figures: &Figures, file: &Path) {
     assert!(off.is_none_or(|off| off < 0.01), "{median:?}");
 }
 
-/// In three files: some rows stand in two or in all of them, rounds of a visit in different ones.
+/// Distributes the rows to three files: some rows are in two or three files, and rounds of a visit are in
+/// different ones.
 fn shared_out(rows: &Rows, seed: u64) -> Vec<Rows> {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut files = vec![Rows::default(); 3];
@@ -355,7 +356,7 @@ fn shared_out(rows: &Rows, seed: u64) -> Vec<Rows> {
 }
 
 #[test]
-fn figures_are_those_of_the_rows() {
+fn figures_match_the_reference() {
     for (seed, visits) in [(1, 0), (2, 1), (3, 7), (4, 60), (5, 400)] {
         let rows = rows(seed, visits);
         let folder = tempfile::tempdir().unwrap();
@@ -390,7 +391,7 @@ fn figures_are_those_of_the_rows() {
         compare(&shared, &told(&rows, [None, None]));
         let repeated = shared.basis.repeated_rows;
         assert_eq!(repeated > 0, visits > 0);
-        // A file named twice adds nothing but repeated rows.
+        // A file given twice only adds repeated rows.
         let twice = [&one[..], &one[..]].concat();
         let twice = report_on(&twice, &out, &options).unwrap().figures;
         let rows_of_one = (rows.visits.len() + rows.rounds.len() + rows.events.len()) as u64;
@@ -400,7 +401,7 @@ fn figures_are_those_of_the_rows() {
 }
 
 #[test]
-fn days_are_those_of_the_stand() {
+fn selected_days_are_in_the_local_time_of_the_stand() {
     let rows = rows(6, 300);
     let folder = tempfile::tempdir().unwrap();
     let files = logbooks(folder.path(), std::slice::from_ref(&rows));

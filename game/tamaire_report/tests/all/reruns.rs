@@ -19,7 +19,7 @@ const RERUN: Options = Options {
     rerun: true,
 };
 
-/// What a bot plays, as a row of a visit.
+/// Lets a bot play a round, and returns it as a row of the visit of `of`.
 fn played(of: &Round, level: &str, kind: BotKind, ticks: usize, seed: u64) -> Round {
     let level = Arc::new(Level::open(level).unwrap());
     let mut round = AnyRound::new(level.clone());
@@ -49,7 +49,7 @@ fn played(of: &Round, level: &str, kind: BotKind, ticks: usize, seed: u64) -> Ro
     }
 }
 
-/// A won round, a short one that was not won, one in space, and one without a replay.
+/// Returns a won round, a short one that was not won, one in 3D, and one without a replay.
 fn honest() -> Rows {
     let mut rows = rows(3, 7);
     rows.rounds.truncate(4);
@@ -64,7 +64,7 @@ fn honest() -> Rows {
 }
 
 #[test]
-fn rounds_that_come_out_count_and_are_drawn() {
+fn matching_rounds_are_counted_and_mapped() {
     let rows = honest();
     let folder = tempfile::tempdir().unwrap();
     let files = logbooks(folder.path(), &[rows.clone(), rows.clone()]);
@@ -109,12 +109,12 @@ fn rounds_that_come_out_count_and_are_drawn() {
     )
     .unwrap();
     let page = fs::read_to_string(&without.page).unwrap();
-    assert!(page.contains("Make this report with --rerun"));
+    assert!(page.contains("Create the report with --rerun"));
     assert_eq!(without.figures.total, report.figures.total);
 }
 
 #[test]
-fn rounds_that_do_not_come_out_are_listed_and_not_counted() {
+fn mismatching_rounds_are_listed_and_not_counted() {
     let good = honest();
     let mut rows = Rows {
         visits: good.visits.clone(),
@@ -255,7 +255,7 @@ fn rounds_that_do_not_come_out_are_listed_and_not_counted() {
     }
 }
 
-/// The same with one goal elsewhere, well packed again.
+/// Returns the replay with another target position in its first second and otherwise valid.
 fn tampered(round: &Round) -> String {
     let replay = Replay::of_fragment(&round.replay).unwrap();
     let level = Arc::new(replay.level().unwrap());
@@ -267,7 +267,7 @@ fn tampered(round: &Round) -> String {
         };
         other.step(frame);
     }
-    // The text has the fields of both: the frames of one and the hashes of the other.
+    // Combines the frames of the one replay with the hashes of the other.
     let (text, other) = (replay.text(), other.replay().text());
     let line = |text: &str, start: &str| {
         let line = text.lines().find(|line| line.starts_with(start));
@@ -276,12 +276,16 @@ fn tampered(round: &Round) -> String {
     let hashes = line(&text, "hashes = ");
     let swapped = text.replace(&hashes, &line(&other, "hashes = "));
     let count = |text: &str| text.matches('"').count();
-    assert_eq!(count(&swapped), count(&text), "as many hashes");
+    assert_eq!(
+        count(&swapped),
+        count(&text),
+        "the number of hashes must not change"
+    );
     Replay::read(&swapped).unwrap().fragment().unwrap()
 }
 
 #[test]
-fn a_killed_rerun_goes_on_where_it_was() {
+fn interrupted_rerun_continues_from_the_stored_results() {
     let rows = honest();
     let folder = tempfile::tempdir().unwrap();
     let files = logbooks(folder.path(), &[rows]);
@@ -290,7 +294,7 @@ fn a_killed_rerun_goes_on_where_it_was() {
     let path = out.join("reruns.jsonl");
     let text = fs::read_to_string(&path).unwrap();
     assert_eq!(text.lines().count(), 3);
-    // Killed as it wrote the third line; and before that somebody else's rules.
+    // State after a kill while the third line was written, preceded by a line with other rules.
     let lines: Vec<&str> = text.lines().collect();
     let old = lines[2].replace(
         &format!("\"rules\":{}", tamaire_play::replay::VERSION),
@@ -316,16 +320,16 @@ fn a_killed_rerun_goes_on_where_it_was() {
     );
     let after = fs::read_to_string(&path).unwrap();
     let lines: Vec<&str> = after.lines().collect();
-    assert_eq!(lines.len(), 5, "three were there, and two were run again");
+    assert_eq!(lines.len(), 5, "three stored lines and two new ones");
     assert!(after.starts_with(&[text.lines().next().unwrap(), &old, "not JSON"].join("\n")));
 
-    // All is known: nothing is added.
+    // All results are stored already: nothing is added.
     report_on(&files, &out, &RERUN).unwrap();
     assert_eq!(fs::read_to_string(&path).unwrap(), after);
 }
 
 #[test]
-fn the_best_are_shown_as_clips_if_they_come_out() {
+fn best_rounds_are_shown_as_clips_if_their_replays_match() {
     let mut rows = honest();
     let folder = tempfile::tempdir().unwrap();
     let gif = b"GIF89a, nearly".to_vec();
@@ -349,5 +353,5 @@ fn the_best_are_shown_as_clips_if_they_come_out() {
     rows.rounds[0].replay = tampered(&rows.rounds[0]);
     let files = logbooks(&folder.path().join("bad"), &[rows]);
     let bad = page(&files);
-    assert!(!bad.contains("data:image/gif") && bad.contains("Without a film:"));
+    assert!(!bad.contains("data:image/gif") && bad.contains("No clip of round"));
 }
