@@ -54,7 +54,7 @@ enum Rival {
     /// A swinging ball, graded and with elements of single voxels everywhere.
     Uniform,
     /// Falling bodies and a torn one, against Rapier at equal peak squash. Builds Rapier from
-    /// crates/against_rapier, which takes minutes.
+    /// tools/against_rapier, which takes minutes.
     Rapier,
 }
 

@@ -95,8 +95,8 @@ fn cut(voxels: usize, most_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn 
     }
     let told = format!(
         "{solid} voxels, {} elements, {} pieces; cut {:.2} cm² with {:.3} J, maximum force {most:.2} N",
-        world.bodies()[organ].mesh().element_count(),
-        world.bodies()[organ].piece_views().len(),
+        world.soft_bodies()[organ].mesh().element_count(),
+        world.soft_bodies()[organ].piece_views().len(),
         1e4 * sums[0],
         sums[1],
     );

@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if report.nodes_split > 0 || tick % 20 == 0 {
             println!(
                 "tick {tick:3}: the hand pushes with {felt:5.0} N; {:2} nodes released ({energy:.2} J), {} pieces detached",
-                report.released, report.parted
+                report.nodes_split, report.pieces_detached
             );
         }
     }

@@ -71,7 +71,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Maps a position [m] back to the undeformed body, in voxels, by the motion of an element: the inverse
-    /// of [`SoftBody::carry`]. `None` if the element is flat.
+    /// of [`SoftBody::affine_map`]. `None` if the element is flat.
     pub(crate) fn at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
         let stencil = self.topology.mesh.stencil(element);
         let size = self.topology.grid.voxel_size();

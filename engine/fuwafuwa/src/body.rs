@@ -171,7 +171,7 @@ impl<D: Dim> SoftBody<D> {
         self.state.inverse_mass[id] = 0.0;
     }
 
-    /// Frees a node that [`SoftBody::hold`] fixed.
+    /// Frees a node that [`SoftBody::fix_node`] fixed.
     ///
     /// # Panics
     /// If the id was never used.

@@ -40,7 +40,7 @@ pub type Knives = Arena<KnifeHandle, Knife>;
 /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
 /// world.add_rigid(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
 /// world.add_body(SoftBody::new(VoxelGrid::cube(16, 1.0)?, &[Material::default()])?);
-/// let mut hand = RigidBody::hand([0.53, 1.2, 0.0], 0.05);
+/// let mut hand = RigidBody::coupled_ball([0.53, 1.2, 0.0], 0.05);
 /// hand.is_sensor = true; // the edge alone touches
 /// let hand = world.add_rigid(hand)?;
 /// let knife = world.add_knife(Knife::new(hand, [[0.0; 3]; 2], [0.0, -1.0, 0.0]))?;

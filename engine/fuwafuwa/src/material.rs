@@ -167,7 +167,7 @@ impl Material {
     /// world.add_rigid(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
     /// let block = SoftBody::new(VoxelGrid::cube(12, 1.0)?, &[Material::clay()])?;
     /// let block = world.add_body(block);
-    /// let hand = world.add_rigid(RigidBody::hand([0.5, 1.2, 0.0], 0.2))?;
+    /// let hand = world.add_rigid(RigidBody::coupled_ball([0.5, 1.2, 0.0], 0.2))?;
     /// for height in [0.6, 1.6] {
     ///     world.set_goal(hand, [0.5, height, 0.0])?;
     ///     (0..60).for_each(|_| _ = world.step());

@@ -36,7 +36,7 @@ pub struct Pieces {
     pub list: IndexVec<PieceId, Piece>,
     of_element: IndexVec<ElementId, PieceId>,
     of_node: IndexVec<NodeId, PieceId>,
-    /// Scratch of [`Pieces::part`]: mark of the last search that visited each element and node.
+    /// Scratch of [`Pieces::detach`]: mark of the last search that visited each element and node.
     #[cfg_attr(feature = "serde", serde(skip))]
     seen: IndexVec<ElementId, u32>,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -186,7 +186,7 @@ impl Pieces {
         sides.born
     }
 
-    /// Does the work of [`Pieces::part`] at one place.
+    /// Does the work of [`Pieces::detach`] at one place.
     fn part_at<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[ElementId], sides: &mut Sides) {
         let mut by_piece: BTreeMap<PieceId, Vec<Vec<ElementId>>> = BTreeMap::new();
         for side in sides_of(mesh, around) {

@@ -45,7 +45,7 @@ pub enum MotionType {
         limit: f32,
     },
     /// Dynamic: moved and turned by gravity and contacts. The shape must be bounded and centred on its
-    /// origin, see [`RigidBody::free`].
+    /// origin, see [`RigidBody::dynamic`].
     Dynamic {
         /// Mass [kg], 1e-6 to 1e6, with uniform density. A body ten times as heavy as its soft or rigid
         /// support sinks into it.
@@ -187,7 +187,7 @@ impl RigidBody {
     /// world.add_rigid(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
     /// let cube = Shape::Box { centre: [0.0, 2.0, 0.0], half: [0.5; 3] };
     /// let turned = Rotation::about([1.0, 1.0, 0.0], 0.4);
-    /// let cube = world.add_rigid(RigidBody::free(cube, 10.0).rotated(turned))?;
+    /// let cube = world.add_rigid(RigidBody::dynamic(cube, 10.0).rotated(turned))?;
     /// for _ in 0..180 {
     ///     world.step();
     /// }
@@ -256,7 +256,7 @@ impl RigidBody {
         self
     }
 
-    /// Returns the position of the local origin [m]: the centre of a [`RigidBody::hand`].
+    /// Returns the position of the local origin [m]: the centre of a [`RigidBody::coupled_ball`].
     pub fn position(&self) -> Vector {
         self.position
     }

@@ -157,7 +157,7 @@ impl<D: Dim> World<D> {
     /// use fuwafuwa::{Dim2, Hooks, RigidBody, WorldConfig, World};
     ///
     /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
-    /// let hand = world.add_rigid(RigidBody::hand([0.0; 3], 0.1))?;
+    /// let hand = world.add_rigid(RigidBody::coupled_ball([0.0; 3], 0.1))?;
     /// world.set_goal(hand, [0.1, 0.0, 0.0])?;
     /// let mut forces = Vec::new();
     /// let mut note = |substep: &fuwafuwa::Substep| {

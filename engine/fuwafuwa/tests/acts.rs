@@ -323,8 +323,8 @@ fn put_to_sleep_lasts_until_impact_or_wake_up() {
 
 #[test]
 fn set_settings_applies_to_running_world() {
-    let (mut world, id) = with(Settings::default(), ball::<Dim2>(8));
-    let upwards = Settings {
+    let (mut world, id) = with(WorldConfig::default(), ball::<Dim2>(8));
+    let upwards = WorldConfig {
         gravity: [0.0, 9.81, 0.0],
         ..WorldConfig::default()
     };

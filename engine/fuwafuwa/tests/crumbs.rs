@@ -343,7 +343,7 @@ fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
         lowest = nodes.fold(lowest, |low, (id, _)| low.min(crumb.node_state(id).0[1]));
     }
     assert!(
-        !world.bodies().first().unwrap().pieces().list[PieceId(0)].asleep,
+        !world.soft_bodies().first().unwrap().pieces().list[PieceId(0)].asleep,
         "the block must wake the crumb"
     );
     -lowest / VOXEL

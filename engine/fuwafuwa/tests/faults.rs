@@ -17,7 +17,7 @@ fn weightless<D: Dim>() -> World<D> {
 
 fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     let grid = VoxelGrid::ball(n, 1.0).expect("a ball is not empty");
-    Body::new(grid, &[Material::default()]).expect("the material is valid")
+    SoftBody::new(grid, &[Material::default()]).expect("the material is valid")
 }
 
 /// A second cut along the same blade released nothing, but reported the released nodes of the first cut
@@ -180,8 +180,8 @@ fn crumble_detaches_every_voxel() {
 #[test]
 fn coupled_body_from_3d_stays_in_plane() {
     let mut space = weightless::<Dim3>();
-    let hand = Rigid::hand([0.0, 0.0, 0.5], 0.1);
-    space.add_rigid(hand).expect("the hand is valid");
+    let hand = RigidBody::coupled_ball([0.0, 0.0, 0.5], 0.1);
+    space.add_rigid_body(hand).expect("the hand is valid");
     space
         .set_target_position(space.nth_target_follower(0).unwrap(), [0.0, 0.0, 1.0])
         .unwrap();
@@ -191,7 +191,7 @@ fn coupled_body_from_3d_stays_in_plane() {
         .unwrap();
     assert!(hand.velocity()[2] > 0.1);
     let mut plane = weightless::<Dim2>();
-    plane.add_rigid(hand).expect("the hand is valid");
+    plane.add_rigid_body(hand).expect("the hand is valid");
     for _ in 0..3 {
         plane.step();
         let (_, hand) = plane.target_followers().next().unwrap();
@@ -211,7 +211,7 @@ fn unused_weaker_material_has_no_effect_on_cracks() {
     let run = |materials: &[Material]| {
         let mut world = weightless::<Dim2>();
         let grid = VoxelGrid::ball(16, 1.0).expect("a ball is not empty");
-        world.add_body(Body::new(grid, materials).expect("the materials are valid"));
+        world.add_soft_body(SoftBody::new(grid, materials).expect("the materials are valid"));
         assert!(
             world
                 .cut(
@@ -221,8 +221,9 @@ fn unused_weaker_material_has_no_effect_on_cracks() {
                 .unwrap()
                 > 0
         );
-        let hand = Rigid::hand([0.5, 1.1, 0.0], 0.1).with_drive(Drive::Kinematic);
-        world.add_rigid(hand).expect("the hand is valid");
+        let hand =
+            RigidBody::coupled_ball([0.5, 1.1, 0.0], 0.1).with_motion_type(MotionType::Kinematic);
+        world.add_rigid_body(hand).expect("the hand is valid");
         let mut released = 0;
         for tick in 0..40u8 {
             world
@@ -247,8 +248,8 @@ fn quarantine_spares_ball_around_non_finite_crumb() {
         let mut world = weightless::<Dim2>();
         world.add_soft_body(ball(16));
         let grid = VoxelGrid::cube(1, 1.0 / 16.0).expect("a cube is not empty");
-        let crumb = Body::new(grid, &[Material::default()]).expect("the material is valid");
-        let crumb = world.add_body(crumb.moved([0.45, 0.45, 0.0]));
+        let crumb = SoftBody::new(grid, &[Material::default()]).expect("the material is valid");
+        let crumb = world.add_soft_body(crumb.translated([0.45, 0.45, 0.0]));
         for _ in 0..3 {
             world.step();
         }
@@ -285,26 +286,29 @@ fn check_zeros<D: Dim>(n: usize) {
             ..Material::default()
         };
         let grid = VoxelGrid::ball(n, 1.0).expect("a ball is not empty");
-        let body = Body::new(grid, &[material]).expect("the material is valid");
-        let middle = body.clone().moved([-0.5, zero, zero]);
-        world.add_body(middle.thrown([zero; 3]));
+        let body = SoftBody::new(grid, &[material]).expect("the material is valid");
+        let middle = body.clone().translated([-0.5, zero, zero]);
+        world.add_soft_body(middle.with_velocity([zero; 3]));
         let normal = [zero, 1.0, zero];
         let floor = Shape::HalfSpace {
             normal,
             offset: zero,
         };
         world
-            .add_rigid(Rigid::fixed(floor, zero))
+            .add_rigid_body(RigidBody::fixed(floor, zero))
             .expect("the floor is valid");
-        let hand = Rigid::hand([zero, 1.2, 0.5], 0.1).with_drive(Drive::Kinematic);
-        let hand = world.add_rigid(hand).expect("the hand is valid");
+        let hand =
+            RigidBody::coupled_ball([zero, 1.2, 0.5], 0.1).with_motion_type(MotionType::Kinematic);
+        let hand = world.add_rigid_body(hand).expect("the hand is valid");
         let mut released = 0;
         for tick in 0..40u8 {
             let goal = [zero, 1.2 - 0.02 * f32::from(tick), 0.5];
-            world.set_goal(hand, goal).expect("the target is valid");
-            released += world.step().released;
+            world
+                .set_target_position(hand, goal)
+                .expect("the target is valid");
+            released += world.step().nodes_split;
         }
-        let body = world.bodies().first().expect("the world has one body");
+        let body = world.soft_bodies().first().expect("the world has one body");
         let states = body.mesh().nodes().map(|(id, _)| body.node_state(id));
         (released, states.collect::<Vec<_>>())
     };

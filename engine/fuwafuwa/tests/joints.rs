@@ -95,7 +95,7 @@ fn no_energy_comes_from<D: Dim>(tie: JointKind) {
 
 #[test]
 fn pendulum_gains_no_energy_with_pin_and_rope() {
-    for tie in [Tie::Pin, Tie::Rope { length: 1.0 }] {
+    for tie in [JointKind::Pin, JointKind::Rope { length: 1.0 }] {
         no_energy_comes_from::<Dim2>(tie);
         no_energy_comes_from::<Dim3>(tie);
     }

@@ -125,7 +125,7 @@ fn laws_reproduce_youngs_modulus_on_cube() {
 /// §3.1: swapped vertices return, because the force includes the rotation.
 #[test]
 fn paper_law_pulls_swapped_nodes_back() {
-    let stencil = Stencil::<Dim2>::new(15, cell_corners::<Dim2>()).unwrap();
+    let stencil = ElementClass::<Dim2>::new(15, cell_corners::<Dim2>()).unwrap();
     let elasticity = Elasticity::new(1000.0, 0.0).unwrap();
     let mut positions = stencil.offsets.clone();
     positions.swap(0, 1);

@@ -79,7 +79,7 @@ fn check_dent<D: Dim>() {
     assert!((0.6..0.8).contains(&height), "clay: height {height} m");
     assert!(width > 1.05, "clay: width {width} m");
     assert!((volume - 1.0).abs() < 0.05, "clay: volume {volume}");
-    let body = &world.bodies()[clay];
+    let body = &world.soft_bodies()[clay];
     let dents = body
         .mesh()
         .elements()

@@ -216,7 +216,7 @@ fn settings_reject_tick_out_of_range() {
 /// Each setting takes effect on a running world.
 #[test]
 fn set_settings_takes_effect_immediately() {
-    let usual = Settings::default();
+    let usual = WorldConfig::default();
     let mut world = world::<Dim2>(TICK);
     let ball = world.add_soft_body(ball::<Dim2>(12).translated([0.0, 50.0, 0.0]));
     let speed = |world: &World<Dim2>| {

@@ -195,9 +195,9 @@ fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
     assert!(view.low[1] > -0.01 && view.high[1] > 0.5, "{view:?}");
     let still = world.hash();
     world.step();
-    let mut hand = Rigid::hand([0.5, 2.0, if D::N == 3 { 0.5 } else { 0.0 }], 0.1);
-    hand.drive = Drive::Kinematic;
-    world.add_rigid(hand).unwrap();
+    let mut hand = RigidBody::coupled_ball([0.5, 2.0, if D::N == 3 { 0.5 } else { 0.0 }], 0.1);
+    hand.motion_type = MotionType::Kinematic;
+    world.add_rigid_body(hand).unwrap();
     assert_ne!(world.hash(), still, "the hash must change with the tick");
     let mut woke = false;
     for tick in 0..60 {
@@ -260,7 +260,7 @@ fn check_slam<D: Dim>(n: usize, drive: MotionType) {
 
 #[test]
 fn world_stays_finite_when_hand_is_slammed() {
-    for drive in [Drive::Kinematic, Drive::default()] {
+    for drive in [MotionType::Kinematic, MotionType::default()] {
         check_slam::<Dim2>(32, drive);
         check_slam::<Dim3>(12, drive);
     }
@@ -319,14 +319,14 @@ fn inverted_body_recovers_and_stays_finite() {
         inverted[119] < inverted[0],
         "inverted elements must decrease: {inverted:?}"
     );
-    let view = world.bodies().first().unwrap().piece_views()[0];
+    let view = world.soft_bodies().first().unwrap().piece_views()[0];
     assert!(view.high[0] - view.low[0] < 2.0, "{view:?}");
 }
 
 /// A body that is too stiff for the allowed substeps is softened and reports it.
 #[test]
 fn too_stiff_body_is_softened() {
-    let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+    let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
     world.add_rigid_body(RigidBody::fixed(floor, 0.5)).unwrap();
     let mut steel = unbreakable();

@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn age_restarts_for_elements_remodelled_by_a_cut() {
-        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(32, 1.0).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let mut ages = Ages::default();

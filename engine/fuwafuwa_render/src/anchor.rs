@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn anchor_rotates_with_largest_piece_and_ignores_squash() {
-        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(24, 1.0).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let rest = anchor(world.soft_bodies().first().unwrap());
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn anchor_rotates_about_any_axis_in_3d() {
-        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(12, 1.0).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let body = world

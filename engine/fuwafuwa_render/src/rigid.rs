@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn gather_sorts_walls_bars_hands_and_basket() {
-        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);
         world
             .add_rigid_body(RigidBody::fixed(

@@ -337,7 +337,7 @@ mod tests {
 
     #[test]
     fn hole_has_negative_area_and_crumb_is_round() {
-        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::from_fn([20, 20, 1], 0.05, |[x, y, _]| {
             u8::from(!(8..12).contains(&x) || !(8..12).contains(&y))
         });

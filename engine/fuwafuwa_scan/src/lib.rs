@@ -3,7 +3,7 @@
 //! resolution.
 //!
 //! ```no_run
-//! use fuwafuwa::{Body, Material};
+//! use fuwafuwa::{SoftBody, Material};
 //! use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -11,7 +11,7 @@
 //! let tissue = Segmentation::thresholds(&[(40.0..=250.0, 1)]);
 //! let organ = Organ::of(&[&scan], &tissue, &Options::default(), |_| {})?;
 //! println!("{:.0} ml", organ.millilitres(1));
-//! let body = Body::new(organ.grid, &[Material::default()])?;
+//! let body = SoftBody::new(organ.grid, &[Material::default()])?;
 //! # Ok(())
 //! # }
 //! ```

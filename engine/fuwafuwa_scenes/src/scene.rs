@@ -3,7 +3,7 @@
 //! ```toml
 //! dim = 2
 //! gravity = [0.0, -9.81, 0.0]     # [m/s²]
-//! tick = 0.0166666667             # [s]; tick, drag and most_substeps default to those of Settings
+//! tick = 0.0166666667             # [s]; tick, drag and most_substeps default to those of WorldConfig
 //!
 //! [[material]]                    # number 1
 //! young = 5000.0                  # [Pa]; missing fields take the values of `Material::default`

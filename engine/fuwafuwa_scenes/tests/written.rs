@@ -227,7 +227,7 @@ fn check_torn<D: Dim>() {
         world.step();
     }
     assert!(
-        world.bodies()[ball].pieces().count() > 1,
+        world.soft_bodies()[ball].pieces().count() > 1,
         "no piece was detached"
     );
     let other = again(&world, "torn");
@@ -369,7 +369,7 @@ fn error_names_line_and_field() {
 
 #[test]
 fn of_world_keeps_joint_positions_after_motion() {
-    let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+    let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
     let grid = VoxelGrid::<Dim2>::cube(8, 0.5).unwrap();
     let cube = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
     let at = [0.25, 0.5, 0.0];
@@ -398,7 +398,7 @@ fn of_world_keeps_joint_positions_after_motion() {
 
 #[test]
 fn text_rejects_too_long_scene() {
-    let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+    let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
     let grid = VoxelGrid::<Dim3>::ball(40, 1.0).unwrap();
     let ball = SoftBody::new(grid, &[Material::default()]).unwrap();
     let id = world.add_soft_body(ball);

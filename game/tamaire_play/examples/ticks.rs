@@ -268,13 +268,15 @@ fn step_alone<D: Dim>(level: &Arc<Level>, ticks: &mut [Tick]) {
         for player in hands.len()..tick.goals.len() {
             let scene = level.scene().build::<D>();
             let scene = scene.expect("the level was built before");
-            let hand = scene.nth_hand(player).expect("the level has this hand");
-            let joins = world.add_rigid(scene.rigids()[hand].clone());
+            let hand = scene
+                .nth_target_follower(player)
+                .expect("the level has this hand");
+            let joins = world.add_rigid_body(scene.rigid_bodies()[hand].clone());
             hands.push(joins.expect("the round accepted this hand"));
         }
         for (&hand, &goal) in hands.iter().zip(&tick.goals) {
             world
-                .set_goal(hand, goal)
+                .set_target_position(hand, goal)
                 .expect("the hand and target were valid in the round");
         }
         let start = Instant::now();

@@ -41,7 +41,9 @@ impl<D: Dim> Round<D> {
         let starts: Vec<RigidBody> = starts.collect();
         // The other hands are added when their players join.
         for &hand in hands.iter().skip(1) {
-            world.remove_rigid(hand).expect("the world has this hand");
+            world
+                .remove_rigid_body(hand)
+                .expect("the world has this hand");
         }
         Self {
             players: hands.into_iter().take(1).collect(),
@@ -60,7 +62,7 @@ impl<D: Dim> Round<D> {
         self.let_players_in(&frame);
         for player in 0..self.players.len() {
             let goal = self.reachable(player, frame.goal(player));
-            let sent = self.world.set_goal(self.players[player], goal);
+            let sent = self.world.set_target_position(self.players[player], goal);
             sent.expect("the hand is in the world, and its target in the arena");
         }
         let report = self.world.step();
@@ -138,7 +140,7 @@ impl<D: Dim> Round<D> {
                 break;
             }
             let hand = self.starts[player].clone();
-            let added = self.world.add_rigid(hand);
+            let added = self.world.add_rigid_body(hand);
             let added = added.expect("the world accepted this hand when the level was checked");
             self.players.push(added);
         }

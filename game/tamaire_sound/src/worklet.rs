@@ -2,9 +2,9 @@
 //! worklet shares no memory with the game and needs only a hundredth of its code.
 //!
 //! `cargo rustc --release -p tamaire_worklet --crate-type cdylib --target wasm32-unknown-unknown --
-//! -Cstrip=symbols` builds it, and `xtask/web/test/module.mjs` plays it under Node.
+//! -Cstrip=symbols` builds it, and `tools/xtask/web/test/module.mjs` plays it under Node.
 //!
-//! A [`Worklet`] has a message buffer and a sample buffer. `game/web/worklet.js` fills the first and reads
+//! A [`Worklet`] has a message buffer and a sample buffer. `game/tamaire/web/worklet.js` fills the first and reads
 //! the second through the [`exports`].
 pub mod exports;
 

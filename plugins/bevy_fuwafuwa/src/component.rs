@@ -74,14 +74,14 @@ pub struct SoftBodyId(pub BodyId);
 /// centred on the origin; the `Transform` scales, rotates and translates it when it enters the world. After
 /// that the size and all fields stay fixed: insert the component again to change them.
 ///
-/// [`Drive`] selects the type of motion:
-/// - [`Drive::Fixed`] bodies do not move.
-/// - [`Drive::Kinematic`] bodies reach the pose of their `Transform` at the end of the next tick, at constant
+/// [`MotionType`] selects the type of motion:
+/// - [`MotionType::Fixed`] bodies do not move.
+/// - [`MotionType::Kinematic`] bodies reach the pose of their `Transform` at the end of the next tick, at constant
 ///   velocity.
-/// - [`Drive::Coupled`] bodies are pulled to their [`Goal`] without rotating; `Transform` is the position
+/// - [`MotionType::Coupled`] bodies are pulled to their [`Goal`] without rotating; `Transform` is the position
 ///   reached.
-/// - [`Drive::Free`] bodies are dynamic: they fall, rotate and are pushed by contacts; `Transform` follows
-///   them. See [`RigidBody::free`].
+/// - [`MotionType::Dynamic`] bodies are dynamic: they fall, rotate and are pushed by contacts; `Transform` follows
+///   them. See [`RigidBody::dynamic`].
 ///
 /// Writing the `Transform` of a body that is not kinematic teleports it and keeps its velocity.
 #[derive(Component, Clone, Debug, PartialEq)]
@@ -105,7 +105,7 @@ pub struct RigidBody<D: Dimension> {
     dim: PhantomData<D>,
 }
 
-/// Target position of a [`Drive::Coupled`] rigid body, world space [m].
+/// Target position of a [`MotionType::Coupled`] rigid body, world space [m].
 #[derive(Component, Copy, Clone, Debug, PartialEq)]
 pub struct Goal(pub Vec3);
 

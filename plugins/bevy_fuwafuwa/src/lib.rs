@@ -47,7 +47,7 @@
 //! # Meshes
 //! A soft body gets one `Mesh`, as `Mesh3d` or `Mesh2d`. Add your own material; vertex colours show the voxel
 //! materials. The mesh is created once. After that each tick overwrites positions and normals in the same
-//! buffers. Split nodes come from [`fuwafuwa::Body::changes_since`]; only the triangles of the affected
+//! buffers. Split nodes come from [`fuwafuwa::SoftBody::changes_since`]; only the triangles of the affected
 //! elements are removed and added, in the free slots. Indices and colours are written only in such ticks, and
 //! nothing is written while a body sleeps. `Assets<Mesh>` sends `Modified` at most once a tick.
 //!

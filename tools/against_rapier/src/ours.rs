@@ -11,7 +11,7 @@ use crate::{Drop, Result, WIDTH};
 const MOST_SUBSTEPS: u32 = 1024;
 
 /// Builds a world with an undamped, unbreakable body above a half-space. It gets `substeps` substeps or, for
-/// `None`, the fewest that do not soften it, see [`Body::stiffness_scale`].
+/// `None`, the fewest that do not soften it, see [`SoftBody::stiffness_scale`].
 pub fn world<D: Dim>(scene: &Drop, substeps: Option<usize>) -> Result<World<D>> {
     let material = Material {
         elasticity: Elasticity {

@@ -56,11 +56,11 @@ pub static SCENES: [Scene; 6] = [
 ];
 
 /// Creates a world with only a floor.
-fn floor<D: Dim>(settings: Settings) -> World<D> {
+fn floor<D: Dim>(settings: WorldConfig) -> World<D> {
     let mut world = World::new(settings).expect("the scene is valid");
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
     world
-        .add_rigid(Rigid::fixed(floor, 0.4))
+        .add_rigid_body(RigidBody::fixed(floor, 0.4))
         .expect("the scene is valid");
     world
 }
@@ -70,14 +70,14 @@ fn torn_world<D: Dim>(n: usize) -> (World<D>, RigidBodyHandle) {
     let mut world = floor::<D>(WorldConfig::default());
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
     world
-        .add_rigid(Rigid::fixed(wall, 0.2))
+        .add_rigid_body(RigidBody::fixed(wall, 0.2))
         .expect("the scene is valid");
     let ball = VoxelGrid::ball(n, 1.0).expect("the scene is valid");
-    let body = Body::new(ball, &[Material::default()]).expect("the scene is valid");
-    world.add_body(body.moved([0.0, 0.05, 0.0]));
+    let body = SoftBody::new(ball, &[Material::default()]).expect("the scene is valid");
+    world.add_soft_body(body.translated([0.0, 0.05, 0.0]));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = Rigid::hand([-0.3, 0.5, depth], 0.08);
-    let hand = world.add_rigid(hand).expect("the scene is valid");
+    let hand = RigidBody::coupled_ball([-0.3, 0.5, depth], 0.08);
+    let hand = world.add_rigid_body(hand).expect("the scene is valid");
     (world, hand)
 }
 
@@ -87,9 +87,9 @@ fn hash_of_torn_world<D: Dim>(n: usize, ticks: u32) -> u64 {
     let mut released = 0;
     for tick in 0..ticks {
         world
-            .set_goal(hand, [-0.3 + tick as f32 * 0.03, 0.5, depth])
+            .set_target_position(hand, [-0.3 + tick as f32 * 0.03, 0.5, depth])
             .expect("the scene is valid");
-        released += world.step().released;
+        released += world.step().nodes_split;
     }
     assert!(released > 10, "{released} releases: the body must tear");
     world.hash()
@@ -103,8 +103,8 @@ fn hash_of_heap() -> u64 {
     };
     let mut world = floor::<Dim3>(settings);
     let ball = VoxelGrid::ball(12, 1.0).expect("the scene is valid");
-    let body = Body::new(ball, &[Material::default()]).expect("the scene is valid");
-    let ball = world.add_body(body);
+    let body = SoftBody::new(ball, &[Material::default()]).expect("the scene is valid");
+    let ball = world.add_soft_body(body);
     for (height, slant) in [(0.3, 0.2), (0.6, -0.3)] {
         let blade = Blade {
             from: [-1.0, height - slant, -1.0],
@@ -113,12 +113,12 @@ fn hash_of_heap() -> u64 {
         };
         world.cut(ball, &blade).expect("the scene is valid");
     }
-    let hand = Rigid::hand([0.4, 1.2, 0.5], 0.12);
-    let hand = world.add_rigid(hand).expect("the scene is valid");
+    let hand = RigidBody::coupled_ball([0.4, 1.2, 0.5], 0.12);
+    let hand = world.add_rigid_body(hand).expect("the scene is valid");
     let (mut released, mut touched) = (0, 0.0);
     for tick in 0..50 {
         world
-            .set_goal(hand, [0.4, 1.2 - tick as f32 * 0.03, 0.5])
+            .set_target_position(hand, [0.4, 1.2 - tick as f32 * 0.03, 0.5])
             .expect("the scene is valid");
         let report = world.step();
         assert_eq!(report.substeps, FEWEST_SUBSTEPS);
@@ -141,12 +141,12 @@ fn hash_of_heap() -> u64 {
 
 /// The elastic force of the paper, without tearing.
 fn hash_of_paper_law<D: Dim>(n: usize) -> u64 {
-    let mut world = floor::<D>(Settings::default());
+    let mut world = floor::<D>(WorldConfig::default());
     let ball = VoxelGrid::ball(n, 1.0).expect("the scene is valid");
     let grading = fuwafuwa::pyramid::Grading::Graded;
-    let body = Body::with(ball, &[Material::default()], Law::Endo2004, grading)
+    let body = SoftBody::with_options(ball, &[Material::default()], Law::Endo2004, grading)
         .expect("the scene is valid");
-    world.add_body(body.moved([0.0, 0.05, 0.0]));
+    world.add_soft_body(body.translated([0.0, 0.05, 0.0]));
     for _ in 0..30 {
         world.step();
     }

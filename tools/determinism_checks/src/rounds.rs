@@ -2,7 +2,7 @@
 //! by bots, recorded natively and verified in the browser (and the reverse).
 //!
 //! `cargo xtask wasm` and `web --test` build it as a WebAssembly module with the profile of the game.
-//! `xtask/golden.mjs` runs it under Node; `xtask/web/test/bits.mjs` and `xtask/web/test/speed.mjs` load it
+//! `tools/xtask/golden.mjs` runs it under Node; `tools/xtask/web/test/bits.mjs` and `tools/xtask/web/test/speed.mjs` load it
 //! into browsers through the [`exports`]. Natively the example `replays` does the same.
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};

@@ -233,9 +233,9 @@ fn drop_in<D: Dim>(grid: VoxelGrid<D>) {
     if grid.solid_count() > FEW_VOXELS {
         return;
     }
-    let mut world = World::new(Settings::default()).expect("the default settings are valid");
-    if let Ok(body) = Body::new(grid, &[Material::default(); 255]) {
-        world.add_body(body);
+    let mut world = World::new(WorldConfig::default()).expect("the default settings are valid");
+    if let Ok(body) = SoftBody::new(grid, &[Material::default(); 255]) {
+        world.add_soft_body(body);
         step(&mut world);
     }
 }

@@ -159,10 +159,11 @@ pub fn snapshots() -> Vec<Vec<u8>> {
 /// Returns the snapshot of a world with features that scenes lack: dynamic rigid bodies, sensors, joints, a
 /// knife.
 fn tied<D: Dim>() -> Vec<u8> {
-    let mut world = World::<D>::new(Settings::default()).expect("the default settings are valid");
+    let mut world =
+        World::<D>::new(WorldConfig::default()).expect("the default settings are valid");
     let ball = VoxelGrid::ball(FEW, 1.0).expect("a small ball is a valid grid");
-    let ball = Body::new(ball, &[Material::default()]).expect("the material is given");
-    let body = world.add_body(ball);
+    let ball = SoftBody::new(ball, &[Material::default()]).expect("the material is given");
+    let body = world.add_soft_body(ball);
     let cube = |height: f32| Shape::Box {
         centre: [0.5, height, 0.5],
         half: [0.2; 3],
@@ -170,9 +171,9 @@ fn tied<D: Dim>() -> Vec<u8> {
     let turned = Rotation::about([1.0, 2.0, 3.0], 0.4);
     let mut gate = RigidBody::fixed(cube(-0.5), 0.5).rotated(turned);
     gate.is_sensor = true;
-    world.add_rigid(gate).expect("a valid rigid body");
-    let free = Rigid::free(cube(1.3), 1.0).rotated(turned);
-    let rigid = world.add_rigid(free).expect("a valid rigid body");
+    world.add_rigid_body(gate).expect("a valid rigid body");
+    let free = RigidBody::dynamic(cube(1.3), 1.0).rotated(turned);
+    let rigid = world.add_rigid_body(free).expect("a valid rigid body");
     let ends = [
         JointAnchor::Soft {
             body,
@@ -197,12 +198,14 @@ fn tied<D: Dim>() -> Vec<u8> {
     }
     let mut holder = RigidBody::coupled_ball([0.5, 0.9, 0.5], 0.1);
     holder.is_sensor = true;
-    let holder = world.add_rigid(holder).expect("a valid rigid body");
+    let holder = world.add_rigid_body(holder).expect("a valid rigid body");
     let edge = [[0.0, 0.0, -0.3], [0.0, 0.0, 0.3]];
     let knife = Knife::new(holder, edge, [0.0, -1.0, 0.0]);
     world.add_knife(knife).expect("the holder exists");
     let below = [0.5, 0.5, 0.5];
-    world.set_goal(holder, below).expect("the target is near");
+    world
+        .set_target_position(holder, below)
+        .expect("the target is near");
     for _ in 0..5 {
         world.step();
     }

@@ -1,4 +1,4 @@
-//! The plugin for Bevy, `crates/bevy_fuwafuwa`: a workspace of its own, built in a folder of its own.
+//! The plugin for Bevy, `plugins/bevy_fuwafuwa`: a workspace of its own, built in a folder of its own.
 
 use crate::packages::{IfMissing, Purpose, provide};
 use crate::shell::{FAILED, Failure, cargo, execute, root, target};

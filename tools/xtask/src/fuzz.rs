@@ -1,4 +1,4 @@
-//! Input that nobody thought of: libFuzzer at the doors of `crates/hostile`, with a stable compiler. What cargo-fuzz
+//! Input that nobody thought of: libFuzzer at the doors of `tools/fuzz`, with a stable compiler. What cargo-fuzz
 //! needs a nightly one for are sanitizers; the passes that note which ways are taken are in every LLVM.
 
 use crate::packages::{IfMissing, Purpose, provide};

@@ -1,7 +1,7 @@
 //! The game for a browser: a folder of files that any web server can hand out.
 //!
 //! cargo compiles the game and its sound for wasm32, `xtask_bindgen` makes the glue between the game and the page
-//! (`game/web`), and `xtask/web/pack.mjs` the folder.
+//! (`game/tamaire/web`), and `tools/xtask/web/pack.mjs` the folder.
 
 use crate::packages::{self, IfMissing, Purpose};
 use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, root, target};

@@ -64,7 +64,7 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
     };
     let before = count(&world);
     let mass = world
-        .bodies()
+        .soft_bodies()
         .first()
         .expect("the scene has a body")
         .total_mass();
@@ -88,7 +88,7 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
         }
     }
     let views = world
-        .bodies()
+        .soft_bodies()
         .first()
         .expect("the scene has a body")
         .piece_views();
@@ -105,7 +105,7 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
         obstacles.any(|obstacle| obstacle.shape().distance(view.centre).0 < 0.0)
     });
     let kept = world
-        .bodies()
+        .soft_bodies()
         .first()
         .expect("the scene has a body")
         .total_mass()
@@ -124,7 +124,7 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
 
 /// Returns the maximum penetration of a node into a wall [m].
 fn deepest<D: Dim>(world: &World<D>) -> f64 {
-    let body = world.bodies().first().expect("the scene has a body");
+    let body = world.soft_bodies().first().expect("the scene has a body");
     let mut deepest = 0.0f32;
     for (id, _) in body.mesh().nodes() {
         let at = body.node_state(id).0;

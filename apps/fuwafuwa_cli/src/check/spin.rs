@@ -65,7 +65,7 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
     let from = [0.0, -1.5, -1.5];
     let cut = world
         .cut(
-            world.nth_body(0).expect("the world has a body"),
+            world.nth_soft_body(0).expect("the world has a body"),
             &Blade {
                 from,
                 across,
@@ -93,7 +93,7 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
     let motions = |world: &World<D>| {
         [0, 1].map(|piece| {
             motion(
-                world.bodies().first().expect("the world has a body"),
+                world.soft_bodies().first().expect("the world has a body"),
                 PieceId(piece),
             )
         })

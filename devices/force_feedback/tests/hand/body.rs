@@ -32,7 +32,7 @@ impl Disc {
             ..usual
         };
         let grid = VoxelGrid::ball(12, 1.0).expect("the grid is valid");
-        world.add_body(Body::new(grid, &[material]).expect("the body is valid"));
+        world.add_soft_body(SoftBody::new(grid, &[material]).expect("the body is valid"));
         // The walls form a corner that keeps the disc from rolling away.
         for (normal, at) in [
             ([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]),
@@ -41,11 +41,12 @@ impl Disc {
         ] {
             let wall = Shape::half_space(normal, at);
             world
-                .add_rigid(Rigid::fixed(wall, 0.5))
+                .add_rigid_body(RigidBody::fixed(wall, 0.5))
                 .expect("the wall is valid");
         }
-        let hand = Rigid::hand([-0.3, 0.5, 0.0], 0.15).with_drive(Drive::default());
-        let hand = world.add_rigid(hand).expect("the hand is valid");
+        let hand =
+            RigidBody::coupled_ball([-0.3, 0.5, 0.0], 0.15).with_motion_type(MotionType::default());
+        let hand = world.add_rigid_body(hand).expect("the hand is valid");
         Self { world, hand }
     }
 }
@@ -53,7 +54,7 @@ impl Disc {
 impl Other for Disc {
     fn tick(&mut self, goal: [f32; 2]) -> ([f32; 2], [f32; 2]) {
         self.world
-            .set_goal(self.hand, [goal[0], 0.5 + goal[1], 0.0])
+            .set_target_position(self.hand, [goal[0], 0.5 + goal[1], 0.0])
             .expect("the goal is valid");
         self.world.step();
         let hand = &self.world.rigid_bodies()[self.hand];

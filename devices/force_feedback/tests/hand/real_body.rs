@@ -43,7 +43,7 @@ fn feel(disc: &mut Disc, manner: Manner, lean: impl Fn(f32) -> f32) -> (Vec<[f32
 
 #[test]
 fn force_of_a_body_at_rest_is_steady() {
-    for manner in [Manner::Places, Manner::Steers] {
+    for manner in [Manner::CellIndexing, Manner::Steers] {
         for young in [1000.0, 5000.0, 20_000.0] {
             let mut disc = Disc::new(young, f32::INFINITY);
             let (forces, _) = feel(&mut disc, manner, |time| (0.5 * time - 0.4).min(0.3));

@@ -22,7 +22,7 @@ pub struct Cache {
     /// Mask of the exposed faces of each level-0 element: bit 2 · axis + side.
     pub bare: IndexVec<ElementId, u8>,
     /// For elements with exposed faces: the surrounding voxels that share a node, see
-    /// [`Connectivity::bound`](crate::sharing::Connectivity::bound).
+    /// [`Connectivity::connected_voxels`](crate::sharing::Connectivity::connected_voxels).
     pub bound: IndexVec<ElementId, u32>,
     /// Recent changes.
     pub history: History,

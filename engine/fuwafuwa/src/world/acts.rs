@@ -27,10 +27,10 @@ impl<D: Dim> World<D> {
     }
 
     /// Rotates a body about a point [m] at once, its velocities included; otherwise like
-    /// [`World::move_body`]. See also [`SoftBody::rotated`].
+    /// [`World::translate_body`]. See also [`SoftBody::rotated`].
     ///
     /// # Errors
-    /// As for [`World::move_body`].
+    /// As for [`World::translate_body`].
     #[inline(never)]
     pub fn rotate_body(
         &mut self,
@@ -164,7 +164,7 @@ impl<D: Dim> World<D> {
     ///
     /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
     /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.2 };
-    /// let ball = world.add_rigid(RigidBody::free(ball, 1.0))?;
+    /// let ball = world.add_rigid(RigidBody::dynamic(ball, 1.0))?;
     /// world.change_rigid(ball, |ball| ball.drive = MotionType::Fixed)?;
     /// world.step();
     /// assert_eq!(world.rigids()[ball].position(), [0.0; 3]);
@@ -245,7 +245,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Puts a body to sleep at its present position, at rest. A sleeping body costs next to nothing and acts
-    /// as a wall until something moves against it. Its [fixed](SoftBody::hold) nodes stop, too.
+    /// as a wall until something moves against it. Its [fixed](SoftBody::fix_node) nodes stop, too.
     ///
     /// # Errors
     /// [`Refused::Gone`] if the handle is stale.

@@ -38,7 +38,7 @@ pub struct Removed {
 impl<D: Dim> World<D> {
     /// Removes a piece of a body with its voxels, elements and nodes. Its contacts end and its joints break.
     /// Everything else keeps its position and state, but sleepers in contact with the piece wake. Piece
-    /// numbers are never reused. Removing the last piece removes the body, as [`World::remove_body`] does,
+    /// numbers are never reused. Removing the last piece removes the body, as [`World::remove_soft_body`] does,
     /// and makes its handle stale.
     ///
     /// ```
@@ -111,7 +111,7 @@ impl<D: Dim> World<D> {
     ///
     /// let mut world = World::<Dim3>::new(WorldConfig::default())?;
     /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.1 };
-    /// let ball = world.add_rigid(RigidBody::free(ball, 1.0))?;
+    /// let ball = world.add_rigid(RigidBody::dynamic(ball, 1.0))?;
     /// The solid side of this half-space is above the plane, because its normal points down.
     /// let above = Shape::half_space([0.0, -1.0, 0.0], [0.0, -2.0, 0.0]);
     /// let mut removed = world.remove_outside(&above)?;

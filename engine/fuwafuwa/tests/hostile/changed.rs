@@ -170,7 +170,7 @@ fn stale_handle_is_rejected() {
         .unwrap();
     let floor = world.rigid_bodies().ids().next().unwrap();
     assert!(
-        world.set_goal(floor, [0.0; 3]).is_err(),
+        world.set_target_position(floor, [0.0; 3]).is_err(),
         "a fixed body has no target"
     );
     let body = world.remove_soft_body(ball).unwrap();
@@ -224,10 +224,10 @@ fn removal_wakes_only_bodies_in_contact() {
         (0..4).all(|n| sleeps(&world, n)),
         "all cubes must fall asleep"
     );
-    world.remove_body(ids[0]).unwrap();
+    world.remove_soft_body(ids[0]).unwrap();
     assert!(!sleeps(&world, 1) && !sleeps(&world, 2) && sleeps(&world, 3));
     step(&mut world, 60);
-    let low = |n: usize| world.bodies()[ids[n]].piece_views()[0].low[1];
+    let low = |n: usize| world.soft_bodies()[ids[n]].piece_views()[0].low[1];
     assert!(low(1) < 0.01 && low(2) < 0.11, "the upper cubes must fall");
     assert!(sleeps(&world, 3));
 }
@@ -277,7 +277,7 @@ fn coupled_box_and_capsule_push_and_stop_at_floor() {
 
 #[test]
 fn fixed_node_falls_when_freed() {
-    let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+    let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
     let mut body = ball::<Dim2>(8);
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     nodes.iter().for_each(|&id| body.fix_node(id));

@@ -114,11 +114,11 @@ fn piece_detached_from_quarantined_one_is_quarantined() {
 
 #[test]
 fn quarantined_body_supports_others() {
-    let mut world = World::new(Settings::default()).unwrap();
-    world.add_body(bar([24, 4]).moved([f32::INFINITY, 0.0, 0.0]));
-    world.add_body(bar([6, 6]).moved([0.27, 0.25, 0.0]));
+    let mut world = World::new(WorldConfig::default()).unwrap();
+    world.add_soft_body(bar([24, 4]).translated([f32::INFINITY, 0.0, 0.0]));
+    world.add_soft_body(bar([6, 6]).translated([0.27, 0.25, 0.0]));
     step(&mut world, 30);
-    let view = &world.bodies()[world.nth_body(1).unwrap()].piece_views()[0];
+    let view = &world.soft_bodies()[world.nth_soft_body(1).unwrap()].piece_views()[0];
     assert!(
         view.low[1] > 0.05,
         "the bar fell through the quarantined one: {view:?}"

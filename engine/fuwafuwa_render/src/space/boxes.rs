@@ -121,7 +121,7 @@ impl Boxes {
     }
 }
 
-/// Returns the shown fields of [`Body::element_view`] for an element of level 0. Most elements have level 0;
+/// Returns the shown fields of [`SoftBody::element_view`] for an element of level 0. Most elements have level 0;
 /// for them only the corner slots and the centre are needed, which is faster.
 fn small_view(
     body: &SoftBody<Dim3>,
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn small_view_matches_element_view() {
-        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let hand = RigidBody::coupled_ball([0.5, 1.3, 0.5], 0.3);

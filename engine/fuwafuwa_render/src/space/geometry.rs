@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn gather_places_room_bars_hands_crumbs_and_lines() {
-        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0, -0.5, 0.0]);
         world.add_rigid_body(RigidBody::fixed(floor, 0.2)).unwrap();
         let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);

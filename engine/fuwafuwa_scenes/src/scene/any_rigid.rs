@@ -75,7 +75,7 @@ pub struct RigidText {
     pub user_data: Option<u64>,
 }
 
-/// Motion type of a rigid body; see [`fuwafuwa::Drive`].
+/// Motion type of a rigid body; see [`fuwafuwa::MotionType`].
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DriveText {

@@ -26,7 +26,7 @@ pub struct JointText {
     pub breaking_force: Option<f32>,
 }
 
-/// Joint kind; see [`fuwafuwa::Tie`].
+/// Joint kind; see [`fuwafuwa::JointKind`].
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TieText {

@@ -30,7 +30,7 @@ impl Scene {
     /// the same bits, save it with [`fuwafuwa::snapshot`].
     ///
     /// ```
-    /// use fuwafuwa::{Dim2, Settings, World};
+    /// use fuwafuwa::{Dim2, WorldConfig, World};
     /// use fuwafuwa_scenes::Scene;
     ///
     /// let scene = Scene::open("drop", &["body.n=12".into()])?;
@@ -265,7 +265,7 @@ fn write_joints<D: Dim>(world: &World<D>, scene: &mut Scene) -> Result<(), Wrong
     for (index, (id, joint)) in world.joints().entries().enumerate() {
         let inside = |wrong: Wrong| wrong.inside("joint", index);
         let gone = || Wrong::new("ends", "expected two existing bodies, but one was removed");
-        let places = world.joint_places(id).ok().flatten();
+        let places = world.joint_anchor_positions(id).ok().flatten();
         let places = places.ok_or_else(|| inside(gone()))?;
         let tied = joint.ends.each_ref().map(|end| end_text(world, end, None));
         let [first, second] = &joint.ends;

@@ -1,4 +1,4 @@
-// A blank page of a browser with the module of tools/browser_checks.
+// A blank page of a browser with the module of tools/determinism_checks.
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { createServer } from "node:http";

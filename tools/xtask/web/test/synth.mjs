@@ -1,4 +1,4 @@
-// Plays the module of game/tamaire_worklet under Node beside what this machine plays natively. Fails where both are
+// Plays the module of game/tamaire_sound under Node beside what this machine plays natively. Fails where both are
 // further apart than rounding explains, where a call takes memory, or where hostile bytes stop it.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

@@ -1,4 +1,4 @@
-//! Interface to the page, implemented and documented in `game/web/host.js`.
+//! Interface to the page, implemented and documented in `game/tamaire/web/host.js`.
 
 use std::cell::RefCell;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -77,7 +77,7 @@ extern "C" {
     #[wasm_bindgen(method, js_name = takeLetters)]
     pub(crate) fn take_letters(this: &Host) -> Option<Vec<u8>>;
 
-    /// Implemented in `game/web/sound.js`.
+    /// Implemented in `game/tamaire/web/sound.js`.
     pub(crate) type Speaker;
     #[wasm_bindgen(method)]
     pub(crate) fn tell(this: &Speaker, bytes: &[u8]);

@@ -1,4 +1,4 @@
-//! Sound output in a browser: `game/web/sound.js` passes messages to a synthesizer in an audio worklet.
+//! Sound output in a browser: `game/tamaire/web/sound.js` passes messages to a synthesizer in an audio worklet.
 
 use super::host;
 use super::host::Speaker;

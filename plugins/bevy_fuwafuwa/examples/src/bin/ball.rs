@@ -1,4 +1,4 @@
-//! A ball that falls and cracks: `cargo run -p bevy_fuwafuwa_examples --bin ball`, in `crates/bevy_fuwafuwa`.
+//! A ball that falls and cracks: `cargo run -p bevy_fuwafuwa_examples --bin ball`, in `plugins/bevy_fuwafuwa`.
 
 use bevy::prelude::*;
 use bevy_fuwafuwa::prelude::*;

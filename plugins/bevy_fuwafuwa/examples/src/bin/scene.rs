@@ -2,7 +2,7 @@
 //! the face. The detached pieces hit the tower. The arrow keys move the hand, Q and Z raise and lower it;
 //! before the first key it moves by itself.
 //!
-//! `cargo run -p bevy_fuwafuwa_examples --bin scene`, in `crates/bevy_fuwafuwa`. With `-- FOLDER` at the end
+//! `cargo run -p bevy_fuwafuwa_examples --bin scene`, in `plugins/bevy_fuwafuwa`. With `-- FOLDER` at the end
 //! it writes pictures of some moments into a folder, at maximum speed, and exits.
 
 use bevy::asset::RenderAssetUsages;
