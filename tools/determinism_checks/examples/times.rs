@@ -9,7 +9,7 @@ fn main() {
     let runs = std::env::args()
         .nth(1)
         .map_or(5, |runs| runs.parse().expect("RUNS must be a number"));
-    for scene in &fuwafuwa_golden::SCENES {
+    for scene in &determinism_checks::golden::SCENES {
         let time = |_| {
             let start = Instant::now();
             assert_eq!((scene.run)(), scene.golden, "{}", scene.name);
