@@ -29,7 +29,7 @@ fn from_the_title_to_a_round_and_back() {
     press(&mut window, Key::Escape);
     assert_eq!(screen(&window), Screen::Play);
     press(&mut window, Key::P);
-    click(&mut window, "Again");
+    click(&mut window, "Restart");
     assert_eq!(screen(&window), Screen::Play);
     assert!(ticks(&window) < before);
     press(&mut window, Key::Escape);
@@ -84,7 +84,7 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
         !game(&mut window).bout.won.unwrap().1,
         "as fast is no faster"
     );
-    click(&mut window, "Again");
+    click(&mut window, "Restart");
     assert_eq!(screen(&window), Screen::Play);
     win(&mut window);
     press(&mut window, Key::Escape);
@@ -177,9 +177,9 @@ fn settings_are_kept_and_the_language_changes_at_once() {
         option.accesskit_node().toggled()
     };
     use egui::accesskit::Toggled::{False, True};
-    assert_eq!(option(&window, "Less motion: Off"), Some(True));
-    assert_eq!(option(&window, "Safe colours: Off"), Some(True));
-    assert_eq!(option(&window, "Safe colours: On"), Some(False));
+    assert_eq!(option(&window, "Reduce motion: Off"), Some(True));
+    assert_eq!(option(&window, "Colour-blind friendly: Off"), Some(True));
+    assert_eq!(option(&window, "Colour-blind friendly: On"), Some(False));
     window.get_by_label("Language: 日本語").click();
     frames(&mut window, 2);
     let said = Language::Japanese.words();

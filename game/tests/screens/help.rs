@@ -20,7 +20,7 @@ fn what_is_won_with_help_is_kept_beside_what_is_won_without() {
     assert_eq!(level.game().assists, all);
     assert_eq!(level.routes(), [Route::Squeeze]);
     win(&mut window);
-    window.get_by_label_contains("with help: Wider basket, Nothing tears");
+    window.get_by_label_contains("easier play: Wider basket, Unbreakable body");
     let game = game(&mut window);
     let record = game.records.of("biscuit").unwrap();
     assert!(record.best.is_empty() && record.wishes.is_empty());
@@ -44,7 +44,7 @@ fn what_is_won_with_help_is_kept_beside_what_is_won_without() {
     assert_eq!(game.bout.round().level(), &plain);
     game.go(Screen::Replays);
     frames(&mut window, 6);
-    window.get_by_label_contains("s, with help");
+    window.get_by_label_contains("s, easier play");
     drop(window);
     std::fs::remove_dir_all(folder).unwrap();
 }
@@ -97,7 +97,7 @@ fn one_switch_is_enough_to_win_and_to_go_on() {
     wait_for(&mut window, |offer| offer == Offer::Pause);
     tap(&mut window);
     assert_eq!(screen(&window), Screen::Paused);
-    choose(&mut window, "Go on");
+    choose(&mut window, "Resume");
     assert_eq!(screen(&window), Screen::Play);
 
     // The body is right of the hand, and the basket right of the body.
@@ -166,13 +166,13 @@ fn one_switch_is_caught_nowhere() {
         assert_eq!(game.settings.bindings, before, "{action:?}");
     }
     // It switches itself off only where it is asked twice, and resetting keeps it.
-    let first = window.get_by_label("One switch: all in turn: Off");
+    let first = window.get_by_label("One-switch scanning: Off");
     first.scroll_to_me();
     frames(&mut window, 3);
-    window.get_by_label("One switch: all in turn: Off").click();
+    window.get_by_label("One-switch scanning: Off").click();
     frames(&mut window, 2);
     assert!(game(&mut window).settings.scanning.is_on());
-    click(&mut window, "Reset");
+    click(&mut window, "Restore default settings");
     assert!(game(&mut window).settings.scanning.is_on());
     // It leaves a round that is only watched.
     game(&mut window).start(0);

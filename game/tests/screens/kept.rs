@@ -194,7 +194,7 @@ fn a_folder_that_cannot_be_and_none_at_all_are_told_once() {
             told = format!("{told}\n{}", notices(&window));
             game(&mut window).notices.clear();
         }
-        let count = told.matches("written").count() + told.matches("read").count();
+        let count = told.matches("saved").count() + told.matches("read").count();
         assert_eq!(count, 1, "{told}");
     }
     std::fs::remove_dir_all(folder).unwrap();

@@ -46,7 +46,7 @@ fn a_level_that_was_dropped_stays_until_it_is_taken_out() {
     assert!(game(&mut again).levels.contains(&dropped));
     game(&mut again).go(Screen::Levels);
     frames(&mut again, 2);
-    click(&mut again, "Take out: cat");
+    click(&mut again, "Remove from list: cat");
     assert_eq!(own(&mut again), ["cat.png"], "it is asked for again");
     click(&mut again, "Really?: cat");
     assert_eq!(own(&mut again).len(), 0);
@@ -72,7 +72,7 @@ fn keys_take_a_level_out_and_whoever_changes_their_mind_need_not() {
     press(&mut window, Key::Enter);
     assert!(window.query_by_label("Really?: cat").is_some());
     frames(&mut window, 7 * 60);
-    assert!(window.query_by_label("Take out: cat").is_some());
+    assert!(window.query_by_label("Remove from list: cat").is_some());
     assert_eq!(own(&mut window).len(), 1);
     press(&mut window, Key::Enter);
     press(&mut window, Key::Enter);

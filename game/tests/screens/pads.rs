@@ -111,9 +111,9 @@ fn a_pad_alone_goes_everywhere() {
 
     table.tap(Start);
     assert_eq!(table.screen(), Screen::Paused);
-    assert!(table.has_focus("Go on"));
+    assert!(table.has_focus("Resume"));
     table.tap(Down);
-    assert!(table.has_focus("Again"));
+    assert!(table.has_focus("Restart"));
     table.tap(Down);
     assert!(table.has_focus("Save replay"));
     table.tap(Down);
@@ -140,13 +140,13 @@ fn a_pad_alone_goes_everywhere() {
 
     // Down to the end, where what has the focus is in sight.
     for _ in 0..60 {
-        if !table.has_focus("Reset") {
+        if !table.has_focus("Restore default settings") {
             table.tap(Down);
         }
     }
-    assert!(table.has_focus("Reset"));
+    assert!(table.has_focus("Restore default settings"));
     let (seen, room) = (
-        button(&table.window, "Reset").rect(),
+        button(&table.window, "Restore default settings").rect(),
         table.window.ctx.content_rect(),
     );
     assert!(room.contains_rect(seen), "{seen:?} in {room:?}");
@@ -252,14 +252,14 @@ fn a_pad_is_tried_and_its_stick_moves_nothing_else_meanwhile() {
     }
     table.tap(South);
     assert!(game(&mut table.window).trial.is_some());
-    assert!(table.has_focus("Enough"));
+    assert!(table.has_focus("Stop"));
     table.rumbles.take();
     let strength = game(&mut table.window).settings.haptics;
     for lean in [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]] {
         table.devices[0].pad.as_mut().unwrap().left = lean;
         table.frames(20);
     }
-    assert!(table.has_focus("Enough"));
+    assert!(table.has_focus("Stop"));
     assert_eq!(game(&mut table.window).settings.haptics, strength);
     let played = table.rumbles.take();
     assert!(played.iter().any(|played| !played.output.is_zero()));

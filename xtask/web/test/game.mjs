@@ -119,7 +119,7 @@ export async function links(browser, site) {
   await visit.until((report) => report.ticks > 30, "half a second passes");
   await visit.press("Escape");
   await visit.click("Link to this level");
-  await visit.hears("The link is copied");
+  await visit.hears("Link copied");
   await visit.page.waitForFunction(() => globalThis.copied);
   const level = await visit.page.evaluate(() => globalThis.copied);
   assert.match(level, /^http:\/\/localhost:\d+\/#l1/);
@@ -129,7 +129,7 @@ export async function links(browser, site) {
   await visit.click("Back");
   await visit.click("Replays");
   await visit.click("Copy link");
-  await visit.until((report) => report.notices.some((text) => text.includes("The link is copied")), "a copied link");
+  await visit.until((report) => report.notices.some((text) => text.includes("Link copied")), "a copied link");
   await visit.page.waitForFunction(() => globalThis.copied.includes("#r1"));
   const round = await visit.page.evaluate(() => globalThis.copied);
   visit.isQuiet();

@@ -32,7 +32,7 @@ export async function full(browser, site) {
   await start(visit, "click");
   await visit.press("Escape");
   await visit.click("Save replay");
-  const { notices } = await visit.hears("no room");
+  const { notices } = await visit.hears("no space left");
   assert.equal(notices.length, 1, notices.join("\n"));
   await visit.click("Levels");
   await visit.click("Back");
