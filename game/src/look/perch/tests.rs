@@ -14,7 +14,7 @@ fn ball() -> World<Dim3> {
     alone(VoxelGrid::ball(20, 1.0).expect("a ball"))
 }
 
-/// Moves all nodes from where they were at rest.
+/// Moves all nodes from their rest positions.
 fn deform(world: &mut World<Dim3>, to: impl Fn(PieceId, Vector) -> Vector) {
     let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
     let voxel = body.grid().voxel_size();
@@ -27,7 +27,7 @@ fn deform(world: &mut World<Dim3>, to: impl Fn(PieceId, Vector) -> Vector) {
     }
 }
 
-/// How much of the face lies on original skin.
+/// Returns the share of the face that lies on original skin.
 fn covered(perch: &Perch, body: &Body<Dim3>) -> f32 {
     let skin = Skin::of(body, perch.piece, &masses(body), Some(EYE));
     let size = perch.size;
@@ -50,7 +50,7 @@ fn it_rolls_with_the_skin_however_fast_that_turns() {
     let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
     let (first, out) = (perch.at, perch.axes[2]);
     for tick in 1..20 {
-        // Ten radians a second, and away.
+        // Rotates at 10 rad/s and moves away.
         let angle = 10.0 * TICK * tick as f32;
         let (sin, cos) = angle.sin_cos();
         let turn = |[x, y, z]: Vector| [cos * x + sin * y, cos * y - sin * x, z];
@@ -77,7 +77,7 @@ fn it_stays_while_its_body_rolls_by_and_is_upright_again_after() {
     let mut leaps = 0;
     let (mut angle, mut least) = (0.0f32, f32::MAX);
     for tick in 1..150 {
-        // Two radians a second to the right, for one and a half turns nearly, then it stands.
+        // Rolls to the right at 2 rad/s for about half a turn, then stops.
         angle += if tick < 100 { 2.0 * TICK } else { 0.0 };
         let (sin, cos) = angle.sin_cos();
         deform(&mut world, |_, at| {
@@ -109,7 +109,7 @@ fn it_comes_back_once_its_body_has_turned_its_back() {
             TICK,
         );
         least = least.min(perch.size);
-        // It never goes anywhere while it can be seen.
+        // It never moves to another place while it is visible.
         let leap = tick > 0 && length(minus(perch.axes[2], before.axes[2])) > 0.1;
         assert!(!leap || perch.size < 0.05, "{perch:?}");
     }
@@ -122,7 +122,7 @@ fn it_comes_back_once_its_body_has_turned_its_back() {
 fn it_leaves_a_place_that_was_torn_off_for_skin_that_is_left() {
     let mut world = ball();
     let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
-    // What was towards who looks is cut off and gone.
+    // Cuts off the part of the body that faces the camera and moves it away.
     let (from, across, along) = ([-0.5, 1.25, 0.0], [2.0, 0.0, 0.0], [0.0, -1.3, 1.3]);
     world
         .cut(
@@ -153,7 +153,7 @@ fn it_leaves_a_place_that_was_torn_off_for_skin_that_is_left() {
         covered(&perch, world.bodies().first().unwrap()) > 0.7,
         "{perch:?}"
     );
-    // There it stays.
+    // It stays at the new place.
     let place = perch.place.expect("it has one").voxel;
     for tick in 0..120 {
         perch.follow(
