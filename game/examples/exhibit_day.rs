@@ -229,7 +229,7 @@ impl Day {
         self.window.step();
         // A screen would wait for it. One in software is slower than the stand, and what it has still to do piles up.
         let waited = self.gpu.device.poll(PollType::wait_indefinitely());
-        waited.expect("the GPU is there");
+        waited.expect("the GPU works");
         // Others on the machine do not count.
         let time = 1000.0 * began.elapsed().as_secs_f64();
         self.times.push(time);
@@ -238,7 +238,7 @@ impl Day {
         }
         self.frames += 1;
         if self.frames.is_multiple_of(DRAWN) {
-            self.window.render().expect("it can be drawn");
+            self.window.render().expect("the frame can be drawn");
         }
         if self.frames.is_multiple_of(MINUTE) {
             let of_gpu = self.gpu.device.generate_allocator_report();
@@ -279,7 +279,7 @@ impl Day {
         let [used, held] = [&mut self.used, &mut self.held].map(self::middle);
         self.hours.push([used, held, middle]);
         println!(
-            "hour {:3}: {used:6.1} MB in use, {held:6.1} held, {middle:5.2} ms a frame, {worst:.0} at worst; \
+            "hour {:3}: {used:6.1} MB in use, {held:6.1} MB held, frame time: median {middle:5.2} ms, maximum {worst:.0} ms; \
              {} visitors, {} rounds, {} wins",
             self.hours.len(),
             self.visitors,
@@ -331,7 +331,7 @@ fn knock(events: &mut Vec<Event>, frame: usize, number: &str) {
 
 fn mash(events: &mut Vec<Event>, random: &mut fastrand::Rng) {
     let names = ["Escape", "E", "F", "J", "R", "F11", "Enter", "Tab"];
-    let keys = names.map(|name| Key::from_name(name).expect("it is a key"));
+    let keys = names.map(|name| Key::from_name(name).expect("egui knows the key"));
     if random.u32(..4) == 0 {
         tap(events, keys[random.usize(..keys.len())]);
     }
@@ -357,7 +357,7 @@ fn check(folder: &Path) -> Result<(u64, u64, u64), Error> {
         rounds += 1;
         wins += u64::from(round.route.is_some());
         if !reproduces(&round) {
-            println!("round {} of {} s goes another way", round.id, round.seconds);
+            println!("round {} of {} s cannot be reproduced", round.id, round.seconds);
             astray += 1;
         }
         Ok::<(), Error>(())
@@ -395,7 +395,7 @@ fn open(folder: &Path, gpu: RenderState) -> Harness<'static, App> {
         "page = \"https://example.org/tamaire/\"",
     );
     let file = TextFile(folder.join("exhibit.toml"));
-    file.write(&text).expect("it can be written");
+    file.write(&text).expect("the configuration can be written");
     let builder = Harness::builder().with_size(SIZE);
     let builder = builder.renderer(WgpuTestRenderer::from_render_state(gpu));
     let builder = builder.with_step_dt(STEP as f32).with_render_cursor(false);
@@ -403,9 +403,9 @@ fn open(folder: &Path, gpu: RenderState) -> Harness<'static, App> {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
         // However long ticks take, all of them are played.
         game.clock = Clock::of(|| 0.0);
-        let mut stand = Stand::open(file).expect("it is good");
+        let mut stand = Stand::open(file).expect("the configuration is valid");
         stand.prepare(&mut game);
-        let mut app = App::new(context, game).expect("there is a GPU, if only in software");
+        let mut app = App::new(context, game).expect("a GPU or a software adapter is available");
         app.attendant = Some(Box::new(stand));
         app
     })
@@ -414,7 +414,7 @@ fn open(folder: &Path, gpu: RenderState) -> Harness<'static, App> {
 fn main() -> ExitCode {
     let hours = std::env::args().nth(1).and_then(|word| word.parse().ok());
     let hours: u64 = hours.unwrap_or(8);
-    let folder = tempfile::tempdir().expect("there is a place for files");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let about = About {
         name: "Pad".into(),
         guid: "pad".into(),
@@ -467,9 +467,9 @@ fn main() -> ExitCode {
         }
     };
     println!(
-        "{visitors} visitors, welcome within {welcome:.0} ms; {rounds} rounds and {wins} wins in the logbook"
+        "{visitors} visitors, ready to play within {welcome:.0} ms; {rounds} rounds and {wins} wins in the logbook"
     );
-    println!("{ended} and {wins_seen} were seen; {astray} go another way");
+    println!("{ended} rounds and {wins_seen} wins were observed; {astray} rounds cannot be reproduced");
     // A round of a few ticks begins and ends between two frames, and one is won and begun anew in a single frame.
     let mut is_good = wins >= wins_seen && rounds >= ended && astray == 0;
     if let [first, .., last] = hours.as_slice() {
@@ -478,7 +478,7 @@ fn main() -> ExitCode {
         is_good &= used <= MORE_MEMORY && frame <= SLOWER;
     }
     if let Some(copy) = std::env::args().nth(2) {
-        std::fs::copy(StandFolder(folder.path().into()).logbook(), copy).expect("it can be copied");
+        std::fs::copy(StandFolder(folder.path().into()).logbook(), copy).expect("the logbook can be copied");
     }
     ExitCode::from(u8::from(!is_good))
 }

@@ -1,5 +1,5 @@
-//! What reaches the hands that hold sticks and pads, and every way in which it ends. No window is open, but the thread
-//! that tells the devices is real.
+//! Force output to sticks and pads, and every condition that ends it. No window is open, but the device
+//! thread is real.
 
 use force_feedback::{Ability, Calibration, Output, Recording, Stop};
 use fuwafuwa::world::TICK;
@@ -11,10 +11,10 @@ use tamaire::game::{Game, Screen};
 use tamaire::input::{Action, Seat};
 use tamaire::platform::{Files, Pads, Sound};
 
-/// However busy the machine is.
+/// Timeout, long enough for a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A game with sticks that note what they are made to do.
+/// Game with devices that record their output.
 struct Table {
     game: Game,
     devices: Vec<Device>,
@@ -34,7 +34,7 @@ impl Table {
         table
     }
 
-    /// As `devices` say.
+    /// Connects exactly the devices in `devices`.
     fn plug_in(&mut self) {
         let devices = self.devices.clone();
         for (device, note) in devices.iter().zip(&self.notes) {
@@ -45,7 +45,7 @@ impl Table {
         self.game.controls.pads = Pads::of(Snapshot { devices }).noting(notes);
     }
 
-    /// Pushes the first stick, or another, to the right.
+    /// Tilts a stick to the right.
     fn lean(&mut self, stick: usize, right: f32) {
         self.devices[stick].axes[0] = right;
         self.plug_in();
@@ -57,7 +57,7 @@ impl Table {
         self.game.pass(TICK);
     }
 
-    /// Lets time pass until something is so.
+    /// Runs frames until a condition holds.
     fn until(&mut self, what: &str, mut is_so: impl FnMut(&mut Self) -> bool) {
         let start = Instant::now();
         while !is_so(self) {
@@ -66,12 +66,12 @@ impl Table {
         }
     }
 
-    /// What a stick was told last, and all before it that was asked for.
+    /// Last output of a stick since the last call.
     fn told(&self, stick: usize) -> Option<Output> {
         self.notes[stick].take().last().map(|played| played.output)
     }
 
-    /// Leans a stick slowly from the left to the right, across the body, again and again until it is pushed.
+    /// Moves a stick slowly from left to right across the body, again and again, until it is pushed.
     fn until_pushed(&mut self, stick: usize) {
         self.until_pushed_along(stick, |share| [0.8 * share - 0.6, 0.0]);
     }
@@ -93,7 +93,7 @@ impl Table {
         });
     }
 
-    /// Until the thread says that the first stick is let go.
+    /// Waits until the device thread reports no force on the first stick.
     fn until_at_rest(&mut self) {
         self.until("let go", |table| {
             let report = table.game.forces.report(table.devices[0].id);
@@ -101,7 +101,8 @@ impl Table {
         });
     }
 
-    /// Waits without any further frame until the first stick is let go; how long that took.
+    /// Waits without running frames until the force on the first stick is zero; returns the time since
+    /// `start`.
     fn zero_since(&self, start: Instant) -> Duration {
         while !self.told(0).is_some_and(|output| output.is_zero()) {
             assert!(start.elapsed() < PATIENCE, "never let go");
@@ -110,7 +111,7 @@ impl Table {
         start.elapsed()
     }
 
-    /// For a while nothing is told to a stick.
+    /// Checks that a stick gets no output for 60 frames.
     fn hears_nothing(&mut self, stick: usize) {
         self.notes[stick].take();
         for _frame in 0..60 {
@@ -124,7 +125,7 @@ impl Table {
         report.expect("it is held").silent
     }
 
-    /// In the first level, with the hand against the body.
+    /// Starts the first level and pushes the hand against the body.
     fn pushing() -> Self {
         let mut table = Self::with(1);
         table.game.start(0);
@@ -148,8 +149,8 @@ fn a_stick_that_pushes_the_body_is_pushed_back() {
     let mut table = Table::with(1);
     table.game.start(0);
     table.hears_nothing(0);
-    // It points at a place: to the right of where it was it pushes, and is pushed back the further it goes. On a busy
-    // machine the thread may sleep through a whole push, so that there are further rounds.
+    // The stick sets a position: beyond the body's surface it is pushed back, more the further it goes. On a
+    // busy machine the thread may miss a whole push, so the round is repeated.
     let mut frame = 0;
     table.until("pushed to the left", |table| {
         if frame == 100 {
@@ -170,8 +171,8 @@ fn a_stick_that_pushes_the_body_is_pushed_back() {
 
 #[test]
 fn in_space_a_stick_feels_the_floor_as_the_camera_sees_it() {
-    // The ball lies behind the hand. Seen from the front the hand pushes away from the player and is pushed towards them;
-    // seen from the right it pushes to the right, and is pushed to the left.
+    // The ball is behind the hand. Seen from the front, the hand pushes away from the player and is pushed
+    // towards the player; seen from the right, it pushes to the right and is pushed to the left.
     for (turn, axis) in [(0.0, 1), (std::f32::consts::FRAC_PI_2, 0)] {
         let mut table = Table::with(1);
         let mut levels = table.game.levels.iter();
@@ -181,11 +182,11 @@ fn in_space_a_stick_feels_the_floor_as_the_camera_sees_it() {
         let mut share = 0.0;
         table.until("pushed back", |table| {
             share += if share < 1.0 { 0.01 } else { 0.0 };
-            // From before the ball to its middle [m], and which way the stick leans for that.
+            // Path from in front of the ball to its centre [m], and the deflection of the stick for it.
             let [x, z] = [-0.6, 0.7 - 1.1 * share];
             let [right, away]: [f32; 2] = [[-z, -x / 1.6], [x / 1.6, -z]][axis];
             let long = right.hypot(away);
-            // What the dead zone takes is put in before.
+            // Compensates the dead zone.
             let more = (0.15 + 0.8 * long) / long;
             table.devices[0].axes = vec![more * right, -more * away];
             table.plug_in();
@@ -221,7 +222,8 @@ fn it_ends_with_a_pause_a_menu_a_new_round_and_another_window() {
     }
 }
 
-/// What ends a force ends it within 20 ms; of several tries the quickest counts, for the others are the machine's.
+/// Checks that a force ends within 20 ms. The fastest of 20 tries counts, because a busy machine delays
+/// others.
 fn check_quick(mut once: impl FnMut() -> Duration) {
     let most = Duration::from_millis(20);
     let quick = (0..20).map(|_| once()).find(|time| *time <= most);
@@ -236,7 +238,7 @@ fn it_ends_with_a_win() {
     let bot = tamaire_play::BotKind::NAMED[0].1;
     let mut bot = tamaire_play::Bot::new(bot, 1);
     table.until("won", |table| {
-        // The bot plays with the stick, that points at places.
+        // The bot plays with the stick, which sets positions.
         pushed |= table.told(0).is_some_and(|output| !output.is_zero());
         let round = table.game.bout.round();
         let [low, high] = round.level().arena();
@@ -245,7 +247,7 @@ fn it_ends_with_a_win() {
             let middle = 0.5 * (low[axis] + high[axis]);
             (goal[axis] - middle) / (0.5 * (high[axis] - low[axis]))
         });
-        // What the dead zone takes is put in before.
+        // Compensates the dead zone.
         let lean = x.hypot(y).max(1e-3);
         let share = (0.15 + 0.8 * lean) / lean;
         table.devices[0].axes = vec![share * x, -share * y];
@@ -271,7 +273,7 @@ fn it_ends_when_the_stick_is_unplugged_and_the_round_waits() {
         let told = note.take().last().map(|played| played.output);
         told.is_some_and(|output| output.is_zero())
     });
-    // Plugged in again it has another id, and plays on.
+    // A reconnected device gets another id and continues to play.
     table.devices.push(stick(7));
     table.notes = vec![Recording::default()];
     table.plug_in();
@@ -334,10 +336,10 @@ fn each_player_feels_the_own_hand() {
     let mut table = Table::with(2);
     table.game.start(0);
     table.game.act(Action::Join, Seat::Stick(DeviceId(1)));
-    // The second hand comes in far above the body, and stays there.
+    // The second hand starts far above the body and stays there.
     table.until_pushed(0);
     assert_eq!(table.told(1), None);
-    // And pushes into it from above.
+    // It pushes into the body from above.
     table.until_pushed_along(1, |share| [-0.35, 0.9 - 0.8 * share]);
 }
 
@@ -381,7 +383,7 @@ fn a_pad_hums_when_it_pushes_and_rattles_when_it_tears() {
     table.lean(0, 1.0);
     let (mut hummed, mut rattled) = (false, false);
     table.until("torn", |table| {
-        // To and fro, as hard as it goes.
+        // Back and forth at full deflection.
         let to_and_fro = table.game.bout.round().ticks() / 20 % 3;
         table.lean(0, if to_and_fro == 2 { -1.0 } else { 1.0 });
         for played in table.notes[0].take() {
@@ -407,7 +409,7 @@ fn a_stick_can_be_tried_and_measured() {
     table.until_let_go(0);
     assert!(table.game.trial.is_none());
 
-    // One that is measured is let go when nothing may be sent any more.
+    // A measurement stops when forces are switched off.
     table.game.go(Screen::Forces);
     table.game.trial = Some(Trial::measure(DeviceId(0)));
     table.frame();
@@ -417,7 +419,7 @@ fn a_stick_can_be_tried_and_measured() {
     table.game.settings.haptics = 0.5;
     table.frame();
 
-    // This one is built in the wrong way round, and goes where it is pushed.
+    // This stick has swapped and reversed motors, and moves as it is pushed.
     table.game.go(Screen::Forces);
     table.lean(0, 0.0);
     table.game.trial = Some(Trial::measure(DeviceId(0)));
@@ -438,7 +440,7 @@ fn a_stick_can_be_tried_and_measured() {
     assert_eq!(known, Some(&wanted));
 }
 
-/// Through all of SDL, with a pad that only its driver knows not to be real.
+/// Goes through all of SDL, with a virtual pad.
 #[test]
 #[cfg(feature = "haptic")]
 fn a_pad_made_of_nothing_is_played_felt_and_unplugged() {

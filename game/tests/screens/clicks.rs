@@ -1,4 +1,4 @@
-//! With a mouse and keys.
+//! Mouse and keyboard.
 
 use crate::window::*;
 use egui::Key;
@@ -112,7 +112,7 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
     game(&mut window).go(Screen::Title);
     game(&mut window).go(Screen::Replays);
 
-    // Somebody else's, or none at all.
+    // A replay of another version, and a manipulated one.
     fs::write(
         &path,
         saved.replacen(&format!("version = {VERSION}"), "version = 999", 1),
@@ -126,7 +126,7 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
         notices(&window)
     );
     assert_eq!(screen(&window), Screen::Replays);
-    // The first hash is a lie, which comes out after a second.
+    // The first hash is wrong, which is detected after a second of playback.
     let start = saved.find("hashes = [").unwrap();
     let digit = start + saved[start..].find('"').unwrap() + 1;
     let mut lie = saved.clone();
@@ -192,7 +192,7 @@ fn settings_are_kept_and_the_language_changes_at_once() {
     assert_eq!(again.settings.volume, after);
     fs::write(folder.join("settings.toml"), "volume = [").unwrap();
     let again = Game::new(Files::in_folder(&folder), Sound::none(), Pads::none());
-    // Nobody knows how strong forces were to be.
+    // Without readable settings no force is allowed.
     let usual = Settings {
         haptics: 0.0,
         ..Settings::default()
@@ -225,7 +225,7 @@ fn what_is_inside_can_be_read_with_keys_too() {
     click(&mut window, "Licences");
     assert_eq!(screen(&window), Screen::Licences);
     window.get_by_label("What others made");
-    // Past the button back, the text itself, down to its end, however long it is.
+    // Arrow keys scroll past the back button to the end of the text.
     let lines = tamaire::licences::lines();
     let last = lines.iter().rfind(|line| !line.is_empty()).unwrap();
     let room = window.ctx.content_rect();
@@ -267,7 +267,7 @@ fn any_key_can_mean_anything() {
         );
         assert_eq!(game.controls.rebinding, None, "{key:?}");
     }
-    // Escape leaves it as it is, and the screen too.
+    // Escape keeps the binding and does not leave the screen.
     let row = row(&window);
     click(&mut window, &row);
     press(&mut window, Key::Escape);
@@ -340,7 +340,7 @@ fn a_key_fills_the_screen_and_the_choice_is_kept() {
     let mut window = window(Files::in_folder(&folder));
     for wanted in [true, false, true] {
         window.key_press(Key::F11);
-        // The window is asked in the frame after.
+        // The viewport command follows within two frames.
         let asked = (0..2).any(|_| {
             frames(&mut window, 1);
             let root = &window.output().viewport_output[&egui::ViewportId::ROOT];

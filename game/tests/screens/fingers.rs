@@ -1,4 +1,4 @@
-//! What fingers do that keys and pads have buttons for.
+//! Touch buttons for actions that keys and pads have buttons for.
 
 use crate::window::*;
 use egui::TouchPhase::{End, Move, Start};
@@ -12,14 +12,14 @@ fn goal(window: &Window, player: usize) -> [f32; 3] {
     wanted.unwrap_or_else(|| game.bout.round().hands()[player].goal())
 }
 
-/// Where a button is that fingers can press.
+/// Position of the touch button for an action.
 fn place(window: &Window, action: Action) -> Option<Rect> {
     let buttons = &window.state().game.controls.buttons;
     let button = buttons.iter().find(|button| button.action == action);
     button.map(|button| button.rect)
 }
 
-/// A round in which a finger holds the hand at a place in the world [m].
+/// Starts a round in which a finger holds the hand at a world position [m].
 fn held(level: &str, at: [f32; 3]) -> Window {
     let mut window = window(Files::nowhere());
     start(&mut window, level);
@@ -96,7 +96,7 @@ fn in_space_a_thumb_raises_the_hand_and_looks_deeper() {
         let game = &window.state().game;
         game.bout.opening.share(game.time, false)
     };
-    // They open by themselves at first.
+    // The cut moves by itself at first.
     frames(&mut window, 120);
     let whole = share(&window);
     let deeper = place(&window, Action::Deeper).expect("it is there");

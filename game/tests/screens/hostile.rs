@@ -1,4 +1,4 @@
-//! What the game puts up with.
+//! Robustness against broken files and random input.
 
 use crate::window::*;
 use egui::accesskit::Role;
@@ -157,7 +157,7 @@ fn a_round_waits_while_the_window_is_not_looked_at() {
     };
     focus(&mut window, false);
     assert_eq!(screen(&window), Screen::Title);
-    // What was named or dropped is played, focus or not: it is the loss that counts.
+    // A round starts without focus, too; only losing the focus pauses it.
     game(&mut window).start(0);
     frames(&mut window, 5);
     assert_eq!(screen(&window), Screen::Play);
@@ -210,7 +210,7 @@ fn two_thousand_frames_of_anything_are_survived() {
     pad.pad = Some(Pad::default());
     let mut devices = vec![pad, Device::at_rest(DeviceId(2), about(), 2, 8, 1)];
     let mut seen = std::collections::BTreeSet::new();
-    // Each event has a frame of its own: a click is three.
+    // Each event takes a frame of its own: a click takes three.
     for frame in 0..1000 {
         let at = pos2(960.0 * random.f32(), 600.0 * random.f32());
         match random.u32(0..12) {

@@ -1,4 +1,4 @@
-//! What is kept, and what comes between.
+//! Saved data, and what can go wrong with it.
 
 use crate::window::*;
 use egui::accesskit::Role;
@@ -13,7 +13,7 @@ use std::time::SystemTime;
 use tamaire::game::{Game, Screen};
 use tamaire::platform::{Change, Entry, Files, Kind, Nowhere, Pads, Sound, Storage};
 
-/// Keeps things in memory, and notes who wrote when; or is full.
+/// Storage in memory that records the writing threads, and that can be full.
 #[derive(Clone, Default)]
 struct Memory(Arc<Mutex<Inside>>);
 
@@ -76,7 +76,7 @@ impl Storage for Memory {
     }
 }
 
-/// Lets frames pass until all is written.
+/// Runs frames until everything is written.
 fn wait(window: &mut Window) {
     while game(window).files.is_busy() {
         frames(window, 1);
@@ -162,7 +162,7 @@ fn a_full_disk_is_told_once_and_the_game_goes_on() {
         told += notices(&window).matches(full).count();
     }
     assert_eq!((told, memory.writes()), (1, 3));
-    // Who asks for a replay is told each time that there is none.
+    // A save that the player requested reports the failure each time.
     for _ in 0..2 {
         game(&mut window).notices.clear();
         game(&mut window).keep_replay();
@@ -267,7 +267,7 @@ fn replays_are_kept_beside_whatever_stands_there() {
         assert!(replays.join(format!("{name}.tamaire")).is_file(), "{name}");
     }
     drop(window);
-    // By choice nothing is kept, and nobody waits for it.
+    // This game deliberately saves nothing, and does not wait for anything.
     let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
     game.keep_replay();
     assert_eq!(game.files.finish().len(), 1);

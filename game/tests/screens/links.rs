@@ -1,4 +1,4 @@
-//! Rounds and levels that travel as links.
+//! Rounds and levels shared as links.
 
 use crate::window::*;
 use egui::{Event, OutputCommand};
@@ -6,7 +6,7 @@ use tamaire::game::Screen;
 use tamaire::platform::Files;
 use tamaire::words::Language;
 
-/// What was put on the clipboard when a button was pressed.
+/// Returns the text that a button copies to the clipboard.
 fn copied(window: &mut Window, button: &str) -> String {
     self::button(window, button).click();
     for _ in 0..5 {

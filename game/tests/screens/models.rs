@@ -1,4 +1,4 @@
-//! Models that are dropped onto the window.
+//! Models dropped onto the window.
 
 use crate::hostile::drop_file;
 use crate::space::{assert_near, goal, in_space, point_at};
@@ -30,7 +30,7 @@ fn a_model_dropped_onto_any_round_is_played_in_space() {
             round.progress().mass > 0.0 && ticks(&window) <= 2,
             "{level}"
         );
-        // It is offered once, however often it is dropped.
+        // It appears once in the list, however often it is dropped.
         let levels = &window.state().game.levels;
         let name = &round.level().id;
         assert_eq!(levels.iter().filter(|level| &level.id == name).count(), 1);
@@ -74,7 +74,7 @@ fn a_damaged_model_is_named_and_nothing_is_lost() {
     point_at(&mut window, -1.0, 0.7);
     let levels = window.state().game.levels.len();
     let mut size = whole.clone();
-    // The number of voxels, far beyond the end of the file.
+    // The number of voxels is made far larger than the file.
     let count = whole
         .windows(4)
         .position(|word| word == b"XYZI")

@@ -1,4 +1,4 @@
-//! Levels of one's own.
+//! Levels added by the player.
 
 use crate::hostile::drop_file;
 use crate::window::*;
@@ -9,12 +9,12 @@ use std::path::{Path, PathBuf};
 use tamaire::game::Screen;
 use tamaire::platform::Files;
 
-/// A picture that can be dropped.
+/// Picture file to drop onto the window.
 fn cat() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/tamaire_play/levels/cat.png")
 }
 
-/// The ids of the levels that do not come along, once all are read.
+/// Returns the ids of the player's own levels once all have been read.
 fn own(window: &mut Window) -> Vec<String> {
     wait(window);
     let game = game(window);

@@ -1,4 +1,4 @@
-//! With a pad or a stick alone.
+//! Play with a pad or a stick alone.
 
 use crate::window::*;
 use egui::accesskit::Role;
@@ -9,7 +9,7 @@ use tamaire::game::Screen;
 use tamaire::input::{Action, Seat};
 use tamaire::platform::{Files, Pads};
 
-/// A window with made up devices.
+/// Window with simulated devices.
 pub struct Table {
     pub window: Window,
     pub devices: Vec<Device>,
@@ -39,7 +39,7 @@ impl Table {
         frames(&mut self.window, count);
     }
 
-    /// Presses a button of the last pad, lets it go, and sees what comes of it.
+    /// Presses and releases a button of the last pad, each for two frames.
     pub fn tap(&mut self, button: PadButton) {
         self.button(button).press();
         self.frames(2);
@@ -138,7 +138,7 @@ fn a_pad_alone_goes_everywhere() {
     let after = game(&mut table.window).settings.volume;
     assert!((before - after - 0.1).abs() < 1e-3, "{before} {after}");
 
-    // Down to the end, where what has the focus is in sight.
+    // Down to the end of the page, where the focused button must be visible.
     for _ in 0..60 {
         if !table.has_focus("Restore default settings") {
             table.tap(Down);
@@ -176,7 +176,7 @@ fn a_plain_stick_alone_begins_a_round() {
         table.devices[0].buttons[button].down = false;
         table.frames(2);
     };
-    // y grows towards the player.
+    // The axis is positive towards the player.
     table.devices[0].axes[1] = 1.0;
     table.frames(2);
     table.devices[0].axes[1] = 0.0;
@@ -244,7 +244,7 @@ fn a_pad_is_tried_and_its_stick_moves_nothing_else_meanwhile() {
     }
     table.tap(South);
     assert!(matches!(table.screen(), Screen::Forces));
-    // What the pad can do is known once its line has said so.
+    // The ability of the pad is known once its thread has reported it.
     for _ in 0..20 {
         if !table.has_focus("Try it") {
             table.tap(Down);
@@ -266,7 +266,7 @@ fn a_pad_is_tried_and_its_stick_moves_nothing_else_meanwhile() {
     table.tap(South);
     assert!(game(&mut table.window).trial.is_none());
 
-    // Off at once, on every screen; and on again where it says so.
+    // The emergency button works on every screen; the forces screen switches forces on again.
     let bindings = &mut game(&mut table.window).settings.bindings;
     bindings.bind_button(Action::CutForces, sticks::Control::Pad(RightStick));
     table.tap(RightStick);

@@ -1,4 +1,4 @@
-//! The list of rounds that were kept, and the fastest one, which is raced by itself where that is wished.
+//! List of saved rounds, and the optional race against the fastest one.
 
 use crate::window::*;
 use egui_kittest::kittest::Queryable;
@@ -14,7 +14,7 @@ fn a_kept_round_tells_where_when_and_how_it_was_won() {
     win(&mut window);
     game(&mut window).keep_replay();
     game(&mut window).finish_writing();
-    // One that is none stays in the list, by its name.
+    // An invalid replay stays in the list under its file name.
     std::fs::write(folder.join("replays/other-1.tamaire"), "version = 999\n").unwrap();
     game(&mut window).go(Screen::Replays);
     frames(&mut window, 6);
@@ -53,13 +53,13 @@ fn the_fastest_round_is_raced_by_itself_where_that_is_wished() {
     game(&mut window).start(1);
     assert!(!has_ghost(&window), "nothing was won there");
 
-    // A slower win is not kept instead; one that is faster would be.
+    // A slower win does not replace the fastest one.
     game(&mut window).start(0);
     frames(&mut window, 60);
     win(&mut window);
     game(&mut window).finish_writing();
     assert_eq!(files.best(&level).unwrap().ticks(), first);
-    // What is no replay any more is no ghost.
+    // An unreadable replay is no ghost.
     let path = folder.join("best/classic.tamaire");
     assert!(path.is_file() && Kind::Best.most_bytes() > 0);
     std::fs::write(path, "version = 1\n").unwrap();

@@ -1,4 +1,4 @@
-//! A stand in public: visitors come, play and go, and staff looks behind it.
+//! Public stand: visitors come, play and go, and staff use its pages.
 
 use crate::window::*;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, pos2, vec2};
@@ -23,14 +23,14 @@ use tamaire::words::Language;
 use tamaire_logbook::{End, Error, Kind, Logbook, Round, Visit};
 use tamaire_play::{BotKind, Playback, Replay};
 
-/// A stand whose visitors are in the window's hands, and the test's eye on it.
+/// Stand in a test window, shared with the test.
 struct Shown {
     window: Window,
     stand: Rc<RefCell<Stand>>,
     folder: PathBuf,
 }
 
-/// Hands a stand to a window and keeps it.
+/// Lets the window own a stand that the test keeps access to.
 struct Shared(Rc<RefCell<Stand>>);
 
 impl Attendant for Shared {
@@ -51,7 +51,7 @@ impl Attendant for Shared {
     }
 }
 
-/// A stand with this in its file instead of what it usually says.
+/// Opens a stand with the usual configuration file, changed by text replacements.
 fn shown(name: &str, size: Vec2, changes: &[(&str, &str)]) -> Shown {
     let folder = folder(name);
     let mut text = USUAL.replace(
@@ -97,14 +97,14 @@ impl Shown {
         self.stand.borrow().phase
     }
 
-    /// Lets so many seconds pass in which nobody does anything.
+    /// Advances by `seconds` without input.
     fn rest(&mut self, seconds: f32) {
         let ctx = self.window.ctx.clone();
         let mut stand = self.stand.borrow_mut();
         let game = game(&mut self.window);
         for _ in 0..(seconds / TICK) as usize {
             game.pass(TICK);
-            // No events are left in the context after a frame.
+            // After a frame, events may be left in the context.
             ctx.input_mut(|input| input.events.clear());
             stand.pass(game, &ctx, TICK);
         }
@@ -114,7 +114,7 @@ impl Shown {
         press(&mut self.window, Key::Space);
     }
 
-    /// Plays until it is won.
+    /// Lets a bot play until it wins.
     fn win(&mut self, kind: BotKind) {
         drive(game(&mut self.window), kind, |game| game.bout.won.is_none());
         game(&mut self.window).pass(2.0);
@@ -122,7 +122,7 @@ impl Shown {
         assert_eq!(screen(&self.window), Screen::Result);
     }
 
-    /// What is in the logbook when all is written.
+    /// Closes the stand and returns the contents of its logbook.
     fn end(self) -> (Vec<Visit>, Vec<Round>) {
         let Self {
             mut window,
@@ -167,7 +167,7 @@ fn a_visit_begins_with_a_touch_and_is_written_down_whole() {
     let again = game(&mut shown.window).words().again;
     click(&mut shown.window, again);
     assert_eq!(screen(&shown.window), Screen::Play);
-    // Somebody begins anew, and goes in the middle of it.
+    // The visitor restarts the round and leaves in the middle of it.
     frames(&mut shown.window, 60);
     press(&mut shown.window, Key::R);
     frames(&mut shown.window, 30);
@@ -278,7 +278,7 @@ fn nobody_gets_out_of_it() {
     assert!(shown.window.query_by_label("おわる").is_none());
 }
 
-/// Presses or lets go of the mouse.
+/// Presses or releases the mouse button.
 fn button_at(window: &mut Window, pos: Pos2, pressed: bool) {
     window.event(Event::PointerMoved(pos));
     window.event(Event::PointerButton {
@@ -399,7 +399,8 @@ fn a_stick_that_is_pulled_out_and_put_back_is_noted_and_play_goes_on() {
     assert_eq!(kinds[1..4], expected);
 }
 
-/// Pictures at a size, for the eye: `cargo test -p tamaire --test screens -- stand_seen --ignored`.
+/// Writes pictures of all screens in several sizes, to be looked at: `cargo test -p tamaire --test screens --
+/// stand_seen --ignored`.
 #[test]
 #[ignore = "writes pictures for people to look at"]
 fn stand_seen() {

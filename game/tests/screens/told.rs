@@ -1,4 +1,4 @@
-//! How to play in space is told until it was tried.
+//! Instructions for 3D levels are shown until they were followed.
 
 use crate::pads::{Table, about, pad};
 use crate::space::{in_space, point_at, wait};
@@ -10,7 +10,7 @@ use tamaire::input::{Action, Means};
 use tamaire::platform::Files;
 use tamaire::words::Language;
 
-/// All words on the screen, each with where it is.
+/// Returns all texts on the screen with their rectangles.
 fn words(window: &Window) -> Vec<(String, egui::Rect)> {
     fn add(shape: &egui::Shape, words: &mut Vec<(String, egui::Rect)>) {
         match shape {
@@ -35,7 +35,7 @@ pub fn tells(window: &Window, what: &str) -> bool {
 #[test]
 fn what_can_be_done_in_space_is_told_until_it_was_tried() {
     let mut window = in_space();
-    // Nothing takes its time to go.
+    // Reduced motion removes lines at once.
     game(&mut window).settings.reduced_motion = true;
     wait(&mut window, 60);
     let told = ["Move: mouse", "wheel, or Q Z", "right mouse button, or [ ]"];
@@ -113,7 +113,7 @@ fn what_is_told_fits_into_the_smallest_window() {
         game(&mut window).settings.text_size = text_size;
         start(&mut window, "classic-3d");
         let bindings = &mut game(&mut window).settings.bindings;
-        // The longest names there are.
+        // Longest key names.
         for (action, key) in [
             (Action::Raise, Key::BrowserBack),
             (Action::Lower, Key::Questionmark),
