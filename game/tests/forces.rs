@@ -145,7 +145,7 @@ fn stick(id: u32) -> Device {
 }
 
 #[test]
-fn a_stick_that_pushes_the_body_is_pushed_back() {
+fn stick_is_pushed_back_by_body() {
     let mut table = Table::with(1);
     table.game.start(0);
     table.hears_nothing(0);
@@ -170,7 +170,7 @@ fn a_stick_that_pushes_the_body_is_pushed_back() {
 }
 
 #[test]
-fn in_space_a_stick_feels_the_floor_as_the_camera_sees_it() {
+fn stick_force_3d_follows_camera_orientation() {
     // The ball is behind the hand. Seen from the front, the hand pushes away from the player and is pushed
     // towards the player; seen from the right, it pushes to the right and is pushed to the left.
     for (turn, axis) in [(0.0, 1), (std::f32::consts::FRAC_PI_2, 0)] {
@@ -201,7 +201,7 @@ fn in_space_a_stick_feels_the_floor_as_the_camera_sees_it() {
 }
 
 #[test]
-fn it_ends_with_a_pause_a_menu_a_new_round_and_another_window() {
+fn force_ends_on_pause_menu_new_round_and_lost_focus() {
     type Way = fn(&mut Game);
     let ways: [(Way, Stop); 5] = [
         (|game| game.act(Action::Pause, Seat::Keys), Stop::Paused),
@@ -231,7 +231,7 @@ fn check_quick(mut once: impl FnMut() -> Duration) {
 }
 
 #[test]
-fn it_ends_with_a_win() {
+fn force_ends_on_win() {
     let mut table = Table::with(1);
     table.game.start(0);
     let mut pushed = false;
@@ -261,7 +261,7 @@ fn it_ends_with_a_win() {
 }
 
 #[test]
-fn it_ends_when_the_stick_is_unplugged_and_the_round_waits() {
+fn force_ends_and_round_pauses_when_stick_is_unplugged() {
     let mut table = Table::pushing();
     let note = table.notes[0].clone();
     let device = table.devices.remove(0);
@@ -283,7 +283,7 @@ fn it_ends_when_the_stick_is_unplugged_and_the_round_waits() {
 }
 
 #[test]
-fn it_ends_when_the_game_panics_or_is_closed() {
+fn force_ends_when_game_panics_or_closes() {
     let mut table = Table::pushing();
     let note = table.notes[0].clone();
     let panicked = catch_unwind(AssertUnwindSafe(move || {
@@ -303,7 +303,7 @@ fn it_ends_when_the_game_panics_or_is_closed() {
 }
 
 #[test]
-fn the_emergency_key_ends_it_until_it_is_taken_back() {
+fn emergency_key_cuts_force_until_restored() {
     let mut table = Table::pushing();
     table.game.act(Action::CutForces, Seat::Keys);
     table.until_let_go(0);
@@ -317,7 +317,7 @@ fn the_emergency_key_ends_it_until_it_is_taken_back() {
 }
 
 #[test]
-fn at_strength_0_nothing_is_sent_and_nothing_taken_hold_of() {
+fn zero_strength_opens_no_device_and_sends_nothing() {
     let mut table = Table::with(1);
     table.game.settings.haptics = 0.0;
     table.game.start(0);
@@ -332,7 +332,7 @@ fn at_strength_0_nothing_is_sent_and_nothing_taken_hold_of() {
 }
 
 #[test]
-fn each_player_feels_the_own_hand() {
+fn force_of_each_hand_goes_to_its_player() {
     let mut table = Table::with(2);
     table.game.start(0);
     table.game.act(Action::Join, Seat::Stick(DeviceId(1)));
@@ -344,7 +344,7 @@ fn each_player_feels_the_own_hand() {
 }
 
 #[test]
-fn a_stick_that_lies_on_the_table_is_left_alone() {
+fn unused_stick_gets_no_force() {
     let mut table = Table::pushing();
     table.game.controls.devices.keys.insert(egui::Key::D);
     table.lean(0, 0.0);
@@ -354,7 +354,7 @@ fn a_stick_that_lies_on_the_table_is_left_alone() {
 }
 
 #[test]
-fn a_pad_that_is_put_down_hums_no_more_though_its_hand_presses() {
+fn unused_pad_stops_rumbling_while_hand_presses() {
     let mut table = Table::with(1);
     table.notes = vec![Recording::new(Ability::Rumble)];
     table.game.start(0);
@@ -376,7 +376,7 @@ fn a_pad_that_is_put_down_hums_no_more_though_its_hand_presses() {
 }
 
 #[test]
-fn a_pad_hums_when_it_pushes_and_rattles_when_it_tears() {
+fn pad_rumbles_low_when_pushing_and_high_when_tearing() {
     let mut table = Table::with(1);
     table.notes = vec![Recording::new(Ability::Rumble)];
     table.game.start(0);
@@ -398,7 +398,7 @@ fn a_pad_hums_when_it_pushes_and_rattles_when_it_tears() {
 }
 
 #[test]
-fn a_stick_can_be_tried_and_measured() {
+fn stick_can_be_tried_and_measured() {
     let mut table = Table::with(1);
     table.game.go(Screen::Forces);
     table.lean(0, 0.5);
@@ -443,7 +443,7 @@ fn a_stick_can_be_tried_and_measured() {
 /// Goes through all of SDL, with a virtual pad.
 #[test]
 #[cfg(feature = "haptic")]
-fn a_pad_made_of_nothing_is_played_felt_and_unplugged() {
+fn virtual_pad_plays_rumbles_and_unplugs() {
     use sticks::{PadButton, Sticks};
 
     let sticks = Sticks::open_for_puppets().expect("SDL starts");

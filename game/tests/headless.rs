@@ -138,7 +138,7 @@ fn check_refused(arguments: &str, status: i32, words: &[&str]) {
 }
 
 #[test]
-fn a_round_is_told_as_json() {
+fn round_is_reported_as_json() {
     let folder = folder();
     let line = "--headless --level won.toml --bot idle --json";
     let output = tamaire(folder.path(), line);
@@ -161,7 +161,7 @@ fn a_round_is_told_as_json() {
 }
 
 #[test]
-fn the_seed_alone_decides_how_a_bot_plays() {
+fn bot_depends_only_on_seed() {
     let folder = folder();
     let hash = |seed: u32| {
         let line =
@@ -175,7 +175,7 @@ fn the_seed_alone_decides_how_a_bot_plays() {
 }
 
 #[test]
-fn who_does_not_win_hears_so_and_it_is_no_error() {
+fn lost_round_is_reported_without_error() {
     let folder = folder();
     let line = "--headless --level far.toml --bot idle --seconds 1";
     let output = tamaire(folder.path(), line);
@@ -188,7 +188,7 @@ fn who_does_not_win_hears_so_and_it_is_no_error() {
 }
 
 #[test]
-fn a_replay_is_genuine_until_someone_changes_it() {
+fn replay_is_genuine_until_changed() {
     let folder = folder();
     let line = "--headless --level far.toml --bot random --seconds 2 --save it.tamaire --json";
     let played = json(&tamaire(folder.path(), line));
@@ -252,7 +252,7 @@ fn has_adapter() -> bool {
 }
 
 #[test]
-fn without_anything_to_draw_with_a_photo_shows_elements_and_says_so() {
+fn photo_without_adapter_shows_elements_and_warns() {
     // Graphics API that this operating system does not have.
     let none = if cfg!(target_os = "macos") {
         "dx12"
@@ -272,7 +272,7 @@ fn without_anything_to_draw_with_a_photo_shows_elements_and_says_so() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused_with_a_reason() {
+fn invalid_arguments_are_refused_with_reason() {
     check_refused("--headless --level nowhere", 2, &["nowhere", "classic"]);
     check_refused(
         "--headless --level broken.toml",
@@ -299,7 +299,7 @@ fn what_makes_no_sense_is_refused_with_a_reason() {
 
 #[cfg(unix)]
 #[test]
-fn pipes_and_devices_are_refused_and_not_waited_for() {
+fn pipes_and_devices_are_refused_without_waiting() {
     let folder = folder();
     let pipe = folder.path().join("pipe.tamaire");
     assert!(
@@ -320,7 +320,7 @@ fn pipes_and_devices_are_refused_and_not_waited_for() {
 }
 
 #[test]
-fn without_a_display_a_round_is_played_all_the_same() {
+fn round_is_played_without_display() {
     if !cfg!(target_os = "linux") {
         return;
     }
@@ -341,7 +341,7 @@ fn without_a_display_a_round_is_played_all_the_same() {
 }
 
 #[test]
-fn levels_are_listed_by_name() {
+fn list_shows_ids_and_names_of_levels() {
     let told = text(&tamaire(Path::new("."), "--list").stdout);
     let classic = told.lines().find(|line| line.starts_with("classic "));
     assert!(
@@ -352,7 +352,7 @@ fn levels_are_listed_by_name() {
 }
 
 #[test]
-fn what_would_be_felt_is_written_down() {
+fn force_log_records_substeps_and_device_updates() {
     let folder = folder();
     let run = "--headless --bot squeeze --force-log forces.csv";
     assert_eq!(tamaire(folder.path(), run).status.code(), Some(0));
@@ -409,7 +409,7 @@ fn what_would_be_felt_is_written_down() {
 }
 
 #[test]
-fn a_round_in_space_is_told_recorded_and_filmed() {
+fn round_3d_is_reported_recorded_and_filmed() {
     let folder = folder_in_space();
     let line = "--headless --level solid.toml --bot squeeze --seconds 20 --json --save it.tamaire \
                 --film it.png --force-log forces.csv";
@@ -463,7 +463,7 @@ fn a_round_in_space_is_told_recorded_and_filmed() {
 }
 
 #[test]
-fn in_space_the_shaving_bot_tears_and_an_animation_shows_it() {
+fn shaving_bot_tears_3d_body_and_film_is_written() {
     let folder = folder_in_space();
     let line = "--headless --level solid.toml --bot shave --seconds 1 --json --film it.gif";
     let output = tamaire(folder.path(), line);
@@ -476,7 +476,7 @@ fn in_space_the_shaving_bot_tears_and_an_animation_shows_it() {
 }
 
 #[test]
-fn a_model_is_a_level_in_space() {
+fn model_is_played_as_3d_level() {
     let folder = folder_in_space();
     fs::write(folder.path().join("Dice.vox"), cube_model(4)).unwrap();
     fs::write(folder.path().join("broken.vox"), &cube_model(4)[..100]).unwrap();

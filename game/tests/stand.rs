@@ -222,7 +222,7 @@ fn told(times: &mut [Duration]) -> Option<[Duration; 2]> {
 
 #[test]
 #[ignore = "needs Xvfb and xdotool, and takes ten minutes: `cargo xtask stand`"]
-fn a_game_that_is_killed_while_it_is_played_is_back_and_loses_no_round_that_ended() {
+fn stand_restarts_killed_game_without_losing_rounds() {
     let kills = env::var("KILLS").map_or(KILLS, |kills| kills.parse().unwrap());
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("exhibit.toml");

@@ -263,7 +263,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_for_the_program_stay_behind_those_for_cargo() {
+    fn program_arguments_follow_cargo_arguments() {
         let compiler = Compiler {
             system: &ARM,
             sources: Some(PathBuf::from("/usr/src")),

@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_folder_with_a_space_stays_one_flag() {
+    fn encoded_keeps_folder_with_space_in_one_flag() {
         let names = [("/my home".to_string(), "/cargo")];
         let flags = encoded(["-Ctarget-feature=+simd128"], &names);
         assert_eq!(
@@ -48,7 +48,7 @@ mod tests {
 
     /// The target folder may be inside the root, so its name must come later.
     #[test]
-    fn what_is_inside_another_folder_comes_after_it() {
+    fn names_list_inner_folder_after_outer() {
         let names = names();
         let place = |short| names.iter().position(|(_, name)| *name == short);
         assert!(place("/tamaire") < place("/target"));

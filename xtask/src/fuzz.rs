@@ -174,7 +174,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn minutes_come_first_and_then_doors() {
+    fn arguments_are_minutes_then_doors() {
         let words = |line: &str| {
             line.split_whitespace()
                 .map(String::from)
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_that_was_told_counts() {
+    fn row_uses_last_statistics() {
         let log = "#2 INITED cov: 5 ft: 6 corp: 1/1b\n#99 DONE cov: 50 ft: 60 corp: 10/1Kb\n\
                    stat::number_of_executed_units: 99\nstat::slowest_unit_time_sec:  1\nstat::peak_rss_mb: 40\n";
         let outcome = Outcome {

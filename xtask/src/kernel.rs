@@ -310,7 +310,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_kernel_that_a_package_stands_for_is_found() {
+    fn kernel_package_is_found_in_dependencies() {
         let debian = "linux-image-amd64\n  Depends: linux-image-6.1.0-56-amd64\n";
         let ubuntu = "linux-image-virtual\n  Depends: linux-modules-6.8.0-1\n |Depends: a\n  Depends: linux-image-6.8.0-1-generic\n  Suggests: b\n";
         for (depends, expect) in [
@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn the_program_is_the_one_that_was_built_last() {
+    fn executable_is_last_in_messages() {
         let messages = "{\"executable\":null}\n{\"name\":\"build\",\"executable\":\"/a/b\"}\n\
                         {\"executable\":\"/t/kernel-1\",\"fresh\":true}\n{\"success\":true}\n";
         assert_eq!(executable_of(messages), Some(PathBuf::from("/t/kernel-1")));
@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn every_library_is_found_by_its_path() {
+    fn libraries_are_paths_in_ldd_output() {
         let ldd = "\tlinux-vdso.so.1 (0x7f)\n\tlibm.so.6 => /lib/libm.so.6 (0x7e)\n\t/lib64/ld.so.2 (0x7d)\n";
         assert_eq!(libraries(ldd), ["/lib/libm.so.6", "/lib64/ld.so.2"]);
     }

@@ -243,7 +243,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_status_of_the_game_is_handed_on_where_it_has_one() {
+    fn exit_code_is_forwarded_if_valid() {
         for (code, expect) in [
             (Some(0), 0),
             (Some(101), 101),

@@ -198,7 +198,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn a_package_has_what_is_meant_and_no_more() {
+    fn complaints_list_unexpected_and_missing_files() {
         let good = "Cargo.lock\nCargo.toml\nCargo.toml.orig\nLICENSE-APACHE\nLICENSE-MIT\nREADME.md\nsrc/lib.rs";
         assert_eq!(complaints(good, &["src"]), [] as [String; 0]);
         let bad = good.replace("README.md\n", "tests/tidy.rs\nnotes.txt\n");
@@ -214,7 +214,7 @@ mod tests {
 
     /// Every crate is either packed or marked as private.
     #[test]
-    fn each_crate_is_packed_or_says_that_it_is_not_for_others() {
+    fn crates_are_packed_or_private() {
         let mut seen = 0;
         for folder in fs::read_dir(root().join("crates")).unwrap() {
             let folder = folder.unwrap().path();
@@ -233,7 +233,7 @@ mod tests {
 
     /// All documents name the same MSRV.
     #[test]
-    fn every_document_promises_the_same_rust() {
+    fn documents_name_the_same_msrv() {
         let oldest = oldest_rust().unwrap_or_else(|_| panic!("Cargo.toml has no rust-version"));
         let says = format!("Rust {oldest}");
         let packed = CRATES

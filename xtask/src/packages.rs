@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn a_task_lacks_what_it_needs_and_has_not() {
+    fn missing_lists_needed_packages_that_are_absent() {
         let build = ["cmake", "make", "pkg-config", "libasound2-dev"];
         check(&[Purpose::Build], &[], &build);
         check(&[Purpose::Build], &build, &[]);
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_dpkg_calls_installed_is_there() {
+    fn is_installed_requires_status_installed() {
         let statuses = "make installed\nlibxi6 config-files\nlibx11-6 not-installed\n\
                         libx11-6 installed\nlibx11-6-data installed\n";
         for (name, expect) in [
@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn only_yes_and_a_bare_return_agree() {
+    fn is_yes_accepts_yes_and_empty_line() {
         for answer in ["\n", "y\n", "Y\n", "yes\r\n"] {
             assert!(is_yes(answer), "{answer:?}");
         }
@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_removed_for_a_package() {
+    fn install_arguments_forbid_removal() {
         let arguments = install_arguments(["make"].into_iter());
         assert!(arguments.contains(&"--no-remove"), "{arguments:?}");
         assert_eq!(arguments.last(), Some(&"make"));

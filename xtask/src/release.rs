@@ -187,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_fails_where_packages_are_missing_names_them_and_is_no_fault() {
+    fn failure_names_missing_packages() {
         let failure = || Failure {
             message: "it could not be built".to_string(),
             code: FAILED,

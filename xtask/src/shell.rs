@@ -102,7 +102,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_failure_is_never_taken_for_a_task_that_cannot_be_tried() {
+    fn execute_never_returns_the_status_of_the_command() {
         let mut command = Command::new("sh");
         command.args(["-c", "exit 3"]);
         let failure = execute(&mut command, "a hint").unwrap_err();

@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn one_known_task_and_nothing_else_is_a_command_line() {
+    fn parse_accepts_known_tasks_only() {
         check("check", Ok(Task::Check(IfMissing::Install)));
         check("check --no-install", Ok(Task::Check(IfMissing::Say)));
         check("test", Ok(Task::Test(IfMissing::Install)));
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn the_words_after_the_separator_are_for_the_game() {
+    fn parse_passes_arguments_after_separator_to_game() {
         let play = |if_missing, words: &[&str]| {
             let words = words.iter().map(ToString::to_string).collect();
             Ok(Task::Play(if_missing, words))

@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn a_version_is_three_plain_numbers() {
+    fn version_is_three_plain_numbers() {
         assert_eq!(version("0.12.3").to_string(), "0.12.3");
         for wrong in [
             "", "1", "1.2", "1.2.3.4", "1.2.x", "1.02.3", "v1.2.3", "+1.2.3", "1.2.3-rc",
@@ -201,7 +201,7 @@ mod tests {
 
     /// Uses the current files, so that a changed format is noticed before a release.
     #[test]
-    fn all_files_that_name_the_version_take_another() {
+    fn changed_updates_all_files_with_the_version() {
         let next = version("1000.0.0");
         let manifests = manifests().unwrap();
         let files = changed(&next, "2030-01-02", &manifests, read).unwrap();

@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_named_by_its_package() {
+    fn find_debian_names_missing_packages() {
         let sources = "/usr/src/rustc-1.96.0/library/std";
         let other_sources = "/usr/src/rustc-1.85.0/library/std";
         let old = DESCRIPTION.replace("1.96", "1.85");
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn a_compiler_that_is_too_old_is_refused_with_both_versions() {
+    fn old_compiler_is_refused_with_both_versions() {
         let old = DESCRIPTION.replace("1.96", "1.85");
         let lacks = find_debian(Some(&old), |_| true, |_| true).unwrap_err();
         let failure = cannot("", &lacks, IfMissing::Say);

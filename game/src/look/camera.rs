@@ -241,7 +241,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_is_found_again_from_where_it_is_seen() {
+    fn view_2d_inverts_screen_position() {
         let arena = [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]];
         let mut camera = CameraRig::default();
         camera.shake(0.01);
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn it_goes_home_the_shorter_way_unless_it_is_turned_again() {
+    fn camera_returns_the_shorter_way_until_turned() {
         let mut camera = CameraRig::default();
         let follow = |camera: &mut CameraRig, ticks: usize| {
             (0..ticks).for_each(|_| camera.follow([0.0; 3], [[0.0; 3]; 2], 0.02, false));
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn in_space_a_place_is_found_again_at_its_height() {
+    fn view_3d_inverts_screen_position_at_height() {
         let arena = [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]];
         let mut camera = CameraRig::default();
         camera.orbit(0.7, 9.0);

@@ -122,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_rises_falls_and_goes() {
+    fn confetti_rises_falls_and_disappears() {
         let mut confetti = Confetti::default();
         let room = [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]];
         confetti.rain(room, &mut fastrand::Rng::with_seed(1));

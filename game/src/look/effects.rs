@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn the_hint_fades_when_the_hand_moves_and_comes_back_in_a_new_round() {
+    fn hint_fades_when_hand_moves_and_returns_in_new_round() {
         let (mut effects, mut camera) = (Effects::default(), CameraRig::default());
         let mut play = |round: &mut AnyRound, effects: &mut Effects, frame, ticks: usize| {
             for _ in 0..ticks {
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn dust_falls_to_the_floor_and_stays_there() {
+    fn dust_falls_to_the_floor_and_stays() {
         let mut effects = Effects {
             gravity: [0.0, -5.0, 0.0],
             room: [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]],
@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn dust_is_made_of_what_was_torn() {
+    fn dust_has_material_of_torn_body() {
         let AnyRound::Plane(round) = round("twins") else {
             panic!("it is in the plane")
         };

@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn the_face_of_a_ring_is_on_the_ring() {
+    fn face_of_ring_lies_on_ring() {
         let hole = |at: [f32; 2]| {
             let radius = length([at[0] - 24.0, at[1] - 24.0]);
             (10.0..24.0).contains(&radius)
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn the_face_glides_to_what_is_left_and_dust_has_none() {
+    fn face_glides_to_remaining_piece_and_dust_has_none() {
         let mut world = alone(VoxelGrid::ball(32, 1.0).expect("a ball"));
         let mut feeling = Feeling::of(world.bodies().first().unwrap(), None);
         let (before, size) = (feeling.at, feeling.size);
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn in_space_a_face_turns_with_its_body_and_comes_back_to_the_camera() {
+    fn face_3d_turns_with_body_and_returns_to_camera() {
         let mut world = World::<Dim3>::new(Settings::default()).expect("usual");
         let grid = VoxelGrid::ball(12, 1.0).expect("a ball");
         world.add_body(Body::new(grid, &[Material::default()]).expect("usual"));
@@ -361,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tear_shocks_once_and_then_hurts() {
+    fn tear_shocks_once_then_hurts() {
         let world = alone(VoxelGrid::ball(16, 1.0).expect("a ball"));
         let body = world.bodies().first().unwrap();
         let mut feeling = Feeling::of(body, None);

@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_line_closes_when_all_is_held() {
+    fn line_closes_at_full_share() {
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(200.0, 100.0));
         let view = View {
             rect,

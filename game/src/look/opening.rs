@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_opens_by_itself_until_somebody_takes_it() {
+    fn opening_moves_until_player_cuts() {
         let mut opening = Opening::begin(10.0);
         assert_eq!(opening.share(10.0, false), 1.0);
         assert!((opening.share(10.0 + 0.5 * f64::from(PERIOD), false) - LEAST).abs() < 1e-3);

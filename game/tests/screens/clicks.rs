@@ -13,7 +13,7 @@ use tamaire_play::Route;
 use tamaire_play::replay::VERSION;
 
 #[test]
-fn from_the_title_to_a_round_and_back() {
+fn menus_lead_from_title_to_round_and_back() {
     let mut window = window(Files::nowhere());
     click(&mut window, "Play");
     assert_eq!(screen(&window), Screen::Levels);
@@ -40,7 +40,7 @@ fn from_the_title_to_a_round_and_back() {
 }
 
 #[test]
-fn one_key_begins_the_round_again_at_once() {
+fn retry_key_restarts_round_at_once() {
     let mut window = window(Files::nowhere());
     game(&mut window).start(0);
     frames(&mut window, 30);
@@ -54,7 +54,7 @@ fn one_key_begins_the_round_again_at_once() {
 }
 
 #[test]
-fn a_round_is_won_kept_watched_raced_and_deleted() {
+fn round_is_won_saved_watched_raced_and_deleted() {
     let folder = folder("win");
     let files = Files::in_folder(&folder);
     let mut window = window(Files::in_folder(&folder));
@@ -159,7 +159,7 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
 }
 
 #[test]
-fn settings_are_kept_and_the_language_changes_at_once() {
+fn settings_are_saved_and_language_changes_at_once() {
     let folder = folder("settings");
     let files = Files::in_folder(&folder);
     let mut window = window(Files::in_folder(&folder));
@@ -204,7 +204,7 @@ fn settings_are_kept_and_the_language_changes_at_once() {
 }
 
 #[test]
-fn how_far_the_levels_are_scrolled_is_nothing_to_the_settings() {
+fn scroll_positions_of_screens_are_independent() {
     let mut window = window(Files::nowhere());
     let language = |window: &Window| window.get_by_label("Language: English").rect();
     click(&mut window, "Settings");
@@ -219,7 +219,7 @@ fn how_far_the_levels_are_scrolled_is_nothing_to_the_settings() {
 }
 
 #[test]
-fn what_is_inside_can_be_read_with_keys_too() {
+fn licences_scroll_with_keys() {
     let mut window = window(Files::nowhere());
     click(&mut window, "Settings");
     click(&mut window, "Licences");
@@ -245,7 +245,7 @@ fn what_is_inside_can_be_read_with_keys_too() {
 }
 
 #[test]
-fn any_key_can_mean_anything() {
+fn any_key_can_be_bound() {
     let mut window = window(Files::nowhere());
     click(&mut window, "Settings");
     let row = |window: &Window| {
@@ -280,7 +280,7 @@ fn any_key_can_mean_anything() {
 }
 
 #[test]
-fn mouse_and_keys_are_two_players() {
+fn mouse_and_keys_move_two_hands() {
     let mut window = window(Files::nowhere());
     game(&mut window).start(0);
     frames(&mut window, 2);
@@ -319,7 +319,7 @@ fn mouse_and_keys_are_two_players() {
 }
 
 #[test]
-fn the_font_has_every_letter_of_the_game() {
+fn font_contains_all_characters_of_the_game() {
     let window = window(Files::nowhere());
     let mut texts = vec![
         include_str!("../../src/words/en.rs"),
@@ -335,7 +335,7 @@ fn the_font_has_every_letter_of_the_game() {
 }
 
 #[test]
-fn a_key_fills_the_screen_and_the_choice_is_kept() {
+fn full_screen_key_toggles_and_is_saved() {
     let folder = folder("full-screen");
     let mut window = window(Files::in_folder(&folder));
     for wanted in [true, false, true] {
@@ -356,7 +356,7 @@ fn a_key_fills_the_screen_and_the_choice_is_kept() {
 }
 
 #[test]
-fn the_game_speaks_as_the_system_does_until_somebody_chooses() {
+fn language_follows_system_until_chosen() {
     let folder = folder("language");
     let files = |locale: &str| Files::in_folder(&folder).speaking(locale);
     for (locale, language) in [
@@ -378,7 +378,7 @@ fn the_game_speaks_as_the_system_does_until_somebody_chooses() {
 }
 
 #[test]
-fn a_mouse_that_only_rests_moves_no_hand() {
+fn resting_mouse_moves_no_hand() {
     let mut window = window(Files::nowhere());
     start(&mut window, "classic");
     for (at, moves) in [(egui::Pos2::ZERO, false), (egui::pos2(400.0, 300.0), true)] {
@@ -393,7 +393,7 @@ fn a_mouse_that_only_rests_moves_no_hand() {
 }
 
 #[test]
-fn a_mouse_that_rests_presses_a_button_for_whoever_wants_it_so() {
+fn hovering_clicks_only_when_enabled() {
     let mut window = window(Files::nowhere());
     let at = button(&window, "Play").rect().center();
     window.hover_at(at);
@@ -410,7 +410,7 @@ fn a_mouse_that_rests_presses_a_button_for_whoever_wants_it_so() {
 }
 
 #[test]
-fn keys_stay_down_until_they_are_pressed_again_for_whoever_wants_it_so() {
+fn sticky_keys_hold_until_pressed_again() {
     let mut window = window(Files::nowhere());
     start(&mut window, "classic");
     game(&mut window).settings.toggle_keys = true;

@@ -44,7 +44,7 @@ fn tap(window: &mut Window, action: Action) {
 }
 
 #[test]
-fn a_second_finger_presses_what_the_first_one_has_no_time_for() {
+fn second_finger_presses_touch_buttons() {
     let mut window = held("twins", [-0.9, 0.3, 0.0]);
     let game = |window: &Window| {
         let bout = &window.state().game.bout;
@@ -62,7 +62,7 @@ fn a_second_finger_presses_what_the_first_one_has_no_time_for() {
 }
 
 #[test]
-fn two_fingers_are_two_players() {
+fn two_fingers_move_two_hands() {
     let mut window = held("twins", [-0.9, 0.3, 0.0]);
     tap(&mut window, Action::Join);
     let second = window.state().game.controls.players.second();
@@ -79,7 +79,7 @@ fn two_fingers_are_two_players() {
 }
 
 #[test]
-fn in_space_a_thumb_raises_the_hand_and_looks_deeper() {
+fn thumb_buttons_3d_raise_hand_and_look_deeper() {
     let mut window = held("classic-3d", [-0.9, 0.0, 0.6]);
     let before = goal(&window, 0)[1];
     let up = place(&window, Action::Raise).expect("it is there").center();
@@ -106,7 +106,7 @@ fn in_space_a_thumb_raises_the_hand_and_looks_deeper() {
 }
 
 #[test]
-fn a_mouse_sees_only_the_buttons_that_it_needs() {
+fn mouse_shows_only_pause_and_retry_buttons() {
     let mut window = window(Files::nowhere());
     start(&mut window, "classic-3d");
     window.hover_at(egui::pos2(500.0, 300.0));

@@ -10,7 +10,7 @@ use tamaire::platform::Files;
 use tamaire_play::{Assist, Route};
 
 #[test]
-fn what_is_won_with_help_is_kept_beside_what_is_won_without() {
+fn assisted_wins_are_recorded_separately() {
     let folder = folder("help");
     let mut window = window(Files::in_folder(&folder));
     let all = BTreeSet::from([Assist::WiderBasket, Assist::Unbreakable]);
@@ -83,7 +83,7 @@ fn wait_for(window: &mut Window, is_wanted: impl Fn(Offer) -> bool) {
 }
 
 #[test]
-fn one_switch_is_enough_to_win_and_to_go_on() {
+fn single_switch_can_win_and_continue() {
     let mut window = window(Files::nowhere());
     game(&mut window).settings.scanning = Scanning::Quick;
     choose(&mut window, "Play");
@@ -129,7 +129,7 @@ fn one_switch_is_enough_to_win_and_to_go_on() {
 }
 
 #[test]
-fn in_space_the_switch_raises_and_lowers_the_hand() {
+fn single_switch_3d_raises_and_lowers_hand() {
     let mut window = window(Files::nowhere());
     game(&mut window).settings.scanning = Scanning::Medium;
     game(&mut window).settings.toggle_keys = true;
@@ -151,7 +151,7 @@ fn in_space_the_switch_raises_and_lowers_the_hand() {
 }
 
 #[test]
-fn one_switch_is_caught_nowhere() {
+fn single_switch_is_never_trapped() {
     let mut window = window(Files::nowhere());
     game(&mut window).settings.scanning = Scanning::Quick;
     // The switch cannot be bound to anything else, and it cancels a pending binding.

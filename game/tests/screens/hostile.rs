@@ -36,7 +36,7 @@ pub fn drop_file(window: &mut Window, path: PathBuf) {
 }
 
 #[test]
-fn a_picture_is_played_and_what_is_broken_is_named() {
+fn dropped_picture_is_played_and_broken_files_are_named() {
     let folder = folder("drop");
     let mut window = window(Files::in_folder(&folder));
     let cat = "../crates/tamaire_play/levels/cat.png";
@@ -96,7 +96,7 @@ fn a_picture_is_played_and_what_is_broken_is_named() {
 
 #[cfg(unix)]
 #[test]
-fn pipes_and_devices_are_refused_and_not_waited_for() {
+fn pipes_and_devices_are_refused_without_waiting() {
     let folder = folder("pipes");
     let mut window = window(Files::nowhere());
     for (made, file) in [
@@ -121,7 +121,7 @@ fn pipes_and_devices_are_refused_and_not_waited_for() {
 }
 
 #[test]
-fn a_notice_is_cut_to_what_can_be_read() {
+fn notice_is_truncated() {
     let mut window = window(Files::nowhere());
     let game = game(&mut window);
     game.notices.clear();
@@ -132,7 +132,7 @@ fn a_notice_is_cut_to_what_can_be_read() {
 }
 
 #[test]
-fn a_long_notice_stays_until_it_can_be_read() {
+fn long_notice_stays_longer() {
     let mut window = window(Files::nowhere());
     let game = game(&mut window);
     game.notices.clear();
@@ -148,7 +148,7 @@ fn a_long_notice_stays_until_it_can_be_read() {
 }
 
 #[test]
-fn a_round_waits_while_the_window_is_not_looked_at() {
+fn round_pauses_when_focus_is_lost() {
     let mut window = window(Files::nowhere());
     let focus = |window: &mut Window, focused| {
         window.input_mut().focused = focused;
@@ -168,7 +168,7 @@ fn a_round_waits_while_the_window_is_not_looked_at() {
 }
 
 #[test]
-fn every_button_fits_into_the_smallest_window_with_the_largest_letters() {
+fn buttons_fit_into_small_windows_with_large_text() {
     let sizes = [
         [900.0, 640.0],
         [640.0, 400.0],
@@ -202,7 +202,7 @@ fn every_button_fits_into_the_smallest_window_with_the_largest_letters() {
 }
 
 #[test]
-fn two_thousand_frames_of_anything_are_survived() {
+fn random_input_causes_no_fault() {
     let folder = folder("anything");
     let mut random = fastrand::Rng::with_seed(7);
     let mut window = window(Files::in_folder(&folder));

@@ -85,7 +85,7 @@ fn wait(window: &mut Window) {
 }
 
 #[test]
-fn a_slider_that_is_dragged_is_written_once_it_rests_and_not_by_who_draws() {
+fn dragged_slider_is_saved_once_by_writer_thread() {
     let memory = Memory::default();
     let mut window = window(Files::on(memory.clone()));
     click(&mut window, "Settings");
@@ -121,7 +121,7 @@ fn a_slider_that_is_dragged_is_written_once_it_rests_and_not_by_who_draws() {
 }
 
 #[test]
-fn what_was_changed_last_is_written_at_the_end_of_the_game() {
+fn last_change_is_saved_when_game_ends() {
     let memory = Memory::default();
     let mut game = Game::new(Files::on(memory.clone()), Sound::none(), Pads::none());
     game.settings.speed = 0.75;
@@ -148,7 +148,7 @@ fn two_games_at_once_lose_no_record() {
 }
 
 #[test]
-fn a_full_disk_is_told_once_and_the_game_goes_on() {
+fn full_disk_is_reported_once_and_game_continues() {
     let memory = Memory::default();
     memory.0.lock().unwrap().is_full = true;
     let mut window = window(Files::on(memory.clone()));
@@ -177,7 +177,7 @@ fn a_full_disk_is_told_once_and_the_game_goes_on() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_and_none_at_all_are_told_once() {
+fn missing_folder_is_reported_once() {
     let folder = folder("no-folder");
     let file = folder.join("file");
     std::fs::write(&file, "in the way").unwrap();
@@ -201,7 +201,7 @@ fn a_folder_that_cannot_be_and_none_at_all_are_told_once() {
 }
 
 #[test]
-fn one_bad_setting_costs_that_setting_and_is_told_once_by_name() {
+fn invalid_setting_is_reset_and_reported_once() {
     let folder = folder("bad-setting");
     let path = folder.join("settings.toml");
     let bad = "speed = \"fast\"\nvolume = 0.25\nhaptics = 0.5\nwarp = 9\n";
@@ -228,7 +228,7 @@ fn one_bad_setting_costs_that_setting_and_is_told_once_by_name() {
 }
 
 #[test]
-fn a_photo_and_a_clip_of_a_win_are_kept_where_the_player_is_told() {
+fn photo_and_clip_are_saved_at_reported_path() {
     let folder = folder("pictures");
     let mut window = window(Files::in_folder(&folder));
     start(&mut window, "classic");
@@ -254,7 +254,7 @@ fn a_photo_and_a_clip_of_a_win_are_kept_where_the_player_is_told() {
 }
 
 #[test]
-fn replays_are_kept_beside_whatever_stands_there() {
+fn replay_names_avoid_existing_entries() {
     let folder = folder("beside");
     let replays = folder.join("replays");
     fs::create_dir_all(replays.join("classic-1.tamaire")).unwrap();

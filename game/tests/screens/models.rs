@@ -11,7 +11,7 @@ use tamaire_play::AnyRound;
 const MODEL: &str = "../crates/tamaire_play/levels/pudding.vox";
 
 #[test]
-fn a_model_dropped_onto_any_round_is_played_in_space() {
+fn dropped_model_is_played_in_3d() {
     let mut window = window(Files::nowhere());
     let model = Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL);
     for level in ["classic", "hoop"] {
@@ -43,7 +43,7 @@ fn a_model_dropped_onto_any_round_is_played_in_space() {
 }
 
 #[test]
-fn what_the_command_line_names_is_played() {
+fn level_of_command_line_is_played() {
     let mut window = window(Files::nowhere());
     let levels = window.state().game.levels.len();
     let model = Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL);
@@ -66,7 +66,7 @@ fn what_the_command_line_names_is_played() {
 }
 
 #[test]
-fn a_damaged_model_is_named_and_nothing_is_lost() {
+fn damaged_model_is_named_and_round_continues() {
     let folder = folder("vox");
     let whole =
         std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL)).expect("it comes along");

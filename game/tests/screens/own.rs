@@ -30,7 +30,7 @@ fn wait(window: &mut Window) {
 }
 
 #[test]
-fn a_level_that_was_dropped_stays_until_it_is_taken_out() {
+fn dropped_level_is_saved_until_removed() {
     let folder = folder("own");
     let begin = || window(Files::in_folder(&folder));
     let mut first = begin();
@@ -62,7 +62,7 @@ fn a_level_that_was_dropped_stays_until_it_is_taken_out() {
 }
 
 #[test]
-fn keys_take_a_level_out_and_whoever_changes_their_mind_need_not() {
+fn level_removal_by_keys_needs_confirmation_in_time() {
     let mut window = window(Files::nowhere());
     drop_file(&mut window, cat());
     game(&mut window).go(Screen::Levels);
@@ -82,7 +82,7 @@ fn keys_take_a_level_out_and_whoever_changes_their_mind_need_not() {
 }
 
 #[test]
-fn a_kept_level_that_is_damaged_is_put_aside_and_told_once() {
+fn damaged_saved_level_is_moved_and_reported_once() {
     let folder = folder("own-damaged");
     let begin = || window(Files::in_folder(&folder));
     let mut first = begin();

@@ -79,7 +79,7 @@ pub fn pad(id: u32) -> Device {
 }
 
 #[test]
-fn a_pad_alone_goes_everywhere() {
+fn pad_alone_reaches_all_screens() {
     use PadButton::*;
     let mut table = Table::with(vec![pad(1)]);
     assert!(table.has_focus("Play"));
@@ -167,7 +167,7 @@ fn a_pad_alone_goes_everywhere() {
 }
 
 #[test]
-fn a_plain_stick_alone_begins_a_round() {
+fn plain_stick_alone_starts_round() {
     let stick = Device::at_rest(DeviceId(7), about("Stick"), 2, 8, 1);
     let mut table = Table::with(vec![stick]);
     let tap = |table: &mut Table, button: usize| {
@@ -194,7 +194,7 @@ fn a_plain_stick_alone_begins_a_round() {
 }
 
 #[test]
-fn a_second_player_joins_leaves_and_is_unplugged() {
+fn second_player_joins_leaves_and_is_unplugged() {
     let mut table = Table::with(vec![pad(1), pad(2)]);
     game(&mut table.window).start(0);
     table.frames(2);
@@ -232,7 +232,7 @@ fn a_second_player_joins_leaves_and_is_unplugged() {
 }
 
 #[test]
-fn a_pad_is_tried_and_its_stick_moves_nothing_else_meanwhile() {
+fn pad_trial_captures_its_stick() {
     use PadButton::*;
     let mut table = Table::with(vec![pad(1)]);
     game(&mut table.window).go(Screen::Settings);

@@ -51,7 +51,7 @@ fn pictures(window: &mut Window, name: &str) {
 }
 
 #[test]
-fn every_screen() {
+fn screens_match_pictures() {
     let mut window = open(Files::nowhere(), vec2(704.0, 440.0), 1.0);
     drive(game(&mut window), BotKind::Idle, |game| game.time < 2.0);
     pictures(&mut window, "title");
@@ -82,7 +82,7 @@ fn every_screen() {
 }
 
 #[test]
-fn on_a_telephone_that_is_held_upright() {
+fn portrait_screens_match_pictures() {
     let mut window = open(Files::nowhere(), vec2(390.0, 844.0), 1.0);
     drive(game(&mut window), BotKind::Idle, |game| game.time < 2.0);
     pictures(&mut window, "upright_title");
@@ -112,7 +112,7 @@ fn own_level(window: &mut Window) {
 }
 
 #[test]
-fn rounds_that_were_kept() {
+fn saved_round_shows_route() {
     let folder = folder("kept-pictures");
     let mut window = open(Files::in_folder(&folder), vec2(704.0, 440.0), 1.0);
     game(&mut window).start(0);
@@ -127,7 +127,7 @@ fn rounds_that_were_kept() {
 }
 
 #[test]
-fn what_fingers_press() {
+fn touch_buttons_match_pictures() {
     let mut window = open(Files::nowhere(), vec2(704.0, 440.0), 1.0);
     for level in ["twins", "classic-3d"] {
         start(&mut window, level);
@@ -159,7 +159,7 @@ fn sticks_and_pads() -> Pads {
 }
 
 #[test]
-fn a_round() {
+fn round_2d_matches_picture() {
     let mut window = open(Files::nowhere(), SMALLER, 1.0);
     game(&mut window).start(0);
     drive(game(&mut window), BotKind::Squeeze, |game| {
@@ -170,7 +170,7 @@ fn a_round() {
 }
 
 #[test]
-fn a_round_in_space() {
+fn round_3d_matches_pictures() {
     let mut window = open(Files::nowhere(), SMALLER, 1.0);
     let mut levels = game(&mut window).levels.iter();
     let classic = levels.position(|level| level.id == "classic-3d");
@@ -192,7 +192,7 @@ fn a_round_in_space() {
 }
 
 #[test]
-fn a_tear() {
+fn tear_and_elements_match_pictures() {
     let mut window = open(Files::nowhere(), SMALLER, 1.0);
     game(&mut window).start(0);
     drive(game(&mut window), BotKind::Shave, |game| {

@@ -7,7 +7,7 @@ use tamaire::platform::{Files, Kind};
 use tamaire_play::Route;
 
 #[test]
-fn a_kept_round_tells_where_when_and_how_it_was_won() {
+fn saved_round_shows_level_date_and_result() {
     let folder = folder("shelf");
     let mut window = window(Files::in_folder(&folder));
     game(&mut window).start(0);
@@ -35,7 +35,7 @@ fn a_kept_round_tells_where_when_and_how_it_was_won() {
 }
 
 #[test]
-fn the_fastest_round_is_raced_by_itself_where_that_is_wished() {
+fn fastest_round_is_raced_when_enabled() {
     let folder = folder("best");
     let files = Files::in_folder(&folder);
     let mut window = window(Files::in_folder(&folder));

@@ -61,7 +61,7 @@ pub fn assert_near(found: Vector, expected: Vector) {
 }
 
 #[test]
-fn the_mouse_points_at_the_floor_and_the_wheel_raises_the_hand() {
+fn mouse_sets_floor_position_and_wheel_raises_hand() {
     let mut window = in_space();
     let height = goal(&window, 0)[1];
     for [x, z] in [[-1.2, 0.7], [0.2, 0.6], [0.0, -0.6]] {
@@ -85,7 +85,7 @@ fn the_mouse_points_at_the_floor_and_the_wheel_raises_the_hand() {
 }
 
 #[test]
-fn on_a_shelf_the_mouse_points_at_the_shelf() {
+fn mouse_sets_position_on_shelf() {
     let mut window = window(Files::nowhere());
     start(&mut window, "hoop");
     let height = goal(&window, 0)[1];
@@ -100,7 +100,7 @@ fn on_a_shelf_the_mouse_points_at_the_shelf() {
 }
 
 #[test]
-fn the_right_mouse_button_turns_the_camera_and_leaves_the_hand_alone() {
+fn right_mouse_button_turns_only_the_camera() {
     let mut window = in_space();
     point_at(&mut window, -1.2, 0.6);
     let before = goal(&window, 0);
@@ -136,7 +136,7 @@ fn the_right_mouse_button_turns_the_camera_and_leaves_the_hand_alone() {
 }
 
 #[test]
-fn keys_move_the_hand_away_from_the_camera_raise_it_and_turn_the_camera() {
+fn keys_move_hand_relative_to_camera() {
     let mut window = in_space();
     let hold = |window: &mut Window, key, count: usize| {
         let before = goal(window, 0);
@@ -172,7 +172,7 @@ fn keys_move_the_hand_away_from_the_camera_raise_it_and_turn_the_camera() {
 }
 
 #[test]
-fn triggers_raise_the_hand_and_the_right_stick_looks_around() {
+fn triggers_raise_hand_and_right_stick_turns_camera() {
     let mut table = Table::with(vec![pad(1)]);
     start(&mut table.window, "classic-3d");
     let before = goal(&table.window, 0);
@@ -210,7 +210,7 @@ fn triggers_raise_the_hand_and_the_right_stick_looks_around() {
 }
 
 #[test]
-fn two_players_in_space_have_a_hand_each_and_one_camera() {
+fn two_players_3d_share_one_camera() {
     let mut table = Table::with(vec![pad(1), pad(2)]);
     start(&mut table.window, "classic-3d");
     table.tap(PadButton::Back);
@@ -248,7 +248,7 @@ fn two_players_in_space_have_a_hand_each_and_one_camera() {
 }
 
 #[test]
-fn one_finger_moves_the_hand_and_a_second_one_raises_it_or_turns_the_camera() {
+fn first_finger_moves_hand_and_second_raises_it_or_turns_camera() {
     let mut window = in_space();
     let height = goal(&window, 0)[1];
     let view = window.state().game.bout.view.expect("it is seen");
@@ -287,7 +287,7 @@ fn one_finger_moves_the_hand_and_a_second_one_raises_it_or_turns_the_camera() {
 }
 
 #[test]
-fn the_finger_that_is_left_when_the_first_one_lifts_does_not_move_the_hand() {
+fn second_finger_does_not_move_hand_after_first_lifts() {
     let mut window = in_space();
     let view = window.state().game.bout.view.expect("it is seen");
     let [here, there] = [-0.9, 0.3].map(|x| view.on_screen([x, 0.0, 0.6]));
@@ -304,7 +304,7 @@ fn the_finger_that_is_left_when_the_first_one_lifts_does_not_move_the_hand() {
 }
 
 #[test]
-fn keys_and_a_pad_look_deeper_into_elements_and_back_and_it_is_told_how() {
+fn keys_and_pad_move_element_cut_and_hint_names_them() {
     let mut table = Table::with(vec![pad(1)]);
     start(&mut table.window, "classic-3d");
     let share = |table: &mut Table| {
@@ -339,7 +339,7 @@ fn keys_and_a_pad_look_deeper_into_elements_and_back_and_it_is_told_how() {
 }
 
 #[test]
-fn a_round_in_space_is_won_kept_watched_and_raced() {
+fn round_3d_is_won_saved_watched_and_raced() {
     let folder = folder("space");
     let files = Files::in_folder(&folder);
     let mut window = window(Files::in_folder(&folder));

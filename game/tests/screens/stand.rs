@@ -153,7 +153,7 @@ fn read(folder: &Path) -> (Vec<Visit>, Vec<Round>) {
 }
 
 #[test]
-fn a_visit_begins_with_a_touch_and_is_written_down_whole() {
+fn visit_starts_with_touch_and_is_logged() {
     let mut shown = shown("visit", vec2(960.0, 600.0), &[]);
     assert_eq!(shown.phase(), Phase::Attract);
     shown.rest(60.0);
@@ -202,7 +202,7 @@ fn a_visit_begins_with_a_touch_and_is_written_down_whole() {
 }
 
 #[test]
-fn a_ring_counts_down_and_any_touch_stays() {
+fn countdown_is_cancelled_by_touch() {
     let mut shown = shown("ring", vec2(960.0, 600.0), &[]);
     shown.touch();
     shown.rest(25.0);
@@ -219,7 +219,7 @@ fn a_ring_counts_down_and_any_touch_stays() {
 }
 
 #[test]
-fn the_next_visitor_finds_it_fresh() {
+fn next_visitor_finds_initial_state() {
     let mut shown = shown("fresh", vec2(960.0, 600.0), &[]);
     shown.touch();
     frames(&mut shown.window, 3);
@@ -249,7 +249,7 @@ fn the_next_visitor_finds_it_fresh() {
 }
 
 #[test]
-fn nobody_gets_out_of_it() {
+fn visitor_cannot_leave_the_stand() {
     let mut shown = shown(
         "kiosk",
         vec2(960.0, 600.0),
@@ -291,7 +291,7 @@ fn button_at(window: &mut Window, pos: Pos2, pressed: bool) {
 }
 
 #[test]
-fn staff_gets_in_by_a_corner_and_a_number_and_changes_what_it_is_like() {
+fn staff_enters_pin_and_changes_settings() {
     let pin = ("#pin = \"…\"", "pin = \"2004\"");
     let mut shown = shown(
         "staff",
@@ -336,7 +336,7 @@ fn staff_gets_in_by_a_corner_and_a_number_and_changes_what_it_is_like() {
 }
 
 #[test]
-fn out_of_hours_nothing_plays() {
+fn stand_is_closed_outside_opening_hours() {
     let hours = [
         ("#[hours]", "[hours]"),
         ("#open = \"10:00\"", "open = \"13:30\""),
@@ -352,7 +352,7 @@ fn out_of_hours_nothing_plays() {
 }
 
 #[test]
-fn a_file_that_is_wrong_is_named_with_its_line() {
+fn invalid_configuration_is_reported_with_line() {
     let folder = folder("wrong");
     let file = TextFile(folder.join("exhibit.toml"));
     file.write(&USUAL.replace("rest = 20", "rest = -1"))
@@ -367,7 +367,7 @@ fn a_file_that_is_wrong_is_named_with_its_line() {
 }
 
 #[test]
-fn a_stick_that_is_pulled_out_and_put_back_is_noted_and_play_goes_on() {
+fn unplugged_stick_is_logged_and_play_continues() {
     let mut shown = shown("pulled", vec2(960.0, 600.0), &[]);
     let about = About {
         name: "Stick".into(),

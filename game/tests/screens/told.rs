@@ -33,7 +33,7 @@ pub fn tells(window: &Window, what: &str) -> bool {
 }
 
 #[test]
-fn what_can_be_done_in_space_is_told_until_it_was_tried() {
+fn instructions_3d_disappear_once_followed() {
     let mut window = in_space();
     // Reduced motion removes lines at once.
     game(&mut window).settings.reduced_motion = true;
@@ -82,7 +82,7 @@ fn what_can_be_done_in_space_is_told_until_it_was_tried() {
 }
 
 #[test]
-fn a_pad_is_told_of_its_own_controls_and_nothing_is_told_for_ever() {
+fn instructions_name_current_device_and_time_out() {
     let mut table = Table::with(vec![
         pad(1),
         Device::at_rest(DeviceId(2), about("Stick"), 2, 12, 1),
@@ -107,7 +107,7 @@ fn a_pad_is_told_of_its_own_controls_and_nothing_is_told_for_ever() {
 }
 
 #[test]
-fn what_is_told_fits_into_the_smallest_window() {
+fn instructions_fit_into_smallest_window() {
     for text_size in [1.0, 1.6] {
         let mut window = open(Files::nowhere(), vec2(640.0, 400.0), 0.5);
         game(&mut window).settings.text_size = text_size;

@@ -282,7 +282,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn versions_of_glibc_compare_by_number() {
+    fn newest_glibc_compares_by_number() {
         let table = "0 DF *UND* 0 (GLIBC_2.2.5) free\n0 DF *UND* 0 (GLIBC_2.34) pow\n0 DF *UND* 0 (GLIBC_2.9) x\n0 DF (GCC_3.0) y\n";
         assert_eq!(newest_glibc(table), Some([2, 34]));
         assert_eq!(newest_glibc("none"), None);
@@ -290,7 +290,7 @@ mod tests {
 
     /// Reads the desktop entry and the MIME types as a desktop does.
     #[test]
-    fn the_menu_starts_the_program_and_a_double_click_watches_a_round() {
+    fn desktop_entry_and_mime_type_match() {
         let entry = text_of("packaging/linux/tamaire.desktop").ok().unwrap();
         assert!(entry.starts_with("[Desktop Entry]\n"));
         let value = |key: &str| {
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn a_control_file_has_a_line_for_each_field() {
+    fn control_file_has_valid_fields() {
         let text = control("1.2.3", "amd64", "libc6 (>= 2.35)", 40_000);
         assert!(text.contains("\nDepends: libc6 (>= 2.35), libx11-6"));
         let is_field = |line: &str| {

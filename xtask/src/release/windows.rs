@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn libraries_are_found_in_what_objdump_says() {
+    fn imports_are_found_in_objdump_output() {
         let text = "\tDLL Name: KERNEL32.dll\n\tvma: x\n\n\tDLL Name: libgcc_s_seh-1.dll\n";
         assert_eq!(
             imports(text).collect::<Vec<_>>(),

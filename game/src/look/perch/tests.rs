@@ -36,7 +36,7 @@ fn covered(perch: &Perch, body: &Body<Dim3>) -> f32 {
 }
 
 #[test]
-fn it_looks_at_who_looks_from_a_place_that_holds_it() {
+fn perch_faces_camera_on_covered_skin() {
     let world = ball();
     let perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
     assert!(dot(perch.axes[2], wish([0.5; 3], EYE)) > 0.97, "{perch:?}");
@@ -45,7 +45,7 @@ fn it_looks_at_who_looks_from_a_place_that_holds_it() {
 }
 
 #[test]
-fn it_rolls_with_the_skin_however_fast_that_turns() {
+fn perch_rolls_with_fast_skin() {
     let mut world = ball();
     let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
     let (first, out) = (perch.at, perch.axes[2]);
@@ -71,7 +71,7 @@ fn it_rolls_with_the_skin_however_fast_that_turns() {
 }
 
 #[test]
-fn it_stays_while_its_body_rolls_by_and_is_upright_again_after() {
+fn perch_moves_seldom_while_body_rolls_and_ends_upright() {
     let mut world = ball();
     let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
     let mut leaps = 0;
@@ -95,7 +95,7 @@ fn it_stays_while_its_body_rolls_by_and_is_upright_again_after() {
 }
 
 #[test]
-fn it_comes_back_once_its_body_has_turned_its_back() {
+fn perch_returns_to_camera_after_body_turned() {
     let mut world = ball();
     let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
     deform(&mut world, |_, [x, y, z]| [1.0 - x, y, 1.0 - z]);
@@ -119,7 +119,7 @@ fn it_comes_back_once_its_body_has_turned_its_back() {
 }
 
 #[test]
-fn it_leaves_a_place_that_was_torn_off_for_skin_that_is_left() {
+fn perch_leaves_skin_that_was_cut_off() {
     let mut world = ball();
     let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
     // Cuts off the part of the body that faces the camera and moves it away.
