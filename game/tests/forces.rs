@@ -105,7 +105,7 @@ impl Table {
     /// `start`.
     fn zero_since(&self, start: Instant) -> Duration {
         while !self.told(0).is_some_and(|output| output.is_zero()) {
-            assert!(start.elapsed() < PATIENCE, "never let go");
+            assert!(start.elapsed() < PATIENCE, "the force never ended");
             std::thread::yield_now();
         }
         start.elapsed()
@@ -122,7 +122,7 @@ impl Table {
 
     fn silent(&self, stick: usize) -> Option<Stop> {
         let report = self.game.forces.report(self.devices[stick].id);
-        report.expect("it is held").silent
+        report.expect("the device is open").silent
     }
 
     /// Starts the first level and pushes the hand against the body.
@@ -177,7 +177,7 @@ fn stick_force_3d_follows_camera_orientation() {
         let mut table = Table::with(1);
         let mut levels = table.game.levels.iter();
         let classic = levels.position(|level| level.id == "classic-3d");
-        table.game.start(classic.expect("it comes along"));
+        table.game.start(classic.expect("the level is built in"));
         table.game.bout.camera.orbit(turn, 0.0);
         let mut share = 0.0;
         table.until("pushed back", |table| {
@@ -242,7 +242,7 @@ fn force_ends_on_win() {
         pushed |= table.told(0).is_some_and(|output| !output.is_zero());
         let round = table.game.bout.round();
         let [low, high] = round.level().arena();
-        let goal = round.ask(&mut bot).goal(0).expect("it plays");
+        let goal = round.ask(&mut bot).goal(0).expect("the bot has a target");
         let [x, y] = [0, 1].map(|axis| {
             let middle = 0.5 * (low[axis] + high[axis]);
             (goal[axis] - middle) / (0.5 * (high[axis] - low[axis]))
@@ -388,7 +388,7 @@ fn pad_rumbles_low_when_pushing_and_high_when_tearing() {
         table.lean(0, if to_and_fro == 2 { -1.0 } else { 1.0 });
         for played in table.notes[0].take() {
             let Output::Rumble { low, high } = played.output else {
-                panic!("it is a pad")
+                panic!("the device is a pad")
             };
             hummed |= low > 0.1;
             rattled |= high > 0.1;
@@ -447,7 +447,7 @@ fn virtual_pad_plays_rumbles_and_unplugs() {
     use sticks::{PadButton, Sticks};
 
     let sticks = Sticks::open_for_puppets().expect("SDL starts");
-    let pad = sticks.plug_in_pad("Pad").expect("a pad");
+    let pad = sticks.plug_in_pad("Pad").expect("the device is a pad");
     let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::through(sticks));
     game.start(0);
     let until = |game: &mut Game, what: &str, is_so: &dyn Fn(&Game) -> bool| {

@@ -152,7 +152,10 @@ fn round_is_reported_as_json() {
     assert_eq!(told["pieces"], 1);
     assert_eq!(told["kept"], 1.0);
     let ticks = told["ticks"].as_u64().unwrap();
-    assert!((60..66).contains(&ticks), "a second of rest: {ticks}");
+    assert!(
+        (60..66).contains(&ticks),
+        "won after a second at rest: {ticks}"
+    );
     assert!((told["seconds"].as_f64().unwrap() - ticks as f64 / 60.0).abs() < 1e-3);
     assert_eq!(told["hash"].as_str().unwrap().len(), 16);
     let [median, worst] =

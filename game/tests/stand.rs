@@ -44,7 +44,7 @@ impl Screen {
         server.arg(format!("{width}x{height}x24"));
         server.arg("-fbdir").arg(folder.path());
         server.stdout(Stdio::piped()).stderr(Stdio::null());
-        let mut server = server.spawn().expect("there is Xvfb (Debian: xvfb)");
+        let mut server = server.spawn().expect("Xvfb is installed (Debian: xvfb)");
         let mut number = String::new();
         let mut told = BufReader::new(server.stdout.take().unwrap());
         told.read_line(&mut number).unwrap();
@@ -70,7 +70,7 @@ impl Screen {
         while self.is_drawn() != is_drawn {
             assert!(
                 began.elapsed() < LONG,
-                "waited in vain: drawn is not {is_drawn}"
+                "timeout: expected drawn = {is_drawn}"
             );
             thread::sleep(Duration::from_millis(20));
         }
@@ -98,7 +98,9 @@ impl Hand {
         tool.arg("-")
             .env("DISPLAY", &screen.name)
             .stdin(Stdio::piped());
-        let mut tool = tool.spawn().expect("there is xdotool (Debian: xdotool)");
+        let mut tool = tool
+            .spawn()
+            .expect("xdotool is installed (Debian: xdotool)");
         let told = tool.stdin.take().unwrap();
         let random = fastrand::Rng::with_seed(50);
         Self { tool, told, random }
@@ -155,7 +157,7 @@ impl Stand {
     }
 
     fn signal(&self, signal: &str) {
-        let game = self.game().expect("a game is on");
+        let game = self.game().expect("a game is running");
         let sent = Command::new("kill").args([signal, &game]).status();
         assert!(sent.unwrap().success());
     }

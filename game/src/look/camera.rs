@@ -269,7 +269,11 @@ mod tests {
         assert!((0.5..1.0).contains(&right) && (0.1..0.3).contains(&up));
         camera.orbit(0.2, 0.0);
         follow(&mut camera, 60);
-        assert!(camera.turn() > 0.7, "somebody turned it: {}", camera.turn());
+        assert!(
+            camera.turn() > 0.7,
+            "the player has turned the camera: {}",
+            camera.turn()
+        );
         camera.go_home();
         camera.orbit(0.0, 0.0);
         follow(&mut camera, 120);

@@ -137,7 +137,7 @@ impl Effects {
             match *event {
                 Event::Released { body, at, energy } => {
                     let rank = world.bodies().rank(body);
-                    torn[rank.expect("who tore is there")] = true;
+                    torn[rank.expect("the event names a body of this world")] = true;
                     camera.shake(0.002 + 0.002 * energy.clamp(0.0, 2.0));
                     if looked_up < LOOKED_UP {
                         looked_up += 1;
@@ -272,7 +272,7 @@ mod tests {
     use tamaire_play::{InputFrame, Level};
 
     fn round(level: &str) -> AnyRound {
-        AnyRound::new(Arc::new(Level::open(level).expect("it comes along")))
+        AnyRound::new(Arc::new(Level::open(level).expect("the level is built in")))
     }
 
     #[test]
@@ -320,7 +320,7 @@ mod tests {
     #[test]
     fn dust_has_material_of_torn_body() {
         let AnyRound::Plane(round) = round("twins") else {
-            panic!("it is in the plane")
+            panic!("the level is 2D")
         };
         let bodies: Vec<&Body<_>> = round.world().bodies().iter().collect();
         let middle = |body: &Body<_>| body.piece_views()[0].centre;

@@ -281,8 +281,8 @@ mod tests {
     use fuwafuwa::{Blade, Dim2, Dim3, Material, Settings, VoxelGrid, World};
 
     fn alone(grid: VoxelGrid<Dim2>) -> World<Dim2> {
-        let mut world = World::new(Settings::default()).expect("usual");
-        world.add_body(Body::new(grid, &[Material::default()]).expect("usual"));
+        let mut world = World::new(Settings::default()).expect("the defaults are valid");
+        world.add_body(Body::new(grid, &[Material::default()]).expect("the defaults are valid"));
         world
     }
 
@@ -295,7 +295,7 @@ mod tests {
         let grid = VoxelGrid::from_fn([48, 48, 1], 1.0 / 48.0, |voxel| {
             u8::from(hole([voxel[0] as f32 + 0.5, voxel[1] as f32 + 0.5]))
         });
-        let world = alone(grid.expect("a ring"));
+        let world = alone(grid.expect("the grid is valid"));
         let feeling = Feeling::of(world.bodies().first().unwrap(), None);
         let away = [feeling.at[0] - 0.5, feeling.at[1] - 0.5];
         let radius = length(away);
@@ -308,7 +308,7 @@ mod tests {
 
     #[test]
     fn face_glides_to_remaining_piece_and_dust_has_none() {
-        let mut world = alone(VoxelGrid::ball(32, 1.0).expect("a ball"));
+        let mut world = alone(VoxelGrid::ball(32, 1.0).expect("the grid is valid"));
         let mut feeling = Feeling::of(world.bodies().first().unwrap(), None);
         let (before, size) = (feeling.at, feeling.size);
         world
@@ -323,20 +323,20 @@ mod tests {
         };
         feeling.see(world.bodies().first().unwrap(), fate);
         let step = feeling.at[0] - before[0];
-        assert!(step.abs() < 0.03, "no leap: {step}");
+        assert!(step.abs() < 0.03, "the face does not jump: {step}");
         for _ in 0..200 {
             feeling.see(world.bodies().first().unwrap(), Fate::default());
         }
         assert!(feeling.at[0] > before[0] + 0.05 && feeling.size < size);
-        let dust = alone(VoxelGrid::ball(4, 0.05).expect("a crumb"));
+        let dust = alone(VoxelGrid::ball(4, 0.05).expect("the grid is valid"));
         assert_eq!(Feeling::of(dust.bodies().first().unwrap(), None).size, 0.0);
     }
 
     #[test]
     fn face_3d_turns_with_body_and_returns_to_camera() {
-        let mut world = World::<Dim3>::new(Settings::default()).expect("usual");
-        let grid = VoxelGrid::ball(12, 1.0).expect("a ball");
-        world.add_body(Body::new(grid, &[Material::default()]).expect("usual"));
+        let mut world = World::<Dim3>::new(Settings::default()).expect("the defaults are valid");
+        let grid = VoxelGrid::ball(12, 1.0).expect("the grid is valid");
+        world.add_body(Body::new(grid, &[Material::default()]).expect("the defaults are valid"));
         let mut feeling = Feeling::of(world.bodies().first().unwrap(), None);
         assert!(feeling.axes[2][2] > 0.99, "{feeling:?}");
         // Turns the body's back to the camera.
@@ -362,7 +362,7 @@ mod tests {
 
     #[test]
     fn tear_shocks_once_then_hurts() {
-        let world = alone(VoxelGrid::ball(16, 1.0).expect("a ball"));
+        let world = alone(VoxelGrid::ball(16, 1.0).expect("the grid is valid"));
         let body = world.bodies().first().unwrap();
         let mut feeling = Feeling::of(body, None);
         let torn = Fate {

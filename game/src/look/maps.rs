@@ -102,7 +102,7 @@ impl Maps {
             AnyRound::Space(round) => {
                 let new = || space::Renderer::new(device, FORMAT);
                 let renderer = self.space.get_or_insert_with(new);
-                let camera = view.space.expect("the view of a level in space has it");
+                let camera = view.space.expect("the view of a 3D level has a 3D camera");
                 let stickers: Vec<Sticker> = faces(&round, Some(camera.eye()))
                     .iter()
                     .map(Face::sticker)

@@ -25,7 +25,7 @@ fn menus_lead_from_title_to_round_and_back() {
     assert_eq!(screen(&window), Screen::Paused);
     let before = ticks(&window);
     frames(&mut window, 10);
-    assert_eq!(ticks(&window), before, "time stands still");
+    assert_eq!(ticks(&window), before, "no ticks while paused");
     press(&mut window, Key::Escape);
     assert_eq!(screen(&window), Screen::Play);
     press(&mut window, Key::P);
@@ -50,7 +50,7 @@ fn retry_key_restarts_round_at_once() {
     // The key goes down in the first frame and up in the second.
     assert!(ticks(&window) <= 2, "{} ticks", ticks(&window));
     frames(&mut window, 5);
-    assert!(ticks(&window) >= 5, "and it goes on");
+    assert!(ticks(&window) >= 5, "the round continues");
 }
 
 #[test]
@@ -78,11 +78,11 @@ fn round_is_won_saved_watched_raced_and_deleted() {
     };
     assert!(ghost(&window).unwrap() >= 5);
     press(&mut window, Key::R);
-    assert!(ghost(&window).unwrap() <= 4, "the ghost begins again too");
+    assert!(ghost(&window).unwrap() <= 4, "the ghost restarts, too");
     win(&mut window);
     assert!(
         !game(&mut window).bout.won.unwrap().1,
-        "as fast is no faster"
+        "an equal time is no record"
     );
     click(&mut window, "Restart");
     assert_eq!(screen(&window), Screen::Play);
@@ -151,7 +151,10 @@ fn round_is_won_saved_watched_raced_and_deleted() {
         frames(&mut window, 2);
     }
     click(&mut window, "Delete");
-    assert!(!files.replays().is_empty(), "not at the first word");
+    assert!(
+        !files.replays().is_empty(),
+        "the first press deletes nothing"
+    );
     click(&mut window, "Really?");
     assert!(files.replays().is_empty());
     window.get_by_label_contains("No replays yet");
@@ -251,7 +254,7 @@ fn any_key_can_be_bound() {
     let row = |window: &Window| {
         let row = window.get_by_label_contains("Try again:");
         let label = row.accesskit_node().label();
-        label.expect("it was found by it")
+        label.expect("the row was found by its label")
     };
     for key in [Key::Q, Key::Enter, Key::ArrowDown, Key::Tab] {
         let row = row(&window);
@@ -300,7 +303,7 @@ fn mouse_and_keys_move_two_hands() {
         let is_near = (0..2).all(|axis| (at[axis] - start[axis]).abs() < 1e-3);
         assert!(
             is_near,
-            "who comes in is where the level says: {at:?} {start:?}"
+            "a new hand starts at the position of the level: {at:?} {start:?}"
         );
     }
     window.key_down(Key::D);
@@ -373,7 +376,11 @@ fn language_follows_system_until_chosen() {
     assert_eq!(game(&mut window).settings.language, Language::English);
     drop(window);
     let game = Game::new(files("ja-JP"), Sound::none(), Pads::none());
-    assert_eq!(game.settings.language, Language::English, "it was chosen");
+    assert_eq!(
+        game.settings.language,
+        Language::English,
+        "the chosen language is kept"
+    );
     fs::remove_dir_all(folder).unwrap();
 }
 
@@ -398,7 +405,7 @@ fn hovering_clicks_only_when_enabled() {
     let at = button(&window, "Play").rect().center();
     window.hover_at(at);
     frames(&mut window, 90);
-    assert_eq!(screen(&window), Screen::Title, "nobody asked for it");
+    assert_eq!(screen(&window), Screen::Title, "click by hovering is off");
     window.hover_at(egui::Pos2::ZERO);
     frames(&mut window, 2);
     game(&mut window).settings.dwell = true;

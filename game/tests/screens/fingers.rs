@@ -33,11 +33,11 @@ fn held(level: &str, at: [f32; 3]) -> Window {
 
 fn on_screen(window: &Window, at: [f32; 3]) -> Pos2 {
     let view = window.state().game.bout.view;
-    view.expect("it is seen").on_screen(at)
+    view.expect("the world is visible").on_screen(at)
 }
 
 fn tap(window: &mut Window, action: Action) {
-    let at = place(window, action).expect("it is there").center();
+    let at = place(window, action).expect("the button is shown").center();
     touch(window, 1, Start, at);
     touch(window, 1, End, at);
     frames(window, 1);
@@ -58,7 +58,11 @@ fn second_finger_presses_touch_buttons() {
     tap(&mut window, Action::Pause);
     assert_eq!(screen(&window), tamaire::game::Screen::Paused);
     frames(&mut window, 2);
-    assert_eq!(place(&window, Action::Pause), None, "menus have their own");
+    assert_eq!(
+        place(&window, Action::Pause),
+        None,
+        "no touch buttons in menus"
+    );
 }
 
 #[test]
@@ -82,7 +86,9 @@ fn two_fingers_move_two_hands() {
 fn thumb_buttons_3d_raise_hand_and_look_deeper() {
     let mut window = held("classic-3d", [-0.9, 0.0, 0.6]);
     let before = goal(&window, 0)[1];
-    let up = place(&window, Action::Raise).expect("it is there").center();
+    let up = place(&window, Action::Raise)
+        .expect("the button is shown")
+        .center();
     touch(&mut window, 1, Start, up);
     frames(&mut window, 20);
     let high = goal(&window, 0)[1];
@@ -99,7 +105,7 @@ fn thumb_buttons_3d_raise_hand_and_look_deeper() {
     // The cut moves by itself at first.
     frames(&mut window, 120);
     let whole = share(&window);
-    let deeper = place(&window, Action::Deeper).expect("it is there");
+    let deeper = place(&window, Action::Deeper).expect("the button is shown");
     touch(&mut window, 1, Start, deeper.center());
     frames(&mut window, 20);
     assert!(share(&window) < whole - 0.1, "{whole}");

@@ -79,7 +79,7 @@ fn wait_for(window: &mut Window, is_wanted: impl Fn(Offer) -> bool) {
         }
         frames(window, 1);
     }
-    panic!("it is never offered");
+    panic!("the offer is never made");
 }
 
 #[test]

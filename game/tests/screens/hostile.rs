@@ -90,7 +90,7 @@ fn dropped_picture_is_played_and_broken_files_are_named() {
     let before = ticks(&window);
     frames(&mut window, 5);
     assert_eq!(name(&window), "cat");
-    assert!(ticks(&window) >= before + 5, "the game goes on");
+    assert!(ticks(&window) >= before + 5, "the game continues");
     fs::remove_dir_all(folder).unwrap();
 }
 
@@ -111,7 +111,8 @@ fn pipes_and_devices_are_refused_without_waiting() {
     ] {
         let path = folder.join(file);
         let mut words = made.split(' ');
-        let mut command = std::process::Command::new(words.next().expect("a program"));
+        let mut command =
+            std::process::Command::new(words.next().expect("the command names a program"));
         assert!(command.args(words).arg(&path).status().unwrap().success());
         drop_file(&mut window, path);
         let said = notices(&window);

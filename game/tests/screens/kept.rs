@@ -108,7 +108,7 @@ fn dragged_slider_is_saved_once_by_writer_thread() {
     }
     window.event(button(slider.center(), false));
     seen.dedup();
-    assert!(seen.len() > 5, "it is dragged: {seen:?}");
+    assert!(seen.len() > 5, "the slider moves: {seen:?}");
     assert_eq!(memory.writes(), 0);
     frames(&mut window, 70);
     wait(&mut window);
@@ -245,7 +245,7 @@ fn photo_and_clip_are_saved_at_reported_path() {
         }
         assert!(shares.is_sorted(), "{shares:?}");
         let file = folder.join("pictures").join(format!("classic-1.{ending}"));
-        let bytes = fs::read(&file).expect("it is kept");
+        let bytes = fs::read(&file).expect("the file was saved");
         assert!(bytes.starts_with(magic), "{button}");
         assert!(notices(&window).contains(&file.display().to_string()));
     }

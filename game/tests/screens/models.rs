@@ -37,7 +37,7 @@ fn dropped_model_is_played_in_3d() {
         point_at(&mut window, -1.0, 0.7);
         assert!(
             (goal(&window, 0)[2] - 0.7).abs() < 0.05,
-            "{level}: it can be played"
+            "{level}: the hand follows the mouse"
         );
     }
 }
@@ -68,8 +68,8 @@ fn level_of_command_line_is_played() {
 #[test]
 fn damaged_model_is_named_and_round_continues() {
     let folder = folder("vox");
-    let whole =
-        std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL)).expect("it comes along");
+    let whole = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL))
+        .expect("the level is built in");
     let mut window = in_space();
     point_at(&mut window, -1.0, 0.7);
     let levels = window.state().game.levels.len();
@@ -78,7 +78,7 @@ fn damaged_model_is_named_and_round_continues() {
     let count = whole
         .windows(4)
         .position(|word| word == b"XYZI")
-        .expect("it has voxels")
+        .expect("the model has a voxel chunk")
         + 12;
     size[count..count + 4].copy_from_slice(&u32::MAX.to_le_bytes());
     let damaged: [(&str, &[u8], &str); 5] = [
@@ -94,7 +94,7 @@ fn damaged_model_is_named_and_round_continues() {
     ];
     for (file, bytes, told) in damaged {
         let path = folder.join(file);
-        std::fs::write(&path, bytes).expect("it is ours");
+        std::fs::write(&path, bytes).expect("the test owns the folder");
         let (before, at) = (ticks(&window), goal(&window, 0));
         drop_file(&mut window, path);
         let said = notices(&window);
@@ -104,8 +104,8 @@ fn damaged_model_is_named_and_round_continues() {
         );
         assert_eq!(window.state().game.levels.len(), levels, "{file}");
         assert_eq!(screen(&window), Screen::Play, "{file}");
-        assert!(ticks(&window) > before, "{file}: the round goes on");
+        assert!(ticks(&window) > before, "{file}: the round continues");
         assert_near(goal(&window, 0), at);
     }
-    std::fs::remove_dir_all(folder).expect("it is ours");
+    std::fs::remove_dir_all(folder).expect("the test owns the folder");
 }

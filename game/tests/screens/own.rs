@@ -47,7 +47,7 @@ fn dropped_level_is_saved_until_removed() {
     game(&mut again).go(Screen::Levels);
     frames(&mut again, 2);
     click(&mut again, "Remove from list: cat");
-    assert_eq!(own(&mut again), ["cat.png"], "it is asked for again");
+    assert_eq!(own(&mut again), ["cat.png"], "removal needs confirmation");
     click(&mut again, "Really?: cat");
     assert_eq!(own(&mut again).len(), 0);
     assert_eq!(screen(&again), Screen::Levels);
@@ -56,7 +56,7 @@ fn dropped_level_is_saved_until_removed() {
     let mut last = begin();
     assert_eq!(own(&mut last).len(), 0);
     assert!(game(&mut last).records.of("cat.png").is_some());
-    assert!(cat().exists(), "the picture itself is nobody's to delete");
+    assert!(cat().exists(), "the original picture is not deleted");
     drop(last);
     fs::remove_dir_all(folder).unwrap();
 }
@@ -93,7 +93,7 @@ fn damaged_saved_level_is_moved_and_reported_once() {
     let good = fs::read_to_string(levels.join("cat.png.toml")).unwrap();
     let body = good
         .find("content = ")
-        .expect("it brings its picture along");
+        .expect("the level contains its picture");
     for (name, text) in [
         ("cut.png.toml", &good[..body]),
         ("classic.toml", &good),

@@ -52,7 +52,7 @@ impl Table {
             .devices
             .last_mut()
             .and_then(|device| device.pad.as_mut());
-        pad.expect("a pad").button_mut(button)
+        pad.expect("the device is a pad").button_mut(button)
     }
 
     fn screen(&self) -> Screen {
@@ -223,7 +223,7 @@ fn second_player_joins_leaves_and_is_unplugged() {
     assert_eq!(
         table.screen(),
         Screen::Paused,
-        "the round waits for who was unplugged"
+        "the round pauses for the unplugged player"
     );
     table.tap(PadButton::South);
     assert_eq!(table.screen(), Screen::Play);

@@ -93,7 +93,7 @@ fn portrait_screens_match_pictures() {
     win(&mut window);
     pictures(&mut window, "upright_result");
     let link = game(&mut window).bout.round().replay().link();
-    game(&mut window).open_link(&link.expect("a bot's round is short"));
+    game(&mut window).open_link(&link.expect("the round of the bot fits into a link"));
     // Each thumbnail takes a frame.
     frames(&mut window, 20);
     pictures(&mut window, "upright_offered");
@@ -174,7 +174,7 @@ fn round_3d_matches_pictures() {
     let mut window = open(Files::nowhere(), SMALLER, 1.0);
     let mut levels = game(&mut window).levels.iter();
     let classic = levels.position(|level| level.id == "classic-3d");
-    let classic = classic.expect("it comes along");
+    let classic = classic.expect("the level is built in");
     // No instructions are shown after a win.
     let level = game(&mut window).levels[classic].clone();
     game(&mut window).records.note(&level, &WON);

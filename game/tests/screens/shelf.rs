@@ -21,10 +21,10 @@ fn saved_round_shows_level_date_and_result() {
     let shelf = &window.state().game.shelf;
     let found = |name: &str| {
         let kept = shelf.iter().find(|kept| kept.entry.name == name).unwrap();
-        kept.found.clone().expect("it was looked into")
+        kept.found.clone().expect("the replay was read")
     };
     assert!(found("other-1").is_none());
-    let classic = found("classic-1").expect("it can be played");
+    let classic = found("classic-1").expect("the replay can be played");
     assert_eq!(classic.outcome.unwrap().route, Route::Squeeze);
     let level = &window.state().game.levels[0];
     assert!(std::sync::Arc::ptr_eq(&classic.level, level));
@@ -43,15 +43,15 @@ fn fastest_round_is_raced_when_enabled() {
     win(&mut window);
     game(&mut window).finish_writing();
     let level = game(&mut window).levels[0].clone();
-    let first = files.best(&level).expect("it is kept").ticks();
+    let first = files.best(&level).expect("the file was saved").ticks();
     game(&mut window).start(0);
     let has_ghost = |window: &Window| window.state().game.bout.session.ghost().is_some();
-    assert!(!has_ghost(&window), "nobody wished it");
+    assert!(!has_ghost(&window), "racing the best round is off");
     game(&mut window).settings.race_best = true;
     game(&mut window).start(0);
     assert!(has_ghost(&window));
     game(&mut window).start(1);
-    assert!(!has_ghost(&window), "nothing was won there");
+    assert!(!has_ghost(&window), "no win in this level");
 
     // A slower win does not replace the fastest one.
     game(&mut window).start(0);

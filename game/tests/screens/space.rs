@@ -36,7 +36,7 @@ pub fn wait(window: &mut Window, ticks: usize) {
 
 /// Points with the mouse at a point of the floor, and waits until the hand is above it.
 pub fn point_at(window: &mut Window, x: f32, z: f32) {
-    let view = window.state().game.bout.view.expect("it is seen");
+    let view = window.state().game.bout.view.expect("the world is visible");
     window.hover_at(view.on_screen([x, 0.0, z]));
     frames(window, 1);
     wait(window, 60);
@@ -91,7 +91,7 @@ fn mouse_sets_position_on_shelf() {
     let height = goal(&window, 0)[1];
     // On the shelf, over the hole in it, and on the shelf behind the hole.
     for [x, z] in [[-1.3, 0.3], [0.7, 0.1], [0.7, -0.7]] {
-        let view = window.state().game.bout.view.expect("it is seen");
+        let view = window.state().game.bout.view.expect("the world is visible");
         window.hover_at(view.on_screen([x, 0.55, z]));
         frames(&mut window, 1);
         wait(&mut window, 90);
@@ -110,7 +110,7 @@ fn right_mouse_button_turns_only_the_camera() {
         pressed,
         modifiers: Modifiers::NONE,
     };
-    let view = window.state().game.bout.view.expect("it is seen");
+    let view = window.state().game.bout.view.expect("the world is visible");
     let at = view.on_screen([-1.2, 0.0, 0.6]);
     window.event(button(true, at));
     frames(&mut window, 1);
@@ -177,7 +177,7 @@ fn triggers_raise_hand_and_right_stick_turns_camera() {
     start(&mut table.window, "classic-3d");
     let before = goal(&table.window, 0);
     let hold = |table: &mut Table, right, triggers, count: usize| {
-        let pad = table.devices[0].pad.as_mut().expect("a pad");
+        let pad = table.devices[0].pad.as_mut().expect("the device is a pad");
         (pad.right, pad.triggers) = (right, triggers);
         table.frames(1);
         match right {
@@ -221,7 +221,7 @@ fn two_players_3d_share_one_camera() {
     assert_near(before[1], table.window.state().game.bout.round().start(1));
     let hold = |table: &mut Table, held: [([f32; 2], [f32; 2]); 2], count| {
         for (device, (left, triggers)) in table.devices.iter_mut().zip(held) {
-            let pad = device.pad.as_mut().expect("a pad");
+            let pad = device.pad.as_mut().expect("the device is a pad");
             (pad.left, pad.right, pad.triggers) = (left, [0.5, 0.0], triggers);
         }
         table.frames(count);
@@ -251,7 +251,7 @@ fn two_players_3d_share_one_camera() {
 fn first_finger_moves_hand_and_second_raises_it_or_turns_camera() {
     let mut window = in_space();
     let height = goal(&window, 0)[1];
-    let view = window.state().game.bout.view.expect("it is seen");
+    let view = window.state().game.bout.view.expect("the world is visible");
     touch(
         &mut window,
         0,
@@ -289,7 +289,7 @@ fn first_finger_moves_hand_and_second_raises_it_or_turns_camera() {
 #[test]
 fn second_finger_does_not_move_hand_after_first_lifts() {
     let mut window = in_space();
-    let view = window.state().game.bout.view.expect("it is seen");
+    let view = window.state().game.bout.view.expect("the world is visible");
     let [here, there] = [-0.9, 0.3].map(|x| view.on_screen([x, 0.0, 0.6]));
     touch(&mut window, 0, TouchPhase::Start, here);
     touch(&mut window, 1, TouchPhase::Start, there);
@@ -334,7 +334,10 @@ fn keys_and_pad_move_element_cut_and_hint_names_them() {
     assert!(share(&mut table) < before);
     assert!(tells(&table.window, "Press the right stick: look deeper"));
     wheel(&mut table.window, 100.0);
-    assert!(share(&mut table) < before - 0.05, "up is deeper");
+    assert!(
+        share(&mut table) < before - 0.05,
+        "scrolling up looks deeper"
+    );
     assert!((goal(&table.window, 0)[1] - height).abs() < 1e-3);
 }
 
@@ -345,7 +348,7 @@ fn round_3d_is_won_saved_watched_and_raced() {
     let mut window = window(Files::in_folder(&folder));
     start(&mut window, "classic-3d");
     win(&mut window);
-    let (outcome, is_best) = game(&mut window).bout.won.expect("it was won");
+    let (outcome, is_best) = game(&mut window).bout.won.expect("the round was won");
     assert!(is_best && outcome.route == Route::Squeeze, "{outcome:?}");
     click(&mut window, "Save replay");
     game(&mut window).finish_writing();
@@ -356,7 +359,13 @@ fn round_3d_is_won_saved_watched_and_raced() {
     frames(&mut window, 30);
     let is_space = |round: &AnyRound| matches!(round, AnyRound::Space(_));
     let ghost = |window: &Window| {
-        let ghost = window.state().game.bout.session.ghost().expect("a ghost");
+        let ghost = window
+            .state()
+            .game
+            .bout
+            .session
+            .ghost()
+            .expect("the session has a ghost");
         assert!(is_space(ghost));
         (ghost.frames().len(), ghost.hands()[0].position())
     };
@@ -384,5 +393,5 @@ fn round_3d_is_won_saved_watched_and_raced() {
     assert_eq!(game.bout.round().progress().outcome, Some(outcome));
     assert!(game.notices.iter().next().is_none(), "{:?}", game.notices);
     assert!(length(minus(goal(&window, 0), before)) > 0.1);
-    std::fs::remove_dir_all(folder).expect("it is ours");
+    std::fs::remove_dir_all(folder).expect("the test owns the folder");
 }

@@ -77,7 +77,7 @@ fn shown(name: &str, size: Vec2, changes: &[(&str, &str)]) -> Shown {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
         game.clock = Clock::of(|| 0.0);
         kept.borrow_mut().prepare(&mut game);
-        let mut app = App::new(context, game).expect("there is a GPU, if only in software");
+        let mut app = App::new(context, game).expect("a GPU or a software adapter is available");
         app.attendant = Some(Box::new(Shared(kept)));
         app
     });
@@ -157,7 +157,7 @@ fn visit_starts_with_touch_and_is_logged() {
     let mut shown = shown("visit", vec2(960.0, 600.0), &[]);
     assert_eq!(shown.phase(), Phase::Attract);
     shown.rest(60.0);
-    assert_eq!(shown.phase(), Phase::Attract, "nobody came");
+    assert_eq!(shown.phase(), Phase::Attract, "no visitor yet");
     shown.touch();
     assert_eq!(
         (shown.phase(), screen(&shown.window)),
@@ -244,7 +244,7 @@ fn next_visitor_finds_initial_state() {
     shown.rest(31.0);
     let game = crate::window::game(&mut shown.window);
     assert_eq!(game.settings.language, Language::Japanese);
-    assert!(!game.forces.is_cut(), "nobody switches them off for good");
+    assert!(!game.forces.is_cut(), "the next visitor has forces again");
     assert!(game.bout.elements.is_none() && game.controls.players.second().is_none());
 }
 
@@ -307,13 +307,13 @@ fn staff_enters_pin_and_changes_settings() {
     for digit in ["1", "2", "3", "4"] {
         click(&mut shown.window, digit);
     }
-    assert_eq!(shown.phase(), Phase::Door, "a wrong number");
+    assert_eq!(shown.phase(), Phase::Door, "wrong PIN");
     for digit in ["2", "0", "0", "4"] {
         click(&mut shown.window, digit);
     }
     assert!(matches!(shown.phase(), Phase::Staff(_)));
     let (visits, _) = read(&shown.folder);
-    assert!(visits.is_empty(), "staff is no visitor");
+    assert!(visits.is_empty(), "staff does not count as a visitor");
     click(&mut shown.window, "Stand");
     let japanese = shown.window.get_by_label("Language: 日本語");
     japanese.click();
@@ -326,7 +326,7 @@ fn staff_enters_pin_and_changes_settings() {
     );
     let end = Language::Japanese.at_stand().end;
     click(&mut shown.window, end);
-    assert!(!shown.stand.borrow().is_ended, "it asks first");
+    assert!(!shown.stand.borrow().is_ended, "ending needs confirmation");
     click(&mut shown.window, "もどる");
     assert_eq!(shown.phase(), Phase::Attract);
     assert_eq!(
@@ -358,7 +358,7 @@ fn invalid_configuration_is_reported_with_line() {
     file.write(&USUAL.replace("rest = 20", "rest = -1"))
         .unwrap();
     let Err(error) = Stand::open(file) else {
-        panic!("it is wrong");
+        panic!("the configuration is invalid");
     };
     assert!(
         error.contains("exhibit.toml") && error.contains("line 10"),

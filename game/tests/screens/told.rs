@@ -49,14 +49,14 @@ fn instructions_3d_disappear_once_followed() {
         .bindings
         .bind_key(Action::Raise, Key::U);
     frames(&mut window, 1);
-    assert!(tells(&window, "wheel, or U Z"), "what is bound is named");
+    assert!(tells(&window, "wheel, or U Z"), "the bound key is named");
     point_at(&mut window, -1.0, 0.7);
     assert!(!tells(&window, "Move") && tells(&window, "wheel"));
     window.key_down(Key::U);
     frames(&mut window, 2);
     assert!(
         tells(&window, "Look around: [ ]"),
-        "what was used last is named"
+        "the controls of the last device are named"
     );
     wait(&mut window, 10);
     window.key_up(Key::U);
@@ -66,7 +66,7 @@ fn instructions_3d_disappear_once_followed() {
     wait(&mut window, 60);
     assert!(
         !tells(&window, "Move") && tells(&window, "Look around"),
-        "what is known is not told again"
+        "a followed instruction does not return"
     );
     window.key_down(Key::OpenBracket);
     frames(&mut window, 12);
@@ -75,10 +75,7 @@ fn instructions_3d_disappear_once_followed() {
     assert!(!tells(&window, "Look around"));
     start(&mut window, "classic");
     frames(&mut window, 2);
-    assert!(
-        !tells(&window, "Move"),
-        "in the plane nothing needs to be told"
-    );
+    assert!(!tells(&window, "Move"), "no instructions in 2D");
 }
 
 #[test]
@@ -89,9 +86,17 @@ fn instructions_name_current_device_and_time_out() {
     ]);
     game(&mut table.window).settings.reduced_motion = true;
     start(&mut table.window, "hoop");
-    table.devices[0].pad.as_mut().expect("a pad").left = [0.0, 0.7];
+    table.devices[0]
+        .pad
+        .as_mut()
+        .expect("the device is a pad")
+        .left = [0.0, 0.7];
     table.frames(2);
-    table.devices[0].pad.as_mut().expect("a pad").left = [0.0; 2];
+    table.devices[0]
+        .pad
+        .as_mut()
+        .expect("the device is a pad")
+        .left = [0.0; 2];
     table.frames(2);
     assert!(tells(&table.window, "triggers") && tells(&table.window, "right stick"));
     table.devices[1].axes = vec![1.0, 0.0];

@@ -28,7 +28,7 @@ pub fn open(files: Files, size: egui::Vec2, pixels: f32) -> Window {
         let mut game = Game::new(files, Sound::none(), Pads::none());
         // Independent of the load of the machine.
         game.clock = Clock::of(|| 0.0);
-        App::new(context, game).expect("there is a GPU, if only in software")
+        App::new(context, game).expect("a GPU or a software adapter is available")
     });
     frames(&mut window, 2);
     // In its first two frames, the harness does not yet know the game's zoom.
@@ -79,7 +79,7 @@ pub fn notices(window: &Window) -> String {
 pub fn start(window: &mut Window, id: &str) {
     let game = game(window);
     let index = game.levels.iter().position(|level| level.id == id);
-    game.start(index.expect("it comes along"));
+    game.start(index.expect("the level is built in"));
     frames(window, 2);
 }
 
@@ -107,7 +107,7 @@ pub fn drive(game: &mut Game, kind: BotKind, goes_on: impl Fn(&Game) -> bool) {
     while goes_on(game) {
         assert!(
             game.bout.round().frames().len() < 60 * 60,
-            "a minute, and no end"
+            "the round takes longer than a minute"
         );
         game.controls.devices.pointer = game.bout.round().ask(&mut bot).goal(0);
         game.pass(TICK);

@@ -5,13 +5,13 @@ use fuwafuwa::{Blade, Dim3, Material, PieceId, Settings, VoxelGrid, World};
 const EYE: Vector = [0.5, 0.8, 6.0];
 
 fn alone(grid: VoxelGrid<Dim3>) -> World<Dim3> {
-    let mut world = World::new(Settings::default()).expect("usual");
-    world.add_body(Body::new(grid, &[Material::default()]).expect("usual"));
+    let mut world = World::new(Settings::default()).expect("the defaults are valid");
+    world.add_body(Body::new(grid, &[Material::default()]).expect("the defaults are valid"));
     world
 }
 
 fn ball() -> World<Dim3> {
-    alone(VoxelGrid::ball(20, 1.0).expect("a ball"))
+    alone(VoxelGrid::ball(20, 1.0).expect("the grid is valid"))
 }
 
 /// Moves all nodes from their rest positions.
@@ -154,7 +154,7 @@ fn perch_leaves_skin_that_was_cut_off() {
         "{perch:?}"
     );
     // It stays at the new place.
-    let place = perch.place.expect("it has one").voxel;
+    let place = perch.place.expect("the face has a place").voxel;
     for tick in 0..120 {
         perch.follow(
             world.bodies().first().unwrap(),
@@ -162,6 +162,6 @@ fn perch_leaves_skin_that_was_cut_off() {
             tick % 5 == 0,
             TICK,
         );
-        assert_eq!(perch.place.expect("it has one").voxel, place);
+        assert_eq!(perch.place.expect("the face has a place").voxel, place);
     }
 }
