@@ -1,14 +1,17 @@
-//! A stand's day: visitors that are programs come, hesitate, play, alone or two at once, mash, leave in the middle, try again,
-//! and staff looks behind it. Time goes as fast as the machine can. It tells each hour how it goes. At the end all rounds that
-//! ended have to be in the logbook, all are run again, and memory and frame times have to be what they were.
+//! Simulates days of a public stand, as fast as the machine can.
 //!
-//! Most frames are laid out and not drawn, since a GPU in software takes longer to draw than all the rest.
+//! Simulated visitors come, hesitate, play alone or in pairs, press buttons at random, leave in the middle of
+//! a round, and try again. Staff opens its pages. Each hour of the stand is reported. At the end, the logbook
+//! must contain all rounds that ended, each round must be reproducible, and memory and frame times must not
+//! have grown.
+//!
+//! Most frames are laid out but not drawn, because drawing in software takes longer than everything else.
 //!
 //! ```text
 //! cargo run --release -p tamaire --example exhibit_day -- 8 [COPY]
 //! ```
 //!
-//! leaves a copy of the logbook where that is named.
+//! simulates 8 hours, and copies the logbook to COPY if given.
 
 use cpu_time::ThreadTime;
 use eframe::egui_wgpu::{RenderState, RendererOptions};
@@ -30,80 +33,81 @@ use tamaire::platform::{
 use tamaire_logbook::{Error, Logbook, Round};
 use tamaire_play::{Bot, BotKind, Playback, Replay};
 
-/// A frame lasts so long for the game [s]: it plays six ticks in each.
+/// Duration of a frame in the game [s], which contains six ticks.
 const STEP: f64 = 0.1;
-/// One of so many frames is drawn.
+/// One frame in 50 is drawn.
 const DRAWN: u64 = 50;
 const SIZE: egui::Vec2 = vec2(640.0, 400.0);
-/// What is asked of the heap is counted: what a process holds goes up and down by blocks of the system and of a GPU in software.
+/// Counts allocations on the heap. The memory of the process is too coarse: it changes by blocks of the
+/// operating system and of the software adapter.
 #[global_allocator]
 static HEAP: PeakAlloc = PeakAlloc;
 
-/// Memory and frame times may grow by so much [%] between the first hour and the last.
+/// Permitted growth of memory and frame time between the first and the last hour [%].
 const MORE_MEMORY: f64 = 5.0;
 const SLOWER: f64 = 10.0;
-/// Frames of a minute.
+/// Frames in a minute.
 const MINUTE: u64 = (60.0 / STEP) as u64;
-/// What staff enters.
+/// PIN of the staff.
 const PIN: &str = "2004";
-/// A hand trembles by so many points.
+/// Amplitude of a hand's tremor [points].
 const TREMBLE: f32 = 6.0;
 
-/// What a visitor is like.
+/// Behaviour of a visitor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Manner {
     /// Plays with the mouse as a bot does, with an unsteady hand.
     Plays(BotKind),
-    /// The same, while somebody else plays along with the pad.
+    /// Plays with the mouse while a second player uses the pad.
     Pair(BotKind),
-    /// Plays with the pad, around and around.
+    /// Plays with the pad, moving in circles.
     Pad,
-    /// Holds the corner and enters a number, the right one or another.
+    /// Holds the corner and enters this PIN, right or wrong.
     Staff(&'static str),
-    /// Presses whatever there is.
+    /// Presses buttons at random.
     Mashes,
-    /// Touches it, looks, and goes.
+    /// Touches the stand, watches, and goes.
     Looks,
 }
 
-/// Somebody who came.
+/// Simulated visitor.
 struct Visitor {
     manner: Manner,
     bot: Bot,
-    /// Does nothing for so long still [s].
+    /// Remaining time of hesitation [s].
     hesitates: f64,
-    /// Goes after so long, whatever is on [s].
+    /// Remaining time until the visitor leaves [s].
     patience: f64,
-    /// How often still they would try again.
+    /// Remaining number of retries.
     tries: u32,
-    /// Frames since the first that was not hesitated away.
+    /// Frames in which the visitor did not hesitate.
     frame: usize,
 }
 
-/// The stand and whoever comes.
+/// Stand and its current visitor.
 struct Day {
     window: Harness<'static, App>,
     gpu: RenderState,
     random: fastrand::Rng,
     pad: Device,
     visitor: Option<Visitor>,
-    /// Nobody comes for so long still [s].
+    /// Remaining time until the next visitor [s].
     quiet: f64,
     frames: u64,
-    /// How long each frame of this hour took [ms].
+    /// Duration of each frame in this hour [ms].
     times: Vec<f64>,
-    /// The memory of each minute of it [MB]: in use on the heap and the GPU, and held by the process.
+    /// Memory in each minute of this hour [MB]: in use on heap and GPU, and held by the process.
     used: Vec<f64>,
     held: Vec<f64>,
-    /// The middle of these, by hour: used, held, times.
+    /// Medians of each hour: memory in use, memory held, frame time.
     hours: Vec<[f64; 3]>,
     visitors: u64,
     wins: u64,
-    /// Rounds of visitors that were seen to end.
+    /// Number of observed ends of visitors' rounds.
     ended: u64,
-    /// Ticks of such a round that is on, and whether it is won.
+    /// Ticks of the current round of a visitor, and whether it is won.
     round: Option<(u64, bool)>,
-    /// How long it took until the frame was there in which somebody who came could move the hand [ms], at most.
+    /// Maximum time from a visitor's arrival to the first frame in which the hand can move [ms].
     welcome: f64,
 }
 
@@ -139,7 +143,7 @@ impl Day {
         }
     }
 
-    /// What whoever is there does in a frame.
+    /// Adds the events of the current visitor in a frame.
     fn act(&mut self, events: &mut Vec<Event>) {
         let Some(visitor) = &mut self.visitor else {
             self.quiet -= STEP;
@@ -215,7 +219,7 @@ impl Day {
         }
     }
 
-    /// Lets a frame pass.
+    /// Runs a frame.
     fn step(&mut self) {
         let mut events = Vec::new();
         self.act(&mut events);
@@ -227,10 +231,11 @@ impl Day {
         let was_there = self.is_played();
         let began = ThreadTime::now();
         self.window.step();
-        // A screen would wait for it. One in software is slower than the stand, and what it has still to do piles up.
+        // A screen would throttle the frames. The software adapter is slower than the stand, so its work
+        // would pile up.
         let waited = self.gpu.device.poll(PollType::wait_indefinitely());
-        waited.expect("the GPU is there");
-        // Others on the machine do not count.
+        waited.expect("the GPU works");
+        // Thread time, so that other processes do not count.
         let time = 1000.0 * began.elapsed().as_secs_f64();
         self.times.push(time);
         if !was_there && self.is_played() {
@@ -238,7 +243,7 @@ impl Day {
         }
         self.frames += 1;
         if self.frames.is_multiple_of(DRAWN) {
-            self.window.render().expect("it can be drawn");
+            self.window.render().expect("the frame can be drawn");
         }
         if self.frames.is_multiple_of(MINUTE) {
             let of_gpu = self.gpu.device.generate_allocator_report();
@@ -250,12 +255,12 @@ impl Day {
         self.count();
     }
 
-    /// Whether a round is on for a visitor.
+    /// Whether a visitor plays a round.
     fn is_played(&self) -> bool {
         matches!(self.window.state().game.screen(), Screen::Play)
     }
 
-    /// Counts what ended in this frame.
+    /// Counts the rounds that ended in this frame.
     fn count(&mut self) {
         let game = &self.window.state().game;
         let bout = &game.bout;
@@ -265,21 +270,21 @@ impl Day {
         if let Some((before, was_won)) = self.round
             && !was_won
         {
-            // It was won, left or begun anew.
+            // The round was won, left or restarted.
             self.ended += u64::from(round.is_none_or(|(now, is_won)| is_won || now < before));
             self.wins += u64::from(is_won);
         }
         self.round = round;
     }
 
-    /// Tells how an hour went.
+    /// Reports an hour.
     fn pass_hour(&mut self) {
         let worst = self.times.iter().copied().fold(0.0, f64::max);
         let middle = middle(&mut self.times);
         let [used, held] = [&mut self.used, &mut self.held].map(self::middle);
         self.hours.push([used, held, middle]);
         println!(
-            "hour {:3}: {used:6.1} MB in use, {held:6.1} held, {middle:5.2} ms a frame, {worst:.0} at worst; \
+            "hour {:3}: {used:6.1} MB in use, {held:6.1} MB held, frame time: median {middle:5.2} ms, maximum {worst:.0} ms; \
              {} visitors, {} rounds, {} wins",
             self.hours.len(),
             self.visitors,
@@ -289,7 +294,7 @@ impl Day {
     }
 }
 
-/// The middle one of some numbers, which are taken out.
+/// Returns the median and clears the numbers.
 fn middle(numbers: &mut Vec<f64>) -> f64 {
     numbers.sort_by(f64::total_cmp);
     let middle = numbers[numbers.len() / 2];
@@ -309,7 +314,7 @@ fn tap(events: &mut Vec<Event>, key: Key) {
     }
 }
 
-/// Holds the corner for four seconds, and enters a digit each second frame after that.
+/// Holds the corner for four seconds, then enters a digit every second frame.
 fn knock(events: &mut Vec<Event>, frame: usize, number: &str) {
     const HELD: usize = (4.0 / STEP) as usize;
     let corner = pos2(SIZE.x - 20.0, 20.0);
@@ -331,7 +336,7 @@ fn knock(events: &mut Vec<Event>, frame: usize, number: &str) {
 
 fn mash(events: &mut Vec<Event>, random: &mut fastrand::Rng) {
     let names = ["Escape", "E", "F", "J", "R", "F11", "Enter", "Tab"];
-    let keys = names.map(|name| Key::from_name(name).expect("it is a key"));
+    let keys = names.map(|name| Key::from_name(name).expect("egui knows the key"));
     if random.u32(..4) == 0 {
         tap(events, keys[random.usize(..keys.len())]);
     }
@@ -349,7 +354,7 @@ fn mash(events: &mut Vec<Event>, random: &mut fastrand::Rng) {
     }
 }
 
-/// Looks into the logbook: how many rounds were won, and how many do not come out as they were written.
+/// Returns the numbers of rounds, of wins, and of rounds in the logbook that cannot be reproduced.
 fn check(folder: &Path) -> Result<(u64, u64, u64), Error> {
     let logbook = Logbook::read(&StandFolder(folder.into()).logbook())?;
     let (mut rounds, mut wins, mut astray) = (0, 0, 0);
@@ -357,7 +362,10 @@ fn check(folder: &Path) -> Result<(u64, u64, u64), Error> {
         rounds += 1;
         wins += u64::from(round.route.is_some());
         if !reproduces(&round) {
-            println!("round {} of {} s goes another way", round.id, round.seconds);
+            println!(
+                "round {} of {} s cannot be reproduced",
+                round.id, round.seconds
+            );
             astray += 1;
         }
         Ok::<(), Error>(())
@@ -381,7 +389,7 @@ fn reproduces(round: &Round) -> bool {
     outcome.map(|outcome| outcome.route) == round.route
 }
 
-/// A stand with its own file, in a window that nobody sees, drawn by this GPU.
+/// Opens a stand with a configuration of its own in an offscreen window drawn by `gpu`.
 fn open(folder: &Path, gpu: RenderState) -> Harness<'static, App> {
     let text = USUAL.replace(
         "#folder = \"/var/lib/tam\"",
@@ -395,17 +403,17 @@ fn open(folder: &Path, gpu: RenderState) -> Harness<'static, App> {
         "page = \"https://example.org/tamaire/\"",
     );
     let file = TextFile(folder.join("exhibit.toml"));
-    file.write(&text).expect("it can be written");
+    file.write(&text).expect("the configuration can be written");
     let builder = Harness::builder().with_size(SIZE);
     let builder = builder.renderer(WgpuTestRenderer::from_render_state(gpu));
     let builder = builder.with_step_dt(STEP as f32).with_render_cursor(false);
     builder.build_eframe(|context| {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
-        // However long ticks take, all of them are played.
+        // A stopped clock makes the game play all ticks, however long they take.
         game.clock = Clock::of(|| 0.0);
-        let mut stand = Stand::open(file).expect("it is good");
+        let mut stand = Stand::open(file).expect("the configuration is valid");
         stand.prepare(&mut game);
-        let mut app = App::new(context, game).expect("there is a GPU, if only in software");
+        let mut app = App::new(context, game).expect("a GPU or a software adapter is available");
         app.attendant = Some(Box::new(stand));
         app
     })
@@ -414,7 +422,7 @@ fn open(folder: &Path, gpu: RenderState) -> Harness<'static, App> {
 fn main() -> ExitCode {
     let hours = std::env::args().nth(1).and_then(|word| word.parse().ok());
     let hours: u64 = hours.unwrap_or(8);
-    let folder = tempfile::tempdir().expect("there is a place for files");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let about = About {
         name: "Pad".into(),
         guid: "pad".into(),
@@ -467,10 +475,13 @@ fn main() -> ExitCode {
         }
     };
     println!(
-        "{visitors} visitors, welcome within {welcome:.0} ms; {rounds} rounds and {wins} wins in the logbook"
+        "{visitors} visitors, ready to play within {welcome:.0} ms; {rounds} rounds and {wins} wins in the logbook"
     );
-    println!("{ended} and {wins_seen} were seen; {astray} go another way");
-    // A round of a few ticks begins and ends between two frames, and one is won and begun anew in a single frame.
+    println!(
+        "{ended} rounds and {wins_seen} wins were observed; {astray} rounds cannot be reproduced"
+    );
+    // Frames miss a round of a few ticks, and a win that is followed by a restart within the same frame. So
+    // the logbook may contain more.
     let mut is_good = wins >= wins_seen && rounds >= ended && astray == 0;
     if let [first, .., last] = hours.as_slice() {
         let [used, held, frame] = [0, 1, 2].map(|at| 100.0 * (last[at] / first[at] - 1.0));
@@ -478,7 +489,8 @@ fn main() -> ExitCode {
         is_good &= used <= MORE_MEMORY && frame <= SLOWER;
     }
     if let Some(copy) = std::env::args().nth(2) {
-        std::fs::copy(StandFolder(folder.path().into()).logbook(), copy).expect("it can be copied");
+        std::fs::copy(StandFolder(folder.path().into()).logbook(), copy)
+            .expect("the logbook can be copied");
     }
     ExitCode::from(u8::from(!is_good))
 }

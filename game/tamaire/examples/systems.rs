@@ -1,5 +1,5 @@
-//! What the game costs a frame besides its simulation and its picture: input, rules as they are
-//! shown, camera, effects, feelings, sounds.
+//! Measures the cost of a frame without simulation and rendering: input, rules, camera, effects, feelings and
+//! sounds.
 //!
 //! ```text
 //! cargo run --release -p tamaire --example systems
@@ -13,7 +13,7 @@ use tamaire::platform::{Files, Pads, Sound};
 use tamaire_play::{Bot, BotKind, Round};
 
 fn main() {
-    // A round goes the same way each time: the least of three is what a frame takes undisturbed.
+    // Rounds are deterministic, so the minimum of three measures each frame without disturbances.
     let mut rest = round();
     for _ in 0..2 {
         for (least, found) in rest.iter_mut().zip(round()) {
@@ -23,7 +23,7 @@ fn main() {
     rest.sort();
     let milliseconds = |place: usize| 1e3 * rest[place].as_secs_f64();
     println!(
-        "{} frames; ms a frame: median {:.2}, 99 of 100 {:.2}, worst {:.2}",
+        "{} frames; ms per frame: median {:.2}, 99th percentile {:.2}, maximum {:.2}",
         rest.len(),
         milliseconds(rest.len() / 2),
         milliseconds(rest.len() * 99 / 100),
@@ -31,7 +31,7 @@ fn main() {
     );
 }
 
-/// What each frame of a round costs so.
+/// Returns the cost of each frame of a round without its simulation.
 fn round() -> Vec<Duration> {
     let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
     game.start(0);
@@ -41,7 +41,7 @@ fn round() -> Vec<Duration> {
     while game.bout.won.is_none() && rest.len() < 40 * 60 {
         game.controls.devices.pointer = game.bout.round().ask(&mut bot).goal(0);
         let whole = time(|| game.pass(TICK));
-        // The very same tick without a game around it.
+        // The same tick without the game.
         let played = game.bout.round().frames();
         let Some(&frame) = played.get(beside.frames().len()) else {
             continue;

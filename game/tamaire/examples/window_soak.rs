@@ -1,6 +1,8 @@
-//! The game in a window for a long time: two players who do anything, on every level, through all screens, with files
-//! that are dropped and a window that is pulled about. Its clock stands ten days ahead at the start. It tells each minute
-//! how it goes, and fails when its memory grows, or what a frame costs the GPU.
+//! Soak test of the game in a window: two players with random input on every level and all screens, with
+//! dropped files and a changing window size.
+//!
+//! The game's clock starts ten days ahead. Each minute is reported. The test fails if memory or the GPU cost
+//! of a frame grows.
 //!
 //! ```text
 //! xvfb-run -a cargo run --release -p tamaire --example window_soak -- 60
@@ -23,12 +25,13 @@ use tamaire::game::{Game, Screen};
 use tamaire::input::{Action, Seat};
 use tamaire::platform::{Files, Pads, Sound};
 
-/// How far the clock of the game is ahead [s].
+/// Initial time of the game [s].
 const AHEAD: f64 = 10.0 * 86_400.0;
-/// All settles for so many minutes, and until each level was played and photographed once; it may grow by such a share afterwards.
+/// Settling time [min], which also lasts until each level was started and photographed once; and permitted
+/// growth afterwards, as a share.
 const SETTLED: usize = 15;
 const GROWTH: f64 = 0.05;
-/// Keys that a hand on a keyboard finds.
+/// Keys that are pressed at random.
 const KEYS: [Key; 16] = [
     Key::ArrowUp,
     Key::ArrowDown,
@@ -48,10 +51,10 @@ const KEYS: [Key; 16] = [
     Key::X,
 ];
 
-/// A file that is dropped.
+/// Dropped file.
 type AnyFile = Arc<dyn DroppedFile + Send + Sync>;
 
-/// The game, and whoever plays it.
+/// Game with simulated players.
 struct Soak {
     app: App,
     random: fastrand::Rng,
@@ -63,17 +66,17 @@ struct Soak {
     figures: Rc<RefCell<[Figure; 4]>>,
     minutes: usize,
     minute: usize,
-    /// How many levels were begun.
+    /// Number of levels started.
     begun: usize,
 }
 
-/// What is to stay as it is.
+/// Measured figure that must not grow.
 #[derive(Default)]
 struct Figure {
     name: &'static str,
-    /// In this minute.
+    /// Samples of this minute.
     samples: Vec<f64>,
-    /// The middle one of each minute since all had settled.
+    /// Median of each minute since everything has settled.
     medians: Vec<f64>,
 }
 
@@ -85,7 +88,7 @@ impl Figure {
         }
     }
 
-    /// Begins a minute; the middle of the one that has passed.
+    /// Ends a minute; returns its median.
     fn pass_minute(&mut self, has_settled: bool) -> f64 {
         let median = median(std::mem::take(&mut self.samples));
         if has_settled {
@@ -94,7 +97,8 @@ impl Figure {
         median
     }
 
-    /// By what share the last quarter of the time after it had settled is above the first; no number where there was none.
+    /// Relative growth of the median from the first to the last quarter of the settled time; NaN without
+    /// samples.
     fn growth(&self) -> f64 {
         let quarter = self.medians.len().div_ceil(4);
         let last = self.medians.len() - quarter;
@@ -103,13 +107,13 @@ impl Figure {
     }
 }
 
-/// The middle one; no number where there is none.
+/// Returns the median; NaN without values.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// What egui asked of the GPU in the last frame.
+/// GPU cost of egui in the last frame.
 #[derive(Clone, Default)]
 struct OfEgui(Arc<Mutex<Cost>>);
 
@@ -138,7 +142,7 @@ impl egui::Plugin for OfEgui {
     }
 }
 
-/// A file as a window tells of it.
+/// File as reported by the window.
 #[derive(Debug)]
 struct Dropped(PathBuf);
 
@@ -153,7 +157,7 @@ impl DroppedFile for Dropped {
 }
 
 impl Soak {
-    /// What somebody does in a frame.
+    /// Adds random input in a frame.
     fn play(&mut self, input: &mut RawInput) {
         let random = &mut self.random;
         let size = input
@@ -204,7 +208,7 @@ impl Soak {
         }
     }
 
-    /// Looks at how much memory there is, and at what the last frame cost.
+    /// Samples the memory, and the cost of the last frame.
     fn measure(&mut self) {
         let of_egui = *self
             .of_egui
@@ -225,11 +229,11 @@ impl Soak {
         bytes.samples.push(cost.bytes as f64 / 1000.0);
     }
 
-    /// What happens now and then.
+    /// Performs occasional actions outside of the input.
     fn manage(&mut self, ctx: &egui::Context) {
         let game = &mut self.app.game;
         let mut plugged = vec![self.pad.clone()];
-        // It is unplugged for a while each minute.
+        // Unplugged for a second each minute.
         plugged.retain(|_| !self.began.elapsed().as_secs().is_multiple_of(60));
         game.controls.pads = Pads::of(Snapshot { devices: plugged });
         if self.frames % 400 == 399 {
@@ -241,7 +245,7 @@ impl Soak {
                 3 => game.keep_replay(),
                 4 => game.keep_clip(),
                 _ => {
-                    // The first photo of each takes memory that the others use again.
+                    // The first photo of a level allocates memory that is reused later.
                     if is_first {
                         game.keep_photo();
                     }
@@ -250,7 +254,7 @@ impl Soak {
                     game.act(Action::Join, Seat::Stick(self.pad.id));
                 }
             }
-            // Somebody tidies up: what is kept is no leak.
+            // Deletes old files, so that saved data do not count as a leak.
             let old: Vec<_> = game
                 .shelf
                 .iter()
@@ -277,7 +281,7 @@ impl Soak {
                 .each_mut()
                 .map(|figure| figure.pass_minute(has_settled));
             println!(
-                "{minute:3} min: {resident:6.1} MB, {used:.1} MB of it in use, {draws} draw calls and {bytes:.1} kB a frame, {} frames, clock {:.0} s, {} own levels, {:?}{}",
+                "{minute:3} min: {resident:6.1} MB resident, {used:.1} MB of it in use, {draws} draw calls and {bytes:.1} kB per frame, {} frames, clock {:.0} s, {} own levels, {:?}{}",
                 self.frames,
                 game.time,
                 (0..game.levels.len())
@@ -290,7 +294,7 @@ impl Soak {
         if minute >= self.minutes {
             ctx.send_viewport_cmd(ViewportCommand::Close);
         } else if ctx.input(|input| input.viewport().close_requested()) {
-            // Somebody pressed Quit.
+            // The player pressed Quit.
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
         }
     }
@@ -313,7 +317,8 @@ impl eframe::App for Soak {
     }
 }
 
-/// Memory of this program [MB], where the system tells: all of it, and all but what was freed and is kept by the allocator.
+/// Memory of this process [MB], where available: resident, and resident without memory that the allocator
+/// keeps for reuse.
 fn memory() -> Option<[f64; 2]> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
@@ -322,7 +327,7 @@ fn memory() -> Option<[f64; 2]> {
     Some([resident, resident - free() as f64 / 1e6])
 }
 
-/// What was freed and is kept by the allocator for the next time [bytes].
+/// Memory that the allocator keeps for reuse [bytes].
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 fn free() -> usize {
     /// `struct mallinfo2` of malloc.h, whose ninth field is `fordblks`.
@@ -339,7 +344,7 @@ fn free() -> usize {
     0
 }
 
-/// Files that somebody may drop: two levels, a picture, a model, and one that is nothing.
+/// Files to drop: two levels, a picture, a model, and an invalid level.
 fn files(folder: &Path) -> std::io::Result<Vec<AnyFile>> {
     let levels = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tamaire_play/levels");
     let broken = folder.join("broken.toml");
@@ -357,8 +362,8 @@ fn main() -> ExitCode {
     let figures = ["memory", "memory in use", "draw calls", "bytes written"].map(Figure::new);
     let figures = Rc::new(RefCell::new(figures));
     let told = figures.clone();
-    let folder = tempfile::tempdir().expect("there is a place for files");
-    let files = files(folder.path()).expect("there is a place for files");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
+    let files = files(folder.path()).expect("a temporary folder can be created");
     let kept = folder.path().join("kept");
     let about = About {
         name: "Pad".into(),
@@ -372,7 +377,7 @@ fn main() -> ExitCode {
         ..Default::default()
     };
     let ended = eframe::run_native(
-        "tamaire, for a long time",
+        "tamaire soak test",
         options,
         Box::new(move |context| {
             let mut game = Game::new(Files::in_folder(kept), Sound::none(), Pads::none());
@@ -401,7 +406,7 @@ fn main() -> ExitCode {
                 println!("{} grew by {:.1} %", figure.name, 100.0 * growth);
                 growth
             });
-            // What was never measured is no number.
+            // NaN, if nothing was measured, fails the test.
             let is_flat = growths.iter().all(|growth| *growth <= GROWTH);
             ExitCode::from(u8::from(!is_flat))
         }

@@ -1,5 +1,5 @@
-//! What reaches the hands that hold sticks and pads, and every way in which it ends. No window is open, but the thread
-//! that tells the devices is real.
+//! Force output to sticks and pads, and every condition that ends it. No window is open, but the device
+//! thread is real.
 
 use force_feedback::{Ability, Calibration, Output, Recording, Stop};
 use fuwafuwa::world::TICK;
@@ -11,10 +11,10 @@ use tamaire::game::{Game, Screen};
 use tamaire::input::{Action, Seat};
 use tamaire::platform::{Files, Pads, Sound};
 
-/// However busy the machine is.
+/// Timeout, long enough for a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A game with sticks that note what they are made to do.
+/// Game with devices that record their output.
 struct Table {
     game: Game,
     devices: Vec<Device>,
@@ -34,7 +34,7 @@ impl Table {
         table
     }
 
-    /// As `devices` say.
+    /// Connects exactly the devices in `devices`.
     fn plug_in(&mut self) {
         let devices = self.devices.clone();
         for (device, note) in devices.iter().zip(&self.notes) {
@@ -45,7 +45,7 @@ impl Table {
         self.game.controls.pads = Pads::of(Snapshot { devices }).noting(notes);
     }
 
-    /// Pushes the first stick, or another, to the right.
+    /// Tilts a stick to the right.
     fn lean(&mut self, stick: usize, right: f32) {
         self.devices[stick].axes[0] = right;
         self.plug_in();
@@ -57,7 +57,7 @@ impl Table {
         self.game.pass(TICK);
     }
 
-    /// Lets time pass until something is so.
+    /// Runs frames until a condition holds.
     fn until(&mut self, what: &str, mut is_so: impl FnMut(&mut Self) -> bool) {
         let start = Instant::now();
         while !is_so(self) {
@@ -66,12 +66,12 @@ impl Table {
         }
     }
 
-    /// What a stick was told last, and all before it that was asked for.
+    /// Last output of a stick since the last call.
     fn told(&self, stick: usize) -> Option<Output> {
         self.notes[stick].take().last().map(|played| played.output)
     }
 
-    /// Leans a stick slowly from the left to the right, across the body, again and again until it is pushed.
+    /// Moves a stick slowly from left to right across the body, again and again, until it is pushed.
     fn until_pushed(&mut self, stick: usize) {
         self.until_pushed_along(stick, |share| [0.8 * share - 0.6, 0.0]);
     }
@@ -93,7 +93,7 @@ impl Table {
         });
     }
 
-    /// Until the thread says that the first stick is let go.
+    /// Waits until the device thread reports no force on the first stick.
     fn until_at_rest(&mut self) {
         self.until("let go", |table| {
             let report = table.game.forces.report(table.devices[0].id);
@@ -101,16 +101,17 @@ impl Table {
         });
     }
 
-    /// Waits without any further frame until the first stick is let go; how long that took.
+    /// Waits without running frames until the force on the first stick is zero; returns the time since
+    /// `start`.
     fn zero_since(&self, start: Instant) -> Duration {
         while !self.told(0).is_some_and(|output| output.is_zero()) {
-            assert!(start.elapsed() < PATIENCE, "never let go");
+            assert!(start.elapsed() < PATIENCE, "the force never ended");
             std::thread::yield_now();
         }
         start.elapsed()
     }
 
-    /// For a while nothing is told to a stick.
+    /// Checks that a stick gets no output for 60 frames.
     fn hears_nothing(&mut self, stick: usize) {
         self.notes[stick].take();
         for _frame in 0..60 {
@@ -121,10 +122,10 @@ impl Table {
 
     fn silent(&self, stick: usize) -> Option<Stop> {
         let report = self.game.forces.report(self.devices[stick].id);
-        report.expect("it is held").silent
+        report.expect("the device is open").silent
     }
 
-    /// In the first level, with the hand against the body.
+    /// Starts the first level and pushes the hand against the body.
     fn pushing() -> Self {
         let mut table = Self::with(1);
         table.game.start(0);
@@ -144,12 +145,12 @@ fn stick(id: u32) -> Device {
 }
 
 #[test]
-fn a_stick_that_pushes_the_body_is_pushed_back() {
+fn stick_is_pushed_back_by_body() {
     let mut table = Table::with(1);
     table.game.start(0);
     table.hears_nothing(0);
-    // It points at a place: to the right of where it was it pushes, and is pushed back the further it goes. On a busy
-    // machine the thread may sleep through a whole push, so that there are further rounds.
+    // The stick sets a position: beyond the body's surface it is pushed back, more the further it goes. On a
+    // busy machine the thread may miss a whole push, so the round is repeated.
     let mut frame = 0;
     table.until("pushed to the left", |table| {
         if frame == 100 {
@@ -169,23 +170,23 @@ fn a_stick_that_pushes_the_body_is_pushed_back() {
 }
 
 #[test]
-fn in_space_a_stick_feels_the_floor_as_the_camera_sees_it() {
-    // The ball lies behind the hand. Seen from the front the hand pushes away from the player and is pushed towards them;
-    // seen from the right it pushes to the right, and is pushed to the left.
+fn stick_force_3d_follows_camera_orientation() {
+    // The ball is behind the hand. Seen from the front, the hand pushes away from the player and is pushed
+    // towards the player; seen from the right, it pushes to the right and is pushed to the left.
     for (turn, axis) in [(0.0, 1), (std::f32::consts::FRAC_PI_2, 0)] {
         let mut table = Table::with(1);
         let mut levels = table.game.levels.iter();
         let classic = levels.position(|level| level.id == "classic-3d");
-        table.game.start(classic.expect("it comes along"));
+        table.game.start(classic.expect("the level is built in"));
         table.game.bout.camera.orbit(turn, 0.0);
         let mut share = 0.0;
         table.until("pushed back", |table| {
             share += if share < 1.0 { 0.01 } else { 0.0 };
-            // From before the ball to its middle [m], and which way the stick leans for that.
+            // Path from in front of the ball to its centre [m], and the deflection of the stick for it.
             let [x, z] = [-0.6, 0.7 - 1.1 * share];
             let [right, away]: [f32; 2] = [[-z, -x / 1.6], [x / 1.6, -z]][axis];
             let long = right.hypot(away);
-            // What the dead zone takes is put in before.
+            // Compensates the dead zone.
             let more = (0.15 + 0.8 * long) / long;
             table.devices[0].axes = vec![more * right, -more * away];
             table.plug_in();
@@ -200,7 +201,7 @@ fn in_space_a_stick_feels_the_floor_as_the_camera_sees_it() {
 }
 
 #[test]
-fn it_ends_with_a_pause_a_menu_a_new_round_and_another_window() {
+fn force_ends_on_pause_menu_new_round_and_lost_focus() {
     type Way = fn(&mut Game);
     let ways: [(Way, Stop); 5] = [
         (|game| game.act(Action::Pause, Seat::Keys), Stop::Paused),
@@ -221,7 +222,8 @@ fn it_ends_with_a_pause_a_menu_a_new_round_and_another_window() {
     }
 }
 
-/// What ends a force ends it within 20 ms; of several tries the quickest counts, for the others are the machine's.
+/// Checks that a force ends within 20 ms. The fastest of 20 tries counts, because a busy machine delays
+/// others.
 fn check_quick(mut once: impl FnMut() -> Duration) {
     let most = Duration::from_millis(20);
     let quick = (0..20).map(|_| once()).find(|time| *time <= most);
@@ -229,23 +231,23 @@ fn check_quick(mut once: impl FnMut() -> Duration) {
 }
 
 #[test]
-fn it_ends_with_a_win() {
+fn force_ends_on_win() {
     let mut table = Table::with(1);
     table.game.start(0);
     let mut pushed = false;
     let bot = tamaire_play::BotKind::NAMED[0].1;
     let mut bot = tamaire_play::Bot::new(bot, 1);
     table.until("won", |table| {
-        // The bot plays with the stick, that points at places.
+        // The bot plays with the stick, which sets positions.
         pushed |= table.told(0).is_some_and(|output| !output.is_zero());
         let round = table.game.bout.round();
         let [low, high] = round.level().arena();
-        let goal = round.ask(&mut bot).goal(0).expect("it plays");
+        let goal = round.ask(&mut bot).goal(0).expect("the bot has a target");
         let [x, y] = [0, 1].map(|axis| {
             let middle = 0.5 * (low[axis] + high[axis]);
             (goal[axis] - middle) / (0.5 * (high[axis] - low[axis]))
         });
-        // What the dead zone takes is put in before.
+        // Compensates the dead zone.
         let lean = x.hypot(y).max(1e-3);
         let share = (0.15 + 0.8 * lean) / lean;
         table.devices[0].axes = vec![share * x, -share * y];
@@ -259,7 +261,7 @@ fn it_ends_with_a_win() {
 }
 
 #[test]
-fn it_ends_when_the_stick_is_unplugged_and_the_round_waits() {
+fn force_ends_and_round_pauses_when_stick_is_unplugged() {
     let mut table = Table::pushing();
     let note = table.notes[0].clone();
     let device = table.devices.remove(0);
@@ -271,7 +273,7 @@ fn it_ends_when_the_stick_is_unplugged_and_the_round_waits() {
         let told = note.take().last().map(|played| played.output);
         told.is_some_and(|output| output.is_zero())
     });
-    // Plugged in again it has another id, and plays on.
+    // A reconnected device gets another id and continues to play.
     table.devices.push(stick(7));
     table.notes = vec![Recording::default()];
     table.plug_in();
@@ -281,7 +283,7 @@ fn it_ends_when_the_stick_is_unplugged_and_the_round_waits() {
 }
 
 #[test]
-fn it_ends_when_the_game_panics_or_is_closed() {
+fn force_ends_when_game_panics_or_closes() {
     let mut table = Table::pushing();
     let note = table.notes[0].clone();
     let panicked = catch_unwind(AssertUnwindSafe(move || {
@@ -301,7 +303,7 @@ fn it_ends_when_the_game_panics_or_is_closed() {
 }
 
 #[test]
-fn the_emergency_key_ends_it_until_it_is_taken_back() {
+fn emergency_key_cuts_force_until_restored() {
     let mut table = Table::pushing();
     table.game.act(Action::CutForces, Seat::Keys);
     table.until_let_go(0);
@@ -315,7 +317,7 @@ fn the_emergency_key_ends_it_until_it_is_taken_back() {
 }
 
 #[test]
-fn at_strength_0_nothing_is_sent_and_nothing_taken_hold_of() {
+fn zero_strength_opens_no_device_and_sends_nothing() {
     let mut table = Table::with(1);
     table.game.settings.haptics = 0.0;
     table.game.start(0);
@@ -330,19 +332,19 @@ fn at_strength_0_nothing_is_sent_and_nothing_taken_hold_of() {
 }
 
 #[test]
-fn each_player_feels_the_own_hand() {
+fn force_of_each_hand_goes_to_its_player() {
     let mut table = Table::with(2);
     table.game.start(0);
     table.game.act(Action::Join, Seat::Stick(DeviceId(1)));
-    // The second hand comes in far above the body, and stays there.
+    // The second hand starts far above the body and stays there.
     table.until_pushed(0);
     assert_eq!(table.told(1), None);
-    // And pushes into it from above.
+    // It pushes into the body from above.
     table.until_pushed_along(1, |share| [-0.35, 0.9 - 0.8 * share]);
 }
 
 #[test]
-fn a_stick_that_lies_on_the_table_is_left_alone() {
+fn unused_stick_gets_no_force() {
     let mut table = Table::pushing();
     table.game.controls.devices.keys.insert(egui::Key::D);
     table.lean(0, 0.0);
@@ -352,7 +354,7 @@ fn a_stick_that_lies_on_the_table_is_left_alone() {
 }
 
 #[test]
-fn a_pad_that_is_put_down_hums_no_more_though_its_hand_presses() {
+fn unused_pad_stops_rumbling_while_hand_presses() {
     let mut table = Table::with(1);
     table.notes = vec![Recording::new(Ability::Rumble)];
     table.game.start(0);
@@ -374,19 +376,19 @@ fn a_pad_that_is_put_down_hums_no_more_though_its_hand_presses() {
 }
 
 #[test]
-fn a_pad_hums_when_it_pushes_and_rattles_when_it_tears() {
+fn pad_rumbles_low_when_pushing_and_high_when_tearing() {
     let mut table = Table::with(1);
     table.notes = vec![Recording::new(Ability::Rumble)];
     table.game.start(0);
     table.lean(0, 1.0);
     let (mut hummed, mut rattled) = (false, false);
     table.until("torn", |table| {
-        // To and fro, as hard as it goes.
+        // Back and forth at full deflection.
         let to_and_fro = table.game.bout.round().ticks() / 20 % 3;
         table.lean(0, if to_and_fro == 2 { -1.0 } else { 1.0 });
         for played in table.notes[0].take() {
             let Output::Rumble { low, high } = played.output else {
-                panic!("it is a pad")
+                panic!("the device is a pad")
             };
             hummed |= low > 0.1;
             rattled |= high > 0.1;
@@ -396,7 +398,7 @@ fn a_pad_hums_when_it_pushes_and_rattles_when_it_tears() {
 }
 
 #[test]
-fn a_stick_can_be_tried_and_measured() {
+fn stick_can_be_tried_and_measured() {
     let mut table = Table::with(1);
     table.game.go(Screen::Forces);
     table.lean(0, 0.5);
@@ -407,7 +409,7 @@ fn a_stick_can_be_tried_and_measured() {
     table.until_let_go(0);
     assert!(table.game.trial.is_none());
 
-    // One that is measured is let go when nothing may be sent any more.
+    // A measurement stops when forces are switched off.
     table.game.go(Screen::Forces);
     table.game.trial = Some(Trial::measure(DeviceId(0)));
     table.frame();
@@ -417,7 +419,7 @@ fn a_stick_can_be_tried_and_measured() {
     table.game.settings.haptics = 0.5;
     table.frame();
 
-    // This one is built in the wrong way round, and goes where it is pushed.
+    // This stick has swapped and reversed motors, and moves as it is pushed.
     table.game.go(Screen::Forces);
     table.lean(0, 0.0);
     table.game.trial = Some(Trial::measure(DeviceId(0)));
@@ -438,14 +440,14 @@ fn a_stick_can_be_tried_and_measured() {
     assert_eq!(known, Some(&wanted));
 }
 
-/// Through all of SDL, with a pad that only its driver knows not to be real.
+/// Goes through all of SDL, with a virtual pad.
 #[test]
 #[cfg(feature = "haptic")]
-fn a_pad_made_of_nothing_is_played_felt_and_unplugged() {
+fn virtual_pad_plays_rumbles_and_unplugs() {
     use sticks::{PadButton, Sticks};
 
     let sticks = Sticks::open_for_puppets().expect("SDL starts");
-    let pad = sticks.plug_in_pad("Pad").expect("a pad");
+    let pad = sticks.plug_in_pad("Pad").expect("the device is a pad");
     let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::through(sticks));
     game.start(0);
     let until = |game: &mut Game, what: &str, is_so: &dyn Fn(&Game) -> bool| {

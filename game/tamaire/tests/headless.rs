@@ -1,4 +1,4 @@
-//! The game without a window, as someone at a terminal meets it.
+//! The game without a window, run from a terminal.
 
 use serde_json::Value;
 use std::fs;
@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use tamaire_play::replay::VERSION;
 use tempfile::TempDir;
 
-/// A level with so small a body that it is played in no time.
+/// Level with a small body that is simulated quickly.
 fn small_level(basket_at: f32) -> String {
     format!(
         "dim = 2\n\
@@ -28,7 +28,7 @@ fn small_level(basket_at: f32) -> String {
     )
 }
 
-/// A folder with two levels: `won.toml`, won by waiting, and `far.toml`, where the basket is far away.
+/// Creates a folder with two levels: `won.toml`, won by waiting, and `far.toml`, with a distant basket.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("won.toml"), small_level(0.0)).unwrap();
@@ -36,7 +36,7 @@ fn folder() -> TempDir {
     folder
 }
 
-/// A level in space: a little ball on the floor, which a hand can push into the basket or tear.
+/// 3D level with a small ball on the floor that a hand can push into the basket or tear.
 const SOLID_LEVEL: &str = r#"
 dim = 3
 gravity = [0.0, -3.0, 0.0]
@@ -65,14 +65,14 @@ radius = 0.12
 path = [[0.0, -1.3, 0.3, 0.4]]
 "#;
 
-/// A folder with that level: `solid.toml`.
+/// Creates a folder with that level: `solid.toml`.
 fn folder_in_space() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("solid.toml"), SOLID_LEVEL).unwrap();
     folder
 }
 
-/// A model of MagicaVoxel: a solid cube, so many voxels wide.
+/// Model of MagicaVoxel: a solid cube, `width` voxels wide.
 fn cube_model(width: u8) -> Vec<u8> {
     let axis = || 0..width;
     let voxels = axis().flat_map(|z| axis().flat_map(move |y| axis().map(move |x| [x, y, z, 79])));
@@ -99,7 +99,7 @@ fn tamaire(folder: &Path, arguments: &str) -> Output {
     tamaire_with(folder, arguments, &[])
 }
 
-/// The same with variables of the environment.
+/// Runs the game as [`tamaire`] does, with environment variables.
 fn tamaire_with(folder: &Path, arguments: &str, variables: &[(&str, &str)]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tamaire"));
     for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
@@ -108,7 +108,7 @@ fn tamaire_with(folder: &Path, arguments: &str, variables: &[(&str, &str)]) -> O
     let arguments = arguments.split_whitespace();
     command
         .current_dir(folder)
-        // Where it is missing, some drivers complain.
+        // Some drivers complain if it is missing.
         .env("XDG_RUNTIME_DIR", folder)
         .envs(variables.iter().copied())
         .args(arguments)
@@ -124,7 +124,7 @@ fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"))
 }
 
-/// The arguments must be refused with a status, for a reason that says all of `words`.
+/// Checks that the arguments are refused with this status and a message that contains all of `words`.
 fn check_refused(arguments: &str, status: i32, words: &[&str]) {
     let folder = folder();
     fs::write(folder.path().join("broken.toml"), "dim = 2\nbody = 5\n").unwrap();
@@ -138,7 +138,7 @@ fn check_refused(arguments: &str, status: i32, words: &[&str]) {
 }
 
 #[test]
-fn a_round_is_told_as_json() {
+fn round_is_reported_as_json() {
     let folder = folder();
     let line = "--headless --level won.toml --bot idle --json";
     let output = tamaire(folder.path(), line);
@@ -152,7 +152,10 @@ fn a_round_is_told_as_json() {
     assert_eq!(told["pieces"], 1);
     assert_eq!(told["kept"], 1.0);
     let ticks = told["ticks"].as_u64().unwrap();
-    assert!((60..66).contains(&ticks), "a second of rest: {ticks}");
+    assert!(
+        (60..66).contains(&ticks),
+        "won after a second at rest: {ticks}"
+    );
     assert!((told["seconds"].as_f64().unwrap() - ticks as f64 / 60.0).abs() < 1e-3);
     assert_eq!(told["hash"].as_str().unwrap().len(), 16);
     let [median, worst] =
@@ -161,7 +164,7 @@ fn a_round_is_told_as_json() {
 }
 
 #[test]
-fn the_seed_alone_decides_how_a_bot_plays() {
+fn bot_depends_only_on_seed() {
     let folder = folder();
     let hash = |seed: u32| {
         let line =
@@ -175,7 +178,7 @@ fn the_seed_alone_decides_how_a_bot_plays() {
 }
 
 #[test]
-fn who_does_not_win_hears_so_and_it_is_no_error() {
+fn lost_round_is_reported_without_error() {
     let folder = folder();
     let line = "--headless --level far.toml --bot idle --seconds 1";
     let output = tamaire(folder.path(), line);
@@ -188,7 +191,7 @@ fn who_does_not_win_hears_so_and_it_is_no_error() {
 }
 
 #[test]
-fn a_replay_is_genuine_until_someone_changes_it() {
+fn replay_is_genuine_until_changed() {
     let folder = folder();
     let line = "--headless --level far.toml --bot random --seconds 2 --save it.tamaire --json";
     let played = json(&tamaire(folder.path(), line));
@@ -239,21 +242,21 @@ fn films_and_photos_are_written() {
         assert_eq!(output.status.code(), Some(0), "{output:?}");
         let bytes = fs::read(folder.path().join(picture)).unwrap();
         assert!(bytes.starts_with(start) && bytes.len() > 1000, "{picture}");
-        // Who waits at a terminal sees a bar; this is none.
+        // Only a terminal gets a progress bar.
         let said = text(&output.stderr);
         assert!(said.ends_with(&format!("wrote {picture}\n")), "{said}");
         assert!(!has_adapter() || said.lines().count() == 1, "{said}");
     }
 }
 
-/// Whether this machine has to have something to draw with.
+/// Whether this machine must have a graphics adapter.
 fn has_adapter() -> bool {
     std::env::var("CI").is_ok_and(|value| value == "1" || value == "true")
 }
 
 #[test]
-fn without_anything_to_draw_with_a_photo_shows_elements_and_says_so() {
-    // An interface that is not of this system.
+fn photo_without_adapter_shows_elements_and_warns() {
+    // Graphics API that this operating system does not have.
     let none = if cfg!(target_os = "macos") {
         "dx12"
     } else {
@@ -272,7 +275,7 @@ fn without_anything_to_draw_with_a_photo_shows_elements_and_says_so() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused_with_a_reason() {
+fn invalid_arguments_are_refused_with_reason() {
     check_refused("--headless --level nowhere", 2, &["nowhere", "classic"]);
     check_refused(
         "--headless --level broken.toml",
@@ -299,7 +302,7 @@ fn what_makes_no_sense_is_refused_with_a_reason() {
 
 #[cfg(unix)]
 #[test]
-fn pipes_and_devices_are_refused_and_not_waited_for() {
+fn pipes_and_devices_are_refused_without_waiting() {
     let folder = folder();
     let pipe = folder.path().join("pipe.tamaire");
     assert!(
@@ -320,7 +323,7 @@ fn pipes_and_devices_are_refused_and_not_waited_for() {
 }
 
 #[test]
-fn without_a_display_a_round_is_played_all_the_same() {
+fn round_is_played_without_display() {
     if !cfg!(target_os = "linux") {
         return;
     }
@@ -341,7 +344,7 @@ fn without_a_display_a_round_is_played_all_the_same() {
 }
 
 #[test]
-fn levels_are_listed_by_name() {
+fn list_shows_ids_and_names_of_levels() {
     let told = text(&tamaire(Path::new("."), "--list").stdout);
     let classic = told.lines().find(|line| line.starts_with("classic "));
     assert!(
@@ -352,7 +355,7 @@ fn levels_are_listed_by_name() {
 }
 
 #[test]
-fn what_would_be_felt_is_written_down() {
+fn force_log_records_substeps_and_device_updates() {
     let folder = folder();
     let run = "--headless --bot squeeze --force-log forces.csv";
     assert_eq!(tamaire(folder.path(), run).status.code(), Some(0));
@@ -371,7 +374,7 @@ fn what_would_be_felt_is_written_down() {
     };
     let (substeps, updates) = (of("substep"), of("device"));
 
-    // 960 and 250 a second.
+    // 960 substeps and 250 device updates a second.
     let seconds = number(substeps[substeps.len() - 1], "seconds");
     assert!(
         (substeps.len() as f64 - 960.0 * seconds).abs() <= 1.0,
@@ -379,7 +382,8 @@ fn what_would_be_felt_is_written_down() {
     );
     assert!((updates.len() as f64 - 250.0 * seconds).abs() <= 10.0);
 
-    // The hand pushes to the right, and the stick is pushed to the left; never with a jerk, but to let go.
+    // The hand pushes to the right, so the stick is pushed to the left. The force changes smoothly except
+    // when it ends.
     let least = |rows: &[&Vec<&str>], name| {
         let values = rows.iter().map(|row| number(row, name));
         values.fold(0.0, f64::min)
@@ -408,7 +412,7 @@ fn what_would_be_felt_is_written_down() {
 }
 
 #[test]
-fn a_round_in_space_is_told_recorded_and_filmed() {
+fn round_3d_is_reported_recorded_and_filmed() {
     let folder = folder_in_space();
     let line = "--headless --level solid.toml --bot squeeze --seconds 20 --json --save it.tamaire \
                 --film it.png --force-log forces.csv";
@@ -423,7 +427,7 @@ fn a_round_in_space_is_told_recorded_and_filmed() {
     assert!(told["inside"].as_f64().unwrap() >= 0.5, "{told}");
     let ticks = told["ticks"].as_u64().unwrap();
 
-    // Eight substeps in a tick, and a hand that comes from the side is pushed on all axes.
+    // Eight substeps a tick; a hand that comes from the side is pushed along all axes.
     let table = fs::read_to_string(folder.path().join("forces.csv")).unwrap();
     let rows: Vec<Vec<&str>> = table
         .lines()
@@ -462,7 +466,7 @@ fn a_round_in_space_is_told_recorded_and_filmed() {
 }
 
 #[test]
-fn in_space_the_shaving_bot_tears_and_an_animation_shows_it() {
+fn shaving_bot_tears_3d_body_and_film_is_written() {
     let folder = folder_in_space();
     let line = "--headless --level solid.toml --bot shave --seconds 1 --json --film it.gif";
     let output = tamaire(folder.path(), line);
@@ -475,7 +479,7 @@ fn in_space_the_shaving_bot_tears_and_an_animation_shows_it() {
 }
 
 #[test]
-fn a_model_is_a_level_in_space() {
+fn model_is_played_as_3d_level() {
     let folder = folder_in_space();
     fs::write(folder.path().join("Dice.vox"), cube_model(4)).unwrap();
     fs::write(folder.path().join("broken.vox"), &cube_model(4)[..100]).unwrap();

@@ -1,6 +1,6 @@
-//! A stand on a screen that nobody sees, with hands that never rest, while its game is killed and stopped.
+//! A stand on a virtual screen with simulated players, whose game is killed and stopped again and again.
 //!
-//! `cargo xtask stand` runs it; it needs Xvfb and xdotool, and takes ten minutes or so.
+//! Run by `cargo xtask stand`; needs Xvfb and xdotool, and takes some ten minutes.
 #![cfg(target_os = "linux")]
 
 use std::collections::{BTreeSet, HashSet};
@@ -16,19 +16,19 @@ use tamaire_logbook::{Error, Event, Kind, Logbook, Round};
 use tempfile::TempDir;
 
 const TAMAIRE: &str = env!("CARGO_BIN_EXE_tamaire");
-/// How often the game is killed or stopped, unless `KILLS` says otherwise.
+/// Number of times that the game is killed or stopped, unless `KILLS` is set.
 const KILLS: usize = 54;
-/// After one more than so many within ten minutes a stand gives up.
+/// Number of crashes within ten minutes that a stand survives; it gives up after one more.
 const BORNE: usize = 9;
-/// One of so many is stopped, not killed.
+/// Every ninth time the game is stopped instead of killed.
 const STOPPED: usize = 9;
-/// Nothing that is waited for takes so long.
+/// Timeout of all waiting.
 const LONG: Duration = Duration::from_secs(60);
 const SIZE: (u32, u32) = (640, 400);
-/// A picture of the game has more colours than so many; an empty screen has one.
+/// Number of colours above which the game counts as drawn; an empty screen has one.
 const COLOURS: usize = 50;
 
-/// An X server without a screen, whose picture can be looked at.
+/// Virtual X server whose framebuffer can be read.
 struct Screen {
     server: Child,
     folder: TempDir,
@@ -44,7 +44,7 @@ impl Screen {
         server.arg(format!("{width}x{height}x24"));
         server.arg("-fbdir").arg(folder.path());
         server.stdout(Stdio::piped()).stderr(Stdio::null());
-        let mut server = server.spawn().expect("there is Xvfb (Debian: xvfb)");
+        let mut server = server.spawn().expect("Xvfb is installed (Debian: xvfb)");
         let mut number = String::new();
         let mut told = BufReader::new(server.stdout.take().unwrap());
         told.read_line(&mut number).unwrap();
@@ -56,7 +56,7 @@ impl Screen {
         }
     }
 
-    /// Whether a game is seen on it.
+    /// Whether the game is drawn on it.
     fn is_drawn(&self) -> bool {
         let picture = fs::read(self.folder.path().join("Xvfb_screen0")).unwrap();
         let (width, height) = SIZE;
@@ -70,7 +70,7 @@ impl Screen {
         while self.is_drawn() != is_drawn {
             assert!(
                 began.elapsed() < LONG,
-                "waited in vain: drawn is not {is_drawn}"
+                "timeout: expected drawn = {is_drawn}"
             );
             thread::sleep(Duration::from_millis(20));
         }
@@ -85,7 +85,7 @@ impl Drop for Screen {
     }
 }
 
-/// A hand that plays with the mouse and the keys.
+/// Simulated player with mouse and keys.
 struct Hand {
     tool: Child,
     told: ChildStdin,
@@ -98,7 +98,9 @@ impl Hand {
         tool.arg("-")
             .env("DISPLAY", &screen.name)
             .stdin(Stdio::piped());
-        let mut tool = tool.spawn().expect("there is xdotool (Debian: xdotool)");
+        let mut tool = tool
+            .spawn()
+            .expect("xdotool is installed (Debian: xdotool)");
         let told = tool.stdin.take().unwrap();
         let random = fastrand::Rng::with_seed(50);
         Self { tool, told, random }
@@ -109,7 +111,7 @@ impl Hand {
         self.told.flush().unwrap();
     }
 
-    /// Plays for so long.
+    /// Moves the mouse at random for `time`.
     fn play(&mut self, time: Duration) {
         let began = Instant::now();
         while began.elapsed() < time {
@@ -127,7 +129,7 @@ impl Drop for Hand {
     }
 }
 
-/// A stand as an operator starts it.
+/// Stand, started as an operator does.
 struct Stand {
     parent: Child,
 }
@@ -145,7 +147,7 @@ impl Stand {
         }
     }
 
-    /// The game of now, if there is one.
+    /// Process id of the running game, if there is one.
     fn game(&self) -> Option<String> {
         let parent = self.parent.id().to_string();
         let mut find = Command::new("pgrep");
@@ -155,19 +157,19 @@ impl Stand {
     }
 
     fn signal(&self, signal: &str) {
-        let game = self.game().expect("a game is on");
+        let game = self.game().expect("a game is running");
         let sent = Command::new("kill").args([signal, &game]).status();
         assert!(sent.unwrap().success());
     }
 
-    /// Ends it as a system does.
+    /// Ends the stand with SIGTERM, as an operating system does.
     fn end(mut self) {
         let parent = self.parent.id().to_string();
         let game = self.game();
         let sent = Command::new("kill").args(["-TERM", &parent]).status();
         assert!(sent.unwrap().success());
         self.parent.wait().unwrap();
-        // The game ends with its parent.
+        // The game ends with its parent process.
         let began = Instant::now();
         while game.as_ref().is_some_and(|game| is_alive(game)) {
             assert!(began.elapsed() < LONG, "the game outlives its parent");
@@ -178,7 +180,7 @@ impl Stand {
 
 impl Drop for Stand {
     fn drop(&mut self) {
-        // Nothing is left where the trial breaks off: a game ends with its parent.
+        // No process survives a failed test: the game ends with its parent.
         let _gone = self.parent.kill();
         let _gone = self.parent.wait();
     }
@@ -191,7 +193,7 @@ fn is_alive(process: &str) -> bool {
         .is_some_and(|rest| !rest.trim().is_empty() && !rest.trim().starts_with('Z'))
 }
 
-/// The rounds of a logbook that others write.
+/// Ids of the rounds in a logbook that is being written.
 fn rounds(logbook: &Path) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     if let Ok(logbook) = Logbook::read(logbook) {
@@ -214,7 +216,7 @@ fn events(logbook: &Path) -> Vec<Kind> {
     found
 }
 
-/// The middle one and the longest, if there are any.
+/// Median and maximum, if there are any.
 fn told(times: &mut [Duration]) -> Option<[Duration; 2]> {
     times.sort();
     Some([*times.get(times.len() / 2)?, *times.last()?])
@@ -222,7 +224,7 @@ fn told(times: &mut [Duration]) -> Option<[Duration; 2]> {
 
 #[test]
 #[ignore = "needs Xvfb and xdotool, and takes ten minutes: `cargo xtask stand`"]
-fn a_game_that_is_killed_while_it_is_played_is_back_and_loses_no_round_that_ended() {
+fn stand_restarts_killed_game_without_losing_rounds() {
     let kills = env::var("KILLS").map_or(KILLS, |kills| kills.parse().unwrap());
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("exhibit.toml");
@@ -243,7 +245,7 @@ fn a_game_that_is_killed_while_it_is_played_is_back_and_loses_no_round_that_ende
             stand = Stand::begin(&screen, &file);
             screen.wait_until(true);
         }
-        // Somebody plays, ends a round, and begins another.
+        // The player plays, ends a round, and begins another.
         hand.play(Duration::from_secs(5));
         let before = rounds(&logbook).len();
         hand.tell("key r");
@@ -259,7 +261,7 @@ fn a_game_that_is_killed_while_it_is_played_is_back_and_loses_no_round_that_ende
         if kill % STOPPED == STOPPED - 1 {
             stopped += 1;
             stand.signal("-STOP");
-            // What is stopped is still seen.
+            // A stopped game stays visible until it is replaced.
             let began = Instant::now();
             screen.wait_until(false);
             screen.wait_until(true);
@@ -291,7 +293,7 @@ fn a_game_that_is_killed_while_it_is_played_is_back_and_loses_no_round_that_ende
     let count = |kind: Kind| events.iter().filter(|&event| *event == kind).count();
     assert_eq!(count(Kind::Crashed), kills - stopped);
     assert_eq!(count(Kind::Hung), stopped);
-    // Each of the rounds is what it says.
+    // Each round of the logbook can be played again.
     let out = folder.path().join("report");
     let mut report = Command::new(TAMAIRE);
     report.args(["report", "--rerun", "--no-clips", "--out"]);

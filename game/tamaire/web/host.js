@@ -1,34 +1,34 @@
-// What the page does for the game (game/tamaire/src/platform/web/host.rs asks for it): keeps things, hands out files, takes them in.
+// Services of the page for the game (see game/src/platform/web/host.rs): storage, downloads, and opening of files.
 
 import { Speaker } from "./sound.js";
 
 const STORE = "things";
-/** Under this key stands what is another one after each change. */
+/** Key of a value that changes with every change of the storage. */
 const STAMP = "stamp";
-/** Most bytes of a file that is read: the game reads no more of any kind. */
+/** Maximum size of a file that is read [bytes], the game's limit for all kinds of files. */
 const MOST_BYTES = 1 << 26;
 
 /** @typedef {{key: string, bytes: Uint8Array | undefined, written: number}} Changed */
 /** @typedef {{name: string, bytes: Uint8Array | undefined, length: number}} GivenFile */
 
 export class Host {
-  /** Why nothing can be kept, if so. @type {string | undefined} */
+  /** Reason why nothing can be saved, if any. @type {string | undefined} */
   refusal;
   /** @type {IDBDatabase | undefined} */
   #database;
-  /** Tells other tabs what changed. @type {BroadcastChannel | undefined} */
+  /** Notifies other tabs of changes. @type {BroadcastChannel | undefined} */
   #others;
   /** @type {Changed[]} */
   #changes = [];
-  /** What stood under STAMP when all was read. @type {string | undefined} */
+  /** Value of STAMP when the storage was last read. @type {string | undefined} */
   #stamp;
-  /** What is done alone now. @type {IDBTransaction | undefined} */
+  /** Current exclusive transaction. @type {IDBTransaction | undefined} */
   #transaction;
-  /** Why those were given up that were not taken. @type {WeakMap<IDBTransaction, unknown>} */
+  /** Reasons of aborted transactions. @type {WeakMap<IDBTransaction, unknown>} */
   #refused = new WeakMap();
   /** @type {string | undefined} */
   #failure;
-  /** Called when the game cannot go on drawing. @type {() => void} */
+  /** Called when the game cannot continue drawing. @type {() => void} */
   onLost = () => {};
   /** @type {GivenFile[][]} */
   #dropped = [];
@@ -44,7 +44,7 @@ export class Host {
   /** @type {Uint8Array | undefined} */
   #letters;
 
-  /** The page, with all that it kept. It opens also where the browser keeps nothing. */
+  /** Opens the page's services and reads the storage. Also works if the browser refuses to store anything. */
   static async open() {
     const host = new Host();
     host.#hearLinks();
@@ -57,22 +57,22 @@ export class Host {
     return host;
   }
 
-  /** The language that the visitor prefers. */
+  /** Language that the player prefers. */
   get language() {
     return navigator.language ?? "";
   }
 
-  /** The language that the game speaks. @param {string} language */
+  /** Sets the language of the game. @param {string} language */
   set spoken(language) {
     if (document.documentElement.lang !== language) {
       document.documentElement.lang = language;
     }
   }
 
-  // ---- what is kept ----
+  // ---- storage ----
 
   async #openStore() {
-    // What another tab changes meanwhile is heard after what is read.
+    // Listens first, so that changes of other tabs during the first read are noticed.
     if (!this.#others && "BroadcastChannel" in globalThis) {
       this.#others = new BroadcastChannel("tamaire");
       this.#others.onmessage = () => this.#look();
@@ -80,16 +80,16 @@ export class Host {
     const asked = indexedDB.open("tamaire", 1);
     asked.onupgradeneeded = () => asked.result.createObjectStore(STORE);
     const database = await answer(asked);
-    // Another tab with a newer version wants to change how things are kept.
+    // Another tab with a newer version wants to change the format of the storage.
     database.onversionchange = () => database.close();
-    // Browsers close it in the background, too.
+    // Browsers may close the database of a page in the background.
     database.onclose = () => (this.#database = undefined);
     this.#database = database;
-    // What a browser keeps for pages that are visited often it does not throw away when its disk is full.
+    // Asks the browser not to delete the data when its disk is full. It grants that to pages that are visited often.
     navigator.storage?.persist?.().catch(() => {});
   }
 
-  /** A way to what is kept. @param {IDBTransactionMode} mode */
+  /** Begins a transaction. @param {IDBTransactionMode} mode */
   async #begin(mode) {
     if (!this.#database) {
       await this.#openStore();
@@ -97,7 +97,7 @@ export class Host {
     return /** @type {IDBDatabase} */ (this.#database).transaction(STORE, mode);
   }
 
-  /** Learns what is kept, where that changed since. @param {IDBTransaction} transaction */
+  /** Reads the storage if it has changed since the last read. @param {IDBTransaction} transaction */
   async #read(transaction) {
     const store = transaction.objectStore(STORE);
     const stamp = await answer(store.get(STAMP));
@@ -109,7 +109,7 @@ export class Host {
     }
   }
 
-  /** Learns it between two changes. */
+  /** Reads the storage in a transaction of its own. */
   async #look() {
     try {
       await this.#read(await this.#begin("readonly"));
@@ -118,22 +118,22 @@ export class Host {
     }
   }
 
-  /** For a game that begins anew: it knows nothing yet. */
+  /** Reads everything again for a restarted game. */
   async again() {
     this.#wantsLetters = false;
     this.#stamp = undefined;
     await this.#look();
   }
 
-  /** The next thing that is kept; one without a key says that nothing is but what follows. */
+  /** Returns the next change of the storage. A change with an empty key means that only the following entries exist. */
   takeChange() {
     return this.#changes.shift();
   }
 
   /**
-   * Keeps and removes things, all of them or none, while no other tab does, and when all that they did is known. Resolves
-   * once it is truly kept, or says why it is not.
-   * @param {() => void} job what does so, at once
+   * Saves and removes entries in one exclusive transaction, after reading all changes of other tabs. Resolves once the
+   * transaction is complete; if it failed, to the reason.
+   * @param {() => void} job calls `keep` and `remove` synchronously
    * @returns {Promise<string | undefined>}
    */
   async alone(job) {
@@ -153,27 +153,27 @@ export class Host {
       }
       await ended;
     } catch (error) {
-      // What the game takes for kept is not.
+      // The game assumes entries that were not saved, so it must read everything again.
       this.#stamp = undefined;
       await this.#look();
       return String(error);
     }
   }
 
-  /** What came of it; other tabs hear of it. @param {IDBTransaction} transaction @returns {Promise<void>} */
+  /** Resolves at the end of a transaction and notifies other tabs. @param {IDBTransaction} transaction @returns {Promise<void>} */
   #end(transaction) {
     const ended = new Promise((resolve, reject) => {
       transaction.oncomplete = () => resolve(this.#others?.postMessage("changed"));
       transaction.onabort = () => reject(this.#refused.get(transaction) ?? transaction.error);
     });
-    // Who waits for it may still be reading.
+    // The caller may still be reading when it fails.
     ended.catch(() => {});
     return ended;
   }
 
   /** @param {string} key @param {Uint8Array} bytes @param {number} written */
   keep(key, bytes, written) {
-    // They lie in the game's memory, which moves on.
+    // The bytes are in the game's memory, which will change.
     const thing = { bytes: bytes.slice(), written };
     this.#write((store) => store.put(thing, key));
   }
@@ -188,13 +188,13 @@ export class Host {
     if (this.#transaction) {
       return this.#change(this.#transaction, change);
     }
-    // The page may be about to go: this asks nothing first.
+    // The page may be closing, so nothing is awaited before the write.
     try {
       const transaction = this.#database?.transaction(STORE, "readwrite") ?? (await this.#begin("readwrite"));
       const ended = this.#end(transaction);
       this.#change(transaction, change);
       if (!this.#refused.has(transaction)) {
-        // Firefox gives up what is not told to end when the page goes.
+        // Firefox aborts uncommitted transactions when the page closes.
         transaction.commit?.();
       }
       await ended;
@@ -216,7 +216,7 @@ export class Host {
     }
   }
 
-  /** Why something is not kept that was not done alone, once. */
+  /** Returns and clears the reason of a failed write outside of `alone`. */
   takeFailure() {
     const failure = this.#failure;
     this.#failure = undefined;
@@ -232,7 +232,7 @@ export class Host {
     link.href = address;
     link.download = name;
     link.click();
-    // The browser begins to read it after this.
+    // The browser starts reading after this call.
     setTimeout(() => URL.revokeObjectURL(address), 60_000);
   }
 
@@ -251,7 +251,7 @@ export class Host {
   }
 
   #takeDrops() {
-    // What is dropped beside the canvas must not take the place of the page.
+    // A file dropped beside the canvas must not replace the page.
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener(
       "drop",
@@ -284,7 +284,7 @@ export class Host {
     const link = this.#link;
     if (link) {
       this.#link = undefined;
-      // It is opened once, not again with each reload.
+      // A reload does not open the link again.
       history.replaceState(null, "", location.pathname + location.search);
     }
     return link;
@@ -294,7 +294,7 @@ export class Host {
     return location.origin + location.pathname;
   }
 
-  /** Puts a text on the clipboard. @param {string} text */
+  /** Copies a text to the clipboard. @param {string} text */
   async copy(text) {
     try {
       await navigator.clipboard.writeText(text);
@@ -304,7 +304,7 @@ export class Host {
     }
   }
 
-  /** Whether the browser took what was copied, once that is known. */
+  /** Returns once whether the last copy succeeded; undefined while unknown. */
   takeCopied() {
     const copied = this.#copied;
     this.#copied = undefined;
@@ -320,9 +320,9 @@ export class Host {
 
   // ---- the screen ----
 
-  /** The game cannot go on drawing. */
+  /** Called when the game cannot continue drawing. */
   lost() {
-    // Not in the middle of a frame.
+    // After the current frame.
     setTimeout(() => this.onLost(), 0);
   }
 
@@ -330,12 +330,12 @@ export class Host {
     return Boolean(document.fullscreenElement);
   }
 
-  /** Waits for the next frame; a page that is hidden has none. */
+  /** Waits for the next frame. A hidden page has no frames and only yields. */
   breathe() {
     return new Promise((resolve) => (document.hidden ? setTimeout(resolve, 0) : requestAnimationFrame(resolve)));
   }
 
-  /** Fetches the letters of Japanese, once. */
+  /** Downloads the Japanese font once. */
   async wantLetters() {
     if (this.#wantsLetters) {
       return;
@@ -348,7 +348,7 @@ export class Host {
       }
       this.#letters = new Uint8Array(await response.arrayBuffer());
     } catch {
-      // Offline, before all was kept: it is tried again.
+      // Offline before the font was cached: tries again later.
       setTimeout(() => (this.#wantsLetters = false), 5_000);
     }
   }
@@ -364,7 +364,7 @@ export class Host {
     const done = wanted
       ? document.documentElement.requestFullscreen?.()
       : document.fullscreenElement && document.exitFullscreen();
-    // Browsers refuse it without a press, and some telephones always.
+    // Browsers refuse it without a user gesture, and some phones always.
     Promise.resolve(done).catch(() => {});
   }
 }

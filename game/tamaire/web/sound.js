@@ -1,14 +1,14 @@
-// The loudspeaker of the game in a browser: its synth plays in an audio worklet, from the first gesture on. Whatever goes
-// wrong is told as trouble, and the game goes on in silence. `worklet.js` and `sound.wasm` lie beside this.
+// Sound output in a browser: the synth runs in an audio worklet from the first user gesture on. After any error, the game
+// continues without sound and reports it as trouble. Needs `worklet.js` and `sound.wasm` in the same folder.
 
-/** What browsers take for a gesture, one this and one that. A pad is connected when a button on it is pressed. */
+/** Events that browsers accept as a user gesture; they differ. A pad connects when one of its buttons is pressed. */
 const GESTURES = ["pointerdown", "pointerup", "touchend", "keydown", "click", "gamepadconnected"];
 
 const beside = (/** @type {string} */ file) => new URL(file, import.meta.url);
 
-/** What a browser or a page lacks to play. */
+/** Returns the missing requirement, if any. */
 function lack() {
-  if (!isSecureContext) return "sound needs a page that came by https";
+  if (!isSecureContext) return "sound requires a page loaded over https";
   if (!globalThis.AudioContext || !globalThis.AudioWorkletNode) return "this browser has no audio worklets";
 }
 
@@ -24,7 +24,7 @@ export class Speaker {
 
   constructor() {
     if (this.#trouble) return;
-    // Not every server knows what type it has.
+    // Not every server sends the right media type, so streaming compilation is not used.
     this.#module = fetch(beside("sound.wasm"))
       .then((response) => (response.ok ? response.arrayBuffer() : Promise.reject(new Error(`no synth (${response.status})`))))
       .then((bytes) => WebAssembly.compile(bytes));
@@ -36,30 +36,30 @@ export class Speaker {
       if (document.hidden) this.#context?.suspend().catch(() => {});
       else if (this.#context) this.#wake();
     });
-    // There may have been a gesture while the game was loading.
+    // The user may have interacted while the game was loading.
     if (navigator.userActivation?.hasBeenActive) this.#wake();
   }
 
   /**
-   * Tells the synth a `Message` of game/tamaire_sound. Nothing is kept for later: who begins to hear hears what is.
+   * Sends a `Message` of crates/tamaire_sound to the synth. Messages are dropped while no sound is playing.
    * @param {Uint8Array} bytes
    */
   tell(bytes) {
     if (!this.#node || this.#context?.state !== "running") return;
-    // The game goes on writing where these are.
+    // The game reuses this memory.
     const copy = bytes.slice();
     this.#node.port.postMessage(copy, [copy.buffer]);
   }
 
   /**
-   * Why nothing is heard, if so. To wait for a gesture is no trouble.
+   * Returns the reason of missing sound, if any. Waiting for a gesture is not an error.
    * @returns {string | undefined}
    */
   trouble() {
     return this.#trouble;
   }
 
-  /** Plays, where the browser lets it: some stop it for a call or another program, and want a gesture again. */
+  /** Starts or resumes playing. Some browsers stop it for a call or another program and require a new gesture. */
   #wake() {
     if (document.hidden || this.#trouble) return;
     try {

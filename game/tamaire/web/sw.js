@@ -1,13 +1,13 @@
-// Keeps the whole game in the browser: it opens without a network, and a newer one is fetched while this one is played.
+// Service worker that caches the whole game: it works offline, and a newer version is downloaded in the background.
 
-// Written by the build.
+// Replaced by the build.
 const VERSION = "@VERSION@";
 const FILES = ["@FILES@"];
 
 const NAME = `tamaire-${VERSION}`;
 
 self.addEventListener("install", (event) => {
-  // What is named by its contents stays as it is; the rest may be old in the browser's own cache.
+  // Files below a content hash never change; others may be outdated in the HTTP cache.
   const requests = FILES.map((file) => new Request(file, { cache: file.startsWith(VERSION) ? "default" : "reload" }));
   event.waitUntil(caches.open(NAME).then((cache) => cache.addAll(requests)));
 });
@@ -20,7 +20,7 @@ self.addEventListener("message", ({ data }) => {
 
 self.addEventListener("activate", (event) => {
   const others = async () => {
-    // Another tab may still play the one before.
+    // Another tab may still use the old version.
     if ((await clients.matchAll({ includeUncontrolled: true })).length > 1) return;
     const names = (await caches.keys()).filter((name) => name.startsWith("tamaire-") && name !== NAME);
     await Promise.all(names.map((name) => caches.delete(name)));

@@ -1,11 +1,11 @@
-// The synth of the game, on the thread of the browser that plays sound. What it is told are bytes of
-// game/tamaire_sound, which the module alone understands. Memory is taken at the beginning only.
+// Synth of the game on the browser's audio thread. Its messages are bytes of crates/tamaire_sound, decoded by the module.
+// It allocates memory at the start only.
 
-/** As many frames as a browser asks for at a time. */
+/** Frames in a render quantum of the Web Audio API. */
 const FRAMES = 128;
 
 /**
- * @typedef {object} Exports Of `tamaire_sound` built with the feature `worklet`.
+ * @typedef {object} Exports Exports of crates/tamaire_worklet.
  * @property {WebAssembly.Memory} memory
  * @property {(rate: number) => void} sound_begin
  * @property {() => number} sound_message

@@ -1,16 +1,16 @@
-//! The plugin for Bevy, `plugins/bevy_fuwafuwa`: a workspace of its own, built in a folder of its own.
+//! Bevy plugin, `crates/bevy_fuwafuwa`: a workspace of its own with its own target folder.
 
 use crate::packages::{IfMissing, Purpose, provide};
 use crate::shell::{FAILED, Failure, cargo, execute, root, target};
 use std::fs;
 use std::process::Command;
 
-/// What is wanted of it.
+/// Task for the plugin.
 #[derive(Debug, PartialEq)]
 pub enum Bevy {
-    /// That it holds: format, lints, tests without a window, documentation; and that its examples compile.
+    /// Checks format, lints, tests without a window and documentation, and compiles the examples.
     Check,
-    /// Pictures of its scene, on a screen that nobody sees.
+    /// Renders pictures of its scene on a virtual display.
     Pictures,
 }
 
@@ -38,7 +38,7 @@ fn check() -> Result<(), Failure> {
                 "-D",
                 "warnings",
             ],
-            "mend the warnings above: perhaps the examples do not follow the plugin or Bevy any more",
+            "fix the warnings above; the examples may use an outdated API of the plugin or of Bevy",
         ),
         (
             &["test"],
@@ -46,7 +46,7 @@ fn check() -> Result<(), Failure> {
         ),
         (
             &["doc", "--no-deps"],
-            "mend the documentation warnings above",
+            "fix the documentation warnings above",
         ),
     ];
     for (words, hint) in steps {
@@ -68,7 +68,7 @@ fn pictures(if_missing: IfMissing) -> Result<(), Failure> {
     execute(&mut build, "the scene does not compile, see above")?;
     let folder = folder().join("pictures");
     fs::create_dir_all(&folder).map_err(|error| Failure {
-        message: format!("{} cannot be made: {error}", folder.display()),
+        message: format!("{}: cannot create the folder: {error}", folder.display()),
         code: FAILED,
     })?;
     let mut play = Command::new("xvfb-run");
@@ -77,15 +77,17 @@ fn pictures(if_missing: IfMissing) -> Result<(), Failure> {
         .arg(&folder);
     execute(
         &mut play,
-        "the scene drew nothing: is there a Vulkan driver, mesa-vulkan-drivers for one?",
+        "the scene was not drawn: is a Vulkan driver installed, for example mesa-vulkan-drivers?",
     )?;
-    eprintln!("xtask: look at {}", folder.display());
+    eprintln!("xtask: the pictures are in {}", folder.display());
     Ok(())
 }
 
-/// A call of cargo for the workspace of the plugin.
+/// Returns a cargo command for the workspace of the plugin.
 fn in_workspace(words: &[&str]) -> Command {
-    let (task, rest) = words.split_first().expect("a task comes first");
+    let (task, rest) = words
+        .split_first()
+        .expect("the first word is a cargo command");
     let mut command = cargo();
     command.args([task, "--manifest-path", MANIFEST]).args(rest);
     command.env("CARGO_TARGET_DIR", folder());

@@ -1,4 +1,4 @@
-//! Other systems than this one: what compiles for them, and what runs their programs here.
+//! Cross compilation for other systems, and running their programs here.
 
 use crate::debian;
 use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
@@ -8,22 +8,22 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A system that programs can be built for, and run, from here.
+/// System for which programs can be built and run from here.
 pub struct System {
-    /// How it is called.
+    /// Name for messages.
     pub name: &'static str,
-    /// As Rust calls it.
+    /// Rust's target triple.
     pub triple: &'static str,
-    /// Links its programs; and the Debian package that has it.
+    /// Linker, and the Debian package that contains it.
     linker: (&'static str, &'static str),
-    /// What else compiles for it, as programs or by a file.
+    /// Other required programs or files, each with its Debian package.
     compilers: &'static [(&'static str, &'static str)],
-    /// Runs its programs, with these words.
+    /// Emulator and its Debian package; `words` are its arguments.
     runner: (&'static str, &'static str),
     words: &'static str,
 }
 
-/// 64-bit ARM with Linux, as in many a small computer.
+/// 64-bit ARM with Linux.
 pub const ARM: System = System {
     name: "ARM",
     triple: "aarch64-unknown-linux-gnu",
@@ -47,24 +47,25 @@ pub const WINDOWS: System = System {
     words: "",
 };
 
-/// What is wanted of a system.
+/// Use of a system.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Wanted {
-    /// To build programs for it.
+    /// Build programs for it.
     Build,
-    /// And to run them here.
+    /// Build its programs and run them here.
     Run,
 }
 
-/// What compiles for a system.
+/// Toolchain for a system.
 pub struct Compiler {
     pub system: &'static System,
-    /// Where Debian's standard library is in source, unless the toolchain in use has it built.
+    /// Sources of Debian's standard library, unless the toolchain in use contains a built one.
     pub sources: Option<PathBuf>,
 }
 
 impl System {
-    /// The compiler to use. Where there is none, `undone` says what did not happen.
+    /// Returns the toolchain for this system. If there is none, the error begins with `undone`, the task that
+    /// was not done.
     pub fn compiler(
         &'static self,
         wanted: Wanted,
@@ -75,7 +76,8 @@ impl System {
         if if_missing == IfMissing::Install
             && let Err(lacks) = &found
         {
-            // Fresh machines have stale lists, or none. An update that fails may leave good ones.
+            // Package lists of fresh machines are old or missing. If the update fails, the old lists may
+            // still do.
             apt_get(&["update", "--quiet"]);
             let names = lacks.iter().map(|lack| lack.package.as_str());
             apt_get(&install_arguments(names));
@@ -83,8 +85,8 @@ impl System {
         }
         found.map_err(|lacks| Failure {
             message: format!(
-                "{undone}:\n{}\nOn Debian, the same with `--install` installs that. \
-                 Elsewhere: `rustup target add {}`, and the programs on the path.",
+                "{undone}:\n{}\nOn Debian, add `--install` to install the packages. \
+                 Elsewhere, run `rustup target add {}` and put the programs on the path.",
                 list_lacks(&lacks),
                 self.triple
             ),
@@ -98,14 +100,14 @@ impl System {
         let runner = (wanted == Wanted::Run).then_some(self.runner);
         let mut lacks: Vec<Lack> = programs
             .chain(runner)
-            // An absolute path replaces the folders of the path.
+            // An absolute path is checked as it is.
             .filter(|(program, _)| !is_on_path(program))
-            .map(|(program, package)| Lack::new(format!("there is no {program}"), package))
+            .map(|(program, package)| Lack::new(format!("{program} not found"), package))
             .collect();
         let mut sources = None;
         if !debian::toolchain_has(self.triple) {
             match debian::find(self.triple, debian::description().as_deref(), Path::exists) {
-                Err(lack) => lacks.extend([lack, Lack::new("nor its sources", "rust-web-src")]),
+                Err(lack) => lacks.extend([lack, Lack::new("no sources", "rust-web-src")]),
                 Ok(found) => match found.sources {
                     Err(lack) => lacks.push(lack),
                     Ok(path) => sources = Some(path),
@@ -121,18 +123,18 @@ impl System {
         }
     }
 
-    /// Where programs for it are built, in folders named for their profiles.
+    /// Folder of programs built for this system, with a subfolder for each profile.
     pub fn folder(&self) -> PathBuf {
         root().join(target()).join("other").join(self.triple)
     }
 
-    /// The game as it is handed out, where it was built.
+    /// Returns the game's release build, if it was built.
     fn handed_out(&self) -> Option<PathBuf> {
         let game = self.folder().join("dist/tamaire.exe");
         game.is_file().then_some(game)
     }
 
-    /// Its programs on this machine, with what keeps them from touching the files of whoever works here.
+    /// Returns a command that runs a program of this system without access to the user's files.
     fn run(&self, program: &Path) -> Command {
         let mut command = Command::new(self.runner.0);
         command.args(self.words.split_whitespace()).arg(program);
@@ -152,7 +154,7 @@ impl System {
 }
 
 impl Compiler {
-    /// A call of cargo that builds for the system, and runs there what is to be run.
+    /// Returns a cargo command that builds for the system and runs programs in its emulator.
     pub fn cargo(&self, words: &[&str]) -> Command {
         let System {
             triple,
@@ -175,7 +177,7 @@ impl Compiler {
                 format!("CARGO_TARGET_{name}_RUNNER"),
                 format!("{} {runner_words}", runner.0).trim(),
             )
-            // Flags for the native build, such as a target-cpu, make no sense here.
+            // Flags for the native build, such as a target-cpu, do not apply here.
             .env_remove("RUSTFLAGS")
             .env_remove("CARGO_ENCODED_RUSTFLAGS");
         if self.sources.is_some() {
@@ -188,7 +190,7 @@ impl Compiler {
     }
 }
 
-/// The golden scenes and 20 rounds of bots on another system: the same bits?
+/// Checks that the golden scenes and 20 rounds of bots give the same bits on another system.
 pub fn check(system: &'static System, if_missing: IfMissing) -> Result<(), Failure> {
     let undone = format!("the golden scenes were NOT run on {}", system.name);
     let compiler = system.compiler(Wanted::Run, if_missing, &undone)?;
@@ -196,8 +198,8 @@ pub fn check(system: &'static System, if_missing: IfMissing) -> Result<(), Failu
         wine::prepare(system.linker.0)?;
     }
     execute(
-        &mut compiler.cargo(&["test", "--release", "--package", "determinism_checks"]),
-        "a scene ends in other bits there: look for arithmetic beyond + - * / and sqrt, and for lanes that sum in another order",
+        &mut compiler.cargo(&["test", "--release", "--package", "fuwafuwa_golden"]),
+        "the result of a scene differs in its bits: look for arithmetic beyond + - * / and sqrt, and for SIMD lanes that are summed in another order",
     )?;
     let folder = root().join(target()).join("replays");
     let replays = folder.display().to_string();
@@ -212,10 +214,10 @@ pub fn check(system: &'static System, if_missing: IfMissing) -> Result<(), Failu
     ];
     let mut record = cargo();
     record.args(example).args(["record", &replays]);
-    execute(&mut record, "the bots' rounds could not be recorded")?;
+    execute(&mut record, "the rounds of the bots could not be recorded")?;
     execute(
         &mut compiler.cargo(&[&example[..], &["verify", &replays]].concat()),
-        "a round that was recorded here goes another way there",
+        "a round recorded here gives another result there",
     )?;
     match system.handed_out() {
         Some(game) => watch_all(system, &game, &folder),
@@ -223,7 +225,8 @@ pub fn check(system: &'static System, if_missing: IfMissing) -> Result<(), Failu
     }
 }
 
-/// The same rounds, watched by the game as it is handed out, in a folder whose name is no plain word.
+/// Verifies the same rounds with the release build of the game, in a folder with spaces and Japanese
+/// characters.
 fn watch_all(system: &System, game: &Path, replays: &Path) -> Result<(), Failure> {
     let folder = replays.join("遊び 場");
     let copied = fs::create_dir_all(&folder).and_then(|()| {
@@ -244,12 +247,12 @@ fn watch_all(system: &System, game: &Path, replays: &Path) -> Result<(), Failure
         watch.args(["--headless", "--replay"]).arg(&file);
         execute(
             &mut watch,
-            "the game takes a round for changed that was not",
+            "the game reports an unchanged round as manipulated",
         )?;
         count += 1;
     }
     println!(
-        "{}: the game itself watched {count} rounds, and all go as they say",
+        "{}: the release build of the game verified {count} rounds",
         system.name
     );
     Ok(())
@@ -260,7 +263,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_for_the_program_stay_behind_those_for_cargo() {
+    fn program_arguments_follow_cargo_arguments() {
         let compiler = Compiler {
             system: &ARM,
             sources: Some(PathBuf::from("/usr/src")),

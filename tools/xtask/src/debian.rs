@@ -1,23 +1,24 @@
-//! Rust for other systems. rustup's toolchain can build for one after `rustup target add`. Where it has not been told to, or cannot
-//! reach its server, Debian's packages do: a compiler, and the sources of its standard library, which cargo then builds too.
+//! Rust toolchains for other targets. rustup's toolchain builds for a target after `rustup target add`.
+//! Otherwise Debian's packages are used: a compiler, and the sources of its standard library, which cargo
+//! then builds, too.
 
 use crate::packages::Lack;
 use crate::shell::output_of;
 use std::env;
 use std::path::{Path, PathBuf};
 
-/// Where Debian puts its compiler. The one on the path is usually another.
+/// Debian's compiler, which is usually not the one on the path.
 const RUSTC: &str = "/usr/bin/rustc";
-/// Stable compilers refuse `-Z` without the second.
+/// Variables that select Debian's compiler and permit `-Z` options, which stable compilers otherwise refuse.
 pub const ENVIRONMENT: [(&str, &str); 2] = [("RUSTC", RUSTC), ("RUSTC_BOOTSTRAP", "1")];
-/// The oldest Rust that this workspace promises to build with.
+/// Minimum supported Rust version (MSRV) of this workspace.
 pub const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
 
 /// Debian's compiler.
 pub struct Found {
-    /// The number of its LLVM, which linkers bear too.
+    /// Major version of its LLVM, which also names the matching linker.
     pub llvm: String,
-    /// Where its standard library is in source.
+    /// Sources of its standard library.
     pub sources: Result<PathBuf, Lack>,
 }
 
@@ -28,12 +29,12 @@ pub fn toolchain_has(target: &str) -> bool {
     library.is_some_and(|path| Path::new(path.trim()).is_dir())
 }
 
-/// What Debian's compiler says about itself, where there is one.
+/// Returns the version output of Debian's compiler, if it is installed.
 pub fn description() -> Option<String> {
     output_of(RUSTC, &["--version", "--verbose"])
 }
 
-/// Debian's compiler, from what it says about itself, to build for this target.
+/// Finds Debian's compiler for a target from its version output.
 pub fn find(
     target: &str,
     description: Option<&str>,
@@ -44,18 +45,19 @@ pub fn find(
         lines.find_map(|line| line.strip_prefix(name)?.strip_prefix(": "))
     };
     let (Some(release), Some(llvm)) = (field("release"), field("LLVM version")) else {
-        let what = format!("the Rust toolchain cannot build for {target}, and there is no {RUSTC}");
+        let what =
+            format!("the Rust toolchain cannot build for {target}, and {RUSTC} does not exist");
         return Err(Lack::new(what, "rustc-web"));
     };
     if !is_new_enough(release) {
-        let what = format!("{RUSTC} is Rust {release}, this workspace needs {OLDEST}");
+        let what = format!("{RUSTC} is Rust {release}, but this workspace requires {OLDEST}");
         return Err(Lack::new(what, "rustc-web"));
     }
     let sources = PathBuf::from(format!("/usr/src/rustc-{release}/library"));
     let sources = match exists(&sources.join("std")) {
         true => Ok(sources),
         false => {
-            let what = format!("there are no sources in {}", sources.display());
+            let what = format!("no sources in {}", sources.display());
             Err(Lack::new(what, "rust-web-src"))
         }
     };
@@ -65,7 +67,7 @@ pub fn find(
     })
 }
 
-/// Whether a release of Rust, such as `1.96.0`, is one that this workspace promises to build with.
+/// Whether a Rust release such as `1.96.0` is at least the MSRV.
 fn is_new_enough(release: &str) -> bool {
     let numbers = |version: &str| -> Vec<u32> {
         let parts = version.split('.');

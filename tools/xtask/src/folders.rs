@@ -1,11 +1,11 @@
-//! Folders of this machine, and what they are called in what is handed out: nobody need know where it was built, and the same bytes
-//! come out elsewhere.
+//! Neutral names for local folders in release builds, so that no local path leaks and builds are reproducible
+//! elsewhere.
 
 use crate::shell::{root, target};
 use std::env;
 use std::path::{Path, PathBuf};
 
-/// The folders, and what they are called. Where several fit, the last counts.
+/// Returns local folders with their neutral names. If several apply, the last one counts.
 pub fn names() -> Vec<(String, &'static str)> {
     let home = env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| Some(env::home_dir()?.join(".cargo")));
@@ -19,7 +19,8 @@ pub fn names() -> Vec<(String, &'static str)> {
     names
 }
 
-/// Flags for rustc as `CARGO_ENCODED_RUSTFLAGS` has them, which cargo takes in place of all others: between them stands what no path has.
+/// Returns rustc flags in the format of `CARGO_ENCODED_RUSTFLAGS`, which replaces all other flags. The
+/// separator U+001F does not occur in paths.
 pub fn encoded<'a>(flags: impl IntoIterator<Item = &'a str>, names: &[(String, &str)]) -> String {
     let flags = flags.into_iter().map(str::to_string);
     let names = names
@@ -33,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_folder_with_a_space_stays_one_flag() {
+    fn encoded_keeps_folder_with_space_in_one_flag() {
         let names = [("/my home".to_string(), "/cargo")];
         let flags = encoded(["-Ctarget-feature=+simd128"], &names);
         assert_eq!(
@@ -45,9 +46,9 @@ mod tests {
         );
     }
 
-    /// The target folder may lie in the root: its own name has to be the later one.
+    /// The target folder may be inside the root, so its name must come later.
     #[test]
-    fn what_is_inside_another_folder_comes_after_it() {
+    fn names_list_inner_folder_after_outer() {
         let names = names();
         let place = |short| names.iter().position(|(_, name)| *name == short);
         assert!(place("/tamaire") < place("/target"));

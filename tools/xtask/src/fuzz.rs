@@ -1,5 +1,5 @@
-//! Input that nobody thought of: libFuzzer at the doors of `tools/fuzz`, with a stable compiler. What cargo-fuzz
-//! needs a nightly one for are sanitizers; the passes that note which ways are taken are in every LLVM.
+//! Fuzzing of the entry points ("doors") of `crates/hostile` with libFuzzer and a stable compiler. cargo-fuzz
+//! needs a nightly compiler only for sanitizers; the coverage passes are part of every LLVM.
 
 use crate::packages::{IfMissing, Purpose, provide};
 use crate::shell::{FAILED, Failure, cargo, execute, output_of, root, target};
@@ -8,29 +8,29 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-/// Counts how often each way is taken, and shows what is compared. Checksums of PNG hold in any case.
+/// Instruments coverage counters and comparisons. With `cfg(fuzzing)` all PNG checksums count as valid.
 const FLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
     -Cllvm-args=-sanitizer-coverage-trace-compares";
 
-/// What no input may take, in seconds and in MiB.
+/// Limits for a single input [s, MiB].
 const MOST_SECONDS: u32 = 2;
 const MOST_MEMORY: u32 = 1024;
 
-/// Longest input, in bytes.
+/// Maximum length of an input [bytes].
 const MOST_BYTES: u32 = 1 << 16;
 
-/// Without a word it takes so long for all doors together.
+/// Default duration for all doors together [min].
 const MINUTES: f32 = 9.0;
 
-/// What came of a door.
+/// Result of fuzzing a door.
 struct Outcome {
     seconds: u64,
     is_good: bool,
     log: String,
 }
 
-/// Tries some doors, or all, for so many minutes together.
+/// Fuzzes the named doors, or all, sharing the given number of minutes.
 pub fn run(words: &[String]) -> Result<(), Failure> {
     let (minutes, doors) = understood(words).map_err(failure)?;
     provide(&[Purpose::Build, Purpose::Fuzzing], IfMissing::Install);
@@ -42,7 +42,7 @@ pub fn run(words: &[String]) -> Result<(), Failure> {
     let found = folder.join("found");
     fs::create_dir_all(&found).map_err(|error| failure(error.to_string()))?;
     let seconds = (60.0 * minutes / doors.len() as f32).max(1.0) as u32;
-    println!("door        inputs      ways    corpus  seconds  slowest [s]  memory [MiB]");
+    println!("door        inputs  coverage    corpus  seconds  slowest [s]  memory [MiB]");
     let mut bad = Vec::new();
     for door in &doors {
         let outcome = tried(&program, &folder, door, seconds);
@@ -56,8 +56,8 @@ pub fn run(words: &[String]) -> Result<(), Failure> {
         return Ok(());
     }
     Err(failure(format!(
-        "{} let something in that it should not have: see what and why in {} and the logs beside it, mend it, and put \
-         the input into tools/fuzz/found",
+        "{} failed: the inputs are in {}, the logs beside it; fix the fault, and add \
+         the input to crates/hostile/found",
         bad.join(", "),
         found.display()
     )))
@@ -68,7 +68,7 @@ fn failure(message: String) -> Failure {
     Failure { message, code }
 }
 
-/// For how many minutes, and which doors.
+/// Parses the number of minutes and the names of the doors.
 fn understood(words: &[String]) -> Result<(f32, &[String]), String> {
     let Some((first, doors)) = words.split_first() else {
         return Ok((MINUTES, &[]));
@@ -79,32 +79,32 @@ fn understood(words: &[String]) -> Result<(f32, &[String]), String> {
     Ok((minutes?, doors))
 }
 
-/// Builds the fuzzer and writes its seeds; where both are.
+/// Builds the fuzzer and writes its seeds; returns the program and its folder.
 fn build() -> Result<(PathBuf, PathBuf), Failure> {
     let host = output_of("rustc", &["-vV"]).unwrap_or_default();
     let host = host.lines().find_map(|line| line.strip_prefix("host: "));
-    let host = host.ok_or_else(|| failure("rustc does not say what it compiles for".into()))?;
+    let host = host.ok_or_else(|| failure("`rustc -vV` prints no host triple".into()))?;
     let folder = root().join(target()).join("fuzz");
     let mut command = cargo();
     command.args(["build", "--profile", "fuzz", "--package", "fuzz_targets"]);
     command.args(["--bin", "fuzz"]);
-    // With a target named, what runs while it is built is not changed.
+    // With an explicit target, the flags do not apply to build scripts.
     command
         .args(["--target", host, "--target-dir"])
         .arg(&folder);
     command.env("RUSTFLAGS", FLAGS);
     execute(
         &mut command,
-        "the fuzzer does not follow the doors any more, see above",
+        "the fuzzer does not compile, see above; it must match the doors of crates/hostile",
     )?;
     let program = folder.join(host).join("fuzz/fuzz");
     let mut seeds = Command::new(&program);
     seeds.env("SEEDS", folder.join("seeds"));
-    execute(&mut seeds, "there are no seeds to begin with")?;
+    execute(&mut seeds, "the fuzzer could not write its seeds")?;
     Ok((program, folder))
 }
 
-/// Each has a folder of seeds.
+/// Returns the names of all doors. Each one has a folder of seeds.
 fn all_doors(seeds: &Path) -> Result<Vec<String>, Failure> {
     let folders = fs::read_dir(seeds).map_err(|error| failure(error.to_string()))?;
     let folders = folders.flatten().filter(|entry| entry.path().is_dir());
@@ -115,7 +115,7 @@ fn all_doors(seeds: &Path) -> Result<Vec<String>, Failure> {
     Ok(doors)
 }
 
-/// Sends inputs in by a door for so many seconds. What was new is kept for the next time.
+/// Fuzzes a door for some seconds. Inputs with new coverage are kept for the next run.
 fn tried(program: &Path, folder: &Path, door: &str, seconds: u32) -> std::io::Result<Outcome> {
     let [corpus, seeds] = ["corpus", "seeds"].map(|part| folder.join(part).join(door));
     fs::create_dir_all(&corpus)?;
@@ -140,7 +140,7 @@ fn tried(program: &Path, folder: &Path, door: &str, seconds: u32) -> std::io::Re
     })
 }
 
-/// What libFuzzer told at the end.
+/// Formats libFuzzer's final statistics.
 fn row(outcome: &Outcome) -> String {
     let told = |name: &str| {
         let mut lines = outcome.log.lines().rev();
@@ -150,7 +150,7 @@ fn row(outcome: &Outcome) -> String {
             .trim()
             .to_string()
     };
-    // As in `cov: 50 ft: 60 corp: 10/1Kb`, of which the first number counts.
+    // Last value in lines such as `cov: 50 ft: 60 corp: 10/1Kb`; of `10/1Kb` the first number.
     let last = |name: &str| {
         let after = outcome
             .log
@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn minutes_come_first_and_then_doors() {
+    fn arguments_are_minutes_then_doors() {
         let words = |line: &str| {
             line.split_whitespace()
                 .map(String::from)
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_that_was_told_counts() {
+    fn row_uses_last_statistics() {
         let log = "#2 INITED cov: 5 ft: 6 corp: 1/1b\n#99 DONE cov: 50 ft: 60 corp: 10/1Kb\n\
                    stat::number_of_executed_units: 99\nstat::slowest_unit_time_sec:  1\nstat::peak_rss_mb: 40\n";
         let outcome = Outcome {

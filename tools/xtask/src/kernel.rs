@@ -1,8 +1,9 @@
-//! Sticks and their motors against the force feedback of a real kernel, in a machine of its own: does a device's driver hear
-//! what it should, and nothing more once a process dies or hangs?
+//! Tests of force feedback against a real Linux kernel in a virtual machine. They check which commands a
+//! device driver receives, and that none follow after a process dies or hangs.
 //!
-//! The machine is QEMU's, without hardware acceleration, which some machines only seem to have. Its kernel is Debian's or
-//! Ubuntu's, and lies in the target folder, with busybox to start the test: neither is installed.
+//! The machine is QEMU without hardware acceleration, which is not reliably available. Its kernel is that of
+//! Debian or Ubuntu. Kernel and busybox, which starts the test, are unpacked in the target folder and not
+//! installed.
 
 use crate::packages::{self, IfMissing, Lack, Purpose, apt_get, install_arguments, list_lacks};
 use crate::shell::{
@@ -14,29 +15,31 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 const QEMU: &str = "qemu-system-x86_64";
-/// Packages that depend on the latest kernel, Debian's and Ubuntu's.
+/// Packages that depend on the latest kernel, of Debian and of Ubuntu.
 const LATEST: [&str; 2] = ["linux-image-amd64", "linux-image-virtual"];
 const BUSYBOX: &str = "busybox-static";
-/// Fetches a package, and takes what is named from it, without its folders.
+/// Script that downloads a package and extracts the named files without their folders.
 const FETCH: &str = r#"
     package=$1; shift
     apt-get download --quiet "$package" &&
         dpkg-deb --fsys-tarfile "$package"_*.deb | tar -x --wildcards --transform 's,.*/,,' "$@"
     rm -f "$package"_*.deb
 "#;
-/// Where SDL is built with this, it does not push without, though nobody speaks to it in the machine.
+/// If SDL is built with udev, force feedback does not work without this library, even though no udev daemon
+/// runs in the machine.
 const UDEV: &str = "/lib/x86_64-linux-gnu/libudev.so.1";
-/// How long the machine may run, in seconds; it takes a minute or two.
+/// Timeout of the machine [s]; it usually takes a minute or two.
 const PATIENCE: &str = "400";
 
-/// Builds the tests, boots the machine, and fails where a test does.
+/// Builds the tests and runs them in the machine; fails if a test fails.
 pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
     let folder = root().join(target()).join("kernel");
     let mut found = find_guest(&folder);
     if if_missing == IfMissing::Install
         && let Err(lacks) = &found
     {
-        // Fresh machines have stale lists, or none. An update that fails may leave good ones.
+        // Package lists of fresh machines are old or missing. If the update fails, the old lists may still
+        // do.
         apt_get(&["update", "--quiet"]);
         lacks.iter().for_each(|lack| provide(&folder, lack));
         found = find_guest(&folder);
@@ -45,33 +48,33 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
     packages::provide(&[Purpose::Build], if_missing);
     let test = build()?;
     pack(&folder, &guest, &test).map_err(|error| Failure {
-        message: format!("the machine could not be packed: {error}"),
+        message: format!("the RAM disk of the machine could not be packed: {error}"),
         code: FAILED,
     })?;
     boot(&folder, &guest.kernel)
 }
 
-/// What the machine is made of, beside the test.
+/// Contents of the machine except for the test.
 struct Guest {
     kernel: PathBuf,
-    /// None where they are part of the kernel, as they are of Ubuntu's.
+    /// Empty if they are built into the kernel, as in Ubuntu's.
     modules: Vec<PathBuf>,
     busybox: PathBuf,
 }
 
-/// What is there for the machine, or all that is missing.
+/// Returns the contents of the machine, or everything that is missing.
 fn find_guest(folder: &Path) -> Result<Guest, Vec<Lack>> {
     let mut lacks = Vec::new();
     if !answers(QEMU) {
         lacks.push(Lack::new(
-            format!("there is no {QEMU} on the path"),
+            format!("{QEMU} not found on the path"),
             "qemu-system-x86",
         ));
     }
     let mut find = |name: &str, package: &str| {
         let found = files(folder, name).pop();
         if found.is_none() {
-            let what = format!("there is no {name} in {}", folder.display());
+            let what = format!("{name} not found in {}", folder.display());
             lacks.push(Lack::new(what, package));
         }
         found.unwrap_or_default()
@@ -91,7 +94,7 @@ fn find_guest(folder: &Path) -> Result<Guest, Vec<Lack>> {
     }
 }
 
-/// The files in a folder whose name begins so.
+/// Returns the files in a folder whose name begins with `name`.
 fn files(folder: &Path, name: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries
@@ -101,7 +104,7 @@ fn files(folder: &Path, name: &str) -> Vec<PathBuf> {
         .collect()
 }
 
-/// Installs QEMU; what goes into the machine is fetched only. If it fails, it has said so.
+/// Installs QEMU, or downloads other contents of the machine. Failures are only reported.
 fn provide(folder: &Path, lack: &Lack) {
     match lack.package.as_str() {
         BUSYBOX => fetch(folder, BUSYBOX, &["*/bin/busybox"]),
@@ -111,7 +114,7 @@ fn provide(folder: &Path, lack: &Lack) {
                 &kernel,
                 &["*/vmlinuz-*", "*/evdev.ko*", "*/uinput.ko*"],
             ),
-            None => eprintln!("xtask: apt knows no package {}", LATEST.join(" or ")),
+            None => eprintln!("xtask: apt has no package {}", LATEST.join(" or ")),
         },
         package => {
             apt_get(&install_arguments([package].into_iter()));
@@ -119,7 +122,7 @@ fn provide(folder: &Path, lack: &Lack) {
     }
 }
 
-/// The package of the kernel that this one stands for.
+/// Returns the kernel package that the package `latest` depends on.
 fn kernel_of(latest: &str) -> Option<String> {
     named_kernel(&output_of("apt-cache", &["depends", latest])?)
 }
@@ -136,7 +139,7 @@ fn named_kernel(depends: &str) -> Option<String> {
 fn fetch(folder: &Path, package: &str, files: &[&str]) {
     let outcome = fs::create_dir_all(folder).map_err(|error| error.to_string());
     let outcome = outcome.and_then(|()| {
-        eprintln!("xtask: fetching {package}");
+        eprintln!("xtask: downloading {package}");
         let mut shell = Command::new("sh");
         shell.args(["-c", FETCH, "fetch", package]).args(files);
         shell
@@ -149,7 +152,7 @@ fn fetch(folder: &Path, package: &str, files: &[&str]) {
     }
 }
 
-/// Builds the test. Returns where it is.
+/// Builds the test and returns its path.
 fn build() -> Result<PathBuf, Failure> {
     let mut command = cargo();
     command
@@ -175,18 +178,18 @@ fn build() -> Result<PathBuf, Failure> {
     let built = output.ok().filter(|output| output.status.success());
     let test = built.and_then(|output| executable_of(&String::from_utf8_lossy(&output.stdout)));
     test.ok_or_else(|| Failure {
-        message: "the tests were not built, see above".to_string(),
+        message: "the tests could not be built, see above".to_string(),
         code: FAILED,
     })
 }
 
-/// The program that cargo says it built last.
+/// Returns the last executable in cargo's JSON messages.
 fn executable_of(messages: &str) -> Option<PathBuf> {
     let (_, rest) = messages.rsplit_once("\"executable\":\"")?;
     rest.split_once('"').map(|(path, _)| PathBuf::from(path))
 }
 
-/// Puts all that runs in the machine into the file that it boots from.
+/// Packs the initial RAM disk.
 fn pack(folder: &Path, guest: &Guest, test: &Path) -> io::Result<()> {
     let disk = folder.join("disk");
     if disk.exists() {
@@ -199,7 +202,9 @@ fn pack(folder: &Path, guest: &Guest, test: &Path) -> io::Result<()> {
     fs::copy(root().join("tools/xtask/guest.sh"), disk.join("init"))?;
     fs::copy(test, disk.join("test"))?;
     for module in &guest.modules {
-        let name = module.file_name().expect("it was found by its name");
+        let name = module
+            .file_name()
+            .expect("the module was found by its name");
         fs::copy(module, disk.join("modules").join(name))?;
     }
     let ldd = |program: &str| output_of("ldd", &[program]).unwrap_or_default();
@@ -207,7 +212,7 @@ fn pack(folder: &Path, guest: &Guest, test: &Path) -> io::Result<()> {
     let udev = Some(UDEV).filter(|udev| Path::new(udev).exists());
     for library in libraries(&needed).into_iter().chain(udev) {
         let copy = disk.join(library.trim_start_matches('/'));
-        fs::create_dir_all(copy.parent().expect("it lies in a folder"))?;
+        fs::create_dir_all(copy.parent().expect("an absolute path has a parent"))?;
         fs::copy(library, copy)?;
     }
     let cpio = "chmod +x init && find . | bin/busybox cpio -o -H newc >../disk.cpio";
@@ -222,16 +227,16 @@ fn pack(folder: &Path, guest: &Guest, test: &Path) -> io::Result<()> {
     }
 }
 
-/// The paths in what ldd says.
+/// Returns the paths in the output of ldd.
 fn libraries(ldd: &str) -> Vec<&str> {
     let words = ldd.split_whitespace();
     words.filter(|word| word.starts_with('/')).collect()
 }
 
-/// Runs the machine until it turns itself off.
+/// Runs the machine until it powers off.
 fn boot(folder: &Path, kernel: &Path) -> Result<(), Failure> {
     let status = folder.join("status");
-    // What an earlier run left must not be taken for the answer.
+    // Removes the result of an earlier run.
     let _ = fs::remove_file(&status);
     let mut machine = Command::new("timeout");
     machine
@@ -268,13 +273,17 @@ fn boot(folder: &Path, kernel: &Path) -> Result<(), Failure> {
         .arg("-initrd")
         .arg(folder.join("disk.cpio"))
         .stdin(Stdio::null());
-    execute(&mut machine, "the machine did not come to its end")?;
+    execute(
+        &mut machine,
+        "the machine did not finish in time or could not be started",
+    )?;
     let said = fs::read_to_string(&status).unwrap_or_default();
     if said.trim() == "0" {
         return Ok(());
     }
     Err(Failure {
-        message: "a test failed in the machine, or it never came so far, see above".to_string(),
+        message: "a test failed in the machine, or the machine stopped before, see above"
+            .to_string(),
         code: FAILED,
     })
 }
@@ -282,14 +291,14 @@ fn boot(folder: &Path, kernel: &Path) -> Result<(), Failure> {
 fn cannot(lacks: &[Lack], if_missing: IfMissing) -> Failure {
     let advice = match if_missing {
         IfMissing::Say => {
-            "On Debian and Ubuntu `cargo xtask kernel --install` installs QEMU, and fetches the rest."
+            "On Debian and Ubuntu, `cargo xtask kernel --install` installs QEMU and downloads the rest."
         }
-        IfMissing::Install => "What apt offers here is not enough, see above.",
+        IfMissing::Install => "The packages available from apt are not sufficient, see above.",
     };
     Failure {
         message: format!(
-            "sticks were NOT tested against a kernel:\n{}\n{advice}\n\
-             It needs Linux on x86-64.",
+            "force feedback was NOT tested against a kernel:\n{}\n{advice}\n\
+             This task requires Linux on x86-64.",
             list_lacks(lacks)
         ),
         code: CANNOT,
@@ -301,7 +310,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_kernel_that_a_package_stands_for_is_found() {
+    fn kernel_package_is_found_in_dependencies() {
         let debian = "linux-image-amd64\n  Depends: linux-image-6.1.0-56-amd64\n";
         let ubuntu = "linux-image-virtual\n  Depends: linux-modules-6.8.0-1\n |Depends: a\n  Depends: linux-image-6.8.0-1-generic\n  Suggests: b\n";
         for (depends, expect) in [
@@ -314,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn the_program_is_the_one_that_was_built_last() {
+    fn executable_is_last_in_messages() {
         let messages = "{\"executable\":null}\n{\"name\":\"build\",\"executable\":\"/a/b\"}\n\
                         {\"executable\":\"/t/kernel-1\",\"fresh\":true}\n{\"success\":true}\n";
         assert_eq!(executable_of(messages), Some(PathBuf::from("/t/kernel-1")));
@@ -322,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn every_library_is_found_by_its_path() {
+    fn libraries_are_paths_in_ldd_output() {
         let ldd = "\tlinux-vdso.so.1 (0x7f)\n\tlibm.so.6 => /lib/libm.so.6 (0x7e)\n\t/lib64/ld.so.2 (0x7d)\n";
         assert_eq!(libraries(ldd), ["/lib/libm.so.6", "/lib64/ld.so.2"]);
     }

@@ -1,4 +1,4 @@
-//! The chores of this repository, run as `cargo xtask <task>`. Plain std, so that it builds in a moment.
+//! Tasks of this repository, run as `cargo xtask <task>`. Depends on std only, so that it builds quickly.
 
 mod bevy;
 mod cross;
@@ -23,7 +23,7 @@ use std::env;
 use std::process::ExitCode;
 use task::{Task, USAGE};
 
-/// Exit status for a command line that makes no sense, as shells and most tools use it.
+/// Exit status for an invalid command line, as in shells and most tools.
 const BAD_USAGE: u8 = 2;
 
 fn main() -> ExitCode {
@@ -84,8 +84,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Builds and runs the game; its exit status. In the folder of the caller, so that the files it is
-/// told to open are found.
+/// Builds and runs the game in the caller's folder, so that relative paths work; returns its exit status.
 fn play(if_missing: IfMissing, words: &[String]) -> ExitCode {
     let mut purposes = vec![Purpose::Build];
     if has_display() {
@@ -105,31 +104,31 @@ fn play(if_missing: IfMissing, words: &[String]) -> ExitCode {
     }
 }
 
-/// The exit status to hand on. A program that was killed has none.
+/// Converts the exit status of a program. A killed program has none.
 fn exit_code(code: Option<i32>) -> ExitCode {
     let code = code.and_then(|code| u8::try_from(code).ok());
     ExitCode::from(code.unwrap_or(FAILED))
 }
 
-/// Plays levels for long, as the words say.
+/// Runs the soak test of levels with the given arguments.
 fn soak(words: &[String]) -> Result<(), Failure> {
     let mut command = cargo();
     command.args(["run", "--release", "--package", "tamaire_play"]);
     command.args(["--example", "soak", "--"]).args(words);
     execute(
         &mut command,
-        "a round that nobody meant broke something, see above; its level and tick are named",
+        "a random round caused a fault, see above for its level and tick",
     )
 }
 
-/// Tests draw into images, and open no window; one of them starts a database server.
+/// Tests draw into images and open no window; one of them starts a database server.
 const FOR_TESTS: &[Purpose] = &[Purpose::Build, Purpose::Drawing, Purpose::Serving];
 
-/// One call of cargo.
+/// Cargo command.
 struct Step {
     arguments: &'static [&'static str],
     environment: &'static [(&'static str, &'static str)],
-    /// What to do when it fails.
+    /// Advice if the command fails.
     hint: &'static str,
 }
 
@@ -150,7 +149,7 @@ const CHECK: &[Step] = &[
             "warnings",
         ],
         environment: &[],
-        hint: "mend the warnings above; if cargo has no clippy, `rustup component add clippy`",
+        hint: "fix the warnings above; if cargo has no clippy, `rustup component add clippy`",
     },
     Step {
         arguments: &[
@@ -161,16 +160,17 @@ const CHECK: &[Step] = &[
             "--all-targets",
         ],
         environment: &[],
-        hint: "something needs force feedback, which may be left out",
+        hint: "the game must compile without the feature for force feedback",
     },
     Step {
         arguments: &["doc", "--workspace", "--all-features", "--no-deps"],
         environment: &[("RUSTDOCFLAGS", "-Dwarnings")],
-        hint: "mend the documentation warnings above; most are links to names that moved",
+        hint: "fix the documentation warnings above; most are broken links",
     },
 ];
 
-// All features, as in CHECK: what is compiled with others is compiled again. Examples are checked there.
+// With all features, as in CHECK, because other features would recompile everything. CHECK covers the
+// examples.
 const TEST: &[Step] = &[
     Step {
         arguments: &["test", "--workspace", "--all-features", "--tests"],
@@ -194,8 +194,8 @@ const TEST: &[Step] = &[
             "--all-features",
         ],
         environment: &[],
-        hint: "passes in debug but not in release: look for work done inside a debug_assert!, \
-               and for sums whose order depends on the threads",
+        hint: "passes in debug but not in release: look for side effects inside a debug_assert!, \
+               and for sums whose order depends on the number of threads",
     },
 ];
 
@@ -212,7 +212,7 @@ const STAND: &[Step] = &[Step {
         "--nocapture",
     ],
     environment: &[],
-    hint: "a stand did not come back, or lost a round that had ended, see above",
+    hint: "the stand did not restart, or lost a completed round, see above",
 }];
 
 const RAPIER: &[Step] = &[Step {
@@ -223,10 +223,10 @@ const RAPIER: &[Step] = &[Step {
         "tools/against_rapier/Cargo.toml",
     ],
     environment: &[],
-    hint: "the comparison does not follow the engine or Rapier any more, see above",
+    hint: "the comparison does not compile with the current engine or Rapier, see above",
 }];
 
-/// Runs the steps in order, at the root of the workspace, up to the first that fails.
+/// Runs the steps in order at the root of the workspace, up to the first failure.
 fn run_all(steps: &[Step]) -> Result<(), Failure> {
     steps.iter().try_for_each(run)
 }
@@ -243,7 +243,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_status_of_the_game_is_handed_on_where_it_has_one() {
+    fn exit_code_is_forwarded_if_valid() {
         for (code, expect) in [
             (Some(0), 0),
             (Some(101), 101),

@@ -1,20 +1,20 @@
-//! What others would get: the crates that are good for them, as packages.
+//! Packages of the crates that can be published.
 
 use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, output_of, root, target};
 use std::path::Path;
 use std::process::Command;
 
-/// What is wanted.
+/// Task for the packages.
 #[derive(Debug, PartialEq)]
 pub enum Package {
-    /// That they can be packed, and what is in them.
+    /// Checks that they can be packed, and their contents.
     List,
-    /// That they build from what is packed, with the oldest Rust that they say they need.
+    /// Builds them from their packages with the MSRV.
     Build,
 }
 
-/// The crates, each with the folders that its package has. Those of the game, and those that only tests use, say
-/// `publish = false`.
+/// Published crates, each with the folders in its package. Crates of the game and crates that only tests use
+/// are marked `publish = false`.
 const CRATES: [(&str, &[&str]); 9] = [
     ("engine/fuwafuwa", &["src", "guide", "examples"]),
     ("engine/fuwafuwa_scenes", &["src", "scenes", "examples"]),
@@ -27,8 +27,8 @@ const CRATES: [(&str, &[&str]); 9] = [
     ("devices/sticks", &["src", "examples"]),
 ];
 
-/// A workspace of its own: cargo finds the crates of this one on a registry only, so until they are on one it can say
-/// what would be in it, and no more.
+/// A separate workspace: cargo finds the crates of this one only on a registry. Until they are published,
+/// only the contents of its package can be listed.
 const BEVY: (&str, &[&str]) = ("plugins/bevy_fuwafuwa", &["src"]);
 
 /// The name of the crate in a folder.
@@ -36,7 +36,7 @@ fn name_of(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
 }
 
-/// What stands in a package beside those folders. Cargo writes the first four.
+/// Files in a package besides those folders. Cargo writes the first four.
 const FILES: [&str; 7] = [
     ".cargo_vcs_info.json",
     "Cargo.lock",
@@ -47,7 +47,7 @@ const FILES: [&str; 7] = [
     "LICENSE-MIT",
 ];
 
-/// A package may have as many bytes, packed: ours are words and code. crates.io takes ten times as many.
+/// Maximum size of a compressed package [bytes], a tenth of the limit of crates.io.
 const MOST_BYTES: u64 = 1 << 20;
 
 pub fn run(package: Package) -> Result<(), Failure> {
@@ -65,8 +65,8 @@ pub fn run(package: Package) -> Result<(), Failure> {
             let oldest = oldest_rust()?;
             let toolchain = toolchain_of(&oldest).ok_or_else(|| Failure {
                 message: format!(
-                    "neither is this Rust {oldest}, the oldest that the crates say they need, nor has \
-                     rustup one: `rustup toolchain install {oldest} --profile minimal`"
+                    "Rust {oldest}, the minimum supported version, is neither active nor installed by \
+                     rustup: run `rustup toolchain install {oldest} --profile minimal`"
                 ),
                 code: CANNOT,
             })?;
@@ -75,8 +75,8 @@ pub fn run(package: Package) -> Result<(), Failure> {
     }
 }
 
-/// What to tell rustup's programs so that they are of a version of Rust: nothing, where they are. Others have no rustup, and
-/// take no such word.
+/// Returns the rustup argument that selects a Rust version; empty if that version is active. Without rustup,
+/// programs accept no such argument.
 fn toolchain_of(version: &str) -> Option<Vec<String>> {
     let candidates = [
         Vec::new(),
@@ -91,11 +91,11 @@ fn toolchain_of(version: &str) -> Option<Vec<String>> {
     candidates.into_iter().find(is_it)
 }
 
-/// Packs all of them at once: so those that need each other find each other, though none is published.
+/// Packs all crates at once, so that they find each other although none is published.
 fn pack(words: &[&str], toolchain: &[String]) -> Result<(), Failure> {
     let mut command = match toolchain {
         [] => cargo(),
-        // The cargo that runs this is of another one: rustup picks.
+        // The running cargo has another version, so rustup must select one.
         _ => Command::new("cargo"),
     };
     command.args(toolchain);
@@ -107,11 +107,11 @@ fn pack(words: &[&str], toolchain: &[String]) -> Result<(), Failure> {
     }
     execute(
         &mut command,
-        "a crate needs what is not in its package, or a version that is not there, see above",
+        "a crate needs a file outside of its package, or an unavailable version, see above",
     )
 }
 
-/// That nothing is in a package but what is meant to be.
+/// Checks that a package contains exactly the intended files.
 fn check_list(path: &str, folders: &[&str]) -> Result<(), Failure> {
     let name = name_of(path);
     let manifest = root().join(path).join("Cargo.toml");
@@ -126,26 +126,23 @@ fn check_list(path: &str, folders: &[&str]) -> Result<(), Failure> {
     ];
     let program = cargo().get_program().to_string_lossy().into_owned();
     let list = output_of(&program, &words).ok_or_else(|| failure(format!(
-        "cargo does not say what is in the package of {name}: see `cargo package --list --manifest-path {manifest}`"
+        "the contents of package {name} cannot be listed: run `cargo package --list --manifest-path {manifest}`"
     )))?;
     let wrong = complaints(&list, folders);
     match wrong.is_empty() {
         true => Ok(()),
-        false => Err(failure(format!(
-            "the package of {name} {}",
-            wrong.join("; ")
-        ))),
+        false => Err(failure(format!("package {name} {}", wrong.join("; ")))),
     }
 }
 
-/// What is in a package and should not be, and what is not and should.
+/// Lists unexpected and missing files of a package.
 fn complaints(list: &str, folders: &[&str]) -> Vec<String> {
     let is_meant = |file: &str| match file.split_once(['/', '\\']) {
         Some((folder, _)) => folders.contains(&folder),
         None => FILES.contains(&file),
     };
     let strange = list.lines().filter(|file| !is_meant(file));
-    let strange = strange.map(|file| format!("has {file}, which nobody needs"));
+    let strange = strange.map(|file| format!("has the unexpected file {file}"));
     let needed = FILES
         .iter()
         .skip(2)
@@ -166,30 +163,30 @@ fn check_size(name: &str) -> Result<(), Failure> {
     match bytes <= MOST_BYTES {
         true => Ok(()),
         false => Err(failure(format!(
-            "the package of {name} has {bytes} bytes, more than {MOST_BYTES}: what came into it?"
+            "package {name} has {bytes} bytes, more than the limit of {MOST_BYTES}: check its contents"
         ))),
     }
 }
 
 fn size(file: &Path) -> Result<u64, Failure> {
     let found = std::fs::metadata(file).map(|file| file.len());
-    found.map_err(|error| failure(format!("{} is not there: {error}", file.display())))
+    found.map_err(|error| failure(format!("{}: cannot read its size: {error}", file.display())))
 }
 
-/// The Rust that the workspace says it needs.
+/// MSRV of the workspace.
 fn oldest_rust() -> Result<String, Failure> {
     field("rust-version")
 }
 
-/// A field of `[workspace.package]`.
+/// Value of a field of `[workspace.package]`.
 fn field(name: &str) -> Result<String, Failure> {
     let manifest = root().join("Cargo.toml");
     let text = std::fs::read_to_string(&manifest);
     let text = text.map_err(|error| failure(format!("{}: {error}", manifest.display())))?;
-    value_of(&text, name).ok_or_else(|| failure(format!("Cargo.toml does not say its {name}")))
+    value_of(&text, name).ok_or_else(|| failure(format!("Cargo.toml: missing field {name}")))
 }
 
-/// What stands between quotes behind a name.
+/// Returns the quoted value of a field.
 fn value_of(text: &str, name: &str) -> Option<String> {
     let mut lines = text.lines().filter_map(|line| line.split_once(" = "));
     let (_, value) = lines.find(|(own, _)| *own == name)?;
@@ -209,23 +206,23 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn a_package_has_what_is_meant_and_no_more() {
+    fn complaints_list_unexpected_and_missing_files() {
         let good = "Cargo.lock\nCargo.toml\nCargo.toml.orig\nLICENSE-APACHE\nLICENSE-MIT\nREADME.md\nsrc/lib.rs";
         assert_eq!(complaints(good, &["src"]), [] as [String; 0]);
         let bad = good.replace("README.md\n", "tests/tidy.rs\nnotes.txt\n");
         assert_eq!(
             complaints(&bad, &["src"]),
             [
-                "has tests/tidy.rs, which nobody needs",
-                "has notes.txt, which nobody needs",
+                "has the unexpected file tests/tidy.rs",
+                "has the unexpected file notes.txt",
                 "lacks README.md"
             ]
         );
     }
 
-    /// A crate that somebody adds is for others or not, and says so.
+    /// Every crate is either packed or marked as private.
     #[test]
-    fn each_crate_is_packed_or_says_that_it_is_not_for_others() {
+    fn crates_are_packed_or_private() {
         let mut seen = 0;
         let groups = ["engine", "game", "devices", "apps", "plugins", "tools"];
         let folders = groups.map(|group| fs::read_dir(root().join(group)).unwrap());
@@ -235,16 +232,19 @@ mod tests {
             let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
             let is_private = manifest.contains("\npublish = false\n");
             let is_packed = CRATES.iter().chain([&BEVY]).any(|(own, _)| *own == name);
-            assert!(is_private != is_packed, "{name}: is it for others?");
+            assert!(
+                is_private != is_packed,
+                "{name}: either add it to CRATES or set publish = false"
+            );
             seen += 1;
         }
         assert!(seen > CRATES.len());
     }
 
-    /// The oldest Rust that is promised is the same wherever it is said.
+    /// All documents name the same MSRV.
     #[test]
-    fn every_document_promises_the_same_rust() {
-        let oldest = oldest_rust().unwrap_or_else(|_| panic!("it is said"));
+    fn documents_name_the_same_msrv() {
+        let oldest = oldest_rust().unwrap_or_else(|_| panic!("Cargo.toml has no rust-version"));
         let says = format!("Rust {oldest}");
         let packed = CRATES.iter().map(|(path, _)| format!("{path}/README.md"));
         let documents = [

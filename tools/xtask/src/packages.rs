@@ -1,62 +1,62 @@
-//! The Debian packages behind the tasks: which of them this machine lacks, and how they get there.
+//! Debian packages that the tasks need, and their installation.
 
 use crate::shell::{Failure, answers, execute};
 use std::env;
 use std::io::{self, IsTerminal, Write};
 use std::process::{Command, Stdio};
 
-/// What to do on a machine that lacks something.
+/// Reaction to a missing package.
 #[derive(Debug, PartialEq, Clone, Copy)]
 pub enum IfMissing {
-    /// Say what.
+    /// Name it.
     Say,
-    /// Install it, with apt-get. A person at a terminal is asked first.
+    /// Install it with apt-get, after confirmation if there is a terminal.
     Install,
 }
 
-/// What a package is for.
+/// Purpose of a package.
 #[derive(Debug, PartialEq, Clone, Copy)]
 pub enum Purpose {
-    /// To compile the game.
+    /// Compile the game.
     Build,
-    /// To open its window.
+    /// Open its window.
     Window,
-    /// To draw without a window, as tests do.
+    /// Draw without a window, as tests do.
     Drawing,
-    /// To compile the fuzzer.
+    /// Compile the fuzzer.
     Fuzzing,
-    /// To play the game in browsers.
+    /// Play the game in browsers.
     Browsing,
-    /// To run a server that a stand sends to, as tests do.
+    /// Run a database server that a stand sends to, as tests do.
     Serving,
-    /// To play at a stand that nobody sees.
+    /// Play at a stand on a virtual display.
     Staging,
-    /// To make a package for Debian.
+    /// Build a Debian package.
     Packing,
-    /// To make an archive for Windows or for a web server.
+    /// Build an archive for Windows or for a web server.
     Zipping,
-    /// To tell what is inside programs, and under which licences.
+    /// List the contents of programs and their licences.
     Listing,
-    /// To make the page of a browser.
+    /// Build the web page.
     Paging,
 }
 
-/// How to see that a package is there.
+/// Test for an installed package.
 #[derive(Debug, PartialEq, Clone, Copy)]
 enum Seen {
-    /// Its program answers, wherever it came from.
+    /// Its program runs, whatever its source.
     Program(&'static str),
     /// dpkg has installed it.
     Installed,
 }
 
-/// A package of Debian and Ubuntu.
+/// Package of Debian and Ubuntu.
 #[derive(Debug, PartialEq)]
 struct Package {
     name: &'static str,
     seen: Seen,
     purposes: &'static [Purpose],
-    /// What needs it.
+    /// Purpose, for messages.
     why: &'static str,
 }
 
@@ -74,8 +74,8 @@ const fn package(
     }
 }
 
-/// Found by building and running in a bare Debian root. The C compiler is not here: without one,
-/// this program would not have been linked.
+/// Determined by building and running in a minimal Debian root. The C compiler is omitted: without it, this
+/// program could not have been linked.
 #[rustfmt::skip]
 const PACKAGES: &[Package] = {
     use Purpose::{Browsing, Build, Drawing, Fuzzing, Listing, Packing, Paging, Serving, Staging, Window, Zipping};
@@ -86,28 +86,28 @@ const PACKAGES: &[Package] = {
         package("pkg-config", Program("pkg-config"), &[Build], "finds ALSA"),
         package("libasound2-dev", Installed, &[Build], "ALSA, for sound"),
         package("g++", Program("g++"), &[Fuzzing], "compiles libFuzzer"),
-        package("chromium", Program("chromium"), &[Browsing], "plays the game"),
-        package("firefox-esr", Program("firefox-esr"), &[Browsing], "plays it too"),
-        package("xvfb", Installed, &[Browsing, Staging], "a display that nobody sees: without one Firefox draws in no software"),
+        package("chromium", Program("chromium"), &[Browsing], "runs the game"),
+        package("firefox-esr", Program("firefox-esr"), &[Browsing], "runs the game"),
+        package("xvfb", Installed, &[Browsing, Staging], "a virtual display: without a display, Firefox does not render in software"),
         package("xdotool", Program("xdotool"), &[Staging], "moves a mouse and presses keys"),
-        package("xauth", Installed, &[Browsing], "opens that display"),
-        package("libegl1", Installed, &[Browsing], "what Firefox draws with"),
-        package("libgl1-mesa-dri", Installed, &[Browsing], "OpenGL, without a GPU too"),
-        package("postgresql", Installed, &[Serving], "a server that a logbook is sent to; tests start one of their own"),
-        package("dpkg-dev", Program("dpkg-shlibdeps"), &[Packing], "finds what a program is linked to"),
-        package("zip", Program("zip"), &[Zipping], "packs for Windows and for web servers"),
-        package("nodejs", Program("node"), &[Listing, Paging], "packs the page, and gathers licences"),
-        package("npm", Program("npm"), &[Paging], "fetches what makes the page small"),
+        package("xauth", Installed, &[Browsing], "opens the virtual display"),
+        package("libegl1", Installed, &[Browsing], "OpenGL for Firefox"),
+        package("libgl1-mesa-dri", Installed, &[Browsing], "OpenGL, also without a GPU"),
+        package("postgresql", Installed, &[Serving], "a server for logbooks; tests start one of their own"),
+        package("dpkg-dev", Program("dpkg-shlibdeps"), &[Packing], "finds the libraries of a program"),
+        package("zip", Program("zip"), &[Zipping], "packs archives for Windows and for web servers"),
+        package("nodejs", Program("node"), &[Listing, Paging], "packs the page, and collects licences"),
+        package("npm", Program("npm"), &[Paging], "installs the tools that optimise the page"),
         package("libx11-6", Installed, &[Window], "X11 windows"),
         package("libx11-xcb1", Installed, &[Window], "X11 windows"),
         package("libxcursor1", Installed, &[Window], "the mouse pointer in X11 windows"),
         package("libxi6", Installed, &[Window], "mouse and touch in X11 windows"),
         package("libxkbcommon-x11-0", Installed, &[Window], "keys in X11 windows"),
-        package("mesa-vulkan-drivers", Installed, &[Window, Drawing], "Vulkan, without a GPU too"),
+        package("mesa-vulkan-drivers", Installed, &[Window, Drawing], "Vulkan, also without a GPU"),
     ]
 };
 
-/// Something that this machine lacks, and the Debian package that has it.
+/// Missing item, and the Debian package that contains it.
 #[derive(Debug, PartialEq)]
 pub struct Lack {
     what: String,
@@ -123,7 +123,7 @@ impl Lack {
     }
 }
 
-/// A line for each.
+/// Formats a line for each item.
 pub fn list_lacks(lacks: &[Lack]) -> String {
     let lines: Vec<String> = lacks
         .iter()
@@ -132,8 +132,8 @@ pub fn list_lacks(lacks: &[Lack]) -> String {
     lines.join("\n")
 }
 
-/// Sees to it that the packages for these purposes are there, as far as that goes. What is missing
-/// then is said, and the task goes on: this list may be wrong for a machine.
+/// Provides the packages for these purposes as far as possible. Missing packages are only reported, because
+/// this list may not fit every machine.
 pub fn provide(purposes: &[Purpose], if_missing: IfMissing) {
     if !answers("dpkg-query") {
         return say_elsewhere(purposes);
@@ -142,7 +142,7 @@ pub fn provide(purposes: &[Purpose], if_missing: IfMissing) {
     if lacks.is_empty() {
         return;
     }
-    eprintln!("xtask: not installed yet:\n{}", list(&lacks));
+    eprintln!("xtask: missing packages:\n{}", list(&lacks));
     let install = install_arguments(lacks.iter().map(|package| package.name));
     let line = format!(
         "{}apt-get {}",
@@ -150,7 +150,7 @@ pub fn provide(purposes: &[Purpose], if_missing: IfMissing) {
         install.join(" ")
     );
     if if_missing == IfMissing::Say || !agreed(&line) {
-        eprintln!("xtask: going on without. To install: {line}");
+        eprintln!("xtask: continuing without them. To install: {line}");
         return;
     }
     apt_get(&["update", "--quiet"]);
@@ -158,13 +158,13 @@ pub fn provide(purposes: &[Purpose], if_missing: IfMissing) {
     let lacks = missing_on_debian(purposes);
     if !lacks.is_empty() {
         eprintln!(
-            "xtask: going on, but still not installed:\n{}",
+            "xtask: continuing, but these are still missing:\n{}",
             list(&lacks)
         );
     }
 }
 
-/// The packages for these purposes that are not there, by name, where that can be known.
+/// Names of the missing packages for these purposes; empty without dpkg.
 pub fn lacking(purposes: &[Purpose]) -> Vec<&'static str> {
     match answers("dpkg-query") {
         true => {
@@ -175,21 +175,21 @@ pub fn lacking(purposes: &[Purpose]) -> Vec<&'static str> {
     }
 }
 
-/// What `apt-get` is told to install these packages. Nothing is removed for them without a word.
+/// Arguments of `apt-get` that install these packages without removing others.
 pub fn install_arguments<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let options = ["install", "--quiet", "--yes", "--no-remove"];
     let options = options.into_iter().chain(["--no-install-recommends"]);
     options.chain(names).collect()
 }
 
-/// Runs apt-get, as root or through sudo, and says so; whether that went well.
+/// Runs apt-get as root or through sudo; returns whether it succeeded.
 pub fn apt_get(arguments: &[&str]) -> bool {
     let mut command = if is_root() {
         Command::new("apt-get")
     } else {
         let mut sudo = Command::new("sudo");
         if !io::stdin().is_terminal() {
-            // Nobody is there to type a password.
+            // No terminal to enter a password.
             sudo.arg("--non-interactive");
         }
         sudo.arg("apt-get");
@@ -199,7 +199,7 @@ pub fn apt_get(arguments: &[&str]) -> bool {
     command.env("DEBIAN_FRONTEND", "noninteractive");
     let outcome = execute(
         &mut command,
-        "it needs Debian or Ubuntu, root or sudo, and a network",
+        "this requires Debian or Ubuntu, root or sudo, and a network",
     );
     if let Err(Failure { message, .. }) = &outcome {
         eprintln!("xtask: {message}");
@@ -207,7 +207,7 @@ pub fn apt_get(arguments: &[&str]) -> bool {
     outcome.is_ok()
 }
 
-/// The packages for these purposes that are not there.
+/// Returns the packages for these purposes that `is_there` rejects.
 fn missing(purposes: &[Purpose], is_there: impl Fn(&Package) -> bool) -> Vec<&'static Package> {
     let needed = |package: &&Package| package.purposes.iter().any(|it| purposes.contains(it));
     let lacks = PACKAGES.iter().filter(needed);
@@ -218,7 +218,7 @@ fn missing_on_debian(purposes: &[Purpose]) -> Vec<&'static Package> {
     let statuses = Command::new("dpkg-query")
         .args(["--show", "--showformat=${Package} ${db:Status-Status}\\n"])
         .args(PACKAGES.iter().map(|package| package.name))
-        // It complains of every package that it has never heard of.
+        // dpkg-query complains about each unknown package.
         .stderr(Stdio::null())
         .output()
         .map_or_else(|_| Vec::new(), |output| output.stdout);
@@ -229,15 +229,15 @@ fn missing_on_debian(purposes: &[Purpose]) -> Vec<&'static Package> {
     })
 }
 
-/// Whether dpkg-query's lines, of a name and a status each, say that this package is installed.
+/// Whether a package is installed according to dpkg-query's lines of name and status.
 fn is_installed(statuses: &str, name: &str) -> bool {
     // A package of two architectures has two lines.
     let mut lines = statuses.lines().filter_map(|line| line.split_once(' '));
     lines.any(|line| line == (name, "installed"))
 }
 
-/// Says what is needed where there is no apt. Only programs can be looked for: libraries have other
-/// names there, and macOS and Windows have their own.
+/// Lists what is needed on systems without apt. Only programs can be tested: libraries have other names
+/// there, and macOS and Windows have their own.
 fn say_elsewhere(purposes: &[Purpose]) {
     let lacks = missing(purposes, |package| match package.seen {
         Seen::Program(program) => answers(program),
@@ -250,7 +250,10 @@ fn say_elsewhere(purposes: &[Purpose]) {
         .map(|package| package.name)
         .collect();
     if !names.is_empty() {
-        eprintln!("xtask: this needs, in Debian's words: {}", names.join(", "));
+        eprintln!(
+            "xtask: this task needs (names of Debian's packages): {}",
+            names.join(", ")
+        );
     }
 }
 
@@ -260,7 +263,7 @@ fn list(packages: &[&Package]) -> String {
     lines.join("\n")
 }
 
-/// Whether to run the line: asks where somebody can answer, and else takes the task as the answer.
+/// Asks whether to run the command; without a terminal the answer is yes.
 fn agreed(line: &str) -> bool {
     if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
         return true;
@@ -286,7 +289,7 @@ fn is_root() -> bool {
     id.is_ok_and(|output| output.stdout.trim_ascii() == b"0")
 }
 
-/// Whether a window could open here.
+/// Whether a window can be opened.
 pub fn has_display() -> bool {
     let named = |name| env::var_os(name).is_some_and(|value| !value.is_empty());
     named("DISPLAY") || named("WAYLAND_DISPLAY")
@@ -303,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn a_task_lacks_what_it_needs_and_has_not() {
+    fn missing_lists_needed_packages_that_are_absent() {
         let build = ["cmake", "make", "pkg-config", "libasound2-dev"];
         check(&[Purpose::Build], &[], &build);
         check(&[Purpose::Build], &build, &[]);
@@ -317,7 +320,7 @@ mod tests {
         );
         check(&[Purpose::Listing], &[], &["nodejs"]);
         check(&[], &[], &[]);
-        // Once, though it has both purposes.
+        // Listed once, although it has both purposes.
         let window = missing(&[Purpose::Window, Purpose::Drawing], |_| false);
         let mesa = window
             .iter()
@@ -326,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_dpkg_calls_installed_is_there() {
+    fn is_installed_requires_status_installed() {
         let statuses = "make installed\nlibxi6 config-files\nlibx11-6 not-installed\n\
                         libx11-6 installed\nlibx11-6-data installed\n";
         for (name, expect) in [
@@ -342,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn only_yes_and_a_bare_return_agree() {
+    fn is_yes_accepts_yes_and_empty_line() {
         for answer in ["\n", "y\n", "Y\n", "yes\r\n"] {
             assert!(is_yes(answer), "{answer:?}");
         }
@@ -352,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_removed_for_a_package() {
+    fn install_arguments_forbid_removal() {
         let arguments = install_arguments(["make"].into_iter());
         assert!(arguments.contains(&"--no-remove"), "{arguments:?}");
         assert_eq!(arguments.last(), Some(&"make"));

@@ -1,5 +1,5 @@
-//! What is handed out: packages for those who play, and what lets others check them. Each part is made by itself; one that
-//! this machine cannot make is named, and the others go on.
+//! Release files: packages for players, and data to verify them. The parts are independent: if one cannot be
+//! built on this machine, it is reported and the others continue.
 
 mod files;
 mod kit;
@@ -19,22 +19,22 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::time::Instant;
 
-/// What one downloads is a few seconds of a home's line.
+/// Maximum size of a download [bytes], some seconds on a home connection.
 const MOST_BYTES: u64 = 12_000_000;
 
-/// Which parts of a release to make.
+/// Parts of a release to build.
 #[derive(Debug, PartialEq)]
 pub struct Wish {
-    /// By their names; none stands for all.
+    /// Names of the parts; empty for all.
     pub parts: Vec<String>,
 }
 
-/// A part of a release.
+/// Part of a release.
 struct Part {
     name: &'static str,
-    /// What comes out of it.
+    /// Description of its result.
     what: &'static str,
-    /// What the packages are for that it needs, beside those of a compiler.
+    /// Purposes of the packages that it needs, besides a compiler.
     needs: &'static [Purpose],
     make: fn(&mut Kit) -> Result<(), Failure>,
 }
@@ -47,33 +47,31 @@ const PARTS: &[Part] = &[
     Part { name: "windows", what: "an archive for Windows", needs: &[Listing, Zipping], make: windows::archive },
     Part { name: "web", what: "an archive for a web server", needs: &[Paging, Zipping], make: web_archive },
     Part { name: "sbom", what: "bills of materials", needs: &[Listing], make: trust::bills },
-    Part { name: "deny", what: "a look at licences, advisories and doubles", needs: &[], make: trust::deny },
-    Part { name: "sums", what: "SHA-256 sums of all that", needs: &[], make: trust::sums },
+    Part { name: "deny", what: "a check of licences, advisories and duplicates", needs: &[], make: trust::deny },
+    Part { name: "sums", what: "SHA-256 sums of all packages", needs: &[], make: trust::sums },
 ];
 
-/// The names of all parts.
+/// Names of all parts.
 pub fn names() -> impl Iterator<Item = &'static str> {
     PARTS.iter().map(|part| part.name)
 }
 
-/// How a part went.
+/// Result of a part.
 enum Went {
     Made,
-    /// It was there, made from the same commit.
+    /// It existed already, built from the same commit.
     There,
     Not(Failure),
 }
 
-/// Makes the parts, and says at the end what there is and what is missing.
+/// Builds the parts and reports which exist and which are missing.
 pub fn run(wish: &Wish, if_missing: IfMissing) -> Result<(), Failure> {
     let mut kit = Kit::open(if_missing)?;
     let is_wanted =
         |part: &&Part| wish.parts.is_empty() || wish.parts.iter().any(|name| name == part.name);
     let wanted: Vec<&Part> = PARTS.iter().filter(is_wanted).collect();
     if kit.is_dirty() {
-        eprintln!(
-            "xtask: there are changes that are not committed: no part is taken as made before"
-        );
+        eprintln!("xtask: there are uncommitted changes, so every part is built again");
     }
     let mut table = String::new();
     let mut worst = None;
@@ -89,8 +87,8 @@ pub fn run(wish: &Wish, if_missing: IfMissing) -> Result<(), Failure> {
         let went = make(part, &mut kit);
         let took = began.elapsed().as_secs();
         let how = match &went {
-            Went::Made => format!("made in {}:{:02} min", took / 60, took % 60),
-            Went::There => "there already".to_string(),
+            Went::Made => format!("built in {}:{:02} min", took / 60, took % 60),
+            Went::There => "exists already".to_string(),
             Went::Not(failure) => format!("MISSING: {}", failure.message),
         };
         let _written = writeln!(table, "  {:8} {how}", part.name);
@@ -111,7 +109,7 @@ pub fn run(wish: &Wish, if_missing: IfMissing) -> Result<(), Failure> {
     match worst {
         None => Ok(()),
         Some(code) => Err(Failure {
-            message: "the release is not whole, see above".to_string(),
+            message: "the release is incomplete, see above".to_string(),
             code,
         }),
     }
@@ -135,7 +133,7 @@ fn make(part: &Part, kit: &mut Kit) -> Went {
     }
 }
 
-/// A failure where packages are missing is theirs, and this machine's.
+/// Marks a failure as [`CANNOT`] if packages are missing, and names them.
 fn for_lack(failure: Failure, lacks: &[&str]) -> Failure {
     match lacks {
         [] => failure,
@@ -150,7 +148,7 @@ fn for_lack(failure: Failure, lacks: &[&str]) -> Failure {
     }
 }
 
-/// Refuses a package that is larger than it may be. What is for those without packages may be a little larger.
+/// Refuses a package above the size limit. Archives for systems without packages are exempt.
 fn too_large(kit: &Kit) -> Result<(), Failure> {
     let is_package = |file: &&PathBuf| {
         file.extension()
@@ -161,7 +159,7 @@ fn too_large(kit: &Kit) -> Result<(), Failure> {
         if bytes > MOST_BYTES {
             let name = file.display();
             let message = format!(
-                "{name} has {bytes} bytes, and {MOST_BYTES} are the most: see profile.dist in Cargo.toml"
+                "{name} has {bytes} bytes, more than the limit of {MOST_BYTES}: see profile.dist in Cargo.toml"
             );
             return Err(Failure {
                 message,
@@ -172,7 +170,7 @@ fn too_large(kit: &Kit) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The folder of the page, as it is handed out.
+/// Packs the folder of the web page.
 fn web_archive(kit: &mut Kit) -> Result<(), Failure> {
     web::run(web::Web::Build(None), kit.if_missing)?;
     let site = web::folder().join("site");
@@ -189,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_fails_where_packages_are_missing_names_them_and_is_no_fault() {
+    fn failure_names_missing_packages() {
         let failure = || Failure {
             message: "it could not be built".to_string(),
             code: FAILED,

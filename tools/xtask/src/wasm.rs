@@ -1,9 +1,8 @@
-//! The golden scenes on wasm32, run under Node: do they end in the same bits as natively, and how much
-//! longer do they take?
+//! Golden scenes on wasm32 under Node: compares their bits with the native ones, and their durations.
 //!
-//! rustup's toolchain can build for wasm32 after `rustup target add wasm32-unknown-unknown`. Where
-//! it has not been told to, or cannot reach its server, Debian's packages do: a compiler, the
-//! sources of its standard library, which cargo then builds too, and a linker.
+//! rustup's toolchain builds for wasm32 after `rustup target add wasm32-unknown-unknown`. Otherwise Debian's
+//! packages are used: a compiler, the sources of its standard library, which cargo then builds, too, and a
+//! linker.
 
 use crate::debian;
 use crate::folders;
@@ -13,10 +12,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 pub const TARGET: &str = "wasm32-unknown-unknown";
-/// Every browser of today has wide lanes, but a module has them or not.
+/// SIMD of 128 bits. All current browsers have it, but a module cannot choose at run time.
 const LANES: &str = "-Ctarget-feature=+simd128";
 
-/// Builds the golden scenes, runs them, and fails where one ends in other bits than it must.
+/// Builds and runs the golden scenes; fails if the bits of one differ.
 pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
     let compiler = compiler(if_missing, "the golden scenes were NOT run on wasm32")?;
     let module = compile_checks(&compiler)?;
@@ -26,18 +25,20 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
             .arg("tools/xtask/golden.mjs")
             .arg(module)
             .args(native_times),
-        "a scene ends in other bits on wasm32: look for arithmetic beyond + - * / and sqrt, for \
-         usize, which has 32 bits there, and for lanes that sum in another order",
+        "the result of a scene differs in its bits on wasm32: look for arithmetic beyond + - * / and sqrt, for \
+         usize, which has 32 bits there, and for SIMD lanes that are summed in another order",
     )
 }
 
-/// The compiler to use, and Node beside it; `undone` says what did not happen where there is none.
+/// Returns the compiler, if Node is there, too. Otherwise the error begins with `undone`, the task that was
+/// not done.
 pub fn compiler(if_missing: IfMissing, undone: &str) -> Result<Compiler, Failure> {
     let mut found = find_compiler();
     if if_missing == IfMissing::Install && found.is_err() {
-        // Fresh machines have stale lists, or none. An update that fails may leave good ones.
+        // Package lists of fresh machines are old or missing. If the update fails, the old lists may still
+        // do.
         apt_get(&["update", "--quiet"]);
-        // Twice, because which linker fits is known only once the compiler is there.
+        // Twice, because the matching linker is known only once the compiler is installed.
         for _ in 0..2 {
             match &found {
                 Err(lacks) if install(lacks) => found = find_compiler(),
@@ -48,20 +49,20 @@ pub fn compiler(if_missing: IfMissing, undone: &str) -> Result<Compiler, Failure
     found.map_err(|lacks| cannot(undone, &lacks, if_missing))
 }
 
-/// What compiles for wasm32.
+/// Toolchain for wasm32.
 #[derive(Debug, PartialEq)]
 pub enum Compiler {
-    /// The toolchain in use has the standard library for wasm32.
+    /// The toolchain in use, which has the standard library for wasm32.
     Ready,
     /// Debian's, with this linker.
     Debian { linker: String },
 }
 
-/// The compiler to use, or all that is missing.
+/// Returns the compiler, or everything that is missing.
 fn find_compiler() -> Result<Compiler, Vec<Lack>> {
     let mut lacks = Vec::new();
     if !answers("node") {
-        lacks.push(Lack::new("there is no Node on the path", "nodejs"));
+        lacks.push(Lack::new("Node not found on the path", "nodejs"));
     }
     let compiler = if debian::toolchain_has(TARGET) {
         Ok(Compiler::Ready)
@@ -78,7 +79,7 @@ fn find_compiler() -> Result<Compiler, Vec<Lack>> {
     }
 }
 
-/// Debian's compiler, from what it says about itself; or all that is missing.
+/// Finds Debian's compiler from its version output, or everything that is missing.
 fn find_debian(
     description: Option<&str>,
     exists: impl Fn(&Path) -> bool,
@@ -88,7 +89,7 @@ fn find_debian(
     let mut lacks = Vec::from_iter(found.sources.err());
     let linker = format!("wasm-ld-{}", found.llvm);
     if !answers(&linker) {
-        let what = format!("there is no linker {linker}");
+        let what = format!("linker {linker} not found");
         lacks.push(Lack::new(what, format!("lld-{}", found.llvm)));
     }
     if lacks.is_empty() {
@@ -98,21 +99,21 @@ fn find_debian(
     }
 }
 
-/// Installs the packages; whether that went well.
+/// Installs the packages; returns whether that succeeded.
 fn install(lacks: &[Lack]) -> bool {
-    // rustc-web conflicts with Debian's rustc and rustup, which is why nothing may be removed for it.
+    // rustc-web conflicts with Debian's rustc and rustup, which must not be removed for it.
     let names = lacks.iter().map(|lack| lack.package.as_str());
     apt_get(&install_arguments(names))
 }
 
-/// Compiles a package, the first of the words, as the game for a browser is; where its module is.
+/// Compiles a package, the first of `words`, as for a browser; returns the path of the module.
 pub fn compile(compiler: &Compiler, words: &[&str]) -> Result<PathBuf, Failure> {
     let mut command = cargo();
     command
         .args(["rustc", "--profile", "web", "--target", TARGET, "--package"])
         .args(words)
         .env("CARGO_TARGET_DIR", root().join(folder()))
-        // Takes the place of flags for the native build, such as a target-cpu, which make no sense here.
+        // Replaces flags for the native build, such as a target-cpu, which do not apply here.
         .env(
             "CARGO_ENCODED_RUSTFLAGS",
             folders::encoded([LANES], &folders::names()),
@@ -120,27 +121,27 @@ pub fn compile(compiler: &Compiler, words: &[&str]) -> Result<PathBuf, Failure> 
     if let Compiler::Debian { linker } = compiler {
         command
             .arg("-Zbuild-std=std,panic_abort")
-            // None: the crates behind backtraces are among the largest, and a browser shows its own.
+            // No features: the crates for backtraces are among the largest, and browsers show their own.
             .arg("-Zbuild-std-features=")
             .envs(debian::ENVIRONMENT)
             .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
     }
     execute(
         &mut command,
-        "what differs in a browser belongs into game/tamaire/src/platform and behind features of its crates",
+        "code that differs in a browser belongs into game/src/platform, or behind features of the crates",
     )?;
     let modules = root().join(folder()).join(TARGET).join("web");
     Ok(modules.join(words[0]).with_extension("wasm"))
 }
 
-/// Compiles the golden scenes, and what else a browser has to get right; where their module is.
+/// Compiles the golden scenes and other checks for browsers; returns the path of the module.
 pub fn compile_checks(compiler: &Compiler) -> Result<PathBuf, Failure> {
     compile(compiler, &["determinism_checks", "--crate-type", "cdylib"])
 }
 
-/// How long each scene takes natively on one thread \[ms\], in their order.
+/// Native durations of the scenes on one thread \[ms\], in order.
 fn native_times() -> Result<Vec<String>, Failure> {
-    // Of the packages whose tests are run in release, so that what they were built of is used again.
+    // Same packages and features as the tests in release mode, to reuse their build.
     let mut build = cargo();
     build.args(["build", "--release", "--all-features"]);
     build.args(["--package", "fuwafuwa", "--package", "determinism_checks"]);
@@ -155,7 +156,7 @@ fn native_times() -> Result<Vec<String>, Failure> {
         .output();
     let Some(output) = output.ok().filter(|output| output.status.success()) else {
         return Err(Failure {
-            message: "the golden scenes could not be timed natively".to_string(),
+            message: "the native durations of the golden scenes could not be measured".to_string(),
             code: FAILED,
         });
     };
@@ -163,20 +164,20 @@ fn native_times() -> Result<Vec<String>, Failure> {
     Ok(times.split_whitespace().map(str::to_string).collect())
 }
 
-/// Where wasm32 is built: beside the native build.
+/// Target folder for wasm32, beside the native one.
 fn folder() -> PathBuf {
     target().join("wasm")
 }
 
 fn cannot(undone: &str, lacks: &[Lack], if_missing: IfMissing) -> Failure {
     let advice = match if_missing {
-        IfMissing::Say => "On Debian, the same with `--install` installs that.",
-        IfMissing::Install => "What Debian's packages offer here is not enough, see above.",
+        IfMissing::Say => "On Debian, add `--install` to install the packages.",
+        IfMissing::Install => "Debian's packages are not sufficient, see above.",
     };
     Failure {
         message: format!(
             "{undone}:\n{}\n{advice}\n\
-             Elsewhere: `rustup target add {TARGET}`, and Node on the path.",
+             Elsewhere, run `rustup target add {TARGET}`, and put Node on the path.",
             list_lacks(lacks)
         ),
         code: CANNOT,
@@ -208,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_named_by_its_package() {
+    fn find_debian_names_missing_packages() {
         let sources = "/usr/src/rustc-1.96.0/library/std";
         let other_sources = "/usr/src/rustc-1.85.0/library/std";
         let old = DESCRIPTION.replace("1.96", "1.85");
@@ -228,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn a_compiler_that_is_too_old_is_refused_with_both_versions() {
+    fn old_compiler_is_refused_with_both_versions() {
         let old = DESCRIPTION.replace("1.96", "1.85");
         let lacks = find_debian(Some(&old), |_| true, |_| true).unwrap_err();
         let failure = cannot("", &lacks, IfMissing::Say);

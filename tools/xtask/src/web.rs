@@ -1,7 +1,7 @@
-//! The game for a browser: a folder of files that any web server can hand out.
+//! Web version of the game: a folder of files for any web server.
 //!
-//! cargo compiles the game and its sound for wasm32, `xtask_bindgen` makes the glue between the game and the page
-//! (`game/tamaire/web`), and `tools/xtask/web/pack.mjs` the folder.
+//! cargo compiles the game and its sound for wasm32. `xtask_bindgen` generates the bindings between the game
+//! and the page (`game/web`), and `xtask/web/pack.mjs` packs the folder.
 
 use crate::packages::{self, IfMissing, Purpose};
 use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, root, target};
@@ -10,18 +10,18 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What to do with the game for a browser.
+/// Task for the web version.
 #[derive(Debug, PartialEq)]
 pub enum Web {
-    /// Build it, for this address where one is known.
+    /// Builds it, for this address if one is given.
     Build(Option<String>),
-    /// And hand it out on this machine.
+    /// Builds and serves it on this machine.
     Serve,
-    /// And play it in browsers.
+    /// Builds it and tests it in browsers.
     Test,
 }
 
-/// Builds the game for a browser, and serves or tests it.
+/// Builds the web version, and serves or tests it.
 pub fn run(web: Web, if_missing: IfMissing) -> Result<(), Failure> {
     if web == Web::Test {
         provide_browsers(if_missing)?;
@@ -35,19 +35,19 @@ pub fn run(web: Web, if_missing: IfMissing) -> Result<(), Failure> {
     let site = folder().join("site");
     match web {
         Web::Build(_) => Ok(()),
-        Web::Serve => node("serve.mjs", &[&site], "the server ended"),
+        Web::Serve => node("serve.mjs", &[&site], "the server failed"),
         Web::Test => {
             let checks = wasm::compile_checks(&compiler)?;
-            // Firefox draws in software only where there is a display.
+            // Firefox renders in software only if there is a display.
             let mut play = Command::new("xvfb-run");
             play.args(["--auto-servernum", "node", "tools/xtask/web/test/all.mjs"])
                 .args([&site, &checks]);
-            execute(&mut play, "a browser did not play as it must, see above")
+            execute(&mut play, "a test in a browser failed, see above")
         }
     }
 }
 
-/// Where the tools, the stages and the folder of files are.
+/// Folder of the tools, the stages and the packed files.
 pub fn folder() -> PathBuf {
     root().join(target()).join("web")
 }
@@ -70,7 +70,7 @@ fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
         .args([&game, &stage]);
     execute(
         &mut bind,
-        "the glue between the game and the page could not be made",
+        "the bindings between the game and the page could not be generated",
     )?;
     let licences = folder().join("licences.txt");
     fs::copy(sound, stage.join("sound.wasm")).map_err(|error| Failure {
@@ -80,8 +80,13 @@ fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
     provide_node_modules()?;
     node(
         "licences.mjs",
-        &[&licences, Path::new(TARGET), Path::new("tamaire")],
-        "the licences could not be gathered",
+        &[
+            &licences,
+            Path::new(TARGET),
+            Path::new("tamaire"),
+            Path::new("tamaire_worklet"),
+        ],
+        "the licences could not be collected",
     )?;
     let (page, site) = (root().join("game/tamaire/web"), folder().join("site"));
     let mut words: Vec<&Path> = vec![&stage, &page, &licences, &site];
@@ -89,7 +94,7 @@ fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
     node("pack.mjs", &words, "the folder could not be packed")
 }
 
-/// npm's packages, as the lock file names them.
+/// Installs the npm packages of the lock file.
 fn provide_node_modules() -> Result<(), Failure> {
     let here = root().join("tools/xtask/web");
     let stamp = |path: &str| {
@@ -104,7 +109,10 @@ fn provide_node_modules() -> Result<(), Failure> {
     install
         .args(["ci", "--no-audit", "--no-fund", "--prefix"])
         .arg(&here);
-    execute(&mut install, "npm could not fetch what packs the page")
+    execute(
+        &mut install,
+        "npm could not install the tools that pack the page",
+    )
 }
 
 fn node(script: &str, words: &[&Path], hint: &str) -> Result<(), Failure> {
@@ -112,7 +120,7 @@ fn node(script: &str, words: &[&Path], hint: &str) -> Result<(), Failure> {
     execute(Command::new("node").arg(script).args(words), hint)
 }
 
-/// Sees to it that there is what plays the game, as far as that goes.
+/// Provides browsers and a virtual display as far as possible.
 fn provide_browsers(if_missing: IfMissing) -> Result<(), Failure> {
     packages::provide(&[Purpose::Browsing], if_missing);
     let programs = ["chromium", "firefox-esr", "xvfb-run"];
@@ -124,7 +132,7 @@ fn provide_browsers(if_missing: IfMissing) -> Result<(), Failure> {
         [] => Ok(()),
         _ => Err(Failure {
             message: format!(
-                "the game was NOT played in browsers: no {} on the path",
+                "the game was NOT tested in browsers: {} not found on the path",
                 missing.join(", ")
             ),
             code: CANNOT,

@@ -1,4 +1,4 @@
-//! Wine, in a folder of its own so that the files of whoever works here are left alone.
+//! Wine with a separate prefix, so that it does not touch the user's files.
 
 use crate::shell::{FAILED, Failure, execute, root, target, told};
 use std::env;
@@ -6,33 +6,33 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// What Rust's programs ask for, and an old wine does not have.
+/// Library that Rust programs require and that old versions of Wine lack.
 const LIBRARY: &str = "bcryptprimitives.dll";
 
-/// What wine takes for the disk of a Windows.
+/// Wine prefix, which contains the virtual disk of Windows.
 fn prefix() -> PathBuf {
     root().join(target()).join("wine")
 }
 
-/// Keeps a program that wine runs to its own folder.
+/// Confines a program under Wine to its prefix.
 pub fn shield(command: &mut Command) {
     command.env("WINEPREFIX", prefix()).env("WINEDEBUG", "-all");
-    // It would ask for .NET and for a browser, which nothing here needs.
+    // Prevents Wine from installing .NET and a browser engine.
     command.env("WINEDLLOVERRIDES", "mscoree,mshtml=");
-    // Else it cannot read names of files that are not plain.
+    // Without UTF-8, Wine cannot read non-ASCII file names.
     let is_utf8 = |name| env::var(name).is_ok_and(|value: String| value.ends_with("UTF-8"));
     if !is_utf8("LC_ALL") {
         command.env("LC_ALL", "C.UTF-8");
     }
 }
 
-/// Sees to it that Rust's programs can start, with a library that `compiler` makes where wine has none. It is for wine alone, and in no
-/// package.
+/// Prepares the prefix, and compiles the missing library with `compiler` if needed. The library is only used
+/// with Wine and not part of any package.
 pub fn prepare(compiler: &str) -> Result<(), Failure> {
     let mut boot = Command::new("wine");
     boot.args(["wineboot", "--init"]);
     shield(&mut boot);
-    execute(&mut boot, "wine could not set up its folder")?;
+    execute(&mut boot, "Wine could not create its prefix")?;
     let system = prefix().join("drive_c/windows/system32");
     let library = system.join(LIBRARY);
     if library.exists() {
@@ -40,16 +40,19 @@ pub fn prepare(compiler: &str) -> Result<(), Failure> {
     }
     if !system.is_dir() {
         return Err(Failure {
-            message: format!("wine has set up no {}", system.display()),
+            message: format!("Wine did not create {}", system.display()),
             code: FAILED,
         });
     }
-    // Whoever interrupts this leaves no half of it.
+    // Compiles to a temporary name, so that an interruption leaves no incomplete library.
     let part = system.join("bcryptprimitives.part");
     let mut compile = Command::new(compiler);
     compile.args(["-O2", "-shared", "-o"]).arg(&part);
     compile.arg(root().join("tools/xtask/wine/bcryptprimitives.c"));
     compile.arg("-ladvapi32");
-    execute(&mut compile, "what wine lacks could not be compiled")?;
+    execute(
+        &mut compile,
+        "the library that Wine lacks could not be compiled",
+    )?;
     fs::rename(&part, &library).map_err(|error| told(&library, &error))
 }

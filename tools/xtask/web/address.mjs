@@ -1,8 +1,8 @@
-// What the page says of itself to those who show a preview of it. They take whole addresses only.
+// Metadata of the page for link previews, which require absolute URLs.
 
 /**
- * @param {string} html the page, with an image that is named by its file
- * @param {string | undefined} address where the page will stand, with a slash at its end; without it nothing is named
+ * @param {string} html the page, with an image given by its file name
+ * @param {string | undefined} address address of the page with a slash at the end; without it, the image is removed
  */
 export function addressed(html, address) {
   const image = /\n( *)<meta property="og:image" content="(.*)" \/>/;

@@ -1,4 +1,4 @@
-// What a web server does to a file before it goes over the wire.
+// Compression as done by a web server.
 import { brotliCompressSync, constants } from "node:zlib";
 
 /** @param {Buffer} bytes */

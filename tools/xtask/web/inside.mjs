@@ -1,12 +1,12 @@
-// Which crates are inside programs that are built for a system: what only builds or tests is not.
+// Crates contained in programs for a target, without build and test dependencies.
 import { execFileSync } from "node:child_process";
 import { fileURLToPath } from "node:url";
 
-/** Debian 12 has Node 18, which knows no `import.meta.dirname`. */
-export const root = fileURLToPath(new URL("../../..", import.meta.url));
+/** Root of the repository. Node 18 of Debian 12 lacks `import.meta.dirname`. */
+export const root = fileURLToPath(new URL("../..", import.meta.url));
 
 /**
- * The packages inside, as `cargo metadata` describes them, by name and version; and for each the ids of those that it uses.
+ * Returns the packages as described by `cargo metadata`, sorted by name and version, and for each id the ids of its dependencies.
  * @param {string} target @param {string[]} programs
  */
 export function inside(target, programs) {
@@ -19,7 +19,7 @@ export function inside(target, programs) {
   const uses = new Map();
   const open = packages.filter(({ name }) => programs.includes(name)).map(({ id }) => id);
   if (open.length !== programs.length) {
-    throw new Error(`of ${programs.join(", ")} the workspace has ${open.length}`);
+    throw new Error(`expected ${programs.length} packages (${programs.join(", ")}) in the workspace, found ${open.length}`);
   }
   while (open.length) {
     const id = open.pop();

@@ -1,11 +1,11 @@
-// The licences of all that is inside programs, each text once, and whose it is.
+// Writes the licences of all contents of programs: each text once, with the crates that it belongs to.
 // usage: node licences.mjs OUT TARGET PROGRAM...
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { inside, root } from "./inside.mjs";
 
 const [out, target, ...programs] = process.argv.slice(2);
-/** Texts of what others wrote in C, which lie deeper. */
+/** Licence texts of bundled C code, in subfolders. */
 const DEEPER = new Map([["sdl3-src", ["SDL/LICENSE.txt", "SDL/src/hidapi/LICENSE-bsd.txt"]]]);
 
 /** @type {Map<string, string[]>} */
@@ -15,7 +15,7 @@ const note = (/** @type {string} */ text, /** @type {string} */ owner) =>
 for (const file of ["LICENSE-MIT", "LICENSE-APACHE"]) {
   note(readFileSync(join(root, file), "utf8"), "tamaire, fuwafuwa");
 }
-note(readFileSync(join(root, "game/tamaire/fonts/OFL.txt"), "utf8"), "M PLUS Rounded 1c, the letters of the game");
+note(readFileSync(join(root, "game/fonts/OFL.txt"), "utf8"), "M PLUS Rounded 1c, the font of the game");
 const { all } = inside(target, programs);
 const without = [];
 for (const { name, version, license, manifest_path, source } of all) {
@@ -32,12 +32,12 @@ for (const { name, version, license, manifest_path, source } of all) {
   texts.forEach((text) => note(text, `${name} ${version}`));
   if (!texts.length) without.push(`${name} ${version}: ${license}`);
 }
-// What the project says by itself comes first.
+// The project's own list comes first.
 const known = readFileSync(join(root, "THIRD-PARTY.md"), "utf8");
 const line = "=".repeat(78);
 const parts = [...owners].map(([text, who]) => `${line}\n${[...new Set(who)].sort().join(", ")}\n\n${text}\n`);
 if (without.length) {
-  parts.push(`${line}\nThese come without a text of their own:\n\n${without.sort().join("\n")}\n`);
+  parts.push(`${line}\nThese packages contain no licence text:\n\n${without.sort().join("\n")}\n`);
 }
 writeFileSync(out, [known, ...parts].join("\n"));
-console.log(`licences: ${all.length} crates, ${owners.size} texts, ${without.length} named without one`);
+console.log(`licences: ${all.length} crates, ${owners.size} texts, ${without.length} crates without a text`);

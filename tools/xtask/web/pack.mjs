@@ -1,8 +1,8 @@
-// Makes the folder that a web server hands out: the module optimised, everything that may be kept for ever in a folder that is
-// named by its contents, and what it costs on the wire.
+// Packs the folder for a web server: optimises the module, puts immutable files into a folder named by a hash of the contents,
+// and prints the sizes of the compressed files.
 // usage: node pack.mjs STAGE PAGE LICENCES OUT [ADDRESS]
-//   STAGE: what wasm-bindgen made, and sound.wasm; PAGE: game/tamaire/web; LICENCES: a text; OUT: the folder, made anew;
-//   ADDRESS: where it will stand
+//   STAGE: output of wasm-bindgen, and sound.wasm; PAGE: game/web; LICENCES: text file; OUT: the folder, which is replaced;
+//   ADDRESS: address of the page
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
 import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -14,13 +14,13 @@ import { brotli } from "./compress.mjs";
 const [stage, page, licences, out, address] = process.argv.slice(2);
 const here = fileURLToPath(new URL(".", import.meta.url));
 
-/** What a browser must be able to do: page.js asks for the lanes, and all that have them have the rest. */
+/** Required WebAssembly features. page.js tests for SIMD; browsers with SIMD have the others, too. */
 const FEATURES = ["simd", "bulk-memory", "sign-ext", "mutable-globals", "nontrapping-float-to-int", "reference-types", "multivalue"];
 
-/** Files of the page that keep their names, because others know them by these. */
+/** Files of the page with fixed names, because they are referred to from outside. */
 const NAMED = ["index.html", "sw.js", "manifest.webmanifest", "icon.svg", "icon-192.png", "icon-512.png"];
-/** What others show of the page. */
-const PREVIEW = join(here, "../../../docs/game-squeezed.png");
+/** Image for link previews. */
+const PREVIEW = join(here, "../../docs/game-squeezed.png");
 
 function optimised(/** @type {string} */ name) {
   const file = join(stage, `${name}.opt.wasm`);
@@ -80,7 +80,7 @@ const all = [...NAMED, "licences.txt", "preview.png", ...[...files.keys()].map((
 const rows = all.map((name) => {
   const bytes = readFileSync(join(out, name));
   const small = brotli(bytes);
-  // serve.mjs hands it out; compressing takes longer than a visit.
+  // For serve.mjs, because compressing on demand would be too slow.
   const beside = join(`${out}.br`, name);
   mkdirSync(dirname(beside), { recursive: true });
   writeFileSync(beside, small);

@@ -1,4 +1,4 @@
-// The bill of materials of programs: which crates are inside, from where, and with which SHA-256; CycloneDX 1.5.
+// Writes the bill of materials of programs in CycloneDX 1.5: contained crates with origin and SHA-256.
 // usage: node sbom.mjs OUT TARGET PROGRAM...
 import { createHash } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -8,7 +8,7 @@ import { inside, root } from "./inside.mjs";
 const [out, target, ...programs] = process.argv.slice(2);
 const { all, uses } = inside(target, programs);
 
-/** Checksums as the lock file has them, by name and version. */
+/** Checksums from the lock file, by name and version. */
 const checksums = new Map();
 const lock = readFileSync(join(root, "Cargo.lock"), "utf8");
 for (const [, name, version, rest] of lock.matchAll(/\[\[package\]\]\nname = "(.*)"\nversion = "(.*)"\n((?:.+\n)*)/g)) {
@@ -29,7 +29,7 @@ const components = all.map(({ id, name, version, license, description, source })
     description: description?.trim().replace(/\s+/g, " ") ?? undefined,
     scope: "required",
     hashes: checksum ? [{ alg: "SHA-256", content: checksum }] : undefined,
-    // Some write a slash for "or", as was once usual.
+    // Some crates use the old notation with a slash for "or".
     licenses: license ? [{ expression: license.replaceAll(/\s*\/\s*/g, " OR ") }] : undefined,
     purl: refOf.get(id),
   };
@@ -40,7 +40,7 @@ const dependencies = [...uses].map(([id, used]) => ({
 }));
 dependencies.sort((a, b) => (a.ref < b.ref ? -1 : 1));
 const body = JSON.stringify({ components, dependencies });
-// The same contents have the same number: it is made of them.
+// Derived from the contents, so that equal contents have the same serial number.
 const digest = createHash("sha256").update(target).update(body).digest("hex");
 const serial = `${digest.slice(0, 8)}-${digest.slice(8, 12)}-5${digest.slice(13, 16)}-8${digest.slice(17, 20)}-${digest.slice(20, 32)}`;
 const bill = {

@@ -1,5 +1,5 @@
-// A web server for the packed folder, as any static host is one: brotli, and a year for what is named by its contents.
-// usage: node serve.mjs FOLDER [PORT]   what is compressed lies in FOLDER.br
+// Web server for the packed folder that behaves like a static host: brotli, and a year of caching for immutable files.
+// usage: node serve.mjs FOLDER [PORT]   the compressed files are in FOLDER.br
 import { createServer } from "node:http";
 import { readFileSync } from "node:fs";
 import { extname, join, normalize } from "node:path";
@@ -19,7 +19,7 @@ const MEDIA = {
 
 /**
  * @param {string} folder
- * @param {number} port 0 for any that is free
+ * @param {number} port 0 for any free port
  * @returns {Promise<{address: string, folder: string, sent: {path: string, bytes: number}[], close(): Promise<void>}>}
  */
 export function serve(folder, port = 0) {
@@ -63,5 +63,5 @@ export function serve(folder, port = 0) {
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const { address } = await serve(process.argv[2], Number(process.argv[3] ?? 8000));
-  console.log(`tamaire plays at ${address} until this ends (Ctrl+C)`);
+  console.log(`tamaire is served at ${address}; stop with Ctrl+C`);
 }

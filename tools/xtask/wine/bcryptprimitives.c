@@ -1,7 +1,7 @@
-// The one function of bcryptprimitives.dll that Rust's standard library asks for. Every Windows since 10 has it, and Debian's wine 8 has not.
+// The function of bcryptprimitives.dll that Rust's standard library requires. Windows has it since version 10, Debian's Wine 8 lacks it.
 #include <windows.h>
 
-// RtlGenRandom, as advapi32.dll calls it.
+// Exported name of RtlGenRandom in advapi32.dll.
 BOOLEAN NTAPI SystemFunction036(PVOID bytes, ULONG count);
 
 __declspec(dllexport) BOOL WINAPI ProcessPrng(PBYTE bytes, SIZE_T count)

@@ -1,4 +1,4 @@
-//! How a round is seen while nothing happens: on the screen, and in a little picture of its level.
+//! View of a round at rest, used on the screen and for level thumbnails.
 
 use super::feelings::Feeling;
 use super::{Face, Theme, View};
@@ -7,7 +7,7 @@ use fuwafuwa::vector::{plus, scaled};
 use fuwafuwa_render::{Basket, Camera, Frame};
 use tamaire_play::Round;
 
-/// How a round is seen from somewhere while nothing happens.
+/// Returns the render frame of a round without effects, stickers or ghost.
 pub(super) fn frame<'a, D: Dim, C>(camera: C, round: &Round<D>, theme: &'a Theme) -> Frame<'a, C> {
     let fill = (round.progress().inside / round.level().game().share).clamp(0.0, 1.0);
     Frame {
@@ -23,7 +23,7 @@ pub(super) fn frame<'a, D: Dim, C>(camera: C, round: &Round<D>, theme: &'a Theme
     }
 }
 
-/// The view as the renderer takes it.
+/// Converts `view` to a camera of the plane renderer.
 pub(super) fn camera(view: &View) -> Camera {
     Camera {
         centre: [view.centre[0], view.centre[1], 0.0],
@@ -33,7 +33,7 @@ pub(super) fn camera(view: &View) -> Camera {
     }
 }
 
-/// The face of a body that looks straight ahead, so many times as large as usual.
+/// Returns the face of a body looking straight ahead, scaled by `size` (1 = normal).
 pub(super) fn face_of(body: usize, feeling: &Feeling, size: f32) -> Face {
     Face {
         body,

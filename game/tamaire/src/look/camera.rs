@@ -1,4 +1,4 @@
-//! Which part of the world is seen where on the screen.
+//! Camera of a round: mapping between world and screen.
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use fuwafuwa::Vector;
@@ -7,65 +7,68 @@ use fuwafuwa_render::space;
 use std::f32::consts::TAU;
 use tamaire_play::Level;
 
-/// So much is seen around the arena [m]: room for the lean, so that nothing of the arena goes out of sight.
+/// Margin around the arena [m]. It keeps the whole arena in view while the camera leans.
 const MARGIN: f32 = 0.1;
-/// The camera leans this share of the way from the middle of the arena towards the hand.
+/// Lean of the camera towards the hand, as a share of the distance from the arena's centre to the hand.
 const LEAN: f32 = 0.03;
-/// How fast it leans [1/s].
+/// Rate at which the lean follows the hand [1/s].
 const PACE: f32 = 3.0;
-/// How fast a shake dies [1/s], and how fast it swings [rad/s].
+/// Decay rate of a shake [1/s]. Its angular frequency is [`SWING`] [rad/s].
 const CALM: f32 = 9.0;
-/// In space it begins so far up, and goes no lower, where a hand could be above it, and no higher [rad].
+/// 3D: initial elevation of the camera, and its lower and upper limit [rad]. Below the lower limit a hand
+/// could be above the camera.
 const RISE: f32 = 0.6;
 const LOWEST: f32 = 0.35;
 const HIGHEST: f32 = 1.5;
-/// Of the distance from which a whole arena in space is seen from all sides it keeps this: its corners are of no interest.
+/// 3D: factor on the distance from which the whole arena is visible from all sides. Below 1, because the
+/// arena's corners hold nothing of interest.
 const CLOSE: f32 = 0.66;
-/// It looks so far below the middle of the arena [m], in a small one by such a share of its height: what there is lies on
-/// the floor.
+/// 3D: offset of the camera's target below the centre of the arena [m], limited to a share of the arena's
+/// height. Bodies lie on the floor.
 const LOWER: f32 = 0.12;
 const LOWER_SHARE: f32 = 0.15;
-/// How fast it goes back to where it began [1/s].
+/// Rate at which the camera returns to its initial orientation [1/s].
 const HOME: f32 = 7.0;
-/// Farther away than any level is large [m].
+/// Upper limit of the distance to a picked point [m], larger than any level.
 const FAR: f32 = 100.0;
 const SWING: f32 = 60.0;
 
-/// Looks at the arena, leans towards the hand, and shakes when something tears.
+/// Camera that frames the arena, leans towards the hand, and shakes when something tears.
 #[derive(Clone, Debug, Default)]
 pub struct CameraRig {
     lean: Vec2,
-    /// How far it swings [m], and where in the swing it is [rad].
+    /// Amplitude of the shake [m] and its phase [rad].
     shake: f32,
     phase: f32,
-    /// In space by how much it went around to the right, and up from where it began [rad].
+    /// 3D: azimuth (positive to the right) and elevation, relative to the initial orientation [rad].
     turn: f32,
     rise: f32,
     goes_home: bool,
 }
 
-/// The camera on a part of the screen.
+/// Camera for a given part of the screen.
 #[derive(Copy, Clone, Debug)]
 pub struct View {
-    /// The part of the screen.
+    /// Part of the screen [points].
     pub rect: Rect,
-    /// What is in its middle [m].
+    /// World position at the centre of `rect` [m].
     pub centre: [f32; 2],
-    /// Points on the screen for each metre, in space in the middle of the arena.
+    /// Scale [points/m]; in 3D at the camera's target.
     pub scale: f32,
-    /// The camera of a level in space.
+    /// Camera of a 3D level; `None` in 2D.
     pub space: Option<space::Camera>,
 }
 
 impl CameraRig {
-    /// Lets `seconds` pass while the hand is at a place [m]; `still` = with reduced motion.
+    /// Advances by `seconds`, with the hand at `hand` [m]. `still` selects reduced motion: no lean, no shake,
+    /// and no animated return.
     pub fn follow(&mut self, hand: Vector, arena: [Vector; 2], seconds: f32, still: bool) {
         if self.goes_home {
             let left = match still {
                 true => 0.0,
                 false => (1.0 - HOME * seconds).max(0.0),
             };
-            // The shorter way around.
+            // Shorter way around.
             self.turn = left * (self.turn - TAU * (self.turn / TAU).round());
             self.rise *= left;
         }
@@ -80,44 +83,45 @@ impl CameraRig {
         self.phase += SWING * seconds;
     }
 
-    /// Something tore: shake, by so much at most [m].
+    /// Shakes after a tear: adds `by` to the amplitude [m], up to 0.02 m.
     pub fn shake(&mut self, by: f32) {
         self.shake = (self.shake + by).min(0.02);
     }
 
-    /// In space it goes around what it looks at, to the right and up [rad].
+    /// 3D: turns the camera around its target, to the right and up [rad]. Any turn stops a return to the
+    /// initial orientation.
     pub fn orbit(&mut self, right: f32, up: f32) {
         self.goes_home &= right == 0.0 && up == 0.0;
         self.turn += right;
         self.rise = (self.rise + up).clamp(LOWEST - RISE, HIGHEST - RISE);
     }
 
-    /// In space it is back where it began.
+    /// 3D: returns to the initial orientation at once.
     pub fn face_front(&mut self) {
         (self.turn, self.rise, self.goes_home) = (0.0, 0.0, false);
     }
 
-    /// In space it goes back to where it began, so that one sees the way.
+    /// 3D: starts a smooth return to the initial orientation.
     pub fn go_home(&mut self) {
         self.goes_home = true;
     }
 
-    /// By how much it went around to the right and up [rad].
+    /// Azimuth (to the right) and elevation, relative to the initial orientation [rad].
     pub fn gone_around(&self) -> [f32; 2] {
         [self.turn, self.rise]
     }
 
-    /// By how much it went around to the right [rad].
+    /// Azimuth relative to the initial orientation [rad].
     pub fn turn(&self) -> f32 {
         self.turn
     }
 
-    /// In space where it is, nearly: the shape of the screen has a say in it too [m].
+    /// 3D: approximate camera position [m], as if the screen had an aspect ratio of 16:10.
     pub fn eye(&self, arena: [Vector; 2]) -> Vector {
         self.space_camera(arena, [16, 10]).eye()
     }
 
-    /// What it sees on a part of the screen that is to hold the arena of a level.
+    /// Returns the view in which the arena of `level` fits into `rect`.
     pub fn view(&self, rect: Rect, level: &Level) -> View {
         match level.scene().dim {
             2 => self.view_of_plane(rect, level.arena()),
@@ -139,7 +143,7 @@ impl CameraRig {
         }
     }
 
-    /// What it sees of an arena in space, from one corner of it to the other [m].
+    /// Returns the view of a 3D arena, given by its two opposite corners [m].
     pub fn view_of_space(&self, rect: Rect, arena: [Vector; 2]) -> View {
         let camera = self.space_camera(arena, pixels(rect));
         let [x, y, _] = camera.target;
@@ -168,16 +172,16 @@ impl CameraRig {
     }
 }
 
-/// The size of a part of the screen, as cameras take it.
+/// Returns the size of `rect` as whole pixels.
 fn pixels(rect: Rect) -> [u32; 2] {
     [rect.width().max(1.0) as u32, rect.height().max(1.0) as u32]
 }
 
 impl View {
-    /// Where a place of the world [m] is on the screen.
+    /// Returns the screen position of a world point [m].
     pub fn on_screen(&self, at: Vector) -> Pos2 {
         if let Some(camera) = &self.space {
-            // What is behind the camera is nowhere on it.
+            // A point behind the camera is placed far off the screen.
             let [x, y] = camera
                 .to_pixel(at, pixels(self.rect))
                 .unwrap_or([-1.0e5; 2]);
@@ -190,18 +194,18 @@ impl View {
         )
     }
 
-    /// How far across it a place [m] is seen, from -1 at its left to 1 at its right.
+    /// Returns the horizontal position of a world point [m] in the view, from -1 (left) to 1 (right).
     pub fn across(&self, at: Vector) -> f32 {
         let half = 0.5 * self.rect.width().max(1.0);
         ((self.on_screen(at).x - self.rect.center().x) / half).clamp(-1.0, 1.0)
     }
 
-    /// Which place of the world [m] is seen at a point of the screen; in space, at this height [m].
+    /// Returns the world point [m] at a screen position; in 3D on the horizontal plane at `height` [m].
     pub fn in_world(&self, at: Pos2, height: f32) -> Vector {
         if let Some(camera) = &self.space {
             let point = at - self.rect.min;
             let (eye, towards) = camera.ray([point.x, point.y], pixels(self.rect));
-            // Past the horizon it is as far away as can be.
+            // A ray that does not hit the plane is cut at `FAR`.
             let reach = (height - eye[1]) / towards[1];
             let reach = if reach > 0.0 { reach.min(FAR) } else { FAR };
             let [x, _, z] = plus(eye, scaled(towards, reach));
@@ -211,7 +215,7 @@ impl View {
         [self.centre[0] + way.x, self.centre[1] - way.y, 0.0]
     }
 
-    /// Points on the screen for each metre at a place [m].
+    /// Returns the scale at a world point [points/m].
     pub fn scale_at(&self, at: Vector) -> f32 {
         let Some(camera) = &self.space else {
             return self.scale;
@@ -220,13 +224,13 @@ impl View {
         self.scale * camera.distance / away
     }
 
-    /// The same as if the middle of the arena were a plane that is seen from the front.
+    /// Returns this view as a plane through the camera's target, seen from the front.
     pub fn flat(&self) -> Self {
         let space = None;
         Self { space, ..*self }
     }
 
-    /// Height of what is seen [m].
+    /// Height of the visible region [m].
     pub fn height(&self) -> f32 {
         self.rect.height() / self.scale
     }
@@ -237,7 +241,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_is_found_again_from_where_it_is_seen() {
+    fn view_2d_inverts_screen_position() {
         let arena = [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]];
         let mut camera = CameraRig::default();
         camera.shake(0.01);
@@ -253,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn it_goes_home_the_shorter_way_unless_it_is_turned_again() {
+    fn camera_returns_the_shorter_way_until_turned() {
         let mut camera = CameraRig::default();
         let follow = |camera: &mut CameraRig, ticks: usize| {
             (0..ticks).for_each(|_| camera.follow([0.0; 3], [[0.0; 3]; 2], 0.02, false));
@@ -265,7 +269,11 @@ mod tests {
         assert!((0.5..1.0).contains(&right) && (0.1..0.3).contains(&up));
         camera.orbit(0.2, 0.0);
         follow(&mut camera, 60);
-        assert!(camera.turn() > 0.7, "somebody turned it: {}", camera.turn());
+        assert!(
+            camera.turn() > 0.7,
+            "the player has turned the camera: {}",
+            camera.turn()
+        );
         camera.go_home();
         camera.orbit(0.0, 0.0);
         follow(&mut camera, 120);
@@ -273,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn in_space_a_place_is_found_again_at_its_height() {
+    fn view_3d_inverts_screen_position_at_height() {
         let arena = [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]];
         let mut camera = CameraRig::default();
         camera.orbit(0.7, 9.0);
@@ -285,7 +293,8 @@ mod tests {
             let position = view.in_world(view.on_screen(at), at[1]);
             assert!(length(minus(position, at)) < 1e-2, "{position:?}");
         }
-        // From far below: past the horizon, and with the hand above the eye, right stays right and far is far.
+        // From far below: beyond the horizon and with the hand above the camera, left and right are not
+        // swapped and points stay far away.
         camera.face_front();
         camera.orbit(0.0, -9.0);
         let view = camera.view_of_space(rect, arena);

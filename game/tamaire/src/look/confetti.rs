@@ -1,14 +1,14 @@
-//! Paper that falls after a win.
+//! Confetti after a win.
 
 use super::View;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 use fuwafuwa::Vector;
 
-/// How many there are.
+/// Number of confetti pieces.
 const COUNT: usize = 140;
-/// How fast they fall in the end [m/s].
+/// Terminal falling speed [m/s].
 const FALL: f32 = 0.55;
-/// Colours of bright paper. Each has a form of its own too.
+/// Colours of confetti. Each colour has its own shape, too.
 const PAPER: [Color32; 5] = [
     Color32::from_rgb(240, 108, 98),
     Color32::from_rgb(255, 190, 61),
@@ -17,18 +17,18 @@ const PAPER: [Color32; 5] = [
     Color32::from_rgb(190, 130, 200),
 ];
 
-/// Paper that falls after a win.
+/// Confetti after a win.
 #[derive(Clone, Debug, Default)]
 pub struct Confetti {
     pieces: Vec<Paper>,
 }
 
-/// A piece of paper.
+/// One piece of confetti.
 #[derive(Copy, Clone, Debug)]
 struct Paper {
     at: Vector,
     velocity: Vec2,
-    /// How it is turned, and how fast it turns [rad, rad/s].
+    /// Rotation and angular velocity [rad, rad/s].
     angle: f32,
     spin: f32,
     kind: usize,
@@ -36,7 +36,7 @@ struct Paper {
 }
 
 impl Confetti {
-    /// Throws it up from the two lower corners of a room [m].
+    /// Throws confetti up from the two lower corners of `room` [m].
     pub fn rain(&mut self, room: [Vector; 2], random: &mut fastrand::Rng) {
         let mut any = |low: f32, high: f32| low + (high - low) * random.f32();
         let [low, high] = room;
@@ -57,12 +57,12 @@ impl Confetti {
             .collect();
     }
 
-    /// Lets `seconds` pass.
+    /// Advances the confetti by `seconds`.
     pub fn pass(&mut self, seconds: f32) {
         for paper in &mut self.pieces {
             let slower = (1.0 - 2.4 * seconds).max(0.0);
             paper.velocity = (paper.velocity + vec2(0.0, FALL)) * slower - vec2(0.0, FALL);
-            // Paper sways as it falls.
+            // Sideways sway of falling paper.
             let sway = 0.25 * (1.5 * paper.angle).sin();
             paper.at[0] += (paper.velocity.x + sway) * seconds;
             paper.at[1] += paper.velocity.y * seconds;
@@ -72,13 +72,13 @@ impl Confetti {
         self.pieces.retain(|paper| paper.left > 0.0);
     }
 
-    /// Draws it.
+    /// Draws the confetti.
     pub fn draw(&self, painter: &Painter, view: &View) {
         for paper in &self.pieces {
             let colour = PAPER[paper.kind].gamma_multiply(paper.left.min(1.0));
             let size = 0.022 * view.scale;
             let middle = view.on_screen(paper.at);
-            // It shows its face and its edge in turns.
+            // Turns between face-on and edge-on.
             let thin = 0.25 + 0.75 * (1.3 * paper.angle).cos().abs();
             let (sin, cos) = paper.angle.sin_cos();
             let point = |x: f32, y: f32| -> Pos2 {
@@ -122,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_rises_falls_and_goes() {
+    fn confetti_rises_falls_and_disappears() {
         let mut confetti = Confetti::default();
         let room = [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]];
         confetti.rain(room, &mut fastrand::Rng::with_seed(1));

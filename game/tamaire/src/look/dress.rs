@@ -1,18 +1,18 @@
-//! The letters of the game, and egui without its toolbox look.
+//! Fonts of the game and its egui style.
 
 use egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
 use egui::{Context, FontData, FontDefinitions, FontFamily, vec2};
 use std::sync::Arc;
 
-/// Latin letters, signs, and what the title says. All families of letters are the same one.
+/// Font with Latin letters, symbols and the characters of the title; used for all font families.
 const LATIN: &[u8] = include_bytes!("../../fonts/MPLUSRounded1c-Bold-latin.ttf");
-/// Kana and kanji. A browser fetches them when they are wanted.
+/// Font with kana and kanji. The browser version downloads it on demand.
 #[cfg(not(target_family = "wasm"))]
 const JAPANESE: &[u8] = include_bytes!("../../fonts/MPLUSRounded1c-Bold-japanese.ttf");
 
 const FAMILIES: [FontFamily; 2] = [FontFamily::Proportional, FontFamily::Monospace];
 
-/// Gives egui the game's font and takes its toolbox look away.
+/// Installs the game's fonts and style in egui.
 pub fn dress(context: &Context) {
     let mut fonts = FontDefinitions::empty();
     let mut add = |name: &str, bytes| {
@@ -27,10 +27,11 @@ pub fn dress(context: &Context) {
     add("japanese", JAPANESE);
     context.set_fonts(fonts);
     context.set_theme(egui::Theme::Light);
-    // The text size is a setting.
+    // The text size is a setting of the game.
     context.options_mut(|options| {
         options.zoom_with_keyboard = false;
-        // Who presses a button for long means it too, and so does one whose machine is slow.
+        // A long press is a click, too: players may hold a button for long, and frames of a slow machine take
+        // long.
         options.input_options.max_click_duration = f64::INFINITY;
     });
     context.all_styles_mut(|style| {
@@ -39,7 +40,7 @@ pub fn dress(context: &Context) {
     });
 }
 
-/// Adds letters that came later.
+/// Adds the Japanese font after start-up.
 pub fn add_letters(context: &Context, bytes: Vec<u8>) {
     let families = FAMILIES.map(|family| InsertFontFamily {
         family,

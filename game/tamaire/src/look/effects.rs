@@ -1,4 +1,4 @@
-//! What flies about, and what was felt lately.
+//! Particles, confetti, and the reactions of bodies to recent events.
 
 use super::CameraRig;
 use super::confetti::Confetti;
@@ -7,78 +7,80 @@ use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim, Event, NodeId, RigidBody, SoftBody, Vector, With};
 use tamaire_play::{AnyRound, Round};
 
-/// Most particles at once.
+/// Maximum number of particles.
 const MOST: usize = 400;
 /// Particles for each released node.
 const DUST: usize = 3;
-/// In a tick the material of so many releases is looked up; the others take that of the last one.
+/// Number of releases in a tick for which the material is looked up; further releases use the last material
+/// found.
 const LOOKED_UP: usize = 8;
-/// A hand that presses harder than this hurts [N].
+/// Hand force above which a body winces [N].
 const HURTS: f32 = 350.0;
-/// A hand that has gone so far needs no hint any more [m].
+/// Distance that the hand must travel until the hint fades [m].
 const MOVED: f32 = 0.12;
-/// Air that slows dust down [1/s].
+/// Air drag of particles [1/s].
 const DRAG: f32 = 1.5;
-/// Where something pulls dust down, it is thrown up as fast as it would fall in so long [s].
+/// Duration [s] that sets the initial upward speed of particles under gravity: gravity × duration.
 const THROWN: f32 = 0.35;
-/// What of its speed dust keeps when it bounces off a wall, across it and along it; slower than this it lies [m/s].
+/// Factors on a particle's normal and tangential velocity at a bounce off a wall. A particle with a normal
+/// speed below [`LIES`] [m/s] stays on the wall.
 const BOUNCE: [f32; 2] = [0.45, 0.7];
 const LIES: f32 = 0.25;
 
-/// A speck of dust.
+/// Dust particle.
 #[derive(Copy, Clone, Debug)]
 pub struct Speck {
-    /// Where [m].
+    /// Position [m].
     pub at: Vector,
-    /// [m/s]
+    /// Velocity [m/s].
     velocity: Vector,
-    /// How long it has left [s].
+    /// Remaining lifetime [s].
     left: f32,
-    /// [m]
+    /// Radius [m].
     pub radius: f32,
-    /// Of which material it is made.
+    /// Material number.
     pub material: u8,
-    /// Whether it comes from inside, where the material is fresh.
+    /// Whether the particle shows fresh material from inside a body.
     pub is_fresh: bool,
 }
 
 impl Speck {
-    /// Comes to a wall that is square to an axis.
+    /// Bounces off a wall whose normal is along `axis`.
     fn bounce(&mut self, axis: usize) {
         let across = -BOUNCE[0] * self.velocity[axis];
         self.velocity = scaled(self.velocity, BOUNCE[1]);
         self.velocity[axis] = if across.abs() < LIES { 0.0 } else { across };
     }
 
-    /// From 1 while it lies about to 0 when it goes.
+    /// Opacity: 1, fading to 0 in the last 0.7 s.
     pub fn strength(&self) -> f32 {
         (self.left / 0.7).clamp(0.0, 1.0)
     }
 }
 
-/// What flies about, and what was felt lately.
+/// Particles, confetti, and the reactions of bodies to recent events.
 #[derive(Clone, Debug)]
 pub struct Effects {
-    /// Dust.
+    /// Dust particles.
     pub specks: Vec<Speck>,
-    /// Paper that falls after a win.
+    /// Confetti after a win.
     pub confetti: Confetti,
-    /// How each body feels.
+    /// Feeling of each body, in the order of the world's bodies.
     pub feelings: Vec<Feeling>,
-    /// How hard hands press on bodies [N], smoothed.
+    /// Total contact force between hands and bodies [N], smoothed over some ticks.
     pub pressure: f32,
-    /// How clearly the hint is to be seen, 0 to 1.
+    /// Opacity of the hint, 0 to 1.
     pub hint: f32,
-    /// Where the first hand began [m].
+    /// Position of the first hand at the start [m].
     start: Option<Vector>,
     has_moved: bool,
     has_won: bool,
-    /// The last tick that was seen.
+    /// Last tick that was processed.
     tick: u64,
-    /// What pulls dust down, and how far [m/s², m].
+    /// Gravity [m/s²]. `room` holds the corners of the arena [m].
     gravity: Vector,
     room: [Vector; 2],
-    /// In how many directions it flies: 2 in the plane.
+    /// Number of axes along which particles move: 2 or 3.
     axes: usize,
     random: fastrand::Rng,
 }
@@ -104,7 +106,7 @@ impl Default for Effects {
 }
 
 impl Effects {
-    /// Looks at what happened in a tick; `still` = with reduced motion.
+    /// Processes the events of a tick. `still` selects reduced motion: fewer particles, no confetti.
     pub fn see(&mut self, round: &AnyRound, camera: &mut CameraRig, still: bool) {
         match round {
             AnyRound::Plane(round) => self.look_at(round, camera, still),
@@ -115,7 +117,7 @@ impl Effects {
     fn look_at<D: Dim>(&mut self, round: &Round<D>, camera: &mut CameraRig, still: bool) {
         let world = round.world();
         if world.ticks() <= self.tick || self.feelings.len() != world.soft_bodies().len() {
-            // Another round.
+            // A new round has begun.
             let bodies = world.soft_bodies().iter();
             let eye = (D::N == 3).then(|| camera.eye(round.level().arena()));
             *self = Self {
@@ -133,9 +135,9 @@ impl Effects {
         let mut torn = vec![false; world.soft_bodies().len()];
         for event in world.events() {
             match *event {
-                Event::NodeSplit { body, at, energy } => {
-                    let rank = world.soft_bodies().rank(body);
-                    torn[rank.expect("who tore is there")] = true;
+                Event::Released { body, at, energy } => {
+                    let rank = world.bodies().rank(body);
+                    torn[rank.expect("the event names a body of this world")] = true;
                     camera.shake(0.002 + 0.002 * energy.clamp(0.0, 2.0));
                     if looked_up < LOOKED_UP {
                         looked_up += 1;
@@ -173,7 +175,7 @@ impl Effects {
         }
     }
 
-    /// Lets `seconds` pass.
+    /// Advances particles, confetti and hint by `seconds`.
     pub fn pass(&mut self, seconds: f32) {
         let [low, high] = self.room;
         for speck in &mut self.specks {
@@ -186,10 +188,10 @@ impl Effects {
                 let (first, last) = (low[axis] + speck.radius, high[axis] - speck.radius);
                 let (is_low, is_high) = (speck.at[axis] < first, speck.at[axis] > last);
                 if is_low || is_high {
-                    // A room may be narrower than a speck.
+                    // A room may be narrower than a particle.
                     speck.at[axis] = speck.at[axis].min(last).max(first);
                     let outward = speck.velocity[axis];
-                    // What came off right at a wall is on its way already.
+                    // A particle created at a wall may already be moving away from it.
                     if is_low && outward < 0.0 || is_high && outward > 0.0 {
                         speck.bounce(axis);
                     }
@@ -230,7 +232,7 @@ impl Effects {
         let depth = if self.axes == 3 { any(-0.9, 0.9) } else { 0.0 };
         let thrown = scaled(self.gravity, -THROWN);
         let velocity = [any(-0.9, 0.9), any(-0.9, 0.9), depth];
-        // Much is fine, some are crumbs.
+        // The cube favours small particles.
         let size = any(0.0, 1.0);
         let speck = Speck {
             at,
@@ -244,7 +246,7 @@ impl Effects {
     }
 }
 
-/// The material of a body at a place [m]: that of the nearest node.
+/// Returns the material of `body` at its node nearest to `at` [m].
 fn material_at<D: Dim>(body: &SoftBody<D>, at: Vector) -> u8 {
     let mesh = body.mesh();
     let square = |id: NodeId| {
@@ -270,11 +272,11 @@ mod tests {
     use tamaire_play::{InputFrame, Level};
 
     fn round(level: &str) -> AnyRound {
-        AnyRound::new(Arc::new(Level::open(level).expect("it comes along")))
+        AnyRound::new(Arc::new(Level::open(level).expect("the level is built in")))
     }
 
     #[test]
-    fn the_hint_fades_when_the_hand_moves_and_comes_back_in_a_new_round() {
+    fn hint_fades_when_hand_moves_and_returns_in_new_round() {
         let (mut effects, mut camera) = (Effects::default(), CameraRig::default());
         let mut play = |round: &mut AnyRound, effects: &mut Effects, frame, ticks: usize| {
             for _ in 0..ticks {
@@ -299,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn dust_falls_to_the_floor_and_stays_there() {
+    fn dust_falls_to_the_floor_and_stays() {
         let mut effects = Effects {
             gravity: [0.0, -5.0, 0.0],
             room: [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]],
@@ -316,9 +318,9 @@ mod tests {
     }
 
     #[test]
-    fn dust_is_made_of_what_was_torn() {
+    fn dust_has_material_of_torn_body() {
         let AnyRound::Plane(round) = round("twins") else {
-            panic!("it is in the plane")
+            panic!("the level is 2D")
         };
         let bodies: Vec<&SoftBody<_>> = round.world().soft_bodies().iter().collect();
         let middle = |body: &SoftBody<_>| body.piece_views()[0].centre;

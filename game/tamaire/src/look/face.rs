@@ -1,4 +1,5 @@
-//! The face of a body: marks on a piece of paper, which the plane shows as it is, and space sticks to the skin.
+//! Face of a body: marks on a plane of its own. In 2D they are painted as they are, in 3D they are projected
+//! onto the skin.
 
 use super::View;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, vec2};
@@ -7,46 +8,46 @@ use fuwafuwa::{PieceId, Vector};
 use fuwafuwa_render::{Mark, Sticker};
 use std::f32::consts::{PI, TAU};
 
-/// Thickness of its lines, in sizes of the face, and on the screen at least [points].
+/// Line width in units of the face size, and its minimum on the screen [points].
 const LINE: f32 = 0.07;
 const THIN: f32 = 1.5;
-/// A smaller one cannot be read [points].
+/// Minimum size of a face on the screen [points]; a smaller one is not drawn.
 const LEAST: f32 = 5.0;
 
-/// How a body feels.
+/// Expression of a face.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Mood {
-    /// Looks about.
+    /// Relaxed, looking around.
     Calm,
-    /// Is squeezed.
+    /// Squeezed or in pain.
     Wince,
-    /// Was just torn.
+    /// Just torn.
     Shock,
-    /// Is in.
+    /// In the basket.
     Beam,
 }
 
-/// A face as it is now.
+/// Current face of a body.
 #[derive(Copy, Clone, Debug)]
 pub struct Face {
-    /// The body, by its place in the world, and the piece of it.
+    /// Index of the body in the world.
     pub body: usize,
-    /// Its piece.
+    /// Piece that carries the face.
     pub piece: PieceId,
-    /// Its middle; in space inside the body [m].
+    /// Centre [m]; in 3D inside the body.
     pub at: Vector,
-    /// To its right as it is seen, up, and out of it; as long as it is large [m].
+    /// Axes to the right (as seen), up, and outwards. Their length is the size of the face [m].
     pub axes: [Vector; 3],
-    /// What it shows.
+    /// Expression.
     pub mood: Mood,
-    /// From 0 = open to 1 = shut.
+    /// Eyelids, from 0 (open) to 1 (shut).
     pub blink: f32,
-    /// What it looks at [m].
+    /// Point that the eyes look at [m].
     pub look_at: Vector,
 }
 
 impl Face {
-    /// Paints it over a picture of the plane.
+    /// Paints the face in a 2D view.
     pub fn paint(&self, painter: &Painter, view: &View) {
         let [right, up, _] = self.axes.map(|axis| view.scale * vec2(axis[0], -axis[1]));
         let unit = right.length();
@@ -63,7 +64,7 @@ impl Face {
         }
     }
 
-    /// As it lies on the skin of a body in space.
+    /// Returns the face as a sticker on the skin of a 3D body.
     pub fn sticker(&self) -> Sticker {
         Sticker {
             body: self.body,
@@ -74,7 +75,7 @@ impl Face {
         }
     }
 
-    /// What it is made of, with lines so thick, in sizes of the face.
+    /// Returns the marks of the face; `line` is the line width in units of the face size.
     fn marks(&self, line: f32) -> Vec<Mark> {
         let mut pen = Pen {
             line,
@@ -126,7 +127,7 @@ impl Face {
         }
     }
 
-    /// Which way an eye looks, from −1 to 1 to the right and up.
+    /// Gaze direction of an eye, from −1 to 1 to the right and up.
     fn gaze(&self, eye: [f32; 2]) -> [f32; 2] {
         let by = minus(self.look_at, self.at);
         let way = self
@@ -157,14 +158,14 @@ impl Face {
     }
 }
 
-/// What eyes and mouths are drawn with, and what they are.
+/// Colour of outlines, pupils and mouths, and of eyeballs.
 const INK: [f32; 4] = rgb(74, 44, 42);
 const WHITE: [f32; 4] = [1.0; 4];
-/// How far an eyeball stands out, in sizes of the face.
+/// Height of an eyeball above the face, in units of the face size.
 const EYEBALL: f32 = 0.13;
 
 struct Pen {
-    /// How thick its lines are.
+    /// Line width in units of the face size.
     line: f32,
     marks: Vec<Mark>,
 }
@@ -180,7 +181,7 @@ impl Pen {
         });
     }
 
-    /// Fills an outline that lies on an eyeball.
+    /// Fills an outline on an eyeball.
     fn on_eyeball(&mut self, outline: Vec<[f32; 2]>, colour: [f32; 4]) {
         self.area(outline, colour, 0.02);
         if let Some(mark) = self.marks.last_mut() {
@@ -188,13 +189,13 @@ impl Pen {
         }
     }
 
-    /// Draws a line with round ends.
+    /// Draws a polyline with round ends.
     fn stroke(&mut self, points: &[[f32; 2]]) {
         for pair in points.windows(2) {
             let [dx, dy] = minus(pair[1], pair[0]);
             let turn = dy.atan2(dx);
             let corners = (0..16).map(|step| {
-                // Half around the end, then half around the beginning.
+                // Half circle around the end, then around the beginning.
                 let end = pair[1 - step / 8];
                 let angle = turn - 0.5 * PI + PI * (step - step / 8) as f32 / 7.0;
                 plus(end, scaled([angle.cos(), angle.sin()], 0.5 * self.line))
@@ -203,7 +204,7 @@ impl Pen {
         }
     }
 
-    /// Draws a Bézier curve.
+    /// Draws a cubic Bézier curve.
     fn curve(&mut self, [a, b, c, d]: [[f32; 2]; 4]) {
         let points = (0..=10).map(|step| {
             let (t, s) = (step as f32 / 10.0, 1.0 - step as f32 / 10.0);
@@ -214,17 +215,17 @@ impl Pen {
         self.stroke(&points.collect::<Vec<_>>());
     }
 
-    /// Draws an arch over a place, as an eye that is shut; `rise` < 0 hangs down.
+    /// Draws an arch at `at`, for example a shut eye; negative `rise` bends it downwards.
     fn arch(&mut self, at: [f32; 2], rise: f32) {
         let points = [[-0.17, 0.0], [-0.12, rise], [0.12, rise], [0.17, 0.0]];
         self.curve(points.map(|by| plus(at, by)));
     }
 }
 
-/// A drop at the temple.
+/// Draws a drop of sweat at the temple.
 fn draw_sweat(pen: &mut Pen) {
     let drop = |size: f32| {
-        // Counterclockwise from its tip.
+        // Counterclockwise from the tip.
         let outline = [
             [0.0, 0.20],
             [-0.08, 0.02],

@@ -1,4 +1,4 @@
-//! How a body feels, and where on it that is seen.
+//! Feelings of a body, and the position of its face.
 
 use super::Mood;
 use super::perch::{Perch, UPRIGHT, largest, masses, square};
@@ -7,81 +7,81 @@ use fuwafuwa::world::TICK;
 use fuwafuwa::{Dim, NodeId, PieceId, SoftBody, Vector};
 use fuwafuwa_render::anchor;
 
-/// How long a body is shocked after a tear [s]; one that goes on tearing winces then.
+/// Duration of the shock after a tear [s]; a body that is still being torn afterwards winces.
 const SHOCK: f32 = 0.6;
-/// It is shocked again only after so long without a tear [s].
+/// Time without a tear after which a new tear shocks again [s].
 const CALMED: f32 = 0.5;
-/// A body whose mean strain is above the first winces until it is below the second.
+/// Thresholds of the mean strain: a body above the first winces until it is below the second.
 const HURTS: [f32; 2] = [0.065, 0.045];
-/// The strain and the seat of the face are looked at this often [ticks].
+/// Interval at which the strain and the seat of the face are evaluated [ticks].
 const LOOK: u64 = 5;
-/// A face keeps its seat unless another is better by so many voxels.
+/// Advantage that a new seat must have over the current one [voxels].
 const LAZY: f32 = 2.0;
-/// So many distances are worked out to find a seat.
+/// Maximum number of distances computed to find a seat.
 const MOST_LOOKS: usize = 4_000_000;
-/// Of so many elements the strain tells how all are strained.
+/// Maximum number of elements sampled for the mean strain.
 const MOST_ELEMENTS: usize = 1500;
-/// A smaller face is not to be read [m].
+/// Minimum size of a face [m]; a smaller one is unreadable.
 const LEAST: f32 = 0.03;
-/// How fast a face goes to a new seat, takes another size, turns [1/s].
+/// Rates at which a face moves to a new seat, changes its size, and turns [1/s].
 const GLIDE: f32 = 7.0;
 const GROW: f32 = 6.0;
 const TURN: f32 = 25.0;
-/// How a body feels, and where on it that is seen.
+/// Feelings of a body, and the position of its face.
 #[derive(Clone, Debug)]
 pub struct Feeling {
-    /// What it shows.
+    /// Expression.
     pub mood: Mood,
-    /// For how long [s].
+    /// Time since the expression last changed [s].
     pub age: f32,
-    /// Middle of its face, in space inside the body [m].
+    /// Centre of the face [m]; in 3D inside the body.
     pub at: Vector,
-    /// Middle of the piece, nearly [m].
+    /// Approximate centre of the piece [m].
     pub middle: Vector,
-    /// To the right in the face as it is seen, up, and out of it; of length 1.
+    /// Unit axes of the face: to the right (as seen), up, and outwards.
     pub axes: [Vector; 3],
-    /// Half of the face's width [m], nearly; 0 when the body is dust.
+    /// About half the width of the face [m]; 0 if the body has crumbled to dust.
     pub size: f32,
-    /// The piece that it is on.
+    /// Piece that carries the face.
     pub piece: PieceId,
-    /// In space where on the skin it sticks.
+    /// 3D: place on the skin to which the face sticks.
     perch: Option<Perch>,
     seat: Option<Seat>,
-    /// From the seat to where the face still is [m].
+    /// Offset from the seat to the current position of the face [m]. It decays to zero.
     behind: Vector,
     strain: f32,
     shock: f32,
-    /// Time since it last tore [s].
+    /// Time since the last tear [s].
     whole: f32,
 }
 
-/// A node deep inside the largest piece.
+/// Node deep inside the largest piece.
 #[derive(Copy, Clone, Debug, PartialEq)]
 struct Seat {
     node: NodeId,
-    /// Where the node is in the body at rest, by which it is known when its number serves another.
+    /// Rest position of the node. It detects that the node's index was reused.
     rest: [i32; 3],
-    /// How far it is from the skin at rest [voxels].
+    /// Distance from the skin at rest [voxels].
     depth: f32,
 }
 
-/// What a body goes through in a tick.
+/// Input of a tick.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Fate {
-    /// Which tick.
+    /// Tick number.
     pub tick: u64,
-    /// It tore.
+    /// Whether the body was torn in this tick.
     pub torn: bool,
-    /// A hand presses hard.
+    /// Whether a hand presses hard.
     pub pressed: bool,
-    /// It is where it should be.
+    /// Whether the body is in the basket.
     pub home: bool,
-    /// In space where the camera is [m].
+    /// 3D: camera position [m].
     pub eye: Option<Vector>,
 }
 
 impl Feeling {
-    /// How a body feels before anything happens to it; in space, for whom its face is to be seen [m].
+    /// Creates the feeling of an undisturbed body. In 3D the face is turned towards `eye` [m], if given.
     pub fn of<D: Dim>(body: &SoftBody<D>, eye: Option<Vector>) -> Self {
         let mut feeling = Self {
             mood: Mood::Calm,
@@ -105,7 +105,7 @@ impl Feeling {
         feeling
     }
 
-    /// Lets a tick pass.
+    /// Advances by one tick.
     pub fn see<D: Dim>(&mut self, body: &SoftBody<D>, fate: Fate) {
         if fate.tick.is_multiple_of(LOOK) {
             self.strain = strain(body);
@@ -123,7 +123,7 @@ impl Feeling {
         self.feel(fate);
     }
 
-    /// In space it is where it sticks.
+    /// 3D: takes position, axes and size from the perch.
     fn stick(&mut self) {
         if let Some(perch) = &self.perch {
             (self.at, self.axes, self.piece) = (perch.at, perch.axes, perch.piece);
@@ -150,14 +150,14 @@ impl Feeling {
             () if hurts => Mood::Wince,
             () => Mood::Calm,
         };
-        // What flickers cannot be read.
+        // A mood lasts at least 0.25 s, so that it can be read.
         let is_urgent = matches!(mood, Mood::Beam | Mood::Shock);
         if mood != self.mood && (is_urgent || self.age > 0.25) {
             (self.mood, self.age) = (mood, 0.0);
         }
     }
 
-    /// Follows the seat.
+    /// Moves the face with its seat.
     fn sit<D: Dim>(&mut self, body: &SoftBody<D>, seconds: f32) {
         if self.seat.is_none() {
             self.choose_seat(body);
@@ -176,7 +176,7 @@ impl Feeling {
         self.piece = body.pieces().of_node(seat.node);
         let turned = [0, 1, 2]
             .map(|k| [0, 1, 2].map(|axis| towards(self.axes[k][axis], frame.axes[k][axis], TURN)));
-        // Half a turn has no middle.
+        // Interpolation across half a turn degenerates.
         self.axes = match length(turned[2]).min(length(turned[1])) > 0.1 {
             true => square(turned),
             false => frame.axes,
@@ -187,7 +187,7 @@ impl Feeling {
         self.size = towards(self.size, size, GROW);
     }
 
-    /// Looks for a better seat; the face goes there from where it is.
+    /// Searches a better seat; the face glides there from its current position.
     fn choose_seat<D: Dim>(&mut self, body: &SoftBody<D>) {
         let before = self.seat.filter(|&seat| is_there(body, seat));
         let after = best_seat(body, before.map(|seat| seat.node));
@@ -208,13 +208,13 @@ fn is_there<D: Dim>(body: &SoftBody<D>, seat: Seat) -> bool {
         && mesh.node(seat.node).at == seat.rest
 }
 
-/// The piece with the most mass.
+/// Returns the piece with the largest mass.
 fn largest_piece<D: Dim>(body: &SoftBody<D>) -> PieceId {
     largest(&masses(body))
 }
 
-/// The node of the largest piece that is deepest inside and near the middle; the one that is taken
-/// now unless another is clearly better.
+/// Returns the node of the largest piece that is deepest inside and near the centre. The node `now` is kept
+/// unless another one is clearly better.
 fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>) -> Option<Seat> {
     let (mesh, pieces) = (body.mesh(), body.pieces());
     let piece = largest_piece(body);
@@ -232,16 +232,16 @@ fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>) -> Option<Seat> {
     }
     let middle = sum.map(|k| k / count.max(1e-9));
     let mut best: Option<(f32, Seat)> = None;
-    // There may be too many to look at all of them.
+    // Stride that limits the number of distances in large bodies.
     let stride = 1 + own().count() * skin.len() / MOST_LOOKS;
     let seated = now.and_then(|now| own().find(|(id, _)| *id == now));
     for (id, node) in seated.into_iter().chain(own().step_by(stride)) {
         let rest = node.at;
         let away = minus(rest.map(|k| k as f32), middle);
         let lazy = if now == Some(id) { LAZY } else { 0.0 };
-        // In doubt upright: a ring wears its face at its top.
+        // Prefers nodes above the centre: a ring has its face at the top.
         let bonus = lazy - 0.3 * length(away) + 0.05 * away[1];
-        // No need to look on once it cannot win any more: this is done often.
+        // Stops early once this node cannot win any more, because the search runs often.
         let enough = best.map_or(0.0, |(score, _)| (score - bonus).max(0.0));
         let mut depth = f32::MAX;
         for at in &skin {
@@ -258,7 +258,7 @@ fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>) -> Option<Seat> {
     best.map(|(_, seat)| seat)
 }
 
-/// The mean strain of the largest piece, by volume; of a body with many elements a part of them is asked.
+/// Mean strain of the largest piece, weighted by volume; of a body with many elements a sample.
 fn strain<D: Dim>(body: &SoftBody<D>) -> f32 {
     let piece = largest_piece(body);
     let (mut sum, mut volume) = (0.0, 0.0);
@@ -281,13 +281,13 @@ mod tests {
     use fuwafuwa::{Blade, Dim2, Dim3, Material, VoxelGrid, World, WorldConfig};
 
     fn alone(grid: VoxelGrid<Dim2>) -> World<Dim2> {
-        let mut world = World::new(WorldConfig::default()).expect("usual");
-        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).expect("usual"));
+        let mut world = World::new(Settings::default()).expect("the defaults are valid");
+        world.add_body(Body::new(grid, &[Material::default()]).expect("the defaults are valid"));
         world
     }
 
     #[test]
-    fn the_face_of_a_ring_is_on_the_ring() {
+    fn face_of_ring_lies_on_ring() {
         let hole = |at: [f32; 2]| {
             let radius = length([at[0] - 24.0, at[1] - 24.0]);
             (10.0..24.0).contains(&radius)
@@ -295,8 +295,8 @@ mod tests {
         let grid = VoxelGrid::from_fn([48, 48, 1], 1.0 / 48.0, |voxel| {
             u8::from(hole([voxel[0] as f32 + 0.5, voxel[1] as f32 + 0.5]))
         });
-        let world = alone(grid.expect("a ring"));
-        let feeling = Feeling::of(world.soft_bodies().first().unwrap(), None);
+        let world = alone(grid.expect("the grid is valid"));
+        let feeling = Feeling::of(world.bodies().first().unwrap(), None);
         let away = [feeling.at[0] - 0.5, feeling.at[1] - 0.5];
         let radius = length(away);
         assert!((0.25..0.45).contains(&radius), "{feeling:?}");
@@ -307,9 +307,9 @@ mod tests {
     }
 
     #[test]
-    fn the_face_glides_to_what_is_left_and_dust_has_none() {
-        let mut world = alone(VoxelGrid::ball(32, 1.0).expect("a ball"));
-        let mut feeling = Feeling::of(world.soft_bodies().first().unwrap(), None);
+    fn face_glides_to_remaining_piece_and_dust_has_none() {
+        let mut world = alone(VoxelGrid::ball(32, 1.0).expect("the grid is valid"));
+        let mut feeling = Feeling::of(world.bodies().first().unwrap(), None);
         let (before, size) = (feeling.at, feeling.size);
         world
             .cut(
@@ -323,26 +323,23 @@ mod tests {
         };
         feeling.see(world.soft_bodies().first().unwrap(), fate);
         let step = feeling.at[0] - before[0];
-        assert!(step.abs() < 0.03, "no leap: {step}");
+        assert!(step.abs() < 0.03, "the face does not jump: {step}");
         for _ in 0..200 {
             feeling.see(world.soft_bodies().first().unwrap(), Fate::default());
         }
         assert!(feeling.at[0] > before[0] + 0.05 && feeling.size < size);
-        let dust = alone(VoxelGrid::ball(4, 0.05).expect("a crumb"));
-        assert_eq!(
-            Feeling::of(dust.soft_bodies().first().unwrap(), None).size,
-            0.0
-        );
+        let dust = alone(VoxelGrid::ball(4, 0.05).expect("the grid is valid"));
+        assert_eq!(Feeling::of(dust.bodies().first().unwrap(), None).size, 0.0);
     }
 
     #[test]
-    fn in_space_a_face_turns_with_its_body_and_comes_back_to_the_camera() {
-        let mut world = World::<Dim3>::new(WorldConfig::default()).expect("usual");
-        let grid = VoxelGrid::ball(12, 1.0).expect("a ball");
-        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).expect("usual"));
-        let mut feeling = Feeling::of(world.soft_bodies().first().unwrap(), None);
+    fn face_3d_turns_with_body_and_returns_to_camera() {
+        let mut world = World::<Dim3>::new(Settings::default()).expect("the defaults are valid");
+        let grid = VoxelGrid::ball(12, 1.0).expect("the grid is valid");
+        world.add_body(Body::new(grid, &[Material::default()]).expect("the defaults are valid"));
+        let mut feeling = Feeling::of(world.bodies().first().unwrap(), None);
         assert!(feeling.axes[2][2] > 0.99, "{feeling:?}");
-        // The body turns its back.
+        // Turns the body's back to the camera.
         let body = world
             .soft_body_mut(world.nth_soft_body(0).unwrap())
             .unwrap();
@@ -366,9 +363,9 @@ mod tests {
     }
 
     #[test]
-    fn a_tear_shocks_once_and_then_hurts() {
-        let world = alone(VoxelGrid::ball(16, 1.0).expect("a ball"));
-        let body = world.soft_bodies().first().unwrap();
+    fn tear_shocks_once_then_hurts() {
+        let world = alone(VoxelGrid::ball(16, 1.0).expect("the grid is valid"));
+        let body = world.bodies().first().unwrap();
         let mut feeling = Feeling::of(body, None);
         let torn = Fate {
             tick: 1,

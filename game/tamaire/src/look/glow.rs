@@ -1,5 +1,5 @@
-//! What shows that a body is in: a line that closes around the basket while it has to rest there,
-//! then bars that glow.
+//! Progress at the basket: a line closes around it while a body must rest inside, and its bars glow after a
+//! win.
 
 use super::{Look, View};
 use egui::{Color32, Painter, Pos2, Rect, Shape as Drawn, Stroke, pos2, vec2};
@@ -7,10 +7,10 @@ use fuwafuwa::vector::plus;
 use fuwafuwa::{Dim2, Shape, Vector};
 use tamaire_play::Round;
 
-/// Light.
+/// Colour of the glow.
 const GOLD: Color32 = Color32::from_rgb(255, 205, 70);
 
-/// Draws it.
+/// Draws the line and the glow.
 pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
     let (progress, view) = (round.progress(), &look.view);
     let held = round.share_held();
@@ -38,7 +38,7 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
     }
 }
 
-/// The first `share` of the way around a box, from the middle of its top.
+/// Returns the first `share` of the outline of a box, clockwise from the middle of its top.
 fn along_box(view: &View, centre: Vector, half: Vector, share: f32) -> Vec<Pos2> {
     let size = 2.0 * view.scale * vec2(half[0], half[1]);
     let rect = Rect::from_center_size(view.on_screen(centre), size);
@@ -64,7 +64,7 @@ fn along_box(view: &View, centre: Vector, half: Vector, share: f32) -> Vec<Pos2>
     line
 }
 
-/// Light around a bar, softer further out.
+/// Draws a glow around a shape that fades with the distance.
 fn shine(painter: &Painter, view: &View, shape: Shape, strength: f32) {
     let layers = [(0.02, 60), (0.05, 36), (0.09, 22), (0.14, 12)];
     for (reach, alpha) in layers {
@@ -107,7 +107,7 @@ fn shine(painter: &Painter, view: &View, shape: Shape, strength: f32) {
     }
 }
 
-/// The outline of a bar with round ends.
+/// Returns the outline of a capsule.
 fn bar(from: Pos2, to: Pos2, radius: f32) -> Vec<Pos2> {
     let turn = (to - from).angle();
     let end = |middle: Pos2, first: f32| {
@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_line_closes_when_all_is_held() {
+    fn line_closes_at_full_share() {
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(200.0, 100.0));
         let view = View {
             rect,

@@ -1,15 +1,15 @@
-//! What the hand could do, shown without a word until it moves: a ring around it says "you", and a
-//! pale hand pushes a pale body into the basket, over and over.
+//! Wordless hint that is shown until the hand moves: a ring marks the player's hand, and a pale hand pushes a
+//! pale body into the basket in a loop.
 
 use super::{Hint, Look, View};
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 use fuwafuwa::{Dim, Dim2, Dim3, RigidBody, Vector};
 use tamaire_play::Round;
 
-/// How long it takes from the hand to the basket [s].
+/// Duration of the animation from the hand to the basket [s].
 const ROUND_TRIP: f64 = 3.2;
 
-/// Draws it.
+/// Draws the hint of a 2D round.
 pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
     let Some(hand) = hand_to_show(round, look) else {
         return;
@@ -26,20 +26,20 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
     }
 }
 
-/// In space it is told in words what else it could do.
+/// Draws the ring of a 3D round. There, texts explain the other controls.
 pub(super) fn draw_ring_of_space(painter: &Painter, round: &Round<Dim3>, look: &Look) {
     if let Some(hand) = hand_to_show(round, look) {
         draw_ring(painter, hand, look);
     }
 }
 
-/// The first hand, until it has moved.
+/// Returns the first hand, until it has moved.
 fn hand_to_show<'a, D: Dim>(round: &'a Round<D>, look: &Look) -> Option<&'a RigidBody> {
     let is_shown = look.hint != Hint::None && look.effects.hint != 0.0;
     round.hands().next().filter(|_| is_shown)
 }
 
-/// A ring that opens around the hand.
+/// Draws rings that spread from the hand.
 fn draw_ring(painter: &Painter, hand: &RigidBody, look: &Look) {
     let at = look.view.on_screen(hand.position());
     let radius = hand.shape().inradius() * look.view.scale_at(hand.position());
@@ -56,7 +56,7 @@ fn draw_ring(painter: &Painter, hand: &RigidBody, look: &Look) {
     }
 }
 
-/// The pale hand and what it pushes.
+/// Draws the pale hand and the body that it pushes.
 fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, look: &Look) {
     let (view, strength) = (&look.view, look.effects.hint);
     let (Some(basket), Some(body)) = (basket_centre(round), round.world().soft_bodies().first())
@@ -133,7 +133,7 @@ fn draw_pale_body(
     }
 }
 
-/// A closed line without the steps of voxels.
+/// Smooths the voxel steps of a closed line.
 fn smoothed(mut points: Vec<Pos2>) -> Vec<Pos2> {
     for _ in 0..6 {
         let before = points.clone();
@@ -149,7 +149,7 @@ fn smoothed(mut points: Vec<Pos2>) -> Vec<Pos2> {
     points
 }
 
-/// Chevrons that march to the basket.
+/// Draws chevrons that move towards the basket.
 fn draw_arrows(painter: &Painter, view: &View, from: Vec2, to: Vec2, strength: f32, look: &Look) {
     let on_screen = |at: Vec2| view.on_screen([at.x, at.y, 0.0]);
     let (from, to) = (on_screen(from), on_screen(to));

@@ -1,4 +1,4 @@
-//! Little pictures of levels as they begin, drawn as rounds are.
+//! Thumbnails of levels at their start, drawn by the renderers of rounds.
 
 use super::calm::{camera, face_of, frame};
 use super::feelings::Feeling;
@@ -11,11 +11,11 @@ use std::sync::Arc;
 use tamaire_play::{AnyRound, Level, Round};
 use wgpu::{FilterMode, TextureFormat, TextureUsages};
 
-/// Colours and pixels of a picture.
+/// Format and size of a thumbnail [px].
 const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 const SIZE: [u32; 2] = [480, 320];
 
-/// Little pictures of levels.
+/// Thumbnails of levels.
 #[derive(Default)]
 pub struct Maps {
     pictures: Vec<Picture>,
@@ -27,12 +27,12 @@ pub struct Maps {
 struct Picture {
     level: Arc<Level>,
     texture: TextureId,
-    /// In the plane; in space they are in the picture.
+    /// Faces in a 2D level. In 3D they are part of the texture.
     faces: Vec<Face>,
 }
 
 impl Maps {
-    /// Draws the picture of a level, if there is one by now.
+    /// Draws the thumbnail of a level, if it has been rendered.
     pub fn draw(&self, painter: &Painter, rect: Rect, level: &Arc<Level>) {
         let known = |picture: &&Picture| Arc::ptr_eq(&picture.level, level);
         let Some(picture) = self.pictures.iter().find(known) else {
@@ -46,7 +46,7 @@ impl Maps {
         }
     }
 
-    /// Makes one of the pictures that are missing: more would stop the game for a moment.
+    /// Renders at most one missing thumbnail; rendering all at once would stall the game.
     pub fn make_one(&mut self, state: &RenderState, levels: &[Arc<Level>], theme: &Theme) {
         if self.theme.as_ref() != Some(theme) {
             self.theme = Some(theme.clone());
@@ -64,7 +64,7 @@ impl Maps {
         }
     }
 
-    /// What was drawn since this was asked last cost the GPU.
+    /// Returns the GPU cost of drawing since the last call, and resets it.
     pub fn take_cost(&self) -> Cost {
         let plane = self.renderer.as_ref().map(Renderer::take_cost);
         let space = self.space.as_ref().map(space::Renderer::take_cost);
@@ -81,7 +81,7 @@ impl Maps {
         });
     }
 
-    /// The picture of a level.
+    /// Renders the thumbnail of a level.
     fn picture(&mut self, state: &RenderState, level: &Arc<Level>, theme: &Theme) -> Picture {
         let RenderState { device, queue, .. } = state;
         let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
@@ -102,7 +102,7 @@ impl Maps {
             AnyRound::Space(round) => {
                 let new = || space::Renderer::new(device, FORMAT);
                 let renderer = self.space.get_or_insert_with(new);
-                let camera = view.space.expect("the view of a level in space has it");
+                let camera = view.space.expect("the view of a 3D level has a 3D camera");
                 let stickers: Vec<Sticker> = faces(&round, Some(camera.eye()))
                     .iter()
                     .map(Face::sticker)

@@ -1,4 +1,4 @@
-//! How a round looks: the camera, the faces, what flies about, the colours and letters, little pictures of levels.
+//! Appearance of a round: camera, faces, effects, colours, fonts, and thumbnails of levels.
 
 mod calm;
 mod camera;

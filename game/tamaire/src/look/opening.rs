@@ -1,24 +1,25 @@
-//! How far bodies in space are opened for the element view.
+//! Cutaway of bodies in 3D for the element view.
 
 use std::f32::consts::TAU;
 
-/// Until somebody takes the cut, it goes to and fro between all and this share of a body, in so long [s].
+/// Lower limit of the remaining share of a body while the cut moves by itself, and the period of that
+/// movement [s].
 const LEAST: f32 = 0.4;
 const PERIOD: f32 = 9.0;
-/// Somebody may leave this share at least.
+/// Lower limit of the remaining share when a player moves the cut.
 const FEWEST: f32 = 0.05;
 
-/// How far bodies in space are opened for the element view.
+/// Cutaway of bodies in 3D for the element view.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Opening {
-    /// When it began, in seconds of the game.
+    /// Start of the automatic movement [s since the start of the game].
     since: f64,
-    /// How much somebody wants to be left of a body, 0 to 1.
+    /// Remaining share of a body chosen by the player, 0 to 1; `None` while the cut moves by itself.
     wish: Option<f32>,
 }
 
 impl Opening {
-    /// Begins with whole bodies.
+    /// Starts the automatic movement with whole bodies.
     pub fn begin(time: f64) -> Self {
         Self {
             since: time,
@@ -26,7 +27,8 @@ impl Opening {
         }
     }
 
-    /// How much of a body is left, 0 to 1; `still` = with reduced motion.
+    /// Remaining share of a body, 0 to 1. `still` selects reduced motion: one half instead of the automatic
+    /// movement.
     pub fn share(&self, time: f64, still: bool) -> f32 {
         let swing = 0.5 + 0.5 * (TAU * (time - self.since) as f32 / PERIOD).cos();
         let by_itself = if still {
@@ -37,7 +39,7 @@ impl Opening {
         self.wish.unwrap_or(by_itself)
     }
 
-    /// Somebody takes it, and cuts off more.
+    /// Moves the cut by the share `more` and stops the automatic movement.
     pub fn cut(&mut self, more: f32, time: f64, still: bool) {
         let share = self.share(time, still) - more;
         self.wish = Some(share.clamp(FEWEST, 1.0));
@@ -49,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_opens_by_itself_until_somebody_takes_it() {
+    fn opening_moves_until_player_cuts() {
         let mut opening = Opening::begin(10.0);
         assert_eq!(opening.share(10.0, false), 1.0);
         assert!((opening.share(10.0 + 0.5 * f64::from(PERIOD), false) - LEAST).abs() < 1e-3);

@@ -1,10 +1,10 @@
-//! Pictures of worlds in a pass of egui's.
+//! Rendering of worlds inside egui's render pass.
 
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait};
 use egui::{PaintCallbackInfo, Rect, Ui, vec2};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Puts the picture that a renderer made ready into egui's pass.
+/// Callback that paints the frame prepared by a renderer in egui's pass.
 pub(super) struct Paint<R>(
     pub Arc<Mutex<R>>,
     pub fn(&R, &mut wgpu::RenderPass<'static>),
@@ -21,12 +21,12 @@ impl<R: Send + 'static> CallbackTrait for Paint<R> {
     }
 }
 
-/// A panic elsewhere left at worst an unfinished picture.
+/// Locks `renderer`. A poisoned lock is used as it is: a panic leaves at worst an unfinished picture.
 pub(super) fn lock<R>(renderer: &Mutex<R>) -> MutexGuard<'_, R> {
     renderer.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// How much of the screen a part of a window is [px].
+/// Size of a part of the window on the screen [px].
 pub(super) fn pixels(ui: &Ui, rect: Rect) -> [u32; 2] {
     let size = (rect.size() * ui.ctx().pixels_per_point()).max(vec2(1.0, 1.0));
     [size.x.round() as u32, size.y.round() as u32]

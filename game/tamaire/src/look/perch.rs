@@ -1,7 +1,7 @@
-//! Where the face of a body in space sticks to its skin.
+//! Position of a face on the skin of a 3D body.
 //!
-//! It keeps its place there and rolls with it. Once too much of that place is torn, or who looks sees it from behind, it
-//! shrinks and comes up again where there is a better one.
+//! The face sticks to the skin and rolls with it. It shrinks and reappears at a better place if too much of
+//! the skin below it is torn or if it is turned away from the camera.
 
 use fuwafuwa::ids::IndexVec;
 use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
@@ -9,85 +9,89 @@ use fuwafuwa::{Dim, PieceId, Point, SoftBody, Vector};
 use fuwafuwa_render::anchor_at;
 use std::f32::consts::PI;
 
-/// To the right, up and towards who looks.
+/// Axes to the right, up, and towards the camera.
 pub(super) const UPRIGHT: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// A face is so large, in radii of a ball of the volume of its piece, or a share of that where the skin is small.
+/// Size of a face in radii of a ball with the volume of its piece. [`FITS`] lists smaller sizes for small
+/// areas of skin, as factors.
 const LARGE: f32 = 0.55;
 const FITS: [f32; 4] = [1.0, 0.8, 0.6, 0.45];
-/// How far it reaches from its middle along the skin, and how far the skin may fall off below it, in its sizes.
+/// Radius of a face along the skin, and tolerated depth of the skin below it; both in units of its size.
 const WIDE: f32 = 0.9;
 const DEEP: f32 = 0.6;
-/// A place is fit for it when so much of it is original skin; it stays until that is less than the second.
+/// Share of original skin below a face: required for a new place, and below which the face leaves its place.
 const COVERED: [f32; 2] = [0.82, 0.68];
-/// It leaves its piece when another has so many times its mass; of so many that are no lighter than that it takes the best.
+/// Mass ratio at which a face leaves its piece for a heavier one. Candidates are the first [`PIECES`] pieces
+/// that are not lighter than the heaviest by more than this ratio.
 const HEAVIER: f32 = 1.6;
 const PIECES: usize = 4;
-/// Another place must be better by so much, and is looked for so often [s].
+/// Advantage in score that another place must have, and interval of the search [s].
 const BETTER: f32 = 0.1;
 const AGAIN: f32 = 0.5;
-/// So many places are looked at, and as many once more near the best.
+/// Number of places that are scored; once more as many near the best one.
 const PLACES: usize = 120;
-/// A face looks at who looks, and so much above: bars stand low.
+/// Upward tilt of the ideal direction of a face, relative to the direction to the camera: bars stand low.
 const ABOVE: f32 = 0.4;
-/// One that is turned farther away, as a cosine, for so long [s], goes to where it is seen; while its body turns faster than
-/// this [rad/s] it rolls with it. One that is tilted as much does so once its body hardly turns any more.
+/// Cosine below which a face counts as turned away from the camera or tilted, and the time until it moves to
+/// a visible place [s]. It does not move while its body turns faster than [`FAST`] [rad/s]. Tilt counts only
+/// if the body turns slower than [`CALM`] [rad/s].
 const LOST: f32 = 0.6;
 const PATIENCE: f32 = 0.12;
 const FAST: f32 = 3.0;
 const CALM: f32 = 0.8;
-/// Of a body that rolls it takes the place that is seen best so much later [s], and so much nearer to its axis: there it is
-/// seen for longer.
+/// Prediction time for a rolling body [s]: the best place is the one that faces the camera after it.
+/// [`NEAR_AXIS`] weights places near the axis of rotation, which stay visible for longer.
 const AHEAD: f32 = 0.4;
 const NEAR_AXIS: f32 = 0.4;
-/// How long it takes to shrink and to come up [s].
+/// Durations of shrinking and of reappearing [s].
 const SHRINK: f32 = 0.08;
 const RISE: f32 = 0.14;
-/// How far inside the body its middle is, in its sizes: below all skin that it lies on.
+/// Depth of the face's centre inside the body, in units of its size; it is below all skin that the face
+/// covers.
 const INSIDE: f32 = 0.8;
-/// How much of the body around it tells how it is turned, at least [voxels].
+/// Minimum radius of the surroundings that determine the rotation of the face [voxels].
 const LEAST_REACH: f32 = 3.0;
 
-/// Where a face sticks to a skin, and how it is seen there.
+/// Position of a face on the skin of a 3D body.
 #[derive(Clone, Debug, Default)]
 pub struct Perch {
-    /// Its middle, inside the body [m].
+    /// Centre, inside the body [m].
     pub at: Vector,
-    /// To the right in it, up, and out of the skin; of length 1.
+    /// Unit axes: to the right, up, and outwards.
     pub axes: [Vector; 3],
-    /// How large it is [m]; 0 where there is no skin left for it.
+    /// Size [m]; 0 if there is no skin left for it.
     pub size: f32,
-    /// The piece that it is on.
+    /// Piece that carries the face.
     pub piece: PieceId,
-    /// The middle of the piece, nearly [m].
+    /// Approximate centre of the piece [m].
     pub middle: Vector,
     place: Option<Place>,
     next: Option<Place>,
-    /// How large it would be on its piece [m].
+    /// Full size of a face on the piece [m].
     full: f32,
-    /// How much of it has come up, 0 to 1.
+    /// Progress of reappearing, 0 to 1.
     up: f32,
-    /// How it turns [rad/s], and for how long it has been lost [s].
+    /// Angular velocity [rad/s]. `lost` is the time since the face has been turned away [s].
     spin: Vector,
     lost: f32,
-    /// When another place may be looked for [s].
+    /// Time until the next search for another place [s].
     wait: f32,
 }
 
-/// A place on the original skin, in the body at rest.
+/// Place on the original skin, in the rest shape of the body.
 #[derive(Copy, Clone, Debug)]
 struct Place {
-    /// A voxel with a side there: it always belongs to some piece.
+    /// Voxel with a face at this place. A voxel belongs to a piece at all times.
     voxel: Point,
-    /// The middle of that side [voxels].
+    /// Centre of the voxel's face [voxels].
     rest: Vector,
-    /// The axes of the face that sticks to it.
+    /// Axes of the face in the frame of its surroundings.
     worn: [Vector; 3],
-    /// One of `FITS`.
+    /// Size factor, one of `FITS`.
     fit: f32,
 }
 
-/// A side of a voxel on the original skin.
+/// Face of a voxel on the original skin.
 struct Spot {
     voxel: Point,
     rest: Vector,
@@ -95,21 +99,21 @@ struct Spot {
     normal: Vector,
 }
 
-/// What of a piece a face could stick to, and for whom.
+/// Original skin of a piece, where a face can stick, and the camera that sees it.
 struct Skin {
     spots: Vec<Spot>,
     piece: PieceId,
     middle: Vector,
-    /// How large a face would be on it [m].
+    /// Full size of a face on the piece [m].
     full: f32,
     voxel: f32,
     eye: Option<Vector>,
-    /// How what sticks to it turns [rad/s].
+    /// Angular velocity of the skin [rad/s].
     spin: Vector,
 }
 
 impl Perch {
-    /// The place where it is seen best.
+    /// Chooses the place that the camera at `eye` sees best.
     pub fn new<D: Dim>(body: &SoftBody<D>, eye: Option<Vector>) -> Self {
         let mut perch = Self {
             axes: UPRIGHT,
@@ -121,7 +125,7 @@ impl Perch {
         perch
     }
 
-    /// Lets time pass; it is looked for another place only where `looks` says so, for that takes time.
+    /// Advances by `seconds`. Searches another place only if `looks` is set, because the search takes time.
     pub fn follow<D: Dim>(
         &mut self,
         body: &SoftBody<D>,
@@ -158,7 +162,7 @@ impl Perch {
         };
     }
 
-    /// Follows the skin.
+    /// Moves the face with the skin.
     fn sit<D: Dim>(&mut self, body: &SoftBody<D>) {
         let voxel = body.grid().voxel_size();
         let found = self.place.and_then(|place| {
@@ -177,11 +181,11 @@ impl Perch {
         self.piece = piece;
         let size = place.fit * self.full;
         self.at = minus(at, scaled(self.axes[2], INSIDE * size));
-        // It comes up a little too far, as what pops does.
+        // Overshoots while it reappears.
         self.size = size * self.up * (1.0 + 0.6 * self.up * (1.0 - self.up));
     }
 
-    /// Looks whether it is well where it is.
+    /// Checks the current place, and searches another one if it has become bad.
     fn review<D: Dim>(&mut self, body: &SoftBody<D>, eye: Option<Vector>) {
         let masses = masses(body);
         let largest = largest(&masses);
@@ -277,7 +281,7 @@ impl Skin {
         }
     }
 
-    /// Where a face would best look from a place.
+    /// Ideal direction of a face at `at`, with the rotation of the body predicted; unit length.
     fn wish(&self, at: Vector) -> Vector {
         let wish = self.eye.map_or(UPRIGHT[2], |eye| wish(at, eye));
         let early = minus(wish, scaled(cross(self.spin, wish), AHEAD));
@@ -286,7 +290,7 @@ impl Skin {
         scaled(early, 1.0 / length(early))
     }
 
-    /// How much of a face would lie on this skin, 0 to 1.
+    /// Share of a face of this size that lies on original skin, 0 to 1.
     fn cover(&self, at: Vector, out: Vector, size: f32) -> f32 {
         let radius = WIDE * size;
         let mut area = 0.0;
@@ -303,7 +307,7 @@ impl Skin {
         (area / (PI * radius * radius)).min(1.0)
     }
 
-    /// How good a place is: large, whole, seen, and in the middle of what is seen.
+    /// Score of a place: large, covered, turned to the camera, and in the middle of the visible side.
     fn score(&self, at: Vector, out: Vector, fit: f32, covered: f32) -> f32 {
         let wish = self.wish(self.middle);
         let by = minus(at, self.middle);
@@ -311,7 +315,7 @@ impl Skin {
         fit * covered + 0.5 * dot(out, wish) - 0.2 * LARGE * aside / self.full.max(1e-9)
     }
 
-    /// The best place: its spot, its score, its fit, and what is out of it.
+    /// Returns the best place: its spot, score, size factor, and outward direction.
     fn best(&self) -> Option<(&Spot, f32, f32, Vector)> {
         let wish = self.wish(self.middle);
         let turned = self.spots.iter();
@@ -326,7 +330,8 @@ impl Skin {
 
     fn best_of<'a>(&self, spots: &[&'a Spot]) -> Option<(&'a Spot, f32, f32, Vector)> {
         let judged = spots.iter().step_by(1 + spots.len() / PLACES).map(|spot| {
-            // Stairs have the direction of the skin only together.
+            // Single voxel faces point along the axes; the average over the surroundings gives the direction
+            // of the skin.
             let near = self.spots.iter().filter(|other| {
                 let by = minus(other.at, spot.at);
                 dot(by, by) < (0.6 * self.full).powi(2) && dot(other.normal, spot.normal) > -0.5
@@ -345,7 +350,7 @@ impl Skin {
         judged.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// The place at a spot, upright for who looks.
+    /// Returns the place at a spot with the face upright for the camera.
     fn place<D: Dim>(
         &self,
         body: &SoftBody<D>,
@@ -365,27 +370,27 @@ impl Skin {
     }
 }
 
-/// Where a face at a place best looks, of length 1.
+/// Ideal direction of a face at `at`, as a unit vector: towards the camera, tilted upwards.
 fn wish(at: Vector, eye: Vector) -> Vector {
     let by = minus(eye, at);
     let high = plus(by, [0.0, ABOVE * length(by), 0.0]);
     scaled(high, 1.0 / length(high).max(1e-9))
 }
 
-/// The axes of a face that looks out of a skin and is upright for who looks along `towards`.
+/// Axes of a face with outward direction `out` that is upright for a camera in the direction `towards`.
 fn upright(out: Vector, towards: Vector) -> [Vector; 3] {
-    // On top of a body, up is away from who looks.
+    // On top of a body, up points away from the camera.
     let back = scaled(towards, 0.1 / length(towards).max(1e-9));
     square([[0.0; 3], minus(UPRIGHT[1], back), out])
 }
 
-/// How well a face is seen, as cosines: turned towards who looks, and upright.
+/// Cosines of the angles to the ideal direction and to the upright orientation.
 fn seen(at: Vector, axes: [Vector; 3], eye: Vector) -> [f32; 2] {
     let up = upright(axes[2], minus(eye, at))[1];
     [dot(axes[2], wish(at, eye)), dot(axes[1], up)]
 }
 
-/// Axes of length 1 and square to each other: the third as it is, the second nearly, the first as it must be.
+/// Orthonormal axes: the third keeps its direction, the second is kept as far as possible, the first follows.
 pub(super) fn square([_, up, out]: [Vector; 3]) -> [Vector; 3] {
     let unit = |of: Vector| scaled(of, 1.0 / length(of).max(1e-9));
     let out = unit(out);
@@ -393,7 +398,7 @@ pub(super) fn square([_, up, out]: [Vector; 3]) -> [Vector; 3] {
     [right, cross(out, right), out]
 }
 
-/// The piece with the most mass; of several the first.
+/// Returns the piece with the largest mass; of equal ones the first.
 pub(super) fn largest(masses: &IndexVec<PieceId, f32>) -> PieceId {
     let heavier = |best, piece| match masses[piece] > masses[best] {
         true => piece,
@@ -402,7 +407,7 @@ pub(super) fn largest(masses: &IndexVec<PieceId, f32>) -> PieceId {
     masses.ids().fold(PieceId(0), heavier)
 }
 
-/// The mass of each piece [kg].
+/// Returns the mass of each piece [kg].
 pub(super) fn masses<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, f32> {
     let mut masses = IndexVec::from(vec![0.0f32; body.pieces().list.len()]);
     for (id, _) in body.mesh().nodes() {

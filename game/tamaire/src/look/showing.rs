@@ -1,39 +1,39 @@
-//! How a round is to be shown.
+//! Options for drawing a round.
 
 use super::{Effects, Theme, View};
 use fuwafuwa_render::frame::ElementColour;
 use tamaire_play::AnyRound;
 
-/// How to show a round.
+/// Options for drawing a round.
 #[derive(Copy, Clone, Debug)]
 pub struct Look<'a> {
-    /// Where.
+    /// Camera and part of the screen.
     pub view: View,
-    /// In which colours.
+    /// Colours.
     pub theme: &'a Theme,
-    /// Whether to show the elements instead of the skin.
+    /// Element view instead of the skin, with this colouring.
     pub elements: Option<ElementColour>,
-    /// In space, how much is left of a body that is opened for it, 0 to 1.
+    /// 3D element view: share of a body that is not cut away, 0 to 1.
     pub left: f32,
-    /// What flies about.
+    /// Particles, confetti and feelings.
     pub effects: &'a Effects,
-    /// Seconds since the game began, for blinking.
+    /// Time since the start of the game [s], for blinking.
     pub time: f64,
-    /// The same level as somebody played it before.
+    /// Earlier round of the same level, drawn as a ghost.
     pub ghost: Option<&'a AnyRound>,
-    /// Whether to show what the hand could do, until it moves.
+    /// Hint that is shown until the hand moves.
     pub hint: Hint,
-    /// With reduced motion.
+    /// Reduced motion.
     pub still: bool,
 }
 
-/// What a player is shown before the hand moves.
+/// Hint for a player who has not moved the hand yet.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Hint {
-    /// Nothing.
+    /// No hint.
     None,
-    /// Which hand is theirs.
+    /// Marks the player's hand.
     Hand,
-    /// And what it could do.
+    /// Also shows how to push the body into the basket.
     Way,
 }

@@ -1,4 +1,4 @@
-//! A world in space, in a part of a window of egui's: whatever world it is.
+//! Drawing of any 3D world in a part of an egui window.
 
 use super::pass::{Paint, lock, pixels};
 use eframe::egui_wgpu::{Callback, RenderState};
@@ -7,15 +7,15 @@ use fuwafuwa::{Dim3, World};
 use fuwafuwa_render::{Cost, Frame, space};
 use std::sync::{Arc, Mutex};
 
-/// Where worlds in space are drawn.
+/// Draws 3D worlds in an egui window.
 pub struct SpaceStage {
     state: RenderState,
-    /// None until the first world.
+    /// `None` until the first world is drawn.
     renderer: Option<Arc<Mutex<space::Renderer>>>,
 }
 
 impl SpaceStage {
-    /// A stage in the window whose GPU this is.
+    /// Creates a stage for the window with this render state.
     pub fn new(state: &RenderState) -> Self {
         Self {
             state: state.clone(),
@@ -23,7 +23,7 @@ impl SpaceStage {
         }
     }
 
-    /// Draws a world into a part of a window.
+    /// Draws a world into `rect`.
     pub fn draw(
         &mut self,
         ui: &Ui,
@@ -46,7 +46,7 @@ impl SpaceStage {
         ui.painter().add(Callback::new_paint_callback(rect, paint));
     }
 
-    /// What was drawn since this was asked last cost the GPU.
+    /// Returns the GPU cost of drawing since the last call, and resets it.
     pub fn take_cost(&self) -> Cost {
         let cost = self
             .renderer
@@ -55,7 +55,7 @@ impl SpaceStage {
         cost.sum()
     }
 
-    /// Gives back the images that worlds are drawn into: for who draws nothing for a while.
+    /// Frees the images that worlds are drawn into, while nothing is drawn.
     pub fn forget_images(&self) {
         if let Some(renderer) = &self.renderer {
             lock(renderer).forget_images(&self.state.device);

@@ -1,4 +1,4 @@
-//! A round on the screen: the world, what flies about, the faces.
+//! Drawing of a round: world, particles and faces.
 
 use super::calm::{camera, face_of, frame};
 use super::feelings::Feeling;
@@ -12,26 +12,26 @@ use fuwafuwa_render::{Ages, Cost, Frame, Particle, Renderer, Sticker, space};
 use std::sync::{Arc, Mutex};
 use tamaire_play::{AnyRound, Level, Round};
 
-/// Lines of a round that was played before.
+/// Line colour of a ghost in 2D.
 const GHOST: Color32 = Color32::from_rgba_premultiplied(42, 38, 56, 120);
 
-/// A camera that looks down more than this looks from above, as a sine.
+/// Sine of the camera's elevation above which bodies are cut from above instead of from the front.
 const DOWN: f32 = 0.8;
 
-/// Where rounds are drawn: a part of a window of egui's.
+/// Draws rounds in an egui window.
 pub struct Stage {
     state: RenderState,
     renderer: Arc<Mutex<Renderer>>,
     space: SpaceStage,
     ages: Ages,
-    /// The level of the round that `ages` follows, and how far it had come [ticks].
+    /// Level of the round that `ages` follows, and the last tick seen.
     followed: Option<(Arc<Level>, u64)>,
     maps: Maps,
     time: f64,
 }
 
 impl Stage {
-    /// A stage in the window whose GPU this is.
+    /// Creates a stage for the window with this render state.
     pub fn new(state: &RenderState) -> Self {
         let renderer = Renderer::new(&state.device, state.target_format);
         Self {
@@ -45,13 +45,13 @@ impl Stage {
         }
     }
 
-    /// Little pictures of levels: those that were made so far, and one more.
+    /// Returns the thumbnails of levels, after rendering at most one that is missing.
     pub fn maps(&mut self, levels: &[Arc<Level>], theme: &Theme) -> &Maps {
         self.maps.make_one(&self.state, levels, theme);
         &self.maps
     }
 
-    /// What was drawn of worlds since this was asked last cost the GPU.
+    /// Returns the GPU cost of drawing since the last call, and resets it.
     pub fn take_cost(&self) -> Cost {
         let plane = lock(&self.renderer).take_cost();
         [plane, self.maps.take_cost(), self.space.take_cost()]
@@ -59,7 +59,7 @@ impl Stage {
             .sum()
     }
 
-    /// Gives back the images that worlds are drawn into: for who draws nothing for a while.
+    /// Frees the images that worlds are drawn into, while nothing is drawn.
     pub fn forget_images(&self) {
         let device = &self.state.device;
         lock(&self.renderer).forget_images(device);
@@ -136,7 +136,8 @@ impl Stage {
         look.effects.confetti.draw(painter, view);
     }
 
-    /// A round that starts anew has new elements: none of them was remodelled.
+    /// Updates the ages of elements. They start again with each round, since no element has been remodelled
+    /// yet.
     fn follow_ages<D: Dim>(&mut self, round: &Round<D>, look: &Look) {
         let ticks = round.world().ticks();
         let goes_on = self
@@ -153,7 +154,8 @@ impl Stage {
     }
 }
 
-/// How bodies in space are opened for whom a camera shows them: from the front, or from above where it looks down.
+/// Returns the cut through bodies for the element view: towards the camera, or from above if the camera looks
+/// down.
 fn cut(camera: &space::Camera, share: f32) -> space::Cut {
     let [x, y, z] = camera.axes()[2];
     let long = length([x, z]);
@@ -164,7 +166,7 @@ fn cut(camera: &space::Camera, share: f32) -> space::Cut {
     space::Cut { towards, share }
 }
 
-/// What of the bodies is shown.
+/// Returns the renderer's view: skin or elements.
 fn shown<'a>(look: &Look, ages: &'a Ages) -> fuwafuwa_render::Look<'a> {
     match look.elements {
         None => fuwafuwa_render::Look::Skin,
@@ -180,7 +182,7 @@ fn particles(look: &Look) -> Vec<Particle> {
     let world = &look.theme.world;
     let specks = look.effects.specks.iter().map(|speck| {
         let own = world.material(speck.material);
-        // As much fresher as the renderer makes torn faces.
+        // Same share of fresh colour as the renderer uses for torn surfaces.
         let share = if speck.is_fresh { 0.7 } else { 0.0 };
         let [red, green, blue] = [0, 1, 2].map(|k| own[k] + share * (world.fresh[k] - own[k]));
         Particle {
@@ -192,13 +194,13 @@ fn particles(look: &Look) -> Vec<Particle> {
     specks.collect()
 }
 
-/// The faces of all bodies; in the element view there are none.
+/// Returns the faces of all bodies; none in the element view.
 fn faces<D: Dim>(round: &Round<D>, look: &Look) -> Vec<Face> {
     if look.elements.is_some() {
         return Vec::new();
     }
     let bodies = round.world().soft_bodies();
-    // Before the first tick nobody has felt anything.
+    // Before the first tick there are no feelings yet.
     let fresh: Vec<Feeling>;
     let feelings = match look.effects.feelings.len() == bodies.len() {
         true => &look.effects.feelings,
@@ -209,7 +211,7 @@ fn faces<D: Dim>(round: &Round<D>, look: &Look) -> Vec<Face> {
         }
     };
     let face = |(number, feeling): (usize, &Feeling)| {
-        // Blinks every four seconds or so, not all at once.
+        // Blinks every 3.7 s, each body at a different time.
         let phase = (look.time + 1.3 * number as f64).rem_euclid(3.7) as f32;
         let hands = round.hands().map(|hand| hand.position());
         let away = |hand: &Vector| length(minus(*hand, feeling.at));
@@ -227,14 +229,14 @@ fn faces<D: Dim>(round: &Round<D>, look: &Look) -> Vec<Face> {
     feelings.iter().enumerate().map(face).collect()
 }
 
-/// The lines of a round that was played before.
+/// Draws the outlines of an earlier round.
 fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
     let stroke = Stroke::new(2.5, GHOST);
     for body in round.world().soft_bodies() {
         for outline in body.outlines() {
             let points = outline.points.iter().map(|&at| view.on_screen(at));
             let points: Vec<Pos2> = points.collect();
-            // Edge by edge: where a crack turns back, a line with corners shoots far out.
+            // Single segments, because the mitres of a polyline would shoot out where a crack turns back.
             for (index, &point) in points.iter().enumerate() {
                 let next = points[(index + 1) % points.len()];
                 painter.line_segment([point, next], stroke);

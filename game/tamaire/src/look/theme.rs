@@ -1,52 +1,52 @@
-//! The colours of the game.
+//! Colours of the game.
 
 use egui::Color32;
 
-/// The colours of the game.
+/// Colours of the game.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Theme {
-    /// Behind everything.
+    /// Background.
     pub paper: Color32,
-    /// Letters.
+    /// Text.
     pub ink: Color32,
-    /// Letters that matter less.
+    /// Less important text.
     pub faint: Color32,
-    /// A card on the paper.
+    /// Cards on the background.
     pub card: Color32,
-    /// A button.
+    /// Buttons.
     pub button: Color32,
-    /// The button that is meant.
+    /// Main button and highlights.
     pub accent: Color32,
-    /// Letters on it.
+    /// Text on [`Theme::accent`].
     pub on_accent: Color32,
-    /// What has done well.
+    /// Success.
     pub good: Color32,
-    /// The world.
+    /// Colours of the world.
     pub world: fuwafuwa_render::Palette,
 }
 
 impl Theme {
-    /// The colour of a material.
+    /// Returns the colour of a material.
     pub fn material(&self, number: u8) -> Color32 {
         colour(self.world.material(number))
     }
 
-    /// The colour of a player's hand.
+    /// Returns the colour of a player's hand.
     pub fn hand(&self, player: usize) -> Color32 {
         colour(self.world.hand(player))
     }
 
-    /// The colour of elements of a level.
+    /// Returns the colour of elements of a level.
     pub fn level(&self, level: u8) -> Color32 {
         colour(self.world.level(level))
     }
 
-    /// The colour of a strain.
+    /// Returns the colour of a strain.
     pub fn strain(&self, strain: f32) -> Color32 {
         colour(self.world.strain(strain))
     }
 
-    /// The usual colours, or those that nobody mixes up [Okabe 2008].
+    /// Returns the usual theme, or the colour-blind friendly one [Okabe 2008].
     pub fn of(colour_safe: bool) -> Self {
         let rgb = Color32::from_rgb;
         let usual = Self {

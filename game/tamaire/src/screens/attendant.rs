@@ -1,23 +1,23 @@
-//! What leads the game where visitors find no menus.
+//! Control of the game by a public stand instead of menus.
 
 use crate::game::Game;
 use crate::look::Stage;
 use egui::{Context, Ui};
 
-/// What leads the game where visitors find no menus.
+/// Controls the game at a public stand, where visitors have no menus.
 pub trait Attendant {
-    /// The program lives, whether or not anything is drawn.
+    /// Called in every pass of the event loop, even if nothing is drawn, to show that the program is alive.
     fn live(&mut self, _: &Context) {}
 
-    /// Lets a frame pass that took so long [s].
+    /// Advances by a frame of `seconds`.
     fn pass(&mut self, game: &mut Game, ctx: &Context, seconds: f32);
 
-    /// Shows what there is to see.
+    /// Shows the current screen of the stand.
     fn show(&mut self, game: &mut Game, stage: &mut Stage, ui: &mut Ui);
 
-    /// It is to end.
+    /// Requests the end of the program.
     fn end(&mut self);
 
-    /// The program ends.
+    /// Called when the program ends.
     fn close(&mut self, game: &mut Game);
 }

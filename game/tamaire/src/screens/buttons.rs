@@ -1,4 +1,5 @@
-//! The round buttons over a round: two for everybody, and for fingers all that keys and pads have.
+//! Round on-screen buttons during play: pause and restart for all players, and for touch all actions that
+//! keys and pads have.
 
 use super::icons;
 use super::widgets::note_hovered;
@@ -8,18 +9,18 @@ use crate::look::Theme;
 use egui::{Color32, Painter, Pos2, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use tamaire_play::AnyRound;
 
-/// Draws what stands for an action, so many times as large as usual.
+/// Draws the icon of an action at a position, with a scale and a colour.
 type Icon = fn(&Painter, Pos2, f32, Color32);
 
-/// Height of what stands in the upper row, between two of these, and from the edge of the window.
+/// Height of the upper row, gap between its elements, and distance from the edge of the window [points].
 pub(super) const HIGH: f32 = 44.0;
 pub(super) const GAP: f32 = 8.0;
 pub(super) const EDGE: f32 = 15.0;
-/// Side of those that a thumb holds [points].
+/// Side length of a thumb button [points].
 const THUMB: f32 = 68.0;
 
-/// Shows them from a corner to the right, and those for a thumb in the lower right corner; gives back where the row ends
-/// and whether the mouse is on one.
+/// Shows a row of buttons from `corner` to the right, and the thumb buttons in the lower right corner.
+/// Returns the right end of the row and whether the mouse is over a button.
 pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, bool) {
     let said = game.words();
     let mut row: Vec<(Action, &str, Icon)> = Vec::new();
@@ -35,7 +36,7 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
             row.push((Action::Slow, name(Action::Slow), icons::slow));
         }
         match game.bout.round() {
-            // In space a second finger raises the hand.
+            // In 3D, a second finger raises the hand.
             AnyRound::Plane(_) if game.takes_two() => {
                 row.push((Action::Join, name(Action::Join), icons::two));
             }
@@ -76,10 +77,10 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
     (end, is_on_button)
 }
 
-/// Shows a button; gives back whether the mouse is on it.
+/// Shows a button; returns whether the mouse is over it.
 fn one(game: &mut Game, ui: &Ui, button: ScreenButton, name: &str, icon: Icon) -> bool {
     let (theme, rect) = (game.theme(), button.rect);
-    // Not for the keyboard, which has its own keys for it.
+    // Not focusable: the keyboard has its own keys for these actions.
     let response = ui.interact(rect, egui::Id::unique(name), Sense::CLICK);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
     note_hovered(ui, &response);
@@ -97,7 +98,7 @@ fn one(game: &mut Game, ui: &Ui, button: ScreenButton, name: &str, icon: Icon) -
     response.hovered()
 }
 
-/// What is under something that does not hide the round.
+/// Translucent background for elements over a round.
 pub(super) fn pale(theme: &Theme) -> Color32 {
     theme.card.gamma_multiply(0.72)
 }

@@ -1,18 +1,18 @@
-//! What is to be gone is asked for twice.
+//! Confirmation of a deletion by a second press.
 
 use egui::{Id, Ui};
 
-/// How long one may take to say it again [s].
+/// Time window in which a second press confirms [s].
 const PATIENCE: f64 = 6.0;
 
-/// Whether this was asked for a moment ago.
+/// Whether a press on `what` within the time window would confirm.
 pub(super) fn is_doomed(ui: &Ui, what: &str) -> bool {
     let now = ui.input(|input| input.time);
     let asked: Option<(String, f64)> = ui.data(|data| data.get_temp(id()));
     asked.is_some_and(|(asked, when)| asked == what && now - when < PATIENCE)
 }
 
-/// It is asked for; or nothing is any more.
+/// Starts the time window for `what`; `None` cancels a pending one.
 pub(super) fn doom(ui: &Ui, what: Option<&str>) {
     let now = ui.input(|input| input.time);
     ui.data_mut(|data| match what {

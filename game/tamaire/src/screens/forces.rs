@@ -1,4 +1,4 @@
-//! What sticks and pads can do, what they say, and what they are made to do, as it happens.
+//! Screen for sticks and pads: their abilities, live input, and current force output.
 
 use super::widgets::{Weight, button, card, fitted, header, page, place_of_page, slider, veil};
 use crate::game::Game;
@@ -10,12 +10,12 @@ use force_feedback::{Ability, Calibration, Output, Report};
 use sticks::Device;
 use tamaire_sound::Menu;
 
-/// Radius of the circle in which a stick is seen to lean.
+/// Radius of the circle that shows a stick's deflection [points].
 const CIRCLE: f32 = 78.0;
-/// A bar that fills: its size, and from one to the next.
+/// Size of a level bar, and height of its row [points].
 const BAR: egui::Vec2 = vec2(150.0, 14.0);
 const ROW: f32 = 34.0;
-/// A light for a button, and from one to the next.
+/// Radius of a button's indicator light, and spacing of the lights [points].
 const LIGHT: f32 = 6.0;
 const LIGHTS: f32 = 17.0;
 
@@ -118,7 +118,7 @@ fn show_device(ui: &mut Ui, theme: &Theme, game: &mut Game, device: &Device) {
     });
 }
 
-/// Where the stick leans, and how it is pushed.
+/// Draws the deflection of the stick and the force on it.
 fn draw_stick(
     painter: &Painter,
     theme: &Theme,
@@ -143,7 +143,7 @@ fn draw_stick(
     }
 }
 
-/// What is sent, in numbers, and every axis and button.
+/// Draws the output in numbers, and all axes and buttons.
 fn draw_report(ui: &mut Ui, theme: &Theme, said: &Words, device: &Device, report: Option<Report>) {
     let rows = device.axes.len().div_ceil(2) as f32;
     let width = 330.0;
@@ -213,7 +213,7 @@ fn draw_report(ui: &mut Ui, theme: &Theme, said: &Words, device: &Device, report
     }
 }
 
-/// A bar that fills from its left end, or from its middle.
+/// Draws a bar that fills from its left end, or from its middle if it is signed.
 fn draw_bar(
     painter: &Painter,
     theme: &Theme,
@@ -243,7 +243,7 @@ fn draw_bar(
     }
 }
 
-/// What can be done with a device.
+/// Shows the buttons that try and measure a device.
 fn show_acts(ui: &mut Ui, theme: &Theme, game: &mut Game, device: &Device, report: Option<Report>) {
     let said = game.words();
     let ability = report.map_or(Ability::Nothing, |report| report.ability);

@@ -1,4 +1,4 @@
-//! The little that is shown over a round: time, how full the basket is, what is different from usual.
+//! Overlay of a round: clock, fill level of the basket, and unusual modes.
 
 use super::buttons::{self, EDGE, GAP, HIGH, pale};
 use super::icons;
@@ -9,17 +9,17 @@ use crate::look::Theme;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use fuwafuwa_render::frame::ElementColour;
 
-/// Height of a line of the lesson.
+/// Height of a line of the 3D instructions.
 const LINE: f32 = 34.0;
-/// At a stand in public there is a button in the lower left corner: height of its edge [points].
+/// Height of the bottom edge at a public stand, which holds a button in the lower left corner [points].
 pub(super) const STAND: f32 = 92.0;
 /// Radius of the jar.
 const JAR: f32 = 36.0;
-/// This takes far less room than menus do: where the game is shown smaller for their sake, this is
-/// shown larger again, up to so many times.
+/// Upper limit of the overlay's scale. The overlay needs less room than menus, so it compensates a reduced
+/// zoom up to this factor.
 const MOST: f32 = 1.4;
 
-/// Shows it; gives back whether the mouse is on a button.
+/// Shows the overlay; returns whether the mouse is over a button.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     let scale = scale(game, ui);
     let theme = game.theme();
@@ -50,17 +50,17 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     is_on_button
 }
 
-/// Height of the upper row with what is around it [points].
+/// Height of the upper row including its margins [points].
 pub(super) fn height(game: &Game, ui: &Ui) -> f32 {
     scale(game, ui) * (EDGE + HIGH + GAP)
 }
 
-/// So many times as large is what takes little room.
+/// Scale of the overlay.
 pub(super) fn scale(game: &Game, ui: &Ui) -> f32 {
     (game.settings.text_size / ui.ctx().zoom_factor()).clamp(1.0, MOST)
 }
 
-/// Where things stand in a row, and in the next one when there is no more room.
+/// Flow layout of a row that wraps at the right edge.
 struct Row<'a> {
     painter: &'a Painter,
     fill: Color32,
@@ -71,7 +71,7 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// The place for something so wide before it is scaled, with a background.
+    /// Reserves a rectangle of unscaled width `width` and draws its background.
     fn take(&mut self, width: f32) -> Rect {
         let size = self.scale * vec2(width, HIGH);
         if self.at.x + size.x > self.right && self.at.x > self.start {
@@ -84,7 +84,7 @@ impl Row<'_> {
     }
 }
 
-/// How long it has lasted.
+/// Draws the elapsed time.
 fn draw_clock(row: &mut Row, theme: &Theme, game: &Game) {
     let round = game.bout.round();
     let seconds = match round.progress().outcome {
@@ -92,14 +92,14 @@ fn draw_clock(row: &mut Row, theme: &Theme, game: &Game) {
         None => round.frames().len() as f32 / 60.0,
     };
     let clock = format!("{seconds:.1}");
-    // As wide as it will ever be: what jumps cannot be read.
+    // Reserves at least four characters, so that the clock does not jump.
     let at = row.take(34.0 + 15.0 * clock.len().max(4) as f32).center();
     let font = FontId::proportional(26.0 * row.scale);
     let painter = row.painter;
     painter.text(at, Align2::CENTER_CENTER, clock, font, theme.ink);
 }
 
-/// What is different from usual, each on a chip with a sign.
+/// Draws a chip for each unusual mode.
 fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
     let said = game.words();
     let mut chip = |sign: &str, text: &str| {
@@ -139,7 +139,7 @@ fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
     }
 }
 
-/// How to play in space, line by line in the lower left corner, until it was tried.
+/// Draws the 3D instructions in the lower left corner. Each line disappears once its action was tried.
 fn draw_lesson(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
     let (theme, painter) = (game.theme(), ui.painter());
     let mut bottom = match game.public {
@@ -163,12 +163,12 @@ fn draw_lesson(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
         let fill = pale(&theme).gamma_multiply(strength);
         painter.rect_filled(rect, 0.5 * size.y, fill);
         painter.galley(rect.center() - 0.5 * galley.size(), galley, ink);
-        // What was tried sinks away.
+        // A line that was tried sinks away.
         bottom -= strength * scale * (LINE + 0.5 * GAP);
     }
 }
 
-/// What the colours of elements tell: small to large, or at ease to strained.
+/// Draws the legend of element colours: small to large, or relaxed to strained.
 fn draw_legend(row: &mut Row, theme: &Theme, colour: ElementColour) {
     let (rect, scale, painter) = (row.take(176.0), row.scale, row.painter);
     let middle = rect.center().y;
@@ -208,8 +208,8 @@ fn draw_legend(row: &mut Row, theme: &Theme, colour: ElementColour) {
     }
 }
 
-/// How much is in the basket: a jar to be filled up to its line, pale with what moves and strong with
-/// what rests, then a ring that closes.
+/// Draws the fill level of the basket as a jar with a target line: pale for mass inside, strong for mass at
+/// rest. A ring closes while the level is held.
 fn draw_jar(ui: &Ui, middle: Pos2, scale: f32, game: &Game) {
     let theme = game.theme();
     let round = game.bout.round();
@@ -226,12 +226,12 @@ fn draw_jar(ui: &Ui, middle: Pos2, scale: f32, game: &Game) {
     painter.circle_filled(middle, rim, theme.card);
     let glass = scale * (JAR - 5.0);
     painter.circle_filled(middle, glass, theme.paper);
-    // Part of the way up the glass, as an angle from its lowest point.
+    // Angle from the lowest point of the jar to the fill level at `share` of its height.
     let angle = |share: f32| (1.0 - 2.0 * share).clamp(-1.0, 1.0).acos();
     let point = |angle: f32| middle + glass * vec2(angle.sin(), angle.cos());
     let fill = theme.material(1);
     let levels = [
-        // What is wanted, what is there, and what of it rests.
+        // Required share, share inside, and share at rest.
         (rules.share, 0.16),
         (smooth("within", progress.within), 0.45),
         (smooth("inside", progress.inside), 1.0),

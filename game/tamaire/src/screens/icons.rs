@@ -1,11 +1,11 @@
-//! Signs that say something without a word.
+//! Icons.
 
 use super::widgets::words;
 use crate::look::Theme;
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
 use tamaire_play::Route;
 
-/// Part of a circle, clockwise from its top.
+/// Draws an arc, clockwise from the top; `share` 1 is a full circle.
 pub(super) fn arc(painter: &Painter, middle: Pos2, radius: f32, share: f32, stroke: Stroke) {
     let count = (64.0 * share).ceil() as usize;
     let point = |step: usize| {
@@ -20,7 +20,7 @@ pub(super) fn arc(painter: &Painter, middle: Pos2, radius: f32, share: f32, stro
     }
 }
 
-/// Done.
+/// Draws a check mark.
 pub(super) fn tick(painter: &Painter, middle: Pos2, size: f32, stroke: Stroke) {
     let points = [[-0.8, 0.05], [-0.25, 0.6], [0.8, -0.6]];
     let points = points.map(|[x, y]| middle + size * vec2(x, y));
@@ -30,14 +30,15 @@ pub(super) fn tick(painter: &Painter, middle: Pos2, size: f32, stroke: Stroke) {
     }
 }
 
-/// In space: on a dark ground, from its upper left corner.
+/// Draws the 3D badge; `corner` is its upper left corner.
 pub(super) fn space(ui: &Ui, corner: Pos2, theme: &Theme) {
     let ground = Rect::from_min_size(corner, vec2(38.0, 24.0));
     ui.painter().rect_filled(ground, 12.0, theme.ink);
     words(ui, ground.center(), "3D", 16.0, theme.card);
 }
 
-/// A route: a body pressed into a square, or one that bits are off, or both; pale until it was gone.
+/// Draws the icon of a route: a body pressed into a square, a body with bits torn off, or both. It is pale
+/// until the route was won.
 pub(super) fn route(
     painter: &Painter,
     theme: &Theme,
@@ -74,7 +75,7 @@ pub(super) fn route(
     }
 }
 
-/// A rest.
+/// Draws a pause sign.
 pub(super) fn pause(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     for x in [-5.0, 5.0] {
         let bar = Rect::from_center_size(at + scale * vec2(x, 0.0), scale * vec2(5.0, 17.0));
@@ -82,7 +83,7 @@ pub(super) fn pause(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     }
 }
 
-/// An arrow that comes back to where it began.
+/// Draws a restart arrow.
 pub(super) fn again(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     let stroke = Stroke::new(3.5 * scale, ink);
     arc(painter, at, 9.0 * scale, 0.8, stroke);
@@ -95,7 +96,7 @@ pub(super) fn again(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     );
 }
 
-/// A large element and small ones.
+/// Draws a large element beside small ones.
 pub(super) fn elements(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     for (x, y, side) in [(-4.5, 0.0, 9.0), (5.0, -4.75, 7.0), (5.0, 4.75, 7.0)] {
         let square = Rect::from_center_size(
@@ -111,7 +112,7 @@ pub(super) fn elements(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     }
 }
 
-/// Time that goes slowly.
+/// Draws a slow-motion sign.
 pub(super) fn slow(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     polygon(
         painter,
@@ -125,14 +126,14 @@ pub(super) fn slow(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     }
 }
 
-/// Two players.
+/// Draws two dots for two players.
 pub(super) fn two(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     for x in [-6.0, 6.0] {
         painter.circle_filled(at + scale * vec2(x, 0.0), 5.0 * scale, ink);
     }
 }
 
-/// Upwards.
+/// Draws an upward arrow.
 pub(super) fn up(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     polygon(
         painter,
@@ -143,7 +144,7 @@ pub(super) fn up(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     );
 }
 
-/// Downwards.
+/// Draws a downward arrow.
 pub(super) fn down(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     polygon(
         painter,

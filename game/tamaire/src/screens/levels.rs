@@ -1,4 +1,4 @@
-//! Which level?
+//! Screen for choosing a level.
 
 use super::doomed::{doom, is_doomed};
 use super::icons;
@@ -16,14 +16,14 @@ use egui::{
 use tamaire_play::{Level, Route};
 use tamaire_sound::Menu;
 
-/// Between two tiles.
+/// Gap between tiles [points].
 const GAP: f32 = 20.0;
-/// About how wide a tile is.
+/// Approximate width of a tile [points].
 const WIDE: f32 = 236.0;
-/// Height of the button below a level that does not come along.
+/// Height of the button below a level that the player added [points].
 const SLIM: f32 = 36.0;
 
-/// What to do with a level.
+/// Action on a level.
 enum Wish {
     Play(usize),
     TakeOut(usize),
@@ -86,7 +86,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     }
 }
 
-/// The button that takes a level out of the list, when it is pressed again.
+/// Shows the button that removes a level from the list; a second press confirms.
 fn way_out(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Response {
     let (level, said) = (&game.levels[index], game.words());
     let text = match is_doomed(ui, &level.id) {
@@ -99,7 +99,7 @@ fn way_out(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Response {
     response
 }
 
-/// A level as a card: a little map, its name, what was reached.
+/// Shows a level as a card with thumbnail, name and achievements.
 pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Vec2) -> Response {
     let theme = game.theme();
     let level = &game.levels[index];
@@ -116,7 +116,7 @@ pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Ve
     let map = Rect::from_min_size(rect.min + vec2(10.0, 10.0), map_size);
     painter.rect_filled(map, 14.0, theme.paper);
     maps.draw(painter, map, level);
-    // Round corners on what has none.
+    // Covers the square corners of the thumbnail.
     let frame = Stroke::new(6.0, theme.card);
     painter.rect_stroke(map.expand(3.0), 17.0, frame, egui::StrokeKind::Middle);
     if level.scene().dim == 3 {
@@ -168,7 +168,7 @@ pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Ve
     response
 }
 
-/// What the stars and routes on a tile stand for, beside it.
+/// Shows a tooltip with the goals and best times of a level.
 fn explain(ui: &Ui, game: &Game, tile: &Response, level: &Level, record: Option<&Record>) {
     let (theme, said) = (game.theme(), game.words());
     let wishes = level.game().wish.iter().map(|wish| {
@@ -195,7 +195,7 @@ fn explain(ui: &Ui, game: &Game, tile: &Response, level: &Level, record: Option<
     });
 }
 
-/// What the signs on all tiles stand for.
+/// Shows the legend of the symbols on the tiles.
 fn legend(ui: &mut Ui, game: &Game) {
     let (theme, said) = (game.theme(), game.words());
     let [won, wish, squeezed, shaved, space] = said.legend;

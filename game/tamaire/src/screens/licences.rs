@@ -1,4 +1,4 @@
-//! What is inside, and under which licences.
+//! Screen with the licences of the included software.
 
 use super::widgets::{Weight, button, card, header, page, place_of_page, veil};
 use crate::game::Game;
@@ -9,10 +9,10 @@ use egui::{
 };
 use tamaire_sound::Menu;
 
-/// Height of a line and of its letters.
+/// Line height and font size [points].
 const LINE: f32 = 20.0;
 const LETTERS: f32 = 15.0;
-/// So many lines take the focus at once, so that keys and pads go through the text.
+/// Lines in a focusable block. Keys and pads scroll block by block.
 const LINES: usize = 16;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
@@ -26,7 +26,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         back |= response.clicked();
         page(ui, "licences", 820.0, |ui| {
             if cfg!(target_family = "wasm") {
-                // What is inside the page stands beside it, with all texts.
+                // The page comes with a file that has all licence texts.
                 let all = vec2(240.0, 48.0);
                 if button(ui, &theme, "licences.txt", all, Weight::Other).clicked() {
                     ui.ctx().open_url(OpenUrl::new_tab("licences.txt"));
@@ -56,7 +56,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     }
 }
 
-/// Lines below each other.
+/// Writes the lines of a block.
 fn write(ui: &mut Ui, place: Rect, lines: &[&str], ink: Color32) {
     let builder = UiBuilder::new().max_rect(place);
     ui.scope_builder(builder.layout(Layout::top_down(Align::Min)), |ui| {

@@ -1,5 +1,4 @@
-//! What there is to see and to choose. Each screen is a function of the game and asks it for what
-//! should happen.
+//! Screens of the game. Each screen is a function that draws the state of the game and triggers its actions.
 
 mod attendant;
 mod buttons;
@@ -31,7 +30,7 @@ use crate::game::{Game, Screen};
 use crate::look::Stage;
 use egui::Ui;
 
-/// Shows the screen that is on.
+/// Shows the current screen.
 pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     if game.is_seen() {
         play::world(game, stage, ui);

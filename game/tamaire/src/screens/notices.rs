@@ -1,17 +1,17 @@
-//! What the player is told in passing, and how far a picture is that is made.
+//! Notices, and the progress bar of a photo or clip.
 
 use super::hud;
 use crate::game::{Game, Screen};
 use egui::{Color32, FontId, Rect, Ui, pos2, vec2};
 
-/// The bar that fills while a photo or clip is made [points].
+/// Size of the progress bar [points].
 const BAR: egui::Vec2 = vec2(240.0, 12.0);
 
 pub(super) fn show(game: &Game, ui: &Ui) {
     let screen = ui.max_rect();
     let above = match game.screen() {
         Screen::Play => hud::height(game, ui),
-        // Below the headline and the way back.
+        // Below the headline and the back button.
         Screen::Levels | Screen::Settings | Screen::Forces | Screen::Licences | Screen::Replays => {
             92.0
         }
@@ -22,7 +22,7 @@ pub(super) fn show(game: &Game, ui: &Ui) {
     let font = FontId::proportional(18.0 * scale);
     let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("notices"));
     let painter = ui.ctx().layer_painter(layer);
-    // Over a round it stands in the row of what is different from usual, and where it can be taken back there is a button.
+    // During a round a chip shows it, and the forces screen has a button for it.
     let is_said = matches!(game.screen(), Screen::Play | Screen::Forces);
     let is_cut = game.forces.is_cut() && !is_said;
     let lasting = is_cut.then(|| (game.words().cut_now.to_string(), 1.0));

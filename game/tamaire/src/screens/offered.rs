@@ -1,4 +1,4 @@
-//! A round that came by a link: to watch it, or to race it.
+//! Screen for a round that was opened from a link, to watch it or to race it.
 
 use super::icons;
 use super::widgets::{Act, Weight, button, card, column, fitted, veil};
@@ -9,7 +9,7 @@ use std::sync::Arc;
 use tamaire_play::{Replay, ReplayError};
 use tamaire_sound::Menu;
 
-/// Size of the picture of its level, and of a button [points].
+/// Size of the level's thumbnail, and of a button [points].
 const PICTURE: egui::Vec2 = vec2(300.0, 200.0);
 const BUTTON: egui::Vec2 = vec2(300.0, 54.0);
 

@@ -1,4 +1,4 @@
-//! What is offered in a round to whoever plays with one switch, around the hand.
+//! Actions offered to a player with a single switch, drawn around the hand.
 
 use super::{hud, icons};
 use crate::game::Game;
@@ -6,14 +6,14 @@ use crate::input::{Manner, Offer};
 use crate::look::Theme;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Ui, Vec2};
 
-/// The ring on which it is shown, the arrow, and the disc under a sign [points].
+/// Radius of the ring, size of an arrow, and radius of the disc behind a sign [points].
 const RING: f32 = 58.0;
 const ARROW: f32 = 21.0;
 const DISC: f32 = 21.0;
-/// How far ahead of the hand it is asked where a way leads [m].
+/// Distance from the hand at which a direction is projected onto the screen [m].
 const AHEAD: f32 = 0.1;
 
-/// Shows what is offered, and whether it is taken.
+/// Draws the offered action, highlighted while the switch is pressed.
 pub(super) fn show(game: &Game, ui: &Ui) {
     let round = game.bout.round();
     let is_offered = game.settings.scanning.is_on() && game.bout.session.is_played();
@@ -53,7 +53,7 @@ fn tone(theme: &Theme, is_taken: bool) -> Color32 {
     if is_taken { theme.accent } else { theme.ink }
 }
 
-/// An arrow on the ring that points outwards.
+/// Draws an arrow on the ring that points outwards.
 fn arrow(painter: &Painter, middle: Pos2, way: Vec2, scale: f32, tone: Color32) {
     let point = |out: f32, aside: f32| middle + scale * (out * way + aside * way.rot90());
     let corners = vec![
@@ -62,7 +62,7 @@ fn arrow(painter: &Painter, middle: Pos2, way: Vec2, scale: f32, tone: Color32) 
         point(RING - 0.35 * ARROW, 0.0),
         point(RING - 0.6 * ARROW, -ARROW),
     ];
-    // Two halves: together they are not convex.
+    // Two convex halves, because the arrow as a whole is not convex.
     for half in [[0, 1, 2], [0, 2, 3]] {
         let half = half.map(|corner| corners[corner]).to_vec();
         painter.add(Shape::convex_polygon(half, tone, Stroke::NONE));
@@ -71,7 +71,7 @@ fn arrow(painter: &Painter, middle: Pos2, way: Vec2, scale: f32, tone: Color32) 
     painter.add(Shape::closed_line(corners, edge));
 }
 
-/// A sign on a disc.
+/// Draws a sign on a disc.
 fn sign(
     painter: &Painter,
     theme: &Theme,

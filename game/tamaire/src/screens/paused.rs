@@ -1,4 +1,4 @@
-//! The round, standing still.
+//! Pause menu.
 
 use super::widgets::{Act, Weight, button, card, column, title, veil};
 use crate::game::{Game, Screen};

@@ -1,16 +1,16 @@
-//! The round itself.
+//! Screen of a running round.
 
 use super::{hud, offers};
 use crate::game::{Game, Screen};
 use crate::look::{Hint, Look, Stage};
 use egui::{Response, Ui};
 
-/// Draws the world behind whatever screen.
+/// Draws the world behind the current screen.
 pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let screen = ui.max_rect();
     let level = game.bout.round().level().clone();
     let mut view = game.bout.camera.view(screen, &level);
-    // In a window that is held upright the result lies below, and the plane makes room for it.
+    // In a portrait window the result covers the lower part, so the 2D view moves up.
     let is_below = game.screen() == Screen::Result && screen.width() < screen.height();
     let duration = if game.settings.reduced_motion {
         0.0
@@ -23,7 +23,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     view.centre[1] -= 0.1 * share * view.height();
     game.bout.view = Some(view);
     let theme = game.theme();
-    // The first level shows the way until it has been won once.
+    // The first level shows what to do until it has been won once.
     let is_first = game
         .levels
         .first()
@@ -54,7 +54,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     stage.draw(ui, game.bout.round(), &look);
 }
 
-/// What is shown over a round.
+/// Shows the overlay of a round.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let is_on_button = hud::show(game, ui);
     offers::show(game, ui);
@@ -67,7 +67,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     }
 }
 
-/// Puts the focus on a widget where nothing else has it, so that a pad alone can go on from there.
+/// Focuses a widget if nothing else has the focus, so that a pad alone can navigate from there.
 pub(super) fn focus_first(ui: &Ui, response: &Response) {
     if ui.memory(|memory| memory.focused().is_none()) {
         response.request_focus();

@@ -1,4 +1,4 @@
-//! Rounds that were kept.
+//! List of saved rounds.
 
 use super::doomed::{doom, is_doomed};
 use super::icons;
@@ -9,17 +9,17 @@ use crate::platform::{Entry, local_date};
 use egui::{Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 use tamaire_sound::Menu;
 
-/// Size of a button, and of the little picture.
+/// Size of a button, and of a thumbnail [points].
 const BUTTON: Vec2 = vec2(118.0, 44.0);
 const PICTURE: Vec2 = vec2(111.0, 74.0);
-/// As many buttons stand in a row.
+/// Number of buttons in a row.
 const COLUMNS: usize = 3;
-/// Room for what is known of a round, beside buttons.
+/// Minimum width of the text beside the buttons [points].
 const LEAST_TEXT: f32 = 200.0;
-/// Between two things in a row.
+/// Gap between elements of a row [points].
 const GAP: f32 = 10.0;
 
-/// What to do with a replay.
+/// Action on a replay.
 #[derive(Copy, Clone)]
 enum Wish {
     Watch,
@@ -78,7 +78,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     }
 }
 
-/// A replay: what it is, and beside it, or below where there is no room, what can be done with it.
+/// Shows a replay with its buttons, which go below the text in a narrow window.
 fn show_one(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept) -> Option<Wish> {
     let all = ui.available_width();
     let beside = COLUMNS as f32 * (BUTTON.x + GAP);
@@ -97,7 +97,7 @@ fn show_one(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept) -> Option<Wish> 
     wanted
 }
 
-/// The level in little, and beside it, so wide, what is known of the round.
+/// Shows the thumbnail of the level, and beside it a text of width `text`.
 fn picture(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept, text: f32) {
     let theme = game.theme();
     let found = kept.found.as_ref().and_then(Option::as_ref);
@@ -113,7 +113,7 @@ fn picture(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept, text: f32) {
     tell(ui, game, kept, found, rect, &response);
 }
 
-/// What can be done with it, in rows.
+/// Shows the buttons of a replay in rows.
 fn buttons(ui: &mut Ui, game: &Game, kept: &Kept) -> Option<Wish> {
     let (theme, said) = (game.theme(), game.words());
     let delete = match is_doomed(ui, &kept.entry.name) {
@@ -143,7 +143,7 @@ fn buttons(ui: &mut Ui, game: &Game, kept: &Kept) -> Option<Wish> {
     wanted
 }
 
-/// Where it was played, when, and how it was won.
+/// Draws level, date, and result of a round.
 fn tell(ui: &Ui, game: &Game, kept: &Kept, found: Option<&Found>, rect: Rect, response: &Response) {
     let (theme, said, painter) = (game.theme(), game.words(), ui.painter());
     let name = name_of(game, kept, found);
@@ -183,7 +183,7 @@ fn tell(ui: &Ui, game: &Game, kept: &Kept, found: Option<&Found>, rect: Rect, re
     painter.galley(egui::pos2(left, top), galley, theme.faint);
 }
 
-/// By its level, where that is known, and its number.
+/// Returns the level's name with the number of the replay, or the file name if the level is unknown.
 fn name_of(game: &Game, kept: &Kept, found: Option<&Found>) -> String {
     let name = &kept.entry.name;
     let Some((id, number)) = name.rsplit_once('-') else {

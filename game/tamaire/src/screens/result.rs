@@ -1,4 +1,4 @@
-//! How it went, and a dare to try the other way.
+//! Result of a round, with a challenge to try the other route.
 
 use super::icons;
 use super::widgets::{Act, Weight, button, card, column_beside, fitted, veil};
@@ -12,7 +12,7 @@ use tamaire_sound::Menu;
 
 /// Width of the card [points].
 const WIDE: f32 = 490.0;
-/// Height of the smaller buttons, and how far all of them are apart [points].
+/// Height of the smaller buttons, and gap between buttons [points].
 const SMALL: f32 = 46.0;
 const GAP: f32 = 10.0;
 
@@ -24,7 +24,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     };
     let (theme, said) = (game.theme(), game.words());
     let level = game.bout.round().level().clone();
-    // Beside the body that beams, not over it.
+    // On the side away from the basket, so that the happy body stays visible.
     let basket = level.game().basket.as_ref();
     let is_right = basket.is_some_and(|basket| basket.centre[0] > 0.0);
     let across = if is_right { 0.05 } else { 0.95 };
@@ -63,14 +63,14 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     }
 }
 
-/// What was made easier, where anything was.
+/// Returns the assists of the level as text, if there are any.
 fn help_of(level: &Level, said: &Words) -> Option<String> {
     let assists = level.game().assists.iter();
     let names: Vec<&str> = assists.map(|&assist| (said.assist)(assist)).collect();
     (!names.is_empty()).then(|| format!("{}: {}", said.assisted, names.join(", ")))
 }
 
-/// The other way.
+/// Returns the route to suggest after a win by `route`.
 pub(super) fn other(route: Route) -> Route {
     match route {
         Route::Squeeze => Route::Shave,
@@ -78,7 +78,7 @@ pub(super) fn other(route: Route) -> Route {
     }
 }
 
-/// The route, as a sign and in words.
+/// Shows icon and name of the route.
 pub(super) fn headline(ui: &mut Ui, theme: &Theme, said: &Words, route: Route) {
     const SIGN: f32 = 64.0;
     let room = vec2(ui.available_width(), 58.0);
@@ -93,13 +93,13 @@ pub(super) fn headline(ui: &mut Ui, theme: &Theme, said: &Words, route: Route) {
     ui.painter().galley(at, galley, theme.accent);
 }
 
-/// Words on a line of their own.
+/// Shows a line of text, shrunk to the available width.
 pub(super) fn line(ui: &mut Ui, text: &str, size: f32, ink: egui::Color32) {
     let galley = fitted(ui.painter(), text, size, ui.available_width(), ink);
     ui.label(galley);
 }
 
-/// What is counted, side by side.
+/// Shows the figures of a round side by side.
 pub(super) fn numbers(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome) {
     let summary = (said.summary)(outcome);
     ui.spacing_mut().item_spacing.x = GAP;
@@ -114,7 +114,7 @@ pub(super) fn numbers(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcom
     });
 }
 
-/// What the level wishes, one below the other, and whether it came true.
+/// Shows the goals of the level, with a filled star for each one reached.
 fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &[Wish]) {
     let most = ui.available_width();
     let lines = wishes.iter().map(|wish| {
@@ -136,7 +136,7 @@ fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &
     }
 }
 
-/// What can be done now; gives back what is asked for.
+/// Shows the buttons; returns the chosen action.
 fn buttons(ui: &mut Ui, theme: &Theme, said: &Words) -> Option<Act> {
     let mut wanted: Option<Act> = None;
     let width = 2.0 * 200.0 + GAP;

@@ -1,4 +1,4 @@
-//! What players choose.
+//! Settings of the player.
 
 use super::doomed::{doom, is_doomed};
 use super::widgets::{Weight, button, card, choice, header, page, place_of_page, slider, veil};
@@ -135,10 +135,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 let usual = Settings::default();
                 chosen = Settings {
                     language: chosen.language,
-                    // No force comes up unasked, and what was measured stays as it is.
+                    // A reset never raises the force, and it keeps measured calibrations.
                     haptics: chosen.haptics.min(usual.haptics),
                     calibrations: std::mem::take(&mut chosen.calibrations),
-                    // Who needs these could not go on without.
+                    // A player who needs these settings could not continue without them.
                     scanning: chosen.scanning,
                     toggle_keys: chosen.toggle_keys,
                     dwell: chosen.dwell,
@@ -166,7 +166,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     }
 }
 
-/// How fast what can be done is offered to one switch. Off is asked for twice: with nothing but the switch there is no way back.
+/// Shows the choice of the scanning interval. Switching it off takes a second press: a player with a single
+/// switch could not switch it on again.
 fn scanning(ui: &mut Ui, theme: &Theme, said: &Words, chosen: &mut Scanning) {
     const OFF: &str = "scanning";
     let before = *chosen;
@@ -198,7 +199,7 @@ fn section(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut Ui
     });
 }
 
-/// Which key and which button does what; a click, then a press, changes it.
+/// Shows the keys and buttons of all actions. A click on an action waits for a press that is bound to it.
 fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
     let (theme, said) = (game.theme(), game.words());
     section(ui, &theme, said.controls, |ui| {
@@ -212,7 +213,7 @@ fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
             let weight = if listens { Weight::Main } else { Weight::Other };
             let response = button(ui, &theme, &text, vec2(ui.available_width(), 44.0), weight);
             if listens {
-                // Arrows, Tab and Escape are keys like any other now.
+                // While waiting, arrows, Tab and Escape are ordinary keys.
                 response.request_focus();
                 let all = egui::EventFilter {
                     tab: true,

@@ -1,4 +1,4 @@
-//! The name of the game over a body that plays by itself.
+//! Title screen over a round that plays by itself.
 
 use super::widgets::{Weight, button, column_beside, veil, words};
 use crate::game::{Game, Screen};
@@ -6,7 +6,7 @@ use crate::words::Language;
 use egui::{Color32, Rect, Sense, Ui, vec2};
 use tamaire_sound::Menu;
 
-/// Where the menu is, from 0 = left to 1 = right: what plays behind is seen where it matters, at the basket.
+/// Horizontal position of the menu, 0 (left) to 1 (right); left, so that the basket stays visible.
 const ACROSS: f32 = 0.14;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
@@ -59,11 +59,11 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     }
 }
 
-/// In a corner, for whoever cannot read the rest.
+/// Shows a button in the corner that switches to another language, under that language's own name.
 fn switch_language(game: &mut Game, ui: &mut Ui) {
     let size = vec2(128.0, 40.0);
     let corner = ui.max_rect().right_top();
-    // Upright there is the title below.
+    // In a portrait window the title is below the corner.
     let is_upright = ui.max_rect().width() < ui.max_rect().height();
     let inwards = if is_upright {
         vec2(-16.0, 14.0)

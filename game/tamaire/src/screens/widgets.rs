@@ -1,4 +1,4 @@
-//! Widgets that look like a toy: few, large and round. All of them can be reached with a pad.
+//! Large, round widgets of the game. All of them can be reached with a pad.
 
 use crate::game::Game;
 use crate::look::Theme;
@@ -9,41 +9,41 @@ use egui::{
 };
 use std::sync::Arc;
 
-/// How far the ring around what has the focus reaches beyond it.
+/// Distance from a focused widget to the outside of its focus ring [points].
 pub const RING: f32 = 7.0;
 
-/// Between the edge of a window and what is on a page [points].
+/// Margin between the window and a page [points].
 pub const EDGE: Vec2 = vec2(28.0, 22.0);
-/// Behind a page.
+/// Background of a page.
 pub const PAPER: Color32 = Color32::from_rgb(255, 248, 238);
-/// What goes on above or below fades over so many points.
+/// Height over which the contents of a page fade at its upper and lower edge [points].
 const FADE: f32 = 56.0;
 
-/// In a row of so many points there is room for a name and what it is side by side.
+/// Minimum width of a row with the name beside its widget [points]; in a narrower row the name is above.
 const LEAST_ROW: f32 = 560.0;
 
-/// Height of the letters on a button, as a share of its own.
+/// Font size on a button, as a share of the button's height.
 const LETTERS: f32 = 0.42;
 
-/// What a button does.
+/// Action of a button.
 pub type Act = fn(&mut Game);
 
-/// What a button is for.
+/// Importance of a button.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Weight {
-    /// What most people want here.
+    /// Main action of a screen.
     Main,
-    /// Something else.
+    /// Any other action.
     Other,
 }
 
-/// Dims the world behind a menu.
+/// Covers the world behind a menu with translucent paper.
 pub fn veil(ui: &Ui, strength: u8) {
     ui.painter()
         .rect_filled(ui.max_rect(), 0.0, PAPER.gamma_multiply_u8(strength));
 }
 
-/// Words in the middle of a place.
+/// Draws text centred at `at`.
 pub fn words(ui: &Ui, at: Pos2, text: &str, size: f32, colour: Color32) {
     ui.painter().text(
         at,
@@ -54,7 +54,7 @@ pub fn words(ui: &Ui, at: Pos2, text: &str, size: f32, colour: Color32) {
     );
 }
 
-/// A large round button.
+/// Shows a large round button.
 pub fn button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: Weight) -> Response {
     let response = plain_button(ui, theme, text, size, weight);
     let enabled = ui.is_enabled();
@@ -62,7 +62,7 @@ pub fn button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: Weight
     response
 }
 
-/// One that does not tell its name.
+/// Shows a button without an accessible name; the caller sets one.
 pub fn plain_button(
     ui: &mut Ui,
     theme: &Theme,
@@ -104,7 +104,7 @@ pub fn plain_button(
     response
 }
 
-/// Words on one line, smaller where there is not room enough.
+/// Lays out text on one line, shrunk if it is wider than `width`.
 pub fn fitted(painter: &Painter, text: &str, size: f32, width: f32, ink: Color32) -> Arc<Galley> {
     let lay = |size| painter.layout_no_wrap(text.to_string(), FontId::proportional(size), ink);
     let galley = lay(size);
@@ -114,38 +114,37 @@ pub fn fitted(painter: &Painter, text: &str, size: f32, width: f32, ink: Color32
     }
 }
 
-/// Notes whether menus are used with keys or pads, which need to see where the focus is, or with a
-/// mouse or fingers, which do not.
+/// Notes whether menus are used with keys or a pad, which need a focus ring, or with mouse or touch.
 pub fn note_use_of_keys(ctx: &Context, by_keys: bool) {
     ctx.data_mut(|data| data.insert_temp(Id::unique("by keys"), by_keys));
 }
 
-/// Whether keys or a pad are on this.
+/// Whether keys or a pad have focused this widget.
 pub fn is_on(ui: &Ui, response: &Response) -> bool {
     let by_keys = ui.data(|data| data.get_temp(Id::unique("by keys")));
     response.has_focus() && by_keys == Some(true)
 }
 
-/// Notes what the mouse is on, of all that can be pressed.
+/// Notes the widget under the mouse, for [`take_hovered`].
 pub fn note_hovered(ui: &Ui, response: &Response) {
     if response.hovered() {
         ui.data_mut(|data| data.insert_temp(Id::unique("hovered"), Some(response.id)));
     }
 }
 
-/// What of all that can be pressed the mouse is on, since this was asked last.
+/// Returns the widget that the mouse was over since the last call.
 pub fn take_hovered(ctx: &Context) -> Option<Id> {
     ctx.data_mut(|data| data.remove_temp(Id::unique("hovered")).flatten())
 }
 
-/// From 0 to 1 while the mouse, keys or a pad are on something.
+/// Returns the animated highlight of a hovered or focused widget, 0 to 1.
 pub fn liveliness(ui: &Ui, response: &Response) -> f32 {
     let is_lively = response.hovered() || is_on(ui, response);
     note_hovered(ui, response);
     ui.ctx().animate_bool(response.id, is_lively)
 }
 
-/// A ring around what keys or a pad are on, which comes into view.
+/// Draws the focus ring of a widget, and scrolls a newly focused widget into view.
 pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect, round: f32, theme: &Theme) {
     let is_on = is_on(ui, response);
     let seen = Id::unique("what had the focus");
@@ -161,7 +160,7 @@ pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect, round: f32, theme: &
     }
 }
 
-/// A white card, and what is on it.
+/// Shows contents on a white card.
 pub fn card<R>(ui: &mut Ui, theme: &Theme, contents: impl FnOnce(&mut Ui) -> R) -> R {
     let frame = egui::Frame::new()
         .fill(theme.card)
@@ -176,7 +175,8 @@ pub fn card<R>(ui: &mut Ui, theme: &Theme, contents: impl FnOnce(&mut Ui) -> R) 
     frame.show(ui, contents).inner
 }
 
-/// A slider with its name before and its value behind it. Left and right move it when it has the focus.
+/// Shows a slider with its name on the left and its value on the right. The left and right arrow keys move it
+/// while it has the focus.
 pub fn slider(
     ui: &mut Ui,
     theme: &Theme,
@@ -239,7 +239,7 @@ pub fn slider(
     })
 }
 
-/// A choice between a few things, all of them in sight.
+/// Shows a choice between a few visible options; returns whether it changed.
 pub fn choice<T: Copy + PartialEq>(
     ui: &mut Ui,
     theme: &Theme,
@@ -250,7 +250,7 @@ pub fn choice<T: Copy + PartialEq>(
     const HIGH: f32 = 44.0;
     let mut changed = false;
     row(ui, theme, name, |ui| {
-        // All as wide as the widest, so that nothing moves when another is chosen.
+        // All buttons get the width of the widest one, so that nothing moves when another option is chosen.
         let mark = |text: &str| format!("● {text}");
         let measure = |text: &str| {
             let font = FontId::proportional(LETTERS * HIGH);
@@ -267,7 +267,7 @@ pub fn choice<T: Copy + PartialEq>(
         ui.spacing_mut().item_spacing.x = 2.0 * RING;
         for &(option, text) in options {
             let is_chosen = *value == option;
-            // What is chosen is marked by more than its colour.
+            // A dot marks the chosen option, not only its colour.
             let (weight, marked) = match is_chosen {
                 true => (Weight::Main, mark(text)),
                 false => (Weight::Other, text.to_string()),
@@ -285,10 +285,10 @@ pub fn choice<T: Copy + PartialEq>(
     changed
 }
 
-/// The name of something to the left, and what it is to the right.
+/// Shows a row with a name on the left and its widget on the right.
 pub fn row<R>(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
     let all = ui.available_width();
-    // Where there is little room it stands above.
+    // In a narrow row the name is above.
     let is_above = all < LEAST_ROW;
     let width = if is_above { all } else { 0.4 * all };
     let head = |ui: &mut Ui, height: f32| {
@@ -308,7 +308,7 @@ pub fn row<R>(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut
     .inner
 }
 
-/// A headline.
+/// Shows a headline.
 pub fn title(ui: &mut Ui, theme: &Theme, text: &str) {
     ui.label(
         egui::RichText::new(text)
@@ -318,18 +318,18 @@ pub fn title(ui: &mut Ui, theme: &Theme, text: &str) {
     );
 }
 
-/// The upper edge of a screen: a way back and a headline; gives back the button.
+/// Shows the top of a screen with a back button and a headline; returns the button's response.
 pub fn header(ui: &mut Ui, theme: &Theme, back: &str, text: &str) -> Response {
     header_with(ui, theme, back, text, |_| ()).0
 }
 
-/// The same with a button at the right end that asks for a file, where files can be picked.
+/// Shows a [`header`] with a button on the right that opens a file, where file dialogs exist.
 pub fn header_to_open(ui: &mut Ui, game: &mut Game, text: &str) -> Response {
     let (theme, said) = (game.theme(), game.words());
     let can_pick = HAS_DIALOG && !game.settings.scanning.is_on();
     let (back, opens) = header_with(ui, &theme, said.back, text, |ui| {
         let size = vec2(150.0, 48.0);
-        // The system's dialog takes more than one switch.
+        // The system's file dialog cannot be operated with a single switch.
         can_pick && button(ui, &theme, said.open, size, Weight::Other).clicked()
     });
     if opens {
@@ -338,7 +338,7 @@ pub fn header_to_open(ui: &mut Ui, game: &mut Game, text: &str) -> Response {
     back
 }
 
-/// A header with something at the right end, and what that gives back.
+/// Shows a header with contents on the right, and returns their result, too.
 fn header_with<R>(
     ui: &mut Ui,
     theme: &Theme,
@@ -349,7 +349,7 @@ fn header_with<R>(
     let room = vec2(ui.available_width(), 56.0);
     let layout = Layout::left_to_right(Align::Center);
     let inner = ui.allocate_ui_with_layout(room, layout, |ui| {
-        // What comes next may be far to the right, where egui does not look for what is below.
+        // The next widget may be far to the right, where egui's search downwards does not find it.
         let id = ui.next_auto_id();
         if ui.memory(|memory| memory.has_focus(id)) {
             step_through(ui);
@@ -364,7 +364,8 @@ fn header_with<R>(
     inner.inner
 }
 
-/// Makes up and down go to what comes before and after, wherever it is. To be called before either.
+/// Makes the up and down arrow keys move the focus to the previous and next widget, at any position. Call it
+/// before the current widget is added.
 fn step_through(ui: &Ui) {
     for (key, direction) in [
         (Key::ArrowDown, FocusDirection::Next),
@@ -376,15 +377,15 @@ fn step_through(ui: &Ui) {
     }
 }
 
-/// Where a page is: down to the lower edge of the window, where it goes on out of sight.
+/// Area of a page. It reaches down to the lower edge of the window, where the contents scroll out of sight.
 pub fn place_of_page(ui: &Ui) -> Rect {
     let mut rect = ui.max_rect().shrink2(EDGE);
     rect.max.y = ui.max_rect().bottom();
     rect
 }
 
-/// The rest of a screen: a column of so many points at most, which scrolls and fades where it goes
-/// on. There is room for the ring around what has the focus. How far it is scrolled is remembered under its name.
+/// Shows the scrolling part of a screen: a column of at most `width` points with room for focus rings, which
+/// fades where it continues. The scroll position is stored under `name`.
 pub fn page(ui: &mut Ui, name: &str, width: f32, contents: impl FnOnce(&mut Ui)) {
     let area = egui::ScrollArea::vertical()
         .id_salt(name)
@@ -409,7 +410,7 @@ pub fn page(ui: &mut Ui, name: &str, width: f32, contents: impl FnOnce(&mut Ui))
     let seen = seen.with_min_x(ui.clip_rect().left());
     let above = output.state.clamped_offset().y;
     let below = output.content_size.y - seen.height() - above;
-    // The edge, and which way is inwards; what is far away fades as far as it can.
+    // Edge and its inward direction. The fade is shorter where less is scrolled out of sight.
     for (edge, inwards, more) in [(seen.top(), 1.0, above), (seen.bottom(), -1.0, below)] {
         let far = edge + inwards * FADE.min(more.max(0.0));
         let mut mesh = egui::Mesh::default();
@@ -424,11 +425,11 @@ pub fn page(ui: &mut Ui, name: &str, width: f32, contents: impl FnOnce(&mut Ui))
     }
 }
 
-/// Around a column [points].
+/// Margin around a column [points].
 const AROUND: f32 = 12.0;
 
-/// A [`column`] that hides little of the world: `across` from 0 = at the left to 1 = at the right, but in a window that is
-/// held upright, where the world lies across the middle, above or below that.
+/// Shows a [`column`] that hides little of the world: at `across` from 0 (left) to 1 (right). In a portrait
+/// window the world is in the middle, and the column is above or below it.
 pub fn column_beside<R>(
     ui: &mut Ui,
     width: f32,
@@ -439,7 +440,7 @@ pub fn column_beside<R>(
     if part.width() > part.height() {
         return column(ui, width, across, contents);
     }
-    // Rather over the world than cut.
+    // Rather covers the world than scrolls.
     let wanted = ui.data(|data| data.get_temp::<f32>(column_id(width)));
     let least = wanted.map_or(0.0, |height| height + 2.0 * AROUND);
     let share = if is_above { 0.4 } else { 0.47 };
@@ -453,13 +454,13 @@ pub fn column_beside<R>(
         .inner
 }
 
-/// Under what the height of a column of so many points is known.
+/// Id under which the height of a column of this width is stored.
 fn column_id(width: f32) -> Id {
     Id::unique(("column", width as u32))
 }
 
-/// A column of so many points, upright in the middle of the screen, and what is in it; `across` from
-/// 0 = at the left to 1 = at the right. Where there is not room enough it scrolls.
+/// Shows a vertically centred column of `width` points, at `across` from 0 (left) to 1 (right). It scrolls if
+/// it is higher than the screen.
 pub fn column<R>(ui: &mut Ui, width: f32, across: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
     let screen = ui.max_rect().shrink(AROUND);
     let id = column_id(width);
@@ -486,7 +487,7 @@ pub fn column<R>(ui: &mut Ui, width: f32, across: f32, contents: impl FnOnce(&mu
         .inner;
     if known != Some(height) {
         ui.data_mut(|data| data.insert_temp(id, height));
-        // It is seen only where it belongs.
+        // Repeats the frame, so that the column is never shown at a wrong position.
         ui.ctx().request_discard("the height of a column");
     }
     result

@@ -12,13 +12,13 @@ pub(super) const WORDS: Words = Words {
     quit: "Quit",
     back: "Back",
     paused: "Paused",
-    go_on: "Go on",
-    again: "Again",
+    go_on: "Resume",
+    again: "Restart",
     levels: "Levels",
     next: "Next",
     other_way: |route| match route {
-        Route::Squeeze => "Now try tearing bits off!",
-        Route::Shave | Route::Mix => "Now try it whole!",
+        Route::Squeeze => "Now try shaving it to fit!",
+        Route::Shave | Route::Mix => "Now try squeezing it in whole!",
     },
     route: |route| match route {
         Route::Squeeze => "Squeezed in!",
@@ -37,16 +37,16 @@ pub(super) const WORDS: Words = Words {
         parts.extend(wish.seconds.map(|most| format!("within {most} s")));
         parts.extend(
             wish.kept
-                .map(|least| format!("keep {:.0} %", 100.0 * least)),
+                .map(|least| format!("keep at least {:.0} %", 100.0 * least)),
         );
-        parts.extend(wish.pieces.map(|least| format!("{least} pieces")));
+        parts.extend(wish.pieces.map(|least| format!("at least {least} pieces")));
         parts.join(", ")
     },
     summary: |outcome| {
         [
             ("Time", format!("{:.1} s", outcome.seconds())),
-            ("Kept", format!("{:.0} %", 100.0 * outcome.kept)),
-            ("Inside", format!("{:.0} %", 100.0 * outcome.inside)),
+            ("Left of it", format!("{:.0} %", 100.0 * outcome.kept)),
+            ("In the basket", format!("{:.0} %", 100.0 * outcome.inside)),
             ("Pieces", outcome.pieces.to_string()),
         ]
     },
@@ -56,44 +56,44 @@ pub(super) const WORDS: Words = Words {
     save: "Save replay",
     delete: "Delete",
     surely: "Really?",
-    take_out: "Take out",
+    take_out: "Remove from list",
     saved: "Saved",
     slow: |share| {
         format!(
-            "This level is a lot for this device: it runs at {:.0} % of its speed.",
+            "This device is too slow for this level: running at {:.0} % speed.",
             100.0 * share
         )
     },
     licences: "Licences",
     link: "Copy link",
     link_to_level: "Link to this level",
-    link_copied: "The link is copied: paste it wherever you like.",
-    link_refused: "The browser keeps its clipboard to itself: the link is not copied.",
+    link_copied: "Link copied! Paste it anywhere you like.",
+    link_refused: "The link was not copied: the browser does not allow access to the clipboard.",
     link_error: |error| error.to_string(),
-    offered: "Somebody sent you a round",
+    offered: "Someone sent you a round!",
     download: "Download",
-    no_replays: "No replays yet. Save one while you pause or after a win, or drop a file here.",
+    no_replays: "No replays yet. Save one from the pause menu or after a win, or drop a file here.",
     open: "Open…",
     what_opens: "Levels, pictures, models, replays",
-    no_dialog: "This system has no window to pick a file with. Drop the file onto the game instead.",
-    race_best: "Race my best round",
-    hands_section: "Hands",
-    toggle_keys: "Keys stay down until pressed again",
-    dwell: "Resting the mouse presses a button",
-    scanning: "One switch: all in turn",
-    how_by_switch: "The switch does what the arrow shows",
-    assists_section: "Help, from the next round on",
+    no_dialog: "This computer has no file picker. Drag the file onto the game instead.",
+    race_best: "Race against my best round",
+    hands_section: "Accessibility",
+    toggle_keys: "Sticky keys",
+    dwell: "Click by hovering",
+    scanning: "One-switch scanning",
+    how_by_switch: "Press the switch to do what the arrow shows",
+    assists_section: "Easier play (from the next round)",
     assist: |assist| match assist {
         Assist::WiderBasket => "Wider basket",
-        Assist::Unbreakable => "Nothing tears",
+        Assist::Unbreakable => "Unbreakable body",
     },
-    assisted: "with help",
+    assisted: "easier play",
     legend: [
         "won",
-        "a wish came true",
+        "star earned",
         "squeezed in whole",
         "shaved to fit",
-        "in space",
+        "in 3D",
     ],
     language: "Language",
     volume: "Volume",
@@ -105,51 +105,47 @@ pub(super) const WORDS: Words = Words {
     try_forces: "Sticks and pads…",
     no_devices: "No stick or pad is plugged in.",
     ability: |ability| match ability {
-        Ability::Force => "It can push the stick",
+        Ability::Force => "It can push back",
         Ability::Rumble => "It can rumble",
-        Ability::Nothing => "It cannot be felt",
+        Ability::Nothing => "It cannot push or rumble",
     },
-    forces_off: "Force is at 0: nothing is sent",
+    forces_off: "Force is set to 0, so nothing is felt",
     silent: |why| match why {
-        Stop::Unheard | Stop::Idle => "Nothing: nobody plays with it",
-        Stop::Paused => "Nothing: the game is paused",
-        Stop::FocusLost => "Nothing: another window is in front",
-        Stop::Menu => "Nothing: a menu is open",
-        Stop::Won => "Nothing: the round is won",
-        Stop::Reset => "Nothing: the round begins",
-        Stop::Unplugged => "Nothing: it is unplugged",
-        Stop::Stale => "Nothing: the game is too slow",
-        Stop::Emergency => "Nothing: forces are off",
-        Stop::Ended => "Nothing: force feedback broke down",
+        Stop::Unheard | Stop::Idle => "No force: not in use",
+        Stop::Paused => "No force: the game is paused",
+        Stop::FocusLost => "No force: another window is in front",
+        Stop::Menu => "No force: a menu is open",
+        Stop::Won => "No force: the round is won",
+        Stop::Reset => "No force: the round is starting",
+        Stop::Unplugged => "No force: unplugged",
+        Stop::Stale => "No force: the game is running too slowly",
+        Stop::Emergency => "No force: forces are switched off",
+        Stop::Ended => "No force: force feedback stopped working",
     },
     motors: ["Slow motor", "Fast motor"],
     gains: ["Strength ←→", "Strength ↑↓"],
     try_it: "Try it",
-    enough: "Enough",
-    push_it: "Push the stick: it pushes back, and gives way at its edge.",
-    measure: "Measure its motors",
-    hands_off: "Put the stick upright and let go. It will move by itself.",
-    measured: "Now it is known which way its motors push.",
-    not_measured: "That was not clear. Put the stick upright and let go while it is measured.",
+    enough: "Stop",
+    push_it: "Push the stick: it pushes back, then suddenly gives way near the edge.",
+    measure: "Test its motors",
+    hands_off: "Set the stick upright and let go. It will move by itself.",
+    measured: "Done! The game now knows which way the motors push.",
+    not_measured: "That did not work. Set the stick upright and keep your hands off during the test.",
     built: |built| match (built.swap, built.invert) {
-        (false, [false, false]) => "They push as usual".into(),
+        (false, [false, false]) => "Motors: normal".into(),
         (swap, [x, y]) => {
-            let parts = [
-                (swap, "swapped"),
-                (x, "←→ turned round"),
-                (y, "↑↓ turned round"),
-            ];
+            let parts = [(swap, "swapped"), (x, "←→ reversed"), (y, "↑↓ reversed")];
             let parts: Vec<&str> = parts
                 .iter()
                 .filter(|part| part.0)
                 .map(|part| part.1)
                 .collect();
-            format!("They are {}", parts.join(", "))
+            format!("Motors: {}", parts.join(", "))
         }
     },
-    as_usual: "As usual",
+    as_usual: "Back to normal",
     forces_cut: "Forces off",
-    cut_now: "All forces are off. Switch them on again in the settings, under Sticks and pads.",
+    cut_now: "All forces are off. To switch them on again, open Settings, then Sticks and pads.",
     cut_hint: |[keys, buttons]| {
         format!(
             "To switch all forces off at once, press {keys} on the keyboard, or button {buttons}."
@@ -157,22 +153,22 @@ pub(super) const WORDS: Words = Words {
     },
     restore: "Switch forces on again",
     restored: "Forces are on again.",
-    forces_zero: "How strong forces were is lost, so they are at 0 until you choose again.",
+    forces_zero: "The force setting was lost. Forces are off until you set it again.",
     speed: "Game speed",
     sensitivity: "Sensitivity",
-    stick_places: "Stick points at the place",
+    stick_places: "Stick position = hand position",
     photo: "Photo",
     clip: "Clip",
-    full_screen: "Full screen, also by F11",
-    reduced_motion: "Less motion",
-    colour_safe: "Safe colours",
+    full_screen: "Full screen (F11)",
+    reduced_motion: "Reduce motion",
+    colour_safe: "Colour-blind friendly",
     text_size: "Text size",
     controls: "Controls",
     press_any: "Press a key or button…",
-    reset: "Reset",
+    reset: "Restore default settings",
     sound_section: "Sound",
     play_section: "Play",
-    look_section: "Look",
+    look_section: "Display",
     action: |action| match action {
         Action::Up => "Up",
         Action::Down => "Down",
@@ -184,8 +180,8 @@ pub(super) const WORDS: Words = Words {
         Action::Slow => "Slow motion",
         Action::Step => "Single step",
         Action::Join => "Second player",
-        Action::Raise => "Upwards (3D)",
-        Action::Lower => "Downwards (3D)",
+        Action::Raise => "Move up (3D)",
+        Action::Lower => "Move down (3D)",
         Action::TurnLeft => "Look from the left (3D)",
         Action::TurnRight => "Look from the right (3D)",
         Action::Deeper => "Elements: deeper (3D)",
@@ -194,8 +190,8 @@ pub(super) const WORDS: Words = Words {
     },
     on: "On",
     off: "Off",
-    no_sound: "The game is silent",
-    no_sticks: "Sticks and pads cannot be read here.",
+    no_sound: "No sound",
+    no_sticks: "Sticks and pads do not work here.",
     join_hint: "2 players",
     how_in_space: |means, [ways, up, around]| match means {
         Means::Mouse => [
@@ -233,12 +229,12 @@ pub(super) const WORDS: Words = Words {
     watching: "Replay",
     damaged: |refused, aside| match aside {
         Some(aside) => {
-            format!("This was not understood: {refused}. All is kept as it was in {aside}")
+            format!("This could not be read: {refused}. The original was kept as {aside}")
         }
         None => format!("This could not be read: {refused}."),
     },
-    not_written: "This could not be written:",
-    full: "There is no room left: it is not kept.",
+    not_written: "This could not be saved:",
+    full: "There is no space left, so it was not saved.",
     level_error: |error| error.to_string(),
     replay_error: |error| error.to_string(),
 };

@@ -10,7 +10,7 @@ use tamaire_play::{Assist, ReplayError, Route};
 pub(super) const WORDS: Words = Words {
     play: "あそぶ",
     replays: "リプレイ",
-    settings: "せってい",
+    settings: "設定",
     quit: "おわる",
     back: "もどる",
     paused: "ひとやすみ",
@@ -19,35 +19,35 @@ pub(super) const WORDS: Words = Words {
     levels: "ステージ",
     next: "つぎへ",
     other_way: |route| match route {
-        Route::Squeeze => "こんどは けずってみよう！",
-        Route::Shave | Route::Mix => "こんどは まるごと おしこもう！",
+        Route::Squeeze => "こんどは けずって 入れてみよう！",
+        Route::Shave | Route::Mix => "こんどは まるごと 入れてみよう！",
     },
     route: |route| match route {
-        Route::Squeeze => "押し込み！",
-        Route::Shave => "削り！",
-        Route::Mix => "けずって 押し込み！",
+        Route::Squeeze => "まるごと 入った！",
+        Route::Shave => "けずって 入った！",
+        Route::Mix => "けずって おしこんだ！",
     },
     wish: |wish| {
         let mut parts = Vec::new();
         if let Some(route) = wish.route {
             parts.push(match route {
-                Route::Squeeze => "まるごと押し込む".to_string(),
+                Route::Squeeze => "まるごと入れる".to_string(),
                 Route::Shave => "けずって入れる".to_string(),
-                Route::Mix => "りょうほう".to_string(),
+                Route::Mix => "けずって おしこむ".to_string(),
             });
         }
-        parts.extend(wish.seconds.map(|most| format!("{most}秒いない")));
+        parts.extend(wish.seconds.map(|most| format!("{most}秒以内")));
         parts.extend(
             wish.kept
-                .map(|least| format!("{:.0}％のこす", 100.0 * least)),
+                .map(|least| format!("{:.0}％以上のこす", 100.0 * least)),
         );
-        parts.extend(wish.pieces.map(|least| format!("{least}こにわける")));
+        parts.extend(wish.pieces.map(|least| format!("{least}こ以上にわける")));
         parts.join("・")
     },
     summary: |outcome| {
         [
             ("タイム", format!("{:.1}秒", outcome.seconds())),
-            ("のこした", format!("{:.0}％", 100.0 * outcome.kept)),
+            ("のこり", format!("{:.0}％", 100.0 * outcome.kept)),
             ("かごの中", format!("{:.0}％", 100.0 * outcome.inside)),
             ("かけら", format!("{}こ", outcome.pieces)),
         ]
@@ -57,45 +57,45 @@ pub(super) const WORDS: Words = Words {
     race: "きょうそう",
     save: "リプレイをのこす",
     delete: "けす",
-    surely: "ほんとに？",
-    take_out: "はずす",
+    surely: "けしていい？",
+    take_out: "リストからはずす",
     saved: "のこしました",
     slow: |share| {
         format!(
-            "この きかいには重いステージです。{:.0} %の はやさで うごきます。",
+            "このステージは この機械には重すぎるので、{:.0} %の はやさで動いています。",
             100.0 * share
         )
     },
     licences: "ライセンス",
     link: "リンクをコピー",
     link_to_level: "このステージのリンク",
-    link_copied: "リンクをコピーしました。どこにでも はりつけられます。",
+    link_copied: "リンクをコピーしました。すきなところに はりつけてね。",
     link_refused: "クリップボードが使えないため、リンクをコピーできませんでした。",
     link_error,
-    offered: "だれかの リプレイが とどきました",
+    offered: "リプレイが とどきました！",
     download: "ダウンロード",
-    no_replays: "まだありません。かったあとにのこすか、ファイルをここへ。",
+    no_replays: "リプレイは まだありません。ひとやすみのときか クリアしたあとに のこせます。ファイルを ここに おとしても いいよ。",
     open: "ひらく…",
-    what_opens: "レベル・絵・モデル・リプレイ",
-    no_dialog: "このパソコンには ファイルをえらぶ まどがありません。ファイルを ここに おとしてね。",
-    race_best: "じぶんの きろくと きょうそう",
-    hands_section: "手",
-    toggle_keys: "キーは もういちど おすまで おしたまま",
-    dwell: "マウスを とめると ボタンを おす",
-    scanning: "スイッチひとつで じゅんばんに",
-    how_by_switch: "スイッチ：やじるしのほうへ",
-    assists_section: "おたすけ（つぎの ラウンドから）",
+    what_opens: "ステージ・絵・モデル・リプレイ",
+    no_dialog: "このパソコンでは ファイルをえらぶ画面が 出せません。ファイルを ゲームの上に おとしてね。",
+    race_best: "自分の記録と きょうそう",
+    hands_section: "アクセシビリティ",
+    toggle_keys: "固定キー",
+    dwell: "マウスを止めてクリック",
+    scanning: "スイッチひとつで操作",
+    how_by_switch: "スイッチをおすと、やじるしのとおりに動くよ",
+    assists_section: "やさしくする（つぎのラウンドから）",
     assist: |assist| match assist {
-        Assist::WiderBasket => "かごを ひろく",
-        Assist::Unbreakable => "ちぎれない からだ",
+        Assist::WiderBasket => "広いかご",
+        Assist::Unbreakable => "ちぎれない体",
     },
-    assisted: "おたすけあり",
+    assisted: "やさしいモード",
     legend: [
         "クリア",
-        "ねがいが かなった",
+        "目標クリア",
         "まるごと おしこんだ",
         "けずって 入れた",
-        "りったい",
+        "3D",
     ],
     language: "ことば",
     volume: "音量",
@@ -107,32 +107,32 @@ pub(super) const WORDS: Words = Words {
     try_forces: "スティックとパッド…",
     no_devices: "スティックもパッドも つながっていません。",
     ability: |ability| match ability {
-        Ability::Force => "おしかえせます",
-        Ability::Rumble => "しんどうできます",
+        Ability::Force => "おしかえします",
+        Ability::Rumble => "振動します",
         Ability::Nothing => "手ごたえは ありません",
     },
-    forces_off: "手ごたえが0なので、何も送りません",
+    forces_off: "手ごたえが0なので、力は出ません",
     silent: |why| match why {
         Stop::Unheard | Stop::Idle => "なし：だれも使っていません",
         Stop::Paused => "なし：ひとやすみ中",
         Stop::FocusLost => "なし：ほかのウィンドウが前にあります",
         Stop::Menu => "なし：メニュー中",
-        Stop::Won => "なし：もう かちました",
+        Stop::Won => "なし：もうクリアしました",
         Stop::Reset => "なし：はじまるところです",
-        Stop::Unplugged => "なし：ぬけています",
-        Stop::Stale => "なし：ゲームが おそすぎます",
+        Stop::Unplugged => "なし：つながっていません",
+        Stop::Stale => "なし：ゲームの動きが おそすぎます",
         Stop::Emergency => "なし：手ごたえを切りました",
-        Stop::Ended => "なし：手ごたえが こわれました",
+        Stop::Ended => "なし：手ごたえが動かなくなりました",
     },
     motors: ["おそいモーター", "はやいモーター"],
     gains: ["強さ ←→", "強さ ↑↓"],
     try_it: "ためす",
-    enough: "おわり",
-    push_it: "スティックをたおすと おしかえし、はしまで行くと ふっと軽くなります。",
+    enough: "やめる",
+    push_it: "スティックをたおすと おしかえされて、はしまで行くと ふっと軽くなります。",
     measure: "モーターの向きをはかる",
-    hands_off: "まっすぐ立てて 手をはなしてね。かってに動きます。",
+    hands_off: "スティックをまっすぐ立てて、手をはなしてね。ひとりでに動きます。",
     measured: "モーターの向きが わかりました。",
-    not_measured: "うまくはかれませんでした。まっすぐ立てて、はかるあいだは 手をはなしてね。",
+    not_measured: "うまくはかれませんでした。スティックをまっすぐ立てて、はかるあいだは手をはなしてね。",
     built: |built| match (built.swap, built.invert) {
         (false, [false, false]) => "モーターの向き：ふつう".into(),
         (swap, [x, y]) => {
@@ -147,26 +147,26 @@ pub(super) const WORDS: Words = Words {
     },
     as_usual: "ふつうにもどす",
     forces_cut: "手ごたえ オフ",
-    cut_now: "手ごたえを切りました。せっていの「スティックとパッド」で もどせます。",
+    cut_now: "手ごたえを切りました。設定の「スティックとパッド」で もどせます。",
     cut_hint: |[keys, buttons]| {
         format!("キーボードの {keys} か、ボタン {buttons} をおすと、手ごたえが すぐ切れます。")
     },
     restore: "手ごたえをもどす",
     restored: "手ごたえをもどしました。",
-    forces_zero: "せっていが読めなかったので、手ごたえは えらぶまで0です。",
-    speed: "はやさ",
-    sensitivity: "うごきの大きさ",
-    stick_places: "スティックで場所をさす",
-    photo: "しゃしん",
-    clip: "どうが",
-    full_screen: "ぜんがめん（F11）",
-    reduced_motion: "うごきをへらす",
+    forces_zero: "手ごたえの設定が読めなかったので、えらびなおすまで0にします。",
+    speed: "ゲームのはやさ",
+    sensitivity: "動きの大きさ",
+    stick_places: "スティックの位置＝手の位置",
+    photo: "写真",
+    clip: "動画",
+    full_screen: "全画面（F11）",
+    reduced_motion: "動きをへらす",
     colour_safe: "見分けやすい色",
     text_size: "文字の大きさ",
-    controls: "そうさ",
+    controls: "操作",
     press_any: "キーかボタンをおしてね…",
-    reset: "もとにもどす",
-    sound_section: "おと",
+    reset: "初期設定にもどす",
+    sound_section: "音",
     play_section: "あそび",
     look_section: "見た目",
     action: |action| match action {
@@ -191,13 +191,13 @@ pub(super) const WORDS: Words = Words {
     on: "オン",
     off: "オフ",
     no_sound: "音が出ません",
-    no_sticks: "スティックやパッドは使えません。",
+    no_sticks: "ここでは スティックやパッドは使えません。",
     join_hint: "ふたりで",
     how_in_space: |means, [ways, up, around]| match means {
         Means::Mouse => [
             "動かす：マウス".into(),
             format!("上げ下げ：ホイール、または {up}"),
-            format!("見まわす：右ボタンを引く、または {around}"),
+            format!("見まわす：右ボタンをおして動かす、または {around}"),
         ],
         Means::Fingers => [
             "動かす：指一本".into(),
@@ -229,23 +229,25 @@ pub(super) const WORDS: Words = Words {
     watching: "リプレイ",
     damaged: |refused, aside| match aside {
         Some(aside) => {
-            format!("読めないところがありました：{refused}。もとのまま {aside} にのこしました。")
+            format!(
+                "読めないところがありました：{refused}。もとのファイルは {aside} にのこしました。"
+            )
         }
         None => format!("読めませんでした：{refused}。"),
     },
-    not_written: "書きこめませんでした：",
-    full: "空きがないため、のこせませんでした。",
+    not_written: "保存できませんでした：",
+    full: "空きがないので、保存できませんでした。",
     level_error,
     replay_error,
 };
 
-/// What went wrong; details, which name fields and lines of files, stay as they are.
+/// Error text in Japanese. Details that name fields and lines of files are not translated.
 fn level_error(error: &LevelError) -> String {
     match error {
         LevelError::Unreadable(file, reason) => format!("読めませんでした。{file}: {reason}"),
         LevelError::Scene(scene) => format!("このステージは読めませんでした。{scene}"),
         LevelError::NoBody(reason) => {
-            format!("このファイルからは からだを作れませんでした。{reason}")
+            format!("このファイルからは体を作れませんでした。{reason}")
         }
         LevelError::NoGame { id, field, reason } => {
             format!("「{id}」は、このままでは あそべません。{field}: {reason}")
@@ -269,7 +271,7 @@ fn replay_error(error: &ReplayError) -> String {
             format!("このリプレイは書きかえられています。{second}秒から ちがいます。")
         }
         ReplayError::OutcomeDiffers => {
-            "このリプレイは書きかえられています。けっかが ちがいます。".into()
+            "このリプレイは書きかえられています。結果がちがいます。".into()
         }
     }
 }
@@ -278,8 +280,8 @@ fn link_error(error: &LinkError) -> String {
     match error {
         LinkError::Other => "これは tamaire のリンクではありません。".into(),
         LinkError::Newer => "新しいバージョンの tamaire で作られたリンクです。".into(),
-        LinkError::CutShort => "リンクの終わりが ありません。".into(),
-        LinkError::Damaged => "リンクが とちゅうで かわったか、ぜんぶ とどいていません。".into(),
+        LinkError::CutShort => "リンクが とちゅうで切れています。".into(),
+        LinkError::Damaged => "リンクがこわれているか、全部とどいていません。".into(),
         LinkError::TooLong { found } => {
             format!("リンクにするには長すぎます（{found}文字。{MAX_LENGTH}文字まで）。")
         }
@@ -297,7 +299,7 @@ mod tests {
     use tamaire_play::Level;
 
     #[test]
-    fn what_is_wrong_is_said_in_japanese_and_where_it_stands_is_kept() {
+    fn errors_are_translated_and_keep_their_details() {
         let unknown = level_error(&Level::open("nowhere").unwrap_err());
         assert!(unknown.contains("nowhere") && unknown.contains("ありません"));
         let refused = |name: &str, bytes: &str| {
@@ -307,7 +309,7 @@ mod tests {
         let broken = refused("a.toml", "dim = 2\ngravity = \"down\"\n");
         assert!(broken.contains("読めません") && broken.contains("line 2"));
         let model = refused("a.vox", "VOX");
-        assert!(model.contains("からだを作れませんでした。a.vox"), "{model}");
+        assert!(model.contains("体を作れませんでした。a.vox"), "{model}");
         let old = replay_error(&ReplayError::Version { found: 7 });
         assert!(old.contains("バージョン（7）"), "{old}");
     }

@@ -1,4 +1,4 @@
-//! Everything that the game says. A word that a language lacks is a compile error.
+//! All texts of the game. A text that is missing in a language is a compile error.
 
 mod en;
 mod ja;
@@ -25,11 +25,11 @@ pub enum Language {
 }
 
 impl Language {
-    /// All of them, with their own names.
+    /// All languages, each with its own name for itself.
     pub const ALL: [(Self, &'static str); 2] =
         [(Self::English, "English"), (Self::Japanese, "日本語")];
 
-    /// That of a locale such as `ja-JP` or `ja_JP.UTF-8`; English where the game does not speak it.
+    /// Returns the language of a locale such as `ja-JP` or `ja_JP.UTF-8`; English if the game has no such language.
     pub fn of_locale(locale: &str) -> Self {
         match locale.split(['-', '_', '.']).next() {
             Some("ja") => Self::Japanese,
@@ -37,7 +37,7 @@ impl Language {
         }
     }
 
-    /// The other one.
+    /// Returns the other of the two languages.
     pub fn other(self) -> Self {
         match self {
             Self::English => Self::Japanese,
@@ -45,7 +45,7 @@ impl Language {
         }
     }
 
-    /// Its code [ISO 639-1].
+    /// Language code [ISO 639-1].
     pub fn code(self) -> &'static str {
         match self {
             Self::English => "en",
@@ -53,7 +53,7 @@ impl Language {
         }
     }
 
-    /// What the game says in it.
+    /// Texts of the game in this language.
     pub fn words(self) -> &'static Words {
         match self {
             Self::English => &en::WORDS,
@@ -61,7 +61,7 @@ impl Language {
         }
     }
 
-    /// The name of something in it.
+    /// Returns `name` in this language; the English one if there is no translation.
     pub fn of(self, name: &Name) -> &str {
         match (self, &name.ja) {
             (Self::Japanese, Some(ja)) => ja,

@@ -1,4 +1,4 @@
-//! What there is to say.
+//! List of the texts that every language provides.
 
 use crate::input::{Action, Means};
 use force_feedback::{Ability, Calibration, Stop};
@@ -6,8 +6,8 @@ use tamaire_play::level::LevelError;
 use tamaire_play::link::LinkError;
 use tamaire_play::{Assist, Outcome, ReplayError, Route, Wish};
 
-/// What the game says.
-#[allow(missing_docs)] // each field says what it is
+/// Texts of the game in one language.
+#[allow(missing_docs)] // the field names say it
 pub struct Words {
     pub play: &'static str,
     pub replays: &'static str,
@@ -105,10 +105,10 @@ pub struct Words {
     pub no_sticks: &'static str,
     pub join_hint: &'static str,
     pub how_in_space: fn(Means, &[String; 3]) -> [String; 3],
-    /// How one looks deeper into bodies in space.
+    /// Hint how to look deeper into bodies in 3D; none for an input that has no such control.
     pub look_inside: fn(Means, &[String; 2]) -> Option<String>,
     pub watching: &'static str,
-    /// What could not be used of what was kept, and where that is put aside.
+    /// Tells which saved data could not be read, and where the original was moved, if it was.
     pub damaged: fn(&str, Option<&str>) -> String,
     pub not_written: &'static str,
     pub full: &'static str,

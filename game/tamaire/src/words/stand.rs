@@ -1,10 +1,10 @@
-//! What is said at a stand in public, to visitors and to staff.
+//! Texts of the public stand, for visitors and for staff.
 
 use super::Language;
 use jiff::civil::Time;
 
-/// What is said at a stand.
-#[allow(missing_docs)] // each field says what it is
+/// Texts of the public stand.
+#[allow(missing_docs)] // the field names say it
 pub struct StandWords {
     pub call: &'static str,
     pub which: &'static str,
@@ -17,7 +17,7 @@ pub struct StandWords {
     pub door: &'static str,
     pub wrong: &'static str,
     pub wait: fn(f64) -> String,
-    /// What staff can look at.
+    /// Names of the staff pages.
     pub pages: [&'static str; 3],
     pub figures: [&'static str; 8],
     pub health: [&'static str; 10],
@@ -38,7 +38,7 @@ pub struct StandWords {
 }
 
 impl Language {
-    /// What is said in it at a stand.
+    /// Texts of the public stand in this language.
     pub fn at_stand(self) -> &'static StandWords {
         match self {
             Self::English => &ENGLISH,
@@ -52,12 +52,12 @@ const ENGLISH: StandWords = StandWords {
     which: "Which one?",
     still_there: "Still there?",
     take_home: "Take your round home",
-    scan: "Point a phone at it",
-    another: "Another one",
+    scan: "Scan with your phone",
+    another: "Another level",
     opens: |open| format!("We open at {}", open.strftime("%H:%M")),
-    rests: "This game takes a rest. Please tell the staff.",
+    rests: "Out of order. Please tell the staff.",
     door: "Staff",
-    wrong: "Not this number",
+    wrong: "Wrong PIN",
     wait: |seconds| format!("Wait {seconds:.0} s"),
     pages: ["Today", "Health", "Stand"],
     figures: [
@@ -66,35 +66,35 @@ const ENGLISH: StandWords = StandWords {
         "Won",
         "Squeezed in whole",
         "Shaved",
-        "Some of both",
-        "Begun again",
-        "Half had won after",
+        "Shaved and squeezed",
+        "Restarted",
+        "Median time to first win",
     ],
     health: [
-        "A frame, usually",
-        "1 of 100 takes longer than",
+        "Frame time, median",
+        "Frame time, 99th percentile",
         "Memory",
-        "Room on the disk",
+        "Free disk space",
         "Sticks and pads",
         "Forces",
         "Sound",
         "Logbook",
-        "Size of the logbook",
-        "Waiting for the server",
+        "Logbook size",
+        "Not yet sent to the server",
     ],
     seconds: |seconds| format!("{seconds:.1} s"),
     bytes: |bytes| megabytes(bytes),
-    unknown: "not known",
-    recording: "records",
+    unknown: "unknown",
+    recording: "recording",
     levels: "Levels",
-    hours: "Open",
+    hours: "Opening hours",
     always: "always",
     from_to: |open, close| format!("{} to {}", open.strftime("%H:%M"), close.strftime("%H:%M")),
     try_stick: "Try the stick",
     export: "Copy the logbook",
     exported: |path| format!("Copied to {path}"),
     end: "End the game",
-    ends: "Then the screen stays dark until the machine or the service is started again.",
+    ends: "End the game? The screen stays dark until the machine or the service is started again.",
     off: "off",
 };
 
@@ -105,29 +105,29 @@ const JAPANESE: StandWords = StandWords {
     take_home: "きみのプレイを もちかえろう",
     scan: "スマホで よみとってね",
     another: "ほかのステージ",
-    opens: |open| format!("{}に ひらきます", open.strftime("%H:%M")),
-    rests: "いま おやすみちゅうです。かかりの人に しらせてください。",
+    opens: |open| format!("{}から あそべます", open.strftime("%H:%M")),
+    rests: "ただいま こしょう中です。かかりの人に 知らせてください。",
     door: "スタッフ",
-    wrong: "ばんごうが ちがいます",
-    wait: |seconds| format!("あと{seconds:.0}秒 まってください"),
+    wrong: "番号がちがいます",
+    wait: |seconds| format!("あと{seconds:.0}秒 待ってください"),
     pages: ["今日", "状態", "スタンド"],
     figures: [
         "来館者（組）",
         "プレイ",
-        "入った",
-        "押し込み",
-        "削り",
-        "りょうほう",
+        "クリア",
+        "まるごと 入った",
+        "けずって 入った",
+        "けずって おしこんだ",
         "やりなおし",
-        "はじめて入るまで（中央値）",
+        "はじめてクリアするまで（中央値）",
     ],
     health: [
-        "ふだんの1コマ",
-        "100コマに1つは これよりおそい",
+        "フレーム時間（中央値）",
+        "フレーム時間（99パーセンタイル）",
         "メモリ",
         "ディスクの空き",
         "スティックとパッド",
-        "力",
+        "手ごたえ",
         "音",
         "記録",
         "記録の大きさ",
@@ -135,17 +135,17 @@ const JAPANESE: StandWords = StandWords {
     ],
     seconds: |seconds| format!("{seconds:.1}秒"),
     bytes: |bytes| megabytes(bytes),
-    unknown: "わからない",
+    unknown: "不明",
     recording: "記録中",
     levels: "ステージ",
-    hours: "あいている時間",
+    hours: "開館時間",
     always: "いつも",
     from_to: |open, close| format!("{}～{}", open.strftime("%H:%M"), close.strftime("%H:%M")),
     try_stick: "スティックをためす",
     export: "記録をコピー",
     exported: |path| format!("コピーしました：{path}"),
     end: "ゲームを おわる",
-    ends: "おわると、コンピューターかサービスを もう一度 起動するまで 画面は暗いままです。",
+    ends: "ゲームを おわりますか？ コンピューターかサービスを もう一度 起動するまで 画面は暗いままです。",
     off: "切",
 };
 

@@ -1,4 +1,4 @@
-//! With a mouse and keys.
+//! Mouse and keyboard.
 
 use crate::window::*;
 use egui::Key;
@@ -13,7 +13,7 @@ use tamaire_play::Route;
 use tamaire_play::replay::VERSION;
 
 #[test]
-fn from_the_title_to_a_round_and_back() {
+fn menus_lead_from_title_to_round_and_back() {
     let mut window = window(Files::nowhere());
     click(&mut window, "Play");
     assert_eq!(screen(&window), Screen::Levels);
@@ -25,11 +25,11 @@ fn from_the_title_to_a_round_and_back() {
     assert_eq!(screen(&window), Screen::Paused);
     let before = ticks(&window);
     frames(&mut window, 10);
-    assert_eq!(ticks(&window), before, "time stands still");
+    assert_eq!(ticks(&window), before, "no ticks while paused");
     press(&mut window, Key::Escape);
     assert_eq!(screen(&window), Screen::Play);
     press(&mut window, Key::P);
-    click(&mut window, "Again");
+    click(&mut window, "Restart");
     assert_eq!(screen(&window), Screen::Play);
     assert!(ticks(&window) < before);
     press(&mut window, Key::Escape);
@@ -40,7 +40,7 @@ fn from_the_title_to_a_round_and_back() {
 }
 
 #[test]
-fn one_key_begins_the_round_again_at_once() {
+fn retry_key_restarts_round_at_once() {
     let mut window = window(Files::nowhere());
     game(&mut window).start(0);
     frames(&mut window, 30);
@@ -50,11 +50,11 @@ fn one_key_begins_the_round_again_at_once() {
     // The key goes down in the first frame and up in the second.
     assert!(ticks(&window) <= 2, "{} ticks", ticks(&window));
     frames(&mut window, 5);
-    assert!(ticks(&window) >= 5, "and it goes on");
+    assert!(ticks(&window) >= 5, "the round continues");
 }
 
 #[test]
-fn a_round_is_won_kept_watched_raced_and_deleted() {
+fn round_is_won_saved_watched_raced_and_deleted() {
     let folder = folder("win");
     let files = Files::in_folder(&folder);
     let mut window = window(Files::in_folder(&folder));
@@ -78,13 +78,13 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
     };
     assert!(ghost(&window).unwrap() >= 5);
     press(&mut window, Key::R);
-    assert!(ghost(&window).unwrap() <= 4, "the ghost begins again too");
+    assert!(ghost(&window).unwrap() <= 4, "the ghost restarts, too");
     win(&mut window);
     assert!(
         !game(&mut window).bout.won.unwrap().1,
-        "as fast is no faster"
+        "an equal time is no record"
     );
-    click(&mut window, "Again");
+    click(&mut window, "Restart");
     assert_eq!(screen(&window), Screen::Play);
     win(&mut window);
     press(&mut window, Key::Escape);
@@ -112,7 +112,7 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
     game(&mut window).go(Screen::Title);
     game(&mut window).go(Screen::Replays);
 
-    // Somebody else's, or none at all.
+    // A replay of another version, and a manipulated one.
     fs::write(
         &path,
         saved.replacen(&format!("version = {VERSION}"), "version = 999", 1),
@@ -126,7 +126,7 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
         notices(&window)
     );
     assert_eq!(screen(&window), Screen::Replays);
-    // The first hash is a lie, which comes out after a second.
+    // The first hash is wrong, which is detected after a second of playback.
     let start = saved.find("hashes = [").unwrap();
     let digit = start + saved[start..].find('"').unwrap() + 1;
     let mut lie = saved.clone();
@@ -151,7 +151,10 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
         frames(&mut window, 2);
     }
     click(&mut window, "Delete");
-    assert!(!files.replays().is_empty(), "not at the first word");
+    assert!(
+        !files.replays().is_empty(),
+        "the first press deletes nothing"
+    );
     click(&mut window, "Really?");
     assert!(files.replays().is_empty());
     window.get_by_label_contains("No replays yet");
@@ -159,7 +162,7 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
 }
 
 #[test]
-fn settings_are_kept_and_the_language_changes_at_once() {
+fn settings_are_saved_and_language_changes_at_once() {
     let folder = folder("settings");
     let files = Files::in_folder(&folder);
     let mut window = window(Files::in_folder(&folder));
@@ -177,9 +180,9 @@ fn settings_are_kept_and_the_language_changes_at_once() {
         option.accesskit_node().toggled()
     };
     use egui::accesskit::Toggled::{False, True};
-    assert_eq!(option(&window, "Less motion: Off"), Some(True));
-    assert_eq!(option(&window, "Safe colours: Off"), Some(True));
-    assert_eq!(option(&window, "Safe colours: On"), Some(False));
+    assert_eq!(option(&window, "Reduce motion: Off"), Some(True));
+    assert_eq!(option(&window, "Colour-blind friendly: Off"), Some(True));
+    assert_eq!(option(&window, "Colour-blind friendly: On"), Some(False));
     window.get_by_label("Language: 日本語").click();
     frames(&mut window, 2);
     let said = Language::Japanese.words();
@@ -192,7 +195,7 @@ fn settings_are_kept_and_the_language_changes_at_once() {
     assert_eq!(again.settings.volume, after);
     fs::write(folder.join("settings.toml"), "volume = [").unwrap();
     let again = Game::new(Files::in_folder(&folder), Sound::none(), Pads::none());
-    // Nobody knows how strong forces were to be.
+    // Without readable settings no force is allowed.
     let usual = Settings {
         haptics: 0.0,
         ..Settings::default()
@@ -204,7 +207,7 @@ fn settings_are_kept_and_the_language_changes_at_once() {
 }
 
 #[test]
-fn how_far_the_levels_are_scrolled_is_nothing_to_the_settings() {
+fn scroll_positions_of_screens_are_independent() {
     let mut window = window(Files::nowhere());
     let language = |window: &Window| window.get_by_label("Language: English").rect();
     click(&mut window, "Settings");
@@ -219,13 +222,13 @@ fn how_far_the_levels_are_scrolled_is_nothing_to_the_settings() {
 }
 
 #[test]
-fn what_is_inside_can_be_read_with_keys_too() {
+fn licences_scroll_with_keys() {
     let mut window = window(Files::nowhere());
     click(&mut window, "Settings");
     click(&mut window, "Licences");
     assert_eq!(screen(&window), Screen::Licences);
     window.get_by_label("What others made");
-    // Past the button back, the text itself, down to its end, however long it is.
+    // Arrow keys scroll past the back button to the end of the text.
     let lines = tamaire::licences::lines();
     let last = lines.iter().rfind(|line| !line.is_empty()).unwrap();
     let room = window.ctx.content_rect();
@@ -245,13 +248,13 @@ fn what_is_inside_can_be_read_with_keys_too() {
 }
 
 #[test]
-fn any_key_can_mean_anything() {
+fn any_key_can_be_bound() {
     let mut window = window(Files::nowhere());
     click(&mut window, "Settings");
     let row = |window: &Window| {
         let row = window.get_by_label_contains("Try again:");
         let label = row.accesskit_node().label();
-        label.expect("it was found by it")
+        label.expect("the row was found by its label")
     };
     for key in [Key::Q, Key::Enter, Key::ArrowDown, Key::Tab] {
         let row = row(&window);
@@ -267,7 +270,7 @@ fn any_key_can_mean_anything() {
         );
         assert_eq!(game.controls.rebinding, None, "{key:?}");
     }
-    // Escape leaves it as it is, and the screen too.
+    // Escape keeps the binding and does not leave the screen.
     let row = row(&window);
     click(&mut window, &row);
     press(&mut window, Key::Escape);
@@ -280,7 +283,7 @@ fn any_key_can_mean_anything() {
 }
 
 #[test]
-fn mouse_and_keys_are_two_players() {
+fn mouse_and_keys_move_two_hands() {
     let mut window = window(Files::nowhere());
     game(&mut window).start(0);
     frames(&mut window, 2);
@@ -303,7 +306,7 @@ fn mouse_and_keys_are_two_players() {
         let is_near = (0..2).all(|axis| (at[axis] - start[axis]).abs() < 1e-3);
         assert!(
             is_near,
-            "who comes in is where the level says: {at:?} {start:?}"
+            "a new hand starts at the position of the level: {at:?} {start:?}"
         );
     }
     window.key_down(Key::D);
@@ -322,7 +325,7 @@ fn mouse_and_keys_are_two_players() {
 }
 
 #[test]
-fn the_font_has_every_letter_of_the_game() {
+fn font_contains_all_characters_of_the_game() {
     let window = window(Files::nowhere());
     let mut texts = vec![
         include_str!("../../src/words/en.rs"),
@@ -338,12 +341,12 @@ fn the_font_has_every_letter_of_the_game() {
 }
 
 #[test]
-fn a_key_fills_the_screen_and_the_choice_is_kept() {
+fn full_screen_key_toggles_and_is_saved() {
     let folder = folder("full-screen");
     let mut window = window(Files::in_folder(&folder));
     for wanted in [true, false, true] {
         window.key_press(Key::F11);
-        // The window is asked in the frame after.
+        // The viewport command follows within two frames.
         let asked = (0..2).any(|_| {
             frames(&mut window, 1);
             let root = &window.output().viewport_output[&egui::ViewportId::ROOT];
@@ -359,7 +362,7 @@ fn a_key_fills_the_screen_and_the_choice_is_kept() {
 }
 
 #[test]
-fn the_game_speaks_as_the_system_does_until_somebody_chooses() {
+fn language_follows_system_until_chosen() {
     let folder = folder("language");
     let files = |locale: &str| Files::in_folder(&folder).speaking(locale);
     for (locale, language) in [
@@ -376,12 +379,16 @@ fn the_game_speaks_as_the_system_does_until_somebody_chooses() {
     assert_eq!(game(&mut window).settings.language, Language::English);
     drop(window);
     let game = Game::new(files("ja-JP"), Sound::none(), Pads::none());
-    assert_eq!(game.settings.language, Language::English, "it was chosen");
+    assert_eq!(
+        game.settings.language,
+        Language::English,
+        "the chosen language is kept"
+    );
     fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
-fn a_mouse_that_only_rests_moves_no_hand() {
+fn resting_mouse_moves_no_hand() {
     let mut window = window(Files::nowhere());
     start(&mut window, "classic");
     for (at, moves) in [(egui::Pos2::ZERO, false), (egui::pos2(400.0, 300.0), true)] {
@@ -396,12 +403,12 @@ fn a_mouse_that_only_rests_moves_no_hand() {
 }
 
 #[test]
-fn a_mouse_that_rests_presses_a_button_for_whoever_wants_it_so() {
+fn hovering_clicks_only_when_enabled() {
     let mut window = window(Files::nowhere());
     let at = button(&window, "Play").rect().center();
     window.hover_at(at);
     frames(&mut window, 90);
-    assert_eq!(screen(&window), Screen::Title, "nobody asked for it");
+    assert_eq!(screen(&window), Screen::Title, "click by hovering is off");
     window.hover_at(egui::Pos2::ZERO);
     frames(&mut window, 2);
     game(&mut window).settings.dwell = true;
@@ -413,7 +420,7 @@ fn a_mouse_that_rests_presses_a_button_for_whoever_wants_it_so() {
 }
 
 #[test]
-fn keys_stay_down_until_they_are_pressed_again_for_whoever_wants_it_so() {
+fn sticky_keys_hold_until_pressed_again() {
     let mut window = window(Files::nowhere());
     start(&mut window, "classic");
     game(&mut window).settings.toggle_keys = true;

@@ -1,4 +1,4 @@
-//! What fingers do that keys and pads have buttons for.
+//! Touch buttons for actions that keys and pads have buttons for.
 
 use crate::window::*;
 use egui::TouchPhase::{End, Move, Start};
@@ -12,14 +12,14 @@ fn goal(window: &Window, player: usize) -> [f32; 3] {
     wanted.unwrap_or_else(|| game.bout.round().hands()[player].target_position())
 }
 
-/// Where a button is that fingers can press.
+/// Position of the touch button for an action.
 fn place(window: &Window, action: Action) -> Option<Rect> {
     let buttons = &window.state().game.controls.buttons;
     let button = buttons.iter().find(|button| button.action == action);
     button.map(|button| button.rect)
 }
 
-/// A round in which a finger holds the hand at a place in the world [m].
+/// Starts a round in which a finger holds the hand at a world position [m].
 fn held(level: &str, at: [f32; 3]) -> Window {
     let mut window = window(Files::nowhere());
     start(&mut window, level);
@@ -33,18 +33,18 @@ fn held(level: &str, at: [f32; 3]) -> Window {
 
 fn on_screen(window: &Window, at: [f32; 3]) -> Pos2 {
     let view = window.state().game.bout.view;
-    view.expect("it is seen").on_screen(at)
+    view.expect("the world is visible").on_screen(at)
 }
 
 fn tap(window: &mut Window, action: Action) {
-    let at = place(window, action).expect("it is there").center();
+    let at = place(window, action).expect("the button is shown").center();
     touch(window, 1, Start, at);
     touch(window, 1, End, at);
     frames(window, 1);
 }
 
 #[test]
-fn a_second_finger_presses_what_the_first_one_has_no_time_for() {
+fn second_finger_presses_touch_buttons() {
     let mut window = held("twins", [-0.9, 0.3, 0.0]);
     let game = |window: &Window| {
         let bout = &window.state().game.bout;
@@ -58,11 +58,15 @@ fn a_second_finger_presses_what_the_first_one_has_no_time_for() {
     tap(&mut window, Action::Pause);
     assert_eq!(screen(&window), tamaire::game::Screen::Paused);
     frames(&mut window, 2);
-    assert_eq!(place(&window, Action::Pause), None, "menus have their own");
+    assert_eq!(
+        place(&window, Action::Pause),
+        None,
+        "no touch buttons in menus"
+    );
 }
 
 #[test]
-fn two_fingers_are_two_players() {
+fn two_fingers_move_two_hands() {
     let mut window = held("twins", [-0.9, 0.3, 0.0]);
     tap(&mut window, Action::Join);
     let second = window.state().game.controls.players.second();
@@ -79,10 +83,12 @@ fn two_fingers_are_two_players() {
 }
 
 #[test]
-fn in_space_a_thumb_raises_the_hand_and_looks_deeper() {
+fn thumb_buttons_3d_raise_hand_and_look_deeper() {
     let mut window = held("classic-3d", [-0.9, 0.0, 0.6]);
     let before = goal(&window, 0)[1];
-    let up = place(&window, Action::Raise).expect("it is there").center();
+    let up = place(&window, Action::Raise)
+        .expect("the button is shown")
+        .center();
     touch(&mut window, 1, Start, up);
     frames(&mut window, 20);
     let high = goal(&window, 0)[1];
@@ -96,17 +102,17 @@ fn in_space_a_thumb_raises_the_hand_and_looks_deeper() {
         let game = &window.state().game;
         game.bout.opening.share(game.time, false)
     };
-    // They open by themselves at first.
+    // The cut moves by itself at first.
     frames(&mut window, 120);
     let whole = share(&window);
-    let deeper = place(&window, Action::Deeper).expect("it is there");
+    let deeper = place(&window, Action::Deeper).expect("the button is shown");
     touch(&mut window, 1, Start, deeper.center());
     frames(&mut window, 20);
     assert!(share(&window) < whole - 0.1, "{whole}");
 }
 
 #[test]
-fn a_mouse_sees_only_the_buttons_that_it_needs() {
+fn mouse_shows_only_pause_and_retry_buttons() {
     let mut window = window(Files::nowhere());
     start(&mut window, "classic-3d");
     window.hover_at(egui::pos2(500.0, 300.0));

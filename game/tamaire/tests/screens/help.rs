@@ -1,4 +1,4 @@
-//! Help for who needs it: levels made easier, and one switch for everything.
+//! Accessibility: easier levels, and play with a single switch.
 
 use crate::window::*;
 use egui::Key;
@@ -10,7 +10,7 @@ use tamaire::platform::Files;
 use tamaire_play::{Assist, Route};
 
 #[test]
-fn what_is_won_with_help_is_kept_beside_what_is_won_without() {
+fn assisted_wins_are_recorded_separately() {
     let folder = folder("help");
     let mut window = window(Files::in_folder(&folder));
     let all = BTreeSet::from([Assist::WiderBasket, Assist::Unbreakable]);
@@ -20,7 +20,7 @@ fn what_is_won_with_help_is_kept_beside_what_is_won_without() {
     assert_eq!(level.game().assists, all);
     assert_eq!(level.routes(), [Route::Squeeze]);
     win(&mut window);
-    window.get_by_label_contains("with help: Wider basket, Nothing tears");
+    window.get_by_label_contains("easier play: Wider basket, Unbreakable body");
     let game = game(&mut window);
     let record = game.records.of("biscuit").unwrap();
     assert!(record.best.is_empty() && record.wishes.is_empty());
@@ -36,7 +36,7 @@ fn what_is_won_with_help_is_kept_beside_what_is_won_without() {
     assert!(game.files.best(&level).unwrap().is_of(&level));
     assert!(game.files.best(&plain).is_none());
 
-    // The same again is as easy, until nothing is to be easier; neither is another level.
+    // A retry keeps the assists until they are switched off.
     game.retry();
     assert_eq!(game.bout.round().level(), &level);
     game.settings.assists.clear();
@@ -44,12 +44,12 @@ fn what_is_won_with_help_is_kept_beside_what_is_won_without() {
     assert_eq!(game.bout.round().level(), &plain);
     game.go(Screen::Replays);
     frames(&mut window, 6);
-    window.get_by_label_contains("s, with help");
+    window.get_by_label_contains("s, easier play");
     drop(window);
     std::fs::remove_dir_all(folder).unwrap();
 }
 
-/// Waits until a button of this name is what the switch presses, and presses it.
+/// Waits until the switch would press the button with this name, then presses it.
 fn choose(window: &mut Window, name: &str) {
     let patience = 60 * 60;
     for _ in 0..patience {
@@ -69,7 +69,7 @@ fn tap(window: &mut Window) {
     frames(window, 3);
 }
 
-/// Waits until this is offered in a round.
+/// Waits until such an offer is made in a round.
 fn wait_for(window: &mut Window, is_wanted: impl Fn(Offer) -> bool) {
     for _ in 0..60 * 60 {
         let game = game(window);
@@ -79,18 +79,18 @@ fn wait_for(window: &mut Window, is_wanted: impl Fn(Offer) -> bool) {
         }
         frames(window, 1);
     }
-    panic!("it is never offered");
+    panic!("the offer is never made");
 }
 
 #[test]
-fn one_switch_is_enough_to_win_and_to_go_on() {
+fn single_switch_can_win_and_continue() {
     let mut window = window(Files::nowhere());
     game(&mut window).settings.scanning = Scanning::Quick;
     choose(&mut window, "Play");
     assert_eq!(screen(&window), Screen::Levels);
     choose(&mut window, "Classic");
     assert_eq!(screen(&window), Screen::Play);
-    // What chose the level has moved nothing.
+    // The press that chose the level has not moved the hand.
     let start = game(&mut window).bout.round().start(0);
     assert_eq!(
         game(&mut window).bout.round().hands()[0].target_position(),
@@ -100,10 +100,10 @@ fn one_switch_is_enough_to_win_and_to_go_on() {
     wait_for(&mut window, |offer| offer == Offer::Pause);
     tap(&mut window);
     assert_eq!(screen(&window), Screen::Paused);
-    choose(&mut window, "Go on");
+    choose(&mut window, "Resume");
     assert_eq!(screen(&window), Screen::Play);
 
-    // The body is right of the hand, and the basket right of the body.
+    // The body is right of the hand, and the basket is right of the body.
     wait_for(
         &mut window,
         |offer| matches!(offer, Offer::Way(way) if way.x > 0.9995),
@@ -115,7 +115,7 @@ fn one_switch_is_enough_to_win_and_to_go_on() {
         }
         frames(&mut window, 1);
     }
-    // What rests in the basket is not pressed any more.
+    // A body at rest in the basket must not be pressed any more.
     window.key_up(Key::Space);
     wait_for(
         &mut window,
@@ -132,7 +132,7 @@ fn one_switch_is_enough_to_win_and_to_go_on() {
 }
 
 #[test]
-fn in_space_the_switch_raises_and_lowers_the_hand() {
+fn single_switch_3d_raises_and_lowers_hand() {
     let mut window = window(Files::nowhere());
     game(&mut window).settings.scanning = Scanning::Medium;
     game(&mut window).settings.toggle_keys = true;
@@ -141,7 +141,7 @@ fn in_space_the_switch_raises_and_lowers_the_hand() {
     let height = |window: &mut Window| game(window).bout.round().hands()[0].target_position()[1];
     let before = height(&mut window);
     wait_for(&mut window, |offer| offer == Offer::Raise);
-    // One press takes it, the next one leaves it.
+    // One press starts the action, the next one stops it.
     tap(&mut window);
     frames(&mut window, 20);
     let raised = height(&mut window);
@@ -154,10 +154,10 @@ fn in_space_the_switch_raises_and_lowers_the_hand() {
 }
 
 #[test]
-fn one_switch_is_caught_nowhere() {
+fn single_switch_is_never_trapped() {
     let mut window = window(Files::nowhere());
     game(&mut window).settings.scanning = Scanning::Quick;
-    // It means nothing else, and leaves what waits for a key.
+    // The switch cannot be bound to anything else, and it cancels a pending binding.
     for action in Action::ALL {
         game(&mut window).go(Screen::Settings);
         frames(&mut window, 2);
@@ -168,14 +168,14 @@ fn one_switch_is_caught_nowhere() {
         assert_eq!(game.controls.rebinding, None, "{action:?}");
         assert_eq!(game.settings.bindings, before, "{action:?}");
     }
-    // It switches itself off only where it is asked twice, and resetting keeps it.
-    let first = window.get_by_label("One switch: all in turn: Off");
+    // Switching it off takes two presses, and a reset keeps it on.
+    let first = window.get_by_label("One-switch scanning: Off");
     first.scroll_to_me();
     frames(&mut window, 3);
-    window.get_by_label("One switch: all in turn: Off").click();
+    window.get_by_label("One-switch scanning: Off").click();
     frames(&mut window, 2);
     assert!(game(&mut window).settings.scanning.is_on());
-    click(&mut window, "Reset");
+    click(&mut window, "Restore default settings");
     assert!(game(&mut window).settings.scanning.is_on());
     // It leaves a round that is only watched.
     game(&mut window).start(0);

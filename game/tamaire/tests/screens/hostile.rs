@@ -1,4 +1,4 @@
-//! What the game puts up with.
+//! Robustness against broken files and random input.
 
 use crate::window::*;
 use egui::accesskit::Role;
@@ -36,7 +36,7 @@ pub fn drop_file(window: &mut Window, path: PathBuf) {
 }
 
 #[test]
-fn a_picture_is_played_and_what_is_broken_is_named() {
+fn dropped_picture_is_played_and_broken_files_are_named() {
     let folder = folder("drop");
     let mut window = window(Files::in_folder(&folder));
     let cat = "../tamaire_play/levels/cat.png";
@@ -90,13 +90,13 @@ fn a_picture_is_played_and_what_is_broken_is_named() {
     let before = ticks(&window);
     frames(&mut window, 5);
     assert_eq!(name(&window), "cat");
-    assert!(ticks(&window) >= before + 5, "the game goes on");
+    assert!(ticks(&window) >= before + 5, "the game continues");
     fs::remove_dir_all(folder).unwrap();
 }
 
 #[cfg(unix)]
 #[test]
-fn pipes_and_devices_are_refused_and_not_waited_for() {
+fn pipes_and_devices_are_refused_without_waiting() {
     let folder = folder("pipes");
     let mut window = window(Files::nowhere());
     for (made, file) in [
@@ -111,7 +111,8 @@ fn pipes_and_devices_are_refused_and_not_waited_for() {
     ] {
         let path = folder.join(file);
         let mut words = made.split(' ');
-        let mut command = std::process::Command::new(words.next().expect("a program"));
+        let mut command =
+            std::process::Command::new(words.next().expect("the command names a program"));
         assert!(command.args(words).arg(&path).status().unwrap().success());
         drop_file(&mut window, path);
         let said = notices(&window);
@@ -121,7 +122,7 @@ fn pipes_and_devices_are_refused_and_not_waited_for() {
 }
 
 #[test]
-fn a_notice_is_cut_to_what_can_be_read() {
+fn notice_is_truncated() {
     let mut window = window(Files::nowhere());
     let game = game(&mut window);
     game.notices.clear();
@@ -132,7 +133,7 @@ fn a_notice_is_cut_to_what_can_be_read() {
 }
 
 #[test]
-fn a_long_notice_stays_until_it_can_be_read() {
+fn long_notice_stays_longer() {
     let mut window = window(Files::nowhere());
     let game = game(&mut window);
     game.notices.clear();
@@ -148,7 +149,7 @@ fn a_long_notice_stays_until_it_can_be_read() {
 }
 
 #[test]
-fn a_round_waits_while_the_window_is_not_looked_at() {
+fn round_pauses_when_focus_is_lost() {
     let mut window = window(Files::nowhere());
     let focus = |window: &mut Window, focused| {
         window.input_mut().focused = focused;
@@ -157,7 +158,7 @@ fn a_round_waits_while_the_window_is_not_looked_at() {
     };
     focus(&mut window, false);
     assert_eq!(screen(&window), Screen::Title);
-    // What was named or dropped is played, focus or not: it is the loss that counts.
+    // A round starts without focus, too; only losing the focus pauses it.
     game(&mut window).start(0);
     frames(&mut window, 5);
     assert_eq!(screen(&window), Screen::Play);
@@ -168,7 +169,7 @@ fn a_round_waits_while_the_window_is_not_looked_at() {
 }
 
 #[test]
-fn every_button_fits_into_the_smallest_window_with_the_largest_letters() {
+fn buttons_fit_into_small_windows_with_large_text() {
     let sizes = [
         [900.0, 640.0],
         [640.0, 400.0],
@@ -202,7 +203,7 @@ fn every_button_fits_into_the_smallest_window_with_the_largest_letters() {
 }
 
 #[test]
-fn two_thousand_frames_of_anything_are_survived() {
+fn random_input_causes_no_fault() {
     let folder = folder("anything");
     let mut random = fastrand::Rng::with_seed(7);
     let mut window = window(Files::in_folder(&folder));
@@ -210,7 +211,7 @@ fn two_thousand_frames_of_anything_are_survived() {
     pad.pad = Some(Pad::default());
     let mut devices = vec![pad, Device::at_rest(DeviceId(2), about(), 2, 8, 1)];
     let mut seen = std::collections::BTreeSet::new();
-    // Each event has a frame of its own: a click is three.
+    // Each event takes a frame of its own: a click takes three.
     for frame in 0..1000 {
         let at = pos2(960.0 * random.f32(), 600.0 * random.f32());
         match random.u32(0..12) {

@@ -1,4 +1,4 @@
-//! What is kept, and what comes between.
+//! Saved data, and what can go wrong with it.
 
 use crate::window::*;
 use egui::accesskit::Role;
@@ -13,7 +13,7 @@ use std::time::SystemTime;
 use tamaire::game::{Game, Screen};
 use tamaire::platform::{Change, Entry, Files, Kind, Nowhere, Pads, Sound, Storage};
 
-/// Keeps things in memory, and notes who wrote when; or is full.
+/// Storage in memory that records the writing threads, and that can be full.
 #[derive(Clone, Default)]
 struct Memory(Arc<Mutex<Inside>>);
 
@@ -76,7 +76,7 @@ impl Storage for Memory {
     }
 }
 
-/// Lets frames pass until all is written.
+/// Runs frames until everything is written.
 fn wait(window: &mut Window) {
     while game(window).files.is_busy() {
         frames(window, 1);
@@ -85,7 +85,7 @@ fn wait(window: &mut Window) {
 }
 
 #[test]
-fn a_slider_that_is_dragged_is_written_once_it_rests_and_not_by_who_draws() {
+fn dragged_slider_is_saved_once_by_writer_thread() {
     let memory = Memory::default();
     let mut window = window(Files::on(memory.clone()));
     click(&mut window, "Settings");
@@ -108,7 +108,7 @@ fn a_slider_that_is_dragged_is_written_once_it_rests_and_not_by_who_draws() {
     }
     window.event(button(slider.center(), false));
     seen.dedup();
-    assert!(seen.len() > 5, "it is dragged: {seen:?}");
+    assert!(seen.len() > 5, "the slider moves: {seen:?}");
     assert_eq!(memory.writes(), 0);
     frames(&mut window, 70);
     wait(&mut window);
@@ -121,7 +121,7 @@ fn a_slider_that_is_dragged_is_written_once_it_rests_and_not_by_who_draws() {
 }
 
 #[test]
-fn what_was_changed_last_is_written_at_the_end_of_the_game() {
+fn last_change_is_saved_when_game_ends() {
     let memory = Memory::default();
     let mut game = Game::new(Files::on(memory.clone()), Sound::none(), Pads::none());
     game.settings.speed = 0.75;
@@ -148,7 +148,7 @@ fn two_games_at_once_lose_no_record() {
 }
 
 #[test]
-fn a_full_disk_is_told_once_and_the_game_goes_on() {
+fn full_disk_is_reported_once_and_game_continues() {
     let memory = Memory::default();
     memory.0.lock().unwrap().is_full = true;
     let mut window = window(Files::on(memory.clone()));
@@ -162,7 +162,7 @@ fn a_full_disk_is_told_once_and_the_game_goes_on() {
         told += notices(&window).matches(full).count();
     }
     assert_eq!((told, memory.writes()), (1, 3));
-    // Who asks for a replay is told each time that there is none.
+    // A save that the player requested reports the failure each time.
     for _ in 0..2 {
         game(&mut window).notices.clear();
         game(&mut window).keep_replay();
@@ -177,7 +177,7 @@ fn a_full_disk_is_told_once_and_the_game_goes_on() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_and_none_at_all_are_told_once() {
+fn missing_folder_is_reported_once() {
     let folder = folder("no-folder");
     let file = folder.join("file");
     std::fs::write(&file, "in the way").unwrap();
@@ -194,14 +194,14 @@ fn a_folder_that_cannot_be_and_none_at_all_are_told_once() {
             told = format!("{told}\n{}", notices(&window));
             game(&mut window).notices.clear();
         }
-        let count = told.matches("written").count() + told.matches("read").count();
+        let count = told.matches("saved").count() + told.matches("read").count();
         assert_eq!(count, 1, "{told}");
     }
     std::fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
-fn one_bad_setting_costs_that_setting_and_is_told_once_by_name() {
+fn invalid_setting_is_reset_and_reported_once() {
     let folder = folder("bad-setting");
     let path = folder.join("settings.toml");
     let bad = "speed = \"fast\"\nvolume = 0.25\nhaptics = 0.5\nwarp = 9\n";
@@ -228,7 +228,7 @@ fn one_bad_setting_costs_that_setting_and_is_told_once_by_name() {
 }
 
 #[test]
-fn a_photo_and_a_clip_of_a_win_are_kept_where_the_player_is_told() {
+fn photo_and_clip_are_saved_at_reported_path() {
     let folder = folder("pictures");
     let mut window = window(Files::in_folder(&folder));
     start(&mut window, "classic");
@@ -245,7 +245,7 @@ fn a_photo_and_a_clip_of_a_win_are_kept_where_the_player_is_told() {
         }
         assert!(shares.is_sorted(), "{shares:?}");
         let file = folder.join("pictures").join(format!("classic-1.{ending}"));
-        let bytes = fs::read(&file).expect("it is kept");
+        let bytes = fs::read(&file).expect("the file was saved");
         assert!(bytes.starts_with(magic), "{button}");
         assert!(notices(&window).contains(&file.display().to_string()));
     }
@@ -254,7 +254,7 @@ fn a_photo_and_a_clip_of_a_win_are_kept_where_the_player_is_told() {
 }
 
 #[test]
-fn replays_are_kept_beside_whatever_stands_there() {
+fn replay_names_avoid_existing_entries() {
     let folder = folder("beside");
     let replays = folder.join("replays");
     fs::create_dir_all(replays.join("classic-1.tamaire")).unwrap();
@@ -267,7 +267,7 @@ fn replays_are_kept_beside_whatever_stands_there() {
         assert!(replays.join(format!("{name}.tamaire")).is_file(), "{name}");
     }
     drop(window);
-    // By choice nothing is kept, and nobody waits for it.
+    // This game deliberately saves nothing, and does not wait for anything.
     let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
     game.keep_replay();
     assert_eq!(game.files.finish().len(), 1);

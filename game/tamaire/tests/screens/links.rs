@@ -1,4 +1,4 @@
-//! Rounds and levels that travel as links.
+//! Rounds and levels shared as links.
 
 use crate::window::*;
 use egui::{Event, OutputCommand};
@@ -6,7 +6,7 @@ use tamaire::game::Screen;
 use tamaire::platform::Files;
 use tamaire::words::Language;
 
-/// What was put on the clipboard when a button was pressed.
+/// Returns the text that a button copies to the clipboard.
 fn copied(window: &mut Window, button: &str) -> String {
     self::button(window, button).click();
     for _ in 0..5 {
@@ -29,7 +29,7 @@ fn paste(window: &mut Window, text: &str) {
 }
 
 #[test]
-fn a_round_is_sent_watched_and_raced() {
+fn round_link_is_watched_and_raced() {
     let mut sender = window(Files::nowhere());
     game(&mut sender).start(0);
     win(&mut sender);
@@ -53,7 +53,7 @@ fn a_round_is_sent_watched_and_raced() {
 }
 
 #[test]
-fn a_level_is_sent_and_played() {
+fn level_link_is_played() {
     let mut sender = window(Files::nowhere());
     game(&mut sender).start(2);
     frames(&mut sender, 5);
@@ -67,7 +67,7 @@ fn a_level_is_sent_and_played() {
 }
 
 #[test]
-fn what_is_no_link_is_told_in_each_language() {
+fn invalid_link_is_reported_in_each_language() {
     for (language, _) in Language::ALL {
         let mut window = window(Files::nowhere());
         game(&mut window).settings.language = language;

@@ -1,5 +1,5 @@
-//! The game in a window that nobody sees, drawn by software (Mesa's llvmpipe): what can be clicked,
-//! pressed and read, how it looks, and what it puts up with.
+//! The game in an offscreen window, drawn by a software adapter (Mesa's llvmpipe): input, texts, appearance,
+//! and robustness.
 
 mod clicks;
 mod fingers;

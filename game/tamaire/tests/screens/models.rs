@@ -1,4 +1,4 @@
-//! Models that are dropped onto the window.
+//! Models dropped onto the window.
 
 use crate::hostile::drop_file;
 use crate::space::{assert_near, goal, in_space, point_at};
@@ -11,7 +11,7 @@ use tamaire_play::AnyRound;
 const MODEL: &str = "../tamaire_play/levels/pudding.vox";
 
 #[test]
-fn a_model_dropped_onto_any_round_is_played_in_space() {
+fn dropped_model_is_played_in_3d() {
     let mut window = window(Files::nowhere());
     let model = Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL);
     for level in ["classic", "hoop"] {
@@ -30,20 +30,20 @@ fn a_model_dropped_onto_any_round_is_played_in_space() {
             round.progress().mass > 0.0 && ticks(&window) <= 2,
             "{level}"
         );
-        // It is offered once, however often it is dropped.
+        // It appears once in the list, however often it is dropped.
         let levels = &window.state().game.levels;
         let name = &round.level().id;
         assert_eq!(levels.iter().filter(|level| &level.id == name).count(), 1);
         point_at(&mut window, -1.0, 0.7);
         assert!(
             (goal(&window, 0)[2] - 0.7).abs() < 0.05,
-            "{level}: it can be played"
+            "{level}: the hand follows the mouse"
         );
     }
 }
 
 #[test]
-fn what_the_command_line_names_is_played() {
+fn level_of_command_line_is_played() {
     let mut window = window(Files::nowhere());
     let levels = window.state().game.levels.len();
     let model = Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL);
@@ -66,19 +66,19 @@ fn what_the_command_line_names_is_played() {
 }
 
 #[test]
-fn a_damaged_model_is_named_and_nothing_is_lost() {
+fn damaged_model_is_named_and_round_continues() {
     let folder = folder("vox");
-    let whole =
-        std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL)).expect("it comes along");
+    let whole = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL))
+        .expect("the level is built in");
     let mut window = in_space();
     point_at(&mut window, -1.0, 0.7);
     let levels = window.state().game.levels.len();
     let mut size = whole.clone();
-    // The number of voxels, far beyond the end of the file.
+    // The number of voxels is made far larger than the file.
     let count = whole
         .windows(4)
         .position(|word| word == b"XYZI")
-        .expect("it has voxels")
+        .expect("the model has a voxel chunk")
         + 12;
     size[count..count + 4].copy_from_slice(&u32::MAX.to_le_bytes());
     let damaged: [(&str, &[u8], &str); 5] = [
@@ -94,7 +94,7 @@ fn a_damaged_model_is_named_and_nothing_is_lost() {
     ];
     for (file, bytes, told) in damaged {
         let path = folder.join(file);
-        std::fs::write(&path, bytes).expect("it is ours");
+        std::fs::write(&path, bytes).expect("the test owns the folder");
         let (before, at) = (ticks(&window), goal(&window, 0));
         drop_file(&mut window, path);
         let said = notices(&window);
@@ -104,8 +104,8 @@ fn a_damaged_model_is_named_and_nothing_is_lost() {
         );
         assert_eq!(window.state().game.levels.len(), levels, "{file}");
         assert_eq!(screen(&window), Screen::Play, "{file}");
-        assert!(ticks(&window) > before, "{file}: the round goes on");
+        assert!(ticks(&window) > before, "{file}: the round continues");
         assert_near(goal(&window, 0), at);
     }
-    std::fs::remove_dir_all(folder).expect("it is ours");
+    std::fs::remove_dir_all(folder).expect("the test owns the folder");
 }

@@ -1,4 +1,4 @@
-//! Levels of one's own.
+//! Levels added by the player.
 
 use crate::hostile::drop_file;
 use crate::window::*;
@@ -9,12 +9,12 @@ use std::path::{Path, PathBuf};
 use tamaire::game::Screen;
 use tamaire::platform::Files;
 
-/// A picture that can be dropped.
+/// Picture file to drop onto the window.
 fn cat() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../tamaire_play/levels/cat.png")
 }
 
-/// The ids of the levels that do not come along, once all are read.
+/// Returns the ids of the player's own levels once all have been read.
 fn own(window: &mut Window) -> Vec<String> {
     wait(window);
     let game = game(window);
@@ -30,7 +30,7 @@ fn wait(window: &mut Window) {
 }
 
 #[test]
-fn a_level_that_was_dropped_stays_until_it_is_taken_out() {
+fn dropped_level_is_saved_until_removed() {
     let folder = folder("own");
     let begin = || window(Files::in_folder(&folder));
     let mut first = begin();
@@ -46,8 +46,8 @@ fn a_level_that_was_dropped_stays_until_it_is_taken_out() {
     assert!(game(&mut again).levels.contains(&dropped));
     game(&mut again).go(Screen::Levels);
     frames(&mut again, 2);
-    click(&mut again, "Take out: cat");
-    assert_eq!(own(&mut again), ["cat.png"], "it is asked for again");
+    click(&mut again, "Remove from list: cat");
+    assert_eq!(own(&mut again), ["cat.png"], "removal needs confirmation");
     click(&mut again, "Really?: cat");
     assert_eq!(own(&mut again).len(), 0);
     assert_eq!(screen(&again), Screen::Levels);
@@ -56,13 +56,13 @@ fn a_level_that_was_dropped_stays_until_it_is_taken_out() {
     let mut last = begin();
     assert_eq!(own(&mut last).len(), 0);
     assert!(game(&mut last).records.of("cat.png").is_some());
-    assert!(cat().exists(), "the picture itself is nobody's to delete");
+    assert!(cat().exists(), "the original picture is not deleted");
     drop(last);
     fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
-fn keys_take_a_level_out_and_whoever_changes_their_mind_need_not() {
+fn level_removal_by_keys_needs_confirmation_in_time() {
     let mut window = window(Files::nowhere());
     drop_file(&mut window, cat());
     game(&mut window).go(Screen::Levels);
@@ -72,7 +72,7 @@ fn keys_take_a_level_out_and_whoever_changes_their_mind_need_not() {
     press(&mut window, Key::Enter);
     assert!(window.query_by_label("Really?: cat").is_some());
     frames(&mut window, 7 * 60);
-    assert!(window.query_by_label("Take out: cat").is_some());
+    assert!(window.query_by_label("Remove from list: cat").is_some());
     assert_eq!(own(&mut window).len(), 1);
     press(&mut window, Key::Enter);
     press(&mut window, Key::Enter);
@@ -82,7 +82,7 @@ fn keys_take_a_level_out_and_whoever_changes_their_mind_need_not() {
 }
 
 #[test]
-fn a_kept_level_that_is_damaged_is_put_aside_and_told_once() {
+fn damaged_saved_level_is_moved_and_reported_once() {
     let folder = folder("own-damaged");
     let begin = || window(Files::in_folder(&folder));
     let mut first = begin();
@@ -93,7 +93,7 @@ fn a_kept_level_that_is_damaged_is_put_aside_and_told_once() {
     let good = fs::read_to_string(levels.join("cat.png.toml")).unwrap();
     let body = good
         .find("content = ")
-        .expect("it brings its picture along");
+        .expect("the level contains its picture");
     for (name, text) in [
         ("cut.png.toml", &good[..body]),
         ("classic.toml", &good),

@@ -1,4 +1,4 @@
-//! With a pad or a stick alone.
+//! Play with a pad or a stick alone.
 
 use crate::window::*;
 use egui::accesskit::Role;
@@ -9,7 +9,7 @@ use tamaire::game::Screen;
 use tamaire::input::{Action, Seat};
 use tamaire::platform::{Files, Pads};
 
-/// A window with made up devices.
+/// Window with simulated devices.
 pub struct Table {
     pub window: Window,
     pub devices: Vec<Device>,
@@ -39,7 +39,7 @@ impl Table {
         frames(&mut self.window, count);
     }
 
-    /// Presses a button of the last pad, lets it go, and sees what comes of it.
+    /// Presses and releases a button of the last pad, each for two frames.
     pub fn tap(&mut self, button: PadButton) {
         self.button(button).press();
         self.frames(2);
@@ -52,7 +52,7 @@ impl Table {
             .devices
             .last_mut()
             .and_then(|device| device.pad.as_mut());
-        pad.expect("a pad").button_mut(button)
+        pad.expect("the device is a pad").button_mut(button)
     }
 
     fn screen(&self) -> Screen {
@@ -79,7 +79,7 @@ pub fn pad(id: u32) -> Device {
 }
 
 #[test]
-fn a_pad_alone_goes_everywhere() {
+fn pad_alone_reaches_all_screens() {
     use PadButton::*;
     let mut table = Table::with(vec![pad(1)]);
     assert!(table.has_focus("Play"));
@@ -111,9 +111,9 @@ fn a_pad_alone_goes_everywhere() {
 
     table.tap(Start);
     assert_eq!(table.screen(), Screen::Paused);
-    assert!(table.has_focus("Go on"));
+    assert!(table.has_focus("Resume"));
     table.tap(Down);
-    assert!(table.has_focus("Again"));
+    assert!(table.has_focus("Restart"));
     table.tap(Down);
     assert!(table.has_focus("Save replay"));
     table.tap(Down);
@@ -138,15 +138,15 @@ fn a_pad_alone_goes_everywhere() {
     let after = game(&mut table.window).settings.volume;
     assert!((before - after - 0.1).abs() < 1e-3, "{before} {after}");
 
-    // Down to the end, where what has the focus is in sight.
+    // Down to the end of the page, where the focused button must be visible.
     for _ in 0..60 {
-        if !table.has_focus("Reset") {
+        if !table.has_focus("Restore default settings") {
             table.tap(Down);
         }
     }
-    assert!(table.has_focus("Reset"));
+    assert!(table.has_focus("Restore default settings"));
     let (seen, room) = (
-        button(&table.window, "Reset").rect(),
+        button(&table.window, "Restore default settings").rect(),
         table.window.ctx.content_rect(),
     );
     assert!(room.contains_rect(seen), "{seen:?} in {room:?}");
@@ -167,7 +167,7 @@ fn a_pad_alone_goes_everywhere() {
 }
 
 #[test]
-fn a_plain_stick_alone_begins_a_round() {
+fn plain_stick_alone_starts_round() {
     let stick = Device::at_rest(DeviceId(7), about("Stick"), 2, 8, 1);
     let mut table = Table::with(vec![stick]);
     let tap = |table: &mut Table, button: usize| {
@@ -176,7 +176,7 @@ fn a_plain_stick_alone_begins_a_round() {
         table.devices[0].buttons[button].down = false;
         table.frames(2);
     };
-    // y grows towards the player.
+    // The axis is positive towards the player.
     table.devices[0].axes[1] = 1.0;
     table.frames(2);
     table.devices[0].axes[1] = 0.0;
@@ -194,7 +194,7 @@ fn a_plain_stick_alone_begins_a_round() {
 }
 
 #[test]
-fn a_second_player_joins_leaves_and_is_unplugged() {
+fn second_player_joins_leaves_and_is_unplugged() {
     let mut table = Table::with(vec![pad(1), pad(2)]);
     game(&mut table.window).start(0);
     table.frames(2);
@@ -226,7 +226,7 @@ fn a_second_player_joins_leaves_and_is_unplugged() {
     assert_eq!(
         table.screen(),
         Screen::Paused,
-        "the round waits for who was unplugged"
+        "the round pauses for the unplugged player"
     );
     table.tap(PadButton::South);
     assert_eq!(table.screen(), Screen::Play);
@@ -235,7 +235,7 @@ fn a_second_player_joins_leaves_and_is_unplugged() {
 }
 
 #[test]
-fn a_pad_is_tried_and_its_stick_moves_nothing_else_meanwhile() {
+fn pad_trial_captures_its_stick() {
     use PadButton::*;
     let mut table = Table::with(vec![pad(1)]);
     game(&mut table.window).go(Screen::Settings);
@@ -247,7 +247,7 @@ fn a_pad_is_tried_and_its_stick_moves_nothing_else_meanwhile() {
     }
     table.tap(South);
     assert!(matches!(table.screen(), Screen::Forces));
-    // What the pad can do is known once its line has said so.
+    // The ability of the pad is known once its thread has reported it.
     for _ in 0..20 {
         if !table.has_focus("Try it") {
             table.tap(Down);
@@ -255,21 +255,21 @@ fn a_pad_is_tried_and_its_stick_moves_nothing_else_meanwhile() {
     }
     table.tap(South);
     assert!(game(&mut table.window).trial.is_some());
-    assert!(table.has_focus("Enough"));
+    assert!(table.has_focus("Stop"));
     table.rumbles.take();
     let strength = game(&mut table.window).settings.haptics;
     for lean in [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]] {
         table.devices[0].pad.as_mut().unwrap().left = lean;
         table.frames(20);
     }
-    assert!(table.has_focus("Enough"));
+    assert!(table.has_focus("Stop"));
     assert_eq!(game(&mut table.window).settings.haptics, strength);
     let played = table.rumbles.take();
     assert!(played.iter().any(|played| !played.output.is_zero()));
     table.tap(South);
     assert!(game(&mut table.window).trial.is_none());
 
-    // Off at once, on every screen; and on again where it says so.
+    // The emergency button works on every screen; the forces screen switches forces on again.
     let bindings = &mut game(&mut table.window).settings.bindings;
     bindings.bind_button(Action::CutForces, sticks::Control::Pad(RightStick));
     table.tap(RightStick);

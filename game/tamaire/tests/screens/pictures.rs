@@ -1,4 +1,4 @@
-//! How it looks: pictures, compared with those in `tests/snapshots`.
+//! Appearance, compared with the pictures in `tests/snapshots`.
 
 use crate::hostile::drop_file;
 use crate::window::*;
@@ -14,16 +14,15 @@ use tamaire::platform::{Files, Pads};
 use tamaire::words::Language;
 use tamaire_play::{BotKind, Outcome, Route};
 
-/// A pixel may differ by about ten of 256 steps of grey, and so many pixels by more: drivers round
-/// corners and mix colours in ways of their own. Whatever moves, is missing or speaks another
-/// language differs by more than that.
+/// Tolerance for a pixel, some ten of 256 grey levels, and number of pixels that may exceed it. Drivers
+/// differ in antialiasing and colour mixing; a moved or missing element or another language exceeds it.
 const STEP: f32 = 50.0;
 const PIXELS: usize = 800;
 
-/// What has much detail is shown smaller, for the files' sake.
+/// Size of detailed pictures [points], smaller to limit the size of the files.
 const SMALLER: Vec2 = vec2(592.0, 370.0);
 
-/// How somebody won before.
+/// Outcome of an earlier win.
 const WON: Outcome = Outcome {
     ticks: 600,
     route: Route::Squeeze,
@@ -40,11 +39,11 @@ fn picture(window: &mut Window, name: &str) {
     window.snapshot_options(name, &options);
 }
 
-/// The same in each language.
+/// Takes a picture in each language.
 fn pictures(window: &mut Window, name: &str) {
     for (language, tag) in [(Language::English, "en"), (Language::Japanese, "ja")] {
         game(window).settings.language = language;
-        // It takes a frame to come on and one to be measured.
+        // The layout takes a frame to appear and one to be measured.
         frames(window, 3);
         picture(window, &format!("{name}_{tag}"));
     }
@@ -52,12 +51,12 @@ fn pictures(window: &mut Window, name: &str) {
 }
 
 #[test]
-fn every_screen() {
+fn screens_match_pictures() {
     let mut window = open(Files::nowhere(), vec2(704.0, 440.0), 1.0);
     drive(game(&mut window), BotKind::Idle, |game| game.time < 2.0);
     pictures(&mut window, "title");
     game(&mut window).go(Screen::Levels);
-    // The map of each level takes a frame.
+    // Each thumbnail takes a frame.
     let levels = game(&mut window).levels.len();
     frames(&mut window, levels);
     pictures(&mut window, "levels");
@@ -65,14 +64,14 @@ fn every_screen() {
     pictures(&mut window, "settings");
     game(&mut window).controls.pads = sticks_and_pads();
     game(&mut window).go(Screen::Forces);
-    // Its thread says what they can do.
+    // The thread of the devices reports their abilities.
     frames(&mut window, 5);
     pictures(&mut window, "forces");
     game(&mut window).controls.pads = Pads::none();
     frames(&mut window, 1);
 
     game(&mut window).start(0);
-    // Keys need to see where they are.
+    // A key press shows the focus ring.
     press(&mut window, Key::P);
     pictures(&mut window, "paused");
     game(&mut window).go(Screen::Play);
@@ -83,7 +82,7 @@ fn every_screen() {
 }
 
 #[test]
-fn on_a_telephone_that_is_held_upright() {
+fn portrait_screens_match_pictures() {
     let mut window = open(Files::nowhere(), vec2(390.0, 844.0), 1.0);
     drive(game(&mut window), BotKind::Idle, |game| game.time < 2.0);
     pictures(&mut window, "upright_title");
@@ -94,13 +93,13 @@ fn on_a_telephone_that_is_held_upright() {
     win(&mut window);
     pictures(&mut window, "upright_result");
     let link = game(&mut window).bout.round().replay().link();
-    game(&mut window).open_link(&link.expect("a bot's round is short"));
-    // The map of each level takes a frame.
+    game(&mut window).open_link(&link.expect("the round of the bot fits into a link"));
+    // Each thumbnail takes a frame.
     frames(&mut window, 20);
     pictures(&mut window, "upright_offered");
 }
 
-/// One that was dropped stands at the end of the list.
+/// A dropped level is at the end of the list.
 fn own_level(window: &mut Window) {
     let cat = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tamaire_play/levels/cat.png");
     drop_file(window, cat);
@@ -113,7 +112,7 @@ fn own_level(window: &mut Window) {
 }
 
 #[test]
-fn rounds_that_were_kept() {
+fn saved_round_shows_route() {
     let folder = folder("kept-pictures");
     let mut window = open(Files::in_folder(&folder), vec2(704.0, 440.0), 1.0);
     game(&mut window).start(0);
@@ -128,7 +127,7 @@ fn rounds_that_were_kept() {
 }
 
 #[test]
-fn what_fingers_press() {
+fn touch_buttons_match_pictures() {
     let mut window = open(Files::nowhere(), vec2(704.0, 440.0), 1.0);
     for level in ["twins", "classic-3d"] {
         start(&mut window, level);
@@ -140,7 +139,7 @@ fn what_fingers_press() {
     }
 }
 
-/// A stick that pushes back and a pad that rumbles, of which nobody plays with either.
+/// A stick with force feedback and a rumbling pad, neither of them in use.
 fn sticks_and_pads() -> Pads {
     let about = |name: &str| About {
         name: name.into(),
@@ -160,7 +159,7 @@ fn sticks_and_pads() -> Pads {
 }
 
 #[test]
-fn a_round() {
+fn round_2d_matches_picture() {
     let mut window = open(Files::nowhere(), SMALLER, 1.0);
     game(&mut window).start(0);
     drive(game(&mut window), BotKind::Squeeze, |game| {
@@ -171,12 +170,12 @@ fn a_round() {
 }
 
 #[test]
-fn a_round_in_space() {
+fn round_3d_matches_pictures() {
     let mut window = open(Files::nowhere(), SMALLER, 1.0);
     let mut levels = game(&mut window).levels.iter();
     let classic = levels.position(|level| level.id == "classic-3d");
-    let classic = classic.expect("it comes along");
-    // Who has won is told nothing.
+    let classic = classic.expect("the level is built in");
+    // No instructions are shown after a win.
     let level = game(&mut window).levels[classic].clone();
     game(&mut window).records.note(&level, &WON);
     game(&mut window).start(classic);
@@ -193,7 +192,7 @@ fn a_round_in_space() {
 }
 
 #[test]
-fn a_tear() {
+fn tear_and_elements_match_pictures() {
     let mut window = open(Files::nowhere(), SMALLER, 1.0);
     game(&mut window).start(0);
     drive(game(&mut window), BotKind::Shave, |game| {

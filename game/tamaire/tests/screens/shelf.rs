@@ -1,4 +1,4 @@
-//! The list of rounds that were kept, and the fastest one, which is raced by itself where that is wished.
+//! List of saved rounds, and the optional race against the fastest one.
 
 use crate::window::*;
 use egui_kittest::kittest::Queryable;
@@ -7,24 +7,24 @@ use tamaire::platform::{Files, Kind};
 use tamaire_play::Route;
 
 #[test]
-fn a_kept_round_tells_where_when_and_how_it_was_won() {
+fn saved_round_shows_level_date_and_result() {
     let folder = folder("shelf");
     let mut window = window(Files::in_folder(&folder));
     game(&mut window).start(0);
     win(&mut window);
     game(&mut window).keep_replay();
     game(&mut window).finish_writing();
-    // One that is none stays in the list, by its name.
+    // An invalid replay stays in the list under its file name.
     std::fs::write(folder.join("replays/other-1.tamaire"), "version = 999\n").unwrap();
     game(&mut window).go(Screen::Replays);
     frames(&mut window, 6);
     let shelf = &window.state().game.shelf;
     let found = |name: &str| {
         let kept = shelf.iter().find(|kept| kept.entry.name == name).unwrap();
-        kept.found.clone().expect("it was looked into")
+        kept.found.clone().expect("the replay was read")
     };
     assert!(found("other-1").is_none());
-    let classic = found("classic-1").expect("it can be played");
+    let classic = found("classic-1").expect("the replay can be played");
     assert_eq!(classic.outcome.unwrap().route, Route::Squeeze);
     let level = &window.state().game.levels[0];
     assert!(std::sync::Arc::ptr_eq(&classic.level, level));
@@ -35,7 +35,7 @@ fn a_kept_round_tells_where_when_and_how_it_was_won() {
 }
 
 #[test]
-fn the_fastest_round_is_raced_by_itself_where_that_is_wished() {
+fn fastest_round_is_raced_when_enabled() {
     let folder = folder("best");
     let files = Files::in_folder(&folder);
     let mut window = window(Files::in_folder(&folder));
@@ -43,23 +43,23 @@ fn the_fastest_round_is_raced_by_itself_where_that_is_wished() {
     win(&mut window);
     game(&mut window).finish_writing();
     let level = game(&mut window).levels[0].clone();
-    let first = files.best(&level).expect("it is kept").ticks();
+    let first = files.best(&level).expect("the file was saved").ticks();
     game(&mut window).start(0);
     let has_ghost = |window: &Window| window.state().game.bout.session.ghost().is_some();
-    assert!(!has_ghost(&window), "nobody wished it");
+    assert!(!has_ghost(&window), "racing the best round is off");
     game(&mut window).settings.race_best = true;
     game(&mut window).start(0);
     assert!(has_ghost(&window));
     game(&mut window).start(1);
-    assert!(!has_ghost(&window), "nothing was won there");
+    assert!(!has_ghost(&window), "no win in this level");
 
-    // A slower win is not kept instead; one that is faster would be.
+    // A slower win does not replace the fastest one.
     game(&mut window).start(0);
     frames(&mut window, 60);
     win(&mut window);
     game(&mut window).finish_writing();
     assert_eq!(files.best(&level).unwrap().ticks(), first);
-    // What is no replay any more is no ghost.
+    // An unreadable replay is no ghost.
     let path = folder.join("best/classic.tamaire");
     assert!(path.is_file() && Kind::Best.most_bytes() > 0);
     std::fs::write(path, "version = 1\n").unwrap();

@@ -1,4 +1,4 @@
-//! In space: where the hand goes with each device, how the camera turns, and a round that is won, watched and raced.
+//! 3D levels: movement of the hand with each device, the camera, and a round that is won, watched and raced.
 
 use crate::pads::{Table, pad};
 use crate::told::tells;
@@ -19,7 +19,7 @@ pub fn in_space() -> Window {
     window
 }
 
-/// Where a player's hand is to go next [m].
+/// Target position of a player's hand [m].
 pub fn goal(window: &Window, player: usize) -> Vector {
     window.state().game.bout.round().hands()[player].target_position()
 }
@@ -28,21 +28,21 @@ fn turned(window: &Window) -> [f32; 2] {
     window.state().game.bout.camera.gone_around()
 }
 
-/// Lets ticks pass that nobody looks at: in software a picture of space takes longer than a tick.
+/// Advances by ticks without drawing: in software, a 3D frame takes longer than a tick.
 pub fn wait(window: &mut Window, ticks: usize) {
     (0..ticks).for_each(|_| game(window).pass(TICK));
     frames(window, 1);
 }
 
-/// Points with the mouse at a place of the floor, and waits until the hand is above it.
+/// Points with the mouse at a point of the floor, and waits until the hand is above it.
 pub fn point_at(window: &mut Window, x: f32, z: f32) {
-    let view = window.state().game.bout.view.expect("it is seen");
+    let view = window.state().game.bout.view.expect("the world is visible");
     window.hover_at(view.on_screen([x, 0.0, z]));
     frames(window, 1);
     wait(window, 60);
 }
 
-/// Turns the wheel by so many points, and waits.
+/// Turns the wheel by `points`, and waits.
 fn wheel(window: &mut Window, points: f32) {
     window.event(Event::MouseWheel {
         unit: MouseWheelUnit::Point,
@@ -61,7 +61,7 @@ pub fn assert_near(found: Vector, expected: Vector) {
 }
 
 #[test]
-fn the_mouse_points_at_the_floor_and_the_wheel_raises_the_hand() {
+fn mouse_sets_floor_position_and_wheel_raises_hand() {
     let mut window = in_space();
     let height = goal(&window, 0)[1];
     for [x, z] in [[-1.2, 0.7], [0.2, 0.6], [0.0, -0.6]] {
@@ -71,7 +71,7 @@ fn the_mouse_points_at_the_floor_and_the_wheel_raises_the_hand() {
     point_at(&mut window, -1.2, 0.7);
     wheel(&mut window, 250.0);
     assert_near(goal(&window, 0), [-1.2, height + 0.5, 0.7]);
-    // A long way, on which the hand stays behind, takes none of the height; nor does another camera.
+    // The height is kept over a long way on which the hand lags behind, and when the camera turns.
     point_at(&mut window, 1.2, 0.75);
     assert_near(goal(&window, 0), [1.2, height + 0.5, 0.75]);
     game(&mut window).bout.camera.orbit(1.2, 0.3);
@@ -85,13 +85,13 @@ fn the_mouse_points_at_the_floor_and_the_wheel_raises_the_hand() {
 }
 
 #[test]
-fn on_a_shelf_the_mouse_points_at_the_shelf() {
+fn mouse_sets_position_on_shelf() {
     let mut window = window(Files::nowhere());
     start(&mut window, "hoop");
     let height = goal(&window, 0)[1];
     // On the shelf, over the hole in it, and on the shelf behind the hole.
     for [x, z] in [[-1.3, 0.3], [0.7, 0.1], [0.7, -0.7]] {
-        let view = window.state().game.bout.view.expect("it is seen");
+        let view = window.state().game.bout.view.expect("the world is visible");
         window.hover_at(view.on_screen([x, 0.55, z]));
         frames(&mut window, 1);
         wait(&mut window, 90);
@@ -100,7 +100,7 @@ fn on_a_shelf_the_mouse_points_at_the_shelf() {
 }
 
 #[test]
-fn the_right_mouse_button_turns_the_camera_and_leaves_the_hand_alone() {
+fn right_mouse_button_turns_only_the_camera() {
     let mut window = in_space();
     point_at(&mut window, -1.2, 0.6);
     let before = goal(&window, 0);
@@ -110,7 +110,7 @@ fn the_right_mouse_button_turns_the_camera_and_leaves_the_hand_alone() {
         pressed,
         modifiers: Modifiers::NONE,
     };
-    let view = window.state().game.bout.view.expect("it is seen");
+    let view = window.state().game.bout.view.expect("the world is visible");
     let at = view.on_screen([-1.2, 0.0, 0.6]);
     window.event(button(true, at));
     frames(&mut window, 1);
@@ -123,7 +123,7 @@ fn the_right_mouse_button_turns_the_camera_and_leaves_the_hand_alone() {
     let [right, up] = turned(&window);
     assert!(right > 0.5 && up > 0.2, "{right} {up}");
     assert_near(goal(&window, 0), before);
-    // A double click brings it back, and a retry leaves it where a player put it.
+    // A retry keeps the camera's orientation; a double click resets it.
     game(&mut window).retry();
     frames(&mut window, 1);
     assert_eq!(turned(&window), [right, up]);
@@ -136,13 +136,13 @@ fn the_right_mouse_button_turns_the_camera_and_leaves_the_hand_alone() {
 }
 
 #[test]
-fn keys_move_the_hand_away_from_the_camera_raise_it_and_turn_the_camera() {
+fn keys_move_hand_relative_to_camera() {
     let mut window = in_space();
     let hold = |window: &mut Window, key, count: usize| {
         let before = goal(window, 0);
         window.key_down(key);
         frames(window, 1);
-        // The camera turns as the window is drawn.
+        // The camera turns only when the window is drawn.
         match key {
             Key::CloseBracket => frames(window, count - 1),
             _ => wait(window, count - 2),
@@ -160,24 +160,24 @@ fn keys_move_the_hand_away_from_the_camera_raise_it_and_turn_the_camera() {
     hold(&mut window, Key::CloseBracket, 63);
     let [right, up] = turned(&window);
     assert!((1.4..1.8).contains(&right) && up == 0.0, "{right} {up}");
-    // The camera looks to the left, along the first axis, from the right.
+    // The camera is on the right and looks to the left, along the first axis.
     let [x, y, z] = hold(&mut window, Key::D, 10);
     assert!(x.abs() < 0.08 && y.abs() < 0.01 && z < -0.2, "{x} {y} {z}");
     let [x, y, z] = hold(&mut window, Key::S, 10);
     assert!(x > 0.2 && y.abs() < 0.01 && z.abs() < 0.08, "{x} {y} {z}");
-    // In the plane the same keys do nothing.
+    // In 2D the same keys have no effect.
     start(&mut window, "classic");
     let still = hold(&mut window, Key::Q, 10);
     assert_near(still, [0.0; 3]);
 }
 
 #[test]
-fn triggers_raise_the_hand_and_the_right_stick_looks_around() {
+fn triggers_raise_hand_and_right_stick_turns_camera() {
     let mut table = Table::with(vec![pad(1)]);
     start(&mut table.window, "classic-3d");
     let before = goal(&table.window, 0);
     let hold = |table: &mut Table, right, triggers, count: usize| {
-        let pad = table.devices[0].pad.as_mut().expect("a pad");
+        let pad = table.devices[0].pad.as_mut().expect("the device is a pad");
         (pad.right, pad.triggers) = (right, triggers);
         table.frames(1);
         match right {
@@ -190,7 +190,7 @@ fn triggers_raise_the_hand_and_the_right_stick_looks_around() {
     let expected = [before[0], before[1] + 0.4, before[2]];
     assert_near(raised, expected);
     assert_eq!(turned(&table.window), [0.0; 2]);
-    // Half as far, half as fast.
+    // Half the deflection gives half the speed.
     hold(&mut table, [0.0; 2], [0.55, 0.0], 20);
     assert_near(
         goal(&table.window, 0),
@@ -204,13 +204,13 @@ fn triggers_raise_the_hand_and_the_right_stick_looks_around() {
     let [after, up] = turned(&table.window);
     assert!(after == right && up > 0.3, "{after} {up}");
     assert_near(goal(&table.window, 0), low);
-    // Beyond its end it does not go.
+    // The elevation has a lower limit.
     hold(&mut table, [0.0, -1.0], [0.0; 2], 40);
     assert!((-0.4..-0.2).contains(&turned(&table.window)[1]));
 }
 
 #[test]
-fn two_players_in_space_have_a_hand_each_and_one_camera() {
+fn two_players_3d_share_one_camera() {
     let mut table = Table::with(vec![pad(1), pad(2)]);
     start(&mut table.window, "classic-3d");
     table.tap(PadButton::Back);
@@ -221,7 +221,7 @@ fn two_players_in_space_have_a_hand_each_and_one_camera() {
     assert_near(before[1], table.window.state().game.bout.round().start(1));
     let hold = |table: &mut Table, held: [([f32; 2], [f32; 2]); 2], count| {
         for (device, (left, triggers)) in table.devices.iter_mut().zip(held) {
-            let pad = device.pad.as_mut().expect("a pad");
+            let pad = device.pad.as_mut().expect("the device is a pad");
             (pad.left, pad.right, pad.triggers) = (left, [0.5, 0.0], triggers);
         }
         table.frames(count);
@@ -234,7 +234,7 @@ fn two_players_in_space_have_a_hand_each_and_one_camera() {
     let after = [0, 1].map(|player| goal(&table.window, player));
     assert_near(after[0], before[0]);
     assert_near(after[1], [before[1][0], before[1][1] + 0.3, before[1][2]]);
-    // Both lean, and the camera goes no faster for it.
+    // Two players who turn the camera do not turn it faster than one.
     let [right, _] = turned(&table.window);
     assert!(right < 0.5 * 1.5 * 16.0 / 60.0, "{right}");
     hold(
@@ -248,10 +248,10 @@ fn two_players_in_space_have_a_hand_each_and_one_camera() {
 }
 
 #[test]
-fn one_finger_moves_the_hand_and_a_second_one_raises_it_or_turns_the_camera() {
+fn first_finger_moves_hand_and_second_raises_it_or_turns_camera() {
     let mut window = in_space();
     let height = goal(&window, 0)[1];
-    let view = window.state().game.bout.view.expect("it is seen");
+    let view = window.state().game.bout.view.expect("the world is visible");
     touch(
         &mut window,
         0,
@@ -287,16 +287,16 @@ fn one_finger_moves_the_hand_and_a_second_one_raises_it_or_turns_the_camera() {
 }
 
 #[test]
-fn the_finger_that_is_left_when_the_first_one_lifts_does_not_move_the_hand() {
+fn second_finger_does_not_move_hand_after_first_lifts() {
     let mut window = in_space();
-    let view = window.state().game.bout.view.expect("it is seen");
+    let view = window.state().game.bout.view.expect("the world is visible");
     let [here, there] = [-0.9, 0.3].map(|x| view.on_screen([x, 0.0, 0.6]));
     touch(&mut window, 0, TouchPhase::Start, here);
     touch(&mut window, 1, TouchPhase::Start, there);
     wait(&mut window, 60);
     let before = goal(&window, 0);
     touch(&mut window, 0, TouchPhase::End, here);
-    // A browser takes it for the mouse now.
+    // A browser now reports the remaining finger as the mouse.
     window.event(Event::PointerMoved(there));
     touch(&mut window, 1, TouchPhase::Move, there);
     wait(&mut window, 60);
@@ -304,7 +304,7 @@ fn the_finger_that_is_left_when_the_first_one_lifts_does_not_move_the_hand() {
 }
 
 #[test]
-fn keys_and_a_pad_look_deeper_into_elements_and_back_and_it_is_told_how() {
+fn keys_and_pad_move_element_cut_and_hint_names_them() {
     let mut table = Table::with(vec![pad(1)]);
     start(&mut table.window, "classic-3d");
     let share = |table: &mut Table| {
@@ -334,18 +334,21 @@ fn keys_and_a_pad_look_deeper_into_elements_and_back_and_it_is_told_how() {
     assert!(share(&mut table) < before);
     assert!(tells(&table.window, "Press the right stick: look deeper"));
     wheel(&mut table.window, 100.0);
-    assert!(share(&mut table) < before - 0.05, "up is deeper");
+    assert!(
+        share(&mut table) < before - 0.05,
+        "scrolling up looks deeper"
+    );
     assert!((goal(&table.window, 0)[1] - height).abs() < 1e-3);
 }
 
 #[test]
-fn a_round_in_space_is_won_kept_watched_and_raced() {
+fn round_3d_is_won_saved_watched_and_raced() {
     let folder = folder("space");
     let files = Files::in_folder(&folder);
     let mut window = window(Files::in_folder(&folder));
     start(&mut window, "classic-3d");
     win(&mut window);
-    let (outcome, is_best) = game(&mut window).bout.won.expect("it was won");
+    let (outcome, is_best) = game(&mut window).bout.won.expect("the round was won");
     assert!(is_best && outcome.route == Route::Squeeze, "{outcome:?}");
     click(&mut window, "Save replay");
     game(&mut window).finish_writing();
@@ -356,7 +359,13 @@ fn a_round_in_space_is_won_kept_watched_and_raced() {
     frames(&mut window, 30);
     let is_space = |round: &AnyRound| matches!(round, AnyRound::Space(_));
     let ghost = |window: &Window| {
-        let ghost = window.state().game.bout.session.ghost().expect("a ghost");
+        let ghost = window
+            .state()
+            .game
+            .bout
+            .session
+            .ghost()
+            .expect("the session has a ghost");
         assert!(is_space(ghost));
         (ghost.frames().len(), ghost.hands()[0].position())
     };
@@ -373,7 +382,7 @@ fn a_round_in_space_is_won_kept_watched_and_raced() {
     click(&mut window, "Watch");
     assert!(!game(&mut window).bout.session.is_played());
     let before = goal(&window, 0);
-    // Who watches looks on: the hand belongs to the replay.
+    // During a replay, keys do not move the hand.
     window.key_down(Key::Q);
     frames(&mut window, 5);
     window.key_up(Key::Q);
@@ -384,5 +393,5 @@ fn a_round_in_space_is_won_kept_watched_and_raced() {
     assert_eq!(game.bout.round().progress().outcome, Some(outcome));
     assert!(game.notices.iter().next().is_none(), "{:?}", game.notices);
     assert!(length(minus(goal(&window, 0), before)) > 0.1);
-    std::fs::remove_dir_all(folder).expect("it is ours");
+    std::fs::remove_dir_all(folder).expect("the test owns the folder");
 }

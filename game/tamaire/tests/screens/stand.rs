@@ -1,4 +1,4 @@
-//! A stand in public: visitors come, play and go, and staff looks behind it.
+//! Public stand: visitors come, play and go, and staff use its pages.
 
 use crate::window::*;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, pos2, vec2};
@@ -23,14 +23,14 @@ use tamaire::words::Language;
 use tamaire_logbook::{End, Error, Kind, Logbook, Round, Visit};
 use tamaire_play::{BotKind, Playback, Replay};
 
-/// A stand whose visitors are in the window's hands, and the test's eye on it.
+/// Stand in a test window, shared with the test.
 struct Shown {
     window: Window,
     stand: Rc<RefCell<Stand>>,
     folder: PathBuf,
 }
 
-/// Hands a stand to a window and keeps it.
+/// Lets the window own a stand that the test keeps access to.
 struct Shared(Rc<RefCell<Stand>>);
 
 impl Attendant for Shared {
@@ -51,7 +51,7 @@ impl Attendant for Shared {
     }
 }
 
-/// A stand with this in its file instead of what it usually says.
+/// Opens a stand with the usual configuration file, changed by text replacements.
 fn shown(name: &str, size: Vec2, changes: &[(&str, &str)]) -> Shown {
     let folder = folder(name);
     let mut text = USUAL.replace(
@@ -77,7 +77,7 @@ fn shown(name: &str, size: Vec2, changes: &[(&str, &str)]) -> Shown {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
         game.clock = Clock::of(|| 0.0);
         kept.borrow_mut().prepare(&mut game);
-        let mut app = App::new(context, game).expect("there is a GPU, if only in software");
+        let mut app = App::new(context, game).expect("a GPU or a software adapter is available");
         app.attendant = Some(Box::new(Shared(kept)));
         app
     });
@@ -97,14 +97,14 @@ impl Shown {
         self.stand.borrow().phase
     }
 
-    /// Lets so many seconds pass in which nobody does anything.
+    /// Advances by `seconds` without input.
     fn rest(&mut self, seconds: f32) {
         let ctx = self.window.ctx.clone();
         let mut stand = self.stand.borrow_mut();
         let game = game(&mut self.window);
         for _ in 0..(seconds / TICK) as usize {
             game.pass(TICK);
-            // No events are left in the context after a frame.
+            // After a frame, events may be left in the context.
             ctx.input_mut(|input| input.events.clear());
             stand.pass(game, &ctx, TICK);
         }
@@ -114,7 +114,7 @@ impl Shown {
         press(&mut self.window, Key::Space);
     }
 
-    /// Plays until it is won.
+    /// Lets a bot play until it wins.
     fn win(&mut self, kind: BotKind) {
         drive(game(&mut self.window), kind, |game| game.bout.won.is_none());
         game(&mut self.window).pass(2.0);
@@ -122,7 +122,7 @@ impl Shown {
         assert_eq!(screen(&self.window), Screen::Result);
     }
 
-    /// What is in the logbook when all is written.
+    /// Closes the stand and returns the contents of its logbook.
     fn end(self) -> (Vec<Visit>, Vec<Round>) {
         let Self {
             mut window,
@@ -153,11 +153,11 @@ fn read(folder: &Path) -> (Vec<Visit>, Vec<Round>) {
 }
 
 #[test]
-fn a_visit_begins_with_a_touch_and_is_written_down_whole() {
+fn visit_starts_with_touch_and_is_logged() {
     let mut shown = shown("visit", vec2(960.0, 600.0), &[]);
     assert_eq!(shown.phase(), Phase::Attract);
     shown.rest(60.0);
-    assert_eq!(shown.phase(), Phase::Attract, "nobody came");
+    assert_eq!(shown.phase(), Phase::Attract, "no visitor yet");
     shown.touch();
     assert_eq!(
         (shown.phase(), screen(&shown.window)),
@@ -167,7 +167,7 @@ fn a_visit_begins_with_a_touch_and_is_written_down_whole() {
     let again = game(&mut shown.window).words().again;
     click(&mut shown.window, again);
     assert_eq!(screen(&shown.window), Screen::Play);
-    // Somebody begins anew, and goes in the middle of it.
+    // The visitor restarts the round and leaves in the middle of it.
     frames(&mut shown.window, 60);
     press(&mut shown.window, Key::R);
     frames(&mut shown.window, 30);
@@ -202,7 +202,7 @@ fn a_visit_begins_with_a_touch_and_is_written_down_whole() {
 }
 
 #[test]
-fn a_ring_counts_down_and_any_touch_stays() {
+fn countdown_is_cancelled_by_touch() {
     let mut shown = shown("ring", vec2(960.0, 600.0), &[]);
     shown.touch();
     shown.rest(25.0);
@@ -219,7 +219,7 @@ fn a_ring_counts_down_and_any_touch_stays() {
 }
 
 #[test]
-fn the_next_visitor_finds_it_fresh() {
+fn next_visitor_finds_initial_state() {
     let mut shown = shown("fresh", vec2(960.0, 600.0), &[]);
     shown.touch();
     frames(&mut shown.window, 3);
@@ -244,12 +244,12 @@ fn the_next_visitor_finds_it_fresh() {
     shown.rest(31.0);
     let game = crate::window::game(&mut shown.window);
     assert_eq!(game.settings.language, Language::Japanese);
-    assert!(!game.forces.is_cut(), "nobody switches them off for good");
+    assert!(!game.forces.is_cut(), "the next visitor has forces again");
     assert!(game.bout.elements.is_none() && game.controls.players.second().is_none());
 }
 
 #[test]
-fn nobody_gets_out_of_it() {
+fn visitor_cannot_leave_the_stand() {
     let mut shown = shown(
         "kiosk",
         vec2(960.0, 600.0),
@@ -278,7 +278,7 @@ fn nobody_gets_out_of_it() {
     assert!(shown.window.query_by_label("おわる").is_none());
 }
 
-/// Presses or lets go of the mouse.
+/// Presses or releases the mouse button.
 fn button_at(window: &mut Window, pos: Pos2, pressed: bool) {
     window.event(Event::PointerMoved(pos));
     window.event(Event::PointerButton {
@@ -291,7 +291,7 @@ fn button_at(window: &mut Window, pos: Pos2, pressed: bool) {
 }
 
 #[test]
-fn staff_gets_in_by_a_corner_and_a_number_and_changes_what_it_is_like() {
+fn staff_enters_pin_and_changes_settings() {
     let pin = ("#pin = \"…\"", "pin = \"2004\"");
     let mut shown = shown(
         "staff",
@@ -307,13 +307,13 @@ fn staff_gets_in_by_a_corner_and_a_number_and_changes_what_it_is_like() {
     for digit in ["1", "2", "3", "4"] {
         click(&mut shown.window, digit);
     }
-    assert_eq!(shown.phase(), Phase::Door, "a wrong number");
+    assert_eq!(shown.phase(), Phase::Door, "wrong PIN");
     for digit in ["2", "0", "0", "4"] {
         click(&mut shown.window, digit);
     }
     assert!(matches!(shown.phase(), Phase::Staff(_)));
     let (visits, _) = read(&shown.folder);
-    assert!(visits.is_empty(), "staff is no visitor");
+    assert!(visits.is_empty(), "staff does not count as a visitor");
     click(&mut shown.window, "Stand");
     let japanese = shown.window.get_by_label("Language: 日本語");
     japanese.click();
@@ -326,7 +326,7 @@ fn staff_gets_in_by_a_corner_and_a_number_and_changes_what_it_is_like() {
     );
     let end = Language::Japanese.at_stand().end;
     click(&mut shown.window, end);
-    assert!(!shown.stand.borrow().is_ended, "it asks first");
+    assert!(!shown.stand.borrow().is_ended, "ending needs confirmation");
     click(&mut shown.window, "もどる");
     assert_eq!(shown.phase(), Phase::Attract);
     assert_eq!(
@@ -336,7 +336,7 @@ fn staff_gets_in_by_a_corner_and_a_number_and_changes_what_it_is_like() {
 }
 
 #[test]
-fn out_of_hours_nothing_plays() {
+fn stand_is_closed_outside_opening_hours() {
     let hours = [
         ("#[hours]", "[hours]"),
         ("#open = \"10:00\"", "open = \"13:30\""),
@@ -352,13 +352,13 @@ fn out_of_hours_nothing_plays() {
 }
 
 #[test]
-fn a_file_that_is_wrong_is_named_with_its_line() {
+fn invalid_configuration_is_reported_with_line() {
     let folder = folder("wrong");
     let file = TextFile(folder.join("exhibit.toml"));
     file.write(&USUAL.replace("rest = 20", "rest = -1"))
         .unwrap();
     let Err(error) = Stand::open(file) else {
-        panic!("it is wrong");
+        panic!("the configuration is invalid");
     };
     assert!(
         error.contains("exhibit.toml") && error.contains("line 10"),
@@ -367,7 +367,7 @@ fn a_file_that_is_wrong_is_named_with_its_line() {
 }
 
 #[test]
-fn a_stick_that_is_pulled_out_and_put_back_is_noted_and_play_goes_on() {
+fn unplugged_stick_is_logged_and_play_continues() {
     let mut shown = shown("pulled", vec2(960.0, 600.0), &[]);
     let about = About {
         name: "Stick".into(),
@@ -399,7 +399,8 @@ fn a_stick_that_is_pulled_out_and_put_back_is_noted_and_play_goes_on() {
     assert_eq!(kinds[1..4], expected);
 }
 
-/// Pictures at a size, for the eye: `cargo test -p tamaire --test screens -- stand_seen --ignored`.
+/// Writes pictures of all screens in several sizes, to be looked at: `cargo test -p tamaire --test screens --
+/// stand_seen --ignored`.
 #[test]
 #[ignore = "writes pictures for people to look at"]
 fn stand_seen() {

@@ -1,4 +1,4 @@
-//! How to play in space is told until it was tried.
+//! Instructions for 3D levels are shown until they were followed.
 
 use crate::pads::{Table, about, pad};
 use crate::space::{in_space, point_at, wait};
@@ -10,7 +10,7 @@ use tamaire::input::{Action, Means};
 use tamaire::platform::Files;
 use tamaire::words::Language;
 
-/// All words on the screen, each with where it is.
+/// Returns all texts on the screen with their rectangles.
 fn words(window: &Window) -> Vec<(String, egui::Rect)> {
     fn add(shape: &egui::Shape, words: &mut Vec<(String, egui::Rect)>) {
         match shape {
@@ -33,9 +33,9 @@ pub fn tells(window: &Window, what: &str) -> bool {
 }
 
 #[test]
-fn what_can_be_done_in_space_is_told_until_it_was_tried() {
+fn instructions_3d_disappear_once_followed() {
     let mut window = in_space();
-    // Nothing takes its time to go.
+    // Reduced motion removes lines at once.
     game(&mut window).settings.reduced_motion = true;
     wait(&mut window, 60);
     let told = ["Move: mouse", "wheel, or Q Z", "right mouse button, or [ ]"];
@@ -49,14 +49,14 @@ fn what_can_be_done_in_space_is_told_until_it_was_tried() {
         .bindings
         .bind_key(Action::Raise, Key::U);
     frames(&mut window, 1);
-    assert!(tells(&window, "wheel, or U Z"), "what is bound is named");
+    assert!(tells(&window, "wheel, or U Z"), "the bound key is named");
     point_at(&mut window, -1.0, 0.7);
     assert!(!tells(&window, "Move") && tells(&window, "wheel"));
     window.key_down(Key::U);
     frames(&mut window, 2);
     assert!(
         tells(&window, "Look around: [ ]"),
-        "what was used last is named"
+        "the controls of the last device are named"
     );
     wait(&mut window, 10);
     window.key_up(Key::U);
@@ -66,7 +66,7 @@ fn what_can_be_done_in_space_is_told_until_it_was_tried() {
     wait(&mut window, 60);
     assert!(
         !tells(&window, "Move") && tells(&window, "Look around"),
-        "what is known is not told again"
+        "a followed instruction does not return"
     );
     window.key_down(Key::OpenBracket);
     frames(&mut window, 12);
@@ -75,23 +75,28 @@ fn what_can_be_done_in_space_is_told_until_it_was_tried() {
     assert!(!tells(&window, "Look around"));
     start(&mut window, "classic");
     frames(&mut window, 2);
-    assert!(
-        !tells(&window, "Move"),
-        "in the plane nothing needs to be told"
-    );
+    assert!(!tells(&window, "Move"), "no instructions in 2D");
 }
 
 #[test]
-fn a_pad_is_told_of_its_own_controls_and_nothing_is_told_for_ever() {
+fn instructions_name_current_device_and_time_out() {
     let mut table = Table::with(vec![
         pad(1),
         Device::at_rest(DeviceId(2), about("Stick"), 2, 12, 1),
     ]);
     game(&mut table.window).settings.reduced_motion = true;
     start(&mut table.window, "hoop");
-    table.devices[0].pad.as_mut().expect("a pad").left = [0.0, 0.7];
+    table.devices[0]
+        .pad
+        .as_mut()
+        .expect("the device is a pad")
+        .left = [0.0, 0.7];
     table.frames(2);
-    table.devices[0].pad.as_mut().expect("a pad").left = [0.0; 2];
+    table.devices[0]
+        .pad
+        .as_mut()
+        .expect("the device is a pad")
+        .left = [0.0; 2];
     table.frames(2);
     assert!(tells(&table.window, "triggers") && tells(&table.window, "right stick"));
     table.devices[1].axes = vec![1.0, 0.0];
@@ -107,13 +112,13 @@ fn a_pad_is_told_of_its_own_controls_and_nothing_is_told_for_ever() {
 }
 
 #[test]
-fn what_is_told_fits_into_the_smallest_window() {
+fn instructions_fit_into_smallest_window() {
     for text_size in [1.0, 1.6] {
         let mut window = open(Files::nowhere(), vec2(640.0, 400.0), 0.5);
         game(&mut window).settings.text_size = text_size;
         start(&mut window, "classic-3d");
         let bindings = &mut game(&mut window).settings.bindings;
-        // The longest names there are.
+        // Longest key names.
         for (action, key) in [
             (Action::Raise, Key::BrowserBack),
             (Action::Lower, Key::Questionmark),

@@ -1,4 +1,4 @@
-//! A window that nobody sees, and what people do with it.
+//! Offscreen window, and the ways in which players operate it.
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
@@ -12,35 +12,35 @@ use tamaire_play::{Bot, BotKind};
 
 pub type Window = Harness<'static, App>;
 
-/// A window with few pixels, which are drawn quickly.
+/// Opens a window with few pixels, which draws quickly.
 pub fn window(files: Files) -> Window {
     open(files, egui::vec2(960.0, 600.0), 0.25)
 }
 
-/// A window of so many points, each so many pixels wide.
+/// Opens a window of `size` points, with `pixels` pixels per point.
 pub fn open(files: Files, size: egui::Vec2, pixels: f32) -> Window {
     let builder = Harness::builder().with_size(size).wgpu();
     let builder = builder.with_pixels_per_point(pixels);
     let builder = builder.with_step_dt(TICK).with_render_cursor(false);
-    // As the game has it; the harness would darken what egui draws.
+    // Theme of the game; the harness would use dark colours.
     let builder = builder.with_theme(egui::Theme::Light);
     let mut window = builder.build_eframe(|context| {
         let mut game = Game::new(files, Sound::none(), Pads::none());
-        // Nothing depends on what else the machine does.
+        // Independent of the load of the machine.
         game.clock = Clock::of(|| 0.0);
-        App::new(context, game).expect("there is a GPU, if only in software")
+        App::new(context, game).expect("a GPU or a software adapter is available")
     });
     frames(&mut window, 2);
-    // In its first two frames the harness takes points for those without the game's zoom.
+    // In its first two frames, the harness does not yet know the game's zoom.
     let zoom = window.ctx.zoom_factor();
     window.set_size(size / zoom);
-    // Where a mouse rests when a window opens is no wish of anybody's.
+    // Away from all buttons, so that no button is hovered.
     window.hover_at(egui::Pos2::ZERO);
     frames(&mut window, 2);
     window
 }
 
-/// A folder of its own for a test, empty.
+/// Creates an empty folder for a test.
 pub fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("tamaire-{name}-{}", std::process::id()));
     let _ = std::fs::remove_dir_all(&folder);
@@ -48,7 +48,7 @@ pub fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Lets frames pass; the game never stands still, so there is no waiting for that.
+/// Runs `count` frames. The game always repaints, so there is no state to wait for.
 pub fn frames(window: &mut Window, count: usize) {
     window.run_steps(count);
 }
@@ -61,12 +61,12 @@ pub fn screen(window: &Window) -> Screen {
     window.state().game.screen()
 }
 
-/// Ticks that the round has lasted.
+/// Number of ticks of the current round.
 pub fn ticks(window: &Window) -> usize {
     window.state().game.bout.round().frames().len()
 }
 
-/// What the player is told.
+/// Returns the notices on the screen.
 pub fn notices(window: &Window) -> String {
     let notices = window.state().game.notices.iter();
     notices
@@ -75,20 +75,20 @@ pub fn notices(window: &Window) -> String {
         .join("\n")
 }
 
-/// Begins the level of this name, and lets it be seen.
+/// Starts the level with this id, and draws it.
 pub fn start(window: &mut Window, id: &str) {
     let game = game(window);
     let index = game.levels.iter().position(|level| level.id == id);
-    game.start(index.expect("it comes along"));
+    game.start(index.expect("the level is built in"));
     frames(window, 2);
 }
 
-/// The button of this name.
+/// Returns the button with this name.
 pub fn button<'w>(window: &'w Window, name: &'w str) -> Node<'w> {
     window.get_by_role_and_label(Role::Button, name)
 }
 
-/// Clicks the button of this name.
+/// Clicks the button with this name.
 pub fn click(window: &mut Window, name: &str) {
     button(window, name).scroll_to_me();
     frames(window, 3);
@@ -101,13 +101,13 @@ pub fn press(window: &mut Window, key: egui::Key) {
     frames(window, 2);
 }
 
-/// Lets a bot play as a person does, with its hand where the mouse points, while `goes_on`.
+/// Lets a bot play while `goes_on` holds, as a player does with the mouse.
 pub fn drive(game: &mut Game, kind: BotKind, goes_on: impl Fn(&Game) -> bool) {
     let mut bot = Bot::new(kind, 1);
     while goes_on(game) {
         assert!(
             game.bout.round().frames().len() < 60 * 60,
-            "a minute, and no end"
+            "the round takes longer than a minute"
         );
         game.controls.devices.pointer = game.bout.round().ask(&mut bot).goal(0);
         game.pass(TICK);
@@ -115,7 +115,7 @@ pub fn drive(game: &mut Game, kind: BotKind, goes_on: impl Fn(&Game) -> bool) {
     game.controls.devices.pointer = None;
 }
 
-/// Wins the round that is on, and waits for the result.
+/// Lets a bot win the current round, and waits for the result.
 pub fn win(window: &mut Window) {
     drive(game(window), BotKind::Squeeze, |game| {
         game.bout.won.is_none()
@@ -125,7 +125,7 @@ pub fn win(window: &mut Window) {
     assert_eq!(screen(window), Screen::Result);
 }
 
-/// What a finger does, as eframe tells it: the first is a mouse as well.
+/// Sends a touch event as eframe does: the first finger is the mouse as well.
 pub fn touch(window: &mut Window, finger: u64, phase: egui::TouchPhase, pos: egui::Pos2) {
     window.event(egui::Event::Touch {
         device_id: egui::TouchDeviceId(1),

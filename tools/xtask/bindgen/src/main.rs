@@ -1,6 +1,6 @@
-//! Makes the glue between the game and its page, as wasm-bindgen's own program does for `--target web`.
+//! Generates the bindings between the game and its page, as wasm-bindgen's program does with `--target web`.
 //!
-//! A program of its own, as what it is made of would have to be compiled for every other chore too.
+//! A separate program, so that other tasks need not compile its dependencies.
 
 use std::env;
 use std::path::PathBuf;

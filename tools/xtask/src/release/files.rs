@@ -1,4 +1,4 @@
-//! Files and archives that come out the same each time: in the order of their names, of nobody, with the time of the commit.
+//! Reproducible files and archives: sorted by name, without owner, with the time of the commit.
 
 use super::kit::Kit;
 use crate::shell::{FAILED, Failure, is_on_path, lacking, root, told};
@@ -12,14 +12,14 @@ pub fn text_of(path: &str) -> Result<String, Failure> {
     fs::read_to_string(&path).map_err(|error| told(&path, &error))
 }
 
-/// Copies a file to where it belongs, with the folders above it.
+/// Copies a file, and creates the parent folders.
 pub fn put(from: &Path, to: &Path) -> Result<(), Failure> {
     make_room(to)?;
     fs::copy(from, to).map_err(|error| told(from, &error))?;
     Ok(())
 }
 
-/// Writes a file to where it belongs, with the folders above it.
+/// Writes a file, and creates the parent folders.
 pub fn put_text(text: &str, to: &Path) -> Result<(), Failure> {
     make_room(to)?;
     fs::write(to, text).map_err(|error| told(to, &error))
@@ -30,14 +30,15 @@ fn make_room(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder).map_err(|error| told(folder, &error))
 }
 
-/// Compresses files, as manual pages and changelogs are on Debian.
+/// Compresses files with gzip, as Debian does with manual pages and changelogs.
 pub fn compress(files: &[PathBuf]) -> Result<(), Failure> {
     let mut gzip = Command::new("gzip");
     gzip.args(["--no-name", "--best", "--force"]).args(files);
     run(&mut gzip, "gzip failed; Debian: gzip")
 }
 
-/// Gives all files below a folder the time of the commit and the usual rights; those in `bin` can be run.
+/// Sets times and permissions of all files below a folder: the time of the commit, and executable programs in
+/// `bin`.
 pub fn settle(kit: &Kit, folder: &Path) -> Result<(), Failure> {
     let script = r#"
         cd "$1" &&
@@ -53,11 +54,11 @@ pub fn settle(kit: &Kit, folder: &Path) -> Result<(), Failure> {
         .arg(&kit.epoch);
     run(
         &mut shell,
-        "times and rights could not be set: it needs the usual programs of Linux",
+        "times and permissions could not be set: this requires the usual command-line tools of Linux",
     )
 }
 
-/// A .tar.gz of a folder in the stage.
+/// Packs a folder of the stage as .tar.gz.
 pub fn tar(kit: &mut Kit, stage: &Path, name: &str) -> Result<(), Failure> {
     settle(kit, &stage.join(name))?;
     let archive = kit.folder().join(format!("{name}.tar.gz"));
@@ -70,21 +71,21 @@ pub fn tar(kit: &mut Kit, stage: &Path, name: &str) -> Result<(), Failure> {
         .args(["-c", script, "tar", &kit.epoch])
         .arg(&archive)
         .arg(name);
-    execute_in(&mut shell, stage, "it needs GNU's tar")?;
+    execute_in(&mut shell, stage, "GNU tar failed or is missing")?;
     kit.add(archive);
     Ok(())
 }
 
-/// A .zip of a folder in the stage.
+/// Packs a folder of the stage as .zip.
 pub fn zip(kit: &mut Kit, stage: &Path, name: &str) -> Result<(), Failure> {
     if !is_on_path("zip") {
         return Err(lacking("zip", "Debian: zip"));
     }
     settle(kit, &stage.join(name))?;
     let archive = kit.folder().join(format!("{name}.zip"));
-    // It would be added to.
+    // zip would add to an existing archive.
     let _removed = fs::remove_file(&archive);
-    // An archive has local times in it, and two numbers of the user unless it is told not to.
+    // Local times and user ids would make archives differ.
     let script = r#"find "$2" -type f | LC_ALL=C sort | TZ=UTC zip -X -9 -q -@ "$1""#;
     let mut shell = Command::new("sh");
     shell.args(["-c", script, "zip"]).arg(&archive).arg(name);
@@ -98,7 +99,7 @@ fn execute_in(shell: &mut Command, folder: &Path, hint: &str) -> Result<(), Fail
     run(shell.current_dir(folder), hint)
 }
 
-/// Runs what nobody wants to read.
+/// Runs a command without printing it.
 fn run(command: &mut Command, hint: &str) -> Result<(), Failure> {
     let program = Path::new(command.get_program()).to_path_buf();
     let status = command.status().map_err(|error| told(&program, &error))?;

@@ -1,4 +1,4 @@
-//! What a release is made of: its version, its time, its folder, and which parts were made from this very commit.
+//! State of a release: version, time, folder, and which parts were built from the current commit.
 
 use crate::packages::IfMissing;
 use crate::shell::{CANNOT, FAILED, Failure, output_of, root, target, told};
@@ -6,28 +6,28 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a release is made of.
+/// State of a release.
 pub struct Kit {
-    /// The version of all that is inside.
+    /// Version of all contents.
     pub version: String,
-    /// When the commit was made, in seconds since 1970: the time of each file in a package.
+    /// Time of the commit [s since 1970], used for all files in packages.
     pub epoch: String,
     pub if_missing: IfMissing,
     commit: String,
     is_dirty: bool,
     folder: PathBuf,
-    /// The part that is being made, and its files.
+    /// Part that is being built, and its files.
     part: &'static str,
     made: Vec<PathBuf>,
 }
 
 impl Kit {
-    /// The kit for the commit that is checked out.
+    /// Opens the state for the current commit.
     pub fn open(if_missing: IfMissing) -> Result<Self, Failure> {
         let at = root().display().to_string();
         let git = |words: &[&str]| output_of("git", &[&["-C", &at], words].concat());
         let cannot = || Failure {
-            message: "a release is made from a commit, and git names none here".to_string(),
+            message: "a release is built from a commit, but git finds none here".to_string(),
             code: CANNOT,
         };
         let changes = git(&["status", "--porcelain"]).ok_or_else(cannot)?;
@@ -50,12 +50,12 @@ impl Kit {
         })
     }
 
-    /// Where the packages are.
+    /// Folder of the packages.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// The commit, and whether something was changed since.
+    /// Commit, with a note if there are uncommitted changes.
     pub fn commit(&self) -> String {
         let dirty = if self.is_dirty { " with changes" } else { "" };
         format!("{}{dirty}", self.commit)
@@ -65,9 +65,9 @@ impl Kit {
         self.is_dirty
     }
 
-    /// Whether this part was made from this commit, and is still there.
+    /// Whether this part was built from this commit and still exists.
     pub fn has(&self, part: &str) -> bool {
-        // What is counted together is quicker made anew than looked through.
+        // Building the sums takes less time than checking them.
         if self.is_dirty || part == "sums" {
             return false;
         }
@@ -80,38 +80,38 @@ impl Kit {
     /// Begins a part.
     pub fn begin(&mut self, part: &'static str) {
         (self.part, self.made) = (part, Vec::new());
-        // Of another commit, or none.
+        // An old note may be missing.
         let _removed = fs::remove_file(self.note(part));
     }
 
-    /// Notes a file that belongs to the part.
+    /// Adds a file to the current part.
     pub fn add(&mut self, file: PathBuf) {
         self.made.push(file);
     }
 
-    /// The files of the part so far.
+    /// Files of the current part.
     pub fn made(&self) -> &[PathBuf] {
         &self.made
     }
 
-    /// Ends a part that went well.
+    /// Completes the current part.
     pub fn finish(&self) -> Result<(), Failure> {
         let mut note = format!("{}\n", self.commit);
         for file in &self.made {
             note += &format!("{}\n", file.display());
         }
         let path = self.note(self.part);
-        // What was built from changes belongs to no commit.
+        // A build with uncommitted changes belongs to no commit.
         match self.is_dirty {
             true => Ok(()),
             false => fs::write(&path, note).map_err(|error| told(&path, &error)),
         }
     }
 
-    /// Takes away what a part made that did not go well.
+    /// Deletes the files of a failed part.
     pub fn discard(&self) {
         for file in self.made.iter().filter(|file| file.is_file()) {
-            // Then it was not there.
+            // The file may be gone already.
             let _removed = fs::remove_file(file);
         }
     }
@@ -120,28 +120,28 @@ impl Kit {
         self.folder.join("parts").join(part)
     }
 
-    /// A folder to put a package together in, empty.
+    /// Creates an empty folder to assemble a package in.
     pub fn stage(&self, name: &str) -> Result<PathBuf, Failure> {
         let stage = self.folder.join("stage").join(name);
-        // There may be none.
+        // It may not exist.
         let _removed = fs::remove_dir_all(&stage);
         fs::create_dir_all(&stage).map_err(|error| told(&stage, &error))?;
         Ok(stage)
     }
 
-    /// Where another part put its files together.
+    /// Returns the folder that another part assembled.
     pub fn staged(&self, name: &str, part: &str) -> Result<PathBuf, Failure> {
         let stage = self.folder.join("stage").join(name);
         match stage.is_dir() {
             true => Ok(stage),
             false => Err(Failure {
-                message: format!("it needs `{part}`, which is not there"),
+                message: format!("the required part `{part}` has not been built"),
                 code: CANNOT,
             }),
         }
     }
 
-    /// The packages of this version, by name.
+    /// Packages of this version, sorted by name.
     pub fn packages(&self) -> Result<Vec<PathBuf>, Failure> {
         let entries = fs::read_dir(&self.folder).map_err(|error| told(&self.folder, &error))?;
         let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
@@ -157,7 +157,7 @@ impl Kit {
         Ok(files)
     }
 
-    /// A line for each package, with its size.
+    /// Lists the packages with their sizes.
     pub fn contents(&self) -> Result<String, Failure> {
         let mut lines = String::new();
         for file in self.packages()? {
@@ -168,7 +168,7 @@ impl Kit {
     }
 }
 
-/// The bytes of a file.
+/// Size of a file [bytes]; an empty file is an error.
 pub fn size(file: &Path) -> Result<u64, Failure> {
     let data = fs::metadata(file).map_err(|error| told(file, &error))?;
     match data.len() {

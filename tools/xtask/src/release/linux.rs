@@ -1,4 +1,4 @@
-//! Packages for Linux: the same tree for a .deb and for an archive that needs no installing.
+//! Packages for Linux: the same tree for a .deb and for an archive that needs no installation.
 
 use super::files::{compress, put, put_text, settle, tar as archive, text_of};
 use super::kit::Kit;
@@ -8,21 +8,21 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The newest glibc that a symbol may ask for: that of Ubuntu 22.04, older than Debian 12's.
+/// Newest glibc version that symbols may require: that of Ubuntu 22.04, older than Debian 12's.
 const GLIBC: [u32; 2] = [2, 35];
-/// Who answers for the package. The project has no address.
+/// Maintainer of the package. The project has no address.
 const MAINTAINER: &str = "The tamaire developers <tamaire@localhost>";
-/// What a window asks for when it runs, so that no linker knows of it.
+/// Libraries that a window loads at run time, unknown to the linker.
 const WINDOW: &str = "libx11-6, libx11-xcb1, libxcursor1, libxi6, libxkbcommon0, libxkbcommon-x11-0, libvulkan1 | libegl1";
 
-/// Sizes of the icon that are there as pictures.
+/// Sizes of the icon that exist as bitmaps.
 const ICONS: [(&str, &str); 2] = [("192x192", "icon-192.png"), ("512x512", "icon-512.png")];
 
-/// The tree that packages are made of, as it lies below /usr.
+/// Builds the tree of the packages, as below /usr.
 pub fn programs(kit: &mut Kit) -> Result<(), Failure> {
     if !cfg!(target_os = "linux") {
         return Err(Failure {
-            message: "packages for Linux are made on Linux".to_string(),
+            message: "packages for Linux can only be built on Linux".to_string(),
             code: CANNOT,
         });
     }
@@ -70,7 +70,7 @@ pub fn programs(kit: &mut Kit) -> Result<(), Failure> {
         &papers.join("licences.txt"),
     )?;
     for file in ["exhibit.md", "exhibit.ja.md"] {
-        // Its pictures stay in the repository.
+        // The pictures of the document stay in the repository.
         let text = text_of(&format!("docs/{file}"))?;
         let lines = text.lines().filter(|line| !line.starts_with("!["));
         put_text(
@@ -85,7 +85,7 @@ pub fn programs(kit: &mut Kit) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Manual pages and completions, from where the program wrote them to where shells and `man` look.
+/// Moves manual pages and completions to the folders in which shells and `man` search.
 fn sort_papers(papers: &Path, share: &Path, program: &str) -> Result<(), Failure> {
     let pages = papers.join("man");
     let entries = fs::read_dir(&pages).map_err(|error| told(&pages, &error))?;
@@ -113,7 +113,7 @@ fn sort_papers(papers: &Path, share: &Path, program: &str) -> Result<(), Failure
     Ok(())
 }
 
-/// An archive that runs where it is unpacked.
+/// Builds an archive that runs without installation.
 pub fn tar(kit: &mut Kit) -> Result<(), Failure> {
     let tree = kit.staged("linux", "linux")?;
     let stage = kit.stage("tar")?;
@@ -126,7 +126,7 @@ pub fn tar(kit: &mut Kit) -> Result<(), Failure> {
     archive(kit, &stage, &name)
 }
 
-/// A package for Debian and Ubuntu.
+/// Builds a package for Debian and Ubuntu.
 pub fn deb(kit: &mut Kit) -> Result<(), Failure> {
     let tree = kit.staged("linux", "linux")?;
     for program in ["dpkg-deb", "dpkg-shlibdeps", "dpkg"] {
@@ -174,7 +174,7 @@ pub fn deb(kit: &mut Kit) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What Debian wants to know of a package.
+/// Returns the control file of the Debian package.
 fn control(version: &str, architecture: &str, linked: &str, kilobytes: u64) -> String {
     format!(
         "Package: tamaire\n\
@@ -189,17 +189,17 @@ fn control(version: &str, architecture: &str, linked: &str, kilobytes: u64) -> S
          Priority: optional\n\
          Description: push a soft, collapsing body into a basket too small for it\n \
          A game about a soft body and a basket that is too small for it: push it in\n \
-         whole, or tear bits off until it fits. In the plane and in space, for one or\n \
-         two, with mouse, keys, fingers, pads, and sticks that push back.\n \
+         whole, or tear bits off until it fits. In 2D and 3D, for one or\n \
+         two players, with mouse, keys, touch, gamepads, and force feedback joysticks.\n \
          .\n \
-         With it comes fuwafuwa, the command line of its engine, which draws, measures\n \
-         and films soft bodies that squash, tear and crumble.\n"
+         It includes fuwafuwa, the command-line program of its engine, which draws,\n \
+         measures and films soft bodies that squash, tear and crumble.\n"
     )
 }
 
-/// The packages whose libraries the programs are linked to, as dpkg-shlibdeps finds them.
+/// Returns the packages with the libraries that the programs are linked to, as found by dpkg-shlibdeps.
 fn linked_packages(stage: &Path, package: &Path) -> Result<String, Failure> {
-    // It asks for the folder of a source package.
+    // dpkg-shlibdeps requires the control file of a source package.
     put_text(
         "Source: tamaire\n\nPackage: tamaire\nArchitecture: any\n",
         &stage.join("debian/control"),
@@ -225,7 +225,7 @@ fn linked_packages(stage: &Path, package: &Path) -> Result<String, Failure> {
     }
 }
 
-/// What it takes on a disk, in steps of 1024 bytes, as Debian counts: each file rounded up.
+/// Size on disk [KiB] as Debian counts it, each file rounded up.
 fn kilobytes(folder: &Path) -> Result<u64, Failure> {
     let entries = fs::read_dir(folder).map_err(|error| told(folder, &error))?;
     entries.flatten().try_fold(1, |sum, entry| {
@@ -248,26 +248,26 @@ fn copy_tree(from: &Path, to: &PathBuf) -> Result<(), Failure> {
     execute(&mut copy, "the tree could not be copied")
 }
 
-/// Refuses a program that asks for a newer glibc than the systems have that the packages are for.
+/// Refuses a program that requires a newer glibc than the target systems have.
 fn check_glibc(program: &Path) -> Result<(), Failure> {
     let Some(table) = output_of("objdump", &["-T", &program.display().to_string()]) else {
         return Err(lacking("objdump", "Debian: binutils"));
     };
     let newest = newest_glibc(&table);
-    let asks = format!("{} asks for glibc {newest:?}", program.display());
+    let asks = format!("{} requires glibc {newest:?}", program.display());
     eprintln!("xtask: {asks}");
     match newest {
         Some(newest) if newest <= GLIBC => Ok(()),
         _ => Err(Failure {
             message: format!(
-                "{asks}, and the oldest system that packages are for has {GLIBC:?}: build on Debian 12 or Ubuntu 22.04"
+                "{asks}, but the oldest supported system has {GLIBC:?}: build on Debian 12 or Ubuntu 22.04"
             ),
             code: FAILED,
         }),
     }
 }
 
-/// The newest version of glibc that a table of symbols names.
+/// Returns the newest glibc version in a symbol table.
 fn newest_glibc(table: &str) -> Option<[u32; 2]> {
     let versions = table.split("GLIBC_").skip(1).filter_map(|rest| {
         let end = rest.find(|letter: char| !letter.is_ascii_digit() && letter != '.');
@@ -282,15 +282,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn versions_of_glibc_compare_by_number() {
+    fn newest_glibc_compares_by_number() {
         let table = "0 DF *UND* 0 (GLIBC_2.2.5) free\n0 DF *UND* 0 (GLIBC_2.34) pow\n0 DF *UND* 0 (GLIBC_2.9) x\n0 DF (GCC_3.0) y\n";
         assert_eq!(newest_glibc(table), Some([2, 34]));
         assert_eq!(newest_glibc("none"), None);
     }
 
-    /// Entries of a menu and of a list of kinds of files, read as whoever reads them does.
+    /// Reads the desktop entry and the MIME types as a desktop does.
     #[test]
-    fn the_menu_starts_the_program_and_a_double_click_watches_a_round() {
+    fn desktop_entry_and_mime_type_match() {
         let entry = text_of("packaging/linux/tamaire.desktop").ok().unwrap();
         assert!(entry.starts_with("[Desktop Entry]\n"));
         let value = |key: &str| {
@@ -308,12 +308,12 @@ mod tests {
         let game = text_of("game/tamaire/src/desktop/window.rs").ok().unwrap();
         assert!(
             game.contains("const APP: &str = \"tamaire\";"),
-            "or its window has no icon in a dock"
+            "without it, the window has no icon in a dock"
         );
     }
 
     #[test]
-    fn a_control_file_has_a_line_for_each_field() {
+    fn control_file_has_valid_fields() {
         let text = control("1.2.3", "amd64", "libc6 (>= 2.35)", 40_000);
         assert!(text.contains("\nDepends: libc6 (>= 2.35), libx11-6"));
         let is_field = |line: &str| {

@@ -1,4 +1,4 @@
-//! The programs as they are handed out: small, without the folders of whoever built them, and with the licences of all inside.
+//! Release builds of the programs: stripped, without local paths, and with the licences of all contents.
 
 use super::files::put;
 use super::kit::Kit;
@@ -10,11 +10,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The packages that have the programs.
+/// Packages of the programs.
 pub const PACKAGES: [&str; 2] = ["tamaire", "fuwafuwa_cli"];
 const PROFILE: &str = "dist";
 
-/// Builds both programs, for this system or another; the folder that they are in.
+/// Builds both programs for this system or another; returns their folder.
 pub fn build(kit: &Kit, compiler: Option<&Compiler>) -> Result<PathBuf, Failure> {
     let triple = match compiler {
         Some(compiler) => compiler.system.triple.to_string(),
@@ -49,7 +49,7 @@ pub fn build(kit: &Kit, compiler: Option<&Compiler>) -> Result<PathBuf, Failure>
     for language in ["CFLAGS", "CXXFLAGS"] {
         command.env(language, flags.join(" "));
     }
-    // It builds what it compares itself with, from sources that a player does not have.
+    // The benchmark program is built from sources, which players do not have.
     command.env("FUWAFUWA_SOURCES", "/tamaire/apps/fuwafuwa_cli");
     command.env("SOURCE_DATE_EPOCH", &kit.epoch);
     command.env("CARGO_INCREMENTAL", "0");
@@ -58,17 +58,17 @@ pub fn build(kit: &Kit, compiler: Option<&Compiler>) -> Result<PathBuf, Failure>
     Ok(folder)
 }
 
-/// Copies a program to where it belongs, without the names that only a debugger needs: not every linker leaves them out.
+/// Copies a program without its debug symbols, because not every linker omits them.
 pub fn put_stripped(kit: &Kit, from: &Path, to: &Path, strip: &str) -> Result<(), Failure> {
     put(from, to)?;
     let mut command = Command::new(strip);
     command.arg("--strip-all").arg(to);
-    // A program for Windows says when it was linked, and would say now.
+    // Windows programs contain the time of linking, by default the current time.
     command.env("SOURCE_DATE_EPOCH", &kit.epoch);
     execute(&mut command, "Debian: binutils")
 }
 
-/// The target that this machine's programs are built for.
+/// Target triple of this machine.
 pub fn host() -> Result<String, Failure> {
     let mut rustc = Command::new(env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
     let output = rustc.args(["--print", "host-tuple"]).output();
@@ -76,7 +76,7 @@ pub fn host() -> Result<String, Failure> {
     Ok(String::from_utf8_lossy(&output.stdout).trim().to_string())
 }
 
-/// A file with the licences of all that is inside; without Node, what the project knows by itself.
+/// Writes a file with the licences of all contents; without Node, only THIRD-PARTY.md is used.
 pub fn licences(kit: &Kit, triple: &str) -> Result<PathBuf, Failure> {
     let file = kit
         .folder()
@@ -86,7 +86,7 @@ pub fn licences(kit: &Kit, triple: &str) -> Result<PathBuf, Failure> {
     fs::create_dir_all(&parts).map_err(|error| told(&parts, &error))?;
     if !answers("node") {
         eprintln!(
-            "xtask: there is no Node: the programs show THIRD-PARTY.md only, and NOT the texts of all licences"
+            "xtask: Node not found: the programs will show THIRD-PARTY.md only, and NOT all licence texts"
         );
         return Ok(root().join("THIRD-PARTY.md"));
     }
@@ -95,6 +95,6 @@ pub fn licences(kit: &Kit, triple: &str) -> Result<PathBuf, Failure> {
         .arg(&file)
         .arg(triple)
         .args(PACKAGES);
-    execute(&mut node, "the licences could not be gathered")?;
+    execute(&mut node, "the licences could not be collected")?;
     Ok(file)
 }

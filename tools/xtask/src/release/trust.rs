@@ -1,4 +1,4 @@
-//! What lets others check what they got: sums, what is inside, and whether that is known to be bad.
+//! Data to verify a release: checksums, bills of materials, and known vulnerabilities.
 
 use super::kit::Kit;
 use super::programs;
@@ -11,7 +11,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// A bill of materials for each system.
+/// Writes a bill of materials for each system.
 pub fn bills(kit: &mut Kit) -> Result<(), Failure> {
     if !answers("node") {
         return Err(lacking("Node", "Debian: nodejs"));
@@ -37,7 +37,8 @@ pub fn bills(kit: &mut Kit) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What `deny.toml` asks for: licences, origins, doubles, and advisories where their database can be had.
+/// Checks the rules of `deny.toml`: licences, sources, duplicates, and advisories if their database is
+/// available.
 pub fn deny(kit: &mut Kit) -> Result<(), Failure> {
     let is_there = || output_of("cargo", &["deny", "--version"]).is_some();
     if !is_there() && kit.if_missing == IfMissing::Install {
@@ -57,28 +58,31 @@ pub fn deny(kit: &mut Kit) -> Result<(), Failure> {
         "bans",
         "sources",
     ]);
-    execute(&mut check, "deny.toml says what may be inside, and why")?;
-    // Fetching tells whether there is a database; what it says then counts.
+    execute(
+        &mut check,
+        "see deny.toml for the permitted contents and the reasons",
+    )?;
+    // The download shows whether the database is available; the check then counts.
     let mut fetch = cargo();
     fetch.args(["deny", "fetch", "db"]);
     if execute(&mut fetch, "").is_err() {
         return Err(Failure {
-            message: "the database of advisories could not be fetched: nobody looked whether what is inside is known to be bad"
+            message: "the database of advisories could not be downloaded: known vulnerabilities were NOT checked"
                 .to_string(),
             code: CANNOT,
         });
     }
     let mut check = cargo();
     check.args(["deny", "--all-features", "check", "advisories"]);
-    execute(&mut check, "an advisory names something that is inside")
+    execute(&mut check, "a known vulnerability affects a dependency")
 }
 
-/// The sums, for `sha256sum --check SHA256SUMS`.
+/// Writes the checksums for `sha256sum --check SHA256SUMS`.
 pub fn sums(kit: &mut Kit) -> Result<(), Failure> {
     let packages = kit.packages()?;
     if packages.is_empty() {
         return Err(Failure {
-            message: "there is no package to sum up".to_string(),
+            message: "no packages found for the checksums".to_string(),
             code: CANNOT,
         });
     }

@@ -1,4 +1,4 @@
-//! An archive for Windows: programs that need nothing beside them.
+//! Archive for Windows with self-contained programs.
 
 use super::files::{put, put_text, zip};
 use super::kit::Kit;
@@ -11,7 +11,7 @@ use std::path::Path;
 /// Libraries that come with a compiler and not with Windows.
 const NOT_THERE: [&str; 4] = ["libgcc", "libstdc++", "libwinpthread", "libssp"];
 
-/// Builds both programs, and packs them.
+/// Builds and packs both programs.
 pub fn archive(kit: &mut Kit) -> Result<(), Failure> {
     let compiler = WINDOWS.compiler(
         Wanted::Build,
@@ -49,7 +49,7 @@ pub fn archive(kit: &mut Kit) -> Result<(), Failure> {
     zip(kit, &stage, &name)
 }
 
-/// Refuses a program that asks for a library which no Windows has by itself.
+/// Refuses a program that requires a library which is not part of Windows.
 fn check_imports(program: &Path) -> Result<(), Failure> {
     let path = program.display().to_string();
     let Some(text) = output_of("x86_64-w64-mingw32-objdump", &["-p", &path]) else {
@@ -65,7 +65,7 @@ fn check_imports(program: &Path) -> Result<(), Failure> {
         [] => Ok(()),
         _ => Err(Failure {
             message: format!(
-                "{path} needs {}, which Windows does not have",
+                "{path} requires {}, which is not part of Windows",
                 foreign.join(", ")
             ),
             code: FAILED,
@@ -73,7 +73,7 @@ fn check_imports(program: &Path) -> Result<(), Failure> {
     }
 }
 
-/// The libraries that a program asks for, from what objdump says of it.
+/// Returns the libraries in the output of objdump.
 fn imports(text: &str) -> impl Iterator<Item = &str> {
     text.lines()
         .filter_map(|line| line.trim().strip_prefix("DLL Name: "))
@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn libraries_are_found_in_what_objdump_says() {
+    fn imports_are_found_in_objdump_output() {
         let text = "\tDLL Name: KERNEL32.dll\n\tvma: x\n\n\tDLL Name: libgcc_s_seh-1.dll\n";
         assert_eq!(
             imports(text).collect::<Vec<_>>(),

@@ -1,5 +1,5 @@
-// Plays the packed game in real browsers: all of it in Chromium, the main things in Firefox, and what is named in both.
-// usage: node all.mjs SITE MODULE [TEST …]   MODULE: the .wasm of tools/determinism_checks; TEST: as in play or play-firefox
+// Tests the packed game in real browsers. By default all tests run in Chromium and the main ones in Firefox.
+// usage: node all.mjs SITE MODULE [TEST …]   MODULE: the .wasm of crates/browser_checks; TEST: for example play or play-firefox
 import { join } from "node:path";
 import { serve } from "../serve.mjs";
 import { checkBits } from "./bits.mjs";
@@ -13,12 +13,12 @@ import { launch } from "./visit.mjs";
 const [folder, module, ...wanted] = process.argv.slice(2);
 const site = await serve(folder);
 
-/** Played in either browser. @type {Record<string, (browser: any, site: any) => Promise<void>>} */
+/** Tests for both browsers, by name. @type {Record<string, (browser: any, site: any) => Promise<void>>} */
 const PLAYED = { ...game, ...keeping };
 const NAMES = ["preview", "first", "play", "touch", "offline", "links", "clipboard", "drops", "lost", "pictures", "pad"]
   .concat(["forbidden", "full", "tabs", "race", "newer"]);
 
-/** Each with a browser of its own, which knows nothing yet. @type {[string, "chromium" | "firefox" | "node", (browser?: any) => Promise<void>][]} */
+/** All tests. Each one gets a fresh browser. @type {[string, "chromium" | "firefox" | "node", (browser?: any) => Promise<void>][]} */
 const TESTS = ["chromium", "firefox"].flatMap((kind) => [
   ...NAMES.map((name) => [name, kind, (browser) => PLAYED[name](browser, site)]),
   ["sound", kind, (browser) => checkSound(browser, site.address)],
@@ -27,10 +27,10 @@ const TESTS = ["chromium", "firefox"].flatMap((kind) => [
   ["speed", kind, (browser) => measureSpeed(browser, module)],
 ]);
 TESTS.push(["synth", "node", () => checkSynth(join(folder, keeping.versionOf(folder), "sound.wasm"))]);
-/** What is done of these where nothing is named; `newer` takes minutes. */
+/** Tests that run by default; `newer` takes minutes. */
 const USUAL = { chromium: [...NAMES.filter((name) => name !== "newer"), "sound", "silence", "bits"], firefox: ["play", "offline", "race", "bits"], node: ["synth"] };
 
-/** Whether it passes. A browser on a machine that is busy may be late once; a fault is there again. */
+/** Runs a test; returns whether it passes. Failed tests are repeated once, because a busy machine may cause a timeout. */
 async function passes(name, kind, test) {
   const start = performance.now();
   const browser = kind === "node" ? undefined : await launch(kind);
@@ -50,7 +50,7 @@ let failed = 0;
 for (const [name, kind, test] of TESTS) {
   const isWanted = wanted.includes(name) || wanted.includes(`${name}-${kind}`);
   if (wanted.length ? !isWanted : !USUAL[kind].includes(name)) continue;
-  if (!(await passes(name, kind, test)) && !(await passes(`${name}, once more`, kind, test))) {
+  if (!(await passes(name, kind, test)) && !(await passes(`${name}, second try`, kind, test))) {
     failed++;
   }
 }

@@ -1,4 +1,4 @@
-// The same bits in a browser as natively: the golden scenes, replays recorded natively, and replays recorded in the browser.
+// Compares bits in a browser with native ones: golden scenes, replays recorded natively, and replays recorded in the browser.
 // usage: node bits.mjs MODULE.wasm   in Chromium, then in Firefox
 import assert from "node:assert/strict";
 import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
@@ -9,7 +9,7 @@ import { inDebug, open } from "./checks.mjs";
 import { launch } from "./visit.mjs";
 
 /**
- * Fails where a bit differs.
+ * Fails if a bit differs.
  * @param {Record<string, import("puppeteer-core").Browser>} browsers by name
  * @param {string} module path of the .wasm of tools/determinism_checks
  */
@@ -24,7 +24,7 @@ export async function checkBits(browsers, module) {
       await checkReplays(name, checks, recorded);
       const written = join(folder, name);
       mkdirSync(written);
-      // Each plays another series, none the one that was recorded natively.
+      // Each browser plays a series of its own, different from the native one.
       for (const game of await checks.call("series", 1 + index)) {
         writeFileSync(join(written, `${game}.tamaire`), await checks.call("record", game));
       }
@@ -41,9 +41,9 @@ async function checkGolden(/** @type {string} */ browser, /** @type {Awaited<Ret
   assert(scenes.length > 0);
   for (const [scene, name] of scenes.entries()) {
     const { hash, golden } = await checks.call("golden", scene);
-    assert.equal(hash, golden, `${browser}: the golden scene “${name}” ends in other bits`);
+    assert.equal(hash, golden, `${browser}: the result of the golden scene “${name}” differs`);
   }
-  console.log(`${browser}: ${scenes.length} golden scenes end in the bits they must`);
+  console.log(`${browser}: ${scenes.length} golden scenes have the expected results`);
 }
 
 async function checkReplays(browser, checks, /** @type {string} */ folder) {
@@ -53,7 +53,7 @@ async function checkReplays(browser, checks, /** @type {string} */ folder) {
     const told = checks.call("verify", readFileSync(join(folder, file), "utf8"));
     await told.catch((/** @type {Error} */ error) => assert.fail(`${browser}: ${file}, recorded natively: ${error.message}`));
   }
-  console.log(`${browser}: ${files.length} replays recorded natively go as they say`);
+  console.log(`${browser}: ${files.length} replays recorded natively are verified`);
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {

@@ -1,4 +1,4 @@
-// A blank page of a browser with the module of tools/determinism_checks.
+// Opens a blank page with the module of crates/browser_checks.
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
@@ -7,7 +7,7 @@ import { join, resolve } from "node:path";
 const ROOT = join(import.meta.dirname, "../../../..");
 const CARGO = process.env.CARGO ?? "cargo";
 
-/** Alone in its process, a page may look at a clock of 5 µs instead of 100. */
+/** Headers for cross-origin isolation, which gives clocks a resolution of 5 µs instead of 100 µs. */
 const ALONE = { "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp" };
 
 /**
@@ -31,7 +31,7 @@ export async function open(browser, module) {
   const page = await browser.newPage();
   await page.goto(`http://localhost:${port}/`);
   const checks = await page.evaluateHandle(async () => {
-    // @ts-ignore: the page has it
+    // @ts-ignore: a module of the page
     const { open } = await import("/module.js");
     return open("/module.wasm");
   });
@@ -47,14 +47,14 @@ export async function open(browser, module) {
   };
 }
 
-/** Runs an example natively, in release; what it printed. @param {"utf8" | "buffer"} encoding @param {string} crate @param {string} name @param {...string} words */
+/** Runs an example natively in release mode; returns its output. @param {"utf8" | "buffer"} encoding @param {string} crate @param {string} name @param {...string} words */
 export function natively(encoding, crate, name, ...words) {
   const cargo = ["run", "--quiet", "--release", "--package", ...crate.split(" "), "--example", name, "--", ...words];
   const stdio = /** @type {["ignore", "pipe", "inherit"]} */ (["ignore", "pipe", "inherit"]);
   return execFileSync(CARGO, cargo, { cwd: ROOT, stdio, encoding, maxBuffer: 1 << 26 });
 }
 
-/** Runs an example that is built as the tests are, of what they were built of; what it printed. @param {string} name @param {...string} words */
+/** Runs an example in the build of the tests; returns its output. @param {string} name @param {...string} words */
 export function inDebug(name, ...words) {
   const build = ["build", "--quiet", "--workspace", "--all-features", "--example", name];
   execFileSync(CARGO, build, { cwd: ROOT, stdio: ["ignore", "ignore", "inherit"] });

@@ -1,4 +1,4 @@
-// The game in a browser, as somebody plays it: with the mouse, with a finger, offline, from a link …
+// Tests of the game in a browser, operated as a player does: with mouse, touch, offline, from a link …
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { addressed } from "../address.mjs";
@@ -11,7 +11,7 @@ const LEVELS = new URL("../../../../game/tamaire_play/levels/", import.meta.url)
 /** @typedef {{address: string, folder: string, sent: {path: string, bytes: number}[]}} Site */
 /** @typedef {import("puppeteer-core").Browser} Browser */
 
-/** What a preview is made of: whole addresses, or none. @param {Browser} browser */
+/** Link previews have absolute URLs, or none. @param {Browser} browser */
 export async function preview(browser) {
   const html = readFileSync(new URL("../../../../game/tamaire/web/index.html", import.meta.url), "utf8");
   const page = await browser.newPage();
@@ -31,9 +31,9 @@ export async function preview(browser) {
   await page.close();
 }
 
-/** What comes over the wire until somebody can play, and how long that takes. @param {Browser} browser @param {Site} site */
+/** Measures download size and time until the game can be played. @param {Browser} browser @param {Site} site */
 export async function first(browser, site) {
-  for (const [visit, what] of [["cold", "the first visit"], ["warm", "the second"]]) {
+  for (const [visit, what] of [["cold", "first visit"], ["warm", "second visit"]]) {
     site.sent.length = 0;
     const page = await browser.newPage();
     const start = performance.now();
@@ -48,7 +48,7 @@ export async function first(browser, site) {
   }
 }
 
-/** Title, round, win, result; the record is there after a reload. @param {Browser} browser @param {Site} site */
+/** A round can be won, and its record survives a reload. @param {Browser} browser @param {Site} site */
 export async function play(browser, site) {
   const visit = await Visit.begin(browser, site.address);
   await start(visit, "click");
@@ -67,7 +67,7 @@ export async function play(browser, site) {
   await visit.page.close();
 }
 
-/** The same with a finger, upright and across. @param {Browser} browser @param {Site} site */
+/** A round can be won by touch, in portrait and landscape. @param {Browser} browser @param {Site} site */
 export async function touch(browser, site) {
   for (const size of PHONES) {
     const visit = await Visit.begin(browser, site.address, { size, isTouch: true });
@@ -92,13 +92,13 @@ export async function start(visit, how) {
   await visit.sees("Play");
 }
 
-/** Without a network, once it was there. @param {Browser} browser @param {Site} site */
+/** The game works offline after the first visit. @param {Browser} browser @param {Site} site */
 export async function offline(browser, site) {
   const server = await serve(site.folder);
   const visit = await Visit.begin(browser, server.address);
   await visit.page.waitForFunction(async () => (await navigator.serviceWorker.ready).active?.state === "activated");
   await visit.page.setOfflineMode(true);
-  // It is truly gone: whatever is asked for fails.
+  // All requests to the server now fail.
   await server.close();
   await visit.page.reload();
   await visit.comes();
@@ -107,7 +107,7 @@ export async function offline(browser, site) {
   await visit.page.close();
 }
 
-/** A round goes from one visitor to another. @param {Browser} browser @param {Site} site */
+/** Rounds and levels can be shared as links. @param {Browser} browser @param {Site} site */
 export async function links(browser, site) {
   const visit = await Visit.begin(browser, site.address);
   await visit.page.evaluate(() => {
@@ -119,7 +119,7 @@ export async function links(browser, site) {
   await visit.until((report) => report.ticks > 30, "half a second passes");
   await visit.press("Escape");
   await visit.click("Link to this level");
-  await visit.hears("The link is copied");
+  await visit.hears("Link copied");
   await visit.page.waitForFunction(() => globalThis.copied);
   const level = await visit.page.evaluate(() => globalThis.copied);
   assert.match(level, /^http:\/\/localhost:\d+\/#l1/);
@@ -129,7 +129,7 @@ export async function links(browser, site) {
   await visit.click("Back");
   await visit.click("Replays");
   await visit.click("Copy link");
-  await visit.until((report) => report.notices.some((text) => text.includes("The link is copied")), "a copied link");
+  await visit.until((report) => report.notices.some((text) => text.includes("Link copied")), "a copied link");
   await visit.page.waitForFunction(() => globalThis.copied.includes("#r1"));
   const round = await visit.page.evaluate(() => globalThis.copied);
   visit.isQuiet();
@@ -140,10 +140,10 @@ export async function links(browser, site) {
   await other.click("Race it");
   await other.sees("Play");
   await other.until((report) => report.ticks > 30, "the race goes on");
-  // The same tab, another link.
+  // Another link in the same tab.
   await other.page.evaluate((link) => void (location.hash = link), level.split("#")[1]);
   await other.until((report) => report.screen === "Play" && report.ticks < 20, "the level of the link");
-  // A broken one, in this tab and in others.
+  // A broken link, in this tab and in others.
   const cut = round.split("#")[1].slice(0, -9);
   await other.until((report) => report.notices.length === 0, "silence");
   await other.page.evaluate((link) => void (location.hash = link), cut);
@@ -159,7 +159,7 @@ export async function links(browser, site) {
   await other.page.close();
 }
 
-/** A browser that keeps its clipboard to itself says so, in the visitor's language. @param {Browser} browser @param {Site} site */
+/** A refused clipboard access is reported in the player's language. @param {Browser} browser @param {Site} site */
 export async function clipboard(browser, site) {
   const visit = await Visit.begin(browser, site.address);
   await visit.page.evaluate(() => {
@@ -177,12 +177,12 @@ export async function clipboard(browser, site) {
   for (const name of ["Levels", "Back", "日本語"]) await visit.click(name);
   await visit.until((report) => report.notices.length === 0, "silence");
   await refused(["あそぶ", "クラシック", "このステージのリンク"], "クリップボード");
-  // eframe draws Japanese with a canvas until its letters are there.
+  // eframe draws Japanese with a canvas until the font is loaded.
   visit.isQuiet(/willReadFrequently/);
   await visit.page.close();
 }
 
-/** Files that are dropped onto the page. @param {Browser} browser @param {Site} site */
+/** Files can be dropped onto the page. @param {Browser} browser @param {Site} site */
 export async function drops(browser, site) {
   const visit = await Visit.begin(browser, site.address);
   for (const [name, is] of /** @type {[string, (report: any) => boolean][]} */ ([
@@ -196,7 +196,7 @@ export async function drops(browser, site) {
   await visit.hears("broken.png");
   await drop(visit, "broken.tamaire", [255, 0]);
   await visit.hears("broken.tamaire");
-  // What was dropped stays.
+  // Dropped levels survive a reload.
   await visit.page.reload();
   await visit.comes();
   await visit.click("Play");
@@ -205,7 +205,7 @@ export async function drops(browser, site) {
   await visit.page.close();
 }
 
-/** Drops a file, of the levels where nothing else is said. @param {Visit} visit @param {string} name @param {number[]} bytes */
+/** Drops a file, by default one of the levels. @param {Visit} visit @param {string} name @param {number[]} bytes */
 export function drop(visit, name, bytes = [...readFileSync(new URL(name, LEVELS))]) {
   return visit.page.evaluate(
     (name, bytes) => {
@@ -218,7 +218,7 @@ export function drop(visit, name, bytes = [...readFileSync(new URL(name, LEVELS)
   );
 }
 
-/** The GPU goes, and comes back. @param {Browser} browser @param {Site} site */
+/** The game survives a lost GPU. @param {Browser} browser @param {Site} site */
 export async function lost(browser, site) {
   const visit = await Visit.begin(browser, site.address);
   await start(visit, "click");
@@ -232,7 +232,7 @@ export async function lost(browser, site) {
   await visit.page.close();
 }
 
-/** What is made is downloaded. @param {Browser} browser @param {Site} site */
+/** Photos, clips and replays are downloaded. @param {Browser} browser @param {Site} site */
 export async function pictures(browser, site) {
   const visit = await Visit.begin(browser, site.address);
   await visit.page.evaluate(() => {
@@ -261,7 +261,7 @@ export async function pictures(browser, site) {
   await visit.page.close();
 }
 
-/** A pad presses, moves and rumbles. @param {Browser} browser @param {Site} site */
+/** A pad can press buttons, move the hand and rumble. @param {Browser} browser @param {Site} site */
 export async function pad(browser, site) {
   const before = () => {
     globalThis.effects = [];
@@ -278,7 +278,7 @@ export async function pad(browser, site) {
     navigator.getGamepads = () => [null, globalThis.pad];
   };
   const visit = await Visit.begin(browser, site.address, { before });
-  // Held until it is heard: a slow page looks seldom.
+  // Held until the page reacts, because a slow page polls seldom.
   const press = async (/** @type {number} */ button, /** @type {string} */ screen) => {
     const hold = (/** @type {boolean} */ pressed) =>
       visit.page.evaluate((button, pressed) => void (globalThis.pad.buttons[button] = { pressed, value: +pressed }), button, pressed);
@@ -294,7 +294,7 @@ export async function pad(browser, site) {
   const effects = await visit.page.evaluate(() => globalThis.effects);
   assert(effects.every(([kind, ...both]) => kind === "dual-rumble" && both.every((one) => one >= 0 && one <= 1)), JSON.stringify(effects));
   await press(9, "Paused");
-  // Pulled out, it is silent and not missed.
+  // After unplugging, it is silent and causes no errors.
   await visit.page.evaluate(() => void (globalThis.pad.connected = false));
   await seconds(1);
   visit.isQuiet();

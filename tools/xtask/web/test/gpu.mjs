@@ -1,12 +1,12 @@
-// What a page has the GPU keep: counted where it asks for it, as browsers tell nobody.
+// Counts GPU objects and memory of a page at their creation, because browsers do not report them.
 
-/** In the page, before it begins: counts what lives, as `gpu()` tells. */
+/** Runs in the page before it starts: counts live objects for `gpu()`. */
 export function countGpu() {
-  /** What lives, and how many bytes were asked for in it. @type {Map<object, number>} */
+  /** Live objects, with the bytes requested for each. @type {Map<object, number>} */
   const living = new Map();
   const context = WebGL2RenderingContext.prototype;
   const GL = WebGL2RenderingContext;
-  /** Calls `told` beside a function, with what came of it. */
+  /** Wraps a function so that `told` gets its arguments and result. */
   const beside = (/** @type {string} */ name, /** @type {(gl: any, words: any[], answer: any) => void} */ told) => {
     const inner = context[name];
     context[name] = function (...words) {
@@ -39,7 +39,7 @@ export function countGpu() {
     [GL.TEXTURE_3D]: GL.TEXTURE_BINDING_3D,
     [GL.TEXTURE_CUBE_MAP]: GL.TEXTURE_BINDING_CUBE_MAP,
   };
-  /** Bytes of a pixel, where these are not four. */
+  /** Bytes per pixel of formats that do not have four. */
   const PIXELS = { [GL.R8]: 1, [GL.RG8]: 2, [GL.DEPTH_COMPONENT16]: 2, [GL.R16F]: 2, [GL.RGBA16F]: 8, [GL.RGBA32F]: 16, [GL.RG32F]: 8 };
   const pixel = (/** @type {number} */ format) => PIXELS[format] ?? 4;
   const keep = (gl, /** @type {number} */ binding, /** @type {number} */ bytes) => living.set(gl.getParameter(binding), bytes);

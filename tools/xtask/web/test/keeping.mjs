@@ -1,4 +1,4 @@
-// What the browser keeps: where it may not, where there is no room, between two tabs, and from one version to the next.
+// Tests of the storage: without permission, without space, with two tabs, and with a newer version.
 import assert from "node:assert/strict";
 import { cpSync, mkdtempSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -11,7 +11,7 @@ import { Visit } from "./visit.mjs";
 /** @typedef {import("./game.mjs").Site} Site */
 /** @typedef {import("./game.mjs").Browser} Browser */
 
-/** Where the browser keeps nothing. @param {Browser} browser @param {Site} site */
+/** A browser without storage is reported, and the game works. @param {Browser} browser @param {Site} site */
 export async function forbidden(browser, site) {
   const before = () => Object.defineProperty(globalThis, "indexedDB", { get: () => { throw new DOMException("refused", "SecurityError"); } });
   const visit = await Visit.begin(browser, site.address, { before });
@@ -21,7 +21,7 @@ export async function forbidden(browser, site) {
   await visit.page.close();
 }
 
-/** Where there is no room any more: that alone is said. @param {Browser} browser @param {Site} site */
+/** A full storage is reported once, and nothing else. @param {Browser} browser @param {Site} site */
 export async function full(browser, site) {
   const before = () => {
     IDBObjectStore.prototype.put = () => {
@@ -32,7 +32,7 @@ export async function full(browser, site) {
   await start(visit, "click");
   await visit.press("Escape");
   await visit.click("Save replay");
-  const { notices } = await visit.hears("no room");
+  const { notices } = await visit.hears("no space left");
   assert.equal(notices.length, 1, notices.join("\n"));
   await visit.click("Levels");
   await visit.click("Back");
@@ -42,7 +42,7 @@ export async function full(browser, site) {
   await visit.page.close();
 }
 
-/** What one tab keeps the other finds. @param {Browser} browser @param {Site} site */
+/** Tabs see each other's changes. @param {Browser} browser @param {Site} site */
 export async function tabs(browser, site) {
   const one = await Visit.begin(browser, site.address);
   const other = await Visit.begin(browser, site.address);
@@ -51,7 +51,7 @@ export async function tabs(browser, site) {
   await one.press("Escape");
   await one.click("Save replay");
   await one.hears("Saved");
-  assert.deepEqual(await kept(one), ["replay/classic-1"], "it is kept when that is said");
+  assert.deepEqual(await kept(one), ["replay/classic-1"], "saved before the notice appears");
   await other.page.bringToFront();
   await other.click("Replays");
   await other.place("Watch");
@@ -68,12 +68,12 @@ export async function tabs(browser, site) {
   await other.page.close();
 }
 
-/** Two tabs change the same thing at the same time, over and over: no change is lost. @param {Browser} browser @param {Site} site */
+/** Concurrent changes of the same entry in two tabs are not lost. @param {Browser} browser @param {Site} site */
 export async function race(browser, site) {
   const TIMES = 100;
   const script = `${site.address}${versionOf(site.folder)}/host.js`;
   const [one, other] = [await browser.newPage(), await browser.newPage()];
-  // Any page from there that is not the game.
+  // Any page of the same origin without the game.
   await Promise.all([one, other].map((page) => page.goto(`${site.address}licences.txt`)));
   const count = async (/** @type {string} */ script, /** @type {number} */ times) => {
     const { Host } = await import(script);
@@ -89,7 +89,7 @@ export async function race(browser, site) {
       host.keep("note/count", bytes, 0);
     };
     for (let time = 0; time < times; time++) {
-      // Some at once, some one after the other.
+      // Two at once, then the next two.
       const done = [host.alone(add), host.alone(add)];
       failures.push(...(await Promise.all(done)).filter((failure) => failure !== undefined));
     }
@@ -110,7 +110,7 @@ export async function race(browser, site) {
   await Promise.all([one, other, third].map((page) => page.close()));
 }
 
-/** A newer version takes over with the second reload, and finds all that was kept. @param {Browser} browser @param {Site} site */
+/** A newer version takes over at the second reload and finds all saved data. @param {Browser} browser @param {Site} site */
 export async function newer(browser, site) {
   const folder = mkdtempSync(join(tmpdir(), "tamaire-newer-"));
   const served = join(folder, "site");
@@ -137,10 +137,10 @@ export async function newer(browser, site) {
     rename(served, old, version);
     await visit.click("日本語");
     await visit.until(({ language }) => language === "Japanese", "another language");
-    // Settings are kept once they rest, or when the page goes.
+    // Settings are saved once they stop changing, or when the page closes.
     await visit.page.reload();
     await visit.comes();
-    assert.equal(await played(visit), old, "it does not wait for the newer one");
+    assert.equal(await played(visit), old, "the old version starts without waiting for the newer one");
     await visit.page.waitForFunction(async () => (await navigator.serviceWorker.ready).waiting, { timeout: 90_000 });
     await visit.page.reload();
     await visit.page.waitForFunction(
@@ -156,10 +156,10 @@ export async function newer(browser, site) {
     await visit.click("もどる");
     await visit.click("あそぶ");
     await visit.place("cat");
-    // The one before is thrown away once nobody plays it.
+    // The old version is deleted once no tab uses it.
     await visit.page.waitForFunction(async () => (await caches.keys()).length === 1);
     assert.deepEqual(await visit.page.evaluate(() => caches.keys()), [`tamaire-${version}`]);
-    // eframe draws Japanese with a canvas until its letters are there.
+    // eframe draws Japanese with a canvas until the font is loaded.
     visit.isQuiet(/willReadFrequently/);
     await visit.page.close();
   } finally {
@@ -168,13 +168,13 @@ export async function newer(browser, site) {
   }
 }
 
-/** The folder that is named by its contents. @param {string} folder */
+/** Returns the name of the folder named by a content hash. @param {string} folder */
 export const versionOf = (folder) => /** @type {string} */ (readdirSync(folder).find((name) => /^[0-9a-f]{12}$/.test(name)));
 
-/** The version that is played. @param {Visit} visit */
+/** Returns the running version. @param {Visit} visit */
 const played = (visit) => visit.page.evaluate(() => document.querySelector("script")?.src.split("/").at(-2));
 
-/** Makes another version of a packed folder. @param {string} folder @param {string} old @param {string} version */
+/** Renames the version of a packed folder. @param {string} folder @param {string} old @param {string} version */
 function rename(folder, old, version) {
   for (const end of ["", ".br"]) {
     renameSync(join(folder + end, old), join(folder + end, version));
@@ -186,7 +186,7 @@ function rename(folder, old, version) {
   }
 }
 
-/** The keys of what is kept. @param {Visit} visit @returns {Promise<string[]>} */
+/** Returns the keys in the storage. @param {Visit} visit @returns {Promise<string[]>} */
 function kept(visit) {
   return visit.page.evaluate(
     () =>

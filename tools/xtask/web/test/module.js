@@ -1,20 +1,20 @@
-// The module of tools/determinism_checks for a page.
+// Wrapper of the module of crates/browser_checks for a page.
 
 /** @param {string} address */
 export async function open(address) {
   const { instance } = await WebAssembly.instantiateStreaming(fetch(address));
   const wasm = /** @type {Record<string, any>} */ (instance.exports);
-  // Memory that grows is another buffer.
+  // The buffer is replaced when the memory grows.
   const bytes = (at, length) => new Uint8Array(wasm.memory.buffer, at, length);
   const text = (at, length) => new TextDecoder().decode(bytes(at, length));
   const output = () => text(wasm.checks_output(), wasm.checks_output_length());
 
-  /** What came of a call with this input; throws the reason where nothing did. */
+  /** Returns the output of a call with this input; throws the reason of a failure. */
   function answer(call, /** @type {string} */ input) {
     const encoded = new TextEncoder().encode(input);
     const at = wasm.checks_input(encoded.length);
     if (at === 0) {
-      throw new Error(`the module has no room for ${encoded.length} bytes`);
+      throw new Error(`the module cannot take an input of ${encoded.length} bytes`);
     }
     bytes(at, encoded.length).set(encoded);
     if (call() === 0) {
@@ -24,12 +24,12 @@ export async function open(address) {
   }
 
   return {
-    /** The names of the golden scenes. */
+    /** Returns the names of the golden scenes. */
     scenes() {
       const scenes = Array.from({ length: wasm.golden_count() }, (_, scene) => scene);
       return scenes.map((scene) => text(wasm.golden_name(scene), wasm.golden_name_length(scene)));
     },
-    /** Runs a golden scene: its hash, the one it must have, and how long it took [ms]. */
+    /** Runs a golden scene; returns its hash, the expected hash, and the duration [ms]. */
     golden(/** @type {number} */ scene) {
       const start = performance.now();
       const found = wasm.golden_run(scene);
@@ -37,16 +37,16 @@ export async function open(address) {
       const [hash, golden] = [found, wasm.golden_hash(scene)].map((hash) => BigInt.asUintN(64, hash).toString(16));
       return { hash, golden, milliseconds };
     },
-    /** What is played in a series of rounds. */
+    /** Returns the games in a series of rounds. */
     series(/** @type {number} */ number) {
       wasm.checks_series(number);
       return output().split("\n");
     },
-    /** Plays a round; its replay. */
+    /** Plays a round; returns its replay. */
     record: (/** @type {string} */ game) => answer(wasm.checks_record, game),
-    /** Plays a replay; throws where it goes another way than it says. */
+    /** Verifies a replay; throws if the result differs. */
     verify: (/** @type {string} */ replay) => answer(wasm.checks_verify, replay),
-    /** Plays a round of at most so many ticks: how long each tick of the simulation took [ms]. */
+    /** Plays a round of at most `most` ticks; returns the duration of each tick of the simulation [ms]. */
     time(/** @type {string} */ game, /** @type {number} */ most) {
       answer(wasm.checks_begin, game);
       const times = [];

@@ -1,5 +1,5 @@
-// Somebody who does anything, for long, on every level and then on every level again: does the page take more and more
-// memory, here or on the GPU, or complain?
+// Soak test of the page: random input on every level, twice. Fails if memory of the page or of the GPU grows, or if the
+// console reports errors.
 // usage: node soak.mjs SITE [MINUTES]
 import assert from "node:assert/strict";
 import { serve } from "../serve.mjs";
@@ -8,12 +8,12 @@ import { Visit, launch, seconds } from "./visit.mjs";
 
 const [folder, minutes = "30"] = process.argv.slice(2);
 const [WIDTH, HEIGHT] = [900, 640];
-/** What is pressed; those that pause come up seldom enough. */
+/** Keys that are pressed at random. */
 const KEYS = /** @type {import("puppeteer-core").KeyInput[]} */ (["Escape", "e", "r", "f", "j", "q", "z", "x", "c", "[", "Enter", "ArrowDown", "Tab"]);
 const ROUNDS = 2;
 
 let seed = 1;
-/** Below one, the same each time. */
+/** Returns a reproducible pseudo-random number in [0, 1). */
 function random() {
   seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
   return seed / 2 ** 32;
@@ -40,7 +40,7 @@ async function measured() {
   };
 }
 
-/** How things stand; fails where the game ended. */
+/** Returns the state of the game; fails if it has ended. */
 async function report() {
   const report = await visit.report();
   if (!report) {
@@ -50,11 +50,11 @@ async function report() {
   return report;
 }
 
-/** The names on the list of levels, by way of the title. */
+/** Opens the list of levels; returns their names. */
 async function openLevels() {
   while ((await report()).screen !== "Levels") {
     const { screen, labels } = await report();
-    // Somewhere below the title, or on it.
+    // On the title screen or below it.
     const wanted = screen === "Title" ? "Play" : "Levels";
     const found = labels.find(({ name }) => name === wanted);
     await (found ? visit.page.mouse.click(found.x, found.y, { delay: 120 }) : visit.press("Escape"));
@@ -65,7 +65,7 @@ async function openLevels() {
   return labels.map(({ name }) => name).slice(labels.findIndex(({ name }) => name === "Classic")).filter((name) => !others.includes(name));
 }
 
-/** Begins a level from the list, which is rolled to where it stands. */
+/** Starts a level from the list, after scrolling to it. */
 async function begin(/** @type {string} */ level) {
   await openLevels();
   await visit.page.mouse.move(WIDTH / 2, HEIGHT / 2);
@@ -80,10 +80,10 @@ async function begin(/** @type {string} */ level) {
       await seconds(0.3);
     }
   }
-  assert.fail(`“${level}” never stands where it can be pressed`);
+  assert.fail(`“${level}” could not be scrolled into view`);
 }
 
-/** Something that anybody might do; at which tick the round is. */
+/** Performs a random action; returns the tick of the round. */
 async function act(/** @type {string} */ level) {
   const { screen, ticks } = await report();
   if (screen === "Title" || screen === "Levels") {
@@ -103,7 +103,7 @@ async function act(/** @type {string} */ level) {
 const levels = await openLevels();
 console.log(`${levels.length} levels: ${levels.join(", ")}`);
 const turn = (60 * Number(minutes)) / (ROUNDS * levels.length);
-/** The most of each round. @type {Record<string, number>[]} */
+/** Maximum of each figure in each pass over the levels. @type {Record<string, number>[]} */
 const most = [];
 const since = performance.now();
 const text = ([name, value]) => `${name} ${value > 1e5 ? `${(value / 1e6).toFixed(1)} MB` : value}`;
@@ -127,11 +127,11 @@ for (let round = 0; round < ROUNDS; round++) {
   }
 }
 for (const [name, value] of Object.entries(most[0])) {
-  console.log(`most of ${name}: ${text(["first", value])}, ${text(["then", most[1][name]])}: ${(100 * (most[1][name] / value - 1)).toFixed(1)} %`);
+  console.log(`maximum of ${name}: ${text(["first", value])}, ${text(["then", most[1][name]])}: ${(100 * (most[1][name] / value - 1)).toFixed(1)} %`);
 }
 visit.isQuiet();
-console.log("and the console is empty");
+console.log("no errors on the console");
 const grown = Object.keys(most[0]).filter((name) => most[1][name] > 1.05 * most[0][name]);
-assert.deepEqual(grown, [], "grew by more than a twentieth");
+assert.deepEqual(grown, [], "figures that grew by more than 5 %");
 await browser.close();
 await site.close();

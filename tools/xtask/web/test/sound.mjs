@@ -1,9 +1,9 @@
-// Whether a page of the game is heard in a browser: not before a gesture, then without clipping, not in a hidden tab; and
-// whether it goes on where there is no sound.
+// Tests of sound in a browser: silent before a user gesture, then without clipping, silent in a hidden tab; and the game
+// continues without audio support.
 
 import assert from "node:assert/strict";
 
-/** In the page, before it begins: listens to whatever goes to a loudspeaker. */
+/** Runs in the page before it starts: taps everything that is connected to the audio output. */
 function listen() {
   globalThis.heard = [];
   const connect = AudioNode.prototype.connect;
@@ -22,7 +22,7 @@ function listen() {
   };
 }
 
-/** In the page: what was heard over the last half second or so. */
+/** Runs in the page: analyses some half a second of sound. */
 function hear() {
   const { heard = [] } = globalThis;
   const [{ context, sides } = { sides: [] }] = heard;
@@ -38,18 +38,18 @@ function hear() {
     rate: context?.sampleRate,
     time: context?.currentTime,
     clock: performance.now() / 1000,
-    // Of Chromium: what was missing when the device asked for it [s].
+    // Chromium only: total duration of underruns [s].
     missing: context?.playbackStats?.underrunDuration,
     peak: all.reduce((most, sample) => Math.max(most, Math.abs(sample)), 0),
     rms: Math.sqrt(all.reduce((sum, sample) => sum + sample * sample, 0) / Math.max(all.length, 1)),
-    // A click is a wide step from one sample to the next.
+    // A click is a large step between two samples.
     step: Math.max(0, ...samples.map((side) => side.reduce((most, sample, at) => Math.max(most, Math.abs(sample - side[Math.max(at, 1) - 1])), 0))),
   };
 }
 
 /**
- * In the page, before it begins: says by itself what is heard a second after the game began. A test that asks a page
- * something is, to the browser, somebody who uses it.
+ * Runs in the page before it starts: logs the sound one second after the game has started. Evaluating a script from the
+ * test would count as a user gesture.
  */
 function confess() {
   const look = setInterval(() => {
@@ -61,7 +61,7 @@ function confess() {
 
 const rest = (seconds) => new Promise((done) => setTimeout(done, 1000 * seconds));
 
-/** Looks again and again until the state is this. */
+/** Polls until the audio context has this state. */
 async function until(page, state, seconds = 10) {
   for (let left = seconds; left > 0; left -= 0.1) {
     if ((await page.evaluate(hear)).state === state) return;
@@ -70,7 +70,7 @@ async function until(page, state, seconds = 10) {
   assert.fail(`still ${(await page.evaluate(hear)).state}, not ${state}, after ${seconds} s`);
 }
 
-/** A new page, and what it complains of. */
+/** Opens a page; collects its errors and warnings. */
 async function open(browser, url, first) {
   const page = await browser.newPage();
   const complaints = [];
@@ -81,10 +81,10 @@ async function open(browser, url, first) {
   return { page, complaints, before };
 }
 
-/** What a page says that was heard. @param {import("puppeteer-core").Page} page */
+/** Returns the sound analysis that a page has logged. @param {import("puppeteer-core").Page} page */
 function confession(page, seconds = 90) {
   return new Promise((done, fail) => {
-    const late = setTimeout(() => fail(new Error(`the game did not begin within ${seconds} s`)), 1000 * seconds);
+    const late = setTimeout(() => fail(new Error(`the game did not start within ${seconds} s`)), 1000 * seconds);
     page.on("console", (message) => {
       const [, heard] = /^heard: (.*)$/.exec(message.text()) ?? [];
       if (!heard) return;
@@ -95,14 +95,14 @@ function confession(page, seconds = 90) {
 }
 
 /**
- * Plays a page that sounds by itself once it may, as the title does with its music. The browser must ask for a gesture:
- * `--autoplay-policy=document-user-activation-required` of Chromium.
+ * Tests a page that plays sound by itself once permitted, such as the title's music. The browser must require a gesture:
+ * `--autoplay-policy=document-user-activation-required` in Chromium.
  * @param {import("puppeteer-core").Browser} browser
  * @param {string} url
  */
 export async function checkSound(browser, url, seconds = 5) {
   const { page, complaints, before } = await open(browser, url, listen);
-  assert.notEqual(before.state, "running", "it plays before a gesture");
+  assert.notEqual(before.state, "running", "sound plays before a user gesture");
   assert.equal(before.peak, 0);
 
   await page.mouse.click(100, 100);
@@ -118,11 +118,11 @@ export async function checkSound(browser, url, seconds = 5) {
     square += last.rms ** 2 / (2 * seconds);
   }
   const rms = Math.sqrt(square);
-  assert.equal(last.count, 1, "one way to the loudspeaker");
+  assert.equal(last.count, 1, "number of nodes connected to the audio output");
   assert.ok(rms > 0.003, `silent after a click: RMS ${rms}`);
   assert.ok(peak <= 1, `clipped: ${peak}`);
   const pace = (last.time - first.time) / (last.clock - first.clock);
-  assert.ok(Math.abs(pace - 1) < 0.2, `the sound runs at ${pace} of its pace`);
+  assert.ok(Math.abs(pace - 1) < 0.2, `expected real-time speed of sound, found a factor of ${pace}`);
 
   const other = await browser.newPage();
   await other.bringToFront();
@@ -131,18 +131,18 @@ export async function checkSound(browser, url, seconds = 5) {
   await page.bringToFront();
   await until(page, "running");
   await rest(1);
-  assert.ok((await page.evaluate(hear)).rms > 0, "silent after it was hidden");
+  assert.ok((await page.evaluate(hear)).rms > 0, "silent after the tab was hidden and shown");
   assert.deepEqual(complaints, []);
   await page.close();
   const missing = last.missing === undefined ? "" : `${(1000 * last.missing).toFixed(0)} ms missing in ${seconds} s, `;
   console.log(
-    `sound: silent before a click, then ${last.rate} Hz, peak ${peak.toFixed(3)}, RMS ${rms.toFixed(3)}, widest step ` +
+    `sound: silent before a click, then ${last.rate} Hz, peak ${peak.toFixed(3)}, RMS ${rms.toFixed(3)}, largest step ` +
       `${step.toFixed(3)}, pace ${pace.toFixed(3)}, ${missing}suspended while hidden`,
   );
 }
 
 /**
- * Plays a page in a browser that lacks what sound needs.
+ * Tests a page in a browser without audio worklets.
  * @param {import("puppeteer-core").Browser} browser
  * @param {string} url
  */
@@ -153,5 +153,5 @@ export async function checkSilence(browser, url) {
   await page.waitForFunction((ticks) => globalThis.tamaire.report().ticks !== ticks, { timeout: 30_000 }, ticks);
   assert.deepEqual(complaints, []);
   await page.close();
-  console.log("sound: without audio worklets the page goes on in silence");
+  console.log("sound: without audio worklets, the game runs silently");
 }

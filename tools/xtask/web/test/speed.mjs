@@ -1,16 +1,16 @@
-// How fast the simulation is in Chromium: the golden scenes beside what they take natively, and the ticks of rounds that a bot
-// plays. Prints, and never fails for a number: machines differ.
+// Measures the speed of the simulation in Chromium: golden scenes compared with native runs, and ticks of rounds played by a bot.
+// Only prints, without limits, because machines differ.
 // usage: node speed.mjs MODULE.wasm
 import { fileURLToPath } from "node:url";
 import { natively, open } from "./checks.mjs";
 import { launch } from "./visit.mjs";
 
 const RUNS = 5;
-/** What a bot plays, a minute at most, and as many times slower than here: 4 is a phone or an old laptop. */
+/** Games of a bot, at most a minute each, and the CPU slowdown: 4 corresponds to a phone or an old laptop. */
 const GAMES = /** @type {const} */ ([["classic shave", 1], ["classic shave", 4], ["classic-3d shave", 1]]);
 const SEEDS = [1, 2, 3];
 const MOST_TICKS = 60 * 60;
-/** A round is the same every time: the least of so many times of a tick is what it costs, the rest is the machine. */
+/** Number of runs. Rounds are deterministic, so the minimum duration of a tick is its cost without disturbances. */
 const GOES = 3;
 
 /**
@@ -20,7 +20,7 @@ const GOES = 3;
 export async function measureSpeed(browser, module) {
   const checks = await open(browser, module);
   await measureGolden(checks);
-  console.log(`ticks [ms] of rounds by the seeds ${SEEDS.join(", ")}: least of ${GOES} goes | the first go, still compiling`);
+  console.log(`ticks [ms] of rounds with the seeds ${SEEDS.join(", ")}: minimum of ${GOES} runs | first run, still compiling`);
   console.log(`${"".padEnd(28)}  ticks  median     p99   worst  | median     p99   worst`);
   for (const [game, slower] of GAMES) {
     await measureTicks(checks, game, slower);
@@ -28,7 +28,7 @@ export async function measureSpeed(browser, module) {
   await checks.close();
 }
 
-/** In turns, so that what else the machine does falls on both. */
+/** Alternates between browser and native runs, so that other load affects both. */
 async function measureGolden(/** @type {Awaited<ReturnType<typeof open>>} */ checks) {
   const scenes = await checks.call("scenes");
   /** @type {number[][][]} */
@@ -40,8 +40,8 @@ async function measureGolden(/** @type {Awaited<ReturnType<typeof open>>} */ che
     }
     return times;
   };
-  const native = () => natively("utf8", "determinism_checks", "times", "1").trim().split("\n").map(Number);
-  // The first only warms up: the browser is still compiling, and cargo builds.
+  const native = () => natively("utf8", "fuwafuwa_golden", "times", "1").trim().split("\n").map(Number);
+  // Warm-up: the browser is still compiling, and cargo builds.
   await inBrowser();
   native();
   for (let run = 0; run < RUNS; run++) {
@@ -74,7 +74,7 @@ async function measureTicks(checks, /** @type {string} */ game, /** @type {numbe
   console.log(`${name.padEnd(28)} ${String(least.length).padStart(6)}${costs}  |${met}`);
 }
 
-/** What this share of the values stays below or at. */
+/** Returns the quantile of the values. */
 function part(/** @type {number[]} */ values, /** @type {number} */ share) {
   const sorted = values.toSorted((a, b) => a - b);
   return sorted[Math.floor((sorted.length - 1) * share)];

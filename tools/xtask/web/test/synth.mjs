@@ -1,12 +1,12 @@
-// Plays the module of game/tamaire_sound under Node beside what this machine plays natively. Fails where both are
-// further apart than rounding explains, where a call takes memory, or where hostile bytes stop it.
+// Compares the module of crates/tamaire_worklet under Node with the native synth. Fails if they differ by more than
+// rounding errors, if a call allocates memory, or if invalid messages stop it.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { natively } from "./checks.mjs";
 
 const RATE = 48_000;
 const FRAMES = 128;
-// Sines and exponentials are rounded by the library of each machine.
+// Tolerance: sines and exponentials are rounded differently by each platform's library.
 const MOST_APART = 1e-3;
 
 /** @param {string} file path of the .wasm */
@@ -17,7 +17,7 @@ export async function checkSynth(file) {
   checkHostile(module);
 }
 
-/** An instance that has begun. @param {WebAssembly.Module} module @param {number} rate */
+/** Creates an initialised instance. @param {WebAssembly.Module} module @param {number} rate */
 function begin(module, rate) {
   const { memory, sound_begin, sound_message, sound_message_room, sound_take, sound_render } =
     new WebAssembly.Instance(module).exports;
@@ -51,7 +51,7 @@ function checkSamples(module, reference) {
     for (const sample of samples) {
       const native = reference.readFloatLE(at);
       at += 4;
-      assert.ok(Math.abs(sample) <= 1, `beyond full scale: ${sample}`);
+      assert.ok(Math.abs(sample) <= 1, `sample beyond full scale: ${sample}`);
       apart = Math.max(apart, Math.abs(sample - native));
       different += sample !== native;
       peak = Math.max(peak, Math.abs(sample));
@@ -60,15 +60,15 @@ function checkSamples(module, reference) {
   }
   const count = squares.length;
   const rms = Math.sqrt(squares.reduce((sum, square) => sum + square, 0) / count);
-  assert.ok(rms > 0.05, `silent: ${rms}`);
-  assert.ok(apart < MOST_APART, `${apart} apart`);
-  assert.equal(sound.memory.buffer.byteLength, size, "playing takes no memory");
-  // In the first second Node is still compiling.
+  assert.ok(rms > 0.05, `too quiet: RMS ${rms}`);
+  assert.ok(apart < MOST_APART, `samples differ by ${apart}, expected less than ${MOST_APART}`);
+  assert.equal(sound.memory.buffer.byteLength, size, "memory after playing");
+  // Without the first second, in which Node is still compiling.
   const settled = times.slice(RATE / FRAMES).sort((a, b) => a - b);
   const quantile = (share) => settled[Math.floor(share * (settled.length - 1))].toFixed(0);
-  console.log(`worklet: ${(count / 2 / RATE).toFixed(1)} s, peak ${peak.toFixed(3)}, RMS ${rms.toFixed(3)}; from the native synth`);
-  console.log(`worklet: at most ${apart.toExponential(1)} apart, ${((100 * different) / count).toFixed(1)} % of samples in other bits`);
-  console.log(`worklet: ${FRAMES} frames last ${((1e6 * FRAMES) / RATE).toFixed(0)} µs and take ${quantile(0.5)} µs, 99 % at most ${quantile(0.99)} µs, the slowest ${quantile(1)} µs`);
+  console.log(`worklet: ${(count / 2 / RATE).toFixed(1)} s, peak ${peak.toFixed(3)}, RMS ${rms.toFixed(3)}`);
+  console.log(`worklet: compared with the native synth: maximum difference ${apart.toExponential(1)}, ${((100 * different) / count).toFixed(1)} % of samples differ`);
+  console.log(`worklet: ${FRAMES} frames (${((1e6 * FRAMES) / RATE).toFixed(0)} µs) take ${quantile(0.5)} µs (median), ${quantile(0.99)} µs (99th percentile), ${quantile(1)} µs (maximum)`);
 }
 
 /** @param {WebAssembly.Module} module */
@@ -77,11 +77,11 @@ function checkHostile(module) {
   let state = 1;
   const random = (below) => (state = (state * 48271) % 2147483647) % below;
   for (let round = 0; round < 2000; round++) {
-    // Small bytes mean something more often.
+    // Small bytes are valid more often.
     const most = round % 2 ? 256 : 6;
     sound.tell(Uint8Array.from({ length: random(sound.room + 1) }, () => random(most)));
     assert.ok(sound.render(FRAMES).every((sample) => Math.abs(sample) <= 1));
   }
   assert.equal(sound.render(2 ** 32 - 1).length, 2 * FRAMES);
-  console.log("worklet: it takes any bytes");
+  console.log("worklet: handles arbitrary messages");
 }

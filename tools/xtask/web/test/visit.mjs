@@ -1,14 +1,14 @@
-// A visit to the page in a browser: what a test looks at, and what it presses.
+// Page of the game in a browser, as operated by tests.
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import puppeteer from "puppeteer-core";
 
-/** How long anything may take on a busy machine [ms]. It is no limit that is tested. */
+/** Timeout for a busy machine [ms], not a tested limit. */
 const PATIENCE = 90_000;
 
 const CHROMIUM = [
   "--no-sandbox",
-  // There may be no GPU.
+  // Software rendering, because there may be no GPU.
   "--use-angle=swiftshader",
   "--enable-unsafe-swiftshader",
   "--ignore-gpu-blocklist",
@@ -26,28 +26,28 @@ export function launch(kind, language = "en-US") {
   return puppeteer.launch({
     ...options,
     args: [...(options.args ?? []), ...(kind === "chromium" ? [`--lang=${language}`, `--accept-lang=${language}`] : [])],
-    // Firefox takes no GPU in software unasked.
+    // Without this, Firefox refuses to render in software.
     extraPrefsFirefox: { "intl.accept_languages": language, "webgl.force-enabled": true },
     env: { ...process.env, LANGUAGE: language },
     executablePath: find(executablePath),
-    // A bot's minute, four times slower than here.
+    // A minute played by a bot, slowed down four times.
     protocolTimeout: 600_000,
     timeout: PATIENCE,
   });
 }
 
-/** Where a program is. @param {string} program */
+/** Returns the path of a program. @param {string} program */
 function find(program) {
   const folders = (process.env.PATH ?? "").split(":");
   const found = folders.map((folder) => `${folder}/${program}`).find((file) => existsSync(file));
-  assert(found, `there is no ${program} on the path`);
+  assert(found, `${program} not found on the path`);
   return found;
 }
 
 export const seconds = (/** @type {number} */ count) => new Promise((resolve) => setTimeout(resolve, 1000 * count));
 
 export class Visit {
-  /** What the console complained about. @type {string[]} */
+  /** Errors and warnings on the console. @type {string[]} */
   complaints = [];
 
   /** @param {import("puppeteer-core").Page} page */
@@ -77,12 +77,12 @@ export class Visit {
     return visit;
   }
 
-  /** The game is there. */
+  /** Waits until the game has started. */
   async comes() {
-    await this.until((report) => report?.labels.length > 0, "the game comes");
+    await this.until((report) => report?.labels.length > 0, "the game has started");
   }
 
-  /** How things stand. @returns {Promise<any>} */
+  /** Returns the state of the game. @returns {Promise<any>} */
   report() {
     return this.page.evaluate(() => {
       const report = globalThis.tamaire?.report();
@@ -107,7 +107,7 @@ export class Visit {
       if (report && is(report)) return report;
       await seconds(0.1);
     } while (performance.now() - start < PATIENCE);
-    assert.fail(`never: ${what}\nlast: ${JSON.stringify(report)}\nconsole: ${this.complaints.join("\n")}`);
+    assert.fail(`timeout, expected: ${what}\nlast state: ${JSON.stringify(report)}\nconsole: ${this.complaints.join("\n")}`);
   }
 
   /** @param {string} screen */
@@ -117,20 +117,20 @@ export class Visit {
 
   /** @param {string} text */
   hears(text) {
-    return this.until((report) => report?.notices.some((notice) => notice.includes(text)), `the words “${text}”`);
+    return this.until((report) => report?.notices.some((notice) => notice.includes(text)), `a notice with “${text}”`);
   }
 
-  /** Where something stands that can be pressed. @param {string} name */
+  /** Returns the position of a button once it stops moving. @param {string} name */
   async place(name) {
     const find = (/** @type {any} */ report) => report?.labels.find((label) => label.name === name);
     let before;
-    // Where it stays: what comes up moves at first.
+    // New elements move at first.
     const report = await this.until((report) => {
       const now = find(report);
       const stays = now && before && now.x === before.x && now.y === before.y;
       before = now;
       return stays;
-    }, `something named “${name}”`);
+    }, `a button named “${name}”`);
     return find(report);
   }
 
@@ -154,22 +154,22 @@ export class Visit {
     await this.page.keyboard.press(key, { delay: 120 });
   }
 
-  /** A place of the world on the page [m]. @param {number} x @param {number} y */
+  /** Returns the position on the page of a world point [m]. @param {number} x @param {number} y */
   async at(x, y) {
     const { places: [, origin, right] } = await this.until(
       (report) => report?.places.flat().every(Number.isFinite),
-      "a world that is seen",
+      "a visible world",
     );
     const metre = right[0] - origin[0];
     return [origin[0] + metre * x, origin[1] - metre * y];
   }
 
-  /** Plays Classic until it is won: the body is pushed into the basket. @param {(x: number, y: number) => Promise<void>} point */
+  /** Wins the level Classic by pushing the body into the basket. @param {(x: number, y: number) => Promise<void>} point */
   async win(point) {
     for (let push = 0; push < 4000; push++) {
       const report = await this.report();
       if (report.is_won || report.screen === "Result") return;
-      // By the game's time, which a slow machine stretches.
+      // Uses the game's time, which runs slower on a slow machine.
       const x = Math.min(-1.4 + (0.6 * report.ticks) / 60, 0.85);
       await point(...(await this.at(x, 0)));
       await seconds(0.02);
@@ -177,9 +177,9 @@ export class Visit {
     assert.fail("the round was not won");
   }
 
-  /** Nothing was complained about but this. @param {RegExp} [but] */
+  /** Checks that the console reported nothing except `but`. @param {RegExp} [but] */
   isQuiet(but = /$^/) {
     const complaints = this.complaints.filter((text) => !but.test(text));
-    assert.deepEqual(complaints, [], "the console complained");
+    assert.deepEqual(complaints, [], "errors and warnings on the console");
   }
 }

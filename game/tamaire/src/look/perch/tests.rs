@@ -5,16 +5,16 @@ use fuwafuwa::{Blade, Dim3, Material, PieceId, VoxelGrid, World, WorldConfig};
 const EYE: Vector = [0.5, 0.8, 6.0];
 
 fn alone(grid: VoxelGrid<Dim3>) -> World<Dim3> {
-    let mut world = World::new(WorldConfig::default()).expect("usual");
-    world.add_soft_body(SoftBody::new(grid, &[Material::default()]).expect("usual"));
+    let mut world = World::new(Settings::default()).expect("the defaults are valid");
+    world.add_body(Body::new(grid, &[Material::default()]).expect("the defaults are valid"));
     world
 }
 
 fn ball() -> World<Dim3> {
-    alone(VoxelGrid::ball(20, 1.0).expect("a ball"))
+    alone(VoxelGrid::ball(20, 1.0).expect("the grid is valid"))
 }
 
-/// Moves all nodes from where they were at rest.
+/// Moves all nodes from their rest positions.
 fn deform(world: &mut World<Dim3>, to: impl Fn(PieceId, Vector) -> Vector) {
     let body = world
         .soft_body_mut(world.nth_soft_body(0).unwrap())
@@ -29,7 +29,7 @@ fn deform(world: &mut World<Dim3>, to: impl Fn(PieceId, Vector) -> Vector) {
     }
 }
 
-/// How much of the face lies on original skin.
+/// Returns the share of the face that lies on original skin.
 fn covered(perch: &Perch, body: &SoftBody<Dim3>) -> f32 {
     let skin = Skin::of(body, perch.piece, &masses(body), Some(EYE));
     let size = perch.size;
@@ -38,7 +38,7 @@ fn covered(perch: &Perch, body: &SoftBody<Dim3>) -> f32 {
 }
 
 #[test]
-fn it_looks_at_who_looks_from_a_place_that_holds_it() {
+fn perch_faces_camera_on_covered_skin() {
     let world = ball();
     let perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
     assert!(dot(perch.axes[2], wish([0.5; 3], EYE)) > 0.97, "{perch:?}");
@@ -47,12 +47,12 @@ fn it_looks_at_who_looks_from_a_place_that_holds_it() {
 }
 
 #[test]
-fn it_rolls_with_the_skin_however_fast_that_turns() {
+fn perch_rolls_with_fast_skin() {
     let mut world = ball();
     let mut perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
     let (first, out) = (perch.at, perch.axes[2]);
     for tick in 1..20 {
-        // Ten radians a second, and away.
+        // Rotates at 10 rad/s and moves away.
         let angle = 10.0 * TICK * tick as f32;
         let (sin, cos) = angle.sin_cos();
         let turn = |[x, y, z]: Vector| [cos * x + sin * y, cos * y - sin * x, z];
@@ -73,13 +73,13 @@ fn it_rolls_with_the_skin_however_fast_that_turns() {
 }
 
 #[test]
-fn it_stays_while_its_body_rolls_by_and_is_upright_again_after() {
+fn perch_moves_seldom_while_body_rolls_and_ends_upright() {
     let mut world = ball();
     let mut perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
     let mut leaps = 0;
     let (mut angle, mut least) = (0.0f32, f32::MAX);
     for tick in 1..150 {
-        // Two radians a second to the right, for one and a half turns nearly, then it stands.
+        // Rolls to the right at 2 rad/s for about half a turn, then stops.
         angle += if tick < 100 { 2.0 * TICK } else { 0.0 };
         let (sin, cos) = angle.sin_cos();
         deform(&mut world, |_, at| {
@@ -97,7 +97,7 @@ fn it_stays_while_its_body_rolls_by_and_is_upright_again_after() {
 }
 
 #[test]
-fn it_comes_back_once_its_body_has_turned_its_back() {
+fn perch_returns_to_camera_after_body_turned() {
     let mut world = ball();
     let mut perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
     deform(&mut world, |_, [x, y, z]| [1.0 - x, y, 1.0 - z]);
@@ -111,7 +111,7 @@ fn it_comes_back_once_its_body_has_turned_its_back() {
             TICK,
         );
         least = least.min(perch.size);
-        // It never goes anywhere while it can be seen.
+        // It never moves to another place while it is visible.
         let leap = tick > 0 && length(minus(perch.axes[2], before.axes[2])) > 0.1;
         assert!(!leap || perch.size < 0.05, "{perch:?}");
     }
@@ -121,10 +121,10 @@ fn it_comes_back_once_its_body_has_turned_its_back() {
 }
 
 #[test]
-fn it_leaves_a_place_that_was_torn_off_for_skin_that_is_left() {
+fn perch_leaves_skin_that_was_cut_off() {
     let mut world = ball();
     let mut perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
-    // What was towards who looks is cut off and gone.
+    // Cuts off the part of the body that faces the camera and moves it away.
     let (from, across, along) = ([-0.5, 1.25, 0.0], [2.0, 0.0, 0.0], [0.0, -1.3, 1.3]);
     world
         .cut(
@@ -155,8 +155,8 @@ fn it_leaves_a_place_that_was_torn_off_for_skin_that_is_left() {
         covered(&perch, world.soft_bodies().first().unwrap()) > 0.7,
         "{perch:?}"
     );
-    // There it stays.
-    let place = perch.place.expect("it has one").voxel;
+    // It stays at the new place.
+    let place = perch.place.expect("the face has a place").voxel;
     for tick in 0..120 {
         perch.follow(
             world.soft_bodies().first().unwrap(),
@@ -164,6 +164,6 @@ fn it_leaves_a_place_that_was_torn_off_for_skin_that_is_left() {
             tick % 5 == 0,
             TICK,
         );
-        assert_eq!(perch.place.expect("it has one").voxel, place);
+        assert_eq!(perch.place.expect("the face has a place").voxel, place);
     }
 }

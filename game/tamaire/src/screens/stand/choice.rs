@@ -1,4 +1,4 @@
-//! Which of two or three levels?
+//! Choice of a level at the stand.
 
 use super::super::widgets::{fitted, veil};
 use super::super::{levels::tile, play::focus_first};
@@ -10,9 +10,9 @@ use egui::{Rect, Ui, pos2, vec2};
 use tamaire_sound::Menu;
 
 const GAP: f32 = 28.0;
-/// A picture is no wider than this [points].
+/// Maximum width of a tile [points].
 const WIDE: f32 = 360.0;
-/// Below a picture there is so much of its tile.
+/// Height of a tile below its thumbnail [points].
 const BELOW: f32 = 92.0;
 
 pub(super) fn show(stand: &mut Stand, game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
@@ -27,7 +27,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, stage: &mut Stage, ui: &m
         theme.ink,
     );
     let count = game.levels.len() as f32;
-    // Side by side, or one below the other.
+    // Side by side, or on top of each other in a portrait window.
     let is_tall = screen.width() < screen.height();
     let (across, down) = if is_tall { (1.0, count) } else { (count, 1.0) };
     let room = vec2(

@@ -1,17 +1,17 @@
-//! A code that phones read.
+//! QR code with the link to a visitor's round.
 
 use super::super::widgets::{card, fitted};
 use crate::exhibit::home::Code;
 use crate::game::Game;
 use egui::{Color32, Mesh, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
-/// Modules of quiet around a code [ISO/IEC 18004].
+/// Width of the quiet zone around a code [modules] [ISO/IEC 18004].
 const QUIET: usize = 4;
 
-/// With fewer pixels a module no phone reads it from a screen.
+/// Minimum width of a module [px]; phones cannot read smaller ones from a screen.
 const LEAST: f32 = 3.0;
 
-/// Shows it on a card with a side of so many points at most, and what it is for.
+/// Shows the code on a card with its purpose. `most` is the maximum side length [points].
 pub(super) fn show(ui: &mut Ui, game: &Game, code: &Code, most: f32) {
     if pixels(ui, code, most) < LEAST {
         return;
@@ -30,7 +30,7 @@ pub(super) fn show(ui: &mut Ui, game: &Game, code: &Code, most: f32) {
     });
 }
 
-/// Each module is a whole number of pixels wide, so that all are alike.
+/// Draws the code. Each module is a whole number of pixels wide, so that all have the same size.
 fn draw(ui: &mut Ui, code: &Code, most: f32) {
     let per_point = ui.ctx().pixels_per_point();
     let module = pixels(ui, code, most) / per_point;
@@ -52,12 +52,12 @@ fn draw(ui: &mut Ui, code: &Code, most: f32) {
     ui.painter().add(mesh);
 }
 
-/// Modules on a side, with the quiet ones around.
+/// Modules on a side, including the quiet zone.
 fn modules(code: &Code) -> f32 {
     (code.side + 2 * QUIET) as f32
 }
 
-/// How many pixels wide a module is, where a side has so many points at most.
+/// Width of a module in whole pixels, for a side of at most `most` points.
 fn pixels(ui: &Ui, code: &Code, most: f32) -> f32 {
     (most * ui.ctx().pixels_per_point() / modules(code)).floor()
 }

@@ -1,4 +1,4 @@
-//! The number that staff is asked for.
+//! PIN pad for the staff.
 
 use super::super::widgets::{Weight, button, card, column, fitted, veil};
 use super::super::{icons, play::focus_first};
@@ -75,7 +75,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     }
 }
 
-/// A ring that closes while the corner or the chord is held, for who does that on purpose.
+/// Draws a ring that closes while the secret corner or chord is held.
 pub(super) fn knocked(stand: &Stand, game: &Game, ui: &Ui) {
     if let Some(share) = stand.entrance.held() {
         let middle = ui.max_rect().right_top() + vec2(-0.5, 0.5) * CORNER;
@@ -84,7 +84,7 @@ pub(super) fn knocked(stand: &Stand, game: &Game, ui: &Ui) {
     }
 }
 
-/// A digit on a keyboard, where there is one.
+/// Returns the digit that was typed on a keyboard.
 fn typed_digit(ui: &Ui) -> Option<char> {
     ui.input(|input| {
         let mut typed = input.events.iter().filter_map(|event| match event {

@@ -1,4 +1,4 @@
-//! The button for the other language.
+//! Button that switches the language.
 
 use super::super::hud::STAND;
 use super::super::widgets::{Weight, button};
@@ -7,17 +7,17 @@ use crate::words::Language;
 use egui::{Rect, Ui, vec2};
 use tamaire_sound::Menu;
 
-/// A button for the other language: its size, and how far it is from the corner [points].
+/// Size of the button, and its distance from the corner [points].
 const LANGUAGE: egui::Vec2 = vec2(168.0, STAND - 2.0 * EDGE);
 const EDGE: f32 = 18.0;
 
-/// The screen, but on an upright one without the edge where the button for the other language is.
+/// Returns the screen; in a portrait window without the bottom edge that holds the language button.
 pub(super) fn above(screen: Rect) -> Rect {
     let is_upright = screen.width() < screen.height();
     screen.with_max_y(screen.bottom() - if is_upright { STAND } else { 0.0 })
 }
 
-/// One big button, in the lower left corner, for whoever cannot read the rest.
+/// Shows a large button in the lower left corner with the other language's own name.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let corner = ui.max_rect().left_bottom() + vec2(EDGE, -EDGE - LANGUAGE.y);
     let rect = Rect::from_min_size(corner, LANGUAGE);

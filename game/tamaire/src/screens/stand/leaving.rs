@@ -1,4 +1,4 @@
-//! The ring that counts down when nobody moves anything.
+//! Countdown ring that is shown when there is no input.
 
 use super::super::{icons, widgets::fitted};
 use crate::exhibit::{Stand, presence::Attention};
@@ -8,7 +8,7 @@ use egui::{Color32, Stroke, Ui, vec2};
 const RADIUS: f32 = 92.0;
 const WIDE: f32 = 16.0;
 
-/// Shows it over everything else.
+/// Shows the ring over everything else.
 pub(super) fn show(stand: &Stand, game: &Game, ui: &Ui) {
     let Attention::Leaving(left) = stand.attention else {
         return;

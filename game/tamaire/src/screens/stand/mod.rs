@@ -1,4 +1,4 @@
-//! What visitors and staff see at a stand in public.
+//! Screens of a public stand for visitors and staff.
 
 mod choice;
 mod code;
@@ -68,7 +68,7 @@ impl Attendant for Stand {
     }
 }
 
-/// A calm picture, for as long as the game itself breaks down.
+/// Static picture that is shown while the game keeps crashing.
 #[derive(Default)]
 pub struct Calm {
     is_ended: bool,
@@ -93,7 +93,7 @@ impl Attendant for Calm {
     fn close(&mut self, _: &mut Game) {}
 }
 
-/// The name of the game, and a call.
+/// Shows the name of the game and invites visitors to play.
 fn attract(game: &Game, ui: &Ui) {
     veil(ui, 40);
     let (theme, screen) = (game.theme(), ui.max_rect());
@@ -134,7 +134,7 @@ fn attract(game: &Game, ui: &Ui) {
     painter.galley(rect.center() - 0.5 * galley.size(), galley, theme.on_accent);
 }
 
-/// A calm picture, and when it opens.
+/// Shows a static picture and the opening time.
 fn closed(stand: &Stand, game: &Game, ui: &Ui) {
     let opens = stand.config.hours.map(|hours| hours.open.0);
     let said = game.settings.language.at_stand();
@@ -142,7 +142,7 @@ fn closed(stand: &Stand, game: &Game, ui: &Ui) {
     ui.ctx().set_cursor_icon(CursorIcon::None);
 }
 
-/// A calm picture with a word below.
+/// Draws a static picture with a text below.
 fn calm(game: &Game, ui: &Ui, text: &str) {
     let (theme, screen) = (game.theme(), ui.max_rect());
     ui.painter().rect_filled(screen, 0.0, theme.paper);

@@ -1,4 +1,4 @@
-//! How it went: another go, a dare to win the other way, and the round to take home.
+//! Result of a round at the stand: play again, try the other route, and a code to take the round home.
 
 use super::super::play::focus_first;
 use super::super::result::{headline, line, numbers, other};
@@ -11,13 +11,13 @@ use egui::{Rect, Ui, UiBuilder, Vec2, pos2, vec2};
 use tamaire_play::Route;
 use tamaire_sound::Menu;
 
-/// Width of the card, and how far what is on it is apart [points].
+/// Width of the card, and gap between its elements [points].
 const WIDE: f32 = 470.0;
 const GAP: f32 = 12.0;
-/// Side of a code [points]: as large as there is room for, and no larger.
+/// Maximum side length of a code [points].
 const CODE: f32 = 360.0;
 
-/// What a visitor wants.
+/// Action that a visitor has chosen.
 #[derive(Copy, Clone)]
 enum Wish {
     Again(Option<Route>),
@@ -87,9 +87,9 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     }
 }
 
-/// At the right; on an upright screen above.
+/// Returns the area of the code: on the right, or at the top of a portrait window.
 fn place_of_code(screen: Rect, side: f32) -> Rect {
-    // The card has an edge and two lines beside the code.
+    // The card adds a margin and two lines of text.
     let size = vec2(side + 40.0, side + 130.0);
     let at = match screen.width() < screen.height() {
         true => pos2(screen.center().x - 0.5 * size.x, screen.top() + 20.0),

@@ -1,4 +1,4 @@
-//! What staff sees: the figures of the day, how the stand is, and what can be changed.
+//! Staff pages: figures of the day, health of the stand, and its settings.
 
 use super::super::forces;
 use super::super::play::focus_first;
@@ -18,14 +18,14 @@ use jiff::civil::Time;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_sound::Menu;
 
-/// Width of a page, height of a line, and how far cards are apart [points].
+/// Width of a page, line height, and gap between cards [points].
 const WIDE: f32 = 780.0;
 const LINE: f32 = 34.0;
 const GAP: f32 = 12.0;
-/// When a stand opens and closes where that is first said.
+/// Opening hours that are suggested when none are set.
 const USUAL_HOURS: [Time; 2] = [Time::constant(10, 0, 0, 0), Time::constant(18, 0, 0, 0)];
 
-/// What staff wishes.
+/// Action that staff has chosen.
 enum Wish {
     Leave,
     See(Page),
@@ -64,7 +64,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: Page, ui: &mut Ui)
                 Page::Settings => (said.end, Wish::See(Page::End)),
                 Page::End => (said.end, Wish::End),
             };
-            // What can be done there takes as much room as a page and a half.
+            // The action of a page is as wide as one and a half page buttons.
             let width = (ui.available_width() - 5.0 * GAP) / 4.5;
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = GAP;
@@ -127,7 +127,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: Page, ui: &mut Ui)
     }
 }
 
-/// A name and what there is to tell of it.
+/// Shows a name and its value.
 fn told(ui: &mut Ui, theme: &Theme, name: &str, value: &str) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::hover());
     let half = 0.5 * rect.width() - 8.0;
@@ -215,7 +215,7 @@ fn health(stand: &Stand, game: &Game, ui: &mut Ui) {
     }
 }
 
-/// What the stand is like; gives back what is to be changed.
+/// Shows the settings of the stand; returns the change to make.
 fn settings(stand: &Stand, game: &mut Game, ui: &mut Ui) -> Option<Change> {
     let (theme, words) = (game.theme(), game.words());
     let said = game.settings.language.at_stand();
@@ -261,7 +261,7 @@ fn settings(stand: &Stand, game: &mut Game, ui: &mut Ui) -> Option<Change> {
     levels(stand, game, ui).or(change)
 }
 
-/// When it is open.
+/// Shows the opening hours; returns a changed value.
 fn hours(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<Option<(Time, Time)>> {
     let (theme, said) = (game.theme(), game.settings.language.at_stand());
     let known = stand
@@ -302,7 +302,7 @@ fn hours(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<Option<(Time, Time)>
     chosen
 }
 
-/// Which levels there are to choose from: a press takes one in or out.
+/// Shows the levels of the stand. A press adds or removes a level.
 fn levels(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<Change> {
     let theme = game.theme();
     let chosen: Vec<&str> = { stand.config.levels.0.iter() }
