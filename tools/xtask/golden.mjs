@@ -1,4 +1,4 @@
-// Runs the golden scenes of crates/fuwafuwa_golden on wasm32; fails if the result of one differs from the native bits.
+// Runs the golden scenes of tools/determinism_checks on wasm32; fails if the result of one differs from the native bits.
 // Prints the duration of each scene beside the native one.
 // usage: node golden.mjs FILE.wasm MILLISECONDS...   native durations in the order of the scenes
 import { readFile } from "node:fs/promises";

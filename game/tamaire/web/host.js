@@ -1,4 +1,4 @@
-// Services of the page for the game (see game/src/platform/web/host.rs): storage, downloads, and opening of files.
+// Services of the page for the game (see game/tamaire/src/platform/web/host.rs): storage, downloads, and opening of files.
 
 import { Speaker } from "./sound.js";
 

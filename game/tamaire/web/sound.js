@@ -41,7 +41,7 @@ export class Speaker {
   }
 
   /**
-   * Sends a `Message` of crates/tamaire_sound to the synth. Messages are dropped while no sound is playing.
+   * Sends a `Message` of game/tamaire_sound to the synth. Messages are dropped while no sound is playing.
    * @param {Uint8Array} bytes
    */
   tell(bytes) {

@@ -1,11 +1,11 @@
-// Synth of the game on the browser's audio thread. Its messages are bytes of crates/tamaire_sound, decoded by the module.
+// Synth of the game on the browser's audio thread. Its messages are bytes of game/tamaire_sound, decoded by the module.
 // It allocates memory at the start only.
 
 /** Frames in a render quantum of the Web Audio API. */
 const FRAMES = 128;
 
 /**
- * @typedef {object} Exports Exports of crates/tamaire_worklet.
+ * @typedef {object} Exports Exports of game/tamaire_sound.
  * @property {WebAssembly.Memory} memory
  * @property {(rate: number) => void} sound_begin
  * @property {() => number} sound_message

@@ -1,4 +1,4 @@
-//! Bevy plugin, `crates/bevy_fuwafuwa`: a workspace of its own with its own target folder.
+//! Bevy plugin, `plugins/bevy_fuwafuwa`: a workspace of its own with its own target folder.
 
 use crate::packages::{IfMissing, Purpose, provide};
 use crate::shell::{FAILED, Failure, cargo, execute, root, target};

@@ -198,7 +198,7 @@ pub fn check(system: &'static System, if_missing: IfMissing) -> Result<(), Failu
         wine::prepare(system.linker.0)?;
     }
     execute(
-        &mut compiler.cargo(&["test", "--release", "--package", "fuwafuwa_golden"]),
+        &mut compiler.cargo(&["test", "--release", "--package", "determinism_checks"]),
         "the result of a scene differs in its bits: look for arithmetic beyond + - * / and sqrt, and for SIMD lanes that are summed in another order",
     )?;
     let folder = root().join(target()).join("replays");

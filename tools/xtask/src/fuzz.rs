@@ -1,4 +1,4 @@
-//! Fuzzing of the entry points ("doors") of `crates/hostile` with libFuzzer and a stable compiler. cargo-fuzz
+//! Fuzzing of the entry points ("doors") of `tools/fuzz` with libFuzzer and a stable compiler. cargo-fuzz
 //! needs a nightly compiler only for sanitizers; the coverage passes are part of every LLVM.
 
 use crate::packages::{IfMissing, Purpose, provide};
@@ -57,7 +57,7 @@ pub fn run(words: &[String]) -> Result<(), Failure> {
     }
     Err(failure(format!(
         "{} failed: the inputs are in {}, the logs beside it; fix the fault, and add \
-         the input to crates/hostile/found",
+         the input to tools/fuzz/found",
         bad.join(", "),
         found.display()
     )))
@@ -95,7 +95,7 @@ fn build() -> Result<(PathBuf, PathBuf), Failure> {
     command.env("RUSTFLAGS", FLAGS);
     execute(
         &mut command,
-        "the fuzzer does not compile, see above; it must match the doors of crates/hostile",
+        "the fuzzer does not compile, see above; it must match the doors of tools/fuzz",
     )?;
     let program = folder.join(host).join("fuzz/fuzz");
     let mut seeds = Command::new(&program);

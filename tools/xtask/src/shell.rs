@@ -64,8 +64,9 @@ pub fn show(command: &Command) -> String {
 /// Root of the workspace.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .expect("xtask is one folder below the root of the workspace")
+        .ancestors()
+        .nth(2)
+        .expect("xtask is two folders below the root of the workspace")
 }
 
 /// Target folder, relative to the root unless it is absolute.

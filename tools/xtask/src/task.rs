@@ -37,8 +37,8 @@ tasks:
   scans            download MNI152 scans of a brain and their licences to target/scans
   package          check contents and size of the packages of all published crates
   package --build  check them, and build each from its package with the minimum supported Rust
-  rapier           check that crates/against_rapier, a separate workspace, compiles
-  bevy             check crates/bevy_fuwafuwa, a separate workspace: formatting, lints, tests
+  rapier           check that tools/against_rapier, a separate workspace, compiles
+  bevy             check plugins/bevy_fuwafuwa, a separate workspace: formatting, lints, tests
                    without a window, documentation, and compilation of its examples
   bevy --pictures  render pictures of its scene on a virtual display
   help             print this text, as --help does after any task; help of the game:

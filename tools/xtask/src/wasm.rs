@@ -128,7 +128,7 @@ pub fn compile(compiler: &Compiler, words: &[&str]) -> Result<PathBuf, Failure> 
     }
     execute(
         &mut command,
-        "code that differs in a browser belongs into game/src/platform, or behind features of the crates",
+        "code that differs in a browser belongs into game/tamaire/src/platform, or behind features of the crates",
     )?;
     let modules = root().join(folder()).join(TARGET).join("web");
     Ok(modules.join(words[0]).with_extension("wasm"))

@@ -1,7 +1,7 @@
 //! Web version of the game: a folder of files for any web server.
 //!
 //! cargo compiles the game and its sound for wasm32. `xtask_bindgen` generates the bindings between the game
-//! and the page (`game/web`), and `xtask/web/pack.mjs` packs the folder.
+//! and the page (`game/tamaire/web`), and `tools/xtask/web/pack.mjs` packs the folder.
 
 use crate::packages::{self, IfMissing, Purpose};
 use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, root, target};
@@ -80,12 +80,7 @@ fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
     provide_node_modules()?;
     node(
         "licences.mjs",
-        &[
-            &licences,
-            Path::new(TARGET),
-            Path::new("tamaire"),
-            Path::new("tamaire_worklet"),
-        ],
+        &[&licences, Path::new(TARGET), Path::new("tamaire")],
         "the licences could not be collected",
     )?;
     let (page, site) = (root().join("game/tamaire/web"), folder().join("site"));

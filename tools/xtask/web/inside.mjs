@@ -3,7 +3,7 @@ import { execFileSync } from "node:child_process";
 import { fileURLToPath } from "node:url";
 
 /** Root of the repository. Node 18 of Debian 12 lacks `import.meta.dirname`. */
-export const root = fileURLToPath(new URL("../..", import.meta.url));
+export const root = fileURLToPath(new URL("../../..", import.meta.url));
 
 /**
  * Returns the packages as described by `cargo metadata`, sorted by name and version, and for each id the ids of its dependencies.

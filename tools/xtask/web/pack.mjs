@@ -1,7 +1,7 @@
 // Packs the folder for a web server: optimises the module, puts immutable files into a folder named by a hash of the contents,
 // and prints the sizes of the compressed files.
 // usage: node pack.mjs STAGE PAGE LICENCES OUT [ADDRESS]
-//   STAGE: output of wasm-bindgen, and sound.wasm; PAGE: game/web; LICENCES: text file; OUT: the folder, which is replaced;
+//   STAGE: output of wasm-bindgen, and sound.wasm; PAGE: game/tamaire/web; LICENCES: text file; OUT: the folder, which is replaced;
 //   ADDRESS: address of the page
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
@@ -20,7 +20,7 @@ const FEATURES = ["simd", "bulk-memory", "sign-ext", "mutable-globals", "nontrap
 /** Files of the page with fixed names, because they are referred to from outside. */
 const NAMED = ["index.html", "sw.js", "manifest.webmanifest", "icon.svg", "icon-192.png", "icon-512.png"];
 /** Image for link previews. */
-const PREVIEW = join(here, "../../docs/game-squeezed.png");
+const PREVIEW = join(here, "../../../docs/game-squeezed.png");
 
 function optimised(/** @type {string} */ name) {
   const file = join(stage, `${name}.opt.wasm`);

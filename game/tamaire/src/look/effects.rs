@@ -135,8 +135,8 @@ impl Effects {
         let mut torn = vec![false; world.soft_bodies().len()];
         for event in world.events() {
             match *event {
-                Event::Released { body, at, energy } => {
-                    let rank = world.bodies().rank(body);
+                Event::NodeSplit { body, at, energy } => {
+                    let rank = world.soft_bodies().rank(body);
                     torn[rank.expect("the event names a body of this world")] = true;
                     camera.shake(0.002 + 0.002 * energy.clamp(0.0, 2.0));
                     if looked_up < LOOKED_UP {

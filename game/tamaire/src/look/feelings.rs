@@ -281,8 +281,10 @@ mod tests {
     use fuwafuwa::{Blade, Dim2, Dim3, Material, VoxelGrid, World, WorldConfig};
 
     fn alone(grid: VoxelGrid<Dim2>) -> World<Dim2> {
-        let mut world = World::new(Settings::default()).expect("the defaults are valid");
-        world.add_body(Body::new(grid, &[Material::default()]).expect("the defaults are valid"));
+        let mut world = World::new(WorldConfig::default()).expect("the defaults are valid");
+        world.add_soft_body(
+            SoftBody::new(grid, &[Material::default()]).expect("the defaults are valid"),
+        );
         world
     }
 
@@ -296,7 +298,7 @@ mod tests {
             u8::from(hole([voxel[0] as f32 + 0.5, voxel[1] as f32 + 0.5]))
         });
         let world = alone(grid.expect("the grid is valid"));
-        let feeling = Feeling::of(world.bodies().first().unwrap(), None);
+        let feeling = Feeling::of(world.soft_bodies().first().unwrap(), None);
         let away = [feeling.at[0] - 0.5, feeling.at[1] - 0.5];
         let radius = length(away);
         assert!((0.25..0.45).contains(&radius), "{feeling:?}");
@@ -309,7 +311,7 @@ mod tests {
     #[test]
     fn face_glides_to_remaining_piece_and_dust_has_none() {
         let mut world = alone(VoxelGrid::ball(32, 1.0).expect("the grid is valid"));
-        let mut feeling = Feeling::of(world.bodies().first().unwrap(), None);
+        let mut feeling = Feeling::of(world.soft_bodies().first().unwrap(), None);
         let (before, size) = (feeling.at, feeling.size);
         world
             .cut(
@@ -329,15 +331,20 @@ mod tests {
         }
         assert!(feeling.at[0] > before[0] + 0.05 && feeling.size < size);
         let dust = alone(VoxelGrid::ball(4, 0.05).expect("the grid is valid"));
-        assert_eq!(Feeling::of(dust.bodies().first().unwrap(), None).size, 0.0);
+        assert_eq!(
+            Feeling::of(dust.soft_bodies().first().unwrap(), None).size,
+            0.0
+        );
     }
 
     #[test]
     fn face_3d_turns_with_body_and_returns_to_camera() {
-        let mut world = World::<Dim3>::new(Settings::default()).expect("the defaults are valid");
+        let mut world = World::<Dim3>::new(WorldConfig::default()).expect("the defaults are valid");
         let grid = VoxelGrid::ball(12, 1.0).expect("the grid is valid");
-        world.add_body(Body::new(grid, &[Material::default()]).expect("the defaults are valid"));
-        let mut feeling = Feeling::of(world.bodies().first().unwrap(), None);
+        world.add_soft_body(
+            SoftBody::new(grid, &[Material::default()]).expect("the defaults are valid"),
+        );
+        let mut feeling = Feeling::of(world.soft_bodies().first().unwrap(), None);
         assert!(feeling.axes[2][2] > 0.99, "{feeling:?}");
         // Turns the body's back to the camera.
         let body = world
@@ -365,7 +372,7 @@ mod tests {
     #[test]
     fn tear_shocks_once_then_hurts() {
         let world = alone(VoxelGrid::ball(16, 1.0).expect("the grid is valid"));
-        let body = world.bodies().first().unwrap();
+        let body = world.soft_bodies().first().unwrap();
         let mut feeling = Feeling::of(body, None);
         let torn = Fate {
             tick: 1,

@@ -1,5 +1,5 @@
 // Tests the packed game in real browsers. By default all tests run in Chromium and the main ones in Firefox.
-// usage: node all.mjs SITE MODULE [TEST …]   MODULE: the .wasm of crates/browser_checks; TEST: for example play or play-firefox
+// usage: node all.mjs SITE MODULE [TEST …]   MODULE: the .wasm of tools/determinism_checks; TEST: for example play or play-firefox
 import { join } from "node:path";
 import { serve } from "../serve.mjs";
 import { checkBits } from "./bits.mjs";

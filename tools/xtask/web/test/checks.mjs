@@ -1,4 +1,4 @@
-// Opens a blank page with the module of crates/browser_checks.
+// Opens a blank page with the module of tools/determinism_checks.
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { createServer } from "node:http";

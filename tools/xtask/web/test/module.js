@@ -1,4 +1,4 @@
-// Wrapper of the module of crates/browser_checks for a page.
+// Wrapper of the module of tools/determinism_checks for a page.
 
 /** @param {string} address */
 export async function open(address) {

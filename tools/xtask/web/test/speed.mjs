@@ -40,7 +40,7 @@ async function measureGolden(/** @type {Awaited<ReturnType<typeof open>>} */ che
     }
     return times;
   };
-  const native = () => natively("utf8", "fuwafuwa_golden", "times", "1").trim().split("\n").map(Number);
+  const native = () => natively("utf8", "determinism_checks", "times", "1").trim().split("\n").map(Number);
   // Warm-up: the browser is still compiling, and cargo builds.
   await inBrowser();
   native();

@@ -1,4 +1,4 @@
-// Compares the module of crates/tamaire_worklet under Node with the native synth. Fails if they differ by more than
+// Compares the module of game/tamaire_sound under Node with the native synth. Fails if they differ by more than
 // rounding errors, if a call allocates memory, or if invalid messages stop it.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

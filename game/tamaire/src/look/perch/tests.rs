@@ -5,8 +5,10 @@ use fuwafuwa::{Blade, Dim3, Material, PieceId, VoxelGrid, World, WorldConfig};
 const EYE: Vector = [0.5, 0.8, 6.0];
 
 fn alone(grid: VoxelGrid<Dim3>) -> World<Dim3> {
-    let mut world = World::new(Settings::default()).expect("the defaults are valid");
-    world.add_body(Body::new(grid, &[Material::default()]).expect("the defaults are valid"));
+    let mut world = World::new(WorldConfig::default()).expect("the defaults are valid");
+    world.add_soft_body(
+        SoftBody::new(grid, &[Material::default()]).expect("the defaults are valid"),
+    );
     world
 }
 
