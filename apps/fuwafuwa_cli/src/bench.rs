@@ -12,7 +12,7 @@ use fuwafuwa::{
     Dim, Dim2, Dim3, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
 };
 use fuwafuwa_scenes::Scene;
-use fuwafuwa_scenes::disk::scene_at;
+use fuwafuwa_scenes::disk::open_scene;
 use serde::Serialize;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -190,7 +190,7 @@ fn release_time<D: Dim>(n: usize) -> Result<Measure> {
 
 /// Measures the ticks of a scene. If it tears, separates the ticks before and after the first tear.
 fn scene(name: &str, changes: &[String], progress: &Progress) -> Result<Vec<Measure>> {
-    let scene = scene_at(name, changes)?;
+    let scene = open_scene(name, changes)?;
     let name = [&[name.to_string()], changes].concat().join(" ");
     match scene.dim {
         2 => scene_in::<Dim2>(&name, &scene, progress),
@@ -208,7 +208,7 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Ve
     for _ in 0..RUNS {
         let mut world = scene.build::<D>()?;
         for (tick, time) in times.iter_mut().enumerate() {
-            scene.send(&mut world, tick as u64);
+            scene.set_hand_targets(&mut world, tick as u64);
             let start = Instant::now();
             let report = world.step();
             *time = time.min(start.elapsed().as_secs_f64());

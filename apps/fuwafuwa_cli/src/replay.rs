@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result};
 use fuwafuwa::{Dim2, Dim3};
-use fuwafuwa_scenes::disk::text_of;
+use fuwafuwa_scenes::disk::read_text;
 use fuwafuwa_scenes::recording::{MAX_BYTES, Recording};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -20,7 +20,7 @@ pub struct Arguments {
 /// Replays the recording and prints the result.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let name = arguments.file.display().to_string();
-    let text = text_of(&arguments.file, MAX_BYTES).with_context(|| name.clone())?;
+    let text = read_text(&arguments.file, MAX_BYTES).with_context(|| name.clone())?;
     let recording = Recording::read(&name, &text)?;
     let comparison = match recording.scene.dim {
         2 => recording.replay::<Dim2>(|_| {})?,

@@ -90,11 +90,11 @@ impl Progress {
     /// Reports a finished step.
     pub fn step(&self) {
         self.bar.inc(1);
-        self.look();
+        self.show_if_slow();
     }
 
     /// Shows the bar if the check has taken longer than [`PATIENCE`]. Cheap enough for inner loops.
-    pub fn look(&self) {
+    pub fn show_if_slow(&self) {
         if self.bar.is_hidden() && self.start.elapsed() > PATIENCE {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
             self.bar.tick();

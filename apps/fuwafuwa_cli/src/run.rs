@@ -3,10 +3,10 @@
 use crate::report::Progress;
 use anyhow::{Context, Result};
 use fuwafuwa::{Dim, Dim2, Dim3, World};
-use fuwafuwa_painter::solid::{Camera, Solid};
+use fuwafuwa_painter::solid::{Camera, Scene3d};
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, Pixmap, film};
-use fuwafuwa_scenes::disk::scene_at;
+use fuwafuwa_scenes::disk::open_scene;
 use fuwafuwa_scenes::{Recording, Scene};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -87,7 +87,7 @@ impl Filmed for Dim3 {
         let [low, high] = scene.view;
         let middle = [0, 1, 2].map(|axis: usize| 0.5 * (low[axis] + high[axis]));
         let across = high[0] - low[0];
-        let mut solid = Solid::new(Camera {
+        let mut solid = Scene3d::new(Camera {
             eye: [
                 middle[0] + 1.4 * across,
                 middle[1] + 0.9 * across,
@@ -111,7 +111,7 @@ impl Filmed for Dim3 {
 
 /// Runs the scene.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let scene = scene_at(&arguments.scene, &arguments.changes)?;
+    let scene = open_scene(&arguments.scene, &arguments.changes)?;
     match scene.dim {
         2 => run_in::<Dim2>(&scene, arguments),
         _ => run_in::<Dim3>(&scene, arguments),

@@ -3,8 +3,10 @@
 use crate::report::{self, Progress};
 use crate::run::{check_folder, write};
 use anyhow::{Context, Result};
-use fuwafuwa_scan::{Label, MAX_FILE_BYTES, Options, Organ, Scan, Segmentation, Source, Threshold};
-use fuwafuwa_scenes::disk::bytes_of;
+use fuwafuwa_scan::{
+    Label, MAX_FILE_BYTES, Options, Organ, PlacementSource, Scan, Segmentation, Threshold,
+};
+use fuwafuwa_scenes::disk::read_bytes;
 use fuwafuwa_scenes::import::Model;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -54,7 +56,7 @@ pub struct Arguments {
 /// Summary of the imported scans.
 #[derive(Debug, Serialize)]
 struct Summary {
-    scans: Vec<Found>,
+    scans: Vec<ScanInfo>,
     /// Extent to the right, up and to the back [mm].
     sides: [f64; 3],
     grid: [i32; 3],
@@ -64,7 +66,7 @@ struct Summary {
 }
 
 #[derive(Debug, Serialize)]
-struct Found {
+struct ScanInfo {
     file: String,
     size: [usize; 3],
     /// Voxel spacing [mm].
@@ -94,7 +96,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let mut scans = Vec::new();
     for path in &arguments.files {
         let name = path.display().to_string();
-        let bytes = bytes_of(path, MAX_FILE_BYTES).with_context(|| name.clone())?;
+        let bytes = read_bytes(path, MAX_FILE_BYTES).with_context(|| name.clone())?;
         scans.push(Scan::decode(&name, &bytes, follow(&progress))?);
     }
     let options = Options {
@@ -111,7 +113,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     } else {
         print!("{}", text(&summary));
     }
-    let is_unplaced = |scan: &Scan| scan.placement().source() == Source::Spacing;
+    let is_unplaced = |scan: &Scan| scan.placement().source() == PlacementSource::Spacing;
     if scans.iter().any(is_unplaced) {
         eprintln!("warning: at least one scan has no orientation: left and right may be swapped");
     }
@@ -129,23 +131,27 @@ fn follow(progress: &Progress) -> impl FnMut(f32) {
             progress.step();
             shown += 1;
         }
-        progress.look();
+        progress.show_if_slow();
     }
 }
 
 fn summary(arguments: &Arguments, scans: &[Scan], organ: &Organ) -> Summary {
-    let found = arguments.files.iter().zip(scans).map(|(path, scan)| Found {
-        file: path.display().to_string(),
-        size: scan.size(),
-        spacing: scan.placement().spacing(),
-        placed_by: match scan.placement().source() {
-            Source::Matrix => "sform",
-            Source::Rotation => "qform",
-            Source::Spacing => "pixdim",
-        },
-        lowest: scan.range()[0],
-        highest: scan.range()[1],
-    });
+    let found = arguments
+        .files
+        .iter()
+        .zip(scans)
+        .map(|(path, scan)| ScanInfo {
+            file: path.display().to_string(),
+            size: scan.size(),
+            spacing: scan.placement().spacing(),
+            placed_by: match scan.placement().source() {
+                PlacementSource::Matrix => "sform",
+                PlacementSource::Rotation => "qform",
+                PlacementSource::Spacing => "pixdim",
+            },
+            lowest: scan.range()[0],
+            highest: scan.range()[1],
+        });
     let shares = (1..=u8::MAX).map(|material| Share {
         material,
         voxels: organ.voxels(material),
@@ -262,7 +268,7 @@ fn scene(model: &str, summary: &Summary) -> String {
 mod tests {
     use super::*;
     use fuwafuwa::Dim3;
-    use fuwafuwa_scenes::disk::scene_at;
+    use fuwafuwa_scenes::disk::open_scene;
 
     /// NIfTI-1 file with a cube of 9³ voxels of 2 mm, surrounded by empty voxels.
     fn cube() -> Vec<u8> {
@@ -303,7 +309,7 @@ mod tests {
             json: false,
         };
         run(&arguments).unwrap();
-        let scene = scene_at(&out.display().to_string(), &[]).unwrap();
+        let scene = open_scene(&out.display().to_string(), &[]).unwrap();
         let world = scene.build::<Dim3>().unwrap();
         let body = world.soft_bodies().iter().next();
         let grid = body.expect("the scene has a body").grid();

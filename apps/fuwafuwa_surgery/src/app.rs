@@ -8,13 +8,13 @@ mod pictures;
 mod section;
 pub mod session;
 
-use crate::loading::{ENDING, Loaded, Loading, Wanted};
+use crate::loading::{ENDING, LoadRequest, Loaded, Loading};
 use crate::record::Playback;
 use crate::report::NO_DEVICE;
 use crate::save;
 use crate::tools::Tool;
-use bar::Ask;
-use devices::{Devices, Press};
+use bar::BarAction;
+use devices::{DeviceAction, Devices};
 use egui::{
     Align2, CentralPanel, Color32, FontId, Frame, Key, Panel, PointerButton, Rect, Ui, Vec2, pos2,
     vec2,
@@ -22,7 +22,7 @@ use egui::{
 use force_feedback::Stop;
 use fuwafuwa_render::Palette;
 use fuwafuwa_scan::{Options, Segmentation};
-use hand::Wishes;
+use hand::HandInput;
 use section::Slices;
 use session::Session;
 use std::path::PathBuf;
@@ -41,7 +41,7 @@ const STAYS: f64 = 7.0;
 /// Configuration of a window.
 pub struct Setup {
     /// Organ or recording to open first.
-    pub wanted: Wanted,
+    pub wanted: LoadRequest,
     /// Assignment of materials for scans that are dropped onto the window.
     pub segmentation: Segmentation,
     /// Options for making organs from these scans.
@@ -109,7 +109,7 @@ impl App {
     }
 
     /// Starts loading. The current session stays until loading has finished.
-    fn open(&mut self, wanted: Wanted) {
+    fn open(&mut self, wanted: LoadRequest) {
         match Loading::begin(wanted) {
             Ok(loading) => self.loading = Some(loading),
             Err(error) => self.say(error.to_string()),
@@ -135,7 +135,7 @@ impl App {
                 self.say(error.to_string());
                 if self.session.is_none() {
                     // The table must not stay empty.
-                    self.open(Wanted::Phantom(self.setup.options.resolution));
+                    self.open(LoadRequest::Phantom(self.setup.options.resolution));
                 }
             }
         }
@@ -165,16 +165,16 @@ impl App {
         }
     }
 
-    fn act(&mut self, ask: Ask) {
+    fn act(&mut self, ask: BarAction) {
         match ask {
-            Ask::Take(tool) => self.take(tool),
-            Ask::Rest => {
+            BarAction::Take(tool) => self.take(tool),
+            BarAction::Rest => {
                 if let Some(session) = &mut self.session {
-                    session.rests = !session.rests;
+                    session.is_paused = !session.is_paused;
                 }
             }
-            Ask::Again => self.again(),
-            Ask::Watch => {
+            BarAction::Again => self.again(),
+            BarAction::Watch => {
                 let recording = self.session.as_ref().map(Session::recording);
                 match recording.map(Playback::new) {
                     Some(Ok(playback)) => self.begin(Session::again(playback)),
@@ -182,12 +182,12 @@ impl App {
                     None => {}
                 }
             }
-            Ask::TakeOver => {
+            BarAction::TakeOver => {
                 if let Some(session) = self.session.take() {
                     self.begin(session.take_over());
                 }
             }
-            Ask::Save => {
+            BarAction::Save => {
                 if let Some(session) = &self.session {
                     let saved = save::save(&self.setup.folder, session.procedure());
                     self.say(match saved {
@@ -223,8 +223,8 @@ impl App {
         let Some(session) = &mut self.session else {
             return;
         };
-        let (room, turn) = (session.procedure().table().room, session.camera.turn());
-        let mut wishes = Wishes::default();
+        let (room, turn) = (session.procedure().table().room, session.camera.azimuth());
+        let mut wishes = HandInput::default();
         let (presses, look) = self.devices.hear(&mut wishes, room, turn, seconds);
         if let Some(view) = &self.view {
             hear_mouse(ctx, view, session, &mut wishes);
@@ -235,7 +235,7 @@ impl App {
         }
         let look = LOOK * seconds * (look + keys_look);
         session.camera.orbit(look.x, look.y);
-        if session.is_by_hand() && !session.rests {
+        if session.is_by_hand() && !session.is_paused {
             session.hand.pass(&wishes, room, turn, seconds);
         }
         let now = self.clock.now();
@@ -245,7 +245,7 @@ impl App {
         session.camera.follow(tool, session.seen, seconds, true);
         let silence = match () {
             () if !focused => Some(Stop::FocusLost),
-            () if session.rests => Some(Stop::Paused),
+            () if session.is_paused => Some(Stop::Paused),
             () if !session.is_by_hand() => Some(Stop::Idle),
             () => None,
         };
@@ -255,14 +255,14 @@ impl App {
         }
         self.devices.feel(force, turn, silence);
         if let Some(verdict) = session.verdict.take() {
-            session.rests = true;
+            session.is_paused = true;
             self.say(verdict);
         }
         for press in presses {
             match press {
-                Press::NextTool => self.take(self.next_tool()),
-                Press::Pause => self.act(Ask::Rest),
-                Press::CutForces => self.cut_forces(),
+                DeviceAction::NextTool => self.take(self.next_tool()),
+                DeviceAction::Pause => self.act(BarAction::Rest),
+                DeviceAction::CutForces => self.cut_forces(),
             }
         }
     }
@@ -294,7 +294,7 @@ impl App {
             }
         }
         if pressed(Key::P) {
-            self.act(Ask::Rest);
+            self.act(BarAction::Rest);
         }
         if pressed(Key::R) {
             self.again();
@@ -424,11 +424,11 @@ impl eframe::App for App {
 }
 
 /// Returns what to load for some files: a recording if one is among them, otherwise scans.
-pub fn wanted(files: Vec<PathBuf>, setup: &Setup) -> Wanted {
+pub fn wanted(files: Vec<PathBuf>, setup: &Setup) -> LoadRequest {
     let is_recording = |file: &PathBuf| file.extension().is_some_and(|end| end == ENDING);
     match files.iter().find(|file| is_recording(file)) {
-        Some(file) => Wanted::Recording(file.clone()),
-        None => Wanted::Scans {
+        Some(file) => LoadRequest::Recording(file.clone()),
+        None => LoadRequest::Scans {
             files,
             segmentation: setup.segmentation.clone(),
             options: setup.options.clone(),
@@ -438,7 +438,7 @@ pub fn wanted(files: Vec<PathBuf>, setup: &Setup) -> Wanted {
 
 /// Handles the mouse. It points at the height of the hand, the wheel raises and lowers the hand, the left
 /// button grips and the right button turns the camera.
-fn hear_mouse(ctx: &egui::Context, view: &View, session: &mut Session, wishes: &mut Wishes) {
+fn hear_mouse(ctx: &egui::Context, view: &View, session: &mut Session, wishes: &mut HandInput) {
     let (at, delta, grips, turns, wheel, twice) = ctx.input(|input| {
         let pointer = &input.pointer;
         (
@@ -456,17 +456,17 @@ fn hear_mouse(ctx: &egui::Context, view: &View, session: &mut Session, wishes: &
     if turns {
         session.camera.orbit(-DRAG * delta.x, DRAG * delta.y);
     } else if delta != Vec2::ZERO {
-        wishes.place = Some(view.in_world(at, session.hand.goal[1]));
+        wishes.place = Some(view.to_world(at, session.hand.goal[1]));
     }
     if twice {
-        session.camera.go_home();
+        session.camera.return_to_front();
     }
     wishes.wheel += WHEEL * wheel;
     wishes.grips |= grips;
 }
 
 /// Handles held keys and returns the camera's turning speed as a fraction of [`LOOK`].
-fn hear_keys(ctx: &egui::Context, wishes: &mut Wishes) -> Vec2 {
+fn hear_keys(ctx: &egui::Context, wishes: &mut HandInput) -> Vec2 {
     ctx.input(|input| {
         let held = |keys: &[Key]| f32::from(u8::from(keys.iter().any(|key| input.key_down(*key))));
         let along = |more: &[Key], less: &[Key]| held(more) - held(less);

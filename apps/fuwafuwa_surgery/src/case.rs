@@ -137,7 +137,7 @@ impl Case {
     ///
     /// # Errors
     /// [`CaseError`] if the case is invalid.
-    pub fn lay(&self) -> Result<Table, CaseError> {
+    pub fn place_on_table(&self) -> Result<Table, CaseError> {
         self.check()?;
         let voxel = self.grid.voxel_size();
         let size = self.grid.size().map(|extent| extent as f32 * voxel);

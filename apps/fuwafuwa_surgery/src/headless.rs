@@ -1,6 +1,6 @@
 //! Procedures without a window: an automatic trainee, or a replay of a recording.
 
-use crate::loading::{Loaded, Wanted, load};
+use crate::loading::{LoadRequest, Loaded, load};
 use crate::measures::parts;
 use crate::procedure::Procedure;
 use crate::record::{Playback, Recording};
@@ -41,7 +41,7 @@ pub struct Options {
 ///
 /// # Errors
 /// A message if a file cannot be read or written, or if a replay differs from its recording.
-pub fn operate(wanted: &Wanted, options: &Options) -> Result<(), String> {
+pub fn operate(wanted: &LoadRequest, options: &Options) -> Result<(), String> {
     let bar = ProgressBar::new(1000);
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {msg} {elapsed}") {
         bar.set_style(style);

@@ -4,8 +4,10 @@ use crate::case::{Case, CaseError};
 use crate::phantom;
 use crate::procedure::Procedure;
 use crate::record::{MOST_BYTES, Playback, RecordError, Recording};
-use fuwafuwa_scan::{MAX_FILE_BYTES, Options, Organ, OrganError, Scan, Segmentation, Source};
-use fuwafuwa_scenes::disk::bytes_of;
+use fuwafuwa_scan::{
+    MAX_FILE_BYTES, Options, Organ, OrganError, PlacementSource, Scan, Segmentation,
+};
+use fuwafuwa_scenes::disk::read_bytes;
 use fuwafuwa_scenes::import::ImportError;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -22,7 +24,7 @@ const MADE: f32 = 0.9;
 
 /// Object to load.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Wanted {
+pub enum LoadRequest {
     /// Synthetic organ with a number of voxels along its longest side.
     Phantom(usize),
     /// Organ from scans.
@@ -80,15 +82,15 @@ pub enum LoadError {
 /// # Errors
 /// [`LoadError`] names the file and the problem.
 pub fn load(
-    wanted: &Wanted,
+    wanted: &LoadRequest,
     progress: &mut dyn FnMut(f32),
 ) -> Result<(Loaded, Option<Warning>), LoadError> {
     let begin = |case: Case| -> Result<Loaded, LoadError> {
         Ok(Loaded::Procedure(Box::new(Procedure::new(Arc::new(case))?)))
     };
     match wanted {
-        Wanted::Phantom(resolution) => Ok((begin(phantom::case(*resolution)?)?, None)),
-        Wanted::Recording(file) => {
+        LoadRequest::Phantom(resolution) => Ok((begin(phantom::case(*resolution)?)?, None)),
+        LoadRequest::Recording(file) => {
             let name = file.display().to_string();
             let bytes = read(file, MOST_BYTES as u64)?;
             let recording = Recording::read(&bytes);
@@ -96,7 +98,7 @@ pub fn load(
             let playback = playback.map_err(|error| LoadError::Record(name, error))?;
             Ok((Loaded::Playback(Box::new(playback)), None))
         }
-        Wanted::Scans {
+        LoadRequest::Scans {
             files,
             segmentation,
             options,
@@ -114,7 +116,7 @@ pub fn load(
             let organ = Organ::of(&all, segmentation, options, |done| {
                 progress(READ + (MADE - READ) * done);
             })?;
-            let is_unplaced = |scan: &Scan| scan.placement().source() == Source::Spacing;
+            let is_unplaced = |scan: &Scan| scan.placement().source() == PlacementSource::Spacing;
             let warning = "At least one scan has no orientation: left and right may be swapped.";
             let warning = scans.iter().any(is_unplaced).then_some(warning);
             let procedure = begin(Case::of(&name_of(files), &organ))?;
@@ -125,7 +127,7 @@ pub fn load(
 }
 
 fn read(file: &std::path::Path, most: u64) -> Result<Vec<u8>, LoadError> {
-    bytes_of(file, most)
+    read_bytes(file, most)
         .map_err(|error| LoadError::File(file.display().to_string(), error.to_string()))
 }
 
@@ -150,7 +152,7 @@ impl Loading {
     ///
     /// # Errors
     /// [`LoadError::Thread`] if the thread cannot be started.
-    pub fn begin(wanted: Wanted) -> Result<Self, LoadError> {
+    pub fn begin(wanted: LoadRequest) -> Result<Self, LoadError> {
         let done = Arc::new(AtomicU32::new(0.0f32.to_bits()));
         let (tell, told) = mpsc::channel();
         let share = done.clone();

@@ -5,10 +5,10 @@ use fuwafuwa_scan::{Label, Options, RESOLUTIONS, Segmentation, Threshold};
 use fuwafuwa_surgery::app::devices::Devices;
 use fuwafuwa_surgery::app::{App, Setup, wanted};
 use fuwafuwa_surgery::headless;
-use fuwafuwa_surgery::loading::Wanted;
+use fuwafuwa_surgery::loading::LoadRequest;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use tamaire::desktop::window::{Opened, has_display, open};
+use tamaire::desktop::window::{WindowOutcome, has_display, open};
 
 /// Cut a soft organ, made from a scan or a phantom, and feel the knife. This is not a medical device.
 #[derive(Parser)]
@@ -63,7 +63,7 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     }
     let mut setup = Setup {
-        wanted: Wanted::Phantom(arguments.resolution),
+        wanted: LoadRequest::Phantom(arguments.resolution),
         segmentation: Segmentation::chosen(&arguments.thresholds, &arguments.labels),
         options: Options {
             resolution: arguments.resolution,
@@ -90,10 +90,10 @@ fn main() -> ExitCode {
         Ok((Box::new(app), gpu))
     });
     match opened {
-        Opened::Closed => ExitCode::SUCCESS,
-        Opened::LostGpu => failed("the GPU was lost"),
-        Opened::Failed(reason) | Opened::Never(reason) => failed(&reason),
-        Opened::Broken(panic) => std::panic::resume_unwind(panic),
+        WindowOutcome::Closed => ExitCode::SUCCESS,
+        WindowOutcome::LostGpu => failed("the GPU was lost"),
+        WindowOutcome::Failed(reason) | WindowOutcome::Never(reason) => failed(&reason),
+        WindowOutcome::Broken(panic) => std::panic::resume_unwind(panic),
     }
 }
 

@@ -32,7 +32,7 @@ pub struct Sample {
 
 /// Piece of the organ.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct PieceVolume {
     /// Rest volume [ml].
     pub millilitres: f64,
     /// Rest volume by material, starting at number 1 [ml].
@@ -40,9 +40,9 @@ pub struct Part {
 }
 
 /// Returns the pieces of an organ, largest first. `voxel` is the volume of a voxel [ml].
-pub fn parts(body: &SoftBody<Dim3>, voxel: f64) -> Vec<Part> {
+pub fn parts(body: &SoftBody<Dim3>, voxel: f64) -> Vec<PieceVolume> {
     let materials = body.materials().len();
-    let none = Part {
+    let none = PieceVolume {
         millilitres: 0.0,
         by_material: vec![0.0; materials],
     };

@@ -2,7 +2,7 @@
 
 use crate::case::{Case, CaseError, Table, bounds};
 use crate::measures::{self, Sample};
-use crate::tools::{Held, Tool, clearance};
+use crate::tools::{HeldTool, Tool, clearance};
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
 use fuwafuwa::{Dim3, Event, Refused, RigidBody, Rotation, SoftBody, StepReport, Vector, World};
@@ -78,7 +78,7 @@ impl Input {
 pub struct Procedure {
     case: Arc<Case>,
     table: Table,
-    held: Held,
+    held: HeldTool,
     /// Kinematic target of the tool. It follows the input at limited speed.
     goal: Vector,
     rotation: Rotation,
@@ -93,7 +93,7 @@ impl Procedure {
     /// # Errors
     /// [`CaseError`] if the organ cannot be laid on the table.
     pub fn new(case: Arc<Case>) -> Result<Self, CaseError> {
-        let mut table = case.lay()?;
+        let mut table = case.place_on_table()?;
         let [low, high] = table.room;
         let goal = [
             0.5 * (low[0] + high[0]),
@@ -101,7 +101,7 @@ impl Procedure {
             0.5 * (low[2] + high[2]),
         ];
         let rotation = Rotation::NONE;
-        let held = Held::new(
+        let held = HeldTool::new(
             &mut table.world,
             table.organ,
             Tool::default(),
@@ -130,7 +130,7 @@ impl Procedure {
         self.follow(&input);
         let world = &mut self.table.world;
         self.held.send(world, self.goal, self.rotation)?;
-        self.held.grind(world, input.dull.min(BLUNTEST))?;
+        self.held.set_edge_radius(world, input.dull.min(BLUNTEST))?;
         self.held.close(world, self.table.organ, input.grips)?;
         let report = world.step();
         self.inputs.push(input);
@@ -162,7 +162,7 @@ impl Procedure {
     }
 
     /// Returns the tool in the hand.
-    pub fn held(&self) -> &Held {
+    pub fn held(&self) -> &HeldTool {
         &self.held
     }
 
@@ -213,7 +213,7 @@ impl Procedure {
         }
         self.goal[1] = self.entry();
         let Table { world, organ, .. } = &mut self.table;
-        let next = Held::new(world, *organ, tool, self.goal, self.rotation)?;
+        let next = HeldTool::new(world, *organ, tool, self.goal, self.rotation)?;
         std::mem::replace(&mut self.held, next).put_away(world)
     }
 

@@ -48,7 +48,7 @@ pub struct Recording {
 pub enum RecordError {
     /// The file is not a recording.
     #[error("not a recording of a procedure: the header is missing")]
-    NotOne,
+    NotARecording,
     /// The recording has another format version.
     #[error("unsupported recording: expected format {VERSION}, found format {found}")]
     Version {
@@ -148,7 +148,7 @@ impl Recording {
     pub fn read(bytes: &[u8]) -> Result<Self, RecordError> {
         limit("bytes", bytes.len(), MOST_BYTES)?;
         if bytes.len() < HEADER || bytes[..8] != MAGIC {
-            return Err(RecordError::NotOne);
+            return Err(RecordError::NotARecording);
         }
         let number = |from: usize| {
             let digits = bytes[from..].iter().take(4).rev();

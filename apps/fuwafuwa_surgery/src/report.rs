@@ -1,6 +1,6 @@
 //! Report of a procedure: a table of all ticks (CSV), plots (SVG), and a summary.
 
-use crate::measures::{Part, Sample, size};
+use crate::measures::{PieceVolume, Sample, size};
 use crate::procedure::Procedure;
 use fuwafuwa::world::TICK;
 use plotters::prelude::*;
@@ -170,7 +170,7 @@ fn seconds(tick: usize) -> f32 {
 }
 
 /// Returns a summary of the procedure in a few lines.
-pub fn summary(procedure: &Procedure, parts: &[Part]) -> String {
+pub fn summary(procedure: &Procedure, parts: &[PieceVolume]) -> String {
     let last = procedure.samples().last().copied().unwrap_or_default();
     let strongest = procedure.samples().iter().map(|sample| sample.peak);
     let strongest = strongest.fold(0.0, f32::max);

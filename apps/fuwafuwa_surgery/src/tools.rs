@@ -73,7 +73,7 @@ impl Tool {
 
 /// Tool in a world.
 #[derive(Clone, Debug)]
-pub struct Held {
+pub struct HeldTool {
     tool: Tool,
     holder: RigidBodyHandle,
     /// Knife of the tool and its edge radius [µm].
@@ -83,7 +83,7 @@ pub struct Held {
     is_closed: bool,
 }
 
-impl Held {
+impl HeldTool {
     /// Adds a tool to the world of an organ, at rest at a position [m].
     ///
     /// # Errors
@@ -127,7 +127,7 @@ impl Held {
     ///
     /// # Errors
     /// [`Refused`] if the radius is out of range.
-    pub fn grind(&mut self, world: &mut World<Dim3>, dull: u16) -> Result<(), Refused> {
+    pub fn set_edge_radius(&mut self, world: &mut World<Dim3>, dull: u16) -> Result<(), Refused> {
         let is_so = self.edge.is_some_and(|(_, is)| is == dull);
         if self.tool != Tool::Knife || is_so {
             return Ok(());

@@ -8,7 +8,7 @@ use fuwafuwa_surgery::slices::{Cut, Slice};
 
 fn table() -> (Case, Table) {
     let case = case(40).unwrap();
-    let table = case.lay().unwrap();
+    let table = case.place_on_table().unwrap();
     (case, table)
 }
 
@@ -165,7 +165,7 @@ fn scan_with_left_axis_shows_right_on_the_right() {
     let labels = Segmentation::labels(&[(1, 1), (2, 2)]);
     let organ = Organ::of(&[&scan], &labels, &options, |_| {}).unwrap();
     let case = Case::of("marked", &organ);
-    let table = case.lay().unwrap();
+    let table = case.place_on_table().unwrap();
     let body = &table.world.soft_bodies()[table.organ];
     let [mark, mirrored] = [14.0, -14.0].map(|right| place(&case, &table, [right, 0.0, 0.0]));
     for cut in [Cut::Axial, Cut::Coronal] {

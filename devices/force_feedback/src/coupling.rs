@@ -21,7 +21,7 @@
 //!
 //! **Damper.** Between computing a force and feeling it pass up to T ≈ 20 ms in driver and cable, plus half
 //! an update. A spring with delay T acts like one with an additional damper −K T. B = `LEAD` · K compensates
-//! for that. K is limited to [`HARDEST`](crate::HARDEST): up to there, hinge and hand dissipate more than the
+//! for that. K is limited to [`MAX_STIFFNESS`](crate::MAX_STIFFNESS): up to there, hinge and hand dissipate more than the
 //! remaining negative damping, and a delayed damper does not oscillate by itself. `tests/hand/closed_loop.rs`
 //! lists the sticks for which this holds. A stick with less damping in hinge and hand (damping × travel /
 //! full force below 8 ms) and a delay of 20 ms can still oscillate a little.
@@ -53,19 +53,19 @@ pub struct State {
     /// away from the player, as for the stick.
     pub contact: [f32; 2],
     /// Meaning of the stick position.
-    pub manner: Manner,
+    pub manner: StickMode,
 }
 
 /// Meaning of the stick position for the simulated hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Manner {
+pub enum StickMode {
     /// The stick gives a position.
     CellIndexing,
     /// The stick gives a velocity. The proxy stays in the middle.
-    Steers,
+    Velocity,
     /// The stick gives nothing: the contact force is passed on unchanged. Only for a
     /// [`Measurement`](crate::Measurement); a force that depends on the stick position could oscillate.
-    Yields,
+    OpenLoop,
 }
 
 /// Spring, damper and slider.
@@ -116,9 +116,9 @@ impl Coupling {
         let moved = [0, 1].map(|axis| aim[axis] - memory.aim[axis]);
         memory.aim = aim;
         let pull = match state.manner {
-            Manner::CellIndexing => dot(memory.pull, along) - spring * dot(moved, along),
-            Manner::Steers => -spring * dot(aim, along),
-            Manner::Yields => return state.contact,
+            StickMode::CellIndexing => dot(memory.pull, along) - spring * dot(moved, along),
+            StickMode::Velocity => -spring * dot(aim, along),
+            StickMode::OpenLoop => return state.contact,
         };
         let pull = pull.clamp(0.0, bears);
         memory.pull = along.map(|k| k * pull);
@@ -137,9 +137,9 @@ impl Coupling {
 /// Feedback of a tear, in addition to its effect on the contact force: the force drops for a moment. It only
 /// reduces a force, so it cannot push the player.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Give(f32);
+pub struct TearFeedback(f32);
 
-impl Give {
+impl TearFeedback {
     /// Duration of the feedback [s].
     pub const TIME: f32 = 0.06;
     /// Fraction by which the largest tear reduces the force.

@@ -1,7 +1,8 @@
 //! The complete calculation for one device, one step at a time.
 
 use crate::{
-    Ability, Chain, Coupling, Give, Mail, OLDEST, Output, Settings, State, Stop, Watchdog,
+    Ability, Chain, Command, Coupling, MAX_STATE_AGE, Output, Settings, State, Stop, TearFeedback,
+    Watchdog,
 };
 use std::time::Duration;
 
@@ -10,16 +11,16 @@ const MOST: f32 = 1e6;
 
 /// Force calculation of one device.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Feel {
+pub struct ForceController {
     coupling: Coupling,
-    give: Give,
+    give: TearFeedback,
     chain: Chain,
     before: Option<Duration>,
 }
 
 /// Result of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Felt {
+pub struct StepOutput {
     /// Output for the device.
     pub output: Output,
     /// Force before the safety chain [N].
@@ -28,7 +29,7 @@ pub struct Felt {
     pub silent: Option<Stop>,
 }
 
-impl Feel {
+impl ForceController {
     /// Reports a tear of a size from 0 to 1.
     pub fn tear(&mut self, size: f32) {
         self.give.tear(size);
@@ -39,11 +40,11 @@ impl Feel {
     pub fn step(
         &mut self,
         watchdog: &Watchdog,
-        mail: &Mail,
+        mail: &Command,
         (aim, ability): ([f32; 2], Ability),
         settings: &Settings,
         now: Duration,
-    ) -> Felt {
+    ) -> StepOutput {
         let state = match watchdog.pass(mail, now) {
             Ok(state) => state,
             Err(stop) => return self.rest(ability, stop),
@@ -52,7 +53,7 @@ impl Feel {
         let mut duration = self
             .before
             .map_or(Duration::ZERO, |before| now.saturating_sub(before));
-        if duration > OLDEST {
+        if duration > MAX_STATE_AGE {
             // The thread was delayed, for example because the process was stopped. The hand was released long
             // ago and may have moved.
             *self = Self::default();
@@ -83,7 +84,7 @@ impl Feel {
             }
             Ability::Nothing => Output::zero(ability),
         };
-        Felt {
+        StepOutput {
             output,
             newtons,
             silent: None,
@@ -91,9 +92,9 @@ impl Feel {
     }
 
     /// Stops at once and resets the calculation.
-    pub fn rest(&mut self, ability: Ability, why: Stop) -> Felt {
+    pub fn rest(&mut self, ability: Ability, why: Stop) -> StepOutput {
         *self = Self::default();
-        Felt {
+        StepOutput {
             output: Output::zero(ability),
             newtons: [0.0; 2],
             silent: Some(why),

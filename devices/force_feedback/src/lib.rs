@@ -16,24 +16,24 @@
 //! - [`Watchdog`]: blocks forces, because of a requested stop or because the last state is too old.
 //! - [`Coupling`]: spring and damper from the *current* stick position to a proxy that the contact force
 //!   holds. A slow frame makes the stick neither harder nor softer.
-//! - [`Feel`]: all of these for one device, one step at a time, without a clock. Used by headless runs and
+//! - [`ForceController`]: all of these for one device, one step at a time, without a clock. Used by headless runs and
 //!   tests.
 //! - [`Measurement`]: finds out how the motors of a device are mounted by pushing the stick.
 //! - [`Sink`]: interface of a device. [`Recording`] and [`Nothing`] are stand-ins.
-//! - [`Force`]: the thread that owns all sinks. A [`Line`] connects the game to one sink; dropping it, also
+//! - [`ForceThread`]: the thread that owns all sinks. A [`Line`] connects the game to one sink; dropping it, also
 //!   by a panic, stops the device.
 //!
-//! An output lasts [`LENGTH`] and is repeated before that time, so that no force outlives the thread.
+//! An output lasts [`OUTPUT_DURATION`] and is repeated before that time, so that no force outlives the thread.
 //!
 //! ```
-//! use force_feedback::{Force, Manner, Recording, Settings, State, Stop};
+//! use force_feedback::{ForceThread, StickMode, Recording, Settings, State, Stop};
 //!
-//! let force = Force::start(250)?;
+//! let force = ForceThread::start(250)?;
 //! let recording = Recording::default();
 //! let line = force.add(Box::new(recording.clone()), Settings::default());
 //! line.feel(State {
 //!     contact: [-30.0, 0.0],
-//!     manner: Manner::CellIndexing,
+//!     manner: StickMode::CellIndexing,
 //! });
 //! line.stop(Stop::Paused);
 //! assert_eq!(line.report().silent, Some(Stop::Paused));
@@ -54,10 +54,10 @@ mod thread;
 mod watchdog;
 
 pub use chain::Chain;
-pub use coupling::{Coupling, Give, Manner, State};
-pub use feel::{Feel, Felt};
+pub use coupling::{Coupling, State, StickMode, TearFeedback};
+pub use feel::{ForceController, StepOutput};
 pub use measurement::{Measured, Measurement};
-pub use settings::{Calibration, HARDEST, Settings};
-pub use sink::{Ability, Gone, LENGTH, Nothing, Output, Played, Recording, Sink};
-pub use thread::{Force, Line, RATES, Report};
-pub use watchdog::{Mail, OLDEST, Stop, Watchdog};
+pub use settings::{Calibration, MAX_STIFFNESS, Settings};
+pub use sink::{Ability, Gone, Nothing, OUTPUT_DURATION, Output, Played, Recording, Sink};
+pub use thread::{ForceThread, Line, RATES, Report};
+pub use watchdog::{Command, MAX_STATE_AGE, Stop, Watchdog};

@@ -41,7 +41,7 @@ pub struct Measurement {
 /// Progress of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measured {
-    /// Push the stick with this force [full forces], with [`Manner::Yields`](crate::Manner::Yields) and
+    /// Push the stick with this force [full forces], with [`StickMode::OpenLoop`](crate::StickMode::OpenLoop) and
     /// [`Measurement::SETTINGS`], and report its position.
     Pushing([f32; 2]),
     /// Result. `None` if it is unclear, for example because the stick was held or no motor pushed.
@@ -57,7 +57,7 @@ impl Measurement {
         stiffness: 0.0,
         slew: 10.0,
         clamp: MOST,
-        calibration: Calibration::USUAL,
+        calibration: Calibration::IDENTITY,
     };
 
     /// Returns the next action for the stick position `aim`, `duration` [s] after the last step.
@@ -120,16 +120,16 @@ fn of_one_round(moves: &[[f32; 2]]) -> Option<Calibration> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Ability, Feel, Mail, Manner, Output, State, Watchdog};
+    use crate::{Ability, Command, ForceController, Output, State, StickMode, Watchdog};
     use std::time::Duration;
 
-    /// Measures a light stick with a soft spring through all of `Feel`. `built` maps motor forces to stick
+    /// Measures a light stick with a soft spring through all of `ForceController`. `built` maps motor forces to stick
     /// forces; `hand` is added to the stick position.
     fn measure(
         built: impl Fn([f32; 2]) -> [f32; 2],
         hand: impl Fn(f32) -> [f32; 2],
     ) -> Option<Calibration> {
-        let (mut measurement, mut feel) = (Measurement::default(), Feel::default());
+        let (mut measurement, mut feel) = (Measurement::default(), ForceController::default());
         let (mut at, mut speed) = ([0.0f32; 2], [0.0f32; 2]);
         let mut contact = [0.0; 2];
         for step in 0..15_000 {
@@ -142,9 +142,9 @@ mod tests {
                     Measured::Known(calibration) => return calibration,
                 }
             }
-            let manner = Manner::Yields;
+            let manner = StickMode::OpenLoop;
             let wish = Ok(State { contact, manner });
-            let mail = Mail { wish, at: now };
+            let mail = Command { wish, at: now };
             let (lean, watchdog) = ((aim, Ability::Force), Watchdog::default());
             let felt = feel.step(&watchdog, &mail, lean, &Measurement::SETTINGS, now);
             let Output::Force(force) = felt.output else {

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 /// Maximum stiffness of a coupling [full forces per stick travel from the middle to the rim].
-pub const HARDEST: f32 = 0.4;
+pub const MAX_STIFFNESS: f32 = 0.4;
 
 /// Strength and speed limits of the forces of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub struct Settings {
     /// Simulated force that gives full force [N], 1 to 10,000; about 150. A smaller value makes forces
     /// stronger and clips them earlier.
     pub full: f32,
-    /// Stiffness of the coupling [full forces per stick travel from the middle to the rim], 0 to [`HARDEST`].
+    /// Stiffness of the coupling [full forces per stick travel from the middle to the rim], 0 to [`MAX_STIFFNESS`].
     /// A smaller value makes all contacts softer.
     pub stiffness: f32,
     /// Maximum rate of change of the force [full forces/s], 10 to 100; about 30. A smaller value lags behind
@@ -43,7 +43,7 @@ impl Default for Settings {
         Self {
             strength: 0.8,
             full: 150.0,
-            stiffness: HARDEST,
+            stiffness: MAX_STIFFNESS,
             slew: 30.0,
             clamp: 0.9,
             calibration: Calibration::default(),
@@ -53,7 +53,7 @@ impl Default for Settings {
 
 impl Default for Calibration {
     fn default() -> Self {
-        Self::USUAL
+        Self::IDENTITY
     }
 }
 
@@ -63,7 +63,7 @@ impl Settings {
     /// Range of `full` [N].
     pub const FULL: RangeInclusive<f32> = 1.0..=10_000.0;
     /// Range of `stiffness`.
-    pub const STIFFNESS: RangeInclusive<f32> = 0.0..=HARDEST;
+    pub const STIFFNESS: RangeInclusive<f32> = 0.0..=MAX_STIFFNESS;
     /// Range of `slew` [full forces/s].
     pub const SLEW: RangeInclusive<f32> = 10.0..=100.0;
 
@@ -88,7 +88,7 @@ fn within(value: f32, range: RangeInclusive<f32>, otherwise: f32) -> f32 {
 
 impl Calibration {
     /// No correction.
-    pub const USUAL: Self = Self {
+    pub const IDENTITY: Self = Self {
         swap: false,
         invert: [false; 2],
         gain: [1.0; 2],
@@ -118,7 +118,7 @@ impl Calibration {
         Some(Self {
             swap: main[0] == 1,
             invert: [0, 1].map(|motor| moves[motor][main[motor]] < 0.0),
-            ..Self::USUAL
+            ..Self::IDENTITY
         })
     }
 

@@ -6,7 +6,7 @@ use web_time::Instant;
 
 /// Duration of an output unless it is repeated: the second dead man's switch. Kernels stop the forces of
 /// a process that dies, but not of one that hangs.
-pub const LENGTH: Duration = Duration::from_millis(500);
+pub const OUTPUT_DURATION: Duration = Duration::from_millis(500);
 
 /// Capability of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,9 +46,9 @@ pub trait Sink: Send {
     ///
     /// # Errors
     /// [`Gone`] if the device was unplugged; nothing is played any more.
-    fn aim(&mut self) -> Result<[f32; 2], Gone>;
+    fn stick_position(&mut self) -> Result<[f32; 2], Gone>;
 
-    /// Plays an output at once for [`LENGTH`], instead of the previous one. Repeating the same output
+    /// Plays an output at once for [`OUTPUT_DURATION`], instead of the previous one. Repeating the same output
     /// restarts its duration.
     ///
     /// # Errors
@@ -65,7 +65,7 @@ impl Sink for Nothing {
         Ability::Nothing
     }
 
-    fn aim(&mut self) -> Result<[f32; 2], Gone> {
+    fn stick_position(&mut self) -> Result<[f32; 2], Gone> {
         Ok([0.0; 2])
     }
 
@@ -132,7 +132,7 @@ impl Sink for Recording {
         self.tape(|tape| tape.ability)
     }
 
-    fn aim(&mut self) -> Result<[f32; 2], Gone> {
+    fn stick_position(&mut self) -> Result<[f32; 2], Gone> {
         self.tape(|tape| tape.aim)
     }
 

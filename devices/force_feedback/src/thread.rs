@@ -1,6 +1,8 @@
 //! Thread that owns all sinks (or the caller, where there are no threads), and its interface to the game.
 
-use crate::{Ability, Feel, Felt, Mail, Output, Settings, Sink, State, Stop, Watchdog};
+use crate::{
+    Ability, Command, ForceController, Output, Settings, Sink, State, StepOutput, Stop, Watchdog,
+};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -10,12 +12,12 @@ use web_time::Instant;
 
 /// Allowed update rates [Hz]. Steps are felt at lower rates; most devices accept no higher ones.
 pub const RATES: RangeInclusive<u32> = 125..=250;
-/// Interval at which an unchanged output is repeated, well below [`LENGTH`](crate::LENGTH).
+/// Interval at which an unchanged output is repeated, well below [`OUTPUT_DURATION`](crate::OUTPUT_DURATION).
 const AGAIN: Duration = Duration::from_millis(200);
 
 /// Owner of all sinks or of the thread that has them. Dropping it stops all devices and waits for that.
 #[must_use = "dropping it stops the force feedback"]
-pub struct Force {
+pub struct ForceThread {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
     /// Sinks that are not owned by a thread.
@@ -44,13 +46,13 @@ pub struct Report {
 
 struct Shared {
     start: Instant,
-    desk: Mutex<Desk>,
+    desk: Mutex<SharedState>,
     news: Condvar,
 }
 
 /// Data shared by the game and the thread; locked only for copying. It holds the latest values and no queue.
 #[derive(Default)]
-struct Desk {
+struct SharedState {
     watchdog: Watchdog,
     posts: BTreeMap<u64, Post>,
     arrivals: Vec<Outlet>,
@@ -64,7 +66,7 @@ struct Desk {
 /// Last commands of the game for a device, and the resulting state.
 #[derive(Clone, Copy)]
 struct Post {
-    mail: Mail,
+    mail: Command,
     tear: f32,
     settings: Settings,
     report: Report,
@@ -74,12 +76,12 @@ struct Post {
 struct Outlet {
     key: u64,
     sink: Box<dyn Sink>,
-    feel: Feel,
+    feel: ForceController,
     told: Output,
     told_at: Duration,
 }
 
-impl Force {
+impl ForceThread {
     /// Starts the thread; `rate` is its update rate [Hz], clamped to [`RATES`].
     ///
     /// # Errors
@@ -95,7 +97,7 @@ impl Force {
         Ok(force)
     }
 
-    /// Creates an owner without a thread, as in a browser: only [`Force::update`] updates the devices.
+    /// Creates an owner without a thread, as in a browser: only [`ForceThread::update`] updates the devices.
     pub fn without_thread() -> Self {
         Self {
             shared: Arc::new(Shared {
@@ -121,13 +123,13 @@ impl Force {
             ability: sink.ability(),
             output: Output::zero(sink.ability()),
             newtons: [0.0; 2],
-            silent: Some(Stop::Unheard),
+            silent: Some(Stop::NoState),
         };
         let mut desk = self.shared.desk();
         let key = desk.next_key;
         desk.next_key += 1;
         let post = Post {
-            mail: Mail::default(),
+            mail: Command::default(),
             tear: 0.0,
             settings,
             report,
@@ -136,7 +138,7 @@ impl Force {
         desk.arrivals.push(Outlet {
             key,
             sink,
-            feel: Feel::default(),
+            feel: ForceController::default(),
             told: report.output,
             told_at: Duration::ZERO,
         });
@@ -156,7 +158,7 @@ impl Force {
         self.shared.hurry(desk);
     }
 
-    /// Stops all devices and ignores new states until [`Force::release`].
+    /// Stops all devices and ignores new states until [`ForceThread::release`].
     pub fn emergency_stop(&self) {
         let mut desk = self.shared.desk();
         desk.watchdog.latch();
@@ -168,12 +170,12 @@ impl Force {
         let mut desk = self.shared.desk();
         desk.watchdog.release();
         for post in desk.posts.values_mut() {
-            post.mail = Mail::default();
+            post.mail = Command::default();
         }
     }
 }
 
-impl Drop for Force {
+impl Drop for ForceThread {
     fn drop(&mut self) {
         let mut desk = self.shared.desk();
         desk.is_closing = true;
@@ -187,7 +189,7 @@ impl Drop for Force {
 
 impl Line {
     /// Reports the current state. Call it after each step of the simulation.
-    pub fn feel(&self, state: State) {
+    pub fn set_state(&self, state: State) {
         let mail = self.shared.mail(Ok(state));
         self.post(|post| post.mail = mail);
     }
@@ -240,17 +242,17 @@ impl Drop for Line {
 }
 
 impl Shared {
-    fn desk(&self) -> MutexGuard<'_, Desk> {
+    fn desk(&self) -> MutexGuard<'_, SharedState> {
         self.desk.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn mail(&self, wish: Result<State, Stop>) -> Mail {
+    fn mail(&self, wish: Result<State, Stop>) -> Command {
         let at = self.start.elapsed();
-        Mail { wish, at }
+        Command { wish, at }
     }
 
     /// Wakes the thread for an immediate update.
-    fn hurry(&self, mut desk: MutexGuard<'_, Desk>) {
+    fn hurry(&self, mut desk: MutexGuard<'_, SharedState>) {
         desk.is_urgent = true;
         drop(desk);
         self.news.notify_one();
@@ -276,7 +278,7 @@ impl Shared {
     }
 
     /// Updates all devices and returns the time of the update.
-    fn update(&self, mut desk: MutexGuard<'_, Desk>, outlets: &mut Vec<Outlet>) -> Duration {
+    fn update(&self, mut desk: MutexGuard<'_, SharedState>, outlets: &mut Vec<Outlet>) -> Duration {
         desk.is_urgent = false;
         outlets.append(&mut desk.arrivals);
         let watchdog = desk.watchdog;
@@ -326,7 +328,7 @@ impl Outlet {
     fn update(&mut self, watchdog: &Watchdog, post: &Post, now: Duration) -> Report {
         let ability = self.sink.ability();
         self.feel.tear(post.tear);
-        let felt = match self.sink.aim() {
+        let felt = match self.sink.stick_position() {
             Ok(aim) => {
                 let lean = (aim, ability);
                 self.feel
@@ -344,8 +346,8 @@ impl Outlet {
     }
 
     /// Sends an output to the device if it changed or if it is nonzero and due for repetition.
-    fn tell(&mut self, felt: Felt, now: Duration) -> Felt {
-        let Felt { output, .. } = felt;
+    fn tell(&mut self, felt: StepOutput, now: Duration) -> StepOutput {
+        let StepOutput { output, .. } = felt;
         let is_news = output.levels() != self.told.levels();
         let is_due = now.saturating_sub(self.told_at) >= AGAIN && !output.is_zero();
         if !is_news && !is_due {

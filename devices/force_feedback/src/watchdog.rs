@@ -5,13 +5,13 @@ use std::fmt;
 use std::time::Duration;
 
 /// Maximum age of a state. Two updates at the slowest rate below the limit of 100 ms.
-pub const OLDEST: Duration = Duration::from_millis(84);
+pub const MAX_STATE_AGE: Duration = Duration::from_millis(84);
 
 /// Reason for silence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
     /// No state was reported yet.
-    Unheard,
+    NoState,
     /// No player uses the device.
     Idle,
     /// The game is paused.
@@ -26,7 +26,7 @@ pub enum Stop {
     Reset,
     /// The device was unplugged.
     Unplugged,
-    /// The last state is older than [`OLDEST`].
+    /// The last state is older than [`MAX_STATE_AGE`].
     Stale,
     /// Emergency stop; lasts until it is released.
     Emergency,
@@ -37,7 +37,7 @@ pub enum Stop {
 impl fmt::Display for Stop {
     fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
         to.write_str(match self {
-            Self::Unheard => "unheard",
+            Self::NoState => "unheard",
             Self::Idle => "idle",
             Self::Paused => "paused",
             Self::FocusLost => "focus lost",
@@ -54,7 +54,7 @@ impl fmt::Display for Stop {
 
 /// Last command of the game for a device, with its time on a shared clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mail {
+pub struct Command {
     /// State, or a reason for silence.
     pub wish: Result<State, Stop>,
     /// Time of the command.
@@ -67,10 +67,10 @@ pub struct Watchdog {
     emergency: bool,
 }
 
-impl Default for Mail {
+impl Default for Command {
     fn default() -> Self {
         Self {
-            wish: Err(Stop::Unheard),
+            wish: Err(Stop::NoState),
             at: Duration::ZERO,
         }
     }
@@ -91,12 +91,12 @@ impl Watchdog {
     ///
     /// # Errors
     /// Returns the reason for silence.
-    pub fn pass(&self, mail: &Mail, now: Duration) -> Result<State, Stop> {
+    pub fn pass(&self, mail: &Command, now: Duration) -> Result<State, Stop> {
         if self.emergency {
             return Err(Stop::Emergency);
         }
         let state = mail.wish?;
-        if now.saturating_sub(mail.at) > OLDEST {
+        if now.saturating_sub(mail.at) > MAX_STATE_AGE {
             return Err(Stop::Stale);
         }
         Ok(state)

@@ -1,8 +1,10 @@
 //! The safety chain with arbitrary input.
 
 use fastrand::Rng;
-use force_feedback::{Ability, Calibration, Feel, Mail, Manner, Output, Settings, State, Watchdog};
-use force_feedback::{Chain, HARDEST};
+use force_feedback::{
+    Ability, Calibration, Command, ForceController, Output, Settings, State, StickMode, Watchdog,
+};
+use force_feedback::{Chain, MAX_STIFFNESS};
 use std::time::Duration;
 
 /// Returns an arbitrary float, special values more often than by chance.
@@ -27,7 +29,7 @@ fn settings(rng: &mut Rng) -> Settings {
     Settings {
         strength: any(0.8),
         full: any(100.0),
-        stiffness: any(HARDEST),
+        stiffness: any(MAX_STIFFNESS),
         slew: any(30.0),
         clamp: any(0.8),
         calibration: Calibration {
@@ -76,26 +78,26 @@ fn chain_keeps_slew_and_clamp_for_arbitrary_forces() {
     );
 }
 
-/// The same limits hold through `Feel`, for arbitrary states and stick positions.
+/// The same limits hold through `ForceController`, for arbitrary states and stick positions.
 #[test]
 fn feel_keeps_slew_and_clamp_for_arbitrary_states() {
     let mut rng = Rng::with_seed(5);
     for _history in 0..2000 {
         let settings = settings(&mut rng);
         let bounded = settings.bounded();
-        let (watchdog, mut feel) = (Watchdog::default(), Feel::default());
+        let (watchdog, mut feel) = (Watchdog::default(), ForceController::default());
         let mut now = Duration::ZERO;
         let mut before = [0.0; 2];
         for _step in 0..100 {
             let state = State {
                 contact: [number(&mut rng), number(&mut rng)],
                 manner: if rng.bool() {
-                    Manner::CellIndexing
+                    StickMode::CellIndexing
                 } else {
-                    Manner::Steers
+                    StickMode::Velocity
                 },
             };
-            let mail = Mail {
+            let mail = Command {
                 wish: Ok(state),
                 at: now,
             };
@@ -124,7 +126,7 @@ fn feel_keeps_slew_and_clamp_for_arbitrary_states() {
 #[test]
 fn feel_recovers_from_nan() {
     let settings = Settings::default();
-    let (watchdog, mut feel) = (Watchdog::default(), Feel::default());
+    let (watchdog, mut feel) = (Watchdog::default(), ForceController::default());
     let mut felt = None;
     for step in 0..1000u32 {
         let odd = if step == 300 { f32::NAN } else { -100.0 };
@@ -134,10 +136,10 @@ fn feel_recovers_from_nan() {
             step.min(700) as f32 / 700.0
         };
         let now = Duration::from_millis(4) * step;
-        let mail = Mail {
+        let mail = Command {
             wish: Ok(State {
                 contact: [odd, 0.0],
-                manner: Manner::CellIndexing,
+                manner: StickMode::CellIndexing,
             }),
             at: now,
         };

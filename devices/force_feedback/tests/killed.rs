@@ -1,6 +1,8 @@
 //! A process killed while it pushes: its last output ends by itself.
 
-use force_feedback::{Ability, Force, Gone, LENGTH, Manner, Output, Settings, Sink, State};
+use force_feedback::{
+    Ability, ForceThread, Gone, OUTPUT_DURATION, Output, Settings, Sink, State, StickMode,
+};
 use std::fs::File;
 use std::io::Write;
 use std::process::{Command, Stdio};
@@ -18,13 +20,13 @@ impl Sink for Device {
         Ability::Force
     }
 
-    fn aim(&mut self) -> Result<[f32; 2], Gone> {
+    fn stick_position(&mut self) -> Result<[f32; 2], Gone> {
         Ok([1.0, 0.0])
     }
 
     fn play(&mut self, output: Output) -> Result<(), Gone> {
         let start = now();
-        let end = start + LENGTH;
+        let end = start + OUTPUT_DURATION;
         let line = format!(
             "{} {} {}\n",
             start.as_millis(),
@@ -62,14 +64,14 @@ fn push_until_killed() {
         return;
     };
     let file = File::create(path).expect("the file can be created");
-    let force = Force::start(250).expect("a thread can be started");
+    let force = ForceThread::start(250).expect("a thread can be started");
     let line = force.add(Box::new(Device(file)), Settings::default());
     let start = std::time::Instant::now();
     // Ends by itself if the parent is gone and cannot kill it.
     while start.elapsed() < PATIENCE {
-        line.feel(State {
+        line.set_state(State {
             contact: [-300.0, 0.0],
-            manner: Manner::Steers,
+            manner: StickMode::Velocity,
         });
         std::thread::sleep(Duration::from_millis(10));
     }
@@ -94,14 +96,14 @@ fn force_of_a_killed_process_ends_within_half_a_second() {
     child.wait().expect("the child can be waited for");
     let killed = now().as_millis() as i128;
     let before = told(&path);
-    std::thread::sleep(LENGTH);
+    std::thread::sleep(OUTPUT_DURATION);
     let after = told(&path);
     std::fs::remove_file(&path).expect("the file can be removed");
 
     assert_eq!(after, before, "an output arrived after the kill");
     let last = after.last().expect("there was an output");
     assert_ne!(last[2], 0, "the last output is zero");
-    assert!(last[1] <= killed + LENGTH.as_millis() as i128);
+    assert!(last[1] <= killed + OUTPUT_DURATION.as_millis() as i128);
     assert!(
         now().as_millis() as i128 >= last[1],
         "the last output still lasts"

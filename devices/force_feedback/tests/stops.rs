@@ -1,14 +1,14 @@
 //! All ways in which a force must end, on a simulated clock and on a real thread.
 
 use force_feedback::{
-    Ability, Feel, Felt, Force, Gone, LENGTH, Line, Mail, Manner, Nothing, Output, Played, RATES,
-    Recording, Settings, Sink, State, Stop, Watchdog,
+    Ability, Command, ForceController, ForceThread, Gone, Line, Nothing, OUTPUT_DURATION, Output,
+    Played, RATES, Recording, Settings, Sink, State, StepOutput, StickMode, Stop, Watchdog,
 };
 use std::time::{Duration, Instant};
 
 const PUSH: State = State {
     contact: [-300.0, 0.0],
-    manner: Manner::Steers,
+    manner: StickMode::Velocity,
 };
 const REASONS: [Stop; 6] = [
     Stop::Paused,
@@ -25,9 +25,9 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// A hand that leans into something, with updates at a given rate and states at 60 Hz. Ends right after an
 /// update.
 struct Simulated {
-    feel: Feel,
+    feel: ForceController,
     watchdog: Watchdog,
-    mail: Mail,
+    mail: Command,
     now: Duration,
     period: Duration,
 }
@@ -35,9 +35,9 @@ struct Simulated {
 impl Simulated {
     fn pushed(rate: u32) -> Self {
         let mut this = Self {
-            feel: Feel::default(),
+            feel: ForceController::default(),
             watchdog: Watchdog::default(),
-            mail: Mail::default(),
+            mail: Command::default(),
             now: Duration::ZERO,
             period: Duration::from_secs(1) / rate,
         };
@@ -54,10 +54,10 @@ impl Simulated {
     }
 
     fn say(&mut self, wish: Result<State, Stop>) {
-        self.mail = Mail { wish, at: self.now };
+        self.mail = Command { wish, at: self.now };
     }
 
-    fn step(&mut self) -> Felt {
+    fn step(&mut self) -> StepOutput {
         self.now += self.period;
         let lean = ([1.0, 0.0], Ability::Force);
         let settings = Settings::default();
@@ -149,8 +149,8 @@ fn emergency_stop_lasts_until_released() {
 }
 
 /// A real thread that pushes a recording.
-fn pushed() -> (Force, Line, Recording) {
-    let force = Force::start(250).expect("a thread can be started");
+fn pushed() -> (ForceThread, Line, Recording) {
+    let force = ForceThread::start(250).expect("a thread can be started");
     let recording = Recording::default();
     recording.lean(Ok([1.0, 0.0]));
     let line = force.add(Box::new(recording.clone()), Settings::default());
@@ -163,7 +163,7 @@ fn push(line: &Line, time: Duration) {
     let start = Instant::now();
     while start.elapsed() < time || line.report().output.is_zero() {
         assert!(start.elapsed() < PATIENCE, "{:?}", line.report());
-        line.feel(PUSH);
+        line.set_state(PUSH);
         std::thread::sleep(5 * MS);
     }
 }
@@ -231,7 +231,7 @@ fn thread_stops_on_drop_and_emergency_stop() {
         let start = Instant::now();
         force.emergency_stop();
         let time = zero(&recording, start).1;
-        line.feel(PUSH);
+        line.set_state(PUSH);
         std::thread::sleep(30 * MS);
         assert!(
             recording.take().is_empty(),
@@ -248,7 +248,7 @@ fn thread_stops_when_the_game_panics() {
     check_quick(20 * MS, "the game panicked", || {
         let (_force, line, recording) = pushed();
         let game = std::thread::spawn(move || {
-            line.feel(PUSH);
+            line.set_state(PUSH);
             std::panic::panic_any(Instant::now());
         });
         let payload = game.join().expect_err("the game panics");
@@ -265,7 +265,7 @@ fn thread_stops_when_the_game_stalls() {
         let (_force, line, recording) = pushed();
         // The thread keeps the line and reports nothing more.
         let (stall, stalled) = std::sync::mpsc::channel::<()>();
-        line.feel(PUSH);
+        line.set_state(PUSH);
         let start = Instant::now();
         let game = std::thread::spawn(move || {
             let _ = stalled.recv();
@@ -285,7 +285,7 @@ fn unplugged_device_gets_no_output() {
     let start = Instant::now();
     while line.report().silent != Some(Stop::Unplugged) {
         assert!(start.elapsed() < PATIENCE);
-        line.feel(PUSH);
+        line.set_state(PUSH);
         std::thread::sleep(MS);
     }
     zero(&recording, start);
@@ -301,7 +301,7 @@ fn panicking_driver_stops_all_devices() {
         fn ability(&self) -> Ability {
             Ability::Force
         }
-        fn aim(&mut self) -> Result<[f32; 2], Gone> {
+        fn stick_position(&mut self) -> Result<[f32; 2], Gone> {
             if self.0 {
                 std::panic::resume_unwind(Box::new("intended panic"));
             }
@@ -324,7 +324,7 @@ fn panicking_driver_stops_all_devices() {
 
 #[test]
 fn unchanged_output_is_repeated_before_it_ends() {
-    let force = Force::start(250).expect("a thread can be started");
+    let force = ForceThread::start(250).expect("a thread can be started");
     let recording = Recording::default();
     recording.lean(Ok([1.0, 0.0]));
     let settings = Settings {
@@ -344,12 +344,12 @@ fn unchanged_output_is_repeated_before_it_ends() {
     // Recording and thread read their clocks at slightly different times, and a busy machine may be late
     // once.
     assert!(pauses[0] >= 190 * MS, "{pauses:?}");
-    assert!(pauses[pauses.len() / 2] < LENGTH, "{pauses:?}");
+    assert!(pauses[pauses.len() / 2] < OUTPUT_DURATION, "{pauses:?}");
 }
 
 #[test]
 fn nothing_is_sent_without_strength_or_contact() {
-    let force = Force::start(250).expect("a thread can be started");
+    let force = ForceThread::start(250).expect("a thread can be started");
     let [weak, free] = [Recording::default(), Recording::default()];
     let none = Settings {
         strength: 0.0,
@@ -361,8 +361,8 @@ fn nothing_is_sent_without_strength_or_contact() {
     for lean in 0..50u8 {
         weak.lean(Ok([f32::from(lean) / 50.0, 0.0]));
         free.lean(Ok([f32::from(lean) / 50.0, 0.0]));
-        weak_line.feel(PUSH);
-        free_line.feel(State {
+        weak_line.set_state(PUSH);
+        free_line.set_state(State {
             contact: [0.0; 2],
             ..PUSH
         });
@@ -376,11 +376,11 @@ fn nothing_is_sent_without_strength_or_contact() {
 
 #[test]
 fn rumble_follows_force_and_tears() {
-    let (watchdog, mut feel) = (Watchdog::default(), Feel::default());
+    let (watchdog, mut feel) = (Watchdog::default(), ForceController::default());
     let mut heard = Vec::new();
     for step in 0..500u32 {
         let now = 4 * MS * step;
-        let mail = Mail {
+        let mail = Command {
             wish: Ok(PUSH),
             at: now,
         };
@@ -411,7 +411,7 @@ fn rumble_follows_force_and_tears() {
 
 #[test]
 fn update_works_without_a_thread() {
-    let mut force = Force::without_thread();
+    let mut force = ForceThread::without_thread();
     let recording = Recording::default();
     recording.lean(Ok([0.9, 0.0]));
     let line = force.add(Box::new(recording.clone()), Settings::default());
@@ -419,7 +419,7 @@ fn update_works_without_a_thread() {
     let mut played = Vec::new();
     while played.iter().all(|played: &Played| played.output.is_zero()) {
         assert!(start.elapsed() < PATIENCE, "there is no force");
-        line.feel(PUSH);
+        line.set_state(PUSH);
         force.update();
         played.extend(recording.take());
         std::thread::sleep(16 * MS);

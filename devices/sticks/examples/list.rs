@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use sticks::{Change, Device, Snapshot, Sticks};
 
-fn main() -> Result<(), sticks::NoSticks> {
+fn main() -> Result<(), sticks::Error> {
     let sticks = Sticks::open()?;
     println!("Plug in a stick or a pad, move it, press its buttons. Ctrl+C exits.");
     let mut before = Arc::new(Snapshot::default());

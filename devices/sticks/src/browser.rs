@@ -1,8 +1,8 @@
 //! `owner` for browsers: reads pads through the Gamepad API (W3C) each time a snapshot is taken. A browser
 //! shows a pad only after one of its buttons was pressed.
 
-use crate::latest::{Latest, NoSticks};
-use crate::{About, Button, Device, DeviceId, Labels, PadButton, Snapshot};
+use crate::latest::{Error, Latest};
+use crate::{Button, Device, DeviceId, DeviceInfo, Labels, PadButton, Snapshot};
 use js_sys::Array;
 use std::sync::{Arc, Mutex, PoisonError};
 use wasm_bindgen::JsCast;
@@ -83,7 +83,7 @@ pub struct Owner {
 }
 
 impl Owner {
-    pub fn start(latest: Latest) -> Result<Owner, NoSticks> {
+    pub fn start(latest: Latest) -> Result<Owner, Error> {
         let places = Mutex::default();
         Ok(Owner { latest, places })
     }
@@ -174,7 +174,7 @@ fn counted(mut button: Button, is_down: bool) -> Button {
 
 /// Parses the browser's name of a pad. Chromium writes `Name (STANDARD GAMEPAD Vendor: 045e Product: 02ea)`,
 /// Firefox `045e-02ea-Name`.
-fn about(id: &str) -> About {
+fn about(id: &str) -> DeviceInfo {
     let chromium = || -> Option<_> {
         let (name, rest) = id.split_once(" (")?;
         let vendor = rest.split_once("Vendor: ")?.1.get(..4)?;

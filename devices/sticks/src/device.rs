@@ -17,7 +17,7 @@ pub struct Snapshot {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Device {
     pub id: DeviceId,
-    pub about: Arc<About>,
+    pub about: Arc<DeviceInfo>,
     /// Axes, each from −1 to 1, in the numbering of the device. On sticks the first two are usually x,
     /// increasing to the right, and y, increasing towards the player. Unless the driver reports a lever's
     /// position earlier, a lever is 0 until it is first moved.
@@ -31,7 +31,7 @@ pub struct Device {
 
 /// Properties that do not change while a device is plugged in.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct About {
+pub struct DeviceInfo {
     /// Human-readable name.
     pub name: String,
     /// Id of the model, not of the single device, as 32 hexadecimal digits: a key for storing mappings or
@@ -178,7 +178,13 @@ impl Snapshot {
 
 impl Device {
     /// Creates a device with `n` axes, buttons and hats, all at rest.
-    pub fn at_rest(id: DeviceId, about: About, axes: usize, buttons: usize, hats: usize) -> Device {
+    pub fn at_rest(
+        id: DeviceId,
+        about: DeviceInfo,
+        axes: usize,
+        buttons: usize,
+        hats: usize,
+    ) -> Device {
         Device {
             id,
             about: Arc::new(about),

@@ -118,7 +118,7 @@ impl Navigator {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::About;
+    use crate::DeviceInfo;
 
     #[test]
     fn dead_zone_is_round_and_keeps_the_direction() {
@@ -256,7 +256,7 @@ mod tests {
     }
 
     fn stick(id: u32) -> Device {
-        let about = About {
+        let about = DeviceInfo {
             name: "Stick".into(),
             guid: String::new(),
             labels: crate::Labels::default(),

@@ -4,9 +4,9 @@ use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, Weak};
 use std::time::Instant;
 
-use force_feedback::{Ability, Gone, LENGTH, Output, Sink};
+use force_feedback::{Ability, Gone, OUTPUT_DURATION, Output, Sink};
 
-use crate::held::{Held, Slot, lock};
+use crate::held::{Feedback, Slot, lock};
 use crate::latest::Latest;
 use crate::owner::{Hub, Order};
 use crate::{DeviceId, Sticks};
@@ -57,7 +57,7 @@ impl Sink for Haptic {
         lock(&self.slot).ability
     }
 
-    fn aim(&mut self) -> Result<[f32; 2], Gone> {
+    fn stick_position(&mut self) -> Result<[f32; 2], Gone> {
         let snapshot = self.latest.get();
         snapshot
             .device(self.id)
@@ -75,7 +75,7 @@ impl Sink for Haptic {
         self.order(move |hub| {
             let wish = lock(&slot).wish.take();
             // After the process was stopped for a while, a pending output is obsolete.
-            let fresh = wish.filter(|(_, since)| since.elapsed() < LENGTH);
+            let fresh = wish.filter(|(_, since)| since.elapsed() < OUTPUT_DURATION);
             if let (Some((output, _)), Some((open, held))) = (fresh, hub.held(id)) {
                 held.play(open, output);
             }
@@ -92,7 +92,7 @@ impl Drop for Haptic {
             if let Some((open, held)) = hub.held(id) {
                 held.let_rest(open);
                 if held.holder.as_ptr() == Arc::as_ptr(&slot) {
-                    *held = Held::default();
+                    *held = Feedback::default();
                 }
             }
         });

@@ -3,10 +3,10 @@
 use std::sync::{Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
 
-use force_feedback::{Ability, LENGTH, Output};
+use force_feedback::{Ability, OUTPUT_DURATION, Output};
 
 use crate::sdl::motors::Motors;
-use crate::sdl::{Open, Sdl};
+use crate::sdl::{OpenDevice, Sdl};
 
 /// Interval at which a continuing force is started again. Some drivers, and Moza wheels, extend a force only
 /// by a start, not by a change of level. Starting it at each change would be felt.
@@ -24,7 +24,7 @@ pub struct Slot {
 
 /// Feedback state of a device. The device is opened at the first request.
 #[derive(Default)]
-pub struct Held<'sdl> {
+pub struct Feedback<'sdl> {
     body: Option<Body<'sdl>>,
     /// Slot of the latest sink.
     pub holder: Weak<Mutex<Slot>>,
@@ -39,10 +39,10 @@ enum Body<'sdl> {
     Nothing,
 }
 
-impl<'sdl> Held<'sdl> {
-    pub fn take_hold(&mut self, sdl: &'sdl Sdl, open: &Open<'sdl>) -> Ability {
+impl<'sdl> Feedback<'sdl> {
+    pub fn take_hold(&mut self, sdl: &'sdl Sdl, open: &OpenDevice<'sdl>) -> Ability {
         let is_endless = ENDLESS.contains(&open.model().0);
-        let length = (!is_endless).then_some(LENGTH.as_millis() as u32);
+        let length = (!is_endless).then_some(OUTPUT_DURATION.as_millis() as u32);
         let body = self
             .body
             .get_or_insert_with(|| match sdl.motors(open, length) {
@@ -58,7 +58,7 @@ impl<'sdl> Held<'sdl> {
     }
 
     /// Plays an output. Errors are ignored: the effect ends by itself, and nothing more can be done here.
-    pub fn play(&mut self, open: &Open<'sdl>, output: Output) {
+    pub fn play(&mut self, open: &OpenDevice<'sdl>, output: Output) {
         let now = Instant::now();
         let is_over = |since: Option<Instant>| since.is_none_or(|since| now - since >= START_AGAIN);
         let levels = output.levels();
@@ -72,7 +72,7 @@ impl<'sdl> Held<'sdl> {
             }
             (Some(Body::Rumble), Output::Rumble { .. }) => {
                 let [low, high] = levels.map(|level| 2 * level.unsigned_abs());
-                open.rumble(low, high, LENGTH.as_millis() as u32);
+                open.rumble(low, high, OUTPUT_DURATION.as_millis() as u32);
             }
             _ => {}
         }
@@ -80,13 +80,16 @@ impl<'sdl> Held<'sdl> {
     }
 
     /// Ends an output that was not repeated in time, for devices that do not end it themselves.
-    pub fn expire(&mut self, open: &Open<'sdl>) {
-        if self.told.is_some_and(|told| told.elapsed() >= LENGTH) {
+    pub fn expire(&mut self, open: &OpenDevice<'sdl>) {
+        if self
+            .told
+            .is_some_and(|told| told.elapsed() >= OUTPUT_DURATION)
+        {
             self.let_rest(open);
         }
     }
 
-    pub fn let_rest(&mut self, open: &Open<'sdl>) {
+    pub fn let_rest(&mut self, open: &OpenDevice<'sdl>) {
         let ability = match self.body {
             Some(Body::Rumble) => Ability::Rumble,
             _ => Ability::Force,

@@ -6,7 +6,7 @@ use crate::Snapshot;
 
 /// Error of opening. The game can continue without devices.
 #[derive(Debug, thiserror::Error)]
-pub enum NoSticks {
+pub enum Error {
     #[error("sticks and pads are already open: a process can open them only once at a time")]
     AlreadyOpen,
     #[error("SDL cannot read sticks and pads: {0}")]

@@ -20,7 +20,7 @@
 //!     }
 //!     before = now;
 //! }
-//! # Ok::<(), sticks::NoSticks>(())
+//! # Ok::<(), sticks::Error>(())
 //! ```
 //!
 //! Device values are raw: without dead zone or calibration. [`radial_dead_zone`], [`Navigator`] and similar
@@ -66,19 +66,19 @@ use latest::Latest;
 use std::sync::Arc;
 
 pub use device::{
-    About, Button, Change, Control, Device, DeviceId, Direction, Hat, Labels, Pad, PadButton,
+    Button, Change, Control, Device, DeviceId, DeviceInfo, Direction, Hat, Labels, Pad, PadButton,
     Snapshot,
 };
 pub use feel::{Navigator, Repeat, radial_dead_zone};
 #[cfg(feature = "haptic")]
 pub use haptic::Haptic;
-pub use latest::NoSticks;
+pub use latest::Error;
 #[cfg(all(
     any(test, feature = "virtual"),
     feature = "sdl",
     not(target_family = "wasm")
 ))]
-pub use puppet::Puppet;
+pub use puppet::VirtualDevice;
 
 /// All connected sticks and pads. Dropping it closes them.
 pub struct Sticks {
@@ -91,7 +91,7 @@ impl Sticks {
     /// Starts the thread, which takes some ms; devices already connected appear in the first snapshot.
     /// Finding no device is not an error. Builds without SDL never find one; a browser shows a pad once one
     /// of its buttons was pressed.
-    pub fn open() -> Result<Sticks, NoSticks> {
+    pub fn open() -> Result<Sticks, Error> {
         let latest = Latest::default();
         Ok(Sticks {
             owner: owner::Owner::start(latest.clone())?,

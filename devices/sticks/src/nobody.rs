@@ -1,11 +1,11 @@
 //! `owner` for builds without SDL: finds no device.
 
-use crate::latest::{Latest, NoSticks};
+use crate::latest::{Error, Latest};
 
 pub struct Owner;
 
 impl Owner {
-    pub fn start(_latest: Latest) -> Result<Owner, NoSticks> {
+    pub fn start(_latest: Latest) -> Result<Owner, Error> {
         Ok(Owner)
     }
 }

@@ -10,8 +10,8 @@ use sdl3_sys::gamepad::{
     SDL_GAMEPAD_AXIS_RIGHT_TRIGGER, SDL_GAMEPAD_AXIS_RIGHTX, SDL_GAMEPAD_AXIS_RIGHTY,
 };
 
-use crate::latest::{Latest, NoSticks};
-use crate::sdl::{HatBits, Open, Part, Sdl, Turn, What};
+use crate::latest::{Error, Latest};
+use crate::sdl::{ControlEvent, DeviceEvent, HatBits, OpenDevice, Sdl, SdlPermit};
 use crate::{Button, Device, DeviceId, Direction, Hat, Pad, PadButton, Snapshot};
 
 /// Maximum age of a snapshot while a device is connected. A larger value is felt as lag; at 1 ms the thread
@@ -43,23 +43,23 @@ pub struct Hub<'sdl> {
 struct Connected<'sdl> {
     /// Declared before `open`, so that it is dropped first.
     #[cfg(feature = "haptic")]
-    held: crate::held::Held<'sdl>,
-    open: Open<'sdl>,
+    held: crate::held::Feedback<'sdl>,
+    open: OpenDevice<'sdl>,
     device: Device,
 }
 
 impl Owner {
-    pub fn start(latest: Latest) -> Result<Owner, NoSticks> {
-        let turn = Turn::take().ok_or(NoSticks::AlreadyOpen)?;
+    pub fn start(latest: Latest) -> Result<Owner, Error> {
+        let turn = SdlPermit::take().ok_or(Error::AlreadyOpen)?;
         Owner::start_with(turn, latest, |_, _| true)
     }
 
     /// Starts the thread and waits until it has seen the connected devices.
     pub fn start_with(
-        turn: Turn,
+        turn: SdlPermit,
         latest: Latest,
         accepts: fn(&Sdl, DeviceId) -> bool,
-    ) -> Result<Owner, NoSticks> {
+    ) -> Result<Owner, Error> {
         let (orders, inbox) = mpsc::channel();
         let (ready, started) = mpsc::channel();
         let thread =
@@ -88,8 +88,8 @@ impl Owner {
         };
         match started.recv_timeout(PATIENCE) {
             Ok(Ok(())) => Ok(owner),
-            Ok(Err(error)) => Err(NoSticks::Sdl(error)),
-            Err(RecvTimeoutError::Disconnected) => Err(NoSticks::Sdl("SDL thread panicked".into())),
+            Ok(Err(error)) => Err(Error::Sdl(error)),
+            Err(RecvTimeoutError::Disconnected) => Err(Error::Sdl("SDL thread panicked".into())),
             Err(RecvTimeoutError::Timeout) => {
                 // Joining would block as long. If SDL starts later, the thread finds its inbox closed and
                 // ends.
@@ -97,7 +97,7 @@ impl Owner {
                 let seconds = PATIENCE.as_secs();
                 let reason =
                     format!("SDL did not start within {seconds} s; a device may be broken");
-                Err(NoSticks::Sdl(reason))
+                Err(Error::Sdl(reason))
             }
         }
     }
@@ -147,7 +147,10 @@ impl<'sdl> Hub<'sdl> {
 
     /// Returns a device and its feedback state.
     #[cfg(feature = "haptic")]
-    pub fn held(&mut self, id: DeviceId) -> Option<(&Open<'sdl>, &mut crate::held::Held<'sdl>)> {
+    pub fn held(
+        &mut self,
+        id: DeviceId,
+    ) -> Option<(&OpenDevice<'sdl>, &mut crate::held::Feedback<'sdl>)> {
         let mut all = self.connected.iter_mut();
         let connected = all.find(|connected| connected.device.id == id)?;
         Some((&connected.open, &mut connected.held))
@@ -170,11 +173,11 @@ impl<'sdl> Hub<'sdl> {
         }
     }
 
-    fn take_in(&mut self, id: DeviceId, what: What) {
+    fn take_in(&mut self, id: DeviceId, what: DeviceEvent) {
         match what {
-            What::Added => self.add(id),
-            What::Removed => self.connected.retain(|connected| connected.device.id != id),
-            What::Moved(part) => {
+            DeviceEvent::Added => self.add(id),
+            DeviceEvent::Removed => self.connected.retain(|connected| connected.device.id != id),
+            DeviceEvent::Moved(part) => {
                 let mut all = self.connected.iter_mut();
                 if let Some(connected) = all.find(|connected| connected.device.id == id) {
                     connected.take_in(part);
@@ -198,7 +201,7 @@ impl<'sdl> Hub<'sdl> {
             device.pad = open.is_pad().then(Pad::default);
             let mut connected = Connected {
                 #[cfg(feature = "haptic")]
-                held: crate::held::Held::default(),
+                held: crate::held::Feedback::default(),
                 open,
                 device,
             };
@@ -208,7 +211,7 @@ impl<'sdl> Hub<'sdl> {
     }
 
     #[cfg(any(test, feature = "virtual"))]
-    pub fn opened(&self, id: DeviceId) -> Option<&Open<'sdl>> {
+    pub fn opened(&self, id: DeviceId) -> Option<&OpenDevice<'sdl>> {
         let connected = self
             .connected
             .iter()
@@ -225,25 +228,25 @@ impl Drop for Hub<'_> {
 }
 
 impl Connected<'_> {
-    fn take_in(&mut self, part: Part) {
+    fn take_in(&mut self, part: ControlEvent) {
         let device = &mut self.device;
         match part {
-            Part::ButtonDown(number) => {
+            ControlEvent::ButtonDown(number) => {
                 if let Some(button) = device.buttons.get_mut(number) {
                     button.press();
                 }
             }
-            Part::PadButtonDown(number) => {
+            ControlEvent::PadButtonDown(number) => {
                 if let (Some(pad), Some(button)) = (&mut device.pad, PadButton::ALL.get(number)) {
                     pad.button_mut(*button).press();
                 }
             }
-            Part::Hat(number, bits) => {
+            ControlEvent::Hat(number, bits) => {
                 if let Some(hat) = device.hats.get_mut(number) {
                     move_hat(hat, bits);
                 }
             }
-            Part::All => self.read(),
+            ControlEvent::All => self.read(),
         }
     }
 

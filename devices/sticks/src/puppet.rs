@@ -6,12 +6,12 @@ use std::sync::mpsc::{self, Sender};
 use crate::latest::Latest;
 use crate::owner::{Hub, Order, Owner};
 use crate::sdl::puppets::{PuppetAct, PuppetForm, Rumble};
-use crate::sdl::{HatBits, Sdl, Turn};
-use crate::{DeviceId, Direction, NoSticks, PadButton, Sticks};
+use crate::sdl::{HatBits, Sdl, SdlPermit};
+use crate::{DeviceId, Direction, Error, PadButton, Sticks};
 
 /// Virtual device. Dropping it unplugs the device. Each change is in the snapshot when the call returns.
 #[must_use = "a puppet is unplugged when it is dropped"]
-pub struct Puppet {
+pub struct VirtualDevice {
     id: DeviceId,
     owner: Weak<Sender<Order>>,
     rumble: Rumble,
@@ -20,16 +20,16 @@ pub struct Puppet {
 impl Sticks {
     /// Opens virtual devices only, so that tests do not depend on real devices. Waits until no other `Sticks`
     /// is open in this process: tests that use it run one after the other.
-    pub fn open_for_puppets() -> Result<Sticks, NoSticks> {
+    pub fn open_for_puppets() -> Result<Sticks, Error> {
         let latest = Latest::default();
         Ok(Sticks {
-            owner: Owner::start_with(Turn::wait(), latest.clone(), Sdl::is_puppet)?,
+            owner: Owner::start_with(SdlPermit::wait(), latest.clone(), Sdl::is_puppet)?,
             latest,
         })
     }
 
     /// Plugs in a pad with all buttons of the standard layout.
-    pub fn plug_in_pad(&self, name: &str) -> Result<Puppet, NoSticks> {
+    pub fn plug_in_pad(&self, name: &str) -> Result<VirtualDevice, Error> {
         self.plug_in(name, PuppetForm::Pad)
     }
 
@@ -40,7 +40,7 @@ impl Sticks {
         axes: u16,
         buttons: u16,
         hats: u16,
-    ) -> Result<Puppet, NoSticks> {
+    ) -> Result<VirtualDevice, Error> {
         self.plug_in(
             name,
             PuppetForm::Stick {
@@ -51,19 +51,19 @@ impl Sticks {
         )
     }
 
-    fn plug_in(&self, name: &str, form: PuppetForm) -> Result<Puppet, NoSticks> {
+    fn plug_in(&self, name: &str, form: PuppetForm) -> Result<VirtualDevice, Error> {
         let owner = self.owner.orders();
         let name = name.to_owned();
         let rumble = Rumble::default();
         let felt = rumble.clone();
         let id = done(&owner, move |hub| hub.sdl.plug_in(&name, form, &felt))
             .unwrap_or_else(|| Err("the SDL thread has ended".into()))
-            .map_err(NoSticks::Sdl)?;
-        Ok(Puppet { id, owner, rumble })
+            .map_err(Error::Sdl)?;
+        Ok(VirtualDevice { id, owner, rumble })
     }
 }
 
-impl Puppet {
+impl VirtualDevice {
     pub fn id(&self) -> DeviceId {
         self.id
     }
@@ -105,7 +105,7 @@ impl Puppet {
     }
 }
 
-impl Drop for Puppet {
+impl Drop for VirtualDevice {
     fn drop(&mut self) {
         let id = self.id;
         // If the thread has ended, the device is already unplugged.

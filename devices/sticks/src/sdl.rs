@@ -2,12 +2,12 @@
 //!
 //! Safety of every block below:
 //! - **One thread.** SDL is process-wide state, and its event pump belongs to the thread that started it. An
-//!   [`Sdl`] needs the only [`Turn`], so there is one at a time. It is neither `Send` nor `Sync`, and neither
-//!   are the [`Open`] devices that borrow it. So all calls come from the thread that started SDL, between
+//!   [`Sdl`] needs the only [`SdlPermit`], so there is one at a time. It is neither `Send` nor `Sync`, and neither
+//!   are the [`OpenDevice`] devices that borrow it. So all calls come from the thread that started SDL, between
 //!   `SDL_Init` and `SDL_Quit`.
-//! - **Pointers.** An `Open` holds pointers from SDL, reference-counted per open call, and returns them once,
+//! - **Pointers.** An `OpenDevice` holds pointers from SDL, reference-counted per open call, and returns them once,
 //!   when it is dropped. SDL keeps them valid until then, even if the device is unplugged: reads then give 0
-//!   or false. Indices out of range also give 0 or false. The pointers cannot outlive SDL, since `Open`
+//!   or false. Indices out of range also give 0 or false. The pointers cannot outlive SDL, since `OpenDevice`
 //!   borrows `Sdl`.
 //! - **Strings** from SDL are null or zero-terminated. They are copied at once, before the next call that
 //!   might change them.
@@ -53,14 +53,14 @@ use sdl3_sys::joystick::{
     SDL_JoystickID, SDL_OpenJoystick,
 };
 
-use crate::{About, DeviceId, Direction, Labels, PadButton};
+use crate::{DeviceId, DeviceInfo, Direction, Labels, PadButton};
 
 /// Permission to run SDL, which exists once per process.
-pub struct Turn(());
+pub struct SdlPermit(());
 
 /// SDL, running on this thread, reading devices only.
 pub struct Sdl {
-    _turn: Turn,
+    _turn: SdlPermit,
     /// Whether force feedback is available.
     #[cfg(feature = "haptic")]
     feels: bool,
@@ -68,7 +68,7 @@ pub struct Sdl {
 }
 
 /// An open device.
-pub struct Open<'sdl> {
+pub struct OpenDevice<'sdl> {
     joystick: NonNull<SDL_Joystick>,
     gamepad: Option<NonNull<SDL_Gamepad>>,
     _sdl: PhantomData<&'sdl Sdl>,
@@ -76,15 +76,15 @@ pub struct Open<'sdl> {
 
 /// Event of a device.
 #[derive(Clone, Copy, Debug)]
-pub enum What {
+pub enum DeviceEvent {
     Added,
     Removed,
-    Moved(Part),
+    Moved(ControlEvent),
 }
 
 /// Changed part of a device.
 #[derive(Clone, Copy, Debug)]
-pub enum Part {
+pub enum ControlEvent {
     ButtonDown(usize),
     PadButtonDown(usize),
     Hat(usize, HatBits),
@@ -100,24 +100,24 @@ pub struct HatBits(pub u8);
 static TURN: Mutex<bool> = Mutex::new(true);
 static GIVEN_BACK: Condvar = Condvar::new();
 
-impl Turn {
+impl SdlPermit {
     /// Takes the permission; `None` if it is in use. Dropping it returns it.
-    pub fn take() -> Option<Turn> {
+    pub fn take() -> Option<SdlPermit> {
         let mut free = TURN.lock().unwrap_or_else(PoisonError::into_inner);
-        std::mem::take(&mut *free).then(|| Turn(()))
+        std::mem::take(&mut *free).then(|| SdlPermit(()))
     }
 
     /// Waits until the permission is available and takes it.
     #[cfg(any(test, feature = "virtual"))]
-    pub fn wait() -> Turn {
+    pub fn wait() -> SdlPermit {
         let free = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let wait = GIVEN_BACK.wait_while(free, |free| !*free);
         *wait.unwrap_or_else(PoisonError::into_inner) = false;
-        Turn(())
+        SdlPermit(())
     }
 }
 
-impl Drop for Turn {
+impl Drop for SdlPermit {
     fn drop(&mut self) {
         *TURN.lock().unwrap_or_else(PoisonError::into_inner) = true;
         GIVEN_BACK.notify_one();
@@ -125,7 +125,7 @@ impl Drop for Turn {
 }
 
 impl Sdl {
-    pub fn start(turn: Turn) -> Result<Sdl, String> {
+    pub fn start(turn: SdlPermit) -> Result<Sdl, String> {
         #[allow(unused_mut, reason = "changed only with the feature haptic")]
         let mut sdl = Sdl {
             _turn: turn,
@@ -168,7 +168,7 @@ impl Sdl {
     }
 
     /// Reads the events since the last call.
-    pub fn pump(&self, mut happened: impl FnMut(DeviceId, What)) {
+    pub fn pump(&self, mut happened: impl FnMut(DeviceId, DeviceEvent)) {
         // SAFETY: see the module.
         unsafe { SDL_PumpEvents() };
         let mut event = SDL_Event::default();
@@ -191,7 +191,7 @@ impl Sdl {
 
     /// Opens a device, as a pad if SDL knows its layout. Returns `None` if it was unplugged or may not be
     /// read.
-    pub fn open(&self, id: DeviceId) -> Option<Open<'_>> {
+    pub fn open(&self, id: DeviceId) -> Option<OpenDevice<'_>> {
         let id = SDL_JoystickID(id.0);
         // SAFETY: see the module; an unknown id gives null.
         let joystick = NonNull::new(unsafe { SDL_OpenJoystick(id) })?;
@@ -201,7 +201,7 @@ impl Sdl {
         } else {
             None
         };
-        Some(Open {
+        Some(OpenDevice {
             joystick,
             gamepad,
             _sdl: PhantomData,
@@ -221,14 +221,14 @@ impl Drop for Sdl {
     }
 }
 
-impl Open<'_> {
-    pub fn about(&self) -> About {
+impl OpenDevice<'_> {
+    pub fn about(&self) -> DeviceInfo {
         let mut guid = [0 as c_char; 33];
         // SAFETY: see the module; a GUID with its terminating zero needs 33 bytes, and SDL gets the length.
         unsafe {
             let guid_of = SDL_GetJoystickGUID(self.joystick.as_ptr());
             SDL_GUIDToString(guid_of, guid.as_mut_ptr(), guid.len() as c_int);
-            About {
+            DeviceInfo {
                 name: text(SDL_GetJoystickName(self.joystick.as_ptr())),
                 guid: text(guid.as_ptr()),
                 labels: self.labels(),
@@ -299,7 +299,7 @@ impl Open<'_> {
     }
 }
 
-impl Drop for Open<'_> {
+impl Drop for OpenDevice<'_> {
     fn drop(&mut self) {
         // SAFETY: see the module; each pointer is closed as often as it was opened.
         unsafe {
@@ -327,25 +327,27 @@ impl HatBits {
 }
 
 /// Converts an event; `None` for irrelevant ones.
-fn read(event: &SDL_Event) -> Option<(DeviceId, What)> {
+fn read(event: &SDL_Event) -> Option<(DeviceId, DeviceEvent)> {
     // SAFETY: SDL fills in the member that belongs to the type of the event.
     let (id, what) = unsafe {
         match event.event_type() {
-            SDL_EVENT_JOYSTICK_ADDED => (event.jdevice.which, What::Added),
-            SDL_EVENT_JOYSTICK_REMOVED => (event.jdevice.which, What::Removed),
+            SDL_EVENT_JOYSTICK_ADDED => (event.jdevice.which, DeviceEvent::Added),
+            SDL_EVENT_JOYSTICK_REMOVED => (event.jdevice.which, DeviceEvent::Removed),
             SDL_EVENT_JOYSTICK_BUTTON_DOWN => {
-                let moved = Part::ButtonDown(event.jbutton.button.into());
-                (event.jbutton.which, What::Moved(moved))
+                let moved = ControlEvent::ButtonDown(event.jbutton.button.into());
+                (event.jbutton.which, DeviceEvent::Moved(moved))
             }
             SDL_EVENT_GAMEPAD_BUTTON_DOWN => {
-                let moved = Part::PadButtonDown(event.gbutton.button.into());
-                (event.gbutton.which, What::Moved(moved))
+                let moved = ControlEvent::PadButtonDown(event.gbutton.button.into());
+                (event.gbutton.which, DeviceEvent::Moved(moved))
             }
             SDL_EVENT_JOYSTICK_HAT_MOTION => {
-                let moved = Part::Hat(event.jhat.hat.into(), HatBits(event.jhat.value));
-                (event.jhat.which, What::Moved(moved))
+                let moved = ControlEvent::Hat(event.jhat.hat.into(), HatBits(event.jhat.value));
+                (event.jhat.which, DeviceEvent::Moved(moved))
             }
-            SDL_EVENT_JOYSTICK_UPDATE_COMPLETE => (event.jdevice.which, What::Moved(Part::All)),
+            SDL_EVENT_JOYSTICK_UPDATE_COMPLETE => {
+                (event.jdevice.which, DeviceEvent::Moved(ControlEvent::All))
+            }
             _ => return None,
         }
     };

@@ -7,7 +7,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::{
-    Button, Change, Control, Device, Direction, Navigator, NoSticks, PadButton, Puppet, Sticks,
+    Button, Change, Control, Device, Direction, Error, Navigator, PadButton, Sticks, VirtualDevice,
 };
 
 #[test]
@@ -218,7 +218,7 @@ fn twelve_devices_can_be_connected() {
 #[test]
 fn sticks_open_once_at_a_time_and_can_be_reopened() {
     let first = open();
-    assert!(matches!(Sticks::open(), Err(NoSticks::AlreadyOpen)));
+    assert!(matches!(Sticks::open(), Err(Error::AlreadyOpen)));
     drop(first);
     for _again in 0..20 {
         let sticks = open();
@@ -335,7 +335,7 @@ fn open() -> Sticks {
     Sticks::open_for_puppets().expect("SDL starts, with or without devices")
 }
 
-fn device(sticks: &Sticks, puppet: &Puppet) -> Device {
+fn device(sticks: &Sticks, puppet: &VirtualDevice) -> Device {
     sticks
         .snapshot()
         .device(puppet.id())

@@ -110,7 +110,7 @@ impl Canvas {
                     let normal = (0..3).fold([0.0; 3], |sum, k| {
                         plus(sum, scaled(triangle.normals[k], shares[k]))
                     });
-                    let look = self.look(x, y);
+                    let look = self.view_direction(x, y);
                     self.light[pixel] = shaded(colour, unit(normal), look);
                 }
             }
@@ -118,7 +118,7 @@ impl Canvas {
     }
 
     /// Returns the unit vector from the camera through a pixel.
-    fn look(&self, x: usize, y: usize) -> Vector {
+    fn view_direction(&self, x: usize, y: usize) -> Vector {
         let right = (x as f32 + 0.5 - 0.5 * self.width as f32) / self.focal;
         let up = (0.5 * self.height as f32 - y as f32 - 0.5) / self.focal;
         let sideways = plus(scaled(self.axes[0], right), scaled(self.axes[1], up));
@@ -207,7 +207,7 @@ impl Canvas {
         for y in 0..self.height {
             for x in 0..self.width {
                 let pixel = y * self.width + x;
-                let look = self.look(x, y);
+                let look = self.view_direction(x, y);
                 if self.depth[pixel].is_finite() || look[1] >= -1e-3 {
                     continue;
                 }

@@ -1,11 +1,11 @@
 //! A stroke font, so that no font file is needed and all outputs look the same. It has the letters of
 //! English, digits and some signs; other characters leave a gap.
 
-use crate::Spot;
+use crate::PaperPoint;
 
 /// Returns the lines of a text. `at` is the top left corner of its first capital, `height` the height of a
 /// capital.
-pub fn lines(at: Spot, height: f32, text: &str) -> Vec<Vec<Spot>> {
+pub fn lines(at: PaperPoint, height: f32, text: &str) -> Vec<Vec<PaperPoint>> {
     let unit = height / 6.0;
     let mut x = at[0];
     let mut lines = Vec::new();
@@ -16,8 +16,8 @@ pub fn lines(at: Spot, height: f32, text: &str) -> Vec<Vec<Spot>> {
                 let digit = |k: usize| f32::from(pair.as_bytes()[k] - b'0');
                 [digit(0), digit(1)]
             };
-            let spots: Vec<Spot> = stroke.split(' ').map(spot).collect();
-            let place = |[u, v]: Spot| [x + (u - shift) * SLENDER * unit, at[1] + v * unit];
+            let spots: Vec<PaperPoint> = stroke.split(' ').map(spot).collect();
+            let place = |[u, v]: PaperPoint| [x + (u - shift) * SLENDER * unit, at[1] + v * unit];
             lines.push(rounded(&spots).into_iter().map(place).collect());
         }
         x += advance(letter) * unit;
@@ -52,7 +52,7 @@ fn room(letter: char) -> (f32, f32) {
 }
 
 /// Rounds the corners of a stroke, except sharp ones and those of boxes.
-fn rounded(spots: &[Spot]) -> Vec<Spot> {
+fn rounded(spots: &[PaperPoint]) -> Vec<PaperPoint> {
     let mut curve = Vec::new();
     let closed = spots.len() > 2 && spots.first() == spots.last();
     let count = spots.len();
@@ -69,7 +69,9 @@ fn rounded(spots: &[Spot]) -> Vec<Spot> {
         match (before, after) {
             (Some(before), Some(after)) if is_round(before, spot, after) => {
                 let (from, to) = (middle(before, spot), middle(spot, after));
-                curve.extend((0..=4).map(|step| bent(from, spot, to, step as f32 / 4.0)));
+                curve.extend(
+                    (0..=4).map(|step| quadratic_bezier(from, spot, to, step as f32 / 4.0)),
+                );
             }
             _ => curve.push(spot),
         }
@@ -77,25 +79,25 @@ fn rounded(spots: &[Spot]) -> Vec<Spot> {
     curve
 }
 
-fn is_round(before: Spot, at: Spot, after: Spot) -> bool {
+fn is_round(before: PaperPoint, at: PaperPoint, after: PaperPoint) -> bool {
     let (u, v) = (minus(at, before), minus(after, at));
-    let length = |w: Spot| (w[0] * w[0] + w[1] * w[1]).sqrt();
+    let length = |w: PaperPoint| (w[0] * w[0] + w[1] * w[1]).sqrt();
     let cosine = (u[0] * v[0] + u[1] * v[1]) / (length(u) * length(v)).max(1e-6);
-    let slanted = |w: Spot| w[0] != 0.0 && w[1] != 0.0;
+    let slanted = |w: PaperPoint| w[0] != 0.0 && w[1] != 0.0;
     cosine > 0.69 || (cosine > -0.01 && slanted(u) && slanted(v))
 }
 
 /// Evaluates a quadratic Bézier curve at `t`.
-fn bent(from: Spot, by: Spot, to: Spot, t: f32) -> Spot {
+fn quadratic_bezier(from: PaperPoint, by: PaperPoint, to: PaperPoint, t: f32) -> PaperPoint {
     let s = 1.0 - t;
     [0, 1].map(|k: usize| s * s * from[k] + 2.0 * s * t * by[k] + t * t * to[k])
 }
 
-fn middle(a: Spot, b: Spot) -> Spot {
+fn middle(a: PaperPoint, b: PaperPoint) -> PaperPoint {
     [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
 }
 
-fn minus(a: Spot, b: Spot) -> Spot {
+fn minus(a: PaperPoint, b: PaperPoint) -> PaperPoint {
     [a[0] - b[0], a[1] - b[1]]
 }
 

@@ -24,7 +24,7 @@ mod svg;
 pub mod worlds;
 
 pub use error::PaintError;
-pub use paper::{Frame, Spot};
+pub use paper::{PaperPoint, PaperTransform};
 pub use raster::png_of;
 pub use role::Role;
 use std::rc::Rc;
@@ -34,18 +34,25 @@ pub use tiny_skia::Pixmap;
 #[derive(Clone, Debug)]
 enum Shape {
     /// A filled polygon.
-    Area { outline: Vec<Spot>, role: Role },
+    Area {
+        outline: Vec<PaperPoint>,
+        role: Role,
+    },
     /// A line through points; a closed one also joins the last point to the first.
     Line {
-        spots: Vec<Spot>,
+        spots: Vec<PaperPoint>,
         closed: bool,
         width: f32,
         role: Role,
     },
     /// A filled disc.
-    Dot { at: Spot, radius: f32, role: Role },
+    Dot {
+        at: PaperPoint,
+        radius: f32,
+        role: Role,
+    },
     /// An image; `at` is its top left corner.
-    Image { at: Spot, pixels: Rc<Pixmap> },
+    Image { at: PaperPoint, pixels: Rc<Pixmap> },
 }
 
 /// List of shapes on paper; later shapes cover earlier ones.
@@ -78,31 +85,41 @@ impl Painter {
 
     /// Creates empty paper of a width [px] for a view from a low to a high corner [m], and the map from world
     /// to paper. The height is clamped to 50 to 2000 px.
-    pub fn for_view([low, high]: [[f32; 3]; 2], width: u32) -> (Self, Frame) {
+    pub fn for_view([low, high]: [[f32; 3]; 2], width: u32) -> (Self, PaperTransform) {
         let unit = width as f32 / (high[0] - low[0]);
         let height = (unit * (high[1] - low[1])).round().clamp(50.0, 2000.0);
         let origin = [-low[0] * unit, height + low[1] * unit];
-        (Self::new(width, height as u32), Frame { origin, unit })
+        (
+            Self::new(width, height as u32),
+            PaperTransform { origin, unit },
+        )
     }
 
     /// Adds a filled polygon without an outline.
-    pub fn area(&mut self, outline: Vec<Spot>, role: Role) {
+    pub fn area(&mut self, outline: Vec<PaperPoint>, role: Role) {
         self.shapes.push(Shape::Area { outline, role });
     }
 
     /// Adds a filled polygon with an outline of a width [px].
-    pub fn polygon(&mut self, outline: Vec<Spot>, role: Role, edge: Role, width: f32) {
+    pub fn polygon(&mut self, outline: Vec<PaperPoint>, role: Role, edge: Role, width: f32) {
         self.area(outline.clone(), role);
         self.ring(outline, width, edge);
     }
 
     /// Adds a filled rectangle with an outline of a width [px].
-    pub fn rectangle(&mut self, low: Spot, size: Spot, role: Role, edge: Role, width: f32) {
+    pub fn rectangle(
+        &mut self,
+        low: PaperPoint,
+        size: PaperPoint,
+        role: Role,
+        edge: Role,
+        width: f32,
+    ) {
         self.polygon(rectangle(low, size), role, edge, width);
     }
 
     /// Adds an open line.
-    pub fn line(&mut self, spots: Vec<Spot>, width: f32, role: Role) {
+    pub fn line(&mut self, spots: Vec<PaperPoint>, width: f32, role: Role) {
         self.shapes.push(Shape::Line {
             spots,
             closed: false,
@@ -112,7 +129,7 @@ impl Painter {
     }
 
     /// Adds a closed line.
-    pub fn ring(&mut self, spots: Vec<Spot>, width: f32, role: Role) {
+    pub fn ring(&mut self, spots: Vec<PaperPoint>, width: f32, role: Role) {
         self.shapes.push(Shape::Line {
             spots,
             closed: true,
@@ -131,18 +148,18 @@ impl Painter {
     }
 
     /// Adds a disc.
-    pub fn dot(&mut self, at: Spot, radius: f32, role: Role) {
+    pub fn dot(&mut self, at: PaperPoint, radius: f32, role: Role) {
         self.shapes.push(Shape::Dot { at, radius, role });
     }
 
     /// Adds a disc with a pale ring for contrast.
-    pub fn bright_dot(&mut self, at: Spot, radius: f32, role: Role) {
+    pub fn bright_dot(&mut self, at: PaperPoint, radius: f32, role: Role) {
         self.dot(at, radius * 1.45, Role::Paper);
         self.dot(at, radius, role);
     }
 
     /// Adds a cross with a pale rim for contrast.
-    pub fn cross(&mut self, at: Spot, reach: f32, role: Role) {
+    pub fn cross(&mut self, at: PaperPoint, reach: f32, role: Role) {
         for (width, role) in [(1.1 * reach, Role::Paper), (0.55 * reach, role)] {
             for side in [-reach, reach] {
                 let ends = [[at[0] - reach, at[1] - side], [at[0] + reach, at[1] + side]];
@@ -153,14 +170,14 @@ impl Painter {
 
     /// Adds a line of text. `at` is the top left corner of its first capital, `height` the height of a
     /// capital [px].
-    pub fn text(&mut self, at: Spot, height: f32, role: Role, text: &str) {
+    pub fn text(&mut self, at: PaperPoint, height: f32, role: Role, text: &str) {
         for spots in letters::lines(at, height, text) {
             self.line(spots, 0.15 * height, role);
         }
     }
 
     /// Adds an image; `at` is its top left corner.
-    pub fn image(&mut self, at: Spot, pixels: Pixmap) {
+    pub fn image(&mut self, at: PaperPoint, pixels: Pixmap) {
         let pixels = Rc::new(pixels);
         self.shapes.push(Shape::Image { at, pixels });
     }
@@ -173,7 +190,7 @@ impl Painter {
     }
 
     /// Adds a row of named samples that begins at `at`.
-    pub fn entries(&mut self, at: Spot, entries: &[(Sample, &str)]) {
+    pub fn entries(&mut self, at: PaperPoint, entries: &[(Sample, &str)]) {
         let mut x = at[0];
         for &(sample, name) in entries {
             let middle = [x + 0.5 * SIZE, at[1] + 0.5 * SIZE];
@@ -216,7 +233,7 @@ pub enum Sample {
 }
 
 /// Returns the corners of a rectangle.
-pub fn rectangle([x, y]: Spot, size: Spot) -> Vec<Spot> {
+pub fn rectangle([x, y]: PaperPoint, size: PaperPoint) -> Vec<PaperPoint> {
     let (right, bottom) = (x + size[0], y + size[1]);
     vec![[x, y], [right, y], [right, bottom], [x, bottom]]
 }

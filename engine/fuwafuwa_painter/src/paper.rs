@@ -1,20 +1,20 @@
 //! Coordinates on the paper.
 
 /// A point on the paper [px], y downwards.
-pub type Spot = [f32; 2];
+pub type PaperPoint = [f32; 2];
 
 /// Map from the plane, y upwards, to the paper.
 #[derive(Copy, Clone, Debug)]
-pub struct Frame {
+pub struct PaperTransform {
     /// Position of the origin on the paper.
-    pub origin: Spot,
+    pub origin: PaperPoint,
     /// Scale: pixels per unit.
     pub unit: f32,
 }
 
-impl Frame {
+impl PaperTransform {
     /// Returns the point on the paper; the third coordinate is ignored.
-    pub fn spot(self, at: [f32; 3]) -> Spot {
+    pub fn spot(self, at: [f32; 3]) -> PaperPoint {
         let [x, y] = self.origin;
         [x + at[0] * self.unit, y - at[1] * self.unit]
     }

@@ -1,7 +1,7 @@
 //! Rasterisation of the painter's shapes.
 
 use crate::role::colour;
-use crate::{PaintError, Painter, Role, Shape, Spot};
+use crate::{PaintError, Painter, PaperPoint, Role, Shape};
 use tiny_skia::{
     Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke,
     Transform,
@@ -97,7 +97,7 @@ fn paint(pixels: &mut Pixmap, shape: &Shape) -> Result<(), PaintError> {
     Ok(())
 }
 
-fn dot(pixels: &mut Pixmap, [x, y]: Spot, radius: f32, role: Role) -> Result<(), PaintError> {
+fn dot(pixels: &mut Pixmap, [x, y]: PaperPoint, radius: f32, role: Role) -> Result<(), PaintError> {
     let circle =
         PathBuilder::from_circle(x, y, radius).ok_or(PaintError::NoSize { what: "a dot" })?;
     let place = Transform::identity();
@@ -105,7 +105,7 @@ fn dot(pixels: &mut Pixmap, [x, y]: Spot, radius: f32, role: Role) -> Result<(),
     Ok(())
 }
 
-fn path_of(spots: &[Spot], closed: bool) -> Result<Path, PaintError> {
+fn path_of(spots: &[PaperPoint], closed: bool) -> Result<Path, PaintError> {
     let mut builder = PathBuilder::new();
     for (index, [x, y]) in spots.iter().enumerate() {
         if index == 0 {

@@ -19,7 +19,7 @@ pub enum Role {
     /// Guide lines.
     Guide,
     /// A cell of the hierarchy without an element of its own.
-    HandedOn,
+    EmptyCell,
     /// An element of a level, 0 = finest.
     Level(u8),
     /// The edge of an element.
@@ -41,7 +41,7 @@ pub enum Role {
     /// A material of a body, from 1.
     Material(u8),
     /// Surface that was inside before the body tore.
-    Fresh,
+    TornSurface,
     /// A crumb: a piece of one voxel.
     Crumb,
     /// A fixed rigid body.
@@ -76,7 +76,7 @@ pub fn colour(role: Role) -> Colour {
         Role::Ink => [0x3D, 0x3A, 0x4B],
         Role::Faded => [0x8C, 0x87, 0x93],
         Role::Guide => [0xE9, 0xE4, 0xE0],
-        Role::HandedOn => [0xF3, 0xEF, 0xEB],
+        Role::EmptyCell => [0xF3, 0xEF, 0xEB],
         Role::Level(level) => LEVELS[usize::from(level).min(LEVELS.len() - 1)],
         Role::Edge => [0x7D, 0x5A, 0x5A],
         Role::Node => [0x4E, 0x45, 0x52],
@@ -86,7 +86,7 @@ pub fn colour(role: Role) -> Colour {
         Role::Marked => [0x2B, 0x27, 0x38],
         Role::Skin | Role::Material(0..=1) => [0xF2, 0x9C, 0x8C],
         Role::Material(number) => MATERIALS[usize::from(number - 2) % MATERIALS.len()],
-        Role::Fresh => [0xFB, 0xDD, 0xA2],
+        Role::TornSurface => [0xFB, 0xDD, 0xA2],
         Role::Crumb => [0xF6, 0xBE, 0x92],
         Role::Obstacle => [0xA9, 0xAF, 0xBC],
         Role::Hand => [0x4A, 0x76, 0xA8],

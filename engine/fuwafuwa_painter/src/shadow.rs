@@ -19,7 +19,7 @@ impl Shadow {
     pub fn of(triangles: &[[Vector; 3]], height: f32) -> Self {
         let fallen: Vec<[[f32; 2]; 3]> = triangles
             .iter()
-            .map(|triangle| triangle.map(|at| fallen(at, height)))
+            .map(|triangle| triangle.map(|at| projected(at, height)))
             .collect();
         let corners = fallen.iter().flatten();
         let (mut low, mut high) = ([f32::MAX; 2], [f32::MIN; 2]);
@@ -111,7 +111,7 @@ impl Shadow {
 }
 
 /// Projects a point along the light onto the floor.
-fn fallen(at: Vector, height: f32) -> [f32; 2] {
+fn projected(at: Vector, height: f32) -> [f32; 2] {
     let drop = (at[1] - height) / KEY[1];
     [at[0] - drop * KEY[0], at[2] - drop * KEY[2]]
 }

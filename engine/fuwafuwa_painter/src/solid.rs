@@ -13,7 +13,7 @@ use tiny_skia::Pixmap;
 
 /// A 3D scene to be rendered.
 #[derive(Clone, Debug)]
-pub struct Solid {
+pub struct Scene3d {
     camera: Camera,
     triangles: Vec<Triangle>,
     /// Lines: end points [m], width [px] and role.
@@ -21,7 +21,7 @@ pub struct Solid {
     floor: Option<f32>,
 }
 
-impl Solid {
+impl Scene3d {
     /// Creates an empty scene.
     pub fn new(camera: Camera) -> Self {
         Self {
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn pixels_show_nearer_ball_in_front() {
-        let mut solid = Solid::new(CAMERA);
+        let mut solid = Scene3d::new(CAMERA);
         solid.ball([0.0; 3], 0.5, Role::Hand);
         solid.ball([0.0, 0.0, -1.0], 0.5, Role::Skin);
         let pixels = solid.pixels(60, 60).unwrap();
@@ -194,7 +194,7 @@ mod tests {
             [-4.0, 1.0, 0.1],
         ] {
             for is_bar in [true, false] {
-                let mut solid = Solid::new(Camera { eye, ..CAMERA });
+                let mut solid = Scene3d::new(Camera { eye, ..CAMERA });
                 match is_bar {
                     true => solid.bar([[-0.5, 0.0, -0.5], [0.5, 0.0, 0.5]], 0.3, Role::Hand),
                     false => solid.block([0.0; 3], [0.4, 0.3, 0.5], Rotation::NONE, Role::Hand),
@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn ball_darkens_floor() {
-        let mut solid = Solid::new(CAMERA);
+        let mut solid = Scene3d::new(CAMERA);
         solid.floor(-0.5);
         let bright = solid.pixels(60, 60).unwrap();
         solid.ball([0.0; 3], 0.5, Role::Hand);

@@ -2,7 +2,7 @@
 
 use crate::raster::png_of;
 use crate::role::colour;
-use crate::{PaintError, Painter, Role, Shape, Spot};
+use crate::{PaintError, Painter, PaperPoint, Role, Shape};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use std::fmt::Write;
@@ -65,7 +65,7 @@ fn write_shape(text: &mut String, shape: &Shape) -> Result<(), PaintError> {
     Ok(())
 }
 
-fn spots_of(spots: &[Spot]) -> String {
+fn spots_of(spots: &[PaperPoint]) -> String {
     let pairs: Vec<String> = spots
         .iter()
         .map(|[x, y]| format!("{x:.2},{y:.2}"))

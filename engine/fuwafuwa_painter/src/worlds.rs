@@ -1,7 +1,7 @@
 //! Pictures of bodies and worlds, by their elements or by their surface.
 
-use crate::solid::Solid;
-use crate::{Frame, Painter, Role, Spot};
+use crate::solid::Scene3d;
+use crate::{Painter, PaperPoint, PaperTransform, Role};
 use fuwafuwa::shape::{Shape, Vector};
 use fuwafuwa::vector::{cross, minus, plus, scaled};
 use fuwafuwa::view::{ElementView, Facet, Outline, faces, outline_slots};
@@ -9,15 +9,15 @@ use fuwafuwa::{Dim, Dim2, Dim3, ElementId, NodeId, PieceId, Rotation, SoftBody, 
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Function that paints a 2D body.
-pub type DrawPlane = fn(&mut Painter, Frame, &SoftBody<Dim2>);
+pub type DrawPlane = fn(&mut Painter, PaperTransform, &SoftBody<Dim2>);
 /// Function that paints a 3D body.
-pub type DrawSpace = fn(&mut Solid, &SoftBody<Dim3>);
+pub type DrawSpace = fn(&mut Scene3d, &SoftBody<Dim3>);
 
 /// Number of segments in the round end of a capsule.
 const ROUND: usize = 24;
 
 /// Paints a 2D world; `draw` paints each body.
-pub fn plane(painter: &mut Painter, frame: Frame, world: &World<Dim2>, draw: DrawPlane) {
+pub fn plane(painter: &mut Painter, frame: PaperTransform, world: &World<Dim2>, draw: DrawPlane) {
     for obstacle in world
         .rigid_bodies()
         .iter()
@@ -38,14 +38,14 @@ pub fn plane(painter: &mut Painter, frame: Frame, world: &World<Dim2>, draw: Dra
 }
 
 /// Paints the elements of a 2D body, with torn edges in another colour.
-pub fn plane_elements(painter: &mut Painter, frame: Frame, body: &SoftBody<Dim2>) {
+pub fn plane_elements(painter: &mut Painter, frame: PaperTransform, body: &SoftBody<Dim2>) {
     plane_pieces(painter, frame, body, Role::Crack, |painter, view, _| {
         plane_element(painter, frame, view, 1.2);
     });
 }
 
 /// Paints the surface of a 2D body.
-pub fn plane_skin(painter: &mut Painter, frame: Frame, body: &SoftBody<Dim2>) {
+pub fn plane_skin(painter: &mut Painter, frame: PaperTransform, body: &SoftBody<Dim2>) {
     plane_pieces(
         painter,
         frame,
@@ -66,7 +66,7 @@ pub fn plane_skin(painter: &mut Painter, frame: Frame, body: &SoftBody<Dim2>) {
 /// torn edges have the role `torn`.
 fn plane_pieces(
     painter: &mut Painter,
-    frame: Frame,
+    frame: PaperTransform,
     body: &SoftBody<Dim2>,
     torn: Role,
     draw: impl Fn(&mut Painter, &ElementView, bool),
@@ -88,8 +88,8 @@ fn plane_pieces(
     }
 }
 
-fn plane_outline(painter: &mut Painter, frame: Frame, line: &Outline, torn: Role) {
-    let spots: Vec<Spot> = line.points.iter().map(|&at| frame.spot(at)).collect();
+fn plane_outline(painter: &mut Painter, frame: PaperTransform, line: &Outline, torn: Role) {
+    let spots: Vec<PaperPoint> = line.points.iter().map(|&at| frame.spot(at)).collect();
     for (k, &is_fresh) in line.is_fresh.iter().enumerate() {
         let ends = vec![spots[k], spots[(k + 1) % spots.len()]];
         let (width, role) = match is_fresh {
@@ -101,19 +101,19 @@ fn plane_outline(painter: &mut Painter, frame: Frame, line: &Outline, torn: Role
 }
 
 /// Paints a 2D element with an outline of a width [px].
-pub fn plane_element(painter: &mut Painter, frame: Frame, view: &ElementView, width: f32) {
+pub fn plane_element(painter: &mut Painter, frame: PaperTransform, view: &ElementView, width: f32) {
     let role = Role::Level(view.level);
     painter.polygon(outline(frame, view), role, Role::Edge, width);
 }
 
 /// Returns the outline of an element on the paper.
-pub fn outline(frame: Frame, view: &ElementView) -> Vec<Spot> {
+pub fn outline(frame: PaperTransform, view: &ElementView) -> Vec<PaperPoint> {
     let ring = outline_slots(view.level, view.children).into_iter();
     ring.map(|slot| frame.spot(view.slots[slot])).collect()
 }
 
 /// Paints a 3D world; `draw` paints each body.
-pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
+pub fn space(solid: &mut Scene3d, world: &World<Dim3>, draw: DrawSpace) {
     for obstacle in world
         .rigid_bodies()
         .iter()
@@ -135,7 +135,7 @@ pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
 }
 
 /// Paints a bounded rigid shape.
-fn solid_shape(solid: &mut Solid, shape: Shape, role: Role) {
+fn solid_shape(solid: &mut Scene3d, shape: Shape, role: Role) {
     match shape {
         Shape::HalfSpace { .. } => {}
         Shape::Box { centre, half } => solid.block(centre, half, Rotation::NONE, role),
@@ -151,7 +151,7 @@ fn solid_shape(solid: &mut Solid, shape: Shape, role: Role) {
 
 /// Paints the chosen elements of a 3D body.
 pub fn space_elements(
-    solid: &mut Solid,
+    solid: &mut Scene3d,
     body: &SoftBody<Dim3>,
     is_chosen: impl Fn(&ElementView) -> bool,
 ) {
@@ -161,7 +161,7 @@ pub fn space_elements(
 }
 
 /// Paints the surface of a 3D body. The steps of voxels are smoothed; the edges of cracks are kept.
-pub fn space_skin(solid: &mut Solid, body: &SoftBody<Dim3>) {
+pub fn space_skin(solid: &mut Scene3d, body: &SoftBody<Dim3>) {
     let crumbs = crumbs(body);
     let inner: BTreeMap<ElementId, u8> = match body.materials() {
         [_] => BTreeMap::new(),
@@ -188,7 +188,7 @@ pub fn space_skin(solid: &mut Solid, body: &SoftBody<Dim3>) {
                 Role::Material(inner[&facet.element])
             }
             _ if crumbs.contains(&facet.piece) => Role::Crumb,
-            true => Role::Fresh,
+            true => Role::TornSurface,
             false => Role::Skin,
         };
         let normals = facet.nodes.map(|node| sums[&(node, facet.is_torn)]);
@@ -221,7 +221,7 @@ fn smoothed(facets: &[Facet]) -> BTreeMap<NodeId, Vector> {
 }
 
 /// Paints the faces of an element, and the edges between faces of different direction.
-fn space_element(solid: &mut Solid, view: &ElementView) {
+fn space_element(solid: &mut Scene3d, view: &ElementView) {
     let mut edges = BTreeSet::new();
     for face in faces::<Dim3>(view.level, view.children) {
         let corners = face.slots.map(|slot| view.slots[slot]);
@@ -246,7 +246,7 @@ fn crumbs<D: Dim>(body: &SoftBody<D>) -> BTreeSet<PieceId> {
 }
 
 /// Paints a rigid shape in 2D.
-fn rigid(painter: &mut Painter, frame: Frame, shape: Shape, role: Role) {
+fn rigid(painter: &mut Painter, frame: PaperTransform, shape: Shape, role: Role) {
     let rim = match shape {
         Shape::Ball { centre, radius } => {
             return painter.dot(frame.spot(centre), radius * frame.unit, role);

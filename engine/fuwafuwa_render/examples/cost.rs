@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let scene = Scene::open(name, &[])?;
         let mut world = scene.build::<Dim2>()?;
         for tick in 0..ticks {
-            scene.send(&mut world, tick);
+            scene.set_hand_targets(&mut world, tick);
             world.step();
         }
         let palette = Palette::candy();

@@ -33,10 +33,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     for tick in 0..=TICKS {
         let mut is_new = false;
         let skin = best(&mut skins, |skin| {
-            is_new = skin.follow(world.soft_bodies().first().unwrap(), &palette.materials);
+            is_new = skin.update(world.soft_bodies().first().unwrap(), &palette.materials);
         });
         times[0].push((is_new, skin));
-        ages.follow(&world, 1.0 / 60.0);
+        ages.update(&world, 1.0 / 60.0);
         let stickers = [face(&world)];
         for (part, geometries) in geometries.iter_mut().enumerate() {
             let share = 0.7 + 0.3 * (tick as f32 / 20.0).sin();
@@ -47,7 +47,10 @@ fn main() -> Result<(), Box<dyn Error>> {
                 1 => frame.stickers = &stickers,
                 2 => {
                     let towards = [0.0, 0.0, 1.0];
-                    frame.camera.cut = Some(Cut { towards, share });
+                    frame.camera.cut = Some(Cut {
+                        direction: towards,
+                        share,
+                    });
                     frame.look = Look::Elements {
                         colour: ElementColour::Strain,
                         ages: &ages.seconds,
@@ -59,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let time = best(geometries, |geometry| geometry.gather(&world, &frame));
             times[part + 1].push((is_new, time));
         }
-        scene.send(&mut world, tick);
+        scene.set_hand_targets(&mut world, tick);
         world.step();
     }
     let skin = &skins[0];
@@ -117,7 +120,7 @@ fn face(world: &World<Dim3>) -> Sticker {
     Sticker {
         body: 0,
         piece: largest.map_or(PieceId(0), |piece| piece.number),
-        from: anchor.position,
+        origin: anchor.position,
         axes: anchor.axes.map(|axis| scaled(axis, 0.55 * anchor.scale)),
         marks: (0..22).map(mark).collect(),
     }

@@ -44,9 +44,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut ages = Ages::default();
         let camera = Camera::fit(scene.view[0], scene.view[1], SIZE);
         for tick in 0..=moments.iter().copied().max().unwrap_or(0) {
-            scene.send(&mut world, tick);
+            scene.set_hand_targets(&mut world, tick);
             world.step();
-            ages.follow(&world, 1.0 / 60.0);
+            ages.update(&world, 1.0 / 60.0);
             if !moments.contains(&tick) {
                 continue;
             }

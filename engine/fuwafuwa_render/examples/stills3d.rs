@@ -182,9 +182,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             .basket::<Dim3>()?
             .map(|region| Basket { region, fill: 0.3 });
         for tick in 0..=moments.iter().copied().max().unwrap_or(0) {
-            scene.send(&mut world, tick);
+            scene.set_hand_targets(&mut world, tick);
             world.step();
-            ages.follow(&world, 1.0 / 60.0);
+            ages.update(&world, 1.0 / 60.0);
             if !moments.contains(&tick) {
                 continue;
             }
@@ -194,7 +194,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 nodes: false,
             };
             let cut = Some(Cut {
-                towards: [0.0, 0.0, 1.0],
+                direction: [0.0, 0.0, 1.0],
                 share: 0.5,
             });
             let looks = [
@@ -215,7 +215,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 };
                 let camera = Camera {
                     cut,
-                    turn,
+                    azimuth: turn,
                     ..Camera::fit(low, high, SIZE)
                 };
                 let frame = Frame {

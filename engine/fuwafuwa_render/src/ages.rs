@@ -18,7 +18,7 @@ pub struct Ages {
 impl Ages {
     /// Compares a world with the last call, `duration` [s] ago. In the first call every element counts as
     /// old.
-    pub fn follow<D: Dim>(&mut self, world: &World<D>, duration: f32) {
+    pub fn update<D: Dim>(&mut self, world: &World<D>, duration: f32) {
         let known = std::mem::take(&mut self.bodies);
         let mut forms_before = std::mem::take(&mut self.forms);
         let mut ages_before = std::mem::take(&mut self.seconds);
@@ -63,7 +63,7 @@ mod tests {
         let grid = VoxelGrid::ball(32, 1.0).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let mut ages = Ages::default();
-        ages.follow(&world, 0.0);
+        ages.update(&world, 0.0);
         let young = |ages: &Ages| ages.seconds[0].iter().filter(|&&age| age < 0.2).count();
         assert_eq!(young(&ages), 0);
         world
@@ -72,13 +72,13 @@ mod tests {
                 &Blade::segment([0.5, 0.5], [0.5, 2.0]),
             )
             .unwrap();
-        ages.follow(&world, 0.1);
+        ages.update(&world, 0.1);
         let remodelled = young(&ages);
         assert!(
             remodelled > 10 && remodelled < ages.seconds[0].len(),
             "{remodelled}"
         );
-        ages.follow(&world, 0.3);
+        ages.update(&world, 0.3);
         assert_eq!(young(&ages), 0);
     }
 }

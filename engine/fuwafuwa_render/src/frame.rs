@@ -146,7 +146,7 @@ pub struct Sticker {
     /// Piece of the body.
     pub piece: PieceId,
     /// Point inside the piece [m]. The sticker lies on the skin visible from there.
-    pub from: Vector,
+    pub origin: Vector,
     /// Axes to the right, up and out of the skin. Their lengths are the size of one unit of mark coordinates
     /// [m].
     pub axes: [Vector; 3],

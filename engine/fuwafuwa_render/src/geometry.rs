@@ -5,7 +5,7 @@ use crate::frame::{Frame, Look};
 use crate::palette::bytes;
 use crate::rest::Rest;
 use crate::rigid::RigidShapes;
-use crate::rings::Rings;
+use crate::rings::Outlines;
 use crate::skin::SkinMesh;
 use fuwafuwa::{Dim2, SoftBody, World};
 use glam::Vec2;
@@ -22,7 +22,7 @@ pub struct Geometry {
     pub(crate) radius: f32,
     /// Bounding box of all bodies as low and high corner [m]. Without bodies low is above high.
     pub(crate) bounds: [Vec2; 2],
-    rings: Rings,
+    rings: Outlines,
     rests: Vec<Rest>,
 }
 
@@ -72,7 +72,7 @@ impl Geometry {
 
     fn add_skin(&mut self, place: usize, body: &SoftBody<Dim2>, frame: &Frame<'_>) {
         let rest = &mut self.rests[place];
-        if !rest.fits(body.grid()) {
+        if !rest.matches_grid(body.grid()) {
             *rest = Rest::new(body.grid());
         }
         self.rings.trace(body, rest);

@@ -53,7 +53,7 @@ pub use gpu::Renderer;
 #[cfg(feature = "gpu")]
 pub use gpu::cost::Cost;
 #[cfg(feature = "gpu")]
-pub use gpu::image::{ImageError, Step, image, image_later, pass_into};
+pub use gpu::image::{ImageError, ImageStage, image, image_async, pass_into};
 #[cfg(feature = "gpu")]
 pub use gpu::targets::new_image;
 pub use palette::{Colour, Palette};

@@ -73,7 +73,7 @@ impl Rest {
     }
 
     /// Returns whether these offsets belong to a grid.
-    pub fn fits(&self, grid: &VoxelGrid<Dim2>) -> bool {
+    pub fn matches_grid(&self, grid: &VoxelGrid<Dim2>) -> bool {
         self.grid.as_ref() == Some(grid)
     }
 
@@ -196,13 +196,13 @@ mod tests {
     #[test]
     fn fits_rejects_other_grids() {
         let [disc, larger] = [24, 25].map(|n| VoxelGrid::<Dim2>::ball(n, 1.0).unwrap());
-        assert!(Rest::new(&disc).fits(&disc));
-        assert!(!Rest::new(&disc).fits(&larger));
+        assert!(Rest::new(&disc).matches_grid(&disc));
+        assert!(!Rest::new(&disc).matches_grid(&larger));
         let other = VoxelGrid::from_fn([24, 24, 1], disc.voxel_size(), |voxel| {
             3 * disc.material(voxel)
         });
         let other = other.unwrap();
-        assert!(!Rest::new(&disc).fits(&other));
+        assert!(!Rest::new(&disc).matches_grid(&other));
         assert_eq!(Rest::new(&other).first_material(), 3);
     }
 }

@@ -8,7 +8,7 @@ use fuwafuwa::{Dim2, Shape, World};
 use glam::Vec2;
 
 /// Maximum number of half-spaces drawn, given by the uniform size of small devices.
-pub const MOST_WALLS: usize = 16;
+pub const MAX_WALLS: usize = 16;
 
 /// Shape with a colour, as an instance for the shader.
 #[repr(C)]
@@ -78,7 +78,7 @@ impl RigidShapes {
             let bar = instance(*obstacle.shape(), palette.bar, 0.0);
             self.shapes.extend(bar);
         }
-        self.walls.truncate(MOST_WALLS);
+        self.walls.truncate(MAX_WALLS);
         self.bar_count = self.shapes.len() as u32;
         for (player, (_, hand)) in world.target_followers().enumerate() {
             let hand = instance(*hand.shape(), palette.hand(player), player as f32);

@@ -14,14 +14,14 @@ use glam::Vec2;
 
 /// Closed curves around the pieces of a body. Keep the value between frames to reuse its buffers.
 #[derive(Clone, Debug, Default)]
-pub struct Rings {
+pub struct Outlines {
     sides: Vec<Side>,
     /// Index of the side that starts at a node, or `NONE`.
-    leaving: IndexVec<NodeId, u32>,
+    side_from_node: IndexVec<NodeId, u32>,
     ring: Vec<Control>,
     planed: Vec<Vec2>,
     /// Points of all curves, one curve after another.
-    pub points: Vec<RingPoint>,
+    pub points: Vec<OutlinePoint>,
     /// Range of each curve in `points`.
     pub spans: Vec<Span>,
 }
@@ -39,7 +39,7 @@ pub struct Span {
 
 /// Point of a curve.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct RingPoint {
+pub struct OutlinePoint {
     /// Position [m].
     pub at: Vec2,
     /// Outward unit normal.
@@ -81,7 +81,7 @@ const NONE: u32 = u32::MAX;
 const SURFACE_ROUNDS: usize = 4;
 const TORN_ROUNDS: usize = 1;
 
-impl Rings {
+impl Outlines {
     /// Computes the curves of a body.
     pub fn trace(&mut self, body: &SoftBody<Dim2>, rest: &Rest) {
         self.points.clear();
@@ -90,7 +90,7 @@ impl Rings {
         for first in 0..self.sides.len() {
             self.gather_ring(first);
             if !self.ring.is_empty() {
-                self.plane_corners();
+                self.smooth_corners();
                 self.draw_curve();
             }
         }
@@ -99,8 +99,8 @@ impl Rings {
     fn gather_sides(&mut self, body: &SoftBody<Dim2>, rest: &Rest) {
         let (mesh, grid) = (body.mesh(), body.grid());
         self.sides.clear();
-        self.leaving.clear();
-        self.leaving.resize(mesh.node_capacity(), NONE);
+        self.side_from_node.clear();
+        self.side_from_node.resize(mesh.node_capacity(), NONE);
         for facet in body.facets() {
             let Some(element) = mesh.element(facet.element) else {
                 continue;
@@ -112,7 +112,7 @@ impl Rings {
                 true => Default::default(),
                 false => rest.offsets(grid, element.cell.at, [to[0] - from[0], to[1] - from[1]]),
             };
-            self.leaving[facet.nodes[0]] = self.sides.len() as u32;
+            self.side_from_node[facet.nodes[0]] = self.sides.len() as u32;
             self.sides.push(Side {
                 to: facet.nodes[1],
                 next: NONE,
@@ -124,7 +124,7 @@ impl Rings {
             });
         }
         for side in &mut self.sides {
-            side.next = self.leaving[side.to];
+            side.next = self.side_from_node[side.to];
         }
     }
 
@@ -147,7 +147,7 @@ impl Rings {
 
     /// Moves points half-way to the midpoint of their neighbours: torn points once, because they should look
     /// rough; others in more rounds, because contacts press on the voxel staircase.
-    fn plane_corners(&mut self) {
+    fn smooth_corners(&mut self) {
         let count = self.ring.len();
         if count < SMALL {
             return;
@@ -191,7 +191,7 @@ impl Rings {
             for &share in places {
                 let (before, after) = (from.lerp(control.at, share), control.at.lerp(to, share));
                 let along = into.lerp(out, share).normalize_or_zero();
-                self.points.push(RingPoint {
+                self.points.push(OutlinePoint {
                     at: before.lerp(after, share),
                     normal: -along.perp(),
                     fresh: control.fresh[0] + (control.fresh[1] - control.fresh[0]) * share,
@@ -203,7 +203,7 @@ impl Rings {
         let curve = &self.points[start..];
         let next = curve.iter().cycle().skip(1);
         let pivot = curve[0].at;
-        let doubled = |a: &RingPoint, b: &RingPoint| (a.at - pivot).perp_dot(b.at - pivot);
+        let doubled = |a: &OutlinePoint, b: &OutlinePoint| (a.at - pivot).perp_dot(b.at - pivot);
         let area = curve
             .iter()
             .zip(next)
@@ -255,9 +255,9 @@ mod tests {
     use super::*;
     use fuwafuwa::{Blade, Material, VoxelGrid, World, WorldConfig};
 
-    fn rings(world: &World<Dim2>) -> Rings {
+    fn rings(world: &World<Dim2>) -> Outlines {
         let body = world.soft_bodies().first().unwrap();
-        let mut rings = Rings::default();
+        let mut rings = Outlines::default();
         rings.trace(body, &Rest::new(body.grid()));
         rings
     }
@@ -275,7 +275,7 @@ mod tests {
         grid.voxel_size() * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt()
     }
 
-    fn total_area(rings: &Rings) -> f32 {
+    fn total_area(rings: &Outlines) -> f32 {
         rings.spans.iter().fold(0.0, |sum, span| sum + span.area)
     }
 
@@ -328,7 +328,7 @@ mod tests {
         assert_eq!(halves.spans.len(), 2);
         let gap = (total_area(&halves) - whole).abs() / whole;
         assert!(gap < 5e-3, "{gap}");
-        let torn: Vec<&RingPoint> = halves.points.iter().filter(|p| p.fresh == 1.0).collect();
+        let torn: Vec<&OutlinePoint> = halves.points.iter().filter(|p| p.fresh == 1.0).collect();
         assert!(torn.len() > 40);
         for point in torn {
             assert!((point.at.x - 0.5).abs() < 0.5 / 32.0);

@@ -2,7 +2,7 @@
 
 use crate::elements::fills;
 use crate::plane::flat;
-use crate::rings::{Rings, sides, strain};
+use crate::rings::{Outlines, sides, strain};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{corner, scale};
 use fuwafuwa::stencil::slot_index;
@@ -45,7 +45,7 @@ impl SkinMesh {
     }
 
     /// Adds fans and bands of a body's curves. `voxel` is the voxel size of the body [m].
-    pub fn add(&mut self, rings: &Rings, voxel: f32) {
+    pub fn add(&mut self, rings: &Outlines, voxel: f32) {
         for span in &rings.spans {
             let points = &rings.points[span.start..span.end];
             let pivot = self.vertices.len() as u32;
@@ -148,7 +148,7 @@ mod tests {
     fn fans_enclose_the_area_of_the_curves() {
         let grid = VoxelGrid::ball(16, 1.0).unwrap();
         let body = SoftBody::new(grid, &[Material::default()]).unwrap();
-        let mut rings = Rings::default();
+        let mut rings = Outlines::default();
         rings.trace(&body, &Rest::new(body.grid()));
         let enclosed: f32 = rings.spans.iter().map(|span| span.area).sum();
         let mut mesh = SkinMesh::default();

@@ -9,7 +9,7 @@ use fuwafuwa::{
 };
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::{
-    Basket, Camera, Colour, Frame, Look, Palette, Particle, Renderer, Step, image,
+    Basket, Camera, Colour, Frame, ImageStage, Look, Palette, Particle, Renderer, image,
 };
 use shared::{device, device_with, difference, is_warm};
 use std::sync::LazyLock;
@@ -369,10 +369,10 @@ fn paint_rigid_draws_hands_but_no_bodies() {
         let frame = Frame::new(camera, &PALETTE);
         let mut renderer = Renderer::new(&device, format);
         let pixels = image(&device, &queue, (format, SIZE), |step| match step {
-            Step::Before(encoder) => {
+            ImageStage::Prepare(encoder) => {
                 renderer.prepare(&device, &queue, encoder, &world, &frame, SIZE);
             }
-            Step::Inside(pass) => paint(&renderer, pass),
+            ImageStage::Paint(pass) => paint(&renderer, pass),
         });
         let pixels = pixels.expect("rendering an image");
         let picture = Picture { camera, pixels };

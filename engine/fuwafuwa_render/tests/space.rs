@@ -157,7 +157,7 @@ fn torn_face_is_paler_and_closed_cut_shows_no_gap() {
         };
         body.set_node_state(id, [x + far, y, z], [0.0; 3]);
     }
-    let from_right = |frame: &mut Frame<'_, Camera>| frame.camera.turn = 1.0;
+    let from_right = |frame: &mut Frame<'_, Camera>| frame.camera.azimuth = 1.0;
     let (Some(closed), Some(open)) = (closed, take(&world, TextureFormat::Rgba8Unorm, from_right))
     else {
         return;
@@ -191,10 +191,10 @@ fn cut_element_view_shows_the_colour_of_levels() {
             nodes: false,
         };
         frame.camera.cut = Some(Cut {
-            towards: [0.0, 0.0, 1.0],
+            direction: [0.0, 0.0, 1.0],
             share: 0.5,
         });
-        frame.camera.rise = 0.1;
+        frame.camera.elevation = 0.1;
     });
     let Some(picture) = picture else {
         return;
@@ -233,7 +233,7 @@ fn sticker_is_visible_from_its_side_and_not_through_a_bar() {
     let sticker = Sticker {
         body: 0,
         piece: PieceId(0),
-        from: [0.5; 3],
+        origin: [0.5; 3],
         axes: [[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5]],
         marks: vec![mark],
     };
@@ -241,8 +241,8 @@ fn sticker_is_visible_from_its_side_and_not_through_a_bar() {
     let is_seen = |world: &World<Dim3>, turn: f32| {
         let picture = take(world, TextureFormat::Rgba8Unorm, |frame| {
             frame.stickers = &stickers;
-            frame.camera.turn = turn;
-            frame.camera.rise = 0.0;
+            frame.camera.azimuth = turn;
+            frame.camera.elevation = 0.0;
         });
         let [red, _, blue] = picture?.around([0.5; 3]);
         Some(blue > red + 0.3)

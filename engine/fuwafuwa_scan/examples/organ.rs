@@ -5,7 +5,7 @@
 
 use fuwafuwa::{Material, SoftBody};
 use fuwafuwa_scan::{MAX_FILE_BYTES, Options, Organ, Scan, Segmentation};
-use fuwafuwa_scenes::disk::bytes_of;
+use fuwafuwa_scenes::disk::read_bytes;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let files: Vec<String> = words.collect();
     let bytes = files
         .iter()
-        .map(|file| bytes_of(file.as_ref(), MAX_FILE_BYTES));
+        .map(|file| read_bytes(file.as_ref(), MAX_FILE_BYTES));
     let bytes = bytes.collect::<Result<Vec<_>, _>>()?;
     let options = Options {
         resolution,

@@ -3,9 +3,9 @@
 //! The header has 348 bytes in NIfTI-1 and 540 in NIfTI-2, with the same fields at different offsets [Cox
 //! 2004]. The first number is this length, which also reveals the byte order.
 
-use crate::complaint::{Complaint, too_large, unexpected};
-use crate::placement::{Forms, Placement, Quaternion};
-use fuwafuwa_scenes::import::Place;
+use crate::complaint::{PositionedProblem, too_large, unexpected};
+use crate::placement::{Placement, PlacementForms, Quaternion};
+use fuwafuwa_scenes::import::FilePosition;
 
 /// Maximum number of voxels in a scan: 512 on each axis, half a gigabyte in memory.
 pub const MAX_VOXELS: u64 = 1 << 27;
@@ -18,7 +18,7 @@ const MAX_OFFSET: f64 = (1 << 26) as f64;
 
 /// Number format of a field or a voxel.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Number {
+pub enum NumberFormat {
     U8,
     I8,
     I16,
@@ -34,10 +34,14 @@ pub enum Number {
 struct Field {
     name: &'static str,
     at: [usize; 2],
-    number: [Number; 2],
+    number: [NumberFormat; 2],
 }
 
-const fn field(name: &'static str, first: (usize, Number), second: (usize, Number)) -> Field {
+const fn field(
+    name: &'static str,
+    first: (usize, NumberFormat),
+    second: (usize, NumberFormat),
+) -> Field {
     Field {
         name,
         at: [first.0, second.0],
@@ -45,7 +49,7 @@ const fn field(name: &'static str, first: (usize, Number), second: (usize, Numbe
     }
 }
 
-use Number::{F32, F64, I16, I32, I64, U8};
+use NumberFormat::{F32, F64, I16, I32, I64, U8};
 const DIM: Field = field("dim", (40, I16), (16, I64));
 const DATATYPE: Field = field("datatype", (70, I16), (12, I16));
 const BITPIX: Field = field("bitpix", (72, I16), (14, I16));
@@ -66,7 +70,7 @@ pub struct Header {
     /// Number of voxels on each axis of the scan.
     pub size: [usize; 3],
     /// Number format of a voxel.
-    pub number: Number,
+    pub number: NumberFormat,
     pub is_big_endian: bool,
     /// Offset of the first voxel [bytes].
     pub offset: usize,
@@ -77,7 +81,7 @@ pub struct Header {
 
 impl Header {
     /// Reads the header from the beginning of a file: its first [`LONGEST`] bytes, or all if it is shorter.
-    pub fn read(bytes: &[u8]) -> Result<Self, Complaint> {
+    pub fn read(bytes: &[u8]) -> Result<Self, PositionedProblem> {
         let bytes = Bytes::of(bytes)?;
         let size = size(&bytes)?;
         let number = number(&bytes)?;
@@ -102,7 +106,7 @@ impl Header {
     }
 }
 
-impl Number {
+impl NumberFormat {
     pub fn bytes(self) -> usize {
         match self {
             Self::U8 | Self::I8 => 1,
@@ -144,20 +148,21 @@ struct Bytes<'a> {
 }
 
 impl<'a> Bytes<'a> {
-    fn of(bytes: &'a [u8]) -> Result<Self, Complaint> {
+    fn of(bytes: &'a [u8]) -> Result<Self, PositionedProblem> {
         let expected = "the length of a header, 348 or 540";
         let Some(first) = bytes.first_chunk::<4>() else {
             let found = format!("{} bytes", bytes.len());
-            return Err(unexpected(Place::Byte(0), expected, found));
+            return Err(unexpected(FilePosition::Byte(0), expected, found));
         };
         let lengths = [i32::from_le_bytes(*first), i32::from_be_bytes(*first)];
         let known = [(348, 0), (540, 1)];
         let found = known.iter().find(|(length, _)| lengths.contains(length));
-        let &(length, version) =
-            found.ok_or_else(|| unexpected(Place::Field("sizeof_hdr", 0), expected, lengths[0]))?;
+        let &(length, version) = found.ok_or_else(|| {
+            unexpected(FilePosition::Field("sizeof_hdr", 0), expected, lengths[0])
+        })?;
         let Some(bytes) = bytes.get(..length as usize) else {
             let expected = format!("a header of {length} bytes");
-            return Err(unexpected(Place::Byte(0), expected, bytes.len()));
+            return Err(unexpected(FilePosition::Byte(0), expected, bytes.len()));
         };
         let (at, magic) = [(344, &b"n+1\0"[..]), (4, b"n+2\0\r\n\x1a\n")][version];
         let found = &bytes[at..at + magic.len()];
@@ -167,7 +172,11 @@ impl<'a> Bytes<'a> {
                 magic.escape_ascii()
             );
             let found = format!("\"{}\"", found.escape_ascii());
-            return Err(unexpected(Place::Field("magic", at), expected, found));
+            return Err(unexpected(
+                FilePosition::Field("magic", at),
+                expected,
+                found,
+            ));
         }
         Ok(Self {
             bytes,
@@ -176,9 +185,9 @@ impl<'a> Bytes<'a> {
         })
     }
 
-    fn place(&self, field: &Field, index: usize) -> Place {
+    fn place(&self, field: &Field, index: usize) -> FilePosition {
         let width = field.number[self.version].bytes();
-        Place::Field(field.name, field.at[self.version] + index * width)
+        FilePosition::Field(field.name, field.at[self.version] + index * width)
     }
 
     /// Returns the number at `index` of a field.
@@ -193,13 +202,13 @@ impl<'a> Bytes<'a> {
         [0, 1, 2].map(|axis| self.number(field, first + axis))
     }
 
-    fn wrong(&self, field: &Field, index: usize, expected: &str) -> Complaint {
+    fn wrong(&self, field: &Field, index: usize, expected: &str) -> PositionedProblem {
         let found = self.number(field, index);
         unexpected(self.place(field, index), expected, found)
     }
 }
 
-fn size(bytes: &Bytes) -> Result<[usize; 3], Complaint> {
+fn size(bytes: &Bytes) -> Result<[usize; 3], PositionedProblem> {
     let axes = bytes.number(&DIM, 0);
     if !(3.0..=7.0).contains(&axes) {
         return Err(bytes.wrong(&DIM, 0, "3 axes, or more with one voxel on each"));
@@ -224,16 +233,16 @@ fn size(bytes: &Bytes) -> Result<[usize; 3], Complaint> {
     Ok(bytes.vector(&DIM, 1).map(|voxels| voxels as usize))
 }
 
-fn number(bytes: &Bytes) -> Result<Number, Complaint> {
+fn number(bytes: &Bytes) -> Result<NumberFormat, PositionedProblem> {
     let number = match bytes.number(&DATATYPE, 0) as i32 {
-        2 => Number::U8,
-        4 => Number::I16,
-        8 => Number::I32,
-        16 => Number::F32,
-        64 => Number::F64,
-        256 => Number::I8,
-        512 => Number::U16,
-        768 => Number::U32,
+        2 => NumberFormat::U8,
+        4 => NumberFormat::I16,
+        8 => NumberFormat::I32,
+        16 => NumberFormat::F32,
+        64 => NumberFormat::F64,
+        256 => NumberFormat::I8,
+        512 => NumberFormat::U16,
+        768 => NumberFormat::U32,
         _ => {
             let expected = "2, 4, 8, 16, 64, 256, 512 or 768: integers up to 32 bits, or floating-point numbers";
             return Err(bytes.wrong(&DATATYPE, 0, expected));
@@ -247,7 +256,7 @@ fn number(bytes: &Bytes) -> Result<Number, Complaint> {
     Ok(number)
 }
 
-fn offset(bytes: &Bytes) -> Result<usize, Complaint> {
+fn offset(bytes: &Bytes) -> Result<usize, PositionedProblem> {
     let found = bytes.number(&VOX_OFFSET, 0);
     let least = bytes.bytes.len() as f64;
     if !(least..=MAX_OFFSET).contains(&found) || found % 1.0 != 0.0 {
@@ -259,7 +268,7 @@ fn offset(bytes: &Bytes) -> Result<usize, Complaint> {
 
 /// Returns slope and intercept. A slope of 0 means no scaling, and so does a slope that is not finite, which
 /// some programs write.
-fn scale(bytes: &Bytes) -> Result<[f64; 2], Complaint> {
+fn scale(bytes: &Bytes) -> Result<[f64; 2], PositionedProblem> {
     let slope = bytes.number(&SCL_SLOPE, 0);
     if slope == 0.0 || !slope.is_finite() {
         return Ok([1.0, 0.0]);
@@ -272,7 +281,7 @@ fn scale(bytes: &Bytes) -> Result<[f64; 2], Complaint> {
         .ok_or_else(complaint)
 }
 
-fn placement(bytes: &Bytes) -> Result<Placement, Complaint> {
+fn placement(bytes: &Bytes) -> Result<Placement, PositionedProblem> {
     // The lowest three bits give the unit of length; most programs that leave it at 0 mean millimetres.
     let unit = match bytes.number(&XYZT_UNITS, 0) as i32 & 7 {
         0 | 2 => 1.0,
@@ -284,7 +293,7 @@ fn placement(bytes: &Bytes) -> Result<Placement, Complaint> {
         }
     };
     let spacing = bytes.vector(&PIXDIM, 1);
-    let forms = Forms {
+    let forms = PlacementForms {
         sform: (bytes.number(&SFORM_CODE, 0) > 0.0).then(|| {
             let row = |row: usize| [0, 1, 2, 3].map(|column| bytes.number(&SROW, 4 * row + column));
             [0, 1, 2].map(row)

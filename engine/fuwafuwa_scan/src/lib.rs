@@ -66,7 +66,7 @@ mod stream;
 pub use choice::{Label, Threshold};
 pub use header::MAX_VOXELS;
 pub use organ::{Options, Organ, OrganError, RESOLUTIONS};
-pub use placement::{Placement, SPACINGS, Source};
+pub use placement::{Placement, PlacementSource, SPACINGS};
 pub use scan::Scan;
 pub use segmentation::Segmentation;
 pub use stream::MAX_FILE_BYTES;

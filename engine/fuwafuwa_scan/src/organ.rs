@@ -13,13 +13,13 @@ pub const RESOLUTIONS: RangeInclusive<usize> = 8..=256;
 
 /// Minimum resolution of the search for an organ [voxels], whatever the final resolution: a coarser search
 /// misses small organs.
-const SEARCHED: usize = 64;
+const MIN_SEARCH_RESOLUTION: usize = 64;
 
 /// Maximum number of samples along each axis of a voxel. More hardly change the result.
-const MOST_ASKED: usize = 4;
+const MAX_SAMPLES: usize = 4;
 
 /// Maximum number of samples along each axis of a voxel during the search.
-const MOST_SEARCHED: usize = 2;
+const MAX_SEARCH_SAMPLES: usize = 2;
 
 /// Options for building an organ.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,13 +101,13 @@ impl Organ {
         // A search finer than the voxels of the scan finds nothing more.
         let shown = (region.longest() / finest(scans)).ceil() as usize;
         let searched = resolution
-            .max(SEARCHED)
+            .max(MIN_SEARCH_RESOLUTION)
             .min(shown.max(*RESOLUTIONS.start()));
         // The first pass finds the object, the second measures it, and the third samples only its region.
         let looks = [
-            (searched, MOST_SEARCHED),
-            (searched, MOST_SEARCHED),
-            (resolution, MOST_ASKED),
+            (searched, MAX_SEARCH_SAMPLES),
+            (searched, MAX_SEARCH_SAMPLES),
+            (resolution, MAX_SAMPLES),
         ];
         let mut found = None;
         for (number, (across, most_asked)) in looks.into_iter().enumerate() {

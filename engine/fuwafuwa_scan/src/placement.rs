@@ -24,12 +24,12 @@ pub type Affine = [[f64; 4]; 3];
 pub struct Placement {
     affine: Affine,
     inverse: Affine,
-    source: Source,
+    source: PlacementSource,
 }
 
 /// Part of the header that gives the placement.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum PlacementSource {
     /// A matrix (sform).
     Matrix,
     /// A rotation (qform); used if there is no matrix.
@@ -39,7 +39,7 @@ pub enum Source {
 }
 
 /// All placement data of a header.
-pub struct Forms {
+pub struct PlacementForms {
     pub sform: Option<Affine>,
     pub qform: Option<Quaternion>,
     pub spacing: [f64; 3],
@@ -54,18 +54,18 @@ pub struct Quaternion {
 }
 
 /// Problem with a placement.
-pub struct Wrong {
+pub struct PlacementProblem {
     pub expected: &'static str,
     pub found: String,
 }
 
 impl Placement {
     /// Creates a placement from the best of the forms, with lengths in units of `unit` [mm].
-    pub(crate) fn of(forms: &Forms, unit: f64) -> Result<Self, Wrong> {
+    pub(crate) fn of(forms: &PlacementForms, unit: f64) -> Result<Self, PlacementProblem> {
         let (affine, source) = match (&forms.sform, &forms.qform) {
-            (Some(affine), _) => (*affine, Source::Matrix),
-            (None, Some(rotation)) => (rotation.affine(forms.spacing)?, Source::Rotation),
-            (None, None) => (scaling(forms.spacing), Source::Spacing),
+            (Some(affine), _) => (*affine, PlacementSource::Matrix),
+            (None, Some(rotation)) => (rotation.affine(forms.spacing)?, PlacementSource::Rotation),
+            (None, None) => (scaling(forms.spacing), PlacementSource::Spacing),
         };
         let affine = affine.map(|row| row.map(|k| k * unit));
         check(&affine)?;
@@ -77,7 +77,7 @@ impl Placement {
     }
 
     /// Returns the part of the header that gave the placement.
-    pub fn source(&self) -> Source {
+    pub fn source(&self) -> PlacementSource {
         self.source
     }
 
@@ -100,11 +100,11 @@ impl Placement {
 
 impl Quaternion {
     /// Combines rotation, scaling and offset [Cox 2004, method 2].
-    fn affine(&self, spacing: [f64; 3]) -> Result<Affine, Wrong> {
+    fn affine(&self, spacing: [f64; 3]) -> Result<Affine, PlacementProblem> {
         let [mut b, mut c, mut d] = self.imaginary;
         let squared = b * b + c * c + d * d;
         if squared.is_nan() || squared > 1.0 + ROUNDING {
-            return Err(Wrong {
+            return Err(PlacementProblem {
                 expected: "the imaginary part of a unit quaternion",
                 found: format!("{b}, {c}, {d}"),
             });
@@ -150,8 +150,8 @@ fn scaling(spacing: [f64; 3]) -> Affine {
     affine
 }
 
-fn check(affine: &Affine) -> Result<(), Wrong> {
-    let wrong = |expected, found| Err(Wrong { expected, found });
+fn check(affine: &Affine) -> Result<(), PlacementProblem> {
+    let wrong = |expected, found| Err(PlacementProblem { expected, found });
     if !affine.as_flattened().iter().all(|k| k.is_finite()) {
         return wrong("finite numbers", format!("{affine:?}"));
     }
@@ -227,7 +227,7 @@ mod tests {
             [0.7, 0.1, 0.0, -126.0],
             [0.1, 0.0, 2.0, -72.0],
         ]);
-        let forms = Forms {
+        let forms = PlacementForms {
             sform,
             qform: None,
             spacing: [1.0; 3],

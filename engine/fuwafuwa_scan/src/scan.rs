@@ -1,6 +1,6 @@
 //! Scans: a number for each voxel of a box, and the position of the box in the patient.
 
-use crate::complaint::{Complaint, in_file};
+use crate::complaint::{PositionedProblem, in_file};
 use crate::header::{Header, LONGEST};
 use crate::placement::Placement;
 use crate::stream::Stream;
@@ -60,7 +60,7 @@ impl Scan {
 
     /// Interpolates trilinearly at a position in the scan [voxels]; more than half a voxel outside the scan,
     /// returns the lowest value.
-    pub fn between(&self, voxel: [f64; 3]) -> f32 {
+    pub fn interpolate(&self, voxel: [f64; 3]) -> f32 {
         let high = self.size.map(|extent| extent as f64 - 1.0);
         let is_inside = |axis: usize| (-0.5..=high[axis] + 0.5).contains(&voxel[axis]);
         if !(0..3).all(is_inside) {
@@ -98,7 +98,7 @@ impl Scan {
     }
 }
 
-fn try_decode(bytes: &[u8], mut progress: impl FnMut(f32)) -> Result<Scan, Complaint> {
+fn try_decode(bytes: &[u8], mut progress: impl FnMut(f32)) -> Result<Scan, PositionedProblem> {
     let mut stream = Stream::of(bytes)?;
     let mut beginning = [0; LONGEST];
     let length = stream.fill(&mut beginning)?;
@@ -129,7 +129,7 @@ fn read(
     beginning: &[u8],
     stream: &mut Stream,
     progress: &mut impl FnMut(f32),
-) -> Result<Vec<f32>, Complaint> {
+) -> Result<Vec<f32>, PositionedProblem> {
     let (count, width) = (header.voxels(), header.number.bytes());
     let [slope, inter] = header.scale;
     let value = |bytes: &[u8]| {

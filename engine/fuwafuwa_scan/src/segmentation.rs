@@ -40,7 +40,7 @@ impl Segmentation {
         let first = scans[0];
         match self {
             Self::Thresholds(ranges) => {
-                let intensity = first.between(voxel(first));
+                let intensity = first.interpolate(voxel(first));
                 let found = ranges.iter().find(|(range, _)| range.contains(&intensity));
                 found.map_or(0, |&(_, material)| material)
             }
@@ -52,7 +52,7 @@ impl Segmentation {
                 let (mut sum, mut best) = (0.0, (0.0, 0));
                 for (index, scan) in scans.iter().enumerate() {
                     let highest = scan.range()[1].max(1.0);
-                    let probability = (scan.between(voxel(scan)) / highest).max(0.0);
+                    let probability = (scan.interpolate(voxel(scan)) / highest).max(0.0);
                     sum += probability;
                     if probability > best.0 {
                         best = (probability, index + 1);

@@ -1,8 +1,8 @@
 //! Sequential access to the bytes of a file, decompressed on demand.
 
-use crate::complaint::{Complaint, too_large, unexpected};
+use crate::complaint::{PositionedProblem, too_large, unexpected};
 use flate2::bufread::MultiGzDecoder;
-use fuwafuwa_scenes::import::Place;
+use fuwafuwa_scenes::import::FilePosition;
 use std::io::Read;
 
 /// Maximum size of a file and of its decompressed content [bytes]: a full scan of 64-bit numbers, and the
@@ -33,10 +33,15 @@ enum Source<'a> {
 }
 
 impl<'a> Stream<'a> {
-    pub fn of(bytes: &'a [u8]) -> Result<Self, Complaint> {
+    pub fn of(bytes: &'a [u8]) -> Result<Self, PositionedProblem> {
         let length = bytes.len() as u64;
         if length > MAX_FILE_BYTES {
-            return Err(too_large(Place::File, "bytes", length, MAX_FILE_BYTES));
+            return Err(too_large(
+                FilePosition::File,
+                "bytes",
+                length,
+                MAX_FILE_BYTES,
+            ));
         }
         let is_zipped = bytes.starts_with(&GZIP);
         let (source, most) = match is_zipped {
@@ -51,16 +56,16 @@ impl<'a> Stream<'a> {
     }
 
     /// Checks that the file can contain `expected` bytes.
-    pub fn check(&self, expected: u64) -> Result<(), Complaint> {
+    pub fn check(&self, expected: u64) -> Result<(), PositionedProblem> {
         let missing = || {
             let found = format!("at most {}", self.most);
-            unexpected(Place::File, bytes(expected), found)
+            unexpected(FilePosition::File, bytes(expected), found)
         };
         (expected <= self.most).then_some(()).ok_or_else(missing)
     }
 
     /// Fills the buffer up to the end of the file, and returns the number of bytes filled.
-    pub fn fill(&mut self, buffer: &mut [u8]) -> Result<usize, Complaint> {
+    pub fn fill(&mut self, buffer: &mut [u8]) -> Result<usize, PositionedProblem> {
         let mut filled = 0;
         while filled < buffer.len() {
             let rest = &mut buffer[filled..];
@@ -68,7 +73,7 @@ impl<'a> Stream<'a> {
                 Source::Plain(bytes) => bytes.read(rest),
                 Source::Zipped(decoder) => decoder.read(rest),
             };
-            let at = Place::Byte((self.at + filled as u64) as usize);
+            let at = FilePosition::Byte((self.at + filled as u64) as usize);
             match read.map_err(|error| unexpected(at, "valid gzip data", error))? {
                 0 => break,
                 count => filled += count,
@@ -79,14 +84,20 @@ impl<'a> Stream<'a> {
     }
 
     /// Fills the whole buffer; `expected` is the length of the file up to the last voxel, for the error.
-    pub fn fill_all(&mut self, buffer: &mut [u8], expected: u64) -> Result<(), Complaint> {
+    pub fn fill_all(&mut self, buffer: &mut [u8], expected: u64) -> Result<(), PositionedProblem> {
         let filled = self.fill(buffer)?;
-        let missing = || unexpected(Place::Byte(self.at as usize), bytes(expected), self.at);
+        let missing = || {
+            unexpected(
+                FilePosition::Byte(self.at as usize),
+                bytes(expected),
+                self.at,
+            )
+        };
         (filled == buffer.len()).then_some(()).ok_or_else(missing)
     }
 
     /// Reads the rest, which must be short. Only the end of a gzip stream has its checksum.
-    pub fn finish(mut self) -> Result<(), Complaint> {
+    pub fn finish(mut self) -> Result<(), PositionedProblem> {
         let mut buffer = [0; 1 << 12];
         let mut trailing = 0;
         loop {
@@ -94,7 +105,7 @@ impl<'a> Stream<'a> {
             trailing += filled as u64;
             if trailing > MAX_TRAILING {
                 let what = "bytes behind the last voxel";
-                return Err(too_large(Place::File, what, trailing, MAX_TRAILING));
+                return Err(too_large(FilePosition::File, what, trailing, MAX_TRAILING));
             }
             if filled < buffer.len() {
                 return Ok(());

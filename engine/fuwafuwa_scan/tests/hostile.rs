@@ -5,7 +5,7 @@ mod phantom;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
-use fuwafuwa_scenes::import::{ImportError, Place, Problem};
+use fuwafuwa_scenes::import::{FilePosition, ImportError, Problem};
 use phantom::File;
 use std::io::Write;
 use std::time::Instant;
@@ -158,7 +158,7 @@ fn decode_rejects_size_beyond_file_length_at_once() {
         file.datatype = 64;
         for bytes in [file.bytes(), zipped(&file.bytes())] {
             let found = error(&bytes);
-            assert_eq!(found.place, Place::File, "{found}");
+            assert_eq!(found.position, FilePosition::File, "{found}");
             assert!(
                 found.to_string().contains("up to the last voxel"),
                 "{found}"
@@ -241,9 +241,9 @@ fn scan_replaces_non_finite_values_by_lowest() {
     let scan = file.scan();
     assert_eq!(scan.range(), [-3.0, 5.0]);
     assert_eq!(scan.nearest([0.0; 3]), -3.0);
-    assert_eq!(scan.between([0.0, 1.0, 0.0]), -3.0);
-    assert_eq!(scan.between([0.5, 0.0, 0.0]), 1.0);
-    assert_eq!(scan.between([f64::NAN; 3]), -3.0);
+    assert_eq!(scan.interpolate([0.0, 1.0, 0.0]), -3.0);
+    assert_eq!(scan.interpolate([0.5, 0.0, 0.0]), 1.0);
+    assert_eq!(scan.interpolate([f64::NAN; 3]), -3.0);
     file.values = vec![f64::NAN; 4];
     assert_eq!(file.scan().range(), [0.0; 2]);
 }

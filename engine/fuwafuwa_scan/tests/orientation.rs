@@ -3,7 +3,7 @@
 mod phantom;
 
 use fuwafuwa::{Material, SoftBody};
-use fuwafuwa_scan::{Organ, Scan, Source};
+use fuwafuwa_scan::{Organ, PlacementSource, Scan};
 use phantom::{Axes, File, Form, HALF, MARKS, RAS, ball, ellipsoid, label, labels, organ};
 
 /// Returns the mean position of the chosen materials, on the engine's axes from the low corner of the grid
@@ -106,7 +106,7 @@ fn placement_uses_qform_without_sform() {
     // 30 degrees about the long axis; a quaternion contains the sine and cosine of half the angle.
     let mut file = phantom(oblique(), [2.0; 3]);
     file.form = Form::Qform([0.0, 0.0, 0.5 * (2.0 - 3.0_f64.sqrt()).sqrt()], false);
-    assert_eq!(file.scan().placement().source(), Source::Rotation);
+    assert_eq!(file.scan().placement().source(), PlacementSource::Rotation);
     check_file("oblique", &file);
     // Half a turn about the second axis, with the third axis reversed: only left and right are exchanged.
     let mut file = phantom([minus(X), Y, Z], [1.0, 2.0, 2.5]);
@@ -154,7 +154,7 @@ fn placement_uses_spacing_without_forms() {
     let mut file = phantom(RAS, [1.0, 2.0, 4.0]);
     file.form = Form::Spacing;
     let scan = file.scan();
-    assert_eq!(scan.placement().source(), Source::Spacing);
+    assert_eq!(scan.placement().source(), PlacementSource::Spacing);
     assert_eq!(scan.placement().spacing(), [1.0, 2.0, 4.0]);
     check(&organ(&scan, &labels(), 64)).unwrap();
 }

@@ -3,13 +3,13 @@
 //! `cargo run --release -p fuwafuwa_scenes --example from_png -- drawing.png`
 
 use fuwafuwa::{Dim2, Material, RigidBody, Shape, SoftBody, World, WorldConfig};
-use fuwafuwa_scenes::disk::bytes_of;
+use fuwafuwa_scenes::disk::read_bytes;
 use fuwafuwa_scenes::import;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1);
     let file = file.ok_or("name a PNG file: a drawing on white, or a sprite with alpha")?;
-    let bytes = bytes_of(file.as_ref(), import::MAX_FILE_BYTES)?;
+    let bytes = read_bytes(file.as_ref(), import::MAX_FILE_BYTES)?;
     let grid = import::png(&file, &bytes, 64, 1.0 / 64.0);
     let grid = grid.map_err(|error| error.to_string())?;
     println!(

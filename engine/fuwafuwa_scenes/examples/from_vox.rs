@@ -3,13 +3,13 @@
 //! `cargo run --release -p fuwafuwa_scenes --example from_vox -- model.vox`
 
 use fuwafuwa::{Dim3, Material, RigidBody, Shape, SoftBody, World, WorldConfig};
-use fuwafuwa_scenes::disk::bytes_of;
+use fuwafuwa_scenes::disk::read_bytes;
 use fuwafuwa_scenes::import;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1);
     let file = file.ok_or("name a .vox file")?;
-    let bytes = bytes_of(file.as_ref(), import::MAX_FILE_BYTES)?;
+    let bytes = read_bytes(file.as_ref(), import::MAX_FILE_BYTES)?;
     let grid = import::vox(&file, &bytes, 1.0 / 32.0);
     let grid = grid.map_err(|error| error.to_string())?;
     println!(

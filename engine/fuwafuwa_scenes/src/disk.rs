@@ -13,7 +13,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// Those two, and errors of the system.
-pub fn bytes_of(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if !path.metadata()?.is_file() {
         let reason = "expected a file, found a folder, a pipe or a device";
         return Err(io::Error::new(ErrorKind::InvalidInput, reason));
@@ -31,31 +31,31 @@ pub fn bytes_of(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 ///
 /// # Errors
 /// As [`bytes_of`], and [`ErrorKind::InvalidData`] if the file is not UTF-8.
-pub fn text_of(path: &Path, most: u64) -> io::Result<String> {
-    let text = String::from_utf8(bytes_of(path, most)?);
+pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
+    let text = String::from_utf8(read_bytes(path, most)?);
     text.map_err(|_| io::Error::new(ErrorKind::InvalidData, "expected a text in UTF-8"))
 }
 
 /// Returns a function that reads pictures and models from a folder, for [`Scene::embed_files`].
-pub fn beside(folder: &Path) -> impl Fn(&str) -> io::Result<Vec<u8>> {
-    move |name| bytes_of(&folder.join(name), MAX_FILE_BYTES)
+pub fn reader_in(folder: &Path) -> impl Fn(&str) -> io::Result<Vec<u8>> {
+    move |name| read_bytes(&folder.join(name), MAX_FILE_BYTES)
 }
 
 /// Opens a built-in scene by name, or a scene file with the files it names.
 ///
 /// # Errors
 /// [`SceneError`] names the file, the line and the field.
-pub fn scene_at(place: &str, changes: &[String]) -> Result<Scene, SceneError> {
+pub fn open_scene(place: &str, changes: &[String]) -> Result<Scene, SceneError> {
     let path = Path::new(place);
     if NAMED.iter().any(|(name, _)| *name == place) || !path.exists() {
         return Scene::open(place, changes);
     }
-    let text = text_of(path, MAX_TEXT_BYTES).map_err(|source| SceneError::File {
+    let text = read_text(path, MAX_TEXT_BYTES).map_err(|source| SceneError::File {
         path: place.into(),
         source,
     })?;
     let mut scene = Scene::read(place, &text, changes)?;
-    scene.embed_files(&beside(path.parent().unwrap_or(Path::new(""))))?;
+    scene.embed_files(&reader_in(path.parent().unwrap_or(Path::new(""))))?;
     Ok(scene)
 }
 
@@ -76,7 +76,7 @@ mod tests {
                 .success()
         );
         for path in [&pipe, Path::new("/dev/zero"), Path::new("/dev")] {
-            let error = bytes_of(path, 10).unwrap_err();
+            let error = read_bytes(path, 10).unwrap_err();
             assert_eq!(error.kind(), ErrorKind::InvalidInput, "{path:?}");
             assert!(error.to_string().contains("a pipe or a device"));
         }

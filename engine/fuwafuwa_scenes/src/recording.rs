@@ -1,7 +1,7 @@
 //! Recordings: a scene with the targets of its hands at each tick, so that a run can be repeated and
 //! compared.
 
-use crate::scene::send;
+use crate::scene::set_hand_targets;
 use crate::scene::{BodyText, MAX_SECONDS, Scene, SceneError, shortened};
 use fuwafuwa::{Dim, World};
 use serde::{Deserialize, Serialize};
@@ -123,8 +123,8 @@ impl Recording {
         let mut world = scene.build::<D>()?;
         let (mut goals, mut hashes) = (Vec::new(), Vec::new());
         for tick in 0..ticks {
-            let wanted = scene.goals(tick);
-            send(&mut world, &wanted);
+            let wanted = scene.hand_targets(tick);
+            set_hand_targets(&mut world, &wanted);
             world.step();
             goals.push(wanted);
             if is_noted(tick as usize, ticks as usize) {
@@ -153,7 +153,7 @@ impl Recording {
         let mut hashes = self.hashes.iter();
         let mut differs_at = None;
         for (tick, goals) in self.goals.iter().enumerate() {
-            send(&mut world, goals);
+            set_hand_targets(&mut world, goals);
             world.step();
             watch(&world);
             if is_noted(tick, self.goals.len()) {

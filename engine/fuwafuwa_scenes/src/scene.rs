@@ -77,20 +77,20 @@ mod rigid;
 mod state;
 mod write;
 
-pub use any_rigid::{DriveText, RigidText};
-pub use body::{BodyText, Form, LayersText, MaterialText, PartText, VoxelsText, ending_of};
+pub use any_rigid::{MotionTypeText, RigidBodyText};
+pub use body::{BodyText, Form, LayersText, MaterialText, PartText, VoxelsText, extension_of};
 pub use embed::Fetch;
 pub use error::{SceneError, shortened};
-pub use game::{AssistText, GameText, RouteText, WishText, Words};
-pub use joint::{EndText, JointText, TieText};
-pub(crate) use rigid::send;
+pub use game::{AssistText, GameText, LocalizedText, RouteText, WishText};
+pub use joint::{JointAnchorText, JointKindText, JointText};
+pub(crate) use rigid::set_hand_targets;
 pub use rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText};
 
 use budget::Budget;
-use error::{Origin, Wrong, require, require_vector};
+use error::{FieldError, Origin, require, require_vector};
 use fuwafuwa::world::{Refused, SHORTEST_TICK, TICK};
 use fuwafuwa::{Dim, Material, Shape, World, WorldConfig};
-use joint::Known;
+use joint::JointTargets;
 use serde::{Deserialize, Serialize};
 
 /// Maximum size of a scene file [bytes].
@@ -150,7 +150,7 @@ pub struct Scene {
     pub hand: Vec<HandText>,
     /// Rigid bodies of any kind.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub rigid: Vec<RigidText>,
+    pub rigid: Vec<RigidBodyText>,
     /// Joints between bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joint: Vec<JointText>,
@@ -245,7 +245,7 @@ impl Scene {
             .map_err(|wrong| self.origin.error(wrong))
     }
 
-    fn try_build<D: Dim>(&self, most_voxels: usize) -> Result<World<D>, Wrong> {
+    fn try_build<D: Dim>(&self, most_voxels: usize) -> Result<World<D>, FieldError> {
         self.check_dim()?;
         let expected = format!("expected {}, found {}", D::N, self.dim);
         require(usize::from(self.dim) == D::N, "dim", expected)?;
@@ -273,9 +273,9 @@ impl Scene {
                     "tick" => self.tick.to_string(),
                     _ => self.most_substeps.to_string(),
                 };
-                Wrong::new(field, format!("expected {expected}, found {found}"))
+                FieldError::new(field, format!("expected {expected}, found {found}"))
             }
-            refused => Wrong::new("gravity", refused),
+            refused => FieldError::new("gravity", refused),
         })?;
         let count = self.material.len();
         let expected = format!("expected {MAX_MATERIALS} at most, found {count}");
@@ -318,7 +318,7 @@ impl Scene {
         // The world was empty, so its rigid bodies are in the order of the lists: obstacles, hands, rigid
         // bodies.
         let mut rigids = world.rigid_bodies().ids();
-        let known = Known {
+        let known = JointTargets {
             bodies: world.soft_bodies().ids().collect(),
             obstacles: rigids.by_ref().take(self.obstacle.len()).collect(),
             hands: rigids.by_ref().take(self.hand.len()).collect(),
@@ -364,17 +364,17 @@ impl Scene {
     }
 
     /// Returns the target position of each hand at the end of a tick [m].
-    pub fn goals(&self, tick: u64) -> Vec<[f32; 3]> {
+    pub fn hand_targets(&self, tick: u64) -> Vec<[f32; 3]> {
         let seconds = match is_usual_tick(&self.tick) {
             true => (tick + 1) as f32 / 60.0,
             false => (tick + 1) as f32 * self.tick,
         };
-        self.hand.iter().map(|hand| hand.goal(seconds)).collect()
+        self.hand.iter().map(|hand| hand.target(seconds)).collect()
     }
 
     /// Sets the targets of the world's hands to their positions at the end of a tick.
-    pub fn send<D: Dim>(&self, world: &mut World<D>, tick: u64) {
-        send(world, &self.goals(tick));
+    pub fn set_hand_targets<D: Dim>(&self, world: &mut World<D>, tick: u64) {
+        set_hand_targets(world, &self.hand_targets(tick));
     }
 
     /// Returns the viewing time in ticks.
@@ -386,7 +386,7 @@ impl Scene {
         }
     }
 
-    fn check_dim(&self) -> Result<(), Wrong> {
+    fn check_dim(&self) -> Result<(), FieldError> {
         let expected = format!("expected 2 or 3, found {}", self.dim);
         require((2..=3).contains(&self.dim), "dim", expected)
     }

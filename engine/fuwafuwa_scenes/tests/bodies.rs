@@ -3,7 +3,7 @@
 mod picture;
 
 use fuwafuwa::{Dim, Dim2, Dim3, SoftBody};
-use fuwafuwa_scenes::disk::scene_at;
+use fuwafuwa_scenes::disk::open_scene;
 use fuwafuwa_scenes::{Recording, Scene, SceneError};
 use picture::png_of;
 use std::path::PathBuf;
@@ -105,7 +105,7 @@ fn crack_stops_at_unbreakable_core() {
     let mut world = scene.build::<Dim2>().unwrap();
     let mut released = 0;
     for tick in 0..80 {
-        scene.send(&mut world, tick);
+        scene.set_hand_targets(&mut world, tick);
         released += world.step().nodes_split;
     }
     assert!(released > 50, "{released}");
@@ -134,7 +134,7 @@ fn hand_follows_path_with_each_shape() {
         let scene = Scene::read("toy.toml", &text, &[]).unwrap();
         let mut world = scene.build::<Dim2>().unwrap();
         (0..120).for_each(|tick| {
-            scene.send(&mut world, tick);
+            scene.set_hand_targets(&mut world, tick);
             world.step();
         });
         let (_, hand) = world.target_followers().next().unwrap();
@@ -153,7 +153,7 @@ fn folder(name: &str, scene: &str) -> PathBuf {
 }
 
 fn open(folder: &std::path::Path) -> Result<Scene, SceneError> {
-    scene_at(folder.join("scene.toml").to_str().unwrap(), &[])
+    open_scene(folder.join("scene.toml").to_str().unwrap(), &[])
 }
 
 /// A picture of red (`r`), blue (`b`) and transparent pixels (anything else).

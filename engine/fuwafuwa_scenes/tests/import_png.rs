@@ -5,7 +5,7 @@ mod damage;
 use damage::Noise;
 use fuwafuwa::{BuildError, Dim2, VoxelGrid};
 use fuwafuwa_scenes::import::{
-    Colours, ImportError, MAX_FILE_BYTES, MAX_PIXELS, Picture, Place, Problem, png,
+    Colours, FilePosition, ImportError, MAX_FILE_BYTES, MAX_PIXELS, Picture, Problem, png,
 };
 use png::{BitDepth, ColorType, Encoder, Filter};
 
@@ -244,7 +244,7 @@ fn decode_rejects_wrong_size_from_header() {
         [u32::MAX; 2],
     ] {
         let error = import(&with_size(&one, size), 8).unwrap_err();
-        assert_eq!(error.place, Place::Chunk(*b"IHDR", 8));
+        assert_eq!(error.position, FilePosition::Chunk(*b"IHDR", 8));
         assert!(
             matches!(error.problem, Problem::TooLarge { found, limit, .. }
             if found == u64::from(size[0].max(size[1])) && limit == u64::from(most))
@@ -302,7 +302,7 @@ fn decode_rejects_truncated_picture_at_every_length() {
                 matches!(error.problem, Problem::Unexpected { .. }),
                 "{error}"
             );
-            let is_inside = !matches!(error.place, Place::Byte(at) if at > length);
+            let is_inside = !matches!(error.position, FilePosition::Byte(at) if at > length);
             assert!(is_inside, "{length}: {error}");
         }
     }

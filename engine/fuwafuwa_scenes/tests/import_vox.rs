@@ -4,7 +4,7 @@ mod damage;
 
 use damage::Noise;
 use fuwafuwa::{BuildError, Dim3, VoxelGrid};
-use fuwafuwa_scenes::import::{Colours, ImportError, Model, Place, Problem, vox};
+use fuwafuwa_scenes::import::{Colours, FilePosition, ImportError, Model, Problem, vox};
 
 fn chunk(name: &[u8; 4], contents: &[u8], children: &[u8]) -> Vec<u8> {
     let mut bytes = name.to_vec();
@@ -237,7 +237,7 @@ fn error_names_position_of_each_fault() {
 #[test]
 fn vox_rejects_invalid_voxel_size() {
     let error = vox("test.vox", &full(), 0.0).unwrap_err();
-    assert_eq!(error.place, Place::File);
+    assert_eq!(error.position, FilePosition::File);
     let problem = error.problem;
     assert!(matches!(
         problem,
@@ -264,7 +264,7 @@ fn decode_rejects_truncated_model_at_every_length() {
     for length in 0..bytes.len() {
         match import(&bytes[..length]).unwrap_err() {
             ImportError {
-                place: Place::Byte(at),
+                position: FilePosition::Byte(at),
                 ..
             } => assert!(at <= length),
             error => panic!("{length}: {error}"),

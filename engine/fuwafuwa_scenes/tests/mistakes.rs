@@ -2,7 +2,7 @@
 
 use fuwafuwa::{Dim2, Dim3};
 use fuwafuwa_scenes::Scene;
-use fuwafuwa_scenes::disk::scene_at;
+use fuwafuwa_scenes::disk::open_scene;
 use std::time::{Duration, Instant};
 
 const GOOD: &str = "dim = 2
@@ -356,16 +356,16 @@ fn read_rejects_foreign_texts_with_short_error() {
     }
     let files = [("Cargo.toml", "unknown field"), ("src", "a folder")];
     for (file, expected) in files {
-        let error = scene_at(file, &[]).unwrap_err().to_string();
+        let error = open_scene(file, &[]).unwrap_err().to_string();
         assert!(
             error.starts_with(file) && error.contains(expected),
             "{error}"
         );
     }
-    let unknown = scene_at("nowhere", &[]).unwrap_err().to_string();
+    let unknown = open_scene("nowhere", &[]).unwrap_err().to_string();
     assert!(unknown.contains("the scenes are drop, "), "{unknown}");
     if cfg!(unix) {
-        let endless = scene_at("/dev/zero", &[]).unwrap_err().to_string();
+        let endless = open_scene("/dev/zero", &[]).unwrap_err().to_string();
         assert!(endless.contains("a device"), "{endless}");
     }
 }

@@ -120,8 +120,8 @@ fn check_round_trip<D: Dim>(scene: &Scene, what: &str) {
     let texts = [&world, &other].map(|world| Scene::of_world(world).unwrap().text().unwrap());
     assert_eq!(texts[0], texts[1], "{what}");
     for tick in 0..60 {
-        scene.send(&mut world, tick);
-        scene.send(&mut other, tick);
+        scene.set_hand_targets(&mut world, tick);
+        scene.set_hand_targets(&mut other, tick);
         world.step();
         other.step();
     }

@@ -22,13 +22,13 @@ use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state, default_wgpu_set
 use peak_alloc::PeakAlloc;
 use std::path::Path;
 use std::process::ExitCode;
-use sticks::{About, Device, DeviceId, Labels, Pad, PadButton, Snapshot};
+use sticks::{Device, DeviceId, DeviceInfo, Labels, Pad, PadButton, Snapshot};
 use tamaire::app::App;
 use tamaire::exhibit::Stand;
-use tamaire::exhibit::config::USUAL;
+use tamaire::exhibit::config::DEFAULT_CONFIG;
 use tamaire::game::{Game, Screen};
 use tamaire::platform::{
-    Clock, Files, Pads, Sound, StandFolder, TextFile, in_small_blocks, memory,
+    Clock, Files, Pads, Sound, StandFolder, TextFile, memory, with_small_memory_blocks,
 };
 use tamaire_logbook::{Error, Logbook, Round};
 use tamaire_play::{Bot, BotKind, Playback, Replay};
@@ -185,7 +185,7 @@ impl Day {
                 let view = game.bout.view;
                 if let (Some(goal), Some(view)) = (goal, view) {
                     let shake = egui::vec2(random.f32() - 0.5, random.f32() - 0.5) * TREMBLE;
-                    events.push(Event::PointerMoved(view.on_screen(goal) + shake));
+                    events.push(Event::PointerMoved(view.to_screen(goal) + shake));
                 }
                 if random.u32(..600) == 0 {
                     tap(events, Key::R);
@@ -391,7 +391,7 @@ fn reproduces(round: &Round) -> bool {
 
 /// Opens a stand with a configuration of its own in an offscreen window drawn by `gpu`.
 fn open(folder: &Path, gpu: RenderState) -> Harness<'static, App> {
-    let text = USUAL.replace(
+    let text = DEFAULT_CONFIG.replace(
         "#folder = \"/var/lib/tam\"",
         &format!("folder = {folder:?}"),
     );
@@ -423,14 +423,14 @@ fn main() -> ExitCode {
     let hours = std::env::args().nth(1).and_then(|word| word.parse().ok());
     let hours: u64 = hours.unwrap_or(8);
     let folder = tempfile::tempdir().expect("a temporary folder can be created");
-    let about = About {
+    let about = DeviceInfo {
         name: "Pad".into(),
         guid: "pad".into(),
         labels: Labels::Letters,
     };
     let mut pad = Device::at_rest(DeviceId(1), about, 6, 0, 0);
     pad.pad = Some(Pad::default());
-    let setup = in_small_blocks(default_wgpu_setup());
+    let setup = with_small_memory_blocks(default_wgpu_setup());
     let gpu = create_render_state(setup, RendererOptions::PREDICTABLE);
     let mut day = Day {
         window: open(folder.path(), gpu.clone()),

@@ -40,7 +40,7 @@ fn round() -> Vec<Duration> {
     let mut rest = Vec::new();
     while game.bout.won.is_none() && rest.len() < 40 * 60 {
         game.controls.devices.pointer = game.bout.round().ask(&mut bot).goal(0);
-        let whole = time(|| game.pass(TICK));
+        let whole = time(|| game.update(TICK));
         // The same tick without the game.
         let played = game.bout.round().frames();
         let Some(&frame) = played.get(beside.frames().len()) else {

@@ -19,10 +19,10 @@ use std::process::ExitCode;
 use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
-use sticks::{About, Device, DeviceId, Labels, Pad, PadButton, Snapshot};
+use sticks::{Device, DeviceId, DeviceInfo, Labels, Pad, PadButton, Snapshot};
 use tamaire::app::App;
 use tamaire::game::{Game, Screen};
-use tamaire::input::{Action, Seat};
+use tamaire::input::{Action, InputSource};
 use tamaire::platform::{Files, Pads, Sound};
 
 /// Initial time of the game [s].
@@ -251,7 +251,7 @@ impl Soak {
                     }
                     self.begun += 1;
                     game.start(self.begun % game.levels.len());
-                    game.act(Action::Join, Seat::Stick(self.pad.id));
+                    game.act(Action::Join, InputSource::Stick(self.pad.id));
                 }
             }
             // Deletes old files, so that saved data do not count as a leak.
@@ -365,7 +365,7 @@ fn main() -> ExitCode {
     let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let files = files(folder.path()).expect("a temporary folder can be created");
     let kept = folder.path().join("kept");
-    let about = About {
+    let about = DeviceInfo {
         name: "Pad".into(),
         guid: "pad".into(),
         labels: Labels::Letters,

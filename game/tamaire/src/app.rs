@@ -7,12 +7,12 @@ mod presses;
 mod switch;
 
 use crate::game::{Game, Screen};
-use crate::input::{Action, Means, Seat};
+use crate::input::{Action, InputMethod, InputSource};
 use crate::look::{Stage, dress};
 use crate::platform::{
-    Clipboard, GpuWatch, begin_anew, dropped, fill_screen, is_full_by_itself, speak,
+    Clipboard, GpuWatch, dropped, fill_screen, full_screen_of_page, restart, set_language,
 };
-use crate::screens::{self, Attendant};
+use crate::screens::{self, StandController};
 use dwell::Dwell;
 use egui::{Event, Key};
 use fingers::Fingers;
@@ -48,7 +48,7 @@ pub struct App {
     /// State of the game.
     pub game: Game,
     /// Controller of the game at a public stand, where visitors get no menus.
-    pub attendant: Option<Box<dyn Attendant>>,
+    pub attendant: Option<Box<dyn StandController>>,
     /// Monitor that notices the loss of the GPU.
     pub gpu: GpuWatch,
     stage: Stage,
@@ -116,7 +116,7 @@ impl App {
     }
 
     /// Reads sticks and pads: in a round their buttons trigger actions, in a menu they move the focus.
-    fn hear_sticks(&mut self, ctx: &egui::Context, seconds: f32) {
+    fn read_sticks(&mut self, ctx: &egui::Context, seconds: f32) {
         let changes = self.game.hear_sticks();
         if self.game.is_away {
             // Another window has the focus, so the sticks are not meant for the game.
@@ -156,7 +156,7 @@ impl App {
             match (control, action) {
                 // Cutting forces works on every screen, so that the player need not look for the right one.
                 (_, Some(Action::CutForces)) => {
-                    self.game.act(Action::CutForces, Seat::Stick(device))
+                    self.game.act(Action::CutForces, InputSource::Stick(device))
                 }
                 (Control::Pad(PadButton::South) | Control::Button(0), _) if in_menu => {
                     self.press(Key::Enter)
@@ -164,7 +164,7 @@ impl App {
                 (Control::Pad(PadButton::East) | Control::Button(1), _) if in_menu => {
                     self.press(Key::Escape)
                 }
-                (_, Some(action)) => self.game.act(action, Seat::Stick(device)),
+                (_, Some(action)) => self.game.act(action, InputSource::Stick(device)),
                 (_, None) => {}
             }
         }
@@ -199,7 +199,7 @@ impl App {
 
     /// Applies the full-screen setting to the window.
     fn fill_screen(&mut self, ctx: &egui::Context) {
-        if let Some(is_full) = is_full_by_itself().filter(|is_full| *is_full != self.was_full) {
+        if let Some(is_full) = full_screen_of_page().filter(|is_full| *is_full != self.was_full) {
             // The browser changed it by a key or a gesture.
             (self.was_full, self.is_full) = (is_full, is_full);
             self.game.settings.full_screen = is_full;
@@ -231,13 +231,13 @@ impl App {
     }
 
     /// Reads the keyboard and the pointer.
-    fn hear_window(&mut self, ctx: &egui::Context) {
+    fn read_window(&mut self, ctx: &egui::Context) {
         let game = &mut self.game;
         let events = ctx.input(|input| input.events.clone());
         if game.screen() != Screen::Play {
             game.controls.buttons.clear();
         }
-        let pressed = self.fingers.hear(&events, &game.controls.buttons);
+        let pressed = self.fingers.read_events(&events, &game.controls.buttons);
         game.controls.devices.pressed = self.fingers.pressed().collect();
         let is_by_stick = self.presses.waiting().is_by_stick;
         let is_touched = ctx.input(|input| input.any_touches())
@@ -249,17 +249,17 @@ impl App {
                 Event::Key { pressed, .. } => {
                     screens::note_use_of_keys(ctx, true);
                     if *pressed && !is_by_stick {
-                        game.controls.means = Means::Keys;
+                        game.controls.means = InputMethod::Keys;
                     }
                 }
                 Event::PointerMoved(_) | Event::PointerButton { .. } => {
                     screens::note_use_of_keys(ctx, false);
                     // Each touch event is followed by an emulated mouse event, which does not count.
                     if !is_touched {
-                        game.controls.means = Means::Mouse;
+                        game.controls.means = InputMethod::Mouse;
                     }
                 }
-                Event::Touch { .. } => game.controls.means = Means::Fingers,
+                Event::Touch { .. } => game.controls.means = InputMethod::Fingers,
                 // A window may be played with the mouse without ever getting the focus, so only losing the
                 // focus counts.
                 Event::WindowFocused(focused) => {
@@ -339,7 +339,7 @@ impl App {
             if let Some(action) =
                 action.filter(|action| !is_of_menu || *action == Action::CutForces)
             {
-                game.act(action, Seat::Keys);
+                game.act(action, InputSource::Keys);
                 taken.push(key);
             }
         }
@@ -378,11 +378,11 @@ impl eframe::App for App {
         let ctx = ui.ctx().clone();
         if self.gpu.is_lost() {
             self.game.rescue();
-            begin_anew();
+            restart();
             return ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
         self.fill_screen(&ctx);
-        speak(
+        set_language(
             &ctx,
             self.game.settings.language,
             self.game.has_strange_names(),
@@ -395,11 +395,11 @@ impl eframe::App for App {
         fit(&ctx, text_size);
         self.zoom = ctx.zoom_factor();
         let seconds = ctx.input(|input| input.stable_dt).min(0.1);
-        self.hear_sticks(&ctx, seconds);
-        self.hear_window(&ctx);
+        self.read_sticks(&ctx, seconds);
+        self.read_window(&ctx);
         self.switch
             .pass(&mut self.game, &self.presses, &ctx, seconds);
-        self.game.pass(seconds);
+        self.game.update(seconds);
         if let Some(attendant) = &mut self.attendant {
             // Uses a frame time with a higher limit, so that the waiting times of a stand stay correct at low
             // frame rates.

@@ -7,20 +7,20 @@ pub mod window;
 use crate::game::Game;
 use crate::headless;
 use crate::licences;
-use crate::platform::{Files, Given, Pads, Sound, level_at};
+use crate::platform::{Files, OpenRequest, Pads, Sound, level_at};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::io::Write;
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
-use window::{Opened, has_display, open_game};
+use window::{WindowOutcome, has_display, open_game};
 
 /// Push a soft body into a basket that is too small for it.
 #[derive(Parser)]
 #[command(version, after_help = AFTER_HELP, args_conflicts_with_subcommands = true)]
 struct Arguments {
     #[command(subcommand)]
-    chore: Option<Chore>,
+    chore: Option<Task>,
     /// A level (.toml), a picture or a model to make a body of (.png, .vox), a replay (.tamaire), or a link
     /// to a round or a level (https://…#r1…)
     #[arg(conflicts_with_all = ["level", "replay"])]
@@ -53,7 +53,7 @@ struct Arguments {
 
 /// Subcommands, which do not play a round.
 #[derive(Subcommand)]
-enum Chore {
+enum Task {
     /// Write an HTML report about visitors from the logbooks of one or more stands and days
     Report(report::Options),
     Manual(manual::Options),
@@ -76,8 +76,8 @@ Exit status: 0 the round was played to its end, won or not; 1 the replay was rej
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
     match &arguments.chore {
-        Some(Chore::Report(options)) => return report::write(options),
-        Some(Chore::Manual(options)) => return manual::run(Arguments::command(), options),
+        Some(Task::Report(options)) => return report::write(options),
+        Some(Task::Manual(options)) => return manual::run(Arguments::command(), options),
         None => {}
     }
     if arguments.licences {
@@ -119,23 +119,23 @@ pub fn main() -> ExitCode {
         let sound = if mute { Sound::none() } else { Sound::open() };
         let mut game = Game::new(Files::usual(), sound, Pads::open());
         if let Some(file) = &shown {
-            game.open(Given::at(file));
+            game.open(OpenRequest::at(file));
         }
         (game, None)
     });
     match opened {
-        Opened::Closed => ExitCode::SUCCESS,
-        Opened::LostGpu => {
+        WindowOutcome::Closed => ExitCode::SUCCESS,
+        WindowOutcome::LostGpu => {
             eprintln!("tamaire: the GPU was lost; restarting the game");
             eprintln!("tamaire: {}", begin_anew());
             ExitCode::FAILURE
         }
-        Opened::Failed(error) => {
+        WindowOutcome::Failed(error) => {
             eprintln!("tamaire: {error}");
             ExitCode::FAILURE
         }
-        Opened::Broken(panic) => resume_unwind(panic),
-        Opened::Never(reason) => play_instead(&reason, &options),
+        WindowOutcome::Broken(panic) => resume_unwind(panic),
+        WindowOutcome::Never(reason) => play_instead(&reason, &options),
     }
 }
 

@@ -13,7 +13,7 @@ mod plain;
 mod studio;
 
 use crate::look::{CameraRig, Effects};
-use crate::platform::Breath;
+use crate::platform::Yielder;
 #[cfg(target_family = "wasm")]
 pub use device::lend;
 use fuwafuwa::world::TICK;
@@ -165,15 +165,15 @@ async fn pass(
     }
     let mut round = AnyRound::new(played.level().clone());
     let (mut effects, mut camera) = (Effects::default(), CameraRig::default());
-    let mut breath = Breath::default();
+    let mut breath = Yielder::default();
     for tick in 0..=ticks {
         told(tick, ticks);
-        breath.take().await;
+        breath.yield_now().await;
         if tick > 0 {
             let frame = played.frames().get(tick - 1).copied();
             round.step(frame.unwrap_or_default());
-            effects.see(&round, &mut camera, false);
-            effects.pass(TICK);
+            effects.process_tick(&round, &mut camera, false);
+            effects.advance(TICK);
             let hand = round.hands()[0].position();
             camera.follow(hand, round.level().arena(), TICK, false);
         }

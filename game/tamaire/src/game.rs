@@ -18,20 +18,22 @@ mod time;
 pub mod trial;
 
 use crate::attract::attract;
-use crate::input::{Action, Seat};
+use crate::input::{Action, InputSource};
 use crate::look::Theme;
-use crate::platform::{Clock, Damage, Dialog, Files, Forces, Given, Pads, Picked, Sound};
+use crate::platform::{
+    Clock, Damage, Dialog, DialogResult, Files, Forces, OpenRequest, Pads, Sound,
+};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::words::Words;
-pub use bout::Bout;
+pub use bout::CurrentRound;
 pub use controls::{Controls, ScreenButton};
 use fuwafuwa::world::TICK;
 pub use notices::{Notice, Notices};
-pub use public::{Ended, Public};
+pub use public::{EndedRound, PublicMode};
 pub use screen::{Screen, Screens};
-pub use shelf::{Found, Kept, Shelf};
+pub use shelf::{RoundDetails, SavedRound, SavedRounds};
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{Level, Playback, Replay, ReplayError};
@@ -53,13 +55,13 @@ pub struct Game {
     /// Index of the chosen level in [`Self::levels`].
     pub chosen: usize,
     /// Current round.
-    pub bout: Bout,
+    pub bout: CurrentRound,
     /// Input devices and players.
     pub controls: Controls,
     /// File dialog.
     pub dialog: Dialog,
     /// Saved rounds.
-    pub shelf: Shelf,
+    pub shelf: SavedRounds,
     /// Round received by a link, and its level.
     pub offered: Option<(Arc<Replay>, Arc<Level>)>,
     /// Text to copy to the clipboard.
@@ -77,7 +79,7 @@ pub struct Game {
     /// Running test or measurement of a device.
     pub trial: Option<Trial>,
     /// State of public mode. `None` outside of a stand.
-    pub public: Option<Public>,
+    pub public: Option<PublicMode>,
     /// Whether idle sticks may move gently to attract visitors.
     pub calls: bool,
     sound: Sound,
@@ -104,12 +106,12 @@ impl Game {
             records: records.by_name(levels.iter().map(Arc::as_ref)),
             settings,
             files,
-            bout: Bout::new(attract(0)),
+            bout: CurrentRound::new(attract(0)),
             controls: Controls::new(pads),
             levels,
             chosen: 0,
             dialog: Dialog::default(),
-            shelf: Shelf::default(),
+            shelf: SavedRounds::default(),
             offered: None,
             copied: None,
             notices: Notices::default(),
@@ -141,7 +143,7 @@ impl Game {
             game.tell_of(damage);
         }
         game.files.read_levels();
-        if game.controls.pads.complaint().is_some() {
+        if game.controls.pads.open_error().is_some() {
             game.notify(game.words().no_sticks.to_string());
         }
         game
@@ -217,7 +219,7 @@ impl Game {
         self.trial = None;
         match self.screen() {
             Screen::Title if self.bout.session.is_played() => self.attract(),
-            Screen::Replays => self.shelf.look(&self.files),
+            Screen::Replays => self.shelf.refresh(&self.files),
             _ => {}
         }
     }
@@ -317,17 +319,17 @@ impl Game {
 
     /// Opens a file or link that was dropped onto the window or named on the command line: a level, a
     /// picture, a model or a replay.
-    pub fn open(&mut self, given: Given) {
+    pub fn open(&mut self, given: OpenRequest) {
         match given {
-            Given::Level(Ok(level)) => self.offer(*level),
-            Given::Level(Err(error)) => self.notify((self.words().level_error)(&error)),
-            Given::Replay(name, replay) => {
+            OpenRequest::Level(Ok(level)) => self.offer(*level),
+            OpenRequest::Level(Err(error)) => self.notify((self.words().level_error)(&error)),
+            OpenRequest::Replay(name, replay) => {
                 let outcome = replay.and_then(|replay| self.watch(Arc::from(replay)));
                 if let Err(error) = outcome {
                     self.tell_of_replay(&name, &error);
                 }
             }
-            Given::Link(link) => self.open_link(&link),
+            OpenRequest::Link(link) => self.open_link(&link),
         }
     }
 
@@ -339,9 +341,9 @@ impl Game {
     /// Opens the file chosen in the dialog.
     fn open_picked(&mut self) {
         match self.dialog.take() {
-            Some(Picked::File(given)) => self.open(given),
-            Some(Picked::NoDialog) => self.notify(self.words().no_dialog.to_string()),
-            Some(Picked::Nothing) | None => {}
+            Some(DialogResult::File(given)) => self.open(given),
+            Some(DialogResult::NoDialog) => self.notify(self.words().no_dialog.to_string()),
+            Some(DialogResult::Nothing) | None => {}
         }
     }
 
@@ -404,7 +406,7 @@ impl Game {
     }
 
     /// Performs an action requested by a key or button.
-    pub fn act(&mut self, action: Action, seat: Seat) {
+    pub fn act(&mut self, action: Action, seat: InputSource) {
         match (self.screen(), action) {
             (_, Action::CutForces) => {
                 self.forces.cut();
@@ -429,7 +431,7 @@ impl Game {
                 self.bout.stepping = true;
                 self.bout.session.forget_time();
                 self.pass_ticks(TICK);
-                self.bout.effects.pass(TICK);
+                self.bout.effects.advance(TICK);
             }
             (Screen::Play, Action::Join) if self.takes_two() => self.controls.players.join(seat),
             _ => {}

@@ -76,7 +76,7 @@ impl Options {
 
 /// Reason why there is no report.
 #[derive(Debug, thiserror::Error)]
-enum Trouble {
+enum HeadlessError {
     #[error(transparent)]
     Level(#[from] LevelError),
     #[error("{}: {reason}", path.display())]
@@ -98,7 +98,7 @@ pub fn play(options: &Options) -> ExitCode {
             say(&text);
             ExitCode::SUCCESS
         }
-        Err(Trouble::Replay { path, reason }) => {
+        Err(HeadlessError::Replay { path, reason }) => {
             let refusal = Refusal {
                 replay: path.display().to_string(),
                 genuine: false,
@@ -131,7 +131,7 @@ pub fn list() {
 }
 
 /// Plays a round by a bot.
-fn try_bot(options: &Options) -> Result<String, Trouble> {
+fn try_bot(options: &Options) -> Result<String, HeadlessError> {
     let level = options.level.as_deref().unwrap_or(NAMED[0].0);
     let level = Arc::new(level_at(level)?);
     for path in pictures(options).chain(&options.save) {
@@ -144,7 +144,7 @@ fn try_bot(options: &Options) -> Result<String, Trouble> {
     let played = of_bot(level, Bot::new(*kind, options.seed), most, &mut log);
     if let Some(path) = &options.save {
         let text = played.round.replay().text_to_keep();
-        let text = text.map_err(|reason| Trouble::File {
+        let text = text.map_err(|reason| HeadlessError::File {
             path: path.clone(),
             reason: io::Error::other(reason.to_string()),
         })?;
@@ -160,16 +160,16 @@ fn try_bot(options: &Options) -> Result<String, Trouble> {
 }
 
 /// Plays a replay and checks it.
-fn check(path: &Path, options: &Options) -> Result<String, Trouble> {
+fn check(path: &Path, options: &Options) -> Result<String, HeadlessError> {
     for path in pictures(options) {
         can_be_written(path)?;
     }
-    let refused = |reason| Trouble::Replay {
+    let refused = |reason| HeadlessError::Replay {
         path: path.into(),
         reason,
     };
     let replay = replay_in(path).map_err(|error| match error {
-        ReplayError::Unreadable(reason) => Trouble::File {
+        ReplayError::Unreadable(reason) => HeadlessError::File {
             path: path.into(),
             reason: io::Error::other(reason),
         },
@@ -186,7 +186,7 @@ fn check(path: &Path, options: &Options) -> Result<String, Trouble> {
     Ok(told)
 }
 
-fn tell(played: &Played, by: report::Player, options: &Options) -> Result<String, Trouble> {
+fn tell(played: &Played, by: report::Player, options: &Options) -> Result<String, HeadlessError> {
     if let Some(path) = &options.film {
         let is_animation = path.extension().is_some_and(|ending| ending == "gif");
         let film = if is_animation {
@@ -223,9 +223,9 @@ fn pictures(options: &Options) -> impl Iterator<Item = &PathBuf> {
 }
 
 /// Creates the table of forces, if requested.
-fn force_log(options: &Options) -> Result<Option<ForceLog>, Trouble> {
+fn force_log(options: &Options) -> Result<Option<ForceLog>, HeadlessError> {
     let create = |path: &PathBuf| {
-        ForceLog::create(path).map_err(|reason| Trouble::File {
+        ForceLog::create(path).map_err(|reason| HeadlessError::File {
             path: path.clone(),
             reason,
         })
@@ -233,9 +233,9 @@ fn force_log(options: &Options) -> Result<Option<ForceLog>, Trouble> {
     options.force_log.as_ref().map(create).transpose()
 }
 
-fn finish(log: Option<ForceLog>, options: &Options) -> Result<(), Trouble> {
+fn finish(log: Option<ForceLog>, options: &Options) -> Result<(), HeadlessError> {
     if let (Some(log), Some(path)) = (log, &options.force_log) {
-        log.finish().map_err(|reason| Trouble::File {
+        log.finish().map_err(|reason| HeadlessError::File {
             path: path.clone(),
             reason,
         })?;
@@ -245,7 +245,7 @@ fn finish(log: Option<ForceLog>, options: &Options) -> Result<(), Trouble> {
 }
 
 /// Checks that the folder of `path` exists, before a long round instead of after it.
-fn can_be_written(path: &Path) -> Result<(), Trouble> {
+fn can_be_written(path: &Path) -> Result<(), HeadlessError> {
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
@@ -254,11 +254,11 @@ fn can_be_written(path: &Path) -> Result<(), Trouble> {
     }
     let reason = io::Error::new(io::ErrorKind::NotFound, "the folder does not exist");
     let path = path.into();
-    Err(Trouble::File { path, reason })
+    Err(HeadlessError::File { path, reason })
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Result<(), Trouble> {
-    let failed = |reason| Trouble::File {
+fn write(path: &Path, bytes: &[u8]) -> Result<(), HeadlessError> {
+    let failed = |reason| HeadlessError::File {
         path: path.into(),
         reason,
     };

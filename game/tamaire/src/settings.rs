@@ -195,7 +195,7 @@ mod tests {
         let wanted = Calibration {
             swap: true,
             gain: [0.0, 1.0],
-            ..Calibration::USUAL
+            ..Calibration::IDENTITY
         };
         assert_eq!(settings.calibrations["stick"], wanted);
         assert_eq!(settings.force("stick"), None, "no number is no force");

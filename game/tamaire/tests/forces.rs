@@ -5,10 +5,10 @@ use force_feedback::{Ability, Calibration, Output, Recording, Stop};
 use fuwafuwa::world::TICK;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
-use sticks::{About, Device, DeviceId, Snapshot};
+use sticks::{Device, DeviceId, DeviceInfo, Snapshot};
 use tamaire::game::trial::Trial;
 use tamaire::game::{Game, Screen};
-use tamaire::input::{Action, Seat};
+use tamaire::input::{Action, InputSource};
 use tamaire::platform::{Files, Pads, Sound};
 
 /// Timeout, long enough for a busy machine.
@@ -54,7 +54,7 @@ impl Table {
     fn frame(&mut self) {
         std::thread::sleep(Duration::from_millis(4));
         self.game.hear_sticks();
-        self.game.pass(TICK);
+        self.game.update(TICK);
     }
 
     /// Runs frames until a condition holds.
@@ -136,7 +136,7 @@ impl Table {
 }
 
 fn stick(id: u32) -> Device {
-    let about = About {
+    let about = DeviceInfo {
         name: "Stick".into(),
         guid: format!("{id:032}"),
         labels: sticks::Labels::default(),
@@ -204,18 +204,24 @@ fn stick_force_3d_follows_camera_orientation() {
 fn force_ends_on_pause_menu_new_round_and_lost_focus() {
     type Way = fn(&mut Game);
     let ways: [(Way, Stop); 5] = [
-        (|game| game.act(Action::Pause, Seat::Keys), Stop::Paused),
+        (
+            |game| game.act(Action::Pause, InputSource::Keys),
+            Stop::Paused,
+        ),
         (|game| game.go(Screen::Title), Stop::Menu),
         (|game| game.start(0), Stop::Reset),
         (|game| game.is_away = true, Stop::FocusLost),
-        (|game| game.act(Action::Step, Seat::Keys), Stop::Paused),
+        (
+            |game| game.act(Action::Step, InputSource::Keys),
+            Stop::Paused,
+        ),
     ];
     for (way, reason) in ways {
         check_quick(|| {
             let mut table = Table::pushing();
             let start = Instant::now();
             way(&mut table.game);
-            table.game.pass(0.0);
+            table.game.update(0.0);
             assert_eq!(table.silent(0), Some(reason));
             table.zero_since(start)
         });
@@ -305,7 +311,7 @@ fn force_ends_when_game_panics_or_closes() {
 #[test]
 fn emergency_key_cuts_force_until_restored() {
     let mut table = Table::pushing();
-    table.game.act(Action::CutForces, Seat::Keys);
+    table.game.act(Action::CutForces, InputSource::Keys);
     table.until_let_go(0);
     table.hears_nothing(0);
     assert!(table.game.forces.is_cut() && table.game.notices.iter().next().is_some());
@@ -335,7 +341,9 @@ fn zero_strength_opens_no_device_and_sends_nothing() {
 fn force_of_each_hand_goes_to_its_player() {
     let mut table = Table::with(2);
     table.game.start(0);
-    table.game.act(Action::Join, Seat::Stick(DeviceId(1)));
+    table
+        .game
+        .act(Action::Join, InputSource::Stick(DeviceId(1)));
     // The second hand starts far above the body and stays there.
     table.until_pushed(0);
     assert_eq!(table.told(1), None);
@@ -435,7 +443,7 @@ fn stick_can_be_tried_and_measured() {
     let wanted = Calibration {
         swap: true,
         invert: [false, true],
-        ..Calibration::USUAL
+        ..Calibration::IDENTITY
     };
     assert_eq!(known, Some(&wanted));
 }
@@ -459,10 +467,10 @@ fn virtual_pad_plays_rumbles_and_unplugs() {
                 if let sticks::Change::Pressed { device, control } = change
                     && let Some(action) = game.settings.bindings.of_button(control)
                 {
-                    game.act(action, Seat::Stick(device));
+                    game.act(action, InputSource::Stick(device));
                 }
             }
-            game.pass(TICK);
+            game.update(TICK);
         }
     };
     assert!(pad.axis(0, 1.0));

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
-use tamaire::exhibit::config::USUAL;
+use tamaire::exhibit::config::DEFAULT_CONFIG;
 use tamaire_logbook::{Error, Event, Kind, Logbook, Round};
 use tempfile::TempDir;
 
@@ -230,7 +230,7 @@ fn stand_restarts_killed_game_without_losing_rounds() {
     let file = folder.path().join("exhibit.toml");
     let logbook: PathBuf = folder.path().join("visits.sqlite");
     let usual = "#folder = \"/var/lib/tam\"";
-    let text = USUAL.replace(usual, &format!("folder = {:?}", folder.path()));
+    let text = DEFAULT_CONFIG.replace(usual, &format!("folder = {:?}", folder.path()));
     fs::write(&file, text).unwrap();
     let screen = Screen::open();
     let mut hand = Hand::on(&screen);

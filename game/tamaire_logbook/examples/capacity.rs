@@ -3,7 +3,7 @@
 use std::env;
 use std::error::Error;
 use std::time::Instant;
-use tamaire_logbook::{End, Entry, Id, Logbook, Moment, Round, Visit};
+use tamaire_logbook::{Entry, Id, Logbook, Moment, Round, RoundEnd, Visit};
 use tamaire_play::Route;
 
 const ROUNDS_A_VISIT: u32 = 5;
@@ -83,7 +83,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     book.export(&folder.path().join("copy"))?;
     println!("export: {:?}", start.elapsed());
     let start = Instant::now();
-    book.forget_before(first.after(7 * 86_400_000))?;
+    book.delete_before(first.after(7 * 86_400_000))?;
     println!("forget a week: {:?}", start.elapsed());
     Ok(())
 }
@@ -111,7 +111,7 @@ fn entries(visit: i64, began: Moment) -> Vec<Entry> {
             level: ["classic", "cat", "hoop"][fastrand::usize(..3)].into(),
             level_hash: 0xfeed_face,
             players: 1,
-            end: won.map_or(End::Retried, |_| End::Won),
+            end: won.map_or(RoundEnd::Retried, |_| RoundEnd::Won),
             route: won,
             kept: 1.0,
             inside: 0.9,

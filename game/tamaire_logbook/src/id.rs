@@ -13,7 +13,7 @@ pub struct Id(pub u128);
 /// Error of parsing an [`Id`] from a text.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("expected an id of 32 hexadecimal digits, found {0:?}")]
-pub struct NoId(
+pub struct ParseIdError(
     /// The text that was given.
     pub String,
 );
@@ -37,12 +37,12 @@ impl fmt::Display for Id {
 }
 
 impl FromStr for Id {
-    type Err = NoId;
+    type Err = ParseIdError;
 
-    fn from_str(text: &str) -> Result<Self, NoId> {
+    fn from_str(text: &str) -> Result<Self, ParseIdError> {
         let is_hex = text.len() == 32 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
         let number = u128::from_str_radix(text, 16).ok().filter(|_| is_hex);
-        number.map(Self).ok_or_else(|| NoId(text.into()))
+        number.map(Self).ok_or_else(|| ParseIdError(text.into()))
     }
 }
 
@@ -74,7 +74,7 @@ mod tests {
             "+00000000000000000000000000000ab",
             "000000000000000000000000000000axx",
         ] {
-            assert_eq!(wrong.parse::<Id>(), Err(NoId(wrong.into())));
+            assert_eq!(wrong.parse::<Id>(), Err(ParseIdError(wrong.into())));
         }
         assert_ne!(Id::random(), Id::random());
     }

@@ -33,7 +33,7 @@ pub use id::Id;
 pub use logbook::{Logbook, SetAside};
 pub use moment::Moment;
 pub use recorder::{Health, Options, Recorder};
-pub use row::{End, Entry, Event, Kind, Round, Visit};
+pub use row::{Entry, Event, Kind, Round, RoundEnd, Visit};
 #[cfg(feature = "postgres")]
 pub use sender::Sender;
 pub use server::Server;

@@ -8,10 +8,10 @@ mod write;
 
 pub use file::SetAside;
 #[cfg(feature = "postgres")]
-pub(crate) use sent::{Change, Sent};
+pub(crate) use sent::{ChangedRow, SyncPosition};
 
 use crate::{Entry, Error, Event, Moment, Round, Today, Visit};
-use read::Kept;
+use read::TableReader;
 use rusqlite::{Connection, OptionalExtension};
 use std::fs::{self, File};
 use std::ops::RangeBounds;
@@ -64,9 +64,9 @@ impl Logbook {
             }
             other => (other?, None),
         };
-        let book = Self::over(path, connection);
+        let book = Self::from_connection(path, connection);
         let sql = "UPDATE book SET stand = ?1 WHERE stand <> ?1";
-        book.told(book.connection.execute(sql, [stand]))?;
+        book.map_error(book.connection.execute(sql, [stand]))?;
         Ok((book, set_aside))
     }
 
@@ -76,7 +76,7 @@ impl Logbook {
     /// # Errors
     /// [`Error::Newer`], [`Error::Damaged`] and [`Error::Unusable`]. The file is neither changed nor renamed.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        Ok(Self::over(path, file::read(path)?))
+        Ok(Self::from_connection(path, file::read(path)?))
     }
 
     /// Writes an entry. Writing the same entry again has no effect.
@@ -96,7 +96,7 @@ impl Logbook {
     /// [`Error`]; then none of the entries is written.
     pub fn write_all(&mut self, entries: &[Entry]) -> Result<(), Error> {
         let written = write::write(&mut self.connection, entries);
-        self.told(written)
+        self.map_error(written)
     }
 
     /// Calls `each` for every visit that began in `range`, in the order in which they were written.
@@ -140,7 +140,7 @@ impl Logbook {
     /// # Errors
     /// [`Error`].
     pub fn today(&self, since: Moment) -> Result<Today, Error> {
-        self.told(read::today(&self.connection, since.utc_ms))
+        self.map_error(read::today(&self.connection, since.utc_ms))
     }
 
     /// Returns the `most` fastest won rounds of a level that began at `since` or later and have a replay,
@@ -156,15 +156,15 @@ impl Logbook {
         most: usize,
     ) -> Result<Vec<Round>, Error> {
         let since = since.utc_ms;
-        self.told(read::best(&self.connection, since, level, level_hash, most))
+        self.map_error(read::best(&self.connection, since, level, level_hash, most))
     }
 
     /// Deletes rows that began before `moment`, except rows that the server has not received yet.
     ///
     /// # Errors
     /// [`Error`].
-    pub fn forget_before(&mut self, moment: Moment) -> Result<(), Error> {
-        self.told(write::forget_before(&self.connection, moment.utc_ms))
+    pub fn delete_before(&mut self, moment: Moment) -> Result<(), Error> {
+        self.map_error(write::forget_before(&self.connection, moment.utc_ms))
     }
 
     /// Returns the size on the disk of the file and of SQLite's files beside it [bytes].
@@ -188,7 +188,7 @@ impl Logbook {
         let name = part.to_string_lossy();
         let copied = self.connection.execute("VACUUM INTO ?1", [&name]);
         let copied = copied
-            .map_err(|error| file::told(path, error))
+            .map_err(|error| file::map_error(path, error))
             .and_then(|_| {
                 let synced = File::options()
                     .append(true)
@@ -210,14 +210,14 @@ impl Logbook {
     /// [`Error`].
     pub fn stand(&self) -> Result<String, Error> {
         let sql = "SELECT stand FROM book";
-        self.told(self.connection.query_row(sql, [], |row| row.get(0)))
+        self.map_error(self.connection.query_row(sql, [], |row| row.get(0)))
     }
 
     /// Limits the size of the file [bytes]. Writing beyond the limit returns [`Error::Full`].
     ///
     /// # Errors
     /// [`Error`].
-    pub fn limit(&self, most_bytes: u64) -> Result<(), Error> {
+    pub fn set_size_limit(&self, most_bytes: u64) -> Result<(), Error> {
         let limit = || {
             let page: i64 = self
                 .connection
@@ -226,7 +226,7 @@ impl Logbook {
             self.connection
                 .pragma_update_and_check(None, "max_page_count", pages, |_| Ok(()))
         };
-        self.told(limit())
+        self.map_error(limit())
     }
 
     /// Returns the time of the oldest row by the clock [ms of UTC].
@@ -234,35 +234,35 @@ impl Logbook {
         let sql = "SELECT min(began) FROM (SELECT min(began) AS began FROM visits
             UNION ALL SELECT min(began) FROM rounds UNION ALL SELECT min(at) FROM events)";
         let found = self.connection.query_row(sql, [], |row| row.get(0));
-        self.told(found.optional().map(Option::flatten))
+        self.map_error(found.optional().map(Option::flatten))
     }
 
     /// Sets the server whose missing rows [`Logbook::forget_before`] keeps, however old they are; `None`
     /// keeps no row for a server.
-    pub(crate) fn await_server(&self, server: Option<&str>) -> Result<(), Error> {
-        self.told(sent::await_server(&self.connection, server))
+    pub(crate) fn set_server(&self, server: Option<&str>) -> Result<(), Error> {
+        self.map_error(sent::await_server(&self.connection, server))
     }
 
-    fn over(path: &Path, connection: Connection) -> Self {
+    fn from_connection(path: &Path, connection: Connection) -> Self {
         let path = path.into();
         Self { path, connection }
     }
 
-    fn told<T>(&self, result: rusqlite::Result<T>) -> Result<T, Error> {
-        result.map_err(|error| file::told(&self.path, error))
+    fn map_error<T>(&self, result: rusqlite::Result<T>) -> Result<T, Error> {
+        result.map_err(|error| file::map_error(&self.path, error))
     }
 
     fn stream<T, E: From<Error>>(
         &self,
-        kept: &Kept<T>,
+        kept: &TableReader<T>,
         range: impl RangeBounds<Moment>,
         mut each: impl FnMut(T) -> Result<(), E>,
     ) -> Result<(), E> {
         let sql = kept.in_range();
-        let mut statement = self.told(self.connection.prepare_cached(&sql))?;
-        let mut rows = self.told(statement.query(read::ends(&range)))?;
-        while let Some(row) = self.told(rows.next())? {
-            each(self.told((kept.read)(row))?)?;
+        let mut statement = self.map_error(self.connection.prepare_cached(&sql))?;
+        let mut rows = self.map_error(statement.query(read::ends(&range)))?;
+        while let Some(row) = self.map_error(rows.next())? {
+            each(self.map_error((kept.read)(row))?)?;
         }
         Ok(())
     }
@@ -273,21 +273,21 @@ impl Logbook {
 impl Logbook {
     /// Opens a logbook that the recorder has opened and checked already.
     pub(crate) fn attach(path: &Path) -> Result<Self, Error> {
-        Ok(Self::over(path, file::attach(path)?))
+        Ok(Self::from_connection(path, file::attach(path)?))
     }
 
     /// Returns the position up to which the server has received the file.
-    pub(crate) fn sent(&self) -> Result<Sent, Error> {
-        self.told(sent::sent(&self.connection))
+    pub(crate) fn sent(&self) -> Result<SyncPosition, Error> {
+        self.map_error(sent::sent(&self.connection))
     }
 
-    pub(crate) fn set_sent(&self, server: &str, sent: &Sent) -> Result<(), Error> {
-        self.told(sent::set_sent(&self.connection, server, sent))
+    pub(crate) fn set_sent(&self, server: &str, sent: &SyncPosition) -> Result<(), Error> {
+        self.map_error(sent::set_sent(&self.connection, server, sent))
     }
 
     /// Returns the number of rows that the server has not received yet.
     pub(crate) fn unsent(&self) -> Result<u64, Error> {
-        self.told(sent::unsent(&self.connection))
+        self.map_error(sent::unsent(&self.connection))
     }
 
     /// Returns at most `most` rows that changed after change number `after`, in the order of their changes:
@@ -296,7 +296,7 @@ impl Logbook {
         &self,
         after: i64,
         most: usize,
-    ) -> Result<Vec<(i64, i64, Change)>, Error> {
-        self.told(sent::changes(&self.connection, after, most))
+    ) -> Result<Vec<(i64, i64, ChangedRow)>, Error> {
+        self.map_error(sent::changes(&self.connection, after, most))
     }
 }

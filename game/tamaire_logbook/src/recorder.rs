@@ -10,7 +10,7 @@ pub use desk::Health;
 pub use writer::Options;
 
 use crate::{Entry, Moment, Round, Today};
-use desk::{Best, Desk};
+use desk::{Best, SharedState};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread;
@@ -26,7 +26,7 @@ use absent::Sender;
 /// [`Recorder::finish`] does, within 3 s.
 #[derive(Debug)]
 pub struct Recorder {
-    desk: Arc<Desk>,
+    desk: Arc<SharedState>,
     sender: Option<Sender>,
 }
 
@@ -37,7 +37,7 @@ impl Recorder {
     /// Starts recording for a stand into the file at `path`. The thread opens the file, and tries again if
     /// that fails.
     pub fn begin(path: &Path, stand: &str, options: Options) -> Self {
-        let desk = Arc::new(Desk::default());
+        let desk = Arc::new(SharedState::default());
         let writer = Writer::new(Arc::clone(&desk), path, stand, options.clone());
         let thread = thread::Builder::new().name("logbook".into());
         if let Err(error) = thread.spawn(move || writer.run()) {
@@ -61,7 +61,7 @@ impl Recorder {
         if let Some(sender) = &self.sender {
             let progress = sender.progress();
             health.unsent = progress.unsent;
-            health.trouble = health.trouble.or(progress.trouble);
+            health.problem = health.problem.or(progress.trouble);
         }
         health
     }

@@ -42,7 +42,7 @@ pub struct Round {
     /// Number of players.
     pub players: u8,
     /// End of the round.
-    pub end: End,
+    pub end: RoundEnd,
     /// Route by which the round was won; `None` if it was not won.
     pub route: Option<Route>,
     /// Mass of the largest piece of each body, as a share of the mass at the start.
@@ -62,7 +62,7 @@ pub struct Round {
 /// End of a round.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum End {
+pub enum RoundEnd {
     /// The player won.
     Won,
     /// The player restarted the round.
@@ -191,7 +191,7 @@ impl From<Kind> for String {
     }
 }
 
-impl End {
+impl RoundEnd {
     /// Returns the name of the ending in the file.
     pub fn text(self) -> &'static str {
         match self {
@@ -223,7 +223,7 @@ pub(crate) fn read_route(text: &str) -> Option<Route> {
 }
 
 /// Returns the approximate size of an entry in memory [bytes].
-pub(crate) fn room_of(entry: &Entry) -> usize {
+pub(crate) fn memory_size(entry: &Entry) -> usize {
     let texts = match entry {
         Entry::VisitBegan(visit) => visit.stand.len() + visit.language.len(),
         Entry::VisitEnded { .. } => 0,

@@ -8,7 +8,7 @@
 
 mod tables;
 
-use crate::logbook::{Change, Sent};
+use crate::logbook::{ChangedRow, SyncPosition};
 use crate::server::Progress;
 use crate::{Error, Logbook, Server};
 use postgres::{Client, NoTls};
@@ -30,18 +30,18 @@ pub struct Sender {
 /// Maximum number of rows in a transaction.
 const BATCH: usize = 200;
 /// Interval between two searches for new rows, and first delay after a failure.
-const LOOK: Duration = Duration::from_secs(1);
+const POLL_INTERVAL: Duration = Duration::from_secs(1);
 /// Number of failures in a row after which the delay, doubled at each failure, stays at half a minute.
 const MOST_DOUBLINGS: u32 = 6;
 /// Time limit for an answer of the server.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 impl Sender {
     /// Starts sending the rows of the file at `path`, and those that are added to it later.
     pub fn begin(path: &Path, stand: &str, server: &Server) -> Self {
         let progress = Arc::new(Mutex::default());
         let (end, ended) = mpsc::channel();
-        let errand = Errand {
+        let errand = SenderThread {
             path: path.into(),
             stand: stand.into(),
             server: server.clone(),
@@ -77,7 +77,7 @@ fn set(progress: &Mutex<Progress>, now: Progress) {
     *progress.lock().unwrap_or_else(PoisonError::into_inner) = now;
 }
 
-struct Errand {
+struct SenderThread {
     path: PathBuf,
     stand: String,
     server: Server,
@@ -88,18 +88,18 @@ struct Errand {
 struct Line {
     client: Client,
     inserts: Inserts,
-    sent: Sent,
+    sent: SyncPosition,
 }
 
 /// Reason why nothing was sent.
 #[derive(Debug)]
-enum Trouble {
+enum SendError {
     /// The file cannot be used at present, or does not exist yet. The recorder reports this.
     Book,
     Server(String),
 }
 
-impl Errand {
+impl SenderThread {
     fn run(mut self, ended: &mpsc::Receiver<()>, tell: impl Fn(Progress)) {
         let (mut failures, mut unsent) = (0, 0);
         loop {
@@ -109,12 +109,12 @@ impl Errand {
                 .and_then(|book| book.unsent())
                 .unwrap_or(unsent);
             let (trouble, rest) = match step {
-                Ok(0) | Err(Trouble::Book) => (None, LOOK),
+                Ok(0) | Err(SendError::Book) => (None, POLL_INTERVAL),
                 Ok(_) => (None, Duration::ZERO),
-                Err(Trouble::Server(trouble)) => {
+                Err(SendError::Server(trouble)) => {
                     self.line = None;
                     failures = MOST_DOUBLINGS.min(failures + 1);
-                    (Some(trouble), LOOK * 2_u32.pow(failures - 1))
+                    (Some(trouble), POLL_INTERVAL * 2_u32.pow(failures - 1))
                 }
             };
             if trouble.is_none() {
@@ -128,8 +128,8 @@ impl Errand {
     }
 
     /// Sends one batch and returns its number of rows.
-    fn step(&mut self) -> Result<usize, Trouble> {
-        let name = self.server.name().map_err(Trouble::Server)?;
+    fn step(&mut self) -> Result<usize, SendError> {
+        let name = self.server.name().map_err(SendError::Server)?;
         let book = Logbook::attach(&self.path)?;
         let known = book.sent()?;
         let line = match self.line.take() {
@@ -146,7 +146,7 @@ impl Errand {
         let Some((last, ..)) = changes.last() else {
             return Ok(0);
         };
-        let sent = Sent {
+        let sent = SyncPosition {
             change: *last,
             ..line.sent
         };
@@ -158,17 +158,17 @@ impl Errand {
 }
 
 impl Line {
-    fn open(server: &Server, stand: &str, known: Sent) -> Result<Self, Trouble> {
-        let mut config = server.config().map_err(Trouble::Server)?;
+    fn open(server: &Server, stand: &str, known: SyncPosition) -> Result<Self, SendError> {
+        let mut config = server.config().map_err(SendError::Server)?;
         config.application_name("tamaire");
-        config.connect_timeout(PATIENCE);
-        config.tcp_user_timeout(PATIENCE);
+        config.connect_timeout(TIMEOUT);
+        config.tcp_user_timeout(TIMEOUT);
         let mut client = config.connect(NoTls)?;
-        let patience = PATIENCE.as_millis();
+        let patience = TIMEOUT.as_millis();
         client.batch_execute(&format!("SET statement_timeout = {patience}"))?;
-        let inserts = tables::begin(&mut client).map_err(Trouble::Server)?;
+        let inserts = tables::begin(&mut client).map_err(SendError::Server)?;
         let got = inserts.sent(&mut client, &known.book.to_string(), stand)?;
-        let sent = Sent {
+        let sent = SyncPosition {
             change: known.change.min(got),
             ..known
         };
@@ -183,9 +183,9 @@ impl Line {
     fn send(
         &mut self,
         stand: &str,
-        changes: &[(i64, i64, Change)],
-        sent: &Sent,
-    ) -> Result<(), Trouble> {
+        changes: &[(i64, i64, ChangedRow)],
+        sent: &SyncPosition,
+    ) -> Result<(), SendError> {
         let book = sent.book.to_string();
         let mut transaction = self.client.transaction()?;
         for (_, seq, change) in changes {
@@ -197,13 +197,13 @@ impl Line {
     }
 }
 
-impl From<Error> for Trouble {
+impl From<Error> for SendError {
     fn from(_: Error) -> Self {
         Self::Book
     }
 }
 
-impl From<postgres::Error> for Trouble {
+impl From<postgres::Error> for SendError {
     fn from(error: postgres::Error) -> Self {
         Self::Server(tables::told(&error))
     }

@@ -259,7 +259,7 @@ fn write_reports_a_full_file_and_succeeds_after_the_limit_is_raised() {
     fill(&path);
     let mut book = open(&path);
     let before = all(&book).unwrap();
-    book.limit(1).unwrap();
+    book.set_size_limit(1).unwrap();
     let refused = (0..1000).find_map(|_| book.write_all(&entries(MORNING)).err());
     let refused = refused.expect("the size limit must be reached");
     assert!(matches!(refused, Error::Full(_)), "{refused}");
@@ -274,7 +274,7 @@ fn write_reports_a_full_file_and_succeeds_after_the_limit_is_raised() {
         "write_all must write all of its entries or none"
     );
     assert!(kept.rounds.len() >= before.rounds.len());
-    book.limit(1 << 30).unwrap();
+    book.set_size_limit(1 << 30).unwrap();
     book.write_all(&entries(MORNING)).unwrap();
     assert_eq!(all(&book).unwrap().rounds.len(), kept.rounds.len() + 3);
 }

@@ -36,7 +36,7 @@ fn victim() {
         book.write(&Entry::Round(round)).unwrap();
         writeln!(out, "wrote {id}").unwrap();
         if count % 50 == 0 {
-            book.forget_before(MORNING.after(-1)).unwrap();
+            book.delete_before(MORNING.after(-1)).unwrap();
             book.write(&Entry::Event(event(MORNING, Kind::Began)))
                 .unwrap();
         }

@@ -49,7 +49,7 @@ fn recorder_writes_entries_and_answers_requests() {
         health.waiting == 0 && health.is_recording
     });
     assert_eq!(
-        (health.trouble, health.dropped, health.set_aside),
+        (health.problem, health.dropped, health.set_aside),
         (None, 0, None)
     );
     assert!(health.bytes > 4096 && health.unsent == 0);
@@ -120,11 +120,11 @@ fn recorder_retries_an_unwritable_folder() {
     fs::write(folder.path().join("kept"), "in the way").unwrap();
     let recorder = begin(&path);
     record(&recorder, entries(MORNING));
-    let health = wait_for(&recorder, "trouble", |health| health.trouble.is_some());
+    let health = wait_for(&recorder, "trouble", |health| health.problem.is_some());
     assert_eq!((health.is_recording, health.waiting), (false, 5));
     assert!(
         health
-            .trouble
+            .problem
             .unwrap()
             .contains("logbook.sqlite: the logbook cannot be")
     );
@@ -135,7 +135,7 @@ fn recorder_retries_an_unwritable_folder() {
     } else {
         wait_for(&recorder, "mended", |health| health.is_recording)
     };
-    assert_eq!((health.trouble, health.dropped), (None, 0));
+    assert_eq!((health.problem, health.dropped), (None, 0));
     drop(recorder);
     assert_eq!(all(&open(&path)).unwrap().rounds.len(), 3);
 }
@@ -149,8 +149,8 @@ fn recorder_waits_for_a_locked_file() {
     let other = Connection::open(&path).unwrap();
     other.execute_batch("BEGIN IMMEDIATE").unwrap();
     record(&recorder, entries(MORNING));
-    let health = wait_for(&recorder, "locked", |health| health.trouble.is_some());
-    assert!(health.trouble.unwrap().contains("another program"));
+    let health = wait_for(&recorder, "locked", |health| health.problem.is_some());
+    assert!(health.problem.unwrap().contains("another program"));
     record(&recorder, entries(MORNING));
     assert_eq!(recorder.health().waiting, 10);
     other.execute_batch("COMMIT").unwrap();
@@ -181,14 +181,14 @@ fn recorder_waits_for_space_and_notes_a_full_disk() {
             .unwrap();
     }
     let options = Options {
-        most_bytes: Some(1),
+        max_bytes: Some(1),
         ..Options::default()
     };
     let recorder = Recorder::begin(&path, STAND, options);
     let mut told = 0;
     let full = |health: &Health| {
         health
-            .trouble
+            .problem
             .as_ref()
             .is_some_and(|text| text.ends_with("the disk is full"))
     };
@@ -205,12 +205,12 @@ fn recorder_waits_for_space_and_notes_a_full_disk() {
     assert!(!health.is_recording && health.waiting > 0, "{health:?}");
     record(&recorder, entries(Moment::now()));
     // Deletes rows, so that there is space again.
-    book.forget_before(Moment::now().after(-DAY / 2)).unwrap();
+    book.delete_before(Moment::now().after(-DAY / 2)).unwrap();
     wait_for(&recorder, "room", |health| {
         health.is_recording && health.waiting == 0
     });
     let health = recorder.finish(LONG);
-    assert_eq!((health.dropped, health.trouble), (0, None));
+    assert_eq!((health.dropped, health.problem), (0, None));
     let kept = all(&open(&path)).unwrap();
     assert_eq!(kept.rounds.len(), told + 3);
     let kinds: Vec<_> = kept.events.iter().map(|event| event.kind.clone()).collect();
@@ -268,7 +268,7 @@ fn recorder_leaves_a_newer_file_unchanged_and_limits_waiting_entries() {
     let recorder = begin(&path);
     wait_for(&recorder, "newer", |health| {
         health
-            .trouble
+            .problem
             .as_ref()
             .is_some_and(|text| text.contains("install a newer tamaire"))
     });
@@ -312,7 +312,7 @@ fn recorder_deletes_old_rows_a_few_days_at_a_time() {
             ..Options::default()
         };
         assert_eq!(
-            Recorder::begin(&path, STAND, options).finish(LONG).trouble,
+            Recorder::begin(&path, STAND, options).finish(LONG).problem,
             None
         );
         all(&open(&path)).unwrap().visits.len()

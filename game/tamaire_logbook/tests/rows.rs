@@ -8,7 +8,7 @@ use common::{
 use std::ops::Bound;
 use std::thread;
 use tamaire_logbook::row::MAX_TEXT_BYTES;
-use tamaire_logbook::{End, Entry, Error, Kind, Logbook, Moment, Today};
+use tamaire_logbook::{Entry, Error, Kind, Logbook, Moment, RoundEnd, Today};
 use tamaire_play::Route;
 
 #[test]
@@ -18,7 +18,7 @@ fn written_entries_are_read_back() {
     let mut came = visit(MORNING);
     let mut first = round(&came, 1, None);
     first.replay = long_replay();
-    first.end = End::Cut;
+    first.end = RoundEnd::Cut;
     let mut second = round(&came, 2, Some(Route::Mix));
     second.replay.clear();
     let odd = event(MORNING, Kind::Other("weather".into()));
@@ -221,7 +221,7 @@ fn today_sums_up_a_day() {
     }
     let left = visit(MORNING);
     let mut round = round(&left, 1, None);
-    round.end = End::Left;
+    round.end = RoundEnd::Left;
     book.write(&Entry::Round(round)).unwrap();
     let expected = Today {
         visits: 4,
@@ -253,7 +253,7 @@ fn best_returns_the_fastest_rounds_with_a_replay() {
     let mut easier = won(3, 3.0);
     easier.level_hash = 3;
     let mut retried = won(4, 4.0);
-    (retried.end, retried.route) = (End::Retried, None);
+    (retried.end, retried.route) = (RoundEnd::Retried, None);
     let mut old = won(5, 5.0);
     old.began = MORNING.after(-DAY);
     let (fast, faster) = (won(6, 7.0), won(7, 6.0));
@@ -287,14 +287,14 @@ fn forget_before_deletes_old_rows() {
     book.write_all(&[Entry::VisitBegan(long.clone()), Entry::Round(late)])
         .unwrap();
     let cut = MORNING.after(2 * DAY);
-    book.forget_before(cut).unwrap();
+    book.delete_before(cut).unwrap();
     let kept = all(&book).unwrap();
     assert!(kept.rounds.iter().all(|round| round.began >= cut));
     assert!(kept.events.iter().all(|event| event.at >= cut));
     let counts = (kept.visits.len(), kept.rounds.len(), kept.events.len());
     assert_eq!(counts, (4, 10, 3));
     assert!(kept.visits.contains(&long));
-    book.forget_before(MORNING.after(9 * DAY)).unwrap();
+    book.delete_before(MORNING.after(9 * DAY)).unwrap();
     assert_eq!(all(&book).unwrap(), All::default());
     // Writing goes on afterwards.
     book.write_all(&entries(MORNING)).unwrap();

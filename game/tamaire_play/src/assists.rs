@@ -18,7 +18,7 @@ impl Level {
     /// # Errors
     /// [`LevelError`] if the resulting level cannot be played.
     pub fn assisted(&self, assists: &BTreeSet<Assist>) -> Result<Self, LevelError> {
-        Self::of(&self.id, assisted(self.scene(), assists))
+        Self::from_scene(&self.id, assisted(self.scene(), assists))
     }
 
     /// Returns whether this is the level `plain`, with or without assists.
@@ -37,14 +37,14 @@ pub(crate) fn assisted(scene: &Scene, assists: &BTreeSet<Assist>) -> Scene {
         }
         match assist {
             Assist::WiderBasket => widen(&mut scene),
-            Assist::Unbreakable => mend(&mut scene),
+            Assist::Unbreakable => make_unbreakable(&mut scene),
         }
     }
     scene
 }
 
 /// Makes all materials unbreakable, which rules out shaving.
-fn mend(scene: &mut Scene) {
+fn make_unbreakable(scene: &mut Scene) {
     for material in &mut scene.material {
         (material.strength, material.toughness) = (None, None);
         material.unbreakable = true;

@@ -19,7 +19,7 @@ const CAREFUL: f32 = 0.2;
 const PATIENCE: u32 = 210;
 /// Offset of the first strokes from the centre of a piece, as a share of its reach, in 2D and in 3D. In 2D a
 /// stroke cuts off all that it passes; in 3D, a stroke so far out would only plough a furrow.
-const GRAZING: [f32; 2] = [0.78, 0.55];
+const FIRST_OFFSET: [f32; 2] = [0.78, 0.55];
 /// Factor on the offset after a stroke that took nothing off.
 const CLOSER: f32 = 0.85;
 /// Minimum offset of strokes, in 2D and in 3D. In 3D, when strokes this close to the centre take nothing off,
@@ -70,7 +70,7 @@ pub struct Bot {
     /// Random variations of the behaviour by seed, each from -1 to 1.
     temper: [f32; 3],
     /// Target and remaining ticks of a random bot, by player.
-    whims: [(Vector, u32); crate::PLAYERS],
+    random_targets: [(Vector, u32); crate::PLAYERS],
     stroke: Stroke,
     strokes: u32,
     /// Offset of the strokes from the centre, relative to the first one; and the number of pieces before the
@@ -132,7 +132,7 @@ impl Bot {
             kind,
             random,
             temper,
-            whims: Default::default(),
+            random_targets: Default::default(),
             stroke: Stroke::Rest,
             // Half of the bots start on the one side, half on the other.
             strokes: u32::from(temper[0] > 0.0),
@@ -192,13 +192,13 @@ impl Bot {
         let [low, high] = round.level().arena();
         let mut frame = InputFrame::default();
         for player in 0..crate::PLAYERS {
-            if self.whims[player].1 == 0 {
+            if self.random_targets[player].1 == 0 {
                 let place = [0, 1, 2]
                     .map(|axis: usize| low[axis] + self.random.f32() * (high[axis] - low[axis]));
-                self.whims[player] = (place, 1 + self.random.u32(..90));
+                self.random_targets[player] = (place, 1 + self.random.u32(..90));
             }
-            self.whims[player].1 -= 1;
-            frame = frame.with(player, self.whims[player].0);
+            self.random_targets[player].1 -= 1;
+            frame = frame.with(player, self.random_targets[player].0);
         }
         frame
     }
@@ -216,7 +216,7 @@ impl Bot {
             return self.go(sight, sight.away, pace.min(BRISK));
         }
         let piece = sight.piece;
-        let (along, aside) = split(minus(sight.hand, piece.centre), piece.way);
+        let (along, aside) = split(minus(sight.hand, piece.centre), piece.direction);
         let is_behind = along < -0.2 * piece.reach && length(aside) < 0.5 * piece.reach;
         if !is_behind && length(minus(sight.hand, piece.behind)) > 0.05 {
             return self.go(sight, piece.behind, BRISK);
@@ -227,7 +227,7 @@ impl Bot {
             true => 0.15 + FIRMER[D::N - 2] * firm,
             false => 0.25,
         } + 0.02 * self.temper[1];
-        let goal = plus(piece.centre, scaled(piece.way, depth - piece.reach));
+        let goal = plus(piece.centre, scaled(piece.direction, depth - piece.reach));
         // A piece wedged in the mouth is pushed in corner by corner.
         let side = match (firm > 0.0 && !piece.fits, self.waited / 30 % 2) {
             (false, _) => 0.0,
@@ -268,7 +268,7 @@ impl Bot {
                 let is_even = self.strokes.is_multiple_of(2);
                 let side = if is_even { 1.0 } else { -1.0 };
                 self.pieces = sight.pieces;
-                let off = (GRAZING[D::N - 2] + 0.04 * self.temper[1]) * self.off * reach;
+                let off = (FIRST_OFFSET[D::N - 2] + 0.04 * self.temper[1]) * self.off * reach;
                 let from = plus(scaled(*axis, -1.15 * reach), scaled(*across, side * off));
                 self.stroke = Stroke::Reach(from, 90);
                 sight.hand

@@ -6,7 +6,7 @@ use crate::Route;
 use fuwafuwa::hash::Hash;
 use fuwafuwa::{Dim, Dim2, Dim3, Shape, World};
 use fuwafuwa_scenes::scene::{
-    BodyText, DriveText, Fetch, GameText, MAX_TEXT_BYTES, Scene, SceneError, ending_of,
+    BodyText, Fetch, GameText, MAX_TEXT_BYTES, MotionTypeText, Scene, SceneError, extension_of,
 };
 use std::any::Any;
 use std::io;
@@ -145,14 +145,14 @@ impl Level {
     /// # Errors
     /// [`LevelError`] with the problem and its line.
     pub fn read(id: &str, bytes: &[u8], fetch: Fetch) -> Result<Self, LevelError> {
-        let ending = ending_of(id);
+        let ending = extension_of(id);
         if let Some((_, frame)) = FRAMES.iter().find(|(made_from, _)| *made_from == ending) {
-            return Self::framed(frame, id, bytes).map_err(|error| blame(id, error));
+            return Self::framed(frame, id, bytes).map_err(|error| attribute_to_file(id, error));
         }
-        let mut scene = plain(Scene::read(id, text_in(id, bytes, MAX_TEXT_BYTES)?, &[])?);
+        let mut scene = without_assists(Scene::read(id, text_in(id, bytes, MAX_TEXT_BYTES)?, &[])?);
         scene.embed_files(fetch)?;
         forget_folders(&mut scene);
-        Self::of(id, scene)
+        Self::from_scene(id, scene)
     }
 
     /// Reads a level that was stored with [`Level::text_to_keep`].
@@ -161,7 +161,7 @@ impl Level {
     /// As [`Level::read`].
     pub fn read_kept(id: &str, bytes: &[u8]) -> Result<Self, LevelError> {
         let text = text_in(id, bytes, MAX_KEPT_BYTES)?;
-        Self::of(id, plain(Scene::read(id, text, &[])?))
+        Self::from_scene(id, without_assists(Scene::read(id, text, &[])?))
     }
 
     /// Returns the level as a text with all files embedded, for [`Level::read_kept`].
@@ -191,14 +191,14 @@ impl Level {
         level.game.name.ja = None;
         level.scene.game = Some(level.game);
         level.scene.embed_files(&|_| Ok(bytes.to_vec()))?;
-        Self::of(id, level.scene)
+        Self::from_scene(id, level.scene)
     }
 
     /// Checks a scene and makes it a level.
     ///
     /// # Errors
     /// [`LevelError`] with the problem.
-    pub fn of(id: &str, scene: Scene) -> Result<Self, LevelError> {
+    pub fn from_scene(id: &str, scene: Scene) -> Result<Self, LevelError> {
         let level = Self::unbuilt(id, scene)?;
         let checked = match level.scene.dim {
             2 => room::check(&level.start::<Dim2>()?.0, level.arena()),
@@ -235,7 +235,7 @@ impl Level {
                 "expected no tick: a tick of a level is 1/60 s",
             ));
         }
-        let falls = |drive| matches!(drive, DriveText::Fixed | DriveText::Free);
+        let falls = |drive| matches!(drive, MotionTypeText::Fixed | MotionTypeText::Free);
         if !{ scene.rigid.iter() }.all(|rigid| falls(rigid.drive) && rigid.state.is_none()) {
             return Err(missing("rigid", "expected drive = \"fixed\" or \"free\""));
         }
@@ -339,7 +339,7 @@ pub(crate) fn text_of(scene: &Scene) -> String {
 
 /// Removes the assists that an untrusted scene claims to have. Only rounds may state the assists of their
 /// level.
-pub(crate) fn plain(mut scene: Scene) -> Scene {
+pub(crate) fn without_assists(mut scene: Scene) -> Scene {
     if let Some(game) = &mut scene.game {
         game.assists.clear();
     }
@@ -384,7 +384,7 @@ fn text_in<'a>(id: &str, bytes: &'a [u8], most: u64) -> Result<&'a str, LevelErr
 
 /// Attributes errors in a body made from a file to that file, because the player did not choose the level
 /// around it.
-fn blame(file: &str, error: LevelError) -> LevelError {
+fn attribute_to_file(file: &str, error: LevelError) -> LevelError {
     match error {
         LevelError::Scene(SceneError::Shape { mut error, .. }) => {
             error.file = file.into();
@@ -414,7 +414,7 @@ mod tests {
         for (id, _) in NAMED.iter().chain(&NAMED_3D) {
             let level = Level::open(id);
             let scene = level.map(|level| level.scene);
-            let checked = scene.and_then(|scene| Level::of(id, scene));
+            let checked = scene.and_then(|scene| Level::from_scene(id, scene));
             assert!(checked.is_ok(), "{id}: {checked:?}");
         }
     }
@@ -473,7 +473,9 @@ mod tests {
     fn refusal(id: &str, text: &str, changes: &[&str]) -> Option<String> {
         let changes: Vec<String> = changes.iter().map(|change| change.to_string()).collect();
         let scene = Scene::read(id, text, &changes).unwrap();
-        Level::of(id, scene).err().map(|error| error.to_string())
+        Level::from_scene(id, scene)
+            .err()
+            .map(|error| error.to_string())
     }
 
     #[test]

@@ -52,7 +52,7 @@ pub mod rules;
 pub use any::AnyRound;
 pub use bot::{Bot, BotKind};
 pub use fuwafuwa_scenes::scene::{
-    AssistText as Assist, RouteText as Route, WishText as Wish, Words, shortened,
+    AssistText as Assist, LocalizedText, RouteText as Route, WishText as Wish, shortened,
 };
 pub use input::{InputFrame, PLAYERS};
 pub use level::Level;

@@ -200,7 +200,7 @@ impl Replay {
     /// # Errors
     /// [`ReplayError`] if the level is invalid, or does not match its hash.
     pub fn level(&self) -> Result<Level, ReplayError> {
-        let level = Level::of(&self.level, self.scene.clone())?;
+        let level = Level::from_scene(&self.level, self.scene.clone())?;
         let is_same = self.is_of(&level);
         is_same.then_some(level).ok_or(ReplayError::LevelChanged)
     }

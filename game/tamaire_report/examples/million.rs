@@ -12,7 +12,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
-use tamaire_logbook::{End, Entry, Event, Id, Kind, Logbook, Moment, Round, Visit};
+use tamaire_logbook::{Entry, Event, Id, Kind, Logbook, Moment, Round, RoundEnd, Visit};
 use tamaire_play::{AnyRound, Bot, BotKind, Level, Route};
 use tamaire_report::{Language, Options, report};
 
@@ -135,9 +135,9 @@ fn play_one(name: &str, kind: BotKind, ticks: usize, seed: u64) -> Round {
         level_hash: level.hash(),
         players: 1,
         end: if outcome.is_some() {
-            End::Won
+            RoundEnd::Won
         } else {
-            End::Retried
+            RoundEnd::Retried
         },
         route: outcome.map(|won| won.route),
         kept: progress.kept,
@@ -178,7 +178,7 @@ fn visit(random: &mut Rng, played: &[Round], days: i64, entries: &mut Vec<Entry>
         let route = round.route;
         let goes = random.f32() < if route.is_some() { 0.4 } else { 0.3 } || number == 30;
         if goes && route.is_none() {
-            round.end = End::Left;
+            round.end = RoundEnd::Left;
         }
         entries.push(Entry::Round(round));
         if goes {

@@ -2,17 +2,17 @@
 
 use crate::Error;
 use crate::figures::Reason;
-use crate::kept::Kept;
+use crate::kept::RerunCache;
 use crate::rerun::Rerun;
 use std::cell::Cell;
 use std::sync::mpsc::{Receiver, Sender, channel, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use tamaire_logbook::{End, Round};
+use tamaire_logbook::{Round, RoundEnd};
 
 /// Returns the reason why a row contradicts itself, if it does.
 pub fn contradiction(round: &Round) -> Option<(Reason, String)> {
-    let is_won = round.end == End::Won;
+    let is_won = round.end == RoundEnd::Won;
     let what = if is_won && round.route.is_none() {
         "won, but without a route"
     } else if !is_won && round.route.is_some() {
@@ -33,7 +33,7 @@ pub fn contradiction(round: &Round) -> Option<(Reason, String)> {
 /// # Errors
 /// [`Error`], also an error of `each`.
 pub fn run_all(
-    kept: &mut Kept,
+    kept: &mut RerunCache,
     mut done: impl FnMut(u64),
     each: impl FnOnce(&mut dyn FnMut(Round) -> Result<(), Error>) -> Result<(), Error>,
 ) -> Result<(), Error> {
@@ -76,7 +76,7 @@ pub fn run_all(
     })
 }
 
-fn keep(kept: &mut Kept, round: &Round, result: Rerun) -> Result<(), Error> {
+fn keep(kept: &mut RerunCache, round: &Round, result: Rerun) -> Result<(), Error> {
     match result {
         // Not stored: another version of the program may support this level.
         Rerun::Foreign(_) => Ok(()),

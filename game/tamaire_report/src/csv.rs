@@ -4,12 +4,12 @@ use std::fmt::Display;
 
 /// Row of a table as text.
 #[derive(Debug, Default)]
-pub struct Row {
+pub struct CsvRow {
     text: String,
     is_begun: bool,
 }
 
-impl Row {
+impl CsvRow {
     /// Returns the header row with the names of the columns.
     pub fn names(names: &[&str]) -> Self {
         let row = names
@@ -72,11 +72,11 @@ impl Row {
 
 #[cfg(test)]
 mod tests {
-    use super::Row;
+    use super::CsvRow;
 
     #[test]
     fn cells_are_quoted_and_formulas_are_escaped() {
-        let row = Row::default()
+        let row = CsvRow::default()
             .text("")
             .text("a,b")
             .text("say \"hi\"\r\nnow")

@@ -1,7 +1,7 @@
 //! Maps of the hand positions by level.
 
 use crate::figures::Heat;
-use crate::rerun::{Ran, TICK};
+use crate::rerun::{RerunResult, TICK};
 use crate::room::{Grid, Stroke, strokes};
 use crate::tally::LevelKey;
 use std::collections::HashMap;
@@ -22,7 +22,7 @@ struct Sum {
 
 impl Heats {
     /// Adds a round.
-    pub fn add(&mut self, round: &Round, ran: &Ran) {
+    pub fn add(&mut self, round: &Round, ran: &RerunResult) {
         let key = (round.level.clone(), round.level_hash);
         let sum = match self.0.get_mut(&key) {
             Some(sum) => sum,

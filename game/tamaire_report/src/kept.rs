@@ -14,7 +14,7 @@ use tamaire_play::replay::VERSION;
 
 /// Stored results, by round and replay, for the current rules.
 #[derive(Debug)]
-pub struct Kept {
+pub struct RerunCache {
     path: PathBuf,
     file: File,
     /// Offset and length of each line [bytes].
@@ -52,7 +52,7 @@ impl Key {
     }
 }
 
-impl Kept {
+impl RerunCache {
     /// Opens the file, and creates it if it does not exist. An incomplete line at its end, left by a killed
     /// program, is removed.
     ///

@@ -1,7 +1,7 @@
 //! SVG plots for the page.
 
 use crate::figures::Heat;
-use crate::room::{Stroke, Thing};
+use crate::room::{ObjectKind, Stroke};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -288,9 +288,9 @@ pub fn map(heat: &Heat, strokes: &[Stroke], axes: [&str; 2]) -> String {
         for stroke in strokes {
             let points: Vec<(f32, f32)> = stroke.points.iter().copied().map(flip).collect();
             let (colour, hairline) = match stroke.of {
-                Thing::Obstacle => (WOOD.mix(0.55), 1),
-                Thing::Basket => (INK.mix(0.9), 2),
-                Thing::Body => (INK.mix(0.55), 1),
+                ObjectKind::Obstacle => (WOOD.mix(0.55), 1),
+                ObjectKind::Basket => (INK.mix(0.9), 2),
+                ObjectKind::Body => (INK.mix(0.55), 1),
             };
             let width = ((stroke.width * scale) as u32).max(hairline);
             chart.draw_series([PathElement::new(points, colour.stroke_width(width))])?;

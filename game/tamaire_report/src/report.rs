@@ -5,7 +5,7 @@ use crate::clips::Clips;
 use crate::drafts::Drafts;
 use crate::figures::{Figures, Reason, Refused};
 use crate::heat::Heats;
-use crate::kept::Kept;
+use crate::kept::RerunCache;
 use crate::page::page;
 use crate::rerun::Rerun;
 use crate::room::Stroke;
@@ -51,7 +51,7 @@ pub fn report(
     let mut visits = read_visits(&books, options, progress)?;
     let mut kept = None;
     if options.rerun {
-        let kept = kept.insert(Kept::open(&out.join("reruns.jsonl"))?);
+        let kept = kept.insert(RerunCache::open(&out.join("reruns.jsonl"))?);
         run_again(&books, &mut visits, kept, progress)?;
     }
     let tables = options.csv.then(|| Tables::begin(&drafts)).transpose()?;
@@ -113,7 +113,7 @@ pub fn report(
 /// State of counting.
 struct Count {
     tally: Tally,
-    kept: Option<Kept>,
+    kept: Option<RerunCache>,
     tables: Option<Tables>,
     heats: Heats,
     refused: Vec<Refused>,
@@ -189,7 +189,7 @@ impl Count {
                     repeated += 1;
                     return Ok(());
                 }
-                if !visits.is_asked(event.at) {
+                if !visits.is_selected(event.at) {
                     return Ok(());
                 }
                 self.tally.event(&event);
@@ -245,7 +245,7 @@ fn read_visits(
 fn run_again(
     books: &[Logbook],
     visits: &mut Visits,
-    kept: &mut Kept,
+    kept: &mut RerunCache,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(), Error> {
     let mut all = 0;

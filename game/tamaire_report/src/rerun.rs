@@ -20,7 +20,7 @@ const SAME_TIME: f64 = 0.05;
 #[serde(rename_all = "snake_case")]
 pub enum Rerun {
     /// The replay matched its hashes; its final state.
-    Ran(Ran),
+    Ran(RerunResult),
     /// The replay diverged from its hashes; the reason.
     Astray(String),
     /// The replay cannot be decoded; the reason.
@@ -31,7 +31,7 @@ pub enum Rerun {
 
 /// Final state of a replay.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Ran {
+pub struct RerunResult {
     level: String,
     level_hash: u64,
     ticks: u64,
@@ -100,7 +100,7 @@ fn run(replay: Replay) -> Rerun {
         }
     }
     let progress = playback.round().progress();
-    Rerun::Ran(Ran {
+    Rerun::Ran(RerunResult {
         level,
         level_hash,
         ticks: ticks as u64,
@@ -113,7 +113,7 @@ fn run(replay: Replay) -> Rerun {
     })
 }
 
-impl Ran {
+impl RerunResult {
     /// Returns the first difference between a row and the replay.
     fn difference(&self, row: &Round) -> Option<String> {
         let told = |what: &str, row: String, run: String| {

@@ -26,7 +26,7 @@ pub struct Grid {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
     /// Kind of the object.
-    pub of: Thing,
+    pub of: ObjectKind,
     /// Points of the line [m].
     pub points: Vec<[f32; 2]>,
     /// Width of the line [m]; 0 for a hairline.
@@ -35,7 +35,7 @@ pub struct Stroke {
 
 /// Kind of an object on a map.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Thing {
+pub enum ObjectKind {
     /// Fixed rigid body.
     Obstacle,
     /// Basket.
@@ -85,7 +85,7 @@ pub fn strokes(level: Level) -> Vec<Stroke> {
     strokes.extend(
         round
             .basket()
-            .and_then(|basket| of_shape(grid, basket, Thing::Basket)),
+            .and_then(|basket| of_shape(grid, basket, ObjectKind::Basket)),
     );
     strokes
 }
@@ -95,7 +95,7 @@ fn of_world<D: Dim>(grid: Grid, world: &World<D>) -> Vec<Stroke> {
         .rigid_bodies()
         .iter()
         .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor);
-    let fixed = fixed.filter_map(|rigid| of_shape(grid, rigid.shape(), Thing::Obstacle));
+    let fixed = fixed.filter_map(|rigid| of_shape(grid, rigid.shape(), ObjectKind::Obstacle));
     let bodies = world.soft_bodies().iter().flat_map(|body| match D::N {
         2 => body
             .outlines()
@@ -110,13 +110,13 @@ fn of_world<D: Dim>(grid: Grid, world: &World<D>) -> Vec<Stroke> {
             vec![hull(flat(grid, &nodes.collect::<Vec<_>>()))]
         }
     });
-    let bodies = bodies.map(|points| closed(Thing::Body, points));
+    let bodies = bodies.map(|points| closed(ObjectKind::Body, points));
     fixed.chain(bodies).collect()
 }
 
 /// Returns the outline of a shape. Half-spaces are left out, because walls and floors coincide with the
 /// border of the map.
-fn of_shape(grid: Grid, shape: &Shape, of: Thing) -> Option<Stroke> {
+fn of_shape(grid: Grid, shape: &Shape, of: ObjectKind) -> Option<Stroke> {
     let on_map = |at: Vector| grid.axes.map(|axis| at[axis]);
     match *shape {
         Shape::HalfSpace { .. } => None,
@@ -158,7 +158,7 @@ fn flat(grid: Grid, points: &[Vector]) -> Vec<[f32; 2]> {
     points.map(|at| grid.axes.map(|axis| at[axis])).collect()
 }
 
-fn closed(of: Thing, mut points: Vec<[f32; 2]>) -> Stroke {
+fn closed(of: ObjectKind, mut points: Vec<[f32; 2]>) -> Stroke {
     points.extend(points.first().copied());
     Stroke {
         of,
@@ -207,7 +207,7 @@ mod tests {
             assert_eq!(grid.cell_at([f32::NAN; 3]), 0);
             assert!(grid.cell_at(high) <= last && last < usize::from(u16::MAX));
             let strokes = strokes(level);
-            for thing in [Thing::Obstacle, Thing::Basket, Thing::Body] {
+            for thing in [ObjectKind::Obstacle, ObjectKind::Basket, ObjectKind::Body] {
                 let of_it = strokes.iter().find(|stroke| stroke.of == thing);
                 assert!(of_it.unwrap().points.len() >= 2, "{name} {thing:?}");
             }

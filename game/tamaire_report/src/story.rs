@@ -4,7 +4,7 @@ use tamaire_play::Route;
 
 /// Values of a round that the summary of its visit needs.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Play {
+pub struct RoundSummary {
     /// Index of the visit.
     pub visit: u32,
     /// Number of the round within the visit, from 1.
@@ -21,7 +21,7 @@ pub struct Play {
 
 /// Summary of a visit.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Story {
+pub struct VisitSummary {
     /// Number of rounds.
     pub rounds: u64,
     /// Number of won rounds.
@@ -42,9 +42,9 @@ pub struct Story {
     pub is_clock_back: bool,
 }
 
-impl Story {
+impl VisitSummary {
     /// Returns the summary of all rounds of a visit, which must be sorted by number.
-    pub fn of(plays: &[Play]) -> Self {
+    pub fn of(plays: &[RoundSummary]) -> Self {
         let mut story = Self::default();
         let mut played = 0.0;
         let mut dared_since = false;

@@ -1,11 +1,11 @@
 //! CSV tables for analysis. `docs/report.md` describes their columns.
 
 use crate::Error;
-use crate::csv::Row;
+use crate::csv::CsvRow;
 use crate::drafts::{Draft, Drafts};
 use crate::spread::thousandth;
-use crate::story::Story;
-use crate::visits::{Note, Visits};
+use crate::story::VisitSummary;
+use crate::visits::{VisitEntry, Visits};
 use tamaire_logbook::row::route_text;
 use tamaire_logbook::{Event, Round};
 use tamaire_play::Route;
@@ -62,7 +62,7 @@ impl Tables {
     pub fn begin(drafts: &Drafts) -> Result<Self, Error> {
         let begin = |name: &str, columns: &[&str]| {
             let mut draft = drafts.begin(name)?;
-            draft.write(Row::names(columns).bytes())?;
+            draft.write(CsvRow::names(columns).bytes())?;
             Ok::<_, Error>(draft)
         };
         Ok(Self {
@@ -76,8 +76,13 @@ impl Tables {
     ///
     /// # Errors
     /// [`Error::Unwritable`].
-    pub fn visit(&mut self, visits: &Visits, note: &Note, story: &Story) -> Result<(), Error> {
-        let row = Row::default()
+    pub fn visit(
+        &mut self,
+        visits: &Visits,
+        note: &VisitEntry,
+        story: &VisitSummary,
+    ) -> Result<(), Error> {
+        let row = CsvRow::default()
             .value(note.id)
             .text(visits.stands.text(note.stand));
         let row = row.value(note.began).maybe(note.ended);
@@ -100,7 +105,7 @@ impl Tables {
     /// # Errors
     /// [`Error::Unwritable`].
     pub fn round(&mut self, round: &Round) -> Result<(), Error> {
-        let row = Row::default()
+        let row = CsvRow::default()
             .value(round.id)
             .value(round.visit)
             .text(&round.stand);
@@ -131,7 +136,7 @@ impl Tables {
     /// # Errors
     /// [`Error::Unwritable`].
     pub fn event(&mut self, event: &Event) -> Result<(), Error> {
-        let row = Row::default().value(event.id).text(&event.stand);
+        let row = CsvRow::default().value(event.id).text(&event.stand);
         let row = row.value(event.at).value(event.at.utc_ms);
         let row = row.text(event.kind.text()).text(&event.text);
         self.events.write(row.end().bytes())

@@ -4,11 +4,11 @@ use crate::day::hour;
 use crate::figures::{Best, Count, Figures, Hour, LevelFigures, Pieces, Totals, Wins};
 use crate::figures::{DayTotals, StandTotals};
 use crate::spread::{median, thousandth, times};
-use crate::story::{Play, Story};
-use crate::visits::{Note, Visits};
+use crate::story::{RoundSummary, VisitSummary};
+use crate::visits::{VisitEntry, Visits};
 use crate::{Day, figures};
 use std::collections::{BTreeMap, HashMap};
-use tamaire_logbook::{End, Event, Round};
+use tamaire_logbook::{Event, Round, RoundEnd};
 use tamaire_play::Route;
 
 /// Last index of [`Figures::rounds_per_visit`].
@@ -25,7 +25,7 @@ pub type LevelKey = (String, u64);
 #[derive(Debug)]
 pub struct Tally {
     figures: Figures,
-    plays: Vec<Play>,
+    plays: Vec<RoundSummary>,
     levels: HashMap<LevelKey, LevelTally>,
     best: BTreeMap<(Day, Route), (Best, String)>,
     ends: BTreeMap<&'static str, u64>,
@@ -59,7 +59,12 @@ impl Tally {
             rounds: Wins::default(),
         };
         let bins = MOST_PIECES.ilog2();
-        let ends = [End::Won, End::Retried, End::Left, End::Cut];
+        let ends = [
+            RoundEnd::Won,
+            RoundEnd::Retried,
+            RoundEnd::Left,
+            RoundEnd::Cut,
+        ];
         Self {
             figures: Figures {
                 format: figures::FORMAT,
@@ -79,9 +84,14 @@ impl Tally {
     }
 
     /// Counts a round of the visit with this index and note.
-    pub fn round(&mut self, round: &Round, (place, visit): (u32, &Note), keeps_replays: bool) {
+    pub fn round(
+        &mut self,
+        round: &Round,
+        (place, visit): (u32, &VisitEntry),
+        keeps_replays: bool,
+    ) {
         let route = round.route;
-        self.plays.push(Play {
+        self.plays.push(RoundSummary {
             visit: place,
             number: round.number,
             began_ms: round.began.utc_ms,
@@ -127,7 +137,7 @@ impl Tally {
     pub fn finish<E>(
         mut self,
         visits: &Visits,
-        mut each: impl FnMut(&Note, &Story) -> Result<(), E>,
+        mut each: impl FnMut(&VisitEntry, &VisitSummary) -> Result<(), E>,
     ) -> Result<(Figures, Vec<String>), E> {
         self.plays.sort_by_key(|play| (play.visit, play.number));
         let plays = std::mem::take(&mut self.plays);
@@ -143,7 +153,7 @@ impl Tally {
             if !note.counts {
                 continue;
             }
-            let story = Story::of(of_it);
+            let story = VisitSummary::of(of_it);
             self.tell(note, of_it, &story);
             all.add(of_it, &story);
             let stand = stands.entry(visits.stands.text(note.stand)).or_default();
@@ -221,7 +231,7 @@ impl Tally {
     }
 
     /// Counts a visit as a whole.
-    fn tell(&mut self, note: &Note, plays: &[Play], story: &Story) {
+    fn tell(&mut self, note: &VisitEntry, plays: &[RoundSummary], story: &VisitSummary) {
         let figures = &mut self.figures;
         figures.hours[hour(note.began)].visits += 1;
         figures.rounds_per_visit[plays.len().min(MOST_ROUNDS)] += 1;
@@ -257,7 +267,7 @@ impl LevelTally {
 }
 
 impl Sum {
-    fn add(&mut self, plays: &[Play], story: &Story) {
+    fn add(&mut self, plays: &[RoundSummary], story: &VisitSummary) {
         let totals = &mut self.totals;
         totals.visits += 1;
         totals.visits_played += u64::from(!plays.is_empty());

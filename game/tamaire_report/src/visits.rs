@@ -6,7 +6,7 @@ use tamaire_logbook::{Id, Moment, Round, Visit};
 
 /// Values of a visit that are kept in memory while rounds are counted.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Note {
+pub struct VisitEntry {
     /// Id of the visit.
     pub id: Id,
     /// Number of the stand in [`Visits::stands`].
@@ -25,7 +25,7 @@ pub struct Note {
 #[derive(Debug, Default)]
 pub struct Visits {
     /// Visits in the order of reading.
-    pub notes: Vec<Note>,
+    pub notes: Vec<VisitEntry>,
     /// Names of stands by number.
     pub stands: Names,
     /// Languages by number.
@@ -63,7 +63,7 @@ impl Visits {
             return;
         };
         self.repeated += 1;
-        let counts = self.is_asked(visit.began);
+        let counts = self.is_selected(visit.began);
         let stand = self.stands.number(&visit.stand);
         let note = &mut self.notes[place as usize];
         note.ended = note.ended.or(visit.ended);
@@ -87,7 +87,7 @@ impl Visits {
     }
 
     /// Returns whether a moment is on one of the selected days.
-    pub fn is_asked(&self, moment: Moment) -> bool {
+    pub fn is_selected(&self, moment: Moment) -> bool {
         let day = Day::of(moment);
         self.from.is_none_or(|from| from <= day) && self.to.is_none_or(|to| day <= to)
     }
@@ -102,9 +102,9 @@ impl Visits {
     ) -> u32 {
         let place = self.notes.len() as u32;
         self.places.insert(id, place);
-        let counts = self.is_asked(began);
+        let counts = self.is_selected(began);
         let stand = self.stands.number(stand);
-        self.notes.push(Note {
+        self.notes.push(VisitEntry {
             id,
             stand,
             language,

@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut tick_samples = [0.0; 2 * RATE as usize / 60];
         for tick in 0..ticks {
             let soundscape = story(tick, &mut synth);
-            synth.hear(&soundscape);
+            synth.set_soundscape(&soundscape);
             synth.render(&mut tick_samples);
             for sample in tick_samples {
                 file.write_sample((sample * f32::from(i16::MAX)) as i16)?;

@@ -39,7 +39,7 @@ fn report(what: &str, soundscape: Soundscape, tears: u32) {
     for time in 0..60 * SECONDS {
         let start = Instant::now();
         let squash = soundscape.squash + 0.3 * (time / 30 % 2) as f32 * soundscape.hold;
-        synth.hear(&Soundscape {
+        synth.set_soundscape(&Soundscape {
             squash,
             ..soundscape
         });

@@ -45,7 +45,7 @@ pub mod worklet;
 pub use cue::{Cue, Menu, Route};
 #[cfg(feature = "serde")]
 pub use message::Message;
-pub use soundscape::{Hush, Press, Soundscape, Volumes};
+pub use soundscape::{Mute, Press, Soundscape, Volumes};
 #[cfg(feature = "output")]
-pub use speaker::{NoSound, Speaker};
+pub use speaker::{SoundError, Speaker};
 pub use synth::Synth;

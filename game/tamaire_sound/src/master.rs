@@ -47,11 +47,11 @@ impl Room {
 /// High-pass filter for inaudible low frequencies, such as the mean of a tone with many overtones. They would
 /// drive the limiter.
 #[derive(Default)]
-pub(crate) struct Floor {
+pub(crate) struct HighPass {
     mean: Stereo,
 }
 
-impl Floor {
+impl HighPass {
     /// Removes frequencies below about 15 Hz, at `rate` samples per second.
     pub(crate) fn next(&mut self, sample: Stereo, rate: f32) -> Stereo {
         [0, 1].map(|side| {

@@ -19,7 +19,7 @@ const LONGEST: usize = 64;
 
 /// Entry of a message. Sender and receiver must come from the same build.
 #[derive(Deserialize, Serialize)]
-enum News {
+enum Entry {
     Soundscape(Soundscape),
     Volumes(Volumes),
     Cue(Cue),
@@ -35,12 +35,12 @@ impl Message {
 
     /// Records a call of [`Synth::hear`].
     pub fn hear(&mut self, soundscape: &Soundscape) {
-        self.put(&News::Soundscape(*soundscape), 0);
+        self.put(&Entry::Soundscape(*soundscape), 0);
     }
 
     /// Records a call of [`Synth::set_volumes`].
     pub fn set_volumes(&mut self, volumes: &Volumes) {
-        self.put(&News::Volumes(*volumes), 0);
+        self.put(&Entry::Volumes(*volumes), 0);
     }
 
     /// Records a call of [`Synth::play`].
@@ -49,7 +49,7 @@ impl Message {
             Cue::Thud { .. } | Cue::Tear { .. } | Cue::Crumb { .. } => FOR_MENUS,
             Cue::Won(_) | Cue::Menu(_) => FOR_WHAT_LASTS,
         };
-        self.put(&News::Cue(cue), kept_free);
+        self.put(&Entry::Cue(cue), kept_free);
     }
 
     /// Returns the bytes for [`Synth::take`].
@@ -62,7 +62,7 @@ impl Message {
         self.0.clear();
     }
 
-    fn put(&mut self, news: &News, kept_free: usize) {
+    fn put(&mut self, news: &Entry, kept_free: usize) {
         let mut longest = [0; LONGEST];
         let bytes =
             postcard::to_slice(news, &mut longest).expect("an entry fits into LONGEST bytes");
@@ -78,9 +78,9 @@ impl Synth {
     pub fn take(&mut self, mut message: &[u8]) {
         while let Ok((news, rest)) = postcard::take_from_bytes(message) {
             match news {
-                News::Soundscape(soundscape) => self.hear(&soundscape),
-                News::Volumes(volumes) => self.set_volumes(&volumes),
-                News::Cue(cue) => self.play(cue),
+                Entry::Soundscape(soundscape) => self.set_soundscape(&soundscape),
+                Entry::Volumes(volumes) => self.set_volumes(&volumes),
+                Entry::Cue(cue) => self.play(cue),
             }
             message = rest;
         }
@@ -91,7 +91,7 @@ impl Synth {
 mod tests {
     use super::*;
     use crate::cue::{Menu, Route};
-    use crate::soundscape::{Hush, Press};
+    use crate::soundscape::{Mute, Press};
 
     const PRESS: Press = Press {
         force: 600.0,
@@ -104,7 +104,7 @@ mod tests {
         squash: 0.4,
         hold: 0.7,
         music: true,
-        hush: Hush::Nothing,
+        hush: Mute::Nothing,
     };
 
     const VOLUMES: Volumes = Volumes {
@@ -156,7 +156,7 @@ mod tests {
     #[test]
     fn message_has_the_effect_of_the_calls() {
         let mut synth = Synth::new(48_000);
-        synth.hear(&SOUNDSCAPE);
+        synth.set_soundscape(&SOUNDSCAPE);
         synth.set_volumes(&VOLUMES);
         CUES.into_iter().for_each(|cue| synth.play(cue));
         assert_eq!(after(everything().bytes()), heard(synth));
@@ -164,14 +164,14 @@ mod tests {
 
     #[test]
     fn message_round_trip_keeps_all_values() {
-        let hushes = [Hush::Nothing, Hush::World, Hush::Everything];
+        let hushes = [Mute::Nothing, Mute::World, Mute::Everything];
         let mut message = Message::default();
         for hush in hushes {
             message.hear(&Soundscape { hush, ..SOUNDSCAPE });
         }
         let mut rest = message.bytes();
         for hush in hushes {
-            let Ok((News::Soundscape(told), after)) = postcard::take_from_bytes(rest) else {
+            let Ok((Entry::Soundscape(told), after)) = postcard::take_from_bytes(rest) else {
                 panic!("no soundscape in {rest:?}");
             };
             assert_eq!(told, Soundscape { hush, ..SOUNDSCAPE });
@@ -183,7 +183,7 @@ mod tests {
             message.play(cue);
             let told = postcard::from_bytes(message.bytes());
             assert!(
-                matches!(told, Ok(News::Cue(told)) if told == cue),
+                matches!(told, Ok(Entry::Cue(told)) if told == cue),
                 "{cue:?}"
             );
         }
@@ -234,6 +234,6 @@ mod tests {
         assert!(flood.bytes().len() <= Message::MOST_BYTES);
         let last = flood.bytes().len() - 17;
         let told = postcard::from_bytes(&flood.bytes()[last..]);
-        assert!(matches!(told, Ok(News::Volumes(told)) if told == VOLUMES));
+        assert!(matches!(told, Ok(Entry::Volumes(told)) if told == VOLUMES));
     }
 }

@@ -16,7 +16,7 @@ pub struct Soundscape {
     /// Whether background music plays.
     pub music: bool,
     /// Sounds that are muted for a while.
-    pub hush: Hush,
+    pub hush: Mute,
 }
 
 /// A hand on a body.
@@ -34,7 +34,7 @@ pub struct Press {
 /// Sounds that are muted for a while.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Hush {
+pub enum Mute {
     /// Nothing is muted.
     #[default]
     Nothing,

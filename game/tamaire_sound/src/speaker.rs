@@ -11,7 +11,7 @@ mod source;
 use crate::cue::Cue;
 use crate::soundscape::{Soundscape, Volumes};
 use device::{PATIENCE, keep_open, open_stream};
-pub use mailbox::NoSound;
+pub use mailbox::SoundError;
 use mailbox::{Mailbox, lock};
 use std::sync::mpsc;
 use std::sync::{Arc, Mutex};
@@ -27,10 +27,10 @@ impl Speaker {
     /// [`Speaker::trouble`] gives the reason, and opening is retried.
     ///
     /// # Errors
-    /// [`NoSound`] if no thread can be started.
-    pub fn open() -> Result<Self, NoSound> {
+    /// [`SoundError`] if no thread can be started.
+    pub fn open() -> Result<Self, SoundError> {
         let mailbox = Arc::new(Mutex::new(Mailbox {
-            trouble: Some(NoSound::NoAnswer),
+            trouble: Some(SoundError::NoAnswer),
             ..Mailbox::new()
         }));
         let (opened, answer) = mpsc::channel();
@@ -38,7 +38,7 @@ impl Speaker {
         thread::Builder::new()
             .name("sound".to_owned())
             .spawn(move || keep_open(&keeper, opened, |lost| open_stream(&keeper, lost)))
-            .map_err(|error| NoSound::Refused(error.to_string()))?;
+            .map_err(|error| SoundError::Refused(error.to_string()))?;
         // The result is in the mailbox.
         let _ = answer.recv_timeout(PATIENCE);
         Ok(Self { mailbox })
@@ -59,7 +59,7 @@ impl Speaker {
 
     /// Returns the reason for silence, if any, such as an unplugged device. Opening is retried every few
     /// seconds.
-    pub fn trouble(&self) -> Option<NoSound> {
+    pub fn trouble(&self) -> Option<SoundError> {
         lock(&self.mailbox).trouble.clone()
     }
 }
@@ -137,8 +137,8 @@ mod tests {
         let (speaker, mut source) = speaker();
         let weak = Arc::downgrade(&speaker.mailbox);
         speaker.play(Cue::Won(Route::Shave));
-        report(&weak, Some(NoSound::NoDevice));
-        assert_eq!(speaker.trouble(), Some(NoSound::NoDevice));
+        report(&weak, Some(SoundError::NoDevice));
+        assert_eq!(speaker.trouble(), Some(SoundError::NoDevice));
         speaker.play(Cue::Won(Route::Shave));
         report(&weak, None);
         assert_eq!((speaker.trouble(), loudest(&mut source)), (None, 0.0));
@@ -152,12 +152,12 @@ mod tests {
         let (plug, socket) = mpsc::channel();
         let keeper = thread::spawn(move || {
             keep_open(&weak, opened, |lost| {
-                socket.try_recv().map_err(|_| NoSound::NoDevice)?;
-                Ok::<_, NoSound>(lost)
+                socket.try_recv().map_err(|_| SoundError::NoDevice)?;
+                Ok::<_, SoundError>(lost)
             });
         });
         assert!(answer.recv().is_err(), "the first attempt has not ended");
-        assert_eq!(speaker.trouble(), Some(NoSound::NoDevice));
+        assert_eq!(speaker.trouble(), Some(SoundError::NoDevice));
         plug.send(()).unwrap();
         let patience = Instant::now() + 5 * PAUSE;
         while speaker.trouble().is_some() && Instant::now() < patience {

@@ -3,11 +3,11 @@
 use crate::cue::Cue;
 use crate::grain::{BUSES, Bus, Buses, CHUNK, Voices};
 use crate::layer::{Chord, Squeak, Wobble};
-use crate::master::{Floor, Limiter, Room};
+use crate::master::{HighPass, Limiter, Room};
 use crate::music::Music;
 use crate::part::{Noise, Smooth, clean};
 use crate::recipe;
-use crate::soundscape::{Hush, Soundscape, Volumes};
+use crate::soundscape::{Mute, Soundscape, Volumes};
 
 /// Time without updates after which continuous sounds end [s]: the game hangs or has ended.
 const STALE: f32 = 0.5;
@@ -33,7 +33,7 @@ pub struct Synth {
     gains: [Smooth; BUSES],
     master: Smooth,
     room: Room,
-    floor: Floor,
+    floor: HighPass,
     limiter: Limiter,
     buses: Buses,
 }
@@ -57,7 +57,7 @@ impl Synth {
             gains: [0.015, 0.3, 0.015].map(|seconds| Smooth::new(seconds, rate)),
             master: Smooth::new(0.015, rate),
             room: Room::new(rate),
-            floor: Floor::default(),
+            floor: HighPass::default(),
             limiter: Limiter::new(rate),
             buses: [[[0.0; 2]; CHUNK]; BUSES],
         };
@@ -69,7 +69,7 @@ impl Synth {
     }
 
     /// Sets the continuous sounds.
-    pub fn hear(&mut self, soundscape: &Soundscape) {
+    pub fn set_soundscape(&mut self, soundscape: &Soundscape) {
         self.soundscape = soundscape.cleaned();
         self.age = 0;
         self.aim();
@@ -113,7 +113,7 @@ impl Synth {
     fn fill_buses(&mut self, count: usize) {
         self.age += count;
         if self.age as f32 > STALE * self.rate {
-            self.hear(&Soundscape::default());
+            self.set_soundscape(&Soundscape::default());
         }
         self.thuds.forget(count as f32 / self.rate);
         self.buses = [[[0.0; 2]; CHUNK]; BUSES];
@@ -168,10 +168,10 @@ impl Synth {
                 0.0
             }
         };
-        self.gains[Bus::Effects as usize].target = loudness(hush != Hush::World, volumes.effects);
+        self.gains[Bus::Effects as usize].target = loudness(hush != Mute::World, volumes.effects);
         self.gains[Bus::Music as usize].target = loudness(music, volumes.music);
         self.gains[Bus::Interface as usize].target = loudness(true, volumes.interface);
-        self.master.target = loudness(hush != Hush::Everything, volumes.master);
+        self.master.target = loudness(hush != Mute::Everything, volumes.master);
     }
 }
 

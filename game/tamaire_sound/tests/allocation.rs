@@ -48,7 +48,7 @@ fn playing_allocates_no_memory() {
     let before = TAKEN.get();
     assert!(before > 0);
     for _ in 0..60 {
-        synth.hear(&soundscape);
+        synth.set_soundscape(&soundscape);
         for _ in 0..30 {
             synth.play(Cue::Tear {
                 energy: 2.0,

@@ -1,6 +1,6 @@
 //! Measurements of rendered samples.
 
-use tamaire_sound::{Cue, Hush, Menu, Press, Route, Soundscape, Synth, Volumes};
+use tamaire_sound::{Cue, Menu, Mute, Press, Route, Soundscape, Synth, Volumes};
 
 const RATE: u32 = 48_000;
 
@@ -40,7 +40,7 @@ fn render(synth: &mut Synth, seconds: f32, soundscape: impl Fn(f32) -> Soundscap
     let mut left = Vec::new();
     let mut tick = [0.0; 2 * RATE as usize / 60];
     for time in 0..(60.0 * seconds) as usize {
-        synth.hear(&soundscape(time as f32 / 60.0));
+        synth.set_soundscape(&soundscape(time as f32 / 60.0));
         synth.render(&mut tick);
         assert!(
             tick.iter().all(|sample| sample.abs() <= 1.0),
@@ -190,11 +190,11 @@ fn soundscape_changes_do_not_click() {
             ..pressed(800.0, 0.0)
         },
         Soundscape {
-            hush: Hush::Everything,
+            hush: Mute::Everything,
             ..pressed(800.0, 0.7)
         },
         Soundscape {
-            hush: Hush::World,
+            hush: Mute::World,
             ..pressed(800.0, 0.7)
         },
     ];
@@ -321,7 +321,7 @@ fn press_on_the_left_is_louder_on_the_left() {
         slip: 0.5,
         x: -1.0,
     };
-    synth.hear(&Soundscape {
+    synth.set_soundscape(&Soundscape {
         presses: [press, Press::default()],
         ..Soundscape::default()
     });
@@ -383,21 +383,21 @@ fn volumes_and_hush_mute_their_sounds() {
         )
     };
     let all = Volumes::default();
-    assert_eq!(heard(all, Hush::Nothing), (true, true));
-    assert_eq!(heard(all, Hush::World), (false, true));
-    assert_eq!(heard(all, Hush::Everything), (false, false));
+    assert_eq!(heard(all, Mute::Nothing), (true, true));
+    assert_eq!(heard(all, Mute::World), (false, true));
+    assert_eq!(heard(all, Mute::Everything), (false, false));
     let deaf = Volumes {
         effects: 0.0,
         ..all
     };
-    assert_eq!(heard(deaf, Hush::Nothing), (false, true));
+    assert_eq!(heard(deaf, Mute::Nothing), (false, true));
     let deaf = Volumes {
         interface: 0.0,
         ..deaf
     };
-    assert_eq!(heard(deaf, Hush::Nothing), (false, false));
+    assert_eq!(heard(deaf, Mute::Nothing), (false, false));
     assert_eq!(
-        heard(Volumes { master: 0.0, ..all }, Hush::Nothing),
+        heard(Volumes { master: 0.0, ..all }, Mute::Nothing),
         (false, false)
     );
 }
@@ -405,7 +405,7 @@ fn volumes_and_hush_mute_their_sounds() {
 #[test]
 fn sound_of_a_hanging_game_ends() {
     let mut synth = Synth::new(RATE);
-    synth.hear(&pressed(600.0, 0.5));
+    synth.set_soundscape(&pressed(600.0, 0.5));
     let mut samples = vec![0.0; 4 * RATE as usize];
     synth.render(&mut samples);
     assert!(loudness(&samples[..RATE as usize / 2]) > 0.01);

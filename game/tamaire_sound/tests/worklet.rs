@@ -39,7 +39,7 @@ const SOUNDSCAPE: Soundscape = Soundscape {
     squash: 0.3,
     hold: 0.7,
     music: true,
-    hush: tamaire_sound::Hush::Nothing,
+    hush: tamaire_sound::Mute::Nothing,
 };
 
 fn tell(worklet: &mut Worklet, message: &[u8]) {
@@ -61,7 +61,7 @@ fn worklet_plays_the_same_as_a_synth() {
     message.hear(&SOUNDSCAPE);
     message.play(Cue::Menu(Menu::Back));
     tell(&mut worklet, message.bytes());
-    synth.hear(&SOUNDSCAPE);
+    synth.set_soundscape(&SOUNDSCAPE);
     synth.play(Cue::Menu(Menu::Back));
     for _ in 0..100 {
         let mut samples = [0.0; 2 * MOST_FRAMES];

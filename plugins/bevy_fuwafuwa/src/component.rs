@@ -78,7 +78,7 @@ pub struct SoftBodyId(pub BodyId);
 /// - [`MotionType::Fixed`] bodies do not move.
 /// - [`MotionType::Kinematic`] bodies reach the pose of their `Transform` at the end of the next tick, at constant
 ///   velocity.
-/// - [`MotionType::Coupled`] bodies are pulled to their [`Goal`] without rotating; `Transform` is the position
+/// - [`MotionType::Coupled`] bodies are pulled to their [`TargetPosition`] without rotating; `Transform` is the position
 ///   reached.
 /// - [`MotionType::Dynamic`] bodies are dynamic: they fall, rotate and are pushed by contacts; `Transform` follows
 ///   them. See [`RigidBody::dynamic`].
@@ -96,18 +96,18 @@ pub struct RigidBody<D: Dimension> {
     /// larger of the two values is used.
     pub restitution: f32,
     /// Whether the body is a sensor: it has no contact response and sends
-    /// [`Entered`](crate::message::Entered) and [`Left`](crate::message::Left).
+    /// [`SensorEntered`](crate::message::SensorEntered) and [`SensorExited`](crate::message::SensorExited).
     pub is_sensor: bool,
     /// Collision layers.
     pub layers: Layers,
     /// Type of motion.
-    pub drive: MotionType,
+    pub motion_type: MotionType,
     dim: PhantomData<D>,
 }
 
 /// Target position of a [`MotionType::Coupled`] rigid body, world space [m].
 #[derive(Component, Copy, Clone, Debug, PartialEq)]
-pub struct Goal(pub Vec3);
+pub struct TargetPosition(pub Vec3);
 
 /// Engine id of the rigid body of an entity. See also [`crate::SoftWorld::entity_of_rigid`].
 #[derive(Component, Copy, Clone, Debug, PartialEq, Eq)]
@@ -180,20 +180,20 @@ impl<D: Dimension> RigidBody<D> {
     }
 
     /// Kinematic disc (2D) or ball (3D) of a radius [m], moved by its `Transform`.
-    pub fn hand(radius: f32) -> Self {
+    pub fn kinematic_ball(radius: f32) -> Self {
         let centre = [0.0; 3];
         Self::fixed(Shape::Ball { centre, radius }).with_drive(MotionType::Kinematic)
     }
 
     /// Dynamic rigid body with friction 0.5. The shape must be a ball, box or capsule; the mass [kg] is
     /// spread evenly over it. The body rotates about the middle of its shape, even if that is not the origin.
-    pub fn free(shape: Shape, mass: f32) -> Self {
+    pub fn dynamic(shape: Shape, mass: f32) -> Self {
         let drive = MotionType::Dynamic { mass };
         Self::fixed(shape).with_friction(0.5).with_drive(drive)
     }
 
     /// Sets the type of motion.
-    pub fn with_drive(self, drive: MotionType) -> Self {
+    pub fn with_motion_type(self, drive: MotionType) -> Self {
         Self { drive, ..self }
     }
 

@@ -2,8 +2,8 @@
 
 use crate::asset::{ModelLoader, SilhouetteLoader};
 use crate::surface::Surface;
-use crate::surface::plane::Sheet;
-use crate::surface::space::Hull;
+use crate::surface::plane::PlaneSurface;
+use crate::surface::space::SpaceSurface;
 use bevy_app::App;
 use bevy_asset::{AssetApp, Handle};
 use bevy_ecs::world::EntityWorldMut;
@@ -30,7 +30,7 @@ pub trait Dimension: Dim {
 }
 
 impl Dimension for Dim2 {
-    type Surface = Sheet;
+    type Surface = PlaneSurface;
 
     fn show(entity: &mut EntityWorldMut<'_>, mesh: Handle<Mesh>) {
         entity.insert(Mesh2d(mesh));
@@ -46,7 +46,7 @@ impl Dimension for Dim2 {
 }
 
 impl Dimension for Dim3 {
-    type Surface = Hull;
+    type Surface = SpaceSurface;
 
     fn show(entity: &mut EntityWorldMut<'_>, mesh: Handle<Mesh>) {
         entity.insert(Mesh3d(mesh));

@@ -12,7 +12,7 @@ use fuwafuwa::Body;
 
 /// Mesh of a body and the surface from which it is written.
 #[derive(Component)]
-pub struct Drawn<D: Dimension> {
+pub struct BodyMesh<D: Dimension> {
     mesh: Handle<Mesh>,
     colours: SoftColours,
     surface: D::Surface,
@@ -30,7 +30,7 @@ pub fn empty_mesh() -> Mesh {
     mesh
 }
 
-impl<D: Dimension> Drawn<D> {
+impl<D: Dimension> BodyMesh<D> {
     pub fn new(mesh: Handle<Mesh>, colours: SoftColours) -> Self {
         Self {
             mesh,

@@ -6,13 +6,13 @@ use crate::component::{
     Velocity, WithoutMesh,
 };
 use crate::dimension::Dimension;
-use crate::drawn::{Drawn, empty_mesh};
+use crate::drawn::{BodyMesh, empty_mesh};
 use crate::message::Rejection;
 use crate::pose::{Pose, engine_rotation};
 use crate::problem::{Problem, Rejected};
 use crate::queue::{Queue, Request};
 use crate::world::SoftWorld;
-use crate::write::Followed;
+use crate::write::LastWritten;
 use bevy_asset::{AssetServer, Assets, Handle, LoadState};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::hierarchy::ChildOf;
@@ -110,7 +110,7 @@ fn add_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Pr
     entity.remove::<Rejected>();
     entity.insert((
         SoftBodyId(id),
-        Followed::new(pose, transform, velocity, gravity),
+        LastWritten::new(pose, transform, velocity, gravity),
     ));
     Ok(Entry::Entered)
 }
@@ -154,7 +154,7 @@ fn show<D: Dimension>(world: &mut World, entity: Entity, of_file: Vec<[f32; 3]>)
         usual.materials = of_file;
     }
     let colours = world.get::<SoftColours>(entity).cloned().unwrap_or(usual);
-    let known = world.get::<Drawn<D>>(entity).map(Drawn::mesh);
+    let known = world.get::<BodyMesh<D>>(entity).map(BodyMesh::mesh);
     let Some(mut meshes) = world.get_resource_mut::<Assets<Mesh>>() else {
         return;
     };
@@ -162,7 +162,7 @@ fn show<D: Dimension>(world: &mut World, entity: Entity, of_file: Vec<[f32; 3]>)
         return;
     }
     let mesh = known.unwrap_or_else(|| meshes.add(empty_mesh()));
-    let drawn = Drawn::<D>::new(mesh.clone(), colours);
+    let drawn = BodyMesh::<D>::new(mesh.clone(), colours);
     let mut entity = world.entity_mut(entity);
     D::show(&mut entity, mesh);
     entity.insert(drawn);
@@ -195,9 +195,9 @@ fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, P
         soft_world.remove_rigid(entity);
         return Err(refused.into());
     }
-    let followed = Followed {
+    let followed = LastWritten {
         middle,
-        ..Followed::new(pose, transform, velocity, None)
+        ..LastWritten::new(pose, transform, velocity, None)
     };
     let mut entity = world.entity_mut(entity);
     entity.remove::<Rejected>();
@@ -222,10 +222,10 @@ fn remove_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry,
     let _ = world.resource_mut::<SoftWorld<D>>().remove_body(entity);
     // The entity may still exist and may have a new body.
     if let Ok(mut entity) = world.get_entity_mut(entity) {
-        entity.remove::<(SoftBodyId, Followed)>();
+        entity.remove::<(SoftBodyId, LastWritten)>();
         if !entity.contains::<SoftBody<D>>() {
             D::hide(&mut entity);
-            entity.remove::<Drawn<D>>();
+            entity.remove::<BodyMesh<D>>();
         }
     }
     Ok(Entry::Left)
@@ -234,7 +234,7 @@ fn remove_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry,
 fn remove_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Problem> {
     let _ = world.resource_mut::<SoftWorld<D>>().remove_rigid(entity);
     if let Ok(mut entity) = world.get_entity_mut(entity) {
-        entity.remove::<(RigidBodyId, Followed)>();
+        entity.remove::<(RigidBodyId, LastWritten)>();
     }
     Ok(Entry::Left)
 }

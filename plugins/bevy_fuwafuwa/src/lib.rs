@@ -88,7 +88,7 @@ pub use component::{RigidBody, SoftBody};
 pub use dimension::Dimension;
 pub use plugin::{FuwafuwaPlugin, FuwafuwaSystems};
 pub use problem::{Problem, Rejected};
-pub use query::{Hit, SoftQueries};
+pub use query::{QueryHit, SoftQueries};
 pub use world::{SoftSettings, SoftWorld};
 
 pub use fuwafuwa;
@@ -111,12 +111,12 @@ pub type RigidBody3d = RigidBody<Dim3>;
 /// The items that most programs need.
 pub mod prelude {
     pub use crate::component::{
-        ExternalImpulse, Goal, GravityScale, RigidBody, SoftBody, SoftColours, SoftMaterials,
+        ExternalImpulse, TargetPosition, GravityScale, RigidBody, SoftBody, SoftColours, SoftMaterials,
         Velocity,
     };
     pub use crate::message::{
-        ContactBegan, ContactEnded, Cut, Entered, FellAsleep, JointBroke, Left, Parted, Rejection,
-        Removed, Torn, Touched, Woke,
+        ContactBegan, ContactEnded, Cut, SensorEntered, FellAsleep, JointBroke, SensorExited, PieceDetached, Rejection,
+        Removed, NodeSplit, Touched, Woke,
     };
     pub use crate::{
         FuwafuwaPlugin, FuwafuwaPlugin2d, FuwafuwaPlugin3d, FuwafuwaSystems, Rejected, RigidBody2d,

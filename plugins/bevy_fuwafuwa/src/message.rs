@@ -11,7 +11,7 @@ use fuwafuwa::{JointId, KnifeId, PieceId};
 
 /// A node was split: a crack grew.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
-pub struct Torn {
+pub struct NodeSplit {
     /// The soft body.
     pub body: Entity,
     /// Position, world space [m].
@@ -22,7 +22,7 @@ pub struct Torn {
 
 /// A piece was detached.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Parted {
+pub struct PieceDetached {
     /// The soft body.
     pub body: Entity,
     /// Id of the new piece.
@@ -74,7 +74,7 @@ pub struct ContactEnded {
 
 /// A body entered a sensor.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Entered {
+pub struct SensorEntered {
     /// The sensor.
     pub sensor: Entity,
     /// The body that entered.
@@ -85,7 +85,7 @@ pub struct Entered {
 
 /// A body left a sensor. Not sent if one of the two was despawned.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Left {
+pub struct SensorExited {
     /// The sensor.
     pub sensor: Entity,
     /// The body that left.

@@ -5,8 +5,8 @@ use crate::component::SoftBody;
 use crate::dimension::Dimension;
 use crate::enter::enter_and_leave;
 use crate::message::{
-    ContactBegan, ContactEnded, Cut, Entered, FellAsleep, JointBroke, Left, Parted, Quarantined,
-    Rejection, Removed, Torn, Touched, Woke,
+    ContactBegan, ContactEnded, Cut, SensorEntered, FellAsleep, JointBroke, SensorExited, PieceDetached, Quarantined,
+    Rejection, Removed, NodeSplit, Touched, Woke,
 };
 use crate::push::{change_settings, push_bodies};
 use crate::queue::Queue;
@@ -82,13 +82,13 @@ impl<D: Dimension> Plugin for FuwafuwaPlugin<D> {
         app.insert_resource(SoftSettings(self.settings))
             .init_resource::<SoftWorld<D>>()
             .init_resource::<Queue<D>>()
-            .add_message::<Torn>()
-            .add_message::<Parted>()
+            .add_message::<NodeSplit>()
+            .add_message::<PieceDetached>()
             .add_message::<Touched>()
             .add_message::<ContactBegan>()
             .add_message::<ContactEnded>()
-            .add_message::<Entered>()
-            .add_message::<Left>()
+            .add_message::<SensorEntered>()
+            .add_message::<SensorExited>()
             .add_message::<JointBroke>()
             .add_message::<Cut>()
             .add_message::<Removed>()

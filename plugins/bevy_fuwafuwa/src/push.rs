@@ -6,7 +6,7 @@ use crate::message::Rejection;
 use crate::pose::{Pose, engine_rotation};
 use crate::problem::Problem;
 use crate::world::{SoftSettings, SoftWorld};
-use crate::write::Followed;
+use crate::write::LastWritten;
 use bevy_ecs::change_detection::{DetectChanges, Res, ResMut};
 use bevy_ecs::message::MessageWriter;
 use bevy_ecs::system::{Commands, Query};
@@ -30,10 +30,10 @@ pub fn change_settings<D: Dimension>(
 }
 
 /// Components of a soft body that can request a change.
-type Asked<'a> = (
+type SoftChanges<'a> = (
     &'a SoftBodyId,
     &'a mut Transform,
-    &'a mut Followed,
+    &'a mut LastWritten,
     Option<&'a mut Velocity>,
     Option<&'a ExternalImpulse>,
     Option<&'a GravityScale>,
@@ -42,7 +42,7 @@ type Asked<'a> = (
 /// Applies the changes of pose, velocity, gravity and impulse since the last tick to soft bodies.
 pub fn push_bodies<D: Dimension>(
     mut world: ResMut<SoftWorld<D>>,
-    mut bodies: Query<Asked<'_>>,
+    mut bodies: Query<SoftChanges<'_>>,
     mut commands: Commands,
     mut rejections: MessageWriter<Rejection>,
 ) {
@@ -116,7 +116,7 @@ fn displace<D: Dimension>(
     world: &mut SoftWorld<D>,
     id: BodyId,
     transform: &Transform,
-    followed: &mut Followed,
+    followed: &mut LastWritten,
 ) -> Result<Quat, Problem> {
     let (from, mut to) = (followed.pose, Pose::of(transform)?);
     if transform.scale != followed.transform.scale {

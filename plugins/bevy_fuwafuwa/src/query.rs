@@ -17,7 +17,7 @@ pub struct SoftQueries<'w, D: Dimension> {
 
 /// Result of a query.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Hit {
+pub struct QueryHit {
     /// Entity of the body; `None` if the body has none.
     pub entity: Option<Entity>,
     /// Piece of a soft body; `None` for a rigid body.
@@ -33,7 +33,7 @@ pub struct Hit {
 impl<D: Dimension> SoftQueries<'_, D> {
     /// Returns the first surface hit by a ray within the distance `most` [m], which may be infinite. Returns
     /// `None` if the direction has length 0 or a value is not finite.
-    pub fn ray(&self, from: Vec3, direction: Vec3, most: f32) -> Option<Hit> {
+    pub fn ray(&self, from: Vec3, direction: Vec3, most: f32) -> Option<QueryHit> {
         let found = self
             .engine()
             .ray(from.into(), direction.into(), most, &|_| true)?;
@@ -41,7 +41,7 @@ impl<D: Dimension> SoftQueries<'_, D> {
     }
 
     /// Returns the nearest point of any surface within the distance `most` [m].
-    pub fn nearest(&self, at: Vec3, most: f32) -> Option<Hit> {
+    pub fn nearest(&self, at: Vec3, most: f32) -> Option<QueryHit> {
         let found = self.engine().nearest(at.into(), most, &|_| true)?;
         Some(self.hit(found))
     }
@@ -68,7 +68,7 @@ impl<D: Dimension> SoftQueries<'_, D> {
         }
     }
 
-    fn hit(&self, found: Found) -> Hit {
+    fn hit(&self, found: Found) -> QueryHit {
         let piece = match found.thing {
             Thing::Soft { piece, .. } => Some(piece),
             Thing::RigidBody(_) => None,

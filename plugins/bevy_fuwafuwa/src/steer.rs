@@ -1,12 +1,12 @@
 //! Applies changed components to rigid bodies: target, pose, velocity, impulse.
 
-use crate::component::{ExternalImpulse, Goal, RigidBodyId, SoftBodyId, Velocity};
+use crate::component::{ExternalImpulse, TargetPosition, RigidBodyId, SoftBodyId, Velocity};
 use crate::dimension::Dimension;
 use crate::message::Rejection;
 use crate::pose::{Pose, engine_rotation};
 use crate::problem::Problem;
 use crate::world::SoftWorld;
-use crate::write::Followed;
+use crate::write::LastWritten;
 use bevy_ecs::change_detection::ResMut;
 use bevy_ecs::message::MessageWriter;
 use bevy_ecs::query::Without;
@@ -16,19 +16,19 @@ use bevy_transform::components::Transform;
 use fuwafuwa::{MotionType, RigidId};
 
 /// Components of a rigid body that can request a change.
-type Asked<'a> = (
+type RigidChanges<'a> = (
     &'a RigidBodyId,
     &'a mut Transform,
-    &'a mut Followed,
+    &'a mut LastWritten,
     Option<&'a mut Velocity>,
     Option<&'a ExternalImpulse>,
-    Option<&'a Goal>,
+    Option<&'a TargetPosition>,
 );
 
 /// Applies the changes of target, pose, velocity and impulse since the last tick to rigid bodies.
 pub fn steer_rigids<D: Dimension>(
     mut world: ResMut<SoftWorld<D>>,
-    mut rigids: Query<Asked<'_>, Without<SoftBodyId>>,
+    mut rigids: Query<RigidChanges<'_>, Without<SoftBodyId>>,
     mut commands: Commands,
     mut rejections: MessageWriter<Rejection>,
 ) {
@@ -91,7 +91,7 @@ fn put<D: Dimension>(
     world: &mut SoftWorld<D>,
     id: RigidId,
     transform: &Transform,
-    followed: &Followed,
+    followed: &LastWritten,
 ) -> Result<(), Problem> {
     let pose = Pose::of(transform)?;
     if transform.scale != followed.transform.scale {

@@ -2,8 +2,8 @@
 
 use crate::dimension::Dimension;
 use crate::message::{
-    ContactBegan, ContactEnded, Cut, Entered, FellAsleep, JointBroke, Left, Parted, Quarantined,
-    Removed, Torn, Touched, Woke,
+    ContactBegan, ContactEnded, Cut, SensorEntered, FellAsleep, JointBroke, SensorExited, PieceDetached, Quarantined,
+    Removed, NodeSplit, Touched, Woke,
 };
 use crate::world::SoftWorld;
 use bevy_ecs::change_detection::ResMut;
@@ -14,16 +14,16 @@ use fuwafuwa::{Event, ObjectRef};
 /// Writers of all messages.
 #[derive(SystemParam)]
 pub struct Writers<'w> {
-    torn: MessageWriter<'w, Torn>,
-    parted: MessageWriter<'w, Parted>,
+    torn: MessageWriter<'w, NodeSplit>,
+    parted: MessageWriter<'w, PieceDetached>,
     touched: MessageWriter<'w, Touched>,
     fell_asleep: MessageWriter<'w, FellAsleep>,
     woke: MessageWriter<'w, Woke>,
     quarantined: MessageWriter<'w, Quarantined>,
     contact_began: MessageWriter<'w, ContactBegan>,
     contact_ended: MessageWriter<'w, ContactEnded>,
-    entered: MessageWriter<'w, Entered>,
-    left: MessageWriter<'w, Left>,
+    entered: MessageWriter<'w, SensorEntered>,
+    left: MessageWriter<'w, SensorExited>,
     joint_broke: MessageWriter<'w, JointBroke>,
     cut: MessageWriter<'w, Cut>,
     removed: MessageWriter<'w, Removed>,
@@ -57,11 +57,11 @@ impl Writers<'_> {
         match event {
             Event::NodeSplit { body, at, energy } => {
                 let (body, at) = (of_body(body)?, at.into());
-                self.torn.write(Torn { body, at, energy });
+                self.torn.write(NodeSplit { body, at, energy });
             }
             Event::PieceDetached { body, piece } => {
                 let body = of_body(body)?;
-                self.parted.write(Parted { body, piece });
+                self.parted.write(PieceDetached { body, piece });
             }
             Event::Pressed {
                 body,
@@ -123,11 +123,11 @@ impl Writers<'_> {
             }
             Event::SensorEntered { sensor, who } => {
                 let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(who)?);
-                self.entered.write(Entered { sensor, who, piece });
+                self.entered.write(SensorEntered { sensor, who, piece });
             }
             Event::SensorExited { sensor, who } => {
                 let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(who)?);
-                self.left.write(Left { sensor, who, piece });
+                self.left.write(SensorExited { sensor, who, piece });
             }
             Event::Cut {
                 knife,

@@ -147,7 +147,7 @@ impl<D: Dimension> SoftWorld<D> {
     }
 
     /// Returns the events since the last tick, caused by direct calls of the engine.
-    pub(crate) fn untold(&self) -> Vec<Event> {
+    pub(crate) fn unsent_events(&self) -> Vec<Event> {
         self.engine
             .events()
             .get(self.told..)

@@ -2,7 +2,7 @@
 
 use crate::component::{GravityScale, RigidBodyId, SoftBodyId, Velocity};
 use crate::dimension::Dimension;
-use crate::drawn::Drawn;
+use crate::drawn::BodyMesh;
 use crate::pose::{Pose, motion_of};
 use crate::world::SoftWorld;
 use bevy_asset::Assets;
@@ -17,7 +17,7 @@ use fuwafuwa::MotionType;
 
 /// Values last written to the entity. A component that differs was changed by the user.
 #[derive(Component, Copy, Clone, Debug)]
-pub struct Followed {
+pub struct LastWritten {
     pub pose: Pose,
     pub transform: Transform,
     pub velocity: Velocity,
@@ -30,7 +30,7 @@ pub struct Followed {
     pub is_settled: bool,
 }
 
-impl Followed {
+impl LastWritten {
     pub fn new(
         pose: Pose,
         transform: Transform,
@@ -66,7 +66,7 @@ pub fn write_bodies<D: Dimension>(
     mut bodies: Query<(
         &SoftBodyId,
         &mut Transform,
-        &mut Followed,
+        &mut LastWritten,
         Option<&mut Velocity>,
     )>,
 ) {
@@ -109,7 +109,7 @@ pub fn write_rigids<D: Dimension>(
         (
             &RigidBodyId,
             &mut Transform,
-            &mut Followed,
+            &mut LastWritten,
             Option<&mut Velocity>,
         ),
         Without<SoftBodyId>,
@@ -156,7 +156,7 @@ pub fn write_rigids<D: Dimension>(
 pub fn write_meshes<D: Dimension>(
     world: Res<SoftWorld<D>>,
     meshes: Option<ResMut<Assets<Mesh>>>,
-    mut bodies: Query<(&SoftBodyId, &Followed, &mut Drawn<D>)>,
+    mut bodies: Query<(&SoftBodyId, &LastWritten, &mut BodyMesh<D>)>,
 ) {
     let Some(mut meshes) = meshes else {
         return;

@@ -49,13 +49,13 @@ use std::fmt;
 use fuwafuwa::world::Refused;
 use fuwafuwa::{BodyError, BuildError, Dim2, Dim3, VoxelGrid};
 
-pub use side::Side;
+pub use side::EngineResult;
 pub use squash::compare_drop;
 pub use tear::compare_tear;
 
 use mesh::Simplices;
 pub use world::Effort;
-use world::{Falling, Law, plane, space};
+use world::{Falling, CellModel, plane, space};
 
 /// Width of the body [m], including empty voxels at the rim.
 const WIDTH: f32 = 1.0;
@@ -188,14 +188,14 @@ fn theirs(scene: &Drop, effort: Effort) -> Result<Box<dyn Falling>> {
     }
     scene.check()?;
     let mesh = Simplices::tetrahedra(&VoxelGrid::<Dim3>::ball(scene.n, WIDTH)?);
-    let law = Law::springs(scene, mesh.voxel_size);
+    let law = CellModel::springs(scene, mesh.voxel_size);
     Ok(Box::new(space::World::new(&mesh, scene, effort, law)))
 }
 
 fn disc(scene: &Drop, effort: Effort) -> Result<plane::World> {
     scene.check()?;
     let mesh = Simplices::triangles(&VoxelGrid::<Dim2>::ball(scene.n, WIDTH)?);
-    let law = Law::Corotational;
+    let law = CellModel::Corotational;
     Ok(plane::World::new(&mesh, scene, effort, law))
 }
 

@@ -3,7 +3,7 @@
 
 use std::process::ExitCode;
 
-use against_rapier::{Drop, Effort, Result, Side, compare_drop, compare_tear};
+use against_rapier::{Drop, Effort, Result, EngineResult, compare_drop, compare_tear};
 use clap::{Parser, ValueEnum};
 use serde::Serialize;
 
@@ -50,7 +50,7 @@ struct Comparison {
     /// Frames per engine.
     frames: usize,
     /// Results of fuwafuwa and of Rapier.
-    sides: [Side; 2],
+    sides: [EngineResult; 2],
     /// Median frame time of each engine [ms].
     median: [f64; 2],
     /// Slowest frame time of each engine [ms].

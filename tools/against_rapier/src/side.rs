@@ -9,7 +9,7 @@ pub const TOLERANCE: f64 = 0.02;
 
 /// Result of a scene in one engine.
 #[derive(Clone, Debug, Serialize)]
-pub struct Side {
+pub struct EngineResult {
     /// Name and version of the engine, and the elements of its bodies.
     pub engine: String,
     /// Substeps per frame. Rapier adds up to 4 during fast impacts.
@@ -29,7 +29,7 @@ pub struct Side {
     pub milliseconds: Vec<f64>,
 }
 
-impl Side {
+impl EngineResult {
     /// Returns whether the peak squash agrees within 2 percentage points.
     pub fn equals(&self, other: &Self) -> bool {
         (self.peak_squash - other.peak_squash).abs() <= TOLERANCE
@@ -49,10 +49,10 @@ impl Side {
 }
 
 /// Runs worlds alternately, frame by frame, until one of them sleeps completely.
-pub fn fall<const K: usize>(worlds: [Box<dyn Falling>; K], frames: usize) -> [Side; K] {
-    let mut watched = worlds.map(Watched::new);
+pub fn fall<const K: usize>(worlds: [Box<dyn Falling>; K], frames: usize) -> [EngineResult; K] {
+    let mut watched = worlds.map(MeasuredWorld::new);
     for _ in 0..frames {
-        watched.iter_mut().for_each(Watched::step);
+        watched.iter_mut().for_each(MeasuredWorld::step);
         if watched.iter().any(|watched| watched.side.asleep >= 1.0) {
             break;
         }
@@ -61,19 +61,19 @@ pub fn fall<const K: usize>(worlds: [Box<dyn Falling>; K], frames: usize) -> [Si
 }
 
 /// A world and its measurements.
-pub struct Watched {
+pub struct MeasuredWorld {
     world: Box<dyn Falling>,
     height: f32,
     /// Measurements.
-    pub side: Side,
+    pub side: EngineResult,
 }
 
-impl Watched {
+impl MeasuredWorld {
     /// Starts the measurements of a world.
     pub fn new(world: Box<dyn Falling>) -> Self {
         Self {
             height: world.span().height(),
-            side: Side {
+            side: EngineResult {
                 engine: world.engine(),
                 substeps: world.substeps(),
                 stiffness_scale: world.stiffness_scale(),

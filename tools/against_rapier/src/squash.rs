@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use fuwafuwa::world::FEWEST_SUBSTEPS;
 
-use crate::side::{Side, TOLERANCE, Watched, fall};
+use crate::side::{EngineResult, TOLERANCE, MeasuredWorld, fall};
 use crate::world::Falling;
 use crate::{Drop, Effort, FRAME, Result, WIDTH, ours, theirs};
 
@@ -23,7 +23,7 @@ const MOST_SUBSTEPS: usize = 128;
 ///
 /// # Errors
 /// [`Error`](crate::Error) if the scene is invalid.
-pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[Side; 2]> {
+pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[EngineResult; 2]> {
     let frames = frames_to_peak(scene);
     let [exact] = fall([ours(scene, None)?], frames);
     let limit = exact.peak_squash + TOLERANCE;
@@ -53,7 +53,7 @@ pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[Sid
 
 /// Returns whether the peak squash stays within `limit`, and the median frame time [ms] until then.
 fn stiff(world: Box<dyn Falling>, frames: usize, limit: f64) -> (bool, f64) {
-    let mut watched = Watched::new(world);
+    let mut watched = MeasuredWorld::new(world);
     let is_stiff = (0..frames).all(|_| {
         watched.step();
         watched.side.peak_squash <= limit && watched.side.finite
@@ -64,7 +64,7 @@ fn stiff(world: Box<dyn Falling>, frames: usize, limit: f64) -> (bool, f64) {
 /// Returns the fewest substeps in `range` for which a body is stiff, and their median frame time [ms]. Raises
 /// the substeps by a quarter until they suffice, then bisects. Returns `None` if the result is not faster
 /// than `fastest` [ms] or no number suffices.
-fn enough(
+fn fewest_stiff_substeps(
     range: Range<usize>,
     fastest: f64,
     mut stiff: impl FnMut(usize) -> Result<(bool, f64)>,

@@ -3,7 +3,7 @@
 use fuwafuwa::{Blade, Dim2, World};
 use rapier2d::prelude::{SoftBodyHandle, Vector};
 
-use crate::side::{Side, fall};
+use crate::side::{EngineResult, fall};
 use crate::world::{Falling, plane};
 use crate::{Drop, Effort, Error, Result, WIDTH, disc, ours};
 
@@ -13,7 +13,7 @@ use crate::{Drop, Effort, Error, Result, WIDTH, disc, ours};
 ///
 /// # Errors
 /// [`Error`] if the scene is invalid.
-pub fn compare_tear(scene: &Drop, pitch: usize, effort: Effort) -> Result<[Side; 2]> {
+pub fn compare_tear(scene: &Drop, pitch: usize, effort: Effort) -> Result<[EngineResult; 2]> {
     for (field, holds, expected) in [
         ("dim", scene.dim == 2, "2"),
         ("pitch", pitch > 0, "at least 1"),

@@ -8,7 +8,7 @@ use crate::Drop;
 
 /// Constitutive model of a cell.
 #[derive(Clone, Copy, Debug)]
-pub enum Law {
+pub enum CellModel {
     /// Linear elasticity in the corotated frame of the cell.
     Corotational,
     /// Springs along the edges of the cells, and a volume constraint per cell.
@@ -18,7 +18,7 @@ pub enum Law {
     },
 }
 
-impl Law {
+impl CellModel {
     /// Returns springs that make a block of tetrahedra as stiff as the scene requires.
     ///
     /// Each voxel of edge h has three axial springs and three on face diagonals, all with the same constant
@@ -126,7 +126,7 @@ macro_rules! world {
     ($rapier:ident, $corners:literal, $vector:expr, $cells:literal) => {
         use crate::Drop;
         use crate::mesh::Simplices;
-        use crate::world::{Effort, Falling, Law, SKIN, Span};
+        use crate::world::{Effort, Falling, CellModel, SKIN, Span};
         use $rapier::na::Unit;
         use $rapier::prelude::*;
 
@@ -139,7 +139,7 @@ macro_rules! world {
 
         impl World {
             /// Builds a world with the body of `mesh` at rest, at the initial height of the scene.
-            pub fn new(mesh: &Simplices<$corners>, scene: &Drop, effort: Effort, law: Law) -> Self {
+            pub fn new(mesh: &Simplices<$corners>, scene: &Drop, effort: Effort, law: CellModel) -> Self {
                 let mut rapier = PhysicsWorld::new();
                 rapier.gravity = Vector::Y * -scene.gravity;
                 rapier.integration_parameters.dt = crate::FRAME;
@@ -155,14 +155,14 @@ macro_rules! world {
             mesh: &Simplices<$corners>,
             scene: &Drop,
             effort: Effort,
-            law: Law,
+            law: CellModel,
         ) -> SoftBodyBuilder {
             let skin = SKIN * mesh.voxel_size;
             let up = Vector::Y * (scene.height + skin);
             let vector = $vector;
             let (cell_model, softness) = match law {
-                Law::Corotational => (SoftBodyCellModel::Corotational, None),
-                Law::Springs { frequency } => {
+                CellModel::Corotational => (SoftBodyCellModel::Corotational, None),
+                CellModel::Springs { frequency } => {
                     let undamped = SpringCoefficients::new(frequency, 0.0);
                     (SoftBodyCellModel::Volume, Some(undamped))
                 }

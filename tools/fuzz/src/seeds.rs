@@ -232,7 +232,8 @@ pub fn small_levels() -> Vec<Level> {
             return level;
         }
         let scene = Scene::read(id, text, &[format!("body.n={FEW}")]);
-        Level::of(id, scene.expect("a built-in scene or level")).expect("a smaller body is valid")
+        Level::from_scene(id, scene.expect("a built-in scene or level"))
+            .expect("a smaller body is valid")
     };
     NAMED.iter().chain(&NAMED_3D).map(small).collect()
 }

@@ -1,7 +1,7 @@
 //! Cross compilation for other systems, and running their programs here.
 
 use crate::debian;
-use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
+use crate::packages::{IfMissing, MissingItem, apt_get, install_arguments, list_lacks};
 use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, root, target};
 use crate::wine;
 use std::fs;
@@ -94,20 +94,20 @@ impl System {
         })
     }
 
-    fn find(&'static self, wanted: Wanted) -> Result<Compiler, Vec<Lack>> {
+    fn find(&'static self, wanted: Wanted) -> Result<Compiler, Vec<MissingItem>> {
         let programs = [self.linker].into_iter();
         let programs = programs.chain(self.compilers.iter().copied());
         let runner = (wanted == Wanted::Run).then_some(self.runner);
-        let mut lacks: Vec<Lack> = programs
+        let mut lacks: Vec<MissingItem> = programs
             .chain(runner)
             // An absolute path is checked as it is.
             .filter(|(program, _)| !is_on_path(program))
-            .map(|(program, package)| Lack::new(format!("{program} not found"), package))
+            .map(|(program, package)| MissingItem::new(format!("{program} not found"), package))
             .collect();
         let mut sources = None;
         if !debian::toolchain_has(self.triple) {
             match debian::find(self.triple, debian::description().as_deref(), Path::exists) {
-                Err(lack) => lacks.extend([lack, Lack::new("no sources", "rust-web-src")]),
+                Err(lack) => lacks.extend([lack, MissingItem::new("no sources", "rust-web-src")]),
                 Ok(found) => match found.sources {
                     Err(lack) => lacks.push(lack),
                     Ok(path) => sources = Some(path),

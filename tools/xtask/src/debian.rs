@@ -2,7 +2,7 @@
 //! Otherwise Debian's packages are used: a compiler, and the sources of its standard library, which cargo
 //! then builds, too.
 
-use crate::packages::Lack;
+use crate::packages::MissingItem;
 use crate::shell::output_of;
 use std::env;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ pub struct Found {
     /// Major version of its LLVM, which also names the matching linker.
     pub llvm: String,
     /// Sources of its standard library.
-    pub sources: Result<PathBuf, Lack>,
+    pub sources: Result<PathBuf, MissingItem>,
 }
 
 /// Whether the toolchain in use has the standard library for this target.
@@ -39,7 +39,7 @@ pub fn find(
     target: &str,
     description: Option<&str>,
     exists: impl Fn(&Path) -> bool,
-) -> Result<Found, Lack> {
+) -> Result<Found, MissingItem> {
     let field = |name| {
         let mut lines = description.unwrap_or_default().lines();
         lines.find_map(|line| line.strip_prefix(name)?.strip_prefix(": "))
@@ -47,18 +47,18 @@ pub fn find(
     let (Some(release), Some(llvm)) = (field("release"), field("LLVM version")) else {
         let what =
             format!("the Rust toolchain cannot build for {target}, and {RUSTC} does not exist");
-        return Err(Lack::new(what, "rustc-web"));
+        return Err(MissingItem::new(what, "rustc-web"));
     };
     if !is_new_enough(release) {
         let what = format!("{RUSTC} is Rust {release}, but this workspace requires {OLDEST}");
-        return Err(Lack::new(what, "rustc-web"));
+        return Err(MissingItem::new(what, "rustc-web"));
     }
     let sources = PathBuf::from(format!("/usr/src/rustc-{release}/library"));
     let sources = match exists(&sources.join("std")) {
         true => Ok(sources),
         false => {
             let what = format!("no sources in {}", sources.display());
-            Err(Lack::new(what, "rust-web-src"))
+            Err(MissingItem::new(what, "rust-web-src"))
         }
     };
     Ok(Found {

@@ -32,7 +32,7 @@ struct Outcome {
 
 /// Fuzzes the named doors, or all, sharing the given number of minutes.
 pub fn run(words: &[String]) -> Result<(), Failure> {
-    let (minutes, doors) = understood(words).map_err(failure)?;
+    let (minutes, doors) = parse_arguments(words).map_err(failure)?;
     provide(&[Purpose::Build, Purpose::Fuzzing], IfMissing::Install);
     let (program, folder) = build()?;
     let doors = match doors.is_empty() {
@@ -45,7 +45,7 @@ pub fn run(words: &[String]) -> Result<(), Failure> {
     println!("door        inputs  coverage    corpus  seconds  slowest [s]  memory [MiB]");
     let mut bad = Vec::new();
     for door in &doors {
-        let outcome = tried(&program, &folder, door, seconds);
+        let outcome = fuzz_door(&program, &folder, door, seconds);
         let outcome = outcome.map_err(|error| failure(format!("{door}: {error}")))?;
         println!("{door:10}{}", row(&outcome));
         if !outcome.is_good {
@@ -69,7 +69,7 @@ fn failure(message: String) -> Failure {
 }
 
 /// Parses the number of minutes and the names of the doors.
-fn understood(words: &[String]) -> Result<(f32, &[String]), String> {
+fn parse_arguments(words: &[String]) -> Result<(f32, &[String]), String> {
     let Some((first, doors)) = words.split_first() else {
         return Ok((MINUTES, &[]));
     };
@@ -116,7 +116,7 @@ fn all_doors(seeds: &Path) -> Result<Vec<String>, Failure> {
 }
 
 /// Fuzzes a door for some seconds. Inputs with new coverage are kept for the next run.
-fn tried(program: &Path, folder: &Path, door: &str, seconds: u32) -> std::io::Result<Outcome> {
+fn fuzz_door(program: &Path, folder: &Path, door: &str, seconds: u32) -> std::io::Result<Outcome> {
     let [corpus, seeds] = ["corpus", "seeds"].map(|part| folder.join(part).join(door));
     fs::create_dir_all(&corpus)?;
     let log = folder.join(format!("{door}.log"));
@@ -181,11 +181,11 @@ mod tests {
                 .map(String::from)
                 .collect::<Vec<_>>()
         };
-        assert_eq!(understood(&[]), Ok((MINUTES, &[][..])));
+        assert_eq!(parse_arguments(&[]), Ok((MINUTES, &[][..])));
         let line = words("0.5 png vox");
-        assert_eq!(understood(&line), Ok((0.5, &words("png vox")[..])));
+        assert_eq!(parse_arguments(&line), Ok((0.5, &words("png vox")[..])));
         for line in ["png", "-1", "nan", "0"] {
-            assert!(understood(&words(line)).is_err(), "{line}");
+            assert!(parse_arguments(&words(line)).is_err(), "{line}");
         }
     }
 

@@ -5,7 +5,9 @@
 //! Debian or Ubuntu. Kernel and busybox, which starts the test, are unpacked in the target folder and not
 //! installed.
 
-use crate::packages::{self, IfMissing, Lack, Purpose, apt_get, install_arguments, list_lacks};
+use crate::packages::{
+    self, IfMissing, MissingItem, Purpose, apt_get, install_arguments, list_lacks,
+};
 use crate::shell::{
     CANNOT, FAILED, Failure, answers, cargo, execute, output_of, root, show, target,
 };
@@ -63,10 +65,10 @@ struct Guest {
 }
 
 /// Returns the contents of the machine, or everything that is missing.
-fn find_guest(folder: &Path) -> Result<Guest, Vec<Lack>> {
+fn find_guest(folder: &Path) -> Result<Guest, Vec<MissingItem>> {
     let mut lacks = Vec::new();
     if !answers(QEMU) {
-        lacks.push(Lack::new(
+        lacks.push(MissingItem::new(
             format!("{QEMU} not found on the path"),
             "qemu-system-x86",
         ));
@@ -75,7 +77,7 @@ fn find_guest(folder: &Path) -> Result<Guest, Vec<Lack>> {
         let found = files(folder, name).pop();
         if found.is_none() {
             let what = format!("{name} not found in {}", folder.display());
-            lacks.push(Lack::new(what, package));
+            lacks.push(MissingItem::new(what, package));
         }
         found.unwrap_or_default()
     };
@@ -105,7 +107,7 @@ fn files(folder: &Path, name: &str) -> Vec<PathBuf> {
 }
 
 /// Installs QEMU, or downloads other contents of the machine. Failures are only reported.
-fn provide(folder: &Path, lack: &Lack) {
+fn provide(folder: &Path, lack: &MissingItem) {
     match lack.package.as_str() {
         BUSYBOX => fetch(folder, BUSYBOX, &["*/bin/busybox"]),
         package if package == LATEST[0] => match LATEST.iter().find_map(|name| kernel_of(name)) {
@@ -288,7 +290,7 @@ fn boot(folder: &Path, kernel: &Path) -> Result<(), Failure> {
     })
 }
 
-fn cannot(lacks: &[Lack], if_missing: IfMissing) -> Failure {
+fn cannot(lacks: &[MissingItem], if_missing: IfMissing) -> Failure {
     let advice = match if_missing {
         IfMissing::Say => {
             "On Debian and Ubuntu, `cargo xtask kernel --install` installs QEMU and downloads the rest."

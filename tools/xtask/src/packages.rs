@@ -109,14 +109,14 @@ const PACKAGES: &[Package] = {
 
 /// Missing item, and the Debian package that contains it.
 #[derive(Debug, PartialEq)]
-pub struct Lack {
+pub struct MissingItem {
     what: String,
     pub package: String,
 }
 
-impl Lack {
-    pub fn new(what: impl Into<String>, package: impl Into<String>) -> Lack {
-        Lack {
+impl MissingItem {
+    pub fn new(what: impl Into<String>, package: impl Into<String>) -> MissingItem {
+        MissingItem {
             what: what.into(),
             package: package.into(),
         }
@@ -124,7 +124,7 @@ impl Lack {
 }
 
 /// Formats a line for each item.
-pub fn list_lacks(lacks: &[Lack]) -> String {
+pub fn list_lacks(lacks: &[MissingItem]) -> String {
     let lines: Vec<String> = lacks
         .iter()
         .map(|lack| format!("- {} (Debian: {})", lack.what, lack.package))

@@ -13,7 +13,7 @@ use crate::packages::{self, IfMissing, Purpose};
 use crate::shell::{CANNOT, FAILED, Failure, execute};
 use crate::web;
 use files::zip;
-use kit::{Kit, size};
+use kit::{ReleaseBuild, size};
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::Command;
@@ -24,7 +24,7 @@ const MOST_BYTES: u64 = 12_000_000;
 
 /// Parts of a release to build.
 #[derive(Debug, PartialEq)]
-pub struct Wish {
+pub struct ReleaseParts {
     /// Names of the parts; empty for all.
     pub parts: Vec<String>,
 }
@@ -36,7 +36,7 @@ struct Part {
     what: &'static str,
     /// Purposes of the packages that it needs, besides a compiler.
     needs: &'static [Purpose],
-    make: fn(&mut Kit) -> Result<(), Failure>,
+    make: fn(&mut ReleaseBuild) -> Result<(), Failure>,
 }
 
 #[rustfmt::skip]
@@ -57,7 +57,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 }
 
 /// Result of a part.
-enum Went {
+enum PartResult {
     Made,
     /// It existed already, built from the same commit.
     There,
@@ -65,8 +65,8 @@ enum Went {
 }
 
 /// Builds the parts and reports which exist and which are missing.
-pub fn run(wish: &Wish, if_missing: IfMissing) -> Result<(), Failure> {
-    let mut kit = Kit::open(if_missing)?;
+pub fn run(wish: &ReleaseParts, if_missing: IfMissing) -> Result<(), Failure> {
+    let mut kit = ReleaseBuild::open(if_missing)?;
     let is_wanted =
         |part: &&Part| wish.parts.is_empty() || wish.parts.iter().any(|name| name == part.name);
     let wanted: Vec<&Part> = PARTS.iter().filter(is_wanted).collect();
@@ -87,12 +87,12 @@ pub fn run(wish: &Wish, if_missing: IfMissing) -> Result<(), Failure> {
         let went = make(part, &mut kit);
         let took = began.elapsed().as_secs();
         let how = match &went {
-            Went::Made => format!("built in {}:{:02} min", took / 60, took % 60),
-            Went::There => "exists already".to_string(),
-            Went::Not(failure) => format!("MISSING: {}", failure.message),
+            PartResult::Made => format!("built in {}:{:02} min", took / 60, took % 60),
+            PartResult::There => "exists already".to_string(),
+            PartResult::Not(failure) => format!("MISSING: {}", failure.message),
         };
         let _written = writeln!(table, "  {:8} {how}", part.name);
-        if let Went::Not(failure) = went {
+        if let PartResult::Not(failure) = went {
             eprintln!("xtask: {}: {}", part.name, failure.message);
             worst = match worst {
                 Some(FAILED) => worst,
@@ -115,9 +115,9 @@ pub fn run(wish: &Wish, if_missing: IfMissing) -> Result<(), Failure> {
     }
 }
 
-fn make(part: &Part, kit: &mut Kit) -> Went {
+fn make(part: &Part, kit: &mut ReleaseBuild) -> PartResult {
     if kit.has(part.name) {
-        return Went::There;
+        return PartResult::There;
     }
     packages::provide(part.needs, kit.if_missing);
     kit.begin(part.name);
@@ -125,10 +125,10 @@ fn make(part: &Part, kit: &mut Kit) -> Went {
         .and_then(|()| too_large(kit))
         .and_then(|()| kit.finish());
     match made {
-        Ok(()) => Went::Made,
+        Ok(()) => PartResult::Made,
         Err(failure) => {
             kit.discard();
-            Went::Not(for_lack(failure, &packages::lacking(part.needs)))
+            PartResult::Not(for_lack(failure, &packages::lacking(part.needs)))
         }
     }
 }
@@ -149,7 +149,7 @@ fn for_lack(failure: Failure, lacks: &[&str]) -> Failure {
 }
 
 /// Refuses a package above the size limit. Archives for systems without packages are exempt.
-fn too_large(kit: &Kit) -> Result<(), Failure> {
+fn too_large(kit: &ReleaseBuild) -> Result<(), Failure> {
     let is_package = |file: &&PathBuf| {
         file.extension()
             .is_some_and(|name| name == "deb" || name == "zip")
@@ -171,7 +171,7 @@ fn too_large(kit: &Kit) -> Result<(), Failure> {
 }
 
 /// Packs the folder of the web page.
-fn web_archive(kit: &mut Kit) -> Result<(), Failure> {
+fn web_archive(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     web::run(web::Web::Build(None), kit.if_missing)?;
     let site = web::folder().join("site");
     let stage = kit.stage("web")?;

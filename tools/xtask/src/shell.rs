@@ -37,7 +37,7 @@ pub fn execute(command: &mut Command, hint: &str) -> Result<(), Failure> {
 }
 
 /// Converts an error about a file.
-pub fn told(path: &Path, error: &dyn std::error::Error) -> Failure {
+pub fn file_error(path: &Path, error: &dyn std::error::Error) -> Failure {
     Failure {
         message: format!("{}: {error}", path.display()),
         code: FAILED,

@@ -3,7 +3,7 @@
 use crate::bevy::Bevy;
 use crate::package::Package;
 use crate::packages::IfMissing;
-use crate::release::{self, Wish};
+use crate::release::{self, ReleaseParts};
 use crate::version::Version;
 use crate::web::Web;
 
@@ -65,7 +65,7 @@ pub enum Task {
     Web(Web, IfMissing),
     Arm(IfMissing),
     Windows(IfMissing),
-    Release(Wish, IfMissing),
+    Release(ReleaseParts, IfMissing),
     Version(Version),
     Kernel(IfMissing),
     /// With the duration and the levels.
@@ -169,7 +169,7 @@ fn parts(words: &[&str]) -> Result<Task, String> {
         Some(part) => Err(format!("unknown part `{part}` of a release")),
         None => {
             let parts = parts.iter().map(ToString::to_string).collect();
-            Ok(Task::Release(Wish { parts }, if_missing))
+            Ok(Task::Release(ReleaseParts { parts }, if_missing))
         }
     }
 }
@@ -227,7 +227,7 @@ mod tests {
         );
         check("arm", Ok(Task::Arm(IfMissing::Say)));
         check("windows --install", Ok(Task::Windows(IfMissing::Install)));
-        let parts = |parts: &[&str]| Wish {
+        let parts = |parts: &[&str]| ReleaseParts {
             parts: parts.iter().map(ToString::to_string).collect(),
         };
         check("release", Ok(Task::Release(parts(&[]), IfMissing::Say)));

@@ -6,7 +6,7 @@
 
 use crate::debian;
 use crate::folders;
-use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
+use crate::packages::{IfMissing, MissingItem, apt_get, install_arguments, list_lacks};
 use crate::shell::{CANNOT, FAILED, Failure, answers, cargo, execute, root, target};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -59,10 +59,10 @@ pub enum Compiler {
 }
 
 /// Returns the compiler, or everything that is missing.
-fn find_compiler() -> Result<Compiler, Vec<Lack>> {
+fn find_compiler() -> Result<Compiler, Vec<MissingItem>> {
     let mut lacks = Vec::new();
     if !answers("node") {
-        lacks.push(Lack::new("Node not found on the path", "nodejs"));
+        lacks.push(MissingItem::new("Node not found on the path", "nodejs"));
     }
     let compiler = if debian::toolchain_has(TARGET) {
         Ok(Compiler::Ready)
@@ -84,13 +84,13 @@ fn find_debian(
     description: Option<&str>,
     exists: impl Fn(&Path) -> bool,
     answers: impl Fn(&str) -> bool,
-) -> Result<Compiler, Vec<Lack>> {
+) -> Result<Compiler, Vec<MissingItem>> {
     let found = debian::find(TARGET, description, exists).map_err(|lack| vec![lack])?;
     let mut lacks = Vec::from_iter(found.sources.err());
     let linker = format!("wasm-ld-{}", found.llvm);
     if !answers(&linker) {
         let what = format!("linker {linker} not found");
-        lacks.push(Lack::new(what, format!("lld-{}", found.llvm)));
+        lacks.push(MissingItem::new(what, format!("lld-{}", found.llvm)));
     }
     if lacks.is_empty() {
         Ok(Compiler::Debian { linker })
@@ -100,7 +100,7 @@ fn find_debian(
 }
 
 /// Installs the packages; returns whether that succeeded.
-fn install(lacks: &[Lack]) -> bool {
+fn install(lacks: &[MissingItem]) -> bool {
     // rustc-web conflicts with Debian's rustc and rustup, which must not be removed for it.
     let names = lacks.iter().map(|lack| lack.package.as_str());
     apt_get(&install_arguments(names))
@@ -169,7 +169,7 @@ fn folder() -> PathBuf {
     target().join("wasm")
 }
 
-fn cannot(undone: &str, lacks: &[Lack], if_missing: IfMissing) -> Failure {
+fn cannot(undone: &str, lacks: &[MissingItem], if_missing: IfMissing) -> Failure {
     let advice = match if_missing {
         IfMissing::Say => "On Debian, add `--install` to install the packages.",
         IfMissing::Install => "Debian's packages are not sufficient, see above.",

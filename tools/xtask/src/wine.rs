@@ -1,6 +1,6 @@
 //! Wine with a separate prefix, so that it does not touch the user's files.
 
-use crate::shell::{FAILED, Failure, execute, root, target, told};
+use crate::shell::{FAILED, Failure, execute, file_error, root, target};
 use std::env;
 use std::fs;
 use std::path::PathBuf;
@@ -54,5 +54,5 @@ pub fn prepare(compiler: &str) -> Result<(), Failure> {
         &mut compile,
         "the library that Wine lacks could not be compiled",
     )?;
-    fs::rename(&part, &library).map_err(|error| told(&library, &error))
+    fs::rename(&part, &library).map_err(|error| file_error(&library, &error))
 }

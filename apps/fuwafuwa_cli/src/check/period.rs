@@ -79,7 +79,7 @@ fn ring<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<Ring>
     let mut start = 0.0;
     let (mut sum, mut count) = (0.0, 0.0);
     for step in 0..steps {
-        progress.look();
+        progress.show_if_slow();
         if step == 0 {
             start = advance_and_weigh(&mut body, duration);
         } else if step >= last && step % 8 == 0 {

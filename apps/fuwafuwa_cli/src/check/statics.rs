@@ -22,13 +22,13 @@ const STEP: f64 = 1e-6;
 pub struct Statics {
     /// Row-major stiffness matrix of each element class, for an element of width 2.
     classes: BTreeMap<u32, Vec<f64>>,
-    elements: Vec<Part>,
+    elements: Vec<OperatorElement>,
     held: Vec<bool>,
     diagonal: Vec<f64>,
 }
 
 /// Element of the operator.
-struct Part {
+struct OperatorElement {
     class: u32,
     /// Stiffness relative to that of its class.
     scale: f64,
@@ -67,7 +67,7 @@ impl Statics {
             for (k, &place) in places.iter().enumerate() {
                 diagonal[place as usize] += scale * matrix[k * places.len() + k];
             }
-            elements.push(Part {
+            elements.push(OperatorElement {
                 class,
                 scale,
                 places,
@@ -112,7 +112,7 @@ impl Statics {
             if dot(&residual, &residual).sqrt() <= goal {
                 return Ok(moved);
             }
-            progress.look();
+            progress.show_if_slow();
             self.apply(&step, &mut image);
             let reach = power / dot(&step, &image);
             for k in 0..moved.len() {

@@ -6,7 +6,7 @@ use fuwafuwa::Point;
 use fuwafuwa::dim::add;
 use fuwafuwa::pyramid::Cell;
 use fuwafuwa_painter::worlds;
-use fuwafuwa_painter::{Frame, Painter, Role, Sample};
+use fuwafuwa_painter::{Painter, PaperTransform, Role, Sample};
 
 /// Draws figure 4: the conditions for generating a child.
 pub fn conditions() -> Result<Painter> {
@@ -75,7 +75,10 @@ pub fn conditions() -> Result<Painter> {
 
     let entries = [
         (Sample::Area(Role::Paper, Role::Marked), "parent"),
-        (Sample::Area(Role::Fresh, Role::Added), "child in question"),
+        (
+            Sample::Area(Role::TornSurface, Role::Added),
+            "child in question",
+        ),
         (Sample::Cross(Role::Removed), "node that is released"),
     ];
     painter.legend(638.0, &entries);
@@ -142,14 +145,14 @@ pub fn children() -> Result<Painter> {
 }
 
 /// Returns the frames of figures 4 and 5, which show the lower part of the square.
-fn frame_of(column: usize, row: usize) -> Frame {
-    Frame {
+fn frame_of(column: usize, row: usize) -> PaperTransform {
+    PaperTransform {
         origin: [6.0 + 560.0 * column as f32, 612.0 + 590.0 * row as f32],
         unit: 34.0,
     }
 }
 
-fn title(painter: &mut Painter, frame: Frame, text: &str, detail: &str) {
+fn title(painter: &mut Painter, frame: PaperTransform, text: &str, detail: &str) {
     let [x, y] = [
         frame.origin[0] + frame.unit,
         frame.origin[1] - 15.0 * frame.unit,
@@ -158,14 +161,14 @@ fn title(painter: &mut Painter, frame: Frame, text: &str, detail: &str) {
     painter.text([x, y - 32.0], 13.0, Role::Faded, detail);
 }
 
-fn released(painter: &mut Painter, frame: Frame, height: i32) {
+fn released(painter: &mut Painter, frame: PaperTransform, height: i32) {
     let at = [MIDDLE as f32, height as f32, 0.0];
     painter.cross(frame.spot(at), 6.5, Role::Removed);
 }
 
 /// Draws a child that does not exist yet.
-fn square(painter: &mut Painter, frame: Frame, low: Point, width: i32) {
+fn square(painter: &mut Painter, frame: PaperTransform, low: Point, width: i32) {
     let corners = [[0, 0, 0], [width, 0, 0], [width, width, 0], [0, width, 0]];
     let spots = corners.map(|by| frame.spot(add(low, by).map(|k| k as f32)));
-    painter.polygon(spots.to_vec(), Role::Fresh, Role::Added, 4.0);
+    painter.polygon(spots.to_vec(), Role::TornSurface, Role::Added, 4.0);
 }

@@ -6,9 +6,9 @@ use fuwafuwa::dim::{add, corner, points_in, scale};
 use fuwafuwa::pyramid::{CellHierarchy, Grading};
 use fuwafuwa::stencil::slot_at;
 use fuwafuwa::{Dim, Dim2, Dim3, Material, Mesh, NodeId, Point, SoftBody, VoxelGrid};
-use fuwafuwa_painter::solid::{Camera, Solid};
+use fuwafuwa_painter::solid::{Camera, Scene3d};
 use fuwafuwa_painter::worlds;
-use fuwafuwa_painter::{Frame, Painter, Role, Sample};
+use fuwafuwa_painter::{Painter, PaperTransform, Role, Sample};
 use std::collections::BTreeSet;
 
 /// Voxels across the disc.
@@ -21,7 +21,7 @@ pub fn elements() -> Result<Painter> {
     let body = disc()?;
     let mut painter = Painter::new(1000, 1050);
     // The body is 1 m across; an empty voxel surrounds the disc.
-    let frame = Frame {
+    let frame = PaperTransform {
         origin: [20.0, 970.0],
         unit: 960.0,
     };
@@ -57,7 +57,7 @@ pub fn table() -> Result<Painter> {
     for level in 0..count {
         let (column, row) = ((level % 3) as f32, (level / 3) as f32);
         let low = [40.0 + PITCH[0] * column, 74.0 + PITCH[1] * row];
-        let frame = Frame {
+        let frame = PaperTransform {
             origin: [low[0], low[1] + PANEL],
             unit: PANEL,
         };
@@ -79,7 +79,7 @@ pub fn table() -> Result<Painter> {
     let entries = [
         (Sample::Area(Role::Paper, Role::Guide), "no cell"),
         (
-            Sample::Area(Role::HandedOn, Role::Faded),
+            Sample::Area(Role::EmptyCell, Role::Faded),
             "cell without an element",
         ),
         (
@@ -96,7 +96,7 @@ pub fn table() -> Result<Painter> {
 pub fn opened_ball() -> Result<Painter> {
     let (width, height) = (900, 880);
     let body = SoftBody::<Dim3>::new(VoxelGrid::ball(BALL, 1.0)?, &[Material::default()])?;
-    let mut solid = Solid::new(Camera {
+    let mut solid = Scene3d::new(Camera {
         eye: [2.6, 2.05, 2.9],
         target: [0.5, 0.43, 0.5],
         across: 1.36,
@@ -137,7 +137,7 @@ fn disc() -> Result<SoftBody<Dim2>> {
 /// Draws one level of the table: all cell positions, the existing cells, and their elements.
 fn draw_level(
     painter: &mut Painter,
-    frame: Frame,
+    frame: PaperTransform,
     body: &SoftBody<Dim2>,
     pyramid: &CellHierarchy<Dim2>,
     level: u8,
@@ -154,7 +154,7 @@ fn draw_level(
     for cell in pyramid.cells(level) {
         painter.polygon(
             square(cell.at, width).to_vec(),
-            Role::HandedOn,
+            Role::EmptyCell,
             Role::Faded,
             0.8,
         );

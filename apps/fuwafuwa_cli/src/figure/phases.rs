@@ -8,7 +8,7 @@ use fuwafuwa::stencil::{closure, slot_at};
 use fuwafuwa::view::ElementView;
 use fuwafuwa::{Dim, Dim2, Point};
 use fuwafuwa_painter::worlds;
-use fuwafuwa_painter::{Frame, Painter, Role, Sample};
+use fuwafuwa_painter::{Painter, PaperTransform, Role, Sample};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Draws figure 3: remodelling, phase by phase.
@@ -27,7 +27,7 @@ pub fn phases() -> Result<Painter> {
     let mut painter = Painter::new(1160, 890);
     let frame = |k: usize| {
         let (column, row) = ((k % 3) as f32, (k / 3) as f32);
-        Frame {
+        PaperTransform {
             origin: [22.0 + 374.0 * column, 430.0 + 426.0 * row],
             unit: PANEL / ACROSS as f32,
         }

@@ -9,9 +9,9 @@ use fuwafuwa::{
     Blade, Dim2, Dim3, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid, World,
     WorldConfig,
 };
-use fuwafuwa_painter::solid::{Camera, Solid};
+use fuwafuwa_painter::solid::{Camera, Scene3d};
 use fuwafuwa_painter::worlds::{self, DrawPlane, DrawSpace};
-use fuwafuwa_painter::{Frame, PaintError, Painter, Pixmap, Role, Sample, film};
+use fuwafuwa_painter::{PaintError, Painter, PaperTransform, Pixmap, Role, Sample, film};
 
 /// Display time of a film frame [1/100 s].
 pub const HUNDREDTHS: u16 = 6;
@@ -116,7 +116,7 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
     strip.extend(64);
     let mut entries = vec![
         (Sample::Area(Role::Skin, Role::Skin), "skin"),
-        (Sample::Area(Role::Fresh, Role::Fresh), "cut"),
+        (Sample::Area(Role::TornSurface, Role::TornSurface), "cut"),
     ];
     entries.extend(level_entries(3));
     let y = strip.size()[1] as f32 - 50.0;
@@ -125,7 +125,7 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
 }
 
 /// Draws the elements with cells behind the middle of the body at rest.
-fn draw_section(solid: &mut Solid, body: &SoftBody<Dim3>) {
+fn draw_section(solid: &mut Scene3d, body: &SoftBody<Dim3>) {
     let middle = body.grid().size()[2] / 2;
     worlds::space_elements(solid, body, |view| {
         let element = body.mesh().element(view.id);
@@ -136,7 +136,7 @@ fn draw_section(solid: &mut Solid, body: &SoftBody<Dim3>) {
 fn plane_frame(world: &World<Dim2>, tick: usize, draw: DrawPlane) -> Result<Pixmap> {
     const UNIT: f32 = 285.0;
     let mut painter = Painter::new(SIZE, SIZE);
-    let frame = Frame {
+    let frame = PaperTransform {
         origin: [0.5 * (SIZE as f32 - UNIT), SIZE as f32 - 34.0],
         unit: UNIT,
     };
@@ -146,7 +146,7 @@ fn plane_frame(world: &World<Dim2>, tick: usize, draw: DrawPlane) -> Result<Pixm
 }
 
 fn space_frame(world: &World<Dim3>, tick: usize, draw: DrawSpace) -> Result<Pixmap> {
-    let mut solid = Solid::new(Camera {
+    let mut solid = Scene3d::new(Camera {
         eye: [1.5, 2.0, 3.7],
         target: [0.5, 0.42, 0.5],
         across: 2.3,

@@ -13,7 +13,7 @@ use fuwafuwa::pyramid::Cell;
 use fuwafuwa::view::ElementView;
 use fuwafuwa::{Dim, Dim2, Material, Point, SoftBody, VoxelGrid};
 use fuwafuwa_painter::worlds;
-use fuwafuwa_painter::{Frame, Painter, Role};
+use fuwafuwa_painter::{Painter, PaperTransform, Role};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Voxels across the square and its empty rim. The rim centres it in the grid like the disc of figure 1.
@@ -49,8 +49,8 @@ impl Release {
         }
         let mut after = before.clone();
         after.release(&[([MIDDLE, height, 0], RIGHT)])?;
-        gape(&mut before, height);
-        gape(&mut after, height);
+        open_crack(&mut before, height);
+        open_crack(&mut after, height);
         Ok(Self {
             before,
             after,
@@ -61,7 +61,7 @@ impl Release {
     /// Returns the body after the release with the new crack opened.
     pub fn opened(&self) -> SoftBody<Dim2> {
         let mut body = self.after.clone();
-        gape(&mut body, self.height + 1);
+        open_crack(&mut body, self.height + 1);
         body
     }
 
@@ -85,14 +85,14 @@ impl Release {
 }
 
 /// Draws the elements.
-pub fn draw(painter: &mut Painter, frame: Frame, body: &SoftBody<Dim2>) {
+pub fn draw(painter: &mut Painter, frame: PaperTransform, body: &SoftBody<Dim2>) {
     for view in body.element_views() {
         worlds::plane_element(painter, frame, &view, 1.2);
     }
 }
 
 /// Draws the nodes.
-pub fn draw_nodes(painter: &mut Painter, frame: Frame, body: &SoftBody<Dim2>) {
+pub fn draw_nodes(painter: &mut Painter, frame: PaperTransform, body: &SoftBody<Dim2>) {
     for (id, _) in body.mesh().nodes() {
         let spot = frame.spot(body.node_state(id).0);
         painter.dot(spot, 0.1 * frame.unit, Role::Node);
@@ -102,7 +102,7 @@ pub fn draw_nodes(painter: &mut Painter, frame: Frame, body: &SoftBody<Dim2>) {
 /// Outlines the elements of some cells.
 pub fn mark(
     painter: &mut Painter,
-    frame: Frame,
+    frame: PaperTransform,
     body: &SoftBody<Dim2>,
     cells: &BTreeSet<Cell>,
     role: Role,
@@ -137,7 +137,7 @@ pub fn points(body: &SoftBody<Dim2>) -> BTreeSet<Point> {
 }
 
 /// Opens the crack below a height like a wedge, to make it visible.
-fn gape(body: &mut SoftBody<Dim2>, height: i32) {
+fn open_crack(body: &mut SoftBody<Dim2>, height: i32) {
     let nodes: Vec<_> = body.mesh().nodes().collect();
     for (id, node) in nodes {
         let is_right = (0..Dim2::CORNERS)

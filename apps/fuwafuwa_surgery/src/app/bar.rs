@@ -6,11 +6,11 @@ use crate::procedure::BLUNTEST;
 use crate::tools::Tool;
 use egui::{RichText, Slider, Ui, vec2};
 use tamaire::look::Theme;
-use tamaire::screens::{Weight, button};
+use tamaire::screens::{ButtonStyle, button};
 
 /// Action chosen in the bar.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Ask {
+pub enum BarAction {
     /// Take up a tool.
     Take(Tool),
     /// Pause or resume.
@@ -34,13 +34,17 @@ pub fn show(
     theme: &Theme,
     session: Option<&mut Session>,
     slices: Option<&mut Slices>,
-) -> Option<Ask> {
+) -> Option<BarAction> {
     let session = session?;
     let mut ask = None;
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = 8.0;
-        let mut press = |ui: &mut Ui, text: &str, wide: f32, is_main: bool, what: Ask| {
-            let weight = if is_main { Weight::Main } else { Weight::Other };
+        let mut press = |ui: &mut Ui, text: &str, wide: f32, is_main: bool, what: BarAction| {
+            let weight = if is_main {
+                ButtonStyle::Main
+            } else {
+                ButtonStyle::Other
+            };
             if button(ui, theme, text, vec2(wide, HIGH), weight).clicked() {
                 ask = Some(what);
             }
@@ -48,7 +52,13 @@ pub fn show(
         if session.is_by_hand() {
             for (number, tool) in Tool::ALL.into_iter().enumerate() {
                 let text = format!("{} {}", number + 1, tool.name());
-                press(ui, &text, 122.0, session.hand.tool == tool, Ask::Take(tool));
+                press(
+                    ui,
+                    &text,
+                    122.0,
+                    session.hand.tool == tool,
+                    BarAction::Take(tool),
+                );
             }
             ui.vertical(|ui| {
                 ui.add_space(2.0);
@@ -61,13 +71,13 @@ pub fn show(
                 ui.add(slider);
             });
         } else {
-            press(ui, "Take over", 130.0, false, Ask::TakeOver);
+            press(ui, "Take over", 130.0, false, BarAction::TakeOver);
         }
-        let rest = if session.rests { "Resume" } else { "Pause" };
-        press(ui, rest, 90.0, session.rests, Ask::Rest);
-        press(ui, "Restart", 90.0, false, Ask::Again);
-        press(ui, "Replay", 90.0, false, Ask::Watch);
-        press(ui, "Save", 90.0, false, Ask::Save);
+        let rest = if session.is_paused { "Resume" } else { "Pause" };
+        press(ui, rest, 90.0, session.is_paused, BarAction::Rest);
+        press(ui, "Restart", 90.0, false, BarAction::Again);
+        press(ui, "Replay", 90.0, false, BarAction::Watch);
+        press(ui, "Save", 90.0, false, BarAction::Save);
     });
     if let Some(slices) = slices {
         let place = ui.max_rect();
@@ -77,7 +87,7 @@ pub fn show(
         ui.scope_builder(builder, |ui| {
             let is_strain = slices.shown == Shown::Strain;
             let text = if is_strain { "Strain" } else { "Materials" };
-            if button(ui, theme, text, vec2(124.0, HIGH), Weight::Other).clicked() {
+            if button(ui, theme, text, vec2(124.0, HIGH), ButtonStyle::Other).clicked() {
                 slices.shown = if is_strain {
                     Shown::Materials
                 } else {
@@ -85,9 +95,9 @@ pub fn show(
                 };
             }
             let weight = if slices.follows {
-                Weight::Main
+                ButtonStyle::Main
             } else {
-                Weight::Other
+                ButtonStyle::Other
             };
             if button(ui, theme, "Slices follow tool", vec2(104.0, HIGH), weight).clicked() {
                 slices.follows = !slices.follows;

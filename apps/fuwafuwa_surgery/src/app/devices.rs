@@ -1,6 +1,6 @@
 //! Sticks and gamepads: their input and their force feedback.
 
-use super::hand::Wishes;
+use super::hand::HandInput;
 use egui::Vec2;
 use force_feedback::{Ability, Settings, State, Stop};
 use fuwafuwa::Vector;
@@ -21,7 +21,7 @@ const TORN: f32 = 0.6;
 
 /// Action triggered once per press.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Press {
+pub enum DeviceAction {
     /// Take up the next tool.
     NextTool,
     /// Pause or resume.
@@ -62,11 +62,11 @@ impl Devices {
     /// from `low` to `high` [m].
     pub fn hear(
         &mut self,
-        wishes: &mut Wishes,
+        wishes: &mut HandInput,
         [low, high]: [Vector; 2],
         turn: f32,
         seconds: f32,
-    ) -> (Vec<Press>, Vec2) {
+    ) -> (Vec<DeviceAction>, Vec2) {
         let now = self.pads.snapshot();
         let mut presses = Vec::new();
         for change in now.since(&self.said) {
@@ -79,7 +79,7 @@ impl Devices {
         self.rested += seconds;
         let mut look = Vec2::ZERO;
         for device in &now.devices {
-            let asked = Asked::of(device);
+            let asked = DeviceInput::of(device);
             look += asked.look;
             if !asked.is_anything() {
                 continue;
@@ -89,7 +89,10 @@ impl Devices {
             let report = self.forces.report(device.id);
             let pushes = report.is_some_and(|report| report.ability == Ability::Force);
             if pushes {
-                let lean = tamaire::input::Manner::along(Some(turn), Vec2::from(device.aim()));
+                let lean = tamaire::input::InputMapping::to_world_direction(
+                    Some(turn),
+                    Vec2::from(device.aim()),
+                );
                 wishes.place = Some([0, 1, 2].map(|axis: usize| {
                     let [low, high] = [low[axis], high[axis]];
                     0.5 * (low + high) + 0.5 * lean[axis] * (high - low)
@@ -128,8 +131,8 @@ impl Devices {
                 return Err(Stop::Idle);
             }
             let manner = match pushes {
-                true => force_feedback::Manner::CellIndexing,
-                false => force_feedback::Manner::Steers,
+                true => force_feedback::StickMode::CellIndexing,
+                false => force_feedback::StickMode::Velocity,
             };
             let contact = on_stick(contact, Some(turn));
             Ok(State { contact, manner })
@@ -171,7 +174,7 @@ impl Devices {
 
 /// Input of a device.
 #[derive(Default)]
-struct Asked {
+struct DeviceInput {
     lean: Vec2,
     lift: f32,
     turn: Vector,
@@ -179,7 +182,7 @@ struct Asked {
     grips: bool,
 }
 
-impl Asked {
+impl DeviceInput {
     fn of(device: &Device) -> Self {
         let lean = Vec2::from(radial_dead_zone(device.aim(), DEAD, RIM));
         let held = |control| f32::from(u8::from(device.control(control).down));
@@ -218,11 +221,11 @@ impl Asked {
     }
 }
 
-fn press(control: Control) -> Option<Press> {
+fn press(control: Control) -> Option<DeviceAction> {
     match control {
-        Control::Pad(PadButton::North) | Control::Button(1) => Some(Press::NextTool),
-        Control::Pad(PadButton::Start) | Control::Button(3) => Some(Press::Pause),
-        Control::Pad(PadButton::Back) | Control::Button(8) => Some(Press::CutForces),
+        Control::Pad(PadButton::North) | Control::Button(1) => Some(DeviceAction::NextTool),
+        Control::Pad(PadButton::Start) | Control::Button(3) => Some(DeviceAction::Pause),
+        Control::Pad(PadButton::Back) | Control::Button(8) => Some(DeviceAction::CutForces),
         _ => None,
     }
 }

@@ -6,7 +6,7 @@ use egui::Vec2;
 use fuwafuwa::vector::{plus, scaled};
 use fuwafuwa::{Rotation, Vector};
 use std::f32::consts::PI;
-use tamaire::input::Manner;
+use tamaire::input::InputMapping;
 
 /// Speed of the hand at full deflection of a key or stick [m/s]: in the plane, and upwards.
 const PACE: f32 = 0.06;
@@ -16,7 +16,7 @@ const TURN: f32 = 1.5;
 
 /// Requested motion in a tick.
 #[derive(Clone, Debug, Default)]
-pub struct Wishes {
+pub struct HandInput {
     /// Target position; its height is ignored [m].
     pub place: Option<Vector>,
     /// Velocity to the right and away from the camera; length 1 is full speed.
@@ -82,12 +82,15 @@ impl Hand {
 
     /// Moves the hand for `seconds` within a room from corner to corner [m]. `turn` is the azimuth of the
     /// camera [rad].
-    pub fn pass(&mut self, wishes: &Wishes, [low, high]: [Vector; 2], turn: f32, seconds: f32) {
+    pub fn pass(&mut self, wishes: &HandInput, [low, high]: [Vector; 2], turn: f32, seconds: f32) {
         if let Some([x, _, z]) = wishes.place {
             self.goal = [x, self.goal[1], z];
         }
         let lean = wishes.lean * (1.0 / wishes.lean.length().max(1.0));
-        self.goal = plus(self.goal, Manner::along(Some(turn), lean * PACE * seconds));
+        self.goal = plus(
+            self.goal,
+            InputMapping::to_world_direction(Some(turn), lean * PACE * seconds),
+        );
         self.goal[1] += wishes.wheel + RISE * wishes.lift.clamp(-1.0, 1.0) * seconds;
         for axis in 0..3 {
             self.goal[axis] = self.goal[axis].clamp(low[axis], high[axis]);
@@ -136,19 +139,19 @@ mod tests {
     #[test]
     fn hand_moves_in_camera_directions_and_stays_in_the_room() {
         let mut hand = hand();
-        let wishes = Wishes {
+        let wishes = HandInput {
             lean: egui::vec2(0.0, 9.0),
             wheel: -1.0,
-            ..Wishes::default()
+            ..HandInput::default()
         };
         // Seen from the right side, away means to the left.
         hand.pass(&wishes, ROOM, 0.5 * PI, 0.5);
         assert!((hand.goal[0] + 0.03).abs() < 1e-6 && hand.goal[2].abs() < 1e-6);
         assert_eq!(hand.goal[1], 0.0);
         let place = Some([9.0, 9.0, 0.05]);
-        let wishes = Wishes {
+        let wishes = HandInput {
             place,
-            ..Wishes::default()
+            ..HandInput::default()
         };
         hand.pass(&wishes, ROOM, 0.0, 0.0);
         assert_eq!(hand.goal, [0.1, 0.0, 0.05]);
@@ -166,9 +169,9 @@ mod tests {
     #[test]
     fn yaw_rotates_about_the_vertical_axis() {
         let mut hand = hand();
-        let wishes = Wishes {
+        let wishes = HandInput {
             turn: [1.0, 0.0, 0.0],
-            ..Wishes::default()
+            ..HandInput::default()
         };
         hand.pass(&wishes, ROOM, 0.0, 0.5 * PI / TURN);
         let [x, y, z] = hand.input().rotation().apply([1.0, 0.0, 0.0]);

@@ -68,7 +68,7 @@ fn draw_force(painter: &Painter, session: &Session, view: &View) {
     }
     let metres = view.space.map_or(1.0, |camera| camera.distance) * LONG;
     let tip = plus(sample.at, scaled(sample.force, metres));
-    let (from, to) = (view.on_screen(sample.at), view.on_screen(tip));
+    let (from, to) = (view.to_screen(sample.at), view.to_screen(tip));
     let way = to - from;
     for (wide, colour) in [(9.0, Color32::from_white_alpha(200)), (5.0, RED)] {
         painter.line_segment([from, to], Stroke::new(wide, colour));

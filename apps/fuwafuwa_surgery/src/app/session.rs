@@ -1,7 +1,7 @@
 //! A procedure running in real time: by hand, or as a replay.
 
 use super::hand::Hand;
-use crate::measures::{Part, Sample, parts};
+use crate::measures::{PieceVolume, Sample, parts};
 use crate::procedure::Procedure;
 use crate::record::{Playback, Recording};
 use fuwafuwa::Vector;
@@ -19,14 +19,14 @@ const SEEN: [f32; 3] = [0.12, 0.0, 0.5];
 const SLICED: [f32; 3] = [0.1, 0.05, 0.25];
 
 /// Source of the tool's motion.
-enum Course {
+enum MotionSource {
     Hand(Box<Procedure>),
     Again(Box<Playback>),
 }
 
 /// Procedure running in real time.
 pub struct Session {
-    course: Course,
+    course: MotionSource,
     pace: Pace,
     /// Hand that moves the tool; unused in a replay.
     pub hand: Hand,
@@ -37,9 +37,9 @@ pub struct Session {
     /// Region of the slices: low and high corner [m].
     pub sliced: [Vector; 2],
     /// Whether the procedure is paused.
-    pub rests: bool,
+    pub is_paused: bool,
     /// Pieces as of the last measurement.
-    pub parts: Vec<Part>,
+    pub parts: Vec<PieceVolume>,
     looked: usize,
     /// Message at the end of a replay, or the error that stopped the procedure.
     pub verdict: Option<String>,
@@ -51,18 +51,18 @@ pub struct Session {
 impl Session {
     /// Creates a session by hand.
     pub fn new(procedure: Procedure) -> Self {
-        Self::of(Course::Hand(Box::new(procedure)))
+        Self::of(MotionSource::Hand(Box::new(procedure)))
     }
 
     /// Creates a session that replays a recording.
     pub fn again(playback: Playback) -> Self {
-        Self::of(Course::Again(Box::new(playback)))
+        Self::of(MotionSource::Again(Box::new(playback)))
     }
 
-    fn of(course: Course) -> Self {
+    fn of(course: MotionSource) -> Self {
         let procedure = match &course {
-            Course::Hand(procedure) => procedure,
-            Course::Again(playback) => playback.procedure(),
+            MotionSource::Hand(procedure) => procedure,
+            MotionSource::Again(playback) => playback.procedure(),
         };
         let start = procedure.tool().position();
         let hand = match procedure.inputs().last() {
@@ -78,7 +78,7 @@ impl Session {
             camera: CameraRig::default(),
             seen: around(organ, SEEN),
             sliced: around(organ, SLICED),
-            rests: false,
+            is_paused: false,
             looked: 0,
             verdict: None,
             has_ended: false,
@@ -89,21 +89,21 @@ impl Session {
     /// Returns the procedure in its current state.
     pub fn procedure(&self) -> &Procedure {
         match &self.course {
-            Course::Hand(procedure) => procedure,
-            Course::Again(playback) => playback.procedure(),
+            MotionSource::Hand(procedure) => procedure,
+            MotionSource::Again(playback) => playback.procedure(),
         }
     }
 
     /// Returns whether the tool is moved by hand.
     pub fn is_by_hand(&self) -> bool {
-        matches!(self.course, Course::Hand(_))
+        matches!(self.course, MotionSource::Hand(_))
     }
 
     /// Returns the played fraction of a recording, 0 to 1; `None` by hand.
     pub fn played(&self) -> Option<f32> {
         match &self.course {
-            Course::Hand(_) => None,
-            Course::Again(playback) => {
+            MotionSource::Hand(_) => None,
+            MotionSource::Again(playback) => {
                 let all = playback.recording().ticks().max(1);
                 Some(playback.procedure().ticks() as f32 / all as f32)
             }
@@ -124,8 +124,8 @@ impl Session {
     /// Continues by hand from the current point of a replay.
     pub fn take_over(self) -> Self {
         match self.course {
-            Course::Hand(_) => self,
-            Course::Again(playback) => {
+            MotionSource::Hand(_) => self,
+            MotionSource::Again(playback) => {
                 let procedure = playback.into_procedure();
                 let camera = self.camera;
                 let next = Self::new(procedure);
@@ -141,7 +141,7 @@ impl Session {
 
     /// Advances the procedure by `seconds`.
     pub fn pass(&mut self, clock: &Clock, seconds: f64) {
-        if self.rests || self.is_over() {
+        if self.is_paused || self.is_over() {
             self.pace.forget();
             return;
         }
@@ -168,20 +168,20 @@ impl Session {
     pub fn is_over(&self) -> bool {
         match &self.course {
             _ if self.has_ended => true,
-            Course::Hand(procedure) => procedure.is_full(),
-            Course::Again(playback) => playback.is_over(),
+            MotionSource::Hand(procedure) => procedure.is_full(),
+            MotionSource::Again(playback) => playback.is_over(),
         }
     }
 
     fn tick(&mut self) {
         let before = self.last().released;
         match &mut self.course {
-            Course::Hand(procedure) => {
+            MotionSource::Hand(procedure) => {
                 if let Err(refused) = procedure.step(self.hand.input()) {
                     self.verdict = Some(refused.to_string());
                 }
             }
-            Course::Again(playback) => match playback.step() {
+            MotionSource::Again(playback) => match playback.step() {
                 Ok(()) if playback.is_over() => {
                     self.verdict =
                         Some("The replay is identical to the recording, bit for bit.".into());

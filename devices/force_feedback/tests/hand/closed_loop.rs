@@ -2,7 +2,7 @@
 
 use crate::body::Disc;
 use crate::stick::{Other, Play, Stick, Trace, Wall, play};
-use force_feedback::{Calibration, HARDEST, Settings};
+use force_feedback::{Calibration, MAX_STIFFNESS, Settings};
 
 /// Consumer sticks measured at the fingertip, held loosely, normally and firmly, and a strong stick with a
 /// fast driver: mass [kg], damping [N s/m], grip [N/m], full force [N], travel [m] and longest delay [ms].
@@ -84,9 +84,9 @@ fn stick_at_a_wall_does_not_oscillate() {
         for (strength, clamp, gain) in [(1.0, 1.0, 1.0), (0.3, 1.0, 0.5), (1.0, 0.1, 1.0)] {
             let calibration = Calibration {
                 gain: [1.0, gain],
-                ..Calibration::USUAL
+                ..Calibration::IDENTITY
             };
-            for stiffness in [0.1 * HARDEST, 0.5 * HARDEST, f32::INFINITY] {
+            for stiffness in [0.1 * MAX_STIFFNESS, 0.5 * MAX_STIFFNESS, f32::INFINITY] {
                 for slew in [0.0, 30.0, 1000.0] {
                     let settings = Settings {
                         strength,
@@ -139,7 +139,7 @@ fn stick_at_a_soft_body_does_not_oscillate() {
             (20_000.0, 500.0, 1, false, 1.6),
             (5000.0, 100.0, 1, true, 3.0),
         ] {
-            for hardness in [0.3 * HARDEST, HARDEST] {
+            for hardness in [0.3 * MAX_STIFFNESS, MAX_STIFFNESS] {
                 let settings = Settings {
                     strength: 1.0,
                     clamp: 1.0,

@@ -2,7 +2,9 @@
 
 use crate::body::Disc;
 use crate::stick::Other;
-use force_feedback::{Ability, Feel, Mail, Manner, Output, Settings, State, Watchdog};
+use force_feedback::{
+    Ability, Command, ForceController, Output, Settings, State, StickMode, Watchdog,
+};
 use fuwafuwa::Event;
 use std::time::Duration;
 
@@ -10,9 +12,9 @@ use std::time::Duration;
 const RATE: u32 = 960;
 
 /// Returns the forces on a stick at 960 Hz for a given stick motion, and the number of split nodes.
-fn feel(disc: &mut Disc, manner: Manner, lean: impl Fn(f32) -> f32) -> (Vec<[f32; 2]>, usize) {
-    let (watchdog, mut feel) = (Watchdog::default(), Feel::default());
-    let mut mail = Mail::default();
+fn feel(disc: &mut Disc, manner: StickMode, lean: impl Fn(f32) -> f32) -> (Vec<[f32; 2]>, usize) {
+    let (watchdog, mut feel) = (Watchdog::default(), ForceController::default());
+    let mut mail = Command::default();
     let (mut forces, mut torn) = (Vec::new(), 0);
     for step in 0..4 * RATE {
         let now = Duration::from_secs(1) * step / RATE;
@@ -20,7 +22,7 @@ fn feel(disc: &mut Disc, manner: Manner, lean: impl Fn(f32) -> f32) -> (Vec<[f32
         if step.is_multiple_of(RATE / 60) {
             let (_, contact) = disc.tick(aim);
             let state = State { contact, manner };
-            mail = Mail {
+            mail = Command {
                 wish: Ok(state),
                 at: now,
             };
@@ -43,7 +45,7 @@ fn feel(disc: &mut Disc, manner: Manner, lean: impl Fn(f32) -> f32) -> (Vec<[f32
 
 #[test]
 fn force_of_a_body_at_rest_is_steady() {
-    for manner in [Manner::CellIndexing, Manner::Steers] {
+    for manner in [StickMode::CellIndexing, StickMode::Velocity] {
         for young in [1000.0, 5000.0, 20_000.0] {
             let mut disc = Disc::new(young, f32::INFINITY);
             let (forces, _) = feel(&mut disc, manner, |time| (0.5 * time - 0.4).min(0.3));
@@ -67,7 +69,7 @@ fn force_of_a_body_at_rest_is_steady() {
 #[test]
 fn tears_cause_no_force_jump() {
     let slew = Settings::default().slew;
-    for manner in [Manner::CellIndexing, Manner::Steers] {
+    for manner in [StickMode::CellIndexing, StickMode::Velocity] {
         let mut disc = Disc::new(5000.0, 0.05);
         let (forces, torn) = feel(&mut disc, manner, |time| (0.8 * time - 0.4).min(0.9));
         assert!(torn > 10, "only {torn} tears");

@@ -1,6 +1,9 @@
-//! A simulated stick in a simulated hand, in closed loop with all of `Feel` and an obstacle.
+//! A simulated stick in a simulated hand, in closed loop with all of `ForceController` and an obstacle.
 
-use force_feedback::{Ability, Feel, Felt, Mail, Manner, Output, Settings, State, Stop, Watchdog};
+use force_feedback::{
+    Ability, Command, ForceController, Output, Settings, State, StepOutput, StickMode, Stop,
+    Watchdog,
+};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -61,8 +64,8 @@ pub fn play(
     wish: &dyn Fn(f64) -> [f64; 2],
     nudge: &dyn Fn(f64) -> [f64; 2],
 ) -> Trace {
-    let (watchdog, mut feel) = (Watchdog::default(), Feel::default());
-    let mut mail = Mail::default();
+    let (watchdog, mut feel) = (Watchdog::default(), ForceController::default());
+    let mut mail = Command::default();
     let (mut place, mut velocity) = (wish(0.0).map(|k| k * stick.travel), [0.0f64; 2]);
     let delay = (stick.delay / STEP).round() as usize;
     let mut wire: VecDeque<[f32; 2]> = vec![[0.0; 2]; delay].into();
@@ -93,11 +96,11 @@ pub fn play(
                 felt = other.tick(goal);
             }
             let manner = if play.steers {
-                Manner::Steers
+                StickMode::Velocity
             } else {
-                Manner::CellIndexing
+                StickMode::CellIndexing
             };
-            mail = Mail {
+            mail = Command {
                 wish: Ok(State {
                     contact: felt.1,
                     manner,
@@ -108,7 +111,7 @@ pub fn play(
         }
         if time >= next_update {
             let now = Duration::from_secs_f64(time);
-            let Felt { output, silent, .. } =
+            let StepOutput { output, silent, .. } =
                 feel.step(&watchdog, &mail, (aim, Ability::Force), &play.settings, now);
             assert_ne!(silent, Some(Stop::Stale), "a frame takes too long");
             let Output::Force(told) = output else {

@@ -20,7 +20,7 @@ use sdl3_sys::joystick::{
 };
 use sdl3_sys::properties::SDL_GetBooleanProperty;
 
-use super::{Open, Sdl};
+use super::{OpenDevice, Sdl};
 
 /// Assertion handler of SDL: continues after a failed assertion, such as for a device that was not listed at
 /// the start. In debug builds SDL would otherwise ask on the terminal and block this thread.
@@ -55,7 +55,7 @@ impl Sdl {
     /// feedback; according to SDL, pads have none. `Motors` must be dropped before the device.
     pub fn motors<'sdl>(
         &'sdl self,
-        open: &Open<'sdl>,
+        open: &OpenDevice<'sdl>,
         length: Option<u32>,
     ) -> Option<Motors<'sdl>> {
         if !self.feels {
@@ -85,7 +85,7 @@ impl Sdl {
     }
 }
 
-impl Open<'_> {
+impl OpenDevice<'_> {
     /// Returns USB vendor and product id; 0 if unknown.
     pub fn model(&self) -> (u16, u16) {
         let joystick = self.joystick.as_ptr();

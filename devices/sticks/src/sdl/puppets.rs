@@ -11,7 +11,7 @@ use sdl3_sys::joystick::{
     SDL_VirtualJoystickDesc,
 };
 
-use super::{HatBits, Open, Sdl};
+use super::{HatBits, OpenDevice, Sdl};
 use crate::{DeviceId, Direction, PadButton};
 
 /// Type and size of a virtual device.
@@ -102,7 +102,7 @@ impl Sdl {
     }
 }
 
-impl Open<'_> {
+impl OpenDevice<'_> {
     /// Changes a control of a virtual device. Returns whether the control exists.
     pub fn act(&self, act: PuppetAct) -> bool {
         let joystick = self.joystick.as_ptr();

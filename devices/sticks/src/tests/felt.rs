@@ -1,7 +1,9 @@
 //! Feedback of virtual devices.
 
 use super::*;
-use force_feedback::{Ability, Force, LENGTH, Manner, Output, Settings, Sink, State, Stop};
+use force_feedback::{
+    Ability, ForceThread, OUTPUT_DURATION, Output, Settings, Sink, State, StickMode, Stop,
+};
 
 const PATIENCE: Duration = Duration::from_secs(20);
 
@@ -19,7 +21,7 @@ fn pad_rumble_ends_by_itself_and_on_drop() {
     let pad = sticks.plug_in_pad("Pad").expect("valid device");
     let mut haptic = sticks.haptic(pad.id());
     until("the pad can rumble", || haptic.ability() == Ability::Rumble);
-    assert_eq!(haptic.aim(), Ok([0.0; 2]));
+    assert_eq!(haptic.stick_position(), Ok([0.0; 2]));
     assert_eq!(pad.rumble(), [0, 0]);
     let hum = Output::Rumble {
         low: 0.5,
@@ -34,7 +36,7 @@ fn pad_rumble_ends_by_itself_and_on_drop() {
     until("the rumble ends", || pad.rumble() == [0, 0]);
     // SDL counts whole milliseconds.
     let length = start.elapsed() + Duration::from_millis(2);
-    assert!(length >= LENGTH, "{length:?}");
+    assert!(length >= OUTPUT_DURATION, "{length:?}");
 
     drop(haptic);
     // A busy machine may be slow now and then.
@@ -48,7 +50,7 @@ fn pad_rumble_ends_by_itself_and_on_drop() {
         let start = Instant::now();
         drop(haptic);
         until("the pad stops", || pad.rumble() == [0, 0]);
-        start.elapsed() < LENGTH / 2
+        start.elapsed() < OUTPUT_DURATION / 2
     });
     assert!(is_quick, "dropping the sink does not stop the pad in time");
 }
@@ -86,7 +88,7 @@ fn obsolete_output_is_not_played() {
         .expect("the SDL thread runs");
     // Blocks the thread, as in a stopped process.
     orders
-        .send(Box::new(|_| thread::sleep(LENGTH)))
+        .send(Box::new(|_| thread::sleep(OUTPUT_DURATION)))
         .expect("the SDL thread runs");
     let hum = Output::Rumble {
         low: 0.5,
@@ -122,20 +124,20 @@ fn force_output_does_not_rumble() {
 fn force_thread_drives_pads_until_they_are_unplugged() {
     let sticks = open();
     let pads = ["One", "Two"].map(|name| sticks.plug_in_pad(name).expect("valid device"));
-    let force = Force::start(250).expect("a thread can be started");
+    let force = ForceThread::start(250).expect("a thread can be started");
     let lines = [&pads[0], &pads[1]]
         .map(|pad| force.add(Box::new(sticks.haptic(pad.id())), Settings::default()));
     let push = State {
         contact: [-300.0, 0.0],
-        manner: Manner::CellIndexing,
+        manner: StickMode::CellIndexing,
     };
     until("the first pad rumbles", || {
-        lines[0].feel(push);
+        lines[0].set_state(push);
         pads[0].rumble()[0] > 10_000
     });
     assert_eq!(pads[1].rumble(), [0, 0], "the other pad rumbles too");
     until("a tear is felt", || {
-        lines[0].feel(push);
+        lines[0].set_state(push);
         lines[0].tear(1.0);
         pads[0].rumble()[1] > 10_000
     });
@@ -144,16 +146,16 @@ fn force_thread_drives_pads_until_they_are_unplugged() {
 
     let [one, two] = pads;
     until("the pad rumbles before it is unplugged", || {
-        lines[0].feel(push);
+        lines[0].set_state(push);
         one.rumble()[0] > 0
     });
     drop(one);
     until("the line reports it", || {
-        lines[0].feel(push);
+        lines[0].set_state(push);
         lines[0].report().silent == Some(Stop::Unplugged)
     });
     until("the other pad still rumbles", || {
-        lines[1].feel(push);
+        lines[1].set_state(push);
         two.rumble()[0] > 0
     });
     drop(force);
@@ -167,7 +169,7 @@ fn sink_of_a_missing_device_does_nothing() {
     let id = pad.id();
     drop(pad);
     let mut haptic = sticks.haptic(id);
-    assert!(haptic.aim().is_err());
+    assert!(haptic.stick_position().is_err());
     assert_eq!(haptic.ability(), Ability::Nothing);
     drop(sticks);
     assert!(haptic.play(Output::Force([1.0; 2])).is_err());

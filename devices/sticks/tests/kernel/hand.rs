@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-use force_feedback::{LENGTH, Settings};
+use force_feedback::{OUTPUT_DURATION, Settings};
 
 use crate::uinput::{Effect, Told, What};
 
@@ -142,7 +142,10 @@ fn check_motor(told: &[Told]) -> u16 {
     let direction = effects[0].1.direction;
     for (_, effect) in &effects {
         assert_eq!(effect.direction, direction);
-        assert_eq!((effect.length, effect.delay), (LENGTH, Duration::ZERO));
+        assert_eq!(
+            (effect.length, effect.delay),
+            (OUTPUT_DURATION, Duration::ZERO)
+        );
     }
     let levels: Vec<(Instant, f32)> = effects
         .iter()
@@ -167,7 +170,7 @@ fn check_motor(told: &[Told]) -> u16 {
                 assert_eq!(times, 1);
                 if let Some(before) = starts.last() {
                     assert!(
-                        rested || told.at - *before < LENGTH,
+                        rested || told.at - *before < OUTPUT_DURATION,
                         "a push ended too early"
                     );
                 }

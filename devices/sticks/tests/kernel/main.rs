@@ -14,7 +14,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use force_feedback::{Ability, Force, LENGTH, Line, Manner, State, Stop};
+use force_feedback::{Ability, ForceThread, Line, OUTPUT_DURATION, State, StickMode, Stop};
 use hand::{check, force_at, forces, quiet_since, settings};
 use sticks::{Control, DeviceId, Sticks};
 use uinput::{Stick, Told, What};
@@ -32,7 +32,7 @@ const WAYS: [[f32; 2]; 4] = [LEFT, RIGHT, [0.0, -1.0], [0.0, 1.0]];
 /// Simulated game with one stick.
 struct Game {
     line: Option<Line>,
-    force: Force,
+    force: ForceThread,
     sticks: Sticks,
 }
 
@@ -40,7 +40,7 @@ impl Game {
     fn start() -> Game {
         let mut game = Game {
             line: None,
-            force: Force::start(250).expect("a thread can be started"),
+            force: ForceThread::start(250).expect("a thread can be started"),
             sticks: Sticks::open().expect("SDL starts"),
         };
         game.take_hold();
@@ -91,9 +91,9 @@ fn simulate(line: &Line, push: [f32; 2], duration: Duration) -> Instant {
     let start = Instant::now();
     loop {
         let now = Instant::now();
-        line.feel(State {
+        line.set_state(State {
             contact: push.map(|k| 300.0 * k),
-            manner: Manner::Steers,
+            manner: StickMode::Velocity,
         });
         if start.elapsed() >= duration {
             return now;
@@ -237,7 +237,7 @@ fn every_stop_takes_at_most_20_ms() {
     };
     let drop_thread: Way = |game| {
         let start = Instant::now();
-        game.force = Force::start(250).expect("a thread can be started");
+        game.force = ForceThread::start(250).expect("a thread can be started");
         start
     };
     let ways = [
@@ -380,7 +380,7 @@ fn kernel_stops_the_force_of_a_killed_process() {
         .map(|told| told.what)
         .collect();
     println!("kill: {time:.1?}; commands afterwards: {after:?}");
-    assert!(time < LENGTH);
+    assert!(time < OUTPUT_DURATION);
 }
 
 #[test]
@@ -400,7 +400,7 @@ fn force_of_a_hanging_process_ends_and_later_ramps_up() {
     let ends = (0..=500).find(|ms| force_at(&hung, start + *ms * MS) == [0.0; 2]);
     println!("hang: the force ends by itself after {ends:?} ms");
     assert!(ends.is_some());
-    sleep(3 * LENGTH);
+    sleep(3 * OUTPUT_DURATION);
     assert_eq!(
         stick.told().len(),
         hung.len(),

@@ -73,18 +73,20 @@ impl Renderer {
     ) -> Result<Vec<u8>, ImageError> {
         let target = (self.format, size);
         image(device, queue, target, |step| match step {
-            Step::Before(encoder) => self.prepare(device, queue, encoder, world, frame, size),
-            Step::Inside(pass) => self.paint(pass),
+            ImageStage::Prepare(encoder) => {
+                self.prepare(device, queue, encoder, world, frame, size)
+            }
+            ImageStage::Paint(pass) => self.paint(pass),
         })
     }
 }
 
 /// Stage of drawing an image: first the intermediate images, then the image itself.
-pub enum Step<'a> {
+pub enum ImageStage<'a> {
     /// Before the render pass of the image.
-    Before(&'a mut CommandEncoder),
+    Prepare(&'a mut CommandEncoder),
     /// Inside the render pass of the image.
-    Inside(&'a mut RenderPass<'static>),
+    Paint(&'a mut RenderPass<'static>),
 }
 
 /// Draws an image of a format and a size [px] with `draw`, which is called once per stage, and waits for the
@@ -97,7 +99,7 @@ pub fn image(
     device: &Device,
     queue: &Queue,
     of: (TextureFormat, [u32; 2]),
-    draw: impl FnMut(Step<'_>),
+    draw: impl FnMut(ImageStage<'_>),
 ) -> Result<Vec<u8>, ImageError> {
     let drawn = Drawn::of(device, queue, of, draw)?;
     device
@@ -113,11 +115,11 @@ pub fn image(
 ///
 /// # Errors
 /// As [`Renderer::render_to_image`].
-pub async fn image_later(
+pub async fn image_async(
     device: &Device,
     queue: &Queue,
     of: (TextureFormat, [u32; 2]),
-    draw: impl FnMut(Step<'_>),
+    draw: impl FnMut(ImageStage<'_>),
 ) -> Result<Vec<u8>, ImageError> {
     let drawn = Drawn::of(device, queue, of, draw)?;
     let mapped = poll_fn(|context| {
@@ -151,7 +153,7 @@ impl Drawn {
         device: &Device,
         queue: &Queue,
         (format, size): (TextureFormat, [u32; 2]),
-        mut draw: impl FnMut(Step<'_>),
+        mut draw: impl FnMut(ImageStage<'_>),
     ) -> Result<Self, ImageError> {
         let plain = format.remove_srgb_suffix();
         if !matches!(plain, TextureFormat::Rgba8Unorm | TextureFormat::Bgra8Unorm) {
@@ -180,9 +182,9 @@ impl Drawn {
             mapped_at_creation: false,
         });
         let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor::default());
-        draw(Step::Before(&mut encoder));
+        draw(ImageStage::Prepare(&mut encoder));
         let mut pass = pass_into(&mut encoder, &view);
-        draw(Step::Inside(&mut pass));
+        draw(ImageStage::Paint(&mut pass));
         drop(pass);
         let into = TexelCopyBufferInfo {
             buffer: &buffer,

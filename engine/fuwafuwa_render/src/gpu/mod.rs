@@ -59,7 +59,7 @@ struct Globals {
     frame: [f32; 4],
     fresh: [f32; 4],
     bounds: [f32; 4],
-    walls: [[f32; 4]; crate::rigid::MOST_WALLS],
+    walls: [[f32; 4]; crate::rigid::MAX_WALLS],
 }
 
 impl Renderer {
@@ -119,7 +119,7 @@ impl Renderer {
 
     /// Releases the intermediate images, which are as large as the last picture. The next picture creates new
     /// ones.
-    pub fn forget_images(&mut self, device: &Device) {
+    pub fn release_images(&mut self, device: &Device) {
         self.targets = Targets::new(device, &self.pipelines, [1, 1]);
     }
 
@@ -235,7 +235,7 @@ impl Renderer {
         let pixels = size[1] / camera.height;
         self.targets
             .set_blur(gpu, edge * pixels, thickness * pixels);
-        let mut walls = [[0.0; 4]; crate::rigid::MOST_WALLS];
+        let mut walls = [[0.0; 4]; crate::rigid::MAX_WALLS];
         walls[..rigid.walls.len()].copy_from_slice(&rigid.walls);
         let flag = |is: bool| f32::from(u8::from(is));
         let colour = |[red, green, blue]: crate::palette::Colour| [red, green, blue, 1.0];
@@ -269,7 +269,7 @@ impl Renderer {
 
     fn draw_bodies(&self, encoder: &mut CommandEncoder) {
         let (pipelines, targets) = (&self.pipelines, &self.targets);
-        let attachments = [0, 1].map(|k| clear(&targets.rough[k], Some(&targets.skin[k])));
+        let attachments = [0, 1].map(|k| clear(&targets.multisampled[k], Some(&targets.skin[k])));
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("bodies"),
             color_attachments: &attachments,

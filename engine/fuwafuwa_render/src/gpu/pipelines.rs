@@ -1,7 +1,7 @@
 //! Render pipelines for each kind of 2D vertex.
 
 use super::program::{
-    InMemory, OVER, Program, SAMPLES, Target, layout, module, sampler, texture, uniform, wgsl,
+    OVER, Program, SAMPLES, Target, VertexLayout, layout, module, sampler, texture, uniform, wgsl,
 };
 use crate::elements::ElementVertex;
 use crate::rigid::{DotInstance, RigidInstance};
@@ -45,7 +45,7 @@ pub struct Pipelines {
 }
 
 /// Blends over the target, only where the target is covered.
-const ONTO: BlendState = BlendState {
+const BLEND_ATOP: BlendState = BlendState {
     color: BlendComponent {
         src_factor: BlendFactor::DstAlpha,
         dst_factor: BlendFactor::OneMinusSrcAlpha,
@@ -136,7 +136,7 @@ impl Pipelines {
             fan: skins(skin_entries, plain(more, less), OVER, none),
             cover: skins(skin_entries, inside(keep), OVER, all),
             wipe: skins(skin_entries, inside(zero), OVER, none),
-            band: skins(skin_entries, plain(keep, keep), ONTO, all),
+            band: skins(skin_entries, plain(keep, keep), BLEND_ATOP, all),
             element: program(None, &skin, ("element_corner", "element")).build(&Target {
                 buffers: &[Some(ElementVertex::layout())],
                 depth: Some(plain(keep, keep)),
@@ -197,25 +197,25 @@ fn stencil(
     }
 }
 
-impl InMemory for SkinVertex {
+impl VertexLayout for SkinVertex {
     const ATTRIBUTES: &'static [VertexAttribute] =
         &vertex_attr_array![0 => Float32x2, 1 => Unorm8x4, 2 => Unorm8x4];
     const STEP: VertexStepMode = VertexStepMode::Vertex;
 }
 
-impl InMemory for ElementVertex {
+impl VertexLayout for ElementVertex {
     const ATTRIBUTES: &'static [VertexAttribute] =
         &vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Float32x2, 3 => Unorm8x4];
     const STEP: VertexStepMode = VertexStepMode::Vertex;
 }
 
-impl InMemory for RigidInstance {
+impl VertexLayout for RigidInstance {
     const ATTRIBUTES: &'static [VertexAttribute] =
         &vertex_attr_array![0 => Float32x4, 1 => Float32x3, 2 => Float32x3];
     const STEP: VertexStepMode = VertexStepMode::Instance;
 }
 
-impl InMemory for DotInstance {
+impl VertexLayout for DotInstance {
     const ATTRIBUTES: &'static [VertexAttribute] =
         &vertex_attr_array![0 => Float32x2, 1 => Float32, 2 => Float32x4];
     const STEP: VertexStepMode = VertexStepMode::Instance;

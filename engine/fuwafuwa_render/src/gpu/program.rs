@@ -162,7 +162,7 @@ pub fn module(device: &Device, label: &str, text: &'static str) -> ShaderModule 
 }
 
 /// Memory layout of vertices and instances.
-pub trait InMemory: Sized {
+pub trait VertexLayout: Sized {
     const ATTRIBUTES: &'static [VertexAttribute];
     const STEP: VertexStepMode;
 

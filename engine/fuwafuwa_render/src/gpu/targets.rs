@@ -27,7 +27,7 @@ pub struct Targets {
     pub window: [u32; 2],
     /// Size of the skin images [px].
     pub size: [u32; 2],
-    pub rough: Pair,
+    pub multisampled: Pair,
     pub stencil: TextureView,
     pub skin: Pair,
     pub narrow: [Pair; 2],
@@ -53,7 +53,7 @@ struct Blur {
 impl Targets {
     pub fn new(device: &Device, pipelines: &Pipelines, window: [u32; 2]) -> Self {
         let window = window.map(|side| side.max(1));
-        let size = within(device, window);
+        let size = limited_size(device, window);
         let (inside, readable) = (
             TextureUsages::RENDER_ATTACHMENT,
             TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
@@ -116,7 +116,7 @@ impl Targets {
                     &shaped[1],
                 ],
             ),
-            rough: pair("rough skin", 1, SAMPLES, SKIN_FORMAT, inside),
+            multisampled: pair("rough skin", 1, SAMPLES, SKIN_FORMAT, inside),
             stencil: image("stencil", 1, SAMPLES, STENCIL_FORMAT, inside),
             window,
             size,
@@ -170,7 +170,7 @@ impl Targets {
 
 /// Returns the size [px] of intermediate images for a window, limited by the device's maximum texture size
 /// and by [`MOST_PIXELS`].
-pub fn within(device: &Device, window: [u32; 2]) -> [u32; 2] {
+pub fn limited_size(device: &Device, window: [u32; 2]) -> [u32; 2] {
     let [width, height] = window.map(|side| side as f32);
     let longest = device.limits().max_texture_dimension_2d as f32 / width.max(height);
     let shrunk = (MOST_PIXELS / (width * height)).sqrt().min(longest);

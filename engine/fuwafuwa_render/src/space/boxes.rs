@@ -189,7 +189,13 @@ mod tests {
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let volume = |world: &World<Dim3>, share: f32| {
             let towards = [0.6, 0.0, 0.8];
-            let (palette, cut) = (Palette::candy(), Some(Cut { towards, share }));
+            let (palette, cut) = (
+                Palette::candy(),
+                Some(Cut {
+                    direction: towards,
+                    share,
+                }),
+            );
             let mut boxes = Boxes::default();
             boxes.add(
                 0,

@@ -13,11 +13,11 @@ pub struct Camera {
     pub distance: f32,
     /// Azimuth of the camera around the target [rad], positive to the right. At 0 the camera looks along the
     /// negative third axis.
-    pub turn: f32,
+    pub azimuth: f32,
     /// Elevation [rad]. At a right angle the camera looks straight down.
-    pub rise: f32,
+    pub elevation: f32,
     /// Vertical field of view [rad]. The usual value is 0.6; values above 1 distort.
-    pub field: f32,
+    pub fov_y: f32,
     /// Shake offset of camera and target [m].
     pub shake: Vector,
     /// Cut through the bodies, for the element view only.
@@ -29,7 +29,7 @@ pub struct Camera {
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Cut {
     /// Unit vector towards the removed part.
-    pub towards: Vector,
+    pub direction: Vector,
     /// Remaining fraction of a piece, 0 to 1.
     pub share: f32,
 }
@@ -52,9 +52,9 @@ impl Camera {
         Self {
             target: low.midpoint(high).into(),
             distance: radius / across.atan().sin(),
-            turn: 0.0,
-            rise: 0.45,
-            field,
+            azimuth: 0.0,
+            elevation: 0.45,
+            fov_y: field,
             shake: [0.0; 3],
             cut: None,
         }
@@ -71,7 +71,7 @@ impl Camera {
     }
 
     fn turned(&self) -> Mat3 {
-        Mat3::from_rotation_y(self.turn) * Mat3::from_rotation_x(-self.rise)
+        Mat3::from_rotation_y(self.azimuth) * Mat3::from_rotation_x(-self.elevation)
     }
 
     fn place(&self) -> Vec3 {
@@ -84,14 +84,14 @@ impl Camera {
     pub fn to_pixel(&self, at: Vector, size: [u32; 2]) -> Option<[f32; 2]> {
         let seen = self.turned().transpose() * (Vec3::from(at) - self.place());
         let [x, y, z] = seen.to_array();
-        let scale = 0.5 * size[1] as f32 / (0.5 * self.field).tan();
+        let scale = 0.5 * size[1] as f32 / (0.5 * self.fov_y).tan();
         let [left, top] = size.map(|side| 0.5 * side as f32);
         (z < 0.0).then(|| [left - x / z * scale, top + y / z * scale])
     }
 
     /// Returns the origin [m] and the unit direction of the ray through a pixel of a target of `size` pixels.
     pub fn ray(&self, pixel: [f32; 2], size: [u32; 2]) -> (Vector, Vector) {
-        let scale = 2.0 * (0.5 * self.field).tan() / size[1].max(1) as f32;
+        let scale = 2.0 * (0.5 * self.fov_y).tan() / size[1].max(1) as f32;
         let right = (pixel[0] - 0.5 * size[0] as f32) * scale;
         let up = (0.5 * size[1] as f32 - pixel[1]) * scale;
         let towards = self.turned() * Vec3::new(right, up, -1.0);
@@ -102,7 +102,7 @@ impl Camera {
     pub(crate) fn to_clip(self, size: [u32; 2]) -> Mat4 {
         let aspect = size[0].max(1) as f32 / size[1].max(1) as f32;
         let (near, far) = (NEAR * self.distance, FAR * self.distance);
-        perspective(self.field, aspect, near, far) * seen_from(self.place(), self.turned())
+        perspective(self.fov_y, aspect, near, far) * seen_from(self.place(), self.turned())
     }
 }
 
@@ -120,7 +120,7 @@ mod tests {
 
     fn camera() -> Camera {
         Camera {
-            turn: 0.7,
+            azimuth: 0.7,
             shake: [0.01, -0.02, 0.0],
             ..Camera::fit([-1.0, 0.0, -1.0], [1.0, 1.5, 2.0], SIZE)
         }
@@ -148,7 +148,7 @@ mod tests {
     fn fit_shows_the_whole_box_from_every_side() {
         for turn in 0..6 {
             let camera = Camera {
-                turn: turn as f32,
+                azimuth: turn as f32,
                 ..camera()
             };
             for corner in 0..8 {

@@ -55,7 +55,7 @@ pub fn planes(body: &SoftBody<Dim3>, cut: Cut, before: &[(usize, f32)]) -> Vec<P
         let (by, along) = (at - sum / count, rest - low.midpoint(high));
         axes[piece] += Mat3::from_cols(by * along.x, by * along.y, by * along.z);
     }
-    let towards = Vec3::from(cut.towards);
+    let towards = Vec3::from(cut.direction);
     let plane = |(piece, (low, high, ..), axes): (usize, (Vec3, Vec3, _, _), Mat3)| {
         let facing = [axes.x_axis, axes.y_axis, axes.z_axis];
         let facing = facing.map(|axis| axis.normalize_or_zero().dot(towards));
@@ -92,7 +92,14 @@ mod tests {
         let mut axis = |degrees: f32| {
             let (sin, cos) = degrees.to_radians().sin_cos();
             let (towards, share) = ([sin, 0.0, cos], 0.5);
-            let plane = planes(&body, Cut { towards, share }, &before)[0];
+            let plane = planes(
+                &body,
+                Cut {
+                    direction: towards,
+                    share,
+                },
+                &before,
+            )[0];
             before = vec![(plane.axis, plane.side)];
             before[0]
         };

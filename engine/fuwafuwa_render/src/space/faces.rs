@@ -32,7 +32,7 @@ pub struct Faces {
     /// Points. Removed points have no node.
     pub points: Pool<SkinPoint>,
     /// Vertices drawn at the points.
-    pub vertices: Pool<Corner>,
+    pub vertices: Pool<VertexSource>,
     /// Two triangles per face. Those of removed faces have no area.
     pub indices: Vec<u32>,
     /// Elements that are crumbs. They have no points and faces.
@@ -72,7 +72,7 @@ pub struct SkinPoint {
     /// Number of neighbour points.
     pub near_count: u8,
     /// Kind of surface at the point.
-    pub ground: Ground,
+    pub ground: SurfaceKind,
     /// First face corner at the point.
     first: u32,
     /// Vertices on the original surface and on the torn surface.
@@ -82,18 +82,18 @@ pub struct SkinPoint {
 
 /// Kind of surface at a point.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Ground {
+pub enum SurfaceKind {
     /// Original surface.
-    Skin,
+    Original,
     /// Mouth of a crack, where original and torn surface meet.
-    Mouth,
+    CrackMouth,
     /// Surface created by tearing.
     Torn,
 }
 
 /// Motion-independent data of a vertex.
 #[derive(Copy, Clone, Debug)]
-pub struct Corner {
+pub struct VertexSource {
     /// Index of its point, or `NONE`.
     pub point: u32,
     /// Rest position [voxels].
@@ -135,12 +135,12 @@ const NO_POINT: SkinPoint = SkinPoint {
     offset: Vec3::ZERO,
     near: [NONE; 6],
     near_count: 0,
-    ground: Ground::Skin,
+    ground: SurfaceKind::Original,
     first: NONE,
     vertices: [NONE; 2],
     is_dirty: false,
 };
-const NO_CORNER: Corner = Corner {
+const NO_CORNER: VertexSource = VertexSource {
     point: NONE,
     rest: Vec3::ZERO,
     colour: [0; 4],
@@ -150,7 +150,7 @@ const NO_CORNER: Corner = Corner {
 impl Faces {
     /// Updates everything that changed since the last call. `palette` has the colours of the materials,
     /// starting at number 1. Returns whether anything changed.
-    pub fn follow(&mut self, body: &SoftBody<Dim3>, rest: &Rest, palette: &[Colour]) -> bool {
+    pub fn update(&mut self, body: &SoftBody<Dim3>, rest: &Rest, palette: &[Colour]) -> bool {
         let mesh = body.mesh();
         let (elements, nodes) = (mesh.element_capacity(), mesh.node_capacity());
         // A body never reuses ids, so smaller capacities mean that this is another body.
@@ -165,7 +165,7 @@ impl Faces {
         for &(id, _) in &stale {
             for face in std::mem::replace(&mut self.forms[id], NO_FORM).faces {
                 if face != NONE {
-                    self.take_down(face);
+                    self.remove_face(face);
                 }
             }
         }
@@ -176,7 +176,7 @@ impl Faces {
                 continue;
             }
             for side in (0..6u8).filter(|side| form.bare >> side & 1 == 1) {
-                let face = self.put_up(body, id, side);
+                let face = self.add_face(body, id, side);
                 self.forms[id].faces[usize::from(side)] = face;
                 new.push(face);
             }
@@ -234,24 +234,24 @@ impl Faces {
             self.palette = palette.to_vec();
             for place in 0..self.points.all.len() as u32 {
                 if self.points[place].node != NO_NODE {
-                    self.look_again(place);
+                    self.mark_dirty(place);
                 }
             }
         }
     }
 
-    fn look_again(&mut self, point: u32) {
+    fn mark_dirty(&mut self, point: u32) {
         let is_dirty = &mut self.points[point].is_dirty;
         if !std::mem::replace(is_dirty, true) {
             self.dirty.push(point);
         }
     }
 
-    fn put_up(&mut self, body: &SoftBody<Dim3>, element: ElementId, side: u8) -> u32 {
+    fn add_face(&mut self, body: &SoftBody<Dim3>, element: ElementId, side: u8) -> u32 {
         let form = self.forms[element];
         let mut beyond = form.at;
         beyond[usize::from(side / 2)] += 2 * i32::from(side % 2) - 1;
-        let place = self.faces.take(Face {
+        let place = self.faces.insert(Face {
             element,
             side,
             is_fresh: body.grid().is_solid(beyond),
@@ -261,19 +261,19 @@ impl Faces {
             let node = form.nodes[vertex];
             let mut point = self.of_node[node];
             if point == NONE {
-                point = self.points.take(SkinPoint { node, ..NO_POINT });
+                point = self.points.insert(SkinPoint { node, ..NO_POINT });
                 self.of_node[node] = point;
             }
             let face = &mut self.faces[place];
             face.points[k] = point;
             face.next[k] = self.points[point].first;
             self.points[point].first = 4 * place + k as u32;
-            self.look_again(point);
+            self.mark_dirty(point);
         }
         place
     }
 
-    fn take_down(&mut self, place: u32) {
+    fn remove_face(&mut self, place: u32) {
         let face = self.faces[place];
         for (k, &point) in face.points.iter().enumerate() {
             let own = 4 * place + k as u32;
@@ -286,9 +286,9 @@ impl Faces {
                 }
                 self.faces[at / 4].next[at as usize % 4] = face.next[k];
             }
-            self.look_again(point);
+            self.mark_dirty(point);
         }
-        self.faces.give_back(place, NO_FACE);
+        self.faces.remove(place, NO_FACE);
         self.indices[6 * place as usize..][..6].fill(0);
     }
 
@@ -312,16 +312,16 @@ impl Faces {
         point.is_dirty = false;
         if point.first == NONE {
             for vertex in point.vertices.into_iter().filter(|&vertex| vertex != NONE) {
-                self.vertices.give_back(vertex, NO_CORNER);
+                self.vertices.remove(vertex, NO_CORNER);
             }
             self.of_node[point.node] = NONE;
-            self.points.give_back(place, NO_POINT);
+            self.points.remove(place, NO_POINT);
             return;
         }
         let at = body.mesh().node(point.node).at;
         let mut octant = 0;
         let mut counts = [0; 2];
-        let mut near = [Near::default(); 2];
+        let mut near = [NeighbourSet::default(); 2];
         let mut best = f32::MIN;
         for (face, k) in self.corners(place) {
             let ground = usize::from(face.is_fresh);
@@ -340,21 +340,21 @@ impl Faces {
             }
         }
         point.ground = match counts {
-            [_, 0] => Ground::Skin,
-            [0, _] => Ground::Torn,
-            _ => Ground::Mouth,
+            [_, 0] => SurfaceKind::Original,
+            [0, _] => SurfaceKind::Torn,
+            _ => SurfaceKind::CrackMouth,
         };
         let joined = match point.ground {
-            Ground::Skin => near[0],
-            Ground::Torn => near[1],
-            Ground::Mouth => near[0].common(near[1]),
+            SurfaceKind::Original => near[0],
+            SurfaceKind::Torn => near[1],
+            SurfaceKind::CrackMouth => near[0].common(near[1]),
         };
         (point.near, point.near_count) = (joined.points, joined.count);
         let tint = rest.tint(at, octant);
         let [own, other] = tint.materials.map(|number| self.colour(number));
         for (ground, &count) in counts.iter().enumerate() {
             let vertex = &mut point.vertices[ground];
-            let corner = Corner {
+            let corner = VertexSource {
                 point: place,
                 rest: Vec3::from(at.map(|k| k as f32)) + point.offset,
                 colour: bytes(own, ground as f32),
@@ -362,9 +362,9 @@ impl Faces {
             };
             match (*vertex, count) {
                 (NONE, 0) => {}
-                (NONE, _) => *vertex = self.vertices.take(corner),
+                (NONE, _) => *vertex = self.vertices.insert(corner),
                 (known, 0) => {
-                    self.vertices.give_back(known, NO_CORNER);
+                    self.vertices.remove(known, NO_CORNER);
                     *vertex = NONE;
                 }
                 (known, _) => self.vertices[known] = corner,
@@ -390,12 +390,12 @@ impl Faces {
 
 /// Distinct neighbours of a point. More than six occur only where sheets meet; the rest is ignored.
 #[derive(Copy, Clone, Debug)]
-struct Near {
+struct NeighbourSet {
     points: [u32; 6],
     count: u8,
 }
 
-impl Default for Near {
+impl Default for NeighbourSet {
     fn default() -> Self {
         Self {
             points: [NONE; 6],
@@ -404,7 +404,7 @@ impl Default for Near {
     }
 }
 
-impl Near {
+impl NeighbourSet {
     fn add(&mut self, point: u32) {
         let count = usize::from(self.count);
         if count < 6 && !self.points[..count].contains(&point) {

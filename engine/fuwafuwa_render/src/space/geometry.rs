@@ -8,7 +8,7 @@ use super::skin::Skin;
 use super::stickers::Stickers;
 use crate::frame::{Frame, Look};
 use crate::palette::Palette;
-use crate::rigid::MOST_WALLS;
+use crate::rigid::MAX_WALLS;
 use fuwafuwa::vector::three;
 use fuwafuwa::{Dim3, ElementId, RigidBody, Shape, SoftBody, Vector, World};
 use glam::{Mat3, Vec3};
@@ -73,7 +73,7 @@ impl Geometry {
         self.ghosts.resize_with(ghosts, Skin::default);
         if let Some(ghost) = frame.ghost {
             let skins = self.ghosts.iter_mut().zip(ghost.soft_bodies());
-            let renewed = skins.map(|(skin, body)| skin.follow(body, &palette.materials));
+            let renewed = skins.map(|(skin, body)| skin.update(body, &palette.materials));
             self.renewed_ghosts.extend(renewed);
         }
         let of_ghost = frame
@@ -89,7 +89,7 @@ impl Geometry {
             match frame.look {
                 Look::Skin => {
                     let skin = &mut self.skins[place];
-                    self.renewed.push(skin.follow(body, &palette.materials));
+                    self.renewed.push(skin.update(body, &palette.materials));
                     let crumbs = skin.crumbs().iter();
                     let crumbs = crumbs.filter_map(|&id| crumb(body, id, frame));
                     append(&mut self.rounded, crumbs);
@@ -142,7 +142,7 @@ impl Geometry {
     fn gather_room(&mut self, world: &World<Dim3>, camera: &Camera) {
         self.walls.clear();
         let shapes = world.fixed_rigid_bodies().map(RigidBody::shape);
-        self.walls.extend(shapes.filter_map(plane).take(MOST_WALLS));
+        self.walls.extend(shapes.filter_map(plane).take(MAX_WALLS));
         self.room.clear();
         let reach = REACH * camera.distance;
         add_planes(&mut self.room, &self.walls, camera.target, reach);

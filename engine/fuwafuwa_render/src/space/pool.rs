@@ -21,7 +21,7 @@ impl<T> Default for Pool<T> {
 
 impl<T> Pool<T> {
     /// Stores a value and returns its slot.
-    pub fn take(&mut self, thing: T) -> u32 {
+    pub fn insert(&mut self, thing: T) -> u32 {
         match self.free.pop() {
             Some(place) => {
                 self.all[place as usize] = thing;
@@ -35,7 +35,7 @@ impl<T> Pool<T> {
     }
 
     /// Releases a slot. It contains `nothing` until it is reused.
-    pub fn give_back(&mut self, place: u32, nothing: T) {
+    pub fn remove(&mut self, place: u32, nothing: T) {
         self.all[place as usize] = nothing;
         self.free.push(place);
     }

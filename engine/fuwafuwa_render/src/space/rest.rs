@@ -16,7 +16,7 @@ const REACH: f32 = 0.45;
 /// neighbours, of which two are a voxel away along each axis.
 const VARIANCE: f32 = 0.25;
 /// Maximum number of rounds; bounds the loading time of the largest bodies.
-const MOST_ROUNDS: usize = 200;
+const MAX_ROUNDS: usize = 200;
 /// Maximum offset of a point [voxels] where the body is thin and where it is thick, so that a protrusion of a
 /// few voxels survives.
 const FARTHEST: [f32; 2] = [0.3, 0.8];
@@ -28,10 +28,10 @@ const AROUND: i32 = 3;
 /// this reach.
 const TINT_ROUNDS: usize = 12;
 /// Minimum share of its own material for a point surrounded by it; a point without it gets at most 1 −
-/// `KEPT`. So a dot of few voxels survives.
-const KEPT: f32 = 0.52;
+/// `MIN_OWN_SHARE`. So a dot of few voxels survives.
+const MIN_OWN_SHARE: f32 = 0.52;
 /// Minimum share of a second material at a point beside a border.
-const BESIDE: f32 = 0.1;
+const MIN_SECOND_SHARE: f32 = 0.1;
 /// Weights of the voxels around an inner point, along each axis.
 const AROUND_INSIDE: [f32; 4] = [1.0, 3.0, 3.0, 1.0];
 /// Maximum offset of inner points from the lattice, along each axis [voxels]. Larger values look rougher, but
@@ -73,9 +73,9 @@ pub struct Tint {
 
 /// The two most frequent materials with their shares.
 #[derive(Copy, Clone, Debug, Default)]
-struct Most([(u8, f32); 2]);
+struct TopMaterials([(u8, f32); 2]);
 
-impl Most {
+impl TopMaterials {
     fn add(&mut self, material: u8, share: f32) {
         let [first, second] = &mut self.0;
         if share > first.1 {
@@ -88,7 +88,7 @@ impl Most {
     fn tint(self) -> Tint {
         let [(first, more), (second, less)] = self.0;
         let share = less / (more + less).max(1e-6);
-        let materials = match share < BESIDE {
+        let materials = match share < MIN_SECOND_SHARE {
             true => [first; 2],
             false => [first.min(second), first.max(second)],
         };
@@ -126,7 +126,7 @@ impl Rest {
         let (neighbours, face_count) = rest.neighbours(grid);
         let places: Vec<Vec3> = rest.points.iter().map(|point| place(point.at)).collect();
         let variance = REACH * (face_count as f32).sqrt();
-        let rounds = ((variance / VARIANCE) as usize).min(MOST_ROUNDS);
+        let rounds = ((variance / VARIANCE) as usize).min(MAX_ROUNDS);
         let smooth = smoothed(&places, |places| blurred(places, &neighbours, rounds));
         for (point, (&to, &from)) in rest.points.iter_mut().zip(smooth.iter().zip(&places)) {
             point.offset = (to - from).clamp_length_max(farthest(grid, point.at));
@@ -162,7 +162,7 @@ impl Rest {
     }
 
     fn tint_inside(&self, at: Point) -> Tint {
-        let mut most = Most::default();
+        let mut most = TopMaterials::default();
         let mut shares = [0.0; 256];
         if let Some(grid) = self.grid.as_ref().filter(|_| self.materials > 1) {
             for voxel in points_in(at.map(|k| k - 2), at.map(|k| k + 1)) {
@@ -189,7 +189,7 @@ impl Rest {
     }
 
     fn find_tints(&mut self, grid: &VoxelGrid<Dim3>, neighbours: &[Vec<u32>]) {
-        let mut most = vec![Most::default(); self.points.len()];
+        let mut most = vec![TopMaterials::default(); self.points.len()];
         for material in 1..=self.materials {
             let own = |point: &RestPoint| {
                 let octants = (0..8).filter(|octant| point.group >> octant & 1 == 1);
@@ -267,8 +267,8 @@ fn mingled(own: &[f32], neighbours: &[Vec<u32>]) -> Vec<f32> {
             let sum: f32 = near.iter().map(|&k| shares[k as usize]).sum();
             let share = 0.5 * (shares[k] + sum / near.len().max(1) as f32);
             match own[k] {
-                0.0 => share.min(1.0 - KEPT),
-                1.0 => share.max(KEPT),
+                0.0 => share.min(1.0 - MIN_OWN_SHARE),
+                1.0 => share.max(MIN_OWN_SHARE),
                 _ => share,
             }
         };

@@ -4,7 +4,7 @@
 //! contacts press on the voxel staircase. Both faces of a crack are smoothed alike, so that a closed crack
 //! stays closed.
 
-use super::faces::{Faces, Ground, NO_NODE, NONE, SkinPoint};
+use super::faces::{Faces, NO_NODE, NONE, SkinPoint, SurfaceKind};
 use super::rest::Rest;
 use crate::palette::Colour;
 use bytemuck::{Pod, Zeroable};
@@ -54,14 +54,14 @@ pub struct Skin {
 impl Skin {
     /// Updates the surface to the current state of a body. `palette` has the colours of its materials,
     /// starting at number 1. Returns whether the triangles changed.
-    pub fn follow(&mut self, body: &SoftBody<Dim3>, palette: &[Colour]) -> bool {
+    pub fn update(&mut self, body: &SoftBody<Dim3>, palette: &[Colour]) -> bool {
         if !self.rest.fits(body.grid()) {
             *self = Self {
                 rest: Rest::new(body.grid()),
                 ..Self::default()
             };
         }
-        let is_new = self.faces.follow(body, &self.rest, palette);
+        let is_new = self.faces.update(body, &self.rest, palette);
         self.place(body);
         ROUNDS.iter().for_each(|shares| self.smooth(*shares));
         self.find_normals();
@@ -124,9 +124,9 @@ impl Skin {
                         return own;
                     }
                     let share = match point.ground {
-                        Ground::Skin => shares[0],
-                        Ground::Mouth => shares[1],
-                        Ground::Torn => shares[2],
+                        SurfaceKind::Original => shares[0],
+                        SurfaceKind::CrackMouth => shares[1],
+                        SurfaceKind::Torn => shares[2],
                     };
                     let sum: Vec4 = near.iter().map(|&k| places[k as usize]).sum();
                     own.lerp(sum / near.len() as f32, share)
@@ -225,7 +225,7 @@ mod tests {
 
     fn skin(world: &World<Dim3>) -> Skin {
         let mut skin = Skin::default();
-        skin.follow(
+        skin.update(
             world.soft_bodies().first().unwrap(),
             &Palette::candy().materials,
         );
@@ -331,7 +331,7 @@ mod tests {
         };
         for x in [0.2, 0.8, 0.3, 0.55, 0.4, 0.48] {
             cut(&mut world, x);
-            assert!(kept.follow(
+            assert!(kept.update(
                 world.soft_bodies().first().unwrap(),
                 &Palette::candy().materials
             ));
@@ -339,18 +339,18 @@ mod tests {
             assert_eq!(sorted(&kept), sorted(&new));
             assert!((kept.volume() / new.volume() - 1.0).abs() < 1e-4);
             world.step();
-            kept.follow(
+            kept.update(
                 world.soft_bodies().first().unwrap(),
                 &Palette::candy().materials,
             );
         }
         let safe = Palette::colour_safe().materials;
-        assert!(kept.follow(world.soft_bodies().first().unwrap(), &safe));
-        assert!(!kept.follow(world.soft_bodies().first().unwrap(), &safe));
+        assert!(kept.update(world.soft_bodies().first().unwrap(), &safe));
+        assert!(!kept.update(world.soft_bodies().first().unwrap(), &safe));
         // Another body with its own grid, and an untorn one with an equal grid.
         for n in [16, 20] {
             let other = ball(n);
-            kept.follow(
+            kept.update(
                 other.soft_bodies().first().unwrap(),
                 &Palette::candy().materials,
             );

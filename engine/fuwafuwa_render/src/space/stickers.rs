@@ -57,7 +57,7 @@ impl Stickers {
         let middle = outline.iter().sum::<Vec2>() / count as f32;
         let axes = Mat3::from_cols_array_2d(&sticker.axes);
         let place = |at: Vec2, height: f32| {
-            Vec3::from(sticker.from) + axes * at.extend(heights.at(at) + height)
+            Vec3::from(sticker.origin) + axes * at.extend(heights.at(at) + height)
         };
         let mut places: Vec<Vec3> = Vec::new();
         for ring in RINGS {
@@ -120,7 +120,7 @@ impl Heights {
         let near = NEAR[0].max(NEAR[1] * voxel);
         let mut seen: Vec<Vec3> = Vec::new();
         for vertex in skin.vertices_of(body, sticker.piece) {
-            let by = Vec3::from(vertex.at) - Vec3::from(sticker.from);
+            let by = Vec3::from(vertex.at) - Vec3::from(sticker.origin);
             let at = Vec3::from(axes.map(|axis| by.dot(axis))) / Vec3::from(square);
             let normal = Vec3::from([0, 1, 2].map(|k| f32::from(vertex.normal[k])));
             let is_in_reach = at.x.abs().max(at.y.abs()) < REACH + 2.0 * near;
@@ -203,14 +203,14 @@ mod tests {
         let mut sticker = Sticker {
             body: 0,
             piece: PieceId(0),
-            from: [0.5; 3],
+            origin: [0.5; 3],
             axes: [[0.25, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 0.25]],
             marks: vec![mark],
         };
         let mut skin = Skin::default();
         let mut stuck = |world: &World<Dim3>, sticker: &Sticker| {
             let body = world.soft_bodies().first().unwrap();
-            skin.follow(body, &Palette::candy().materials);
+            skin.update(body, &Palette::candy().materials);
             let mut stickers = Stickers::default();
             stickers.add(sticker, &skin, body, [0.5, 0.5, 9.0]);
             stickers

@@ -5,19 +5,19 @@ use std::{fmt, io};
 
 /// Reason why a file could not be imported.
 #[derive(Debug, thiserror::Error)]
-#[error("{file}{place}: {problem}")]
+#[error("{file}{position}: {problem}")]
 pub struct ImportError {
     /// Name of the file, as given by the caller.
     pub file: String,
     /// Position in the file.
-    pub place: Place,
+    pub position: FilePosition,
     /// Problem at that position.
     pub problem: Problem,
 }
 
 /// A position in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePosition {
     /// The file as a whole.
     File,
     /// Byte offset. The decoder of pictures reads ahead, so the problem may lie some bytes earlier.
@@ -60,7 +60,7 @@ pub enum Problem {
     Grid(BuildError),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File => Ok(()),
@@ -72,30 +72,30 @@ impl fmt::Display for Place {
 }
 
 /// Position and problem; the caller adds the name of the file.
-pub type Complaint = (Place, Problem);
+pub type PositionedProblem = (FilePosition, Problem);
 
 pub fn unexpected(
-    place: Place,
+    place: FilePosition,
     expected: impl Into<String>,
     found: impl Into<String>,
-) -> Complaint {
+) -> PositionedProblem {
     let (expected, found) = (expected.into(), found.into());
     (place, Problem::Unexpected { expected, found })
 }
 
-pub fn in_file<T>(file: &str, outcome: Result<T, Complaint>) -> Result<T, ImportError> {
+pub fn in_file<T>(file: &str, outcome: Result<T, PositionedProblem>) -> Result<T, ImportError> {
     outcome.map_err(|(place, problem)| ImportError {
         file: file.to_owned(),
-        place,
+        position: place,
         problem,
     })
 }
 
 /// Converts an error of the grid; `sought` names what would have been solid.
-pub fn no_grid(error: BuildError, sought: &'static str) -> Complaint {
+pub fn no_grid(error: BuildError, sought: &'static str) -> PositionedProblem {
     let problem = match error {
         BuildError::Empty => Problem::Empty(sought),
         error => Problem::Grid(error),
     };
-    (Place::File, problem)
+    (FilePosition::File, problem)
 }

@@ -1,11 +1,11 @@
 //! Limit on the length of a file.
 
-use super::error::{Complaint, Place, Problem};
+use super::error::{FilePosition, PositionedProblem, Problem};
 
 /// Maximum length of a file [bytes]: twice that of the largest model with every voxel solid.
 pub const MAX_FILE_BYTES: u64 = 1 << 27;
 
-pub fn check_length(bytes: &[u8]) -> Result<(), Complaint> {
+pub fn check_length(bytes: &[u8]) -> Result<(), PositionedProblem> {
     let found = bytes.len() as u64;
     let problem = Problem::TooLarge {
         what: "bytes",
@@ -13,5 +13,5 @@ pub fn check_length(bytes: &[u8]) -> Result<(), Complaint> {
         limit: MAX_FILE_BYTES,
     };
     let good = found <= MAX_FILE_BYTES;
-    good.then_some(()).ok_or((Place::File, problem))
+    good.then_some(()).ok_or((FilePosition::File, problem))
 }

@@ -1,7 +1,9 @@
 //! Import of PNG pictures: a drawing or a sprite becomes a flat shape.
 
 use super::colours::Colours;
-use super::error::{Complaint, ImportError, Place, Problem, in_file, no_grid, unexpected};
+use super::error::{
+    FilePosition, ImportError, PositionedProblem, Problem, in_file, no_grid, unexpected,
+};
 use super::file::check_length;
 use ::png::{
     BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, Limits, Transformations,
@@ -53,7 +55,7 @@ impl Picture {
         in_file(file, check_length(bytes))?;
         let mut cursor = Cursor::new(bytes);
         let outcome = decode(&mut cursor).unwrap_or_else(|error| {
-            let place = Place::Byte(cursor.position() as usize);
+            let place = FilePosition::Byte(cursor.position() as usize);
             let found = match error {
                 DecodingError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
                     "the end of the file".into()
@@ -100,7 +102,7 @@ impl Picture {
 
     /// Returns a PNG file with one pixel per voxel, which gives the same voxels as this picture; `None` if
     /// the picture gives none.
-    pub(crate) fn needed(&self, across: usize, colours: &Colours) -> Option<Vec<u8>> {
+    pub(crate) fn reduced_png(&self, across: usize, colours: &Colours) -> Option<Vec<u8>> {
         let grid = self.grid(across, 1.0, colours).ok()?;
         let [columns, rows, _] = grid.size();
         let colour_of = |material: u8| match material {
@@ -127,18 +129,22 @@ impl Picture {
         across: usize,
         voxel_size: f32,
         colours: &Colours,
-    ) -> Result<VoxelGrid<Dim2>, Complaint> {
+    ) -> Result<VoxelGrid<Dim2>, PositionedProblem> {
         if !(1..=MAX_EXTENT).contains(&across) {
             let expected = format!("1 to {MAX_EXTENT} voxels across");
-            return Err(unexpected(Place::File, expected, across.to_string()));
+            return Err(unexpected(FilePosition::File, expected, across.to_string()));
         }
         if let Some(index) = colours.indices.keys().next() {
             let found = format!("the palette index {index}");
             let expected = "red, green and blue for each material of a picture";
-            return Err(unexpected(Place::File, expected, found));
+            return Err(unexpected(FilePosition::File, expected, found));
         }
-        let rule = Rule::of(self, colours);
-        let materials: Vec<u8> = self.pixels.iter().map(|&pixel| rule.judge(pixel)).collect();
+        let rule = SolidRule::of(self, colours);
+        let materials: Vec<u8> = self
+            .pixels
+            .iter()
+            .map(|&pixel| rule.material_of(pixel))
+            .collect();
 
         let [width, height] = self.size;
         let [columns, rows] = scaled(self.size, across);
@@ -158,13 +164,13 @@ impl Picture {
 }
 
 /// Rule that decides the material of a pixel.
-enum Rule<'a> {
+enum SolidRule<'a> {
     Colour(&'a Colours),
     Alpha,
     Drawn,
 }
 
-impl<'a> Rule<'a> {
+impl<'a> SolidRule<'a> {
     fn of(picture: &Picture, colours: &'a Colours) -> Self {
         if !colours.named.is_empty() {
             return Self::Colour(colours);
@@ -174,7 +180,7 @@ impl<'a> Rule<'a> {
     }
 
     /// Returns the material of a pixel, 0 if it is empty.
-    fn judge(&self, pixel: [u8; 4]) -> u8 {
+    fn material_of(&self, pixel: [u8; 4]) -> u8 {
         let [red, green, blue, _] = pixel;
         match self {
             Self::Colour(_) if !is_opaque(pixel) => 0,
@@ -207,7 +213,7 @@ fn is_drawn(pixel: [u8; 4]) -> bool {
 
 type Pixels = ([usize; 2], Vec<[u8; 4]>);
 
-fn decode(cursor: &mut Cursor<&[u8]>) -> Result<Result<Pixels, Complaint>, DecodingError> {
+fn decode(cursor: &mut Cursor<&[u8]>) -> Result<Result<Pixels, PositionedProblem>, DecodingError> {
     let length = cursor.get_ref().len();
     let limits = Limits {
         bytes: DECODER_BYTES,
@@ -218,7 +224,7 @@ fn decode(cursor: &mut Cursor<&[u8]>) -> Result<Result<Pixels, Complaint>, Decod
     decoder.set_ignore_iccp_chunk(true);
     let header = decoder.read_header_info()?;
     let (width, height) = header.size();
-    let place = Place::Chunk(*b"IHDR", 8);
+    let place = FilePosition::Chunk(*b"IHDR", 8);
     if width.max(height) > MAX_PIXELS {
         let too_large = Problem::TooLarge {
             what: "pixels on a side",

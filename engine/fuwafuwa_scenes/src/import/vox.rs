@@ -13,7 +13,9 @@
 //! stack, and it drops damaged chunks silently.
 
 use super::colours::Colours;
-use super::error::{Complaint, ImportError, Place, Problem, in_file, no_grid, unexpected};
+use super::error::{
+    FilePosition, ImportError, PositionedProblem, Problem, in_file, no_grid, unexpected,
+};
 use super::file::check_length;
 use fuwafuwa::{Dim3, VoxelGrid};
 
@@ -85,7 +87,10 @@ impl Model {
             limit: MAX_VOXELS_ACROSS.into(),
         };
         let fits = longest <= MAX_VOXELS_ACROSS.into();
-        in_file(file, fits.then_some(()).ok_or((Place::File, too_large)))?;
+        in_file(
+            file,
+            fits.then_some(()).ok_or((FilePosition::File, too_large)),
+        )?;
         let mut palette = colours.to_vec();
         palette.resize(256, [0; 3]);
         Ok(Self {
@@ -148,7 +153,11 @@ impl Model {
         [b"VOX ", &version[..], &chunk(b"MAIN", &[], &children)].concat()
     }
 
-    fn try_grid(&self, voxel_size: f32, colours: &Colours) -> Result<VoxelGrid<Dim3>, Complaint> {
+    fn try_grid(
+        &self,
+        voxel_size: f32,
+        colours: &Colours,
+    ) -> Result<VoxelGrid<Dim3>, PositionedProblem> {
         let mut is_used = [false; 256];
         for &index in &self.voxels {
             is_used[usize::from(index)] = true;
@@ -163,7 +172,7 @@ impl Model {
             .map_err(|error| no_grid(error, "solid voxel in the first model"))
     }
 
-    fn material(&self, index: u8, colours: &Colours) -> Result<u8, Complaint> {
+    fn material(&self, index: u8, colours: &Colours) -> Result<u8, PositionedProblem> {
         if let Some(&material) = colours.indices.get(&index) {
             return Ok(material);
         }
@@ -171,33 +180,45 @@ impl Model {
             let all_are_materials = colours.indices.is_empty();
             return all_are_materials.then_some(index).ok_or_else(|| {
                 let expected = format!("a material for the palette index {index}");
-                unexpected(Place::File, expected, "none")
+                unexpected(FilePosition::File, expected, "none")
             });
         }
         let palette = self.palette.as_ref().ok_or_else(|| {
             let expected = "a chunk RGBA with the named colours";
-            unexpected(Place::File, expected, "none (name palette indices instead)")
+            unexpected(
+                FilePosition::File,
+                expected,
+                "none (name palette indices instead)",
+            )
         })?;
         let nearest = colours.nearest(palette[usize::from(index) - 1]);
         Ok(nearest.expect("at least one colour is named"))
     }
 
-    fn try_decode(name: &str, bytes: &[u8]) -> Result<Self, Complaint> {
+    fn try_decode(name: &str, bytes: &[u8]) -> Result<Self, PositionedProblem> {
         let mut file = Bytes { bytes, at: 0 };
         let word = file.word("the letters \"VOX \"")?;
         if word != *b"VOX " {
             let found = format!("\"{}\"", word.escape_ascii());
-            return Err(unexpected(Place::Byte(0), "the letters \"VOX \"", found));
+            return Err(unexpected(
+                FilePosition::Byte(0),
+                "the letters \"VOX \"",
+                found,
+            ));
         }
         let version = file.number("the version")?;
         if !VERSIONS.contains(&version) {
             let expected = format!("a version from {} to {}", VERSIONS.start(), VERSIONS.end());
-            return Err(unexpected(Place::Byte(4), expected, version.to_string()));
+            return Err(unexpected(
+                FilePosition::Byte(4),
+                expected,
+                version.to_string(),
+            ));
         }
         let main = file.chunk()?;
         if main.name != *b"MAIN" {
             let found = main.name.escape_ascii().to_string();
-            return Err(unexpected(Place::Byte(8), "the chunk MAIN", found));
+            return Err(unexpected(FilePosition::Byte(8), "the chunk MAIN", found));
         }
 
         let (mut size, mut voxels, mut palette) = (None, None, None);
@@ -214,7 +235,7 @@ impl Model {
                 _ => {}
             }
         }
-        let end = Place::Byte(chunks.at);
+        let end = FilePosition::Byte(chunks.at);
         let none = || unexpected(end, "a model of chunks SIZE and XYZI", "no more chunks");
         let ([width, depth, height], voxels) = size.zip(voxels).ok_or_else(none)?;
         Ok(Self {
@@ -235,18 +256,18 @@ struct Bytes<'a> {
 
 struct Chunk<'a> {
     name: [u8; 4],
-    place: Place,
+    place: FilePosition,
     contents: Bytes<'a>,
     children: Bytes<'a>,
 }
 
 impl<'a> Bytes<'a> {
     /// Takes the next `count` bytes; `what` names their content in errors.
-    fn take(&mut self, count: usize, what: &str) -> Result<Self, Complaint> {
+    fn take(&mut self, count: usize, what: &str) -> Result<Self, PositionedProblem> {
         let Some((taken, rest)) = self.bytes.split_at_checked(count) else {
             let expected = format!("{count} bytes for {what}");
             let found = self.bytes.len().to_string();
-            return Err(unexpected(Place::Byte(self.at), expected, found));
+            return Err(unexpected(FilePosition::Byte(self.at), expected, found));
         };
         let at = self.at;
         *self = Self {
@@ -256,16 +277,16 @@ impl<'a> Bytes<'a> {
         Ok(Self { bytes: taken, at })
     }
 
-    fn word(&mut self, what: &str) -> Result<[u8; 4], Complaint> {
+    fn word(&mut self, what: &str) -> Result<[u8; 4], PositionedProblem> {
         let word = self.take(4, what)?.bytes;
         Ok(word.try_into().expect("four bytes were taken"))
     }
 
-    fn number(&mut self, what: &str) -> Result<u32, Complaint> {
+    fn number(&mut self, what: &str) -> Result<u32, PositionedProblem> {
         self.word(what).map(u32::from_le_bytes)
     }
 
-    fn chunk(&mut self) -> Result<Chunk<'a>, Complaint> {
+    fn chunk(&mut self) -> Result<Chunk<'a>, PositionedProblem> {
         let at = self.at;
         let name = self.word("the name of a chunk")?;
         let length = self.number("the length of a chunk")?;
@@ -273,7 +294,7 @@ impl<'a> Bytes<'a> {
         let title = name.escape_ascii();
         Ok(Chunk {
             name,
-            place: Place::Chunk(name, at),
+            place: FilePosition::Chunk(name, at),
             contents: self.take(length as usize, &format!("the chunk {title}"))?,
             children: self.take(
                 length_of_children as usize,
@@ -285,7 +306,7 @@ impl<'a> Bytes<'a> {
 
 impl Chunk<'_> {
     /// Requires contents of `expected` bytes; `what` names them in errors.
-    fn check_length(&self, expected: u64, what: &str) -> Result<(), Complaint> {
+    fn check_length(&self, expected: u64, what: &str) -> Result<(), PositionedProblem> {
         let found = self.contents.bytes.len() as u64;
         let expected_text = format!("{expected} bytes for {what}");
         let wrong = unexpected(self.place, expected_text, found.to_string());
@@ -293,7 +314,7 @@ impl Chunk<'_> {
     }
 
     /// Returns the size of a model on the axes of the file.
-    fn size(&self) -> Result<[usize; 3], Complaint> {
+    fn size(&self) -> Result<[usize; 3], PositionedProblem> {
         self.check_length(12, "a size on three axes")?;
         let mut contents = self.contents;
         let mut size = [0; 3];
@@ -318,14 +339,14 @@ impl Chunk<'_> {
 
     /// Returns the palette indices of a model of `size` (on the axes of the file) in the engine's order. If a
     /// voxel occurs twice, the later index counts.
-    fn voxels(&self, size: [usize; 3]) -> Result<Vec<u8>, Complaint> {
+    fn voxels(&self, size: [usize; 3]) -> Result<Vec<u8>, PositionedProblem> {
         let mut contents = self.contents;
         let count = contents.number("the number of voxels")?;
         self.check_length(4 + 4 * u64::from(count), &format!("{count} voxels"))?;
         let [width, depth, height] = size;
         let mut voxels = vec![0; width * depth * height];
         for (number, voxel) in contents.bytes.chunks_exact(4).enumerate() {
-            let place = Place::Byte(contents.at + 4 * number);
+            let place = FilePosition::Byte(contents.at + 4 * number);
             let [x, y, z] = [voxel[0], voxel[1], voxel[2]].map(usize::from);
             if x >= width || y >= depth || z >= height {
                 let expected = format!("a voxel in the box of {width} x {depth} x {height}");
@@ -339,7 +360,7 @@ impl Chunk<'_> {
         Ok(voxels)
     }
 
-    fn palette(&self) -> Result<Vec<[u8; 3]>, Complaint> {
+    fn palette(&self) -> Result<Vec<[u8; 3]>, PositionedProblem> {
         self.check_length(1024, "256 colours")?;
         let colours = self.contents.bytes.chunks_exact(4);
         Ok(colours.map(|k| [k[0], k[1], k[2]]).collect())

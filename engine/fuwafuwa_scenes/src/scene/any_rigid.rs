@@ -2,8 +2,8 @@
 
 use super::body::LayersText;
 use super::build::rotation_of;
-use super::error::{Wrong, require, require_vector};
-use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, Shapes};
+use super::error::{FieldError, require, require_vector};
+use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, ShapeChoice};
 use super::state;
 use fuwafuwa::{Dim, MotionType, Refused, RigidBody, RigidBodyHandle, Rotation, Shape, World};
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// only a `state`, which contains everything.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RigidText {
+pub struct RigidBodyText {
     /// Half-space below a plane; only for fixed rigid bodies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub half_space: Option<HalfSpaceText>,
@@ -30,7 +30,7 @@ pub struct RigidText {
     pub state: Option<String>,
     /// Motion type, default fixed.
     #[serde(default)]
-    pub drive: DriveText,
+    pub drive: MotionTypeText,
     /// Mass [kg]; required for `drive = "free"`, allowed for `drive = "hand"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass: Option<f32>,
@@ -78,7 +78,7 @@ pub struct RigidText {
 /// Motion type of a rigid body; see [`fuwafuwa::MotionType`].
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum DriveText {
+pub enum MotionTypeText {
     /// Fixed rigid body.
     #[default]
     Fixed,
@@ -90,8 +90,11 @@ pub enum DriveText {
     Free,
 }
 
-impl RigidText {
-    pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>) -> Result<RigidBodyHandle, Wrong> {
+impl RigidBodyText {
+    pub(super) fn add_to<D: Dim>(
+        &self,
+        world: &mut World<D>,
+    ) -> Result<RigidBodyHandle, FieldError> {
         if let Some(state) = &self.state {
             let alone = Self {
                 state: self.state.clone(),
@@ -100,13 +103,15 @@ impl RigidText {
             let expected = "expected no other field: state is the whole rigid body";
             require(*self == alone, "state", expected)?;
             let added = world.add_rigid_body(state::rigid::<D>(state)?);
-            return added.map_err(|refused| Wrong::new("state", refused));
+            return added.map_err(|refused| FieldError::new("state", refused));
         }
         let rigid = self.rigid::<D>()?;
         let is_free = rigid.is_dynamic();
         let refused = |refused| match refused {
-            Refused::RigidBody(bad) => Wrong::new(bad.field, format!("expected {}", bad.expected)),
-            refused => Wrong::new("shape", refused),
+            Refused::RigidBody(bad) => {
+                FieldError::new(bad.field, format!("expected {}", bad.expected))
+            }
+            refused => FieldError::new("shape", refused),
         };
         let id = world.add_rigid_body(rigid).map_err(refused)?;
         let (velocity, spin) = (self.velocity, self.spin);
@@ -120,14 +125,14 @@ impl RigidText {
             let [velocity, spin] = [velocity, spin].map(Option::unwrap_or_default);
             require_vector(D::N, "velocity", velocity)?;
             let set = world.set_velocity(id, velocity, spin);
-            set.map_err(|refused| Wrong::new("velocity", refused))?;
+            set.map_err(|refused| FieldError::new("velocity", refused))?;
         }
         Ok(id)
     }
 
-    fn rigid<D: Dim>(&self) -> Result<RigidBody, Wrong> {
+    fn rigid<D: Dim>(&self) -> Result<RigidBody, FieldError> {
         require_vector(D::N, "at", self.at)?;
-        let shapes = Shapes {
+        let shapes = ShapeChoice {
             half_space: self.half_space.as_ref(),
             boxed: self.boxed.as_ref(),
             capsule: self.capsule.as_ref(),
@@ -136,7 +141,7 @@ impl RigidText {
         let rotation = match (self.turned, self.rotation) {
             (Some(_), Some(_)) => {
                 let expected = "expected either turned or rotation";
-                return Err(Wrong::new("rotation", expected));
+                return Err(FieldError::new("rotation", expected));
             }
             (Some(turned), None) => rotation_of::<D>(turned)?,
             (None, rotation) => rotation.unwrap_or(Rotation::NONE),
@@ -154,24 +159,24 @@ impl RigidText {
         Ok(rigid)
     }
 
-    fn drive(&self) -> Result<MotionType, Wrong> {
+    fn drive(&self) -> Result<MotionType, FieldError> {
         let of_hands = [self.stiffness, self.damping, self.limit];
-        let is_hand = self.drive == DriveText::Hand;
+        let is_hand = self.drive == MotionTypeText::Hand;
         let good = is_hand || of_hands == [None; 3];
         require(good, "stiffness", "allowed only with drive = \"hand\"")?;
-        let bears = is_hand || self.drive == DriveText::Free;
+        let bears = is_hand || self.drive == MotionTypeText::Free;
         let expected = "allowed only with drive = \"free\" or \"hand\"";
         require(bears || self.mass.is_none(), "mass", expected)?;
         Ok(match self.drive {
-            DriveText::Fixed => MotionType::Fixed,
-            DriveText::Kinematic => MotionType::Kinematic,
-            DriveText::Free => {
+            MotionTypeText::Fixed => MotionType::Fixed,
+            MotionTypeText::Kinematic => MotionType::Kinematic,
+            MotionTypeText::Free => {
                 let missing =
-                    || Wrong::new("mass", "missing mass [kg], required with drive = \"free\"");
+                    || FieldError::new("mass", "missing mass [kg], required with drive = \"free\"");
                 let mass = self.mass.ok_or_else(missing)?;
                 MotionType::Dynamic { mass }
             }
-            DriveText::Hand => {
+            MotionTypeText::Hand => {
                 let mut drive = MotionType::default();
                 if let MotionType::Coupled {
                     mass,
@@ -192,8 +197,10 @@ impl RigidText {
 
     /// Returns the text of a rigid body: its fields if they reproduce it exactly, otherwise its state.
     pub(super) fn of<D: Dim>(rigid: &RigidBody) -> Option<Self> {
-        let words = Self::in_words::<D>(rigid);
-        let is_same = words.as_ref().is_some_and(|words| words.makes::<D>(rigid));
+        let words = Self::by_fields::<D>(rigid);
+        let is_same = words
+            .as_ref()
+            .is_some_and(|words| words.reproduces::<D>(rigid));
         match is_same {
             true => words,
             false => Some(Self {
@@ -204,7 +211,7 @@ impl RigidText {
     }
 
     /// Returns whether this text reproduces a rigid body, except for its sleep timer.
-    fn makes<D: Dim>(&self, rigid: &RigidBody) -> bool {
+    fn reproduces<D: Dim>(&self, rigid: &RigidBody) -> bool {
         let Ok(mut world) = World::<D>::new(fuwafuwa::WorldConfig::default()) else {
             return false;
         };
@@ -224,7 +231,7 @@ impl RigidText {
         (places, turns, forms, numbers) == (others, other_turns, other_forms, other_numbers)
     }
 
-    fn in_words<D: Dim>(rigid: &RigidBody) -> Option<Self> {
+    fn by_fields<D: Dim>(rigid: &RigidBody) -> Option<Self> {
         let mut text = Self {
             at: rigid.position(),
             friction: Some(rigid.friction),
@@ -253,9 +260,9 @@ impl RigidText {
         text.rotation = (rotation != Rotation::NONE).then_some(rotation);
         match rigid.motion_type {
             MotionType::Fixed => {}
-            MotionType::Kinematic => text.drive = DriveText::Kinematic,
+            MotionType::Kinematic => text.drive = MotionTypeText::Kinematic,
             MotionType::Dynamic { mass } => {
-                (text.drive, text.mass) = (DriveText::Free, Some(mass));
+                (text.drive, text.mass) = (MotionTypeText::Free, Some(mass));
                 let said = |vector: [f32; 3]| (vector != [0.0; 3]).then_some(vector);
                 text.velocity = said(rigid.velocity());
                 text.spin = said(rigid.angular_velocity());
@@ -266,7 +273,7 @@ impl RigidText {
                 damping,
                 limit,
             } => {
-                (text.drive, text.mass) = (DriveText::Hand, Some(mass));
+                (text.drive, text.mass) = (MotionTypeText::Hand, Some(mass));
                 (text.stiffness, text.damping) = (Some(stiffness), Some(damping));
                 text.limit = (limit < f32::INFINITY).then_some(limit);
             }

@@ -1,6 +1,6 @@
 //! Bodies and materials of a scene file.
 
-use super::error::{Wrong, require};
+use super::error::{FieldError, require};
 use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
@@ -200,7 +200,7 @@ pub struct PartText {
 }
 
 /// Returns the extension of a file name in lower case, e.g. `png`; empty if the name has none.
-pub fn ending_of(name: &str) -> String {
+pub fn extension_of(name: &str) -> String {
     let name = name.rsplit(['/', '\\']).next().unwrap_or(name);
     let ending = name.rsplit_once('.').map(|(_, ending)| ending);
     ending.unwrap_or_default().to_ascii_lowercase()
@@ -251,7 +251,7 @@ impl MaterialText {
     }
 
     /// Checks the ranges of the material's fields.
-    pub(super) fn check(&self) -> Result<(), Wrong> {
+    pub(super) fn check(&self) -> Result<(), FieldError> {
         let material = self.material();
         let Elasticity { young, poisson } = material.elasticity;
         let good = young > 0.0 && young.is_finite();
@@ -265,16 +265,16 @@ impl MaterialText {
                 given,
                 expected,
                 ..
-            } => Wrong::new(field, format!("expected {expected}, found {given}")),
-            error => Wrong::new("young", error),
+            } => FieldError::new(field, format!("expected {expected}, found {given}")),
+            error => FieldError::new("young", error),
         })
     }
 }
 
 impl BodyText {
     /// Decodes the embedded content of the file.
-    pub(super) fn file_bytes(&self) -> Result<Vec<u8>, Wrong> {
-        let wrong = |reason: String| Wrong::new("content", reason);
+    pub(super) fn file_bytes(&self) -> Result<Vec<u8>, FieldError> {
+        let wrong = |reason: String| FieldError::new("content", reason);
         let missing = || wrong("expected the content of the file".into());
         let text = self.content.as_ref().ok_or_else(missing)?;
         let bytes = BASE64.decode(text);

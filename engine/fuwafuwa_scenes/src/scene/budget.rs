@@ -1,6 +1,6 @@
 //! Limits on the total work for all bodies of a scene, which may come from an untrusted author.
 
-use super::error::{Wrong, require};
+use super::error::{FieldError, require};
 
 /// Remaining work for the bodies still to be built. Each step takes its share before it begins.
 pub(super) struct Budget {
@@ -10,9 +10,9 @@ pub(super) struct Budget {
     /// Distance evaluations: one for each part and voxel of a body.
     pub(super) distances: usize,
     /// Plane tests: one for each cutting plane and voxel of a diced body.
-    pub(super) crossings: usize,
+    pub(super) plane_tests: usize,
     /// Colour comparisons: one for each pixel and named colour of a picture.
-    pub(super) judgements: usize,
+    pub(super) colour_comparisons: usize,
 }
 
 impl Budget {
@@ -22,21 +22,21 @@ impl Budget {
             most_voxels,
             voxels: 0,
             distances: 1 << 27,
-            crossings: 1 << 26,
+            plane_tests: 1 << 26,
             // Enough for four of the largest pictures with 16 colours each.
-            judgements: 1 << 30,
+            colour_comparisons: 1 << 30,
         }
     }
 
     /// Takes `count` voxels.
-    pub(super) fn take_voxels(&mut self, count: usize) -> Result<(), Wrong> {
+    pub(super) fn take_voxels(&mut self, count: usize) -> Result<(), FieldError> {
         self.check_voxels(count)?;
         self.voxels += count;
         Ok(())
     }
 
     /// Checks that `count` voxels are left.
-    pub(super) fn check_voxels(&self, count: usize) -> Result<(), Wrong> {
+    pub(super) fn check_voxels(&self, count: usize) -> Result<(), FieldError> {
         let (most, found) = (self.most_voxels, self.voxels.saturating_add(count));
         let expected = format!(
             "expected {most} voxels at most in the grids of all bodies together, found {found}"
@@ -45,7 +45,7 @@ impl Budget {
     }
 
     /// Takes one distance evaluation for each part and voxel.
-    pub(super) fn take_distances(&mut self, parts: usize, voxels: usize) -> Result<(), Wrong> {
+    pub(super) fn take_distances(&mut self, parts: usize, voxels: usize) -> Result<(), FieldError> {
         let most = self.distances / voxels.max(1);
         let expected =
             format!("expected {most} at most in a body of {voxels} voxels, found {parts}");
@@ -55,11 +55,11 @@ impl Budget {
     }
 
     /// Takes one colour comparison for each pixel and colour.
-    pub(super) fn take_pixels(&mut self, pixels: usize, colours: usize) -> Result<(), Wrong> {
-        let (most, colours) = (self.judgements / pixels.max(1), colours.max(1));
+    pub(super) fn take_pixels(&mut self, pixels: usize, colours: usize) -> Result<(), FieldError> {
+        let (most, colours) = (self.colour_comparisons / pixels.max(1), colours.max(1));
         let expected = format!("expected {most} at most for {pixels} pixels, found {colours}");
         require(colours <= most, "colours", expected)?;
-        self.judgements -= pixels * colours;
+        self.colour_comparisons -= pixels * colours;
         Ok(())
     }
 }

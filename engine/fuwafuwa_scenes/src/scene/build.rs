@@ -2,7 +2,7 @@
 
 use super::body::BodyText;
 use super::budget::Budget;
-use super::error::{Wrong, require, require_vector};
+use super::error::{FieldError, require, require_vector};
 use super::grid;
 use super::state;
 use fuwafuwa::law::Law;
@@ -15,7 +15,7 @@ impl BodyText {
         &self,
         materials: &[Material],
         budget: &mut Budget,
-    ) -> Result<SoftBody<D>, Wrong> {
+    ) -> Result<SoftBody<D>, FieldError> {
         require_vector(D::N, "at", self.at)?;
         require_vector(D::N, "velocity", self.velocity)?;
         if let Some(state) = &self.state {
@@ -39,7 +39,7 @@ impl BodyText {
             true => Grading::Uniform,
             false => Grading::Graded,
         };
-        let broken = |reason: String| Wrong::new("shape", reason);
+        let broken = |reason: String| FieldError::new("shape", reason);
         let body = SoftBody::with_options(grid, materials, law, grading);
         let mut body = body.map_err(|error| match error {
             BodyError::MissingMaterial { number } => {
@@ -47,7 +47,7 @@ impl BodyText {
                 let reason = format!(
                     "voxels have material {number}, but the scene has materials 1 to {count}"
                 );
-                Wrong::new("material", reason)
+                FieldError::new("material", reason)
             }
             error => broken(error.to_string()),
         })?;
@@ -72,9 +72,9 @@ impl BodyText {
         world: &mut World<D>,
         materials: &[Material],
         budget: &mut Budget,
-    ) -> Result<(), Wrong> {
+    ) -> Result<(), FieldError> {
         let body = world.add_soft_body(self.build(materials, budget)?);
-        let wrong = |field: &'static str| move |refused: Refused| Wrong::new(field, refused);
+        let wrong = |field: &'static str| move |refused: Refused| FieldError::new(field, refused);
         if let Some(scale) = self.gravity_scale {
             let set = world.set_gravity_scale(body, scale);
             set.map_err(wrong("gravity_scale"))?;
@@ -97,7 +97,11 @@ impl BodyText {
         }
     }
 
-    fn check_diced<D: Dim>(&self, grid: &VoxelGrid<D>, budget: &mut Budget) -> Result<(), Wrong> {
+    fn check_diced<D: Dim>(
+        &self,
+        grid: &VoxelGrid<D>,
+        budget: &mut Budget,
+    ) -> Result<(), FieldError> {
         let Some(spacing) = self.diced else {
             return Ok(());
         };
@@ -110,14 +114,14 @@ impl BodyText {
         let voxels = grid.voxels().count();
         let expected = format!("{blades} blades through {voxels} voxels are too many");
         let crossings = blades.saturating_mul(voxels);
-        require(crossings <= budget.crossings, "diced", expected)?;
-        budget.crossings -= crossings;
+        require(crossings <= budget.plane_tests, "diced", expected)?;
+        budget.plane_tests -= crossings;
         Ok(())
     }
 }
 
 /// Converts axis times angle [rad] to a rotation.
-pub(super) fn rotation_of<D: Dim>(turned: [f32; 3]) -> Result<Rotation, Wrong> {
+pub(super) fn rotation_of<D: Dim>(turned: [f32; 3]) -> Result<Rotation, FieldError> {
     let good = turned.iter().all(|k| k.is_finite());
     let found = format!("expected axis times angle [rad], found {turned:?}");
     require(good, "turned", found)?;

@@ -1,11 +1,11 @@
 //! Files embedded in a scene, so that it is self-contained: small files whole, large ones reduced to the
 //! voxels of their bodies.
 
-use super::body::{BodyText, ending_of};
+use super::body::{BodyText, extension_of};
 use super::budget::Budget;
-use super::error::Wrong;
+use super::error::FieldError;
 use super::grid::{check_across, colours};
-use crate::import::{ImportError, Model, Picture, Place, Problem};
+use crate::import::{FilePosition, ImportError, Model, Picture, Problem};
 use fuwafuwa::grid::MAX_EXTENT;
 use std::io;
 
@@ -17,20 +17,24 @@ const SMALL: usize = 1 << 16;
 pub type Fetch<'a> = &'a dyn Fn(&str) -> io::Result<Vec<u8>>;
 
 impl BodyText {
-    pub(super) fn embed_file(&mut self, fetch: Fetch, budget: &mut Budget) -> Result<(), Wrong> {
+    pub(super) fn embed_file(
+        &mut self,
+        fetch: Fetch,
+        budget: &mut Budget,
+    ) -> Result<(), FieldError> {
         let Some(file) = self.file.clone().filter(|_| self.content.is_none()) else {
             return Ok(());
         };
         let bytes = fetch(&file).map_err(|error| {
-            Wrong::file(ImportError {
+            FieldError::file(ImportError {
                 file: file.clone(),
-                place: Place::File,
+                position: FilePosition::File,
                 problem: Problem::Unreadable(error),
             })
         })?;
         // An invalid file is embedded whole, and its error is reported when the body is built.
         let less = match bytes.len() > SMALL {
-            true => self.needed_of(&file, &bytes, budget)?,
+            true => self.reduced_file(&file, &bytes, budget)?,
             false => None,
         };
         self.embed(&less.unwrap_or(bytes));
@@ -38,14 +42,14 @@ impl BodyText {
     }
 
     /// Returns a smaller file that gives the same voxels; `None` if the file is invalid.
-    fn needed_of(
+    fn reduced_file(
         &self,
         file: &str,
         bytes: &[u8],
         budget: &mut Budget,
-    ) -> Result<Option<Vec<u8>>, Wrong> {
+    ) -> Result<Option<Vec<u8>>, FieldError> {
         budget.take_pixels(bytes.len(), 1)?;
-        Ok(match ending_of(file).as_str() {
+        Ok(match extension_of(file).as_str() {
             "png" => {
                 let across = self.n.unwrap_or(MAX_EXTENT);
                 let known = check_across(across).and_then(|()| colours(self));
@@ -54,7 +58,7 @@ impl BodyText {
                     return Ok(None);
                 };
                 budget.take_pixels(picture.size().iter().product(), colours.named.len())?;
-                picture.needed(across, &colours)
+                picture.reduced_png(across, &colours)
             }
             "vox" => Model::decode(file, bytes).ok().map(|model| model.bytes()),
             _ => None,

@@ -116,7 +116,7 @@ fn in_line(line: &Option<usize>) -> String {
 
 /// An invalid value: path of the field, as in `body.2.n`, and reason.
 #[derive(Debug)]
-pub(super) struct Wrong {
+pub(super) struct FieldError {
     path: String,
     reason: Reason,
 }
@@ -127,7 +127,7 @@ enum Reason {
     Import(Box<ImportError>),
 }
 
-impl Wrong {
+impl FieldError {
     pub(super) fn new(field: &str, reason: impl ToString) -> Self {
         let (path, reason) = (field.into(), Reason::Text(reason.to_string()));
         Self { path, reason }
@@ -153,12 +153,13 @@ impl Wrong {
 }
 
 /// Returns an error for `field` unless `good`.
-pub(super) fn require(good: bool, field: &str, reason: impl ToString) -> Result<(), Wrong> {
-    good.then_some(()).ok_or_else(|| Wrong::new(field, reason))
+pub(super) fn require(good: bool, field: &str, reason: impl ToString) -> Result<(), FieldError> {
+    good.then_some(())
+        .ok_or_else(|| FieldError::new(field, reason))
 }
 
 /// Requires finite components, and in 2D a third component of 0.
-pub(super) fn require_vector(dim: usize, field: &str, vector: [f32; 3]) -> Result<(), Wrong> {
+pub(super) fn require_vector(dim: usize, field: &str, vector: [f32; 3]) -> Result<(), FieldError> {
     let finite = vector.iter().all(|k| k.is_finite());
     let found = format!("found {vector:?}");
     require(finite, field, format!("expected finite numbers, {found}"))?;
@@ -197,7 +198,7 @@ impl Origin {
         Self { name, lines }
     }
 
-    pub(super) fn error(&self, wrong: Wrong) -> SceneError {
+    pub(super) fn error(&self, wrong: FieldError) -> SceneError {
         // A value that is missing from the text takes the line of the entry it belongs to.
         let mut path = wrong.path.as_str();
         let line = loop {

@@ -1,7 +1,7 @@
 //! Rules of the game in a scene file.
 
-use super::error::{Wrong, require};
-use super::rigid::{BoxText, Shapes};
+use super::error::{FieldError, require};
+use super::rigid::{BoxText, ShapeChoice};
 use fuwafuwa::{Dim, Shape};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 #[serde(deny_unknown_fields)]
 pub struct GameText {
     /// Name of the level.
-    pub name: Words,
+    pub name: LocalizedText,
     /// Region enclosed by the bars, to be filled.
     pub basket: Option<BoxText>,
     /// Share of the bodies' mass that must rest in the basket, above 0 and up to 1; default 0.6.
@@ -45,7 +45,7 @@ pub enum AssistText {
 /// A text in each language of the game.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Words {
+pub struct LocalizedText {
     /// English.
     pub en: String,
     /// Japanese; English is used if missing.
@@ -83,9 +83,9 @@ const MAX_WISHES: usize = 8;
 
 impl GameText {
     /// Returns the checked basket, if there is one.
-    pub(super) fn basket<D: Dim>(&self) -> Result<Option<Shape>, Wrong> {
+    pub(super) fn basket<D: Dim>(&self) -> Result<Option<Shape>, FieldError> {
         let shape = |text| {
-            let shapes = Shapes {
+            let shapes = ShapeChoice {
                 half_space: None,
                 boxed: Some(text),
                 capsule: None,
@@ -97,7 +97,7 @@ impl GameText {
     }
 
     /// Checks every field.
-    pub(super) fn check<D: Dim>(&self) -> Result<(), Wrong> {
+    pub(super) fn check<D: Dim>(&self) -> Result<(), FieldError> {
         self.basket::<D>()?;
         let expected = "expected a name of 1 to 60 letters";
         for (field, name) in [
@@ -116,7 +116,7 @@ impl GameText {
         let most = format!("expected {MAX_WISHES} at most, found {count}");
         require(count <= MAX_WISHES, "wish", most)?;
         for (index, wish) in self.wish.iter().enumerate() {
-            let inside = |wrong: Wrong| wrong.inside("wish", index);
+            let inside = |wrong: FieldError| wrong.inside("wish", index);
             let seconds = wish.seconds.unwrap_or(1.0);
             let good = seconds > 0.0 && seconds.is_finite();
             require(good, "seconds", expected("more than 0 s", seconds)).map_err(inside)?;

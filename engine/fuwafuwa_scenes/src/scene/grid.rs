@@ -1,9 +1,9 @@
 //! Construction of a body's voxel grid from its table in a scene.
 
-use super::body::{BodyText, Form, PartText, VoxelsText, ending_of};
+use super::body::{BodyText, Form, PartText, VoxelsText, extension_of};
 use super::budget::Budget;
-use super::error::{Wrong, require, shortened};
-use super::rigid::Shapes;
+use super::error::{FieldError, require, shortened};
+use super::rigid::ShapeChoice;
 use crate::import::{Colours, Model, Picture};
 use fuwafuwa::dim::points_in;
 use fuwafuwa::grid::MAX_EXTENT;
@@ -13,7 +13,7 @@ use fuwafuwa::{BuildError, Dim, Dim2, Dim3, Shape, VoxelGrid};
 const MAX_COLOURS: usize = 255;
 
 /// Builds the grid of a body, if the budget suffices.
-pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGrid<D>, Wrong> {
+pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGrid<D>, FieldError> {
     let good = text.width > 0.0 && text.width.is_finite();
     let expected = format!("expected a positive number of metres, found {}", text.width);
     require(good, "width", expected)?;
@@ -25,7 +25,7 @@ pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGr
         }
         _ => {
             let expected = "expected either a shape, a file, voxels or a state";
-            return Err(Wrong::new("shape", expected));
+            return Err(FieldError::new("shape", expected));
         }
     };
     let count = voxels.materials.len();
@@ -36,7 +36,7 @@ pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGr
         voxels.change::<D>(&part);
     }
     let grid = VoxelGrid::from_materials(voxels.size, voxels.voxel_size, voxels.materials);
-    grid.map_err(|error| Wrong::new("part", error))
+    grid.map_err(|error| FieldError::new("part", error))
 }
 
 /// Voxels of a grid before its parts change them.
@@ -78,13 +78,13 @@ struct Part {
 }
 
 impl Part {
-    fn of<D: Dim>(text: &PartText) -> Result<Self, Wrong> {
+    fn of<D: Dim>(text: &PartText) -> Result<Self, FieldError> {
         let (material, fills) = match (text.fill, text.paint) {
             (Some(material), None) => (material, true),
             (None, Some(material)) => (material, false),
-            _ => return Err(Wrong::new("fill", "expected either fill or paint")),
+            _ => return Err(FieldError::new("fill", "expected either fill or paint")),
         };
-        let shapes = Shapes {
+        let shapes = ShapeChoice {
             half_space: text.half_space.as_ref(),
             boxed: text.boxed.as_ref(),
             capsule: text.capsule.as_ref(),
@@ -98,10 +98,10 @@ impl Part {
     }
 }
 
-fn of_form<D: Dim>(text: &BodyText, form: Form, budget: &Budget) -> Result<Voxels, Wrong> {
+fn of_form<D: Dim>(text: &BodyText, form: Form, budget: &Budget) -> Result<Voxels, FieldError> {
     let expected = "only a file has colours; expected material, or parts that paint";
     require(text.colours.is_empty(), "colours", expected)?;
-    let missing = || Wrong::new("n", "expected the number of voxels across");
+    let missing = || FieldError::new("n", "expected the number of voxels across");
     let n = text.n.ok_or_else(missing)?;
     check_across(n)?;
     let any_form = matches!(form, Form::Box | Form::Empty);
@@ -128,9 +128,9 @@ fn of_form<D: Dim>(text: &BodyText, form: Form, budget: &Budget) -> Result<Voxel
         Form::Box | Form::Empty => VoxelGrid::from_fn(extent, text.width / n as f32, |_| 1),
     };
     let grid = grid.map_err(|error| match error {
-        BuildError::BadVoxelSize(_) => Wrong::new("width", error),
-        _ if any_form => Wrong::new("proportions", error),
-        _ => Wrong::new("n", error),
+        BuildError::BadVoxelSize(_) => FieldError::new("width", error),
+        _ if any_form => FieldError::new("proportions", error),
+        _ => FieldError::new("n", error),
     })?;
     let material = text.material.unwrap_or(1);
     Ok(Voxels::of(&grid, grid.voxel_size(), |solid| match form {
@@ -139,7 +139,7 @@ fn of_form<D: Dim>(text: &BodyText, form: Form, budget: &Budget) -> Result<Voxel
     }))
 }
 
-fn of_voxels<D: Dim>(text: &VoxelsText, budget: &Budget) -> Result<Voxels, Wrong> {
+fn of_voxels<D: Dim>(text: &VoxelsText, budget: &Budget) -> Result<Voxels, FieldError> {
     let good = text.size.iter().all(|k| (1..=MAX_EXTENT).contains(k));
     let found = format!(
         "expected 1 to {MAX_EXTENT} on each axis, found {:?}",
@@ -159,7 +159,7 @@ fn of_voxels<D: Dim>(text: &VoxelsText, budget: &Budget) -> Result<Voxels, Wrong
         let Some((length, material)) = both else {
             let found = shortened(run, 40);
             let reason = format!("expected runs such as 12x1, found {found:?}");
-            return Err(Wrong::new("runs", reason));
+            return Err(FieldError::new("runs", reason));
         };
         let left = count - materials.len();
         let reason = format!("expected {count} voxels, found more");
@@ -176,7 +176,7 @@ fn of_voxels<D: Dim>(text: &VoxelsText, budget: &Budget) -> Result<Voxels, Wrong
     })
 }
 
-fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<Voxels, Wrong> {
+fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<Voxels, FieldError> {
     let good = text.proportions == [1.0; 3];
     require(
         good,
@@ -186,7 +186,7 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
     let colours = colours(text)?;
     let named = !text.colours.is_empty();
     let (name, dim) = (shortened(file, 200), D::N);
-    match (ending_of(file).as_str(), D::N) {
+    match (extension_of(file).as_str(), D::N) {
         ("png", Dim2::N) => {
             let across = text.n.unwrap_or(MAX_EXTENT);
             check_across(across)?;
@@ -197,10 +197,12 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
                 "not allowed together with colours, which name the materials",
             )?;
             let bytes = text.file_bytes()?;
-            let picture = Picture::decode(&name, &bytes).map_err(Wrong::file)?;
+            let picture = Picture::decode(&name, &bytes).map_err(FieldError::file)?;
             let pixels: usize = picture.size().iter().product();
             budget.take_pixels(pixels, colours.named.len())?;
-            let grid = picture.grid(across, 1.0, &colours).map_err(Wrong::file)?;
+            let grid = picture
+                .grid(across, 1.0, &colours)
+                .map_err(FieldError::file)?;
             let material = text.material.unwrap_or(1);
             Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| {
                 if named { solid } else { solid * material }
@@ -213,20 +215,20 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
             let expected = "the palette indices of a model are its materials, see colours";
             require(text.material.is_none(), "material", expected)?;
             let bytes = text.file_bytes()?;
-            let model = Model::decode(&name, &bytes).map_err(Wrong::file)?;
-            let grid = model.grid(1.0, &colours).map_err(Wrong::file)?;
+            let model = Model::decode(&name, &bytes).map_err(FieldError::file)?;
+            let grid = model.grid(1.0, &colours).map_err(FieldError::file)?;
             Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| solid))
         }
         _ => {
             let reason = format!(
                 "expected .png for dim = 2 or .vox for dim = 3, found {name} for dim = {dim}"
             );
-            Err(Wrong::new("file", reason))
+            Err(FieldError::new("file", reason))
         }
     }
 }
 
-pub(super) fn check_across(n: usize) -> Result<(), Wrong> {
+pub(super) fn check_across(n: usize) -> Result<(), FieldError> {
     let expected = format!("expected 1 to {MAX_EXTENT} voxels across, found {n}");
     require((1..=MAX_EXTENT).contains(&n), "n", expected)
 }
@@ -238,7 +240,7 @@ fn voxel_size<D: Dim>(text: &BodyText, grid: &VoxelGrid<D>) -> f32 {
 }
 
 /// Parses the colours of a body, such as `"79" = 1` and `"#d04030" = 2`.
-pub(super) fn colours(text: &BodyText) -> Result<Colours, Wrong> {
+pub(super) fn colours(text: &BodyText) -> Result<Colours, FieldError> {
     let found = text.colours.len();
     let expected = format!("expected {MAX_COLOURS} at most, found {found}");
     require(found <= MAX_COLOURS, "colours", expected)?;
@@ -256,7 +258,7 @@ pub(super) fn colours(text: &BodyText) -> Result<Colours, Wrong> {
             let reason = format!(
                 "expected a colour such as \"#d04030\" or a palette index from 1 to 255, found {key:?}"
             );
-            return Err(Wrong::new("colours", reason));
+            return Err(FieldError::new("colours", reason));
         }
     }
     Ok(colours)

@@ -1,6 +1,6 @@
 //! Joints of a scene file.
 
-use super::error::{Wrong, require, require_vector};
+use super::error::{FieldError, require, require_vector};
 use fuwafuwa::{Dim, Joint, JointAnchor, JointKind, RigidBodyHandle, SoftBodyHandle, World};
 use serde::{Deserialize, Serialize};
 
@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct JointText {
     /// Joint kind.
-    pub tie: TieText,
+    pub tie: JointKindText,
     /// The two anchors.
-    pub ends: Vec<EndText>,
+    pub ends: Vec<JointAnchorText>,
     /// Spring stiffness [N/m]; required for a spring.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f32>,
@@ -29,7 +29,7 @@ pub struct JointText {
 /// Joint kind; see [`fuwafuwa::JointKind`].
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum TieText {
+pub enum JointKindText {
     /// The anchors coincide.
     Pin,
     /// A spring pulls the anchors to its rest length.
@@ -42,7 +42,7 @@ pub enum TieText {
 /// without any of them, a fixed point of the world.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct EndText {
+pub struct JointAnchorText {
     /// Number of a `[[body]]`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<usize>,
@@ -64,7 +64,7 @@ pub struct EndText {
 }
 
 /// Handles of possible joint targets, in the order of their lists.
-pub(super) struct Known {
+pub(super) struct JointTargets {
     pub(super) bodies: Vec<SoftBodyHandle>,
     pub(super) obstacles: Vec<RigidBodyHandle>,
     pub(super) hands: Vec<RigidBodyHandle>,
@@ -72,15 +72,19 @@ pub(super) struct Known {
 }
 
 impl JointText {
-    pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>, known: &Known) -> Result<(), Wrong> {
+    pub(super) fn add_to<D: Dim>(
+        &self,
+        world: &mut World<D>,
+        known: &JointTargets,
+    ) -> Result<(), FieldError> {
         let [first, second] = &self.ends[..] else {
             let found = self.ends.len();
-            return Err(Wrong::new(
+            return Err(FieldError::new(
                 "ends",
                 format!("expected two anchors, found {found}"),
             ));
         };
-        let end = |index: usize, text: &EndText| {
+        let end = |index: usize, text: &JointAnchorText| {
             let end = text.end::<D>(known);
             end.map_err(|wrong| wrong.inside("ends", index))
         };
@@ -92,26 +96,26 @@ impl JointText {
         let added = world.add_joint(joint);
         added
             .map(drop)
-            .map_err(|refused| Wrong::new("tie", refused))
+            .map_err(|refused| FieldError::new("tie", refused))
     }
 
-    fn tie(&self) -> Result<JointKind, Wrong> {
-        let missing = |field: &'static str| move || Wrong::new(field, "expected a number");
+    fn tie(&self) -> Result<JointKind, FieldError> {
+        let missing = |field: &'static str| move || FieldError::new(field, "expected a number");
         let is = |tie| self.tie == tie;
-        let good = is(TieText::Spring) || self.stiffness.is_none() && self.damping.is_none();
+        let good = is(JointKindText::Spring) || self.stiffness.is_none() && self.damping.is_none();
         require(good, "stiffness", "allowed only with tie = \"spring\"")?;
-        let good = !is(TieText::Pin) || self.length.is_none();
+        let good = !is(JointKindText::Pin) || self.length.is_none();
         require(
             good,
             "length",
             "allowed only with tie = \"spring\" or \"rope\"",
         )?;
         Ok(match self.tie {
-            TieText::Pin => JointKind::Pin,
-            TieText::Rope => JointKind::Rope {
+            JointKindText::Pin => JointKind::Pin,
+            JointKindText::Rope => JointKind::Rope {
                 length: self.length.ok_or_else(missing("length"))?,
             },
-            TieText::Spring => JointKind::Spring {
+            JointKindText::Spring => JointKind::Spring {
                 stiffness: self.stiffness.ok_or_else(missing("stiffness"))?,
                 damping: self.damping.unwrap_or(0.0),
                 length: self.length.ok_or_else(missing("length"))?,
@@ -120,16 +124,16 @@ impl JointText {
     }
 
     /// Returns the text of a joint with the given anchors.
-    pub(super) fn of(joint: &Joint, ends: [EndText; 2]) -> Self {
+    pub(super) fn of(joint: &Joint, ends: [JointAnchorText; 2]) -> Self {
         let (tie, stiffness, damping, length) = match joint.tie {
-            JointKind::Pin => (TieText::Pin, None, None, None),
-            JointKind::Rope { length } => (TieText::Rope, None, None, Some(length)),
+            JointKind::Pin => (JointKindText::Pin, None, None, None),
+            JointKind::Rope { length } => (JointKindText::Rope, None, None, Some(length)),
             JointKind::Spring {
                 stiffness,
                 damping,
                 length,
             } => (
-                TieText::Spring,
+                JointKindText::Spring,
                 Some(stiffness),
                 Some(damping),
                 Some(length),
@@ -147,8 +151,8 @@ impl JointText {
     }
 }
 
-impl EndText {
-    fn end<D: Dim>(&self, known: &Known) -> Result<JointAnchor, Wrong> {
+impl JointAnchorText {
+    fn end<D: Dim>(&self, known: &JointTargets) -> Result<JointAnchor, FieldError> {
         require_vector(D::N, "at", self.at)?;
         let at = self.at;
         let good = self.body.is_some() || self.radius.is_none();
@@ -177,9 +181,11 @@ impl EndText {
     }
 }
 
-fn nth<T: Copy>(field: &str, number: usize, list: &[T]) -> Result<T, Wrong> {
+fn nth<T: Copy>(field: &str, number: usize, list: &[T]) -> Result<T, FieldError> {
     let count = list.len();
     let found = number.checked_sub(1).and_then(|index| list.get(index));
     let reason = || format!("expected 1 to {count}, found {number}");
-    found.copied().ok_or_else(|| Wrong::new(field, reason()))
+    found
+        .copied()
+        .ok_or_else(|| FieldError::new(field, reason()))
 }

@@ -1,6 +1,6 @@
 //! Obstacles, hands and shapes of a scene file.
 
-use super::error::{Wrong, require, require_vector};
+use super::error::{FieldError, require, require_vector};
 use fuwafuwa::{Dim, MotionType, Refused, RigidBody, RigidBodyHandle, Shape, World};
 use serde::{Deserialize, Serialize};
 
@@ -86,8 +86,8 @@ pub struct HandText {
 }
 
 impl ObstacleText {
-    pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>) -> Result<(), Wrong> {
-        let shape = Shapes {
+    pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>) -> Result<(), FieldError> {
+        let shape = ShapeChoice {
             half_space: self.half_space.as_ref(),
             boxed: self.boxed.as_ref(),
             capsule: self.capsule.as_ref(),
@@ -99,21 +99,21 @@ impl ObstacleText {
         let added = world.add_rigid_body(RigidBody::fixed(shape.only::<D>()?, self.friction));
         added
             .map(|_| ())
-            .map_err(|reason| Wrong::new("friction", reason))
+            .map_err(|reason| FieldError::new("friction", reason))
     }
 }
 
 /// The possible shapes of a table; exactly one must be present.
-pub(super) struct Shapes<'a> {
+pub(super) struct ShapeChoice<'a> {
     pub(super) half_space: Option<&'a HalfSpaceText>,
     pub(super) boxed: Option<&'a BoxText>,
     pub(super) capsule: Option<&'a CapsuleText>,
     pub(super) ball: Option<&'a BallText>,
 }
 
-impl Shapes<'_> {
+impl ShapeChoice<'_> {
     /// Returns the only shape, checked.
-    pub(super) fn only<D: Dim>(&self) -> Result<Shape, Wrong> {
+    pub(super) fn only<D: Dim>(&self) -> Result<Shape, FieldError> {
         let vector = |field: &str, vector| require_vector(D::N, field, vector);
         let (name, shape) = match (self.half_space, self.boxed, self.capsule, self.ball) {
             (Some(text), None, None, None) => {
@@ -144,12 +144,12 @@ impl Shapes<'_> {
             }
             _ => {
                 let expected = "expected exactly one of half_space, box, capsule and ball";
-                return Err(Wrong::new("shape", expected));
+                return Err(FieldError::new("shape", expected));
             }
         };
         let wrong = |bad: fuwafuwa::shape::BadShape| {
             let field = format!("{name}.{}", bad.field);
-            Wrong::new(&field, format!("expected {}", bad.expected))
+            FieldError::new(&field, format!("expected {}", bad.expected))
         };
         shape.check().map(|()| shape).map_err(wrong)
     }
@@ -159,7 +159,7 @@ impl Shapes<'_> {
 const MAX_POINTS: usize = 10_000;
 
 impl HandText {
-    pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>) -> Result<(), Wrong> {
+    pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>) -> Result<(), FieldError> {
         require(
             !self.path.is_empty(),
             "path",
@@ -181,16 +181,16 @@ impl HandText {
             true => MotionType::Kinematic,
             false => MotionType::default(),
         };
-        let hand = RigidBody::new(form, self.goal(0.0), drive);
+        let hand = RigidBody::new(form, self.target(0.0), drive);
         let added = world.add_rigid_body(hand);
         added
             .map(|_| ())
-            .map_err(|reason| Wrong::new("shape", reason))
+            .map_err(|reason| FieldError::new("shape", reason))
     }
 
     /// Returns the shape relative to the target.
-    fn form<D: Dim>(&self) -> Result<Shape, Wrong> {
-        let shapes = Shapes {
+    fn form<D: Dim>(&self) -> Result<Shape, FieldError> {
+        let shapes = ShapeChoice {
             half_space: None,
             boxed: self.boxed.as_ref(),
             capsule: self.capsule.as_ref(),
@@ -207,13 +207,13 @@ impl HandText {
             (None, Some(_), None) | (None, None, Some(_)) => shapes.only::<D>(),
             _ => {
                 let expected = "expected exactly one of radius, box and capsule";
-                Err(Wrong::new("radius", expected))
+                Err(FieldError::new("radius", expected))
             }
         }
     }
 
     /// Returns the target position [m] at a time [s].
-    pub fn goal(&self, seconds: f32) -> [f32; 3] {
+    pub fn target(&self, seconds: f32) -> [f32; 3] {
         let place = |point: &[f32; 4]| [point[1], point[2], point[3]];
         let after = self.path.iter().position(|point| point[0] >= seconds);
         match after {
@@ -230,7 +230,7 @@ impl HandText {
 }
 
 /// Sets the targets of a world's hands, in order. A hand with a non-finite target keeps its old one.
-pub(crate) fn send<D: Dim>(world: &mut World<D>, goals: &[[f32; 3]]) {
+pub(crate) fn set_hand_targets<D: Dim>(world: &mut World<D>, goals: &[[f32; 3]]) {
     let hands: Vec<RigidBodyHandle> = world.target_followers().map(|(hand, _)| hand).collect();
     for (hand, &goal) in hands.into_iter().zip(goals) {
         let _sent: Result<(), Refused> = world.set_target_position(hand, goal);

@@ -1,6 +1,6 @@
 //! Complete states of bodies and rigid bodies: base64 snapshots of worlds with a single one.
 
-use super::error::Wrong;
+use super::error::FieldError;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::{Dim, RigidBody, SoftBody, World, WorldConfig, snapshot};
@@ -20,31 +20,32 @@ pub(super) fn of_rigid<D: Dim>(rigid: &RigidBody) -> Option<String> {
 }
 
 /// Decodes a body.
-pub(super) fn body<D: Dim>(text: &str) -> Result<SoftBody<D>, Wrong> {
+pub(super) fn body<D: Dim>(text: &str) -> Result<SoftBody<D>, FieldError> {
     let mut world = world::<D>(text)?;
     let id = world
         .nth_soft_body(0)
         .filter(|_| world.soft_bodies().len() == 1);
     let body = id.and_then(|id| world.remove_soft_body(id).ok());
-    body.ok_or_else(|| Wrong::new("state", "expected the snapshot of a world with one body"))
+    body.ok_or_else(|| FieldError::new("state", "expected the snapshot of a world with one body"))
 }
 
 /// Decodes a rigid body.
-pub(super) fn rigid<D: Dim>(text: &str) -> Result<RigidBody, Wrong> {
+pub(super) fn rigid<D: Dim>(text: &str) -> Result<RigidBody, FieldError> {
     let mut world = world::<D>(text)?;
     let id = world.rigid_bodies().ids().next();
     let id = id.filter(|_| world.rigid_bodies().len() == 1);
     let rigid = id.and_then(|id| world.remove_rigid_body(id).ok());
     rigid.ok_or_else(|| {
-        Wrong::new(
+        FieldError::new(
             "state",
             "expected the snapshot of a world with one rigid body",
         )
     })
 }
 
-fn world<D: Dim>(text: &str) -> Result<World<D>, Wrong> {
+fn world<D: Dim>(text: &str) -> Result<World<D>, FieldError> {
     let bytes = BASE64.decode(text);
-    let bytes = bytes.map_err(|error| Wrong::new("state", format!("expected base64: {error}")))?;
-    snapshot::load(&bytes).map_err(|bad| Wrong::new("state", bad))
+    let bytes =
+        bytes.map_err(|error| FieldError::new("state", format!("expected base64: {error}")))?;
+    snapshot::load(&bytes).map_err(|bad| FieldError::new("state", bad))
 }

@@ -1,9 +1,9 @@
 //! Conversion of a world to a scene.
 
-use super::any_rigid::RigidText;
+use super::any_rigid::RigidBodyText;
 use super::body::{BodyText, LayersText, MaterialText, VoxelsText};
-use super::error::{Origin, Wrong, require};
-use super::joint::{EndText, JointText};
+use super::error::{FieldError, Origin, require};
+use super::joint::{JointAnchorText, JointText};
 use super::state;
 use super::{MAX_BODIES, MAX_MATERIALS, MAX_RIGID, MAX_TEXT_BYTES, Scene, SceneError};
 use fuwafuwa::law::Law;
@@ -71,7 +71,7 @@ impl Scene {
     }
 }
 
-fn written<D: Dim>(world: &World<D>) -> Result<Scene, Wrong> {
+fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
     let settings = *world.config();
     let mut scene = Scene {
         dim: D::N as u8,
@@ -108,8 +108,9 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, Wrong> {
         scene.material = super::usual_materials();
     }
     for (index, rigid) in world.rigid_bodies().iter().enumerate() {
-        let text = RigidText::of::<D>(rigid);
-        let wrong = || Wrong::new("state", "the state cannot be serialised").inside("rigid", index);
+        let text = RigidBodyText::of::<D>(rigid);
+        let wrong =
+            || FieldError::new("state", "the state cannot be serialised").inside("rigid", index);
         scene.rigid.push(text.ok_or_else(wrong)?);
     }
     write_joints(world, &mut scene)?;
@@ -121,13 +122,13 @@ fn body_text<D: Dim>(
     body: &SoftBody<D>,
     settings: WorldConfig,
     materials: &mut Vec<Material>,
-) -> Result<BodyText, Wrong> {
+) -> Result<BodyText, FieldError> {
     let of_world = |body: SoftBody<D>| {
         let mut world = World::new(settings).ok()?;
         world.add_soft_body(body);
         Some(snapshot::save(&world))
     };
-    let words = in_words(body).filter(|(_, made)| {
+    let words = by_fields(body).filter(|(_, made)| {
         let (made, own) = (of_world(made.clone()), of_world(body.clone()));
         made.is_some() && made == own
     });
@@ -146,7 +147,7 @@ fn body_text<D: Dim>(
         }
         return Ok(text);
     }
-    let unsaid = || Wrong::new("state", "the state cannot be serialised");
+    let unsaid = || FieldError::new("state", "the state cannot be serialised");
     let state = state::of_body(body, settings).ok_or_else(unsaid)?;
     Ok(BodyText {
         state: Some(state),
@@ -156,7 +157,7 @@ fn body_text<D: Dim>(
 
 /// Describes a body by fields, and builds the body that they describe; `None` for bodies that fields cannot
 /// describe.
-fn in_words<D: Dim>(body: &SoftBody<D>) -> Option<(BodyText, SoftBody<D>)> {
+fn by_fields<D: Dim>(body: &SoftBody<D>) -> Option<(BodyText, SoftBody<D>)> {
     let (grid, grading) = (body.grid(), body.grading());
     if grading == Grading::Coarse || grid.left_count() < grid.solid_count() {
         return None;
@@ -168,7 +169,7 @@ fn in_words<D: Dim>(body: &SoftBody<D>) -> Option<(BodyText, SoftBody<D>)> {
     if !made.mesh().is_same_as(body.mesh()) {
         return None;
     }
-    let at = place_of(&made, body)?;
+    let at = translation_between(&made, body)?;
     let (first, _) = body.mesh().nodes().next()?;
     let velocity = body.node_state(first).1;
     let made = made.translated(at).with_velocity(velocity);
@@ -187,11 +188,11 @@ fn in_words<D: Dim>(body: &SoftBody<D>) -> Option<(BodyText, SoftBody<D>)> {
         paper_law: body.law() == Law::Endo2004,
         ..BodyText::default()
     };
-    Some((text, of_the_same_kind(made, body)?))
+    Some((text, with_properties_of(made, body)?))
 }
 
 /// Returns `made` with the gravity scale, layers and user data of `body`.
-fn of_the_same_kind<D: Dim>(made: SoftBody<D>, body: &SoftBody<D>) -> Option<SoftBody<D>> {
+fn with_properties_of<D: Dim>(made: SoftBody<D>, body: &SoftBody<D>) -> Option<SoftBody<D>> {
     let mut world = World::new(WorldConfig::default()).ok()?;
     let id = world.add_soft_body(made);
     world.set_gravity_scale(id, body.gravity_scale()).ok()?;
@@ -202,7 +203,7 @@ fn of_the_same_kind<D: Dim>(made: SoftBody<D>, body: &SoftBody<D>) -> Option<Sof
 
 /// Returns the translation [m] from `made` to `body`, if it reproduces every node position exactly, rounding
 /// included.
-fn place_of<D: Dim>(made: &SoftBody<D>, body: &SoftBody<D>) -> Option<[f32; 3]> {
+fn translation_between<D: Dim>(made: &SoftBody<D>, body: &SoftBody<D>) -> Option<[f32; 3]> {
     let mut at = [0.0; 3];
     let mut ids = made.mesh().nodes().map(|(id, _)| id);
     if !ids.all(|id| id.index() < body.positions().len()) {
@@ -258,13 +259,13 @@ fn runs(materials: impl Iterator<Item = u8>) -> String {
 
 /// Describes joints by their original anchors, or else by the current ones, and checks that the scene
 /// reproduces them.
-fn write_joints<D: Dim>(world: &World<D>, scene: &mut Scene) -> Result<(), Wrong> {
+fn write_joints<D: Dim>(world: &World<D>, scene: &mut Scene) -> Result<(), FieldError> {
     if world.joints().is_empty() {
         return Ok(());
     }
     for (index, (id, joint)) in world.joints().entries().enumerate() {
-        let inside = |wrong: Wrong| wrong.inside("joint", index);
-        let gone = || Wrong::new("ends", "expected two existing bodies, but one was removed");
+        let inside = |wrong: FieldError| wrong.inside("joint", index);
+        let gone = || FieldError::new("ends", "expected two existing bodies, but one was removed");
         let places = world.joint_anchor_positions(id).ok().flatten();
         let places = places.ok_or_else(|| inside(gone()))?;
         let tied = joint.ends.each_ref().map(|end| end_text(world, end, None));
@@ -273,17 +274,17 @@ fn write_joints<D: Dim>(world: &World<D>, scene: &mut Scene) -> Result<(), Wrong
         let now = now.map(|(end, at)| end_text(world, end, Some(at)));
         let fits = [tied, now].into_iter().find_map(|[first, second]| {
             let text = JointText::of(joint, [first?, second?]);
-            holds(scene, &text, places, joint).then_some(text)
+            reproduces_joint(scene, &text, places, joint).then_some(text)
         });
         let moved = "the bodies have moved since the joint was attached, and the scene cannot reproduce it: save a snapshot instead";
-        let text = fits.ok_or_else(|| inside(Wrong::new("ends", moved)))?;
+        let text = fits.ok_or_else(|| inside(FieldError::new("ends", moved)))?;
         scene.joint.push(text);
     }
     Ok(())
 }
 
 /// Returns whether the scene reproduces the joint: the same joint kind, with anchors at the same positions.
-fn holds(scene: &Scene, text: &JointText, places: [[f32; 3]; 2], joint: &Joint) -> bool {
+fn reproduces_joint(scene: &Scene, text: &JointText, places: [[f32; 3]; 2], joint: &Joint) -> bool {
     let mut scene = scene.clone();
     scene.joint = vec![text.clone()];
     let found = match scene.dim {
@@ -308,7 +309,7 @@ fn end_text<D: Dim>(
     world: &World<D>,
     end: &JointAnchor,
     other: Option<[f32; 3]>,
-) -> Option<EndText> {
+) -> Option<JointAnchorText> {
     let rank_of_body = |id: SoftBodyHandle| world.soft_bodies().rank(id).map(|rank| rank + 1);
     let rank_of_rigid = |id: RigidBodyHandle| world.rigid_bodies().rank(id).map(|rank| rank + 1);
     let flat = |mut at: [f32; 3]| {
@@ -316,20 +317,20 @@ fn end_text<D: Dim>(
         at
     };
     Some(match *end {
-        JointAnchor::Position(at) => EndText {
+        JointAnchor::Position(at) => JointAnchorText {
             at: flat(other.unwrap_or(at)),
-            ..EndText::default()
+            ..JointAnchorText::default()
         },
-        JointAnchor::RigidBody { rigid, at } => EndText {
+        JointAnchor::RigidBody { rigid, at } => JointAnchorText {
             rigid: Some(rank_of_rigid(rigid)?),
             at: flat(other.unwrap_or(at)),
-            ..EndText::default()
+            ..JointAnchorText::default()
         },
-        JointAnchor::Soft { body, at, radius } => EndText {
+        JointAnchor::Soft { body, at, radius } => JointAnchorText {
             body: Some(rank_of_body(body)?),
             at: flat(other.unwrap_or(at)),
             radius: Some(radius),
-            ..EndText::default()
+            ..JointAnchorText::default()
         },
     })
 }

@@ -20,7 +20,7 @@ pub(super) struct Fingers {
     mouse: Option<Finger>,
     /// Fingers that hold a button on the screen.
     holding: BTreeMap<Finger, Action>,
-    drawn: Drawn,
+    drawn: DragDistance,
 }
 
 type Finger = (TouchDeviceId, TouchId);
@@ -30,18 +30,18 @@ struct Drag {
     /// Current position, and the position up to which the movement was counted.
     now: Pos2,
     at: Pos2,
-    way: Option<Way>,
+    way: Option<DragAxis>,
 }
 
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-enum Way {
+enum DragAxis {
     Upright,
     Sideways,
 }
 
 /// Distance that the further fingers moved [points].
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub(super) struct Drawn {
+pub(super) struct DragDistance {
     /// Distance upwards.
     pub(super) up: f32,
     /// Distance to the right.
@@ -51,8 +51,12 @@ pub(super) struct Drawn {
 impl Fingers {
     /// Reads the touch events of a frame. Returns those of `buttons` that were pressed by a finger other than
     /// the emulated mouse.
-    pub(super) fn hear(&mut self, events: &[Event], buttons: &[ScreenButton]) -> Vec<ScreenButton> {
-        self.drawn = Drawn::default();
+    pub(super) fn read_events(
+        &mut self,
+        events: &[Event],
+        buttons: &[ScreenButton],
+    ) -> Vec<ScreenButton> {
+        self.drawn = DragDistance::default();
         let mut pressed: Vec<ScreenButton> = Vec::new();
         for event in events {
             // Touches that end while the window has no focus are not reported.
@@ -110,7 +114,7 @@ impl Fingers {
     }
 
     /// Returns the distance that further fingers moved since the last call.
-    pub(super) fn take(&mut self) -> Drawn {
+    pub(super) fn take(&mut self) -> DragDistance {
         std::mem::take(&mut self.drawn)
     }
 
@@ -145,13 +149,13 @@ impl Fingers {
         let by = at - drag.at;
         if drag.way.is_none() && by.length() > DECIDED {
             drag.way = Some(match by.y.abs() > by.x.abs() {
-                true => Way::Upright,
-                false => Way::Sideways,
+                true => DragAxis::Upright,
+                false => DragAxis::Sideways,
             });
         }
         match drag.way {
-            Some(Way::Upright) => self.drawn.up -= by.y,
-            Some(Way::Sideways) => self.drawn.right += by.x,
+            Some(DragAxis::Upright) => self.drawn.up -= by.y,
+            Some(DragAxis::Sideways) => self.drawn.right += by.x,
             None => return,
         }
         drag.at = at;
@@ -172,8 +176,8 @@ mod tests {
             pos: pos2(x, y),
             force: None,
         });
-        fingers.hear(&events.collect::<Vec<_>>(), &[]);
-        let Drawn { up, right } = fingers.take();
+        fingers.read_events(&events.collect::<Vec<_>>(), &[]);
+        let DragDistance { up, right } = fingers.take();
         [up, right]
     }
 

@@ -34,7 +34,7 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
     let view = game.bout.view;
     let is_plane = matches!(game.bout.round(), AnyRound::Plane(_));
     let second = view.zip(fingers.second()).filter(|_| is_plane);
-    devices.second = second.map(|(view, at)| view.in_world(at, 0.0));
+    devices.second = second.map(|(view, at)| view.to_world(at, 0.0));
     let at = match fingers.are_down() {
         true => fingers.first(),
         false => mouse_at(ctx),
@@ -44,7 +44,7 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
     };
     let round = game.bout.round();
     let position = match round {
-        AnyRound::Plane(_) => view.in_world(at, 0.0),
+        AnyRound::Plane(_) => view.to_world(at, 0.0),
         // In space the pointer is projected onto the floor, at the shadow of the hand. So the hand does not
         // jump when it has risen.
         AnyRound::Space(in_space) => {
@@ -53,7 +53,7 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
                 .players
                 .wanted(0)
                 .unwrap_or(round.hands()[0].target_position());
-            let [x, _, z] = view.in_world(at, floor(in_space));
+            let [x, _, z] = view.to_world(at, floor(in_space));
             [x, goal[1], z]
         }
     };
@@ -136,6 +136,6 @@ pub(super) fn look_around(game: &mut Game, ctx: &Context, fingers: &mut Fingers)
     let turn = TURN * seconds * game.controls.devices.turn(&game.settings.bindings);
     game.bout.camera.orbit(turn.x, turn.y);
     if twice {
-        game.bout.camera.go_home();
+        game.bout.camera.return_to_front();
     }
 }

@@ -2,7 +2,7 @@
 
 use super::presses::Presses;
 use crate::game::{Game, Screen};
-use crate::input::{Action, Seat};
+use crate::input::{Action, InputSource};
 use egui::{Context, Key};
 use sticks::{Control, PadButton};
 
@@ -47,7 +47,7 @@ impl Switch {
         let taken = controls.scan.taken(is_space);
         // While watching a replay, the only possible action is to leave it.
         if rests || !is_played && taken.is_some() {
-            game.act(Action::Pause, Seat::Keys);
+            game.act(Action::Pause, InputSource::Keys);
         } else {
             controls.devices.taken = taken;
         }

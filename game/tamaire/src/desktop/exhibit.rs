@@ -1,14 +1,16 @@
 //! Entry points of a public stand: the supervisor that keeps it running, and the game itself.
 
-use super::window::{Opened, has_display, open_game};
+use super::window::{WindowOutcome, has_display, open_game};
 use crate::exhibit::Stand;
-use crate::exhibit::config::{Config, USUAL};
-use crate::game::{Game, Public, Screen};
+use crate::exhibit::config::{Config, DEFAULT_CONFIG};
+use crate::game::{Game, PublicMode, Screen};
 use crate::headless::BAD_USAGE;
 use crate::look::Stage;
-use crate::platform::supervisor::{LOST_GRAPHICS, MOST, PAUSE, Plan, Pulse, supervise};
+use crate::platform::supervisor::{
+    Heartbeat, LOST_GRAPHICS, MAX_CRASHES, PAUSE, SupervisorConfig, supervise,
+};
 use crate::platform::{Files, Pads, Sound, StandFolder, TextFile, keep_awake};
-use crate::screens::{Attendant, Calm};
+use crate::screens::{CrashScreen, StandController};
 use egui::{Context, Ui, ViewportBuilder, ViewportCommand};
 use std::ffi::OsString;
 use std::panic::resume_unwind;
@@ -18,7 +20,7 @@ use std::process::ExitCode;
 /// Supervises a stand until staff ends it.
 pub(super) fn keep_running(file: &Path, mute: bool) -> ExitCode {
     let is_new = !file.exists();
-    let text = TextFile(file.into()).read_or(USUAL);
+    let text = TextFile(file.into()).read_or(DEFAULT_CONFIG);
     let config = text.and_then(|text| {
         Config::read(&text).map_err(|error| format!("{}: {error}", file.display()))
     });
@@ -44,13 +46,13 @@ pub(super) fn keep_running(file: &Path, mute: bool) -> ExitCode {
         words.extend(mute.then(|| "--mute".into()));
         words
     };
-    let plan = Plan {
+    let plan = SupervisorConfig {
         program,
         game: words("--stand"),
         calm: words("--rest"),
         folder: StandFolder::of(config.logbook.folder.as_deref()),
         stand: config.stand.0,
-        most: MOST,
+        most: MAX_CRASHES,
         pause: PAUSE,
     };
     match supervise(&plan) {
@@ -83,45 +85,47 @@ pub(super) fn play(file: &Path, mute: bool) -> ExitCode {
 
 /// Shows a calm picture in place of a game that keeps failing.
 pub(super) fn rest(file: &Path) -> ExitCode {
-    let text = TextFile(file.into()).read_or(USUAL);
+    let text = TextFile(file.into()).read_or(DEFAULT_CONFIG);
     let config = text.and_then(|text| Config::read(&text));
     let settings = config.map(|config| config.settings()).unwrap_or_default();
     show(move || {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
         game.settings = settings;
-        game.public = Some(Public::default());
+        game.public = Some(PublicMode::default());
         // The settings screen has no round behind it.
         game.go(Screen::Settings);
-        (game, Box::new(Calm::default()))
+        (game, Box::new(CrashScreen::default()))
     })
 }
 
-fn show(make: impl FnOnce() -> (Game, Box<dyn Attendant>) + 'static) -> ExitCode {
+fn show(make: impl FnOnce() -> (Game, Box<dyn StandController>) + 'static) -> ExitCode {
     if let Err(error) = keep_awake() {
         eprintln!("tamaire: {error}");
     }
     let viewport = ViewportBuilder::default().with_fullscreen(true);
     let opened = open_game(viewport, move || {
         let (game, attendant) = make();
-        let pulse = Pulse::begin();
+        let pulse = Heartbeat::begin();
         let watched = Watched { attendant, pulse };
-        (game, Some(Box::new(watched) as Box<dyn Attendant>))
+        (game, Some(Box::new(watched) as Box<dyn StandController>))
     });
     match opened {
-        Opened::Closed => ExitCode::SUCCESS,
-        Opened::LostGpu => ExitCode::from(LOST_GRAPHICS),
-        Opened::Failed(reason) | Opened::Never(reason) => refused(&reason, LOST_GRAPHICS),
-        Opened::Broken(panic) => resume_unwind(panic),
+        WindowOutcome::Closed => ExitCode::SUCCESS,
+        WindowOutcome::LostGpu => ExitCode::from(LOST_GRAPHICS),
+        WindowOutcome::Failed(reason) | WindowOutcome::Never(reason) => {
+            refused(&reason, LOST_GRAPHICS)
+        }
+        WindowOutcome::Broken(panic) => resume_unwind(panic),
     }
 }
 
 /// Attendant that sends a heartbeat to the supervisor and ends when the supervisor has ended.
 struct Watched {
-    attendant: Box<dyn Attendant>,
-    pulse: Pulse,
+    attendant: Box<dyn StandController>,
+    pulse: Heartbeat,
 }
 
-impl Attendant for Watched {
+impl StandController for Watched {
     fn live(&mut self, ctx: &Context) {
         if self.pulse.beat().is_err() {
             self.attendant.end();

@@ -2,8 +2,8 @@
 
 use crate::app::{App, NoGpu};
 use crate::game::Game;
-use crate::platform::{GpuWatch, in_small_blocks};
-use crate::screens::Attendant;
+use crate::platform::{GpuWatch, with_small_memory_blocks};
+use crate::screens::StandController;
 use eframe::egui_wgpu::WgpuSetup;
 use pollster::block_on;
 use std::any::Any;
@@ -21,7 +21,7 @@ const LEAST_LIFE: Duration = Duration::from_secs(10);
 const APP: &str = "tamaire";
 
 /// Outcome of a window.
-pub enum Opened {
+pub enum WindowOutcome {
     /// The window was closed.
     Closed,
     /// The GPU was lost. Window systems do not release a failed window, so the program has to restart.
@@ -40,8 +40,8 @@ pub type Made = Result<(Box<dyn eframe::App>, GpuWatch), NoGpu>;
 /// Opens a window for a game and its optional attendant. Returns when the window is closed.
 pub(super) fn open_game(
     viewport: egui::ViewportBuilder,
-    make: impl FnOnce() -> (Game, Option<Box<dyn Attendant>>) + 'static,
-) -> Opened {
+    make: impl FnOnce() -> (Game, Option<Box<dyn StandController>>) + 'static,
+) -> WindowOutcome {
     open(
         APP,
         viewport
@@ -63,7 +63,7 @@ pub fn open(
     name: &str,
     viewport: egui::ViewportBuilder,
     make: impl FnOnce(&eframe::CreationContext<'_>) -> Made + 'static,
-) -> Opened {
+) -> WindowOutcome {
     let gpu = Rc::new(RefCell::new(None::<GpuWatch>));
     let seen = gpu.clone();
     let began = Instant::now();
@@ -73,16 +73,16 @@ pub fn open(
     let is_open = gpu.is_some();
     let is_lost = gpu.is_some_and(|gpu| match closed {
         Ok(_) => gpu.is_lost(),
-        Err(_) => gpu.tried_is_lost(),
+        Err(_) => gpu.probe_is_lost(),
     });
     match closed {
-        _ if is_lost && began.elapsed() > LEAST_LIFE => Opened::LostGpu,
-        Ok(Ok(())) if is_lost => Opened::Failed("the GPU was lost".into()),
-        Ok(Ok(())) => Opened::Closed,
-        Ok(Err(error)) if is_open => Opened::Failed(error.to_string()),
-        Ok(Err(error)) => Opened::Never(trouble(&error)),
-        Err(panic) if is_open => Opened::Broken(panic),
-        Err(_) => Opened::Never("opening a window failed".into()),
+        _ if is_lost && began.elapsed() > LEAST_LIFE => WindowOutcome::LostGpu,
+        Ok(Ok(())) if is_lost => WindowOutcome::Failed("the GPU was lost".into()),
+        Ok(Ok(())) => WindowOutcome::Closed,
+        Ok(Err(error)) if is_open => WindowOutcome::Failed(error.to_string()),
+        Ok(Err(error)) => WindowOutcome::Never(trouble(&error)),
+        Err(panic) if is_open => WindowOutcome::Broken(panic),
+        Err(_) => WindowOutcome::Never("opening a window failed".into()),
     }
 }
 
@@ -98,7 +98,7 @@ fn run_window(
             .with_min_inner_size([640.0, 400.0]),
         ..Default::default()
     };
-    let setup = in_small_blocks(options.wgpu_options.wgpu_setup);
+    let setup = with_small_memory_blocks(options.wgpu_options.wgpu_setup);
     options.wgpu_options.wgpu_setup = on_what_lives(setup);
     let create = move |context: &eframe::CreationContext<'_>| {
         let (app, watch) = make(context)?;

@@ -9,7 +9,7 @@ use tamaire_play::Level;
 use toml_edit::{DocumentMut, Item, Value};
 
 /// Default configuration file, with a comment on each line.
-pub const USUAL: &str = include_str!("exhibit.toml");
+pub const DEFAULT_CONFIG: &str = include_str!("exhibit.toml");
 
 /// Maximum number of levels that a visitor can choose from.
 const MOST_LEVELS: usize = 3;
@@ -31,9 +31,9 @@ pub struct Config {
     /// Times after which a visitor is considered gone.
     pub times: Times,
     /// Sound volume.
-    pub sound: Loudness,
+    pub sound: SoundConfig,
     /// Force feedback.
-    pub force: Forces,
+    pub force: ForceConfig,
     /// Souvenirs for visitors.
     #[serde(default)]
     pub take_home: TakeHome,
@@ -44,7 +44,7 @@ pub struct Config {
     #[serde(default)]
     pub hours: Option<Hours>,
     /// Logbook and its retention.
-    pub logbook: Kept,
+    pub logbook: LogbookConfig,
 }
 
 /// Times after which a visitor is considered gone [s].
@@ -62,17 +62,17 @@ pub struct Times {
 /// Sound volume.
 #[derive(Copy, Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Loudness {
+pub struct SoundConfig {
     /// Master volume, 0 to 1.
-    pub volume: Share,
+    pub volume: Fraction,
 }
 
 /// Force feedback.
 #[derive(Copy, Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Forces {
+pub struct ForceConfig {
     /// Strength with which sticks push back, 0 to 1.
-    pub strength: Share,
+    pub strength: Fraction,
     /// Whether an idle stick moves gently to attract visitors.
     pub calls: bool,
 }
@@ -82,7 +82,7 @@ pub struct Forces {
 #[serde(deny_unknown_fields, default)]
 pub struct TakeHome {
     /// Address of the page that opens links to rounds. Without it, visitors are shown no code.
-    pub page: Option<Page>,
+    pub page: Option<PageAddress>,
     /// Maximum number of clips of won rounds that are kept for the operator.
     pub clips: usize,
 }
@@ -108,7 +108,7 @@ pub struct Hours {
 /// Logbook and its retention.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Kept {
+pub struct LogbookConfig {
     /// Folder of the logbook. `None` = the folder of the game.
     pub folder: Option<String>,
     /// Retention of visits and rounds [days].
@@ -157,7 +157,7 @@ checked! {
 }
 checked! {
     /// Address of a page, `https://…`.
-    Page(String), String, |page| match page.starts_with("https://") || page.starts_with("http://") {
+    PageAddress(String), String, |page| match page.starts_with("https://") || page.starts_with("http://") {
         true if page.len() <= 200 && !page.contains(['#', ' ']) => Ok(page),
         _ => Err(format!("expected the address of a page (https://…) of at most 200 bytes, without # and spaces, found {page:?}")),
     }
@@ -204,9 +204,9 @@ impl TryFrom<f32> for Seconds {
 /// Fraction, 0 to 1.
 #[derive(Copy, Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "f32")]
-pub struct Share(pub f32);
+pub struct Fraction(pub f32);
 
-impl TryFrom<f32> for Share {
+impl TryFrom<f32> for Fraction {
     type Error = String;
 
     fn try_from(share: f32) -> Result<Self, String> {
@@ -286,7 +286,7 @@ impl Config {
 
 /// A configuration change that staff can make at the stand.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Change {
+pub enum ConfigChange {
     /// Default language of the stand.
     Language(Language),
     /// Sound volume, 0 to 1.
@@ -299,7 +299,7 @@ pub enum Change {
     Hours(Option<(Time, Time)>),
 }
 
-impl Change {
+impl ConfigChange {
     /// Returns `text` with this change. The rest of the file, including comments, stays as the operator wrote
     /// it.
     ///
@@ -354,9 +354,9 @@ mod tests {
 
     #[test]
     fn default_file_is_valid_and_comments_every_value() {
-        let config = Config::read(USUAL).unwrap();
+        let config = Config::read(DEFAULT_CONFIG).unwrap();
         assert_eq!(config.levels.0[0].id, "classic");
-        for line in USUAL.lines().filter(|line| line.contains(" = ")) {
+        for line in DEFAULT_CONFIG.lines().filter(|line| line.contains(" = ")) {
             assert!(line.contains('#'), "{line}");
         }
     }
@@ -388,8 +388,8 @@ mod tests {
             ("#pin = ", "pin = 1234 #", "in quotation marks"),
             ("#open = ", "open = \"25:00\" #", "10:00"),
         ] {
-            assert!(USUAL.contains(right), "{right}");
-            let text = USUAL.replacen(right, wrong, 1);
+            assert!(DEFAULT_CONFIG.contains(right), "{right}");
+            let text = DEFAULT_CONFIG.replacen(right, wrong, 1);
             let text = match wrong.starts_with("open") {
                 true => text
                     .replace("#[hours]", "[hours]")
@@ -429,15 +429,17 @@ mod tests {
     fn change_keeps_rest_of_file() {
         let nine = Time::constant(9, 0, 0, 0);
         let changes = [
-            Change::Volume(0.35),
-            Change::Strength(0.0),
-            Change::Language(Language::English),
-            Change::Levels(vec!["classic".into(), "hoop".into()]),
-            Change::Hours(Some((nine, Time::constant(17, 30, 0, 0)))),
+            ConfigChange::Volume(0.35),
+            ConfigChange::Strength(0.0),
+            ConfigChange::Language(Language::English),
+            ConfigChange::Levels(vec!["classic".into(), "hoop".into()]),
+            ConfigChange::Hours(Some((nine, Time::constant(17, 30, 0, 0)))),
         ];
         let changed = changes
             .iter()
-            .try_fold(USUAL.to_string(), |text, change| change.in_text(&text));
+            .try_fold(DEFAULT_CONFIG.to_string(), |text, change| {
+                change.in_text(&text)
+            });
         let changed = changed.unwrap();
         let config = Config::read(&changed).unwrap();
         assert_eq!(
@@ -450,15 +452,15 @@ mod tests {
         );
         assert_eq!(config.hours.unwrap().open.0, nine);
         let comments = |text: &str| text.matches('#').count();
-        assert_eq!(comments(&changed), comments(USUAL));
-        let broken = USUAL.replace("[sound]\nvolume = 0.6", "sound = 0.5");
-        assert_ne!(broken, USUAL);
-        assert!(Change::Volume(0.1).in_text(&broken).is_err());
-        let always = Change::Hours(None).in_text(&changed).unwrap();
+        assert_eq!(comments(&changed), comments(DEFAULT_CONFIG));
+        let broken = DEFAULT_CONFIG.replace("[sound]\nvolume = 0.6", "sound = 0.5");
+        assert_ne!(broken, DEFAULT_CONFIG);
+        assert!(ConfigChange::Volume(0.1).in_text(&broken).is_err());
+        let always = ConfigChange::Hours(None).in_text(&changed).unwrap();
         assert_eq!(Config::read(&always).unwrap().hours, None);
         assert!(
-            Change::Levels(Vec::new())
-                .in_text(USUAL)
+            ConfigChange::Levels(Vec::new())
+                .in_text(DEFAULT_CONFIG)
                 .unwrap_err()
                 .contains("1 to 3 levels")
         );

@@ -2,7 +2,7 @@
 
 use super::config::Config;
 use super::visit::Visit;
-use crate::platform::{Files, Kind as Kept, News, StandFolder};
+use crate::platform::{Files, Kind as Kept, StandFolder, StorageEvent};
 use crate::words::Language;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -154,12 +154,12 @@ impl Memory {
     pub fn pass(&mut self, config: &Config, is_idle: bool, seconds: f32) {
         for news in self.clips.pass(seconds) {
             match news {
-                News::SavedElementStates(_) => {
+                StorageEvent::SavedElementStates(_) => {
                     self.clips.thin_out(Kept::Clip, config.take_home.clips)
                 }
-                News::Failed(reason) => self.note(Kind::Other("no_clip".into()), &reason),
-                News::Full => self.note(Kind::FullDisk, "a clip was not kept"),
-                News::Level(_) | News::Damaged(_) => {}
+                StorageEvent::Failed(reason) => self.note(Kind::Other("no_clip".into()), &reason),
+                StorageEvent::Full => self.note(Kind::FullDisk, "a clip was not kept"),
+                StorageEvent::Level(_) | StorageEvent::Damaged(_) => {}
             }
         }
         if is_idle && !self.clips.is_busy() {
@@ -171,7 +171,7 @@ impl Memory {
             self.ask(config);
         }
         self.look_at_clock();
-        let trouble = self.recorder.health().trouble;
+        let trouble = self.recorder.health().problem;
         if trouble != self.trouble {
             // The recorder logs important problems itself as soon as it can write.
             if let Some(trouble) = &trouble {

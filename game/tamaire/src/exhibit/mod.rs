@@ -19,18 +19,18 @@ mod visit;
 use crate::game::{Game, Screen};
 use crate::platform::{Clock, TextFile};
 use crate::records::Records;
-use config::{Change, Config, Seconds};
+use config::{Config, ConfigChange, Seconds};
 use egui::Context;
 use health::FrameTimes;
 use jiff::Zoned;
 use jiff::civil::Time;
 use memory::Memory;
 use presence::{Attention, Presence};
-use staff::{Answer, Entrance, Page};
+use staff::{Entrance, PinResult, StaffPage};
 use std::sync::Arc;
 use std::time::Instant;
 use sticks::DeviceId;
-use tamaire_logbook::{End, Health, Kind, Today};
+use tamaire_logbook::{Health, Kind, RoundEnd, Today};
 use tamaire_play::Level;
 use visit::Visit;
 
@@ -53,9 +53,9 @@ pub enum Phase {
     /// A visitor plays or looks at the result.
     Visit,
     /// The stand waits for the PIN.
-    Door,
+    PinEntry,
     /// A staff page is shown.
-    Staff(Page),
+    Staff(StaffPage),
     /// Closed by its opening hours.
     Closed,
 }
@@ -104,7 +104,7 @@ impl Stand {
     /// # Errors
     /// The file, the problem and its line, and the expected value.
     pub fn open(file: TextFile) -> Result<Self, String> {
-        let text = file.read_or(config::USUAL)?;
+        let text = file.read_or(config::DEFAULT_CONFIG)?;
         let config = Config::read(&text);
         let config = config.map_err(|error| format!("{}: {error}", file.0.display()))?;
         Ok(Self {
@@ -154,7 +154,7 @@ impl Stand {
         let sticks = &game.controls.devices.sticks;
         // Movement of a stick that the game itself moves is not a touch.
         let is_touched = self.presence.is_touched(ctx, sticks, game.is_calling());
-        self.collect(game, End::Retried);
+        self.collect(game, RoundEnd::Retried);
         self.memory
             .pass(&self.config, self.phase == Phase::Attract, seconds);
         self.note_devices(game);
@@ -169,7 +169,7 @@ impl Stand {
         }
         let attention = self.presence.pass(seconds, is_touched, &times);
         self.attention = match self.phase {
-            Phase::Choice | Phase::Visit | Phase::Door | Phase::Staff(_) => attention,
+            Phase::Choice | Phase::Visit | Phase::PinEntry | Phase::Staff(_) => attention,
             Phase::Attract | Phase::Closed => Attention::Gone,
         };
         match (self.phase, self.attention) {
@@ -184,8 +184,8 @@ impl Stand {
                 self.phase = Phase::Attract;
             }
             (Phase::Attract, _) if is_touched => self.welcome(game),
-            (Phase::Choice | Phase::Visit | Phase::Door | Phase::Staff(_), Attention::Gone) => {
-                self.part(game);
+            (Phase::Choice | Phase::Visit | Phase::PinEntry | Phase::Staff(_), Attention::Gone) => {
+                self.end_and_reset(game);
             }
             (Phase::Visit, _) => self.lead_back(game, seconds),
             _ => {}
@@ -248,7 +248,7 @@ impl Stand {
     pub fn try_again(&mut self, game: &mut Game, route: Option<tamaire_play::Route>) {
         self.home = None;
         game.retry();
-        self.collect(game, End::Retried);
+        self.collect(game, RoundEnd::Retried);
         self.dare(route);
     }
 
@@ -259,14 +259,14 @@ impl Stand {
     }
 
     /// Ends the visit and resets the stand for the next visitor.
-    fn part(&mut self, game: &mut Game) {
-        self.end_visit(game, End::Left);
+    fn end_and_reset(&mut self, game: &mut Game) {
+        self.end_visit(game, RoundEnd::Left);
         self.freshen(game);
         self.phase = Phase::Attract;
         self.memory.ask(&self.config);
     }
 
-    fn end_visit(&mut self, game: &mut Game, end: End) {
+    fn end_visit(&mut self, game: &mut Game, end: RoundEnd) {
         game.go(Screen::Title);
         self.collect(game, end);
         if let Some(visit) = self.visit.take().filter(|visit| visit.is_noted) {
@@ -309,7 +309,7 @@ impl Stand {
     }
 
     /// Logs the rounds that ended since the last call. `end` is the reason for rounds that were not won.
-    fn collect(&mut self, game: &mut Game, end: End) {
+    fn collect(&mut self, game: &mut Game, end: RoundEnd) {
         let ended = game.public.as_mut();
         let ended = ended.map(|public| std::mem::take(&mut public.ended));
         for ended in ended.into_iter().flatten() {
@@ -367,12 +367,12 @@ impl Stand {
         if self.entrance.pass(may && (is_chord || is_corner), seconds) {
             game.go(Screen::Title);
             match self.since > 2.0 * staff::HELD {
-                true => self.collect(game, End::Left),
+                true => self.collect(game, RoundEnd::Left),
                 // A round begun by holding the entrance does not count.
                 false => game.public.get_or_insert_default().ended.clear(),
             }
             self.presence.begin();
-            self.phase = Phase::Door;
+            self.phase = Phase::PinEntry;
         }
     }
 
@@ -382,14 +382,14 @@ impl Stand {
             return;
         };
         match self.entrance.enter(digit, pin, self.clock.now()) {
-            Answer::GoesOn | Answer::TooEarly => {}
-            Answer::Right => {
-                self.end_visit(game, End::Left);
+            PinResult::GoesOn | PinResult::TooEarly => {}
+            PinResult::Right => {
+                self.end_visit(game, RoundEnd::Left);
                 self.memory.note(Kind::StaffIn, "");
                 self.memory.ask(&self.config);
-                self.phase = Phase::Staff(Page::default());
+                self.phase = Phase::Staff(StaffPage::default());
             }
-            Answer::Wrong => self.memory.note(Kind::StaffRefused, ""),
+            PinResult::Wrong => self.memory.note(Kind::StaffRefused, ""),
         }
     }
 
@@ -400,12 +400,12 @@ impl Stand {
 
     /// Leaves the PIN page or the staff pages.
     pub fn leave(&mut self, game: &mut Game) {
-        self.part(game);
+        self.end_and_reset(game);
     }
 
     /// Applies a change by staff to the stand and to its configuration file.
-    pub fn change(&mut self, game: &mut Game, change: &Change) {
-        let changed = self.file.read_or(config::USUAL);
+    pub fn change(&mut self, game: &mut Game, change: &ConfigChange) {
+        let changed = self.file.read_or(config::DEFAULT_CONFIG);
         let changed = changed.and_then(|text| change.in_text(&text));
         let changed = changed.and_then(|text| {
             let config = Config::read(&text)?;
@@ -449,7 +449,7 @@ impl Stand {
 
     /// Ends the stand, whether staff ended it or not. Pending entries are written when `self` is dropped.
     pub fn close(&mut self, game: &mut Game) {
-        self.end_visit(game, End::Cut);
+        self.end_visit(game, RoundEnd::Cut);
         if self.is_ended {
             self.memory.note(Kind::Ended, "");
         }

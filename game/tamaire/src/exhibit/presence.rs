@@ -130,7 +130,7 @@ fn is_deed(event: &Event) -> bool {
 mod tests {
     use super::super::config::Seconds;
     use super::*;
-    use sticks::{About, Device, Labels};
+    use sticks::{Device, DeviceInfo, Labels};
 
     const TIMES: Times = Times {
         rest: Seconds(20.0),
@@ -139,7 +139,7 @@ mod tests {
     };
 
     fn stick(lean: f32) -> Snapshot {
-        let about = About {
+        let about = DeviceInfo {
             name: "worn".into(),
             guid: String::new(),
             labels: Labels::Unknown,

@@ -27,7 +27,7 @@ const STICK_CHORD: [usize; 2] = [2, 3];
 
 /// Staff pages.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
-pub enum Page {
+pub enum StaffPage {
     /// Figures of the day.
     #[default]
     Today,
@@ -39,7 +39,7 @@ pub enum Page {
     End,
 }
 
-impl Page {
+impl StaffPage {
     /// Pages that link to each other.
     pub const ALL: [Self; 3] = [Self::Today, Self::Health, Self::Settings];
 }
@@ -61,7 +61,7 @@ pub struct Entrance {
 
 /// Result of entering a digit.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Answer {
+pub enum PinResult {
     /// The PIN is not complete yet.
     GoesOn,
     /// The PIN was right.
@@ -101,20 +101,20 @@ impl Entrance {
     }
 
     /// Enters a digit at `now` [s on the stand's clock].
-    pub fn enter(&mut self, digit: char, pin: &Pin, now: f64) -> Answer {
+    pub fn enter(&mut self, digit: char, pin: &Pin, now: f64) -> PinResult {
         if self.pause(now) > 0.0 {
-            return Answer::TooEarly;
+            return PinResult::TooEarly;
         }
         if now - self.wrong_at > FORGIVEN {
             self.wrong = 0;
         }
         self.entered.push(digit);
         if self.entered.len() < pin.0.len() {
-            return Answer::GoesOn;
+            return PinResult::GoesOn;
         }
         if std::mem::take(&mut self.entered) == pin.0 {
             self.wrong = 0;
-            return Answer::Right;
+            return PinResult::Right;
         }
         self.wrong += 1;
         self.wrong_at = now;
@@ -122,7 +122,7 @@ impl Entrance {
             let doubled = PAUSE * f64::from(self.wrong - SLIPS).exp2();
             self.closed_until = now + doubled.min(LONGEST);
         }
-        Answer::Wrong
+        PinResult::Wrong
     }
 }
 
@@ -143,7 +143,7 @@ mod tests {
         Pin("2004".into())
     }
 
-    fn enter(entrance: &mut Entrance, digits: &str, now: f64) -> Answer {
+    fn enter(entrance: &mut Entrance, digits: &str, now: f64) -> PinResult {
         let answers = digits
             .chars()
             .map(|digit| entrance.enter(digit, &pin(), now));
@@ -171,21 +171,21 @@ mod tests {
         // An attacker tries for a whole day at full speed.
         while now < 86_400.0 {
             now += 1.0 + entrance.pause(now);
-            assert_eq!(enter(&mut entrance, "1234", now), Answer::Wrong);
+            assert_eq!(enter(&mut entrance, "1234", now), PinResult::Wrong);
             tried += 1;
         }
         assert!(tried < 40, "{tried}");
         now += entrance.pause(now) - 1.0;
-        assert_eq!(enter(&mut entrance, "2004", now), Answer::TooEarly);
-        assert_eq!(enter(&mut entrance, "2004", now + 2.0), Answer::Right);
+        assert_eq!(enter(&mut entrance, "2004", now), PinResult::TooEarly);
+        assert_eq!(enter(&mut entrance, "2004", now + 2.0), PinResult::Right);
         assert_eq!(entrance.pause(now + 2.0), 0.0);
     }
 
     #[test]
     fn one_wrong_pin_causes_no_pause() {
         let mut entrance = Entrance::default();
-        assert_eq!(enter(&mut entrance, "200", 0.0), Answer::GoesOn);
-        assert_eq!(enter(&mut entrance, "5", 0.0), Answer::Wrong);
-        assert_eq!(enter(&mut entrance, "2004", 0.0), Answer::Right);
+        assert_eq!(enter(&mut entrance, "200", 0.0), PinResult::GoesOn);
+        assert_eq!(enter(&mut entrance, "5", 0.0), PinResult::Wrong);
+        assert_eq!(enter(&mut entrance, "2004", 0.0), PinResult::Right);
     }
 }

@@ -1,9 +1,9 @@
 //! A visit: the time between two idle phases of a stand.
 
 use super::config::Config;
-use crate::game::Ended;
+use crate::game::EndedRound;
 use fuwafuwa::world::TICK;
-use tamaire_logbook::{End, Id, Moment, Round};
+use tamaire_logbook::{Id, Moment, Round, RoundEnd};
 use tamaire_play::Route;
 
 /// A visit in progress.
@@ -33,7 +33,7 @@ impl Visit {
     }
 
     /// Returns the logbook entry of a round. `end` is the reason if the round was not won.
-    pub fn round(&mut self, config: &Config, ended: &Ended, end: End) -> Round {
+    pub fn round(&mut self, config: &Config, ended: &EndedRound, end: RoundEnd) -> Round {
         self.rounds += 1;
         let (progress, won) = (&ended.progress, ended.progress.outcome);
         let seconds = ended.replay.ticks() as f32 * TICK;
@@ -47,7 +47,7 @@ impl Visit {
             level: ended.level.id.clone(),
             level_hash: ended.level.hash(),
             players: ended.players as u8,
-            end: won.map_or(end, |_| End::Won),
+            end: won.map_or(end, |_| RoundEnd::Won),
             route: won.map(|won| won.route),
             kept: won.map_or(progress.kept, |won| won.kept),
             inside: won.map_or(progress.inside, |won| won.inside),

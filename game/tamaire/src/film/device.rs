@@ -1,6 +1,6 @@
 //! GPU device of films on a desktop, separate from that of the window.
 
-use crate::platform::in_small_blocks;
+use crate::platform::with_small_memory_blocks;
 use eframe::egui_wgpu::{
     RenderState, RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew,
 };
@@ -23,7 +23,7 @@ fn state_of(backends: Backends, options: RendererOptions) -> Option<RenderState>
     if setup.instance_descriptor.backends.is_empty() {
         return None;
     }
-    let wgpu_setup = in_small_blocks(WgpuSetup::CreateNew(setup));
+    let wgpu_setup = with_small_memory_blocks(WgpuSetup::CreateNew(setup));
     let instance = block_on(wgpu_setup.new_instance());
     let configuration = WgpuConfiguration {
         wgpu_setup,

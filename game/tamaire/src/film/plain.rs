@@ -1,8 +1,8 @@
 //! Pictures of a round without a GPU: draws the elements of its bodies, as the engine's command line does.
 
 use fuwafuwa::vector::{plus, scaled};
-use fuwafuwa_painter::solid::{Camera, Solid};
-use fuwafuwa_painter::{Frame, PaintError, Painter, Pixmap, worlds};
+use fuwafuwa_painter::solid::{Camera, Scene3d};
+use fuwafuwa_painter::{PaintError, Painter, PaperTransform, Pixmap, worlds};
 use tamaire_play::AnyRound;
 
 /// Draws a picture of the current state of a round. The size [px] excludes the caption.
@@ -23,11 +23,11 @@ pub fn picture(
                 0.5 * size[0] - unit * middle[0],
                 0.5 * size[1] + unit * middle[1],
             ];
-            let frame = Frame { origin, unit };
+            let frame = PaperTransform { origin, unit };
             worlds::plane(&mut painter, frame, round.world(), worlds::plane_elements);
         }
         AnyRound::Space(round) => {
-            let mut solid = Solid::new(Camera {
+            let mut solid = Scene3d::new(Camera {
                 eye: plus(middle, scaled([0.0, 1.1, 1.5], across)),
                 target: middle,
                 across: 1.1 * across,

@@ -1,10 +1,10 @@
 //! Off-screen rendering of the window's pictures: egui, the stage and both renderers draw into images.
 
 use super::device;
-use crate::look::{CameraRig, Effects, Hint, Look, Stage, Theme, dress};
+use crate::look::{CameraRig, DrawOptions, Effects, Hint, Stage, Theme, dress};
 use eframe::egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor};
 use egui::{Align2, FontId, RawInput, Rect, Ui, Vec2, vec2};
-use fuwafuwa_render::{ImageError, Step};
+use fuwafuwa_render::{ImageError, ImageStage};
 use tamaire_play::AnyRound;
 use wgpu::PollType;
 
@@ -108,11 +108,11 @@ impl Studio {
             }
         }
         let target = (*target_format, size_in_pixels);
-        let draw = |step: Step<'_>| match step {
-            Step::Before(encoder) => {
+        let draw = |step: ImageStage<'_>| match step {
+            ImageStage::Prepare(encoder) => {
                 { renderer.write() }.update_buffers(device, queue, encoder, &shapes, &screen);
             }
-            Step::Inside(pass) => renderer.read().render(pass, &shapes, &screen),
+            ImageStage::Paint(pass) => renderer.read().render(pass, &shapes, &screen),
         };
         #[cfg(not(target_family = "wasm"))]
         let drawn = fuwafuwa_render::image(device, queue, target, draw);
@@ -134,16 +134,16 @@ impl Studio {
 
 /// Draws a moment into `rect`, and its caption below.
 fn draw(ui: &Ui, rect: Rect, moment: &Moment, stage: &mut Stage, theme: &Theme) {
-    let look = Look {
+    let look = DrawOptions {
         view: moment.camera.view(rect, moment.round.level()),
         theme,
         elements: None,
-        left: 1.0,
+        cut_share: 1.0,
         effects: moment.effects,
         time: moment.time,
         ghost: None,
         hint: Hint::None,
-        still: false,
+        reduced_motion: false,
     };
     stage.draw(ui, moment.round, &look);
     if let Some(caption) = moment.caption {

@@ -1,7 +1,7 @@
 //! The current round, which stays visible behind menus: its session, camera and display state.
 
-use super::lesson::Lesson;
-use crate::look::{CameraRig, Effects, Opening, View};
+use super::lesson::Tutorial;
+use crate::look::{CameraRig, Cutaway, Effects, View};
 use crate::session::Session;
 use fuwafuwa_render::frame::ElementColour;
 use tamaire_play::{AnyRound, Outcome};
@@ -10,7 +10,7 @@ use tamaire_play::{AnyRound, Outcome};
 const CHEER: f32 = 1.4;
 
 /// The current round.
-pub struct Bout {
+pub struct CurrentRound {
     /// Round with its progress in time.
     pub session: Session,
     /// Whether the ghost was chosen by the player.
@@ -24,15 +24,15 @@ pub struct Bout {
     /// Meaning of the element colours. `None` = the skin is shown instead.
     pub elements: Option<ElementColour>,
     /// Depth to which bodies are cut open in the element view (space only).
-    pub opening: Opening,
+    pub opening: Cutaway,
     /// Whether slow motion is on.
     pub slow: bool,
     /// Whether the round advances by single steps only.
     pub stepping: bool,
     /// Outcome of a won round, and whether it is the best of its route.
     pub won: Option<(Outcome, bool)>,
-    pub(super) lesson: Lesson,
-    /// Whether the round has been added to [`Public::ended`](super::Public::ended).
+    pub(super) lesson: Tutorial,
+    /// Whether the round has been added to [`PublicMode::ended`](super::PublicMode::ended).
     pub(super) is_noted: bool,
     /// Whether the player was told that this machine is too slow for the round.
     pub(super) is_known_slow: bool,
@@ -40,7 +40,7 @@ pub struct Bout {
     pub(super) cheered: f32,
 }
 
-impl Bout {
+impl CurrentRound {
     /// Creates the state of a new round.
     pub(super) fn new(session: Session) -> Self {
         Self {
@@ -50,11 +50,11 @@ impl Bout {
             camera: CameraRig::default(),
             view: None,
             elements: None,
-            opening: Opening::default(),
+            opening: Cutaway::default(),
             slow: false,
             stepping: false,
             won: None,
-            lesson: Lesson::default(),
+            lesson: Tutorial::default(),
             is_noted: false,
             is_known_slow: false,
             cheered: 0.0,
@@ -65,7 +65,7 @@ impl Bout {
     pub(super) fn begin(&mut self, session: Session, time: f64) {
         self.session = session;
         self.is_ghost_chosen = false;
-        self.opening = Opening::begin(time);
+        self.opening = Cutaway::begin(time);
         self.effects = Effects::default();
         self.lesson.begin();
         // The view refers to the previous round.
@@ -94,7 +94,7 @@ impl Bout {
     /// Rotation of the camera around the vertical axis, to the right [rad]. `None` in the plane.
     pub fn turn(&self) -> Option<f32> {
         let is_space = matches!(self.round(), AnyRound::Space(_));
-        is_space.then(|| self.camera.turn())
+        is_space.then(|| self.camera.azimuth())
     }
 
     /// Whether the celebration of a win is over.
@@ -106,7 +106,7 @@ impl Bout {
     /// the start of the game [s].
     pub(super) fn show_elements(&mut self, time: f64) {
         if self.elements.is_none() {
-            self.opening = Opening::begin(time);
+            self.opening = Cutaway::begin(time);
         }
         self.elements = match self.elements {
             None => Some(ElementColour::Level),

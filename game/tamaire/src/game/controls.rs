@@ -1,6 +1,6 @@
 //! Input devices, and the assignment of devices to players.
 
-use crate::input::{Action, Devices, Latch, Means, Players, Scan, Seat};
+use crate::input::{Action, Devices, InputMethod, InputSource, Players, Scan, StickyKeys};
 use crate::platform::Pads;
 use egui::Rect;
 use sticks::{Change, DeviceId, Labels};
@@ -16,11 +16,11 @@ pub struct ScreenButton {
 
 impl ScreenButton {
     /// Returns the seat for which the button acts.
-    pub fn seat(&self) -> Seat {
+    pub fn seat(&self) -> InputSource {
         match self.action {
             // The first finger has a hand already, so joining is for the second one.
-            Action::Join => Seat::Finger,
-            _ => Seat::Pointer,
+            Action::Join => InputSource::Finger,
+            _ => InputSource::Pointer,
         }
     }
 }
@@ -34,11 +34,11 @@ pub struct Controls {
     /// Players and their seats.
     pub players: Players,
     /// Input method used last.
-    pub means: Means,
+    pub means: InputMethod,
     /// Stick or pad used last.
     in_hand: Option<DeviceId>,
     /// Sticky keys, if the player has turned them on.
-    pub latch: Latch,
+    pub latch: StickyKeys,
     /// Scanning, for play with one switch.
     pub scan: Scan,
     /// Buttons on the screen in the last frame.
@@ -54,9 +54,9 @@ impl Controls {
             pads,
             devices: Devices::default(),
             players: Players::default(),
-            means: Means::default(),
+            means: InputMethod::default(),
             in_hand: None,
-            latch: Latch::default(),
+            latch: StickyKeys::default(),
             scan: Scan::default(),
             buttons: Vec::new(),
             rebinding: None,
@@ -70,8 +70,8 @@ impl Controls {
         self.scan.start();
         self.devices.taken = None;
         // In space the second finger raises the hand of the first one, so it cannot be a player.
-        if is_space && self.players.second() == Some(Seat::Finger) {
-            self.players.join(Seat::Finger);
+        if is_space && self.players.second() == Some(InputSource::Finger) {
+            self.players.join(InputSource::Finger);
         }
         (self.devices.pointer, self.devices.second) = (None, None);
         self.devices.lift = 0.0;
@@ -90,8 +90,8 @@ impl Controls {
         self.in_hand = Some(id);
         let device = self.devices.sticks.device(id);
         self.means = match device.is_some_and(|device| device.pad.is_some()) {
-            true => Means::Pad,
-            false => Means::Stick,
+            true => InputMethod::Pad,
+            false => InputMethod::Stick,
         };
     }
 

@@ -1,7 +1,7 @@
 //! Collection of ended rounds in public mode.
 
 use super::Game;
-use super::public::Ended;
+use super::public::EndedRound;
 
 impl Game {
     /// Adds the current round to the collection in public mode, once, if it has been played.
@@ -12,7 +12,7 @@ impl Game {
             return;
         };
         let players = 1 + usize::from(self.controls.players.second().is_some());
-        public.ended.push(Ended {
+        public.ended.push(EndedRound {
             level: round.level().clone(),
             progress: round.progress().clone(),
             players,

@@ -1,10 +1,10 @@
 //! Force feedback of a frame.
 
-use super::trial::{Outcome, Trial};
+use super::trial::{Trial, TrialStatus};
 use super::{Game, Screen};
 use crate::haptics;
 use crate::settings::FULL;
-use force_feedback::{Ability, Calibration, Manner, State, Stop};
+use force_feedback::{Ability, Calibration, State, StickMode, Stop};
 use sticks::DeviceId;
 use tamaire_play::PLAYERS;
 
@@ -54,16 +54,16 @@ impl Game {
         };
         let is_held = self.forces.report(trial.device).is_some();
         let outcome = match self.is_away || !is_held || self.forces.is_cut() {
-            true => Outcome::Gone,
+            true => TrialStatus::Gone,
             false => trial.pass(&self.controls.devices.sticks, seconds),
         };
-        if outcome == Outcome::GoesOn {
+        if outcome == TrialStatus::GoesOn {
             return;
         }
         let device = self.controls.devices.sticks.device(trial.device);
         self.trial = None;
         match (outcome, device) {
-            (Outcome::Known(Some(found)), Some(device)) => {
+            (TrialStatus::Known(Some(found)), Some(device)) => {
                 let known = self.settings.calibrations.entry(device.about.guid.clone());
                 let known = known.or_default();
                 // The measurement does not determine the gain, so the old one is kept.
@@ -72,7 +72,7 @@ impl Game {
                 self.keep_settings();
                 self.notify(self.words().measured.to_string());
             }
-            (Outcome::Known(None), _) => self.notify(self.words().not_measured.to_string()),
+            (TrialStatus::Known(None), _) => self.notify(self.words().not_measured.to_string()),
             _ => {}
         }
     }
@@ -89,12 +89,12 @@ impl Game {
         let pushes_back = self.controls.devices.pushing.contains(&id);
         // A device that was put down stops rumbling, even if the hand still presses. A force-feedback stick
         // is excluded, since it may be held still.
-        if !pushes_back && self.controls.players.rested(player) > RESTED {
+        if !pushes_back && self.controls.players.idle_time(player) > RESTED {
             return None;
         }
         let manner = match self.settings.stick_places || pushes_back {
-            true => Manner::CellIndexing,
-            false => Manner::Steers,
+            true => StickMode::CellIndexing,
+            false => StickMode::Velocity,
         };
         Some(State { contact, manner })
     }
@@ -107,7 +107,7 @@ impl Game {
         let swell = FULL * GENTLE * (std::f64::consts::PI * share).sin() as f32;
         (share < 1.0).then_some(State {
             contact: [swell * sin as f32, swell * cos as f32],
-            manner: Manner::Yields,
+            manner: StickMode::OpenLoop,
         })
     }
 

@@ -6,7 +6,7 @@ use fuwafuwa::{Dim, Event, PieceId, SoftBodyHandle, Vector, With};
 use std::collections::BTreeMap;
 use tamaire_play::rules::CRUMB;
 use tamaire_play::{AnyRound, Round};
-use tamaire_sound::{Cue, Hush, Press, Soundscape};
+use tamaire_sound::{Cue, Mute, Press, Soundscape};
 
 /// Speed below which the impact of a crumb is silent [m/s].
 const LANDING: f32 = 0.3;
@@ -32,10 +32,10 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
         hold: (round.progress().held / hold).min(1.0),
         music: true,
         hush: match game.screen() {
-            _ if game.is_away => Hush::Everything,
-            Screen::Paused | Screen::Title => Hush::World,
-            _ if !game.is_seen() => Hush::World,
-            _ => Hush::Nothing,
+            _ if game.is_away => Mute::Everything,
+            Screen::Paused | Screen::Title => Mute::World,
+            _ if !game.is_seen() => Mute::World,
+            _ => Mute::Nothing,
         },
     }
 }

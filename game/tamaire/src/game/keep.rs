@@ -1,7 +1,7 @@
 //! Saving and loading, and the messages about them.
 
 use super::{Game, Screen};
-use crate::platform::{Damage, Entry, Kind, News};
+use crate::platform::{Damage, Entry, Kind, StorageEvent};
 use std::sync::Arc;
 use tamaire_play::{Replay, ReplayError};
 
@@ -57,16 +57,16 @@ impl Game {
     /// Gives a saved round to the player as a file.
     pub fn hand_out(&mut self, saved: &Entry) {
         if let Err(error) = self.files.hand_out(&saved.name) {
-            self.tell(News::Failed(error.to_string()));
+            self.tell(StorageEvent::Failed(error.to_string()));
         }
     }
 
     /// Deletes a saved round.
     pub fn delete(&mut self, saved: &Entry) {
         if let Err(error) = self.files.delete(&saved.name) {
-            self.tell(News::Failed(error.to_string()));
+            self.tell(StorageEvent::Failed(error.to_string()));
         }
-        self.shelf.look(&self.files);
+        self.shelf.refresh(&self.files);
     }
 
     /// Writes all pending data and waits until it is written.
@@ -77,20 +77,20 @@ impl Game {
     }
 
     /// Shows the result of a file operation to the player.
-    pub(super) fn tell(&mut self, news: News) {
+    pub(super) fn tell(&mut self, news: StorageEvent) {
         match news {
             // A level that was opened in the meantime is newer.
-            News::Level(level) if self.levels.iter().any(|known| known.id == level.id) => {}
-            News::Level(level) => self.levels.push(level),
-            News::Damaged(damage) => self.tell_of(damage),
-            News::SavedElementStates(location) => {
-                self.shelf.look(&self.files);
+            StorageEvent::Level(level) if self.levels.iter().any(|known| known.id == level.id) => {}
+            StorageEvent::Level(level) => self.levels.push(level),
+            StorageEvent::Damaged(damage) => self.tell_of(damage),
+            StorageEvent::SavedElementStates(location) => {
+                self.shelf.refresh(&self.files);
                 self.notify(format!("{} {location}", self.words().saved));
             }
-            News::Failed(reason) => {
+            StorageEvent::Failed(reason) => {
                 self.notify(format!("{} {reason}", self.words().not_written));
             }
-            News::Full => self.notify(self.words().full.to_string()),
+            StorageEvent::Full => self.notify(self.words().full.to_string()),
         }
     }
 

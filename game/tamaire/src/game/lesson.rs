@@ -12,7 +12,7 @@ const LONG: f32 = 45.0;
 
 /// Progress of the tutorial.
 #[derive(Clone, Debug, Default)]
-pub struct Lesson {
+pub struct Tutorial {
     /// Whether the player has tried to move the hand, to raise it, and to turn the camera. Kept across
     /// rounds.
     tried: [bool; 3],
@@ -20,7 +20,7 @@ pub struct Lesson {
     seconds: f32,
 }
 
-impl Lesson {
+impl Tutorial {
     /// Restarts the hint time for a new round.
     pub(super) fn begin(&mut self) {
         self.seconds = 0.0;
@@ -49,7 +49,7 @@ mod tests {
 
     #[test]
     fn hint_disappears_when_tried_or_after_its_time() {
-        let mut lesson = Lesson::default();
+        let mut lesson = Tutorial::default();
         lesson.see([0.1, 0.05, 0.1], 0.1, 1.0);
         assert_eq!(lesson.missing(), [true; 3]);
         lesson.see([0.0, -0.2, 0.0], 0.0, 1.0);

@@ -7,9 +7,9 @@ use tamaire_play::{Level, Progress, Replay};
 
 /// State of public mode, in which no round can be paused, slowed down or left.
 #[derive(Default)]
-pub struct Public {
+pub struct PublicMode {
     /// Rounds that ended since the stand last took them.
-    pub ended: Vec<Ended>,
+    pub ended: Vec<EndedRound>,
     /// Rounds shown while the stand is idle, in addition to the built-in ones.
     pub attractions: Vec<Arc<Replay>>,
     /// Whether a second player may join.
@@ -21,7 +21,7 @@ pub struct Public {
 }
 
 /// A round that ended, won or not.
-pub struct Ended {
+pub struct EndedRound {
     /// Level of the round.
     pub level: Arc<Level>,
     /// Progress of the round.
@@ -32,7 +32,7 @@ pub struct Ended {
     pub replay: Replay,
 }
 
-impl Public {
+impl PublicMode {
     /// Returns one of [`Self::attractions`] for every odd `number`, unless its replay is no longer valid.
     /// `None` = show a built-in round.
     pub(super) fn attraction(&self, number: usize) -> Option<Session> {

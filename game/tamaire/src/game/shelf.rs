@@ -6,19 +6,19 @@ use tamaire_play::{Level, Outcome, Replay, ReplayError};
 
 /// Saved rounds, the newest first.
 #[derive(Default)]
-pub struct Shelf(Vec<Kept>);
+pub struct SavedRounds(Vec<SavedRound>);
 
 /// A saved round.
-pub struct Kept {
+pub struct SavedRound {
     /// Entry in the storage.
     pub entry: Entry,
     /// Details of the round: outer `None` before it was read, inner `None` if it cannot be played.
-    pub found: Option<Option<Found>>,
+    pub found: Option<Option<RoundDetails>>,
 }
 
 /// Details of a saved round.
 #[derive(Clone)]
-pub struct Found {
+pub struct RoundDetails {
     /// Level of the round.
     pub level: Arc<Level>,
     /// Outcome, if the round was won.
@@ -27,9 +27,9 @@ pub struct Found {
     pub seconds: f32,
 }
 
-impl Shelf {
+impl SavedRounds {
     /// Returns all saved rounds.
-    pub fn iter(&self) -> impl Iterator<Item = &Kept> {
+    pub fn iter(&self) -> impl Iterator<Item = &SavedRound> {
         self.0.iter()
     }
 
@@ -39,10 +39,10 @@ impl Shelf {
     }
 
     /// Reads the list of saved rounds again and keeps known details.
-    pub(super) fn look(&mut self, files: &Files) {
+    pub(super) fn refresh(&mut self, files: &Files) {
         let before = std::mem::take(&mut self.0);
         let known = |entry: &Entry| before.iter().find(|kept| kept.entry == *entry);
-        let kept = files.replays().into_iter().map(|entry| Kept {
+        let kept = files.replays().into_iter().map(|entry| SavedRound {
             found: known(&entry).and_then(|kept| kept.found.clone()),
             entry,
         });
@@ -50,7 +50,7 @@ impl Shelf {
     }
 
     /// Reads the details of one round that has none. Equal levels in the list or in `levels` are shared.
-    pub(super) fn look_into_one(&mut self, files: &Files, levels: &[Arc<Level>]) {
+    pub(super) fn load_next_details(&mut self, files: &Files, levels: &[Arc<Level>]) {
         let Some(index) = self.0.iter().position(|kept| kept.found.is_none()) else {
             return;
         };
@@ -59,7 +59,7 @@ impl Shelf {
         self.0[index].found = Some(found.ok());
     }
 
-    fn found(&self, replay: &Replay, levels: &[Arc<Level>]) -> Result<Found, ReplayError> {
+    fn found(&self, replay: &Replay, levels: &[Arc<Level>]) -> Result<RoundDetails, ReplayError> {
         // Building a level takes long, so a known one is reused.
         let known = levels
             .iter()
@@ -70,7 +70,7 @@ impl Shelf {
             Some(level) => level,
             None => Arc::new(replay.level()?),
         };
-        Ok(Found {
+        Ok(RoundDetails {
             level,
             outcome: replay.outcome,
             seconds: replay.ticks() as f32 * fuwafuwa::world::TICK,

@@ -1,7 +1,7 @@
 //! Hints for players who are new to space.
 
 use super::{Game, Screen};
-use crate::input::{Action, Means};
+use crate::input::{Action, InputMethod};
 use fuwafuwa::vector::minus;
 
 impl Game {
@@ -18,7 +18,7 @@ impl Game {
         if !self.is_played_in_space() || self.has_won_in_space() || self.bout.elements.is_some() {
             return Vec::new();
         }
-        let on_stick = self.controls.means == Means::Stick;
+        let on_stick = self.controls.means == InputMethod::Stick;
         let names = [
             &[Action::Up, Action::Left, Action::Down, Action::Right][..],
             &[Action::Raise, Action::Lower],
@@ -40,7 +40,7 @@ impl Game {
             Some(wanted) => minus(wanted, round.start(0)),
             None => [0.0; 3],
         };
-        let [right, up] = self.bout.camera.gone_around();
+        let [right, up] = self.bout.camera.orbit_angles();
         self.bout
             .lesson
             .see(gone, right.abs().max(up.abs()), seconds);

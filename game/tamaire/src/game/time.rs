@@ -1,8 +1,8 @@
 //! Progress of time: ticks, wins, and the end of replays.
 
-use super::{Bout, Controls, Game, Screen, heard};
+use super::{Controls, CurrentRound, Game, Screen, heard};
 use crate::haptics;
-use crate::input::Manner;
+use crate::input::InputMapping;
 use tamaire_play::{InputFrame, PLAYERS};
 use tamaire_sound::Cue;
 
@@ -11,14 +11,14 @@ const SLOW: f32 = 0.2;
 
 impl Game {
     /// Advances the game by `seconds` [s].
-    pub fn pass(&mut self, seconds: f32) {
+    pub fn update(&mut self, seconds: f32) {
         self.time += f64::from(seconds);
         self.notices.pass(seconds);
         let runs = self.is_seen() && self.screen() != Screen::Paused && !self.bout.stepping;
         let pace = if self.bout.slow { SLOW } else { 1.0 } * self.settings.speed;
         if runs {
             self.pass_ticks(seconds * pace);
-            self.bout.effects.pass(seconds * pace);
+            self.bout.effects.advance(seconds * pace);
         }
         if let Some(complaint) = self.bout.session.take_complaint() {
             self.notify((self.words().replay_error)(&complaint));
@@ -41,7 +41,7 @@ impl Game {
         }
         self.open_picked();
         if self.screen() == Screen::Replays {
-            self.shelf.look_into_one(&self.files, &self.levels);
+            self.shelf.load_next_details(&self.files, &self.levels);
         }
         self.tell_if_slow();
         self.celebrate(seconds);
@@ -64,9 +64,9 @@ impl Game {
     }
 
     pub(super) fn pass_ticks(&mut self, seconds: f32) {
-        let manner = Manner {
+        let manner = InputMapping {
             sensitivity: self.settings.sensitivity,
-            stick_places: self.settings.stick_places,
+            stick_sets_position: self.settings.stick_places,
             arena: self.bout.round().level().arena(),
             turn: self.bout.turn(),
         };
@@ -80,7 +80,7 @@ impl Game {
         let mut tears = [0.0f32; PLAYERS];
         let Self {
             bout:
-                Bout {
+                CurrentRound {
                     session,
                     effects,
                     camera,
@@ -104,7 +104,7 @@ impl Game {
                     return InputFrame::default();
                 }
                 // A player who joins now begins at the start position of the level.
-                let mut hands = round.level().scene().goals(0);
+                let mut hands = round.level().scene().hand_targets(0);
                 for (goal, hand) in hands.iter_mut().zip(round.hands()) {
                     *goal = hand.target_position();
                 }
@@ -115,7 +115,7 @@ impl Game {
                 frame
             },
             |round| {
-                effects.see(round, camera, still);
+                effects.process_tick(round, camera, still);
                 for (player, size) in haptics::tears(round).into_iter().enumerate() {
                     tears[player] = size.max(tears[player]);
                 }
@@ -202,7 +202,7 @@ mod tests {
 
     fn ticks_in(game: &mut Game, seconds: f32) -> u64 {
         let before = game.bout.round().ticks();
-        game.pass(seconds);
+        game.update(seconds);
         game.bout.round().ticks() - before
     }
 
@@ -220,7 +220,7 @@ mod tests {
     fn player_is_told_once_about_slow_machine() {
         for (tick, expect) in [(0.001, 0), (0.015, 0), (0.03, 1)] {
             let mut game = game(tick);
-            (0..400).for_each(|_| game.pass(0.02));
+            (0..400).for_each(|_| game.update(0.02));
             let said = (game.words().slow)(game.bout.session.bearable());
             let count = game.notices.iter().filter(|notice| notice.text == said);
             assert_eq!(count.count(), expect, "{tick} s a tick");
@@ -250,7 +250,7 @@ mod tests {
         let mut game = game(0.001);
         game.time = 60.0 * 86_400.0;
         let before = game.time;
-        (0..144).for_each(|_| game.pass(1.0 / 144.0));
+        (0..144).for_each(|_| game.update(1.0 / 144.0));
         assert!((game.time - before - 1.0).abs() < 1e-4);
     }
 }

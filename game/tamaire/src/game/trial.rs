@@ -1,7 +1,7 @@
 //! Test and measurement of a device on the force-feedback screen.
 
 use crate::settings::FULL;
-use force_feedback::{Calibration, Manner, Measured, Measurement, Settings, State};
+use force_feedback::{Calibration, Measured, Measurement, Settings, State, StickMode};
 use sticks::{DeviceId, Snapshot};
 
 /// Deflection beyond which a stick counts as at its rim, where it gets a tear impulse.
@@ -29,7 +29,7 @@ enum Act {
 
 /// Result of a step of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outcome {
+pub enum TrialStatus {
     /// The trial continues.
     GoesOn,
     /// The device was disconnected.
@@ -52,7 +52,7 @@ impl Trial {
     fn of(device: DeviceId, act: Act) -> Self {
         let state = State {
             contact: [0.0; 2],
-            manner: Manner::Steers,
+            manner: StickMode::Velocity,
         };
         Self {
             device,
@@ -64,9 +64,9 @@ impl Trial {
     }
 
     /// Advances the trial by `seconds` [s].
-    pub fn pass(&mut self, sticks: &Snapshot, seconds: f32) -> Outcome {
+    pub fn pass(&mut self, sticks: &Snapshot, seconds: f32) -> TrialStatus {
         let Some(device) = sticks.device(self.device) else {
-            return Outcome::Gone;
+            return TrialStatus::Gone;
         };
         let aim = device.aim();
         match &mut self.act {
@@ -80,13 +80,13 @@ impl Trial {
             }
             Act::Measure(measurement) => match measurement.step(aim, seconds) {
                 Measured::Pushing(contact) => {
-                    let manner = Manner::Yields;
+                    let manner = StickMode::OpenLoop;
                     self.state = State { contact, manner };
                 }
-                Measured::Known(calibration) => return Outcome::Known(calibration),
+                Measured::Known(calibration) => return TrialStatus::Known(calibration),
             },
         }
-        Outcome::GoesOn
+        TrialStatus::GoesOn
     }
 
     /// Returns the feedback for a device, if it is the one under trial.

@@ -3,7 +3,7 @@
 
 use crate::haptics;
 use crate::settings::Settings;
-use force_feedback::{Ability, Feel, Mail, Manner, Output, State, Watchdog};
+use force_feedback::{Ability, Command, ForceController, Output, State, StickMode, Watchdog};
 use fuwafuwa::Vector;
 use fuwafuwa::world::TICK;
 use std::fs::File;
@@ -28,7 +28,7 @@ pub struct ForceLog {
     /// file.
     rows: Vec<u8>,
     /// Stick and pad of each player.
-    feels: [[Feel; 2]; PLAYERS],
+    feels: [[ForceController; 2]; PLAYERS],
     /// Position of each stick at the end of the previous tick.
     aims: [Option<[f32; 2]>; PLAYERS],
     /// Default force settings.
@@ -135,9 +135,9 @@ impl ForceLog {
         let contact = haptics::contact(hand);
         let state = State {
             contact: haptics::on_stick(contact, turn(round)),
-            manner: Manner::CellIndexing,
+            manner: StickMode::CellIndexing,
         };
-        let mail = Mail {
+        let mail = Command {
             wish: haptics::silence(round).map_or(Ok(state), Err),
             at: Duration::from_secs_f64(end),
         };

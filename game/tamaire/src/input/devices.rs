@@ -1,6 +1,6 @@
 //! Input of all devices at a moment, and the directions derived from it.
 
-use super::{Action, Bindings, Offer};
+use super::{Action, Bindings, ScanAction};
 use egui::{Key, Vec2};
 use fuwafuwa::Vector;
 use std::collections::BTreeSet;
@@ -12,7 +12,7 @@ pub(super) const RIM: f32 = 0.95;
 
 /// Input source of a player.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Seat {
+pub enum InputSource {
     /// Mouse or first finger.
     Pointer,
     /// Second finger.
@@ -34,7 +34,7 @@ pub struct Devices {
     /// Actions of the screen buttons held by fingers.
     pub pressed: BTreeSet<Action>,
     /// Action selected by the switch in scanning.
-    pub taken: Option<Offer>,
+    pub taken: Option<ScanAction>,
     /// Keys that are held.
     pub keys: BTreeSet<Key>,
     /// Lift of the hand in space by the wheel or a second finger [m].
@@ -123,10 +123,10 @@ pub(super) fn direction(held: impl Fn(Action) -> bool) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sticks::{About, Pad};
+    use sticks::{DeviceInfo, Pad};
 
     fn pad(id: u32, right: [f32; 2], triggers: [f32; 2]) -> Device {
-        let about = About {
+        let about = DeviceInfo {
             name: String::new(),
             guid: String::new(),
             labels: sticks::Labels::default(),

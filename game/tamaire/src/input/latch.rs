@@ -6,9 +6,9 @@ use std::collections::BTreeSet;
 
 /// Keys that stay down.
 #[derive(Clone, Debug, Default)]
-pub struct Latch(BTreeSet<Key>);
+pub struct StickyKeys(BTreeSet<Key>);
 
-impl Latch {
+impl StickyKeys {
     /// Presses a key: it stays down, or is released if it was down. Keys of the opposite action are released.
     pub fn press(&mut self, key: Key, bindings: &Bindings) {
         let Some(opposite) = bindings.of_key(key).and_then(opposite) else {
@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn key_stays_down_until_it_or_its_opposite_is_pressed() {
-        let (mut latch, bindings) = (Latch::default(), Bindings::default());
+        let (mut latch, bindings) = (StickyKeys::default(), Bindings::default());
         let mut press = |key| {
             latch.press(key, &bindings);
             latch.keys().into_iter().collect::<Vec<_>>()

@@ -5,11 +5,11 @@ use fuwafuwa::Vector;
 
 /// Interpretation of a player's input.
 #[derive(Copy, Clone, Debug)]
-pub struct Manner {
+pub struct InputMapping {
     /// Sensitivity, 1 = default.
     pub sensitivity: f32,
     /// Whether the position of a stick sets the position of the hand, instead of its speed.
-    pub stick_places: bool,
+    pub stick_sets_position: bool,
     /// Low and high corner of the box to which goals are limited [m].
     pub arena: [Vector; 2],
     /// In space: rotation of the camera to the right [rad]. "Away from the player" then means along the
@@ -17,10 +17,10 @@ pub struct Manner {
     pub turn: Option<f32>,
 }
 
-impl Manner {
+impl InputMapping {
     /// Converts a direction of the player (right, away) to a direction in the world. `turn` is the rotation
     /// of the camera to the right [rad], `None` in the plane.
-    pub fn along(turn: Option<f32>, lean: Vec2) -> Vector {
+    pub fn to_world_direction(turn: Option<f32>, lean: Vec2) -> Vector {
         let Some(turn) = turn else {
             return [lean.x, lean.y, 0.0];
         };
@@ -33,7 +33,7 @@ impl Manner {
     }
 
     /// Clamps a position to the arena. In the plane the third axis is ignored.
-    pub(super) fn within(&self, mut position: Vector) -> Vector {
+    pub(super) fn clamp_to_arena(&self, mut position: Vector) -> Vector {
         let [low, high] = self.arena;
         let axes = if self.turn.is_some() { 3 } else { 2 };
         for axis in 0..axes {
@@ -45,7 +45,7 @@ impl Manner {
     /// Converts a stick position to a position in the arena [m]. In space the height is `height` [m].
     pub(super) fn position_of(&self, stick: [f32; 2], height: f32) -> Vector {
         let [low, high] = self.arena;
-        let way = Self::along(self.turn, Vec2::from(stick));
+        let way = Self::to_world_direction(self.turn, Vec2::from(stick));
         let mut position = [0, 1, 2].map(|axis: usize| {
             0.5 * (low[axis] + high[axis]) + 0.5 * way[axis] * (high[axis] - low[axis])
         });

@@ -8,17 +8,17 @@ mod players;
 mod scan;
 
 pub use bindings::{Bindings, PadKey};
-pub use devices::{Devices, Seat};
-pub use latch::Latch;
-pub use manner::Manner;
+pub use devices::{Devices, InputSource};
+pub use latch::StickyKeys;
+pub use manner::InputMapping;
 pub use players::Players;
-pub use scan::{Offer, Scan, Scanning};
+pub use scan::{Scan, ScanAction, Scanning};
 
 use serde::{Deserialize, Serialize};
 
 /// Input method, which hints refer to.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
-pub enum Means {
+pub enum InputMethod {
     /// Mouse.
     #[default]
     Mouse,

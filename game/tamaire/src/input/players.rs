@@ -1,7 +1,7 @@
 //! Assignment of devices to players, and the goals of their hands.
 
 use super::devices::{DEAD, RIM, direction, held_on, opposed, rise_of};
-use super::{Action, Bindings, Devices, Manner, Offer, Seat};
+use super::{Action, Bindings, Devices, InputMapping, InputSource, ScanAction};
 use egui::Vec2;
 use fuwafuwa::Vector;
 use fuwafuwa::vector::plus;
@@ -23,7 +23,7 @@ const RISE: f32 = 1.2;
 #[derive(Clone, Debug, Default)]
 pub struct Players {
     /// Input source of the second player. `None` = one player. The first player has all other devices.
-    second: Option<Seat>,
+    second: Option<InputSource>,
     /// Position that each player wants [m]. The hand and its goal may be far from it.
     goals: [Option<Vector>; PLAYERS],
     /// Stick positions in the last tick. A stick that sets a position does so only when it moves, so that
@@ -31,7 +31,7 @@ pub struct Players {
     leans: BTreeMap<DeviceId, [f32; 2]>,
     /// Device with which each player last moved the hand, and the time since the last movement by a stick or
     /// pad [s].
-    used: [Option<Seat>; PLAYERS],
+    used: [Option<InputSource>; PLAYERS],
     rested: [f32; PLAYERS],
 }
 
@@ -50,7 +50,7 @@ struct Asked {
 
 impl Players {
     /// Returns the input source of the second player.
-    pub fn second(&self) -> Option<Seat> {
+    pub fn second(&self) -> Option<InputSource> {
         self.second
     }
 
@@ -58,13 +58,13 @@ impl Players {
     /// Only this device gets force feedback.
     pub fn device_of(&self, player: usize) -> Option<DeviceId> {
         match self.used[player] {
-            Some(Seat::Stick(id)) => Some(id),
+            Some(InputSource::Stick(id)) => Some(id),
             _ => None,
         }
     }
 
     /// Time since a player last moved the hand with a stick or pad [s].
-    pub fn rested(&self, player: usize) -> f32 {
+    pub fn idle_time(&self, player: usize) -> f32 {
         self.rested[player]
     }
 
@@ -74,7 +74,7 @@ impl Players {
     }
 
     /// Lets a second player join with a device, or leave if it is the same device.
-    pub fn join(&mut self, seat: Seat) {
+    pub fn join(&mut self, seat: InputSource) {
         self.second = match self.second {
             Some(taken) if taken == seat => None,
             // A keyboard that joins twice leaves. Joining with the keyboard leaves the mouse to the first
@@ -101,11 +101,11 @@ impl Players {
         &mut self,
         devices: &Devices,
         bindings: &Bindings,
-        manner: &Manner,
+        manner: &InputMapping,
         hands: &[Vector],
         seconds: f32,
     ) -> InputFrame {
-        if let Some(Seat::Stick(id)) = self.second
+        if let Some(InputSource::Stick(id)) = self.second
             && devices.sticks.device(id).is_none()
         {
             self.second = None;
@@ -136,7 +136,7 @@ impl Players {
         player: usize,
         devices: &Devices,
         bindings: &Bindings,
-        manner: &Manner,
+        manner: &InputMapping,
         here: Vector,
         seconds: f32,
     ) {
@@ -148,8 +148,11 @@ impl Players {
             // Starts from the current goal of the hand, so that pushing against an obstacle does not
             // accumulate.
             let lean = asked.lean * (1.0 / asked.lean.length().max(1.0));
-            let step = Manner::along(manner.turn, lean * PACE * manner.sensitivity * seconds);
-            let mut position = manner.within(plus(here, step));
+            let step = InputMapping::to_world_direction(
+                manner.turn,
+                lean * PACE * manner.sensitivity * seconds,
+            );
+            let mut position = manner.clamp_to_arena(plus(here, step));
             if manner.turn.is_some() {
                 position[1] = wanted[1];
             }
@@ -159,7 +162,7 @@ impl Players {
         if lift != 0.0 || asked.wheel != 0.0 {
             let mut position = goal.unwrap_or(here);
             position[1] = raised(position[1], here[1], asked.wheel, lift);
-            goal = Some(manner.within(position));
+            goal = Some(manner.clamp_to_arena(position));
         }
         self.goals[player] = goal;
     }
@@ -170,34 +173,34 @@ impl Players {
         player: usize,
         devices: &Devices,
         bindings: &Bindings,
-        manner: &Manner,
+        manner: &InputMapping,
         height: f32,
     ) -> Asked {
-        let holds = |seat: Seat| match player {
+        let holds = |seat: InputSource| match player {
             0 => self.second != Some(seat),
             _ => self.second == Some(seat),
         };
         let rises = if manner.turn.is_some() { 1.0 } else { 0.0 };
         let mut asked = Asked::default();
-        if holds(Seat::Keys) {
+        if holds(InputSource::Keys) {
             let held = |action| devices.holds_key(bindings, action);
             asked.lean = direction(held);
             asked.lift = rises * opposed(held, Action::Raise, Action::Lower);
             if asked.lean != Vec2::ZERO || asked.lift != 0.0 {
-                self.used[player] = Some(Seat::Keys);
+                self.used[player] = Some(InputSource::Keys);
             }
         }
         if let Some(offer) = devices.taken.filter(|_| player == 0) {
             match offer {
-                Offer::Way(way) => asked.lean += SWITCHED * way,
-                Offer::Raise => asked.lift += rises,
-                Offer::Lower => asked.lift -= rises,
-                Offer::Pause => {}
+                ScanAction::Move(way) => asked.lean += SWITCHED * way,
+                ScanAction::Raise => asked.lift += rises,
+                ScanAction::Lower => asked.lift -= rises,
+                ScanAction::Pause => {}
             }
-            self.used[player] = Some(Seat::Keys);
+            self.used[player] = Some(InputSource::Keys);
         }
         let all = devices.sticks.devices.iter();
-        for device in all.filter(|device| holds(Seat::Stick(device.id))) {
+        for device in all.filter(|device| holds(InputSource::Stick(device.id))) {
             let stick = sticks::radial_dead_zone(device.aim(), DEAD, RIM);
             let before = self.leans.entry(device.id).or_default();
             let moved = (Vec2::from(stick) - Vec2::from(*before)).length() > NOISE;
@@ -205,9 +208,9 @@ impl Players {
                 *before = stick;
             }
             let pushes_back = devices.pushing.contains(&device.id);
-            if !manner.stick_places && !pushes_back {
+            if !manner.stick_sets_position && !pushes_back {
                 asked.lean += Vec2::from(stick);
-            } else if moved || self.used[player] == Some(Seat::Stick(device.id)) {
+            } else if moved || self.used[player] == Some(InputSource::Stick(device.id)) {
                 asked.position = Some(manner.position_of(stick, height));
             }
             let held = held_on(device, bindings);
@@ -220,25 +223,25 @@ impl Players {
             // A force-feedback stick keeps its position after it is let go, so its deflection shows no use.
             let leans = stick != [0.0; 2] && !pushes_back;
             if moved || leans || hat != Vec2::ZERO || rise != 0.0 {
-                self.used[player] = Some(Seat::Stick(device.id));
+                self.used[player] = Some(InputSource::Stick(device.id));
                 self.rested[player] = 0.0;
             }
         }
         let pressed = |action| devices.pressed.contains(&action);
         let thumbs = rises * opposed(pressed, Action::Raise, Action::Lower);
-        if holds(Seat::Pointer) && thumbs != 0.0 {
+        if holds(InputSource::Pointer) && thumbs != 0.0 {
             asked.lift += thumbs;
-            self.used[player] = Some(Seat::Pointer);
+            self.used[player] = Some(InputSource::Pointer);
         }
         let wheel = rises * devices.lift;
-        if holds(Seat::Pointer) && (devices.pointer.is_some() || wheel != 0.0) {
+        if holds(InputSource::Pointer) && (devices.pointer.is_some() || wheel != 0.0) {
             asked.position = devices.pointer.or(asked.position);
             asked.wheel = wheel;
-            self.used[player] = Some(Seat::Pointer);
+            self.used[player] = Some(InputSource::Pointer);
         }
-        if player == 1 && self.second == Some(Seat::Finger) && devices.second.is_some() {
+        if player == 1 && self.second == Some(InputSource::Finger) && devices.second.is_some() {
             asked.position = devices.second;
-            self.used[1] = Some(Seat::Finger);
+            self.used[1] = Some(InputSource::Finger);
         }
         asked
     }

@@ -41,9 +41,9 @@ impl Scanning {
 
 /// An action that a press of the switch selects.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Offer {
+pub enum ScanAction {
     /// Moves the hand in a direction (right, away; unit length) while the switch is pressed.
-    Way(Vec2),
+    Move(Vec2),
     /// In space: raises the hand while the switch is pressed.
     Raise,
     /// In space: lowers the hand while the switch is pressed.
@@ -78,16 +78,16 @@ impl Scan {
             let others = if is_space { 3.0 } else { 1.0 };
             self.at = (self.at + steps) % (TURN + others);
         }
-        is_new && self.is_taken && self.offer(is_space) == Offer::Pause
+        is_new && self.is_taken && self.offer(is_space) == ScanAction::Pause
     }
 
     /// Returns the current offer: first all directions, beginning at the right, then the other actions.
-    pub fn offer(&self, is_space: bool) -> Offer {
+    pub fn offer(&self, is_space: bool) -> ScanAction {
         match (self.at - TURN, is_space) {
-            (after, _) if after < 0.0 => Offer::Way(Vec2::angled(TAU * self.at / TURN)),
-            (after, true) if after < 1.0 => Offer::Raise,
-            (after, true) if after < 2.0 => Offer::Lower,
-            _ => Offer::Pause,
+            (after, _) if after < 0.0 => ScanAction::Move(Vec2::angled(TAU * self.at / TURN)),
+            (after, true) if after < 1.0 => ScanAction::Raise,
+            (after, true) if after < 2.0 => ScanAction::Lower,
+            _ => ScanAction::Pause,
         }
     }
 
@@ -105,7 +105,7 @@ impl Scan {
     }
 
     /// Returns the selected offer.
-    pub fn taken(&self, is_space: bool) -> Option<Offer> {
+    pub fn taken(&self, is_space: bool) -> Option<ScanAction> {
         self.is_taken.then(|| self.offer(is_space))
     }
 }
@@ -117,14 +117,17 @@ mod tests {
     #[test]
     fn all_actions_are_offered_in_turn() {
         for (is_space, others) in [
-            (false, vec![Offer::Pause]),
-            (true, vec![Offer::Raise, Offer::Lower, Offer::Pause]),
+            (false, vec![ScanAction::Pause]),
+            (
+                true,
+                vec![ScanAction::Raise, ScanAction::Lower, ScanAction::Pause],
+            ),
         ] {
             let mut scan = Scan::default();
             let mut seen = Vec::new();
             for _ in 0..(TURN as usize + others.len()) * 10 {
                 match scan.offer(is_space) {
-                    Offer::Way(way) => seen.push(way),
+                    ScanAction::Move(way) => seen.push(way),
                     offer => assert_eq!(offer, others[(scan.at - TURN) as usize]),
                 }
                 assert!(!scan.pass(false, false, 0.1, is_space));

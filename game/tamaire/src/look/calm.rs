@@ -34,7 +34,7 @@ pub(super) fn camera(view: &View) -> Camera {
 }
 
 /// Returns the face of a body looking straight ahead, scaled by `size` (1 = normal).
-pub(super) fn face_of(body: usize, feeling: &Feeling, size: f32) -> Face {
+pub(super) fn face_at_rest(body: usize, feeling: &Feeling, size: f32) -> Face {
     Face {
         body,
         piece: feeling.piece,

@@ -43,7 +43,7 @@ pub struct CameraRig {
     /// 3D: azimuth (positive to the right) and elevation, relative to the initial orientation [rad].
     turn: f32,
     rise: f32,
-    goes_home: bool,
+    is_returning: bool,
 }
 
 /// Camera for a given part of the screen.
@@ -63,7 +63,7 @@ impl CameraRig {
     /// Advances by `seconds`, with the hand at `hand` [m]. `still` selects reduced motion: no lean, no shake,
     /// and no animated return.
     pub fn follow(&mut self, hand: Vector, arena: [Vector; 2], seconds: f32, still: bool) {
-        if self.goes_home {
+        if self.is_returning {
             let left = match still {
                 true => 0.0,
                 false => (1.0 - HOME * seconds).max(0.0),
@@ -91,28 +91,28 @@ impl CameraRig {
     /// 3D: turns the camera around its target, to the right and up [rad]. Any turn stops a return to the
     /// initial orientation.
     pub fn orbit(&mut self, right: f32, up: f32) {
-        self.goes_home &= right == 0.0 && up == 0.0;
+        self.is_returning &= right == 0.0 && up == 0.0;
         self.turn += right;
         self.rise = (self.rise + up).clamp(LOWEST - RISE, HIGHEST - RISE);
     }
 
     /// 3D: returns to the initial orientation at once.
     pub fn face_front(&mut self) {
-        (self.turn, self.rise, self.goes_home) = (0.0, 0.0, false);
+        (self.turn, self.rise, self.is_returning) = (0.0, 0.0, false);
     }
 
     /// 3D: starts a smooth return to the initial orientation.
-    pub fn go_home(&mut self) {
-        self.goes_home = true;
+    pub fn return_to_front(&mut self) {
+        self.is_returning = true;
     }
 
     /// Azimuth (to the right) and elevation, relative to the initial orientation [rad].
-    pub fn gone_around(&self) -> [f32; 2] {
+    pub fn orbit_angles(&self) -> [f32; 2] {
         [self.turn, self.rise]
     }
 
     /// Azimuth relative to the initial orientation [rad].
-    pub fn turn(&self) -> f32 {
+    pub fn azimuth(&self) -> f32 {
         self.turn
     }
 
@@ -136,8 +136,8 @@ impl CameraRig {
         space::Camera {
             target: plus(fitted.target, [self.lean.x, self.lean.y - lower, 0.0]),
             distance: CLOSE * fitted.distance,
-            turn: self.turn,
-            rise: RISE + self.rise,
+            azimuth: self.turn,
+            elevation: RISE + self.rise,
             shake: [swing.x, swing.y, 0.0],
             ..fitted
         }
@@ -150,7 +150,7 @@ impl CameraRig {
         View {
             rect,
             centre: [x, y],
-            scale: 0.5 * rect.height() / ((0.5 * camera.field).tan() * camera.distance),
+            scale: 0.5 * rect.height() / ((0.5 * camera.fov_y).tan() * camera.distance),
             space: Some(camera),
         }
     }
@@ -179,7 +179,7 @@ fn pixels(rect: Rect) -> [u32; 2] {
 
 impl View {
     /// Returns the screen position of a world point [m].
-    pub fn on_screen(&self, at: Vector) -> Pos2 {
+    pub fn to_screen(&self, at: Vector) -> Pos2 {
         if let Some(camera) = &self.space {
             // A point behind the camera is placed far off the screen.
             let [x, y] = camera
@@ -197,11 +197,11 @@ impl View {
     /// Returns the horizontal position of a world point [m] in the view, from -1 (left) to 1 (right).
     pub fn across(&self, at: Vector) -> f32 {
         let half = 0.5 * self.rect.width().max(1.0);
-        ((self.on_screen(at).x - self.rect.center().x) / half).clamp(-1.0, 1.0)
+        ((self.to_screen(at).x - self.rect.center().x) / half).clamp(-1.0, 1.0)
     }
 
     /// Returns the world point [m] at a screen position; in 3D on the horizontal plane at `height` [m].
-    pub fn in_world(&self, at: Pos2, height: f32) -> Vector {
+    pub fn to_world(&self, at: Pos2, height: f32) -> Vector {
         if let Some(camera) = &self.space {
             let point = at - self.rect.min;
             let (eye, towards) = camera.ray([point.x, point.y], pixels(self.rect));
@@ -250,7 +250,7 @@ mod tests {
             Rect::from_min_size(pos2(10.0, 20.0), vec2(800.0, 600.0)),
             arena,
         );
-        let position = view.in_world(view.on_screen([0.7, -0.3, 0.0]), 0.0);
+        let position = view.to_world(view.to_screen([0.7, -0.3, 0.0]), 0.0);
         assert!((position[0] - 0.7).abs() < 1e-4 && (position[1] + 0.3).abs() < 1e-4);
         camera.follow([1.0, 0.5, 0.0], arena, 0.05, true);
         assert_eq!(camera.view_of_plane(view.rect, arena).centre, [0.0, 0.0]);
@@ -263,21 +263,21 @@ mod tests {
             (0..ticks).for_each(|_| camera.follow([0.0; 3], [[0.0; 3]; 2], 0.02, false));
         };
         camera.orbit(TAU + 1.0, 0.3);
-        camera.go_home();
+        camera.return_to_front();
         follow(&mut camera, 1);
-        let [right, up] = camera.gone_around();
+        let [right, up] = camera.orbit_angles();
         assert!((0.5..1.0).contains(&right) && (0.1..0.3).contains(&up));
         camera.orbit(0.2, 0.0);
         follow(&mut camera, 60);
         assert!(
-            camera.turn() > 0.7,
+            camera.azimuth() > 0.7,
             "the player has turned the camera: {}",
-            camera.turn()
+            camera.azimuth()
         );
-        camera.go_home();
+        camera.return_to_front();
         camera.orbit(0.0, 0.0);
         follow(&mut camera, 120);
-        assert!(length([camera.turn(), camera.rise]) < 1e-3);
+        assert!(length([camera.azimuth(), camera.rise]) < 1e-3);
     }
 
     #[test]
@@ -290,7 +290,7 @@ mod tests {
             camera.orbit(0.0, rise);
             let view = camera.view_of_space(rect, arena);
             let at = [0.7, 0.4, -0.3];
-            let position = view.in_world(view.on_screen(at), at[1]);
+            let position = view.to_world(view.to_screen(at), at[1]);
             assert!(length(minus(position, at)) < 1e-2, "{position:?}");
         }
         // From far below: beyond the horizon and with the hand above the camera, left and right are not
@@ -299,10 +299,10 @@ mod tests {
         camera.orbit(0.0, -9.0);
         let view = camera.view_of_space(rect, arena);
         for height in [0.4, 1.4] {
-            let [left, right] = [200.0, 700.0].map(|x| view.in_world(pos2(x, 25.0), height));
+            let [left, right] = [200.0, 700.0].map(|x| view.to_world(pos2(x, 25.0), height));
             assert!(left[0] < right[0] && left[2] < -1.0, "{left:?} {right:?}");
             assert_eq!((left[1], right[1]), (height, height));
         }
-        assert_eq!(camera.turn(), 0.0);
+        assert_eq!(camera.azimuth(), 0.0);
     }
 }

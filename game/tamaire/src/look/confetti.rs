@@ -20,17 +20,17 @@ const PAPER: [Color32; 5] = [
 /// Confetti after a win.
 #[derive(Clone, Debug, Default)]
 pub struct Confetti {
-    pieces: Vec<Paper>,
+    pieces: Vec<ConfettiPiece>,
 }
 
 /// One piece of confetti.
 #[derive(Copy, Clone, Debug)]
-struct Paper {
+struct ConfettiPiece {
     at: Vector,
     velocity: Vec2,
     /// Rotation and angular velocity [rad, rad/s].
     angle: f32,
-    spin: f32,
+    angular_velocity: f32,
     kind: usize,
     left: f32,
 }
@@ -45,11 +45,11 @@ impl Confetti {
             .map(|index| {
                 let side = if index % 2 == 0 { 1.0 } else { -1.0 };
                 let from = if side > 0.0 { low[0] } else { high[0] };
-                Paper {
+                ConfettiPiece {
                     at: [from, low[1] + 0.2 * height, 0.0],
                     velocity: vec2(side * any(0.6, 6.4), any(1.6, 4.6)) * 0.5 * height,
                     angle: any(0.0, 6.0),
-                    spin: any(-9.0, 9.0),
+                    angular_velocity: any(-9.0, 9.0),
                     kind: index / 2 % PAPER.len(),
                     left: any(2.5, 4.5),
                 }
@@ -66,7 +66,7 @@ impl Confetti {
             let sway = 0.25 * (1.5 * paper.angle).sin();
             paper.at[0] += (paper.velocity.x + sway) * seconds;
             paper.at[1] += paper.velocity.y * seconds;
-            paper.angle += paper.spin * seconds;
+            paper.angle += paper.angular_velocity * seconds;
             paper.left -= seconds;
         }
         self.pieces.retain(|paper| paper.left > 0.0);
@@ -77,7 +77,7 @@ impl Confetti {
         for paper in &self.pieces {
             let colour = PAPER[paper.kind].gamma_multiply(paper.left.min(1.0));
             let size = 0.022 * view.scale;
-            let middle = view.on_screen(paper.at);
+            let middle = view.to_screen(paper.at);
             // Turns between face-on and edge-on.
             let thin = 0.25 + 0.75 * (1.3 * paper.angle).cos().abs();
             let (sin, cos) = paper.angle.sin_cos();

@@ -2,7 +2,7 @@
 
 use super::CameraRig;
 use super::confetti::Confetti;
-use super::feelings::{Fate, Feeling};
+use super::feelings::{Feeling, MoodInput};
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim, Event, NodeId, RigidBody, SoftBody, Vector, With};
 use tamaire_play::{AnyRound, Round};
@@ -29,7 +29,7 @@ const LIES: f32 = 0.25;
 
 /// Dust particle.
 #[derive(Copy, Clone, Debug)]
-pub struct Speck {
+pub struct DustParticle {
     /// Position [m].
     pub at: Vector,
     /// Velocity [m/s].
@@ -44,7 +44,7 @@ pub struct Speck {
     pub is_fresh: bool,
 }
 
-impl Speck {
+impl DustParticle {
     /// Bounces off a wall whose normal is along `axis`.
     fn bounce(&mut self, axis: usize) {
         let across = -BOUNCE[0] * self.velocity[axis];
@@ -62,7 +62,7 @@ impl Speck {
 #[derive(Clone, Debug)]
 pub struct Effects {
     /// Dust particles.
-    pub specks: Vec<Speck>,
+    pub specks: Vec<DustParticle>,
     /// Confetti after a win.
     pub confetti: Confetti,
     /// Feeling of each body, in the order of the world's bodies.
@@ -107,7 +107,7 @@ impl Default for Effects {
 
 impl Effects {
     /// Processes the events of a tick. `still` selects reduced motion: fewer particles, no confetti.
-    pub fn see(&mut self, round: &AnyRound, camera: &mut CameraRig, still: bool) {
+    pub fn process_tick(&mut self, round: &AnyRound, camera: &mut CameraRig, still: bool) {
         match round {
             AnyRound::Plane(round) => self.look_at(round, camera, still),
             AnyRound::Space(round) => self.look_at(round, camera, still),
@@ -121,7 +121,7 @@ impl Effects {
             let bodies = world.soft_bodies().iter();
             let eye = (D::N == 3).then(|| camera.eye(round.level().arena()));
             *self = Self {
-                feelings: bodies.map(|body| Feeling::of(body, eye)).collect(),
+                feelings: bodies.map(|body| Feeling::new(body, eye)).collect(),
                 gravity: round.level().scene().gravity,
                 room: round.level().arena(),
                 axes: D::N,
@@ -144,7 +144,7 @@ impl Effects {
                         material = material_at(&world.soft_bodies()[body], at);
                     }
                     let count = if still { 1 } else { DUST };
-                    (0..count).for_each(|_| self.puff(at, material));
+                    (0..count).for_each(|_| self.spawn_dust(at, material));
                 }
                 Event::Pressed {
                     with: With::Hand(_),
@@ -164,19 +164,19 @@ impl Effects {
         let bodies = self.feelings.iter_mut().zip(world.soft_bodies()).zip(torn);
         for ((feeling, body), torn) in bodies {
             let in_basket = |region: &fuwafuwa::Shape| region.distance(feeling.middle).0 < 0.0;
-            let fate = Fate {
+            let fate = MoodInput {
                 eye: (D::N == 3).then(|| camera.eye(self.room)),
                 tick: world.ticks(),
                 torn,
                 pressed: self.pressure > HURTS,
-                home: is_in && round.basket().is_some_and(in_basket),
+                is_in_basket: is_in && round.basket().is_some_and(in_basket),
             };
-            feeling.see(body, fate);
+            feeling.update(body, fate);
         }
     }
 
     /// Advances particles, confetti and hint by `seconds`.
-    pub fn pass(&mut self, seconds: f32) {
+    pub fn advance(&mut self, seconds: f32) {
         let [low, high] = self.room;
         for speck in &mut self.specks {
             speck.left -= seconds;
@@ -224,7 +224,7 @@ impl Effects {
         }
     }
 
-    fn puff(&mut self, at: Vector, material: u8) {
+    fn spawn_dust(&mut self, at: Vector, material: u8) {
         if self.specks.len() >= MOST {
             self.specks.swap_remove(0);
         }
@@ -234,7 +234,7 @@ impl Effects {
         let velocity = [any(-0.9, 0.9), any(-0.9, 0.9), depth];
         // The cube favours small particles.
         let size = any(0.0, 1.0);
-        let speck = Speck {
+        let speck = DustParticle {
             at,
             velocity: plus(velocity, thrown),
             left: any(1.5, 5.0),
@@ -281,8 +281,8 @@ mod tests {
         let mut play = |round: &mut AnyRound, effects: &mut Effects, frame, ticks: usize| {
             for _ in 0..ticks {
                 round.step(frame);
-                effects.see(round, &mut camera, false);
-                effects.pass(fuwafuwa::world::TICK);
+                effects.process_tick(round, &mut camera, false);
+                effects.advance(fuwafuwa::world::TICK);
             }
         };
         let mut first = round("classic");
@@ -307,13 +307,13 @@ mod tests {
             room: [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]],
             ..Effects::default()
         };
-        effects.puff([0.0; 3], 2);
+        effects.spawn_dust([0.0; 3], 2);
         effects.specks[0].left = 9.0;
-        (0..300).for_each(|_| effects.pass(0.02));
+        (0..300).for_each(|_| effects.advance(0.02));
         let speck = effects.specks[0];
         assert!((speck.at[1] + 1.0 - speck.radius).abs() < 1e-3, "{speck:?}");
         assert_eq!(speck.material, 2);
-        (0..300).for_each(|_| effects.pass(0.02));
+        (0..300).for_each(|_| effects.advance(0.02));
         assert!(effects.specks.is_empty());
     }
 

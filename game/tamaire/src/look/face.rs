@@ -54,7 +54,7 @@ impl Face {
         if unit < LEAST {
             return;
         }
-        let at = view.on_screen(self.at);
+        let at = view.to_screen(self.at);
         for mark in self.marks(LINE.max(THIN / unit)) {
             let corners = mark.outline.iter().map(|[x, y]| at + *x * right + *y * up);
             let corners: Vec<Pos2> = corners.collect();
@@ -69,7 +69,7 @@ impl Face {
         Sticker {
             body: self.body,
             piece: self.piece,
-            from: self.at,
+            origin: self.at,
             axes: self.axes,
             marks: self.marks(LINE),
         }

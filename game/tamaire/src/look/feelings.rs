@@ -1,7 +1,7 @@
 //! Feelings of a body, and the position of its face.
 
 use super::Mood;
-use super::perch::{Perch, UPRIGHT, largest, masses, square};
+use super::perch::{FaceAnchor, UPRIGHT, largest, masses, square};
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
 use fuwafuwa::{Dim, NodeId, PieceId, SoftBody, Vector};
@@ -45,14 +45,14 @@ pub struct Feeling {
     /// Piece that carries the face.
     pub piece: PieceId,
     /// 3D: place on the skin to which the face sticks.
-    perch: Option<Perch>,
+    perch: Option<FaceAnchor>,
     seat: Option<Seat>,
     /// Offset from the seat to the current position of the face [m]. It decays to zero.
-    behind: Vector,
+    seat_offset: Vector,
     strain: f32,
     shock: f32,
     /// Time since the last tear [s].
-    whole: f32,
+    seconds_since_tear: f32,
 }
 
 /// Node deep inside the largest piece.
@@ -67,7 +67,7 @@ struct Seat {
 
 /// Input of a tick.
 #[derive(Copy, Clone, Debug, Default)]
-pub struct Fate {
+pub struct MoodInput {
     /// Tick number.
     pub tick: u64,
     /// Whether the body was torn in this tick.
@@ -75,14 +75,14 @@ pub struct Fate {
     /// Whether a hand presses hard.
     pub pressed: bool,
     /// Whether the body is in the basket.
-    pub home: bool,
+    pub is_in_basket: bool,
     /// 3D: camera position [m].
     pub eye: Option<Vector>,
 }
 
 impl Feeling {
     /// Creates the feeling of an undisturbed body. In 3D the face is turned towards `eye` [m], if given.
-    pub fn of<D: Dim>(body: &SoftBody<D>, eye: Option<Vector>) -> Self {
+    pub fn new<D: Dim>(body: &SoftBody<D>, eye: Option<Vector>) -> Self {
         let mut feeling = Self {
             mood: Mood::Calm,
             age: 9.0,
@@ -91,12 +91,12 @@ impl Feeling {
             size: 0.0,
             piece: PieceId(0),
             middle: [0.0; 3],
-            perch: (D::N == 3).then(|| Perch::new(body, eye)),
+            perch: (D::N == 3).then(|| FaceAnchor::new(body, eye)),
             seat: None,
-            behind: [0.0; 3],
+            seat_offset: [0.0; 3],
             strain: 0.0,
             shock: 0.0,
-            whole: CALMED,
+            seconds_since_tear: CALMED,
         };
         match feeling.perch.is_some() {
             true => feeling.stick(),
@@ -106,7 +106,7 @@ impl Feeling {
     }
 
     /// Advances by one tick.
-    pub fn see<D: Dim>(&mut self, body: &SoftBody<D>, fate: Fate) {
+    pub fn update<D: Dim>(&mut self, body: &SoftBody<D>, fate: MoodInput) {
         if fate.tick.is_multiple_of(LOOK) {
             self.strain = strain(body);
         }
@@ -132,20 +132,20 @@ impl Feeling {
         }
     }
 
-    fn feel(&mut self, fate: Fate) {
+    fn feel(&mut self, fate: MoodInput) {
         self.age += TICK;
         self.shock = (self.shock - TICK).max(0.0);
         if fate.torn {
-            if self.whole >= CALMED {
+            if self.seconds_since_tear >= CALMED {
                 self.shock = SHOCK;
             }
-            self.whole = 0.0;
+            self.seconds_since_tear = 0.0;
         }
-        self.whole += TICK;
+        self.seconds_since_tear += TICK;
         let limit = HURTS[usize::from(self.mood == Mood::Wince)];
-        let hurts = fate.pressed || self.strain > limit || self.whole < CALMED;
+        let hurts = fate.pressed || self.strain > limit || self.seconds_since_tear < CALMED;
         let mood = match () {
-            () if fate.home => Mood::Beam,
+            () if fate.is_in_basket => Mood::Beam,
             () if self.shock > 0.0 => Mood::Shock,
             () if hurts => Mood::Wince,
             () => Mood::Calm,
@@ -170,8 +170,8 @@ impl Feeling {
             return;
         };
         let at = body.node_state(seat.node).0;
-        self.behind = self.behind.map(|k| towards(k, 0.0, GLIDE));
-        self.at = plus(at, self.behind);
+        self.seat_offset = self.seat_offset.map(|k| towards(k, 0.0, GLIDE));
+        self.at = plus(at, self.seat_offset);
         self.middle = self.at;
         self.piece = body.pieces().of_node(seat.node);
         let turned = [0, 1, 2]
@@ -195,7 +195,7 @@ impl Feeling {
             && old.node != new.node
         {
             let at = body.node_state(new.node).0;
-            self.behind = minus(self.at, at);
+            self.seat_offset = minus(self.at, at);
         }
         self.seat = after;
     }
@@ -298,7 +298,7 @@ mod tests {
             u8::from(hole([voxel[0] as f32 + 0.5, voxel[1] as f32 + 0.5]))
         });
         let world = alone(grid.expect("the grid is valid"));
-        let feeling = Feeling::of(world.soft_bodies().first().unwrap(), None);
+        let feeling = Feeling::new(world.soft_bodies().first().unwrap(), None);
         let away = [feeling.at[0] - 0.5, feeling.at[1] - 0.5];
         let radius = length(away);
         assert!((0.25..0.45).contains(&radius), "{feeling:?}");
@@ -311,7 +311,7 @@ mod tests {
     #[test]
     fn face_glides_to_remaining_piece_and_dust_has_none() {
         let mut world = alone(VoxelGrid::ball(32, 1.0).expect("the grid is valid"));
-        let mut feeling = Feeling::of(world.soft_bodies().first().unwrap(), None);
+        let mut feeling = Feeling::new(world.soft_bodies().first().unwrap(), None);
         let (before, size) = (feeling.at, feeling.size);
         world
             .cut(
@@ -319,20 +319,20 @@ mod tests {
                 &Blade::segment([0.375, -1.0], [0.375, 2.0]),
             )
             .unwrap();
-        let fate = Fate {
+        let fate = MoodInput {
             tick: LOOK,
-            ..Fate::default()
+            ..MoodInput::default()
         };
-        feeling.see(world.soft_bodies().first().unwrap(), fate);
+        feeling.update(world.soft_bodies().first().unwrap(), fate);
         let step = feeling.at[0] - before[0];
         assert!(step.abs() < 0.03, "the face does not jump: {step}");
         for _ in 0..200 {
-            feeling.see(world.soft_bodies().first().unwrap(), Fate::default());
+            feeling.update(world.soft_bodies().first().unwrap(), MoodInput::default());
         }
         assert!(feeling.at[0] > before[0] + 0.05 && feeling.size < size);
         let dust = alone(VoxelGrid::ball(4, 0.05).expect("the grid is valid"));
         assert_eq!(
-            Feeling::of(dust.soft_bodies().first().unwrap(), None).size,
+            Feeling::new(dust.soft_bodies().first().unwrap(), None).size,
             0.0
         );
     }
@@ -344,7 +344,7 @@ mod tests {
         world.add_soft_body(
             SoftBody::new(grid, &[Material::default()]).expect("the defaults are valid"),
         );
-        let mut feeling = Feeling::of(world.soft_bodies().first().unwrap(), None);
+        let mut feeling = Feeling::new(world.soft_bodies().first().unwrap(), None);
         assert!(feeling.axes[2][2] > 0.99, "{feeling:?}");
         // Turns the body's back to the camera.
         let body = world
@@ -356,11 +356,11 @@ mod tests {
             body.set_node_state(id, [1.0 - x, y, 1.0 - z], [0.0; 3]);
         }
         let mut see = |eye, ticks: usize| {
-            let fate = Fate {
+            let fate = MoodInput {
                 eye,
-                ..Fate::default()
+                ..MoodInput::default()
             };
-            (0..ticks).for_each(|_| feeling.see(world.soft_bodies().first().unwrap(), fate));
+            (0..ticks).for_each(|_| feeling.update(world.soft_bodies().first().unwrap(), fate));
             feeling.axes
         };
         let [_, up, out] = see(None, 60);
@@ -373,32 +373,32 @@ mod tests {
     fn tear_shocks_once_then_hurts() {
         let world = alone(VoxelGrid::ball(16, 1.0).expect("the grid is valid"));
         let body = world.soft_bodies().first().unwrap();
-        let mut feeling = Feeling::of(body, None);
-        let torn = Fate {
+        let mut feeling = Feeling::new(body, None);
+        let torn = MoodInput {
             tick: 1,
             torn: true,
-            ..Fate::default()
+            ..MoodInput::default()
         };
-        feeling.see(body, torn);
+        feeling.update(body, torn);
         assert_eq!(feeling.mood, Mood::Shock);
-        (0..60).for_each(|_| feeling.see(body, torn));
+        (0..60).for_each(|_| feeling.update(body, torn));
         assert_eq!(feeling.mood, Mood::Wince);
         (0..60).for_each(|_| {
-            feeling.see(
+            feeling.update(
                 body,
-                Fate {
+                MoodInput {
                     tick: 1,
-                    ..Fate::default()
+                    ..MoodInput::default()
                 },
             )
         });
         assert_eq!(feeling.mood, Mood::Calm);
-        feeling.see(
+        feeling.update(
             body,
-            Fate {
+            MoodInput {
                 tick: 1,
-                home: true,
-                ..Fate::default()
+                is_in_basket: true,
+                ..MoodInput::default()
             },
         );
         assert_eq!(feeling.mood, Mood::Beam);

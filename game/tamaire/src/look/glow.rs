@@ -1,7 +1,7 @@
 //! Progress at the basket: a line closes around it while a body must rest inside, and its bars glow after a
 //! win.
 
-use super::{Look, View};
+use super::{DrawOptions, View};
 use egui::{Color32, Painter, Pos2, Rect, Shape as Drawn, Stroke, pos2, vec2};
 use fuwafuwa::vector::plus;
 use fuwafuwa::{Dim2, Shape, Vector};
@@ -11,14 +11,14 @@ use tamaire_play::Round;
 const GOLD: Color32 = Color32::from_rgb(255, 205, 70);
 
 /// Draws the line and the glow.
-pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
+pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &DrawOptions) {
     let (progress, view) = (round.progress(), &look.view);
     let held = round.share_held();
     if held == 0.0 {
         return;
     }
     if progress.outcome.is_some() {
-        let breath = if look.still {
+        let breath = if look.reduced_motion {
             0.5
         } else {
             0.5 + 0.5 * (5.0 * look.time).sin() as f32
@@ -41,7 +41,7 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
 /// Returns the first `share` of the outline of a box, clockwise from the middle of its top.
 fn along_box(view: &View, centre: Vector, half: Vector, share: f32) -> Vec<Pos2> {
     let size = 2.0 * view.scale * vec2(half[0], half[1]);
-    let rect = Rect::from_center_size(view.on_screen(centre), size);
+    let rect = Rect::from_center_size(view.to_screen(centre), size);
     let corners = [
         rect.center_top(),
         rect.right_top(),
@@ -74,7 +74,7 @@ fn shine(painter: &Painter, view: &View, shape: Shape, strength: f32) {
         match shape {
             Shape::HalfSpace { .. } => {}
             Shape::Capsule { from, to, radius } => {
-                let (from, to) = (view.on_screen(from), view.on_screen(to));
+                let (from, to) = (view.to_screen(from), view.to_screen(to));
                 let radius = (radius + reach) * view.scale;
                 painter.add(Drawn::convex_polygon(
                     bar(from, to, radius),
@@ -84,7 +84,7 @@ fn shine(painter: &Painter, view: &View, shape: Shape, strength: f32) {
             }
             Shape::Box { centre, half } => {
                 let half = view.scale * (vec2(half[0], half[1]) + vec2(reach, reach));
-                let rect = Rect::from_center_size(view.on_screen(centre), 2.0 * half);
+                let rect = Rect::from_center_size(view.to_screen(centre), 2.0 * half);
                 painter.rect_filled(rect, reach * view.scale, light);
             }
             Shape::OrientedBox {
@@ -95,13 +95,13 @@ fn shine(painter: &Painter, view: &View, shape: Shape, strength: f32) {
                 let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
                 let corners = corners.map(|[x, y]| {
                     let own = [x * (half[0] + reach), y * (half[1] + reach), 0.0];
-                    view.on_screen(plus(centre, rotation.apply(own)))
+                    view.to_screen(plus(centre, rotation.apply(own)))
                 });
                 painter.add(Drawn::convex_polygon(corners.into(), light, Stroke::NONE));
             }
             Shape::Ball { centre, radius } => {
                 let radius = (radius + reach) * view.scale;
-                painter.circle_filled(view.on_screen(centre), radius, light);
+                painter.circle_filled(view.to_screen(centre), radius, light);
             }
         }
     }

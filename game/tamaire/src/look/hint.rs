@@ -1,7 +1,7 @@
 //! Wordless hint that is shown until the hand moves: a ring marks the player's hand, and a pale hand pushes a
 //! pale body into the basket in a loop.
 
-use super::{Hint, Look, View};
+use super::{DrawOptions, Hint, View};
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 use fuwafuwa::{Dim, Dim2, Dim3, RigidBody, Vector};
 use tamaire_play::Round;
@@ -10,7 +10,7 @@ use tamaire_play::Round;
 const ROUND_TRIP: f64 = 3.2;
 
 /// Draws the hint of a 2D round.
-pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
+pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &DrawOptions) {
     let Some(hand) = hand_to_show(round, look) else {
         return;
     };
@@ -27,24 +27,24 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
 }
 
 /// Draws the ring of a 3D round. There, texts explain the other controls.
-pub(super) fn draw_ring_of_space(painter: &Painter, round: &Round<Dim3>, look: &Look) {
+pub(super) fn draw_ring_of_space(painter: &Painter, round: &Round<Dim3>, look: &DrawOptions) {
     if let Some(hand) = hand_to_show(round, look) {
         draw_ring(painter, hand, look);
     }
 }
 
 /// Returns the first hand, until it has moved.
-fn hand_to_show<'a, D: Dim>(round: &'a Round<D>, look: &Look) -> Option<&'a RigidBody> {
+fn hand_to_show<'a, D: Dim>(round: &'a Round<D>, look: &DrawOptions) -> Option<&'a RigidBody> {
     let is_shown = look.hint != Hint::None && look.effects.hint != 0.0;
     round.hands().next().filter(|_| is_shown)
 }
 
 /// Draws rings that spread from the hand.
-fn draw_ring(painter: &Painter, hand: &RigidBody, look: &Look) {
-    let at = look.view.on_screen(hand.position());
+fn draw_ring(painter: &Painter, hand: &RigidBody, look: &DrawOptions) {
+    let at = look.view.to_screen(hand.position());
     let radius = hand.shape().inradius() * look.view.scale_at(hand.position());
     let tone = look.theme.hand(0).gamma_multiply(look.effects.hint);
-    let wave = if look.still {
+    let wave = if look.reduced_motion {
         0.4
     } else {
         (0.8 * look.time).rem_euclid(1.0) as f32
@@ -57,7 +57,7 @@ fn draw_ring(painter: &Painter, hand: &RigidBody, look: &Look) {
 }
 
 /// Draws the pale hand and the body that it pushes.
-fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, look: &Look) {
+fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, look: &DrawOptions) {
     let (view, strength) = (&look.view, look.effects.hint);
     let (Some(basket), Some(body)) = (basket_centre(round), round.world().soft_bodies().first())
     else {
@@ -72,7 +72,7 @@ fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, loo
     let way = (goal - body_at).normalized();
     let touch = body_at - (width + hand) * way;
     let end = goal - (width + hand) * way;
-    let time = if look.still {
+    let time = if look.reduced_motion {
         0.62
     } else {
         (look.time / ROUND_TRIP).rem_euclid(1.0) as f32
@@ -96,7 +96,7 @@ fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, loo
         strength,
         look,
     );
-    let screen = view.on_screen([hand_at.x, hand_at.y, 0.0]);
+    let screen = view.to_screen([hand_at.x, hand_at.y, 0.0]);
     let radius = hand * view.scale;
     let tone = look.theme.hand(0).gamma_multiply(0.55 * pale);
     painter.circle_filled(screen, radius, tone);
@@ -116,7 +116,7 @@ fn draw_pale_body(
     for outline in body.outlines() {
         let points = outline.points.iter();
         let points: Vec<Pos2> = points
-            .map(|at| view.on_screen([at[0] + by.x, at[1] + by.y, 0.0]))
+            .map(|at| view.to_screen([at[0] + by.x, at[1] + by.y, 0.0]))
             .collect();
         let mut points = smoothed(points);
         points.extend(points.first().copied());
@@ -150,13 +150,20 @@ fn smoothed(mut points: Vec<Pos2>) -> Vec<Pos2> {
 }
 
 /// Draws chevrons that move towards the basket.
-fn draw_arrows(painter: &Painter, view: &View, from: Vec2, to: Vec2, strength: f32, look: &Look) {
-    let on_screen = |at: Vec2| view.on_screen([at.x, at.y, 0.0]);
+fn draw_arrows(
+    painter: &Painter,
+    view: &View,
+    from: Vec2,
+    to: Vec2,
+    strength: f32,
+    look: &DrawOptions,
+) {
+    let on_screen = |at: Vec2| view.to_screen([at.x, at.y, 0.0]);
     let (from, to) = (on_screen(from), on_screen(to));
     let way = (to - from).normalized();
     let side = way.rot90();
     let size = 0.045 * view.scale;
-    let march = if look.still {
+    let march = if look.reduced_motion {
         0.0
     } else {
         (1.2 * look.time).rem_euclid(1.0) as f32

@@ -1,6 +1,6 @@
 //! Thumbnails of levels at their start, drawn by the renderers of rounds.
 
-use super::calm::{camera, face_of, frame};
+use super::calm::{camera, face_at_rest, frame};
 use super::feelings::Feeling;
 use super::{CameraRig, Face, Theme, View};
 use eframe::egui_wgpu::RenderState;
@@ -129,7 +129,7 @@ impl Maps {
 fn faces<D: Dim>(round: &Round<D>, eye: Option<Vector>) -> Vec<Face> {
     let bodies = round.world().soft_bodies().iter().enumerate();
     bodies
-        .map(|(number, body)| face_of(number, &Feeling::of(body, eye), 1.0))
+        .map(|(number, body)| face_at_rest(number, &Feeling::new(body, eye), 1.0))
         .collect()
 }
 

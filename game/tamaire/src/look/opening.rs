@@ -11,14 +11,14 @@ const FEWEST: f32 = 0.05;
 
 /// Cutaway of bodies in 3D for the element view.
 #[derive(Copy, Clone, Debug, Default)]
-pub struct Opening {
+pub struct Cutaway {
     /// Start of the automatic movement [s since the start of the game].
     since: f64,
     /// Remaining share of a body chosen by the player, 0 to 1; `None` while the cut moves by itself.
     wish: Option<f32>,
 }
 
-impl Opening {
+impl Cutaway {
     /// Starts the automatic movement with whole bodies.
     pub fn begin(time: f64) -> Self {
         Self {
@@ -52,13 +52,13 @@ mod tests {
 
     #[test]
     fn opening_moves_until_player_cuts() {
-        let mut opening = Opening::begin(10.0);
+        let mut opening = Cutaway::begin(10.0);
         assert_eq!(opening.share(10.0, false), 1.0);
         assert!((opening.share(10.0 + 0.5 * f64::from(PERIOD), false) - LEAST).abs() < 1e-3);
         opening.cut(0.2, 10.0, false);
         assert_eq!(opening.share(13.0, false), 0.8);
         opening.cut(9.0, 13.0, false);
         assert_eq!(opening.share(99.0, false), FEWEST);
-        assert_eq!(Opening::begin(0.0).share(3.0, true), 0.5);
+        assert_eq!(Cutaway::begin(0.0).share(3.0, true), 0.5);
     }
 }

@@ -5,12 +5,12 @@ use egui::{PaintCallbackInfo, Rect, Ui, vec2};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Callback that paints the frame prepared by a renderer in egui's pass.
-pub(super) struct Paint<R>(
+pub(super) struct PaintCallback<R>(
     pub Arc<Mutex<R>>,
     pub fn(&R, &mut wgpu::RenderPass<'static>),
 );
 
-impl<R: Send + 'static> CallbackTrait for Paint<R> {
+impl<R: Send + 'static> CallbackTrait for PaintCallback<R> {
     fn paint(
         &self,
         _: PaintCallbackInfo,

@@ -54,7 +54,7 @@ const LEAST_REACH: f32 = 3.0;
 
 /// Position of a face on the skin of a 3D body.
 #[derive(Clone, Debug, Default)]
-pub struct Perch {
+pub struct FaceAnchor {
     /// Centre, inside the body [m].
     pub at: Vector,
     /// Unit axes: to the right, up, and outwards.
@@ -65,22 +65,22 @@ pub struct Perch {
     pub piece: PieceId,
     /// Approximate centre of the piece [m].
     pub middle: Vector,
-    place: Option<Place>,
-    next: Option<Place>,
+    place: Option<SkinPlace>,
+    next: Option<SkinPlace>,
     /// Full size of a face on the piece [m].
     full: f32,
     /// Progress of reappearing, 0 to 1.
     up: f32,
     /// Angular velocity [rad/s]. `lost` is the time since the face has been turned away [s].
     spin: Vector,
-    lost: f32,
+    turned_away_seconds: f32,
     /// Time until the next search for another place [s].
     wait: f32,
 }
 
 /// Place on the original skin, in the rest shape of the body.
 #[derive(Copy, Clone, Debug)]
-struct Place {
+struct SkinPlace {
     /// Voxel with a face at this place. A voxel belongs to a piece at all times.
     voxel: Point,
     /// Centre of the voxel's face [voxels].
@@ -92,7 +92,7 @@ struct Place {
 }
 
 /// Face of a voxel on the original skin.
-struct Spot {
+struct SkinFace {
     voxel: Point,
     rest: Vector,
     at: Vector,
@@ -100,8 +100,8 @@ struct Spot {
 }
 
 /// Original skin of a piece, where a face can stick, and the camera that sees it.
-struct Skin {
-    spots: Vec<Spot>,
+struct PieceSkin {
+    spots: Vec<SkinFace>,
     piece: PieceId,
     middle: Vector,
     /// Full size of a face on the piece [m].
@@ -112,7 +112,7 @@ struct Skin {
     spin: Vector,
 }
 
-impl Perch {
+impl FaceAnchor {
     /// Chooses the place that the camera at `eye` sees best.
     pub fn new<D: Dim>(body: &SoftBody<D>, eye: Option<Vector>) -> Self {
         let mut perch = Self {
@@ -120,8 +120,8 @@ impl Perch {
             up: 1.0,
             ..Self::default()
         };
-        perch.review(body, eye);
-        perch.sit(body);
+        perch.check_place(body, eye);
+        perch.update_position(body);
         perch
     }
 
@@ -135,35 +135,35 @@ impl Perch {
     ) {
         self.wait -= seconds;
         if looks {
-            self.review(body, eye);
+            self.check_place(body, eye);
         }
         if self.next.is_some() {
             self.up -= seconds / SHRINK;
             if self.up <= 0.0 {
                 (self.place, self.next, self.up) = (self.next, None, 0.0);
-                self.lost = 0.0;
-                self.review(body, eye);
-                self.sit(body);
+                self.turned_away_seconds = 0.0;
+                self.check_place(body, eye);
+                self.update_position(body);
             }
         } else {
             self.up = (self.up + seconds / RISE).min(1.0);
         }
         let before = self.axes;
-        self.sit(body);
+        self.update_position(body);
         let turned = [0, 1, 2].map(|k| cross(before[k], self.axes[k]));
         let spin = scaled(turned.into_iter().fold([0.0; 3], plus), 0.5 / seconds);
         self.spin = plus(self.spin, scaled(minus(spin, self.spin), 0.2));
         let [facing, upright] = eye.map_or([1.0; 2], |eye| seen(self.at, self.axes, eye));
         let spin = length(self.spin);
         let is_lost = facing < LOST || upright < LOST && spin < CALM;
-        self.lost = match is_lost && spin < FAST {
-            true => self.lost + seconds,
+        self.turned_away_seconds = match is_lost && spin < FAST {
+            true => self.turned_away_seconds + seconds,
             false => 0.0,
         };
     }
 
     /// Moves the face with the skin.
-    fn sit<D: Dim>(&mut self, body: &SoftBody<D>) {
+    fn update_position<D: Dim>(&mut self, body: &SoftBody<D>) {
         let voxel = body.grid().voxel_size();
         let found = self.place.and_then(|place| {
             let piece = body.pieces().of_element(body.mesh().owner(place.voxel)?);
@@ -186,15 +186,15 @@ impl Perch {
     }
 
     /// Checks the current place, and searches another one if it has become bad.
-    fn review<D: Dim>(&mut self, body: &SoftBody<D>, eye: Option<Vector>) {
+    fn check_place<D: Dim>(&mut self, body: &SoftBody<D>, eye: Option<Vector>) {
         let masses = masses(body);
         let largest = largest(&masses);
         let own = self.place.and_then(|place| body.mesh().owner(place.voxel));
         let own = own.map(|element| body.pieces().of_element(element));
         let spin = self.spin;
-        let on = |piece: PieceId| Skin {
+        let on = |piece: PieceId| PieceSkin {
             spin,
-            ..Skin::of(body, piece, &masses, eye)
+            ..PieceSkin::of(body, piece, &masses, eye)
         };
         let mut is_small = true;
         let mut score = 0.0;
@@ -206,7 +206,7 @@ impl Perch {
             let size = place.fit * skin.full;
             (self.full, self.middle) = (skin.full, skin.middle);
             let covered = skin.cover(at, self.axes[2], size);
-            if !is_small && covered > COVERED[1] && self.lost < PATIENCE {
+            if !is_small && covered > COVERED[1] && self.turned_away_seconds < PATIENCE {
                 return;
             }
             score = skin.score(at, self.axes[2], place.fit, covered) + BETTER;
@@ -236,7 +236,7 @@ impl Perch {
     }
 }
 
-impl Skin {
+impl PieceSkin {
     fn of<D: Dim>(
         body: &SoftBody<D>,
         piece: PieceId,
@@ -251,7 +251,7 @@ impl Skin {
             let rest = facet
                 .nodes
                 .map(|id| body.mesh().node(id).at.map(|k| k as f32));
-            Some(Spot {
+            Some(SkinFace {
                 voxel: body.mesh().element(facet.element)?.cell.at,
                 rest: mean(rest),
                 at: mean(facet.corners),
@@ -282,8 +282,8 @@ impl Skin {
     }
 
     /// Ideal direction of a face at `at`, with the rotation of the body predicted; unit length.
-    fn wish(&self, at: Vector) -> Vector {
-        let wish = self.eye.map_or(UPRIGHT[2], |eye| wish(at, eye));
+    fn ideal_direction(&self, at: Vector) -> Vector {
+        let wish = self.eye.map_or(UPRIGHT[2], |eye| ideal_direction(at, eye));
         let early = minus(wish, scaled(cross(self.spin, wish), AHEAD));
         let along = dot(self.spin, wish) / length(self.spin).max(1e-9);
         let early = plus(early, scaled(self.spin, NEAR_AXIS * along));
@@ -309,26 +309,26 @@ impl Skin {
 
     /// Score of a place: large, covered, turned to the camera, and in the middle of the visible side.
     fn score(&self, at: Vector, out: Vector, fit: f32, covered: f32) -> f32 {
-        let wish = self.wish(self.middle);
+        let wish = self.ideal_direction(self.middle);
         let by = minus(at, self.middle);
         let aside = length(minus(by, scaled(wish, dot(by, wish))));
         fit * covered + 0.5 * dot(out, wish) - 0.2 * LARGE * aside / self.full.max(1e-9)
     }
 
     /// Returns the best place: its spot, score, size factor, and outward direction.
-    fn best(&self) -> Option<(&Spot, f32, f32, Vector)> {
-        let wish = self.wish(self.middle);
+    fn best(&self) -> Option<(&SkinFace, f32, f32, Vector)> {
+        let wish = self.ideal_direction(self.middle);
         let turned = self.spots.iter();
-        let turned: Vec<&Spot> = turned.filter(|spot| dot(spot.normal, wish) > 0.0).collect();
+        let turned: Vec<&SkinFace> = turned.filter(|spot| dot(spot.normal, wish) > 0.0).collect();
         let first = self.best_of(&turned)?;
-        let near = |spot: &&&Spot| length(minus(spot.at, first.0.at)) < 0.5 * self.full;
-        let near: Vec<&Spot> = turned.iter().filter(near).copied().collect();
+        let near = |spot: &&&SkinFace| length(minus(spot.at, first.0.at)) < 0.5 * self.full;
+        let near: Vec<&SkinFace> = turned.iter().filter(near).copied().collect();
         self.best_of(&near)
             .filter(|second| second.1 > first.1)
             .or(Some(first))
     }
 
-    fn best_of<'a>(&self, spots: &[&'a Spot]) -> Option<(&'a Spot, f32, f32, Vector)> {
+    fn best_of<'a>(&self, spots: &[&'a SkinFace]) -> Option<(&'a SkinFace, f32, f32, Vector)> {
         let judged = spots.iter().step_by(1 + spots.len() / PLACES).map(|spot| {
             // Single voxel faces point along the axes; the average over the surroundings gives the direction
             // of the skin.
@@ -354,14 +354,14 @@ impl Skin {
     fn place<D: Dim>(
         &self,
         body: &SoftBody<D>,
-        spot: &Spot,
+        spot: &SkinFace,
         out: Vector,
         fit: f32,
-    ) -> Option<Place> {
+    ) -> Option<SkinPlace> {
         let reach = (fit * self.full / self.voxel).max(LEAST_REACH);
         let (_, turn) = anchor_at(body, self.piece, spot.rest, reach)?;
         let axes = upright(out, self.eye.map_or(UPRIGHT[2], |eye| minus(eye, spot.at)));
-        Some(Place {
+        Some(SkinPlace {
             voxel: spot.voxel,
             rest: spot.rest,
             worn: axes.map(|axis| turn.map(|own| dot(own, axis))),
@@ -371,7 +371,7 @@ impl Skin {
 }
 
 /// Ideal direction of a face at `at`, as a unit vector: towards the camera, tilted upwards.
-fn wish(at: Vector, eye: Vector) -> Vector {
+fn ideal_direction(at: Vector, eye: Vector) -> Vector {
     let by = minus(eye, at);
     let high = plus(by, [0.0, ABOVE * length(by), 0.0]);
     scaled(high, 1.0 / length(high).max(1e-9))
@@ -387,7 +387,7 @@ fn upright(out: Vector, towards: Vector) -> [Vector; 3] {
 /// Cosines of the angles to the ideal direction and to the upright orientation.
 fn seen(at: Vector, axes: [Vector; 3], eye: Vector) -> [f32; 2] {
     let up = upright(axes[2], minus(eye, at))[1];
-    [dot(axes[2], wish(at, eye)), dot(axes[1], up)]
+    [dot(axes[2], ideal_direction(at, eye)), dot(axes[1], up)]
 }
 
 /// Orthonormal axes: the third keeps its direction, the second is kept as far as possible, the first follows.

@@ -6,7 +6,7 @@ use tamaire_play::AnyRound;
 
 /// Options for drawing a round.
 #[derive(Copy, Clone, Debug)]
-pub struct Look<'a> {
+pub struct DrawOptions<'a> {
     /// Camera and part of the screen.
     pub view: View,
     /// Colours.
@@ -14,7 +14,7 @@ pub struct Look<'a> {
     /// Element view instead of the skin, with this colouring.
     pub elements: Option<ElementColour>,
     /// 3D element view: share of a body that is not cut away, 0 to 1.
-    pub left: f32,
+    pub cut_share: f32,
     /// Particles, confetti and feelings.
     pub effects: &'a Effects,
     /// Time since the start of the game [s], for blinking.
@@ -24,7 +24,7 @@ pub struct Look<'a> {
     /// Hint that is shown until the hand moves.
     pub hint: Hint,
     /// Reduced motion.
-    pub still: bool,
+    pub reduced_motion: bool,
 }
 
 /// Hint for a player who has not moved the hand yet.

@@ -1,6 +1,6 @@
 //! Drawing of any 3D world in a part of an egui window.
 
-use super::pass::{Paint, lock, pixels};
+use super::pass::{PaintCallback, lock, pixels};
 use eframe::egui_wgpu::{Callback, RenderState};
 use egui::{Rect, Ui};
 use fuwafuwa::{Dim3, World};
@@ -42,7 +42,7 @@ impl SpaceStage {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         lock(shared).prepare(device, queue, &mut encoder, world, frame, pixels(ui, rect));
         queue.submit([encoder.finish()]);
-        let paint = Paint(shared.clone(), space::Renderer::paint);
+        let paint = PaintCallback(shared.clone(), space::Renderer::paint);
         ui.painter().add(Callback::new_paint_callback(rect, paint));
     }
 

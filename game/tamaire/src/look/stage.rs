@@ -1,9 +1,9 @@
 //! Drawing of a round: world, particles and faces.
 
-use super::calm::{camera, face_of, frame};
+use super::calm::{camera, face_at_rest, frame};
 use super::feelings::Feeling;
-use super::pass::{Paint, lock, pixels};
-use super::{Face, Look, Maps, Mood, SpaceStage, Theme, View, glow, hint};
+use super::pass::{PaintCallback, lock, pixels};
+use super::{DrawOptions, Face, Maps, Mood, SpaceStage, Theme, View, glow, hint};
 use eframe::egui_wgpu::{Callback, RenderState};
 use egui::{Color32, Painter, Pos2, Stroke, Ui};
 use fuwafuwa::vector::{length, minus};
@@ -62,24 +62,24 @@ impl Stage {
     /// Frees the images that worlds are drawn into, while nothing is drawn.
     pub fn forget_images(&self) {
         let device = &self.state.device;
-        lock(&self.renderer).forget_images(device);
+        lock(&self.renderer).release_images(device);
         self.space.forget_images();
     }
 
     /// Draws a round.
-    pub fn draw(&mut self, ui: &Ui, round: &AnyRound, look: &Look) {
+    pub fn draw(&mut self, ui: &Ui, round: &AnyRound, look: &DrawOptions) {
         match round {
             AnyRound::Plane(round) => self.draw_plane(ui, round, look),
             AnyRound::Space(round) => self.draw_space(ui, round, look),
         }
     }
 
-    fn draw_space(&mut self, ui: &Ui, round: &Round<Dim3>, look: &Look) {
+    fn draw_space(&mut self, ui: &Ui, round: &Round<Dim3>, look: &DrawOptions) {
         let Some(camera) = look.view.space else {
             return;
         };
         let camera = space::Camera {
-            cut: look.elements.map(|_| cut(&camera, look.left)),
+            cut: look.elements.map(|_| cut(&camera, look.cut_share)),
             ..camera
         };
         self.follow_ages(round, look);
@@ -93,7 +93,7 @@ impl Stage {
                 Some(AnyRound::Space(ghost)) => Some(ghost.world()),
                 _ => None,
             },
-            seconds: if look.still { 0.0 } else { look.time },
+            seconds: if look.reduced_motion { 0.0 } else { look.time },
             ..frame(camera, round, look.theme)
         };
         self.space.draw(ui, look.view.rect, round.world(), &frame);
@@ -102,7 +102,7 @@ impl Stage {
         look.effects.confetti.draw(painter, &look.view.flat());
     }
 
-    fn draw_plane(&mut self, ui: &Ui, round: &Round<Dim2>, look: &Look) {
+    fn draw_plane(&mut self, ui: &Ui, round: &Round<Dim2>, look: &DrawOptions) {
         let view = &look.view;
         let size = pixels(ui, view.rect);
         self.follow_ages(round, look);
@@ -110,7 +110,7 @@ impl Stage {
         let frame = Frame {
             look: shown(look, &self.ages),
             particles: &specks,
-            seconds: if look.still { 0.0 } else { look.time },
+            seconds: if look.reduced_motion { 0.0 } else { look.time },
             ..frame(camera(view), round, look.theme)
         };
         let RenderState { device, queue, .. } = &self.state;
@@ -120,7 +120,7 @@ impl Stage {
         queue.submit([encoder.finish()]);
         let painter = ui.painter();
         let paint = |half| {
-            let paint = Paint(self.renderer.clone(), half);
+            let paint = PaintCallback(self.renderer.clone(), half);
             painter.add(Callback::new_paint_callback(view.rect, paint));
         };
         paint(Renderer::paint_bodies);
@@ -138,7 +138,7 @@ impl Stage {
 
     /// Updates the ages of elements. They start again with each round, since no element has been remodelled
     /// yet.
-    fn follow_ages<D: Dim>(&mut self, round: &Round<D>, look: &Look) {
+    fn follow_ages<D: Dim>(&mut self, round: &Round<D>, look: &DrawOptions) {
         let ticks = round.world().ticks();
         let goes_on = self
             .followed
@@ -149,7 +149,7 @@ impl Stage {
         }
         self.followed = Some((round.level().clone(), ticks));
         let seconds = (look.time - self.time).max(0.0) as f32;
-        self.ages.follow(round.world(), seconds);
+        self.ages.update(round.world(), seconds);
         self.time = look.time;
     }
 }
@@ -163,11 +163,14 @@ fn cut(camera: &space::Camera, share: f32) -> space::Cut {
         true => [0.0, 1.0, 0.0],
         false => [x / long, 0.0, z / long],
     };
-    space::Cut { towards, share }
+    space::Cut {
+        direction: towards,
+        share,
+    }
 }
 
 /// Returns the renderer's view: skin or elements.
-fn shown<'a>(look: &Look, ages: &'a Ages) -> fuwafuwa_render::Look<'a> {
+fn shown<'a>(look: &DrawOptions, ages: &'a Ages) -> fuwafuwa_render::Look<'a> {
     match look.elements {
         None => fuwafuwa_render::Look::Skin,
         Some(colour) => fuwafuwa_render::Look::Elements {
@@ -178,7 +181,7 @@ fn shown<'a>(look: &Look, ages: &'a Ages) -> fuwafuwa_render::Look<'a> {
     }
 }
 
-fn particles(look: &Look) -> Vec<Particle> {
+fn particles(look: &DrawOptions) -> Vec<Particle> {
     let world = &look.theme.world;
     let specks = look.effects.specks.iter().map(|speck| {
         let own = world.material(speck.material);
@@ -195,7 +198,7 @@ fn particles(look: &Look) -> Vec<Particle> {
 }
 
 /// Returns the faces of all bodies; none in the element view.
-fn faces<D: Dim>(round: &Round<D>, look: &Look) -> Vec<Face> {
+fn faces<D: Dim>(round: &Round<D>, look: &DrawOptions) -> Vec<Face> {
     if look.elements.is_some() {
         return Vec::new();
     }
@@ -206,7 +209,7 @@ fn faces<D: Dim>(round: &Round<D>, look: &Look) -> Vec<Face> {
         true => &look.effects.feelings,
         false => {
             let eye = look.view.space.map(|camera| camera.eye());
-            fresh = bodies.iter().map(|body| Feeling::of(body, eye)).collect();
+            fresh = bodies.iter().map(|body| Feeling::new(body, eye)).collect();
             &fresh
         }
     };
@@ -216,14 +219,14 @@ fn faces<D: Dim>(round: &Round<D>, look: &Look) -> Vec<Face> {
         let hands = round.hands().map(|hand| hand.position());
         let away = |hand: &Vector| length(minus(*hand, feeling.at));
         let nearest = hands.min_by(|a, b| away(a).total_cmp(&away(b)));
-        let start = match look.still || feeling.mood == Mood::Calm {
+        let start = match look.reduced_motion || feeling.mood == Mood::Calm {
             true => 0.0,
             false => 0.16 * (-9.0 * feeling.age).exp(),
         };
         Face {
             blink: (1.0 - (phase - 0.1).abs() / 0.1).clamp(0.0, 1.0),
             look_at: nearest.unwrap_or(feeling.at),
-            ..face_of(number, feeling, 1.0 + start)
+            ..face_at_rest(number, feeling, 1.0 + start)
         }
     };
     feelings.iter().enumerate().map(face).collect()
@@ -234,7 +237,7 @@ fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
     let stroke = Stroke::new(2.5, GHOST);
     for body in round.world().soft_bodies() {
         for outline in body.outlines() {
-            let points = outline.points.iter().map(|&at| view.on_screen(at));
+            let points = outline.points.iter().map(|&at| view.to_screen(at));
             let points: Vec<Pos2> = points.collect();
             // Single segments, because the mitres of a polyline would shoot out where a crack turns back.
             for (index, &point) in points.iter().enumerate() {
@@ -245,7 +248,7 @@ fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
     }
     for hand in round.hands() {
         painter.circle_stroke(
-            view.on_screen(hand.position()),
+            view.to_screen(hand.position()),
             view.scale * hand.shape().inradius(),
             stroke,
         );

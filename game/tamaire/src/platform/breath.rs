@@ -2,9 +2,9 @@
 
 /// Yields to other work. Does nothing on a desktop.
 #[derive(Default)]
-pub struct Breath(());
+pub struct Yielder(());
 
-impl Breath {
+impl Yielder {
     /// Returns at once.
-    pub async fn take(&mut self) {}
+    pub async fn yield_now(&mut self) {}
 }

@@ -1,6 +1,6 @@
 //! File dialog of the system.
 
-use super::given::{Given, Picked};
+use super::given::{DialogResult, OpenRequest};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -13,7 +13,7 @@ const SOON: Duration = Duration::from_millis(400);
 
 /// File dialog, which does not block the game.
 #[derive(Default)]
-pub struct Dialog(Option<Receiver<Picked>>);
+pub struct Dialog(Option<Receiver<DialogResult>>);
 
 impl Dialog {
     /// Opens the dialog unless it is open. `kind` describes the files to the player.
@@ -28,9 +28,9 @@ impl Dialog {
         let (tell, told) = mpsc::channel();
         let wait = move || {
             let picked = match pollster::block_on(asked) {
-                Some(file) => Picked::File(Given::at(file.path())),
-                None if began.elapsed() < SOON => Picked::NoDialog,
-                None => Picked::Nothing,
+                Some(file) => DialogResult::File(OpenRequest::at(file.path())),
+                None if began.elapsed() < SOON => DialogResult::NoDialog,
+                None => DialogResult::Nothing,
             };
             // Sending fails if the game has ended.
             let _ = tell.send(picked);
@@ -40,11 +40,11 @@ impl Dialog {
     }
 
     /// Returns the result of the dialog, once.
-    pub fn take(&mut self) -> Option<Picked> {
+    pub fn take(&mut self) -> Option<DialogResult> {
         let picked = match self.0.as_ref()?.try_recv() {
             Ok(picked) => picked,
             Err(TryRecvError::Empty) => return None,
-            Err(TryRecvError::Disconnected) => Picked::Nothing,
+            Err(TryRecvError::Disconnected) => DialogResult::Nothing,
         };
         self.0 = None;
         Some(picked)

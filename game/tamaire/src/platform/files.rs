@@ -27,9 +27,9 @@ const REST: f32 = 1.0;
 /// Stored data and its storage.
 pub struct Files {
     storage: Arc<dyn Storage>,
-    writer: Writer<Done>,
+    writer: Writer<JobResult>,
     /// Makes photos and clips on a separate thread, because each takes seconds.
-    darkroom: Writer<Done>,
+    darkroom: Writer<JobResult>,
     /// Settings used if none are stored.
     usual: Settings,
     /// Settings to be written, and the time until then [s].
@@ -49,7 +49,7 @@ pub fn data_folder() -> Option<std::path::PathBuf> {
 }
 
 /// Result of a job.
-enum Done {
+enum JobResult {
     Note(io::Result<()>),
     Level(io::Result<Result<Arc<Level>, Damage>>),
     Replay(io::Result<String>),
@@ -58,7 +58,7 @@ enum Done {
 
 /// Message about stored data.
 #[derive(Clone, Debug, PartialEq)]
-pub enum News {
+pub enum StorageEvent {
     /// A level was read.
     Level(Arc<Level>),
     /// Stored data could not be used.
@@ -185,11 +185,11 @@ impl Files {
         let levels = levels.to_vec();
         self.writer.write(
             move || merge_records(&*storage, &records, &levels),
-            Done::Note,
+            JobResult::Note,
         );
     }
 
-    /// Reads the stored levels. They arrive one by one as [`News::Level`], the oldest first.
+    /// Reads the stored levels. They arrive one by one as [`StorageEvent::Level`], the oldest first.
     pub fn read_levels(&mut self) {
         let mut found = self.storage.list(Kind::Level).unwrap_or_default();
         found.retain(|entry| !is_aside(&entry.name));
@@ -198,7 +198,7 @@ impl Files {
         for Entry { name, .. } in found.split_off(older) {
             let storage = self.storage.clone();
             self.writer
-                .write(move || Ok(read_level(&*storage, &name)), Done::Level);
+                .write(move || Ok(read_level(&*storage, &name)), JobResult::Level);
         }
     }
 
@@ -210,7 +210,7 @@ impl Files {
             let mut change = |_: Option<&[u8]>| Some(text.clone().into_bytes());
             storage.change(Kind::Level, &level.id, &mut change)
         };
-        self.writer.write(job, Done::Note);
+        self.writer.write(job, JobResult::Note);
     }
 
     /// Deletes a stored level. Its records stay.
@@ -220,14 +220,14 @@ impl Files {
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
             removed => removed,
         };
-        self.writer.write(job, Done::Note);
+        self.writer.write(job, JobResult::Note);
     }
 
     /// Saves a replay.
     pub fn save_replay(&mut self, replay: Replay) {
         let storage = self.storage.clone();
         self.writer
-            .write(move || save_replay(&*storage, &replay), Done::Replay);
+            .write(move || save_replay(&*storage, &replay), JobResult::Replay);
     }
 
     /// Makes and saves a photo or clip of a round, unless another one is in progress.
@@ -243,7 +243,7 @@ impl Files {
             let told = |share: f32| developed.store((100.0 * share) as u32, Ordering::Relaxed);
             let picture = pictures.shoot(kind, replay, told).await;
             let picture = picture.map_err(io::Error::other);
-            Done::Picture(picture.and_then(|bytes| save(&*storage, kind, &stem, &bytes)))
+            JobResult::Picture(picture.and_then(|bytes| save(&*storage, kind, &stem, &bytes)))
         });
     }
 
@@ -257,17 +257,17 @@ impl Files {
             let mut older = kept.into_iter().take(older);
             older.try_for_each(|entry| storage.remove(kind, &entry.name))
         };
-        self.writer.write(job, Done::Note);
+        self.writer.write(job, JobResult::Note);
     }
 
     /// Progress of the current photo or clip, 0 to 1. `None` if none is in progress.
-    pub fn developed(&self) -> Option<f32> {
+    pub fn picture_progress(&self) -> Option<f32> {
         let developed = self.developed.as_ref()?;
         Some(developed.load(Ordering::Relaxed) as f32 / 100.0)
     }
 
     /// Advances the time by `seconds` [s]. Returns the results of finished jobs.
-    pub fn pass(&mut self, seconds: f32) -> Vec<News> {
+    pub fn pass(&mut self, seconds: f32) -> Vec<StorageEvent> {
         if let Some((_, left)) = &mut self.resting {
             *left -= seconds;
             if *left <= 0.0 {
@@ -279,13 +279,13 @@ impl Files {
         let late = self
             .storage
             .take_failure()
-            .map(|error| Done::Note(Err(error)));
+            .map(|error| JobResult::Note(Err(error)));
         done.extend(late);
         self.news(done)
     }
 
     /// Writes all pending data and waits until it is written.
-    pub fn finish(&mut self) -> Vec<News> {
+    pub fn finish(&mut self) -> Vec<StorageEvent> {
         self.write_settings();
         let mut done = self.writer.finish();
         done.extend(self.darkroom.finish());
@@ -297,8 +297,8 @@ impl Files {
         for news in self.finish() {
             // There is no window any more, so errors go to the terminal.
             match news {
-                News::Failed(reason) => eprintln!("tamaire: cannot save data: {reason}"),
-                News::Full => eprintln!("tamaire: cannot save data: the storage is full"),
+                StorageEvent::Failed(reason) => eprintln!("tamaire: cannot save data: {reason}"),
+                StorageEvent::Full => eprintln!("tamaire: cannot save data: the storage is full"),
                 _ => {}
             }
         }
@@ -315,30 +315,32 @@ impl Files {
             let mut change = move |_: Option<&[u8]>| Some(text.clone().into_bytes());
             self.writer.write(
                 move || storage.change(Kind::Note, SETTINGS, &mut change),
-                Done::Note,
+                JobResult::Note,
             );
         }
     }
 
-    fn news(&mut self, done: Vec<Done>) -> Vec<News> {
+    fn news(&mut self, done: Vec<JobResult>) -> Vec<StorageEvent> {
         let mut news = Vec::new();
         for done in done {
-            if let Done::Picture(_) = done {
+            if let JobResult::Picture(_) = done {
                 self.developed = None;
             }
             match done {
-                Done::Level(Ok(Ok(level))) => news.push(News::Level(level)),
-                Done::Level(Ok(Err(damage))) => news.push(News::Damaged(damage)),
-                Done::Replay(Ok(location)) | Done::Picture(Ok(location)) => {
-                    news.push(News::SavedElementStates(location));
+                JobResult::Level(Ok(Ok(level))) => news.push(StorageEvent::Level(level)),
+                JobResult::Level(Ok(Err(damage))) => news.push(StorageEvent::Damaged(damage)),
+                JobResult::Replay(Ok(location)) | JobResult::Picture(Ok(location)) => {
+                    news.push(StorageEvent::SavedElementStates(location));
                 }
-                Done::Replay(Err(error)) | Done::Picture(Err(error)) => news.push(failed(&error)),
-                Done::Note(Ok(())) => self.is_failing = false,
-                Done::Note(Err(error)) | Done::Level(Err(error)) if !self.is_failing => {
+                JobResult::Replay(Err(error)) | JobResult::Picture(Err(error)) => {
+                    news.push(failed(&error))
+                }
+                JobResult::Note(Ok(())) => self.is_failing = false,
+                JobResult::Note(Err(error)) | JobResult::Level(Err(error)) if !self.is_failing => {
                     self.is_failing = true;
                     news.push(failed(&error));
                 }
-                Done::Note(Err(_)) | Done::Level(Err(_)) => {}
+                JobResult::Note(Err(_)) | JobResult::Level(Err(_)) => {}
             }
         }
         news
@@ -347,8 +349,10 @@ impl Files {
     /// Stores a won round as the one to race in its level, unless a faster one is stored.
     pub fn keep_best(&mut self, level: &Level, replay: Replay) {
         let (storage, name) = (self.storage.clone(), name_of_best(level));
-        self.writer
-            .write(move || keep_best(&*storage, &name, &replay), Done::Note);
+        self.writer.write(
+            move || keep_best(&*storage, &name, &replay),
+            JobResult::Note,
+        );
     }
 
     /// Returns the fastest stored win of a level.
@@ -358,7 +362,7 @@ impl Files {
 
     /// Whether replays can be given to the player as files.
     pub fn hands_out(&self) -> bool {
-        self.storage.hands_out()
+        self.storage.can_export()
     }
 
     /// Gives a replay to the player as a file.
@@ -366,7 +370,7 @@ impl Files {
     /// # Errors
     /// The error of the system.
     pub fn hand_out(&self, name: &str) -> io::Result<()> {
-        self.storage.hand_out(Kind::Replay, name)
+        self.storage.export(Kind::Replay, name)
     }
 
     /// Returns the saved replays, the newest first.
@@ -407,10 +411,10 @@ impl Files {
     }
 }
 
-fn failed(error: &io::Error) -> News {
+fn failed(error: &io::Error) -> StorageEvent {
     match error.kind() {
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => News::Full,
-        _ => News::Failed(error.to_string()),
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => StorageEvent::Full,
+        _ => StorageEvent::Failed(error.to_string()),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Storage in a folder: one file for each entry.
 
-use super::storage::{Change, Entry, Kind, Storage};
-use fuwafuwa_scenes::disk::bytes_of;
+use super::storage::{Entry, Kind, Storage, UpdateEntry};
+use fuwafuwa_scenes::disk::read_bytes;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -90,13 +90,13 @@ impl Storage for Folder {
     }
 
     fn read(&self, kind: Kind, name: &str) -> io::Result<Option<Vec<u8>>> {
-        match bytes_of(&self.path(kind, name)?, kind.most_bytes()) {
+        match read_bytes(&self.path(kind, name)?, kind.most_bytes()) {
             Err(error) if is_missing(&error) => Ok(None),
             read => read.map(Some),
         }
     }
 
-    fn change(&self, kind: Kind, name: &str, change: &mut Change) -> io::Result<()> {
+    fn change(&self, kind: Kind, name: &str, change: &mut UpdateEntry) -> io::Result<()> {
         let path = self.path(kind, name)?;
         let (folder, _) = self.of(kind);
         fs::create_dir_all(&folder)?;

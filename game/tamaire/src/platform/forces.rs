@@ -1,7 +1,7 @@
 //! Force feedback and rumble of sticks and pads.
 
 use super::Pads;
-use force_feedback::{Force, Line, Report, Settings, State, Stop};
+use force_feedback::{ForceThread, Line, Report, Settings, State, Stop};
 use std::collections::BTreeMap;
 use sticks::{Device, DeviceId, Snapshot};
 
@@ -13,7 +13,7 @@ const RATE: u32 = 250;
 pub struct Forces {
     lines: BTreeMap<DeviceId, Line>,
     /// Feedback thread. `None` while there is no device.
-    force: Option<Force>,
+    force: Option<ForceThread>,
     is_cut: bool,
 }
 
@@ -46,11 +46,11 @@ impl Forces {
 
     /// Returns the feedback thread and starts it if necessary. `None` if the system cannot start a thread;
     /// then there is no feedback. In a browser, updates run without a thread.
-    fn force(&mut self) -> Option<&Force> {
+    fn force(&mut self) -> Option<&ForceThread> {
         if self.force.is_none() {
             self.force = match cfg!(target_family = "wasm") {
-                true => Some(Force::without_thread()),
-                false => Force::start(RATE).ok(),
+                true => Some(ForceThread::without_thread()),
+                false => ForceThread::start(RATE).ok(),
             };
             if let (Some(force), true) = (&self.force, self.is_cut) {
                 force.emergency_stop();
@@ -63,7 +63,7 @@ impl Forces {
     pub fn tell(&self, wish: impl Fn(DeviceId) -> Result<State, Stop>) {
         for (&id, line) in &self.lines {
             match wish(id) {
-                Ok(state) => line.feel(state),
+                Ok(state) => line.set_state(state),
                 Err(why) => line.stop(why),
             }
         }

@@ -1,11 +1,11 @@
 //! Files and links from the command line, from drag and drop, or from the file dialog.
 
-use fuwafuwa_scenes::scene::{Fetch, ending_of};
+use fuwafuwa_scenes::scene::{Fetch, extension_of};
 use tamaire_play::level::LevelError;
 use tamaire_play::{Level, Replay, ReplayError};
 
 /// A level, replay or link to open, or the error of reading it. Its origin no longer matters.
-pub enum Given {
+pub enum OpenRequest {
     /// A level, or a picture or model converted to one.
     Level(Result<Box<Level>, LevelError>),
     /// A replay and its location, as text for the player.
@@ -15,16 +15,16 @@ pub enum Given {
 }
 
 /// Result of a file dialog.
-pub enum Picked {
+pub enum DialogResult {
     /// A file was chosen.
-    File(Given),
+    File(OpenRequest),
     /// The dialog was cancelled.
     Nothing,
     /// The system has no file dialog.
     NoDialog,
 }
 
-impl Given {
+impl OpenRequest {
     /// Reads a replay, level, picture or model from the bytes of a file. `name` decides the type. Files that
     /// a level refers to are loaded by `fetch`.
     pub fn read(name: &str, bytes: &[u8], fetch: Fetch) -> Self {
@@ -36,7 +36,7 @@ impl Given {
 }
 
 fn is_replay(name: &str) -> bool {
-    ending_of(name) == "tamaire"
+    extension_of(name) == "tamaire"
 }
 
 #[cfg(not(target_family = "wasm"))]
@@ -44,15 +44,15 @@ pub use on_disk::{dropped, level_at, replay_in};
 
 #[cfg(not(target_family = "wasm"))]
 mod on_disk {
-    use super::{Given, is_replay};
+    use super::{OpenRequest, is_replay};
     use crate::platform::storage::Kind;
-    use fuwafuwa_scenes::disk::{beside, bytes_of};
+    use fuwafuwa_scenes::disk::{read_bytes, reader_in};
     use fuwafuwa_scenes::import::MAX_FILE_BYTES;
     use std::path::Path;
     use tamaire_play::level::LevelError;
     use tamaire_play::{Level, Replay, ReplayError};
 
-    impl Given {
+    impl OpenRequest {
         /// Opens a file with a replay, level, picture or model, a built-in level by its name, or a link.
         pub fn at(path: &Path) -> Self {
             let location = path.to_string_lossy();
@@ -78,10 +78,14 @@ mod on_disk {
         }
         let unreadable = |reason: String| LevelError::Unreadable(location.into(), reason);
         let bytes =
-            bytes_of(path, MAX_FILE_BYTES).map_err(|error| unreadable(error.to_string()))?;
+            read_bytes(path, MAX_FILE_BYTES).map_err(|error| unreadable(error.to_string()))?;
         // The id does not contain the folder, so records stay valid when the folder is moved.
         let id = id_of(&path.file_name().unwrap_or_default().to_string_lossy());
-        Level::read(&id, &bytes, &beside(path.parent().unwrap_or(Path::new(""))))
+        Level::read(
+            &id,
+            &bytes,
+            &reader_in(path.parent().unwrap_or(Path::new(""))),
+        )
     }
 
     /// Returns the id of a level in a file: a name that the storage accepts. A name without an extension gets
@@ -100,15 +104,18 @@ mod on_disk {
     /// # Errors
     /// [`ReplayError`] if it cannot be read or is not a replay.
     pub fn replay_in(path: &Path) -> Result<Replay, ReplayError> {
-        let bytes = bytes_of(path, Kind::Replay.most_bytes());
+        let bytes = read_bytes(path, Kind::Replay.most_bytes());
         let unreadable = |error: std::io::Error| ReplayError::Unreadable(error.to_string());
         Replay::of_bytes(&bytes.map_err(unreadable)?)
     }
 
     /// Returns the files dropped onto the window.
-    pub fn dropped(ctx: &egui::Context) -> Vec<Given> {
+    pub fn dropped(ctx: &egui::Context) -> Vec<OpenRequest> {
         let files = ctx.input(|input| input.raw.dropped_files.clone());
-        files.iter().map(|file| Given::at(file.path())).collect()
+        files
+            .iter()
+            .map(|file| OpenRequest::at(file.path()))
+            .collect()
     }
 }
 
@@ -117,7 +124,7 @@ pub use on_page::{dropped, read_together};
 
 #[cfg(target_family = "wasm")]
 mod on_page {
-    use super::Given;
+    use super::OpenRequest;
     use crate::platform::here::{GivenFile, host};
     use js_sys::Array;
     use std::collections::BTreeMap;
@@ -126,17 +133,17 @@ mod on_page {
     use wasm_bindgen::JsCast;
 
     /// Returns the files dropped onto the page, and the link in its address.
-    pub fn dropped(_: &egui::Context) -> Vec<Given> {
+    pub fn dropped(_: &egui::Context) -> Vec<OpenRequest> {
         let host = host();
         let files = host.take_dropped();
         let mut given = files.map_or(Vec::new(), |files| read_together(&files));
-        given.extend(host.take_link().map(Given::Link));
+        given.extend(host.take_link().map(OpenRequest::Link));
         given
     }
 
     /// Reads files that were dropped or chosen together. A level finds the files that it refers to among
     /// them. If there is a level, pictures and models are its parts and not opened themselves.
-    pub fn read_together(files: &Array) -> Vec<Given> {
+    pub fn read_together(files: &Array) -> Vec<OpenRequest> {
         let files = files.iter().map(JsCast::unchecked_into::<GivenFile>);
         let files = files.map(|file| (file.name(), (file.contents(), file.length())));
         let files: BTreeMap<String, _> = files.collect();
@@ -151,10 +158,10 @@ mod on_page {
             .iter()
             .filter(|(name, _)| !(has_levels && is_part(name)));
         own.map(|(name, (bytes, length))| match bytes {
-            Some(bytes) => Given::read(name, bytes, &fetch),
+            Some(bytes) => OpenRequest::read(name, bytes, &fetch),
             None => {
                 let reason = format!("cannot read the file, or it is too long ({length} bytes)");
-                Given::Level(Err(LevelError::Unreadable(name.to_string(), reason)))
+                OpenRequest::Level(Err(LevelError::Unreadable(name.to_string(), reason)))
             }
         })
         .collect()

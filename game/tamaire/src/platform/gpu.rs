@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Makes wgpu allocate memory in small blocks. By default it uses blocks of 64 MB and more, each of which
 /// stays allocated once used. On a GPU in software or with shared memory, the memory of a stand would vary by
 /// such steps all day.
-pub fn in_small_blocks(mut setup: WgpuSetup) -> WgpuSetup {
+pub fn with_small_memory_blocks(mut setup: WgpuSetup) -> WgpuSetup {
     if let WgpuSetup::CreateNew(new) = &mut setup {
         let described = new.device_descriptor.clone();
         new.device_descriptor = Arc::new(move |adapter| wgpu::DeviceDescriptor {
@@ -61,7 +61,7 @@ impl GpuWatch {
     }
 
     /// Whether the GPU is lost, tested by a write.
-    pub fn tried_is_lost(&self) -> bool {
+    pub fn probe_is_lost(&self) -> bool {
         let size = wgpu::BufferSize::new(wgpu::COPY_BUFFER_ALIGNMENT);
         let written = size.and_then(|size| self.queue.write_buffer_with(&self.probe, 0, size));
         written.is_none() || self.is_lost()
@@ -77,9 +77,9 @@ mod tests {
     fn loss_of_gpu_is_noticed() {
         let state = create_render_state(default_wgpu_setup(), Default::default());
         let watch = GpuWatch::of(&state);
-        assert!(!watch.is_lost() && !watch.tried_is_lost());
+        assert!(!watch.is_lost() && !watch.probe_is_lost());
         state.device.destroy();
         let _polled = state.device.poll(wgpu::PollType::Poll);
-        assert!(watch.is_lost() && watch.tried_is_lost());
+        assert!(watch.is_lost() && watch.probe_is_lost());
     }
 }

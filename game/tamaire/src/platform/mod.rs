@@ -41,24 +41,24 @@ use here::{breath, clipboard, date, dialog, screen, sound, writer};
 
 #[cfg(not(target_family = "wasm"))]
 pub use awake::keep_awake;
-pub use breath::Breath;
+pub use breath::Yielder;
 pub use clipboard::Clipboard;
 pub use clock::Clock;
 pub use date::local as local_date;
 pub use dialog::{Dialog, IS_THERE as HAS_DIALOG};
-pub use files::{Damage, Files, News};
+pub use files::{Damage, Files, StorageEvent};
 pub use forces::Forces;
-pub use given::{Given, Picked, dropped};
+pub use given::{DialogResult, OpenRequest, dropped};
 #[cfg(not(target_family = "wasm"))]
 pub use given::{level_at, replay_in};
-pub use gpu::{GpuWatch, in_small_blocks};
+pub use gpu::{GpuWatch, with_small_memory_blocks};
 #[cfg(target_family = "wasm")]
 pub use here::{Host, set_host};
 #[cfg(not(target_family = "wasm"))]
 pub use machine::{StandFolder, TextFile, memory};
 #[cfg(not(target_family = "wasm"))]
 pub use pictures::Pictures;
-pub use screen::{address_of_page, begin_anew, fill_screen, is_full_by_itself, speak};
+pub use screen::{address_of_page, fill_screen, full_screen_of_page, restart, set_language};
 pub use sound::Sound;
 pub use sticks::Pads;
-pub use storage::{Change, Entry, Kind, Nowhere, Storage};
+pub use storage::{Entry, Kind, Nowhere, Storage, UpdateEntry};

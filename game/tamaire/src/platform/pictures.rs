@@ -1,6 +1,6 @@
 //! Photos and clips of finished rounds.
 
-use super::breath::Breath;
+use super::breath::Yielder;
 use super::storage::Kind;
 use crate::film::{Film, Studio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -26,10 +26,10 @@ impl Pictures {
         };
         let why = |error: &dyn std::error::Error| error.to_string();
         let mut playback = Playback::new(replay).map_err(|error| why(&error))?;
-        let mut breath = Breath::default();
+        let mut breath = Yielder::default();
         while !playback.is_over() {
             playback.step().map_err(|error| why(&error))?;
-            breath.take().await;
+            breath.yield_now().await;
         }
         let share = |tick: usize, ticks: usize| told(tick as f32 / ticks.max(1) as f32);
         // Only one picture is made at a time, so the studio can be taken out.

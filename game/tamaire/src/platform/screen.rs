@@ -8,10 +8,10 @@ pub fn fill_screen(context: &egui::Context, wanted: bool) {
 }
 
 /// Does nothing: on a desktop the window closes when its GPU is lost, and the program restarts.
-pub fn begin_anew() {}
+pub fn restart() {}
 
 /// Returns `None`: on a desktop only the program changes the window's full-screen state.
-pub fn is_full_by_itself() -> Option<bool> {
+pub fn full_screen_of_page() -> Option<bool> {
     None
 }
 
@@ -21,4 +21,4 @@ pub fn address_of_page() -> String {
 }
 
 /// Does nothing: the desktop program contains the fonts of all languages.
-pub fn speak(_: &egui::Context, _: Language, _: bool) {}
+pub fn set_language(_: &egui::Context, _: Language, _: bool) {}

@@ -1,10 +1,10 @@
 //! Sound output.
 
-use tamaire_sound::{Cue, NoSound, Soundscape, Speaker, Volumes};
+use tamaire_sound::{Cue, SoundError, Soundscape, Speaker, Volumes};
 
 /// Sound output, or the reason for its absence. The game then runs silently.
 pub struct Sound {
-    speaker: Option<Result<Speaker, NoSound>>,
+    speaker: Option<Result<Speaker, SoundError>>,
 }
 
 impl Sound {

@@ -2,14 +2,14 @@
 
 use force_feedback::{Nothing, Recording, Sink};
 use std::collections::BTreeMap;
-use sticks::{DeviceId, NoSticks, Snapshot, Sticks};
+use sticks::{DeviceId, Error, Snapshot, Sticks};
 
 /// Source of stick and pad input.
 pub struct Pads(Source);
 
 enum Source {
     Sticks(Sticks),
-    Nothing(NoSticks),
+    Nothing(Error),
     Told(Snapshot, BTreeMap<DeviceId, Recording>),
 }
 
@@ -64,7 +64,7 @@ impl Pads {
     }
 
     /// Returns the reason why no devices can be read, if any.
-    pub fn complaint(&self) -> Option<String> {
+    pub fn open_error(&self) -> Option<String> {
         match &self.0 {
             Source::Nothing(none) => Some(none.to_string()),
             _ => None,

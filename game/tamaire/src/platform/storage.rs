@@ -43,7 +43,7 @@ pub struct Entry {
 }
 
 /// Computes the new bytes of an entry from the stored ones. `None` leaves the entry unchanged.
-pub type Change<'a> = dyn FnMut(Option<&[u8]>) -> Option<Vec<u8>> + 'a;
+pub type UpdateEntry<'a> = dyn FnMut(Option<&[u8]>) -> Option<Vec<u8>> + 'a;
 
 /// Storage of bytes by kind and name. Also used from the writer's thread.
 pub trait Storage: Send + Sync {
@@ -63,7 +63,7 @@ pub trait Storage: Send + Sync {
     ///
     /// # Errors
     /// The error of the system. The entry is then unchanged.
-    fn change(&self, kind: Kind, name: &str, change: &mut Change) -> io::Result<()>;
+    fn change(&self, kind: Kind, name: &str, change: &mut UpdateEntry) -> io::Result<()>;
 
     /// Deletes an entry.
     ///
@@ -75,7 +75,7 @@ pub trait Storage: Send + Sync {
     fn location(&self, kind: Kind, name: &str) -> String;
 
     /// Whether entries can be given to the player as files. False if they are files already.
-    fn hands_out(&self) -> bool {
+    fn can_export(&self) -> bool {
         false
     }
 
@@ -83,7 +83,7 @@ pub trait Storage: Send + Sync {
     ///
     /// # Errors
     /// As [`Storage::read`].
-    fn hand_out(&self, _: Kind, _: &str) -> io::Result<()> {
+    fn export(&self, _: Kind, _: &str) -> io::Result<()> {
         Err(io::ErrorKind::Unsupported.into())
     }
 
@@ -117,7 +117,7 @@ impl Storage for Nowhere {
         self.answer(None)
     }
 
-    fn change(&self, _: Kind, _: &str, change: &mut Change) -> io::Result<()> {
+    fn change(&self, _: Kind, _: &str, change: &mut UpdateEntry) -> io::Result<()> {
         change(None);
         self.answer(())
     }

@@ -34,7 +34,7 @@ const PULSE: Duration = Duration::from_millis(500);
 const STILL: Duration = Duration::from_millis(3500);
 const START: Duration = Duration::from_secs(60);
 /// Number of crashes within `WHILE` after which restarting is given up.
-pub const MOST: usize = 10;
+pub const MAX_CRASHES: usize = 10;
 const WHILE: Duration = Duration::from_secs(600);
 /// Interval between checks of the game.
 const LOOK: Duration = Duration::from_millis(50);
@@ -44,11 +44,11 @@ const LAST_WORDS: Duration = Duration::from_millis(300);
 const LINES: usize = 60;
 
 /// Sender of heartbeats to the supervisor, used on the drawing thread.
-pub struct Pulse {
+pub struct Heartbeat {
     told: Option<Instant>,
 }
 
-impl Pulse {
+impl Heartbeat {
     /// Creates a sender; the first heartbeat is due at once.
     pub fn begin() -> Self {
         Self { told: None }
@@ -85,7 +85,7 @@ fn say(text: &str) {
 }
 
 /// Parameters of the supervisor.
-pub struct Plan {
+pub struct SupervisorConfig {
     /// Path of the program.
     pub program: PathBuf,
     /// Arguments that start the game.
@@ -96,7 +96,7 @@ pub struct Plan {
     pub folder: StandFolder,
     /// Name of the stand.
     pub stand: String,
-    /// Number of crashes within ten minutes after which restarting is given up. Usually [`MOST`].
+    /// Number of crashes within ten minutes after which restarting is given up. Usually [`MAX_CRASHES`].
     pub most: usize,
     /// Longest delay of a restart. Usually [`PAUSE`].
     pub pause: Duration,
@@ -114,7 +114,7 @@ enum End {
 /// # Errors
 /// If the game cannot be started or crashes repeatedly. In that case the calm picture was shown before the
 /// return.
-pub fn supervise(plan: &Plan) -> Result<(), String> {
+pub fn supervise(plan: &SupervisorConfig) -> Result<(), String> {
     let mut failures: VecDeque<Instant> = VecDeque::new();
     let mut pause = SHORT_PAUSE;
     let mut notes = Vec::new();
@@ -155,7 +155,7 @@ fn join(notes: Vec<JoinHandle<()>>) {
 }
 
 /// Shows the calm picture for as long as possible. Returns the reason for giving up.
-fn give_up(plan: &Plan) -> String {
+fn give_up(plan: &SupervisorConfig) -> String {
     let reason = format!(
         "the game failed {} times within {} minutes; see {}",
         plan.most,
@@ -164,7 +164,7 @@ fn give_up(plan: &Plan) -> String {
     );
     say(&format!("tamaire: {reason}"));
     join(vec![note(plan, Kind::GaveUp, reason.clone())]);
-    for _ in 0..MOST {
+    for _ in 0..MAX_CRASHES {
         // The calm picture needs almost no drawing. If it fails, too, no picture is shown.
         if run(plan, &plan.calm).0 == End::Meant {
             break;
@@ -175,7 +175,7 @@ fn give_up(plan: &Plan) -> String {
 }
 
 /// Runs the program once. Returns how it ended, and its record.
-fn run(plan: &Plan, words: &[OsString]) -> (End, String) {
+fn run(plan: &SupervisorConfig, words: &[OsString]) -> (End, String) {
     let mut command = Command::new(&plan.program);
     command.args(words).stdin(Stdio::null());
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -291,7 +291,7 @@ fn read(child: &mut Child, lines: Arc<Mutex<VecDeque<String>>>) -> Option<JoinHa
 }
 
 /// Writes a crash record to a file and to the logbook, while the game restarts.
-fn note(plan: &Plan, kind: Kind, record: String) -> JoinHandle<()> {
+fn note(plan: &SupervisorConfig, kind: Kind, record: String) -> JoinHandle<()> {
     let (folder, stand, at) = (plan.folder.clone(), plan.stand.clone(), Moment::now());
     thread::spawn(move || {
         if let Err(error) = keep_record(&folder.0.join("crashes"), at, &kind, &record) {
@@ -338,15 +338,15 @@ fn keep_record(folder: &Path, at: Moment, kind: &Kind, record: &str) -> io::Resu
 mod tests {
     use super::*;
 
-    fn plan(folder: &Path, script: &str) -> Plan {
+    fn plan(folder: &Path, script: &str) -> SupervisorConfig {
         let words = |script: &str| ["-c", script].map(OsString::from).to_vec();
-        Plan {
+        SupervisorConfig {
             program: "sh".into(),
             game: words(script),
             calm: words("echo calm > calm"),
             folder: StandFolder(folder.into()),
             stand: "test".into(),
-            most: MOST,
+            most: MAX_CRASHES,
             pause: Duration::ZERO,
         }
     }
@@ -411,8 +411,8 @@ mod tests {
         assert!(reason.contains("10 times"), "{reason}");
         assert!(path.join("calm").exists());
         let events = events(path);
-        assert_eq!(events.len(), MOST + 1);
-        assert_eq!(events[MOST].0, Kind::GaveUp);
+        assert_eq!(events.len(), MAX_CRASHES + 1);
+        assert_eq!(events[MAX_CRASHES].0, Kind::GaveUp);
     }
 
     #[test]
@@ -423,7 +423,7 @@ mod tests {
             "cd '{}'; if [ -e enough ]; then exit 0; fi; printf .; echo $$ > draft; mv draft pid; exec sleep 600",
             path.display()
         );
-        let plan = Plan {
+        let plan = SupervisorConfig {
             most: 100,
             ..plan(&path, &script)
         };

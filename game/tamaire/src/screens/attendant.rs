@@ -5,7 +5,7 @@ use crate::look::Stage;
 use egui::{Context, Ui};
 
 /// Controls the game at a public stand, where visitors have no menus.
-pub trait Attendant {
+pub trait StandController {
     /// Called in every pass of the event loop, even if nothing is drawn, to show that the program is alive.
     fn live(&mut self, _: &Context) {}
 

@@ -4,7 +4,7 @@
 use super::icons;
 use super::widgets::note_hovered;
 use crate::game::{Game, ScreenButton};
-use crate::input::{Action, Means};
+use crate::input::{Action, InputMethod};
 use crate::look::Theme;
 use egui::{Color32, Painter, Pos2, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use tamaire_play::AnyRound;
@@ -29,7 +29,7 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
     }
     row.push((Action::Retry, said.again, icons::again));
     let mut thumb: Vec<(Action, &str, Icon)> = Vec::new();
-    if game.controls.means == Means::Fingers && game.bout.session.is_played() {
+    if game.controls.means == InputMethod::Fingers && game.bout.session.is_played() {
         let name = |action| (said.action)(action);
         row.push((Action::Elements, name(Action::Elements), icons::elements));
         if game.public.is_none() {

@@ -6,14 +6,14 @@ use egui::{Id, Ui};
 const PATIENCE: f64 = 6.0;
 
 /// Whether a press on `what` within the time window would confirm.
-pub(super) fn is_doomed(ui: &Ui, what: &str) -> bool {
+pub(super) fn is_pending(ui: &Ui, what: &str) -> bool {
     let now = ui.input(|input| input.time);
     let asked: Option<(String, f64)> = ui.data(|data| data.get_temp(id()));
     asked.is_some_and(|(asked, when)| asked == what && now - when < PATIENCE)
 }
 
 /// Starts the time window for `what`; `None` cancels a pending one.
-pub(super) fn doom(ui: &Ui, what: Option<&str>) {
+pub(super) fn set_pending(ui: &Ui, what: Option<&str>) {
     let now = ui.input(|input| input.time);
     ui.data_mut(|data| match what {
         Some(what) => {

@@ -1,6 +1,8 @@
 //! Screen for sticks and pads: their abilities, live input, and current force output.
 
-use super::widgets::{Weight, button, card, fitted, header, page, place_of_page, slider, veil};
+use super::widgets::{
+    ButtonStyle, button, card, dim_background, fitted, header, page, page_rect, slider,
+};
 use crate::game::Game;
 use crate::game::trial::Trial;
 use crate::look::Theme;
@@ -20,12 +22,12 @@ const LIGHT: f32 = 6.0;
 const LIGHTS: f32 = 17.0;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
-    veil(ui, 255);
+    dim_background(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let before = game.settings.clone();
     let mut chosen = before.clone();
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
-    let area = place_of_page(ui);
+    let area = page_rect(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         let response = header(ui, &theme, said.back, said.forces);
         super::play::focus_first(ui, &response);
@@ -38,7 +40,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 if game.forces.is_cut() {
                     let width = ui.available_width();
                     let text = said.restore;
-                    if button(ui, &theme, text, vec2(width, 48.0), Weight::Main).clicked() {
+                    if button(ui, &theme, text, vec2(width, 48.0), ButtonStyle::Main).clicked() {
                         game.restore_forces();
                     }
                 } else {
@@ -254,8 +256,8 @@ fn show_acts(ui: &mut Ui, theme: &Theme, game: &mut Game, device: &Device, repor
     let trial = game.trial.filter(|trial| trial.device == device.id);
     let progress = trial.and_then(|trial| trial.progress());
     let (text, weight) = match (trial, progress) {
-        (None, _) => (said.try_it, Weight::Other),
-        (Some(_), _) => (said.enough, Weight::Main),
+        (None, _) => (said.try_it, ButtonStyle::Other),
+        (Some(_), _) => (said.enough, ButtonStyle::Main),
     };
     if button(ui, theme, text, size, weight).clicked() {
         game.trial = trial.is_none().then(|| Trial::spring(device.id));
@@ -267,17 +269,17 @@ fn show_acts(ui: &mut Ui, theme: &Theme, game: &mut Game, device: &Device, repor
         None => "",
     };
     if trial.is_none() && ability == Ability::Force {
-        if button(ui, theme, said.measure, size, Weight::Other).clicked() {
+        if button(ui, theme, said.measure, size, ButtonStyle::Other).clicked() {
             game.trial = Some(Trial::measure(device.id));
         }
         let known = game.settings.calibrations.get(&device.about.guid);
         let known = known.copied().unwrap_or_default();
         let usual = Calibration {
             gain: known.gain,
-            ..Calibration::USUAL
+            ..Calibration::IDENTITY
         };
         let text = (said.built)(&known);
-        if known != usual && button(ui, theme, said.as_usual, size, Weight::Other).clicked() {
+        if known != usual && button(ui, theme, said.as_usual, size, ButtonStyle::Other).clicked() {
             let model = device.about.guid.clone();
             game.settings.calibrations.insert(model, usual);
             game.keep_settings();

@@ -36,7 +36,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
         draw_jar(ui, middle, scale, game);
         right = middle.x - radius;
     }
-    let mut row = Row {
+    let mut row = ChipRow {
         painter: ui.painter(),
         fill: pale(&theme),
         scale,
@@ -61,7 +61,7 @@ pub(super) fn scale(game: &Game, ui: &Ui) -> f32 {
 }
 
 /// Flow layout of a row that wraps at the right edge.
-struct Row<'a> {
+struct ChipRow<'a> {
     painter: &'a Painter,
     fill: Color32,
     scale: f32,
@@ -70,7 +70,7 @@ struct Row<'a> {
     right: f32,
 }
 
-impl Row<'_> {
+impl ChipRow<'_> {
     /// Reserves a rectangle of unscaled width `width` and draws its background.
     fn take(&mut self, width: f32) -> Rect {
         let size = self.scale * vec2(width, HIGH);
@@ -85,7 +85,7 @@ impl Row<'_> {
 }
 
 /// Draws the elapsed time.
-fn draw_clock(row: &mut Row, theme: &Theme, game: &Game) {
+fn draw_clock(row: &mut ChipRow, theme: &Theme, game: &Game) {
     let round = game.bout.round();
     let seconds = match round.progress().outcome {
         Some(outcome) => outcome.seconds(),
@@ -100,7 +100,7 @@ fn draw_clock(row: &mut Row, theme: &Theme, game: &Game) {
 }
 
 /// Draws a chip for each unusual mode.
-fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
+fn draw_chips(row: &mut ChipRow, theme: &Theme, game: &Game) {
     let said = game.words();
     let mut chip = |sign: &str, text: &str| {
         let font = FontId::proportional(19.0 * row.scale);
@@ -169,7 +169,7 @@ fn draw_lesson(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
 }
 
 /// Draws the legend of element colours: small to large, or relaxed to strained.
-fn draw_legend(row: &mut Row, theme: &Theme, colour: ElementColour) {
+fn draw_legend(row: &mut ChipRow, theme: &Theme, colour: ElementColour) {
     let (rect, scale, painter) = (row.take(176.0), row.scale, row.painter);
     let middle = rect.center().y;
     let line = Stroke::new(1.0, theme.ink);

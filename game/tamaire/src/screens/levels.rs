@@ -1,10 +1,10 @@
 //! Screen for choosing a level.
 
-use super::doomed::{doom, is_doomed};
+use super::doomed::{is_pending, set_pending};
 use super::icons;
 use super::widgets::{
-    Weight, fitted, focus_ring, header_to_open, is_on, liveliness, page, place_of_page,
-    plain_button, veil, words,
+    ButtonStyle, dim_background, fitted, focus_ring, header_to_open, highlight, is_on, page,
+    page_rect, plain_button, words,
 };
 use crate::game::Game;
 use crate::look::{Maps, Stage};
@@ -24,17 +24,17 @@ const WIDE: f32 = 236.0;
 const SLIM: f32 = 36.0;
 
 /// Action on a level.
-enum Wish {
+enum LevelAction {
     Play(usize),
     TakeOut(usize),
 }
 
 pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
-    veil(ui, 255);
+    dim_background(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let maps = stage.maps(&game.pictured(), &theme);
     let mut wanted = None;
-    let area = place_of_page(ui);
+    let area = page_rect(ui);
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         let response = header_to_open(ui, game, said.levels);
@@ -55,10 +55,10 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                                 super::play::focus_first(ui, &response);
                             }
                             if response.clicked() {
-                                wanted = Some(Wish::Play(index));
+                                wanted = Some(LevelAction::Play(index));
                             }
                             if game.is_own(index) && way_out(ui, game, index, wide).clicked() {
-                                wanted = Some(Wish::TakeOut(index));
+                                wanted = Some(LevelAction::TakeOut(index));
                             }
                         });
                     }
@@ -70,30 +70,38 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     if back {
         game.blip(Menu::Back);
         game.go_back();
-        doom(ui, None);
+        set_pending(ui, None);
     }
     let Some(wish) = wanted.filter(|_| !back) else {
         return;
     };
     game.blip(Menu::Confirm);
     match wish {
-        Wish::Play(index) => {
-            doom(ui, None);
+        LevelAction::Play(index) => {
+            set_pending(ui, None);
             game.start(index);
         }
-        Wish::TakeOut(index) if is_doomed(ui, &game.levels[index].id) => game.take_out(index),
-        Wish::TakeOut(index) => doom(ui, Some(&game.levels[index].id)),
+        LevelAction::TakeOut(index) if is_pending(ui, &game.levels[index].id) => {
+            game.take_out(index)
+        }
+        LevelAction::TakeOut(index) => set_pending(ui, Some(&game.levels[index].id)),
     }
 }
 
 /// Shows the button that removes a level from the list; a second press confirms.
 fn way_out(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Response {
     let (level, said) = (&game.levels[index], game.words());
-    let text = match is_doomed(ui, &level.id) {
-        true => said.surely,
-        false => said.take_out,
+    let text = match is_pending(ui, &level.id) {
+        true => said.confirm,
+        false => said.remove_level,
     };
-    let response = plain_button(ui, &game.theme(), text, vec2(wide, SLIM), Weight::Other);
+    let response = plain_button(
+        ui,
+        &game.theme(),
+        text,
+        vec2(wide, SLIM),
+        ButtonStyle::Other,
+    );
     let name = game.settings.language.of(&level.game().name);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("{text}: {name}")));
     response
@@ -106,7 +114,7 @@ pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Ve
     let name = game.settings.language.of(&level.game().name);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
-    let lively = liveliness(ui, &response);
+    let lively = highlight(ui, &response);
     let rect = rect.translate(vec2(0.0, -4.0 * lively));
     let painter = ui.painter();
     let shadow = Color32::from_black_alpha(30);

@@ -1,6 +1,6 @@
 //! Screen with the licences of the included software.
 
-use super::widgets::{Weight, button, card, header, page, place_of_page, veil};
+use super::widgets::{ButtonStyle, button, card, dim_background, header, page, page_rect};
 use crate::game::Game;
 use crate::licences::lines;
 use egui::{
@@ -16,10 +16,10 @@ const LETTERS: f32 = 15.0;
 const LINES: usize = 16;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
-    veil(ui, 255);
+    dim_background(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
-    let area = place_of_page(ui);
+    let area = page_rect(ui);
     ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {
         let response = header(ui, &theme, said.back, said.licences);
         super::play::focus_first(ui, &response);
@@ -28,7 +28,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             if cfg!(target_family = "wasm") {
                 // The page comes with a file that has all licence texts.
                 let all = vec2(240.0, 48.0);
-                if button(ui, &theme, "licences.txt", all, Weight::Other).clicked() {
+                if button(ui, &theme, "licences.txt", all, ButtonStyle::Other).clicked() {
                     ui.ctx().open_url(OpenUrl::new_tab("licences.txt"));
                 }
                 ui.add_space(12.0);

@@ -21,10 +21,10 @@ mod stand;
 mod title;
 mod widgets;
 
-pub use attendant::Attendant;
+pub use attendant::StandController;
 #[cfg(not(target_family = "wasm"))]
-pub use stand::Calm;
-pub use widgets::{Weight, button, card, choice, fitted, note_use_of_keys, take_hovered};
+pub use stand::CrashScreen;
+pub use widgets::{ButtonStyle, button, card, choice, fitted, note_use_of_keys, take_hovered};
 
 use crate::game::{Game, Screen};
 use crate::look::Stage;

@@ -41,7 +41,7 @@ pub(super) fn show(game: &Game, ui: &Ui) {
         painter.galley(rect.min + scale * vec2(18.0, 9.0), galley, ink);
         y += size.y + 8.0;
     }
-    if let Some(share) = game.files.developed() {
+    if let Some(share) = game.files.picture_progress() {
         let rect = Rect::from_min_size(
             pos2(screen.center().x - 0.5 * BAR.x, y),
             scale * vec2(BAR.x, BAR.y),

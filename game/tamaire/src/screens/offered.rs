@@ -1,7 +1,7 @@
 //! Screen for a round that was opened from a link, to watch it or to race it.
 
 use super::icons;
-use super::widgets::{Act, Weight, button, card, column, fitted, veil};
+use super::widgets::{Act, ButtonStyle, button, card, column, dim_background, fitted};
 use crate::game::Game;
 use crate::look::Stage;
 use egui::{Rect, Sense, Stroke, StrokeKind, Ui, vec2};
@@ -14,7 +14,7 @@ const PICTURE: egui::Vec2 = vec2(300.0, 200.0);
 const BUTTON: egui::Vec2 = vec2(300.0, 54.0);
 
 pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
-    veil(ui, 130);
+    dim_background(ui, 130);
     let (theme, said) = (game.theme(), game.words());
     let Some((replay, level)) = game.offered.clone() else {
         return game.go_back();
@@ -55,8 +55,8 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             ];
             for (index, (text, act)) in options.into_iter().enumerate() {
                 let weight = match index {
-                    0 => Weight::Main,
-                    _ => Weight::Other,
+                    0 => ButtonStyle::Main,
+                    _ => ButtonStyle::Other,
                 };
                 let response = button(ui, &theme, text, BUTTON, weight);
                 if index == 0 {

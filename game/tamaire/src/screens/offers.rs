@@ -2,7 +2,7 @@
 
 use super::{hud, icons};
 use crate::game::Game;
-use crate::input::{Manner, Offer};
+use crate::input::{InputMapping, ScanAction};
 use crate::look::Theme;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Ui, Vec2};
 
@@ -25,16 +25,16 @@ pub(super) fn show(game: &Game, ui: &Ui) {
     }
     let (theme, scale) = (game.theme(), hud::scale(game, ui));
     let (here, turn) = (round.hands()[0].position(), game.bout.turn());
-    let middle = view.on_screen(here);
+    let middle = view.to_screen(here);
     let is_taken = game.controls.devices.taken.is_some();
     let painter = ui.painter();
     let pale = Color32::from_white_alpha(150);
     painter.circle_stroke(middle, scale * RING, Stroke::new(scale * 2.5, pale));
     let above = middle - Vec2::new(0.0, scale * RING);
     match game.controls.scan.offer(turn.is_some()) {
-        Offer::Way(way) => {
-            let ahead = Manner::along(turn, AHEAD * way);
-            let there = view.on_screen([0, 1, 2].map(|axis| here[axis] + ahead[axis]));
+        ScanAction::Move(way) => {
+            let ahead = InputMapping::to_world_direction(turn, AHEAD * way);
+            let there = view.to_screen([0, 1, 2].map(|axis| here[axis] + ahead[axis]));
             arrow(
                 painter,
                 middle,
@@ -43,9 +43,9 @@ pub(super) fn show(game: &Game, ui: &Ui) {
                 tone(&theme, is_taken),
             );
         }
-        Offer::Raise => sign(painter, &theme, above, scale, is_taken, icons::up),
-        Offer::Lower => sign(painter, &theme, above, scale, is_taken, icons::down),
-        Offer::Pause => sign(painter, &theme, above, scale, is_taken, icons::pause),
+        ScanAction::Raise => sign(painter, &theme, above, scale, is_taken, icons::up),
+        ScanAction::Lower => sign(painter, &theme, above, scale, is_taken, icons::down),
+        ScanAction::Pause => sign(painter, &theme, above, scale, is_taken, icons::pause),
     }
 }
 

@@ -1,12 +1,12 @@
 //! Pause menu.
 
-use super::widgets::{Act, Weight, button, card, column, title, veil};
+use super::widgets::{Act, ButtonStyle, button, card, column, dim_background, title};
 use crate::game::{Game, Screen};
 use egui::{Ui, vec2};
 use tamaire_sound::Menu;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
-    veil(ui, 130);
+    dim_background(ui, 130);
     let (theme, said) = (game.theme(), game.words());
     let mut wanted: Option<Act> = None;
     column(ui, 380.0, 0.5, |ui| {
@@ -23,9 +23,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             ];
             for (index, (text, act)) in options.into_iter().enumerate() {
                 let weight = if index == 0 {
-                    Weight::Main
+                    ButtonStyle::Main
                 } else {
-                    Weight::Other
+                    ButtonStyle::Other
                 };
                 let response = button(ui, &theme, text, vec2(300.0, 50.0), weight);
                 if index == 0 {

@@ -2,7 +2,7 @@
 
 use super::{hud, offers};
 use crate::game::{Game, Screen};
-use crate::look::{Hint, Look, Stage};
+use crate::look::{DrawOptions, Hint, Stage};
 use egui::{Response, Ui};
 
 /// Draws the world behind the current screen.
@@ -37,11 +37,11 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         }
         _ => Hint::None,
     };
-    let look = Look {
+    let look = DrawOptions {
         view,
         theme: &theme,
         elements: game.bout.elements,
-        left: game
+        cut_share: game
             .bout
             .opening
             .share(game.time, game.settings.reduced_motion),
@@ -49,7 +49,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         time: game.time,
         ghost: game.bout.session.ghost(),
         hint,
-        still: game.settings.reduced_motion,
+        reduced_motion: game.settings.reduced_motion,
     };
     stage.draw(ui, game.bout.round(), &look);
 }

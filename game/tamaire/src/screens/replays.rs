@@ -1,9 +1,11 @@
 //! List of saved rounds.
 
-use super::doomed::{doom, is_doomed};
+use super::doomed::{is_pending, set_pending};
 use super::icons;
-use super::widgets::{Weight, button, card, fitted, header_to_open, page, place_of_page, veil};
-use crate::game::{Found, Game, Kept};
+use super::widgets::{
+    ButtonStyle, button, card, dim_background, fitted, header_to_open, page, page_rect,
+};
+use crate::game::{Game, RoundDetails, SavedRound};
 use crate::look::{Maps, Stage};
 use crate::platform::{Entry, local_date};
 use egui::{Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
@@ -21,7 +23,7 @@ const GAP: f32 = 10.0;
 
 /// Action on a replay.
 #[derive(Copy, Clone)]
-enum Wish {
+enum ReplayAction {
     Watch,
     Race,
     Clip,
@@ -31,12 +33,12 @@ enum Wish {
 }
 
 pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
-    veil(ui, 255);
+    dim_background(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let maps = stage.maps(&game.pictured(), &theme);
-    let mut wanted: Option<(Entry, Wish)> = None;
+    let mut wanted: Option<(Entry, ReplayAction)> = None;
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
-    let area = place_of_page(ui);
+    let area = page_rect(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         let response = header_to_open(ui, game, said.replays);
         super::play::focus_first(ui, &response);
@@ -66,20 +68,20 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         game.blip(Menu::Confirm);
         let name = &entry.name;
         match wish {
-            Wish::Watch => game.open_kept(name, Game::watch),
-            Wish::Race => game.open_kept(name, Game::race),
-            Wish::Clip => game.open_kept(name, Game::keep_clip_of),
-            Wish::Link => game.open_kept(name, Game::copy_link_of),
-            Wish::Download => game.hand_out(&entry),
-            Wish::Delete if is_doomed(ui, name) => game.delete(&entry),
-            Wish::Delete => {}
+            ReplayAction::Watch => game.open_kept(name, Game::watch),
+            ReplayAction::Race => game.open_kept(name, Game::race),
+            ReplayAction::Clip => game.open_kept(name, Game::keep_clip_of),
+            ReplayAction::Link => game.open_kept(name, Game::copy_link_of),
+            ReplayAction::Download => game.hand_out(&entry),
+            ReplayAction::Delete if is_pending(ui, name) => game.delete(&entry),
+            ReplayAction::Delete => {}
         }
-        doom(ui, matches!(wish, Wish::Delete).then_some(name));
+        set_pending(ui, matches!(wish, ReplayAction::Delete).then_some(name));
     }
 }
 
 /// Shows a replay with its buttons, which go below the text in a narrow window.
-fn show_one(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept) -> Option<Wish> {
+fn show_one(ui: &mut Ui, game: &Game, maps: &Maps, kept: &SavedRound) -> Option<ReplayAction> {
     let all = ui.available_width();
     let beside = COLUMNS as f32 * (BUTTON.x + GAP);
     let is_wide = all >= PICTURE.x + 2.0 * GAP + LEAST_TEXT + beside;
@@ -98,7 +100,7 @@ fn show_one(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept) -> Option<Wish> 
 }
 
 /// Shows the thumbnail of the level, and beside it a text of width `text`.
-fn picture(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept, text: f32) {
+fn picture(ui: &mut Ui, game: &Game, maps: &Maps, kept: &SavedRound, text: f32) {
     let theme = game.theme();
     let found = kept.found.as_ref().and_then(Option::as_ref);
     let (rect, _) = ui.allocate_exact_size(PICTURE, Sense::hover());
@@ -114,27 +116,28 @@ fn picture(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept, text: f32) {
 }
 
 /// Shows the buttons of a replay in rows.
-fn buttons(ui: &mut Ui, game: &Game, kept: &Kept) -> Option<Wish> {
+fn buttons(ui: &mut Ui, game: &Game, kept: &SavedRound) -> Option<ReplayAction> {
     let (theme, said) = (game.theme(), game.words());
-    let delete = match is_doomed(ui, &kept.entry.name) {
-        true => said.surely,
+    let delete = match is_pending(ui, &kept.entry.name) {
+        true => said.confirm,
         false => said.delete,
     };
     let all = [
-        (said.watch, Wish::Watch),
-        (said.race, Wish::Race),
-        (delete, Wish::Delete),
-        (said.link, Wish::Link),
-        (said.clip, Wish::Clip),
-        (said.download, Wish::Download),
+        (said.watch, ReplayAction::Watch),
+        (said.race, ReplayAction::Race),
+        (delete, ReplayAction::Delete),
+        (said.link, ReplayAction::Link),
+        (said.clip, ReplayAction::Clip),
+        (said.download, ReplayAction::Download),
     ];
-    let is_here = |wish: &Wish| !matches!(wish, Wish::Download) || game.files.hands_out();
+    let is_here =
+        |wish: &ReplayAction| !matches!(wish, ReplayAction::Download) || game.files.hands_out();
     let here: Vec<_> = all.into_iter().filter(|(_, wish)| is_here(wish)).collect();
     let mut wanted = None;
     for row in here.chunks(COLUMNS) {
         ui.horizontal(|ui| {
             for &(text, wish) in row {
-                if button(ui, &theme, text, BUTTON, Weight::Other).clicked() {
+                if button(ui, &theme, text, BUTTON, ButtonStyle::Other).clicked() {
                     wanted = Some(wish);
                 }
             }
@@ -144,7 +147,14 @@ fn buttons(ui: &mut Ui, game: &Game, kept: &Kept) -> Option<Wish> {
 }
 
 /// Draws level, date, and result of a round.
-fn tell(ui: &Ui, game: &Game, kept: &Kept, found: Option<&Found>, rect: Rect, response: &Response) {
+fn tell(
+    ui: &Ui,
+    game: &Game,
+    kept: &SavedRound,
+    found: Option<&RoundDetails>,
+    rect: Rect,
+    response: &Response,
+) {
     let (theme, said, painter) = (game.theme(), game.words(), ui.painter());
     let name = name_of(game, kept, found);
     let date = local_date(kept.entry.written);
@@ -184,7 +194,7 @@ fn tell(ui: &Ui, game: &Game, kept: &Kept, found: Option<&Found>, rect: Rect, re
 }
 
 /// Returns the level's name with the number of the replay, or the file name if the level is unknown.
-fn name_of(game: &Game, kept: &Kept, found: Option<&Found>) -> String {
+fn name_of(game: &Game, kept: &SavedRound, found: Option<&RoundDetails>) -> String {
     let name = &kept.entry.name;
     let Some((id, number)) = name.rsplit_once('-') else {
         return name.clone();

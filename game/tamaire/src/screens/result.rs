@@ -1,7 +1,7 @@
 //! Result of a round, with a challenge to try the other route.
 
 use super::icons;
-use super::widgets::{Act, Weight, button, card, column_beside, fitted, veil};
+use super::widgets::{Act, ButtonStyle, button, card, column_beside, dim_background, fitted};
 use crate::game::{Game, Screen};
 use crate::look::Theme;
 use crate::words::Words;
@@ -17,7 +17,7 @@ const SMALL: f32 = 46.0;
 const GAP: f32 = 10.0;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
-    veil(ui, 40);
+    dim_background(ui, 40);
     let Some((outcome, is_best)) = game.bout.won else {
         game.go(Screen::Play);
         return;
@@ -140,7 +140,7 @@ fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &
 fn buttons(ui: &mut Ui, theme: &Theme, said: &Words) -> Option<Act> {
     let mut wanted: Option<Act> = None;
     let width = 2.0 * 200.0 + GAP;
-    let again = button(ui, theme, said.again, vec2(width, 60.0), Weight::Main);
+    let again = button(ui, theme, said.again, vec2(width, 60.0), ButtonStyle::Main);
     super::play::focus_first(ui, &again);
     if again.clicked() {
         wanted = Some(Game::retry);
@@ -162,7 +162,7 @@ fn buttons(ui: &mut Ui, theme: &Theme, said: &Words) -> Option<Act> {
             let count = row.len() as f32;
             let size = vec2((width - (count - 1.0) * GAP) / count, SMALL);
             for &(text, act) in row {
-                if button(ui, theme, text, size, Weight::Other).clicked() {
+                if button(ui, theme, text, size, ButtonStyle::Other).clicked() {
                     wanted = Some(act);
                 }
             }

@@ -1,7 +1,9 @@
 //! Settings of the player.
 
-use super::doomed::{doom, is_doomed};
-use super::widgets::{Weight, button, card, choice, header, page, place_of_page, slider, veil};
+use super::doomed::{is_pending, set_pending};
+use super::widgets::{
+    ButtonStyle, button, card, choice, dim_background, header, page, page_rect, slider,
+};
 use crate::game::{Game, Screen};
 use crate::input::{Action, Scanning};
 use crate::look::Theme;
@@ -12,14 +14,14 @@ use tamaire_play::Assist;
 use tamaire_sound::Menu;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
-    veil(ui, 255);
+    dim_background(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let before = game.settings.clone();
     let mut chosen = before.clone();
     let listens = game.controls.rebinding.is_some();
     let mut back = !listens && ui.input(|input| input.key_pressed(egui::Key::Escape));
     let (mut to_forces, mut to_licences) = (false, false);
-    let area = place_of_page(ui);
+    let area = page_rect(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         let response = header(ui, &theme, said.back, said.settings);
         super::play::focus_first(ui, &response);
@@ -80,7 +82,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 let strength = &mut chosen.haptics;
                 slider(ui, &theme, said.haptics, strength, 0.0, 1.0, 0.05);
                 let size = vec2(ui.available_width(), 44.0);
-                to_forces = button(ui, &theme, said.try_forces, size, Weight::Other).clicked();
+                to_forces = button(ui, &theme, said.try_forces, size, ButtonStyle::Other).clicked();
             });
             section(ui, &theme, said.hands_section, |ui| {
                 let toggles = &mut chosen.toggle_keys;
@@ -131,7 +133,15 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 );
             });
             controls(ui, game, &mut chosen);
-            if button(ui, &theme, said.reset, vec2(240.0, 48.0), Weight::Other).clicked() {
+            if button(
+                ui,
+                &theme,
+                said.reset,
+                vec2(240.0, 48.0),
+                ButtonStyle::Other,
+            )
+            .clicked()
+            {
                 let usual = Settings::default();
                 chosen = Settings {
                     language: chosen.language,
@@ -146,8 +156,14 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 };
             }
             ui.add_space(8.0);
-            to_licences =
-                button(ui, &theme, said.licences, vec2(240.0, 48.0), Weight::Other).clicked();
+            to_licences = button(
+                ui,
+                &theme,
+                said.licences,
+                vec2(240.0, 48.0),
+                ButtonStyle::Other,
+            )
+            .clicked();
         });
     });
     if chosen != before {
@@ -171,8 +187,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
 fn scanning(ui: &mut Ui, theme: &Theme, said: &Words, chosen: &mut Scanning) {
     const OFF: &str = "scanning";
     let before = *chosen;
-    let off = match is_doomed(ui, OFF) {
-        true => said.surely,
+    let off = match is_pending(ui, OFF) {
+        true => said.confirm,
         false => said.off,
     };
     let speeds = [
@@ -182,11 +198,11 @@ fn scanning(ui: &mut Ui, theme: &Theme, said: &Words, chosen: &mut Scanning) {
         (Scanning::Quick, "0.7 s"),
     ];
     if choice(ui, theme, said.scanning, chosen, &speeds) && !chosen.is_on() {
-        let is_asked_twice = is_doomed(ui, OFF);
+        let is_asked_twice = is_pending(ui, OFF);
         if !is_asked_twice {
             *chosen = before;
         }
-        doom(ui, (!is_asked_twice).then_some(OFF));
+        set_pending(ui, (!is_asked_twice).then_some(OFF));
     }
 }
 
@@ -210,7 +226,11 @@ fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
                 true => said.press_any.to_string(),
                 false => format!("{}: {keys}  ·  {buttons}", (said.action)(action)),
             };
-            let weight = if listens { Weight::Main } else { Weight::Other };
+            let weight = if listens {
+                ButtonStyle::Main
+            } else {
+                ButtonStyle::Other
+            };
             let response = button(ui, &theme, &text, vec2(ui.available_width(), 44.0), weight);
             if listens {
                 // While waiting, arrows, Tab and Escape are ordinary keys.

@@ -1,6 +1,6 @@
 //! Title screen over a round that plays by itself.
 
-use super::widgets::{Weight, button, column_beside, veil, words};
+use super::widgets::{ButtonStyle, button, column_beside, dim_background, words};
 use crate::game::{Game, Screen};
 use crate::words::Language;
 use egui::{Color32, Rect, Sense, Ui, vec2};
@@ -10,7 +10,7 @@ use tamaire_sound::Menu;
 const ACROSS: f32 = 0.14;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
-    veil(ui, 70);
+    dim_background(ui, 70);
     let (theme, said) = (game.theme(), game.words());
     let bob = if game.settings.reduced_motion {
         0.0
@@ -32,8 +32,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         ];
         for (index, (text, screen)) in options.into_iter().enumerate() {
             let (weight, size) = match index {
-                0 => (Weight::Main, vec2(280.0, 68.0)),
-                _ => (Weight::Other, vec2(280.0, 56.0)),
+                0 => (ButtonStyle::Main, vec2(280.0, 68.0)),
+                _ => (ButtonStyle::Other, vec2(280.0, 56.0)),
             };
             ui.add_space(8.0);
             let response = button(ui, &theme, text, size, weight);
@@ -46,7 +46,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         }
         ui.add_space(8.0);
         if !cfg!(target_family = "wasm")
-            && button(ui, &theme, said.quit, vec2(280.0, 48.0), Weight::Other).clicked()
+            && button(ui, &theme, said.quit, vec2(280.0, 48.0), ButtonStyle::Other).clicked()
         {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
         }
@@ -77,7 +77,7 @@ fn switch_language(game: &mut Game, ui: &mut Ui) {
     let others = Language::ALL.into_iter();
     for (language, name) in others.filter(|&(language, _)| language != spoken) {
         ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
-            if button(ui, &theme, name, size, Weight::Other).clicked() {
+            if button(ui, &theme, name, size, ButtonStyle::Other).clicked() {
                 game.settings.language = language;
                 game.keep_settings();
                 game.blip(Menu::Confirm);

@@ -30,7 +30,7 @@ pub type Act = fn(&mut Game);
 
 /// Importance of a button.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Weight {
+pub enum ButtonStyle {
     /// Main action of a screen.
     Main,
     /// Any other action.
@@ -38,7 +38,7 @@ pub enum Weight {
 }
 
 /// Covers the world behind a menu with translucent paper.
-pub fn veil(ui: &Ui, strength: u8) {
+pub fn dim_background(ui: &Ui, strength: u8) {
     ui.painter()
         .rect_filled(ui.max_rect(), 0.0, PAPER.gamma_multiply_u8(strength));
 }
@@ -55,7 +55,7 @@ pub fn words(ui: &Ui, at: Pos2, text: &str, size: f32, colour: Color32) {
 }
 
 /// Shows a large round button.
-pub fn button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: Weight) -> Response {
+pub fn button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: ButtonStyle) -> Response {
     let response = plain_button(ui, theme, text, size, weight);
     let enabled = ui.is_enabled();
     response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, text));
@@ -68,13 +68,13 @@ pub fn plain_button(
     theme: &Theme,
     text: &str,
     size: Vec2,
-    weight: Weight,
+    weight: ButtonStyle,
 ) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    let lively = liveliness(ui, &response);
+    let lively = highlight(ui, &response);
     let (fill, ink) = match weight {
-        Weight::Main => (theme.accent, theme.on_accent),
-        Weight::Other => (theme.button, theme.ink),
+        ButtonStyle::Main => (theme.accent, theme.on_accent),
+        ButtonStyle::Other => (theme.button, theme.ink),
     };
     let rect = rect.expand(3.0 * lively);
     let pressed = if response.is_pointer_button_down_on() {
@@ -138,7 +138,7 @@ pub fn take_hovered(ctx: &Context) -> Option<Id> {
 }
 
 /// Returns the animated highlight of a hovered or focused widget, 0 to 1.
-pub fn liveliness(ui: &Ui, response: &Response) -> f32 {
+pub fn highlight(ui: &Ui, response: &Response) -> f32 {
     let is_lively = response.hovered() || is_on(ui, response);
     note_hovered(ui, response);
     ui.ctx().animate_bool(response.id, is_lively)
@@ -269,8 +269,8 @@ pub fn choice<T: Copy + PartialEq>(
             let is_chosen = *value == option;
             // A dot marks the chosen option, not only its colour.
             let (weight, marked) = match is_chosen {
-                true => (Weight::Main, mark(text)),
-                false => (Weight::Other, text.to_string()),
+                true => (ButtonStyle::Main, mark(text)),
+                false => (ButtonStyle::Other, text.to_string()),
             };
             let response = plain_button(ui, theme, &marked, vec2(width, HIGH), weight);
             let role = Role::RadioButton;
@@ -330,7 +330,7 @@ pub fn header_to_open(ui: &mut Ui, game: &mut Game, text: &str) -> Response {
     let (back, opens) = header_with(ui, &theme, said.back, text, |ui| {
         let size = vec2(150.0, 48.0);
         // The system's file dialog cannot be operated with a single switch.
-        can_pick && button(ui, &theme, said.open, size, Weight::Other).clicked()
+        can_pick && button(ui, &theme, said.open, size, ButtonStyle::Other).clicked()
     });
     if opens {
         game.ask_for_file();
@@ -354,7 +354,7 @@ fn header_with<R>(
         if ui.memory(|memory| memory.has_focus(id)) {
             step_through(ui);
         }
-        let response = button(ui, theme, back, vec2(140.0, 48.0), Weight::Other);
+        let response = button(ui, theme, back, vec2(140.0, 48.0), ButtonStyle::Other);
         ui.add_space(16.0);
         title(ui, theme, text);
         let right = ui.with_layout(Layout::right_to_left(Align::Center), right);
@@ -378,7 +378,7 @@ fn step_through(ui: &Ui) {
 }
 
 /// Area of a page. It reaches down to the lower edge of the window, where the contents scroll out of sight.
-pub fn place_of_page(ui: &Ui) -> Rect {
+pub fn page_rect(ui: &Ui) -> Rect {
     let mut rect = ui.max_rect().shrink2(EDGE);
     rect.max.y = ui.max_rect().bottom();
     rect

@@ -1,7 +1,7 @@
 //! English.
 
 use super::Words;
-use crate::input::{Action, Means};
+use crate::input::{Action, InputMethod};
 use force_feedback::{Ability, Stop};
 use tamaire_play::{Assist, Route};
 
@@ -55,8 +55,8 @@ pub(super) const WORDS: Words = Words {
     race: "Race it",
     save: "Save replay",
     delete: "Delete",
-    surely: "Really?",
-    take_out: "Remove from list",
+    confirm: "Really?",
+    remove_level: "Remove from list",
     saved: "Saved",
     slow: |share| {
         format!(
@@ -111,7 +111,7 @@ pub(super) const WORDS: Words = Words {
     },
     forces_off: "Force is set to 0, so nothing is felt",
     silent: |why| match why {
-        Stop::Unheard | Stop::Idle => "No force: not in use",
+        Stop::NoState | Stop::Idle => "No force: not in use",
         Stop::Paused => "No force: the game is paused",
         Stop::FocusLost => "No force: another window is in front",
         Stop::Menu => "No force: a menu is open",
@@ -194,37 +194,39 @@ pub(super) const WORDS: Words = Words {
     no_sticks: "Sticks and pads do not work here.",
     join_hint: "2 players",
     how_in_space: |means, [ways, up, around]| match means {
-        Means::Mouse => [
+        InputMethod::Mouse => [
             "Move: mouse".into(),
             format!("Up and down: wheel, or {up}"),
             format!("Look around: right mouse button, or {around}"),
         ],
-        Means::Fingers => [
+        InputMethod::Fingers => [
             "Move: one finger".into(),
             "Up and down: a second finger, up and down".into(),
             "Look around: a second finger, sideways".into(),
         ],
-        Means::Keys => [
+        InputMethod::Keys => [
             format!("Move: {ways}"),
             format!("Up and down: {up}"),
             format!("Look around: {around}"),
         ],
-        Means::Pad => [
+        InputMethod::Pad => [
             "Move: left stick".into(),
             "Up and down: triggers".into(),
             "Look around: right stick".into(),
         ],
-        Means::Stick => [
+        InputMethod::Stick => [
             "Move: the stick".into(),
             format!("Up and down: buttons {up}"),
             format!("Look around: buttons {around}"),
         ],
     },
     look_inside: |means, [deeper, back]| match means {
-        Means::Mouse => Some(format!("Wheel up, or {deeper}: look deeper")),
-        Means::Keys | Means::Stick => Some(format!("{deeper}: look deeper, {back}: back")),
-        Means::Pad => Some("Press the right stick: look deeper, the left: back".into()),
-        Means::Fingers => None,
+        InputMethod::Mouse => Some(format!("Wheel up, or {deeper}: look deeper")),
+        InputMethod::Keys | InputMethod::Stick => {
+            Some(format!("{deeper}: look deeper, {back}: back"))
+        }
+        InputMethod::Pad => Some("Press the right stick: look deeper, the left: back".into()),
+        InputMethod::Fingers => None,
     },
     watching: "Replay",
     damaged: |refused, aside| match aside {

@@ -1,7 +1,7 @@
 //! 日本語
 
 use super::Words;
-use crate::input::{Action, Means};
+use crate::input::{Action, InputMethod};
 use force_feedback::{Ability, Stop};
 use tamaire_play::level::LevelError;
 use tamaire_play::link::{LinkError, MAX_LENGTH};
@@ -57,8 +57,8 @@ pub(super) const WORDS: Words = Words {
     race: "きょうそう",
     save: "リプレイをのこす",
     delete: "けす",
-    surely: "けしていい？",
-    take_out: "リストからはずす",
+    confirm: "けしていい？",
+    remove_level: "リストからはずす",
     saved: "のこしました",
     slow: |share| {
         format!(
@@ -113,7 +113,7 @@ pub(super) const WORDS: Words = Words {
     },
     forces_off: "手ごたえが0なので、力は出ません",
     silent: |why| match why {
-        Stop::Unheard | Stop::Idle => "なし：だれも使っていません",
+        Stop::NoState | Stop::Idle => "なし：だれも使っていません",
         Stop::Paused => "なし：ひとやすみ中",
         Stop::FocusLost => "なし：ほかのウィンドウが前にあります",
         Stop::Menu => "なし：メニュー中",
@@ -194,37 +194,39 @@ pub(super) const WORDS: Words = Words {
     no_sticks: "ここでは スティックやパッドは使えません。",
     join_hint: "ふたりで",
     how_in_space: |means, [ways, up, around]| match means {
-        Means::Mouse => [
+        InputMethod::Mouse => [
             "動かす：マウス".into(),
             format!("上げ下げ：ホイール、または {up}"),
             format!("見まわす：右ボタンをおして動かす、または {around}"),
         ],
-        Means::Fingers => [
+        InputMethod::Fingers => [
             "動かす：指一本".into(),
             "上げ下げ：もう一本の指を上下に".into(),
             "見まわす：もう一本の指を横に".into(),
         ],
-        Means::Keys => [
+        InputMethod::Keys => [
             format!("動かす：{ways}"),
             format!("上げ下げ：{up}"),
             format!("見まわす：{around}"),
         ],
-        Means::Pad => [
+        InputMethod::Pad => [
             "動かす：左スティック".into(),
             "上げ下げ：トリガー".into(),
             "見まわす：右スティック".into(),
         ],
-        Means::Stick => [
+        InputMethod::Stick => [
             "動かす：スティック".into(),
             format!("上げ下げ：ボタン {up}"),
             format!("見まわす：ボタン {around}"),
         ],
     },
     look_inside: |means, [deeper, back]| match means {
-        Means::Mouse => Some(format!("ホイールを上へ、または {deeper}：もっとおくを見る")),
-        Means::Keys | Means::Stick => Some(format!("{deeper}：もっとおく、{back}：もっと手前")),
-        Means::Pad => Some("右スティックをおす：もっとおく、左：もっと手前".into()),
-        Means::Fingers => None,
+        InputMethod::Mouse => Some(format!("ホイールを上へ、または {deeper}：もっとおくを見る")),
+        InputMethod::Keys | InputMethod::Stick => {
+            Some(format!("{deeper}：もっとおく、{back}：もっと手前"))
+        }
+        InputMethod::Pad => Some("右スティックをおす：もっとおく、左：もっと手前".into()),
+        InputMethod::Fingers => None,
     },
     watching: "リプレイ",
     damaged: |refused, aside| match aside {

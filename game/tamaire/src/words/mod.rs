@@ -11,7 +11,7 @@ pub use said::Words;
 pub use stand::StandWords;
 
 use serde::{Deserialize, Serialize};
-use tamaire_play::Words as Name;
+use tamaire_play::LocalizedText as Name;
 
 /// A language of the game.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,6 +1,6 @@
 //! List of the texts that every language provides.
 
-use crate::input::{Action, Means};
+use crate::input::{Action, InputMethod};
 use force_feedback::{Ability, Calibration, Stop};
 use tamaire_play::level::LevelError;
 use tamaire_play::link::LinkError;
@@ -28,8 +28,8 @@ pub struct Words {
     pub race: &'static str,
     pub save: &'static str,
     pub delete: &'static str,
-    pub surely: &'static str,
-    pub take_out: &'static str,
+    pub confirm: &'static str,
+    pub remove_level: &'static str,
     pub saved: &'static str,
     pub slow: fn(f64) -> String,
     pub licences: &'static str,
@@ -104,9 +104,9 @@ pub struct Words {
     pub no_sound: &'static str,
     pub no_sticks: &'static str,
     pub join_hint: &'static str,
-    pub how_in_space: fn(Means, &[String; 3]) -> [String; 3],
+    pub how_in_space: fn(InputMethod, &[String; 3]) -> [String; 3],
     /// Hint how to look deeper into bodies in 3D; none for an input that has no such control.
-    pub look_inside: fn(Means, &[String; 2]) -> Option<String>,
+    pub look_inside: fn(InputMethod, &[String; 2]) -> Option<String>,
     pub watching: &'static str,
     /// Tells which saved data could not be read, and where the original was moved, if it was.
     pub damaged: fn(&str, Option<&str>) -> String,

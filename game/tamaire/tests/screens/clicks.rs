@@ -5,7 +5,7 @@ use egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::fs;
 use tamaire::game::{Game, Notice, Screen};
-use tamaire::input::{Action, Seat};
+use tamaire::input::{Action, InputSource};
 use tamaire::platform::{Files, Pads, Sound};
 use tamaire::settings::Settings;
 use tamaire::words::Language;
@@ -290,7 +290,7 @@ fn mouse_and_keys_move_two_hands() {
     press(&mut window, Key::J);
     assert_eq!(
         game(&mut window).controls.players.second(),
-        Some(Seat::Keys)
+        Some(InputSource::Keys)
     );
     frames(&mut window, 2);
     let hands = |window: &Window| {
@@ -301,7 +301,14 @@ fn mouse_and_keys_move_two_hands() {
             .collect::<Vec<_>>()
     };
     let before = hands(&window);
-    let start = window.state().game.bout.round().level().scene().goals(0);
+    let start = window
+        .state()
+        .game
+        .bout
+        .round()
+        .level()
+        .scene()
+        .hand_targets(0);
     for (at, start) in before.iter().zip(&start) {
         let is_near = (0..2).all(|axis| (at[axis] - start[axis]).abs() < 1e-3);
         assert!(

@@ -3,7 +3,7 @@
 use crate::window::*;
 use egui::TouchPhase::{End, Move, Start};
 use egui::{Pos2, Rect, vec2};
-use tamaire::input::{Action, Means, Seat};
+use tamaire::input::{Action, InputMethod, InputSource};
 use tamaire::platform::Files;
 
 fn goal(window: &Window, player: usize) -> [f32; 3] {
@@ -27,13 +27,13 @@ fn held(level: &str, at: [f32; 3]) -> Window {
     touch(&mut window, 0, Start, on_screen);
     touch(&mut window, 0, Move, on_screen + vec2(1.0, 0.0));
     frames(&mut window, 2);
-    assert_eq!(window.state().game.controls.means, Means::Fingers);
+    assert_eq!(window.state().game.controls.means, InputMethod::Fingers);
     window
 }
 
 fn on_screen(window: &Window, at: [f32; 3]) -> Pos2 {
     let view = window.state().game.bout.view;
-    view.expect("the world is visible").on_screen(at)
+    view.expect("the world is visible").to_screen(at)
 }
 
 fn tap(window: &mut Window, action: Action) {
@@ -70,7 +70,7 @@ fn two_fingers_move_two_hands() {
     let mut window = held("twins", [-0.9, 0.3, 0.0]);
     tap(&mut window, Action::Join);
     let second = window.state().game.controls.players.second();
-    assert_eq!(second, Some(Seat::Finger));
+    assert_eq!(second, Some(InputSource::Finger));
     let first = goal(&window, 0);
     for step in 0..60 {
         let at = on_screen(&window, [0.2 + 0.005 * step as f32, -0.6, 0.0]);

@@ -5,7 +5,7 @@ use egui::Key;
 use egui_kittest::kittest::Queryable;
 use std::collections::BTreeSet;
 use tamaire::game::Screen;
-use tamaire::input::{Action, Offer, Scanning};
+use tamaire::input::{Action, ScanAction, Scanning};
 use tamaire::platform::Files;
 use tamaire_play::{Assist, Route};
 
@@ -70,7 +70,7 @@ fn tap(window: &mut Window) {
 }
 
 /// Waits until such an offer is made in a round.
-fn wait_for(window: &mut Window, is_wanted: impl Fn(Offer) -> bool) {
+fn wait_for(window: &mut Window, is_wanted: impl Fn(ScanAction) -> bool) {
     for _ in 0..60 * 60 {
         let game = game(window);
         let is_space = game.bout.turn().is_some();
@@ -97,7 +97,7 @@ fn single_switch_can_win_and_continue() {
         start
     );
 
-    wait_for(&mut window, |offer| offer == Offer::Pause);
+    wait_for(&mut window, |offer| offer == ScanAction::Pause);
     tap(&mut window);
     assert_eq!(screen(&window), Screen::Paused);
     choose(&mut window, "Resume");
@@ -106,7 +106,7 @@ fn single_switch_can_win_and_continue() {
     // The body is right of the hand, and the basket is right of the body.
     wait_for(
         &mut window,
-        |offer| matches!(offer, Offer::Way(way) if way.x > 0.9995),
+        |offer| matches!(offer, ScanAction::Move(way) if way.x > 0.9995),
     );
     window.key_down(Key::Space);
     for _ in 0..60 * 10 {
@@ -119,7 +119,7 @@ fn single_switch_can_win_and_continue() {
     window.key_up(Key::Space);
     wait_for(
         &mut window,
-        |offer| matches!(offer, Offer::Way(way) if way.x < -0.99),
+        |offer| matches!(offer, ScanAction::Move(way) if way.x < -0.99),
     );
     window.key_down(Key::Space);
     frames(&mut window, 60);
@@ -140,14 +140,14 @@ fn single_switch_3d_raises_and_lowers_hand() {
     frames(&mut window, 2);
     let height = |window: &mut Window| game(window).bout.round().hands()[0].target_position()[1];
     let before = height(&mut window);
-    wait_for(&mut window, |offer| offer == Offer::Raise);
+    wait_for(&mut window, |offer| offer == ScanAction::Raise);
     // One press starts the action, the next one stops it.
     tap(&mut window);
     frames(&mut window, 20);
     let raised = height(&mut window);
     assert!(raised > before + 0.1, "{before} m, then {raised} m");
     tap(&mut window);
-    wait_for(&mut window, |offer| offer == Offer::Lower);
+    wait_for(&mut window, |offer| offer == ScanAction::Lower);
     tap(&mut window);
     frames(&mut window, 10);
     assert!(height(&mut window) < raised);

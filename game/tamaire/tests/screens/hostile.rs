@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use sticks::{About, Device, DeviceId, Pad, PadButton, Snapshot};
+use sticks::{Device, DeviceId, DeviceInfo, Pad, PadButton, Snapshot};
 use tamaire::game::{Game, Screen};
 use tamaire::platform::{Files, Pads};
 use tamaire::words::Language;
@@ -140,11 +140,11 @@ fn long_notice_stays_longer() {
     game.notify("short".into());
     game.notify("a level with many words ".repeat(8));
     let left = |game: &Game| game.notices.iter().count();
-    game.pass(5.9);
+    game.update(5.9);
     assert_eq!(left(game), 2);
-    game.pass(0.2);
+    game.update(0.2);
     assert_eq!(left(game), 1);
-    game.pass(7.0);
+    game.update(7.0);
     assert_eq!(left(game), 0);
 }
 
@@ -257,7 +257,7 @@ fn random_input_causes_no_fault() {
         if frame == 500 {
             game.start(0);
             drive(game, BotKind::Squeeze, |game| game.bout.won.is_none());
-            game.pass(2.0);
+            game.update(2.0);
         }
         seen.insert(format!("{:?}", screen(&window)));
         window.step();
@@ -267,8 +267,8 @@ fn random_input_causes_no_fault() {
     fs::remove_dir_all(folder).unwrap();
 }
 
-fn about() -> About {
-    About {
+fn about() -> DeviceInfo {
+    DeviceInfo {
         name: String::new(),
         guid: String::new(),
         labels: sticks::Labels::default(),

@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 use std::time::SystemTime;
 use tamaire::game::{Game, Screen};
-use tamaire::platform::{Change, Entry, Files, Kind, Nowhere, Pads, Sound, Storage};
+use tamaire::platform::{Entry, Files, Kind, Nowhere, Pads, Sound, Storage, UpdateEntry};
 
 /// Storage in memory that records the writing threads, and that can be full.
 #[derive(Clone, Default)]
@@ -53,7 +53,7 @@ impl Storage for Memory {
         Ok(inside.kept.get(&(kind, name.into())).cloned())
     }
 
-    fn change(&self, kind: Kind, name: &str, change: &mut Change) -> io::Result<()> {
+    fn change(&self, kind: Kind, name: &str, change: &mut UpdateEntry) -> io::Result<()> {
         let mut inside = self.0.lock().unwrap();
         inside.writers.push(thread::current().id());
         if inside.is_full {
@@ -239,7 +239,7 @@ fn photo_and_clip_are_saved_at_reported_path() {
     ] {
         click(&mut window, button);
         let mut shares = Vec::new();
-        while let Some(share) = game(&mut window).files.developed() {
+        while let Some(share) = game(&mut window).files.picture_progress() {
             shares.push(share);
             frames(&mut window, 1);
         }

@@ -5,7 +5,7 @@ use crate::space::{assert_near, goal, in_space, point_at};
 use crate::window::*;
 use std::path::Path;
 use tamaire::game::Screen;
-use tamaire::platform::{Files, Given};
+use tamaire::platform::{Files, OpenRequest};
 use tamaire_play::AnyRound;
 
 const MODEL: &str = "../tamaire_play/levels/pudding.vox";
@@ -52,7 +52,7 @@ fn level_of_command_line_is_played() {
         (&model, "pudding", 1),
         (&model, "pudding", 1),
     ] {
-        window.state_mut().game.open(Given::at(named));
+        window.state_mut().game.open(OpenRequest::at(named));
         frames(&mut window, 3);
         let game = &window.state().game;
         assert_eq!(screen(&window), Screen::Play, "{named:?}");

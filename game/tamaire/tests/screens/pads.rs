@@ -4,9 +4,9 @@ use crate::window::*;
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use force_feedback::{Ability, Recording};
-use sticks::{About, Device, DeviceId, Pad, PadButton, Snapshot};
+use sticks::{Device, DeviceId, DeviceInfo, Pad, PadButton, Snapshot};
 use tamaire::game::Screen;
-use tamaire::input::{Action, Seat};
+use tamaire::input::{Action, InputSource};
 use tamaire::platform::{Files, Pads};
 
 /// Window with simulated devices.
@@ -64,8 +64,8 @@ impl Table {
     }
 }
 
-pub fn about(name: &str) -> About {
-    About {
+pub fn about(name: &str) -> DeviceInfo {
+    DeviceInfo {
         name: name.into(),
         guid: String::new(),
         labels: sticks::Labels::default(),
@@ -200,7 +200,7 @@ fn second_player_joins_leaves_and_is_unplugged() {
     table.frames(2);
     table.tap(PadButton::Back);
     let second = |table: &mut Table| game(&mut table.window).controls.players.second();
-    assert_eq!(second(&mut table), Some(Seat::Stick(DeviceId(2))));
+    assert_eq!(second(&mut table), Some(InputSource::Stick(DeviceId(2))));
     let hands = |table: &mut Table| {
         let round = game(&mut table.window).bout.round();
         let hands = round.hands();

@@ -7,9 +7,9 @@ use egui_kittest::SnapshotOptions;
 use egui_kittest::kittest::Queryable;
 use force_feedback::{Ability, Recording};
 use std::path::Path;
-use sticks::{About, Device, DeviceId, Pad, Snapshot};
+use sticks::{Device, DeviceId, DeviceInfo, Pad, Snapshot};
 use tamaire::game::Screen;
-use tamaire::input::{Action, Seat};
+use tamaire::input::{Action, InputSource};
 use tamaire::platform::{Files, Pads};
 use tamaire::words::Language;
 use tamaire_play::{BotKind, Outcome, Route};
@@ -141,7 +141,7 @@ fn touch_buttons_match_pictures() {
 
 /// A stick with force feedback and a rumbling pad, neither of them in use.
 fn sticks_and_pads() -> Pads {
-    let about = |name: &str| About {
+    let about = |name: &str| DeviceInfo {
         name: name.into(),
         guid: name.into(),
         labels: sticks::Labels::default(),
@@ -201,7 +201,7 @@ fn tear_and_elements_match_pictures() {
     frames(&mut window, 1);
     picture(&mut window, "tear");
     for action in [Action::Elements, Action::Slow] {
-        game(&mut window).act(action, Seat::Keys);
+        game(&mut window).act(action, InputSource::Keys);
     }
     pictures(&mut window, "elements");
 }

@@ -9,7 +9,7 @@ use fuwafuwa::vector::{length, minus};
 use fuwafuwa::world::TICK;
 use sticks::{DeviceId, PadButton};
 use tamaire::game::{Game, Screen};
-use tamaire::input::{Means, Seat};
+use tamaire::input::{InputMethod, InputSource};
 use tamaire::platform::Files;
 use tamaire_play::{AnyRound, Route};
 
@@ -25,19 +25,19 @@ pub fn goal(window: &Window, player: usize) -> Vector {
 }
 
 fn turned(window: &Window) -> [f32; 2] {
-    window.state().game.bout.camera.gone_around()
+    window.state().game.bout.camera.orbit_angles()
 }
 
 /// Advances by ticks without drawing: in software, a 3D frame takes longer than a tick.
 pub fn wait(window: &mut Window, ticks: usize) {
-    (0..ticks).for_each(|_| game(window).pass(TICK));
+    (0..ticks).for_each(|_| game(window).update(TICK));
     frames(window, 1);
 }
 
 /// Points with the mouse at a point of the floor, and waits until the hand is above it.
 pub fn point_at(window: &mut Window, x: f32, z: f32) {
     let view = window.state().game.bout.view.expect("the world is visible");
-    window.hover_at(view.on_screen([x, 0.0, z]));
+    window.hover_at(view.to_screen([x, 0.0, z]));
     frames(window, 1);
     wait(window, 60);
 }
@@ -81,7 +81,7 @@ fn mouse_sets_floor_position_and_wheel_raises_hand() {
     assert_near(goal(&window, 0), [0.8, height + 0.5, 0.75]);
     wheel(&mut window, -250.0);
     assert_near(goal(&window, 0), [0.8, height, 0.75]);
-    assert_eq!(window.state().game.controls.means, Means::Mouse);
+    assert_eq!(window.state().game.controls.means, InputMethod::Mouse);
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn mouse_sets_position_on_shelf() {
     // On the shelf, over the hole in it, and on the shelf behind the hole.
     for [x, z] in [[-1.3, 0.3], [0.7, 0.1], [0.7, -0.7]] {
         let view = window.state().game.bout.view.expect("the world is visible");
-        window.hover_at(view.on_screen([x, 0.55, z]));
+        window.hover_at(view.to_screen([x, 0.55, z]));
         frames(&mut window, 1);
         wait(&mut window, 90);
         assert_near(goal(&window, 0), [x, height, z]);
@@ -111,7 +111,7 @@ fn right_mouse_button_turns_only_the_camera() {
         modifiers: Modifiers::NONE,
     };
     let view = window.state().game.bout.view.expect("the world is visible");
-    let at = view.on_screen([-1.2, 0.0, 0.6]);
+    let at = view.to_screen([-1.2, 0.0, 0.6]);
     window.event(button(true, at));
     frames(&mut window, 1);
     for step in 1..=10 {
@@ -215,7 +215,7 @@ fn two_players_3d_share_one_camera() {
     start(&mut table.window, "classic-3d");
     table.tap(PadButton::Back);
     let second = table.window.state().game.controls.players.second();
-    assert_eq!(second, Some(Seat::Stick(DeviceId(2))));
+    assert_eq!(second, Some(InputSource::Stick(DeviceId(2))));
     table.frames(2);
     let before = [0, 1].map(|player| goal(&table.window, player));
     assert_near(before[1], table.window.state().game.bout.round().start(1));
@@ -256,13 +256,13 @@ fn first_finger_moves_hand_and_second_raises_it_or_turns_camera() {
         &mut window,
         0,
         TouchPhase::Start,
-        view.on_screen([-1.2, 0.0, 0.5]),
+        view.to_screen([-1.2, 0.0, 0.5]),
     );
     touch(
         &mut window,
         0,
         TouchPhase::Move,
-        view.on_screen([-0.9, 0.0, 0.6]),
+        view.to_screen([-0.9, 0.0, 0.6]),
     );
     wait(&mut window, 40);
     assert_near(goal(&window, 0), [-0.9, height, 0.6]);
@@ -283,14 +283,14 @@ fn first_finger_moves_hand_and_second_raises_it_or_turns_camera() {
     let [right, up] = turned(&window);
     assert!((right - 0.6).abs() < 0.05 && up == 0.0, "{right} {up}");
     assert!((goal(&window, 0)[1] - raised[1]).abs() < 0.01);
-    assert_eq!(window.state().game.controls.means, Means::Fingers);
+    assert_eq!(window.state().game.controls.means, InputMethod::Fingers);
 }
 
 #[test]
 fn second_finger_does_not_move_hand_after_first_lifts() {
     let mut window = in_space();
     let view = window.state().game.bout.view.expect("the world is visible");
-    let [here, there] = [-0.9, 0.3].map(|x| view.on_screen([x, 0.0, 0.6]));
+    let [here, there] = [-0.9, 0.3].map(|x| view.to_screen([x, 0.0, 0.6]));
     touch(&mut window, 0, TouchPhase::Start, here);
     touch(&mut window, 1, TouchPhase::Start, there);
     wait(&mut window, 60);

@@ -9,18 +9,18 @@ use jiff::civil::Time;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
-use sticks::{About, Device, DeviceId, Labels, Snapshot};
+use sticks::{Device, DeviceId, DeviceInfo, Labels, Snapshot};
 use tamaire::app::App;
-use tamaire::exhibit::config::USUAL;
+use tamaire::exhibit::config::DEFAULT_CONFIG;
 use tamaire::exhibit::presence::Attention;
-use tamaire::exhibit::staff::Page;
+use tamaire::exhibit::staff::StaffPage;
 use tamaire::exhibit::{Phase, Stand};
 use tamaire::game::{Game, Screen};
 use tamaire::look::Stage;
 use tamaire::platform::{Clock, Files, Pads, Sound, StandFolder, TextFile};
-use tamaire::screens::{Attendant, Calm};
+use tamaire::screens::{CrashScreen, StandController};
 use tamaire::words::Language;
-use tamaire_logbook::{End, Error, Kind, Logbook, Round, Visit};
+use tamaire_logbook::{Error, Kind, Logbook, Round, RoundEnd, Visit};
 use tamaire_play::{BotKind, Playback, Replay};
 
 /// Stand in a test window, shared with the test.
@@ -33,9 +33,9 @@ struct Shown {
 /// Lets the window own a stand that the test keeps access to.
 struct Shared(Rc<RefCell<Stand>>);
 
-impl Attendant for Shared {
+impl StandController for Shared {
     fn pass(&mut self, game: &mut Game, ctx: &egui::Context, seconds: f32) {
-        Attendant::pass(&mut *self.0.borrow_mut(), game, ctx, seconds);
+        StandController::pass(&mut *self.0.borrow_mut(), game, ctx, seconds);
     }
 
     fn show(&mut self, game: &mut Game, stage: &mut Stage, ui: &mut egui::Ui) {
@@ -47,14 +47,14 @@ impl Attendant for Shared {
     }
 
     fn close(&mut self, game: &mut Game) {
-        Attendant::close(&mut *self.0.borrow_mut(), game);
+        StandController::close(&mut *self.0.borrow_mut(), game);
     }
 }
 
 /// Opens a stand with the usual configuration file, changed by text replacements.
 fn shown(name: &str, size: Vec2, changes: &[(&str, &str)]) -> Shown {
     let folder = folder(name);
-    let mut text = USUAL.replace(
+    let mut text = DEFAULT_CONFIG.replace(
         "#folder = \"/var/lib/tam\"",
         &format!("folder = {folder:?}"),
     );
@@ -103,7 +103,7 @@ impl Shown {
         let mut stand = self.stand.borrow_mut();
         let game = game(&mut self.window);
         for _ in 0..(seconds / TICK) as usize {
-            game.pass(TICK);
+            game.update(TICK);
             // After a frame, events may be left in the context.
             ctx.input_mut(|input| input.events.clear());
             stand.pass(game, &ctx, TICK);
@@ -117,7 +117,7 @@ impl Shown {
     /// Lets a bot play until it wins.
     fn win(&mut self, kind: BotKind) {
         drive(game(&mut self.window), kind, |game| game.bout.won.is_none());
-        game(&mut self.window).pass(2.0);
+        game(&mut self.window).update(2.0);
         frames(&mut self.window, 30);
         assert_eq!(screen(&self.window), Screen::Result);
     }
@@ -178,8 +178,8 @@ fn visit_starts_with_touch_and_is_logged() {
     let (visits, rounds) = shown.end();
     assert_eq!(visits.len(), 1);
     assert!(visits[0].ended.is_some());
-    let ends: Vec<End> = rounds.iter().map(|round| round.end).collect();
-    assert_eq!(ends, [End::Won, End::Retried, End::Left]);
+    let ends: Vec<RoundEnd> = rounds.iter().map(|round| round.end).collect();
+    assert_eq!(ends, [RoundEnd::Won, RoundEnd::Retried, RoundEnd::Left]);
     assert_eq!(
         rounds.iter().map(|round| round.number).collect::<Vec<_>>(),
         [1, 2, 3]
@@ -239,7 +239,9 @@ fn next_visitor_finds_initial_state() {
     let game = game(&mut shown.window);
     assert_eq!(game.settings.language, Language::English);
     assert!(game.bout.elements.is_some());
-    game.controls.players.join(tamaire::input::Seat::Keys);
+    game.controls
+        .players
+        .join(tamaire::input::InputSource::Keys);
     game.forces.cut();
     shown.rest(31.0);
     let game = crate::window::game(&mut shown.window);
@@ -303,11 +305,11 @@ fn staff_enters_pin_and_changes_settings() {
     button_at(&mut shown.window, corner, true);
     frames(&mut shown.window, 200);
     button_at(&mut shown.window, corner, false);
-    assert_eq!(shown.phase(), Phase::Door);
+    assert_eq!(shown.phase(), Phase::PinEntry);
     for digit in ["1", "2", "3", "4"] {
         click(&mut shown.window, digit);
     }
-    assert_eq!(shown.phase(), Phase::Door, "wrong PIN");
+    assert_eq!(shown.phase(), Phase::PinEntry, "wrong PIN");
     for digit in ["2", "0", "0", "4"] {
         click(&mut shown.window, digit);
     }
@@ -355,7 +357,7 @@ fn stand_is_closed_outside_opening_hours() {
 fn invalid_configuration_is_reported_with_line() {
     let folder = folder("wrong");
     let file = TextFile(folder.join("exhibit.toml"));
-    file.write(&USUAL.replace("rest = 20", "rest = -1"))
+    file.write(&DEFAULT_CONFIG.replace("rest = 20", "rest = -1"))
         .unwrap();
     let Err(error) = Stand::open(file) else {
         panic!("the configuration is invalid");
@@ -369,7 +371,7 @@ fn invalid_configuration_is_reported_with_line() {
 #[test]
 fn unplugged_stick_is_logged_and_play_continues() {
     let mut shown = shown("pulled", vec2(960.0, 600.0), &[]);
-    let about = About {
+    let about = DeviceInfo {
         name: "Stick".into(),
         guid: "stick".into(),
         labels: Labels::Unknown,
@@ -449,15 +451,15 @@ fn stand_seen() {
             shown.win(BotKind::Shave);
             frames(&mut shown.window, 130);
             save(&mut shown, "result");
-            shown.stand.borrow_mut().phase = Phase::Door;
+            shown.stand.borrow_mut().phase = Phase::PinEntry;
             frames(&mut shown.window, 3);
             save(&mut shown, "door");
-            for page in Page::ALL.into_iter().chain([Page::End]) {
+            for page in StaffPage::ALL.into_iter().chain([StaffPage::End]) {
                 shown.stand.borrow_mut().phase = Phase::Staff(page);
                 frames(&mut shown.window, 4);
                 save(&mut shown, &format!("{page:?}"));
             }
-            shown.window.state_mut().attendant = Some(Box::new(Calm::default()));
+            shown.window.state_mut().attendant = Some(Box::new(CrashScreen::default()));
             frames(&mut shown.window, 2);
             save(&mut shown, "calm");
         }

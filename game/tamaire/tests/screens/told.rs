@@ -6,7 +6,7 @@ use crate::window::*;
 use egui::epaint::ClippedShape;
 use egui::{Key, vec2};
 use sticks::{Device, DeviceId};
-use tamaire::input::{Action, Means};
+use tamaire::input::{Action, InputMethod};
 use tamaire::platform::Files;
 use tamaire::words::Language;
 
@@ -105,7 +105,7 @@ fn instructions_name_current_device_and_time_out() {
     table.frames(2);
     assert!(tells(&table.window, "buttons 10 11") && tells(&table.window, "buttons 7 8"));
     for _ in 0..25 {
-        game(&mut table.window).pass(2.0);
+        game(&mut table.window).update(2.0);
     }
     table.frames(2);
     assert!(!tells(&table.window, "buttons"));
@@ -126,11 +126,11 @@ fn instructions_fit_into_smallest_window() {
             bindings.bind_key(action, key);
         }
         for means in [
-            Means::Mouse,
-            Means::Fingers,
-            Means::Keys,
-            Means::Pad,
-            Means::Stick,
+            InputMethod::Mouse,
+            InputMethod::Fingers,
+            InputMethod::Keys,
+            InputMethod::Pad,
+            InputMethod::Stick,
         ] {
             for (language, _) in Language::ALL {
                 game(&mut window).controls.means = means;

@@ -110,7 +110,7 @@ pub fn drive(game: &mut Game, kind: BotKind, goes_on: impl Fn(&Game) -> bool) {
             "the round takes longer than a minute"
         );
         game.controls.devices.pointer = game.bout.round().ask(&mut bot).goal(0);
-        game.pass(TICK);
+        game.update(TICK);
     }
     game.controls.devices.pointer = None;
 }
@@ -120,7 +120,7 @@ pub fn win(window: &mut Window) {
     drive(game(window), BotKind::Squeeze, |game| {
         game.bout.won.is_none()
     });
-    game(window).pass(2.0);
+    game(window).update(2.0);
     frames(window, 2);
     assert_eq!(screen(window), Screen::Result);
 }

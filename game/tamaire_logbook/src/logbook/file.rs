@@ -21,11 +21,11 @@ pub struct SetAside {
 }
 
 /// Time for which SQLite waits for another program's lock.
-const PATIENCE: Duration = Duration::from_secs(2);
+const BUSY_TIMEOUT: Duration = Duration::from_secs(2);
 /// Suffixes of the files that SQLite creates beside a database.
-const BESIDE: [&str; 3] = ["-wal", "-shm", "-journal"];
+const SIDECAR_SUFFIXES: [&str; 3] = ["-wal", "-shm", "-journal"];
 /// Number of versions ahead from which a version number counts as damage.
-const FAR: i64 = 1000;
+const MAX_VERSIONS_AHEAD: i64 = 1000;
 
 /// Opens a file for writing, and creates it if it does not exist.
 ///
@@ -36,7 +36,7 @@ pub fn open(path: &Path) -> Result<Connection, Error> {
         fs::create_dir_all(folder).map_err(|error| unusable(path, &error))?;
     }
     let is_there = path.try_exists().map_err(|error| unusable(path, &error))?;
-    if !is_there && size(&beside(path, BESIDE[0])) > 0 {
+    if !is_there && size(&sidecar_path(path, SIDECAR_SUFFIXES[0])) > 0 {
         return Err(damaged(
             path,
             "the file is missing, and only its -wal file is left",
@@ -51,13 +51,13 @@ pub fn open(path: &Path) -> Result<Connection, Error> {
     check(path, &connection)?;
     if connection
         .is_readonly("main")
-        .map_err(|error| told(path, error))?
+        .map_err(|error| map_error(path, error))?
     {
         let opened = File::options().write(true).open(path);
         opened.map_err(|error| unusable(path, &error))?;
         return Err(damaged(path, "its header marks it as read-only"));
     }
-    begin(&mut connection).map_err(|error| told(path, error))?;
+    begin(&mut connection).map_err(|error| map_error(path, error))?;
     Ok(connection)
 }
 
@@ -66,7 +66,7 @@ pub fn open(path: &Path) -> Result<Connection, Error> {
 pub fn attach(path: &Path) -> Result<Connection, Error> {
     let mut connection = connect(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
     check_kind(path, &connection)?;
-    begin(&mut connection).map_err(|error| told(path, error))?;
+    begin(&mut connection).map_err(|error| map_error(path, error))?;
     Ok(connection)
 }
 
@@ -79,9 +79,9 @@ pub fn read(path: &Path) -> Result<Connection, Error> {
     let connection = connect(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
     let connection = match check(path, &connection) {
         // In a folder without write permission SQLite cannot create the shared-memory file that readers need.
-        Err(Error::Unusable { .. }) if size(&beside(path, BESIDE[0])) == 0 => {
+        Err(Error::Unusable { .. }) if size(&sidecar_path(path, SIDECAR_SUFFIXES[0])) == 0 => {
             let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI;
-            let connection = connect(&unchanging(path), flags)?;
+            let connection = connect(&immutable_uri(path), flags)?;
             check(path, &connection)?;
             connection
         }
@@ -93,7 +93,7 @@ pub fn read(path: &Path) -> Result<Connection, Error> {
         }
         other => other.map(|()| connection)?,
     };
-    match schema::version(&connection).map_err(|error| told(path, error))? {
+    match schema::version(&connection).map_err(|error| map_error(path, error))? {
         VERSION => Ok(connection),
         _ => Err(damaged(
             path,
@@ -112,8 +112,8 @@ pub fn set_aside(path: &Path, reason: String) -> Result<SetAside, Error> {
     // The database is renamed first. If only its `-wal` file is left behind, the next start finds and renames
     // that file; it is never used for a new database.
     rename(path, &aside)?;
-    for ending in BESIDE {
-        rename(&beside(path, ending), &beside(&aside, ending))?;
+    for ending in SIDECAR_SUFFIXES {
+        rename(&sidecar_path(path, ending), &sidecar_path(&aside, ending))?;
     }
     Ok(SetAside {
         path: aside,
@@ -123,12 +123,12 @@ pub fn set_aside(path: &Path, reason: String) -> Result<SetAside, Error> {
 
 /// Returns the size on the disk of the file and of SQLite's files beside it [bytes].
 pub fn bytes(path: &Path) -> u64 {
-    let others = BESIDE.map(|ending| size(&beside(path, ending)));
+    let others = SIDECAR_SUFFIXES.map(|ending| size(&sidecar_path(path, ending)));
     size(path) + others.iter().sum::<u64>()
 }
 
 /// Maps an error of SQLite to an [`Error`] of this file.
-pub fn told(path: &Path, error: rusqlite::Error) -> Error {
+pub fn map_error(path: &Path, error: rusqlite::Error) -> Error {
     use rusqlite::Error as Sql;
     let (path, reason) = (path.to_path_buf(), error.to_string());
     match (error.sqlite_error_code(), &error) {
@@ -185,7 +185,7 @@ fn create(path: &Path) -> Result<(), Error> {
         )?;
         // Sets the journal mode here. If the first writer had to change it while other connections wait to do
         // so, it might wait in vain.
-        begin(&mut connection).map_err(|error| told(path, error))?;
+        begin(&mut connection).map_err(|error| map_error(path, error))?;
         drop(connection);
         match fs::hard_link(&new, path) {
             // Another program has created the file meanwhile: that file is used.
@@ -204,30 +204,30 @@ fn connect(path: &Path, flags: OpenFlags) -> Result<Connection, Error> {
     let open = || {
         let flags = flags | OpenFlags::SQLITE_OPEN_NO_MUTEX;
         let connection = Connection::open_with_flags(path, flags)?;
-        connection.busy_timeout(PATIENCE)?;
+        connection.busy_timeout(BUSY_TIMEOUT)?;
         // Never runs triggers or functions stored in a file, and leaves an unusable file unchanged.
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_TRUSTED_SCHEMA, false)?;
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_ENABLE_TRIGGER, false)?;
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
         Ok(connection)
     };
-    open().map_err(|error| told(path, error))
+    open().map_err(|error| map_error(path, error))
 }
 
 /// Checks that the file is an undamaged logbook of a supported version. Reads the whole file.
 fn check(path: &Path, connection: &Connection) -> Result<(), Error> {
     check_kind(path, connection)?;
     let page = connection.pragma_query_value(None, "page_size", |row| row.get(0));
-    let page: u64 = page.map_err(|error| told(path, error))?;
+    let page: u64 = page.map_err(|error| map_error(path, error))?;
     // With a write-ahead log, the last pages may be in that log only.
-    let has_log = size(&beside(path, BESIDE[0])) > 0;
+    let has_log = size(&sidecar_path(path, SIDECAR_SUFFIXES[0])) > 0;
     if !has_log && !size(path).is_multiple_of(page) {
         return Err(damaged(path, "the end of the file is missing"));
     }
     let check = "PRAGMA quick_check(1)";
     let found: rusqlite::Result<String> = connection.query_row(check, [], |row| row.get(0));
-    match found.map_err(|error| told(path, error))?.as_str() {
-        "ok" => check_tables(connection).map_err(|error| told(path, error)),
+    match found.map_err(|error| map_error(path, error))?.as_str() {
+        "ok" => check_tables(connection).map_err(|error| map_error(path, error)),
         reason => Err(damaged(path, reason.lines().last().unwrap_or(reason))),
     }
 }
@@ -239,9 +239,9 @@ fn check_kind(path: &Path, connection: &Connection) -> Result<(), Error> {
             schema::version(connection)?,
         ))
     };
-    match ask().map_err(|error| told(path, error))? {
+    match ask().map_err(|error| map_error(path, error))? {
         (APPLICATION_ID, 1..=VERSION) => Ok(()),
-        (APPLICATION_ID, found) if (VERSION..VERSION + FAR).contains(&found) => {
+        (APPLICATION_ID, found) if (VERSION..VERSION + MAX_VERSIONS_AHEAD).contains(&found) => {
             let (path, known) = (path.into(), VERSION);
             Err(Error::Newer { path, found, known })
         }
@@ -280,7 +280,7 @@ fn begin(connection: &mut Connection) -> rusqlite::Result<()> {
     Ok(())
 }
 
-fn beside(path: &Path, ending: &str) -> PathBuf {
+fn sidecar_path(path: &Path, ending: &str) -> PathBuf {
     let mut name = OsString::from(path);
     name.push(ending);
     name.into()
@@ -306,12 +306,13 @@ fn name_aside(path: &Path, now: Moment) -> PathBuf {
         _ => format!("{stem}.damaged-{date}-{count}{ending}"),
     });
     let mut paths = names.map(|name| path.with_file_name(name));
-    let is_free = |path: &PathBuf| !path.exists() && !beside(path, BESIDE[0]).exists();
+    let is_free =
+        |path: &PathBuf| !path.exists() && !sidecar_path(path, SIDECAR_SUFFIXES[0]).exists();
     paths.find(is_free).expect("the counter is unbounded")
 }
 
 /// Returns the URI of a file with the flag that tells SQLite that no program writes the file.
-fn unchanging(path: &Path) -> PathBuf {
+fn immutable_uri(path: &Path) -> PathBuf {
     let mut address = String::from("file:");
     for byte in path.as_os_str().as_encoded_bytes() {
         match byte {

@@ -1,7 +1,7 @@
 //! Reading rows from the tables.
 
 use crate::row::read_route;
-use crate::{End, Event, Id, Kind, Moment, Round, Today, Visit};
+use crate::{Event, Id, Kind, Moment, Round, RoundEnd, Today, Visit};
 use rusqlite::types::Type;
 use rusqlite::{Connection, Row, params};
 use std::ops::{Bound, RangeBounds};
@@ -9,7 +9,7 @@ use tamaire_play::Route;
 
 /// Description of a table for reading: its columns, its name and the conversion of a row.
 #[derive(Debug)]
-pub struct Kept<T> {
+pub struct TableReader<T> {
     columns: &'static str,
     table: &'static str,
     /// Name of the column with the time of a row.
@@ -18,14 +18,14 @@ pub struct Kept<T> {
     pub read: fn(&Row<'_>) -> rusqlite::Result<T>,
 }
 
-pub const VISITS: Kept<Visit> = Kept {
+pub const VISITS: TableReader<Visit> = TableReader {
     columns: "id, stand, began, began_offset, ended, ended_offset, language",
     table: "visits",
     time: "began",
     read: visit,
 };
 
-pub const ROUNDS: Kept<Round> = Kept {
+pub const ROUNDS: TableReader<Round> = TableReader {
     columns: "id, visit, stand, number, began, began_offset, seconds, level, level_hash, players, ending, route, kept,
         inside, pieces, lost, dare, fragment",
     table: "rounds LEFT JOIN replays USING (seq)",
@@ -33,14 +33,14 @@ pub const ROUNDS: Kept<Round> = Kept {
     read: round,
 };
 
-pub const EVENTS: Kept<Event> = Kept {
+pub const EVENTS: TableReader<Event> = TableReader {
     columns: "id, stand, at, at_offset, kind, text",
     table: "events",
     time: "at",
     read: event,
 };
 
-impl<T> Kept<T> {
+impl<T> TableReader<T> {
     /// Returns the SQL for all rows with a time from `?1` to `?2` inclusive, ordered by `seq`.
     ///
     /// Rows are mostly written in the order of time. Between the first and the last match lie few other rows,
@@ -168,7 +168,7 @@ fn round(row: &Row<'_>) -> rusqlite::Result<Round> {
         level: row.get(7)?,
         level_hash: row.get::<_, i64>(8)? as u64,
         players: row.get(9)?,
-        end: word(row, 10, End::read)?,
+        end: word(row, 10, RoundEnd::read)?,
         route: route(row, 11)?,
         kept: row.get(12)?,
         inside: row.get(13)?,

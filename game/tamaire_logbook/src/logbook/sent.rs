@@ -1,7 +1,7 @@
 //! Record of the rows that the server has received.
 
 #[cfg(feature = "postgres")]
-pub use since::{Change, Sent, changes, sent, set_sent, unsent};
+pub use since::{ChangedRow, SyncPosition, changes, sent, set_sent, unsent};
 
 use rusqlite::{Connection, params};
 
@@ -21,7 +21,7 @@ mod since {
 
     /// A new or changed row that the server has not received yet.
     #[derive(Debug)]
-    pub enum Change {
+    pub enum ChangedRow {
         Visit(Visit),
         Round(Round),
         Event(Event),
@@ -29,7 +29,7 @@ mod since {
 
     /// Position up to which the server has received a file.
     #[derive(Clone, Debug, PartialEq)]
-    pub struct Sent {
+    pub struct SyncPosition {
         /// Id of the file.
         pub book: Id,
         /// Number of the last change that the server has received.
@@ -42,7 +42,7 @@ mod since {
         connection: &Connection,
         after: i64,
         most: usize,
-    ) -> rusqlite::Result<Vec<(i64, i64, Change)>> {
+    ) -> rusqlite::Result<Vec<(i64, i64, ChangedRow)>> {
         let sql = "
             SELECT change, seq, 0 FROM visits WHERE change > ?1
             UNION ALL SELECT seq, seq, 1 FROM rounds WHERE seq > ?1
@@ -57,18 +57,18 @@ mod since {
         let numbers = numbers.collect::<rusqlite::Result<Vec<(i64, i64, i64)>>>()?;
         let read = |(change, seq, table)| {
             let row = match table {
-                0 => Change::Visit(moment.query_row(&VISITS.one(), [seq], VISITS.read)?),
-                1 => Change::Round(moment.query_row(&ROUNDS.one(), [seq], ROUNDS.read)?),
-                _ => Change::Event(moment.query_row(&EVENTS.one(), [seq], EVENTS.read)?),
+                0 => ChangedRow::Visit(moment.query_row(&VISITS.one(), [seq], VISITS.read)?),
+                1 => ChangedRow::Round(moment.query_row(&ROUNDS.one(), [seq], ROUNDS.read)?),
+                _ => ChangedRow::Event(moment.query_row(&EVENTS.one(), [seq], EVENTS.read)?),
             };
             Ok((change, seq, row))
         };
         numbers.into_iter().map(read).collect()
     }
 
-    pub fn sent(connection: &Connection) -> rusqlite::Result<Sent> {
+    pub fn sent(connection: &Connection) -> rusqlite::Result<SyncPosition> {
         connection.query_row("SELECT id, sent FROM book", [], |row| {
-            Ok(Sent {
+            Ok(SyncPosition {
                 book: Id(u128::from_be_bytes(row.get(0)?)),
                 change: row.get(1)?,
             })
@@ -76,7 +76,11 @@ mod since {
     }
 
     /// Stores the server's position. Has no effect if the file or its server is another one by now.
-    pub fn set_sent(connection: &Connection, server: &str, sent: &Sent) -> rusqlite::Result<()> {
+    pub fn set_sent(
+        connection: &Connection,
+        server: &str,
+        sent: &SyncPosition,
+    ) -> rusqlite::Result<()> {
         let sql = "UPDATE book SET sent = ?1 WHERE id = ?2 AND server = ?3";
         connection.execute(sql, params![sent.change, sent.book.0.to_be_bytes(), server])?;
         Ok(())

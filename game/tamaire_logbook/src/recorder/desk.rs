@@ -1,6 +1,6 @@
 //! State shared between the recorder and its writing thread.
 
-use crate::row::room_of;
+use crate::row::memory_size;
 use crate::{Entry, Moment, Round, SetAside, Today};
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -13,7 +13,7 @@ pub struct Health {
     /// Whether new entries reach the file at present.
     pub is_recording: bool,
     /// Reason why entries do not reach the file or the server, as a sentence.
-    pub trouble: Option<String>,
+    pub problem: Option<String>,
     /// Number of entries that wait to be written.
     pub waiting: usize,
     /// Number of entries dropped since the start, because too many waited or because SQLite rejected them.
@@ -34,18 +34,18 @@ const MOST_BYTES: usize = 1 << 26;
 const BATCH: usize = 256;
 
 #[derive(Debug, Default)]
-pub struct Desk {
+pub struct SharedState {
     state: Mutex<State>,
     /// Notified when there is new work, and when the thread has finished.
-    bell: Condvar,
+    condvar: Condvar,
 }
 
 #[derive(Debug, Default)]
 struct State {
     queue: VecDeque<Entry>,
     bytes: usize,
-    in_hand: usize,
-    questions: Questions,
+    in_progress: usize,
+    questions: Requests,
     answers: Answers,
     report: Report,
     dropped: u64,
@@ -56,7 +56,7 @@ struct State {
 
 /// Requests that were not answered yet.
 #[derive(Debug, Default)]
-pub struct Questions {
+pub struct Requests {
     pub today: Option<Moment>,
     pub best: Option<Best>,
     pub export: Option<PathBuf>,
@@ -87,11 +87,11 @@ pub struct Report {
     pub bytes: u64,
 }
 
-impl Desk {
+impl SharedState {
     /// Queues an entry for writing. If a limit is reached, drops the entry and counts it.
     pub fn put(&self, entry: Entry) {
         let mut state = self.state();
-        let size = room_of(&entry);
+        let size = memory_size(&entry);
         let is_full = state.queue.len() >= MOST_WAITING || state.bytes + size > MOST_BYTES;
         if is_full || state.is_closed {
             state.dropped += 1;
@@ -99,16 +99,16 @@ impl Desk {
         }
         state.bytes += size;
         state.queue.push_back(entry);
-        self.bell.notify_all();
+        self.condvar.notify_all();
     }
 
-    pub fn ask(&self, ask: impl FnOnce(&mut Questions)) {
+    pub fn ask(&self, ask: impl FnOnce(&mut Requests)) {
         ask(&mut self.state().questions);
-        self.bell.notify_all();
+        self.condvar.notify_all();
     }
 
     /// Takes the open requests.
-    pub fn questions(&self) -> Questions {
+    pub fn questions(&self) -> Requests {
         std::mem::take(&mut self.state().questions)
     }
 
@@ -121,8 +121,8 @@ impl Desk {
         let report = state.report.clone();
         Health {
             is_recording: report.is_recording && !state.is_closed,
-            trouble: report.trouble,
-            waiting: state.queue.len() + state.in_hand,
+            problem: report.trouble,
+            waiting: state.queue.len() + state.in_progress,
             dropped: state.dropped,
             bytes: report.bytes,
             unsent: 0,
@@ -145,25 +145,25 @@ impl Desk {
             if has_work || now >= until {
                 return true;
             }
-            let waited = self.bell.wait_timeout(state, until - now);
+            let waited = self.condvar.wait_timeout(state, until - now);
             state = waited.unwrap_or_else(PoisonError::into_inner).0;
         }
     }
 
-    /// Takes the next batch of entries. They count as waiting until [`Desk::put_down`] is called.
-    pub fn take(&self) -> Vec<Entry> {
+    /// Takes the next batch of entries. They count as waiting until [`SharedState::put_down`] is called.
+    pub fn take_batch(&self) -> Vec<Entry> {
         let mut state = self.state();
         let count = state.queue.len().min(BATCH);
         let batch: Vec<Entry> = state.queue.drain(..count).collect();
-        state.bytes -= batch.iter().map(room_of).sum::<usize>();
-        state.in_hand = count;
+        state.bytes -= batch.iter().map(memory_size).sum::<usize>();
+        state.in_progress = count;
         batch
     }
 
     /// Reports that the batch is written, except `dropped` entries.
-    pub fn put_down(&self, dropped: u64) {
+    pub fn finish_batch(&self, dropped: u64) {
         let mut state = self.state();
-        state.in_hand = 0;
+        state.in_progress = 0;
         state.dropped += dropped;
     }
 
@@ -187,16 +187,16 @@ impl Desk {
         if !trouble.is_empty() {
             state.report.trouble = Some(trouble);
         }
-        self.bell.notify_all();
+        self.condvar.notify_all();
     }
 
     /// Waits until the thread has written all entries and ended, but at most until `by`.
     pub fn finish(&self, by: Instant) {
         let mut state = self.state();
         let by = *state.finish_by.get_or_insert(by);
-        self.bell.notify_all();
+        self.condvar.notify_all();
         while !state.is_closed && Instant::now() < by {
-            let waited = self.bell.wait_timeout(state, by - Instant::now());
+            let waited = self.condvar.wait_timeout(state, by - Instant::now());
             state = waited.unwrap_or_else(PoisonError::into_inner).0;
         }
     }

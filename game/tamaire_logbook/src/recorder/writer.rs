@@ -1,6 +1,6 @@
 //! The thread that writes the logbook.
 
-use super::desk::{Desk, Report};
+use super::desk::{Report, SharedState};
 use crate::{Entry, Error, Event, Id, Kind, Logbook, Moment, Server};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -12,7 +12,7 @@ pub struct Options {
     /// Age after which rows are deleted [days]; `None` keeps all rows.
     pub keep_days: Option<u32>,
     /// Maximum size of the file [bytes]. Beyond it, writing fails as on a full disk. `None` sets no limit.
-    pub most_bytes: Option<u64>,
+    pub max_bytes: Option<u64>,
     /// Server to which the rows are sent.
     pub server: Option<Server>,
 }
@@ -30,7 +30,7 @@ const DAY: i64 = 86_400_000;
 
 #[derive(Debug)]
 pub struct Writer {
-    desk: Arc<Desk>,
+    desk: Arc<SharedState>,
     path: PathBuf,
     stand: String,
     options: Options,
@@ -43,7 +43,7 @@ pub struct Writer {
 }
 
 impl Writer {
-    pub fn new(desk: Arc<Desk>, path: &Path, stand: &str, options: Options) -> Self {
+    pub fn new(desk: Arc<SharedState>, path: &Path, stand: &str, options: Options) -> Self {
         Self {
             desk,
             path: path.into(),
@@ -115,7 +115,7 @@ impl Writer {
     fn work(&mut self) -> Result<(), Error> {
         self.open()?;
         // Old rows are deleted first, because that makes room. Entries are written even if it fails.
-        let swept = self.sweep();
+        let swept = self.delete_old();
         self.write()?;
         self.answer()?;
         swept
@@ -131,12 +131,12 @@ impl Writer {
             self.note(Kind::DamagedFile, format!("{name}: {}", set_aside.reason));
             self.desk.report_set_aside(set_aside);
         }
-        if let Some(most) = self.options.most_bytes {
-            book.limit(most)?;
+        if let Some(most) = self.options.max_bytes {
+            book.set_size_limit(most)?;
         }
         match self.options.server.as_ref().map(Server::name) {
-            None => book.await_server(None)?,
-            Some(Ok(name)) => book.await_server(Some(&name))?,
+            None => book.set_server(None)?,
+            Some(Ok(name)) => book.set_server(Some(&name))?,
             // With an unreadable address, the rows of the last server are kept, because that server may be
             // meant.
             Some(Err(_)) => {}
@@ -148,7 +148,7 @@ impl Writer {
     fn write(&mut self) -> Result<(), Error> {
         loop {
             if self.batch.is_empty() {
-                self.batch = self.desk.take();
+                self.batch = self.desk.take_batch();
             }
             let Some(book) = self.book.as_mut().filter(|_| !self.batch.is_empty()) else {
                 return Ok(());
@@ -170,7 +170,7 @@ impl Writer {
                 other => other?,
             }
             self.batch.clear();
-            self.desk.put_down(dropped);
+            self.desk.finish_batch(dropped);
         }
     }
 
@@ -198,7 +198,7 @@ impl Writer {
     }
 
     /// Deletes rows that are too old, a few days of them at a time.
-    fn sweep(&mut self) -> Result<(), Error> {
+    fn delete_old(&mut self) -> Result<(), Error> {
         let now = Instant::now();
         let (Some(book), Some(days)) = (&mut self.book, self.options.keep_days) else {
             return Ok(());
@@ -213,7 +213,7 @@ impl Writer {
         let before = Moment::now().after(-DAY * i64::from(days));
         let most = oldest.saturating_add(SWEPT_DAYS * DAY);
         let utc_ms = before.utc_ms.min(most);
-        book.forget_before(Moment { utc_ms, ..before })
+        book.delete_before(Moment { utc_ms, ..before })
     }
 
     /// Records an event about the logbook itself.

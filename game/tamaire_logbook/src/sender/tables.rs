@@ -1,6 +1,6 @@
 //! Tables on the server, and writing rows into them.
 
-use crate::logbook::Change;
+use crate::logbook::ChangedRow;
 use crate::row::route_text;
 use postgres::types::ToSql;
 use postgres::{Client, Statement, Transaction};
@@ -184,17 +184,17 @@ impl Inserts {
         transaction: &mut Transaction<'_>,
         book: &str,
         seq: i64,
-        change: &Change,
+        change: &ChangedRow,
     ) -> Result<(), postgres::Error> {
         let id = match change {
-            Change::Visit(visit) => visit.id,
-            Change::Round(round) => round.id,
-            Change::Event(event) => event.id,
+            ChangedRow::Visit(visit) => visit.id,
+            ChangedRow::Round(round) => round.id,
+            ChangedRow::Event(event) => event.id,
         };
         let id = id.to_string();
         let mut values: Vec<&(dyn ToSql + Sync)> = vec![&id, &book, &seq];
         match change {
-            Change::Visit(visit) => {
+            ChangedRow::Visit(visit) => {
                 let ended = visit.ended;
                 let (ms, offset) = (ended.map(|at| at.utc_ms), ended.map(|at| at.offset_s));
                 values.extend(refs![
@@ -207,7 +207,7 @@ impl Inserts {
                 ]);
                 transaction.execute(&self.visit, &values)?;
             }
-            Change::Round(round) => {
+            ChangedRow::Round(round) => {
                 let visit = round.visit.to_string();
                 let hash = format!("{:016x}", round.level_hash);
                 let [number, pieces, lost] =
@@ -236,7 +236,7 @@ impl Inserts {
                 ]);
                 transaction.execute(&self.round, &values)?;
             }
-            Change::Event(event) => {
+            ChangedRow::Event(event) => {
                 let kind = event.kind.text();
                 values.extend(refs![
                     event.stand,

@@ -2,7 +2,7 @@
 #![allow(dead_code)] // no test file uses all of these
 
 use std::path::PathBuf;
-use tamaire_logbook::{End, Entry, Error, Event, Id, Kind, Logbook, Moment, Round, Visit};
+use tamaire_logbook::{Entry, Error, Event, Id, Kind, Logbook, Moment, Round, RoundEnd, Visit};
 use tamaire_play::Route;
 use tempfile::TempDir;
 
@@ -52,7 +52,7 @@ pub fn round(visit: &Visit, number: u32, won: Option<Route>) -> Round {
         level: "classic".into(),
         level_hash: u64::MAX - 7,
         players: 1,
-        end: won.map_or(End::Retried, |_| End::Won),
+        end: won.map_or(RoundEnd::Retried, |_| RoundEnd::Won),
         route: won,
         kept: 0.987_654_3,
         inside: 0.5,

@@ -61,7 +61,7 @@ fn wait_for_rows(recorder: &Recorder, client: &mut Client, rows: i64) {
     let health = wait_for(recorder, "everything sent", |health| {
         health.unsent == 0 && health.waiting == 0
     });
-    assert_eq!(health.trouble, None);
+    assert_eq!(health.problem, None);
 }
 
 /// Returns the ids of a table and checks that none occurs twice.
@@ -95,9 +95,9 @@ fn rows_arrive_exactly_once_when_server_and_recorder_restart() {
         recorder.record(entry);
     }
     let health = wait_for(&recorder, "away", |health| {
-        health.trouble.is_some() && health.unsent == 4
+        health.problem.is_some() && health.unsent == 4
     });
-    let trouble = health.trouble.unwrap();
+    let trouble = health.problem.unwrap();
     assert!(
         trouble.starts_with("cannot send the logbook to the server: "),
         "{trouble}"
@@ -194,7 +194,7 @@ fn server_receives_all_rows_after_an_hour_offline() {
     }
     let health = recorder.health();
     assert!(
-        health.is_recording && health.trouble.is_some(),
+        health.is_recording && health.problem.is_some(),
         "{health:?}"
     );
     server.start();
@@ -224,10 +224,10 @@ fn sender_transfers_rows_to_a_running_server() {
     server.start();
     every_column_arrives(&server);
     two_stands_do_not_disturb_each_other(&server);
-    what_a_server_has_not_got_stays(&server);
-    a_server_that_lost_what_it_had_gets_it_again(&server);
+    unsent_rows_are_kept(&server);
+    lost_rows_are_sent_again(&server);
     tables_of_a_newer_version_are_left_alone(&server);
-    an_address_that_is_none_is_told(&server);
+    invalid_addresses_are_reported(&server);
 }
 
 fn every_column_arrives(server: &Postgres) {
@@ -307,7 +307,7 @@ fn two_stands_do_not_disturb_each_other(server: &Postgres) {
     assert_eq!(client.query_one(&sql, &[]).unwrap().get::<_, i64>(0), 600);
 }
 
-fn what_a_server_has_not_got_stays(server: &Postgres) {
+fn unsent_rows_are_kept(server: &Postgres) {
     let address = server.named("later");
     let (_folder, path) = place();
     let mut book = open(&path);
@@ -338,7 +338,7 @@ fn what_a_server_has_not_got_stays(server: &Postgres) {
     assert_eq!(count(&mut client, "visits"), 20);
 }
 
-fn a_server_that_lost_what_it_had_gets_it_again(server: &Postgres) {
+fn lost_rows_are_sent_again(server: &Postgres) {
     let address = server.database("lost");
     let (_folder, path) = place();
     for rows in [4, 8] {
@@ -374,15 +374,15 @@ fn tables_of_a_newer_version_are_left_alone(server: &Postgres) {
         .into_iter()
         .for_each(|entry| recorder.record(entry));
     let health = wait_for(&recorder, "refused", |health| {
-        health.trouble.is_some() && health.unsent == 4
+        health.problem.is_some() && health.unsent == 4
     });
     let expected = "the server's tables have version 7: this program supports up to version 1; install a newer tamaire";
-    assert_eq!(health.trouble.as_deref(), Some(expected));
+    assert_eq!(health.problem.as_deref(), Some(expected));
     assert!(health.is_recording);
     assert_eq!(count(&mut client, "visits"), 1);
 }
 
-fn an_address_that_is_none_is_told(server: &Postgres) {
+fn invalid_addresses_are_reported(server: &Postgres) {
     let (_folder, path) = place();
     for (address, expected) in [
         ("hots=hall", "the address of the server is invalid"),
@@ -399,8 +399,8 @@ fn an_address_that_is_none_is_told(server: &Postgres) {
             address: address.into(),
         };
         let recorder = begin(&path, STAND, &address);
-        let health = wait_for(&recorder, expected, |health| health.trouble.is_some());
-        let trouble = health.trouble.unwrap();
+        let health = wait_for(&recorder, expected, |health| health.problem.is_some());
+        let trouble = health.problem.unwrap();
         assert!(
             trouble.contains(expected) && !trouble.contains("secret"),
             "{trouble}"

@@ -22,7 +22,7 @@ pub(super) struct Map {
 }
 
 /// Minimum cost of reaching a position from each cell.
-pub(super) struct Ways<'a> {
+pub(super) struct CostField<'a> {
     map: &'a Map,
     to: Vector,
     costs: Vec<u32>,
@@ -59,7 +59,7 @@ impl Map {
     }
 
     /// Returns the minimum costs of reaching a position from all cells.
-    pub(super) fn ways_to(&self, to: Vector) -> Ways<'_> {
+    pub(super) fn ways_to(&self, to: Vector) -> CostField<'_> {
         self.ways(to, None)
     }
 
@@ -70,7 +70,7 @@ impl Map {
 
     /// Runs Dijkstra's algorithm from the target. With `from`, it stops at that cell, and only costs below
     /// its own are final.
-    fn ways(&self, to: Vector, from: Option<usize>) -> Ways<'_> {
+    fn ways(&self, to: Vector, from: Option<usize>) -> CostField<'_> {
         let mut costs = vec![u32::MAX; self.costs.len()];
         let goal = self.cell(to);
         costs[goal] = 0;
@@ -92,7 +92,7 @@ impl Map {
             });
         }
         let map = self;
-        Ways { map, to, costs }
+        CostField { map, to, costs }
     }
 
     fn cell(&self, at: Vector) -> usize {
@@ -119,7 +119,7 @@ impl Map {
     }
 }
 
-impl Ways<'_> {
+impl CostField<'_> {
     /// Returns the furthest position on the path from `from` that can be reached on a straight line.
     pub(super) fn next(&self, from: Vector) -> Vector {
         let start = self.map.cell(from);

@@ -46,7 +46,7 @@ pub(super) struct Piece {
     /// Centre [m].
     pub centre: Vector,
     /// Unit vector in the direction to push.
-    pub way: Vector,
+    pub direction: Vector,
     /// Distance between its centre and that of a hand that touches it from behind [m].
     pub reach: f32,
     /// Position from which a hand starts to push [m].
@@ -165,7 +165,7 @@ impl Piece {
         let reach = length([0, 1, 2].map(|k| way[k] * half[k])) + hand;
         Self {
             centre,
-            way,
+            direction: way,
             reach,
             behind: minus(centre, scaled(way, 1.1 * reach)),
             far: length(minus(centre, basket.mouth)),

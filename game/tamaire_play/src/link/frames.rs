@@ -7,7 +7,7 @@ use crate::{InputFrame, PLAYERS};
 /// Encodes frames: a byte with the method, followed by the coded frames.
 pub fn write(frames: &[InputFrame]) -> Vec<u8> {
     let unit = common_unit(frames);
-    let ways = [false, true].map(|goes_on| Way { goes_on, unit });
+    let ways = [false, true].map(|goes_on| Method { goes_on, unit });
     let told = ways.map(|way| {
         let mut writer = Writer::new();
         let mut model = Model::new(way);
@@ -23,7 +23,7 @@ pub fn write(frames: &[InputFrame]) -> Vec<u8> {
 /// Decodes `count` frames; `None` if the method is invalid.
 pub fn read(bytes: &[u8], count: usize) -> Option<Vec<InputFrame>> {
     let (&first, told) = bytes.split_first()?;
-    let mut model = Model::new(Way::of(first)?);
+    let mut model = Model::new(Method::of(first)?);
     let mut reader = Reader::new(told);
     let nothing = InputFrame::default();
     Some(
@@ -35,7 +35,7 @@ pub fn read(bytes: &[u8], count: usize) -> Option<Vec<InputFrame>> {
 
 /// Method of coding frames.
 #[derive(Copy, Clone, Debug)]
-struct Way {
+struct Method {
     /// Whether a hand is predicted to keep its velocity instead of resting. On a slow screen a mouse position
     /// arrives only every few ticks; then hands move in jumps, and resting is the better prediction.
     goes_on: bool,
@@ -43,7 +43,7 @@ struct Way {
     unit: u32,
 }
 
-impl Way {
+impl Method {
     fn byte(self) -> u8 {
         (self.unit as u8) << 1 | u8::from(self.goes_on)
     }
@@ -68,7 +68,7 @@ const GUESSED: usize = 64;
 
 /// Adaptive model of the frames. Writer and reader learn the same probabilities.
 struct Model {
-    way: Way,
+    way: Method,
     /// Probability that a player has a target, by player and by whether they had one in the last frame.
     present: [[Chance; 2]; PLAYERS],
     was_present: [bool; PLAYERS],
@@ -97,7 +97,7 @@ struct Differences {
 }
 
 impl Model {
-    fn new(way: Way) -> Self {
+    fn new(way: Method) -> Self {
         let unknown = || Differences {
             longer: [[Chance::default(); 16]; CLASSES],
             negative: Default::default(),
@@ -122,14 +122,21 @@ impl Model {
             *was_present = bits.bit(chance, goal.is_some());
             if *was_present {
                 let goal = goal.unwrap_or_default();
-                let axes = [0, 1, 2].map(|axis| self.place(bits, player, axis, goal[axis]));
+                let axes =
+                    [0, 1, 2].map(|axis| self.code_coordinate(bits, player, axis, goal[axis]));
                 passed.goals[player] = Some(axes);
             }
         }
         passed
     }
 
-    fn place(&mut self, bits: &mut impl Bits, player: usize, axis: usize, place: i16) -> i16 {
+    fn code_coordinate(
+        &mut self,
+        bits: &mut impl Bits,
+        player: usize,
+        axis: usize,
+        place: i16,
+    ) -> i16 {
         let (track, axis) = (&mut self.tracks[player][axis], &mut self.axes[axis]);
         let place = place >> self.way.unit;
         let expected = track.expected(self.way.goes_on);

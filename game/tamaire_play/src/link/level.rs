@@ -2,7 +2,7 @@
 
 use super::error::{LinkError, all};
 use crate::assists::assisted;
-use crate::level::{LevelError, hash_of, plain, text_of};
+use crate::level::{LevelError, hash_of, text_of, without_assists};
 use crate::replay::MAX_NAME;
 use crate::{Assist, Level};
 use base64::Engine;
@@ -62,7 +62,7 @@ impl SentLevel {
         // The extension prevents a custom level from taking the name of a built-in one.
         let is_made = matches!(sent.content, Content::Whole(_)) && !sent.id.contains('.');
         let id = sent.id.clone() + if is_made { ".toml" } else { "" };
-        Ok(Level::of(&id, plain(sent.scene()?))?)
+        Ok(Level::from_scene(&id, without_assists(sent.scene()?))?)
     }
 
     pub(super) fn scene(&self) -> Result<Scene, LinkError> {

@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use std::path::Path;
-use tamaire_logbook::{End, Entry, Event, Id, Kind, Logbook, Moment, Round, Visit};
+use tamaire_logbook::{Entry, Event, Id, Kind, Logbook, Moment, Round, RoundEnd, Visit};
 use tamaire_play::Route;
 
 /// The rows of a logbook.
@@ -117,7 +117,7 @@ fn round(
         None,
         None,
     ][random.usize(..6)];
-    let ends = [End::Retried, End::Left, End::Cut];
+    let ends = [RoundEnd::Retried, RoundEnd::Left, RoundEnd::Cut];
     let most_pieces = 1 << random.u32(..10);
     Round {
         id: Id(random.u128(..)),
@@ -130,7 +130,7 @@ fn round(
         level_hash: random.u64(..3) << 62,
         players: random.u8(1..3),
         end: if route.is_some() {
-            End::Won
+            RoundEnd::Won
         } else {
             ends[random.usize(..3)]
         },

@@ -5,7 +5,7 @@ use crate::{logbooks, report_on};
 use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use tamaire_logbook::{End, Id, Round};
+use tamaire_logbook::{Id, Round, RoundEnd};
 use tamaire_play::{AnyRound, Bot, BotKind, InputFrame, Level, Replay, Route};
 use tamaire_report::figures::Reason;
 use tamaire_report::{Options, Stage, report};
@@ -35,9 +35,9 @@ fn played(of: &Round, level: &str, kind: BotKind, ticks: usize, seed: u64) -> Ro
         level_hash: level.hash(),
         seconds: round.frames().len() as f32 / 60.0,
         end: if outcome.is_some() {
-            End::Won
+            RoundEnd::Won
         } else {
-            End::Left
+            RoundEnd::Left
         },
         route: outcome.map(|won| won.route),
         kept: progress.kept,
@@ -58,7 +58,7 @@ fn honest() -> Rows {
     rows.rounds[0] = played(&of[0], "classic", BotKind::Squeeze, 3600, 1);
     rows.rounds[1] = played(&of[1], "classic", BotKind::Shave, 90, 2);
     rows.rounds[2] = played(&of[2], "hoop", BotKind::Random, 45, 3);
-    (rows.rounds[3].end, rows.rounds[3].route) = (End::Cut, None);
+    (rows.rounds[3].end, rows.rounds[3].route) = (RoundEnd::Cut, None);
     assert_eq!(rows.rounds[0].route, Some(Route::Squeeze));
     rows
 }
@@ -145,7 +145,7 @@ fn mismatching_rounds_are_listed_and_not_counted() {
         ),
         (
             Round {
-                end: End::Left,
+                end: RoundEnd::Left,
                 route: None,
                 ..won.clone()
             },
@@ -181,7 +181,7 @@ fn mismatching_rounds_are_listed_and_not_counted() {
         ),
         (
             Round {
-                end: End::Won,
+                end: RoundEnd::Won,
                 route: Some(Route::Mix),
                 ..lost.clone()
             },
@@ -189,7 +189,7 @@ fn mismatching_rounds_are_listed_and_not_counted() {
         ),
         (
             Round {
-                end: End::Won,
+                end: RoundEnd::Won,
                 ..lost.clone()
             },
             Reason::Contradictory,

@@ -1,6 +1,6 @@
 //! Default sound device: opened, kept open, and reopened after a loss.
 
-use super::mailbox::{Mailbox, NoSound, lock};
+use super::mailbox::{Mailbox, SoundError, lock};
 use super::source::Source;
 use cpal::traits::{DeviceTrait, HostTrait, StreamTrait};
 use cpal::{Device, ErrorKind, FromSample, I24, SampleFormat, SizedSample, StreamConfig, U24};
@@ -19,7 +19,7 @@ pub(super) const PAUSE: Duration = Duration::from_secs(2);
 pub(super) fn keep_open<Stream>(
     mailbox: &Weak<Mutex<Mailbox>>,
     opened: Sender<()>,
-    open: impl Fn(Sender<NoSound>) -> Result<Stream, NoSound>,
+    open: impl Fn(Sender<SoundError>) -> Result<Stream, SoundError>,
 ) {
     let mut opened = Some(opened);
     while mailbox.strong_count() > 0 {
@@ -35,7 +35,7 @@ pub(super) fn keep_open<Stream>(
                     break;
                 }
                 Err(RecvTimeoutError::Disconnected) => {
-                    report(mailbox, Some(NoSound::NoAnswer));
+                    report(mailbox, Some(SoundError::NoAnswer));
                     break;
                 }
             }
@@ -45,7 +45,7 @@ pub(super) fn keep_open<Stream>(
     }
 }
 
-pub(super) fn report(mailbox: &Weak<Mutex<Mailbox>>, trouble: Option<NoSound>) {
+pub(super) fn report(mailbox: &Weak<Mutex<Mailbox>>, trouble: Option<SoundError>) {
     if let Some(mailbox) = mailbox.upgrade() {
         let mut mailbox = lock(&mailbox);
         mailbox.cues.clear();
@@ -56,14 +56,14 @@ pub(super) fn report(mailbox: &Weak<Mutex<Mailbox>>, trouble: Option<NoSound>) {
 /// Opens a stream on the default device, which plays until dropped. A loss of the device is sent to `lost`.
 pub(super) fn open_stream(
     mailbox: &Weak<Mutex<Mailbox>>,
-    lost: Sender<NoSound>,
-) -> Result<cpal::Stream, NoSound> {
+    lost: Sender<SoundError>,
+) -> Result<cpal::Stream, SoundError> {
     // Stops ALSA from printing failed attempts; relevant errors are returned.
     #[cfg(target_os = "linux")]
     let _ = alsa::Output::local_error_handler();
     let device = cpal::default_host()
         .default_output_device()
-        .ok_or(NoSound::NoDevice)?;
+        .ok_or(SoundError::NoDevice)?;
     let supported = device.default_output_config()?;
     // Uses the default buffer size: ALSA's PulseAudio plugin stalls with other sizes.
     let config = supported.config();
@@ -81,7 +81,7 @@ pub(super) fn open_stream(
         SampleFormat::U64 => build::<u64>,
         SampleFormat::F32 => build::<f32>,
         SampleFormat::F64 => build::<f64>,
-        other => return Err(NoSound::Refused(format!("sample format {other}"))),
+        other => return Err(SoundError::Refused(format!("sample format {other}"))),
     };
     let stream = build(&device, config, source, lost)?;
     stream.play()?;
@@ -92,7 +92,7 @@ fn build<T: SizedSample + FromSample<f32>>(
     device: &Device,
     config: StreamConfig,
     mut source: Source,
-    lost: Sender<NoSound>,
+    lost: Sender<SoundError>,
 ) -> Result<cpal::Stream, cpal::Error> {
     let channels = usize::from(config.channels);
     device.build_output_stream(
@@ -108,7 +108,7 @@ fn build<T: SizedSample + FromSample<f32>>(
     )
 }
 
-impl From<cpal::Error> for NoSound {
+impl From<cpal::Error> for SoundError {
     fn from(error: cpal::Error) -> Self {
         match error.kind() {
             ErrorKind::DeviceNotAvailable | ErrorKind::HostUnavailable => Self::NoDevice,

@@ -13,7 +13,7 @@ pub const MOST_CUES_OF_THE_WORLD: usize = 240;
 
 /// Reason for missing sound. The game continues without.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoSound {
+pub enum SoundError {
     /// No device was found.
     #[error("no sound device was found")]
     NoDevice,
@@ -35,7 +35,7 @@ pub struct Mailbox {
     /// Incremented by each update, so that the device detects it.
     pub number: u64,
     pub cues: Vec<Cue>,
-    pub trouble: Option<NoSound>,
+    pub trouble: Option<SoundError>,
 }
 
 impl Mailbox {

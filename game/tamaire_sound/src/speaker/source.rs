@@ -1,7 +1,7 @@
 //! Sample source of the device.
 
 use super::mailbox::Mailbox;
-use crate::soundscape::{Hush, Soundscape};
+use crate::soundscape::{Mute, Soundscape};
 use crate::synth::Synth;
 use cpal::{FromSample, SizedSample};
 use std::sync::{Mutex, TryLockError, Weak};
@@ -50,8 +50,8 @@ impl Source {
     /// Reads updates and cues. If the mailbox is locked, they are read in the next call.
     fn listen(&mut self) {
         let Some(mailbox) = self.mailbox.upgrade() else {
-            let hush = Hush::Everything;
-            self.synth.hear(&Soundscape {
+            let hush = Mute::Everything;
+            self.synth.set_soundscape(&Soundscape {
                 hush,
                 ..Soundscape::default()
             });
@@ -64,7 +64,7 @@ impl Source {
         };
         if self.number != mailbox.number {
             self.number = mailbox.number;
-            self.synth.hear(&mailbox.soundscape);
+            self.synth.set_soundscape(&mailbox.soundscape);
             self.synth.set_volumes(&mailbox.volumes);
         }
         for cue in mailbox.cues.drain(..) {

@@ -34,16 +34,16 @@ const AROUND: [usize; 8] = [1, 2, 5, 8, 7, 6, 3, 0];
 
 /// Triangles of a 2D body.
 #[derive(Default)]
-pub struct Sheet {
-    vertices: Pool<Place>,
+pub struct PlaneSurface {
+    vertices: Pool<VertexSource>,
     triangles: Pool<[u32; 3]>,
     /// Triangles, vertices and sides of each element.
     forms: Table<ElementId, Form>,
     /// Vertex of each node, or `NONE`.
     of_node: Table<NodeId, u32>,
     /// Side of the outline that begins (`next`) or ends (`last`) at each node.
-    next: Table<NodeId, Side>,
-    last: Table<NodeId, Side>,
+    next: Table<NodeId, OutlineEdge>,
+    last: Table<NodeId, OutlineEdge>,
     /// Smoothing of the stair steps in the rest shape.
     rest: Rest,
     places: Vec<Vec2>,
@@ -53,7 +53,7 @@ pub struct Sheet {
 
 /// Definition of a vertex: the mean of eight nodes, or one node eight times.
 #[derive(Copy, Clone, Debug)]
-struct Place {
+struct VertexSource {
     nodes: [NodeId; 8],
     material: u8,
 }
@@ -69,7 +69,7 @@ struct Form {
 
 /// Side of the outline, seen from one of its ends.
 #[derive(Copy, Clone, Debug)]
-struct Side {
+struct OutlineEdge {
     /// Vertex at the other end, or `NONE`.
     to: u32,
     is_fresh: bool,
@@ -79,14 +79,14 @@ struct Side {
     corners: [NodeId; 4],
 }
 
-const NO_SIDE: Side = Side {
+const NO_SIDE: OutlineEdge = OutlineEdge {
     to: NONE,
     is_fresh: false,
     offset: Vec2::ZERO,
     corners: [NodeId(u32::MAX); 4],
 };
 
-impl Surface<Dim2> for Sheet {
+impl Surface<Dim2> for PlaneSurface {
     fn follow(&mut self, body: &Body<Dim2>, _: &SoftColours) -> bool {
         let changes = body.changes_since(&mut self.followed);
         let changes = changes.unwrap_or_else(|| {
@@ -139,7 +139,7 @@ impl Surface<Dim2> for Sheet {
     }
 }
 
-impl Sheet {
+impl PlaneSurface {
     /// Removes the triangles of changed elements and nodes and adds the new ones.
     fn change(&mut self, body: &Body<Dim2>, changes: &Changes) {
         let mesh = body.mesh();
@@ -164,7 +164,7 @@ impl Sheet {
             }
         }
         for &id in changes.nodes.iter().filter(|&&id| mesh.is_alive(id)) {
-            self.of_node[id] = self.vertices.take(Place {
+            self.of_node[id] = self.vertices.take(VertexSource {
                 nodes: [id; 8],
                 material: 0,
             });
@@ -196,7 +196,7 @@ impl Sheet {
         for slot in polygons.iter().flatten().copied() {
             if vertices[slot] == NONE && !is_whole {
                 let nodes = mean_of(slot, &nodes);
-                let mean = nodes.map(|nodes| self.vertices.take(Place { nodes, material }));
+                let mean = nodes.map(|nodes| self.vertices.take(VertexSource { nodes, material }));
                 form.means.extend(mean);
                 vertices[slot] = mean.unwrap_or(NONE);
             }
@@ -232,7 +232,7 @@ impl Sheet {
                 true => Default::default(),
                 false => self.rest.offsets(body.grid(), element.cell.at, step),
             };
-            let side = |to: NodeId, end: usize| Side {
+            let side = |to: NodeId, end: usize| OutlineEdge {
                 to: self.of_node[to],
                 is_fresh,
                 offset: offsets[end].to_array().into(),
@@ -247,13 +247,13 @@ impl Sheet {
         let positions = body.positions();
         let at = |node: NodeId| Vec2::new(positions[node][0], positions[node][1]);
         let places = self.vertices.all.iter().map(|place| match place {
-            Some(Place { nodes, .. }) if nodes.iter().all(|node| *node == nodes[0]) => at(nodes[0]),
-            Some(Place { nodes, .. }) => nodes.iter().map(|&node| at(node)).sum::<Vec2>() / 8.0,
+            Some(VertexSource { nodes, .. }) if nodes.iter().all(|node| *node == nodes[0]) => at(nodes[0]),
+            Some(VertexSource { nodes, .. }) => nodes.iter().map(|&node| at(node)).sum::<Vec2>() / 8.0,
             None => Vec2::ZERO,
         });
         self.places.clear();
         self.places.extend(places);
-        let moved = |side: &Side| {
+        let moved = |side: &OutlineEdge| {
             let [a, b, c, d] = side.corners.map(at);
             let (right, up) = (0.5 * (b - a + d - c), 0.5 * (c - a + d - b));
             side.offset.x * right + side.offset.y * up

@@ -31,7 +31,7 @@ impl<T> Pool<T> {
     }
 
     /// Frees a slot.
-    pub fn give_back(&mut self, place: u32) {
+    pub fn free(&mut self, place: u32) {
         self.all[place as usize] = None;
         self.free.push(place);
     }

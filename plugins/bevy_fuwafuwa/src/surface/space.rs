@@ -22,7 +22,7 @@ const BORDER: u8 = 128;
 
 /// Surface of a 3D body.
 #[derive(Default)]
-pub struct Hull {
+pub struct SpaceSurface {
     skin: Skin,
     crumbs: Vec<Crumb>,
 }
@@ -32,7 +32,7 @@ struct Crumb {
     corners: [Vertex; 8],
 }
 
-impl Surface<Dim3> for Hull {
+impl Surface<Dim3> for SpaceSurface {
     fn follow(&mut self, body: &Body<Dim3>, colours: &SoftColours) -> bool {
         let count = self.crumbs.len();
         let is_new = self.skin.follow(body, &colours.materials);

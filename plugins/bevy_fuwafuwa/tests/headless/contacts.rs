@@ -26,13 +26,13 @@ fn falling_box_passes_a_sensor_and_begins_one_contact_with_the_floor() {
         app.update();
         began.extend(messages::<ContactBegan>(&app));
         ended += messages::<ContactEnded>(&app).len();
-        let through = messages::<Entered>(&app).into_iter();
+        let through = messages::<SensorEntered>(&app).into_iter();
         entered.extend(
             through
                 .filter(|told| told.sensor == gate)
                 .map(|told| told.who),
         );
-        let out = messages::<Left>(&app).into_iter();
+        let out = messages::<SensorExited>(&app).into_iter();
         left.extend(out.filter(|told| told.sensor == gate).map(|told| told.who));
         let pressed = messages::<Touched>(&app);
         touches += pressed

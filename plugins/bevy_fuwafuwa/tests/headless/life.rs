@@ -154,7 +154,7 @@ fn knife_cuts_and_engine_removals_send_messages() {
     let across = Blade::segment([-2.0, 0.3], [2.0, 0.3]);
     world.engine_mut().cut(body, &across).unwrap();
     app.update();
-    assert!(!messages::<Parted>(&app).is_empty());
+    assert!(!messages::<PieceDetached>(&app).is_empty());
 
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
     let all = PieceSize::Mass(1e9);

@@ -186,8 +186,8 @@ fn ball_mesh_has_two_triangles_per_bare_face_while_it_tears() {
         let down = at(0.1, 1.6 - 0.035 * tick as f32);
         app.world_mut().entity_mut(blade).insert(down);
         app.update();
-        torn += messages::<Torn>(&app).len();
-        parted += messages::<Parted>(&app)
+        torn += messages::<NodeSplit>(&app).len();
+        parted += messages::<PieceDetached>(&app)
             .iter()
             .filter(|own| own.body == ball)
             .count();

@@ -137,7 +137,7 @@ fn coupled_body_reaches_its_goal_and_fixed_body_its_transform() {
         .spawn((RigidBody3d::hand(0.1), at(0.0, 5.0)))
         .id();
     let coupled = RigidBody3d::hand(0.1).with_drive(MotionType::default());
-    let coupled = (coupled, at(3.0, 5.0), Goal(Vec3::new(3.0, 6.0, 0.0)));
+    let coupled = (coupled, at(3.0, 5.0), TargetPosition(Vec3::new(3.0, 6.0, 0.0)));
     let coupled = app.world_mut().spawn(coupled).id();
     let half = [0.5; 3];
     let table = RigidBody3d::fixed(Shape::Box {

@@ -192,7 +192,7 @@ fn written_transform_moves_the_body_at_once() {
 
     // A coupled body is also moved at once, and then pulled back to its goal.
     let hand = RigidBody3d::hand(0.1).with_drive(MotionType::default());
-    let hand = spawn(&mut app, (hand, at(0.0, 9.0), Goal(Vec3::Y * 9.0)));
+    let hand = spawn(&mut app, (hand, at(0.0, 9.0), TargetPosition(Vec3::Y * 9.0)));
     run(&mut app, 5);
     app.world_mut().entity_mut(hand).insert(at(0.0, 8.0));
     app.update();

@@ -1,7 +1,7 @@
 //! Reproducible files and archives: sorted by name, without owner, with the time of the commit.
 
-use super::kit::Kit;
-use crate::shell::{FAILED, Failure, is_on_path, lacking, root, told};
+use super::kit::ReleaseBuild;
+use crate::shell::{FAILED, Failure, file_error, is_on_path, lacking, root};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -9,25 +9,25 @@ use std::process::Command;
 /// Reads a file of the repository.
 pub fn text_of(path: &str) -> Result<String, Failure> {
     let path = root().join(path);
-    fs::read_to_string(&path).map_err(|error| told(&path, &error))
+    fs::read_to_string(&path).map_err(|error| file_error(&path, &error))
 }
 
 /// Copies a file, and creates the parent folders.
 pub fn put(from: &Path, to: &Path) -> Result<(), Failure> {
     make_room(to)?;
-    fs::copy(from, to).map_err(|error| told(from, &error))?;
+    fs::copy(from, to).map_err(|error| file_error(from, &error))?;
     Ok(())
 }
 
 /// Writes a file, and creates the parent folders.
 pub fn put_text(text: &str, to: &Path) -> Result<(), Failure> {
     make_room(to)?;
-    fs::write(to, text).map_err(|error| told(to, &error))
+    fs::write(to, text).map_err(|error| file_error(to, &error))
 }
 
 fn make_room(path: &Path) -> Result<(), Failure> {
     let folder = path.parent().unwrap_or(path);
-    fs::create_dir_all(folder).map_err(|error| told(folder, &error))
+    fs::create_dir_all(folder).map_err(|error| file_error(folder, &error))
 }
 
 /// Compresses files with gzip, as Debian does with manual pages and changelogs.
@@ -39,7 +39,7 @@ pub fn compress(files: &[PathBuf]) -> Result<(), Failure> {
 
 /// Sets times and permissions of all files below a folder: the time of the commit, and executable programs in
 /// `bin`.
-pub fn settle(kit: &Kit, folder: &Path) -> Result<(), Failure> {
+pub fn settle(kit: &ReleaseBuild, folder: &Path) -> Result<(), Failure> {
     let script = r#"
         cd "$1" &&
         find . -type d -exec chmod 755 {} + &&
@@ -59,7 +59,7 @@ pub fn settle(kit: &Kit, folder: &Path) -> Result<(), Failure> {
 }
 
 /// Packs a folder of the stage as .tar.gz.
-pub fn tar(kit: &mut Kit, stage: &Path, name: &str) -> Result<(), Failure> {
+pub fn tar(kit: &mut ReleaseBuild, stage: &Path, name: &str) -> Result<(), Failure> {
     settle(kit, &stage.join(name))?;
     let archive = kit.folder().join(format!("{name}.tar.gz"));
     let script = r#"
@@ -77,7 +77,7 @@ pub fn tar(kit: &mut Kit, stage: &Path, name: &str) -> Result<(), Failure> {
 }
 
 /// Packs a folder of the stage as .zip.
-pub fn zip(kit: &mut Kit, stage: &Path, name: &str) -> Result<(), Failure> {
+pub fn zip(kit: &mut ReleaseBuild, stage: &Path, name: &str) -> Result<(), Failure> {
     if !is_on_path("zip") {
         return Err(lacking("zip", "Debian: zip"));
     }
@@ -102,7 +102,9 @@ fn execute_in(shell: &mut Command, folder: &Path, hint: &str) -> Result<(), Fail
 /// Runs a command without printing it.
 fn run(command: &mut Command, hint: &str) -> Result<(), Failure> {
     let program = Path::new(command.get_program()).to_path_buf();
-    let status = command.status().map_err(|error| told(&program, &error))?;
+    let status = command
+        .status()
+        .map_err(|error| file_error(&program, &error))?;
     match status.success() {
         true => Ok(()),
         false => Err(Failure {

@@ -1,13 +1,13 @@
 //! State of a release: version, time, folder, and which parts were built from the current commit.
 
 use crate::packages::IfMissing;
-use crate::shell::{CANNOT, FAILED, Failure, output_of, root, target, told};
+use crate::shell::{CANNOT, FAILED, Failure, file_error, output_of, root, target};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// State of a release.
-pub struct Kit {
+pub struct ReleaseBuild {
     /// Version of all contents.
     pub version: String,
     /// Time of the commit [s since 1970], used for all files in packages.
@@ -21,7 +21,7 @@ pub struct Kit {
     made: Vec<PathBuf>,
 }
 
-impl Kit {
+impl ReleaseBuild {
     /// Opens the state for the current commit.
     pub fn open(if_missing: IfMissing) -> Result<Self, Failure> {
         let at = root().display().to_string();
@@ -37,7 +37,7 @@ impl Kit {
                 .ok_or_else(cannot)
         };
         let folder = root().join(target()).join("packages");
-        fs::create_dir_all(folder.join("parts")).map_err(|error| told(&folder, &error))?;
+        fs::create_dir_all(folder.join("parts")).map_err(|error| file_error(&folder, &error))?;
         Ok(Self {
             version: env!("CARGO_PKG_VERSION").to_string(),
             epoch: line(&["log", "-1", "--format=%ct"])?,
@@ -104,7 +104,7 @@ impl Kit {
         // A build with uncommitted changes belongs to no commit.
         match self.is_dirty {
             true => Ok(()),
-            false => fs::write(&path, note).map_err(|error| told(&path, &error)),
+            false => fs::write(&path, note).map_err(|error| file_error(&path, &error)),
         }
     }
 
@@ -125,7 +125,7 @@ impl Kit {
         let stage = self.folder.join("stage").join(name);
         // It may not exist.
         let _removed = fs::remove_dir_all(&stage);
-        fs::create_dir_all(&stage).map_err(|error| told(&stage, &error))?;
+        fs::create_dir_all(&stage).map_err(|error| file_error(&stage, &error))?;
         Ok(stage)
     }
 
@@ -143,7 +143,8 @@ impl Kit {
 
     /// Packages of this version, sorted by name.
     pub fn packages(&self) -> Result<Vec<PathBuf>, Failure> {
-        let entries = fs::read_dir(&self.folder).map_err(|error| told(&self.folder, &error))?;
+        let entries =
+            fs::read_dir(&self.folder).map_err(|error| file_error(&self.folder, &error))?;
         let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
         let version = &self.version;
         files.retain(|path| {
@@ -170,7 +171,7 @@ impl Kit {
 
 /// Size of a file [bytes]; an empty file is an error.
 pub fn size(file: &Path) -> Result<u64, Failure> {
-    let data = fs::metadata(file).map_err(|error| told(file, &error))?;
+    let data = fs::metadata(file).map_err(|error| file_error(file, &error))?;
     match data.len() {
         0 => Err(Failure {
             message: format!("{} is empty", file.display()),

@@ -1,9 +1,11 @@
 //! Packages for Linux: the same tree for a .deb and for an archive that needs no installation.
 
 use super::files::{compress, put, put_text, settle, tar as archive, text_of};
-use super::kit::Kit;
+use super::kit::ReleaseBuild;
 use super::programs;
-use crate::shell::{CANNOT, FAILED, Failure, execute, is_on_path, lacking, output_of, root, told};
+use crate::shell::{
+    CANNOT, FAILED, Failure, execute, file_error, is_on_path, lacking, output_of, root,
+};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -19,7 +21,7 @@ const WINDOW: &str = "libx11-6, libx11-xcb1, libxcursor1, libxi6, libxkbcommon0,
 const ICONS: [(&str, &str); 2] = [("192x192", "icon-192.png"), ("512x512", "icon-512.png")];
 
 /// Builds the tree of the packages, as below /usr.
-pub fn programs(kit: &mut Kit) -> Result<(), Failure> {
+pub fn programs(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     if !cfg!(target_os = "linux") {
         return Err(Failure {
             message: "packages for Linux can only be built on Linux".to_string(),
@@ -38,7 +40,7 @@ pub fn programs(kit: &mut Kit) -> Result<(), Failure> {
         execute(&mut manual, "the manual pages could not be written")?;
         sort_papers(&papers, &tree.join("share"), program)?;
     }
-    fs::remove_dir_all(tree.join("papers")).map_err(|error| told(&tree, &error))?;
+    fs::remove_dir_all(tree.join("papers")).map_err(|error| file_error(&tree, &error))?;
     let share = tree.join("share");
     let from = |path: &str| root().join("packaging/linux").join(path);
     put(
@@ -88,7 +90,7 @@ pub fn programs(kit: &mut Kit) -> Result<(), Failure> {
 /// Moves manual pages and completions to the folders in which shells and `man` search.
 fn sort_papers(papers: &Path, share: &Path, program: &str) -> Result<(), Failure> {
     let pages = papers.join("man");
-    let entries = fs::read_dir(&pages).map_err(|error| told(&pages, &error))?;
+    let entries = fs::read_dir(&pages).map_err(|error| file_error(&pages, &error))?;
     for page in entries.flatten().map(|entry| entry.path()) {
         let name = page.file_name().unwrap_or_default();
         put(&page, &share.join("man/man1").join(name))?;
@@ -114,7 +116,7 @@ fn sort_papers(papers: &Path, share: &Path, program: &str) -> Result<(), Failure
 }
 
 /// Builds an archive that runs without installation.
-pub fn tar(kit: &mut Kit) -> Result<(), Failure> {
+pub fn tar(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     let tree = kit.staged("linux", "linux")?;
     let stage = kit.stage("tar")?;
     let name = format!("tamaire-{}-linux-{}", kit.version, std::env::consts::ARCH);
@@ -127,7 +129,7 @@ pub fn tar(kit: &mut Kit) -> Result<(), Failure> {
 }
 
 /// Builds a package for Debian and Ubuntu.
-pub fn deb(kit: &mut Kit) -> Result<(), Failure> {
+pub fn deb(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     let tree = kit.staged("linux", "linux")?;
     for program in ["dpkg-deb", "dpkg-shlibdeps", "dpkg"] {
         if !is_on_path(program) {
@@ -142,19 +144,19 @@ pub fn deb(kit: &mut Kit) -> Result<(), Failure> {
     let papers = package.join("usr/share/doc/tamaire");
     for file in ["LICENSE-MIT", "LICENSE-APACHE"] {
         let path = papers.join(file);
-        fs::remove_file(&path).map_err(|error| told(&path, &error))?;
+        fs::remove_file(&path).map_err(|error| file_error(&path, &error))?;
     }
     let copyright = text_of("packaging/linux/copyright")?;
     put_text(&copyright, &papers.join("copyright"))?;
     let (changes, changelog) = (papers.join("CHANGELOG.md"), papers.join("changelog"));
-    fs::rename(&changes, &changelog).map_err(|error| told(&changes, &error))?;
+    fs::rename(&changes, &changelog).map_err(|error| file_error(&changes, &error))?;
     let pages = package.join("usr/share/man/man1");
-    let entries = fs::read_dir(&pages).map_err(|error| told(&pages, &error))?;
+    let entries = fs::read_dir(&pages).map_err(|error| file_error(&pages, &error))?;
     let pages = entries.flatten().map(|entry| entry.path());
     let others = [changelog, papers.join("licences.txt")];
     compress(&pages.chain(others).collect::<Vec<_>>())?;
     let unit = papers.join("examples/tamaire-stand.service");
-    let text = fs::read_to_string(&unit).map_err(|error| told(&unit, &error))?;
+    let text = fs::read_to_string(&unit).map_err(|error| file_error(&unit, &error))?;
     put_text(&text.replace("/usr/local/bin/", "/usr/bin/"), &unit)?;
     let linked = linked_packages(&stage, &package)?;
     let control = control(&kit.version, architecture, &linked, kilobytes(&package)?);
@@ -211,7 +213,7 @@ fn linked_packages(stage: &Path, package: &Path) -> Result<String, Failure> {
     }
     let output = find
         .output()
-        .map_err(|error| told(Path::new("dpkg-shlibdeps"), &error))?;
+        .map_err(|error| file_error(Path::new("dpkg-shlibdeps"), &error))?;
     let text = String::from_utf8_lossy(&output.stdout);
     match text.trim().strip_prefix("shlibs:Depends=") {
         Some(packages) if output.status.success() => Ok(packages.to_string()),
@@ -227,10 +229,12 @@ fn linked_packages(stage: &Path, package: &Path) -> Result<String, Failure> {
 
 /// Size on disk [KiB] as Debian counts it, each file rounded up.
 fn kilobytes(folder: &Path) -> Result<u64, Failure> {
-    let entries = fs::read_dir(folder).map_err(|error| told(folder, &error))?;
+    let entries = fs::read_dir(folder).map_err(|error| file_error(folder, &error))?;
     entries.flatten().try_fold(1, |sum, entry| {
         let path = entry.path();
-        let data = entry.metadata().map_err(|error| told(&path, &error))?;
+        let data = entry
+            .metadata()
+            .map_err(|error| file_error(&path, &error))?;
         Ok(sum
             + if data.is_dir() {
                 kilobytes(&path)?
@@ -242,7 +246,7 @@ fn kilobytes(folder: &Path) -> Result<u64, Failure> {
 
 fn copy_tree(from: &Path, to: &PathBuf) -> Result<(), Failure> {
     let parent = to.parent().unwrap_or(to);
-    fs::create_dir_all(parent).map_err(|error| told(parent, &error))?;
+    fs::create_dir_all(parent).map_err(|error| file_error(parent, &error))?;
     let mut copy = Command::new("cp");
     copy.arg("-r").arg(from).arg(to);
     execute(&mut copy, "the tree could not be copied")

@@ -1,10 +1,10 @@
 //! Release builds of the programs: stripped, without local paths, and with the licences of all contents.
 
 use super::files::put;
-use super::kit::Kit;
+use super::kit::ReleaseBuild;
 use crate::cross::Compiler;
 use crate::folders;
-use crate::shell::{Failure, answers, cargo, execute, root, target, told};
+use crate::shell::{Failure, answers, cargo, execute, file_error, root, target};
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ pub const PACKAGES: [&str; 2] = ["tamaire", "fuwafuwa_cli"];
 const PROFILE: &str = "dist";
 
 /// Builds both programs for this system or another; returns their folder.
-pub fn build(kit: &Kit, compiler: Option<&Compiler>) -> Result<PathBuf, Failure> {
+pub fn build(kit: &ReleaseBuild, compiler: Option<&Compiler>) -> Result<PathBuf, Failure> {
     let triple = match compiler {
         Some(compiler) => compiler.system.triple.to_string(),
         None => host()?,
@@ -59,7 +59,12 @@ pub fn build(kit: &Kit, compiler: Option<&Compiler>) -> Result<PathBuf, Failure>
 }
 
 /// Copies a program without its debug symbols, because not every linker omits them.
-pub fn put_stripped(kit: &Kit, from: &Path, to: &Path, strip: &str) -> Result<(), Failure> {
+pub fn put_stripped(
+    kit: &ReleaseBuild,
+    from: &Path,
+    to: &Path,
+    strip: &str,
+) -> Result<(), Failure> {
     put(from, to)?;
     let mut command = Command::new(strip);
     command.arg("--strip-all").arg(to);
@@ -72,18 +77,18 @@ pub fn put_stripped(kit: &Kit, from: &Path, to: &Path, strip: &str) -> Result<()
 pub fn host() -> Result<String, Failure> {
     let mut rustc = Command::new(env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
     let output = rustc.args(["--print", "host-tuple"]).output();
-    let output = output.map_err(|error| told(Path::new("rustc"), &error))?;
+    let output = output.map_err(|error| file_error(Path::new("rustc"), &error))?;
     Ok(String::from_utf8_lossy(&output.stdout).trim().to_string())
 }
 
 /// Writes a file with the licences of all contents; without Node, only THIRD-PARTY.md is used.
-pub fn licences(kit: &Kit, triple: &str) -> Result<PathBuf, Failure> {
+pub fn licences(kit: &ReleaseBuild, triple: &str) -> Result<PathBuf, Failure> {
     let file = kit
         .folder()
         .join("parts")
         .join(format!("licences-{triple}.txt"));
     let parts = kit.folder().join("parts");
-    fs::create_dir_all(&parts).map_err(|error| told(&parts, &error))?;
+    fs::create_dir_all(&parts).map_err(|error| file_error(&parts, &error))?;
     if !answers("node") {
         eprintln!(
             "xtask: Node not found: the programs will show THIRD-PARTY.md only, and NOT all licence texts"

@@ -1,18 +1,18 @@
 //! Data to verify a release: checksums, bills of materials, and known vulnerabilities.
 
-use super::kit::Kit;
+use super::kit::ReleaseBuild;
 use super::programs;
 use crate::cross::WINDOWS;
 use crate::packages::IfMissing;
 use crate::shell::{
-    CANNOT, Failure, answers, cargo, execute, is_on_path, lacking, output_of, told,
+    CANNOT, Failure, answers, cargo, execute, file_error, is_on_path, lacking, output_of,
 };
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
 /// Writes a bill of materials for each system.
-pub fn bills(kit: &mut Kit) -> Result<(), Failure> {
+pub fn bills(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     if !answers("node") {
         return Err(lacking("Node", "Debian: nodejs"));
     }
@@ -39,7 +39,7 @@ pub fn bills(kit: &mut Kit) -> Result<(), Failure> {
 
 /// Checks the rules of `deny.toml`: licences, sources, duplicates, and advisories if their database is
 /// available.
-pub fn deny(kit: &mut Kit) -> Result<(), Failure> {
+pub fn deny(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     let is_there = || output_of("cargo", &["deny", "--version"]).is_some();
     if !is_there() && kit.if_missing == IfMissing::Install {
         let mut install = cargo();
@@ -78,7 +78,7 @@ pub fn deny(kit: &mut Kit) -> Result<(), Failure> {
 }
 
 /// Writes the checksums for `sha256sum --check SHA256SUMS`.
-pub fn sums(kit: &mut Kit) -> Result<(), Failure> {
+pub fn sums(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     let packages = kit.packages()?;
     if packages.is_empty() {
         return Err(Failure {
@@ -96,9 +96,9 @@ pub fn sums(kit: &mut Kit) -> Result<(), Failure> {
     sum.args(names).current_dir(kit.folder());
     let output = sum
         .output()
-        .map_err(|error| told(Path::new("sha256sum"), &error))?;
+        .map_err(|error| file_error(Path::new("sha256sum"), &error))?;
     let file = kit.folder().join("SHA256SUMS");
-    fs::write(&file, &output.stdout).map_err(|error| told(&file, &error))?;
+    fs::write(&file, &output.stdout).map_err(|error| file_error(&file, &error))?;
     eprint!("{}", String::from_utf8_lossy(&output.stdout));
     kit.add(file);
     Ok(())

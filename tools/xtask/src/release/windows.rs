@@ -1,10 +1,10 @@
 //! Archive for Windows with self-contained programs.
 
 use super::files::{put, put_text, zip};
-use super::kit::Kit;
+use super::kit::ReleaseBuild;
 use super::programs;
 use crate::cross::{WINDOWS, Wanted};
-use crate::shell::{FAILED, Failure, lacking, output_of, root, told};
+use crate::shell::{FAILED, Failure, file_error, lacking, output_of, root};
 use std::fs;
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use std::path::Path;
 const NOT_THERE: [&str; 4] = ["libgcc", "libstdc++", "libwinpthread", "libssp"];
 
 /// Builds and packs both programs.
-pub fn archive(kit: &mut Kit) -> Result<(), Failure> {
+pub fn archive(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     let compiler = WINDOWS.compiler(
         Wanted::Build,
         kit.if_missing,
@@ -42,7 +42,7 @@ pub fn archive(kit: &mut Kit) -> Result<(), Failure> {
         ("LICENSE-APACHE", "LICENSE-APACHE.txt"),
     ] {
         let path = root().join(from);
-        let text = fs::read_to_string(&path).map_err(|error| told(&path, &error))?;
+        let text = fs::read_to_string(&path).map_err(|error| file_error(&path, &error))?;
         let text = text.replace("\r\n", "\n").replace('\n', "\r\n");
         put_text(&text, &folder.join(to))?;
     }

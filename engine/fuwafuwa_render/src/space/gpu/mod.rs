@@ -10,9 +10,9 @@ use super::rounded;
 use crate::frame::Frame;
 use crate::gpu::buffer::GrowingBuffer;
 use crate::gpu::cost::{Cost, Gpu, Meter};
-use crate::gpu::image::{ImageError, Step, image};
+use crate::gpu::image::{ImageError, ImageStage, image};
 use crate::gpu::targets::{bind, clear, new_uniforms};
-use crate::rigid::MOST_WALLS;
+use crate::rigid::MAX_WALLS;
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::{Dim3, World};
 use glam::{Mat3, Mat4, Vec3};
@@ -77,7 +77,7 @@ struct Globals {
     fresh: [f32; 4],
     hands: [[f32; 4]; MOST_HANDS],
     hand_colours: [[f32; 4]; MOST_HANDS],
-    walls: [[f32; 4]; MOST_WALLS],
+    walls: [[f32; 4]; MAX_WALLS],
 }
 
 impl Renderer {
@@ -127,7 +127,7 @@ impl Renderer {
         }
         self.geometry.gather(world, frame);
         self.upload(device, queue);
-        self.tell(queue, frame);
+        self.write_uniforms(queue, frame);
         self.draw_shadows(encoder);
         self.draw_picture(encoder);
     }
@@ -164,8 +164,10 @@ impl Renderer {
     ) -> Result<Vec<u8>, ImageError> {
         let target = (self.format, size);
         image(device, queue, target, |step| match step {
-            Step::Before(encoder) => self.prepare(device, queue, encoder, world, frame, size),
-            Step::Inside(pass) => self.paint(pass),
+            ImageStage::Prepare(encoder) => {
+                self.prepare(device, queue, encoder, world, frame, size)
+            }
+            ImageStage::Paint(pass) => self.paint(pass),
         })
     }
 
@@ -201,14 +203,14 @@ impl Renderer {
     }
 
     /// Writes the uniforms.
-    fn tell(&self, queue: &Queue, frame: &Frame<'_, Camera>) {
+    fn write_uniforms(&self, queue: &Queue, frame: &Frame<'_, Camera>) {
         let (camera, palette, size) = (&frame.camera, frame.palette, self.targets.size);
         let half = LIT * camera.distance;
         let [to_light, to_sky] =
             [LIGHT, SKY].map(|light| seen_by(light, camera.target.into(), half));
         let texels = SHADOW_SIDES.map(|side| 2.0 * half / side as f32);
         let four = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
-        let mut walls = [[0.0; 4]; MOST_WALLS];
+        let mut walls = [[0.0; 4]; MAX_WALLS];
         walls[..self.geometry.walls.len()].copy_from_slice(&self.geometry.walls);
         let (mut hands, mut hand_colours) = ([[0.0; 4]; MOST_HANDS], [[0.0; 4]; MOST_HANDS]);
         let range = |range: &Range<u32>| range.start as usize..range.end as usize;
@@ -269,20 +271,20 @@ impl Renderer {
                 &self.meter,
                 &mut pass,
                 &self.fine,
-                self.there(&geometry.bars),
+                self.clamped_to_buffer(&geometry.bars),
             );
             draw_mesh(
                 &self.meter,
                 &mut pass,
                 &self.fine,
-                self.there(&geometry.props),
+                self.clamped_to_buffer(&geometry.props),
             );
             pass.set_pipeline(&pipelines.crumb_shadow);
             draw_mesh(
                 &self.meter,
                 &mut pass,
                 &self.coarse,
-                self.there(&geometry.crumbs),
+                self.clamped_to_buffer(&geometry.crumbs),
             );
         }
     }
@@ -346,7 +348,7 @@ impl Renderer {
         pass.set_vertex_buffer(1, self.rounded.all());
         for (pipeline, mesh, instances) in kinds {
             pass.set_pipeline(pipeline);
-            draw_mesh(&self.meter, pass, mesh, self.there(instances));
+            draw_mesh(&self.meter, pass, mesh, self.clamped_to_buffer(instances));
         }
     }
 
@@ -358,7 +360,7 @@ impl Renderer {
     }
 
     /// Limits an instance range to the instances in the buffer.
-    fn there(&self, instances: &Range<u32>) -> Range<u32> {
+    fn clamped_to_buffer(&self, instances: &Range<u32>) -> Range<u32> {
         let count = self.rounded.count();
         instances.start.min(count)..instances.end.min(count)
     }

@@ -1,7 +1,7 @@
 //! Render pipelines for each kind of 3D vertex.
 
 use crate::gpu::program::{
-    InMemory, OVER, Program, SAMPLES, Target, entry, layout, module, sampler, texture, uniform,
+    OVER, Program, SAMPLES, Target, VertexLayout, entry, layout, module, sampler, texture, uniform,
     wgsl,
 };
 use crate::space::boxes::BoxVertex;
@@ -201,32 +201,32 @@ fn depth_state(format: TextureFormat, is_written: bool) -> DepthStencilState {
     }
 }
 
-impl InMemory for SkinVertex {
+impl VertexLayout for SkinVertex {
     const ATTRIBUTES: &'static [VertexAttribute] = &vertex_attr_array![
         0 => Float32x3, 1 => Float32x3, 2 => Snorm16x4, 3 => Unorm8x4, 4 => Unorm8x4
     ];
     const STEP: VertexStepMode = VertexStepMode::Vertex;
 }
 
-impl InMemory for BoxVertex {
+impl VertexLayout for BoxVertex {
     const ATTRIBUTES: &'static [VertexAttribute] =
         &vertex_attr_array![0 => Float32x3, 1 => Unorm8x4, 2 => Unorm8x4];
     const STEP: VertexStepMode = VertexStepMode::Vertex;
 }
 
-impl InMemory for RoomVertex {
+impl VertexLayout for RoomVertex {
     const ATTRIBUTES: &'static [VertexAttribute] =
         &vertex_attr_array![0 => Float32x3, 1 => Float32x3];
     const STEP: VertexStepMode = VertexStepMode::Vertex;
 }
 
-impl InMemory for RoundedVertex {
+impl VertexLayout for RoundedVertex {
     const ATTRIBUTES: &'static [VertexAttribute] =
         &vertex_attr_array![0 => Float32x3, 1 => Float32x3];
     const STEP: VertexStepMode = VertexStepMode::Vertex;
 }
 
-impl InMemory for RoundedInstance {
+impl VertexLayout for RoundedInstance {
     const ATTRIBUTES: &'static [VertexAttribute] = &vertex_attr_array![
         2 => Float32x4, 3 => Float32x3, 4 => Float32x3, 5 => Float32x3,
         6 => Float32x3, 7 => Float32x4, 8 => Float32

@@ -2,7 +2,7 @@
 
 use super::pipelines::{DEPTH_FORMAT, PICTURE_FORMAT, Pipelines, SHADOW_FORMAT};
 use crate::gpu::program::SAMPLES;
-use crate::gpu::targets::{bind, new_image, smooth, within};
+use crate::gpu::targets::{bind, limited_size, new_image, smooth};
 use wgpu::*;
 
 /// Side lengths of the shadow map and of the sky map [px]. The sky map is blurred far more.
@@ -29,7 +29,7 @@ pub struct Shadows {
 impl Targets {
     pub fn new(device: &Device, pipelines: &Pipelines, window: [u32; 2]) -> Self {
         let window = window.map(|side| side.max(1));
-        let size = within(device, window);
+        let size = limited_size(device, window);
         let inside = TextureUsages::RENDER_ATTACHMENT;
         let picture = new_image(
             device,

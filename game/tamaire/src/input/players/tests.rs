@@ -1,33 +1,33 @@
 use super::*;
 use egui::Key;
 use fuwafuwa::world::TICK;
-use sticks::{About, Device, Direction, Snapshot};
+use sticks::{Device, DeviceInfo, Direction, Snapshot};
 
 const HANDS: [Vector; 2] = [[-1.0, 0.0, 0.0], [-1.0, 0.5, 0.0]];
-const MANNER: Manner = Manner {
+const MANNER: InputMapping = InputMapping {
     sensitivity: 1.0,
-    stick_places: false,
+    stick_sets_position: false,
     arena: [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]],
     turn: None,
 };
-const PLACES: Manner = Manner {
-    stick_places: true,
+const PLACES: InputMapping = InputMapping {
+    stick_sets_position: true,
     ..MANNER
 };
 
 /// Returns the goal of the first player in the next tick.
-fn goal(players: &mut Players, devices: &Devices, manner: &Manner) -> Option<Vector> {
+fn goal(players: &mut Players, devices: &Devices, manner: &InputMapping) -> Option<Vector> {
     goals(players, devices, manner)[0]
 }
 
-fn goals(players: &mut Players, devices: &Devices, manner: &Manner) -> [Option<Vector>; 2] {
+fn goals(players: &mut Players, devices: &Devices, manner: &InputMapping) -> [Option<Vector>; 2] {
     let frame = players.frame(devices, &Bindings::default(), manner, &HANDS, TICK);
     [frame.goal(0), frame.goal(1)]
 }
 
 /// Creates a stick with this deflection to the right and upwards.
 fn stick(id: u32, lean: [f32; 2]) -> Device {
-    let about = About {
+    let about = DeviceInfo {
         name: String::new(),
         guid: String::new(),
         labels: sticks::Labels::default(),
@@ -71,19 +71,20 @@ fn keys_set_speed_and_diagonals_are_no_faster() {
         keys: keys.iter().copied().collect(),
         ..Devices::default()
     };
-    let of = |keys: &[Key], manner: &Manner| goal(&mut Players::default(), &held(keys), manner);
+    let of =
+        |keys: &[Key], manner: &InputMapping| goal(&mut Players::default(), &held(keys), manner);
     assert_near(of(&[Key::D], &MANNER), [-1.0 + step, 0.0]);
     assert_near(of(&[Key::D, Key::ArrowRight], &MANNER), [-1.0 + step, 0.0]);
     assert_eq!(of(&[Key::A, Key::D], &MANNER), None);
     let side = step * 0.5_f32.sqrt();
     assert_near(of(&[Key::W, Key::A], &MANNER), [-1.0 - side, side]);
-    let slowly = Manner {
+    let slowly = InputMapping {
         sensitivity: 0.5,
         ..MANNER
     };
     assert_near(of(&[Key::S], &slowly), [-1.0, -0.5 * step]);
     // The goal is clamped to the arena.
-    let narrow = Manner {
+    let narrow = InputMapping {
         arena: [[-1.0, -1.0, 0.0], [1.0, 0.0, 0.0]],
         ..MANNER
     };
@@ -129,7 +130,7 @@ fn still_position_stick_leaves_goal_to_other_devices() {
 
 #[test]
 fn away_in_space_is_away_from_camera_and_lift_raises_hand() {
-    let manner = Manner {
+    let manner = InputMapping {
         arena: [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]],
         turn: Some(std::f32::consts::FRAC_PI_2),
         ..MANNER
@@ -169,7 +170,7 @@ fn away_in_space_is_away_from_camera_and_lift_raises_hand() {
 
 #[test]
 fn wanted_height_is_kept_when_goal_cannot_follow() {
-    let manner = Manner {
+    let manner = InputMapping {
         arena: [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]],
         turn: Some(0.0),
         ..MANNER
@@ -177,7 +178,7 @@ fn wanted_height_is_kept_when_goal_cannot_follow() {
     // The body holds the hand down, and the limited distance between hand and goal holds the goal.
     let here = [0.0, 0.5, 0.0];
     let mut players = Players::default();
-    let mut goal = |devices: &Devices, manner: &Manner| {
+    let mut goal = |devices: &Devices, manner: &InputMapping| {
         let frame = players.frame(devices, &Bindings::default(), manner, &[here], TICK);
         frame.goal(0).expect("a goal")
     };
@@ -199,8 +200,8 @@ fn wanted_height_is_kept_when_goal_cannot_follow() {
     assert_height(goal(&lift(0.3), &manner), 1.3);
     assert_height(goal(&keys(Key::D), &manner), 1.3);
     assert_height(goal(&with_sticks(vec![stick(1, [0.0, 1.0])]), &manner), 1.3);
-    let places = Manner {
-        stick_places: true,
+    let places = InputMapping {
+        stick_sets_position: true,
         ..manner
     };
     let pointing = with_sticks(vec![stick(1, [1.0, 0.0])]);
@@ -235,21 +236,21 @@ fn each_device_belongs_to_one_player() {
     let mut players = Players::default();
     let mut devices = with_sticks(vec![stick(1, [1.0, 0.0]), stick(2, [0.0; 2])]);
     assert_eq!(goals(&mut players, &devices, &MANNER)[1], None);
-    players.join(Seat::Stick(DeviceId(1)));
+    players.join(InputSource::Stick(DeviceId(1)));
     let [first, second] = goals(&mut players, &devices, &MANNER);
     assert_near(first, [-1.0 + PACE * TICK, 0.0]);
     assert_near(second, [-1.0 + PACE * TICK, 0.5]);
     // A player who joins and gives no input stays at the start position of the level.
-    players.join(Seat::Keys);
+    players.join(InputSource::Keys);
     assert_near(goals(&mut players, &devices, &MANNER)[1], [-1.0, 0.5]);
-    players.join(Seat::Keys);
+    players.join(InputSource::Keys);
     assert_eq!(players.second(), None);
-    players.join(Seat::Stick(DeviceId(1)));
+    players.join(InputSource::Stick(DeviceId(1)));
     devices.sticks.devices.remove(0);
     assert_eq!(goals(&mut players, &devices, &MANNER)[1], None);
     assert_eq!(players.second(), None, "it was unplugged");
     // The level may have only one hand.
-    players.join(Seat::Keys);
+    players.join(InputSource::Keys);
     let bindings = Bindings::default();
     let frame = players.frame(&devices, &bindings, &MANNER, &HANDS[..1], TICK);
     assert_eq!(frame.goal(1), None);
@@ -257,12 +258,12 @@ fn each_device_belongs_to_one_player() {
 
 #[test]
 fn screen_buttons_belong_to_player_with_pointer() {
-    let manner = Manner {
+    let manner = InputMapping {
         turn: Some(0.0),
         ..MANNER
     };
     let mut players = Players::default();
-    players.join(Seat::Keys);
+    players.join(InputSource::Keys);
     let devices = Devices {
         pressed: [Action::Raise].into(),
         ..Devices::default()

@@ -32,8 +32,8 @@ fn deform(world: &mut World<Dim3>, to: impl Fn(PieceId, Vector) -> Vector) {
 }
 
 /// Returns the share of the face that lies on original skin.
-fn covered(perch: &Perch, body: &SoftBody<Dim3>) -> f32 {
-    let skin = Skin::of(body, perch.piece, &masses(body), Some(EYE));
+fn covered(perch: &FaceAnchor, body: &SoftBody<Dim3>) -> f32 {
+    let skin = PieceSkin::of(body, perch.piece, &masses(body), Some(EYE));
     let size = perch.size;
     let at = plus(perch.at, scaled(perch.axes[2], INSIDE * size));
     skin.cover(at, perch.axes[2], size)
@@ -42,8 +42,11 @@ fn covered(perch: &Perch, body: &SoftBody<Dim3>) -> f32 {
 #[test]
 fn perch_faces_camera_on_covered_skin() {
     let world = ball();
-    let perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
-    assert!(dot(perch.axes[2], wish([0.5; 3], EYE)) > 0.97, "{perch:?}");
+    let perch = FaceAnchor::new(world.soft_bodies().first().unwrap(), Some(EYE));
+    assert!(
+        dot(perch.axes[2], ideal_direction([0.5; 3], EYE)) > 0.97,
+        "{perch:?}"
+    );
     assert!(perch.axes[0][0] > 0.97 && perch.size > 0.2, "{perch:?}");
     assert!(covered(&perch, world.soft_bodies().first().unwrap()) > 0.9);
 }
@@ -51,7 +54,7 @@ fn perch_faces_camera_on_covered_skin() {
 #[test]
 fn perch_rolls_with_fast_skin() {
     let mut world = ball();
-    let mut perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
+    let mut perch = FaceAnchor::new(world.soft_bodies().first().unwrap(), Some(EYE));
     let (first, out) = (perch.at, perch.axes[2]);
     for tick in 1..20 {
         // Rotates at 10 rad/s and moves away.
@@ -77,7 +80,7 @@ fn perch_rolls_with_fast_skin() {
 #[test]
 fn perch_moves_seldom_while_body_rolls_and_ends_upright() {
     let mut world = ball();
-    let mut perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
+    let mut perch = FaceAnchor::new(world.soft_bodies().first().unwrap(), Some(EYE));
     let mut leaps = 0;
     let (mut angle, mut least) = (0.0f32, f32::MAX);
     for tick in 1..150 {
@@ -92,7 +95,7 @@ fn perch_moves_seldom_while_body_rolls_and_ends_upright() {
         let body = world.soft_bodies().first().unwrap();
         perch.follow(body, Some(EYE), tick % 5 == 0, TICK);
         leaps += u32::from(length(minus(perch.axes[2], before)) > 0.2);
-        least = least.min(dot(perch.axes[2], wish([0.5; 3], EYE)));
+        least = least.min(dot(perch.axes[2], ideal_direction([0.5; 3], EYE)));
     }
     assert!(leaps <= 2 && least > 0.3, "{leaps} leaps, {least}");
     assert!(dot(perch.axes[1], UPRIGHT[1]) > 0.8, "{perch:?}");
@@ -101,7 +104,7 @@ fn perch_moves_seldom_while_body_rolls_and_ends_upright() {
 #[test]
 fn perch_returns_to_camera_after_body_turned() {
     let mut world = ball();
-    let mut perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
+    let mut perch = FaceAnchor::new(world.soft_bodies().first().unwrap(), Some(EYE));
     deform(&mut world, |_, [x, y, z]| [1.0 - x, y, 1.0 - z]);
     let mut least = f32::MAX;
     for tick in 0..60 {
@@ -118,14 +121,17 @@ fn perch_returns_to_camera_after_body_turned() {
         assert!(!leap || perch.size < 0.05, "{perch:?}");
     }
     assert!(least < 0.05, "{least}");
-    assert!(dot(perch.axes[2], wish([0.5; 3], EYE)) > 0.95, "{perch:?}");
+    assert!(
+        dot(perch.axes[2], ideal_direction([0.5; 3], EYE)) > 0.95,
+        "{perch:?}"
+    );
     assert!(perch.size > 0.2, "{perch:?}");
 }
 
 #[test]
 fn perch_leaves_skin_that_was_cut_off() {
     let mut world = ball();
-    let mut perch = Perch::new(world.soft_bodies().first().unwrap(), Some(EYE));
+    let mut perch = FaceAnchor::new(world.soft_bodies().first().unwrap(), Some(EYE));
     // Cuts off the part of the body that faces the camera and moves it away.
     let (from, across, along) = ([-0.5, 1.25, 0.0], [2.0, 0.0, 0.0], [0.0, -1.3, 1.3]);
     world

@@ -1,14 +1,14 @@
 //! File dialog of the browser.
 
 use super::host;
-use crate::platform::given::{Given, Picked, read_together};
+use crate::platform::given::{DialogResult, OpenRequest, read_together};
 
 /// Whether file dialogs are supported.
 pub const IS_THERE: bool = true;
 
 /// File dialog. The page knows whether it is open.
 #[derive(Default)]
-pub struct Dialog(Vec<Given>);
+pub struct Dialog(Vec<OpenRequest>);
 
 impl Dialog {
     /// Opens the dialog. The description is unused, since browsers show only file extensions.
@@ -17,10 +17,10 @@ impl Dialog {
     }
 
     /// Returns the next chosen file, if any.
-    pub fn take(&mut self) -> Option<Picked> {
+    pub fn take(&mut self) -> Option<DialogResult> {
         if let Some(files) = host().take_picked() {
             self.0.extend(read_together(&files));
         }
-        self.0.pop().map(Picked::File)
+        self.0.pop().map(DialogResult::File)
     }
 }

@@ -18,23 +18,23 @@ const KINDS: [(Kind, &str); 4] = [
 
 /// Storage in the browser.
 #[derive(Default)]
-pub struct Kept(Mutex<BTreeMap<String, Thing>>);
+pub struct BrowserStorage(Mutex<BTreeMap<String, StoredEntry>>);
 
-struct Thing {
+struct StoredEntry {
     bytes: Vec<u8>,
     written: SystemTime,
 }
 
-impl Kept {
+impl BrowserStorage {
     /// Applies changes by other tabs and returns all entries.
-    fn now(&self) -> MutexGuard<'_, BTreeMap<String, Thing>> {
+    fn now(&self) -> MutexGuard<'_, BTreeMap<String, StoredEntry>> {
         let mut things = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let host = host();
         while let Some(changed) = host.take_change() {
             let since = Duration::from_millis(changed.written().max(0.0) as u64);
             let written = SystemTime::UNIX_EPOCH + since;
             match changed.bytes() {
-                Some(bytes) => _ = things.insert(changed.key(), Thing { bytes, written }),
+                Some(bytes) => _ = things.insert(changed.key(), StoredEntry { bytes, written }),
                 None => things.clear(),
             }
         }
@@ -42,7 +42,7 @@ impl Kept {
     }
 }
 
-impl Storage for Kept {
+impl Storage for BrowserStorage {
     fn list(&self, kind: Kind) -> io::Result<Vec<Entry>> {
         let Some(beginning) = beginning(kind) else {
             return Ok(Vec::new());
@@ -82,7 +82,7 @@ impl Storage for Kept {
             let milliseconds = js_sys::Date::now();
             host().keep(&key, &bytes, milliseconds);
             let written = SystemTime::UNIX_EPOCH + Duration::from_millis(milliseconds as u64);
-            things.insert(key, Thing { bytes, written });
+            things.insert(key, StoredEntry { bytes, written });
         }
         Ok(())
     }

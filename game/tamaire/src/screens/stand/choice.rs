@@ -1,6 +1,6 @@
 //! Choice of a level at the stand.
 
-use super::super::widgets::{fitted, veil};
+use super::super::widgets::{dim_background, fitted};
 use super::super::{levels::tile, play::focus_first};
 use super::language::above;
 use crate::exhibit::Stand;
@@ -16,7 +16,7 @@ const WIDE: f32 = 360.0;
 const BELOW: f32 = 92.0;
 
 pub(super) fn show(stand: &mut Stand, game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
-    veil(ui, 255);
+    dim_background(ui, 255);
     let (theme, screen) = (game.theme(), above(ui.max_rect()));
     let text = game.settings.language.at_stand().which;
     let headline = fitted(

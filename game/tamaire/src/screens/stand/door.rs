@@ -1,6 +1,6 @@
 //! PIN pad for the staff.
 
-use super::super::widgets::{Weight, button, card, column, fitted, veil};
+use super::super::widgets::{ButtonStyle, button, card, column, dim_background, fitted};
 use super::super::{icons, play::focus_first};
 use crate::exhibit::{CORNER, Stand};
 use crate::game::Game;
@@ -17,7 +17,7 @@ const DIGITS: [[char; 3]; 4] = [
 ];
 
 pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
-    veil(ui, 255);
+    dim_background(ui, 255);
     let (theme, said) = (game.theme(), game.settings.language.at_stand());
     let pause = stand.pause();
     let entered = "●".repeat(stand.entrance.entered.len());
@@ -46,7 +46,8 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
                             ui.allocate_exact_size(KEY, Sense::hover());
                             continue;
                         }
-                        let response = button(ui, &theme, &key.to_string(), KEY, Weight::Other);
+                        let response =
+                            button(ui, &theme, &key.to_string(), KEY, ButtonStyle::Other);
                         if key == '1' {
                             focus_first(ui, &response);
                         }
@@ -61,7 +62,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
                 &theme,
                 game.words().back,
                 vec2(width, 52.0),
-                Weight::Other,
+                ButtonStyle::Other,
             );
             leaves |= back.clicked();
         })

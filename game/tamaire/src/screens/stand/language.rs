@@ -1,7 +1,7 @@
 //! Button that switches the language.
 
 use super::super::hud::STAND;
-use super::super::widgets::{Weight, button};
+use super::super::widgets::{ButtonStyle, button};
 use crate::game::Game;
 use crate::words::Language;
 use egui::{Rect, Ui, vec2};
@@ -27,7 +27,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         if language != spoken
             && ui
                 .scope_builder(place, |ui| {
-                    button(ui, &theme, name, LANGUAGE, Weight::Other).clicked()
+                    button(ui, &theme, name, LANGUAGE, ButtonStyle::Other).clicked()
                 })
                 .inner
         {

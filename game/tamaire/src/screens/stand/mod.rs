@@ -8,15 +8,15 @@ mod leaving;
 mod result;
 mod staff;
 
-use super::attendant::Attendant;
-use super::widgets::{fitted, veil, words};
+use super::attendant::StandController;
+use super::widgets::{dim_background, fitted, words};
 use super::{notices, play};
 use crate::exhibit::{Phase, Stand};
 use crate::game::{Game, Screen};
 use crate::look::Stage;
 use egui::{Color32, Context, CursorIcon, Rect, Ui, ViewportCommand, pos2, vec2};
 
-impl Attendant for Stand {
+impl StandController for Stand {
     fn pass(&mut self, game: &mut Game, ctx: &Context, seconds: f32) {
         let is_closing = ctx.input(|input| input.viewport().close_requested());
         if is_closing && !self.is_ended {
@@ -35,7 +35,7 @@ impl Attendant for Stand {
                 staff::show(self, game, page, ui);
                 notices::show(game, ui);
             }
-            Phase::Door => door::show(self, game, ui),
+            Phase::PinEntry => door::show(self, game, ui),
             Phase::Attract => {
                 play::world(game, stage, ui);
                 attract(game, ui);
@@ -70,11 +70,11 @@ impl Attendant for Stand {
 
 /// Static picture that is shown while the game keeps crashing.
 #[derive(Default)]
-pub struct Calm {
+pub struct CrashScreen {
     is_ended: bool,
 }
 
-impl Attendant for Calm {
+impl StandController for CrashScreen {
     fn pass(&mut self, _: &mut Game, ctx: &Context, _: f32) {
         if ctx.input(|input| input.viewport().close_requested()) && !self.is_ended {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
@@ -95,7 +95,7 @@ impl Attendant for Calm {
 
 /// Shows the name of the game and invites visitors to play.
 fn attract(game: &Game, ui: &Ui) {
-    veil(ui, 40);
+    dim_background(ui, 40);
     let (theme, screen) = (game.theme(), ui.max_rect());
     let time = match game.settings.reduced_motion {
         true => 0.0,

@@ -2,7 +2,7 @@
 
 use super::super::play::focus_first;
 use super::super::result::{headline, line, numbers, other};
-use super::super::widgets::{Weight, button, card, column_beside, veil};
+use super::super::widgets::{ButtonStyle, button, card, column_beside, dim_background};
 use super::code;
 use super::language::above;
 use crate::exhibit::Stand;
@@ -19,13 +19,13 @@ const CODE: f32 = 360.0;
 
 /// Action that a visitor has chosen.
 #[derive(Copy, Clone)]
-enum Wish {
+enum ResultAction {
     Again(Option<Route>),
     Another,
 }
 
 pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
-    veil(ui, 40);
+    dim_background(ui, 40);
     let Some((outcome, _)) = game.bout.won else {
         game.go(Screen::Play);
         return;
@@ -52,16 +52,18 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
                     line(ui, (said.other_way)(route), 25.0, theme.accent);
                     ui.add_space(GAP);
                 }
-                let again = button(ui, &theme, said.again, size, Weight::Main);
+                let again = button(ui, &theme, said.again, size, ButtonStyle::Main);
                 focus_first(ui, &again);
                 if again.clicked() {
-                    wish = Some(Wish::Again(dared.map(other)));
+                    wish = Some(ResultAction::Again(dared.map(other)));
                 }
                 if has_others {
                     ui.add_space(GAP);
                     let text = game.settings.language.at_stand().another;
-                    if button(ui, &theme, text, size - vec2(0.0, 12.0), Weight::Other).clicked() {
-                        wish = Some(Wish::Another);
+                    if button(ui, &theme, text, size - vec2(0.0, 12.0), ButtonStyle::Other)
+                        .clicked()
+                    {
+                        wish = Some(ResultAction::Another);
                     }
                 }
                 wish
@@ -81,8 +83,8 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     if let Some(wish) = wish.filter(|_| stand.is_result_settled()) {
         game.blip(Menu::Confirm);
         match wish {
-            Wish::Again(route) => stand.try_again(game, route),
-            Wish::Another => stand.choose_again(game),
+            ResultAction::Again(route) => stand.try_again(game, route),
+            ResultAction::Another => stand.choose_again(game),
         }
     }
 }

@@ -3,10 +3,10 @@
 use super::super::forces;
 use super::super::play::focus_first;
 use super::super::widgets::{
-    Weight, button, card, choice, fitted, header, page, place_of_page, row, slider, veil,
+    ButtonStyle, button, card, choice, dim_background, fitted, header, page, page_rect, row, slider,
 };
-use crate::exhibit::config::Change;
-use crate::exhibit::staff::Page;
+use crate::exhibit::config::ConfigChange;
+use crate::exhibit::staff::StaffPage;
 use crate::exhibit::{Phase, Stand};
 use crate::game::{Game, Screen};
 use crate::look::Theme;
@@ -26,60 +26,68 @@ const GAP: f32 = 12.0;
 const USUAL_HOURS: [Time; 2] = [Time::constant(10, 0, 0, 0), Time::constant(18, 0, 0, 0)];
 
 /// Action that staff has chosen.
-enum Wish {
+enum StaffAction {
     Leave,
-    See(Page),
-    Change(Change),
+    See(StaffPage),
+    Change(ConfigChange),
     TryStick,
     Export,
     End,
 }
 
-pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: Page, ui: &mut Ui) {
+pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: StaffPage, ui: &mut Ui) {
     if game.screen() == Screen::Forces {
         forces::show(game, ui);
         let strength = game.settings.haptics;
         if game.screen() != Screen::Forces && strength != stand.config.force.strength.0 {
-            stand.change(game, &Change::Strength(strength));
+            stand.change(game, &ConfigChange::Strength(strength));
         }
         return;
     }
-    veil(ui, 255);
+    dim_background(ui, 255);
     let (theme, said) = (game.theme(), game.settings.language.at_stand());
     let mut wish = None;
     if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
-        wish = Some(Wish::Leave);
+        wish = Some(StaffAction::Leave);
     }
-    let area = place_of_page(ui);
+    let area = page_rect(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         let back = header(ui, &theme, game.words().back, &stand.config.stand.0);
         focus_first(ui, &back);
         if back.clicked() {
-            wish = Some(Wish::Leave);
+            wish = Some(StaffAction::Leave);
         }
         page(ui, "staff", WIDE, |ui| {
             let (does, deed) = match shown {
-                Page::Today => (said.export, Wish::Export),
-                Page::Health => (said.try_stick, Wish::TryStick),
-                Page::Settings => (said.end, Wish::See(Page::End)),
-                Page::End => (said.end, Wish::End),
+                StaffPage::Today => (said.export, StaffAction::Export),
+                StaffPage::Health => (said.try_stick, StaffAction::TryStick),
+                StaffPage::Settings => (said.end, StaffAction::See(StaffPage::End)),
+                StaffPage::End => (said.end, StaffAction::End),
             };
             // The action of a page is as wide as one and a half page buttons.
             let width = (ui.available_width() - 5.0 * GAP) / 4.5;
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = GAP;
-                for (seen, name) in Page::ALL.into_iter().zip(said.pages) {
+                for (seen, name) in StaffPage::ALL.into_iter().zip(said.pages) {
                     let weight = if seen == shown {
-                        Weight::Main
+                        ButtonStyle::Main
                     } else {
-                        Weight::Other
+                        ButtonStyle::Other
                     };
                     if button(ui, &theme, name, vec2(width, 48.0), weight).clicked() {
-                        wish = Some(Wish::See(seen));
+                        wish = Some(StaffAction::See(seen));
                     }
                 }
                 ui.add_space(GAP);
-                if button(ui, &theme, does, vec2(1.5 * width, 48.0), Weight::Other).clicked() {
+                if button(
+                    ui,
+                    &theme,
+                    does,
+                    vec2(1.5 * width, 48.0),
+                    ButtonStyle::Other,
+                )
+                .clicked()
+                {
                     wish = Some(deed);
                 }
             });
@@ -91,14 +99,14 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: Page, ui: &mut Ui)
             card(ui, &theme, |ui| {
                 ui.set_width(ui.available_width());
                 match shown {
-                    Page::Today => today(stand, game, ui),
-                    Page::Health => health(stand, game, ui),
-                    Page::Settings => {
+                    StaffPage::Today => today(stand, game, ui),
+                    StaffPage::Health => health(stand, game, ui),
+                    StaffPage::Settings => {
                         if let Some(change) = settings(stand, game, ui) {
-                            wish = Some(Wish::Change(change));
+                            wish = Some(StaffAction::Change(change));
                         }
                     }
-                    Page::End => {
+                    StaffPage::End => {
                         ui.label(RichText::new(said.ends).size(21.0).color(theme.ink));
                     }
                 }
@@ -115,20 +123,20 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: Page, ui: &mut Ui)
     };
     game.blip(Menu::Confirm);
     match wish {
-        Wish::Leave => stand.leave(game),
-        Wish::See(page) => stand.phase = Phase::Staff(page),
-        Wish::Change(change) => stand.change(game, &change),
-        Wish::TryStick => {
+        StaffAction::Leave => stand.leave(game),
+        StaffAction::See(page) => stand.phase = Phase::Staff(page),
+        StaffAction::Change(change) => stand.change(game, &change),
+        StaffAction::TryStick => {
             game.go(Screen::Settings);
             game.go(Screen::Forces);
         }
-        Wish::Export => stand.export(),
-        Wish::End => stand.is_ended = true,
+        StaffAction::Export => stand.export(),
+        StaffAction::End => stand.is_ended = true,
     }
 }
 
 /// Shows a name and its value.
-fn told(ui: &mut Ui, theme: &Theme, name: &str, value: &str) {
+fn show_value(ui: &mut Ui, theme: &Theme, name: &str, value: &str) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::hover());
     let half = 0.5 * rect.width() - 8.0;
     let left = fitted(ui.painter(), name, 20.0, half, theme.faint);
@@ -162,7 +170,7 @@ fn today(stand: &Stand, game: &Game, ui: &mut Ui) {
         first.map_or(said.unknown.into(), said.seconds),
     ];
     for (name, value) in said.figures.into_iter().zip(values) {
-        told(ui, &theme, name, &value);
+        show_value(ui, &theme, name, &value);
     }
 }
 
@@ -180,7 +188,7 @@ fn health(stand: &Stand, game: &Game, ui: &mut Ui) {
         .iter()
         .map(|device| device.about.name.as_str())
         .collect();
-    let recording = match (&logbook.trouble, logbook.dropped) {
+    let recording = match (&logbook.problem, logbook.dropped) {
         (Some(trouble), _) => trouble.clone(),
         (None, 0) => said.recording.into(),
         (None, dropped) => format!("{} (-{dropped})", said.recording),
@@ -211,27 +219,31 @@ fn health(stand: &Stand, game: &Game, ui: &mut Ui) {
         logbook.unsent.to_string(),
     ];
     for (name, value) in said.health.into_iter().zip(values) {
-        told(ui, &theme, name, &value);
+        show_value(ui, &theme, name, &value);
     }
 }
 
 /// Shows the settings of the stand; returns the change to make.
-fn settings(stand: &Stand, game: &mut Game, ui: &mut Ui) -> Option<Change> {
+fn settings(stand: &Stand, game: &mut Game, ui: &mut Ui) -> Option<ConfigChange> {
     let (theme, words) = (game.theme(), game.words());
     let said = game.settings.language.at_stand();
     let mut change = None;
     let config = &stand.config;
     let mut language = config.language;
     if choice(ui, &theme, words.language, &mut language, &Language::ALL) {
-        change = Some(Change::Language(language));
+        change = Some(ConfigChange::Language(language));
     }
     let kinds = [
         (
             words.volume,
             config.sound.volume.0,
-            Change::Volume as fn(f32) -> Change,
+            ConfigChange::Volume as fn(f32) -> ConfigChange,
         ),
-        (words.haptics, config.force.strength.0, Change::Strength),
+        (
+            words.haptics,
+            config.force.strength.0,
+            ConfigChange::Strength,
+        ),
     ];
     for (name, value, kind) in kinds {
         let mut chosen = value;
@@ -255,7 +267,7 @@ fn settings(stand: &Stand, game: &mut Game, ui: &mut Ui) -> Option<Change> {
         }
     }
     if let Some(hours) = hours(stand, game, ui) {
-        change = Some(Change::Hours(hours));
+        change = Some(ConfigChange::Hours(hours));
     }
     row(ui, &theme, said.levels, |_| ());
     levels(stand, game, ui).or(change)
@@ -275,14 +287,14 @@ fn hours(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<Option<(Time, Time)>
             let size = vec2(200.0, 44.0);
             let text = (said.from_to)(open, close);
             ui.label(RichText::new(said.always).size(21.0).color(theme.ink));
-            if button(ui, &theme, &text, size, Weight::Other).clicked() {
+            if button(ui, &theme, &text, size, ButtonStyle::Other).clicked() {
                 chosen = Some(Some((open, close)));
             }
             return;
         };
         for (is_open, time) in [(true, open), (false, close)] {
             for (sign, by) in [("-", -30.minutes()), ("+", 30.minutes())] {
-                if button(ui, &theme, sign, vec2(44.0, 44.0), Weight::Other).clicked() {
+                if button(ui, &theme, sign, vec2(44.0, 44.0), ButtonStyle::Other).clicked() {
                     chosen = Some(Some(match is_open {
                         true => (open.wrapping_add(by), close),
                         false => (open, close.wrapping_add(by)),
@@ -295,7 +307,7 @@ fn hours(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<Option<(Time, Time)>
             }
         }
         let size = vec2(104.0, 44.0);
-        if button(ui, &theme, said.always, size, Weight::Other).clicked() {
+        if button(ui, &theme, said.always, size, ButtonStyle::Other).clicked() {
             chosen = Some(None);
         }
     });
@@ -303,7 +315,7 @@ fn hours(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<Option<(Time, Time)>
 }
 
 /// Shows the levels of the stand. A press adds or removes a level.
-fn levels(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<Change> {
+fn levels(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<ConfigChange> {
     let theme = game.theme();
     let chosen: Vec<&str> = { stand.config.levels.0.iter() }
         .map(|level| level.id.as_str())
@@ -324,7 +336,11 @@ fn levels(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<Change> {
             } else {
                 name.to_string()
             };
-            let weight = if is_in { Weight::Main } else { Weight::Other };
+            let weight = if is_in {
+                ButtonStyle::Main
+            } else {
+                ButtonStyle::Other
+            };
             if button(ui, &theme, &text, vec2(176.0, 42.0), weight).clicked() {
                 let others = chosen.iter().filter(|&&known| known != id);
                 let added = (!is_in).then_some(&id);
@@ -332,5 +348,5 @@ fn levels(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<Change> {
             }
         }
     });
-    changed.map(Change::Levels)
+    changed.map(ConfigChange::Levels)
 }

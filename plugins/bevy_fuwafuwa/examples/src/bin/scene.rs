@@ -294,7 +294,7 @@ fn move_hand(
     hand.translation = HAND - Vec3::Y * (HAND.y - HAND_RADIUS - 0.02) * down;
 }
 
-fn report(mut parted: MessageReader<Parted>, mut rejections: MessageReader<Rejection>) {
+fn report(mut parted: MessageReader<PieceDetached>, mut rejections: MessageReader<Rejection>) {
     let count = parted.read().count();
     if count > 0 {
         info!("{count} pieces came off");
