@@ -3,7 +3,7 @@
 //! The modules, each of which uses only those above it:
 //!
 //! - [`input`]: input of the players in a tick
-//! - [`level`]: levels
+//! - [`level`]: levels and their checks
 //! - [`assists`]: easier variants of levels
 //! - [`rules`]: conditions and routes of a win
 //! - [`round`]: a round of a level
