@@ -13,6 +13,8 @@ use crate::record::Playback;
 use crate::report::NO_DEVICE;
 use crate::save;
 use crate::tools::Tool;
+use app_shell::widgets::fitted;
+use app_shell::{Clock, GpuWatch, NoGpu, SpaceStage, Theme, View, style};
 use bar::BarAction;
 use devices::{DeviceAction, Devices};
 use egui::{
@@ -26,9 +28,6 @@ use hand::HandInput;
 use section::Slices;
 use session::Session;
 use std::path::PathBuf;
-use tamaire::app::NoGpu;
-use tamaire::look::{SpaceStage, Theme, View, dress};
-use tamaire::platform::{Clock, GpuWatch};
 
 /// Camera rotation by mouse [rad/point], and by keys and sticks [rad/s].
 const DRAG: f32 = 0.006;
@@ -78,7 +77,7 @@ impl App {
         setup: Setup,
         devices: Devices,
     ) -> Result<Self, NoGpu> {
-        dress(&context.egui_ctx);
+        style::apply(&context.egui_ctx);
         let state = context.wgpu_render_state.as_ref().ok_or(NoGpu)?;
         let mut app = Self {
             loading: None,
@@ -92,7 +91,7 @@ impl App {
             clock: Clock::of_machine(),
             before: 0.0,
             said: None,
-            gpu: GpuWatch::of(state),
+            gpu: GpuWatch::of(state, "fuwafuwa_surgery"),
             setup,
         };
         app.open(app.setup.wanted.clone());
@@ -389,13 +388,7 @@ impl App {
         let replay = played.map(|share| format!("Replay: {:.0} %", 100.0 * share));
         let said = self.said.as_ref().map(|(text, _)| text.clone());
         if let Some(text) = said.or(replay) {
-            let galley = tamaire::screens::fitted(
-                &painter,
-                &text,
-                20.0,
-                rect.width() - 60.0,
-                self.theme.ink,
-            );
+            let galley = fitted(&painter, &text, 20.0, rect.width() - 60.0, self.theme.ink);
             let at = pos2(
                 rect.center().x - 0.5 * galley.size().x,
                 rect.bottom() - 24.0 - galley.size().y,

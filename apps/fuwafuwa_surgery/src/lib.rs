@@ -12,11 +12,11 @@
 //! - [`record`]: recordings and bit-exact replay
 //! - [`report`]: tables and plots
 //! - [`loading`]: loading in a background thread
-//! - [`save`]: files
+//! - [`save`]: written files
 //! - [`headless`]: procedures without a window
 //! - [`app`]: the window
 //!
-//! Window, stage, timing and devices come from the game, the crate `tamaire`.
+//! Window, stage, timing and devices are in the crate `app_shell`.
 //!
 //! **This is not a medical device.** It is for demonstration and teaching. Its output must not be used to
 //! diagnose, plan or treat, and it does not teach anyone to operate.

@@ -1,5 +1,6 @@
 //! The program `fuwafuwa_surgery`.
 
+use app_shell::window::{WindowOutcome, has_display, open};
 use clap::Parser;
 use fuwafuwa_scan::{Label, Options, RESOLUTIONS, Segmentation, Threshold};
 use fuwafuwa_surgery::app::devices::Devices;
@@ -8,7 +9,6 @@ use fuwafuwa_surgery::headless;
 use fuwafuwa_surgery::loading::LoadRequest;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use tamaire::desktop::window::{WindowOutcome, has_display, open};
 
 /// Cut a soft organ, made from a scan or a phantom, and feel the knife. This is not a medical device.
 #[derive(Parser)]

@@ -60,6 +60,7 @@ fn files_are_opened_in_the_platform_and_for_the_command_line_alone() {
             &["platform", "headless", "desktop", "main"][..],
         ),
         ("game/tamaire_play/src", &[]),
+        ("apps/app_shell/src", &[]),
         ("engine/fuwafuwa_scenes/src", &["disk"]),
     ];
     let inside = edges.into_iter().flat_map(|(folder, edges)| {

@@ -13,6 +13,7 @@
 //!
 //! simulates 8 hours, and copies the logbook to COPY if given.
 
+use app_shell::{Clock, Pads, with_small_memory_blocks};
 use cpu_time::ThreadTime;
 use eframe::egui_wgpu::{RenderState, RendererOptions};
 use eframe::wgpu::PollType;
@@ -27,9 +28,7 @@ use tamaire::app::App;
 use tamaire::exhibit::Stand;
 use tamaire::exhibit::config::DEFAULT_CONFIG;
 use tamaire::game::{Game, Screen};
-use tamaire::platform::{
-    Clock, Files, Pads, Sound, StandFolder, TextFile, memory, with_small_memory_blocks,
-};
+use tamaire::platform::{Files, Sound, StandFolder, TextFile, memory};
 use tamaire_logbook::{Error, Logbook, Round};
 use tamaire_play::{Bot, BotKind, Playback, Replay};
 

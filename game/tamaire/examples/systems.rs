@@ -5,11 +5,12 @@
 //! cargo run --release -p tamaire --example systems
 //! ```
 
+use app_shell::Pads;
 use fuwafuwa::Dim2;
 use fuwafuwa::world::TICK;
 use std::time::{Duration, Instant};
 use tamaire::game::Game;
-use tamaire::platform::{Files, Pads, Sound};
+use tamaire::platform::{Files, Sound};
 use tamaire_play::{Bot, BotKind, Round};
 
 fn main() {

@@ -8,6 +8,7 @@
 //! xvfb-run -a cargo run --release -p tamaire --example window_soak -- 60
 //! ```
 
+use app_shell::Pads;
 use egui::epaint::Primitive;
 use egui::{
     DroppedFile, Event, FullOutput, Key, Modifiers, PointerButton, RawInput, ViewportCommand, pos2,
@@ -23,7 +24,7 @@ use sticks::{Device, DeviceId, DeviceInfo, Labels, Pad, PadButton, Snapshot};
 use tamaire::app::App;
 use tamaire::game::{Game, Screen};
 use tamaire::input::{Action, InputSource};
-use tamaire::platform::{Files, Pads, Sound};
+use tamaire::platform::{Files, Sound};
 
 /// Initial time of the game [s].
 const AHEAD: f64 = 10.0 * 86_400.0;

@@ -8,11 +8,13 @@ mod switch;
 
 use crate::game::{Game, Screen};
 use crate::input::{Action, InputMethod, InputSource};
-use crate::look::{Stage, dress};
+use crate::look::Stage;
 use crate::platform::{
-    Clipboard, GpuWatch, dropped, fill_screen, full_screen_of_page, restart, set_language,
+    Clipboard, dropped, fill_screen, full_screen_of_page, restart, set_language,
 };
 use crate::screens::{self, StandController};
+use app_shell::widgets::{note_use_of_keys, take_hovered};
+use app_shell::{GpuWatch, NoGpu, style};
 use dwell::Dwell;
 use egui::{Event, Key};
 use fingers::Fingers;
@@ -68,20 +70,15 @@ pub struct App {
     pub zoom: f32,
 }
 
-/// The window has no GPU, not even one in software.
-#[derive(Copy, Clone, Debug, thiserror::Error)]
-#[error("no graphics adapter: neither Vulkan nor OpenGL is available, not even in software")]
-pub struct NoGpu;
-
 impl App {
     /// Creates the game in an eframe window, which closes when its GPU is lost.
     ///
     /// # Errors
     /// If the window has no GPU, not even one in software.
     pub fn new(context: &eframe::CreationContext, mut game: Game) -> Result<Self, NoGpu> {
-        dress(&context.egui_ctx);
+        style::apply(&context.egui_ctx);
         let state = context.wgpu_render_state.as_ref().ok_or(NoGpu)?;
-        let (stage, gpu) = (Stage::new(state), GpuWatch::of(state));
+        let (stage, gpu) = (Stage::new(state), GpuWatch::of(state, "tamaire"));
         #[cfg(target_family = "wasm")]
         crate::film::lend(state);
         // Browsers allow full screen only in response to a press.
@@ -128,7 +125,7 @@ impl App {
             let Change::Pressed { device, control } = change else {
                 continue;
             };
-            screens::note_use_of_keys(ctx, true);
+            note_use_of_keys(ctx, true);
             self.game.controls.note_stick(device);
             let is_of_menus = matches!(
                 control,
@@ -178,7 +175,7 @@ impl App {
                 self.navigators.len() - 1
             });
             for direction in self.navigators[index].1.step(device, seconds) {
-                screens::note_use_of_keys(ctx, true);
+                note_use_of_keys(ctx, true);
                 self.game.controls.note_stick(device.id);
                 // A stick on the trial screen moves for its own test and does not navigate the menu.
                 let is_tried = self
@@ -214,7 +211,7 @@ impl App {
     /// Clicks the widget on which the mouse has stayed for long enough, if the player has turned dwell
     /// clicking on.
     fn press_by_resting(&mut self, ctx: &egui::Context, seconds: f32) {
-        let on = screens::take_hovered(ctx).filter(|_| self.game.settings.dwell);
+        let on = take_hovered(ctx).filter(|_| self.game.settings.dwell);
         let Some(at) = ctx.input(|input| input.pointer.latest_pos()) else {
             return;
         };
@@ -247,13 +244,13 @@ impl App {
         for event in &events {
             match event {
                 Event::Key { pressed, .. } => {
-                    screens::note_use_of_keys(ctx, true);
+                    note_use_of_keys(ctx, true);
                     if *pressed && !is_by_stick {
                         game.controls.means = InputMethod::Keys;
                     }
                 }
                 Event::PointerMoved(_) | Event::PointerButton { .. } => {
-                    screens::note_use_of_keys(ctx, false);
+                    note_use_of_keys(ctx, false);
                     // Each touch event is followed by an emulated mouse event, which does not count.
                     if !is_touched {
                         game.controls.means = InputMethod::Mouse;

@@ -23,7 +23,7 @@ pub fn attract(number: usize) -> Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::platform::Clock;
+    use app_shell::Clock;
     use fuwafuwa::world::TICK;
     use tamaire_play::{InputFrame, Level, Route};
 

@@ -4,7 +4,8 @@ mod labels;
 
 use crate::app::App;
 use crate::game::Game;
-use crate::platform::{Files, Host, Pads, Sound, set_host};
+use crate::platform::{Files, Host, Sound, set_host};
+use app_shell::Pads;
 use eframe::{WebOptions, WebRunner};
 use labels::Labels;
 use wasm_bindgen::JsValue;

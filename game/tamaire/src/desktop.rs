@@ -2,18 +2,20 @@
 
 mod exhibit;
 mod report;
-pub mod window;
+mod window;
 
 use crate::game::Game;
 use crate::headless;
 use crate::licences;
-use crate::platform::{Files, OpenRequest, Pads, Sound, level_at};
+use crate::platform::{Files, OpenRequest, Sound, level_at};
+use app_shell::Pads;
+use app_shell::window::{WindowOutcome, has_display};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::io::Write;
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
-use window::{WindowOutcome, has_display, open_game};
+use window::open_game;
 
 /// Push a soft body into a basket that is too small for it.
 #[derive(Parser)]

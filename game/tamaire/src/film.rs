@@ -12,8 +12,9 @@ mod device;
 mod plain;
 mod studio;
 
-use crate::look::{CameraRig, Effects};
+use crate::look::Effects;
 use crate::platform::Yielder;
+use app_shell::CameraRig;
 #[cfg(target_family = "wasm")]
 pub use device::lend;
 use fuwafuwa::world::TICK;

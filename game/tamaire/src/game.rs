@@ -19,14 +19,12 @@ pub mod trial;
 
 use crate::attract::attract;
 use crate::input::{Action, InputSource};
-use crate::look::Theme;
-use crate::platform::{
-    Clock, Damage, Dialog, DialogResult, Files, Forces, OpenRequest, Pads, Sound,
-};
+use crate::platform::{Damage, Dialog, DialogResult, Files, OpenRequest, Sound};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::words::Words;
+use app_shell::{Clock, Forces, Pads, Theme};
 pub use bout::CurrentRound;
 pub use controls::{Controls, ScreenButton};
 use fuwafuwa::world::TICK;

@@ -21,16 +21,6 @@ pub fn contact(hand: &RigidBody) -> Vector {
     [0, 1, 2].map(mean)
 }
 
-/// What of a force [N] a stick feels: to the right, and away from the player. In space that is along the floor, as seen by a
-/// camera that went around to the right by so much [rad].
-pub fn on_stick([x, y, z]: Vector, turn: Option<f32>) -> [f32; 2] {
-    let Some(turn) = turn else {
-        return [x, y];
-    };
-    let (sin, cos) = turn.sin_cos();
-    [cos * x - sin * z, -sin * x - cos * z]
-}
-
 /// How strongly each player feels what tore in the last tick, 0 to 1: whoever's hand is nearest of those that touch something.
 pub fn tears(round: &AnyRound) -> [f32; PLAYERS] {
     let mut counts = [0u32; PLAYERS];
@@ -61,17 +51,4 @@ pub fn silence(round: &AnyRound) -> Option<Stop> {
         return Some(Stop::Won);
     }
     ((round.ticks() as f32) < BEGUN / TICK).then_some(Stop::Reset)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_stick_feels_what_pushes_along_the_floor_as_the_camera_sees_it() {
-        assert_eq!(on_stick([1.0, 2.0, 3.0], None), [1.0, 2.0]);
-        assert_eq!(on_stick([1.0, 2.0, 3.0], Some(0.0)), [1.0, -3.0]);
-        let [right, away] = on_stick([1.0, 2.0, 3.0], Some(std::f32::consts::FRAC_PI_2));
-        assert!((right + 3.0).abs() < 1e-5 && (away + 1.0).abs() < 1e-5);
-    }
 }

@@ -8,12 +8,11 @@
 //! - [`licences`]: third-party parts and their licences
 //! - [`settings`]: the player's settings
 //! - [`records`]: the player's results
-//! - [`platform`]: files, sound and sticks
-//! - [`pace`]: number of ticks for each frame
+//! - [`platform`]: files, sound and dialogs
 //! - [`session`]: playing or watching a round in real time
 //! - [`haptics`]: force feedback and rumble
 //! - [`attract`]: the round behind the title screen
-//! - [`look`]: rendering
+//! - [`look`]: rendering of rounds
 //! - [`film`]: films and photos of rounds
 //! - [`headless`]: rounds without a window
 //! - [`game`]: the state and the actions on it
@@ -22,7 +21,8 @@
 //! - [`app`]: the main loop
 //! - [`desktop`] and [`browser`]: entry points
 //!
-//! Rules, levels, bots and replays are in the crate `tamaire_play`, which does not depend on a window.
+//! Rules, levels, bots and replays are in the crate `tamaire_play`, which does not depend on a window. The window, its
+//! devices, its camera and the pace of ticks are in the crate `app_shell`.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units are written in brackets: [m]
@@ -43,7 +43,6 @@ pub mod headless;
 pub mod input;
 pub mod licences;
 pub mod look;
-pub mod pace;
 pub mod platform;
 pub mod records;
 pub mod screens;

@@ -1,7 +1,6 @@
 //! A round in time: played by people, tried by a bot, or watched again.
 
-use crate::pace::Pace;
-use crate::platform::Clock;
+use app_shell::{Clock, Pace};
 use fuwafuwa::world::TICK;
 use std::sync::Arc;
 use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError};

@@ -1,6 +1,7 @@
 //! Force output to sticks and pads, and every condition that ends it. No window is open, but the device
 //! thread is real.
 
+use app_shell::Pads;
 use force_feedback::{Ability, Calibration, Output, Recording, Stop};
 use fuwafuwa::world::TICK;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -9,7 +10,7 @@ use sticks::{Device, DeviceId, DeviceInfo, Snapshot};
 use tamaire::game::trial::Trial;
 use tamaire::game::{Game, Screen};
 use tamaire::input::{Action, InputSource};
-use tamaire::platform::{Files, Pads, Sound};
+use tamaire::platform::{Files, Sound};
 
 /// Timeout, long enough for a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);

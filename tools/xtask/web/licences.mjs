@@ -15,7 +15,7 @@ const note = (/** @type {string} */ text, /** @type {string} */ owner) =>
 for (const file of ["LICENSE-MIT", "LICENSE-APACHE"]) {
   note(readFileSync(join(root, file), "utf8"), "tamaire, fuwafuwa");
 }
-note(readFileSync(join(root, "game/tamaire/fonts/OFL.txt"), "utf8"), "M PLUS Rounded 1c, the font of the game");
+note(readFileSync(join(root, "apps/app_shell/fonts/OFL.txt"), "utf8"), "M PLUS Rounded 1c, the font of the game");
 const { all } = inside(target, programs);
 const without = [];
 for (const { name, version, license, manifest_path, source } of all) {

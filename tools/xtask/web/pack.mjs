@@ -19,6 +19,8 @@ const FEATURES = ["simd", "bulk-memory", "sign-ext", "mutable-globals", "nontrap
 
 /** Files of the page with fixed names, because they are referred to from outside. */
 const NAMED = ["index.html", "sw.js", "manifest.webmanifest", "icon.svg", "icon-192.png", "icon-512.png"];
+/** Font that the page fetches on demand. */
+const JAPANESE = join(here, "../../../apps/app_shell/fonts/MPLUSRounded1c-Bold-japanese.ttf");
 /** Image for link previews. */
 const PREVIEW = join(here, "../../../docs/game-squeezed.png");
 
@@ -40,7 +42,7 @@ for (const name of readdirSync(page, { withFileTypes: true })) {
 files.set("tamaire.js", readFileSync(join(stage, "tamaire.js")));
 files.set("tamaire.wasm", optimised("tamaire_bg"));
 files.set("sound.wasm", optimised("sound"));
-files.set("japanese.ttf", readFileSync(join(page, "../fonts/MPLUSRounded1c-Bold-japanese.ttf")));
+files.set("japanese.ttf", readFileSync(JAPANESE));
 const parts = {
   game: "./tamaire.js",
   wasm: "./tamaire.wasm",

@@ -4,9 +4,9 @@ use super::section::{Shown, Slices};
 use super::session::Session;
 use crate::procedure::BLUNTEST;
 use crate::tools::Tool;
+use app_shell::Theme;
+use app_shell::widgets::{ButtonStyle, button};
 use egui::{RichText, Slider, Ui, vec2};
-use tamaire::look::Theme;
-use tamaire::screens::{ButtonStyle, button};
 
 /// Action chosen in the bar.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]

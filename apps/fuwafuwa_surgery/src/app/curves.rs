@@ -3,10 +3,11 @@
 use super::pictures::RED;
 use super::session::Session;
 use crate::measures::Sample;
+use app_shell::Theme;
+use app_shell::widgets::fitted;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, Ui, pos2, vec2};
 use fuwafuwa::vector::length;
 use fuwafuwa::world::TICK;
-use tamaire::look::Theme;
 
 /// Time span of the plots [s].
 const SPAN: f32 = 20.0;
@@ -121,7 +122,7 @@ fn numbers(ui: &Ui, rect: Rect, session: &Session, theme: &Theme) {
     for (number, row) in rows.iter().enumerate() {
         let at = pos2(rect.left(), rect.top() + step * number as f32);
         let size = if number < 3 { 18.0 } else { 15.0 };
-        let galley = tamaire::screens::fitted(&painter, row, size, rect.width(), theme.ink);
+        let galley = fitted(&painter, row, size, rect.width(), theme.ink);
         painter.galley(at, galley, theme.ink);
     }
 }

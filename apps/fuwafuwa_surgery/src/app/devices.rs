@@ -1,12 +1,12 @@
 //! Sticks and gamepads: their input and their force feedback.
 
 use super::hand::HandInput;
+use app_shell::direction::{to_user, to_world};
+use app_shell::{Forces, Pads};
 use egui::Vec2;
 use force_feedback::{Ability, Settings, State, Stop};
 use fuwafuwa::Vector;
 use sticks::{Change, Control, Device, DeviceId, Direction, PadButton, Snapshot, radial_dead_zone};
-use tamaire::haptics::on_stick;
-use tamaire::platform::{Forces, Pads};
 
 /// Dead zone of a stick, and the deflection that counts as full; as fractions of its range.
 const DEAD: f32 = 0.15;
@@ -89,10 +89,7 @@ impl Devices {
             let report = self.forces.report(device.id);
             let pushes = report.is_some_and(|report| report.ability == Ability::Force);
             if pushes {
-                let lean = tamaire::input::InputMapping::to_world_direction(
-                    Some(turn),
-                    Vec2::from(device.aim()),
-                );
+                let lean = to_world(Some(turn), Vec2::from(device.aim()));
                 wishes.place = Some([0, 1, 2].map(|axis: usize| {
                     let [low, high] = [low[axis], high[axis]];
                     0.5 * (low + high) + 0.5 * lean[axis] * (high - low)
@@ -134,7 +131,7 @@ impl Devices {
                 true => force_feedback::StickMode::CellIndexing,
                 false => force_feedback::StickMode::Velocity,
             };
-            let contact = on_stick(contact, Some(turn));
+            let contact = to_user(Some(turn), contact);
             Ok(State { contact, manner })
         });
         self.forces.update();

@@ -2,11 +2,11 @@
 
 use crate::procedure::{BLUNTEST, Input};
 use crate::tools::Tool;
+use app_shell::direction::to_world;
 use egui::Vec2;
 use fuwafuwa::vector::{plus, scaled};
 use fuwafuwa::{Rotation, Vector};
 use std::f32::consts::PI;
-use tamaire::input::InputMapping;
 
 /// Speed of the hand at full deflection of a key or stick [m/s]: in the plane, and upwards.
 const PACE: f32 = 0.06;
@@ -87,10 +87,7 @@ impl Hand {
             self.goal = [x, self.goal[1], z];
         }
         let lean = wishes.lean * (1.0 / wishes.lean.length().max(1.0));
-        self.goal = plus(
-            self.goal,
-            InputMapping::to_world_direction(Some(turn), lean * PACE * seconds),
-        );
+        self.goal = plus(self.goal, to_world(Some(turn), lean * PACE * seconds));
         self.goal[1] += wishes.wheel + RISE * wishes.lift.clamp(-1.0, 1.0) * seconds;
         for axis in 0..3 {
             self.goal[axis] = self.goal[axis].clamp(low[axis], high[axis]);

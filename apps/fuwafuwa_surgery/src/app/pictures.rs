@@ -1,11 +1,11 @@
 //! Picture of the organ on its table, with the tool and the force on it.
 
 use super::session::Session;
+use app_shell::{SpaceStage, View};
 use egui::{Align2, Color32, FontId, Painter, Rect, Stroke, Ui, vec2};
 use fuwafuwa::vector::{length, plus, scaled};
 use fuwafuwa_render::palette::rgb;
 use fuwafuwa_render::{Frame, Palette, Prop};
-use tamaire::look::{SpaceStage, View};
 
 /// Length of the force arrow per newton, as a fraction of the camera distance.
 const LONG: f32 = 0.045;

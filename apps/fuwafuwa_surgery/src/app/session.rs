@@ -4,12 +4,10 @@ use super::hand::Hand;
 use crate::measures::{PieceVolume, Sample, parts};
 use crate::procedure::Procedure;
 use crate::record::{Playback, Recording};
+use app_shell::{CameraRig, Clock, Pace};
 use fuwafuwa::Vector;
 use fuwafuwa::vector::{minus, plus};
 use std::sync::Arc;
-use tamaire::look::CameraRig;
-use tamaire::pace::Pace;
-use tamaire::platform::Clock;
 
 /// Ticks between two measurements of the pieces.
 const LOOKS: usize = 20;

@@ -1,6 +1,6 @@
 //! Dwell clicking: a mouse that stays on a button clicks it. For players who point with their eyes or head.
 
-use crate::look::Theme;
+use app_shell::Theme;
 use egui::{Color32, Context, Id, LayerId, Order, Pos2, Shape, Stroke, vec2};
 use std::f32::consts::TAU;
 

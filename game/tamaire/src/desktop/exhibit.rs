@@ -1,6 +1,6 @@
 //! Entry points of a public stand: the supervisor that keeps it running, and the game itself.
 
-use super::window::{WindowOutcome, has_display, open_game};
+use super::window::open_game;
 use crate::exhibit::Stand;
 use crate::exhibit::config::{Config, DEFAULT_CONFIG};
 use crate::game::{Game, PublicMode, Screen};
@@ -9,8 +9,10 @@ use crate::look::Stage;
 use crate::platform::supervisor::{
     Heartbeat, LOST_GRAPHICS, MAX_CRASHES, PAUSE, SupervisorConfig, supervise,
 };
-use crate::platform::{Files, Pads, Sound, StandFolder, TextFile, keep_awake};
+use crate::platform::{Files, Sound, StandFolder, TextFile, keep_awake};
 use crate::screens::{CrashScreen, StandController};
+use app_shell::Pads;
+use app_shell::window::{WindowOutcome, has_display};
 use egui::{Context, Ui, ViewportBuilder, ViewportCommand};
 use std::ffi::OsString;
 use std::panic::resume_unwind;

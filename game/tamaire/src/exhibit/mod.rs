@@ -17,8 +17,9 @@ pub mod staff;
 mod visit;
 
 use crate::game::{Game, Screen};
-use crate::platform::{Clock, TextFile};
+use crate::platform::TextFile;
 use crate::records::Records;
+use app_shell::Clock;
 use config::{Config, ConfigChange, Seconds};
 use egui::Context;
 use health::FrameTimes;

@@ -1,6 +1,6 @@
 //! GPU device of films on a desktop, separate from that of the window.
 
-use crate::platform::with_small_memory_blocks;
+use app_shell::with_small_memory_blocks;
 use eframe::egui_wgpu::{
     RenderState, RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew,
 };

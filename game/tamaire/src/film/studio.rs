@@ -1,7 +1,8 @@
 //! Off-screen rendering of the window's pictures: egui, the stage and both renderers draw into images.
 
 use super::device;
-use crate::look::{CameraRig, DrawOptions, Effects, Hint, Stage, Theme, dress};
+use crate::look::{DrawOptions, Effects, Hint, Stage, view_of_level};
+use app_shell::{CameraRig, Theme, style};
 use eframe::egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor};
 use egui::{Align2, FontId, RawInput, Rect, Ui, Vec2, vec2};
 use fuwafuwa_render::{ImageError, ImageStage};
@@ -47,7 +48,7 @@ impl Studio {
 
     fn of(state: RenderState) -> Self {
         let context = egui::Context::default();
-        dress(&context);
+        style::apply(&context);
         Self {
             stage: Stage::new(&state),
             state,
@@ -135,7 +136,7 @@ impl Studio {
 /// Draws a moment into `rect`, and its caption below.
 fn draw(ui: &Ui, rect: Rect, moment: &Moment, stage: &mut Stage, theme: &Theme) {
     let look = DrawOptions {
-        view: moment.camera.view(rect, moment.round.level()),
+        view: view_of_level(moment.camera, rect, moment.round.level()),
         theme,
         elements: None,
         cut_share: 1.0,

@@ -1,8 +1,9 @@
 //! The current round, which stays visible behind menus: its session, camera and display state.
 
 use super::lesson::Tutorial;
-use crate::look::{CameraRig, Cutaway, Effects, View};
+use crate::look::{Cutaway, Effects};
 use crate::session::Session;
+use app_shell::{CameraRig, View};
 use fuwafuwa_render::frame::ElementColour;
 use tamaire_play::{AnyRound, Outcome};
 

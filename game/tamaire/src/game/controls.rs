@@ -1,7 +1,7 @@
 //! Input devices, and the assignment of devices to players.
 
 use crate::input::{Action, Devices, InputMethod, InputSource, Players, Scan, StickyKeys};
-use crate::platform::Pads;
+use app_shell::Pads;
 use egui::Rect;
 use sticks::{Change, DeviceId, Labels};
 

@@ -4,6 +4,7 @@ use super::trial::{Trial, TrialStatus};
 use super::{Game, Screen};
 use crate::haptics;
 use crate::settings::FULL;
+use app_shell::direction::to_user;
 use force_feedback::{Ability, Calibration, State, StickMode, Stop};
 use sticks::DeviceId;
 use tamaire_play::PLAYERS;
@@ -85,7 +86,7 @@ impl Game {
         let player =
             (0..PLAYERS).find(|&player| self.controls.players.device_of(player) == Some(id))?;
         let hands = self.bout.round().hands();
-        let contact = haptics::on_stick(haptics::contact(hands.get(player)?), self.bout.turn());
+        let contact = to_user(self.bout.turn(), haptics::contact(hands.get(player)?));
         let pushes_back = self.controls.devices.pushing.contains(&id);
         // A device that was put down stops rumbling, even if the hand still presses. A force-feedback stick
         // is excluded, since it may be held still.

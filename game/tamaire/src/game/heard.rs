@@ -1,7 +1,7 @@
 //! Sounds of a tick, and continuous sounds.
 
 use super::{Game, Screen};
-use crate::look::View;
+use app_shell::View;
 use fuwafuwa::{Dim, Event, PieceId, SoftBodyHandle, Vector, With};
 use std::collections::BTreeMap;
 use tamaire_play::rules::CRUMB;
@@ -111,7 +111,9 @@ fn length(v: Vector) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::platform::{Files, Pads, Sound};
+    use crate::look::view_of_level;
+    use crate::platform::{Files, Sound};
+    use app_shell::Pads;
     use egui::{Rect, pos2};
 
     #[test]
@@ -124,7 +126,11 @@ mod tests {
             assert_eq!(soundscape(&game).presses[0].x, 0.0, "there is no view yet");
             game.bout.camera.orbit(turn, 0.0);
             let screen = Rect::from_min_max(pos2(0.0, 0.0), pos2(900.0, 600.0));
-            game.bout.view = Some(game.bout.camera.view(screen, game.bout.round().level()));
+            game.bout.view = Some(view_of_level(
+                &game.bout.camera,
+                screen,
+                game.bout.round().level(),
+            ));
             soundscape(&game).presses[0].x
         };
         for level in ["classic", "classic-3d"] {

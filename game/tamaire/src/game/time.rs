@@ -185,7 +185,8 @@ impl Game {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::platform::{Clock, Files, Pads, Sound};
+    use crate::platform::{Files, Sound};
+    use app_shell::{Clock, Pads};
     use std::cell::Cell;
 
     /// Creates a game in its first level, with a clock that advances by `tick` [s] at each call.

@@ -3,6 +3,7 @@
 
 use crate::haptics;
 use crate::settings::Settings;
+use app_shell::direction::to_user;
 use force_feedback::{Ability, Command, ForceController, Output, State, StickMode, Watchdog};
 use fuwafuwa::Vector;
 use fuwafuwa::world::TICK;
@@ -134,7 +135,7 @@ impl ForceLog {
         let hand = &round.hands()[player];
         let contact = haptics::contact(hand);
         let state = State {
-            contact: haptics::on_stick(contact, turn(round)),
+            contact: to_user(turn(round), contact),
             manner: StickMode::CellIndexing,
         };
         let mail = Command {
@@ -188,7 +189,7 @@ fn aim_at(position: Vector, round: &AnyRound) -> [f32; 2] {
         let half = 0.5 * (high[axis] - low[axis]);
         (position[axis] - middle) / half.max(1e-3)
     });
-    haptics::on_stick(share, turn(round))
+    to_user(turn(round), share)
 }
 
 #[cfg(test)]

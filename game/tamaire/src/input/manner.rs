@@ -1,5 +1,6 @@
 //! Interpretation of a player's input: sensitivity, directions, and limits of the hands.
 
+use app_shell::direction::to_world;
 use egui::Vec2;
 use fuwafuwa::Vector;
 
@@ -18,20 +19,6 @@ pub struct InputMapping {
 }
 
 impl InputMapping {
-    /// Converts a direction of the player (right, away) to a direction in the world. `turn` is the rotation
-    /// of the camera to the right [rad], `None` in the plane.
-    pub fn to_world_direction(turn: Option<f32>, lean: Vec2) -> Vector {
-        let Some(turn) = turn else {
-            return [lean.x, lean.y, 0.0];
-        };
-        let (sin, cos) = turn.sin_cos();
-        [
-            cos * lean.x - sin * lean.y,
-            0.0,
-            -sin * lean.x - cos * lean.y,
-        ]
-    }
-
     /// Clamps a position to the arena. In the plane the third axis is ignored.
     pub(super) fn clamp_to_arena(&self, mut position: Vector) -> Vector {
         let [low, high] = self.arena;
@@ -45,7 +32,7 @@ impl InputMapping {
     /// Converts a stick position to a position in the arena [m]. In space the height is `height` [m].
     pub(super) fn position_of(&self, stick: [f32; 2], height: f32) -> Vector {
         let [low, high] = self.arena;
-        let way = Self::to_world_direction(self.turn, Vec2::from(stick));
+        let way = to_world(self.turn, Vec2::from(stick));
         let mut position = [0, 1, 2].map(|axis: usize| {
             0.5 * (low[axis] + high[axis]) + 0.5 * way[axis] * (high[axis] - low[axis])
         });

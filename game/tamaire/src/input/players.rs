@@ -2,6 +2,7 @@
 
 use super::devices::{DEAD, RIM, direction, held_on, opposed, rise_of};
 use super::{Action, Bindings, Devices, InputMapping, InputSource, ScanAction};
+use app_shell::direction::to_world;
 use egui::Vec2;
 use fuwafuwa::Vector;
 use fuwafuwa::vector::plus;
@@ -148,10 +149,7 @@ impl Players {
             // Starts from the current goal of the hand, so that pushing against an obstacle does not
             // accumulate.
             let lean = asked.lean * (1.0 / asked.lean.length().max(1.0));
-            let step = InputMapping::to_world_direction(
-                manner.turn,
-                lean * PACE * manner.sensitivity * seconds,
-            );
+            let step = to_world(manner.turn, lean * PACE * manner.sensitivity * seconds);
             let mut position = manner.clamp_to_arena(plus(here, step));
             if manner.turn.is_some() {
                 position[1] = wanted[1];

@@ -1,7 +1,8 @@
 //! View of a round at rest, used on the screen and for level thumbnails.
 
+use super::Face;
 use super::feelings::Feeling;
-use super::{Face, Theme, View};
+use app_shell::{Theme, View};
 use fuwafuwa::Dim;
 use fuwafuwa::vector::{plus, scaled};
 use fuwafuwa_render::{Basket, Camera, Frame};

@@ -1,6 +1,6 @@
 //! Confetti after a win.
 
-use super::View;
+use app_shell::View;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 use fuwafuwa::Vector;
 

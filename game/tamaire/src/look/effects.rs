@@ -1,8 +1,8 @@
 //! Particles, confetti, and the reactions of bodies to recent events.
 
-use super::CameraRig;
 use super::confetti::Confetti;
 use super::feelings::{Feeling, MoodInput};
+use app_shell::CameraRig;
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim, Event, NodeId, RigidBody, SoftBody, Vector, With};
 use tamaire_play::{AnyRound, Round};

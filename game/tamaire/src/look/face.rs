@@ -1,7 +1,7 @@
 //! Face of a body: marks on a plane of its own. In 2D they are painted as they are, in 3D they are projected
 //! onto the skin.
 
-use super::View;
+use app_shell::View;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, vec2};
 use fuwafuwa::vector::{dot, length, minus, plus, scaled};
 use fuwafuwa::{PieceId, Vector};

@@ -1,7 +1,8 @@
 //! Progress at the basket: a line closes around it while a body must rest inside, and its bars glow after a
 //! win.
 
-use super::{DrawOptions, View};
+use super::DrawOptions;
+use app_shell::View;
 use egui::{Color32, Painter, Pos2, Rect, Shape as Drawn, Stroke, pos2, vec2};
 use fuwafuwa::vector::plus;
 use fuwafuwa::{Dim2, Shape, Vector};

@@ -1,7 +1,8 @@
 //! Wordless hint that is shown until the hand moves: a ring marks the player's hand, and a pale hand pushes a
 //! pale body into the basket in a loop.
 
-use super::{DrawOptions, Hint, View};
+use super::{DrawOptions, Hint};
+use app_shell::View;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 use fuwafuwa::{Dim, Dim2, Dim3, RigidBody, Vector};
 use tamaire_play::Round;

@@ -2,7 +2,8 @@
 
 use super::calm::{camera, face_at_rest, frame};
 use super::feelings::Feeling;
-use super::{CameraRig, Face, Theme, View};
+use super::{Face, view_of_level};
+use app_shell::{CameraRig, Theme, View};
 use eframe::egui_wgpu::RenderState;
 use egui::{Color32, Painter, Rect, TextureId, pos2};
 use fuwafuwa::{Dim, Vector};
@@ -134,5 +135,5 @@ fn faces<D: Dim>(round: &Round<D>, eye: Option<Vector>) -> Vec<Face> {
 }
 
 fn view(rect: Rect, level: &Level) -> View {
-    CameraRig::default().view(rect, level)
+    view_of_level(&CameraRig::default(), rect, level)
 }

@@ -1,8 +1,10 @@
 //! Options for drawing a round.
 
-use super::{Effects, Theme, View};
+use super::Effects;
+use app_shell::{CameraRig, Theme, View};
+use egui::Rect;
 use fuwafuwa_render::frame::ElementColour;
-use tamaire_play::AnyRound;
+use tamaire_play::{AnyRound, Level};
 
 /// Options for drawing a round.
 #[derive(Copy, Clone, Debug)]
@@ -36,4 +38,12 @@ pub enum Hint {
     Hand,
     /// Also shows how to push the body into the basket.
     Way,
+}
+
+/// Returns the view in which the arena of `level` fits into `rect`.
+pub(crate) fn view_of_level(camera: &CameraRig, rect: Rect, level: &Level) -> View {
+    match level.scene().dim {
+        2 => camera.view_of_plane(rect, level.arena()),
+        _ => camera.view_of_space(rect, level.arena()),
+    }
 }

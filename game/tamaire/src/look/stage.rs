@@ -2,8 +2,9 @@
 
 use super::calm::{camera, face_at_rest, frame};
 use super::feelings::Feeling;
-use super::pass::{PaintCallback, lock, pixels};
-use super::{DrawOptions, Face, Maps, Mood, SpaceStage, Theme, View, glow, hint};
+use super::{DrawOptions, Face, Maps, Mood, glow, hint};
+use app_shell::pass::{PaintCallback, lock, pixels};
+use app_shell::{SpaceStage, Theme, View};
 use eframe::egui_wgpu::{Callback, RenderState};
 use egui::{Color32, Painter, Pos2, Stroke, Ui};
 use fuwafuwa::vector::{length, minus};

@@ -1,4 +1,4 @@
-//! Differences between a desktop and a browser: storage, sound output, sticks, screen and dialogs. The rest
+//! Differences between a desktop and a browser: storage, sound output, screen and dialogs. The rest
 //! of the game does not depend on the platform.
 
 #[cfg(not(target_family = "wasm"))]
@@ -7,7 +7,6 @@ mod awake;
 mod breath;
 #[cfg(not(target_family = "wasm"))]
 mod clipboard;
-mod clock;
 #[cfg(not(target_family = "wasm"))]
 mod date;
 #[cfg(not(target_family = "wasm"))]
@@ -15,9 +14,7 @@ mod dialog;
 mod files;
 #[cfg(not(target_family = "wasm"))]
 mod folder;
-mod forces;
 mod given;
-mod gpu;
 #[cfg(target_family = "wasm")]
 #[path = "web/mod.rs"]
 mod here;
@@ -29,7 +26,6 @@ mod pictures;
 mod screen;
 #[cfg(not(target_family = "wasm"))]
 mod sound;
-mod sticks;
 mod storage;
 #[cfg(not(target_family = "wasm"))]
 pub mod supervisor;
@@ -43,15 +39,12 @@ use here::{breath, clipboard, date, dialog, screen, sound, writer};
 pub use awake::keep_awake;
 pub use breath::Yielder;
 pub use clipboard::Clipboard;
-pub use clock::Clock;
 pub use date::local as local_date;
 pub use dialog::{Dialog, IS_THERE as HAS_DIALOG};
 pub use files::{Damage, Files, StorageEvent};
-pub use forces::Forces;
 pub use given::{DialogResult, OpenRequest, dropped};
 #[cfg(not(target_family = "wasm"))]
 pub use given::{level_at, replay_in};
-pub use gpu::{GpuWatch, with_small_memory_blocks};
 #[cfg(target_family = "wasm")]
 pub use here::{Host, set_host};
 #[cfg(not(target_family = "wasm"))]
@@ -60,5 +53,4 @@ pub use machine::{StandFolder, TextFile, memory};
 pub use pictures::Pictures;
 pub use screen::{address_of_page, fill_screen, full_screen_of_page, restart, set_language};
 pub use sound::Sound;
-pub use sticks::Pads;
 pub use storage::{Entry, Kind, Nowhere, Storage, UpdateEntry};

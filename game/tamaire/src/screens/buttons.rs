@@ -2,10 +2,10 @@
 //! keys and pads have.
 
 use super::icons;
-use super::widgets::note_hovered;
 use crate::game::{Game, ScreenButton};
 use crate::input::{Action, InputMethod};
-use crate::look::Theme;
+use app_shell::Theme;
+use app_shell::widgets::note_hovered;
 use egui::{Color32, Painter, Pos2, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use tamaire_play::AnyRound;
 

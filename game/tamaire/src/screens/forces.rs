@@ -1,12 +1,11 @@
 //! Screen for sticks and pads: their abilities, live input, and current force output.
 
-use super::widgets::{
-    ButtonStyle, button, card, dim_background, fitted, header, page, page_rect, slider,
-};
+use super::widgets::{card, dim_background, header, page, page_rect, slider};
 use crate::game::Game;
 use crate::game::trial::Trial;
-use crate::look::Theme;
 use crate::words::Words;
+use app_shell::Theme;
+use app_shell::widgets::{ButtonStyle, button, fitted};
 use egui::{Color32, Painter, Pos2, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 use force_feedback::{Ability, Calibration, Output, Report};
 use sticks::Device;

@@ -2,10 +2,10 @@
 
 use super::buttons::{self, EDGE, GAP, HIGH, pale};
 use super::icons;
-use super::widgets::fitted;
 use crate::game::Game;
 use crate::input::Action;
-use crate::look::Theme;
+use app_shell::Theme;
+use app_shell::widgets::fitted;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use fuwafuwa_render::frame::ElementColour;
 

@@ -1,7 +1,7 @@
 //! Icons.
 
 use super::widgets::words;
-use crate::look::Theme;
+use app_shell::Theme;
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
 use tamaire_play::Route;
 

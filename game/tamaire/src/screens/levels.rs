@@ -2,13 +2,11 @@
 
 use super::doomed::{is_pending, set_pending};
 use super::icons;
-use super::widgets::{
-    ButtonStyle, dim_background, fitted, focus_ring, header_to_open, highlight, is_on, page,
-    page_rect, plain_button, words,
-};
+use super::widgets::{dim_background, header_to_open, page, page_rect, words};
 use crate::game::Game;
 use crate::look::{Maps, Stage};
 use crate::records::{Record, WishName};
+use app_shell::widgets::{ButtonStyle, fitted, focus_ring, highlight, is_on, plain_button};
 use egui::{
     Color32, Rect, Response, RichText, Role, Sense, Stroke, Tooltip, Ui, Vec2, WidgetInfo, pos2,
     vec2,

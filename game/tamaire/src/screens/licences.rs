@@ -1,8 +1,9 @@
 //! Screen with the licences of the included software.
 
-use super::widgets::{ButtonStyle, button, card, dim_background, header, page, page_rect};
+use super::widgets::{card, dim_background, header, page, page_rect};
 use crate::game::Game;
 use crate::licences::lines;
+use app_shell::widgets::{ButtonStyle, button};
 use egui::{
     Align, Color32, Label, Layout, OpenUrl, Rect, RichText, Sense, TextWrapMode, Ui, UiBuilder,
     vec2,

@@ -24,7 +24,6 @@ mod widgets;
 pub use attendant::StandController;
 #[cfg(not(target_family = "wasm"))]
 pub use stand::CrashScreen;
-pub use widgets::{ButtonStyle, button, card, choice, fitted, note_use_of_keys, take_hovered};
 
 use crate::game::{Game, Screen};
 use crate::look::Stage;

@@ -1,9 +1,10 @@
 //! Screen for a round that was opened from a link, to watch it or to race it.
 
 use super::icons;
-use super::widgets::{Act, ButtonStyle, button, card, column, dim_background, fitted};
+use super::widgets::{Act, card, column, dim_background};
 use crate::game::Game;
 use crate::look::Stage;
+use app_shell::widgets::{ButtonStyle, button, fitted};
 use egui::{Rect, Sense, Stroke, StrokeKind, Ui, vec2};
 use std::sync::Arc;
 use tamaire_play::{Replay, ReplayError};

@@ -2,8 +2,9 @@
 
 use super::{hud, icons};
 use crate::game::Game;
-use crate::input::{InputMapping, ScanAction};
-use crate::look::Theme;
+use crate::input::ScanAction;
+use app_shell::Theme;
+use app_shell::direction::to_world;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Ui, Vec2};
 
 /// Radius of the ring, size of an arrow, and radius of the disc behind a sign [points].
@@ -33,7 +34,7 @@ pub(super) fn show(game: &Game, ui: &Ui) {
     let above = middle - Vec2::new(0.0, scale * RING);
     match game.controls.scan.offer(turn.is_some()) {
         ScanAction::Move(way) => {
-            let ahead = InputMapping::to_world_direction(turn, AHEAD * way);
+            let ahead = to_world(turn, AHEAD * way);
             let there = view.to_screen([0, 1, 2].map(|axis| here[axis] + ahead[axis]));
             arrow(
                 painter,

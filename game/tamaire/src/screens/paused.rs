@@ -1,7 +1,8 @@
 //! Pause menu.
 
-use super::widgets::{Act, ButtonStyle, button, card, column, dim_background, title};
+use super::widgets::{Act, card, column, dim_background, title};
 use crate::game::{Game, Screen};
+use app_shell::widgets::{ButtonStyle, button};
 use egui::{Ui, vec2};
 use tamaire_sound::Menu;
 

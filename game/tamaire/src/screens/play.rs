@@ -2,14 +2,14 @@
 
 use super::{hud, offers};
 use crate::game::{Game, Screen};
-use crate::look::{DrawOptions, Hint, Stage};
+use crate::look::{DrawOptions, Hint, Stage, view_of_level};
 use egui::{Response, Ui};
 
 /// Draws the world behind the current screen.
 pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let screen = ui.max_rect();
     let level = game.bout.round().level().clone();
-    let mut view = game.bout.camera.view(screen, &level);
+    let mut view = view_of_level(&game.bout.camera, screen, &level);
     // In a portrait window the result covers the lower part, so the 2D view moves up.
     let is_below = game.screen() == Screen::Result && screen.width() < screen.height();
     let duration = if game.settings.reduced_motion {

@@ -2,12 +2,11 @@
 
 use super::doomed::{is_pending, set_pending};
 use super::icons;
-use super::widgets::{
-    ButtonStyle, button, card, dim_background, fitted, header_to_open, page, page_rect,
-};
+use super::widgets::{card, dim_background, header_to_open, page, page_rect};
 use crate::game::{Game, RoundDetails, SavedRound};
 use crate::look::{Maps, Stage};
 use crate::platform::{Entry, local_date};
+use app_shell::widgets::{ButtonStyle, button, fitted};
 use egui::{Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 use tamaire_sound::Menu;
 

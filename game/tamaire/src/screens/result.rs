@@ -1,10 +1,11 @@
 //! Result of a round, with a challenge to try the other route.
 
 use super::icons;
-use super::widgets::{Act, ButtonStyle, button, card, column_beside, dim_background, fitted};
+use super::widgets::{Act, card, column_beside, dim_background};
 use crate::game::{Game, Screen};
-use crate::look::Theme;
 use crate::words::Words;
+use app_shell::Theme;
+use app_shell::widgets::{ButtonStyle, button, fitted};
 use egui::{Align, Layout, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
 use tamaire_play::{Level, Outcome, Route, Wish};

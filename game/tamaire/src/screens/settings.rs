@@ -1,14 +1,13 @@
 //! Settings of the player.
 
 use super::doomed::{is_pending, set_pending};
-use super::widgets::{
-    ButtonStyle, button, card, choice, dim_background, header, page, page_rect, slider,
-};
+use super::widgets::{card, choice, dim_background, header, page, page_rect, slider};
 use crate::game::{Game, Screen};
 use crate::input::{Action, Scanning};
-use crate::look::Theme;
 use crate::settings::Settings;
 use crate::words::{Language, Words};
+use app_shell::Theme;
+use app_shell::widgets::{ButtonStyle, button};
 use egui::{RichText, Ui, vec2};
 use tamaire_play::Assist;
 use tamaire_sound::Menu;

@@ -1,8 +1,9 @@
 //! Title screen over a round that plays by itself.
 
-use super::widgets::{ButtonStyle, button, column_beside, dim_background, words};
+use super::widgets::{column_beside, dim_background, words};
 use crate::game::{Game, Screen};
 use crate::words::Language;
+use app_shell::widgets::{ButtonStyle, button};
 use egui::{Color32, Rect, Sense, Ui, vec2};
 use tamaire_sound::Menu;
 

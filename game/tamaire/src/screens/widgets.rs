@@ -1,41 +1,25 @@
 //! Large, round widgets of the game. All of them can be reached with a pad.
 
 use crate::game::Game;
-use crate::look::Theme;
 use crate::platform::HAS_DIALOG;
-use egui::{
-    Align, Align2, Color32, Context, FocusDirection, FontId, Galley, Id, Key, Layout, Painter,
-    Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
+use app_shell::Theme;
+use app_shell::widgets::{
+    ButtonStyle, FADE, LETTERS, RING, button, fitted, focus_ring, note_hovered, plain_button,
 };
-use std::sync::Arc;
-
-/// Distance from a focused widget to the outside of its focus ring [points].
-pub const RING: f32 = 7.0;
+use egui::{
+    Align, Align2, Color32, FocusDirection, FontId, Id, Key, Layout, Pos2, Rect, Response, Role,
+    Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2,
+};
 
 /// Margin between the window and a page [points].
 pub const EDGE: Vec2 = vec2(28.0, 22.0);
 /// Background of a page.
 pub const PAPER: Color32 = Color32::from_rgb(255, 248, 238);
-/// Height over which the contents of a page fade at its upper and lower edge [points].
-const FADE: f32 = 56.0;
-
 /// Minimum width of a row with the name beside its widget [points]; in a narrower row the name is above.
 const LEAST_ROW: f32 = 560.0;
 
-/// Font size on a button, as a share of the button's height.
-const LETTERS: f32 = 0.42;
-
 /// Action of a button.
 pub type Act = fn(&mut Game);
-
-/// Importance of a button.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum ButtonStyle {
-    /// Main action of a screen.
-    Main,
-    /// Any other action.
-    Other,
-}
 
 /// Covers the world behind a menu with translucent paper.
 pub fn dim_background(ui: &Ui, strength: u8) {
@@ -52,112 +36,6 @@ pub fn words(ui: &Ui, at: Pos2, text: &str, size: f32, colour: Color32) {
         FontId::proportional(size),
         colour,
     );
-}
-
-/// Shows a large round button.
-pub fn button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: ButtonStyle) -> Response {
-    let response = plain_button(ui, theme, text, size, weight);
-    let enabled = ui.is_enabled();
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, text));
-    response
-}
-
-/// Shows a button without an accessible name; the caller sets one.
-pub fn plain_button(
-    ui: &mut Ui,
-    theme: &Theme,
-    text: &str,
-    size: Vec2,
-    weight: ButtonStyle,
-) -> Response {
-    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    let lively = highlight(ui, &response);
-    let (fill, ink) = match weight {
-        ButtonStyle::Main => (theme.accent, theme.on_accent),
-        ButtonStyle::Other => (theme.button, theme.ink),
-    };
-    let rect = rect.expand(3.0 * lively);
-    let pressed = if response.is_pointer_button_down_on() {
-        2.0
-    } else {
-        0.0
-    };
-    let rect = rect.translate(vec2(0.0, pressed));
-    let round = 0.5 * rect.height();
-    let painter = ui.painter();
-    painter.rect_filled(
-        rect.translate(vec2(0.0, 4.0 - pressed)),
-        round,
-        Color32::from_black_alpha(28),
-    );
-    painter.rect_filled(rect, round, fill);
-    focus_ring(ui, &response, rect, round, theme);
-    let galley = fitted(
-        ui.painter(),
-        text,
-        LETTERS * size.y,
-        rect.width() - 28.0,
-        ink,
-    );
-    let at = rect.center() - 0.5 * galley.size();
-    ui.painter().galley(at, galley, ink);
-    response
-}
-
-/// Lays out text on one line, shrunk if it is wider than `width`.
-pub fn fitted(painter: &Painter, text: &str, size: f32, width: f32, ink: Color32) -> Arc<Galley> {
-    let lay = |size| painter.layout_no_wrap(text.to_string(), FontId::proportional(size), ink);
-    let galley = lay(size);
-    match galley.size().x > width {
-        true => lay((size * width / galley.size().x).max(8.0)),
-        false => galley,
-    }
-}
-
-/// Notes whether menus are used with keys or a pad, which need a focus ring, or with mouse or touch.
-pub fn note_use_of_keys(ctx: &Context, by_keys: bool) {
-    ctx.data_mut(|data| data.insert_temp(Id::unique("by keys"), by_keys));
-}
-
-/// Whether keys or a pad have focused this widget.
-pub fn is_on(ui: &Ui, response: &Response) -> bool {
-    let by_keys = ui.data(|data| data.get_temp(Id::unique("by keys")));
-    response.has_focus() && by_keys == Some(true)
-}
-
-/// Notes the widget under the mouse, for [`take_hovered`].
-pub fn note_hovered(ui: &Ui, response: &Response) {
-    if response.hovered() {
-        ui.data_mut(|data| data.insert_temp(Id::unique("hovered"), Some(response.id)));
-    }
-}
-
-/// Returns the widget that the mouse was over since the last call.
-pub fn take_hovered(ctx: &Context) -> Option<Id> {
-    ctx.data_mut(|data| data.remove_temp(Id::unique("hovered")).flatten())
-}
-
-/// Returns the animated highlight of a hovered or focused widget, 0 to 1.
-pub fn highlight(ui: &Ui, response: &Response) -> f32 {
-    let is_lively = response.hovered() || is_on(ui, response);
-    note_hovered(ui, response);
-    ui.ctx().animate_bool(response.id, is_lively)
-}
-
-/// Draws the focus ring of a widget, and scrolls a newly focused widget into view.
-pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect, round: f32, theme: &Theme) {
-    let is_on = is_on(ui, response);
-    let seen = Id::unique("what had the focus");
-    if is_on && ui.data(|data| data.get_temp(seen)) != Some(response.id) {
-        ui.data_mut(|data| data.insert_temp(seen, response.id));
-        ui.scroll_to_rect(response.rect.expand(RING + FADE), None);
-    }
-    if is_on {
-        let stroke = Stroke::new(4.0, theme.ink);
-        let rect = rect.expand(RING - 2.0);
-        ui.painter()
-            .rect_stroke(rect, round + RING - 2.0, stroke, StrokeKind::Middle);
-    }
 }
 
 /// Shows contents on a white card.

@@ -1,12 +1,13 @@
 //! Mouse and keyboard.
 
 use crate::window::*;
+use app_shell::Pads;
 use egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::fs;
 use tamaire::game::{Game, Notice, Screen};
 use tamaire::input::{Action, InputSource};
-use tamaire::platform::{Files, Pads, Sound};
+use tamaire::platform::{Files, Sound};
 use tamaire::settings::Settings;
 use tamaire::words::Language;
 use tamaire_play::Route;
@@ -343,7 +344,7 @@ fn font_contains_all_characters_of_the_game() {
     let font = egui::FontId::proportional(20.0);
     for letter in texts.join("").chars().filter(|k| !k.is_control()) {
         let is_there = window.ctx.fonts_mut(|fonts| fonts.has_glyph(&font, letter));
-        assert!(is_there, "{letter}: run game/tamaire/fonts/make.py");
+        assert!(is_there, "{letter}: run apps/app_shell/fonts/make.py");
     }
 }
 

@@ -1,6 +1,7 @@
 //! Robustness against broken files and random input.
 
 use crate::window::*;
+use app_shell::Pads;
 use egui::accesskit::Role;
 use egui::{DroppedFile, Event, Key, PointerButton, pos2};
 use egui_kittest::kittest::Queryable;
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use sticks::{Device, DeviceId, DeviceInfo, Pad, PadButton, Snapshot};
 use tamaire::game::{Game, Screen};
-use tamaire::platform::{Files, Pads};
+use tamaire::platform::Files;
 use tamaire::words::Language;
 use tamaire_play::BotKind;
 

@@ -1,6 +1,7 @@
 //! Saved data, and what can go wrong with it.
 
 use crate::window::*;
+use app_shell::Pads;
 use egui::accesskit::Role;
 use egui::{Event, Modifiers, PointerButton};
 use egui_kittest::kittest::Queryable;
@@ -11,7 +12,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 use std::time::SystemTime;
 use tamaire::game::{Game, Screen};
-use tamaire::platform::{Entry, Files, Kind, Nowhere, Pads, Sound, Storage, UpdateEntry};
+use tamaire::platform::{Entry, Files, Kind, Nowhere, Sound, Storage, UpdateEntry};
 
 /// Storage in memory that records the writing threads, and that can be full.
 #[derive(Clone, Default)]

@@ -1,13 +1,14 @@
 //! Play with a pad or a stick alone.
 
 use crate::window::*;
+use app_shell::Pads;
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use force_feedback::{Ability, Recording};
 use sticks::{Device, DeviceId, DeviceInfo, Pad, PadButton, Snapshot};
 use tamaire::game::Screen;
 use tamaire::input::{Action, InputSource};
-use tamaire::platform::{Files, Pads};
+use tamaire::platform::Files;
 
 /// Window with simulated devices.
 pub struct Table {

@@ -2,6 +2,7 @@
 
 use crate::hostile::drop_file;
 use crate::window::*;
+use app_shell::Pads;
 use egui::{Key, Vec2, pos2, vec2};
 use egui_kittest::SnapshotOptions;
 use egui_kittest::kittest::Queryable;
@@ -10,7 +11,7 @@ use std::path::Path;
 use sticks::{Device, DeviceId, DeviceInfo, Pad, Snapshot};
 use tamaire::game::Screen;
 use tamaire::input::{Action, InputSource};
-use tamaire::platform::{Files, Pads};
+use tamaire::platform::Files;
 use tamaire::words::Language;
 use tamaire_play::{BotKind, Outcome, Route};
 

@@ -1,6 +1,7 @@
 //! Public stand: visitors come, play and go, and staff use its pages.
 
 use crate::window::*;
+use app_shell::{Clock, Pads};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -17,7 +18,7 @@ use tamaire::exhibit::staff::StaffPage;
 use tamaire::exhibit::{Phase, Stand};
 use tamaire::game::{Game, Screen};
 use tamaire::look::Stage;
-use tamaire::platform::{Clock, Files, Pads, Sound, StandFolder, TextFile};
+use tamaire::platform::{Files, Sound, StandFolder, TextFile};
 use tamaire::screens::{CrashScreen, StandController};
 use tamaire::words::Language;
 use tamaire_logbook::{Error, Kind, Logbook, Round, RoundEnd, Visit};

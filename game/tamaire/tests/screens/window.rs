@@ -1,5 +1,6 @@
 //! Offscreen window, and the ways in which players operate it.
 
+use app_shell::{Clock, Pads};
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, Node};
@@ -7,7 +8,7 @@ use fuwafuwa::world::TICK;
 use std::path::PathBuf;
 use tamaire::app::App;
 use tamaire::game::{Game, Screen};
-use tamaire::platform::{Clock, Files, Pads, Sound};
+use tamaire::platform::{Files, Sound};
 use tamaire_play::{Bot, BotKind};
 
 pub type Window = Harness<'static, App>;

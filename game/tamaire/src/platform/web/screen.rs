@@ -1,8 +1,8 @@
 //! Screen functions that only the page provides.
 
 use super::host;
-use crate::look::add_letters;
 use crate::words::Language;
+use app_shell::style::add_japanese_font;
 
 /// Switches full screen on or off.
 pub fn fill_screen(_: &egui::Context, wanted: bool) {
@@ -34,6 +34,6 @@ pub fn speak(context: &egui::Context, language: Language, has_own_levels: bool) 
         host.want_letters();
     }
     if let Some(letters) = host.take_letters() {
-        add_letters(context, letters);
+        add_japanese_font(context, letters);
     }
 }

@@ -1,11 +1,12 @@
 //! Choice of a level at the stand.
 
-use super::super::widgets::{dim_background, fitted};
+use super::super::widgets::dim_background;
 use super::super::{levels::tile, play::focus_first};
 use super::language::above;
 use crate::exhibit::Stand;
 use crate::game::Game;
 use crate::look::Stage;
+use app_shell::widgets::fitted;
 use egui::{Rect, Ui, pos2, vec2};
 use tamaire_sound::Menu;
 

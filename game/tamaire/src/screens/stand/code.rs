@@ -1,8 +1,9 @@
 //! QR code with the link to a visitor's round.
 
-use super::super::widgets::{card, fitted};
+use super::super::widgets::card;
 use crate::exhibit::home::Code;
 use crate::game::Game;
+use app_shell::widgets::fitted;
 use egui::{Color32, Mesh, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
 /// Width of the quiet zone around a code [modules] [ISO/IEC 18004].

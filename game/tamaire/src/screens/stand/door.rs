@@ -1,9 +1,10 @@
 //! PIN pad for the staff.
 
-use super::super::widgets::{ButtonStyle, button, card, column, dim_background, fitted};
+use super::super::widgets::{card, column, dim_background};
 use super::super::{icons, play::focus_first};
 use crate::exhibit::{CORNER, Stand};
 use crate::game::Game;
+use app_shell::widgets::{ButtonStyle, button, fitted};
 use egui::{Sense, Stroke, Ui, Vec2, vec2};
 use tamaire_sound::Menu;
 

@@ -1,9 +1,9 @@
 //! Button that switches the language.
 
 use super::super::hud::STAND;
-use super::super::widgets::{ButtonStyle, button};
 use crate::game::Game;
 use crate::words::Language;
+use app_shell::widgets::{ButtonStyle, button};
 use egui::{Rect, Ui, vec2};
 use tamaire_sound::Menu;
 

@@ -1,8 +1,9 @@
 //! Countdown ring that is shown when there is no input.
 
-use super::super::{icons, widgets::fitted};
+use super::super::icons;
 use crate::exhibit::{Stand, presence::Attention};
 use crate::game::Game;
+use app_shell::widgets::fitted;
 use egui::{Color32, Stroke, Ui, vec2};
 
 const RADIUS: f32 = 92.0;

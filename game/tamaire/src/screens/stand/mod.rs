@@ -9,11 +9,12 @@ mod result;
 mod staff;
 
 use super::attendant::StandController;
-use super::widgets::{dim_background, fitted, words};
+use super::widgets::{dim_background, words};
 use super::{notices, play};
 use crate::exhibit::{Phase, Stand};
 use crate::game::{Game, Screen};
 use crate::look::Stage;
+use app_shell::widgets::fitted;
 use egui::{Color32, Context, CursorIcon, Rect, Ui, ViewportCommand, pos2, vec2};
 
 impl StandController for Stand {

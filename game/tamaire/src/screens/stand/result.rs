@@ -2,11 +2,12 @@
 
 use super::super::play::focus_first;
 use super::super::result::{headline, line, numbers, other};
-use super::super::widgets::{ButtonStyle, button, card, column_beside, dim_background};
+use super::super::widgets::{card, column_beside, dim_background};
 use super::code;
 use super::language::above;
 use crate::exhibit::Stand;
 use crate::game::{Game, Screen};
+use app_shell::widgets::{ButtonStyle, button};
 use egui::{Rect, Ui, UiBuilder, Vec2, pos2, vec2};
 use tamaire_play::Route;
 use tamaire_sound::Menu;

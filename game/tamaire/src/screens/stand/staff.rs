@@ -2,16 +2,15 @@
 
 use super::super::forces;
 use super::super::play::focus_first;
-use super::super::widgets::{
-    ButtonStyle, button, card, choice, dim_background, fitted, header, page, page_rect, row, slider,
-};
+use super::super::widgets::{card, choice, dim_background, header, page, page_rect, row, slider};
 use crate::exhibit::config::ConfigChange;
 use crate::exhibit::staff::StaffPage;
 use crate::exhibit::{Phase, Stand};
 use crate::game::{Game, Screen};
-use crate::look::Theme;
 use crate::platform::memory;
 use crate::words::Language;
+use app_shell::Theme;
+use app_shell::widgets::{ButtonStyle, button, fitted};
 use egui::{RichText, Sense, Ui, vec2};
 use jiff::ToSpan;
 use jiff::civil::Time;

@@ -1,6 +1,6 @@
 //! Drawing of any 3D world in a part of an egui window.
 
-use super::pass::{PaintCallback, lock, pixels};
+use crate::pass::{PaintCallback, lock, pixels};
 use eframe::egui_wgpu::{Callback, RenderState};
 use egui::{Rect, Ui};
 use fuwafuwa::{Dim3, World};

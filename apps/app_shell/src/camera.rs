@@ -1,11 +1,10 @@
-//! Camera of a round: mapping between world and screen.
+//! Camera: mapping between world and screen.
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use fuwafuwa::Vector;
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa_render::space;
 use std::f32::consts::TAU;
-use tamaire_play::Level;
 
 /// Margin around the arena [m]. It keeps the whole arena in view while the camera leans.
 const MARGIN: f32 = 0.1;
@@ -121,14 +120,6 @@ impl CameraRig {
         self.space_camera(arena, [16, 10]).eye()
     }
 
-    /// Returns the view in which the arena of `level` fits into `rect`.
-    pub fn view(&self, rect: Rect, level: &Level) -> View {
-        match level.scene().dim {
-            2 => self.view_of_plane(rect, level.arena()),
-            _ => self.view_of_space(rect, level.arena()),
-        }
-    }
-
     fn space_camera(&self, arena: [Vector; 2], size: [u32; 2]) -> space::Camera {
         let fitted = space::Camera::fit(arena[0], arena[1], size);
         let lower = LOWER.min(LOWER_SHARE * (arena[1][1] - arena[0][1]));
@@ -155,7 +146,8 @@ impl CameraRig {
         }
     }
 
-    fn view_of_plane(&self, rect: Rect, arena: [Vector; 2]) -> View {
+    /// Returns the view of a 2D arena, given by its two opposite corners [m].
+    pub fn view_of_plane(&self, rect: Rect, arena: [Vector; 2]) -> View {
         let size = vec2(arena[1][0] - arena[0][0], arena[1][1] - arena[0][1]);
         let size = size + Vec2::splat(2.0 * MARGIN);
         let scale = (rect.width() / size.x).min(rect.height() / size.y);

@@ -2,7 +2,7 @@
 """Makes the fonts of the game again: parts of M PLUS Rounded 1c, as TrueType.
 
     pip install fonttools==4.68.0 brotli==1.2.1
-    python3 game/tamaire/fonts/make.py
+    python3 apps/app_shell/fonts/make.py
 
 Takes the font from npm (`npm pack`), where it lies in some 120 slices. One part has Latin letters, the symbols
 below and what the title says in each language; the other kana, the kanji of kanji.txt, and every other character
@@ -24,7 +24,7 @@ PACKAGE = "@fontsource/m-plus-rounded-1c@5.3.0"
 WEIGHTS = {700: "Bold"}
 
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parent.parent
+ROOT = HERE.parents[2]
 # Where the words of the game are.
 SOURCES = ["game"]
 SUFFIXES = {".rs", ".toml"}

@@ -1,19 +1,19 @@
-//! Fonts of the game and its egui style.
+//! Fonts and egui style.
 
 use egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
 use egui::{Context, FontData, FontDefinitions, FontFamily, vec2};
 use std::sync::Arc;
 
-/// Font with Latin letters, symbols and the characters of the title; used for all font families.
-const LATIN: &[u8] = include_bytes!("../../fonts/MPLUSRounded1c-Bold-latin.ttf");
+/// Font with Latin letters, symbols and the characters of the title of the game; used for all font families.
+const LATIN: &[u8] = include_bytes!("../fonts/MPLUSRounded1c-Bold-latin.ttf");
 /// Font with kana and kanji. The browser version downloads it on demand.
 #[cfg(not(target_family = "wasm"))]
-const JAPANESE: &[u8] = include_bytes!("../../fonts/MPLUSRounded1c-Bold-japanese.ttf");
+const JAPANESE: &[u8] = include_bytes!("../fonts/MPLUSRounded1c-Bold-japanese.ttf");
 
 const FAMILIES: [FontFamily; 2] = [FontFamily::Proportional, FontFamily::Monospace];
 
-/// Installs the game's fonts and style in egui.
-pub fn dress(context: &Context) {
+/// Installs the fonts and the style in egui.
+pub fn apply(context: &Context) {
     let mut fonts = FontDefinitions::empty();
     let mut add = |name: &str, bytes| {
         let data = Arc::new(FontData::from_static(bytes));
@@ -27,7 +27,7 @@ pub fn dress(context: &Context) {
     add("japanese", JAPANESE);
     context.set_fonts(fonts);
     context.set_theme(egui::Theme::Light);
-    // The text size is a setting of the game.
+    // The game sets the text size itself.
     context.options_mut(|options| {
         options.zoom_with_keyboard = false;
         // A long press is a click, too: players may hold a button for long, and frames of a slow machine take
@@ -41,7 +41,7 @@ pub fn dress(context: &Context) {
 }
 
 /// Adds the Japanese font after start-up.
-pub fn add_letters(context: &Context, bytes: Vec<u8>) {
+pub fn add_japanese_font(context: &Context, bytes: Vec<u8>) {
     let families = FAMILIES.map(|family| InsertFontFamily {
         family,
         priority: FontPriority::Lowest,

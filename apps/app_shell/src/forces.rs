@@ -1,6 +1,6 @@
 //! Force feedback and rumble of sticks and pads.
 
-use super::Pads;
+use crate::Pads;
 use force_feedback::{ForceThread, Line, Report, Settings, State, Stop};
 use std::collections::BTreeMap;
 use sticks::{Device, DeviceId, Snapshot};

@@ -1,8 +1,8 @@
-//! Colours of the game.
+//! Colours of the interface and the world.
 
 use egui::Color32;
 
-/// Colours of the game.
+/// Colours of the interface and the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Theme {
     /// Background.

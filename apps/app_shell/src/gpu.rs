@@ -5,6 +5,11 @@ use eframe::egui_wgpu::{RenderState, WgpuSetup};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// The window has no GPU, not even one in software.
+#[derive(Copy, Clone, Debug, thiserror::Error)]
+#[error("no graphics adapter: neither Vulkan nor OpenGL is available, not even in software")]
+pub struct NoGpu;
+
 /// Makes wgpu allocate memory in small blocks. By default it uses blocks of 64 MB and more, each of which
 /// stays allocated once used. On a GPU in software or with shared memory, the memory of a stand would vary by
 /// such steps all day.
@@ -29,9 +34,9 @@ pub struct GpuWatch {
 }
 
 impl GpuWatch {
-    /// Creates the monitor of a window's GPU. The first error is printed and does not end the game, because
-    /// the only remedy is to restart in a new window.
-    pub fn of(state: &RenderState) -> Self {
+    /// Creates the monitor of a window's GPU. The first error is printed under the name of the program and does
+    /// not end it, because the only remedy is to restart in a new window.
+    pub fn of(state: &RenderState, program: &'static str) -> Self {
         let is_lost = Arc::new(AtomicBool::new(false));
         let lost = is_lost.clone();
         let device = &state.device;
@@ -39,7 +44,7 @@ impl GpuWatch {
         let failed = is_lost.clone();
         device.on_uncaptured_error(Arc::new(move |error| {
             if !failed.swap(true, Ordering::Relaxed) {
-                eprintln!("tamaire: the GPU failed: {error}");
+                eprintln!("{program}: the GPU failed: {error}");
             }
         }));
         let probe = wgpu::BufferDescriptor {
@@ -76,7 +81,7 @@ mod tests {
     #[test]
     fn loss_of_gpu_is_noticed() {
         let state = create_render_state(default_wgpu_setup(), Default::default());
-        let watch = GpuWatch::of(&state);
+        let watch = GpuWatch::of(&state, "test");
         assert!(!watch.is_lost() && !watch.probe_is_lost());
         state.device.destroy();
         let _polled = state.device.poll(wgpu::PollType::Poll);

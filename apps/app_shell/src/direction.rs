@@ -1,0 +1,52 @@
+//! Directions of the user and of the world. The user points to the right and away; in space, "away" means along
+//! the floor, away from the camera.
+
+use egui::Vec2;
+use fuwafuwa::Vector;
+
+/// Converts a direction of the user (right, away) to a direction in the world. `turn` is the rotation of the camera
+/// to the right [rad], `None` in the plane.
+pub fn to_world(turn: Option<f32>, lean: Vec2) -> Vector {
+    let Some(turn) = turn else {
+        return [lean.x, lean.y, 0.0];
+    };
+    let (sin, cos) = turn.sin_cos();
+    [
+        cos * lean.x - sin * lean.y,
+        0.0,
+        -sin * lean.x - cos * lean.y,
+    ]
+}
+
+/// Converts a vector in the world, such as a force [N], to a direction of the user (right, away): the inverse of
+/// [`to_world`]. In space the vertical component is dropped.
+pub fn to_user(turn: Option<f32>, [x, y, z]: Vector) -> [f32; 2] {
+    let Some(turn) = turn else {
+        return [x, y];
+    };
+    let (sin, cos) = turn.sin_cos();
+    [cos * x - sin * z, -sin * x - cos * z]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f32::consts::FRAC_PI_2;
+
+    #[test]
+    fn to_user_keeps_components_along_the_floor_as_seen_by_the_camera() {
+        let force = [1.0, 2.0, 3.0];
+        assert_eq!(to_user(None, force), [1.0, 2.0]);
+        assert_eq!(to_user(Some(0.0), force), [1.0, -3.0]);
+        let [right, away] = to_user(Some(FRAC_PI_2), force);
+        assert!((right + 3.0).abs() < 1e-5 && (away + 1.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn to_user_inverts_to_world() {
+        for turn in [None, Some(0.7)] {
+            let [right, away] = to_user(turn, to_world(turn, Vec2::new(0.3, -0.8)));
+            assert!((right - 0.3).abs() < 1e-5 && (away + 0.8).abs() < 1e-5);
+        }
+    }
+}
