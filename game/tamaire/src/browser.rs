@@ -58,7 +58,7 @@ impl Running {
         let [hand, origin, right] = match game.bout.view {
             None => [[f32::NAN; 2]; 3],
             Some(view) => {
-                let at = |place| <[f32; 2]>::from(view.on_screen(place) * app.zoom);
+                let at = |place| <[f32; 2]>::from(view.to_screen(place) * app.zoom);
                 [
                     at(round.hands()[0].position()),
                     at([0.0; 3]),

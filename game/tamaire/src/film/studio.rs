@@ -118,7 +118,7 @@ impl Studio {
         #[cfg(not(target_family = "wasm"))]
         let drawn = fuwafuwa_render::image(device, queue, target, draw);
         #[cfg(target_family = "wasm")]
-        let drawn = fuwafuwa_render::image_later(device, queue, target, draw).await;
+        let drawn = fuwafuwa_render::image_async(device, queue, target, draw).await;
         for id in output.textures_delta.free.drain() {
             renderer.write().free_texture(&id);
         }

@@ -89,7 +89,7 @@ impl Files {
     pub fn usual() -> Self {
         let host = super::here::host();
         let files = match host.refusal() {
-            None => Self::on(super::here::Kept::default()),
+            None => Self::on(super::here::BrowserStorage::default()),
             Some(_) => Self::on(Nowhere {
                 reason: Some("the browser keeps nothing for this page"),
             }),

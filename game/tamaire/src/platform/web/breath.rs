@@ -8,17 +8,17 @@ use web_time::{Duration, Instant};
 const LONGEST: Duration = Duration::from_millis(8);
 
 /// Yields to the page from time to time.
-pub struct Breath(Instant);
+pub struct Yielder(Instant);
 
-impl Default for Breath {
+impl Default for Yielder {
     fn default() -> Self {
         Self(Instant::now())
     }
 }
 
-impl Breath {
+impl Yielder {
     /// Waits for the next frame if the last one was longer than `LONGEST` ago.
-    pub async fn take(&mut self) {
+    pub async fn yield_now(&mut self) {
         if self.0.elapsed() > LONGEST {
             // The promise is never rejected.
             let _ = JsFuture::from(host().breathe()).await;

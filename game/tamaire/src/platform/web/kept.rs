@@ -2,7 +2,7 @@
 //! a frame. Changes by other tabs are received as messages.
 
 use super::host;
-use crate::platform::storage::{Change, Entry, Kind, Storage};
+use crate::platform::storage::{Entry, Kind, Storage, UpdateEntry};
 use std::collections::BTreeMap;
 use std::io;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -70,7 +70,7 @@ impl Storage for BrowserStorage {
         }
     }
 
-    fn change(&self, kind: Kind, name: &str, change: &mut Change) -> io::Result<()> {
+    fn change(&self, kind: Kind, name: &str, change: &mut UpdateEntry) -> io::Result<()> {
         let Some(beginning) = beginning(kind) else {
             if let Some(bytes) = change(None) {
                 host().download(&self.location(kind, name), media(kind), &bytes);
@@ -99,11 +99,11 @@ impl Storage for BrowserStorage {
         format!("{name}.{}", ending(kind))
     }
 
-    fn hands_out(&self) -> bool {
+    fn can_export(&self) -> bool {
         true
     }
 
-    fn hand_out(&self, kind: Kind, name: &str) -> io::Result<()> {
+    fn export(&self, kind: Kind, name: &str) -> io::Result<()> {
         let bytes = self.read(kind, name)?.ok_or(io::ErrorKind::NotFound)?;
         host().download(&self.location(kind, name), media(kind), &bytes);
         Ok(())

@@ -13,4 +13,4 @@ pub mod writer;
 
 pub(crate) use host::{GivenFile, host};
 pub use host::{Host, set_host};
-pub(super) use kept::Kept;
+pub(super) use kept::BrowserStorage;

@@ -10,12 +10,12 @@ pub fn fill_screen(_: &egui::Context, wanted: bool) {
 }
 
 /// Makes the page start a new game on a new canvas.
-pub fn begin_anew() {
+pub fn restart() {
     host().lost();
 }
 
 /// Whether the page is full screen. Browsers have keys and gestures that change it.
-pub fn is_full_by_itself() -> Option<bool> {
+pub fn full_screen_of_page() -> Option<bool> {
     Some(host().is_full())
 }
 
@@ -25,7 +25,7 @@ pub fn address_of_page() -> String {
 }
 
 /// Makes the page load the font of a language, and tells it the language for screen readers.
-pub fn speak(context: &egui::Context, language: Language, has_own_levels: bool) {
+pub fn set_language(context: &egui::Context, language: Language, has_own_levels: bool) {
     let host = host();
     let is_japanese = language == Language::Japanese;
     host.set_spoken(if is_japanese { "ja" } else { "en" });
