@@ -88,8 +88,8 @@ pub use rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, Obstacl
 
 use budget::Budget;
 use error::{FieldError, Origin, require, require_vector};
-use fuwafuwa::world::{Refused, SHORTEST_TICK, TICK};
 use fuwafuwa::{Dim, Material, Shape, World, WorldConfig};
+use fuwafuwa::{Refused, SHORTEST_TICK, TICK};
 use joint::JointTargets;
 use serde::{Deserialize, Serialize};
 

@@ -6,7 +6,7 @@
 //! ```
 
 use fuwafuwa::Dim2;
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 use std::time::{Duration, Instant};
 use tamaire::game::Game;
 use tamaire::platform::{Files, Pads, Sound};

@@ -16,7 +16,7 @@ use crate::look::{CameraRig, Effects};
 use crate::platform::Yielder;
 #[cfg(target_family = "wasm")]
 pub use device::lend;
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 use fuwafuwa_painter::{PaintError, Pixmap, film, png_of};
 use fuwafuwa_render::ImageError;
 use studio::Moment;

@@ -29,7 +29,7 @@ use crate::settings::Settings;
 use crate::words::Words;
 pub use bout::CurrentRound;
 pub use controls::{Controls, ScreenButton};
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 pub use notices::{Notice, Notices};
 pub use public::{EndedRound, PublicMode};
 pub use screen::{Screen, Screens};

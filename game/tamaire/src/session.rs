@@ -2,7 +2,7 @@
 
 use crate::pace::Pace;
 use crate::platform::Clock;
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 use std::sync::Arc;
 use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError};
 

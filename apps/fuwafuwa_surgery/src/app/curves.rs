@@ -4,8 +4,8 @@ use super::pictures::RED;
 use super::session::Session;
 use crate::measures::Sample;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, Ui, pos2, vec2};
-use fuwafuwa::vector::length;
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
+use fuwafuwa::inspect::vector::length;
 use tamaire::look::Theme;
 
 /// Time span of the plots [s].

@@ -3,7 +3,7 @@
 use crate::procedure::{BLUNTEST, Input};
 use crate::tools::Tool;
 use egui::Vec2;
-use fuwafuwa::vector::{plus, scaled};
+use fuwafuwa::inspect::vector::{plus, scaled};
 use fuwafuwa::{Rotation, Vector};
 use std::f32::consts::PI;
 use tamaire::input::InputMapping;

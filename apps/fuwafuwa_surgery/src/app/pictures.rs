@@ -2,7 +2,7 @@
 
 use super::session::Session;
 use egui::{Align2, Color32, FontId, Painter, Rect, Stroke, Ui, vec2};
-use fuwafuwa::vector::{length, plus, scaled};
+use fuwafuwa::inspect::vector::{length, plus, scaled};
 use fuwafuwa_render::palette::rgb;
 use fuwafuwa_render::{Frame, Palette, Prop};
 use tamaire::look::{SpaceStage, View};

@@ -5,7 +5,7 @@ use crate::measures::{PieceVolume, Sample, parts};
 use crate::procedure::Procedure;
 use crate::record::{Playback, Recording};
 use fuwafuwa::Vector;
-use fuwafuwa::vector::{minus, plus};
+use fuwafuwa::inspect::vector::{minus, plus};
 use std::sync::Arc;
 use tamaire::look::CameraRig;
 use tamaire::pace::Pace;

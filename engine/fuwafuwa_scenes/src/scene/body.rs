@@ -4,7 +4,7 @@ use super::error::{FieldError, require};
 use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
-use fuwafuwa::law::Elasticity;
+use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{BodyError, Layers, Material};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

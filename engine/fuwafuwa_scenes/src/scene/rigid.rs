@@ -147,7 +147,7 @@ impl ShapeChoice<'_> {
                 return Err(FieldError::new("shape", expected));
             }
         };
-        let wrong = |bad: fuwafuwa::shape::BadShape| {
+        let wrong = |bad: fuwafuwa::BadShape| {
             let field = format!("{name}.{}", bad.field);
             FieldError::new(&field, format!("expected {}", bad.expected))
         };

@@ -6,7 +6,7 @@ use super::error::{FieldError, Origin, require};
 use super::joint::{JointAnchorText, JointText};
 use super::state;
 use super::{MAX_BODIES, MAX_MATERIALS, MAX_RIGID, MAX_TEXT_BYTES, Scene, SceneError};
-use fuwafuwa::law::Law;
+use fuwafuwa::Law;
 use fuwafuwa::{
     Dim, Grading, JointAnchor, Material, RigidBodyHandle, SoftBody, SoftBodyHandle, VoxelGrid,
     World, WorldConfig,

@@ -4,8 +4,8 @@
 use crate::haptics;
 use crate::settings::Settings;
 use force_feedback::{Ability, Command, ForceController, Output, State, StickMode, Watchdog};
+use fuwafuwa::TICK;
 use fuwafuwa::Vector;
-use fuwafuwa::world::TICK;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;

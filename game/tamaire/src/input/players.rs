@@ -4,7 +4,7 @@ use super::devices::{DEAD, RIM, direction, held_on, opposed, rise_of};
 use super::{Action, Bindings, Devices, InputMapping, InputSource, ScanAction};
 use egui::Vec2;
 use fuwafuwa::Vector;
-use fuwafuwa::vector::plus;
+use fuwafuwa::inspect::vector::plus;
 use std::collections::BTreeMap;
 use sticks::DeviceId;
 use tamaire_play::{InputFrame, PLAYERS};

@@ -3,7 +3,7 @@
 use super::feelings::Feeling;
 use super::{Face, Theme, View};
 use fuwafuwa::Dim;
-use fuwafuwa::vector::{plus, scaled};
+use fuwafuwa::inspect::vector::{plus, scaled};
 use fuwafuwa_render::{Basket, Camera, Frame};
 use tamaire_play::Round;
 

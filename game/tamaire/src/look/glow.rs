@@ -3,7 +3,7 @@
 
 use super::{DrawOptions, View};
 use egui::{Color32, Painter, Pos2, Rect, Shape as Drawn, Stroke, pos2, vec2};
-use fuwafuwa::vector::plus;
+use fuwafuwa::inspect::vector::plus;
 use fuwafuwa::{Dim2, Shape, Vector};
 use tamaire_play::Round;
 

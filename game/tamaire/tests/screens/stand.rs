@@ -4,7 +4,7 @@ use crate::window::*;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 use jiff::civil::Time;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
