@@ -9,8 +9,9 @@ pub fn device() -> (wgpu::Device, wgpu::Queue) {
 
 pub fn device_with(required_limits: wgpu::Limits) -> (wgpu::Device, wgpu::Queue) {
     let instance = wgpu::Instance::default();
-    let adapter = pollster::block_on(instance.request_adapter(&Default::default()))
-        .expect("these tests need a graphics adapter; install one, for example mesa-vulkan-drivers");
+    let adapter = pollster::block_on(instance.request_adapter(&Default::default())).expect(
+        "these tests need a graphics adapter; install one, for example mesa-vulkan-drivers",
+    );
     let descriptor = wgpu::DeviceDescriptor {
         required_limits,
         ..Default::default()

@@ -3,7 +3,7 @@
 use super::body::{BodyText, Form, PartText, VoxelsText, extension_of};
 use super::budget::Budget;
 use super::error::{FieldError, require, shortened};
-use super::rigid::ShapeChoice;
+use super::shapes::ShapeChoice;
 use crate::import::{Colours, Model, Picture};
 use fuwafuwa::MAX_EXTENT;
 use fuwafuwa::inspect::points_in;

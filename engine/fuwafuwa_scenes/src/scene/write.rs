@@ -1,9 +1,9 @@
 //! Conversion of a world to a scene.
 
-use super::any_rigid::RigidBodyText;
 use super::body::{BodyText, LayersText, MaterialText, VoxelsText};
 use super::error::{FieldError, Origin, require};
 use super::joint::{JointAnchorText, JointText};
+use super::rigid_body::RigidBodyText;
 use super::state;
 use super::{MAX_BODIES, MAX_MATERIALS, MAX_RIGID, MAX_TEXT_BYTES, Scene, SceneError};
 use fuwafuwa::Law;

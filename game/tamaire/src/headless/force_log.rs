@@ -135,7 +135,7 @@ impl ForceLog {
         let contact = haptics::contact(hand);
         let state = State {
             contact: haptics::on_stick(contact, turn(round)),
-            manner: StickMode::CellIndexing,
+            manner: StickMode::Position,
         };
         let mail = Command {
             wish: haptics::silence(round).map_or(Ok(state), Err),

@@ -164,7 +164,7 @@ fn visit_starts_with_touch_and_is_logged() {
         (Phase::Visit, Screen::Play)
     );
     shown.win(BotKind::Squeeze);
-    let again = game(&mut shown.window).words().again;
+    let again = game(&mut shown.window).words().play_again;
     click(&mut shown.window, again);
     assert_eq!(screen(&shown.window), Screen::Play);
     // The visitor restarts the round and leaves in the middle of it.

@@ -3,7 +3,7 @@
 use super::body::LayersText;
 use super::build::rotation_of;
 use super::error::{FieldError, require, require_vector};
-use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, ShapeChoice};
+use super::shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, ShapeChoice};
 use super::state;
 use fuwafuwa::{Dim, MotionType, Refused, RigidBody, RigidBodyHandle, Rotation, Shape, World};
 use serde::{Deserialize, Serialize};
