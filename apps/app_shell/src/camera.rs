@@ -2,7 +2,7 @@
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use fuwafuwa::Vector;
-use fuwafuwa::vector::{length, minus, plus, scaled};
+use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
 use fuwafuwa_render::space;
 use std::f32::consts::TAU;
 

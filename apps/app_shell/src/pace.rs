@@ -3,7 +3,7 @@
 //! Where it cannot, the round goes slower, evenly: a frame then plays one tick and is shown, instead of more and more
 //! of them in longer and longer frames. What was missed is not caught up on.
 
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 
 /// Ticks in a frame take no longer than this together, but for the first [s]: with the time to draw, a frame then
 /// lasts a thirtieth of a second or so.

@@ -6,8 +6,8 @@ mod rapier;
 use crate::report::{Progress, table};
 use anyhow::Result;
 use clap::ValueEnum;
-use fuwafuwa::law::Law;
-use fuwafuwa::pyramid::Grading;
+use fuwafuwa::Grading;
+use fuwafuwa::Law;
 use fuwafuwa::{
     Dim, Dim2, Dim3, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
 };

@@ -3,9 +3,11 @@
 use crate::report::{self, Progress};
 use anyhow::{Context, Result};
 use clap::ValueEnum;
-use fuwafuwa::pyramid::{CellHierarchy, Grading};
-use fuwafuwa::sharing::Connectivity;
-use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
+use fuwafuwa::Grading;
+use fuwafuwa::inspect::CellHierarchy;
+use fuwafuwa::inspect::Connectivity;
+use fuwafuwa::inspect::Mesh;
+use fuwafuwa::{Dim, Dim2, Dim3, VoxelGrid};
 use serde::Serialize;
 use std::process::ExitCode;
 

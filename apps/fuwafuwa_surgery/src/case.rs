@@ -1,8 +1,9 @@
 //! The organ to be operated on: its voxels, their materials, and their position in the patient.
 
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
+use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    BodyError, BuildError, Dim3, Elasticity, Material, NodeId, Refused, RigidBody, Shape, SoftBody,
+    BodyError, BuildError, Dim3, Material, NodeId, Refused, RigidBody, Shape, SoftBody,
     SoftBodyHandle, VoxelGrid, World, WorldConfig,
 };
 use fuwafuwa_scan::Organ;

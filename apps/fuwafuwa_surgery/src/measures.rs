@@ -73,5 +73,5 @@ pub fn pieces(body: &SoftBody<Dim3>) -> u32 {
 
 /// Returns the magnitude of a force or torque.
 pub fn size(vector: Vector) -> f32 {
-    fuwafuwa::vector::length(vector)
+    fuwafuwa::inspect::vector::length(vector)
 }

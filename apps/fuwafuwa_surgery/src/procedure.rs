@@ -3,8 +3,8 @@
 use crate::case::{Case, CaseError, Table, bounds};
 use crate::measures::{self, Sample};
 use crate::tools::{HeldTool, Tool, clearance};
-use fuwafuwa::vector::{length, minus, plus, scaled};
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
+use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim3, Event, Refused, RigidBody, Rotation, SoftBody, StepReport, Vector, World};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

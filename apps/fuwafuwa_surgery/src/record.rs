@@ -14,7 +14,7 @@ use crate::procedure::{Input, MOST_TICKS, Procedure};
 use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
-use fuwafuwa::hash::Hash;
+use fuwafuwa::inspect::Hash;
 use fuwafuwa::{Material, Refused, VoxelGrid};
 use serde::{Deserialize, Serialize};
 use std::io::{Read, Write};

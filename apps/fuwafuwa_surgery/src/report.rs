@@ -2,7 +2,7 @@
 
 use crate::measures::{PieceVolume, Sample, size};
 use crate::procedure::Procedure;
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 use plotters::prelude::*;
 use std::error::Error;
 use std::fmt::Write;

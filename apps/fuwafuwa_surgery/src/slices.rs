@@ -10,7 +10,7 @@
 //! Left is on the left, as in the main view, which shows the patient from behind. Many workstations show
 //! axial and coronal slices mirrored. Every slice is labelled with letters.
 
-use fuwafuwa::vector::{minus, plus, scaled};
+use fuwafuwa::inspect::vector::{minus, plus, scaled};
 use fuwafuwa::{Dim3, ElementId, SoftBody, Vector};
 
 /// Orientation of a slice.

@@ -10,7 +10,7 @@
 //!
 //! The position of a tool is its working point: the middle of the edge, the tip, the middle of the bar.
 
-use fuwafuwa::vector::plus;
+use fuwafuwa::inspect::vector::plus;
 use fuwafuwa::{
     Dim3, Joint, JointAnchor, JointHandle, Knife, KnifeHandle, MotionType, Refused, RigidBody,
     RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, Vector, World,

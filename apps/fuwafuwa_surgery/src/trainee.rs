@@ -2,8 +2,8 @@
 
 use crate::procedure::{Input, Procedure};
 use crate::tools::Tool;
-use fuwafuwa::vector::{minus, plus, scaled};
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
+use fuwafuwa::inspect::vector::{minus, plus, scaled};
 use fuwafuwa::{Rotation, Vector};
 
 /// Straight motion between two points.
@@ -89,7 +89,7 @@ impl Plan {
 
     /// Adds a motion to a point at a speed [m/s].
     fn go(&mut self, tool: Tool, to: Vector, rotation: Rotation, grips: bool, speed: f32) {
-        let far = fuwafuwa::vector::length(minus(to, self.at));
+        let far = fuwafuwa::inspect::vector::length(minus(to, self.at));
         self.legs.push(Leg {
             tool,
             from: self.at,

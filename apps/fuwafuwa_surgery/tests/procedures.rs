@@ -107,7 +107,8 @@ fn go(procedure: &mut Procedure, input: Input, way: &[Vector], pace: f32) -> f32
     let here = procedure.tool().position();
     let way: Vec<Vector> = [here].into_iter().chain(way.iter().copied()).collect();
     for pair in way.windows(2) {
-        let far = fuwafuwa::vector::length(fuwafuwa::vector::minus(pair[1], pair[0]));
+        let far =
+            fuwafuwa::inspect::vector::length(fuwafuwa::inspect::vector::minus(pair[1], pair[0]));
         let ticks = (far / pace * 60.0).ceil().max(1.0) as usize;
         for tick in 1..=ticks {
             let share = tick as f32 / ticks as f32;
@@ -119,7 +120,7 @@ fn go(procedure: &mut Procedure, input: Input, way: &[Vector], pace: f32) -> f32
     let samples = &procedure.samples()[begun..];
     let forces = samples
         .iter()
-        .map(|sample| fuwafuwa::vector::length(sample.force));
+        .map(|sample| fuwafuwa::inspect::vector::length(sample.force));
     forces.fold(0.0, f32::max)
 }
 
@@ -217,7 +218,7 @@ fn blunt_tools_do_not_slip_between_nodes_of_coarse_organs() {
             let organ = procedure.organ();
             let places = organ.mesh().nodes().map(|(id, _)| organ.node_state(id).0);
             let over = places.filter(|&place| {
-                let away = fuwafuwa::vector::minus(place, tip.position());
+                let away = fuwafuwa::inspect::vector::minus(place, tip.position());
                 away[1] > 0.002 && away[0].hypot(away[2]) < 0.002
             });
             let force = procedure.samples().last().unwrap().force;

@@ -1,6 +1,6 @@
 //! Recordings from untrusted files are read, or rejected with a reason.
 
-use fuwafuwa::hash::Hash;
+use fuwafuwa::inspect::Hash;
 use fuwafuwa_surgery::phantom;
 use fuwafuwa_surgery::procedure::{Input, Procedure};
 use fuwafuwa_surgery::record::{MOST_BYTES, Playback, RecordError, Recording};

@@ -60,7 +60,7 @@ pub struct State {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StickMode {
     /// The stick gives a position.
-    CellIndexing,
+    Position,
     /// The stick gives a velocity. The proxy stays in the middle.
     Velocity,
     /// The stick gives nothing: the contact force is passed on unchanged. Only for a
@@ -116,7 +116,7 @@ impl Coupling {
         let moved = [0, 1].map(|axis| aim[axis] - memory.aim[axis]);
         memory.aim = aim;
         let pull = match state.manner {
-            StickMode::CellIndexing => dot(memory.pull, along) - spring * dot(moved, along),
+            StickMode::Position => dot(memory.pull, along) - spring * dot(moved, along),
             StickMode::Velocity => -spring * dot(aim, along),
             StickMode::OpenLoop => return state.contact,
         };

@@ -33,7 +33,7 @@
 //! let line = force.add(Box::new(recording.clone()), Settings::default());
 //! line.feel(State {
 //!     contact: [-30.0, 0.0],
-//!     manner: StickMode::CellIndexing,
+//!     manner: StickMode::Position,
 //! });
 //! line.stop(Stop::Paused);
 //! assert_eq!(line.report().silent, Some(Stop::Paused));

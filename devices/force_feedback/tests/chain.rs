@@ -92,7 +92,7 @@ fn feel_keeps_slew_and_clamp_for_arbitrary_states() {
             let state = State {
                 contact: [number(&mut rng), number(&mut rng)],
                 manner: if rng.bool() {
-                    StickMode::CellIndexing
+                    StickMode::Position
                 } else {
                     StickMode::Velocity
                 },
@@ -139,7 +139,7 @@ fn feel_recovers_from_nan() {
         let mail = Command {
             wish: Ok(State {
                 contact: [odd, 0.0],
-                manner: StickMode::CellIndexing,
+                manner: StickMode::Position,
             }),
             at: now,
         };

@@ -5,9 +5,10 @@
 //! ```
 
 use cpu_time::ThreadTime;
+use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim3, Elasticity, Event, Knife, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid,
-    World, WorldConfig,
+    Dim3, Event, Knife, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid, World,
+    WorldConfig,
 };
 use std::error::Error;
 

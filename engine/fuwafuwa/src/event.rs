@@ -1,8 +1,8 @@
 //! Events of a tick and the report of a step.
 
-use crate::handle::{JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
-use crate::ids::PieceId;
-use crate::shape::Vector;
+use crate::foundation::arena::{JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::ids::PieceId;
+use crate::rigid_body::shape::Vector;
 
 /// Event of the last tick, for sounds, scores and effects.
 #[derive(Copy, Clone, Debug, PartialEq)]

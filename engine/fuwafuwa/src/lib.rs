@@ -35,75 +35,56 @@
 // An axis indexes several vectors at once; zipping them would hide the formula.
 #![allow(clippy::needless_range_loop)]
 
-mod affine;
-pub mod blade;
-pub mod body;
-mod breakable;
-mod chains;
-pub mod changes;
-#[doc(hidden)]
-pub mod compiled;
+// In reading order: a module uses those above it.
+mod foundation;
+mod math;
+
+mod material;
+mod topology;
+
+mod rigid_body;
+mod soft_body;
+
 mod contact;
-mod damping;
-pub mod dim;
-mod disjoint;
-pub mod event;
 mod fracture;
-pub mod grid;
+
+mod event;
+mod query;
+mod world;
+
 #[cfg(any(doc, doctest))]
 pub mod guide;
-pub mod handle;
-pub mod hash;
-pub mod ids;
-pub mod joint;
-pub mod knife;
-mod lanes;
-pub mod law;
-pub mod layers;
-pub mod material;
-pub mod measure;
-pub mod mesh;
-pub mod momentum;
-pub mod piece;
-pub mod plasticity;
-pub mod pyramid;
-pub mod query;
-mod release;
-mod removal;
-pub mod rigid;
-pub mod rotation;
-pub mod shape;
-pub mod sharing;
-mod sleep;
+pub mod inspect;
+#[doc(hidden)]
+pub mod instances;
 #[cfg(feature = "serde")]
 pub mod snapshot;
-pub mod solve;
-pub mod stencil;
-mod threads;
-mod touch;
-pub mod vector;
-pub mod view;
-pub mod world;
 
-pub use blade::{Blade, CutReport};
-pub use body::SoftBody;
-pub use changes::{Bookmark, Changes};
-pub use dim::{Dim, Dim2, Dim3, Point};
+pub use contact::joint::{Joint, JointAnchor, JointKind};
 pub use event::{Event, ObjectRef, StepReport, With};
-pub use grid::{BuildError, VoxelGrid};
-pub use handle::{Gone, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
-pub use ids::{ElementId, NodeId, PieceId};
-pub use joint::{Joint, JointAnchor, JointKind};
-pub use knife::Knife;
-pub use law::{Elasticity, Law};
-pub use layers::Layers;
+pub use foundation::arena::{
+    Arena, Gone, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle,
+};
+pub use foundation::dim::{Dim, Dim2, Dim3, Point};
+pub use foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
+pub use fracture::blade::{Blade, CutReport};
+pub use fracture::knife::Knife;
 pub use material::{BodyError, Material};
-pub use measure::{ElementState, Energy};
-pub use mesh::Mesh;
-pub use pyramid::Grading;
+pub use math::rotation::Rotation;
+pub use math::vector::Vector;
 pub use query::{Queries, QueryHit, Thing};
-pub use rigid::{MotionType, Reaction, RigidBody};
-pub use rotation::Rotation;
-pub use shape::{Shape, Vector};
-pub use view::{ElementView, Facet, Outline, PieceView};
-pub use world::{Hooks, PieceSize, Refused, Removed, Substep, World, WorldConfig, field_around};
+pub use rigid_body::layers::Layers;
+pub use rigid_body::shape::{BadShape, Shape};
+pub use rigid_body::{MotionType, Reaction, RigidBody};
+pub use soft_body::SoftBody;
+pub use soft_body::element_law::Law;
+pub use soft_body::element_state::{ElementState, Energy};
+pub use soft_body::momentum::Momentum;
+pub use soft_body::view::{ElementView, Facet, Outline, PieceView};
+pub use topology::cell_hierarchy::Grading;
+pub use topology::changes::{Bookmark, Changes};
+pub use topology::grid::{BuildError, MAX_EXTENT, VoxelGrid};
+pub use world::{
+    FEWEST_SUBSTEPS, Hooks, LONGEST_TICK, PieceSize, Refused, Removed, SHORTEST_TICK, Substep,
+    TICK, USUAL_SUBSTEPS, World, WorldConfig, field_around,
+};

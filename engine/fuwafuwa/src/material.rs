@@ -1,8 +1,8 @@
 //! Materials of voxels, and the errors of invalid ones.
 
-use crate::law::{BadElasticity, Elasticity};
-use crate::mesh::Defect;
-use crate::plasticity::Plasticity;
+use crate::soft_body::element_law::{BadElasticity, Elasticity};
+use crate::soft_body::plasticity::Plasticity;
+use crate::topology::mesh::Defect;
 use std::fmt;
 
 /// Material of a voxel.

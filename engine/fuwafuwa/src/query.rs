@@ -1,23 +1,23 @@
 //! Scene queries: ray cast, nearest point, objects at a point, overlap with a shape.
 
-mod figure;
-mod tree;
+mod bounding_tree;
+mod intersection;
 
-use crate::body::SoftBody;
-use crate::dim::Dim;
-use crate::handle::{RigidBodyHandle, SoftBodyHandle};
-use crate::ids::{ElementId, PieceId};
-use crate::rigid::RigidBody;
-use crate::shape::{Bounds, Shape, Vector, flat};
-use crate::vector::{dot, is_finite, length, minus, plus, scaled};
-use crate::view::Facet;
+use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{ElementId, PieceId};
+use crate::math::vector::{dot, is_finite, length, minus, plus, scaled};
+use crate::rigid_body::RigidBody;
+use crate::rigid_body::shape::{Bounds, Shape, Vector, flat};
+use crate::soft_body::SoftBody;
+use crate::soft_body::view::Facet;
 use crate::world::World;
-use figure::{
+use bounding_tree::{Tree, around_all, distance_from, entry};
+use intersection::{
     is_in_block, nearest_on_segment, nearest_on_triangle, ray_meets_segment, ray_meets_triangle,
 };
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
-use tree::{Tree, around_all, distance_from, entry};
 
 /// Ternary-search steps for the closest approach of a triangle to a shape, each of which keeps two thirds. 24
 /// steps leave 6·10⁻⁵ of the edge, less than the tolerance of the primitives.

@@ -4,8 +4,8 @@
 //! "fuwa"  version u32  dimensions u8  checksum u64  the world, in postcard's format
 //! ```
 
-use crate::dim::Dim;
-use crate::hash::Hash;
+use crate::foundation::dim::Dim;
+use crate::foundation::hash::Hash;
 use crate::world::World;
 use std::fmt;
 

@@ -1,34 +1,33 @@
 //! The simulated world and its time step, [`World::step`].
 
-mod acts;
+mod actions;
+mod config;
+mod contact_events;
 mod contents;
 mod cuts;
 mod hooks;
 mod removal;
-mod settings;
-mod ties;
-mod touches;
+mod sleep;
+mod world_joints;
 
-use crate::body::{SoftBodies, SoftBody};
-use crate::contact::{Contacts, Hit, Hits};
-use crate::damping::{PieceDamping, PieceMotion, motions, slow_down};
-use crate::dim::Dim;
+use crate::contact::broad_phase::{Nearby, NodePair};
+use crate::contact::joint::{self, Joints};
+use crate::contact::solver::{Contacts, Hit, Hits};
 use crate::event::{Event, ObjectRef, StepReport};
-use crate::fracture::{Failure, failures};
-use crate::handle::{BodySlot, Gone, RigidBodyHandle, RigidSlot};
-use crate::ids::{IndexVec, PieceId};
-use crate::joint::{self, Joints};
-use crate::knife::{Knife, Knives};
-use crate::rigid::{BadRigid, RigidBodies};
-use crate::sleep::{fall_asleep, fall_asleep_rigid, wake};
-use crate::touch::{Nearby, NodePair};
-use crate::vector::{is_finite, plus, three};
+use crate::foundation::arena::{BodySlot, Gone, RigidBodyHandle, RigidSlot};
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{IndexVec, PieceId};
+use crate::fracture::crack_growth::{Failure, failures};
+use crate::fracture::knife::{Knife, Knives};
+use crate::math::vector::{is_finite, plus, three};
+use crate::rigid_body::{BadRigid, RigidBodies};
+use crate::soft_body::damping::{PieceDamping, PieceMotion, motions, slow_down};
+use crate::soft_body::{SoftBodies, SoftBody};
+use crate::world::sleep::{fall_asleep, fall_asleep_rigid, wake};
+use config::BadSetting;
+pub use config::{FEWEST_SUBSTEPS, LONGEST_TICK, SHORTEST_TICK, TICK, USUAL_SUBSTEPS, WorldConfig};
 pub use hooks::{Hooks, Substep, field_around};
 pub use removal::{PieceSize, Removed};
-use settings::BadSetting;
-pub use settings::{
-    FEWEST_SUBSTEPS, LONGEST_TICK, SHORTEST_TICK, TICK, USUAL_SUBSTEPS, WorldConfig,
-};
 use std::fmt;
 
 /// Decay rate of the angular velocity of a one-voxel piece that touches something [1/s], because it does not

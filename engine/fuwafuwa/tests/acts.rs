@@ -13,7 +13,7 @@ const WEIGHTLESS: WorldConfig = WorldConfig {
     gravity: [0.0; 3],
     drag: 0.0,
     most_substeps: 64,
-    tick: fuwafuwa::world::TICK,
+    tick: fuwafuwa::TICK,
 };
 const SOMEWHERE: Vector = [3.0, -2.0, 0.0];
 
@@ -336,7 +336,7 @@ fn set_settings_applies_to_running_world() {
         ..upwards
     };
     let hard = Material {
-        elasticity: fuwafuwa::Elasticity {
+        elasticity: fuwafuwa::inspect::Elasticity {
             young: 1e6,
             poisson: 0.3,
         },

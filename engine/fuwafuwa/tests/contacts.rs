@@ -1,8 +1,9 @@
 //! Contact events, sensors and layers.
 
+use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Elasticity, Event, Layers, Material, ObjectRef, RigidBody, RigidBodyHandle,
-    Rotation, Shape, SoftBody, SoftBodyHandle, VoxelGrid, World, WorldConfig,
+    Dim, Dim2, Dim3, Event, Layers, Material, ObjectRef, RigidBody, RigidBodyHandle, Rotation,
+    Shape, SoftBody, SoftBodyHandle, VoxelGrid, World, WorldConfig,
 };
 
 const UP: [f32; 3] = [0.0, 1.0, 0.0];

@@ -1,9 +1,10 @@
 //! Crumbs under pressure: none stays embedded in a larger piece.
 
-use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
+use fuwafuwa::inspect::Elasticity;
+use fuwafuwa::inspect::vector::{cross, dot, length, minus, plus, scaled};
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Elasticity, Material, PieceId, RigidBody, Shape, SoftBody, Vector, VoxelGrid,
-    World, WorldConfig,
+    Dim, Dim2, Dim3, Material, PieceId, RigidBody, Shape, SoftBody, Vector, VoxelGrid, World,
+    WorldConfig,
 };
 
 /// A crumb counts as embedded in a piece if its centre is in an element and at least this far from all faces

@@ -1,12 +1,15 @@
 //! Invariants for every shape and every sequence of cuts.
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
-use fuwafuwa::dim::{neighbourhood, points_in};
-use fuwafuwa::law::{Elasticity, Law, forces};
-use fuwafuwa::mesh::Remodelled;
-use fuwafuwa::pyramid::{CellHierarchy, Grading};
-use fuwafuwa::sharing::Connectivity;
-use fuwafuwa::{Dim, Dim2, Dim3, Mesh, Point, VoxelGrid};
+use fuwafuwa::Grading;
+use fuwafuwa::Law;
+use fuwafuwa::inspect::CellHierarchy;
+use fuwafuwa::inspect::Connectivity;
+use fuwafuwa::inspect::Mesh;
+use fuwafuwa::inspect::Remodelled;
+use fuwafuwa::inspect::{Elasticity, forces};
+use fuwafuwa::inspect::{neighbourhood, points_in};
+use fuwafuwa::{Dim, Dim2, Dim3, Point, VoxelGrid};
 
 /// A small reproducible random generator (xorshift64*).
 struct Random(u64);

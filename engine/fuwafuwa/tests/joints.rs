@@ -1,9 +1,9 @@
 //! Pins, springs and ropes between soft bodies, rigid bodies and fixed points.
 
+use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Elasticity, Event, Joint, JointAnchor, JointKind, Material, MotionType,
-    RigidBody, RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, VoxelGrid, World,
-    WorldConfig,
+    Dim, Dim2, Dim3, Event, Joint, JointAnchor, JointKind, Material, MotionType, RigidBody,
+    RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, VoxelGrid, World, WorldConfig,
 };
 use std::f32::consts::TAU;
 

@@ -1,8 +1,9 @@
 //! Moving bodies: forces compared with the reference law, momentum, angular momentum and energy.
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
-use fuwafuwa::law::{Law, forces};
-use fuwafuwa::pyramid::Grading;
+use fuwafuwa::Grading;
+use fuwafuwa::Law;
+use fuwafuwa::inspect::forces;
 use fuwafuwa::{BodyError, Dim, Dim2, Dim3, Material, NodeId, SoftBody, VoxelGrid};
 
 fn ball<D: Dim>(n: usize, law: Law) -> SoftBody<D> {

@@ -1,11 +1,14 @@
 //! Measurements against figures and formulas of the paper.
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
-use fuwafuwa::law::{Elasticity, Law, forces};
-use fuwafuwa::pyramid::{CellHierarchy, Grading};
-use fuwafuwa::sharing::Connectivity;
-use fuwafuwa::stencil::{ElementClass, cell_corners};
-use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
+use fuwafuwa::Grading;
+use fuwafuwa::Law;
+use fuwafuwa::inspect::CellHierarchy;
+use fuwafuwa::inspect::Connectivity;
+use fuwafuwa::inspect::Mesh;
+use fuwafuwa::inspect::{Elasticity, forces};
+use fuwafuwa::inspect::{ElementClass, cell_corners};
+use fuwafuwa::{Dim, Dim2, Dim3, VoxelGrid};
 
 fn graded<D: Dim>(grid: &VoxelGrid<D>) -> Mesh<D> {
     mesh_of(grid, Grading::Graded)

@@ -3,8 +3,8 @@
 //! Input: `#` is a voxel. Output: the level of the element that owns the voxel. A letter in place of the
 //! digit (`b` for 1, `c` for 2) marks an element that has lost children and is no longer a whole cell.
 
-use fuwafuwa::dim::Dim;
-use fuwafuwa::mesh::Element;
+use fuwafuwa::Dim;
+use fuwafuwa::inspect::Element;
 use fuwafuwa::{Blade, Dim2, Material, SoftBody, VoxelGrid};
 
 fn body_of(picture: &[&str]) -> SoftBody<Dim2> {

@@ -1,10 +1,11 @@
 //! Materials with permanent deformation.
 
-use fuwafuwa::plasticity::Plasticity;
-use fuwafuwa::plasticity::{elastic_part, flow, forces_after};
+use fuwafuwa::inspect::Elasticity;
+use fuwafuwa::inspect::Plasticity;
+use fuwafuwa::inspect::{elastic_part, flow, forces_after};
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Elasticity, Material, MotionType, RigidBody, Shape, SoftBody,
-    SoftBodyHandle, VoxelGrid, World, WorldConfig,
+    Blade, Dim, Dim2, Dim3, Material, MotionType, RigidBody, Shape, SoftBody, SoftBodyHandle,
+    VoxelGrid, World, WorldConfig,
 };
 
 fn rubber() -> Material {
@@ -183,7 +184,7 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
             }
         }
         let strain = body.plastic_strain(id).unwrap();
-        let other = fuwafuwa::plasticity::plastic_stiffness_factor::<D>(&undone);
+        let other = fuwafuwa::inspect::plastic_stiffness_factor::<D>(&undone);
         let expected = (1.0 / other).sqrt() - 1.0;
         assert!(
             (f64::from(strain) - expected).abs() < 2e-3,

@@ -15,7 +15,7 @@ const WEIGHTLESS: WorldConfig = WorldConfig {
     gravity: [0.0; 3],
     drag: 0.0,
     most_substeps: 64,
-    tick: fuwafuwa::world::TICK,
+    tick: fuwafuwa::TICK,
 };
 
 /// A ball of two materials centred at the origin; material 2 fills a radius of 0.25 m.

@@ -1,19 +1,20 @@
 //! Removal of pieces from a world: the rest is unaffected.
 #![cfg(feature = "serde")]
 
-use fuwafuwa::pyramid::CellHierarchy;
+use fuwafuwa::inspect::CellHierarchy;
+use fuwafuwa::inspect::Mesh;
 use fuwafuwa::snapshot::{load, save};
 use fuwafuwa::{
-    Blade, Bookmark, Dim, Dim2, Dim3, Event, Grading, Joint, JointAnchor, Material, Mesh,
-    ObjectRef, PieceId, PieceSize, Removed, RigidBody, Shape, SoftBody, SoftBodyHandle, VoxelGrid,
-    World, WorldConfig,
+    Blade, Bookmark, Dim, Dim2, Dim3, Event, Grading, Joint, JointAnchor, Material, ObjectRef,
+    PieceId, PieceSize, Removed, RigidBody, Shape, SoftBody, SoftBodyHandle, VoxelGrid, World,
+    WorldConfig,
 };
 
 const WEIGHTLESS: WorldConfig = WorldConfig {
     gravity: [0.0; 3],
     drag: 0.0,
     most_substeps: 64,
-    tick: fuwafuwa::world::TICK,
+    tick: fuwafuwa::TICK,
 };
 
 fn random(seed: &mut u32, below: usize) -> usize {

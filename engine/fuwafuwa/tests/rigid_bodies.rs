@@ -1,8 +1,9 @@
 //! Rigid bodies that fall, rotate, stack, bounce, and lie on soft bodies.
 
+use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Elasticity, Material, MotionType, RigidBody, RigidBodyHandle, Rotation, Shape,
-    SoftBody, VoxelGrid, World, WorldConfig,
+    Dim, Dim2, Dim3, Material, MotionType, RigidBody, RigidBodyHandle, Rotation, Shape, SoftBody,
+    VoxelGrid, World, WorldConfig,
 };
 use std::f32::consts::{FRAC_PI_4, PI};
 

@@ -1,7 +1,7 @@
 //! Snapshots: a loaded world continues with the same bits.
 #![cfg(feature = "serde")]
 
-use fuwafuwa::hash::Hash;
+use fuwafuwa::inspect::Hash;
 use fuwafuwa::{
     Blade, Dim, Dim2, Dim3, Event, Joint, JointAnchor, JointKind, Knife, Material, MotionType,
     RigidBody, Rotation, Shape, SoftBody, VoxelGrid, World, WorldConfig, snapshot,

@@ -1,10 +1,10 @@
 //! Tick lengths: durations in seconds do not depend on the tick.
 
-use fuwafuwa::world::{LONGEST_TICK, SHORTEST_TICK, TICK};
 use fuwafuwa::{
     Dim, Dim2, Dim3, Event, Hooks, Material, Refused, RigidBody, Shape, SoftBody, Substep,
     VoxelGrid, World, WorldConfig,
 };
+use fuwafuwa::{LONGEST_TICK, SHORTEST_TICK, TICK};
 
 const TICKS: [f32; 6] = [
     SHORTEST_TICK,
@@ -176,7 +176,7 @@ fn substeps_per_second_are_independent_of_tick() {
     // A body that is too stiff is softened by the same factor at any tick.
     let scale = |tick| {
         let stiff = Material {
-            elasticity: fuwafuwa::Elasticity::new(5e7, 0.3).unwrap(),
+            elasticity: fuwafuwa::inspect::Elasticity::new(5e7, 0.3).unwrap(),
             ..Material::default()
         };
         let mut world = world::<Dim3>(tick);

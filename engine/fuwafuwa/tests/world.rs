@@ -1,7 +1,7 @@
 //! Worlds: falling, rest, sleep, cuts, contacts, tears and views.
 
-use fuwafuwa::blade::Blade;
-use fuwafuwa::view::PieceView;
+use fuwafuwa::Blade;
+use fuwafuwa::PieceView;
 use fuwafuwa::{
     Dim, Dim2, Dim3, ElementId, Event, Material, NodeId, Shape, SoftBody, VoxelGrid, World,
     WorldConfig,
@@ -12,7 +12,7 @@ const WEIGHTLESS: WorldConfig = WorldConfig {
     gravity: [0.0; 3],
     drag: 0.0,
     most_substeps: 64,
-    tick: fuwafuwa::world::TICK,
+    tick: fuwafuwa::TICK,
 };
 
 fn unbreakable() -> Material {
@@ -36,7 +36,7 @@ fn validate<D: Dim>(world: &World<D>) {
 
 /// Returns the volume enclosed by all facets, by the divergence theorem.
 fn volume_inside<D: Dim>(body: &SoftBody<D>) -> f32 {
-    let of = |facet: fuwafuwa::view::Facet| {
+    let of = |facet: fuwafuwa::Facet| {
         let [a, b, c, d] = facet.corners;
         match D::N {
             2 => 0.5 * (a[0] * b[1] - a[1] * b[0]),

@@ -3,8 +3,8 @@
 use crate::PaintError;
 use crate::role::{Role, colour};
 use crate::shadow::{KEY, Shadow};
-use fuwafuwa::shape::Vector;
-use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
+use fuwafuwa::Vector;
+use fuwafuwa::inspect::vector::{cross, dot, length, minus, plus, scaled};
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 /// Perspective camera.

@@ -1,6 +1,6 @@
 //! Soft shadow of bodies on the floor: their silhouette from the light, blurred.
 
-use fuwafuwa::shape::Vector;
+use fuwafuwa::Vector;
 
 /// Unit vector to the stronger light, which casts the shadow.
 pub const KEY: Vector = [0.44, 0.71, 0.55];

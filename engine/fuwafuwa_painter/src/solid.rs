@@ -7,8 +7,8 @@ use crate::canvas::{Canvas, unit};
 use crate::role::Role;
 use crate::shadow::Shadow;
 use fuwafuwa::Rotation;
-use fuwafuwa::shape::Vector;
-use fuwafuwa::vector::{cross, minus, plus, scaled};
+use fuwafuwa::Vector;
+use fuwafuwa::inspect::vector::{cross, minus, plus, scaled};
 use tiny_skia::Pixmap;
 
 /// A 3D scene to be rendered.

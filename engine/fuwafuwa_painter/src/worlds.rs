@@ -2,10 +2,11 @@
 
 use crate::solid::Scene3d;
 use crate::{Painter, PaperPoint, PaperTransform, Role};
-use fuwafuwa::shape::{Shape, Vector};
-use fuwafuwa::vector::{cross, minus, plus, scaled};
-use fuwafuwa::view::{ElementView, Facet, Outline, faces, outline_slots};
+use fuwafuwa::inspect::vector::{cross, minus, plus, scaled};
+use fuwafuwa::inspect::{faces, outline_slots};
 use fuwafuwa::{Dim, Dim2, Dim3, ElementId, NodeId, PieceId, Rotation, SoftBody, World};
+use fuwafuwa::{ElementView, Facet, Outline};
+use fuwafuwa::{Shape, Vector};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Function that paints a 2D body.

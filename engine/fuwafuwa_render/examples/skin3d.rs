@@ -1,7 +1,7 @@
 //! Measures the CPU time of each part of a 3D picture while a hand tears a ball: `cargo run --release -p
 //! fuwafuwa_render --example skin3d -- [body.n=64 …]`.
 
-use fuwafuwa::vector::scaled;
+use fuwafuwa::inspect::vector::scaled;
 use fuwafuwa::{Dim3, PieceId, World};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::space::{Camera, Cut, Geometry, Skin};

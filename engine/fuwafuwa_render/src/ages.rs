@@ -1,6 +1,6 @@
 //! Time since each element was last remodelled.
 
-use fuwafuwa::mesh::Element;
+use fuwafuwa::inspect::Element;
 use fuwafuwa::{Dim, ElementId, SoftBodyHandle, World};
 
 /// Properties of an element that remodelling changes: cell position, level and child mask.

@@ -129,7 +129,7 @@ fn turn_of<D: Dim>(mut turn: Mat3) -> Option<Mat3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::vector::dot;
+    use fuwafuwa::inspect::vector::dot;
     use fuwafuwa::{Blade, Dim2, Dim3, Material, NodeId, VoxelGrid, World, WorldConfig};
 
     #[test]

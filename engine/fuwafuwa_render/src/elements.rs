@@ -4,9 +4,9 @@ use crate::frame::ElementColour;
 use crate::palette::{Colour, Palette, bytes, mix};
 use crate::plane::flat;
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::dim::{add, corner, scale};
-use fuwafuwa::stencil::slot_index;
-use fuwafuwa::view::{ElementFace, blocks, faces};
+use fuwafuwa::inspect::slot_index;
+use fuwafuwa::inspect::{ElementFace, blocks, faces};
+use fuwafuwa::inspect::{add, corner, scale};
 use fuwafuwa::{Dim2, ElementView, SoftBody};
 use glam::Vec2;
 

@@ -8,7 +8,7 @@
 
 use crate::plane::flat;
 use crate::rest::{Rest, SMALL};
-use fuwafuwa::ids::IndexVec;
+use fuwafuwa::IndexVec;
 use fuwafuwa::{Dim2, NodeId, SoftBody};
 use glam::Vec2;
 
@@ -230,7 +230,7 @@ impl Control {
 }
 
 /// Returns the mean edges to the right and upwards [m] of a cell with corners in the order of
-/// [`fuwafuwa::dim::corner`].
+/// [`fuwafuwa::inspect::corner`].
 pub fn sides([a, b, c, d]: [Vec2; 4]) -> (Vec2, Vec2) {
     (0.5 * (b - a + d - c), 0.5 * (c - a + d - b))
 }

@@ -4,8 +4,8 @@ use crate::elements::fills;
 use crate::plane::flat;
 use crate::rings::{Outlines, sides, strain};
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::dim::{corner, scale};
-use fuwafuwa::stencil::slot_index;
+use fuwafuwa::inspect::slot_index;
+use fuwafuwa::inspect::{corner, scale};
 use fuwafuwa::{Dim, Dim2, ElementView, SoftBody};
 use glam::Vec2;
 

@@ -53,19 +53,19 @@
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [mm]
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
-mod choice;
-mod complaint;
 mod header;
 mod organ;
+mod parse;
 mod placement;
+mod problem;
 mod region;
 mod scan;
 mod segmentation;
 mod stream;
 
-pub use choice::{Label, Threshold};
 pub use header::MAX_VOXELS;
 pub use organ::{Options, Organ, OrganError, RESOLUTIONS};
+pub use parse::{Label, Threshold};
 pub use placement::{Placement, PlacementSource, SPACINGS};
 pub use scan::Scan;
 pub use segmentation::Segmentation;

@@ -1,8 +1,8 @@
 //! Scans: a number for each voxel of a box, and the position of the box in the patient.
 
-use crate::complaint::{PositionedProblem, in_file};
 use crate::header::{Header, LONGEST};
 use crate::placement::Placement;
+use crate::problem::{PositionedProblem, in_file};
 use crate::stream::Stream;
 use fuwafuwa_scenes::import::ImportError;
 

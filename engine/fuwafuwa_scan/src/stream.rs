@@ -1,6 +1,6 @@
 //! Sequential access to the bytes of a file, decompressed on demand.
 
-use crate::complaint::{PositionedProblem, too_large, unexpected};
+use crate::problem::{PositionedProblem, too_large, unexpected};
 use flate2::bufread::MultiGzDecoder;
 use fuwafuwa_scenes::import::FilePosition;
 use std::io::Read;

@@ -63,7 +63,6 @@
 //! [`Picture::grid`](crate::import::Picture::grid) and [`Model::grid`](crate::import::Model::grid) document
 //! how pictures and models become voxels.
 
-mod any_rigid;
 mod body;
 mod budget;
 mod build;
@@ -73,23 +72,24 @@ mod error;
 mod game;
 mod grid;
 mod joint;
-mod rigid;
+mod rigid_body;
+mod shapes;
 mod state;
 mod write;
 
-pub use any_rigid::{MotionTypeText, RigidBodyText};
 pub use body::{BodyText, Form, LayersText, MaterialText, PartText, VoxelsText, extension_of};
 pub use embed::Fetch;
 pub use error::{SceneError, shortened};
 pub use game::{AssistText, GameText, LocalizedText, RouteText, WishText};
 pub use joint::{JointAnchorText, JointKindText, JointText};
-pub(crate) use rigid::set_hand_targets;
-pub use rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText};
+pub use rigid_body::{MotionTypeText, RigidBodyText};
+pub(crate) use shapes::set_hand_targets;
+pub use shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText};
 
 use budget::Budget;
 use error::{FieldError, Origin, require, require_vector};
-use fuwafuwa::world::{Refused, SHORTEST_TICK, TICK};
 use fuwafuwa::{Dim, Material, Shape, World, WorldConfig};
+use fuwafuwa::{Refused, SHORTEST_TICK, TICK};
 use joint::JointTargets;
 use serde::{Deserialize, Serialize};
 

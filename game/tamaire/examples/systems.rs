@@ -7,7 +7,7 @@
 
 use app_shell::Pads;
 use fuwafuwa::Dim2;
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 use std::time::{Duration, Instant};
 use tamaire::game::Game;
 use tamaire::platform::{Files, Sound};

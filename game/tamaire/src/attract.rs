@@ -24,7 +24,7 @@ pub fn attract(number: usize) -> Session {
 mod tests {
     use super::*;
     use app_shell::Clock;
-    use fuwafuwa::world::TICK;
+    use fuwafuwa::TICK;
     use tamaire_play::{InputFrame, Level, Route};
 
     #[test]

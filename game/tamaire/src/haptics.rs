@@ -1,7 +1,7 @@
 //! What is felt of a tick, and by whom.
 
 use force_feedback::Stop;
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 use fuwafuwa::{Event, RigidBody, Vector};
 use tamaire_play::{AnyRound, PLAYERS};
 

@@ -1,7 +1,7 @@
 //! A round in time: played by people, tried by a bot, or watched again.
 
 use app_shell::{Clock, Pace};
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 use std::sync::Arc;
 use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError};
 

@@ -3,7 +3,7 @@
 
 use app_shell::Pads;
 use force_feedback::{Ability, Calibration, Output, Recording, Stop};
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 use sticks::{Device, DeviceId, DeviceInfo, Snapshot};

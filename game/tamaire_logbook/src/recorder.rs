@@ -2,15 +2,15 @@
 //! or full.
 
 #[cfg(not(feature = "postgres"))]
-mod absent;
-mod desk;
+mod no_sender;
+mod shared;
 mod writer;
 
-pub use desk::Health;
+pub use shared::Health;
 pub use writer::Options;
 
 use crate::{Entry, Moment, Round, Today};
-use desk::{Best, SharedState};
+use shared::{Best, SharedState};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread;
@@ -20,7 +20,7 @@ use writer::Writer;
 #[cfg(feature = "postgres")]
 use crate::sender::Sender;
 #[cfg(not(feature = "postgres"))]
-use absent::Sender;
+use no_sender::Sender;
 
 /// Handle of the thread that writes a logbook. Dropping it writes the waiting entries, as
 /// [`Recorder::finish`] does, within 3 s.

@@ -5,8 +5,8 @@ mod map;
 mod sight;
 
 use crate::{AnyRound, InputFrame, Outcome, Round};
-use fuwafuwa::vector::{length, minus, plus, scaled};
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
+use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim, Vector};
 use sight::{Sight, split};
 

@@ -3,7 +3,7 @@
 mod room;
 
 use crate::Route;
-use fuwafuwa::hash::Hash;
+use fuwafuwa::inspect::Hash;
 use fuwafuwa::{Dim, Dim2, Dim3, Shape, World};
 use fuwafuwa_scenes::scene::{
     BodyText, Fetch, GameText, MAX_TEXT_BYTES, MotionTypeText, Scene, SceneError, extension_of,
@@ -229,7 +229,7 @@ impl Level {
         if scene.body.is_empty() {
             return Err(missing("body", "expected at least one table [[body]]"));
         }
-        if scene.tick != fuwafuwa::world::TICK {
+        if scene.tick != fuwafuwa::TICK {
             return Err(missing(
                 "tick",
                 "expected no tick: a tick of a level is 1/60 s",

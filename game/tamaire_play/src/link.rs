@@ -45,7 +45,7 @@ use crate::{Level, Outcome, Replay, ReplayError};
 use base64::Engine;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
 use error::{all, taken};
-use fuwafuwa::hash::Hash;
+use fuwafuwa::inspect::Hash;
 use level::SentLevel;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! Rounds of a level.
 
 use crate::{InputFrame, Level, PLAYERS, Progress};
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 use fuwafuwa::{Dim, RigidBody, RigidBodyHandle, Shape, StepReport, Vector, World};
 use std::sync::Arc;
 

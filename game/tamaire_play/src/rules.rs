@@ -1,8 +1,8 @@
 //! Conditions and routes of a win.
 
 use crate::{Level, Route, Wish};
-use fuwafuwa::vector::minus;
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
+use fuwafuwa::inspect::vector::minus;
 use fuwafuwa::{Dim, ElementId, PieceView, Shape, SoftBody, World};
 use serde::{Deserialize, Serialize};
 

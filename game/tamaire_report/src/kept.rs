@@ -3,7 +3,7 @@
 
 use crate::Error;
 use crate::rerun::Rerun;
-use fuwafuwa::hash::Hash;
+use fuwafuwa::inspect::Hash;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};

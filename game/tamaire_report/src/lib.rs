@@ -19,6 +19,7 @@
 
 mod check;
 mod clips;
+mod comparison_2004;
 mod csv;
 pub mod day;
 mod drafts;
@@ -30,7 +31,6 @@ mod kept;
 pub mod options;
 mod page;
 mod plot;
-mod reading;
 pub mod report;
 mod rerun;
 mod room;

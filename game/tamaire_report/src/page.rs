@@ -1,10 +1,10 @@
 //! The HTML page: numbers first, then the comparison with 2004, then plots and tables.
 
 use crate::clips::Clips;
+use crate::comparison_2004;
 use crate::figures::{Figures, LevelFigures, Totals, Wins};
 use crate::html::{brief, escaped, figure, legend, paragraph, section, table};
 use crate::plot::{Columns, Fill, PATTERNS, grouped, map, shares};
-use crate::reading;
 use crate::room::Stroke;
 use crate::words::Words;
 use base64::Engine;
@@ -89,10 +89,10 @@ fn numbers(words: &Words, figures: &Figures) -> String {
 
 fn read(words: &Words, figures: &Figures) -> String {
     let said = &words.reading;
-    let switching = reading::tells_switching(figures);
+    let switching = comparison_2004::tells_switching(figures);
     let here = [
-        (said.strategies)(reading::strategies(figures), figures),
-        (said.unexplained)(reading::unexplained(figures), figures),
+        (said.strategies)(comparison_2004::strategies(figures), figures),
+        (said.unexplained)(comparison_2004::unexplained(figures), figures),
         (said.switching)(switching, figures),
     ];
     let gap = if words.code == "ja" { "" } else { " " };

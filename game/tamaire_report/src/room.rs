@@ -1,6 +1,6 @@
 //! Map of a level's room: its cells and the objects in it.
 
-use fuwafuwa::vector::plus;
+use fuwafuwa::inspect::vector::plus;
 use fuwafuwa::{Dim, Shape, Vector, World};
 use tamaire_play::{AnyRound, Level};
 

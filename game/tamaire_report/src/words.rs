@@ -6,8 +6,8 @@ mod ja;
 pub use en::ENGLISH;
 pub use ja::JAPANESE;
 
+use crate::comparison_2004::{Strategies, Unexplained};
 use crate::figures::{Basis, Dares, Figures, Reason, Switching};
-use crate::reading::{Strategies, Unexplained};
 use tamaire_play::Route;
 
 /// Texts of the page.

@@ -122,7 +122,6 @@ pub mod prelude {
         FuwafuwaPlugin, FuwafuwaPlugin2d, FuwafuwaPlugin3d, FuwafuwaSystems, Rejected, RigidBody2d,
         RigidBody3d, SoftBody2d, SoftBody3d, SoftQueries, SoftSettings, SoftWorld,
     };
-    pub use fuwafuwa::{
-        Dim2, Dim3, MotionType, Elasticity, Layers, Material as SoftMaterial, Shape, VoxelGrid,
-    };
+    pub use fuwafuwa::inspect::Elasticity;
+    pub use fuwafuwa::{Dim2, Dim3, MotionType, Layers, Material as SoftMaterial, Shape, VoxelGrid};
 }

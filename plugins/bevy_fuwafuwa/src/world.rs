@@ -3,7 +3,7 @@
 use crate::dimension::Dimension;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::resource::Resource;
-use fuwafuwa::handle::Gone;
+use fuwafuwa::Gone;
 use fuwafuwa::{BodyId, Event, RigidBody, RigidId, Settings, StepReport, World};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -46,7 +46,7 @@ mod world;
 
 use std::fmt;
 
-use fuwafuwa::world::Refused;
+use fuwafuwa::Refused;
 use fuwafuwa::{BodyError, BuildError, Dim2, Dim3, VoxelGrid};
 
 pub use side::EngineResult;

@@ -1,6 +1,6 @@
 //! Splits voxels into the triangles and tetrahedra of Rapier's soft bodies.
 
-use fuwafuwa::dim::{add, corner};
+use fuwafuwa::inspect::{add, corner};
 use fuwafuwa::{Dim, Dim2, Dim3, Point, VoxelGrid};
 
 /// Simplices with `K` corners that fill the solid voxels of a grid without gaps or overlaps.

@@ -1,7 +1,7 @@
 //! The scenes in fuwafuwa.
 
-use fuwafuwa::law::Elasticity;
-use fuwafuwa::world::{FEWEST_SUBSTEPS, TICK};
+use fuwafuwa::inspect::Elasticity;
+use fuwafuwa::{FEWEST_SUBSTEPS, TICK};
 use fuwafuwa::{Body, Dim, Material, RigidBody, Settings, Shape, VoxelGrid, World};
 
 use crate::world::{Falling, Span};

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use fuwafuwa::world::FEWEST_SUBSTEPS;
+use fuwafuwa::FEWEST_SUBSTEPS;
 
 use crate::side::{EngineResult, TOLERANCE, MeasuredWorld, fall};
 use crate::world::Falling;

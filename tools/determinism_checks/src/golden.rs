@@ -3,8 +3,8 @@
 //! [`SCENES`] is the only table. The tests of this crate run it natively, on one thread and, with the feature
 //! `parallel`, on several; `cargo xtask wasm` runs it under Node, through the [`exports`]. A changed hash
 //! means a changed simulation: give the reason in the commit.
-use fuwafuwa::law::Law;
-use fuwafuwa::world::FEWEST_SUBSTEPS;
+use fuwafuwa::FEWEST_SUBSTEPS;
+use fuwafuwa::Law;
 use fuwafuwa::{
     Blade, Dim, Dim2, Dim3, Event, Material, RigidBody, RigidBodyHandle, Shape, SoftBody,
     VoxelGrid, With, World, WorldConfig,
@@ -143,7 +143,7 @@ fn hash_of_heap() -> u64 {
 fn hash_of_paper_law<D: Dim>(n: usize) -> u64 {
     let mut world = floor::<D>(WorldConfig::default());
     let ball = VoxelGrid::ball(n, 1.0).expect("the scene is valid");
-    let grading = fuwafuwa::pyramid::Grading::Graded;
+    let grading = fuwafuwa::Grading::Graded;
     let body = SoftBody::with_options(ball, &[Material::default()], Law::Endo2004, grading)
         .expect("the scene is valid");
     world.add_soft_body(body.translated([0.0, 0.05, 0.0]));

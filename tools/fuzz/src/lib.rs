@@ -8,8 +8,8 @@
 #![warn(missing_docs)]
 
 mod doors;
+mod game_files;
 pub mod noise;
-mod notes;
 mod seeds;
 mod tick;
 
@@ -78,13 +78,13 @@ pub const DOORS: &[Door] = &[
     },
     Door {
         name: "settings",
-        seeds: notes::settings_seeds,
-        enter: notes::settings,
+        seeds: game_files::settings_seeds,
+        enter: game_files::settings,
     },
     Door {
         name: "records",
-        seeds: notes::records_seeds,
-        enter: notes::records,
+        seeds: game_files::records_seeds,
+        enter: game_files::records,
     },
 ];
 

@@ -12,10 +12,12 @@ use super::parallel;
 use super::statics::Statics;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
-use fuwafuwa::law::Elasticity;
-use fuwafuwa::pyramid::{CellHierarchy, Grading};
-use fuwafuwa::sharing::Connectivity;
-use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
+use fuwafuwa::Grading;
+use fuwafuwa::inspect::CellHierarchy;
+use fuwafuwa::inspect::Connectivity;
+use fuwafuwa::inspect::Elasticity;
+use fuwafuwa::inspect::Mesh;
+use fuwafuwa::{Dim, Dim2, Dim3, VoxelGrid};
 
 /// Thickness of a beam [voxels].
 const THICKNESS: usize = 16;

@@ -4,7 +4,7 @@ use super::motion::material;
 use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
-use fuwafuwa::shape::Vector;
+use fuwafuwa::Vector;
 use fuwafuwa::{
     Dim, Dim2, Dim3, Material, MotionType, NodeId, RigidBody, SoftBody, VoxelGrid, World,
     WorldConfig,

@@ -7,9 +7,9 @@
 //! with the names of `fuwafuwa::law`. The extra resistance of an element that is squashed flat is left out,
 //! because the bodies of the checks are never deformed that far.
 
-use fuwafuwa::law::{Elasticity, Matrix};
-use fuwafuwa::stencil::{ElementClass, Vector64};
-use fuwafuwa::vector::{cross, dot, minus, plus, scaled};
+use fuwafuwa::inspect::vector::{cross, dot, minus, plus, scaled};
+use fuwafuwa::inspect::{Elasticity, Matrix};
+use fuwafuwa::inspect::{ElementClass, Vector64};
 use fuwafuwa::{Dim, NodeId, SoftBody};
 
 /// Returns the elastic energy of a body [J].
@@ -85,8 +85,9 @@ fn rotation_of(matrix: &Matrix) -> Matrix {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::law::{Law, forces};
-    use fuwafuwa::stencil::{cell_corners, closure};
+    use fuwafuwa::Law;
+    use fuwafuwa::inspect::forces;
+    use fuwafuwa::inspect::{cell_corners, closure};
     use fuwafuwa::{Dim2, Dim3};
 
     /// The force is the negative gradient of the energy, also for elements with mid nodes.

@@ -5,8 +5,8 @@ use super::parallel;
 use super::random::Random;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
-use fuwafuwa::dim::{Dim, Point};
-use fuwafuwa::pyramid::Grading;
+use fuwafuwa::Grading;
+use fuwafuwa::{Dim, Point};
 use fuwafuwa::{Dim2, Dim3};
 
 /// Dimensions and voxels across of the bodies.

@@ -1,9 +1,10 @@
 //! Helpers shared by the checks of moving bodies.
 
 use anyhow::Result;
-use fuwafuwa::law::{Elasticity, Law};
-use fuwafuwa::pyramid::Grading;
-use fuwafuwa::shape::Vector;
+use fuwafuwa::Grading;
+use fuwafuwa::Law;
+use fuwafuwa::Vector;
+use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{Dim, Material, NodeId, SoftBody, VoxelGrid};
 
 /// Returns a soft material that rings without damping and does not tear.

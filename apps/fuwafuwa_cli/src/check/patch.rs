@@ -3,11 +3,14 @@
 use super::random::Random;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
-use fuwafuwa::dim::{neighbourhood, points_in};
-use fuwafuwa::law::{Elasticity, Law, forces};
-use fuwafuwa::pyramid::{CellHierarchy, Grading};
-use fuwafuwa::sharing::Connectivity;
-use fuwafuwa::{Dim, Dim2, Dim3, Mesh, NodeId, Point, VoxelGrid};
+use fuwafuwa::Grading;
+use fuwafuwa::Law;
+use fuwafuwa::inspect::CellHierarchy;
+use fuwafuwa::inspect::Connectivity;
+use fuwafuwa::inspect::Mesh;
+use fuwafuwa::inspect::{Elasticity, forces};
+use fuwafuwa::inspect::{neighbourhood, points_in};
+use fuwafuwa::{Dim, Dim2, Dim3, NodeId, Point, VoxelGrid};
 
 /// Maximum residual of the default law, relative to stress × face area of a voxel.
 const LIMIT: f64 = 1e-5;

@@ -14,9 +14,11 @@ use super::parallel;
 use super::statics::Statics;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
-use fuwafuwa::pyramid::{CellHierarchy, Grading};
-use fuwafuwa::sharing::Connectivity;
-use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
+use fuwafuwa::Grading;
+use fuwafuwa::inspect::CellHierarchy;
+use fuwafuwa::inspect::Connectivity;
+use fuwafuwa::inspect::Mesh;
+use fuwafuwa::{Dim, Dim2, Dim3, VoxelGrid};
 
 /// Voxels across the discs.
 const DISCS: [usize; 5] = [16, 32, 64, 128, 256];

@@ -4,9 +4,9 @@ use super::motion::{arrange, ball, length, material};
 use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
-use fuwafuwa::pyramid::Grading;
-use fuwafuwa::vector::{cross, plus};
-use fuwafuwa::world::TICK;
+use fuwafuwa::Grading;
+use fuwafuwa::TICK;
+use fuwafuwa::inspect::vector::{cross, plus};
 use fuwafuwa::{Blade, Dim, Dim2, Dim3, Material, PieceId, SoftBody, World, WorldConfig};
 
 /// Dimensions, voxels across, and damping of the bodies.

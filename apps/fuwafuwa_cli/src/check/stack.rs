@@ -4,8 +4,8 @@ use super::motion::material;
 use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
-use fuwafuwa::law::Elasticity;
-use fuwafuwa::shape::Vector;
+use fuwafuwa::Vector;
+use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
     Dim, Dim2, Dim3, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
 };

@@ -5,10 +5,12 @@
 
 use crate::report::Progress;
 use anyhow::{Result, ensure};
-use fuwafuwa::law::{Elasticity, Law, forces};
-use fuwafuwa::mesh::Node;
-use fuwafuwa::stencil::ElementClass;
-use fuwafuwa::{Dim, Mesh};
+use fuwafuwa::Dim;
+use fuwafuwa::Law;
+use fuwafuwa::inspect::ElementClass;
+use fuwafuwa::inspect::Mesh;
+use fuwafuwa::inspect::Node;
+use fuwafuwa::inspect::{Elasticity, forces};
 use std::collections::BTreeMap;
 
 /// Relative residual at which the solver stops.

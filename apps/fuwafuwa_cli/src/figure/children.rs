@@ -3,8 +3,8 @@
 use super::square::{MIDDLE, Release, draw, draw_nodes, mark, points, views};
 use anyhow::Result;
 use fuwafuwa::Point;
-use fuwafuwa::dim::add;
-use fuwafuwa::pyramid::Cell;
+use fuwafuwa::inspect::Cell;
+use fuwafuwa::inspect::add;
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, PaperTransform, Role, Sample};
 

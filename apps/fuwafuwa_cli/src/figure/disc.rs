@@ -2,10 +2,12 @@
 
 use super::legend::level_entries;
 use anyhow::Result;
-use fuwafuwa::dim::{add, corner, points_in, scale};
-use fuwafuwa::pyramid::{CellHierarchy, Grading};
-use fuwafuwa::stencil::slot_at;
-use fuwafuwa::{Dim, Dim2, Dim3, Material, Mesh, NodeId, Point, SoftBody, VoxelGrid};
+use fuwafuwa::Grading;
+use fuwafuwa::inspect::CellHierarchy;
+use fuwafuwa::inspect::Mesh;
+use fuwafuwa::inspect::slot_at;
+use fuwafuwa::inspect::{add, corner, points_in, scale};
+use fuwafuwa::{Dim, Dim2, Dim3, Material, NodeId, Point, SoftBody, VoxelGrid};
 use fuwafuwa_painter::solid::{Camera, Scene3d};
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, PaperTransform, Role, Sample};

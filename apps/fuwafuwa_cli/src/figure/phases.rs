@@ -2,10 +2,10 @@
 
 use super::square::{ACROSS, MIDDLE, Release, draw, draw_nodes, mark, points, views};
 use anyhow::Result;
-use fuwafuwa::dim::{add, scale};
-use fuwafuwa::mesh::Element;
-use fuwafuwa::stencil::{closure, slot_at};
-use fuwafuwa::view::ElementView;
+use fuwafuwa::ElementView;
+use fuwafuwa::inspect::Element;
+use fuwafuwa::inspect::{add, scale};
+use fuwafuwa::inspect::{closure, slot_at};
 use fuwafuwa::{Dim, Dim2, Point};
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, PaperTransform, Role, Sample};

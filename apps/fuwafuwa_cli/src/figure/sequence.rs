@@ -3,8 +3,8 @@
 use super::legend::level_entries;
 use crate::report::Progress;
 use anyhow::Result;
-use fuwafuwa::law::Elasticity;
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
+use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
     Blade, Dim2, Dim3, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid, World,
     WorldConfig,

@@ -8,9 +8,9 @@
 //! ```
 
 use anyhow::Result;
-use fuwafuwa::mesh::Element;
-use fuwafuwa::pyramid::Cell;
-use fuwafuwa::view::ElementView;
+use fuwafuwa::ElementView;
+use fuwafuwa::inspect::Cell;
+use fuwafuwa::inspect::Element;
 use fuwafuwa::{Dim, Dim2, Material, Point, SoftBody, VoxelGrid};
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, PaperTransform, Role};

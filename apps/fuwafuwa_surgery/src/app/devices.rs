@@ -128,7 +128,7 @@ impl Devices {
                 return Err(Stop::Idle);
             }
             let manner = match pushes {
-                true => force_feedback::StickMode::CellIndexing,
+                true => force_feedback::StickMode::Position,
                 false => force_feedback::StickMode::Velocity,
             };
             let contact = to_user(Some(turn), contact);

@@ -4,7 +4,7 @@ use crate::procedure::{BLUNTEST, Input};
 use crate::tools::Tool;
 use app_shell::direction::to_world;
 use egui::Vec2;
-use fuwafuwa::vector::{plus, scaled};
+use fuwafuwa::inspect::vector::{plus, scaled};
 use fuwafuwa::{Rotation, Vector};
 use std::f32::consts::PI;
 

@@ -3,7 +3,7 @@
 use super::session::Session;
 use app_shell::{SpaceStage, View};
 use egui::{Align2, Color32, FontId, Painter, Rect, Stroke, Ui, vec2};
-use fuwafuwa::vector::{length, plus, scaled};
+use fuwafuwa::inspect::vector::{length, plus, scaled};
 use fuwafuwa_render::palette::rgb;
 use fuwafuwa_render::{Frame, Palette, Prop};
 

@@ -5,7 +5,7 @@ use crate::procedure::Procedure;
 use crate::slices::{Cut, Slice};
 use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 use fuwafuwa::Vector;
-use fuwafuwa::vector::minus;
+use fuwafuwa::inspect::vector::minus;
 use fuwafuwa_render::{Colour, Palette};
 
 /// Background of a slice.

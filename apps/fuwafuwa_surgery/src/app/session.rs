@@ -6,7 +6,7 @@ use crate::procedure::Procedure;
 use crate::record::{Playback, Recording};
 use app_shell::{CameraRig, Clock, Pace};
 use fuwafuwa::Vector;
-use fuwafuwa::vector::{minus, plus};
+use fuwafuwa::inspect::vector::{minus, plus};
 use std::sync::Arc;
 
 /// Ticks between two measurements of the pieces.

@@ -1,9 +1,10 @@
 //! A simulated soft body to push against.
 
 use crate::stick::Other;
+use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim2, Elasticity, Material, MotionType, RigidBody, RigidBodyHandle, Shape, SoftBody, VoxelGrid,
-    World, WorldConfig as WorldSettings,
+    Dim2, Material, MotionType, RigidBody, RigidBodyHandle, Shape, SoftBody, VoxelGrid, World,
+    WorldConfig as WorldSettings,
 };
 
 /// A soft disc between three walls, open to the left.

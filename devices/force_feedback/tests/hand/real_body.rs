@@ -45,7 +45,7 @@ fn feel(disc: &mut Disc, manner: StickMode, lean: impl Fn(f32) -> f32) -> (Vec<[
 
 #[test]
 fn force_of_a_body_at_rest_is_steady() {
-    for manner in [StickMode::CellIndexing, StickMode::Velocity] {
+    for manner in [StickMode::Position, StickMode::Velocity] {
         for young in [1000.0, 5000.0, 20_000.0] {
             let mut disc = Disc::new(young, f32::INFINITY);
             let (forces, _) = feel(&mut disc, manner, |time| (0.5 * time - 0.4).min(0.3));
@@ -69,7 +69,7 @@ fn force_of_a_body_at_rest_is_steady() {
 #[test]
 fn tears_cause_no_force_jump() {
     let slew = Settings::default().slew;
-    for manner in [StickMode::CellIndexing, StickMode::Velocity] {
+    for manner in [StickMode::Position, StickMode::Velocity] {
         let mut disc = Disc::new(5000.0, 0.05);
         let (forces, torn) = feel(&mut disc, manner, |time| (0.8 * time - 0.4).min(0.9));
         assert!(torn > 10, "only {torn} tears");

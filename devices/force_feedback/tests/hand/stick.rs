@@ -98,7 +98,7 @@ pub fn play(
             let manner = if play.steers {
                 StickMode::Velocity
             } else {
-                StickMode::CellIndexing
+                StickMode::Position
             };
             mail = Command {
                 wish: Ok(State {

@@ -129,7 +129,7 @@ fn force_thread_drives_pads_until_they_are_unplugged() {
         .map(|pad| force.add(Box::new(sticks.haptic(pad.id())), Settings::default()));
     let push = State {
         contact: [-300.0, 0.0],
-        manner: StickMode::CellIndexing,
+        manner: StickMode::Position,
     };
     until("the first pad rumbles", || {
         lines[0].set_state(push);

@@ -1,22 +1,22 @@
 //! Contents of a world: insertion, removal, access and wake-up.
 
 use super::{Refused, World, WorldConfig};
-use crate::blade::{Blade, CutReport};
-use crate::body::{SoftBodies, SoftBody};
-use crate::changes::History;
-use crate::contact::Hit;
-use crate::dim::Dim;
+use crate::contact::broad_phase::{bounds_of, leaning_on_body, leaning_on_rigid, sleeping_in};
+#[cfg(feature = "serde")]
+use crate::contact::joint::Joint;
+use crate::contact::solver::Hit;
 use crate::event::Event;
-use crate::handle::{Gone, RigidBodyHandle, RigidSlot, SoftBodyHandle};
-use crate::hash::Hash;
+use crate::foundation::arena::{Gone, RigidBodyHandle, RigidSlot, SoftBodyHandle};
+use crate::foundation::dim::Dim;
+use crate::foundation::hash::Hash;
+use crate::fracture::blade::{Blade, CutReport};
 #[cfg(feature = "serde")]
-use crate::joint::Joint;
-#[cfg(feature = "serde")]
-use crate::knife::Knife;
-use crate::rigid::{MotionType, RigidBodies, RigidBody};
-use crate::rotation::Rotation;
-use crate::shape::{Bounds, Vector};
-use crate::touch::{bounds_of, leaning_on_body, leaning_on_rigid, sleeping_in};
+use crate::fracture::knife::Knife;
+use crate::math::rotation::Rotation;
+use crate::rigid_body::shape::{Bounds, Vector};
+use crate::rigid_body::{MotionType, RigidBodies, RigidBody};
+use crate::soft_body::{SoftBodies, SoftBody};
+use crate::topology::changes::History;
 
 /// Largest tick counter accepted from a saved world; some 6·10⁸ years of ticks.
 #[cfg(feature = "serde")]
@@ -50,7 +50,7 @@ impl<D: Dim> World<D> {
     ///
     /// # Errors
     /// [`Refused`] if the handle is stale, the body is fixed or dynamic, or the target is not finite or
-    /// beyond [`FARTHEST`](crate::rigid::FARTHEST). The target then stays unchanged.
+    /// beyond [`FARTHEST`](crate::rigid_body::FARTHEST). The target then stays unchanged.
     pub fn set_target_position(
         &mut self,
         hand: RigidBodyHandle,

@@ -1,11 +1,11 @@
 //! Knives of a world: insertion, removal, access and simulation.
 
 use super::{Refused, World};
-use crate::contact::Hit;
-use crate::dim::Dim;
+use crate::contact::solver::Hit;
 use crate::event::{Event, StepReport};
-use crate::handle::{Gone, KnifeHandle};
-use crate::knife::{Knife, Knives};
+use crate::foundation::arena::{Gone, KnifeHandle};
+use crate::foundation::dim::Dim;
+use crate::fracture::knife::{Knife, Knives};
 
 impl<D: Dim> World<D> {
     /// Attaches a knife to a kinematic or coupled rigid body.

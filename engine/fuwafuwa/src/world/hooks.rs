@@ -1,8 +1,8 @@
 //! Callbacks during a tick.
 
-use crate::handle::{Gone, RigidBodyHandle};
-use crate::rigid::{Reaction, RigidBodies};
-use crate::shape::Vector;
+use crate::foundation::arena::{Gone, RigidBodyHandle};
+use crate::rigid_body::shape::Vector;
+use crate::rigid_body::{Reaction, RigidBodies};
 
 /// Callbacks during a tick; none by default. See [`World::step_with`](crate::World::step_with).
 #[derive(Default)]

@@ -1,15 +1,15 @@
 //! Removal of pieces, and of everything that left a region.
 
 use super::{Refused, World};
-use crate::body::SoftBody;
-use crate::contact::Hit;
-use crate::dim::Dim;
+use crate::contact::broad_phase::{bounds_of, leaning_on_pieces};
+use crate::contact::solver::Hit;
 use crate::event::Event;
-use crate::handle::{Gone, RigidBodyHandle, SoftBodyHandle};
-use crate::ids::PieceId;
-use crate::shape::Shape;
-use crate::touch::{bounds_of, leaning_on_pieces};
-use crate::vector::three;
+use crate::foundation::arena::{Gone, RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::PieceId;
+use crate::math::vector::three;
+use crate::rigid_body::shape::Shape;
+use crate::soft_body::SoftBody;
 
 /// Size threshold for [`World::remove_small_pieces`].
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -73,7 +73,7 @@ impl<D: Dim> World<D> {
     /// which cost time and carry nothing.
     ///
     /// ```
-    /// use fuwafuwa::world::PieceSize;
+    /// use fuwafuwa::PieceSize;
     /// use fuwafuwa::{SoftBody, Dim3, Material, WorldConfig, VoxelGrid, World};
     ///
     /// let mut world = World::<Dim3>::new(WorldConfig::default())?;

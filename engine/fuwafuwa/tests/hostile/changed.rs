@@ -94,7 +94,7 @@ fn sleeping_body_wakes_when_added_elsewhere() {
 #[test]
 fn stiffness_scale_follows_substeps_of_world() {
     let stiff = Material {
-        elasticity: fuwafuwa::Elasticity {
+        elasticity: fuwafuwa::inspect::Elasticity {
             young: 1e6,
             poisson: 0.3,
         },

@@ -231,7 +231,7 @@ fn plane_world_ignores_third_coordinates() {
 #[test]
 fn unused_material_has_no_effect() {
     let stiff = Material {
-        elasticity: fuwafuwa::Elasticity {
+        elasticity: fuwafuwa::inspect::Elasticity {
             young: 1e9,
             poisson: 0.3,
         },

@@ -6,11 +6,11 @@ use crate::elements::colour_of;
 use crate::frame::ElementColour;
 use crate::palette::{Palette, bytes};
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::dim::{corner, scale};
-use fuwafuwa::mesh::Element;
-use fuwafuwa::stencil::slot_index;
-use fuwafuwa::vector::three;
-use fuwafuwa::view::{ElementFace, faces};
+use fuwafuwa::inspect::Element;
+use fuwafuwa::inspect::slot_index;
+use fuwafuwa::inspect::vector::three;
+use fuwafuwa::inspect::{ElementFace, faces};
+use fuwafuwa::inspect::{corner, scale};
 use fuwafuwa::{Dim3, ElementId, ElementView, SoftBody, Vector};
 use glam::Vec3;
 
@@ -152,7 +152,7 @@ fn small_view(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::vector::{length, minus};
+    use fuwafuwa::inspect::vector::{length, minus};
     use fuwafuwa::{Material, RigidBody, Shape, VoxelGrid, World, WorldConfig};
 
     #[test]

@@ -1,7 +1,7 @@
 //! Cut planes of the pieces of a body for the element view.
 
 use super::camera::Cut;
-use fuwafuwa::vector::three;
+use fuwafuwa::inspect::vector::three;
 use fuwafuwa::{Dim3, SoftBody};
 use glam::{Mat3, Vec3};
 

@@ -8,8 +8,8 @@
 use super::pool::Pool;
 use super::rest::Rest;
 use crate::palette::{Colour, among, bytes};
-use fuwafuwa::dim::{corner, face_corners};
-use fuwafuwa::ids::IndexVec;
+use fuwafuwa::IndexVec;
+use fuwafuwa::inspect::{corner, face_corners};
 use fuwafuwa::{Bookmark, Dim3, ElementId, NodeId, Point, SoftBody};
 use glam::Vec3;
 

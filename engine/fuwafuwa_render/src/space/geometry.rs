@@ -9,7 +9,7 @@ use super::stickers::Stickers;
 use crate::frame::{Frame, Look};
 use crate::palette::Palette;
 use crate::rigid::MAX_WALLS;
-use fuwafuwa::vector::three;
+use fuwafuwa::inspect::vector::three;
 use fuwafuwa::{Dim3, ElementId, RigidBody, Shape, SoftBody, Vector, World};
 use glam::{Mat3, Vec3};
 use std::ops::Range;

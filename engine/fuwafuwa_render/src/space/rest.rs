@@ -4,8 +4,8 @@
 //! deformed body carries the offsets along.
 
 use crate::stairs::smoothed;
-use fuwafuwa::dim::{add, corner, face_corners, points_in, voxel_around};
-use fuwafuwa::sharing::{Connectivity, Groups};
+use fuwafuwa::inspect::{Connectivity, Groups};
+use fuwafuwa::inspect::{add, corner, face_corners, points_in, voxel_around};
 use fuwafuwa::{Dim, Dim3, Point, VoxelGrid};
 use glam::Vec3;
 

@@ -150,7 +150,7 @@ fn frame_along(direction: Vec3) -> Mat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::vector::length;
+    use fuwafuwa::inspect::vector::length;
 
     /// Enclosed volume of the mesh after stretching it to an instance.
     fn volume(instance: &RoundedInstance) -> f32 {

@@ -8,7 +8,7 @@ use super::faces::{Faces, NO_NODE, NONE, SkinPoint, SurfaceKind};
 use super::rest::Rest;
 use crate::palette::Colour;
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::ids::IndexVec;
+use fuwafuwa::IndexVec;
 use fuwafuwa::{Dim3, ElementId, NodeId, PieceId, SoftBody};
 use glam::{Vec3, Vec4};
 
@@ -213,7 +213,7 @@ fn edges(voxel: &[NodeId; 8], positions: &IndexVec<NodeId, [f32; 4]>) -> [Vec4; 
 mod tests {
     use super::*;
     use crate::palette::Palette;
-    use fuwafuwa::vector::{cross, dot, length, minus};
+    use fuwafuwa::inspect::vector::{cross, dot, length, minus};
     use fuwafuwa::{Blade, Material, VoxelGrid, World, WorldConfig};
 
     fn ball(n: usize) -> World<Dim3> {

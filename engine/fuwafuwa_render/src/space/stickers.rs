@@ -185,7 +185,7 @@ fn around(place: Vec3, reach: f32, mut act: impl FnMut(usize, f32)) {
 mod tests {
     use super::*;
     use crate::Palette;
-    use fuwafuwa::vector::{length, minus};
+    use fuwafuwa::inspect::vector::{length, minus};
     use fuwafuwa::{Blade, Material, PieceId, VoxelGrid, World, WorldConfig};
 
     #[test]

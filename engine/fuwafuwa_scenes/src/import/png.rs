@@ -8,7 +8,7 @@ use super::file::check_length;
 use ::png::{
     BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, Limits, Transformations,
 };
-use fuwafuwa::grid::MAX_EXTENT;
+use fuwafuwa::MAX_EXTENT;
 use fuwafuwa::{Dim2, VoxelGrid};
 use std::io::{Cursor, ErrorKind};
 

@@ -1,10 +1,10 @@
 //! Bodies and materials of a scene file.
 
 use super::error::{FieldError, require};
-use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText};
+use super::shapes::{BallText, BoxText, CapsuleText, HalfSpaceText};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
-use fuwafuwa::law::Elasticity;
+use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{BodyError, Layers, Material};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -5,8 +5,8 @@ use super::budget::Budget;
 use super::error::{FieldError, require, require_vector};
 use super::grid;
 use super::state;
-use fuwafuwa::law::Law;
-use fuwafuwa::pyramid::Grading;
+use fuwafuwa::Grading;
+use fuwafuwa::Law;
 use fuwafuwa::{Blade, BodyError, Dim, Material, Refused, Rotation, SoftBody, VoxelGrid, World};
 
 impl BodyText {

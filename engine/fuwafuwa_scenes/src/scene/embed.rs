@@ -6,7 +6,7 @@ use super::budget::Budget;
 use super::error::FieldError;
 use super::grid::{check_across, colours};
 use crate::import::{FilePosition, ImportError, Model, Picture, Problem};
-use fuwafuwa::grid::MAX_EXTENT;
+use fuwafuwa::MAX_EXTENT;
 use std::io;
 
 /// Size up to which a file is embedded whole [bytes]. A photo is a hundred times as large, and its body needs

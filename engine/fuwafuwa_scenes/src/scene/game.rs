@@ -1,7 +1,7 @@
 //! Rules of the game in a scene file.
 
 use super::error::{FieldError, require};
-use super::rigid::{BoxText, ShapeChoice};
+use super::shapes::{BoxText, ShapeChoice};
 use fuwafuwa::{Dim, Shape};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;

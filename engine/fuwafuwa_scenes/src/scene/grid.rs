@@ -3,10 +3,10 @@
 use super::body::{BodyText, Form, PartText, VoxelsText, extension_of};
 use super::budget::Budget;
 use super::error::{FieldError, require, shortened};
-use super::rigid::ShapeChoice;
+use super::shapes::ShapeChoice;
 use crate::import::{Colours, Model, Picture};
-use fuwafuwa::dim::points_in;
-use fuwafuwa::grid::MAX_EXTENT;
+use fuwafuwa::MAX_EXTENT;
+use fuwafuwa::inspect::points_in;
 use fuwafuwa::{BuildError, Dim, Dim2, Dim3, Shape, VoxelGrid};
 
 /// Maximum number of colours that a body can name: the size of a palette.

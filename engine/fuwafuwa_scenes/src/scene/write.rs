@@ -1,12 +1,12 @@
 //! Conversion of a world to a scene.
 
-use super::any_rigid::RigidBodyText;
 use super::body::{BodyText, LayersText, MaterialText, VoxelsText};
 use super::error::{FieldError, Origin, require};
 use super::joint::{JointAnchorText, JointText};
+use super::rigid_body::RigidBodyText;
 use super::state;
 use super::{MAX_BODIES, MAX_MATERIALS, MAX_RIGID, MAX_TEXT_BYTES, Scene, SceneError};
-use fuwafuwa::law::Law;
+use fuwafuwa::Law;
 use fuwafuwa::{
     Dim, Grading, JointAnchor, Material, RigidBodyHandle, SoftBody, SoftBodyHandle, VoxelGrid,
     World, WorldConfig,

@@ -1,6 +1,6 @@
 //! Pictures of a round without a GPU: draws the elements of its bodies, as the engine's command line does.
 
-use fuwafuwa::vector::{plus, scaled};
+use fuwafuwa::inspect::vector::{plus, scaled};
 use fuwafuwa_painter::solid::{Camera, Scene3d};
 use fuwafuwa_painter::{PaintError, Painter, PaperTransform, Pixmap, worlds};
 use tamaire_play::AnyRound;

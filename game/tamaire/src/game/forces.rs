@@ -94,7 +94,7 @@ impl Game {
             return None;
         }
         let manner = match self.settings.stick_places || pushes_back {
-            true => StickMode::CellIndexing,
+            true => StickMode::Position,
             false => StickMode::Velocity,
         };
         Some(State { contact, manner })

@@ -83,7 +83,7 @@ impl Game {
             StorageEvent::Level(level) if self.levels.iter().any(|known| known.id == level.id) => {}
             StorageEvent::Level(level) => self.levels.push(level),
             StorageEvent::Damaged(damage) => self.tell_of(damage),
-            StorageEvent::SavedElementStates(location) => {
+            StorageEvent::Saved(location) => {
                 self.shelf.refresh(&self.files);
                 self.notify(format!("{} {location}", self.words().saved));
             }

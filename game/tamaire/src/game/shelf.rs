@@ -73,7 +73,7 @@ impl SavedRounds {
         Ok(RoundDetails {
             level,
             outcome: replay.outcome,
-            seconds: replay.ticks() as f32 * fuwafuwa::world::TICK,
+            seconds: replay.ticks() as f32 * fuwafuwa::TICK,
         })
     }
 

@@ -2,7 +2,7 @@
 
 use super::{Game, Screen};
 use crate::input::{Action, InputMethod};
-use fuwafuwa::vector::minus;
+use fuwafuwa::inspect::vector::minus;
 
 impl Game {
     /// Returns the hints about moving, raising and turning for the input method used last, each with whether

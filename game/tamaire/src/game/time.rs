@@ -108,7 +108,7 @@ impl Game {
                 for (goal, hand) in hands.iter_mut().zip(round.hands()) {
                     *goal = hand.target_position();
                 }
-                let tick = fuwafuwa::world::TICK;
+                let tick = fuwafuwa::TICK;
                 let frame = players.frame(devices, &settings.bindings, &manner, &hands, tick);
                 // A turn of the wheel counts once, however many ticks are played.
                 devices.lift = 0.0;

@@ -5,8 +5,8 @@ use crate::haptics;
 use crate::settings::Settings;
 use app_shell::direction::to_user;
 use force_feedback::{Ability, Command, ForceController, Output, State, StickMode, Watchdog};
+use fuwafuwa::TICK;
 use fuwafuwa::Vector;
-use fuwafuwa::world::TICK;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
@@ -136,7 +136,7 @@ impl ForceLog {
         let contact = haptics::contact(hand);
         let state = State {
             contact: to_user(turn(round), contact),
-            manner: StickMode::CellIndexing,
+            manner: StickMode::Position,
         };
         let mail = Command {
             wish: haptics::silence(round).map_or(Ok(state), Err),

@@ -5,7 +5,7 @@ use super::{Action, Bindings, Devices, InputMapping, InputSource, ScanAction};
 use app_shell::direction::to_world;
 use egui::Vec2;
 use fuwafuwa::Vector;
-use fuwafuwa::vector::plus;
+use fuwafuwa::inspect::vector::plus;
 use std::collections::BTreeMap;
 use sticks::DeviceId;
 use tamaire_play::{InputFrame, PLAYERS};

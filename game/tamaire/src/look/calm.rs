@@ -4,7 +4,7 @@ use super::Face;
 use super::feelings::Feeling;
 use app_shell::{Theme, View};
 use fuwafuwa::Dim;
-use fuwafuwa::vector::{plus, scaled};
+use fuwafuwa::inspect::vector::{plus, scaled};
 use fuwafuwa_render::{Basket, Camera, Frame};
 use tamaire_play::Round;
 

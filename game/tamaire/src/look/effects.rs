@@ -3,7 +3,7 @@
 use super::confetti::Confetti;
 use super::feelings::{Feeling, MoodInput};
 use app_shell::CameraRig;
-use fuwafuwa::vector::{length, minus, plus, scaled};
+use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim, Event, NodeId, RigidBody, SoftBody, Vector, With};
 use tamaire_play::{AnyRound, Round};
 
@@ -151,7 +151,7 @@ impl Effects {
                     impulse,
                     ..
                 } => {
-                    pressed += impulse / fuwafuwa::world::TICK;
+                    pressed += impulse / fuwafuwa::TICK;
                 }
                 _ => {}
             }
@@ -282,7 +282,7 @@ mod tests {
             for _ in 0..ticks {
                 round.step(frame);
                 effects.process_tick(round, &mut camera, false);
-                effects.advance(fuwafuwa::world::TICK);
+                effects.advance(fuwafuwa::TICK);
             }
         };
         let mut first = round("classic");

@@ -3,7 +3,7 @@
 
 use app_shell::View;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, vec2};
-use fuwafuwa::vector::{dot, length, minus, plus, scaled};
+use fuwafuwa::inspect::vector::{dot, length, minus, plus, scaled};
 use fuwafuwa::{PieceId, Vector};
 use fuwafuwa_render::{Mark, Sticker};
 use std::f32::consts::{PI, TAU};

@@ -2,8 +2,8 @@
 
 use super::Mood;
 use super::perch::{FaceAnchor, UPRIGHT, largest, masses, square};
-use fuwafuwa::vector::{length, minus, plus, scaled};
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
+use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim, NodeId, PieceId, SoftBody, Vector};
 use fuwafuwa_render::anchor;
 

@@ -4,7 +4,7 @@
 use super::DrawOptions;
 use app_shell::View;
 use egui::{Color32, Painter, Pos2, Rect, Shape as Drawn, Stroke, pos2, vec2};
-use fuwafuwa::vector::plus;
+use fuwafuwa::inspect::vector::plus;
 use fuwafuwa::{Dim2, Shape, Vector};
 use tamaire_play::Round;
 

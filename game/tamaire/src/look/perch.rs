@@ -3,8 +3,8 @@
 //! The face sticks to the skin and rolls with it. It shrinks and reappears at a better place if too much of
 //! the skin below it is torn or if it is turned away from the camera.
 
-use fuwafuwa::ids::IndexVec;
-use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
+use fuwafuwa::IndexVec;
+use fuwafuwa::inspect::vector::{cross, dot, length, minus, plus, scaled};
 use fuwafuwa::{Dim, PieceId, Point, SoftBody, Vector};
 use fuwafuwa_render::anchor_at;
 use std::f32::consts::PI;

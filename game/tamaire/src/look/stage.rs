@@ -7,7 +7,7 @@ use app_shell::pass::{PaintCallback, lock, pixels};
 use app_shell::{SpaceStage, Theme, View};
 use eframe::egui_wgpu::{Callback, RenderState};
 use egui::{Color32, Painter, Pos2, Stroke, Ui};
-use fuwafuwa::vector::{length, minus};
+use fuwafuwa::inspect::vector::{length, minus};
 use fuwafuwa::{Dim, Dim2, Dim3, Vector};
 use fuwafuwa_render::{Ages, Cost, Frame, Particle, Renderer, Sticker, space};
 use std::sync::{Arc, Mutex};

@@ -64,7 +64,7 @@ pub enum StorageEvent {
     /// Stored data could not be used.
     Damaged(Damage),
     /// A replay or picture was saved at this location.
-    SavedElementStates(String),
+    Saved(String),
     /// Writing failed. For settings and records this is reported once.
     Failed(String),
     /// Writing failed because the storage is full.
@@ -330,7 +330,7 @@ impl Files {
                 JobResult::Level(Ok(Ok(level))) => news.push(StorageEvent::Level(level)),
                 JobResult::Level(Ok(Err(damage))) => news.push(StorageEvent::Damaged(damage)),
                 JobResult::Replay(Ok(location)) | JobResult::Picture(Ok(location)) => {
-                    news.push(StorageEvent::SavedElementStates(location));
+                    news.push(StorageEvent::Saved(location));
                 }
                 JobResult::Replay(Err(error)) | JobResult::Picture(Err(error)) => {
                     news.push(failed(&error))

@@ -52,7 +52,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 line(ui, (said.other_way)(outcome.route), 23.0, theme.accent);
                 ui.add_space(GAP);
             }
-            buttons(ui, &theme, said)
+            let wishes = &level.game().wish;
+            let is_reached = wishes.iter().all(|wish| outcome.fulfils(wish));
+            buttons(ui, &theme, said, is_reached)
         })
     });
     if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
@@ -137,17 +139,24 @@ fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &
     }
 }
 
-/// Shows the buttons; returns the chosen action.
-fn buttons(ui: &mut Ui, theme: &Theme, said: &Words) -> Option<Act> {
+/// Shows the buttons; returns the chosen action. The main one is the next level once all goals are reached.
+fn buttons(ui: &mut Ui, theme: &Theme, said: &Words, is_reached: bool) -> Option<Act> {
     let mut wanted: Option<Act> = None;
     let width = 2.0 * 200.0 + GAP;
-    let again = button(ui, theme, said.again, vec2(width, 60.0), ButtonStyle::Main);
-    super::play::focus_first(ui, &again);
-    if again.clicked() {
-        wanted = Some(Game::retry);
+    let again: (&str, Act) = (said.play_again, Game::retry);
+    let next: (&str, Act) = (said.next, next);
+    let (main, other) = if is_reached {
+        (next, again)
+    } else {
+        (again, next)
+    };
+    let response = button(ui, theme, main.0, vec2(width, 60.0), ButtonStyle::Main);
+    super::play::focus_first(ui, &response);
+    if response.clicked() {
+        wanted = Some(main.1);
     }
     let rows: [&[(&str, Act)]; 3] = [
-        &[(said.next, next), (said.race, race)],
+        &[other, (said.race, race)],
         &[(said.save, Game::keep_replay), (said.link, Game::copy_link)],
         &[
             (said.photo, Game::keep_photo),

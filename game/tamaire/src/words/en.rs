@@ -14,6 +14,7 @@ pub(super) const WORDS: Words = Words {
     paused: "Paused",
     go_on: "Resume",
     again: "Restart",
+    play_again: "Play again",
     levels: "Levels",
     next: "Next",
     other_way: |route| match route {

@@ -15,7 +15,8 @@ pub(super) const WORDS: Words = Words {
     back: "もどる",
     paused: "ひとやすみ",
     go_on: "つづける",
-    again: "もういちど",
+    again: "さいしょから",
+    play_again: "もういちど",
     levels: "ステージ",
     next: "つぎへ",
     other_way: |route| match route {

@@ -17,6 +17,7 @@ pub struct Words {
     pub paused: &'static str,
     pub go_on: &'static str,
     pub again: &'static str,
+    pub play_again: &'static str,
     pub levels: &'static str,
     pub next: &'static str,
     pub other_way: fn(Route) -> &'static str,

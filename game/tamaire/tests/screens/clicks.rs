@@ -85,7 +85,7 @@ fn round_is_won_saved_watched_raced_and_deleted() {
         !game(&mut window).bout.won.unwrap().1,
         "an equal time is no record"
     );
-    click(&mut window, "Restart");
+    click(&mut window, "Play again");
     assert_eq!(screen(&window), Screen::Play);
     win(&mut window);
     press(&mut window, Key::Escape);

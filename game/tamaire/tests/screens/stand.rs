@@ -5,7 +5,7 @@ use app_shell::{Clock, Pads};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 use jiff::civil::Time;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -165,7 +165,7 @@ fn visit_starts_with_touch_and_is_logged() {
         (Phase::Visit, Screen::Play)
     );
     shown.win(BotKind::Squeeze);
-    let again = game(&mut shown.window).words().again;
+    let again = game(&mut shown.window).words().play_again;
     click(&mut shown.window, again);
     assert_eq!(screen(&shown.window), Screen::Play);
     // The visitor restarts the round and leaves in the middle of it.

@@ -4,7 +4,7 @@ use app_shell::{Clock, Pads};
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, Node};
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 use std::path::PathBuf;
 use tamaire::app::App;
 use tamaire::game::{Game, Screen};

@@ -1,6 +1,6 @@
 //! The thread that writes the logbook.
 
-use super::desk::{Report, SharedState};
+use super::shared::{Report, SharedState};
 use crate::{Entry, Error, Event, Id, Kind, Logbook, Moment, Server};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! Path finding in a room, around obstacles and pieces.
 
-use fuwafuwa::vector::{length, minus, plus, scaled};
+use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim, Vector};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

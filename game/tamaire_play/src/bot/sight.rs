@@ -2,7 +2,7 @@
 
 use super::map::Map;
 use crate::Round;
-use fuwafuwa::vector::{dot, length, minus, plus, scaled};
+use fuwafuwa::inspect::vector::{dot, length, minus, plus, scaled};
 use fuwafuwa::{Dim, PieceView, RigidBody, Shape, Vector};
 use std::cell::LazyCell;
 

@@ -1,6 +1,6 @@
 //! Checks whether the start of a level can be played.
 
-use fuwafuwa::vector::{plus, scaled};
+use fuwafuwa::inspect::vector::{plus, scaled};
 use fuwafuwa::{Dim, SoftBody, Vector, World};
 
 /// Checks that hands can move in the arena and that bodies can be reached. Returns the invalid field and the

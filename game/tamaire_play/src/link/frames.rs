@@ -239,7 +239,7 @@ mod tests {
             .collect();
         let bytes = write(&frames);
         assert_eq!(
-            (bytes.len(), fuwafuwa::hash::Hash::of(&bytes)),
+            (bytes.len(), fuwafuwa::inspect::Hash::of(&bytes)),
             (44, 10_900_569_288_131_132_139)
         );
     }

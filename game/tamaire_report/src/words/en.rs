@@ -1,9 +1,9 @@
 //! English.
 
 use super::{Plot, Reading, Words, busiest, halves_and_dust, once_and_often, percent, sure};
+use crate::comparison_2004::{Strategies, Unexplained, won_again};
 use crate::figures::{Basis, Dares, Figures, Reason, Switching};
 use crate::plot::grouped;
-use crate::reading::{Strategies, Unexplained, won_again};
 use tamaire_play::Route;
 
 /// Texts of the page in English.

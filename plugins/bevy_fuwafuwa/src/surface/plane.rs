@@ -15,10 +15,10 @@ use super::pool::Pool;
 use super::{Surface, Vertex, light_of};
 use crate::colours::SoftColours;
 use bevy_math::{Vec2, Vec3};
-use fuwafuwa::dim::{add, corner, face_corners};
+use fuwafuwa::inspect::{add, corner, face_corners};
 use fuwafuwa::ids::Table;
-use fuwafuwa::mesh::Element;
-use fuwafuwa::stencil::{slot_at, slot_index};
+use fuwafuwa::inspect::Element;
+use fuwafuwa::inspect::{slot_at, slot_index};
 use fuwafuwa::{Body, Bookmark, Changes, Dim, Dim2, ElementId, NodeId};
 use fuwafuwa_render::Rest;
 

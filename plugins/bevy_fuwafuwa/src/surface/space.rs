@@ -10,7 +10,7 @@
 use super::{Surface, Vertex};
 use crate::colours::SoftColours;
 use bevy_math::Vec3;
-use fuwafuwa::dim::face_corners;
+use fuwafuwa::inspect::face_corners;
 use fuwafuwa::{Body, Dim3, ElementId};
 use fuwafuwa_render::space::Skin;
 use fuwafuwa_render::space::skin::SkinVertex;

@@ -3,7 +3,7 @@
 use super::{app, at, body, mesh, messages, run, transform, world};
 use bevy_asset::{AssetEvent, Assets};
 use bevy_ecs::entity::Entity;
-use bevy_fuwafuwa::fuwafuwa::stencil::closure;
+use bevy_fuwafuwa::fuwafuwa::inspect::closure;
 use bevy_fuwafuwa::fuwafuwa::{Blade, Dim};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::Vec3;

@@ -1,5 +1,5 @@
 use super::*;
-use fuwafuwa::world::TICK;
+use fuwafuwa::TICK;
 use fuwafuwa::{Blade, Dim3, Material, PieceId, VoxelGrid, World, WorldConfig};
 
 const EYE: Vector = [0.5, 0.8, 6.0];

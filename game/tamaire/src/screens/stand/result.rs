@@ -53,7 +53,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
                     line(ui, (said.other_way)(route), 25.0, theme.accent);
                     ui.add_space(GAP);
                 }
-                let again = button(ui, &theme, said.again, size, ButtonStyle::Main);
+                let again = button(ui, &theme, said.play_again, size, ButtonStyle::Main);
                 focus_first(ui, &again);
                 if again.clicked() {
                     wish = Some(ResultAction::Again(dared.map(other)));

@@ -1,0 +1,346 @@
+//! Contact spheres of all bodies and their motion. They are in the order in which they appeared at the
+//! surface, so that a tear moves none of them in the list.
+
+use super::contact_sphere::{ContactSphere, NEAR, SphereId};
+use crate::foundation::arena::BodySlot;
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{ElementId, IndexVec, PieceId};
+use crate::math::vector::{dot, minus};
+use crate::soft_body::element_forces::Row;
+use crate::soft_body::{SoftBodies, SoftBody};
+use crate::topology::changes::{Bookmark, Changes};
+
+/// Contact spheres of all bodies.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Spheres {
+    /// Body and element of each sphere. They define the order of the list when it is rebuilt.
+    keys: IndexVec<SphereId, Key>,
+    /// Spheres: the first ones by body and element, then those that appeared at the surface later.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub list: IndexVec<SphereId, ContactSphere>,
+    /// Sphere of each voxel, by body and voxel index; [`SphereId::NONE`] inside.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    by_voxel: IndexVec<BodySlot, Vec<SphereId>>,
+    /// Pairs on opposite crack faces: neighbours in a piece that the piece does not keep apart.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub crack_faces: Vec<[SphereId; 2]>,
+    /// Bookmark up to which the changes of each body have been applied.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    followed: IndexVec<BodySlot, Bookmark>,
+    /// Awake spheres.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub awake: Vec<SphereId>,
+    /// Centres [m]; those of sleepers date from the start of the tick.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub centres: IndexVec<SphereId, Row>,
+    /// Awake spheres in pairs or escape contacts, as a list and as a flag per sphere.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    close: Vec<SphereId>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    is_close: IndexVec<SphereId, bool>,
+    /// For close spheres: velocity without contacts in this substep [m/s], and squared distance moved in the
+    /// last substep [m²].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub velocities: IndexVec<SphereId, Row>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub moved: IndexVec<SphereId, f32>,
+}
+
+/// Stable key of a sphere: body and element.
+type Key = (BodySlot, ElementId);
+
+impl Spheres {
+    /// Returns the number of spheres at the end of the last tick.
+    #[cfg(feature = "serde")]
+    pub fn count_keys(&self) -> usize {
+        self.keys.len()
+    }
+
+    /// Returns the body slot of a sphere, even before the list is rebuilt.
+    pub fn body_of(&self, sphere: SphereId) -> BodySlot {
+        self.keys[sphere].0
+    }
+
+    /// Removes a body; its slot may be reused.
+    pub fn remove_body(&mut self, slot: BodySlot) {
+        for key in self.keys.iter_mut().filter(|(body, _)| *body == slot) {
+            *key = (BodySlot::NONE, ElementId(u32::MAX));
+        }
+        self.followed.clear();
+    }
+
+    /// Removes elements of a body, in ascending order; their ids may be reused.
+    pub fn remove_elements(&mut self, slot: BodySlot, elements: &[ElementId]) {
+        for key in self.keys.iter_mut().filter(|(body, _)| *body == slot) {
+            if elements.binary_search(&key.1).is_ok() {
+                *key = (BodySlot::NONE, ElementId(u32::MAX));
+            }
+        }
+        self.followed.clear();
+    }
+
+    /// Starts a tick: applies the tears since the last one and adds newly sleeping spheres to `changed`. If a
+    /// body may have changed in another way, rebuilds the list and returns the new number of each old sphere,
+    /// or [`SphereId::NONE`].
+    pub fn start_tick<D: Dim>(
+        &mut self,
+        bodies: &SoftBodies<D>,
+        changed: &mut Vec<SphereId>,
+    ) -> Option<IndexVec<SphereId, SphereId>> {
+        let numbers = (!self.catch_up(bodies, changed)).then(|| {
+            changed.clear();
+            self.list_anew(bodies)
+        });
+        let all = self.list.entries_mut().zip(&mut self.centres);
+        for ((id, sphere), centre) in all {
+            let body = bodies.at(sphere.body);
+            let was_asleep = sphere.asleep;
+            sphere.asleep = body.topology.pieces.list[sphere.piece].asleep;
+            // Sleepers are not updated during the tick, so their centres are computed here.
+            if sphere.asleep != was_asleep {
+                changed.push(id);
+            }
+            if sphere.asleep && !was_asleep {
+                *centre = sphere.mean::<D>(&body.state.position);
+            }
+        }
+        // Reset, so that a world read from a file behaves like the original.
+        self.close.clear();
+        self.is_close.fill(false);
+        self.velocities.fill([0.0; 4]);
+        self.moved.fill(0.0);
+        self.awake.clear();
+        let all = self.list.ids();
+        self.awake.extend(all.filter(|&id| !self.list[id].asleep));
+        numbers
+    }
+
+    /// Applies the tears between two ticks; returns false if bodies changed in another way.
+    fn catch_up<D: Dim>(&mut self, bodies: &SoftBodies<D>, changed: &mut Vec<SphereId>) -> bool {
+        if self.followed.len() != bodies.slot_count() {
+            return false;
+        }
+        for (slot, body) in bodies.by_slot() {
+            match body.changes_since(&mut self.followed[slot]) {
+                Some(changes) if changes == Changes::default() => {}
+                Some(changes) => self.tear(slot, body, &changes, changed),
+                None => return false,
+            }
+        }
+        true
+    }
+
+    /// Rebuilds the list: known spheres that still exist, in their order, then the others by body and
+    /// element.
+    fn list_anew<D: Dim>(&mut self, bodies: &SoftBodies<D>) -> IndexVec<SphereId, SphereId> {
+        let known = std::mem::take(&mut self.keys);
+        self.list.clear();
+        self.followed = vec![Bookmark::default(); bodies.slot_count()].into();
+        for (slot, body) in bodies.by_slot() {
+            self.followed[slot] = body.bookmark();
+        }
+        let none = |body: Option<&SoftBody<D>>| {
+            let size = body.map_or([0; 3], |body| body.topology.grid.size());
+            let voxels = size.map(|extent| extent as usize);
+            vec![SphereId::NONE; voxels.iter().product()]
+        };
+        self.by_voxel = bodies.slots().map(none).collect();
+        let all = bodies.by_slot().flat_map(|(slot, body)| {
+            let ids = body.topology.mesh.elements().map(|(id, _)| id);
+            ids.map(move |id| (slot, id))
+        });
+        for (slot, id) in known.iter().copied().chain(all) {
+            let body = bodies.find(slot);
+            let sphere = body.and_then(|body| ContactSphere::of(slot, body, id));
+            let Some((sphere, body)) = sphere.zip(body) else {
+                continue;
+            };
+            let own = &mut self.by_voxel[slot][body.topology.grid.index(sphere.voxel())];
+            if *own == SphereId::NONE {
+                *own = self.list.next_id();
+                self.list.push(sphere);
+            }
+        }
+        self.keys.extend(self.list.iter().map(ContactSphere::key));
+        let centre = |sphere: &ContactSphere| {
+            let body = bodies.at(sphere.body);
+            sphere.mean::<D>(&body.state.position)
+        };
+        self.centres.clear();
+        self.centres.extend(self.list.iter().map(centre));
+        self.make_room();
+        self.crack_faces.clear();
+        for own in self.list.ids() {
+            let body = bodies.at(self.list[own].body);
+            self.find_lips(own, body, |other| other > own);
+        }
+        let number = |&(slot, id): &Key| {
+            let (body, by_voxel) = (bodies.find(slot)?, &self.by_voxel[slot]);
+            let voxel = ContactSphere::of(slot, body, id)?.voxel();
+            Some(by_voxel[body.topology.grid.index(voxel)])
+        };
+        let numbers = known.iter().map(number);
+        numbers.map(|own| own.unwrap_or(SphereId::NONE)).collect()
+    }
+
+    /// Applies a tear of a body. Adds the spheres of elements that are new, or have other nodes or bare
+    /// faces, to `changed`.
+    pub fn tear<D: Dim>(
+        &mut self,
+        slot: BodySlot,
+        body: &SoftBody<D>,
+        changes: &Changes,
+        changed: &mut Vec<SphereId>,
+    ) {
+        self.followed[slot] = body.bookmark();
+        let mut touched = Vec::new();
+        for &id in &changes.elements {
+            let Some(sphere) = ContactSphere::of(slot, body, id) else {
+                continue;
+            };
+            // A voxel at the surface stays there for good.
+            let own = &mut self.by_voxel[slot][body.topology.grid.index(sphere.voxel())];
+            if *own == SphereId::NONE {
+                *own = self.list.next_id();
+                if !sphere.asleep {
+                    self.awake.push(*own);
+                }
+                self.keys.push(sphere.key());
+                self.list.push(sphere);
+                self.centres.push(sphere.mean::<D>(&body.state.position));
+            } else {
+                self.list[*own] = sphere;
+            }
+            touched.push(*own);
+        }
+        self.make_room();
+        touched.sort_unstable();
+        touched.dedup();
+        changed.extend(&touched);
+        let mut is_touched: IndexVec<SphereId, bool> = vec![false; self.list.len()].into();
+        touched.iter().for_each(|&own| is_touched[own] = true);
+        let is_known = |lips: &[SphereId; 2]| lips.iter().all(|&own| !is_touched[own]);
+        self.crack_faces.retain(is_known);
+        if !changes.detached.is_empty() {
+            for sphere in self.list.iter_mut().filter(|sphere| sphere.body == slot) {
+                sphere.piece = body.topology.pieces.of_element(sphere.element);
+            }
+            let list = &self.list;
+            let piece = |own: SphereId| (list[own].body, list[own].piece);
+            self.crack_faces.retain(|&[a, b]| piece(a) == piece(b));
+        }
+        for own in touched {
+            self.find_lips(own, body, |other| !is_touched[other] || other > own);
+        }
+    }
+
+    /// Adds the crack-face pairs of a sphere with other spheres for which `applies` is true.
+    fn find_lips<D: Dim>(
+        &mut self,
+        id: SphereId,
+        body: &SoftBody<D>,
+        applies: impl Fn(SphereId) -> bool,
+    ) {
+        let own = &self.list[id];
+        let (site, voxel, size) = (own.site(), own.voxel(), body.topology.grid.size());
+        let by_voxel = &self.by_voxel[own.body];
+        let near = i32::from(NEAR);
+        let low = [0, 1, 2].map(|axis: usize| (voxel[axis] - near).max(0));
+        let high = [0, 1, 2].map(|axis: usize| (voxel[axis] + near).min(size[axis] - 1));
+        for z in low[2]..=high[2] {
+            for y in low[1]..=high[1] {
+                let row = body.topology.grid.index([low[0], y, z])
+                    ..=body.topology.grid.index([high[0], y, z]);
+                let others = by_voxel[row].iter().copied();
+                for other in others.filter(|&other| other != SphereId::NONE && applies(other)) {
+                    let sphere = &self.list[other];
+                    let is_held = other == id || site.is_held_to(&sphere.site());
+                    if !is_held && sphere.piece == own.piece {
+                        self.crack_faces.push([id, other]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Wakes the spheres of pieces, given by body and number in ascending order, and adds them to `changed`.
+    pub fn wake(&mut self, pieces: &[(BodySlot, PieceId)], changed: &mut Vec<SphereId>) {
+        for (id, sphere) in self.list.entries_mut() {
+            if sphere.asleep && pieces.binary_search(&(sphere.body, sphere.piece)).is_ok() {
+                sphere.asleep = false;
+                self.awake.push(id);
+                changed.push(id);
+            }
+        }
+    }
+
+    /// Sets the spheres that contacts may use in the next substeps.
+    pub fn note_close(&mut self, close: impl Iterator<Item = SphereId>) {
+        let was_close = self.is_close.clone();
+        self.is_close.fill(false);
+        close.for_each(|id| self.is_close[id] = true);
+        self.close.clear();
+        let all = { self.is_close.entries_mut() }
+            .zip(&self.list)
+            .zip(&mut self.moved);
+        for (((id, is_close), sphere), moved) in all.filter(|all| *all.0.0.1) {
+            *is_close = !sphere.asleep;
+            if *is_close {
+                self.close.push(id);
+            }
+            if *is_close && !was_close[id] {
+                *moved = 0.0;
+            }
+        }
+    }
+
+    /// Updates the centres of all awake spheres.
+    pub fn move_all<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
+        for at in 0..self.awake.len() {
+            self.follow::<D>(self.awake[at], bodies);
+        }
+    }
+
+    /// Updates the centres of the close spheres.
+    pub fn move_close<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
+        for at in 0..self.close.len() {
+            self.follow::<D>(self.close[at], bodies);
+        }
+    }
+
+    /// Copies the velocities of the close spheres from the bodies.
+    pub fn take_velocities<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
+        for &id in &self.close {
+            self.velocities[id] = self.velocity(id, bodies);
+        }
+    }
+
+    /// Returns the velocity of a sphere [m/s].
+    pub fn velocity<D: Dim>(&self, id: SphereId, bodies: &SoftBodies<D>) -> Row {
+        let sphere = &self.list[id];
+        sphere.mean::<D>(&bodies.at(sphere.body).state.velocity)
+    }
+
+    /// Returns whether the body itself keeps two spheres apart.
+    pub fn holds(&self, a: SphereId, b: SphereId) -> bool {
+        let [a, b] = [a, b].map(|id| self.list[id].site());
+        a.is_held_to(&b)
+    }
+
+    fn follow<D: Dim>(&mut self, id: SphereId, bodies: &SoftBodies<D>) {
+        let sphere = &self.list[id];
+        let centre = sphere.mean::<D>(&bodies.at(sphere.body).state.position);
+        if self.is_close[id] {
+            let moved = minus(centre, self.centres[id]);
+            self.moved[id] = dot(moved, moved);
+        }
+        self.centres[id] = centre;
+    }
+
+    fn make_room(&mut self) {
+        self.is_close.resize(self.list.len(), false);
+        self.velocities.resize(self.list.len(), [0.0; 4]);
+        self.moved.resize(self.list.len(), 0.0);
+    }
+}

@@ -1,0 +1,398 @@
+//! Contact spheres embedded in another piece, and their way out.
+//!
+//! Inside a piece there are no contact spheres that could push anything out, so a crumb forced through a
+//! stretched surface would stay there. Therefore, once per tick, the elements of the larger pieces are tested
+//! for sphere centres inside them. Such a sphere is *embedded* (a captive). It has no contacts with its host
+//! piece, except for the *escape contact* with the nearest surface sphere, its exit.
+
+use super::bins::Bins;
+use super::contact_sphere::{ContactSphere, SphereId};
+use super::contact_spheres::Spheres;
+use super::sphere_pair::SpherePair;
+use crate::foundation::arena::BodySlot;
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{ElementId, IndexVec, PieceId};
+use crate::math::lanes::on_widest_lanes;
+use crate::math::vector::{dot, minus, plus, scaled, three};
+use crate::rigid_body::shape::Vector;
+use crate::soft_body::element_forces::Row;
+use crate::soft_body::{SoftBodies, SoftBody};
+use std::collections::BTreeMap;
+
+/// Search radius for exits [voxels]. Few embedded spheres are deeper; for those all exits are compared.
+const EXIT_REACH: f32 = 2.0;
+
+/// Sphere with its centre inside another piece.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct EmbeddedSphere {
+    pub sphere: SphereId,
+    /// Nearest surface sphere of the host piece.
+    pub exit: SphereId,
+}
+
+/// Host piece of an embedded sphere: body and piece number.
+type HostPiece = (BodySlot, PieceId);
+
+/// Spheres embedded in other pieces.
+#[derive(Clone, Debug, Default)]
+pub struct Captives {
+    /// Embedded spheres, ascending.
+    pub list: Vec<EmbeddedSphere>,
+    /// Host piece of each sphere.
+    captors: IndexVec<SphereId, Option<HostPiece>>,
+}
+
+impl Captives {
+    /// Finds the spheres that are inside a piece larger than their own.
+    pub fn find<D: Dim>(
+        &mut self,
+        spheres: &Spheres,
+        pairs: &[SpherePair],
+        bodies: &SoftBodies<D>,
+    ) {
+        self.list.clear();
+        self.captors.clear();
+        self.captors.resize(spheres.list.len(), None);
+        if spheres.awake.is_empty() {
+            return;
+        }
+        let mut pieces: Extents = bodies.slots().map(extents).collect();
+        let largest = { pieces.iter().flatten() }.map(|piece| piece.count).max();
+        let own = |pieces: &Extents, sphere: SphereId| {
+            let sphere = &spheres.list[sphere];
+            pieces[sphere.body][sphere.piece].count
+        };
+        let small = spheres.awake.iter().copied();
+        let small: Vec<SphereId> = small
+            .filter(|&sphere| Some(own(&pieces, sphere)) < largest)
+            .collect();
+        if small.is_empty() {
+            return;
+        }
+        // Surface elements contain only spheres that are close to their own.
+        for pair in pairs {
+            let [a, b] = pair.both(&spheres.list);
+            let [at, other] = pair.spheres.map(|sphere| spheres.centres[sphere]);
+            let (apart, reach) = (minus(at, other), a.radius + b.radius);
+            if dot(apart, apart) > reach * reach {
+                continue;
+            }
+            for (inner, outer, at) in [(0, b, at), (1, a, other)] {
+                let sphere = pair.spheres[inner];
+                let captor = (outer.body, outer.piece);
+                let is_smaller = own(&pieces, sphere) < own(&pieces, pair.spheres[1 - inner]);
+                let body = bodies.at(outer.body);
+                let layers = bodies.at(spheres.list[sphere].body).state.layers;
+                let may_be = is_smaller && layers.meet(body.state.layers);
+                if may_be && body.holds(outer.element, three(at)) {
+                    self.captors[sphere] = Some(captor);
+                }
+            }
+        }
+        // Inner elements contain the deeper spheres; few pieces have any sphere in their box.
+        for (sphere, &centre) in spheres.list.iter().zip(&spheres.centres) {
+            pieces[sphere.body][sphere.piece].extend(&centre);
+        }
+        let placed = |&sphere: &SphereId| (sphere, own(&pieces, sphere), spheres.centres[sphere]);
+        let mut placed: Vec<(SphereId, u32, Row)> = small.iter().map(placed).collect();
+        // Sorted along the first axis, in which a box covers one range. Non-finite centres are in no box.
+        placed.retain(|(.., centre)| centre[0].is_finite());
+        placed.sort_unstable_by(|(.., a), (.., b)| a[0].total_cmp(&b[0]));
+        let mut near: Vec<SphereId> = Vec::new();
+        for piece in { pieces.iter_mut().flatten() }.filter(|piece| piece.has_inner) {
+            piece.has_inner = false;
+            let first = placed.partition_point(|(.., centre)| centre[0] < piece.low[0]);
+            let within = |&&(.., centre): &&(SphereId, u32, Row)| centre[0] <= piece.high[0];
+            for &(sphere, count, centre) in placed[first..].iter().take_while(within) {
+                if count < piece.count && piece.encloses(centre) {
+                    piece.has_inner = true;
+                    near.push(sphere);
+                }
+            }
+        }
+        near.sort_unstable();
+        near.dedup();
+        let centres = near.iter().map(|&sphere| spheres.centres[sphere]);
+        let centres: Vec<Row> = centres.collect();
+        let inner = inner_elements(bodies, &pieces, &Extent::around(&centres));
+        for same in inner.chunk_by(|a, b| a.level == b.level) {
+            let bins = Bins::new::<D>(&centres, usual_radius(same));
+            let mut inside = Vec::new();
+            for inner in same {
+                let (at, reach) = (inner.centre, inner.radius);
+                on_widest_lanes!(simd => bins.near::<D, _>(simd, at, reach, |_| 0, &mut inside));
+                for &at in &inside {
+                    let number = bins.numbers()[at as usize] as usize;
+                    let (sphere, at) = (near[number], three(centres[number]));
+                    let body = bodies.at(inner.captor.0);
+                    let layers = bodies.at(spheres.list[sphere].body).state.layers;
+                    let is_smaller = own(&pieces, sphere) < inner.count;
+                    let may_be = is_smaller && layers.meet(body.state.layers);
+                    if may_be && body.holds(inner.element, at) {
+                        self.captors[sphere] = Some(inner.captor);
+                    }
+                }
+            }
+        }
+        let mut exits: BTreeMap<HostPiece, Exits> = BTreeMap::new();
+        for sphere in small {
+            let Some(captor) = self.captors[sphere] else {
+                continue;
+            };
+            let exits = exits.entry(captor);
+            let exits = exits.or_insert_with(|| Exits::of(captor, spheres, bodies));
+            match exits.nearest::<D>(spheres.centres[sphere]) {
+                Some(exit) => self.list.push(EmbeddedSphere { sphere, exit }),
+                None => self.captors[sphere] = None,
+            }
+        }
+    }
+
+    /// Updates the host pieces after a tear. An embedded sphere follows the piece of its exit; the other
+    /// fragments count as foreign until the next tick.
+    pub fn tear(&mut self, spheres: &Spheres) {
+        for captive in &self.list {
+            let exit = &spheres.list[captive.exit];
+            self.captors[captive.sphere] = Some((exit.body, exit.piece));
+        }
+    }
+
+    /// Returns whether one of two spheres is embedded in the piece of the other.
+    #[inline(always)]
+    pub fn is_inside(&self, spheres: [SphereId; 2], [a, b]: [&ContactSphere; 2]) -> bool {
+        let inside = |own: SphereId, other: &ContactSphere| {
+            let captor = self.captors.get(own.index()).copied().flatten();
+            captor.is_some_and(|captor| captor == (other.body, other.piece))
+        };
+        inside(spheres[0], b) || inside(spheres[1], a)
+    }
+}
+
+/// Possible exits of a host piece.
+struct Exits {
+    /// Exits, ascending.
+    list: Vec<SphereId>,
+    centres: Vec<Row>,
+    bins: Bins,
+    /// Search radius in the bins [m].
+    reach: f32,
+}
+
+impl Exits {
+    fn of<D: Dim>((body, piece): HostPiece, spheres: &Spheres, bodies: &SoftBodies<D>) -> Self {
+        let all = spheres.list.entries();
+        let exits = all.filter(|(_, sphere)| {
+            (sphere.body, sphere.piece) == (body, piece) && sphere.leads_out()
+        });
+        let exits: Vec<SphereId> = exits.map(|(id, _)| id).collect();
+        let centres = exits.iter().map(|&exit| spheres.centres[exit]);
+        let centres: Vec<Row> = centres.collect();
+        let reach = EXIT_REACH * bodies.at(body).topology.grid.voxel_size();
+        Self {
+            bins: Bins::new::<D>(&centres, reach),
+            list: exits,
+            centres,
+            reach,
+        }
+    }
+
+    /// Returns the exit nearest to a position [m]; the first of several equally near ones.
+    fn nearest<D: Dim>(&self, at: Row) -> Option<SphereId> {
+        let nearer = |nearest: (f32, u32), number: u32| {
+            let apart = minus(self.centres[number as usize], at);
+            let found = (dot(apart, apart), number);
+            if found < nearest { found } else { nearest }
+        };
+        let none = (f32::INFINITY, u32::MAX);
+        let mut near = Vec::new();
+        on_widest_lanes!(simd => self.bins.near::<D, _>(simd, at, self.reach, |_| 0, &mut near));
+        let near = { near.iter() }.map(|&place| self.bins.numbers()[place as usize]);
+        let mut nearest = near.fold(none, nearer);
+        if nearest == none {
+            nearest = (0..self.list.len() as u32).fold(none, nearer);
+        }
+        self.list.get(nearest.1 as usize).copied()
+    }
+}
+
+/// Element without a bare face, and a ball around it.
+struct Inner {
+    level: u8,
+    element: ElementId,
+    /// Its piece, and the number of elements of that piece.
+    captor: HostPiece,
+    count: u32,
+    centre: Row,
+    radius: f32,
+}
+
+/// Returns the elements without a bare face that reach into a box, by level, for pieces with `has_inner`.
+fn inner_elements<D: Dim>(bodies: &SoftBodies<D>, pieces: &Extents, within: &Extent) -> Vec<Inner> {
+    let mut found = Vec::new();
+    for (slot, body) in bodies.by_slot() {
+        for (id, element) in body.topology.mesh.elements() {
+            let level = element.cell.level;
+            let piece = body.topology.pieces.of_element(id);
+            let extent = &pieces[slot][piece];
+            if !extent.has_inner || level == 0 && body.cache.bare[id] != 0 {
+                continue;
+            }
+            let nodes = element.nodes.iter();
+            let places = nodes.map(|&node| body.state.position[node]);
+            let sum = places.clone().fold([0.0; 4], plus);
+            let centre = scaled(sum, 1.0 / element.nodes.len() as f32);
+            let furthest = places.map(|at| minus(at, centre)).map(|way| dot(way, way));
+            let radius = furthest.fold(0.0, f32::max).sqrt();
+            if within.reaches(centre, radius) {
+                found.push(Inner {
+                    level,
+                    element: id,
+                    captor: (slot, piece),
+                    count: extent.count,
+                    centre,
+                    radius,
+                });
+            }
+        }
+    }
+    found.sort_by_key(|inner| inner.level);
+    found
+}
+
+/// Returns the median radius [m], so that a few widely stretched elements do not make the bins too wide.
+fn usual_radius(elements: &[Inner]) -> f32 {
+    let mut radii: Vec<f32> = elements.iter().map(|inner| inner.radius).collect();
+    let middle = radii.len() / 2;
+    *radii.select_nth_unstable_by(middle, f32::total_cmp).1
+}
+
+/// Extents of all pieces of all bodies.
+type Extents = IndexVec<BodySlot, IndexVec<PieceId, Extent>>;
+
+/// Extent of a piece.
+#[derive(Copy, Clone, Debug)]
+struct Extent {
+    /// Number of elements.
+    count: u32,
+    /// Whether the piece has elements without a bare face.
+    has_inner: bool,
+    /// Box around the centres of its contact spheres [m].
+    low: Row,
+    high: Row,
+}
+
+impl Extent {
+    const NONE: Self = Self {
+        count: 0,
+        has_inner: false,
+        low: [f32::MAX; 4],
+        high: [f32::MIN; 4],
+    };
+
+    /// Returns the box around some points.
+    fn around(places: &[Row]) -> Self {
+        let mut extent = Self::NONE;
+        places.iter().for_each(|at| extent.extend(at));
+        extent
+    }
+
+    fn extend(&mut self, at: &Row) {
+        self.low = [0, 1, 2, 3].map(|axis: usize| self.low[axis].min(at[axis]));
+        self.high = [0, 1, 2, 3].map(|axis: usize| self.high[axis].max(at[axis]));
+    }
+
+    /// Returns whether a ball may reach into the box.
+    fn reaches(&self, at: Row, radius: f32) -> bool {
+        (0..3).all(|axis| (self.low[axis] - radius..=self.high[axis] + radius).contains(&at[axis]))
+    }
+
+    fn encloses(&self, at: Row) -> bool {
+        self.reaches(at, 0.0)
+    }
+}
+
+/// Returns the extents of the pieces of a body, by number, without their boxes.
+fn extents<D: Dim>(body: Option<&SoftBody<D>>) -> IndexVec<PieceId, Extent> {
+    let Some(body) = body else {
+        return IndexVec::default();
+    };
+    let count = body.topology.pieces.list.len();
+    let mut extents: IndexVec<PieceId, Extent> = vec![Extent::NONE; count].into();
+    for (id, element) in body.topology.mesh.elements() {
+        let extent = &mut extents[body.topology.pieces.of_element(id)];
+        extent.count += 1;
+        extent.has_inner |= element.cell.level > 0 || body.cache.bare[id] == 0;
+    }
+    extents
+}
+
+impl<D: Dim> SoftBody<D> {
+    /// Returns whether a position [m] is in an element, which is treated as evenly deformed.
+    fn holds(&self, id: ElementId, at: Vector) -> bool {
+        let Some(element) = self.topology.mesh.element(id) else {
+            return false;
+        };
+        let child = self.child_at(element, at);
+        child.is_some_and(|child| element.children >> child & 1 == 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::foundation::dim::Dim3;
+
+    #[test]
+    fn nearest_exit_is_found_inside_and_outside_the_search_radius() {
+        let mut seed = 7u32;
+        let mut random = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / (1 << 24) as f32
+        };
+        let centres: Vec<Row> = (0..400)
+            .map(|_| [random(), random(), random(), 0.0])
+            .collect();
+        let reach = 0.1;
+        let exits = Exits {
+            list: (0..400).map(|number| SphereId(3 * number)).collect(),
+            bins: Bins::new::<Dim3>(&centres, reach),
+            centres,
+            reach,
+        };
+        let (mut near, mut far) = (0, 0);
+        for _ in 0..400 {
+            let at = [2.0 * random(), random(), random(), 0.0];
+            let apart = |number: &usize| {
+                let apart = minus(exits.centres[*number], at);
+                dot(apart, apart)
+            };
+            let all = 0..exits.centres.len();
+            let nearest = all.min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
+            assert_eq!(
+                exits.nearest::<Dim3>(at),
+                Some(SphereId(3 * nearest as u32))
+            );
+            let is_near = apart(&nearest) <= reach * reach;
+            (near, far) = (near + u32::from(is_near), far + u32::from(!is_near));
+        }
+        assert!(near > 100 && far > 100, "{near} near, {far} far");
+    }
+
+    /// Regression test: bins as wide as the widest element made every element scan all crumbs when one was
+    /// stretched.
+    #[test]
+    fn usual_radius_ignores_stretched_elements() {
+        let inner = |radius| Inner {
+            level: 1,
+            element: ElementId(0),
+            captor: (BodySlot(0), PieceId(0)),
+            count: 9,
+            centre: [0.0; 4],
+            radius,
+        };
+        for stretched in [100.0, f32::INFINITY, f32::NAN] {
+            let elements = [0.1, 0.2, stretched, 0.3, 0.2].map(inner);
+            assert_eq!(usual_radius(&elements), 0.2, "{stretched}");
+        }
+    }
+}

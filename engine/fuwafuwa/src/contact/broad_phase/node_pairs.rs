@@ -1,0 +1,475 @@
+//! Nodes that may touch rigid shapes. All nodes count, so that a flattened element lets nothing through.
+
+use super::bins::Bins;
+use super::known_impulse::Impulse;
+use super::sphere_pair::MARGIN;
+use crate::foundation::arena::{BodySlot, RigidSlot};
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{IndexVec, NodeId, PieceId};
+use crate::math::vector::{dot, length, minus, plus, scaled, three};
+use crate::rigid_body::shape::Shape;
+use crate::rigid_body::{RigidBodies, RigidBody};
+use crate::soft_body::element_forces::Row;
+use crate::soft_body::{SoftBodies, SoftBody};
+use std::ops::Range;
+
+/// Distances [voxels] that a node and a moving rigid body may move beyond the prediction from their velocity
+/// before they are searched again. Larger values mean longer lists, smaller ones more searches. Rigid bodies
+/// have more, because the coupling force accelerates them strongly.
+const SLACK: f32 = 0.4;
+const HAND_SLACK: f32 = 1.0;
+
+/// Width of a bin [voxels]. Its nodes are tested against a rigid shape together, before each one is tested
+/// alone.
+const SQUARE: f32 = 4.0;
+
+/// Node that may touch a rigid shape.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct NodePair {
+    /// Slot of the rigid body.
+    pub rigid: RigidSlot,
+    /// Slot of the soft body.
+    pub body: BodySlot,
+    /// Node of the soft body.
+    pub node: NodeId,
+    /// Impulses of the contact.
+    pub impulse: Impulse,
+    /// Value of [`NodePairs::travel`] from which this node may be in contact with a shape that does not move
+    /// [m].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub clear: f32,
+}
+
+/// Pairs of nodes and rigid shapes that may touch in this tick.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct NodePairs {
+    /// Pairs, ascending by rigid body, soft body and node; sleeping nodes included.
+    pub list: Vec<NodePair>,
+    /// Distance that the fastest nodes have moved since the last full search [m].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub travel: f32,
+    /// Position of each node at its last search, and as the fourth component its allowed distance from there
+    /// [m], by body and node.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    anchors: IndexVec<BodySlot, IndexVec<NodeId, Row>>,
+    /// Distance that all nodes may still move before one may exceed its allowed distance [m].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    spare: f32,
+    /// Allowed and actual movement of each rigid body [m]; empty if a full search is due.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    leeways: Vec<Leeway>,
+    /// Nodes removed, added or woken since the last update.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    changed: Vec<(BodySlot, NodeId)>,
+}
+
+/// Allowed and actual movement of a rigid body [m].
+#[derive(Copy, Clone, Debug)]
+struct Leeway {
+    most: f32,
+    come: f32,
+}
+
+impl NodePairs {
+    /// Starts a tick: clears the sums of the last one and requests a full search.
+    pub fn start_tick(&mut self) {
+        for pair in &mut self.list {
+            (pair.impulse.total, pair.impulse.speed) = (0.0, 0.0);
+        }
+        self.leeways.clear();
+        self.changed.clear();
+    }
+
+    /// Requests a full search, because a rigid body changed.
+    pub fn look_again(&mut self) {
+        self.leeways.clear();
+    }
+
+    /// Discards pairs without an existing rigid body, soft body or node, and restores the order without
+    /// duplicates.
+    #[cfg(feature = "serde")]
+    pub fn keep_known<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
+        let is_known =
+            |pair: &NodePair| rigids.find(pair.rigid).is_some() && pair.piece(bodies).is_some();
+        self.list.retain(is_known);
+        self.list.sort_by_key(NodePair::key);
+        self.list.dedup_by_key(|pair| pair.key());
+    }
+
+    /// Notes removed and added nodes of a body.
+    pub fn tear(&mut self, body: BodySlot, nodes: &[NodeId]) {
+        self.changed.extend(nodes.iter().map(|&node| (body, node)));
+    }
+
+    /// Notes the nodes of woken pieces, given by body and number in ascending order, because they can touch
+    /// fixed bodies again.
+    pub fn wake<D: Dim>(&mut self, pieces: &[(BodySlot, PieceId)], bodies: &SoftBodies<D>) {
+        for (slot, body) in bodies.by_slot() {
+            if pieces.iter().all(|&(body, _)| body != slot) {
+                continue;
+            }
+            let woke = |node| {
+                let piece = body.topology.pieces.of_node(node);
+                pieces.binary_search(&(slot, piece)).is_ok()
+            };
+            let woken = body.cache.awake.iter().filter(|&&node| woke(node));
+            self.changed.extend(woken.map(|&node| (slot, node)));
+        }
+    }
+
+    /// Accounts for a move in which no node moved farther than `distance` [m].
+    pub fn pass(&mut self, distance: f32) {
+        self.travel += distance;
+        self.spare -= distance;
+    }
+
+    /// Updates the list. A substep takes `duration` [s], and `left` [s] of the tick remain.
+    pub fn follow<D: Dim>(
+        &mut self,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+        duration: f32,
+        left: f32,
+    ) {
+        if rigids.is_empty() {
+            self.list.clear();
+            return;
+        }
+        for (leeway, rigid) in self.leeways.iter_mut().zip(rigids.iter()) {
+            leeway.come += rigid.top_speed() * duration;
+        }
+        let outrun = self.leeways.iter().any(|leeway| leeway.come > leeway.most);
+        if outrun || self.leeways.is_empty() {
+            self.find_all(bodies, rigids, left);
+            return;
+        }
+        if self.spare <= 0.0 {
+            self.find_strayed(bodies);
+        }
+        if self.changed.is_empty() {
+            return;
+        }
+        let mut changed = std::mem::take(&mut self.changed);
+        changed.sort_unstable();
+        changed.dedup();
+        let mut found = Vec::new();
+        for &(slot, node) in &changed {
+            self.anchor(slot, node, bodies, left);
+        }
+        for ((own, rigid), leeway) in rigids.by_slot().zip(&self.leeways) {
+            let is_near = |&&(slot, node): &&(BodySlot, NodeId)| {
+                let body = bodies.at(slot);
+                let reach = self.reach(slot, node, body.topology.grid.voxel_size());
+                let at = three(body.state.position[node]);
+                rigid.meets(body.state.layers)
+                    && body.topology.mesh.is_alive(node)
+                    && rigid.shape().distance(at).0 <= reach + leeway.most
+            };
+            let near = changed.iter().filter(is_near);
+            found.extend(near.map(|&(body, node)| (own, body, node)));
+        }
+        self.merge(&found, |pair| {
+            let is_changed = changed.binary_search(&(pair.body, pair.node)).is_ok();
+            !is_changed || pair.has_touched(bodies)
+        });
+    }
+
+    /// Searches all nodes that may reach a rigid body in the remaining time `left` of the tick [s]. Sleeping
+    /// nodes are paired only with moving rigid bodies.
+    fn find_all<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies, left: f32) {
+        self.changed.clear();
+        self.travel = 0.0;
+        self.spare = f32::INFINITY;
+        let sizes = bodies.iter().map(|body| body.topology.grid.voxel_size());
+        let size = sizes.fold(0.0, f32::max);
+        let leeway = |rigid: &RigidBody| {
+            let slack = if rigid.moves() {
+                HAND_SLACK * size
+            } else {
+                0.0
+            };
+            let most = slack + rigid.top_speed() * left;
+            Leeway { most, come: 0.0 }
+        };
+        self.leeways.clear();
+        self.leeways.extend(rigids.iter().map(leeway));
+        self.anchors
+            .resize(bodies.slot_count(), IndexVec::default());
+        let mut squares = Vec::new();
+        for (slot, body) in bodies.by_slot() {
+            for &node in &body.cache.awake {
+                self.anchor(slot, node, bodies, left);
+            }
+            let reach = |node| self.reach(slot, node, body.topology.grid.voxel_size());
+            squares.push((slot, body, Squares::of(body, reach)));
+        }
+        let mut found = Vec::new();
+        let mut near: Vec<NodeId> = Vec::new();
+        for ((own, rigid), leeway) in rigids.by_slot().zip(&self.leeways) {
+            let met = squares.iter();
+            let met = met.filter(|(_, body, _)| rigid.meets(body.state.layers));
+            for (slot, body, squares) in met {
+                near.clear();
+                squares.within(leeway.most, rigid.shape(), &mut near);
+                if rigid.moves() && body.cache.awake.len() < body.topology.mesh.node_count() {
+                    let reach = leeway.most + MARGIN * body.topology.grid.voxel_size();
+                    let is_near = |&node: &NodeId| {
+                        let at = three(body.state.position[node]);
+                        body.topology.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
+                    };
+                    near.extend(
+                        body.topology
+                            .mesh
+                            .nodes()
+                            .map(|(node, _)| node)
+                            .filter(is_near),
+                    );
+                }
+                // Found bin by bin, so not in order.
+                near.sort_unstable();
+                found.extend(near.iter().map(|&node| (own, *slot, node)));
+            }
+        }
+        self.merge(&found, |pair| pair.has_touched(bodies));
+    }
+
+    /// Adds the nodes that have exceeded their allowed distance to the changed ones, and updates the spare
+    /// distance of the others.
+    fn find_strayed<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
+        let mut spare = f32::INFINITY;
+        for (slot, body) in bodies.by_slot() {
+            let Some(anchors) = self.anchors.get(slot.index()) else {
+                continue;
+            };
+            for &node in &body.cache.awake {
+                let Some(&[x, y, z, most]) = anchors.get(node.index()) else {
+                    continue;
+                };
+                let come = minus(body.state.position[node], [x, y, z, 0.0]);
+                let come = dot(come, come);
+                if come > most * most {
+                    self.changed.push((slot, node));
+                } else {
+                    let left = most - come.sqrt();
+                    spare = if left < spare { left } else { spare };
+                }
+            }
+        }
+        self.spare = spare;
+    }
+
+    /// Stores the position of a node and its allowed distance until the end of the tick.
+    fn anchor<D: Dim>(&mut self, slot: BodySlot, node: NodeId, bodies: &SoftBodies<D>, left: f32) {
+        let body = bodies.at(slot);
+        let anchors = &mut self.anchors[slot];
+        anchors.resize(body.state.position.len(), [0.0; 4]);
+        let [x, y, z, _] = body.state.position[node];
+        let speed = length(body.state.velocity[node]);
+        let most = SLACK * body.topology.grid.voxel_size() + speed * left;
+        anchors[node] = [x, y, z, most];
+        self.spare = if most < self.spare { most } else { self.spare };
+    }
+
+    /// Returns the distance from a wall within which a node is listed [m]; `size` is the voxel size [m].
+    fn reach(&self, body: BodySlot, node: NodeId, size: f32) -> f32 {
+        self.anchors[body][node][3] + MARGIN * size
+    }
+
+    /// Merges the found pairs with the old ones that stay. Known pairs keep their impulses.
+    fn merge(&mut self, found: &[Key], stays: impl Fn(&NodePair) -> bool) {
+        let old = std::mem::take(&mut self.list);
+        let mut old = old.into_iter().peekable();
+        for &key in found {
+            while let Some(pair) = old.next_if(|pair| pair.key() < key) {
+                if stays(&pair) {
+                    self.list.push(pair);
+                }
+            }
+            let known = old.next_if(|pair| pair.key() == key);
+            let (rigid, body, node) = key;
+            self.list.push(NodePair {
+                rigid,
+                body,
+                node,
+                impulse: known.map_or(Impulse::default(), |pair| pair.impulse),
+                clear: 0.0,
+            });
+        }
+        self.list.extend(old.filter(stays));
+    }
+}
+
+/// Sort key of a pair: rigid body, soft body and node.
+type Key = (RigidSlot, BodySlot, NodeId);
+
+impl NodePair {
+    fn key(&self) -> Key {
+        (self.rigid, self.body, self.node)
+    }
+
+    /// Returns whether the pair touched in this tick. Such a pair is kept for the events even if it is far
+    /// apart now.
+    fn has_touched<D: Dim>(&self, bodies: &SoftBodies<D>) -> bool {
+        self.impulse.total > 0.0 && bodies.at(self.body).topology.mesh.is_alive(self.node)
+    }
+
+    /// Returns the piece of the node; `None` if another body is in the slot now.
+    pub fn piece<D: Dim>(&self, bodies: &SoftBodies<D>) -> Option<PieceId> {
+        let body = bodies.find(self.body)?;
+        let is_known = self.node.index() < body.topology.mesh.node_capacity();
+        is_known.then(|| body.topology.pieces.of_node(self.node))
+    }
+}
+
+/// Awake nodes of a body, grouped in bins. Most bins are out of reach as a whole, however the body is torn.
+struct Squares {
+    /// Nodes by their numbers in the bins, and the distance within which each is listed [m].
+    nodes: Vec<(NodeId, f32)>,
+    bins: Bins,
+    list: Vec<Square>,
+}
+
+/// Range of nodes in the bins, a ball around them, and the largest distance at which one of them is listed
+/// [m].
+struct Square {
+    points: Range<usize>,
+    centre: Row,
+    radius: f32,
+    reach: f32,
+}
+
+impl Squares {
+    fn of<D: Dim>(body: &SoftBody<D>, reach: impl Fn(NodeId) -> f32) -> Self {
+        let nodes = body.cache.awake.iter().map(|&node| (node, reach(node)));
+        let nodes: Vec<(NodeId, f32)> = nodes.collect();
+        let points = nodes.iter().map(|&(node, _)| body.state.position[node]);
+        let points: Vec<Row> = points.collect();
+        let bins = Bins::new::<D>(&points, SQUARE * body.topology.grid.voxel_size());
+        let squares = { bins.filled() }.map(|range| Square::around(&bins, range, &nodes));
+        Self {
+            list: squares.collect(),
+            nodes,
+            bins,
+        }
+    }
+
+    /// Adds the nodes within their reach plus `range` of a shape [m].
+    fn within(&self, range: f32, shape: &Shape, near: &mut Vec<NodeId>) {
+        let is_near = |at: Row, reach: f32| shape.distance(three(at)).0 <= reach;
+        for square in &self.list {
+            if !is_near(square.centre, square.radius + square.reach + range) {
+                continue;
+            }
+            for place in square.points.clone() {
+                let (node, reach) = self.nodes[self.bins.numbers()[place] as usize];
+                if is_near(self.bins.point(place), reach + range) {
+                    near.push(node);
+                }
+            }
+        }
+    }
+}
+
+impl Square {
+    fn around(bins: &Bins, points: Range<usize>, nodes: &[(NodeId, f32)]) -> Self {
+        let (mut low, mut high, mut furthest) = ([f32::MAX; 4], [f32::MIN; 4], 0.0f32);
+        for place in points.clone() {
+            let at = bins.point(place);
+            for axis in 0..4 {
+                low[axis] = low[axis].min(at[axis]);
+                high[axis] = high[axis].max(at[axis]);
+            }
+            furthest = furthest.max(nodes[bins.numbers()[place] as usize].1);
+        }
+        let centre = scaled(plus(low, high), 0.5);
+        Self {
+            points,
+            centre,
+            radius: length(minus(high, centre)),
+            reach: furthest,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::foundation::dim::{Dim2, Dim3};
+    use crate::material::Material;
+    use crate::topology::grid::VoxelGrid;
+    use std::collections::BTreeSet;
+
+    /// Tears a body and moves its nodes at random between two walls, and compares the list with all nodes.
+    fn check<D: Dim>(n: usize) {
+        let grid = VoxelGrid::<D>::ball(n, 1.0).expect("the ball has voxels");
+        let body =
+            SoftBody::new(grid, &[Material::default()]).expect("the default material is valid");
+        let size = body.topology.grid.voxel_size();
+        let mut bodies = SoftBodies::default();
+        let ball = bodies.insert(body).slot();
+        let wall = |normal, offset| RigidBody::fixed(Shape::HalfSpace { normal, offset }, 0.0);
+        let mut walls = RigidBodies::default();
+        walls.insert(wall([0.0, 1.0, 0.0], 0.3));
+        walls.insert(wall([-1.0, 0.0, 0.0], -0.8));
+        let mut seed = 5u32;
+        let mut random = |below: usize| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as usize % below
+        };
+        let mut pairs = NodePairs::default();
+        bodies.at_mut(ball).refresh_awake();
+        let (mut gone, mut new) = (0, 0);
+        for _ in 0..60 {
+            pairs.follow(&bodies, &walls, 0.001, 0.016);
+            let body = bodies.at_mut(ball);
+            let listed: BTreeSet<Key> = pairs.list.iter().map(NodePair::key).collect();
+            assert_eq!(listed.len(), pairs.list.len());
+            assert!(pairs.list.is_sorted_by_key(NodePair::key));
+            assert!(
+                listed
+                    .iter()
+                    .all(|&(.., node)| body.topology.mesh.is_alive(node))
+            );
+            for (node, _) in body.topology.mesh.nodes() {
+                let at = three(body.state.position[node]);
+                for (own, wall) in walls.by_slot() {
+                    let is_close = wall.shape().distance(at).0 <= MARGIN * size;
+                    assert!(!is_close || listed.contains(&(own, ball, node)));
+                }
+            }
+            let sides = (0..4).map(|_| {
+                let mut at = [0; 3];
+                (0..D::N).for_each(|axis| at[axis] = random(n + 1) as i32);
+                (at, 1 + random((1 << D::CORNERS) - 2) as u8)
+            });
+            let before = body.topology.mesh.node_count();
+            let changes = body.tear(&sides.collect::<Vec<_>>());
+            let changes = changes.expect("splitting a node keeps the mesh valid");
+            let alive = |&&node: &&NodeId| body.topology.mesh.is_alive(node);
+            new += changes.nodes.iter().filter(alive).count();
+            gone += changes.nodes.len() - changes.nodes.iter().filter(alive).count();
+            assert!(body.topology.mesh.node_count() == before || !changes.nodes.is_empty());
+            body.refresh_awake();
+            pairs.tear(ball, &changes.nodes);
+            let step = 0.1 * size;
+            for &node in &body.cache.awake {
+                for along in &mut body.state.position[node][..D::N] {
+                    *along += step * (random(3) as f32 - 1.0);
+                }
+            }
+            pairs.pass(1.001 * step * (D::N as f32).sqrt());
+        }
+        assert!(
+            new > 50 && (gone > 0 || D::N == 2),
+            "{new} new, {gone} gone"
+        );
+    }
+
+    #[test]
+    fn list_contains_all_nodes_near_walls_while_they_move_and_tear() {
+        check::<Dim2>(16);
+        check::<Dim3>(10);
+    }
+}

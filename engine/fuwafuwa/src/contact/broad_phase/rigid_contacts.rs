@@ -1,0 +1,94 @@
+//! Contact points between rigid bodies of which one is dynamic, kept between substeps by feature key.
+
+use super::known_impulse::Impulse;
+use crate::foundation::arena::RigidSlot;
+#[cfg(feature = "serde")]
+use crate::foundation::dim::Dim;
+#[cfg(feature = "serde")]
+use crate::rigid_body::RigidBodies;
+use crate::rigid_body::shape::Vector;
+
+/// Contact point between two rigid bodies.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RigidTouch {
+    /// The dynamic body and the other one.
+    pub both: [RigidSlot; 2],
+    /// Key of the corner or edge.
+    pub key: u32,
+    /// Impulses of the point.
+    pub impulse: Impulse,
+}
+
+/// Contact at a point in one substep.
+#[derive(Copy, Clone, Debug)]
+pub struct Passed {
+    /// The dynamic body and the other one.
+    pub both: [RigidSlot; 2],
+    /// Normal impulse [N s].
+    pub impulse: f32,
+    /// Approach speed [m/s].
+    pub speed: f32,
+    /// Position [m].
+    pub at: Vector,
+    /// Unit normal from the second body to the first.
+    pub normal: Vector,
+}
+
+/// All contact points between rigid bodies.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RigidTouches {
+    /// Points, ascending by bodies and key.
+    pub list: Vec<RigidTouch>,
+    /// Contacts of this tick.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub passed: Vec<Passed>,
+}
+
+impl RigidTouch {
+    fn order(&self) -> ([RigidSlot; 2], u32) {
+        (self.both, self.key)
+    }
+}
+
+impl RigidTouches {
+    /// Starts a tick: clears the contacts of the last one.
+    pub fn start_tick(&mut self) {
+        self.passed.clear();
+    }
+
+    /// Returns the impulses of a point in the last substep.
+    pub fn known(&self, both: [RigidSlot; 2], key: u32) -> Impulse {
+        let found = self
+            .list
+            .binary_search_by_key(&(both, key), RigidTouch::order);
+        found.map_or_else(|_| Impulse::default(), |place| self.list[place].impulse)
+    }
+
+    /// Replaces the points by those of this substep.
+    pub fn renew(&mut self, touches: impl Iterator<Item = RigidTouch>) {
+        self.list.clear();
+        self.list.extend(touches);
+        self.list.sort_by_key(RigidTouch::order);
+    }
+
+    /// Removes a rigid body.
+    pub fn remove(&mut self, slot: RigidSlot) {
+        self.list.retain(|touch| !touch.both.contains(&slot));
+        self.passed.retain(|passed| !passed.both.contains(&slot));
+    }
+
+    /// Discards points of bodies that do not exist, and restores the order without duplicates.
+    #[cfg(feature = "serde")]
+    pub fn keep_known<D: Dim>(&mut self, rigids: &RigidBodies) {
+        let is_known =
+            |touch: &RigidTouch| touch.both.iter().all(|&slot| rigids.find(slot).is_some());
+        self.list.retain(is_known);
+        self.list.sort_by_key(RigidTouch::order);
+        self.list.dedup_by_key(|touch| touch.order());
+        self.list
+            .iter_mut()
+            .for_each(|touch| touch.impulse.flatten::<D>());
+    }
+}

@@ -1,0 +1,509 @@
+//! Pairs of contact spheres that may touch.
+//!
+//! Spheres are searched along their predicted motion: a straight *path*, from which they may deviate by a
+//! slack. The faster things move, the shorter the paths hold. Only spheres that exceed their slack, wake or
+//! appear at the surface are searched again. Therefore no pair is missed at any finite speed. A full search
+//! skips neighbours within a piece; those on opposite crack faces are listed separately.
+//!
+//! ```text
+//!    ●──────────┤        two paths make a pair if their spheres, enlarged by their slack,
+//!      ╲                 come close enough at the same time
+//!    ●──╲───────┤
+//! ```
+
+use super::bins::Bins;
+use super::contact_sphere::{ContactSphere, SphereId};
+use super::contact_spheres::Spheres;
+use super::piece_neighbours::Neighbours;
+use super::sphere_pair::{SpherePair, merge};
+use super::swept_path::{Path, SLACK, Span, Start, SweptSphere, widened};
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::IndexVec;
+use crate::foundation::threads::{self, CHUNK_SIZE};
+use crate::math::lanes::on_widest_lanes;
+use crate::math::vector::{dot, length, minus, plus, scaled};
+use crate::soft_body::SoftBodies;
+use crate::soft_body::element_forces::Row;
+
+/// Share of the spheres that may have long paths, and half the length of the longest short path as a share of
+/// the reach. If speeds are higher, the paths end sooner. Short paths are searched bin by bin; each long path
+/// searches its own surroundings.
+const LONG_SHARE: usize = 32;
+const LONGEST_SHORT: f32 = 0.125;
+/// Maximum duration of the paths [s]. A falling sphere exceeds its prediction by 5 cm in this time.
+const LONGEST_TIME: f32 = 0.1;
+/// A full search is faster than separate searches for more than 1 / `MANY` of the awake spheres. Sorting a
+/// sphere into bins takes as long as `COMPARED` comparisons.
+const MANY: usize = 4;
+const COMPARED: usize = 12;
+
+/// Marks a sphere that is found through the bins, in place of its index among the loose ones.
+const BINNED: u32 = u32::MAX;
+
+/// Number of spheres that a thread searches at a time; below `CHUNK_SIZE`, because each search visits several
+/// bins.
+const LOOKS: usize = CHUNK_SIZE / 8;
+
+/// Pairs of spheres that may touch while their paths hold.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SpherePairs {
+    /// Pairs, ascending.
+    pub list: Vec<SpherePair>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    paths: IndexVec<SphereId, Path>,
+    /// Starting points of the paths.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    starts: IndexVec<SphereId, Start>,
+    /// Bins of the midpoints of all paths; `None` if a full search is due.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    bins: Option<Bins>,
+    /// Time of the midpoints [s].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    binned_at: f32,
+    /// Swept spheres in bin order.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    binned: Vec<SweptSphere>,
+    /// Mean velocity of the moving spheres [m/s], relative to which paths are short or long, and half the
+    /// length of the longest short path [m].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    frame: Row,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    short: f32,
+    /// Spheres that are not found through the bins: those with long paths, or with paths newer than the bins.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    loose: Vec<SweptSphere>,
+    /// Index of each sphere in `loose`, or [`BINNED`].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    loose_at: IndexVec<SphereId, u32>,
+    /// Whether a tick has begun since the last update.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    is_new_tick: bool,
+    /// Spheres to search again, in addition to those that exceed their slack.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub changed: Vec<SphereId>,
+    /// Time since the last full search [s], and the duration of the paths from then on [s].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    elapsed: f32,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    duration: f32,
+    /// Search distance of the largest spheres, and slack of the smallest ones [m].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    reach: f32,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    least_stray: f32,
+    /// Distance that all spheres may still deviate before one may exceed its slack [m], and the highest speed
+    /// along a path [m/s].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    spare: f32,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pace: f32,
+}
+
+impl SpherePairs {
+    /// Starts a tick: clears the sums of the last one. Requests a full search if the spheres were listed
+    /// again.
+    pub fn start_tick(&mut self, is_listed_anew: bool) {
+        if is_listed_anew {
+            self.bins = None;
+            self.starts.clear();
+        }
+        self.is_new_tick = true;
+        for pair in &mut self.list {
+            (pair.impulse.total, pair.impulse.speed) = (0.0, 0.0);
+        }
+    }
+
+    /// Accounts for a substep [s] in which no node moved farther than `distance` [m].
+    pub fn pass(&mut self, duration: f32, distance: f32) {
+        self.elapsed += duration;
+        self.spare -= distance + self.pace * duration;
+    }
+
+    /// Updates the spheres and the list. Returns whether the list changed or a new tick began.
+    pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &SoftBodies<D>) -> bool {
+        let is_new_tick = std::mem::take(&mut self.is_new_tick);
+        if spheres.awake.is_empty() {
+            self.list.clear();
+            self.bins = None;
+            return is_new_tick;
+        }
+        if self.bins.is_none() || self.elapsed > self.duration {
+            spheres.move_all(bodies);
+            self.find_all(spheres, bodies);
+            return true;
+        }
+        if self.spare > 0.0 && self.changed.is_empty() && !is_new_tick {
+            spheres.move_close(bodies);
+        } else {
+            spheres.move_all(bodies);
+            self.find_strayed(spheres);
+        }
+        let mut changed = std::mem::take(&mut self.changed);
+        if changed.is_empty() {
+            return is_new_tick;
+        }
+        changed.sort_unstable();
+        changed.dedup();
+        if MANY * changed.len() > spheres.awake.len() {
+            self.find_all(spheres, bodies);
+        } else {
+            self.find_again(&changed, spheres, bodies);
+        }
+        true
+    }
+
+    /// Adds the spheres that have exceeded their slack to the changed ones, and updates the spare distance of
+    /// the others.
+    fn find_strayed(&mut self, spheres: &Spheres) {
+        let mut spare = f32::INFINITY;
+        for &sphere in &spheres.awake {
+            let Some(path) = self.paths.get(sphere.index()) else {
+                continue;
+            };
+            let strayed = minus(spheres.centres[sphere], path.at(self.elapsed));
+            let (strayed, most) = (dot(strayed, strayed), most_stray(spheres, sphere));
+            if strayed > most * most {
+                self.changed.push(sphere);
+            } else {
+                let left = most - strayed.sqrt();
+                spare = if left < spare { left } else { spare };
+            }
+        }
+        self.spare = spare;
+    }
+
+    /// Resizes the tables for `count` spheres.
+    fn make_room(&mut self, count: usize) {
+        self.paths.resize(count, Path::default());
+        self.starts.resize(count, Start::UNKNOWN);
+    }
+
+    /// Starts a new path of a sphere at its present position.
+    fn lay<D: Dim>(&mut self, sphere: SphereId, spheres: &Spheres, bodies: &SoftBodies<D>) {
+        let now = spheres.centres[sphere];
+        let start = &mut self.starts[sphere];
+        let (mut velocity, mut laid) = ([0.0; 4], Start::UNKNOWN);
+        if !spheres.list[sphere].asleep {
+            velocity = start.expected(now, self.elapsed, spheres.velocity(sphere, bodies));
+            laid = Start {
+                at: now,
+                time: self.elapsed,
+            };
+        }
+        *start = laid;
+        let from = minus(now, scaled(velocity, self.elapsed));
+        self.paths[sphere] = Path { from, velocity };
+        let speed = length(velocity);
+        self.pace = if speed > self.pace { speed } else { self.pace };
+    }
+
+    /// Returns a sphere with its path.
+    fn traveller(&self, sphere: SphereId, spheres: &Spheres) -> SweptSphere {
+        let ContactSphere { radius, asleep, .. } = spheres.list[sphere];
+        SweptSphere {
+            path: self.paths[sphere],
+            sweep: self.speed(sphere) * self.span().half,
+            radius,
+            sphere,
+            asleep,
+        }
+    }
+
+    /// Searches all pairs.
+    fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &SoftBodies<D>) {
+        let count = spheres.list.len();
+        self.changed.clear();
+        self.make_room(count);
+        self.starts
+            .iter_mut()
+            .for_each(|start| start.time -= self.elapsed);
+        (self.elapsed, self.pace) = (0.0, 0.0);
+        let all = spheres.list.ids();
+        all.for_each(|sphere| self.lay(sphere, spheres, bodies));
+        self.measure(spheres);
+        let bins = self.bin::<D>(spheres);
+        let neighbours = Neighbours::of(&self.binned, spheres, bodies);
+        let mut found = self.short_pairs::<D>(&bins, &neighbours);
+        found.extend(self.long_pairs::<D>(&bins, &neighbours, spheres));
+        found.extend(self.lips(spheres));
+        self.bins = Some(bins);
+        merge(&mut self.list, &found, &vec![true; count].into());
+    }
+
+    /// Sorts all spheres into bins, by the midpoint of the remaining path.
+    fn bin<D: Dim>(&mut self, spheres: &Spheres) -> Bins {
+        self.binned_at = self.remaining().middle;
+        let middles = self.paths.iter().map(|path| path.at(self.binned_at));
+        let middles: Vec<Row> = middles.collect();
+        let bins = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
+        let numbers = bins.numbers().iter().copied().map(SphereId);
+        let binned = numbers.map(|sphere| self.traveller(sphere, spheres));
+        self.binned = binned.collect();
+        self.loose.clear();
+        self.loose_at.clear();
+        self.loose_at.resize(middles.len(), BINNED);
+        for traveller in &self.binned {
+            if traveller.sweep > self.short {
+                self.loose_at[traveller.sphere] = self.loose.len() as u32;
+                self.loose.push(*traveller);
+            }
+        }
+        bins
+    }
+
+    /// Computes the search distance, the slack, the duration of the paths and the length of short paths.
+    fn measure(&mut self, spheres: &Spheres) {
+        let radii = spheres.list.iter().map(|sphere| sphere.radius);
+        let (smallest, largest) = radii.fold((f32::MAX, 0.0f32), |(low, high), radius| {
+            (low.min(radius), high.max(radius))
+        });
+        self.least_stray = 2.0 * SLACK * smallest;
+        self.spare = self.least_stray;
+        self.reach = widened(2.0 * largest);
+        self.set_frame(spheres);
+        let speeds = { spheres.awake.iter() }.map(|&sphere| self.speed(sphere));
+        let most = usual(speeds.filter(|speed| speed.is_finite()).collect());
+        let longest = LONGEST_SHORT * self.reach;
+        self.duration = match most * LONGEST_TIME > 2.0 * longest {
+            true => 2.0 * longest / most,
+            false => LONGEST_TIME,
+        };
+        self.short = most * self.span().half;
+    }
+
+    /// Returns the speed of a path relative to the frame [m/s].
+    fn speed(&self, sphere: SphereId) -> f32 {
+        length(minus(self.paths[sphere].velocity, self.frame))
+    }
+
+    /// Returns whether a sphere is found through the bins: its path is short and as it was when the bins were
+    /// built.
+    #[inline(always)]
+    fn is_binned(&self, traveller: &SweptSphere) -> bool {
+        self.loose_at[traveller.sphere] == BINNED
+    }
+
+    /// Returns the pairs with two short paths, except neighbours in a piece.
+    fn short_pairs<D: Dim>(&self, bins: &Bins, neighbours: &Neighbours) -> Vec<Vec<[SphereId; 2]>> {
+        let (span, reach) = (self.span(), self.reach + 2.0 * self.short);
+        threads::map(bins.shares(), |share| {
+            let mut found = Vec::new();
+            on_widest_lanes!(simd => bins.pairs::<D, _>(
+                simd,
+                share,
+                reach,
+                |places| neighbours.are_asleep(places),
+                #[inline(always)]
+                |own, first| neighbours.of_eight(simd, neighbours.at(own), first),
+                |a, b| {
+                    let [a, b] = [a, b].map(|at| &self.binned[at]);
+                    if a.meets(b, span) && self.is_binned(a) && self.is_binned(b) {
+                        found.push(pair(a, b));
+                    }
+                },
+            ));
+            found
+        })
+    }
+
+    /// Returns the pairs on opposite crack faces.
+    fn lips(&self, spheres: &Spheres) -> Vec<Vec<[SphereId; 2]>> {
+        // Index of each sphere in bin order.
+        let mut order: IndexVec<SphereId, u32> = vec![0; self.binned.len()].into();
+        for (traveller, at) in self.binned.iter().zip(0..) {
+            order[traveller.sphere] = at;
+        }
+        let span = self.span();
+        threads::map(spheres.crack_faces.chunks(CHUNK_SIZE), |share| {
+            let mut found = Vec::new();
+            for &lips in share {
+                let [a, b] = lips.map(|sphere| &self.binned[order[sphere] as usize]);
+                if a.meets(b, span) {
+                    found.push(pair(a, b));
+                }
+            }
+            found
+        })
+    }
+
+    /// Returns the pairs with a long path, except neighbours in a piece.
+    fn long_pairs<D: Dim>(
+        &self,
+        bins: &Bins,
+        neighbours: &Neighbours,
+        spheres: &Spheres,
+    ) -> Vec<Vec<[SphereId; 2]>> {
+        let span = self.span();
+        let middles = self.loose.iter().map(|long| long.path.at(span.middle));
+        let middles: Vec<Row> = middles.collect();
+        let long = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
+        // Of two long paths the longer one searches the other.
+        let rank = |long: &SweptSphere| (long.sweep, long.sphere);
+        threads::map(self.loose.chunks(LOOKS), |share| {
+            let (mut found, mut near) = (Vec::new(), Vec::new());
+            on_widest_lanes!(simd => for own in share {
+                let at = own.path.at(span.middle);
+                let site = neighbours.site(own.sphere, spheres);
+                let reach = self.reach + own.sweep + self.short;
+                bins.near::<D, _>(
+                    simd,
+                    at,
+                    reach,
+                    #[inline(always)]
+                    |first| neighbours.of_eight(simd, site, first),
+                    &mut near,
+                );
+                for &at in &near {
+                    let other = &self.binned[at as usize];
+                    if own.meets(other, span) && self.is_binned(other) {
+                        found.push(pair(own, other));
+                    }
+                }
+                let reach = self.reach + 2.0 * own.sweep;
+                long.near::<D, _>(simd, at, reach, |_| 0, &mut near);
+                for &at in &near {
+                    let other = &self.loose[long.numbers()[at as usize] as usize];
+                    let first = rank(other) < rank(own);
+                    let is_neighbour = || site.is_neighbour(&neighbours.site(other.sphere, spheres));
+                    if first && own.meets(other, span) && !is_neighbour() {
+                        found.push(pair(own, other));
+                    }
+                }
+            });
+            found
+        })
+    }
+
+    /// Searches the pairs of the changed spheres again, given in ascending order; other pairs stay.
+    fn find_again<D: Dim>(
+        &mut self,
+        changed: &[SphereId],
+        spheres: &Spheres,
+        bodies: &SoftBodies<D>,
+    ) {
+        let count = spheres.list.len();
+        self.make_room(count);
+        self.loose_at.resize(count, BINNED);
+        let mut is_changed: IndexVec<SphereId, bool> = vec![false; count].into();
+        for &sphere in changed {
+            self.lay(sphere, spheres, bodies);
+            is_changed[sphere] = true;
+        }
+        if changed.len() * (self.loose.len() + changed.len()) > COMPARED * count {
+            self.bins = Some(self.bin::<D>(spheres));
+            // With too many fast spheres the paths must end sooner.
+            if changed.len() * self.loose.len() > COMPARED * count {
+                self.find_all(spheres, bodies);
+                return;
+            }
+        } else {
+            changed
+                .iter()
+                .for_each(|&sphere| self.loosen(sphere, spheres));
+        }
+        let span = self.remaining();
+        let bins = self
+            .bins
+            .as_ref()
+            .expect("a full search has built the bins");
+        let this = &*self;
+        let found = threads::map(changed.chunks(LOOKS), |share| {
+            let (mut found, mut near) = (Vec::new(), Vec::new());
+            on_widest_lanes!(simd => for &sphere in share {
+                let own = &this.traveller(sphere, spheres);
+                let is_first = |other: &SweptSphere| match is_changed[other.sphere] {
+                    true => other.sphere > sphere,
+                    false => true,
+                };
+                // Moved back along the frame, in which the binned spheres hardly move.
+                let shift = scaled(this.frame, span.middle - this.binned_at);
+                let at = minus(own.path.at(span.middle), shift);
+                let reach = this.reach + this.short + own.sweep;
+                bins.near::<D, _>(simd, at, reach, |_| 0, &mut near);
+                for &at in &near {
+                    let other = &this.binned[at as usize];
+                    let is_other = is_first(other) && this.is_binned(other);
+                    if is_other && own.meets(other, span) && !spheres.holds(sphere, other.sphere) {
+                        found.push(pair(own, other));
+                    }
+                }
+                for other in &this.loose {
+                    let is_met = own.meets(other, span) && is_first(other);
+                    if is_met && !spheres.holds(sphere, other.sphere) {
+                        found.push(pair(own, other));
+                    }
+                }
+            });
+            found
+        });
+        merge(&mut self.list, &found, &is_changed);
+        // `find_strayed` has updated the spare distance for the other spheres.
+        self.spare = self.spare.min(self.least_stray);
+    }
+
+    /// Takes a sphere with a new path out of the bins.
+    fn loosen(&mut self, sphere: SphereId, spheres: &Spheres) {
+        let traveller = self.traveller(sphere, spheres);
+        let at = &mut self.loose_at[sphere];
+        match self.loose.get_mut(*at as usize) {
+            Some(own) => *own = traveller,
+            None => {
+                *at = self.loose.len() as u32;
+                self.loose.push(traveller);
+            }
+        }
+    }
+
+    /// Returns the time from now to the end of the paths.
+    fn remaining(&self) -> Span {
+        Span {
+            middle: 0.5 * (self.elapsed + self.duration),
+            half: 0.5 * (self.duration - self.elapsed).max(0.0),
+        }
+    }
+
+    /// Returns the time from the last full search to the end of the paths.
+    fn span(&self) -> Span {
+        let half = 0.5 * self.duration;
+        Span { middle: half, half }
+    }
+
+    /// Sets the frame to the mean velocity; 0 if any sphere sleeps.
+    fn set_frame(&mut self, spheres: &Spheres) {
+        self.frame = [0.0; 4];
+        if spheres.awake.len() < spheres.list.len() {
+            return;
+        }
+        let sum = { self.paths.iter() }.fold([0.0; 4], |sum, path| plus(sum, path.velocity));
+        let mean = scaled(sum, 1.0 / self.paths.len() as f32);
+        // Non-finite velocities are quarantined after the tick.
+        if mean.iter().all(|along| along.is_finite()) {
+            self.frame = mean;
+        }
+    }
+}
+
+/// Returns the ids of two spheres in ascending order.
+#[inline(always)]
+fn pair(a: &SweptSphere, b: &SweptSphere) -> [SphereId; 2] {
+    [a.sphere.min(b.sphere), a.sphere.max(b.sphere)]
+}
+
+/// Returns the slack of a sphere [m].
+#[inline(always)]
+fn most_stray(spheres: &Spheres, sphere: SphereId) -> f32 {
+    SLACK * 2.0 * spheres.list[sphere].radius
+}
+
+/// Returns the speed that at most a share of 1 / `LONG_SHARE` of the spheres exceeds.
+fn usual(mut speeds: Vec<f32>) -> f32 {
+    if speeds.is_empty() {
+        return 0.0;
+    }
+    let place = speeds.len() - 1 - speeds.len() / LONG_SHARE;
+    *speeds.select_nth_unstable_by(place, f32::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,165 @@
+//! Sleepers in contact with something that is removed or moved, directly or through other sleepers; they must
+//! wake. A sleeper wakes by itself only if something it touches moves quickly, which a body that loses its
+//! support does not do at first.
+
+use super::bins::Bins;
+use super::contact_sphere::ContactSphere;
+use super::sphere_pair::MARGIN;
+use crate::foundation::arena::{BodySlot, RigidSlot};
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{NodeId, PieceId};
+use crate::math::lanes::on_widest_lanes;
+use crate::math::vector::{minus, plus, three};
+use crate::rigid_body::shape::Bounds;
+use crate::rigid_body::{RigidBodies, RigidBody};
+use crate::soft_body::element_forces::Row;
+use crate::soft_body::{SoftBodies, SoftBody};
+use std::collections::{BTreeMap, BTreeSet};
+use std::marker::PhantomData;
+
+/// Sleeping piece: body and piece number.
+pub type Sleeper = (BodySlot, PieceId);
+
+/// Returns the boxes around pieces of a body, enlarged by the contact margin [m].
+pub fn bounds_of<D: Dim>(body: &SoftBody<D>, is_one: impl Fn(PieceId) -> bool) -> Vec<Bounds> {
+    let margin = [MARGIN * body.topology.grid.voxel_size(); 3];
+    let pieces = body.piece_views().into_iter();
+    let pieces = pieces.filter(|piece| !piece.removed && is_one(piece.number));
+    let bounds = pieces.map(|piece| [minus(piece.low, margin), plus(piece.high, margin)]);
+    bounds.collect()
+}
+
+/// Returns the sleeping dynamic rigid bodies with a bounding box that overlaps one of `places`.
+pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &RigidBodies) -> Vec<RigidSlot> {
+    let is_there = |rigid: &RigidBody| {
+        let [low, high] = rigid.shape().bounds();
+        let margin = MARGIN * rigid.shape().inradius().min(1.0);
+        places.iter().any(|[from, to]| {
+            (0..D::N)
+                .all(|axis| low[axis] - margin <= to[axis] && from[axis] <= high[axis] + margin)
+        })
+    };
+    let sleepers = { rigids.by_slot() }.filter(|(_, rigid)| rigid.is_asleep() && is_there(rigid));
+    sleepers.map(|(slot, _)| slot).collect()
+}
+
+/// Returns the sleepers in contact with a rigid body, ascending by body and number.
+pub fn leaning_on_rigid<D: Dim>(rigid: &RigidBody, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
+    let mut leaning = BTreeSet::new();
+    for (slot, body) in bodies.by_slot() {
+        let reach = MARGIN * body.topology.grid.voxel_size();
+        let is_near = |node: NodeId| {
+            let at = three(body.state.position[node]);
+            body.topology.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
+        };
+        let nodes = body.topology.mesh.nodes().map(|(node, _)| node);
+        let nodes = nodes.filter(|&node| is_near(node));
+        leaning.extend(nodes.map(|node| (slot, body.topology.pieces.of_node(node))));
+    }
+    Sleepers::of(bodies).with_those_on(leaning)
+}
+
+/// Returns the sleepers in contact with a body that is not in `bodies`, ascending by body and number.
+pub fn leaning_on_body<D: Dim>(body: &SoftBody<D>, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
+    let sleepers = Sleepers::of(bodies);
+    let mut leaning = BTreeSet::new();
+    for sphere in spheres_of(BodySlot::NONE, body) {
+        let at = sphere.mean::<D>(&body.state.position);
+        leaning.extend(sleepers.touching(at, sphere.radius));
+    }
+    sleepers.with_those_on(leaning)
+}
+
+/// Returns the sleepers in contact with some pieces, given in ascending order, without these pieces;
+/// ascending.
+pub fn leaning_on_pieces<D: Dim>(pieces: &[Sleeper], bodies: &SoftBodies<D>) -> Vec<Sleeper> {
+    let sleepers = Sleepers::of(bodies);
+    let is_one = |piece: &Sleeper| pieces.binary_search(piece).is_ok();
+    let mut leaning = BTreeSet::new();
+    for (slot, body) in bodies.by_slot() {
+        if pieces.iter().all(|&(body, _)| body != slot) {
+            continue;
+        }
+        let own = spheres_of(slot, body).filter(|own| is_one(&(slot, own.piece)));
+        for sphere in own {
+            let at = sphere.mean::<D>(&body.state.position);
+            leaning.extend(sleepers.touching(at, sphere.radius));
+        }
+    }
+    leaning.retain(|piece| !is_one(piece));
+    let mut leaning = sleepers.with_those_on(leaning);
+    leaning.retain(|piece| !is_one(piece));
+    leaning
+}
+
+/// Contact spheres of all sleepers.
+struct Sleepers<D: Dim> {
+    spheres: Vec<ContactSphere>,
+    centres: Vec<Row>,
+    bins: Bins,
+    /// Largest radius [m].
+    largest: f32,
+    dim: PhantomData<D>,
+}
+
+impl<D: Dim> Sleepers<D> {
+    fn of(bodies: &SoftBodies<D>) -> Self {
+        let (mut spheres, mut centres) = (Vec::new(), Vec::new());
+        for (slot, body) in bodies.by_slot() {
+            for sphere in spheres_of(slot, body).filter(|sphere| sphere.asleep) {
+                centres.push(sphere.mean::<D>(&body.state.position));
+                spheres.push(sphere);
+            }
+        }
+        let radii = spheres.iter().map(|sphere| sphere.radius);
+        let largest = radii.fold(0.0, f32::max);
+        Self {
+            bins: Bins::new::<D>(&centres, reach(largest, largest)),
+            spheres,
+            centres,
+            largest,
+            dim: PhantomData,
+        }
+    }
+
+    /// Returns the pieces that touch a sphere, possibly repeated.
+    fn touching(&self, at: Row, radius: f32) -> Vec<Sleeper> {
+        let (mut near, furthest) = (Vec::new(), reach(radius, self.largest));
+        on_widest_lanes!(simd => self.bins.near::<D, _>(simd, at, furthest, |_| 0, &mut near));
+        let spheres = near.iter().map(|&near| {
+            let number = self.bins.numbers()[near as usize];
+            &self.spheres[number as usize]
+        });
+        let pieces = spheres.map(|sphere| (sphere.body, sphere.piece));
+        pieces.collect()
+    }
+
+    /// Returns some pieces and all sleepers in contact with them, directly or through others; ascending.
+    fn with_those_on(&self, some: BTreeSet<Sleeper>) -> Vec<Sleeper> {
+        let mut own: BTreeMap<Sleeper, Vec<usize>> = BTreeMap::new();
+        for (number, sphere) in self.spheres.iter().enumerate() {
+            let piece = (sphere.body, sphere.piece);
+            own.entry(piece).or_default().push(number);
+        }
+        let mut work: Vec<Sleeper> = some.iter().copied().collect();
+        let mut all = some;
+        while let Some(piece) = work.pop() {
+            for &number in own.get(&piece).into_iter().flatten() {
+                let radius = self.spheres[number].radius;
+                let others = self.touching(self.centres[number], radius).into_iter();
+                work.extend(others.filter(|&other| all.insert(other)));
+            }
+        }
+        all.into_iter().collect()
+    }
+}
+
+/// Returns the distance of the centres of two spheres in contact [m].
+fn reach(first: f32, second: f32) -> f32 {
+    (1.0 + MARGIN) * (first + second)
+}
+
+fn spheres_of<D: Dim>(slot: BodySlot, body: &SoftBody<D>) -> impl Iterator<Item = ContactSphere> {
+    let ids = body.topology.mesh.elements().map(|(id, _)| id);
+    ids.filter_map(move |id| ContactSphere::of(slot, body, id))
+}

@@ -1,0 +1,106 @@
+//! Predicted paths of contact spheres, and the test whether two of them come close.
+
+use super::contact_sphere::SphereId;
+use super::sphere_pair::MARGIN;
+use crate::math::vector::{dot, minus, plus, scaled};
+use crate::soft_body::element_forces::Row;
+
+/// Slack: how far a sphere may deviate from its path [voxels]. Larger values mean longer lists, smaller ones
+/// more searches.
+pub const SLACK: f32 = 0.35;
+
+/// Weight of the mean velocity since the start of the last path in the prediction; the remainder is the
+/// present velocity. Vibrating spheres return, so their mean velocity predicts them better.
+const AS_BEFORE: f32 = 0.8;
+
+/// Straight path of a sphere while its pairs hold.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct Path {
+    /// Position extrapolated to the time of the last full search [m].
+    pub from: Row,
+    /// Velocity [m/s].
+    pub velocity: Row,
+}
+
+impl Path {
+    /// Returns the position [m] at a time after the last full search [s].
+    #[inline(always)]
+    pub fn at(&self, time: f32) -> Row {
+        plus(self.from, scaled(self.velocity, time))
+    }
+}
+
+/// Start of a path.
+#[derive(Copy, Clone, Debug)]
+pub struct Start {
+    /// Position [m].
+    pub at: Row,
+    /// Time relative to the last full search [s]; NaN if there was no path before.
+    pub time: f32,
+}
+
+impl Start {
+    pub const UNKNOWN: Self = Self {
+        at: [0.0; 4],
+        time: f32::NAN,
+    };
+
+    /// Returns the predicted velocity [m/s] of a sphere from its position now [m], its velocity [m/s] and
+    /// this start of its last path.
+    pub fn expected(&self, here: Row, now: f32, velocity: Row) -> Row {
+        let passed = now - self.time;
+        if passed > 0.0 {
+            let mean = scaled(minus(here, self.at), 1.0 / passed);
+            plus(scaled(mean, AS_BEFORE), scaled(velocity, 1.0 - AS_BEFORE))
+        } else {
+            velocity
+        }
+    }
+}
+
+/// Time span after the last full search: its midpoint and half its length [s].
+#[derive(Copy, Clone, Debug, Default)]
+pub struct Span {
+    pub middle: f32,
+    pub half: f32,
+}
+
+/// Swept sphere: a sphere with its path, stored contiguously with everything that the pair test reads.
+#[derive(Copy, Clone, Debug)]
+pub struct SweptSphere {
+    pub path: Path,
+    /// Upper bound of half its swept length relative to the frame [m].
+    pub sweep: f32,
+    pub radius: f32,
+    pub sphere: SphereId,
+    pub asleep: bool,
+}
+
+impl SweptSphere {
+    /// Returns whether two swept spheres come close within a time span.
+    #[inline(always)]
+    pub fn meets(&self, other: &Self, span: Span) -> bool {
+        let closing = minus(self.path.velocity, other.path.velocity);
+        let apart = minus(self.path.from, other.path.from);
+        let apart = plus(apart, scaled(closing, span.middle));
+        let reach = widened(self.radius + other.radius);
+        // Most pairs are too far apart for any direction of motion. The comparison is false for NaN.
+        let furthest = reach + self.sweep + other.sweep;
+        let is_near = dot(apart, apart) <= furthest * furthest;
+        if !is_near || self.asleep && other.asleep {
+            return false;
+        }
+        // Time of the closest approach, relative to the midpoint of the span.
+        let time = -dot(apart, closing) / dot(closing, closing).max(f32::MIN_POSITIVE);
+        let time = time.clamp(-span.half, span.half);
+        let apart = plus(apart, scaled(closing, time));
+        dot(apart, apart) <= reach * reach
+    }
+}
+
+/// Returns the distance below which two paths make a pair [m], for spheres that touch at the distance
+/// `touching` [m].
+#[inline(always)]
+pub fn widened(touching: f32) -> f32 {
+    (1.0 + MARGIN + 2.0 * SLACK) * touching
+}

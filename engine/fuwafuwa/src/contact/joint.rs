@@ -1,0 +1,253 @@
+//! Joints: pins, springs and ropes between soft bodies, rigid bodies and points of the world.
+//!
+//! Each joint connects two *anchors*. In every substep it applies the impulse of its kind, solved for all
+//! axes together. As with contacts, the correction of position errors adds no velocity [Catto 2023]. Springs
+//! are integrated implicitly and are stable at any stiffness.
+
+mod attached_anchor;
+mod joint_anchor;
+mod joint_solver;
+
+use crate::foundation::arena::{Arena, Gone, JointHandle};
+use crate::foundation::dim::Dim;
+use crate::math::vector::length;
+use crate::rigid_body::shape::{Vector, flat};
+use crate::rigid_body::{FARTHEST, RigidBodies};
+use crate::soft_body::SoftBodies;
+use attached_anchor::AttachedAnchor;
+pub(crate) use joint_anchor::Woken;
+pub use joint_anchor::{JointAnchor, JointKind};
+
+/// Solver iterations over all joints per substep. Chains need more than one, because their links depend on
+/// each other.
+const ROUNDS: usize = 4;
+
+/// Joints of a world.
+pub type Joints = Arena<JointHandle, Joint>;
+
+/// Joint between two anchors.
+///
+/// ```
+/// use fuwafuwa::{JointAnchor, Joint};
+/// use fuwafuwa::{SoftBody, Dim2, Material, WorldConfig, VoxelGrid, World};
+///
+/// let mut world = World::<Dim2>::new(WorldConfig::default())?;
+/// let ball = SoftBody::new(VoxelGrid::ball(12, 1.0)?, &[Material::default()])?;
+/// let ball = world.add_body(ball);
+/// let top = [0.5, 1.0, 0.0];
+/// let end = JointAnchor::Soft { body: ball, at: top, radius: 0.2 };
+/// let nail = world.add_joint(Joint::pin(end, JointAnchor::Position(top)))?;
+/// for _ in 0..60 {
+///     world.step();
+/// }
+/// assert!(world.bodies()[ball].centre_of_mass()[1] > 0.2);
+/// world.remove_joint(nail)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Joint {
+    /// Attachment points of both anchors.
+    pub ends: [JointAnchor; 2],
+    /// Joint kind.
+    pub tie: JointKind,
+    /// Force above which the joint breaks [N], in tension or compression; infinite (default) = never.
+    pub breaking_force: f32,
+    anchors: [AttachedAnchor; 2],
+    /// Impulse on the first anchor in the last substep [N s].
+    impulse: Vector,
+    /// Magnitude of the joint force in the last substep [N].
+    force: f32,
+}
+
+/// Name of an invalid parameter, and the expected value.
+pub type BadJoint = (&'static str, &'static str);
+
+impl Joint {
+    /// Returns a joint of any kind that never breaks.
+    pub fn new(ends: [JointAnchor; 2], tie: JointKind) -> Self {
+        Self {
+            ends,
+            tie,
+            breaking_force: f32::INFINITY,
+            anchors: [
+                AttachedAnchor::Position([0.0; 3]),
+                AttachedAnchor::Position([0.0; 3]),
+            ],
+            impulse: [0.0; 3],
+            force: 0.0,
+        }
+    }
+
+    /// Returns a pin, which keeps its anchors together.
+    pub fn pin(first: JointAnchor, second: JointAnchor) -> Self {
+        Self::new([first, second], JointKind::Pin)
+    }
+
+    /// Returns the joint with a breaking force [N].
+    #[must_use]
+    pub fn breaking_at(self, force: f32) -> Self {
+        Self {
+            breaking_force: force,
+            ..self
+        }
+    }
+
+    /// Returns the magnitude of the joint force in the last substep [N].
+    pub fn force(&self) -> f32 {
+        self.force
+    }
+
+    /// Attaches the anchors to their bodies at the present positions.
+    pub(crate) fn hold<D: Dim>(
+        &mut self,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+    ) -> Result<(), Gone> {
+        for (anchor, end) in self.anchors.iter_mut().zip(&self.ends) {
+            *anchor = AttachedAnchor::of(end, bodies, rigids)?;
+        }
+        if self.tie == JointKind::Pin {
+            self.meet_soft_ends(bodies, rigids);
+        }
+        (self.impulse, self.force) = ([0.0; 3], 0.0);
+        Ok(())
+    }
+
+    /// For a pin between a soft anchor and another one, moves the other to the soft anchor, so that nothing
+    /// jumps at the first step.
+    fn meet_soft_ends<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
+        let is_soft = self.anchors.each_ref().map(AttachedAnchor::is_soft);
+        for (own, other) in [(0, 1), (1, 0)] {
+            if is_soft[own] && !is_soft[other] {
+                let at = self.anchors[own].grip(bodies, rigids).map(|grip| grip.at);
+                at.into_iter()
+                    .for_each(|at| self.anchors[other].stand_at(at, rigids));
+            }
+        }
+    }
+
+    /// Returns the positions of both anchors [m]; `None` if an attached body is gone.
+    pub(crate) fn places<D: Dim>(
+        &self,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+    ) -> Option<[Vector; 2]> {
+        let [first, second] = &self.anchors;
+        let at = |anchor: &AttachedAnchor| Some(anchor.grip(bodies, rigids)?.at);
+        Some([at(first)?, at(second)?])
+    }
+
+    /// Checks that all parameters are in range.
+    pub(crate) fn check(&self) -> Result<(), BadJoint> {
+        for end in &self.ends {
+            let (at, radius) = match *end {
+                JointAnchor::Position(at) | JointAnchor::RigidBody { at, .. } => (at, 0.0),
+                JointAnchor::Soft { at, radius, .. } => (at, radius),
+            };
+            let is_near = at.iter().all(|k| k.abs() <= FARTHEST);
+            require(is_near, "place of an end", "within 1e6 m of the origin")?;
+            require(
+                (0.0..=FARTHEST).contains(&radius),
+                "radius of a soft joint anchor",
+                "0 to 1e6 m",
+            )?;
+        }
+        let is_of_two = match self.ends {
+            [JointAnchor::Position(_), JointAnchor::Position(_)] => false,
+            [
+                JointAnchor::RigidBody { rigid, .. },
+                JointAnchor::RigidBody { rigid: other, .. },
+            ] => rigid != other,
+            _ => true,
+        };
+        let expected = "on two different objects, at least one of them a body";
+        require(is_of_two, "joint ends", expected)?;
+        require(self.breaking_force > 0.0, "breaking force", "positive")?;
+        let is_within = |k: f32, least: f32| (least..=f32::MAX).contains(&k);
+        match self.tie {
+            JointKind::Pin => Ok(()),
+            JointKind::Rope { length } => require(
+                is_within(length, f32::MIN_POSITIVE),
+                "length",
+                "positive and finite",
+            ),
+            JointKind::Spring {
+                stiffness,
+                damping,
+                length,
+            } => {
+                let is_stiff = is_within(stiffness, f32::MIN_POSITIVE);
+                require(is_stiff, "stiffness", "positive and finite")?;
+                require(is_within(damping, 0.0), "damping", "0 or more, and finite")?;
+                require(is_within(length, 0.0), "length", "0 or more, and finite")
+            }
+        }
+    }
+
+    /// Returns whether a joint that was read from a file is valid.
+    #[cfg(feature = "serde")]
+    pub(crate) fn is_sound<D: Dim>(&self) -> bool {
+        let is_finite = crate::math::vector::is_finite(self.impulse) && self.force >= 0.0;
+        let is_flat = self.impulse[D::N..].iter().all(|k| *k == 0.0);
+        let mut both = self.anchors.iter().zip(&self.ends);
+        self.check().is_ok()
+            && is_finite
+            && is_flat
+            && both.all(|(own, end)| own.is_sound::<D>(end))
+    }
+}
+
+/// Applies the joint impulses of a substep of `duration` [s]. Returns the joints that lost an anchor, and the
+/// sleepers to wake.
+pub(crate) fn solve<D: Dim>(
+    joints: &mut Joints,
+    bodies: &mut SoftBodies<D>,
+    rigids: &mut RigidBodies,
+    duration: f32,
+) -> (Vec<JointHandle>, Woken) {
+    let (mut broken, mut woken) = (Vec::new(), Woken::default());
+    for (id, joint) in joints.entries_mut() {
+        match joint.start(bodies, rigids, &mut woken) {
+            true => {}
+            false => broken.push(id),
+        }
+    }
+    for _ in 0..ROUNDS {
+        for joint in joints.iter_mut() {
+            joint.solve(bodies, rigids, duration, true);
+        }
+    }
+    (broken, woken)
+}
+
+/// Removes, after the position update, the velocity that was added to correct pins and ropes. Returns the
+/// joints that exceeded their breaking force.
+pub(crate) fn relax<D: Dim>(
+    joints: &mut Joints,
+    bodies: &mut SoftBodies<D>,
+    rigids: &mut RigidBodies,
+    duration: f32,
+) -> Vec<JointHandle> {
+    let mut broken = Vec::new();
+    for _ in 0..ROUNDS {
+        for joint in joints.iter_mut() {
+            joint.solve(bodies, rigids, duration, false);
+        }
+    }
+    for (id, joint) in joints.entries_mut() {
+        if !joint.yields(bodies, rigids) {
+            // Nothing attached can move, so the joint keeps its last force.
+            continue;
+        }
+        joint.force = length(flat::<D>(joint.impulse)) / duration;
+        if joint.force > joint.breaking_force {
+            broken.push(id);
+        }
+    }
+    broken
+}
+
+fn require(is_good: bool, field: &'static str, expected: &'static str) -> Result<(), BadJoint> {
+    is_good.then_some(()).ok_or((field, expected))
+}

@@ -1,0 +1,241 @@
+//! Joint anchors: a point of the world, a point of a rigid body, or the mean of some nodes.
+
+use super::joint_anchor::{JointAnchor, Woken};
+use crate::foundation::arena::{Gone, RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::dim::{Dim, Point, voxel_around};
+use crate::foundation::ids::NodeId;
+use crate::math::vector::{as_row, dot, minus, plus, scaled, three};
+#[cfg(feature = "serde")]
+use crate::rigid_body::FARTHEST;
+use crate::rigid_body::RigidBodies;
+use crate::rigid_body::shape::{Vector, flat};
+use crate::soft_body::{SoftBodies, SoftBody};
+
+/// Anchor of a joint.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum AttachedAnchor {
+    /// Point of the world [m].
+    Position(Vector),
+    /// Point of a rigid body in local coordinates [m].
+    RigidBody(RigidBodyHandle, Vector),
+    /// Corners of a soft body, each a voxel and the lattice point of its node. A voxel keeps its corner when
+    /// the body tears around it.
+    Soft(SoftBodyHandle, Vec<(Point, Point)>),
+}
+
+/// State and compliance of an anchor.
+#[derive(Copy, Clone, Debug)]
+pub struct AnchorState {
+    /// Position [m].
+    pub at: Vector,
+    /// Velocity [m/s].
+    pub velocity: Vector,
+    /// Inverse effective mass matrix, by rows [1/kg].
+    pub yields: [Vector; 3],
+    pub is_asleep: bool,
+}
+
+impl AttachedAnchor {
+    /// Returns the anchor at an attachment point.
+    pub fn of<D: Dim>(
+        end: &JointAnchor,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+    ) -> Result<Self, Gone> {
+        Ok(match *end {
+            JointAnchor::Position(at) => Self::Position(flat::<D>(at)),
+            JointAnchor::RigidBody { rigid: id, at } => {
+                let rigid = rigids.get(id)?;
+                let apart = minus(flat::<D>(at), rigid.position());
+                Self::RigidBody(id, rigid.rotation().inverse().apply(apart))
+            }
+            JointAnchor::Soft {
+                body: id,
+                at,
+                radius,
+            } => {
+                let body = bodies.get(id)?;
+                Self::Soft(id, corners_near(body, flat::<D>(at), radius))
+            }
+        })
+    }
+
+    /// Returns whether the anchor is on nodes of a soft body.
+    pub fn is_soft(&self) -> bool {
+        matches!(self, Self::Soft(..))
+    }
+
+    /// Moves an anchor that is not soft to a world-space point [m].
+    pub fn stand_at(&mut self, at: Vector, rigids: &RigidBodies) {
+        match self {
+            Self::Position(place) => *place = at,
+            Self::RigidBody(id, own) => {
+                if let Ok(rigid) = rigids.get(*id) {
+                    *own = rigid
+                        .rotation()
+                        .inverse()
+                        .apply(minus(at, rigid.position()));
+                }
+            }
+            Self::Soft(..) => {}
+        }
+    }
+
+    /// Returns the present state of the anchor; `None` if its body or all of its voxels are gone.
+    pub fn grip<D: Dim>(
+        &self,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+    ) -> Option<AnchorState> {
+        match self {
+            Self::Position(at) => Some(AnchorState {
+                at: *at,
+                velocity: [0.0; 3],
+                yields: [[0.0; 3]; 3],
+                is_asleep: false,
+            }),
+            Self::RigidBody(id, own) => {
+                let rigid = rigids.get(*id).ok()?;
+                let lever = rigid.rotation().apply(*own);
+                let ways = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+                Some(AnchorState {
+                    at: plus(rigid.position(), lever),
+                    velocity: rigid.velocity_at(lever),
+                    yields: ways.map(|way| rigid.gain(lever, way)),
+                    is_asleep: rigid.is_asleep(),
+                })
+            }
+            Self::Soft(id, corners) => {
+                let body = bodies.get(*id).ok()?;
+                let nodes: Vec<NodeId> = nodes(body, corners).collect();
+                if nodes.is_empty() {
+                    return None;
+                }
+                let share = 1.0 / nodes.len() as f32;
+                let (mut at, mut velocity, mut gain) = ([0.0; 3], [0.0; 3], 0.0);
+                let mut is_asleep = true;
+                for node in nodes {
+                    at = plus(at, scaled(three(body.state.position[node]), share));
+                    velocity = plus(velocity, scaled(three(body.state.velocity[node]), share));
+                    gain += body.state.inverse_mass[node] * share * share;
+                    is_asleep &= body.topology.pieces.sleeps(node);
+                }
+                let mut yields = [[0.0; 3]; 3];
+                (0..D::N).for_each(|axis| yields[axis][axis] = gain);
+                Some(AnchorState {
+                    at,
+                    velocity,
+                    yields,
+                    is_asleep,
+                })
+            }
+        }
+    }
+
+    /// Applies an impulse [N s].
+    pub fn push<D: Dim>(
+        &self,
+        bodies: &mut SoftBodies<D>,
+        rigids: &mut RigidBodies,
+        impulse: Vector,
+    ) {
+        match self {
+            Self::Position(_) => {}
+            Self::RigidBody(id, own) => {
+                if let Ok(rigid) = rigids.get_mut(*id) {
+                    let lever = rigid.rotation().apply(*own);
+                    rigid.kick(impulse, lever);
+                }
+            }
+            Self::Soft(id, corners) => {
+                let Ok(body) = bodies.get_mut(*id) else {
+                    return;
+                };
+                let nodes: Vec<NodeId> = nodes(body, corners).collect();
+                let share = as_row(scaled(impulse, 1.0 / nodes.len() as f32));
+                for node in nodes {
+                    let gain = scaled(share, body.state.inverse_mass[node]);
+                    body.state.velocity[node] = plus(body.state.velocity[node], gain);
+                }
+            }
+        }
+    }
+
+    /// Adds the attached bodies or pieces to the sleepers to wake.
+    pub fn wake<D: Dim>(&self, bodies: &SoftBodies<D>, woken: &mut Woken) {
+        match self {
+            Self::Position(_) => {}
+            Self::RigidBody(id, _) => woken.rigids.push(id.slot()),
+            Self::Soft(id, corners) => {
+                let Ok(body) = bodies.get(*id) else {
+                    return;
+                };
+                let pieces = nodes(body, corners).map(|node| body.topology.pieces.of_node(node));
+                woken.pieces.extend(pieces.map(|piece| (id.slot(), piece)));
+            }
+        }
+    }
+
+    /// Returns whether an anchor that was read from a file is valid.
+    #[cfg(feature = "serde")]
+    pub fn is_sound<D: Dim>(&self, end: &JointAnchor) -> bool {
+        let is_of_it = match (self, end) {
+            (Self::Position(_), JointAnchor::Position(_)) => true,
+            (Self::RigidBody(own, _), JointAnchor::RigidBody { rigid, .. }) => own == rigid,
+            (Self::Soft(own, _), JointAnchor::Soft { body, .. }) => own == body,
+            _ => false,
+        };
+        let is_somewhere = match self {
+            Self::Position(at) | Self::RigidBody(_, at) => {
+                let is_near = at.iter().all(|k| k.abs() <= 4.0 * FARTHEST);
+                is_near && at[D::N..].iter().all(|k| *k == 0.0)
+            }
+            Self::Soft(_, corners) => !corners.is_empty(),
+        };
+        is_of_it && is_somewhere
+    }
+}
+
+/// Returns the nodes at some corners; removed voxels are skipped.
+fn nodes<'a, D: Dim>(
+    body: &'a SoftBody<D>,
+    corners: &'a [(Point, Point)],
+) -> impl Iterator<Item = NodeId> + 'a {
+    corners.iter().filter_map(|&(voxel, point)| {
+        let mesh = &body.topology.mesh;
+        let element = mesh.element_at(voxel)?;
+        let apart = |node: NodeId| {
+            let at = mesh.node(node).at;
+            // In 64 bits, because a file from elsewhere may contain any lattice point.
+            let along = |axis: usize| i64::from(at[axis]) - i64::from(point[axis]);
+            (0..D::N).map(|axis| along(axis).abs()).sum::<i64>()
+        };
+        element
+            .nodes
+            .iter()
+            .copied()
+            .min_by_key(|&node| (apart(node), node))
+    })
+}
+
+/// Returns the corners of a body within `radius` [m] of a point, or the nearest one.
+fn corners_near<D: Dim>(body: &SoftBody<D>, at: Vector, radius: f32) -> Vec<(Point, Point)> {
+    let distance = |node: NodeId| {
+        let apart = minus(three(body.state.position[node]), at);
+        dot(apart, apart)
+    };
+    let mesh = &body.topology.mesh;
+    let nodes = || mesh.nodes().map(|(node, _)| node);
+    let is_near = |&node: &NodeId| distance(node) <= radius * radius;
+    let mut near: Vec<NodeId> = nodes().filter(is_near).collect();
+    if near.is_empty() {
+        near.extend(nodes().min_by(|&a, &b| distance(a).total_cmp(&distance(b)).then(a.cmp(&b))));
+    }
+    let corner = |node: NodeId| {
+        let own = mesh.node(node);
+        let octant = own.group.trailing_zeros() as usize;
+        (voxel_around::<D>(own.at, octant), own.at)
+    };
+    near.into_iter().map(corner).collect()
+}

@@ -1,0 +1,219 @@
+//! Impulses of pins, springs and ropes.
+
+use super::Joint;
+use super::attached_anchor::AnchorState;
+use super::joint_anchor::{JointKind, Woken};
+use crate::contact::broad_phase::WAKE_SPEED;
+use crate::foundation::dim::Dim;
+use crate::math::vector::{cross, dot, length, minus, plus, scaled};
+use crate::rigid_body::RigidBodies;
+use crate::rigid_body::shape::Vector;
+use crate::soft_body::SoftBodies;
+
+/// Warm-starting factor of pins, the same as for contacts. Chains of pins with a heavy end swing more with
+/// other values.
+const WARM_START: f32 = 0.9;
+/// Share of the position error of pins and ropes that is corrected per substep, the same as for overlaps, and
+/// the maximum correction speed [m/s]. Twice the share is unstable.
+const DRAW: f32 = 0.2;
+const DRAW_SPEED: f32 = 2.0;
+/// A sleeper wakes if a pin or a rope is stretched by `WAKE_STRETCH` [m], or if a spring force differs by the
+/// share `WAKE_SHARE` from that at sleep. Smaller changes are not visible. It also wakes if the other anchor
+/// moves faster than `WAKE_SPEED`.
+const WAKE_STRETCH: f32 = 0.002;
+const WAKE_SHARE: f32 = 0.02;
+
+impl Joint {
+    /// Begins a substep with a warm start. Returns whether both anchors exist.
+    pub(super) fn start<D: Dim>(
+        &mut self,
+        bodies: &mut SoftBodies<D>,
+        rigids: &mut RigidBodies,
+        woken: &mut Woken,
+    ) -> bool {
+        let [Some(first), Some(second)] = self.grips(bodies, rigids) else {
+            return false;
+        };
+        let is_strained = self.is_strained(length(minus(first.at, second.at)));
+        for (own, other, anchor) in [(first, second, 0), (second, first, 1)] {
+            if own.is_asleep && (is_strained || length(other.velocity) > WAKE_SPEED) {
+                self.anchors[anchor].wake(bodies, woken);
+            }
+        }
+        self.impulse = match self.tie {
+            JointKind::Pin => scaled(self.impulse, WARM_START),
+            _ => [0.0; 3],
+        };
+        self.push(bodies, rigids, self.impulse);
+        true
+    }
+
+    /// Returns whether the joint is out of balance at a distance of its anchors [m].
+    fn is_strained(&self, distance: f32) -> bool {
+        match self.tie {
+            JointKind::Pin => distance > WAKE_STRETCH,
+            JointKind::Rope { length } => distance > length + WAKE_STRETCH,
+            JointKind::Spring {
+                stiffness, length, ..
+            } => {
+                let pull = stiffness * (distance - length).abs();
+                (pull - self.force).abs() > WAKE_SHARE * self.force + stiffness * WAKE_STRETCH
+            }
+        }
+    }
+
+    /// Applies one solver iteration; with `draws` it also corrects position errors.
+    pub(super) fn solve<D: Dim>(
+        &mut self,
+        bodies: &mut SoftBodies<D>,
+        rigids: &mut RigidBodies,
+        duration: f32,
+        draws: bool,
+    ) {
+        let [Some(first), Some(second)] = self.grips(bodies, rigids) else {
+            return;
+        };
+        let apart = minus(first.at, second.at);
+        let relative = minus(first.velocity, second.velocity);
+        let yields = [0, 1, 2].map(|row: usize| plus(first.yields[row], second.yields[row]));
+        let impulse = match self.tie {
+            JointKind::Pin => {
+                let draw = if draws {
+                    drawn(apart, duration)
+                } else {
+                    [0.0; 3]
+                };
+                solved::<D>(&yields, scaled(plus(relative, draw), -1.0))
+            }
+            JointKind::Spring {
+                stiffness,
+                damping,
+                length: rest,
+            } => match self.impulse == [0.0; 3] && draws {
+                true => spring(
+                    apart,
+                    relative,
+                    &yields,
+                    [stiffness, damping, rest],
+                    duration,
+                ),
+                false => [0.0; 3],
+            },
+            JointKind::Rope { length } => {
+                self.rope(apart, relative, &yields, length, duration, draws)
+            }
+        };
+        if crate::math::vector::is_finite(impulse) {
+            self.impulse = plus(self.impulse, impulse);
+            self.push(bodies, rigids, impulse);
+        }
+    }
+
+    /// Returns the impulse of a rope, which pulls and never pushes.
+    fn rope(
+        &self,
+        apart: Vector,
+        relative: Vector,
+        yields: &[Vector; 3],
+        most: f32,
+        duration: f32,
+        draws: bool,
+    ) -> Vector {
+        let Some((distance, way)) = direction(apart) else {
+            return [0.0; 3];
+        };
+        let gain = along(yields, way);
+        if gain <= 0.0 || !draws && distance < most {
+            return [0.0; 3];
+        }
+        let beyond = distance - most;
+        let wanted = match (draws, beyond > 0.0) {
+            (false, _) => 0.0,
+            (true, true) => -(DRAW * beyond / duration).min(DRAW_SPEED),
+            (true, false) => -beyond / duration,
+        };
+        let pulled = dot(self.impulse, way);
+        let change = (wanted - dot(relative, way)) / gain;
+        scaled(way, (pulled + change).min(0.0) - pulled)
+    }
+
+    /// Returns whether at least one attached body can move.
+    pub(super) fn yields<D: Dim>(&self, bodies: &SoftBodies<D>, rigids: &RigidBodies) -> bool {
+        let grips = self.grips(bodies, rigids).into_iter().flatten();
+        let mut ways = grips.flat_map(|grip| grip.yields);
+        ways.any(|way| way != [0.0; 3])
+    }
+
+    fn grips<D: Dim>(
+        &self,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+    ) -> [Option<AnchorState>; 2] {
+        self.anchors
+            .each_ref()
+            .map(|anchor| anchor.grip(bodies, rigids))
+    }
+
+    fn push<D: Dim>(&self, bodies: &mut SoftBodies<D>, rigids: &mut RigidBodies, impulse: Vector) {
+        self.anchors[0].push(bodies, rigids, impulse);
+        self.anchors[1].push(bodies, rigids, scaled(impulse, -1.0));
+    }
+}
+
+/// Returns the velocity at which a pin corrects its position error [m/s].
+fn drawn(apart: Vector, duration: f32) -> Vector {
+    let draw = scaled(apart, DRAW / duration);
+    let speed = length(draw);
+    match speed > DRAW_SPEED {
+        true => scaled(draw, DRAW_SPEED / speed),
+        false => draw,
+    }
+}
+
+/// Returns the impulse of an implicit spring over a substep. It solves m⁻¹ λ = −v − (k x + k h v' + c v') h
+/// for the end velocity v'.
+fn spring(
+    apart: Vector,
+    relative: Vector,
+    yields: &[Vector; 3],
+    [stiffness, damping, rest]: [f32; 3],
+    duration: f32,
+) -> Vector {
+    let Some((distance, way)) = direction(apart) else {
+        return [0.0; 3];
+    };
+    let softness = 1.0 / (duration * (damping + duration * stiffness));
+    let push = (distance - rest) * duration * stiffness * softness;
+    let under = along(yields, way) + softness;
+    scaled(way, -(dot(relative, way) + push) / under)
+}
+
+/// Returns the length and direction of a vector; `None` for a zero vector.
+fn direction(apart: Vector) -> Option<(f32, Vector)> {
+    let distance = length(apart);
+    (distance > 1e-6).then(|| (distance, scaled(apart, 1.0 / distance)))
+}
+
+/// Returns the inverse effective mass along a unit direction [1/kg].
+fn along(yields: &[Vector; 3], way: Vector) -> f32 {
+    dot(way, [0, 1, 2].map(|row: usize| dot(yields[row], way)))
+}
+
+/// Returns the impulse for a change of velocity; 0 if nothing can move.
+fn solved<D: Dim>(yields: &[Vector; 3], velocity: Vector) -> Vector {
+    let [x, y, mut z] = *yields;
+    // In 2D the third row and the third velocity are 0.
+    if D::N == 2 {
+        z = [0.0, 0.0, 1.0];
+    }
+    let under = dot(x, cross(y, z));
+    if under <= 0.0 {
+        return [0.0; 3];
+    }
+    // Columns of the inverse of a symmetric matrix.
+    let columns = [cross(y, z), cross(z, x), cross(x, y)];
+    let sum = (0..D::N).fold([0.0; 3], |sum, axis| {
+        plus(sum, scaled(columns[axis], velocity[axis]))
+    });
+    scaled(sum, 1.0 / under)
+}

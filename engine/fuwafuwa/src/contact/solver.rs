@@ -1,0 +1,428 @@
+//! Contact solver: non-penetration and Coulomb friction.
+//!
+//! Each contact is a solver row. Along its normal the two sides may not approach faster than their gap
+//! allows; tangentially they exchange friction within Coulomb's cone. The rows are solved by sequential
+//! impulses, once forwards and once backwards, with a warm start from the last substep. The many small
+//! substeps serve as the iterations [Macklin 2019]. Resolving an overlap adds no velocity: after the position
+//! update the same rows are solved again without the push-out velocity [Catto 2023].
+
+mod contact_row;
+mod contact_sides;
+mod escape_contact;
+mod rigid_contact_rows;
+mod solver_velocities;
+
+use crate::contact::broad_phase::{ContactSphere, MARGIN, Nearby, NodePairs, WAKE_SPEED};
+use crate::foundation::arena::{BodySlot, RigidSlot};
+use crate::foundation::dim::{Dim, inner};
+use crate::foundation::ids::{IndexVec, PieceId};
+use crate::foundation::threads;
+use crate::math::vector::{as_row, cross, minus, scaled, three};
+use crate::rigid_body::RigidBodies;
+use crate::rigid_body::layers::Layers;
+use crate::soft_body::element_forces::Row;
+use crate::soft_body::{SoftBodies, SoftBody};
+use contact_row::{AHEAD, CLOSE, Contact, is_close};
+use contact_sides::{FreeContact, HandContact, NodeContact, SphereContact};
+use escape_contact::EscapeContact;
+use rigid_contact_rows::{find_free, find_hands};
+use solver_velocities::Motion;
+use std::collections::BTreeSet;
+
+/// Cosine limit beyond which a crumb is behind a contact sphere of a surface. A smaller value would include
+/// crumbs that lie on the body. Beside a corner of a 3D block, in the hollow between four spheres, the cosine
+/// is 0.17; pressed in by a sixth of a voxel it is 0.3.
+const BEHIND: f32 = 0.3;
+/// Minimum length of a sphere's outward vector, as a share of its radius, for its direction to be used. At a
+/// flat face it is as long as the radius, so the limit is an element pressed to a fifth.
+const SHORTEST_WAY_OUT: f32 = 0.2;
+/// Gaps below which a sleeper wakes: between a node and a rigid body, in voxels, and between two spheres, in
+/// sums of their radii.
+const WAKING_NODE: f32 = 2.0 * CLOSE;
+const WAKING_SPHERE: f32 = CLOSE;
+
+/// Contacts of one substep.
+#[derive(Clone, Debug, Default)]
+pub struct Contacts {
+    nodes: Vec<NodeContact>,
+    spheres: Vec<SphereContact>,
+    exits: Vec<EscapeContact>,
+    hands: Vec<HandContact>,
+    free: Vec<FreeContact>,
+    motion: Motion,
+}
+
+/// Sleeping piece that was hit: body slot and piece number.
+pub type Hit = (BodySlot, PieceId);
+
+/// Sleepers that were hit in a substep, each once, in ascending order.
+#[derive(Clone, Debug, Default)]
+pub struct Hits {
+    pub pieces: Vec<Hit>,
+    pub rigids: Vec<RigidSlot>,
+}
+
+impl Contacts {
+    /// Finds the contacts of this substep among the nearby pairs. Returns the sleepers that were hit.
+    pub fn find<D: Dim>(
+        &mut self,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+        nearby: &mut Nearby,
+        duration: f32,
+    ) -> Hits {
+        let mut hits = Hits::default();
+        self.motion.clear(bodies);
+        self.find_nodes(bodies, rigids, &mut nearby.nodes, duration, &mut hits);
+        self.find_spheres(bodies, nearby, duration, &mut hits.pieces);
+        self.exits.clear();
+        let (spheres, motion) = (&nearby.spheres, &mut self.motion);
+        let exits = nearby.captives.list.iter();
+        let exits = exits
+            .filter_map(|captive| EscapeContact::new(captive, bodies, spheres, motion, duration));
+        self.exits.extend(exits);
+        find_hands(rigids, duration, &mut self.hands);
+        let woken = find_free::<D>(rigids, &nearby.rigids, duration, &mut self.free);
+        hits.rigids.extend(woken);
+        hits.settle();
+        hits
+    }
+
+    fn find_nodes<D: Dim>(
+        &mut self,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+        pairs: &mut NodePairs,
+        duration: f32,
+        hits: &mut Hits,
+    ) {
+        self.nodes.clear();
+        let travel = pairs.travel;
+        let shares = threads::chunks(&mut pairs.list);
+        let found = threads::map(shares, move |(first, pairs)| {
+            let (mut contacts, mut hits) = (Vec::new(), Hits::default());
+            for (pair, index) in pairs.iter_mut().zip(first..) {
+                let body = bodies.at(pair.body);
+                let rigid = rigids.at(pair.rigid);
+                let (node, moves) = (pair.node, rigid.moves());
+                // Sleeping nodes have contacts with moving rigid bodies only.
+                if body.state.inverse_mass[node] == 0.0 && !moves {
+                    pair.impulse.release();
+                    continue;
+                }
+                let (at, velocity) = (body.state.position[node], body.state.velocity[node]);
+                // Most nodes cannot reach a wall in this substep, in any direction.
+                let reachable = (pair.clear - travel).max(0.0) / (AHEAD * duration);
+                if !moves && inner::<D>(velocity, velocity) < reachable * reachable {
+                    continue;
+                }
+                let (gap, normal) = rigid.shape().distance(three(at));
+                let normal = as_row(normal);
+                let own = match moves {
+                    true => as_row(rigid.velocity_near(three(at))),
+                    false => [0.0; 4],
+                };
+                let relative = minus(velocity, own);
+                let size = body.topology.grid.voxel_size();
+                let approach = inner::<D>(relative, normal);
+                if !is_close(gap, approach, size, duration) {
+                    pair.impulse.release();
+                    // With a small margin for rounding.
+                    pair.clear = travel + gap - 1.1 * CLOSE * size;
+                    continue;
+                }
+                pair.clear = 0.0;
+                pair.impulse.speed = pair.impulse.speed.max(-approach);
+                let may_wake = moves || rigid.is_asleep();
+                if may_wake && gap < WAKING_NODE * size {
+                    let is_fast = |speed: Row| inner::<D>(speed, speed) > WAKE_SPEED * WAKE_SPEED;
+                    let wakes = rigid.follows_target() || moves && is_fast(own);
+                    if wakes && body.topology.pieces.sleeps(pair.node) {
+                        let piece = body.topology.pieces.of_node(pair.node);
+                        hits.pieces.push((pair.body, piece));
+                    }
+                    if rigid.is_asleep() && is_fast(velocity) {
+                        hits.rigids.push(pair.rigid);
+                    }
+                }
+                let inverse_mass = body.state.inverse_mass[node] + rigid.yields_near(three(at));
+                // For a dynamic rigid body, a sleeping node is a wall.
+                if body.state.inverse_mass[node] == 0.0 && !rigid.is_dynamic() {
+                    continue;
+                }
+                let friction = rigid.friction;
+                let contact = Contact::new(normal, gap, duration, 1.0 / inverse_mass, friction);
+                contacts.push((contact.known_as::<D>(index, &pair.impulse), &*pair));
+            }
+            (contacts, hits)
+        });
+        for (contacts, hit) in found {
+            hits.pieces.extend(hit.pieces);
+            hits.rigids.extend(hit.rigids);
+            self.nodes
+                .extend(contacts.into_iter().map(|(contact, pair)| NodeContact {
+                    contact,
+                    node: self.motion.row(pair.body, pair.node),
+                    mover: rigids.at(pair.rigid).moves().then(|| {
+                        let at = bodies.at(pair.body).state.position[pair.node];
+                        let lever = minus(three(at), rigids.at(pair.rigid).position());
+                        (pair.rigid, lever)
+                    }),
+                }));
+        }
+    }
+
+    fn find_spheres<D: Dim>(
+        &mut self,
+        bodies: &SoftBodies<D>,
+        nearby: &mut Nearby,
+        duration: f32,
+        hits: &mut Vec<Hit>,
+    ) {
+        self.spheres.clear();
+        let waking = WAKE_SPEED * duration;
+        let friction = |body: Option<&SoftBody<D>>| body.map_or(0.0, SoftBody::friction);
+        let frictions: &IndexVec<BodySlot, f32> = &bodies.slots().map(friction).collect();
+        let has_layers = bodies
+            .iter()
+            .any(|body| body.state.layers != Layers::default());
+        let layers = |sphere: &ContactSphere| bodies.at(sphere.body).state.layers;
+        let meet = |both: [&ContactSphere; 2]| layers(both[0]).meet(layers(both[1]));
+        let (all, captives) = (&nearby.spheres, &nearby.captives);
+        // A local slice: through the table, each pair would load the pointer again.
+        let centres = all.centres.as_slice();
+        let widths = bodies.iter().map(|body| body.topology.grid.voxel_size());
+        let widest = widths.fold(0.0, f32::max);
+        let shares = threads::chunks(&mut nearby.pairs.list);
+        let found = threads::map(shares, move |(first, pairs)| {
+            let (mut contacts, mut hits) = (Vec::new(), Vec::new());
+            for (pair, index) in pairs.iter_mut().zip(first..) {
+                let [a, b] = pair.spheres;
+                let apart = minus(centres[a.index()], centres[b.index()]);
+                let squared = inner::<D>(apart, apart);
+                let is_beyond = |touching: f32| {
+                    let furthest = (1.0 + MARGIN) * touching;
+                    squared > furthest * furthest
+                };
+                let both = pair.both(&all.list);
+                // Most pairs are too far apart, so the rest of their data is not read.
+                if is_beyond(widest) || is_beyond(both[0].radius + both[1].radius) {
+                    pair.met_in_front = false;
+                    pair.impulse.release();
+                    continue;
+                }
+                if has_layers && !meet(both) {
+                    pair.met_in_front = false;
+                    pair.impulse.release();
+                    continue;
+                }
+                let touching = both[0].radius + both[1].radius;
+                if captives.is_inside(pair.spheres, both) {
+                    // So that an escaped sphere is not pulled in again.
+                    pair.met_in_front = true;
+                    pair.impulse.release();
+                    continue;
+                }
+                let distance = squared.sqrt().max(1e-9);
+                let (mut normal, mut gap) = (scaled(apart, 1.0 / distance), distance - touching);
+                if gap < 0.0 {
+                    let behind = behind_surface(bodies, both, scaled(normal, distance));
+                    pair.met_in_front |= behind.is_none();
+                    if let Some((out, ahead)) = behind.filter(|_| pair.met_in_front) {
+                        (normal, gap) = (out, ahead - touching);
+                    }
+                }
+                let relative = minus(all.velocities[a], all.velocities[b]);
+                let approach = inner::<D>(relative, normal);
+                if !is_close(gap, approach, touching, duration) {
+                    pair.impulse.release();
+                    continue;
+                }
+                pair.impulse.speed = pair.impulse.speed.max(-approach);
+                let moved = all.moved[a].max(all.moved[b]);
+                if gap < WAKING_SPHERE * touching && moved > waking * waking {
+                    let sleepers = both.into_iter().filter(|sphere| sphere.asleep);
+                    hits.extend(sleepers.map(|sphere| (sphere.body, sphere.piece)));
+                }
+                let [first, second] = both.map(|sphere| sphere.inverse_mass(bodies));
+                if first + second == 0.0 {
+                    continue;
+                }
+                let inertia = 1.0 / (first + second);
+                let [first, second] = both.map(|sphere| frictions[sphere.body]);
+                let friction = 0.5 * (first + second);
+                let contact = Contact::new(normal, gap, duration, inertia, friction);
+                contacts.push((contact.known_as::<D>(index, &pair.impulse), both));
+            }
+            (contacts, hits)
+        });
+        for (contacts, hit) in found {
+            hits.extend(hit);
+            self.spheres
+                .extend(contacts.into_iter().map(|(contact, both)| SphereContact {
+                    contact,
+                    grips: both.map(|sphere| self.motion.grip::<D>(sphere)),
+                }));
+        }
+    }
+
+    /// Returns the dynamic rigid bodies that a moving kinematic or coupled body presses on.
+    pub fn handled(&self, rigids: &RigidBodies) -> BTreeSet<RigidSlot> {
+        let pressed = self
+            .free
+            .iter()
+            .filter(|row| row.contact.normal_impulse > 0.0);
+        let handled = pressed.filter(|row| rigids.at(row.both[1]).pushes());
+        handled.map(|row| row.both[0]).collect()
+    }
+
+    /// Solves the contacts on the velocities.
+    pub fn solve<D: Dim>(
+        &mut self,
+        bodies: &mut SoftBodies<D>,
+        rigids: &mut RigidBodies,
+        nearby: &mut Nearby,
+        duration: f32,
+    ) {
+        let motion = &mut self.motion;
+        motion.load(bodies);
+        for row in &self.nodes {
+            motion.push_node(row, rigids, row.contact.start(), duration);
+        }
+        for row in self
+            .spheres
+            .iter()
+            .filter(|row| row.contact.normal_impulse > 0.0)
+        {
+            motion.push_spheres::<D>(&row.grips, row.contact.start());
+        }
+        for row in &self.free {
+            row.start(rigids, duration);
+        }
+        // Solved once only: a sphere that is stuck inside must not pull its way out.
+        for exit in &self.exits {
+            exit.solve::<D>(motion);
+        }
+        for backwards in [false, true] {
+            for_each(&mut self.spheres, backwards, |row| {
+                let relative = motion.between::<D>(&row.grips);
+                if !row.contact.is_idle::<D>(relative) {
+                    let change = row.contact.solve::<D>(relative);
+                    motion.push_spheres::<D>(&row.grips, change);
+                }
+            });
+            for_each(&mut self.nodes, backwards, |row| {
+                let change = row.contact.solve::<D>(motion.of_node(row, rigids));
+                motion.push_node(row, rigids, change, duration);
+            });
+            for_each(&mut self.hands, backwards, |row| {
+                let [own, other] = row.both.map(|slot| as_row(rigids.at(slot).velocity()));
+                let change = row.contact.solve::<D>(minus(own, other));
+                rigids.at_mut(row.both[0]).push(three(change), duration);
+                let other = rigids.at_mut(row.both[1]);
+                other.push(three(scaled(change, -1.0)), duration);
+            });
+            for_each(&mut self.free, backwards, |row| {
+                row.solve::<D>(rigids, duration)
+            });
+        }
+        motion.store(bodies);
+        for NodeContact { contact, .. } in &self.nodes {
+            nearby.nodes.list[contact.pair as usize]
+                .impulse
+                .note(contact);
+        }
+        for SphereContact { contact, .. } in &self.spheres {
+            nearby.pairs.list[contact.pair as usize]
+                .impulse
+                .note(contact);
+        }
+        let passed = self.free.iter().filter_map(FreeContact::passed);
+        nearby.rigids.passed.extend(passed);
+        nearby
+            .rigids
+            .renew(self.free.iter().map(FreeContact::touch));
+    }
+
+    /// Removes, after the position update, the velocity that resolved overlaps.
+    pub fn relax<D: Dim>(
+        &mut self,
+        bodies: &mut SoftBodies<D>,
+        rigids: &mut RigidBodies,
+        duration: f32,
+    ) {
+        let motion = &mut self.motion;
+        motion.load(bodies);
+        for exit in &self.exits {
+            exit.relax::<D>(motion);
+        }
+        for row in &mut self.spheres {
+            if row.contact.was_pushed_out() {
+                let change = row.contact.relax::<D>(motion.between::<D>(&row.grips));
+                motion.push_spheres::<D>(&row.grips, change);
+            }
+        }
+        for row in &mut self.nodes {
+            if row.contact.was_pushed_out() {
+                let change = row.contact.relax::<D>(motion.of_node(row, rigids));
+                motion.push_node(row, rigids, change, duration);
+            }
+        }
+        for row in &mut self.free {
+            row.relax::<D>(rigids, duration);
+        }
+        motion.store(bodies);
+        for row in &self.nodes {
+            if let Some((mover, lever)) = row.mover {
+                let impulse = scaled(three(row.contact.start()), -1.0 / duration);
+                rigids.at_mut(mover).twist(cross(lever, impulse));
+            }
+        }
+    }
+}
+
+impl Hits {
+    /// Adds more hits.
+    pub fn add(&mut self, pieces: Vec<Hit>, rigids: Vec<RigidSlot>) {
+        if !pieces.is_empty() || !rigids.is_empty() {
+            self.pieces.extend(pieces);
+            self.rigids.extend(rigids);
+            self.settle();
+        }
+    }
+
+    fn settle(&mut self) {
+        self.pieces.sort_unstable();
+        self.pieces.dedup();
+        self.rigids.sort_unstable();
+        self.rigids.dedup();
+    }
+}
+
+/// If a crumb is behind a sphere of a surface, returns the outward normal, as it pushes the
+/// first sphere, and the negative distance of the crumb along it [m].
+fn behind_surface<D: Dim>(
+    bodies: &SoftBodies<D>,
+    [a, b]: [&ContactSphere; 2],
+    apart: Row,
+) -> Option<(Row, f32)> {
+    let (wall, sign) = match (a.is_crumb::<D>(), b.is_crumb::<D>()) {
+        (true, false) => (b, 1.0),
+        (false, true) => (a, -1.0),
+        _ => return None,
+    };
+    let out = wall.outward::<D>(&bodies.at(wall.body).state.position);
+    let length = inner::<D>(out, out).sqrt();
+    let normal = scaled(out, sign / length.max(1e-9));
+    let ahead = inner::<D>(apart, normal);
+    let is_behind = ahead < -BEHIND * inner::<D>(apart, apart).sqrt();
+    (is_behind && length > SHORTEST_WAY_OUT * wall.radius).then_some((normal, ahead))
+}
+
+fn for_each<T>(rows: &mut [T], backwards: bool, mut solve: impl FnMut(&mut T)) {
+    if backwards {
+        rows.iter_mut().rev().for_each(&mut solve);
+    } else {
+        rows.iter_mut().for_each(&mut solve);
+    }
+}

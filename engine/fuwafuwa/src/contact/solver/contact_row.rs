@@ -1,0 +1,149 @@
+//! A contact as a solver row.
+
+use crate::contact::broad_phase::Impulse;
+use crate::foundation::dim::{Dim, inner};
+use crate::math::vector::{minus, plus, scaled};
+use crate::soft_body::element_forces::Row;
+
+/// Warm-starting factor, applied to the impulses of the last substep. 1 is unstable, and with 0 piles never
+/// settle.
+const WARM_START: f32 = 0.9;
+/// Share of an overlap that is resolved per substep, and the maximum speed of it [m/s] [Catto 2023]. Larger
+/// values throw overlapping bodies apart; smaller ones let heaps sink into each other.
+const PUSH_OUT: f32 = 0.2;
+pub const PUSH_OUT_SPEED: f32 = 0.5;
+
+/// Gap [voxels] that a contact must be able to reach within `AHEAD` substeps in order to be active. The extra
+/// half substep allows for other contacts that make the gap close faster.
+pub const CLOSE: f32 = 0.05;
+pub const AHEAD: f32 = 1.5;
+
+/// Contact in one substep.
+#[derive(Copy, Clone, Debug)]
+pub struct Contact {
+    pub normal: Row,
+    /// Distance of the two sides [m], negative if they overlap.
+    pub gap: f32,
+    /// Lower limit of the normal velocity [m/s]; negative values allow an approach.
+    pub min_normal_velocity: f32,
+    /// Effective mass [kg].
+    pub inertia: f32,
+    pub friction: f32,
+    pub normal_impulse: f32,
+    pub friction_impulse: Row,
+    /// Index of its pair in the list.
+    pub pair: u32,
+}
+
+impl Contact {
+    #[inline(always)]
+    pub fn new(normal: Row, gap: f32, duration: f32, inertia: f32, friction: f32) -> Self {
+        let least = if gap > 0.0 {
+            -gap / duration
+        } else {
+            (-PUSH_OUT * gap / duration).min(PUSH_OUT_SPEED)
+        };
+        Self {
+            normal,
+            gap,
+            min_normal_velocity: least,
+            inertia,
+            friction,
+            normal_impulse: 0.0,
+            friction_impulse: [0.0; 4],
+            pair: 0,
+        }
+    }
+
+    /// Returns the contact with a pair index and a warm start from the pair's impulse.
+    #[inline(always)]
+    pub fn known_as<D: Dim>(mut self, pair: usize, impulse: &Impulse) -> Self {
+        self.pair = pair as u32;
+        if impulse.pressed > 0.0 {
+            self.normal_impulse = WARM_START * impulse.pressed;
+            let along = inner::<D>(impulse.dragged, self.normal);
+            let dragged = minus(impulse.dragged, scaled(self.normal, along));
+            self.friction_impulse = scaled(dragged, WARM_START);
+        }
+        self
+    }
+
+    /// Returns whether the contact has no normal impulse and requires none at this relative velocity. This is
+    /// true for most contacts that are merely close.
+    #[inline(always)]
+    pub fn is_idle<D: Dim>(&self, relative: Row) -> bool {
+        self.normal_impulse == 0.0 && inner::<D>(relative, self.normal) >= self.min_normal_velocity
+    }
+
+    /// Returns the warm-start impulse [N s].
+    pub fn start(&self) -> Row {
+        plus(
+            scaled(self.normal, self.normal_impulse),
+            self.friction_impulse,
+        )
+    }
+
+    /// Returns the change of impulse on the first side [N s], given its velocity relative to the second side
+    /// [m/s].
+    #[inline(always)]
+    pub fn solve<D: Dim>(&mut self, relative: Row) -> Row {
+        self.solve_across::<D>(relative, self.inertia)
+    }
+
+    /// Like [`Contact::solve`], with a separate tangential effective mass `across` [kg] for sides that
+    /// rotate.
+    #[inline(always)]
+    pub fn solve_across<D: Dim>(&mut self, relative: Row, across: f32) -> Row {
+        let approach = inner::<D>(relative, self.normal);
+        let pressed =
+            (self.normal_impulse + (self.min_normal_velocity - approach) * self.inertia).max(0.0);
+        let slip = minus(relative, scaled(self.normal, approach));
+        let mut dragged = minus(self.friction_impulse, scaled(slip, across));
+        let (held, wanted) = (self.friction * pressed, inner::<D>(dragged, dragged));
+        if wanted > held * held {
+            dragged = scaled(dragged, held / wanted.sqrt());
+        }
+        let press = scaled(self.normal, pressed - self.normal_impulse);
+        let change = plus(press, minus(dragged, self.friction_impulse));
+        self.normal_impulse = pressed;
+        self.friction_impulse = dragged;
+        change
+    }
+
+    /// Like [`Contact::solve`], along the normal only and without the push-out velocity.
+    #[inline(always)]
+    pub fn relax<D: Dim>(&mut self, relative: Row) -> Row {
+        let approach = inner::<D>(relative, self.normal);
+        let pressed = (self.normal_impulse - approach * self.inertia).max(0.0);
+        let change = scaled(self.normal, pressed - self.normal_impulse);
+        self.normal_impulse = pressed;
+        change
+    }
+
+    pub fn was_pushed_out(&self) -> bool {
+        self.gap < 0.0 && self.normal_impulse > 0.0
+    }
+}
+
+impl Impulse {
+    /// Clears the impulses after the two sides have separated.
+    #[inline(always)]
+    pub fn release(&mut self) {
+        // Most pairs never touched, and without normal impulse there is no friction.
+        if self.pressed > 0.0 {
+            (self.pressed, self.dragged) = (0.0, [0.0; 4]);
+        }
+    }
+
+    pub fn note(&mut self, contact: &Contact) {
+        self.pressed = contact.normal_impulse;
+        self.dragged = contact.friction_impulse;
+        self.total += contact.normal_impulse;
+    }
+}
+
+/// Returns whether a contact is active in this substep: the sides overlap or may do so within `AHEAD`
+/// substeps. Non-finite approach speeds are inactive, so that they cannot spread.
+pub fn is_close(gap: f32, approach: f32, size: f32, duration: f32) -> bool {
+    approach.is_finite() && gap + AHEAD * duration * approach.min(0.0) < CLOSE * size
+}

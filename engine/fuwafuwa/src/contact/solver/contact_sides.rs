@@ -1,0 +1,57 @@
+//! Contacts with the objects on their two sides.
+
+use super::contact_row::Contact;
+use crate::foundation::arena::RigidSlot;
+use crate::foundation::ids::id;
+use crate::rigid_body::shape::Vector;
+
+id! {
+    /// Row of a node among those of all bodies.
+    pub NodeRow
+}
+
+/// Contact between a node and a rigid body.
+#[derive(Copy, Clone, Debug)]
+pub struct NodeContact {
+    pub contact: Contact,
+    pub node: NodeRow,
+    /// Rigid body, if it moves, and the lever arm of the node from its position [m].
+    pub mover: Option<(RigidSlot, Vector)>,
+}
+
+/// Contact between two contact spheres.
+#[derive(Copy, Clone, Debug)]
+pub struct SphereContact {
+    pub contact: Contact,
+    pub grips: [SphereNodeRows; 2],
+}
+
+/// Rows of a sphere's corner nodes; only the first four in 2D.
+pub type SphereNodeRows = [NodeRow; 8];
+
+/// Contact point between a dynamic and any other rigid body.
+#[derive(Copy, Clone, Debug)]
+pub struct FreeContact {
+    pub contact: Contact,
+    /// The dynamic body and the other one.
+    pub both: [RigidSlot; 2],
+    /// Lever arms of the point from the position of each body [m].
+    pub levers: [Vector; 2],
+    /// Tangential effective mass [kg]: a lower bound over all tangents.
+    pub across: f32,
+    /// Position of the point [m], and the approach speed there [m/s].
+    pub at: Vector,
+    pub speed: f32,
+    /// Separation speed of a bounce [m/s].
+    pub bounce: f32,
+    /// Key of the corner or edge.
+    pub key: u32,
+}
+
+/// Contact of a kinematic or coupled rigid body with a fixed or another such body.
+#[derive(Copy, Clone, Debug)]
+pub struct HandContact {
+    pub contact: Contact,
+    /// The kinematic or coupled body and the other one.
+    pub both: [RigidSlot; 2],
+}

@@ -1,0 +1,69 @@
+//! Escape contacts: they guide a sphere embedded in another piece to the nearest way out.
+
+use super::contact_row::PUSH_OUT_SPEED;
+use super::contact_sides::SphereNodeRows;
+use super::solver_velocities::Motion;
+use crate::contact::broad_phase::{EmbeddedSphere, Spheres};
+use crate::foundation::dim::{Dim, inner};
+use crate::math::vector::{minus, plus, scaled};
+use crate::soft_body::SoftBodies;
+use crate::soft_body::element_forces::Row;
+
+/// Embedded sphere and its escape sphere in one substep.
+#[derive(Copy, Clone, Debug)]
+pub struct EscapeContact {
+    grips: [SphereNodeRows; 2],
+    /// Effective mass [kg].
+    inertia: f32,
+    /// Target velocity of the embedded sphere relative to its escape sphere [m/s].
+    velocity: Row,
+}
+
+impl EscapeContact {
+    /// Returns the escape contact that moves an embedded sphere to the front of its escape sphere; `None` if
+    /// neither can move.
+    pub fn new<D: Dim>(
+        captive: &EmbeddedSphere,
+        bodies: &SoftBodies<D>,
+        spheres: &Spheres,
+        motion: &mut Motion,
+        duration: f32,
+    ) -> Option<Self> {
+        let [a, b] = [captive.sphere, captive.exit];
+        let both = [&spheres.list[a], &spheres.list[b]];
+        let length = |way: Row| inner::<D>(way, way).sqrt().max(1e-9);
+        let out = both[1].outward::<D>(&bodies.at(both[1].body).state.position);
+        let ahead = (both[0].radius + both[1].radius) / length(out);
+        let goal = plus(spheres.centres[b], scaled(out, ahead));
+        let way = minus(goal, spheres.centres[a]);
+        let speed = PUSH_OUT_SPEED.min(length(way) / duration);
+        let [first, second] = both.map(|sphere| sphere.inverse_mass(bodies));
+        let inverse_mass = first + second;
+        // An embedded sphere that is too fast must not accelerate the other piece. The comparisons are false
+        // for NaN.
+        let relative = minus(spheres.velocities[a], spheres.velocities[b]);
+        let most = (both[0].radius + both[1].radius) / duration;
+        let squared = |row: Row| inner::<D>(row, row);
+        let is_way = squared(way) < f32::INFINITY && squared(relative) < most * most;
+        (is_way && inverse_mass > 0.0).then(|| Self {
+            grips: both.map(|sphere| motion.grip::<D>(sphere)),
+            inertia: 1.0 / inverse_mass,
+            velocity: scaled(way, speed / length(way)),
+        })
+    }
+
+    /// Applies the escape velocity.
+    pub fn solve<D: Dim>(&self, motion: &mut Motion) {
+        self.push::<D>(self.velocity, motion);
+    }
+
+    /// Removes, after the position update, the velocity of the escape.
+    pub fn relax<D: Dim>(&self, motion: &mut Motion) {
+        self.push::<D>([0.0; 4], motion);
+    }
+
+    fn push<D: Dim>(&self, velocity: Row, motion: &mut Motion) {
+        let change = minus(velocity, motion.between::<D>(&self.grips));
+        motion.push_spheres::<D>(&self.grips, scaled(change, self.inertia));
+    }
+}

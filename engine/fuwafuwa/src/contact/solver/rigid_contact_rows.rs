@@ -1,0 +1,238 @@
+//! Contacts between rigid bodies. Kinematic and coupled bodies touch each other and fixed bodies at one
+//! point; dynamic bodies use a manifold.
+
+use super::contact_row::{AHEAD, CLOSE, Contact, is_close};
+use super::contact_sides::{FreeContact, HandContact};
+use crate::contact::broad_phase::{Impulse, Passed, RigidTouch, RigidTouches, WAKE_SPEED};
+use crate::foundation::arena::RigidSlot;
+use crate::foundation::dim::{Dim, inner};
+use crate::math::vector::{across, as_row, length, minus, plus, scaled, three};
+use crate::rigid_body::shape::Vector;
+use crate::rigid_body::{MotionType, RigidBodies, RigidBody};
+use crate::soft_body::element_forces::Row;
+
+/// Approach speed below which contacts do not bounce [m/s], so that bodies can fall asleep. It is the speed
+/// of a fall by 13 mm, fifty times the gain from gravity in a substep.
+const BOUNCE_SPEED: f32 = 0.5;
+
+/// Finds the contacts of kinematic and coupled bodies with fixed bodies and with each other.
+pub fn find_hands(rigids: &RigidBodies, duration: f32, found: &mut Vec<HandContact>) {
+    found.clear();
+    let hands = rigids
+        .by_slot()
+        .filter(|(_, rigid)| rigid.follows_target() && !rigid.is_sensor);
+    for (own, hand) in hands {
+        let others = rigids
+            .by_slot()
+            .filter(|(_, rigid)| !rigid.is_dynamic() && hand.meets_rigid(rigid));
+        for (other, rigid) in others.filter(|&(at, rigid)| at < own || !rigid.follows_target()) {
+            let inverse_mass = hand.inverse_mass() + rigid.inverse_mass();
+            let relative = minus(as_row(hand.velocity()), as_row(rigid.velocity()));
+            if inverse_mass == 0.0 || !relative.iter().all(|k| k.is_finite()) {
+                continue;
+            }
+            let (gap, normal) = hand.shape().gap(rigid.shape());
+            // A gap that is not finite gives no contact.
+            if gap.is_nan() || gap >= hand.shape().inradius() {
+                continue;
+            }
+            let friction = match rigid.follows_target() {
+                true => 0.5 * (hand.friction + rigid.friction),
+                false => hand.friction,
+            };
+            let (normal, inertia) = (as_row(normal), 1.0 / inverse_mass);
+            found.push(HandContact {
+                contact: Contact::new(normal, gap, duration, inertia, friction),
+                both: [own, other],
+            });
+        }
+    }
+}
+
+/// Finds the contacts of dynamic bodies with all rigid bodies. Returns the sleepers that were hit, possibly
+/// repeated.
+pub fn find_free<D: Dim>(
+    rigids: &RigidBodies,
+    known: &RigidTouches,
+    duration: f32,
+    found: &mut Vec<FreeContact>,
+) -> Vec<RigidSlot> {
+    found.clear();
+    let mut hits = Vec::new();
+    if !rigids.iter().any(RigidBody::is_dynamic) {
+        return hits;
+    }
+    let boxes = rigids.by_slot().map(|(slot, rigid)| {
+        let [low, high] = rigid.shape().bounds();
+        let margin = margin(rigid, duration);
+        let by = [margin; 3];
+        (slot, rigid, [minus(low, by), plus(high, by)])
+    });
+    let boxes: Vec<(RigidSlot, &RigidBody, [Vector; 2])> = boxes.collect();
+    for &(own, rigid, [low, high]) in boxes.iter().filter(|(_, rigid, _)| rigid.is_dynamic()) {
+        for &(other, against, [others_low, others_high]) in &boxes {
+            let is_once = other < own || !against.is_dynamic();
+            let is_apart = (0..D::N)
+                .any(|axis| low[axis] > others_high[axis] || high[axis] < others_low[axis]);
+            let is_idle = !rigid.moves() && !against.moves();
+            if !is_once || is_apart || other == own || is_idle || !rigid.meets_rigid(against) {
+                continue;
+            }
+            let both = [own, other];
+            let margin = margin(rigid, duration) + margin_of_other(against, duration);
+            touch::<D>(
+                both,
+                [rigid, against],
+                margin,
+                known,
+                duration,
+                found,
+                &mut hits,
+            );
+        }
+    }
+    hits
+}
+
+/// Returns the distance at which a contact may matter within a substep [m].
+fn margin(rigid: &RigidBody, duration: f32) -> f32 {
+    CLOSE * rigid.shape().inradius().min(1.0) + margin_of_other(rigid, duration)
+}
+
+fn margin_of_other(rigid: &RigidBody, duration: f32) -> f32 {
+    AHEAD * duration * rigid.top_speed()
+}
+
+/// Finds the contacts between two bodies.
+fn touch<D: Dim>(
+    slots: [RigidSlot; 2],
+    both: [&RigidBody; 2],
+    margin: f32,
+    known: &RigidTouches,
+    duration: f32,
+    found: &mut Vec<FreeContact>,
+    hits: &mut Vec<RigidSlot>,
+) {
+    let manifold = both[0].shape().manifold(both[1].shape(), margin);
+    let size = both[0].shape().inradius().min(1.0);
+    let friction = match both[1].motion_type {
+        MotionType::Fixed => both[1].friction,
+        _ => 0.5 * (both[0].friction + both[1].friction),
+    };
+    let restitution = both[0].restitution.max(both[1].restitution);
+    let normal = as_row(manifold.normal);
+    for point in &manifold.points {
+        let levers = both.map(|rigid| minus(point.at, rigid.position()));
+        let [own, other] = [0, 1].map(|k: usize| both[k].velocity_at(levers[k]));
+        let relative = minus(as_row(own), as_row(other));
+        let approach = inner::<D>(relative, normal);
+        if !is_close(point.gap, approach, size, duration) {
+            continue;
+        }
+        let speed = length(own).max(length(other));
+        if point.gap < CLOSE * size && (speed > WAKE_SPEED || both[1].pushes()) {
+            let sleepers = [0, 1].into_iter().filter(|&k: &usize| both[k].is_asleep());
+            hits.extend(sleepers.map(|k| slots[k]));
+        }
+        let yields = |way: Vector| {
+            let each = [0, 1].map(|k: usize| both[k].yields(levers[k], way));
+            each[0] + each[1]
+        };
+        let along = yields(manifold.normal);
+        if along <= 0.0 {
+            continue;
+        }
+        let tangents = tangents::<D>(manifold.normal);
+        let across: f32 = tangents[..D::N - 1].iter().copied().map(yields).sum();
+        let impulse = known.known(slots, point.key);
+        let mut contact = Contact::new(normal, point.gap, duration, 1.0 / along, friction);
+        contact = contact.known_as::<D>(0, &impulse);
+        let is_new = impulse.pressed == 0.0 && approach < -BOUNCE_SPEED;
+        let bounce = if is_new { -restitution * approach } else { 0.0 };
+        if bounce > 0.0 {
+            contact.min_normal_velocity = contact.min_normal_velocity.max(bounce);
+        }
+        found.push(FreeContact {
+            contact,
+            both: slots,
+            levers,
+            across: 1.0 / across,
+            at: point.at,
+            speed: -approach,
+            bounce,
+            key: point.key,
+        });
+    }
+}
+
+/// Returns two unit tangents of a normal; in 2D only the first one counts.
+fn tangents<D: Dim>(normal: Vector) -> [Vector; 2] {
+    if D::N == 2 {
+        return [[normal[1], -normal[0], 0.0], [0.0; 3]];
+    }
+    across(normal)
+}
+
+impl FreeContact {
+    /// Returns the impulse at the contact point, to be stored for the next substep.
+    pub fn touch(&self) -> RigidTouch {
+        let mut impulse = Impulse::default();
+        impulse.note(&self.contact);
+        RigidTouch {
+            both: self.both,
+            key: self.key,
+            impulse,
+        }
+    }
+
+    /// Returns the contact's part of the events, if it pressed in this substep.
+    pub fn passed(&self) -> Option<Passed> {
+        let passed = Passed {
+            both: self.both,
+            impulse: self.contact.normal_impulse,
+            speed: self.speed,
+            at: self.at,
+            normal: three(self.contact.normal),
+        };
+        (passed.impulse > 0.0).then_some(passed)
+    }
+
+    /// Applies the warm-start impulse.
+    pub fn start(&self, rigids: &mut RigidBodies, duration: f32) {
+        self.push(rigids, self.contact.start(), duration);
+    }
+
+    pub fn solve<D: Dim>(&mut self, rigids: &mut RigidBodies, duration: f32) {
+        let relative = self.relative(rigids);
+        let change = self.contact.solve_across::<D>(relative, self.across);
+        self.push(rigids, change, duration);
+    }
+
+    /// Removes, after the position update, the velocity that resolved an overlap, but keeps that of a bounce.
+    pub fn relax<D: Dim>(&mut self, rigids: &mut RigidBodies, duration: f32) {
+        if self.contact.was_pushed_out() {
+            let kept = scaled(self.contact.normal, self.bounce);
+            let relative = minus(self.relative(rigids), kept);
+            let change = self.contact.relax::<D>(relative);
+            self.push(rigids, change, duration);
+        }
+    }
+
+    /// Returns the velocity of the first body relative to the second at the contact point [m/s].
+    fn relative(&self, rigids: &RigidBodies) -> Row {
+        let [own, other] =
+            [0, 1].map(|k: usize| rigids.at(self.both[k]).velocity_at(self.levers[k]));
+        as_row(minus(own, other))
+    }
+
+    fn push(&self, rigids: &mut RigidBodies, impulse: Row, duration: f32) {
+        let impulse = three(impulse);
+        rigids
+            .at_mut(self.both[0])
+            .push_at(impulse, self.levers[0], duration);
+        let back = scaled(impulse, -1.0);
+        rigids
+            .at_mut(self.both[1])
+            .push_at(back, self.levers[1], duration);
+    }
+}

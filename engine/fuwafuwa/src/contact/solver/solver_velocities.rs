@@ -1,0 +1,172 @@
+//! Contiguous node velocities for the contact solver.
+
+use super::contact_sides::{NodeContact, NodeRow, SphereNodeRows};
+use crate::contact::broad_phase::{ContactSphere, mean};
+use crate::foundation::arena::{BodySlot, RigidSlot};
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{Id, IndexVec, NodeId};
+use crate::math::vector::{as_row, minus, plus, scaled, three};
+use crate::rigid_body::RigidBodies;
+use crate::rigid_body::shape::Vector;
+use crate::soft_body::SoftBodies;
+use crate::soft_body::element_forces::Row;
+
+/// Number of nodes copied together: a larger block copies more unused nodes, a smaller one is tested more
+/// often.
+const STRETCH: usize = 16;
+
+/// Velocities of the nodes in contact [m/s], with the inverse mass [1/kg] as the fourth component, so that an
+/// impulse reads one row.
+#[derive(Clone, Debug, Default)]
+pub struct Motion {
+    /// Rows; unspecified where no contact uses them.
+    rows: IndexVec<NodeRow, Row>,
+    /// Row of the first node of each body, at the start of a block.
+    first: IndexVec<BodySlot, NodeRow>,
+    /// Whether any node of a block is in contact; in a large body few are.
+    is_touched: Vec<bool>,
+}
+
+impl Motion {
+    /// Prepares the rows, none of them in contact.
+    pub fn clear<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
+        self.first.clear();
+        let mut count = 0;
+        for body in bodies.slots() {
+            self.first.push(NodeRow::of(count));
+            let nodes = body.map_or(0, |body| body.state.velocity.len());
+            count += nodes.next_multiple_of(STRETCH);
+        }
+        self.rows.resize(count, [0.0; 4]);
+        self.is_touched.clear();
+        self.is_touched.resize(count / STRETCH, false);
+    }
+
+    /// Returns the row of a node and marks it as in contact.
+    #[inline(always)]
+    pub fn row(&mut self, body: BodySlot, node: NodeId) -> NodeRow {
+        let row = row_of(self.first[body], node);
+        self.is_touched[row.index() / STRETCH] = true;
+        row
+    }
+
+    /// Returns the rows of a sphere's corner nodes and marks them as in contact.
+    #[inline(always)]
+    pub fn grip<D: Dim>(&mut self, sphere: &ContactSphere) -> SphereNodeRows {
+        let first = self.first[sphere.body];
+        let grip = sphere.nodes.map(|node| row_of(first, node));
+        for row in &grip[..D::CORNERS] {
+            self.is_touched[row.index() / STRETCH] = true;
+        }
+        grip
+    }
+
+    /// Copies the velocities from the bodies.
+    pub fn load<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
+        for (slot, body) in bodies.by_slot() {
+            let first = self.first[slot].index();
+            let nodes = body.state.velocity.chunks(STRETCH);
+            let nodes = nodes.zip(body.state.inverse_mass.chunks(STRETCH));
+            let own = self.rows.as_mut_slice()[first..]
+                .chunks_mut(STRETCH)
+                .zip(nodes);
+            let touched = &self.is_touched[first / STRETCH..];
+            for ((rows, (velocities, inverse_mass)), _) in own.zip(touched).filter(|(_, is)| **is) {
+                for (row, (velocity, &inverse_mass)) in
+                    rows.iter_mut().zip(velocities.iter().zip(inverse_mass))
+                {
+                    *row = with_fourth(*velocity, inverse_mass);
+                }
+            }
+        }
+    }
+
+    /// Copies the velocities back to the bodies.
+    pub fn store<D: Dim>(&self, bodies: &mut SoftBodies<D>) {
+        for (slot, body) in bodies.by_slot_mut() {
+            let first = self.first[slot].index();
+            let rows = self.rows.as_slice()[first..].chunks(STRETCH);
+            let own = rows.zip(body.state.velocity.chunks_mut(STRETCH));
+            let touched = &self.is_touched[first / STRETCH..];
+            for ((rows, velocities), _) in own.zip(touched).filter(|(_, is)| **is) {
+                for (row, velocity) in rows.iter().zip(velocities) {
+                    *velocity = with_fourth(*row, 0.0);
+                }
+            }
+        }
+    }
+
+    /// Returns the velocity of the first sphere relative to the second [m/s].
+    #[inline(always)]
+    pub fn between<D: Dim>(&self, grips: &[SphereNodeRows; 2]) -> Row {
+        let [first, second] = grips.each_ref().map(|grip| mean::<D, _>(&self.rows, grip));
+        with_fourth(minus(first, second), 0.0)
+    }
+
+    /// Applies an impulse to the first sphere and its opposite to the second.
+    #[inline(always)]
+    pub fn push_spheres<D: Dim>(&mut self, grips: &[SphereNodeRows; 2], impulse: Row) {
+        let share = scaled(impulse, 1.0 / D::CORNERS as f32);
+        for (grip, share) in [(&grips[0], share), (&grips[1], scaled(share, -1.0))] {
+            for &node in &grip[..D::CORNERS] {
+                let row = &mut self.rows[node];
+                *row = plus(*row, scaled(share, row[3]));
+            }
+        }
+    }
+
+    /// Returns the velocity of a node relative to the rigid body that it touches [m/s].
+    #[inline(always)]
+    pub fn of_node(&self, row: &NodeContact, rigids: &RigidBodies) -> Row {
+        let own = self.rows[row.node];
+        let other = row.mover.map_or([0.0; 4], |mover| velocity(mover, rigids));
+        with_fourth(minus(own, other), 0.0)
+    }
+
+    /// Applies an impulse to a node and its opposite to a moving rigid body.
+    #[inline(always)]
+    pub fn push_node(
+        &mut self,
+        row: &NodeContact,
+        rigids: &mut RigidBodies,
+        impulse: Row,
+        duration: f32,
+    ) {
+        let own = &mut self.rows[row.node];
+        *own = plus(*own, scaled(impulse, own[3]));
+        if let Some(mover) = row.mover {
+            push(mover, rigids, scaled(impulse, -1.0), duration);
+        }
+    }
+}
+
+/// Returns the velocity of a rigid body at a lever arm [m/s]. Not inlined, because it is rare and would slow
+/// down the other contacts.
+#[inline(never)]
+fn velocity((mover, lever): (RigidSlot, Vector), rigids: &RigidBodies) -> Row {
+    as_row(rigids.at(mover).velocity_at(lever))
+}
+
+/// Applies an impulse to a rigid body at a lever arm.
+#[inline(never)]
+fn push(
+    (mover, lever): (RigidSlot, Vector),
+    rigids: &mut RigidBodies,
+    impulse: Row,
+    duration: f32,
+) {
+    rigids
+        .at_mut(mover)
+        .push_at(three(impulse), lever, duration);
+}
+
+/// Returns the row of a node of a body, given the row of the first node.
+#[inline(always)]
+fn row_of(first: NodeRow, node: NodeId) -> NodeRow {
+    NodeRow(first.0 + node.0)
+}
+
+#[inline(always)]
+fn with_fourth(row: Row, fourth: f32) -> Row {
+    [row[0], row[1], row[2], fourth]
+}

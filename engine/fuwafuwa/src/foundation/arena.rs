@@ -1,0 +1,350 @@
+//! Generational arenas and their handles. An item keeps its slot while others are removed, and a handle to a
+//! removed item is detected as stale.
+
+use crate::foundation::ids::{Id, IndexVec, id};
+use std::fmt;
+
+/// Generational handle into an [`Arena`]: a slot, and the number of items that have left the slot before.
+pub trait Handle: Copy + Ord + fmt::Debug + sealed::Sealed {
+    /// Name of the item type, for error texts.
+    const KIND: &'static str;
+
+    #[doc(hidden)]
+    type Slot: Id;
+
+    #[doc(hidden)]
+    fn new(slot: Self::Slot, generation: u32) -> Self;
+
+    #[doc(hidden)]
+    fn parts(self) -> (Self::Slot, u32);
+}
+
+mod sealed {
+    /// Restricts [`Handle`](super::Handle) to the types of this module.
+    pub trait Sealed {}
+}
+
+macro_rules! handle {
+    ($(#[$doc:meta])* $name:ident, $kind:literal, $slot:ident) => {
+        $(#[$doc])*
+        #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        pub struct $name {
+            slot: $slot,
+            generation: u32,
+        }
+
+        impl $name {
+            /// Index of the slot in the arena.
+            #[allow(dead_code)] // unused for joints and knives
+            pub(crate) fn slot(self) -> $slot {
+                self.slot
+            }
+        }
+
+        impl sealed::Sealed for $name {}
+
+        impl Handle for $name {
+            const KIND: &'static str = $kind;
+            type Slot = $slot;
+
+            fn new(slot: $slot, generation: u32) -> Self {
+                Self { slot, generation }
+            }
+
+            fn parts(self) -> ($slot, u32) {
+                (self.slot, self.generation)
+            }
+        }
+    };
+}
+
+id! {
+    /// Slot of a body in a world; reused after the body is removed.
+    #[doc(hidden)]
+    pub BodySlot
+}
+id! {
+    /// Slot of a rigid body in a world; reused after the rigid body is removed.
+    #[doc(hidden)]
+    pub RigidSlot
+}
+
+id! {
+    /// Slot of a joint in a world; reused after the joint is removed.
+    #[doc(hidden)]
+    pub JointSlot
+}
+
+id! {
+    /// Slot of a knife in a world; reused after the knife is removed.
+    #[doc(hidden)]
+    pub KnifeSlot
+}
+
+impl BodySlot {
+    /// Slot of a body that is in no world.
+    pub(crate) const NONE: Self = Self(u32::MAX);
+}
+
+handle! {
+    /// Handle of a soft body in a [`World`](crate::World). Adding or removing other bodies does not change
+    /// it.
+    SoftBodyHandle, "body", BodySlot
+}
+handle! {
+    /// Handle of a rigid body in a [`World`](crate::World). Adding or removing other rigid bodies does not
+    /// change it.
+    RigidBodyHandle, "rigid body", RigidSlot
+}
+
+handle! {
+    /// Handle of a joint in a [`World`](crate::World). Adding or removing other joints does not change it.
+    JointHandle, "joint", JointSlot
+}
+
+handle! {
+    /// Handle of a knife in a [`World`](crate::World). Adding or removing other knives does not change it.
+    KnifeHandle, "knife", KnifeSlot
+}
+
+/// Error for a stale handle: the item was removed, or was never in this world. A handle from another world is
+/// not always detected, because the same slot and generation may be in use in both.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Gone {
+    /// Kind of the item, such as "body" or "joint".
+    pub kind: &'static str,
+    /// Slot of the handle.
+    pub slot: u32,
+}
+
+impl fmt::Display for Gone {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, slot } = self;
+        write!(f, "stale {kind} handle: slot {slot} was removed or reused")
+    }
+}
+
+impl std::error::Error for Gone {}
+
+/// Generational arena: items by handle, iterated in the order of their slots.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound = "T: serde::Serialize + for<'a> serde::Deserialize<'a>")
+)]
+pub struct Arena<K: Handle, T> {
+    slots: IndexVec<K::Slot, Slot<T>>,
+}
+
+/// Slot of an [`Arena`]: the number of items that have left it, and the present item.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Slot<T> {
+    generation: u32,
+    thing: Option<T>,
+}
+
+impl<K: Handle, T> Default for Arena<K, T> {
+    fn default() -> Self {
+        let slots = IndexVec::default();
+        Self { slots }
+    }
+}
+
+impl<K: Handle, T> Arena<K, T> {
+    /// Returns the item of a handle.
+    ///
+    /// # Errors
+    /// [`Gone`] if the handle is stale.
+    pub fn get(&self, id: K) -> Result<&T, Gone> {
+        let (own, generation) = id.parts();
+        let slot = self.slots.get(own.index());
+        let slot = slot.filter(|slot| slot.generation == generation);
+        slot.and_then(|slot| slot.thing.as_ref())
+            .ok_or(gone::<K>(own))
+    }
+
+    /// Returns the item of a handle, mutably; see [`Arena::get`].
+    pub(crate) fn get_mut(&mut self, id: K) -> Result<&mut T, Gone> {
+        let (own, generation) = id.parts();
+        let slot = self.slots.get_mut(own.index());
+        let slot = slot.filter(|slot| slot.generation == generation);
+        slot.and_then(|slot| slot.thing.as_mut())
+            .ok_or(gone::<K>(own))
+    }
+
+    /// Iterates over the items in the order of their slots.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &T> + Clone {
+        self.slots.iter().filter_map(|slot| slot.thing.as_ref())
+    }
+
+    /// Iterates over handles and items in the order of their slots.
+    pub fn entries(&self) -> impl DoubleEndedIterator<Item = (K, &T)> + Clone {
+        self.by_slot().map(|(slot, thing)| (self.id(slot), thing))
+    }
+
+    /// Iterates over the handles in the order of their slots.
+    pub fn ids(&self) -> impl Iterator<Item = K> {
+        self.by_slot().map(|(slot, _)| self.id(slot))
+    }
+
+    /// Returns the item in the lowest occupied slot.
+    pub fn first(&self) -> Option<&T> {
+        self.iter().next()
+    }
+
+    /// Returns the number of items in lower slots, or `None` if the handle is stale.
+    pub fn rank(&self, id: K) -> Option<usize> {
+        self.ids().position(|other| other == id)
+    }
+
+    /// Returns the number of items.
+    pub fn len(&self) -> usize {
+        self.iter().count()
+    }
+
+    /// Returns whether the arena has no items.
+    pub fn is_empty(&self) -> bool {
+        self.first().is_none()
+    }
+
+    /// Inserts an item into the first free slot.
+    pub(crate) fn insert(&mut self, thing: T) -> K {
+        let free = self.slots.iter().position(|slot| slot.thing.is_none());
+        let own = free.map_or(self.slots.next_id(), K::Slot::of);
+        if free.is_none() {
+            self.slots.push(Slot {
+                generation: 0,
+                thing: None,
+            });
+        }
+        self.slots[own].thing = Some(thing);
+        self.id(own)
+    }
+
+    /// Removes an item; the others keep their slots.
+    pub(crate) fn remove(&mut self, id: K) -> Result<T, Gone> {
+        let (own, _) = id.parts();
+        self.get(id)?;
+        let slot = &mut self.slots[own];
+        slot.generation = slot.generation.wrapping_add(1);
+        slot.thing.take().ok_or(gone::<K>(own))
+    }
+
+    /// Returns the number of slots, free ones included.
+    pub(crate) fn slot_count(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// Iterates over all slots; free ones give `None`.
+    pub(crate) fn slots(&self) -> impl Iterator<Item = Option<&T>> {
+        self.slots.iter().map(|slot| slot.thing.as_ref())
+    }
+
+    /// Iterates over occupied slots and their items.
+    pub(crate) fn by_slot(&self) -> impl DoubleEndedIterator<Item = (K::Slot, &T)> + Clone {
+        let slots = self.slots.entries();
+        slots.filter_map(|(own, slot)| Some((own, slot.thing.as_ref()?)))
+    }
+
+    /// Iterates over occupied slots and their items, mutably.
+    pub(crate) fn by_slot_mut(&mut self) -> impl Iterator<Item = (K::Slot, &mut T)> {
+        let slots = self.slots.entries_mut();
+        slots.filter_map(|(own, slot)| Some((own, slot.thing.as_mut()?)))
+    }
+
+    /// Iterates over handles and items, mutably.
+    pub(crate) fn entries_mut(&mut self) -> impl Iterator<Item = (K, &mut T)> {
+        let slots = self.slots.entries_mut();
+        slots.filter_map(|(own, slot)| {
+            let id = K::new(own, slot.generation);
+            Some((id, slot.thing.as_mut()?))
+        })
+    }
+
+    /// Iterates over the items, mutably.
+    pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        self.slots.iter_mut().filter_map(|slot| slot.thing.as_mut())
+    }
+
+    /// Returns the item in a slot, or `None` if the slot is free.
+    pub(crate) fn find(&self, slot: K::Slot) -> Option<&T> {
+        self.slots.get(slot.index())?.thing.as_ref()
+    }
+
+    /// Returns the item in an occupied slot.
+    #[inline(always)]
+    pub(crate) fn at(&self, slot: K::Slot) -> &T {
+        let thing = self.slots[slot].thing.as_ref();
+        thing.expect("internal slot lists contain occupied slots only")
+    }
+
+    /// Returns the item in an occupied slot, mutably.
+    #[inline(always)]
+    pub(crate) fn at_mut(&mut self, slot: K::Slot) -> &mut T {
+        let thing = self.slots[slot].thing.as_mut();
+        thing.expect("internal slot lists contain occupied slots only")
+    }
+
+    /// Returns the handle of the item in a slot.
+    pub(crate) fn id(&self, slot: K::Slot) -> K {
+        K::new(slot, self.slots[slot].generation)
+    }
+}
+
+fn gone<K: Handle>(slot: K::Slot) -> Gone {
+    Gone {
+        kind: K::KIND,
+        slot: slot.index() as u32,
+    }
+}
+
+impl<'a, K: Handle, T> IntoIterator for &'a Arena<K, T> {
+    type Item = &'a T;
+    type IntoIter = Box<dyn Iterator<Item = &'a T> + 'a>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        Box::new(self.iter())
+    }
+}
+
+impl<K: Handle, T> std::ops::Index<K> for Arena<K, T> {
+    type Output = T;
+
+    /// Returns the item of a handle.
+    ///
+    /// # Panics
+    /// If the handle is stale. [`Arena::get`] returns an error instead.
+    fn index(&self, id: K) -> &T {
+        self.get(id).unwrap_or_else(|gone| panic!("{gone}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn removal_keeps_other_slots_and_makes_the_handle_stale() {
+        let mut names = Arena::<SoftBodyHandle, &str>::default();
+        let [ball, ring, heart] = ["ball", "ring", "heart"].map(|name| names.insert(name));
+        assert_eq!(names.remove(ring), Ok("ring"));
+        assert_eq!(names[heart], "heart");
+        let cube = names.insert("cube");
+        assert_eq!(
+            names.iter().copied().collect::<Vec<_>>(),
+            ["ball", "cube", "heart"]
+        );
+        assert_ne!(cube, ring);
+        let gone = names.get(ring).unwrap_err();
+        assert_eq!(
+            gone.to_string(),
+            "stale body handle: slot 1 was removed or reused"
+        );
+        assert_eq!(names.remove(ring), Err(gone));
+        let all: Vec<SoftBodyHandle> = names.entries().map(|(id, _)| id).collect();
+        assert_eq!(all, [ball, cube, heart]);
+    }
+}

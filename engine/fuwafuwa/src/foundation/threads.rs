@@ -1,0 +1,103 @@
+//! Work distribution over threads, with the feature `parallel` and the thread pool of the caller. Chunks do
+//! not write what another chunk reads or writes, and their results are returned in order. So the result is
+//! bitwise identical for any number of threads.
+
+use crate::foundation::ids::NodeId;
+
+/// Number of items in a chunk. With fewer, the handover takes longer than the work. Unit tests use small
+/// bodies, and should still cover several chunks.
+pub const CHUNK_SIZE: usize = if cfg!(test) { 32 } else { 2048 };
+
+/// Smallest number of chunks that are processed on several threads. If other programs use the machine, each
+/// synchronisation of threads can take as long as a tick, and small bodies gain nothing. The nodes of a ball
+/// of 40 voxels across fill this many chunks.
+#[cfg(feature = "parallel")]
+const MIN_PARALLEL_CHUNKS: usize = if cfg!(test) { 2 } else { 8 };
+
+/// Processes each chunk; returns the results in order.
+pub fn map<T: Send, R: Send>(
+    shares: impl Iterator<Item = T>,
+    work: impl Fn(T) -> R + Sync,
+) -> Vec<R> {
+    #[cfg(feature = "parallel")]
+    let shares = {
+        use rayon::prelude::*;
+        let shares: Vec<T> = shares.collect();
+        if shares.len() >= MIN_PARALLEL_CHUNKS && rayon::current_num_threads() > 1 {
+            return shares.into_par_iter().map(&work).collect();
+        }
+        shares.into_iter()
+    };
+    shares.map(work).collect()
+}
+
+/// Splits a list into chunks, each with the index of its first item.
+pub fn chunks<T>(list: &mut [T]) -> impl Iterator<Item = (usize, &mut [T])> {
+    let firsts = (0..).step_by(CHUNK_SIZE);
+    firsts.zip(list.chunks_mut(CHUNK_SIZE))
+}
+
+/// Some nodes, and their rows in several lists indexed by node id.
+pub struct RowChunk<'a, T, const N: usize> {
+    /// Nodes, ascending.
+    pub nodes: &'a [NodeId],
+    /// Id of the first row in `lists`.
+    pub first: usize,
+    /// Rows of all ids from `first` to the last node.
+    pub lists: [&'a mut [T]; N],
+}
+
+/// Splits nodes with ascending ids, and their rows, into chunks.
+pub fn rows<'a, T, const N: usize>(
+    nodes: &'a [NodeId],
+    mut lists: [&'a mut [T]; N],
+) -> impl Iterator<Item = RowChunk<'a, T, N>> {
+    let mut first = 0;
+    nodes.chunks(CHUNK_SIZE).map(move |nodes| {
+        let end = nodes[nodes.len() - 1].index() + 1;
+        let lists = lists.each_mut().map(|list| {
+            let (own, others) = std::mem::take(list).split_at_mut(end - first);
+            *list = others;
+            own
+        });
+        let share = RowChunk {
+            nodes,
+            first,
+            lists,
+        };
+        first = end;
+        share
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_assign_every_node_to_one_chunk() {
+        let nodes = (0..5 * CHUNK_SIZE as u32).map(|k| NodeId(3 * k + k % 2));
+        let nodes: Vec<NodeId> = nodes.collect();
+        let count = 20 * CHUNK_SIZE;
+        let (mut a, mut b) = (vec![[0.0; 4]; count], vec![[0.0; 4]; count]);
+        let shares = rows(&nodes, [&mut a, &mut b]);
+        let counts = map(shares, |share| {
+            let RowChunk {
+                nodes,
+                first,
+                lists: [a, b],
+            } = share;
+            for &id in nodes {
+                a[id.index() - first][0] += 1.0;
+                b[id.index() - first][1] += id.index() as f32;
+            }
+            nodes.len()
+        });
+        assert_eq!(counts, [CHUNK_SIZE; 5]);
+        for id in 0..count {
+            let is_one = nodes.binary_search(&NodeId(id as u32)).is_ok();
+            let expected = if is_one { [1.0, id as f32] } else { [0.0; 2] };
+            assert_eq!([a[id][0], b[id][1]], expected);
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Cuts: along a segment in 2D, along a parallelogram in 3D.
+//!
+//! A blade separates two neighbouring voxels if the line between their present centres crosses the blade. The
+//! shared nodes are then released, as they are when a body tears.
+
+use crate::foundation::dim::{Dim, Point, voxel_around};
+use crate::foundation::ids::PieceId;
+use crate::math::vector::{cross, dot, minus, plus, scaled};
+use crate::rigid_body::shape::Vector;
+use crate::soft_body::SoftBody;
+use crate::topology::cell_hierarchy::Grading;
+use crate::topology::changes::Changes;
+use crate::topology::connectivity::faces_around;
+use crate::topology::mesh::Defect;
+use std::collections::BTreeSet;
+
+/// Cutting segment or parallelogram: all points `from` + a `across` + b `along` with a and b between 0 and 1.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Blade {
+    /// Corner [m].
+    pub from: Vector,
+    /// First edge [m].
+    pub across: Vector,
+    /// Second edge [m].
+    pub along: Vector,
+}
+
+impl Blade {
+    /// Creates a blade that cuts from one point of the plane to another [m].
+    pub fn segment(from: [f32; 2], to: [f32; 2]) -> Self {
+        Self {
+            from: [from[0], from[1], -0.5],
+            across: [to[0] - from[0], to[1] - from[1], 0.0],
+            along: [0.0, 0.0, 1.0],
+        }
+    }
+
+    /// Whether the line between two points crosses the blade.
+    fn parts(&self, a: Vector, b: Vector) -> bool {
+        let normal = cross(self.across, self.along);
+        let (over, under) = (
+            dot(normal, minus(a, self.from)),
+            dot(normal, minus(b, self.from)),
+        );
+        if (over > 0.0) == (under > 0.0) {
+            return false;
+        }
+        let meeting = plus(a, scaled(minus(b, a), over / (over - under)));
+        let reach = minus(meeting, self.from);
+        let squared = dot(normal, normal);
+        let first = dot(cross(reach, self.along), normal);
+        let second = dot(cross(self.across, reach), normal);
+        (0.0..=squared).contains(&first) && (0.0..=squared).contains(&second)
+    }
+}
+
+/// Result of a cut.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CutReport {
+    /// Positions at which shared nodes were released [m].
+    pub released: Vec<Vector>,
+    /// Numbers of the detached pieces.
+    pub detached: Vec<PieceId>,
+}
+
+impl<D: Dim> SoftBody<D> {
+    /// Cuts along a blade.
+    ///
+    /// # Errors
+    /// A [`Defect`] if the mesh becomes inconsistent, which is a bug in this library.
+    #[inline(never)]
+    pub fn cut(&mut self, blade: &Blade) -> Result<CutReport, Defect> {
+        if self.topology.pyramid.grading() == Grading::Coarse {
+            return Ok(CutReport::default());
+        }
+        let (released, changes) = self.open(&self.faces_across(blade))?;
+        Ok(CutReport {
+            released,
+            detached: changes.detached,
+        })
+    }
+
+    /// Opens faces, each given by the voxel before it and its axis. Returns the positions at which nodes were
+    /// released [m], and the changes.
+    pub(crate) fn open(
+        &mut self,
+        opened: &BTreeSet<(Point, usize)>,
+    ) -> Result<(Vec<Vector>, Changes), Defect> {
+        let mut points: BTreeSet<Point> = BTreeSet::new();
+        for &(voxel, axis) in opened {
+            for corner in 0..D::CORNERS / 2 {
+                points.insert(corner_of_face::<D>(voxel, axis, corner));
+            }
+        }
+        let mut releases = Vec::new();
+        for &at in &points {
+            releases.extend(self.sides(at, opened).into_iter().map(|side| (at, side)));
+        }
+        let positions = releases.iter().filter_map(|&(at, _)| self.position_of(at));
+        let released = positions.collect();
+        Ok((released, self.tear(&releases)?))
+    }
+
+    /// Separates all voxels, so that only pieces of one voxel remain. Returns the detached pieces.
+    ///
+    /// # Errors
+    /// A [`Defect`] if the mesh becomes inconsistent, which is a bug in this library.
+    #[inline(never)]
+    pub fn crumble(&mut self) -> Result<Vec<PieceId>, Defect> {
+        let octants = |at: Point| (0..D::CORNERS).map(move |octant| (at, 1 << octant));
+        let everything: Vec<(Point, u8)> = self
+            .topology
+            .connectivity
+            .points()
+            .flat_map(octants)
+            .collect();
+        self.release(&everything)
+    }
+
+    /// Faces that a blade crosses, each given by the voxel before it and its axis.
+    fn faces_across(&self, blade: &Blade) -> BTreeSet<(Point, usize)> {
+        let mut middles = vec![None; self.topology.grid.voxels().count()];
+        for (_, element) in self.topology.mesh.elements() {
+            let carry = self.affine_map(element);
+            for voxel in self.topology.mesh.voxels(element) {
+                let middle = carry(voxel.map(|k| k as f32 + 0.5));
+                middles[self.topology.grid.index(voxel)] = Some(middle);
+            }
+        }
+        let mut crossed = BTreeSet::new();
+        for voxel in self.topology.grid.voxels() {
+            let Some(here) = middles[self.topology.grid.index(voxel)] else {
+                continue;
+            };
+            for axis in 0..D::N {
+                let mut next = voxel;
+                next[axis] += 1;
+                if !self.topology.grid.is_present(next) {
+                    continue;
+                }
+                let there = middles[self.topology.grid.index(next)]
+                    .expect("every remaining voxel has an owner");
+                if blade.parts(here, there) {
+                    crossed.insert((voxel, axis));
+                }
+            }
+        }
+        crossed
+    }
+
+    /// Present position of a lattice point [m], interpolated in one of the elements around it.
+    fn position_of(&self, at: Point) -> Option<Vector> {
+        let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
+        let owner = { voxels }.find_map(|voxel| self.topology.mesh.owner(voxel))?;
+        Some(self.affine_map(self.topology.mesh.element(owner)?)(
+            at.map(|k| k as f32),
+        ))
+    }
+
+    /// Masks of the octants that must be released at a point to open the given faces, one for each side that
+    /// is separated. Empty if the faces are open already.
+    fn sides(&self, at: Point, opened: &BTreeSet<(Point, usize)>) -> Vec<u8> {
+        let around = self.topology.connectivity.around(at);
+        let mut groups = around.middle();
+        let solid = groups.solid();
+        let mut sides: Vec<u8> = (0..D::CORNERS)
+            .filter(|octant| solid >> octant & 1 == 1)
+            .map(|octant| 1 << octant)
+            .collect();
+        for (octant, axis) in faces_around::<D>() {
+            let face = (voxel_around::<D>(at, octant), axis);
+            if opened.contains(&face) || !around.is_closed(octant, axis) {
+                continue;
+            }
+            let (a, b) = (1u8 << octant, 1u8 << (octant ^ 1 << axis));
+            let (joined, others): (Vec<u8>, Vec<u8>) =
+                sides.into_iter().partition(|side| side & (a | b) != 0);
+            sides = others;
+            sides.push(joined.into_iter().fold(0, |all, side| all | side));
+        }
+        sides.sort_unstable();
+        sides.retain(|&side| groups.release(side));
+        sides
+    }
+}
+
+/// Corner of the face after a voxel on an axis.
+fn corner_of_face<D: Dim>(voxel: Point, axis: usize, corner: usize) -> Point {
+    let mut at = voxel;
+    at[axis] += 1;
+    for (bit, other) in (0..D::N).filter(|&other| other != axis).enumerate() {
+        at[other] += (corner >> bit & 1) as i32;
+    }
+    at
+}

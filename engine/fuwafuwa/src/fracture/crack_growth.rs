@@ -1,0 +1,243 @@
+//! Fracture: selects the shared nodes that are released next.
+//!
+//! A cut through a breakable node divides the voxels that share it into two sides A and B. The elements of
+//! either side pull at the node with F_A and F_B:
+//!
+//! ```text
+//!       A │ B        T = (F_B − F_A) / 2      n = mean rotation · axis
+//!     ────●────      σ = √(Tₙ² + ¼ Tₛ²) / area of the opened faces, both sides pulling apart
+//!       A │ B
+//! ```
+//!
+//! The tension σ is compared with the strength at a smooth surface, and with the toughness at the tip of a
+//! crack. A node fails if it is overloaded for some milliseconds.
+
+use crate::foundation::dim::{Dim, Point};
+use crate::foundation::ids::NodeId;
+use crate::foundation::threads;
+use crate::fracture::breakable_nodes::{BreakableNode, NodeCut};
+use crate::math::lanes::on_widest_lanes;
+use crate::math::vector::{dot, length, minus, plus, scaled};
+use crate::soft_body::SoftBody;
+use crate::soft_body::cooldowns::is_near;
+use crate::soft_body::element_forces::Row;
+use fearless_simd::Simd;
+
+/// Node that fails.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Failure {
+    /// Id of the node.
+    pub node: NodeId,
+    /// Lattice point of the node.
+    pub at: Point,
+    /// Octants on one side of the crack.
+    pub side: u8,
+    /// Axis across which faces open.
+    axis: usize,
+    /// Ratio of the tension to the threshold of the node.
+    pub excess: f32,
+    /// Released elastic energy [J], from the tension and the volume of a voxel.
+    pub energy: f32,
+}
+
+/// Time until a node fails that is overloaded by half [s]. If shorter, impacts shatter the surface; if
+/// longer, fast rigid bodies push through without cutting.
+const DAMAGE_TIME: f32 = 0.004;
+/// Time in which a damaged node heals once it is no longer overloaded [s]. Longer than the time to failure,
+/// so that oscillating loads can break nodes too.
+const HEALING_TIME: f32 = 4.0 * DAMAGE_TIME;
+/// Upper limit of the overload that counts for damage, so that a short impact does not count like a sustained
+/// pull.
+const MAX_OVERLOAD: f32 = 3.0;
+/// Factor on the threshold of cuts that separate a single voxel. Without it, cracks leave a trail of crumbs.
+const CRUMB_FACTOR: f32 = 1.3;
+/// Cooldown after a release, as the number of voxels that a wave travels: across the surroundings and back.
+const COOLDOWN_VOXELS: f64 = 4.0;
+
+/// Updates the damage of all breakable nodes after `duration` [s], and returns those that fail now, the worst
+/// first. No two of them are near each other, except along the front of a crack.
+pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
+    body.state.cooldowns.pass(duration);
+    if !body.can_tear() {
+        return Vec::new();
+    }
+    let size = body.topology.grid.voxel_size();
+    let mut damage = std::mem::take(&mut body.state.damage);
+    let found = threads::map(threads::chunks(&mut damage), |(first, damage)| {
+        let mut found: Vec<Failure> = Vec::new();
+        let nodes = body.cache.breakable.among(first..first + damage.len());
+        on_widest_lanes!(simd => for (id, node) in nodes {
+            let damage = &mut damage[id.index() - first];
+            // Undamaged nodes are examined only in every other round.
+            if body.topology.pieces.sleeps(id)
+                || *damage == 0.0 && (id.0 ^ body.state.cooldowns.rounds) & 1 == 1
+            {
+                continue;
+            }
+            // Most nodes are far from failure.
+            let failure = match is_surely_intact(simd, body, id, node) {
+                true => None,
+                false => worst_cut(body, id, node),
+            };
+            let Some(failure) = failure else {
+                let healed = *damage - duration / HEALING_TIME;
+                *damage = healed.max(0.0);
+                continue;
+            };
+            let over = (failure.excess - 1.0).min(MAX_OVERLOAD);
+            *damage += duration / DAMAGE_TIME * 2.0 * over;
+            if *damage >= 1.0 && !body.state.cooldowns.covers(failure.at) {
+                found.push(failure);
+            }
+        });
+        found
+    });
+    body.state.damage = damage;
+    let mut found = found.concat();
+    found.sort_by(|a, b| b.excess.total_cmp(&a.excess).then(a.node.cmp(&b.node)));
+    let cooldown = (COOLDOWN_VOXELS * f64::from(size) / body.fastest_wave()) as f32;
+    let chosen = without_worse_neighbour(found);
+    let cooling = chosen.iter().map(|failure| failure.at);
+    body.state.cooldowns.start(cooling, cooldown);
+    chosen
+}
+
+/// Returns those failures that have no worse failure nearby; `found` is sorted, the worst first. Neighbours
+/// in one plane are kept together: they form the front of one crack, in 3D a line, which advances as a whole.
+/// If they had to wait for each other, cracks would advance too slowly, and the load would start new ones.
+fn without_worse_neighbour(found: Vec<Failure>) -> Vec<Failure> {
+    let mut chosen: Vec<Failure> = Vec::new();
+    for failure in found {
+        let forestalls = |worse: &Failure| {
+            let plane = |failure: &Failure| (failure.axis, failure.at[failure.axis]);
+            is_near(failure.at, worse.at) && plane(&failure) != plane(worse)
+        };
+        if !chosen.iter().any(forestalls) {
+            chosen.push(failure);
+        }
+    }
+    chosen
+}
+
+/// Whether no cut through a breakable node can be overloaded. No pull is larger than half the sum of all
+/// forces, with (Σ|f|)² ≤ n Σ|f|² and a margin for rounding; every cut opens at least one face.
+#[inline(always)]
+fn is_surely_intact<D: Dim, S: Simd>(
+    simd: S,
+    body: &SoftBody<D>,
+    id: NodeId,
+    node: &BreakableNode,
+) -> bool {
+    let threshold = face_area::<D>(body.topology.grid.voxel_size()) * node.threshold;
+    let squares = body.state.blocks.squares_on(simd, id);
+    0.2501 * node.group.count_ones() as f32 * squares <= threshold * threshold
+}
+
+/// Returns the most overloaded cut through a breakable node, if any is overloaded.
+#[inline(never)]
+fn worst_cut<D: Dim>(body: &SoftBody<D>, id: NodeId, node: &BreakableNode) -> Option<Failure> {
+    let size = body.topology.grid.voxel_size();
+    let mut forces = [[0.0; 4]; 8];
+    for (octant, force) in octants(node.group).zip(body.state.blocks.parts_on(id)) {
+        forces[octant] = force;
+    }
+    let total = forces.into_iter().fold([0.0; 4], plus);
+    // Common rotation of its voxels, computed on demand.
+    let mut turn: Option<[[f32; 3]; 3]> = None;
+    let mut worst: Option<(f32, f32, NodeCut)> = None;
+    for cut in body.cache.breakable.cuts(node) {
+        let far = octants(cut.side).fold([0.0; 4], |sum, octant| plus(sum, forces[octant]));
+        let near = minus(total, far);
+        let pull = scaled(minus(far, near), 0.5);
+        let area = f32::from(cut.faces) * face_area::<D>(size);
+        let is_crumb = cut.single_voxel_octants & node.crumbs != 0;
+        let threshold = node.threshold * if is_crumb { CRUMB_FACTOR } else { 1.0 };
+        let least = area * threshold * worst.map_or(1.0, |(excess, ..)| excess);
+        // The tension is never larger than the pull.
+        if dot(pull, pull) <= least * least {
+            continue;
+        }
+        let turn = turn.get_or_insert_with(|| total_turn(body, id));
+        let axis = cut.axis as usize;
+        let direction = [turn[0][axis], turn[1][axis], turn[2][axis], 0.0];
+        let normal = scaled(direction, 1.0 / length(direction).max(1e-12));
+        if dot(far, normal) <= 0.0 || dot(near, normal) >= 0.0 {
+            continue;
+        }
+        let tension = tension(pull, normal);
+        if tension > least {
+            worst = Some((tension / (area * threshold), tension / area, *cut));
+        }
+    }
+    let (excess, stress, cut) = worst?;
+    let young = body.materials()[node.material as usize - 1]
+        .elasticity
+        .young as f32;
+    let volume = (0..D::N).fold(1.0, |volume, _| volume * size);
+    Some(Failure {
+        node: id,
+        at: body.topology.mesh.node(id).at,
+        side: cut.side,
+        axis: cut.axis.into(),
+        excess,
+        energy: stress * stress / (2.0 * young) * volume,
+    })
+}
+
+/// Returns the octants of a mask.
+fn octants(mask: u8) -> impl Iterator<Item = usize> {
+    (0..8).filter(move |octant| mask >> octant & 1 == 1)
+}
+
+/// Returns the sum of the rotations of all elements around a node.
+fn total_turn<D: Dim>(body: &SoftBody<D>, id: NodeId) -> [[f32; 3]; 3] {
+    let mut turn = [[0.0; 3]; 3];
+    for owner in body.topology.mesh.carrier_ids(id) {
+        let rotation = body.state.blocks.rotation(owner);
+        for row in 0..3 {
+            turn[row] = plus(turn[row], rotation[row]);
+        }
+    }
+    turn
+}
+
+/// Part of a face that belongs to one of its corners [m or m²]: half an edge in 2D, a quarter of a square in
+/// 3D.
+fn face_area<D: Dim>(size: f32) -> f32 {
+    (1..D::N).fold(1.0, |area, _| area * 0.5 * size)
+}
+
+/// Tension of a pull across a plane [N]: the opening part counts in full, the shear part by half.
+fn tension(pull: Row, normal: Row) -> f32 {
+    let opening = dot(pull, normal);
+    let shear = (dot(pull, pull) - opening * opening).max(0.0);
+    (opening * opening + 0.25 * shear).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn undisturbed_keeps_front_of_crack_together() {
+        let failure = |at: Point, axis| Failure {
+            node: NodeId(0),
+            at,
+            side: 1,
+            axis,
+            excess: 2.0,
+            energy: 0.0,
+        };
+        let worst = failure([8, 8, 8], 0);
+        let along = failure([8, 9, 8], 0);
+        let found = [
+            worst,
+            failure([9, 8, 8], 0),
+            failure([8, 8, 9], 1),
+            along,
+            failure([11, 8, 8], 1),
+        ];
+        let far = found[4];
+        assert_eq!(without_worse_neighbour(found.to_vec()), [worst, along, far]);
+    }
+}

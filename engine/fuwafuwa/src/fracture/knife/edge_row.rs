@@ -1,0 +1,184 @@
+//! Solver rows between a cutting edge and the tissue that it is in.
+
+use super::{EdgePose, Knife};
+use crate::foundation::arena::{BodySlot, SoftBodyHandle};
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{NodeId, PieceId};
+use crate::material::Material;
+use crate::math::vector::{as_row, cross, dot, minus, plus, scaled};
+use crate::rigid_body::shape::Vector;
+use crate::rigid_body::{RigidBodies, RigidBody};
+use crate::soft_body::{SoftBodies, SoftBody};
+
+/// Solver iterations over all rows per substep. Neighbouring samples push the same nodes; with 2 iterations a
+/// cut does not separate the parts.
+const ROUNDS: usize = 8;
+
+/// Share of its limit above which a row counts as sliding; the remainder is rounding.
+const AT_LIMIT: f32 = 0.98;
+
+/// Solver row of one sample.
+struct EdgeRow {
+    body: SoftBodyHandle,
+    /// Nodes and their weights.
+    weights: Vec<(NodeId, f32)>,
+    /// Inverse effective mass of the tissue [1/kg].
+    gain: f32,
+    /// Lever arm from the position of the holder [m].
+    lever: Vector,
+    /// Limits of the impulse in the cutting direction and sideways in the substep [N s], and the impulses.
+    limits: [f32; 2],
+    impulse: [f32; 2],
+}
+
+impl Knife {
+    /// Solves the edge against the tissue for a substep of `duration` [s]. Returns the sleepers to wake.
+    pub(crate) fn solve<D: Dim>(
+        &mut self,
+        bodies: &mut SoftBodies<D>,
+        rigids: &mut RigidBodies,
+        duration: f32,
+    ) -> Vec<(BodySlot, PieceId)> {
+        (self.force, self.torque) = ([0.0; 3], [0.0; 3]);
+        let Ok(holder) = rigids.get_mut(self.holder) else {
+            return Vec::new();
+        };
+        let stance = self.stance::<D>(holder);
+        let mut woken = Vec::new();
+        let mut rows = Vec::new();
+        for place in 0..self.samples.len() {
+            let Some((id, _)) = self.samples[place].inside else {
+                continue;
+            };
+            let row = self.row(&stance, place, &bodies[id], duration);
+            let piece = bodies[id].topology.pieces.of_node(row.weights[0].0);
+            if bodies[id].topology.pieces.list[piece].asleep && holder.pushes() {
+                woken.push((id.slot(), piece));
+            }
+            rows.push((place, row));
+        }
+        let ways = [stance.toward, stance.across];
+        for _ in 0..ROUNDS {
+            for (_, row) in &mut rows {
+                let body = bodies
+                    .get_mut(row.body)
+                    .expect("the body is alive in this substep");
+                solve_row(row, body, holder, ways, duration);
+            }
+        }
+        for (place, row) in &rows {
+            let is_at = |way: usize| row.impulse[way].abs() >= AT_LIMIT * row.limits[way];
+            let sample = &mut self.samples[*place];
+            sample.slid |= is_at(0) || is_at(1);
+            sample.cut |= is_at(0) && row.limits[0] > 0.0;
+            let given = plus(
+                scaled(ways[0], row.impulse[0]),
+                scaled(ways[1], row.impulse[1]),
+            );
+            let force = scaled(given, -1.0 / duration);
+            self.force = plus(self.force, force);
+            self.torque = plus(self.torque, cross(row.lever, force));
+            let slip = slip(row, &bodies[row.body], holder);
+            let work = |way: usize| row.impulse[way] * dot(slip, ways[way]);
+            self.work += f64::from((work(0) + work(1)).max(0.0));
+        }
+        holder.twist(self.torque);
+        woken
+    }
+
+    /// Returns the pieces that the edge is in. They stay awake while the edge moves.
+    pub(crate) fn held<D: Dim>(&self, bodies: &SoftBodies<D>) -> Vec<(BodySlot, PieceId)> {
+        let inside = self.samples.iter().filter_map(|sample| sample.inside);
+        let pieces = inside.filter_map(|(id, spot)| {
+            let body = bodies.get(id).ok()?;
+            let owner = body.topology.mesh.owner(spot.voxel)?;
+            Some((id.slot(), body.topology.pieces.of_element(owner)))
+        });
+        let mut pieces: Vec<(BodySlot, PieceId)> = pieces.collect();
+        pieces.sort_unstable();
+        pieces.dedup();
+        pieces
+    }
+
+    /// Returns the solver row of a sample that is in a body.
+    fn row<D: Dim>(
+        &self,
+        stance: &EdgePose,
+        place: usize,
+        body: &SoftBody<D>,
+        duration: f32,
+    ) -> EdgeRow {
+        let (id, spot) = self.samples[place].inside.expect("the sample is in a body");
+        let mesh = &body.topology.mesh;
+        let owner = mesh
+            .owner(spot.voxel)
+            .expect("the sample is in a solid voxel");
+        let element = mesh.element(owner).expect("owners are alive");
+        let material = body.material(element);
+        let ways = [stance.along, stance.toward];
+        let [along, toward] = spot.directions(body, ways).unwrap_or(ways);
+        let forth = match spot.is_whole_ahead(body, along, toward) {
+            true => self.force_of_a_cut(material),
+            false => 0.0,
+        };
+        let share = self.share::<D>(stance, place) * duration;
+        let weights = body.weights(element, spot.at);
+        let gains = weights
+            .iter()
+            .map(|&(node, weight)| weight * weight * body.state.inverse_mass[node]);
+        EdgeRow {
+            body: id,
+            gain: gains.sum(),
+            weights,
+            lever: self.lever(stance, place),
+            // A sample of zero length in unbreakable material gives 0 · ∞ = NaN, which `max` turns into 0.
+            limits: [forth, material.strength * self.height].map(|k| (share * k).max(0.0)),
+            impulse: [0.0; 2],
+        }
+    }
+
+    /// Returns the force per metre of edge that cuts a material [N/m].
+    fn force_of_a_cut(&self, material: &Material) -> f32 {
+        let dull = match self.radius > 0.0 {
+            true => 2.0 * self.radius * material.strength,
+            false => 0.0,
+        };
+        material.fracture_energy() + dull
+    }
+}
+
+/// Returns the velocity of the edge relative to the tissue [m/s].
+fn slip<D: Dim>(row: &EdgeRow, body: &SoftBody<D>, holder: &RigidBody) -> Vector {
+    minus(
+        holder.velocity_at(row.lever),
+        body.velocity_of(&row.weights),
+    )
+}
+
+/// Applies the impulse that removes the slip, within the limits of the row.
+fn solve_row<D: Dim>(
+    row: &mut EdgeRow,
+    body: &mut SoftBody<D>,
+    holder: &mut RigidBody,
+    ways: [Vector; 2],
+    duration: f32,
+) {
+    for (way, direction) in ways.into_iter().enumerate() {
+        // If neither side can move, the division by 0 drives the impulse to its limit.
+        let yields = row.gain + holder.yields(row.lever, direction);
+        let speed = dot(slip(row, body, holder), direction);
+        let least = if way == 0 { 0.0 } else { -row.limits[way] };
+        let wanted = (row.impulse[way] + speed / yields).clamp(least, row.limits[way]);
+        let change = wanted - row.impulse[way];
+        if !change.is_finite() {
+            continue;
+        }
+        row.impulse[way] = wanted;
+        let push = scaled(direction, change);
+        for &(node, weight) in &row.weights {
+            let gain = scaled(as_row(push), weight * body.state.inverse_mass[node]);
+            body.state.velocity[node] = plus(body.state.velocity[node], gain);
+        }
+        holder.push_at(scaled(push, -1.0), row.lever, duration);
+    }
+}

@@ -1,0 +1,157 @@
+//! Rest positions of world-space points in a body.
+
+use crate::foundation::dim::{Dim, Point, voxel_around};
+use crate::foundation::ids::NodeId;
+use crate::math::vector::{cross, length, minus};
+use crate::rigid_body::shape::Vector;
+use crate::soft_body::SoftBody;
+use crate::topology::mesh::Element;
+
+/// Maximum number of elements visited from the starting voxel.
+const STEPS: usize = 6;
+/// Tolerance outside of a cell [voxels] at which a point still counts as inside: neighbouring elements deform
+/// differently, so a point can be outside of both.
+const LITTLE: f32 = 0.25;
+
+/// Point in a body.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Spot {
+    /// Voxel that contains the point.
+    pub voxel: Point,
+    /// Rest position [voxels].
+    pub at: Vector,
+}
+
+impl Spot {
+    /// Finds a world-space point [m] in a body, starting from a voxel. Returns `None` if the point is not in
+    /// the body or too far from the start.
+    pub fn find<D: Dim>(body: &SoftBody<D>, at: Vector, from: Point) -> Option<Self> {
+        let mesh = &body.topology.mesh;
+        let mut voxel = from;
+        for step in 0..STEPS {
+            let owner = mesh.owner(voxel)?;
+            let element = mesh.element(owner)?;
+            let rest = body.at_rest(element, at)?;
+            let next = voxel_of::<D>(rest)?;
+            if mesh.owner(next) == Some(owner) {
+                return Some(Self {
+                    voxel: next,
+                    at: rest,
+                });
+            }
+            if !body.topology.grid.is_solid(next) {
+                return None;
+            }
+            if step + 1 == STEPS && distance::<D>(element, rest) <= LITTLE {
+                return Some(Self { voxel, at: rest });
+            }
+            voxel = next;
+        }
+        None
+    }
+
+    /// Returns the rest position of a world-space point [m], extrapolated with the deformation here.
+    pub fn extend<D: Dim>(&self, body: &SoftBody<D>, at: Vector) -> Option<Vector> {
+        body.at_rest(body.topology.mesh.element_at(self.voxel)?, at)
+    }
+
+    /// Returns the velocity of the body here [m/s].
+    pub fn velocity<D: Dim>(&self, body: &SoftBody<D>) -> Option<Vector> {
+        let element = body.topology.mesh.element_at(self.voxel)?;
+        Some(body.velocity_of(&body.weights(element, self.at)))
+    }
+
+    /// Returns world-space directions in rest coordinates, scaled to the width of a voxel [voxels].
+    pub fn directions<D: Dim, const COUNT: usize>(
+        &self,
+        body: &SoftBody<D>,
+        ways: [Vector; COUNT],
+    ) -> Option<[Vector; COUNT]> {
+        let (_, undo) = body.inverse_deformation(body.topology.mesh.element_at(self.voxel)?)?;
+        Some(ways.map(undo))
+    }
+
+    /// Returns whether the point is within half a voxel of a world-space point [m].
+    pub fn is_near<D: Dim>(&self, body: &SoftBody<D>, at: Vector) -> bool {
+        let element = body.topology.mesh.element_at(self.voxel);
+        let half = 0.5 * body.topology.grid.voxel_size();
+        element.is_some_and(|element| length(minus(body.affine_map(element)(self.at), at)) <= half)
+    }
+
+    /// Returns whether the material in front of an edge is whole: whether the next face that it opens is
+    /// closed. `along` is the direction of the edge and `toward` the cutting direction [voxels].
+    pub fn is_whole_ahead<D: Dim>(
+        &self,
+        body: &SoftBody<D>,
+        along: Vector,
+        toward: Vector,
+    ) -> bool {
+        let ahead = [0, 1, 2].map(|k: usize| self.at[k] + 0.5 * toward[k]);
+        let Some(voxel) = voxel_of::<D>(ahead).filter(|&at| body.topology.grid.is_solid(at)) else {
+            return false;
+        };
+        let normal = cross(along, toward);
+        let steepest = |a: &usize, b: &usize| normal[*a].abs().total_cmp(&normal[*b].abs());
+        let axis = (0..D::N).max_by(steepest).unwrap_or(0);
+        // Signed distance from the middle of the voxel to the swept plane, along the axis.
+        let apart: f32 = (0..D::N)
+            .map(|k| normal[k] * (ahead[k] - voxel[k] as f32 - 0.5))
+            .sum();
+        let crossing = (apart / normal[axis]).clamp(-2.0, 2.0);
+        let mut before = voxel;
+        before[axis] += crossing.floor() as i32;
+        is_closed(body, before, axis)
+    }
+}
+
+/// Returns whether the face behind a voxel across an axis connects it to its neighbour.
+fn is_closed<D: Dim>(body: &SoftBody<D>, voxel: Point, axis: usize) -> bool {
+    let mut corner = voxel;
+    corner[axis] += 1;
+    // Relative to the voxel's upper corner along the axis, the voxel is in the octant that is low along this
+    // axis only.
+    let octant = (0..D::N)
+        .filter(|&other| other != axis)
+        .fold(0, |octant, other| octant | 1 << other);
+    debug_assert_eq!(voxel_around::<D>(corner, octant), voxel);
+    body.topology
+        .connectivity
+        .around(corner)
+        .is_closed(octant, axis)
+}
+
+/// Returns the voxel at a rest position; `None` far from any grid.
+fn voxel_of<D: Dim>(at: Vector) -> Option<Point> {
+    let mut voxel = [0; 3];
+    for axis in 0..D::N {
+        if at[axis].abs() > 1e6 || at[axis].is_nan() {
+            return None;
+        }
+        voxel[axis] = at[axis].floor() as i32;
+    }
+    Some(voxel)
+}
+
+/// Returns whether an element may contain a point [m]: a test with the enlarged box around its nodes.
+pub fn may_have<D: Dim>(body: &SoftBody<D>, element: &Element, at: Vector) -> bool {
+    let margin = LITTLE * body.topology.grid.voxel_size() * element.cell.width() as f32;
+    (0..D::N).all(|axis| {
+        let apart = |&node: &NodeId| body.state.position[node][axis] - at[axis];
+        let apart = element.nodes.iter().map(apart);
+        let (low, high) = apart.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), k| {
+            (low.min(k), high.max(k))
+        });
+        low <= margin && high >= -margin
+    })
+}
+
+/// Returns the distance of a rest position from the cell of an element [voxels].
+fn distance<D: Dim>(element: &Element, at: Vector) -> f32 {
+    let (low, width) = (element.cell.first_voxel(), element.cell.width() as f32);
+    let out = |axis: usize| {
+        let along = at[axis] - low[axis] as f32;
+        (-along).max(along - width)
+    };
+    (0..D::N).map(out).fold(0.0, f32::max)
+}

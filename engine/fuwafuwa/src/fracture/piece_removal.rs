@@ -1,0 +1,55 @@
+//! Removal of pieces from a body: voxels, connectivity, cells, elements and nodes.
+//!
+//! A piece shares no node with the rest. So the rest keeps its elements, nodes, numbers, masses and motion;
+//! only the neighbours across the crack are gone.
+
+use crate::foundation::dim::{Dim, Point};
+use crate::foundation::ids::{ElementId, PieceId};
+use crate::soft_body::SoftBody;
+use crate::topology::changes::Changes;
+
+impl<D: Dim> SoftBody<D> {
+    /// Whether the body has a piece with this number that was not removed.
+    pub fn has_piece(&self, piece: PieceId) -> bool {
+        let piece = self.topology.pieces.list.get(piece.index());
+        piece.is_some_and(|piece| !piece.removed)
+    }
+
+    /// Removes pieces, given in ascending order, of which at least one exists; returns all changes.
+    pub(crate) fn take_out(&mut self, pieces: &[PieceId]) -> Changes {
+        let truth = &mut self.topology;
+        let of_element = |id: &ElementId| truth.pieces.of_element(*id);
+        let elements = truth.mesh.elements().map(|(id, _)| id);
+        let elements: Vec<ElementId> = elements
+            .filter(|id| pieces.binary_search(&of_element(id)).is_ok())
+            .collect();
+        let own = elements.iter().filter_map(|&id| truth.mesh.element(id));
+        let voxels = own.flat_map(|element| truth.mesh.voxels(element));
+        let voxels: Vec<Point> = voxels.collect();
+        truth.grid.remove_voxels(&voxels);
+        truth.connectivity.take_out(&voxels);
+        truth
+            .pyramid
+            .take_out(&truth.grid, &truth.connectivity, &voxels);
+        let nodes = truth.mesh.take_out(&truth.connectivity, &elements);
+        for &piece in pieces {
+            let piece = &mut truth.pieces.list[piece];
+            // A removed piece counts as asleep, so that it never counts as moving.
+            (piece.removed, piece.asleep) = (true, true);
+        }
+        let blocks = &mut self.state.blocks;
+        blocks.update(&truth.mesh, &truth.grid, &elements, &[], |_| false);
+        self.find_breakable(&nodes);
+        self.cache.awake_is_stale = true;
+        self.refresh_awake();
+        let changes = Changes {
+            nodes,
+            elements,
+            detached: Vec::new(),
+            removed: pieces.to_vec(),
+        };
+        let most = self.topology.mesh.element_capacity();
+        self.cache.history.add(&changes, most);
+        changes
+    }
+}

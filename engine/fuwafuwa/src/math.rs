@@ -1,0 +1,5 @@
+//! Vectors, rotations and SIMD lanes.
+
+pub mod lanes;
+pub mod rotation;
+pub mod vector;

@@ -1,0 +1,195 @@
+//! Rotations.
+
+use crate::foundation::dim::Dim;
+use crate::math::vector::{Vector, cross, dot, minus, plus, scaled};
+
+/// Rotation, stored as a unit quaternion. Identical on every machine, because it does not use the sine of the
+/// system library.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Rotation {
+    /// Components x, y, z, w.
+    quaternion: [f64; 4],
+}
+
+impl Default for Rotation {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+impl Rotation {
+    /// Identity.
+    pub const NONE: Self = Self {
+        quaternion: [0.0, 0.0, 0.0, 1.0],
+    };
+
+    /// Creates a rotation by an angle [rad] about an axis of any length, counterclockwise as seen from its
+    /// tip. Returns [`Rotation::NONE`] if the axis has no length or a value is not finite.
+    ///
+    /// ```
+    /// use fuwafuwa::Rotation;
+    /// use std::f32::consts::FRAC_PI_2;
+    ///
+    /// let quarter = Rotation::about([0.0, 0.0, 1.0], FRAC_PI_2);
+    /// let [x, y, z] = quarter.apply([1.0, 0.0, 0.0]);
+    /// assert!(x.abs() < 1e-6 && (y - 1.0).abs() < 1e-6 && z == 0.0);
+    /// ```
+    pub fn about(axis: Vector, angle: f32) -> Self {
+        let axis = axis.map(f64::from);
+        let (sine, cosine) = libm::sincos(0.5 * f64::from(angle));
+        let part = sine / dot(axis, axis).sqrt();
+        let [x, y, z] = scaled(axis, part);
+        Self::unit([x, y, z, cosine])
+    }
+
+    /// Creates a rotation in the plane by an angle [rad], counterclockwise.
+    pub fn in_plane(angle: f32) -> Self {
+        Self::about([0.0, 0.0, 1.0], angle)
+    }
+
+    /// Creates a rotation from a quaternion x, y, z, w of any length. Returns [`Rotation::NONE`] if it has no
+    /// length or a component is not finite.
+    pub fn from_quaternion(quaternion: [f32; 4]) -> Self {
+        Self::unit(quaternion.map(f64::from))
+    }
+
+    /// Returns the unit quaternion x, y, z, w.
+    pub fn quaternion(self) -> [f32; 4] {
+        self.quaternion.map(|part| part as f32)
+    }
+
+    /// Rotates a vector.
+    pub fn apply(self, vector: Vector) -> Vector {
+        self.turn(vector.map(f64::from)).map(|part| part as f32)
+    }
+
+    /// Returns the inverse rotation.
+    #[must_use]
+    pub fn inverse(self) -> Self {
+        let [x, y, z, w] = self.quaternion;
+        Self {
+            quaternion: [-x, -y, -z, w],
+        }
+    }
+
+    /// Returns the rotation that first applies `self` and then `next`.
+    #[must_use]
+    pub fn then(self, next: Self) -> Self {
+        Self::unit(product(next.quaternion, self.quaternion))
+    }
+
+    /// Axis times angle [rad], with an angle of at most π.
+    pub fn scaled_axis(self) -> Vector {
+        let [x, y, z, w] = self.quaternion;
+        let (axis, sign) = ([x, y, z], if w < 0.0 { -1.0 } else { 1.0 });
+        let sine = dot(axis, axis).sqrt();
+        let angle = 2.0 * libm::atan2(sine, sign * w);
+        let stretch = if sine > 1e-12 { angle / sine } else { 2.0 };
+        scaled(axis, sign * stretch).map(|part| part as f32)
+    }
+
+    /// Returns the three rotated axes.
+    pub fn axes(self) -> [Vector; 3] {
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| self.apply(axis))
+    }
+
+    /// Whether the quaternion has length 1; one read from a file may not.
+    pub(crate) fn is_unit(self) -> bool {
+        (dot(self.quaternion, self.quaternion) - 1.0).abs() < 1e-9
+    }
+
+    /// Rotates a position [m] about a centre.
+    pub(crate) fn apply_about(self, place: Vector, centre: Vector) -> Vector {
+        let (place, centre) = (place.map(f64::from), centre.map(f64::from));
+        let turned = self.turn(minus(place, centre));
+        plus(centre, turned).map(|part| part as f32)
+    }
+
+    /// Restricts the rotation to the dimension: in 2D to the third axis.
+    pub(crate) fn seen_in<D: Dim>(self) -> Self {
+        let [x, y, z, w] = self.quaternion;
+        // Normalising again would change the last bits.
+        match D::N == 2 && (x, y) != (0.0, 0.0) {
+            true => Self::unit([0.0, 0.0, z, w]),
+            false => self,
+        }
+    }
+
+    /// Returns the quaternion that first applies `other` and then `self`; not normalised.
+    pub(crate) fn after(self, other: [f32; 4]) -> [f32; 4] {
+        product(self.quaternion, other.map(f64::from)).map(|part| part as f32)
+    }
+
+    fn turn(self, vector: [f64; 3]) -> [f64; 3] {
+        let [x, y, z, w] = self.quaternion;
+        let axis = [x, y, z];
+        let across = scaled(cross(axis, vector), 2.0);
+        plus(plus(vector, scaled(across, w)), cross(axis, across))
+    }
+
+    fn unit(quaternion: [f64; 4]) -> Self {
+        let length = dot(quaternion, quaternion).sqrt();
+        let quaternion = scaled(quaternion, 1.0 / length);
+        match quaternion.iter().all(|part| part.is_finite()) {
+            true => Self { quaternion },
+            false => Self::NONE,
+        }
+    }
+}
+
+/// Returns the quaternion product a b: first b, then a.
+fn product([x, y, z, w]: [f64; 4], [bx, by, bz, bw]: [f64; 4]) -> [f64; 4] {
+    [
+        w * bx + x * bw + y * bz - z * by,
+        w * by - x * bz + y * bw + z * bx,
+        w * bz + x * by - y * bx + z * bw,
+        w * bw - x * bx - y * by - z * bz,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::foundation::dim::Dim2;
+    use std::f32::consts::PI;
+
+    #[test]
+    fn rotations_compose_in_order() {
+        let first = Rotation::about([1.0, 2.0, -1.0], 0.7);
+        let second = Rotation::about([0.0, -3.0, 1.0], -2.0);
+        let both = Rotation::from_quaternion(second.after(first.quaternion()));
+        let vector = [0.3, -0.8, 2.0];
+        let (one, two) = (both.apply(vector), second.apply(first.apply(vector)));
+        assert!((0..3).all(|axis| (one[axis] - two[axis]).abs() < 1e-5));
+        let three = first.then(second).apply(vector);
+        assert!((0..3).all(|axis| (one[axis] - three[axis]).abs() < 1e-5));
+        assert_eq!(first.then(first.inverse()), Rotation::NONE);
+    }
+
+    #[test]
+    fn scaled_axis_returns_axis_times_shortest_angle() {
+        for angle in [0.0, 1e-7, 0.5, 3.0] {
+            let axis = Rotation::about([0.0, -2.0, 0.0], angle).scaled_axis();
+            assert!((axis[1] + angle).abs() < 1e-6 && axis[0] == 0.0, "{axis:?}");
+        }
+        let far = Rotation::in_plane(6.0).scaled_axis();
+        assert!((far[2] - (6.0 - 2.0 * PI)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn invalid_rotations_become_identity() {
+        let bad = [
+            Rotation::about([0.0; 3], 1.0),
+            Rotation::about([1.0, 0.0, 0.0], f32::NAN),
+            Rotation::about([f32::INFINITY, 0.0, 0.0], 1.0),
+            Rotation::from_quaternion([0.0; 4]),
+            Rotation::from_quaternion([f32::NAN, 0.0, 0.0, 1.0]),
+            Rotation::about([1.0, 0.0, 0.0], PI).seen_in::<Dim2>(),
+        ];
+        for (index, rotation) in bad.into_iter().enumerate() {
+            let turned = rotation.apply([1.0, 2.0, 3.0]);
+            assert_eq!(turned, [1.0, 2.0, 3.0], "{index}");
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! Motion of rigid bodies: integration, impulses, sleep.
+
+use super::inertia::{Inertia, times};
+use super::invalid::{BadRigid, is_within_reach, require};
+use super::{MotionType, RigidBody};
+use crate::foundation::dim::Dim;
+use crate::math::rotation::Rotation;
+use crate::math::vector::{cross, dot, length, minus, plus, scaled};
+use crate::rigid_body::layers::Layers;
+use crate::rigid_body::shape::{Vector, flat};
+
+impl RigidBody {
+    /// Returns whether the body is dynamic.
+    pub fn is_dynamic(&self) -> bool {
+        matches!(self.motion_type, MotionType::Dynamic { .. })
+    }
+
+    /// Returns whether the body is dynamic and sleeps, until something moves against it.
+    pub fn is_asleep(&self) -> bool {
+        self.asleep
+    }
+
+    /// Returns whether the body keeps objects in contact with it awake: a coupled body always, a kinematic
+    /// body while it moves.
+    pub(crate) fn pushes(&self) -> bool {
+        match self.motion_type {
+            MotionType::Coupled { .. } => true,
+            MotionType::Kinematic => self.velocity != [0.0; 3] || self.angular_velocity != [0.0; 3],
+            MotionType::Fixed | MotionType::Dynamic { .. } => false,
+        }
+    }
+
+    /// Returns whether the body has contacts with soft bodies of the given layers.
+    #[inline(always)]
+    pub(crate) fn meets(&self, layers: Layers) -> bool {
+        !self.is_sensor && self.layers.meet(layers)
+    }
+
+    /// Returns whether the body has contacts with another rigid body.
+    #[inline(always)]
+    pub(crate) fn meets_rigid(&self, other: &Self) -> bool {
+        !self.is_sensor && other.meets(self.layers)
+    }
+
+    /// Returns whether the body can move in this substep.
+    #[inline(always)]
+    pub(crate) fn moves(&self) -> bool {
+        !matches!(self.motion_type, MotionType::Fixed) && !self.asleep
+    }
+
+    /// Returns the velocity [m/s] of a body point, given relative to [`position`](RigidBody::position) [m].
+    #[inline(always)]
+    pub(crate) fn velocity_at(&self, lever: Vector) -> Vector {
+        match self.turns() {
+            true => plus(self.velocity, cross(self.angular_velocity, lever)),
+            false => self.velocity,
+        }
+    }
+
+    /// Returns the velocity [m/s] of the body at a world-space point [m].
+    #[inline(always)]
+    pub(crate) fn velocity_near(&self, at: Vector) -> Vector {
+        match self.turns() {
+            true => self.velocity_at(minus(at, self.position)),
+            false => self.velocity,
+        }
+    }
+
+    /// Returns an upper bound of the speed of all body points [m/s].
+    pub(crate) fn top_speed(&self) -> f32 {
+        let speed = length(self.velocity);
+        match self.turns() && self.angular_velocity != [0.0; 3] {
+            true => speed + length(self.angular_velocity) * self.extent(),
+            false => speed,
+        }
+    }
+
+    /// Returns the largest distance of the shape from its local origin [m].
+    pub(crate) fn extent(&self) -> f32 {
+        let [low, high] = self.form.bounds();
+        length([0, 1, 2].map(|axis: usize| low[axis].abs().max(high[axis].abs())))
+    }
+
+    /// Sets the target rotation.
+    pub(crate) fn turn_to<D: Dim>(&mut self, rotation: Rotation) -> Result<(), BadRigid> {
+        require(self.follows_target(), "drive", "kinematic or coupled")?;
+        self.rotation_goal = rotation.seen_in::<D>();
+        Ok(())
+    }
+
+    /// Sets the pose at once and wakes the body; its velocity stays.
+    pub(crate) fn place<D: Dim>(
+        &mut self,
+        position: Vector,
+        rotation: Rotation,
+    ) -> Result<(), BadRigid> {
+        let expected = "within 1e6 m of the origin";
+        require(is_within_reach(position), "position", expected)?;
+        (self.position, self.rotation) = (position, rotation);
+        (self.position_before, self.rotation_before) = (position, rotation);
+        self.stay();
+        *self = self.clone().seen_in::<D>();
+        self.wake();
+        Ok(())
+    }
+
+    /// Sets the target pose to the present pose.
+    pub(crate) fn stay(&mut self) {
+        (self.goal, self.goal_before) = (self.position, self.position);
+        self.rotation_goal = self.rotation;
+    }
+
+    /// Wakes the body and restarts its sleep timer.
+    pub(crate) fn wake(&mut self) {
+        (self.asleep, self.sleep_timer) = (false, 0.0);
+    }
+
+    /// Computes the moments of inertia for a world of `D`.
+    pub(super) fn take_inertia<D: Dim>(&mut self) {
+        self.inertia = match self.motion_type {
+            MotionType::Dynamic { mass } => Some(Inertia::of::<D>(&self.form, mass)),
+            _ => None,
+        };
+    }
+
+    /// Integrates gravity and air drag: velocities decay at the rate `drag` [1/s] over `duration` [s].
+    pub(crate) fn fall<D: Dim>(&mut self, acceleration: Vector, drag: f32, duration: f32) {
+        let gain = scaled(flat::<D>(acceleration), duration);
+        let left = 1.0 / (1.0 + drag * duration);
+        self.velocity = scaled(plus(self.velocity, gain), left);
+        self.angular_velocity = scaled(self.angular_velocity, left);
+    }
+
+    /// Integrates position and rotation.
+    pub(crate) fn drift(&mut self, duration: f32) {
+        if !self.moves() {
+            return;
+        }
+        let position = plus(self.position, scaled(self.velocity, duration));
+        if self.angular_velocity == [0.0; 3] {
+            return self.stand_at(position, self.rotation);
+        }
+        let way = Rotation::about(
+            self.angular_velocity,
+            length(self.angular_velocity) * duration,
+        );
+        let rotation = self.rotation.then(way);
+        if let Some(inertia) = &self.inertia {
+            // Without torque the angular momentum is preserved.
+            self.angular_velocity =
+                inertia.spin_kept(self.angular_velocity, self.rotation, rotation);
+        }
+        self.stand_at(position, rotation);
+    }
+
+    /// Applies an impulse [N s] at a lever arm from the position [m].
+    pub(crate) fn kick(&mut self, impulse: Vector, lever: Vector) {
+        self.velocity = plus(self.velocity, scaled(impulse, self.inverse_mass()));
+        self.twirl(impulse, lever);
+    }
+
+    /// Applies an impulse [N s] of a contact at a lever arm from the position [m], within a substep of
+    /// `duration` [s].
+    #[inline(always)]
+    pub(crate) fn push_at(&mut self, impulse: Vector, lever: Vector, duration: f32) {
+        self.push(impulse, duration);
+        self.twirl(impulse, lever);
+    }
+
+    #[inline(always)]
+    fn twirl(&mut self, impulse: Vector, lever: Vector) {
+        if self.can_be_turned() {
+            let twist = times(&self.inverse_inertia, cross(lever, impulse));
+            self.angular_velocity = plus(self.angular_velocity, twist);
+        }
+    }
+
+    /// Returns the inverse effective mass [1/kg] at a lever arm [m] along a unit direction.
+    pub(crate) fn yields(&self, lever: Vector, way: Vector) -> f32 {
+        let mut gain = self.inverse_mass();
+        if self.can_be_turned() {
+            let arm = cross(lever, way);
+            let turned = times(&self.inverse_inertia, arm);
+            gain += dot(arm, turned);
+        }
+        gain
+    }
+
+    /// Returns the velocity that an impulse of 1 N s along a unit direction gives the point at a lever arm
+    /// [1/kg].
+    pub(crate) fn gain(&self, lever: Vector, way: Vector) -> Vector {
+        let gain = scaled(way, self.inverse_mass());
+        match self.can_be_turned() {
+            true => {
+                let spin = times(&self.inverse_inertia, cross(lever, way));
+                plus(gain, cross(spin, lever))
+            }
+            false => gain,
+        }
+    }
+
+    /// Returns an upper bound of the inverse effective mass at a world-space point [m], over all directions
+    /// [1/kg].
+    #[inline(always)]
+    pub(crate) fn yields_near(&self, at: Vector) -> f32 {
+        let gain = self.inverse_mass();
+        if !self.can_be_turned() {
+            return gain;
+        }
+        let lever = minus(at, self.position);
+        let [x, y, z] = self.inverse_inertia;
+        gain + (x[0] + y[1] + z[2]) * dot(lever, lever)
+    }
+
+    /// Returns whether contacts can turn the body.
+    #[inline(always)]
+    fn can_be_turned(&self) -> bool {
+        self.is_dynamic() && !self.asleep
+    }
+
+    /// Returns whether the body can have an angular velocity.
+    #[inline(always)]
+    fn turns(&self) -> bool {
+        match self.motion_type {
+            MotionType::Fixed => false,
+            MotionType::Kinematic | MotionType::Dynamic { .. } => true,
+            MotionType::Coupled { .. } => self.angular_velocity != [0.0; 3],
+        }
+    }
+}

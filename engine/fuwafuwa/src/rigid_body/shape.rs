@@ -1,0 +1,407 @@
+//! Rigid shapes with signed distances: half-spaces, boxes, capsules, balls.
+//!
+//! The same shapes serve 2D and 3D. In 2D all third coordinates are 0: a ball is a disc, and a capsule is a
+//! bar with round ends.
+
+mod manifold;
+mod oriented_box;
+mod shape_distance;
+mod shape_ray;
+
+use crate::foundation::dim::Dim;
+use crate::math::rotation::Rotation;
+pub use crate::math::vector::Vector;
+use crate::math::vector::{dot, length, minus, plus, scaled};
+use std::fmt;
+
+/// Lower and upper corner of an axis-aligned box [m].
+pub type Bounds = [Vector; 2];
+
+/// Rigid shape.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Shape {
+    /// Half-space below a plane (2D: a line).
+    HalfSpace {
+        /// Outward unit normal.
+        normal: Vector,
+        /// Signed distance of the surface from the origin along the normal [m].
+        offset: f32,
+    },
+    /// Axis-aligned box.
+    Box {
+        /// Centre [m].
+        centre: Vector,
+        /// Half extents [m]; in 2D the third one is ignored.
+        half: Vector,
+    },
+    /// Oriented box.
+    OrientedBox {
+        /// Centre [m].
+        centre: Vector,
+        /// Half extents along the local axes [m]; in 2D the third one is ignored.
+        half: Vector,
+        /// Rotation from local to world axes.
+        rotation: Rotation,
+    },
+    /// Capsule: all points within `radius` of a segment.
+    Capsule {
+        /// First end of the segment [m].
+        from: Vector,
+        /// Second end of the segment [m].
+        to: Vector,
+        /// Radius [m].
+        radius: f32,
+    },
+    /// Ball; in 2D a disc.
+    Ball {
+        /// Centre [m].
+        centre: Vector,
+        /// Radius [m].
+        radius: f32,
+    },
+}
+
+/// Invalid shape parameter.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct BadShape {
+    /// Name of the field.
+    pub field: &'static str,
+    /// Expected value.
+    pub expected: &'static str,
+}
+
+impl fmt::Display for BadShape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "invalid shape: {} must be {}", self.field, self.expected)
+    }
+}
+
+impl std::error::Error for BadShape {}
+
+impl Shape {
+    /// Returns the half-space with an outward normal of any length and its surface through `point` [m].
+    pub fn half_space(normal: Vector, point: Vector) -> Self {
+        let normal = scaled(normal, 1.0 / length(normal));
+        let offset = dot(normal, point);
+        Self::HalfSpace { normal, offset }
+    }
+
+    /// Checks that all numbers are finite, sizes positive, and normals and rotations normalised.
+    ///
+    /// # Errors
+    /// [`BadShape`] names the first invalid field.
+    pub fn check(&self) -> Result<(), BadShape> {
+        let finite = |field, v: Vector| {
+            let expected = "finite";
+            let good = v.iter().all(|k| k.is_finite());
+            good.then_some(()).ok_or(BadShape { field, expected })
+        };
+        let positive = |field, k: f32| {
+            let expected = "positive and finite";
+            let good = k.is_finite() && k > 0.0;
+            good.then_some(()).ok_or(BadShape { field, expected })
+        };
+        match *self {
+            Self::HalfSpace { normal, offset } => {
+                finite("offset", [offset; 3])?;
+                let expected = "of length 1";
+                let good = (length(normal) - 1.0).abs() < 1e-3;
+                let field = "normal";
+                good.then_some(()).ok_or(BadShape { field, expected })
+            }
+            Self::Box { centre, half } => {
+                finite("centre", centre)?;
+                half.iter().try_for_each(|&k| positive("half", k))
+            }
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => {
+                Self::Box { centre, half }.check()?;
+                let (field, expected) = ("rotation", "of length 1");
+                let is_good = rotation.is_unit();
+                is_good.then_some(()).ok_or(BadShape { field, expected })
+            }
+            Self::Capsule { from, to, radius } => {
+                finite("from", from)?;
+                finite("to", to)?;
+                positive("radius", radius)
+            }
+            Self::Ball { centre, radius } => {
+                finite("centre", centre)?;
+                positive("radius", radius)
+            }
+        }
+    }
+
+    /// Returns the signed distance of a point from the surface [m], negative inside, and the outward normal
+    /// there.
+    // Inlined, because passing a point through memory takes as long as the computation.
+    #[inline(always)]
+    pub fn distance(&self, point: Vector) -> (f32, Vector) {
+        match *self {
+            Self::HalfSpace { normal, offset } => (dot(normal, point) - offset, normal),
+            Self::Box { centre, half } => distance_from_box(minus(point, centre), half),
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => distance_from_turned(minus(point, centre), half, rotation),
+            Self::Capsule { from, to, radius } => {
+                let (axis, reach) = (minus(to, from), minus(point, from));
+                let along = dot(axis, reach) / dot(axis, axis).max(1e-12);
+                let nearest = scaled(axis, along.clamp(0.0, 1.0));
+                let (distance, normal) = away(minus(reach, nearest));
+                (distance - radius, normal)
+            }
+            Self::Ball { centre, radius } => {
+                let (distance, normal) = away(minus(point, centre));
+                (distance - radius, normal)
+            }
+        }
+    }
+
+    /// Returns the axis-aligned bounding box [m]; that of a half-space is infinite. Ignored axes are 0.
+    pub fn bounds(&self) -> Bounds {
+        let around = |from: Vector, to: Vector, half: Vector| {
+            let low = [0, 1, 2].map(|axis: usize| from[axis].min(to[axis]) - half[axis]);
+            let high = [0, 1, 2].map(|axis: usize| from[axis].max(to[axis]) + half[axis]);
+            [low, high]
+        };
+        match *self {
+            Self::HalfSpace { .. } => [[f32::NEG_INFINITY; 3], [f32::INFINITY; 3]],
+            Self::Box { centre, half } => around(
+                centre,
+                centre,
+                half.map(|k| if k == f32::MAX { 0.0 } else { k }),
+            ),
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => {
+                let axes = rotation.axes();
+                let reach = |axis: usize| {
+                    let own = (0..3).map(|own| reach_of(axes[own][axis], half[own]));
+                    own.sum::<f32>()
+                };
+                around(centre, centre, [0, 1, 2].map(reach))
+            }
+            Self::Capsule { from, to, radius } => around(from, to, [radius; 3]),
+            Self::Ball { centre, radius } => around(centre, centre, [radius; 3]),
+        }
+    }
+
+    /// Returns the radius of the largest ball that fits into the shape [m].
+    pub fn inradius(&self) -> f32 {
+        match *self {
+            Self::HalfSpace { .. } => f32::INFINITY,
+            Self::Box { half, .. } | Self::OrientedBox { half, .. } => {
+                half.into_iter().fold(f32::INFINITY, f32::min)
+            }
+            Self::Capsule { radius, .. } | Self::Ball { radius, .. } => radius,
+        }
+    }
+
+    /// Returns the shape for a world of `D`. In 2D third coordinates are removed, so that no contact pushes
+    /// out of the plane.
+    pub(crate) fn seen_in<D: Dim>(self) -> Self {
+        // The code below flattens shapes, for 2D only.
+        if D::N == 3 {
+            return self;
+        }
+        let flat = |[x, y, _]: Vector| [x, y, 0.0];
+        match self {
+            Self::HalfSpace { normal, .. } if normal[2] == 0.0 => self,
+            Self::HalfSpace { normal, offset } => {
+                let steepness = length(flat(normal));
+                Self::HalfSpace {
+                    normal: scaled(flat(normal), 1.0 / steepness),
+                    offset: offset / steepness,
+                }
+            }
+            Self::Box { centre, half } => Self::Box {
+                centre: flat(centre),
+                half: [half[0], half[1], f32::MAX],
+            },
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => Self::OrientedBox {
+                centre: flat(centre),
+                half: [half[0], half[1], f32::MAX],
+                rotation: rotation.seen_in::<D>(),
+            },
+            Self::Capsule { from, to, radius } => Self::Capsule {
+                from: flat(from),
+                to: flat(to),
+                radius,
+            },
+            Self::Ball { centre, radius } => Self::Ball {
+                centre: flat(centre),
+                radius,
+            },
+        }
+    }
+
+    /// Returns the shape translated `by` [m].
+    pub fn translated(self, by: Vector) -> Self {
+        match self {
+            Self::HalfSpace { normal, offset } => Self::HalfSpace {
+                normal,
+                offset: offset + dot(normal, by),
+            },
+            Self::Box { centre, half } => Self::Box {
+                centre: plus(centre, by),
+                half,
+            },
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => Self::OrientedBox {
+                centre: plus(centre, by),
+                half,
+                rotation,
+            },
+            Self::Capsule { from, to, radius } => Self::Capsule {
+                from: plus(from, by),
+                to: plus(to, by),
+                radius,
+            },
+            Self::Ball { centre, radius } => Self::Ball {
+                centre: plus(centre, by),
+                radius,
+            },
+        }
+    }
+}
+
+impl Shape {
+    /// Returns the shape rotated about the origin.
+    #[must_use]
+    pub fn rotated(self, by: Rotation) -> Self {
+        if by == Rotation::NONE {
+            return self;
+        }
+        match self {
+            Self::HalfSpace { normal, offset } => Self::HalfSpace {
+                normal: by.apply(normal),
+                offset,
+            },
+            Self::Box { centre, half } => Self::OrientedBox {
+                centre: by.apply(centre),
+                half,
+                rotation: by,
+            },
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => Self::OrientedBox {
+                centre: by.apply(centre),
+                half,
+                rotation: rotation.then(by),
+            },
+            Self::Capsule { from, to, radius } => Self::Capsule {
+                from: by.apply(from),
+                to: by.apply(to),
+                radius,
+            },
+            Self::Ball { centre, radius } => Self::Ball {
+                centre: by.apply(centre),
+                radius,
+            },
+        }
+    }
+}
+
+/// Returns the distance from an oriented box, like [`distance_from_box`]. Not inlined, because it is rare and
+/// would slow down the common cases.
+#[inline(never)]
+fn distance_from_turned(point: Vector, half: Vector, rotation: Rotation) -> (f32, Vector) {
+    let own = rotation.inverse().apply(point);
+    let (distance, normal) = distance_from_box(own, half);
+    (distance, rotation.apply(normal))
+}
+
+/// Returns the extent of a half width along a world axis; 0 for the unbounded third axis of a 2D box.
+fn reach_of(cosine: f32, half: f32) -> f32 {
+    match half == f32::MAX {
+        true => 0.0,
+        false => cosine.abs() * half,
+    }
+}
+
+/// Returns a vector for a world of `D`: in 2D with the third coordinate 0.
+pub(crate) fn flat<D: Dim>(mut vector: Vector) -> Vector {
+    vector[D::N..].fill(0.0);
+    vector
+}
+
+/// Returns the length and the direction of a vector; the direction of a vector of length 0 is upwards.
+#[inline]
+fn away(v: Vector) -> (f32, Vector) {
+    let distance = length(v);
+    if distance > 1e-9 {
+        (distance, scaled(v, 1.0 / distance))
+    } else {
+        (0.0, [0.0, 1.0, 0.0])
+    }
+}
+
+/// Returns the signed distance from a box around the origin and the normal. Inside it is that of the nearest
+/// face, outside that of the nearest point.
+#[inline]
+fn distance_from_box(at: Vector, half: Vector) -> (f32, Vector) {
+    let beyond = [0, 1, 2].map(|k: usize| at[k].abs() - half[k]);
+    let sign = |k: usize| if at[k] < 0.0 { -1.0 } else { 1.0 };
+    if beyond.iter().all(|&k| k <= 0.0) {
+        let side = (0..3).fold(0, |side, k| if beyond[k] > beyond[side] { k } else { side });
+        let mut normal = [0.0; 3];
+        normal[side] = sign(side);
+        return (beyond[side], normal);
+    }
+    away([0, 1, 2].map(|k| beyond[k].max(0.0) * sign(k)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distance_returns_signed_distance_and_normal() {
+        let wall = Shape::Box {
+            centre: [1.0, 0.0, 0.0],
+            half: [0.5, 2.0, 9.0],
+        };
+        assert_eq!(wall.distance([0.0, 1.0, 0.0]), (0.5, [-1.0, 0.0, 0.0]));
+        let (gap, normal) = wall.distance([0.75, 0.0, 0.0]);
+        assert_eq!((gap, normal), (-0.25, [-1.0, 0.0, 0.0]));
+        let (gap, _) = wall.distance([1.5 + 3.0, 2.0 + 4.0, 0.0]);
+        assert_eq!(gap, 5.0);
+        let bar = Shape::Capsule {
+            from: [0.0; 3],
+            to: [2.0, 0.0, 0.0],
+            radius: 0.5,
+        };
+        assert_eq!(bar.distance([1.0, 2.0, 0.0]), (1.5, [0.0, 1.0, 0.0]));
+        assert_eq!(bar.distance([5.0, 0.0, 4.0]).0, 4.5);
+        let floor = Shape::half_space([0.0, 2.0, 0.0], [7.0, 1.0, 0.0]);
+        assert_eq!(floor.distance([0.0, 0.5, 0.0]), (-0.5, [0.0, 1.0, 0.0]));
+    }
+
+    #[test]
+    fn check_names_the_invalid_field() {
+        let ball = Shape::Ball {
+            centre: [0.0; 3],
+            radius: -1.0,
+        };
+        assert_eq!(ball.check().map_err(|bad| bad.field), Err("radius"));
+        let nowhere = Shape::half_space([0.0; 3], [0.0; 3]);
+        assert!(nowhere.check().is_err());
+    }
+}

@@ -1,0 +1,326 @@
+//! Contact manifolds between shapes: a common normal and the contact points.
+
+use super::oriented_box::{Brick, Separation, Side};
+use super::{Shape, Vector};
+use crate::math::vector::{dot, length, minus, plus, scaled};
+
+/// Cosine limit for the end of a capsule to be a contact point: its normal must be within 26° of the
+/// manifold's normal. On a face all normals are equal.
+const ALONG: f32 = 0.9;
+/// Minimum distance of the nearest point of a capsule from its end points, as a share of its radius. A closer
+/// point would be a duplicate.
+const APART: f32 = 0.5;
+
+/// Contact manifold of two shapes.
+#[derive(Clone, Debug, Default)]
+pub struct Manifold {
+    /// Unit normal from the second shape to the first.
+    pub normal: Vector,
+    pub points: Vec<ManifoldPoint>,
+}
+
+/// Contact point of a manifold.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct ManifoldPoint {
+    /// Midpoint between both surfaces [m].
+    pub at: Vector,
+    /// Distance of the surfaces there [m], negative if they overlap.
+    pub gap: f32,
+    /// Feature key, equal in the next substep for the same corners and edges.
+    pub key: u32,
+}
+
+impl Shape {
+    /// Returns the contact manifold with another shape: up to eight points with a gap below `margin` [m].
+    pub fn manifold(&self, other: &Self, margin: f32) -> Manifold {
+        let found = match (*self, *other) {
+            (Self::Ball { centre, radius }, _) => {
+                let (distance, normal) = other.distance(centre);
+                let point = beneath(centre, normal, radius, distance - radius, 0);
+                let points = vec![point];
+                Manifold { normal, points }
+            }
+            (Self::Capsule { .. }, _) if !matches!(other, Self::Ball { .. }) => bar(self, other),
+            (_, Self::Ball { .. } | Self::Capsule { .. }) => other.manifold(self, margin).turned(),
+            _ => match (Brick::of(self), Brick::of(other), other) {
+                (Some(own), Some(others), _) => bricks(&own, &others, margin),
+                (Some(own), None, &Self::HalfSpace { normal, offset }) => {
+                    on_plane(&own, normal, offset)
+                }
+                (None, Some(_), _) => other.manifold(self, margin).turned(),
+                _ => Manifold::default(),
+            },
+        };
+        found.within(margin)
+    }
+}
+
+impl Manifold {
+    /// Returns the manifold with the shapes swapped.
+    fn turned(mut self) -> Self {
+        self.normal = scaled(self.normal, -1.0);
+        self
+    }
+
+    fn within(mut self, margin: f32) -> Self {
+        self.points.retain(|point| point.gap < margin);
+        self
+    }
+}
+
+/// Returns the contact point between a ball and the surface below it.
+fn beneath(centre: Vector, normal: Vector, radius: f32, gap: f32, key: u32) -> ManifoldPoint {
+    let at = minus(centre, scaled(normal, radius + 0.5 * gap));
+    ManifoldPoint { at, gap, key }
+}
+
+/// Returns the manifold of a capsule with any shape except a ball: its nearest point and its ends.
+fn bar(own: &Shape, other: &Shape) -> Manifold {
+    let &Shape::Capsule { from, to, radius } = own else {
+        return Manifold::default();
+    };
+    let (distance, normal, share) = other.nearest_of_segment(from, to);
+    let nearest = plus(from, scaled(minus(to, from), share));
+    let mut points = Vec::new();
+    for (key, end) in [(1, from), (2, to)] {
+        let (far, way) = other.distance(end);
+        if dot(way, normal) > ALONG {
+            points.push(beneath(end, normal, radius, far - radius, key));
+        }
+    }
+    if let Shape::Capsule {
+        from,
+        to,
+        radius: thickness,
+    } = *other
+    {
+        for (key, end) in [(3, from), (4, to)] {
+            let (far, way) = own.distance(end);
+            if dot(way, normal) < -ALONG {
+                let point = beneath(end, scaled(normal, -1.0), thickness, far - thickness, key);
+                points.push(point);
+            }
+        }
+    }
+    let middle = beneath(nearest, normal, radius, distance - radius, 0);
+    let is_apart = |point: &ManifoldPoint| length(minus(point.at, middle.at)) > APART * radius;
+    if points.iter().all(is_apart) {
+        points.push(middle);
+    }
+    Manifold { normal, points }
+}
+
+fn on_plane(brick: &Brick, normal: Vector, offset: f32) -> Manifold {
+    let corners = (0..brick.corner_count()).map(|number| (number as u32, brick.corner(number)));
+    let points = corners.map(|(key, corner)| {
+        let gap = dot(normal, corner) - offset;
+        beneath(corner, normal, 0.0, gap, key)
+    });
+    Manifold {
+        normal,
+        points: points.collect(),
+    }
+}
+
+fn bricks(own: &Brick, other: &Brick, margin: f32) -> Manifold {
+    let separation = own.separation(other);
+    if separation.gap >= margin {
+        return Manifold::default();
+    }
+    let Separation { gap, normal, side } = separation;
+    let points = match side {
+        Side::First(axis) => on_face(own, axis, scaled(normal, -1.0), other),
+        Side::Second(axis) => on_face(other, axis, normal, own),
+        Side::Edges(first, second) => {
+            let [a, b] = [
+                edge(own, first, scaled(normal, -1.0)),
+                edge(other, second, normal),
+            ];
+            let at = between(a, own.axes[first], b, other.axes[second]);
+            let key = 1000 + 3 * first as u32 + second as u32;
+            vec![ManifoldPoint { at, gap, key }]
+        }
+    };
+    Manifold { normal, points }
+}
+
+/// Returns the contact points of a box on the face of another box, `ground`. The face is normal to `axis`,
+/// with the outward normal `out`.
+fn on_face(ground: &Brick, axis: usize, out: Vector, brick: &Brick) -> Vec<ManifoldPoint> {
+    let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != axis).collect();
+    let level = dot(out, ground.centre) + ground.half[axis];
+    // The face with the normal most opposite to that of the ground face.
+    let facing = |k: &usize| dot(brick.axes[*k], out).abs();
+    let face = (0..brick.axis_count).max_by(|a, b| facing(a).total_cmp(&facing(b)));
+    let face = face.unwrap_or(axis);
+    let is_upper = dot(brick.axes[face], out) < 0.0;
+    let mut polygon: Vec<(Vector, u32)> = around(brick, face, is_upper);
+    for (number, side) in others.into_iter().enumerate() {
+        for (sign, plane) in [(1.0, 2 * number), (-1.0, 2 * number + 1)] {
+            let way = scaled(ground.axes[side], sign);
+            let most = dot(way, ground.centre) + ground.half[side];
+            polygon = clipped(&polygon, way, most, plane as u32);
+        }
+    }
+    let point = |&(corner, key): &(Vector, u32)| {
+        let gap = dot(out, corner) - level;
+        let at = minus(corner, scaled(out, 0.5 * gap));
+        ManifoldPoint { at, gap, key }
+    };
+    polygon.iter().map(point).collect()
+}
+
+/// Returns the corners of a face in order around it, with their keys.
+fn around(brick: &Brick, face: usize, is_upper: bool) -> Vec<(Vector, u32)> {
+    let fixed = usize::from(is_upper) << face;
+    let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != face).collect();
+    let numbers: Vec<usize> = match others[..] {
+        [a] => vec![0, 1 << a],
+        [a, b] => vec![0, 1 << a, 1 << a | 1 << b, 1 << b],
+        _ => Vec::new(),
+    };
+    let corners = numbers.into_iter().map(|number| number | fixed);
+    corners
+        .map(|number| (brick.corner(number), number as u32))
+        .collect()
+}
+
+/// Clips a polygon (in 2D a segment) against the half-space up to `most` [m] in a direction.
+fn clipped(polygon: &[(Vector, u32)], way: Vector, most: f32, plane: u32) -> Vec<(Vector, u32)> {
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    let is_line = polygon.len() == 2;
+    for (number, &(at, key)) in polygon.iter().enumerate() {
+        let beyond = dot(way, at) - most;
+        if beyond <= 0.0 {
+            kept.push((at, key));
+        }
+        if is_line && number == 1 {
+            break;
+        }
+        let (next, next_key) = polygon[(number + 1) % polygon.len()];
+        let next_beyond = dot(way, next) - most;
+        if (beyond <= 0.0) != (next_beyond <= 0.0) {
+            let share = beyond / (beyond - next_beyond);
+            let at = plus(at, scaled(minus(next, at), share));
+            let (low, high) = (key.min(next_key), key.max(next_key));
+            let own = low.wrapping_add(high.wrapping_mul(131));
+            kept.push((at, own.wrapping_mul(4).wrapping_add(8 + plane)));
+        }
+    }
+    kept
+}
+
+/// Returns a point on the edge along an axis that is farthest in a direction.
+fn edge(brick: &Brick, along: usize, way: Vector) -> Vector {
+    let others = (0..brick.axis_count).filter(|&axis| axis != along);
+    others.fold(brick.centre, |at, axis| {
+        let sign = if dot(brick.axes[axis], way) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        plus(at, scaled(brick.axes[axis], sign * brick.half[axis]))
+    })
+}
+
+/// Returns the midpoint between the nearest points of two lines that are not parallel.
+fn between(a: Vector, along: Vector, b: Vector, across: Vector) -> Vector {
+    let (apart, cosine) = (minus(b, a), dot(along, across));
+    let under = (1.0 - cosine * cosine).max(1e-6);
+    let (first, second) = (dot(apart, along), dot(apart, across));
+    let on_first = plus(a, scaled(along, (first - cosine * second) / under));
+    let on_second = plus(b, scaled(across, (cosine * first - second) / under));
+    scaled(plus(on_first, on_second), 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::rotation::Rotation;
+
+    fn cube(centre: Vector, half: Vector) -> Shape {
+        Shape::Box { centre, half }
+    }
+
+    /// Checks the number of points, the smallest gap and the normal, in both orders.
+    fn check(a: Shape, b: Shape, count: usize, gap: f32, normal: Vector) {
+        for (first, second, sign) in [(a, b, 1.0), (b, a, -1.0)] {
+            let found = first.manifold(&second, 0.1);
+            assert_eq!(found.points.len(), count, "{first:?} {second:?} {found:?}");
+            let gaps = found.points.iter().map(|point| point.gap);
+            let least = gaps.fold(f32::INFINITY, f32::min);
+            assert!((least - gap).abs() < 1e-4, "{found:?}");
+            let off = minus(found.normal, scaled(normal, sign));
+            assert!(dot(off, off) < 1e-5, "{found:?}");
+            for point in &found.points {
+                let [one, two] = [first, second].map(|shape| shape.distance(point.at).0);
+                assert!((one - 0.5 * point.gap).abs() < 6e-3, "{point:?} {one}");
+                assert!((two - 0.5 * point.gap).abs() < 6e-3, "{point:?} {two}");
+            }
+            let mut keys: Vec<u32> = found.points.iter().map(|point| point.key).collect();
+            keys.sort_unstable();
+            keys.dedup();
+            assert_eq!(keys.len(), count, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn manifold_points_are_correct_for_all_pairs_of_shapes() {
+        let up = [0.0, 1.0, 0.0];
+        let floor = Shape::half_space(up, [0.0; 3]);
+        let brick = cube([0.0, 0.49, 0.0], [1.0, 0.5, 0.7]);
+        check(brick, floor, 4, -0.01, up);
+        check(cube([0.3, 1.5, 0.2], [1.0, 0.5, 0.7]), brick, 4, 0.01, up);
+        let turned = Rotation::about(up, 0.7);
+        let above = cube([0.0; 3], [0.9, 0.5, 0.9]).rotated(turned);
+        check(above.translated([0.0, 1.48, 0.0]), brick, 8, -0.01, up);
+        // Boxes in 2D.
+        let flat = |centre: Vector| cube(centre, [1.0, 0.5, f32::MAX]);
+        check(flat([0.4, 0.99, 0.0]), flat([0.0; 3]), 2, -0.01, up);
+        check(flat([0.4, 0.49, 0.0]), floor, 2, -0.01, up);
+        // Capsules.
+        let bar = |y: f32, to: Vector| {
+            Shape::Capsule {
+                from: scaled(to, -1.0),
+                to,
+                radius: 0.25,
+            }
+            .translated([0.0, y, 0.0])
+        };
+        check(bar(0.24, [1.0, 0.0, 0.0]), floor, 2, -0.01, up);
+        check(bar(1.23, [0.8, 0.0, 0.0]), brick, 2, -0.01, up);
+        check(bar(1.23, [3.0, 0.0, 0.0]), brick, 1, -0.01, up);
+        check(
+            bar(0.49, [1.0, 0.0, 0.0]),
+            bar(0.0, [0.0, 0.0, 1.0]),
+            1,
+            -0.01,
+            up,
+        );
+        check(
+            bar(0.49, [1.0, 0.0, 0.0]),
+            bar(0.0, [2.0, 0.0, 0.0]),
+            2,
+            -0.01,
+            up,
+        );
+        let ball = Shape::Ball {
+            centre: [0.0, 1.24, 0.0],
+            radius: 0.25,
+        };
+        check(ball, brick, 1, 0.0, up);
+        check(bar(1.73, [1.0, 0.0, 0.0]), ball, 1, -0.01, up);
+        // Two crossing edges.
+        let quarter = std::f32::consts::FRAC_PI_4;
+        let beam = |axis| cube([0.0; 3], [1.0; 3]).rotated(Rotation::about(axis, quarter));
+        let high = beam([1.0, 0.0, 0.0]).translated([0.0, 2.0 * 2.0f32.sqrt() - 0.01, 0.0]);
+        check(high, beam([0.0, 0.0, 1.0]), 1, -0.01, up);
+        assert!(floor.manifold(&floor, 1.0).points.is_empty());
+        assert!(
+            brick
+                .manifold(&brick.translated([0.0, 3.0, 0.0]), 0.1)
+                .points
+                .is_empty()
+        );
+    }
+}

@@ -1,0 +1,132 @@
+//! Boxes with their axes, and the separating-axis test [Gottschalk 1996].
+
+use super::{Shape, Vector};
+use crate::math::rotation::Rotation;
+use crate::math::vector::{cross, dot, minus, plus, scaled};
+
+/// Bias of the separating-axis test, as a share of the smallest half extent. A face axis of the second box
+/// must exceed the best one of the first box by it, and an edge axis must exceed both. Resting boxes so keep
+/// their contact points, preferably on faces, which have more of them.
+const BEHIND: f32 = 0.01;
+
+/// Box with its centre, half extents and axes.
+#[derive(Copy, Clone, Debug)]
+pub struct Brick {
+    pub centre: Vector,
+    pub half: Vector,
+    pub axes: [Vector; 3],
+    /// Number of bounded axes: 2 for boxes of the plane, otherwise 3.
+    pub axis_count: usize,
+}
+
+/// Axis of largest separation, or of smallest overlap, of two boxes.
+#[derive(Copy, Clone, Debug)]
+pub struct Separation {
+    /// Separation [m], negative if the boxes overlap.
+    pub gap: f32,
+    /// Unit normal from the second box to the first.
+    pub normal: Vector,
+    pub side: Side,
+}
+
+/// Feature that defines a separating axis.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Side {
+    /// Face of the first box, normal to this axis of it.
+    First(usize),
+    /// Face of the second box, normal to this axis of it.
+    Second(usize),
+    /// Edge of each box, along these axes.
+    Edges(usize, usize),
+}
+
+impl Brick {
+    /// Returns the box of a box-shaped shape.
+    pub fn of(shape: &Shape) -> Option<Self> {
+        let (centre, half, rotation) = match *shape {
+            Shape::Box { centre, half } => (centre, half, Rotation::NONE),
+            Shape::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => (centre, half, rotation),
+            _ => return None,
+        };
+        let axis_count = if half[2] == f32::MAX { 2 } else { 3 };
+        Some(Self {
+            centre,
+            half,
+            axes: rotation.axes(),
+            axis_count,
+        })
+    }
+
+    /// Returns the extent from the centre along a direction [m].
+    pub fn reach(&self, way: Vector) -> f32 {
+        let own =
+            (0..self.axis_count).map(|axis| dot(self.axes[axis], way).abs() * self.half[axis]);
+        own.sum()
+    }
+
+    /// Returns a corner by number: bit `k` selects the upper side of axis `k`.
+    pub fn corner(&self, number: usize) -> Vector {
+        (0..self.axis_count).fold(self.centre, |at, axis| {
+            let sign = if number >> axis & 1 == 1 { 1.0 } else { -1.0 };
+            plus(at, scaled(self.axes[axis], sign * self.half[axis]))
+        })
+    }
+
+    /// Returns the number of corners.
+    pub fn corner_count(&self) -> usize {
+        1 << self.axis_count
+    }
+
+    /// Returns the separating axis of two boxes.
+    pub fn separation(&self, other: &Self) -> Separation {
+        let apart = minus(self.centre, other.centre);
+        let along = |way: Vector, side: Side| {
+            let distance = dot(apart, way);
+            let normal = if distance < 0.0 {
+                scaled(way, -1.0)
+            } else {
+                way
+            };
+            let gap = distance.abs() - self.reach(way) - other.reach(way);
+            Separation { gap, normal, side }
+        };
+        let larger =
+            |best: Separation, next: Separation| if next.gap > best.gap { next } else { best };
+        let none = Separation {
+            gap: f32::NEG_INFINITY,
+            normal: [0.0, 1.0, 0.0],
+            side: Side::First(1),
+        };
+        let sizes = [self, other].map(|brick| &brick.half[..brick.axis_count]);
+        let sizes = sizes.into_iter().flatten().copied();
+        let behind = BEHIND * sizes.fold(f32::MAX, f32::min);
+        let first = (0..self.axis_count).map(|axis| along(self.axes[axis], Side::First(axis)));
+        let second = (0..other.axis_count).map(|axis| along(other.axes[axis], Side::Second(axis)));
+        let (first, second) = (first.fold(none, larger), second.fold(none, larger));
+        let best = match second.gap > first.gap + behind {
+            true => second,
+            false => first,
+        };
+        if self.axis_count == 2 {
+            return best;
+        }
+        let mut edges = none;
+        for (own, others) in (0..9).map(|pair| (pair / 3, pair % 3)) {
+            let way = cross(self.axes[own], other.axes[others]);
+            let squared = dot(way, way);
+            // Parallel edges cannot separate boxes that face axes do not separate.
+            if squared > 1e-6 {
+                let way = scaled(way, 1.0 / squared.sqrt());
+                edges = larger(edges, along(way, Side::Edges(own, others)));
+            }
+        }
+        match edges.gap > best.gap + behind {
+            true => edges,
+            false => best,
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! Distances between shapes.
+
+use super::oriented_box::Brick;
+use super::{Shape, Vector, distance_from_box};
+use crate::math::vector::{dot, minus, plus, scaled};
+
+/// Ternary-search steps for the nearest point of a segment, each of which keeps two thirds. 40 steps leave
+/// 1e-7 of its length, the resolution of single precision.
+const NARROWINGS: usize = 40;
+
+impl Shape {
+    /// Returns the distance to another shape [m], negative if they overlap, and the unit direction from the
+    /// other shape to this one. For oriented boxes corner to corner the distance is a lower bound.
+    pub fn gap(&self, other: &Self) -> (f32, Vector) {
+        match (*self, *other) {
+            (Self::Ball { centre, radius }, _) => {
+                let (distance, normal) = other.distance(centre);
+                (distance - radius, normal)
+            }
+            (_, Self::Ball { .. }) => turned(other.gap(self)),
+            (Self::Capsule { from, to, radius }, _) => {
+                let (distance, normal, _) = other.nearest_of_segment(from, to);
+                (distance - radius, normal)
+            }
+            (_, Self::Capsule { .. }) => turned(other.gap(self)),
+            (
+                Self::Box { centre, half },
+                Self::Box {
+                    centre: middle,
+                    half: size,
+                },
+            ) => distance_from_box(minus(centre, middle), plus(half, size)),
+            (Self::Box { centre, half }, Self::HalfSpace { normal, offset }) => {
+                let reach = [0, 1, 2].map(|axis: usize| half[axis] * normal[axis].abs());
+                let reach = reach.into_iter().sum::<f32>();
+                (dot(normal, centre) - offset - reach, normal)
+            }
+            (Self::HalfSpace { .. }, Self::Box { .. } | Self::OrientedBox { .. }) => {
+                turned(other.gap(self))
+            }
+            (Self::OrientedBox { centre, .. }, Self::HalfSpace { normal, offset }) => {
+                let reach = Brick::of(self).map_or(0.0, |brick| brick.reach(normal));
+                (dot(normal, centre) - offset - reach, normal)
+            }
+            (Self::Box { .. } | Self::OrientedBox { .. }, _) => {
+                let both = Brick::of(self).zip(Brick::of(other));
+                let separation = both.map(|(own, other)| own.separation(&other));
+                separation.map_or((f32::INFINITY, [0.0, 1.0, 0.0]), |found| {
+                    (found.gap, found.normal)
+                })
+            }
+            // Two half-spaces overlap without bound, so no push can separate them.
+            (Self::HalfSpace { normal, .. }, Self::HalfSpace { .. }) => (f32::INFINITY, normal),
+        }
+    }
+}
+
+/// Returns the gap with the shapes swapped.
+fn turned((gap, normal): (f32, Vector)) -> (f32, Vector) {
+    (gap, scaled(normal, -1.0))
+}
+
+impl Shape {
+    /// Returns the smallest distance of a segment's points from the shape [m], the normal there, and the
+    /// position on the segment from 0 to 1. A ternary search finds it, because along a segment the distance
+    /// from a convex shape has a single minimum.
+    pub(super) fn nearest_of_segment(&self, from: Vector, to: Vector) -> (f32, Vector, f32) {
+        let at = |share: f32| self.distance(plus(from, scaled(minus(to, from), share)));
+        let (mut low, mut high) = (0.0f32, 1.0f32);
+        for _ in 0..NARROWINGS {
+            let third = (high - low) / 3.0;
+            let [left, right] = [low + third, high - third];
+            if at(left).0 > at(right).0 {
+                low = left;
+            } else {
+                high = right;
+            }
+        }
+        [0.5 * (low + high), 0.0, 1.0]
+            .map(|share| (at(share).0, at(share).1, share))
+            .into_iter()
+            .reduce(|best, end| if end.0 < best.0 { end } else { best })
+            .expect("the array is not empty")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::rotation::Rotation;
+
+    /// Checks the gap and the direction, in both orders.
+    fn check(a: Shape, b: Shape, gap: f32, normal: Vector) {
+        for (first, second, sign) in [(a, b, 1.0), (b, a, -1.0)] {
+            let (found, way) = first.gap(&second);
+            assert!((found - gap).abs() < 1e-5, "{first:?} {second:?}: {found}");
+            let off = minus(way, scaled(normal, sign));
+            assert!(dot(off, off) < 1e-4, "{first:?} {second:?}: {way:?}");
+        }
+    }
+
+    #[test]
+    fn gap_and_normal_are_correct_for_all_pairs_of_shapes() {
+        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        let ball = |centre| Shape::Ball {
+            centre,
+            radius: 0.5,
+        };
+        let cube = |centre| Shape::Box {
+            centre,
+            half: [1.0, 0.5, 1.0],
+        };
+        let bar = |from, to| Shape::Capsule {
+            from,
+            to,
+            radius: 0.25,
+        };
+        let (up, right) = ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]);
+        check(ball([0.0, 2.0, 0.0]), floor, 1.5, up);
+        check(ball([3.0, 0.0, 0.0]), cube([0.0; 3]), 1.5, right);
+        check(cube([0.0, 0.25, 0.0]), floor, -0.25, up);
+        check(cube([3.0, 0.0, 0.0]), cube([0.0; 3]), 1.0, right);
+        check(cube([1.9, 0.0, 0.0]), cube([0.0; 3]), -0.1, right);
+        let leaning = bar([0.0, 1.0, 0.0], [3.0, 2.0, 0.0]);
+        check(leaning, floor, 0.75, up);
+        check(leaning, ball([-2.0, 1.0, 0.0]), 1.25, right);
+        check(
+            bar([-4.0, 1.5, 0.0], [4.0, 1.5, 0.1]),
+            cube([0.0; 3]),
+            0.75,
+            up,
+        );
+        // Crossing capsules have their nearest points inside their segments.
+        let [along, across] =
+            [[2.0, 0.0, 0.0], [0.0, 0.0, 2.0]].map(|way: Vector| (scaled(way, -1.0), way));
+        let above = |k: Vector| plus(k, up);
+        check(
+            bar(above(along.0), above(along.1)),
+            bar(across.0, across.1),
+            0.5,
+            up,
+        );
+        assert_eq!(floor.gap(&floor).0, f32::INFINITY);
+        let quarter = Rotation::about([0.0, 0.0, 1.0], std::f32::consts::FRAC_PI_4);
+        let edge = |y| {
+            Shape::Box {
+                centre: [0.0; 3],
+                half: [1.0; 3],
+            }
+            .rotated(quarter)
+            .translated([0.0, y, 0.0])
+        };
+        check(edge(2.0), floor, 2.0 - 2.0f32.sqrt(), up);
+        check(edge(2.0), cube([0.0; 3]), 1.5 - 2.0f32.sqrt(), up);
+    }
+}

@@ -1,0 +1,186 @@
+//! Ray casts against shapes.
+
+use super::{Shape, Vector};
+use crate::math::vector::{dot, minus, plus, scaled};
+
+type Vector64 = [f64; 3];
+
+impl Shape {
+    /// Casts a ray with a unit direction. Returns the distance [m] to the first intersection with the
+    /// surface, from outside or inside, and the outward normal there.
+    pub fn ray(&self, from: Vector, direction: Vector) -> Option<(f32, Vector)> {
+        let (begin, way) = (from.map(f64::from), direction.map(f64::from));
+        let crossings: Vec<f64> = match *self {
+            Self::HalfSpace { normal, offset } => {
+                let normal = normal.map(f64::from);
+                vec![(f64::from(offset) - dot(normal, begin)) / dot(normal, way)]
+            }
+            Self::Box { centre, half } => {
+                through_box(minus(from, centre).map(f64::from), way, half)
+            }
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => {
+                let back = rotation.inverse();
+                let begin = back.apply(minus(from, centre)).map(f64::from);
+                through_box(begin, back.apply(direction).map(f64::from), half)
+            }
+            Self::Ball { centre, radius } => through_ball(minus(from, centre), way, radius),
+            Self::Capsule {
+                from: low,
+                to: high,
+                radius,
+            } => {
+                let ends = [low, high].map(|end| through_ball(minus(from, end), way, radius));
+                let side = through_side(minus(from, low), way, minus(high, low), radius);
+                // Keeps intersections with an end ball only where the ball is on the surface of the capsule.
+                let is_bare = |far: &f64| {
+                    let at = plus(begin, scaled(way, *far)).map(|k| k as f32);
+                    self.distance(at).0 >= -1e-4 * radius
+                };
+                let ends = ends.into_iter().flatten().filter(is_bare);
+                ends.chain(side).collect()
+            }
+        };
+        let ahead = crossings
+            .into_iter()
+            .filter(|far| *far >= 0.0 && far.is_finite());
+        let far = ahead.reduce(f64::min)?;
+        let at = plus(begin, scaled(way, far)).map(|k| k as f32);
+        Some((far as f32, self.distance(at).1))
+    }
+}
+
+/// Returns where a ray enters and leaves a box around the origin.
+fn through_box(from: Vector64, way: Vector64, half: Vector) -> Vec<f64> {
+    let (mut enters, mut leaves) = (f64::NEG_INFINITY, f64::INFINITY);
+    for axis in 0..3 {
+        let half = f64::from(half[axis]);
+        if way[axis] == 0.0 {
+            if from[axis].abs() > half {
+                return Vec::new();
+            }
+            continue;
+        }
+        let ends = [-half, half].map(|end| (end - from[axis]) / way[axis]);
+        enters = enters.max(ends[0].min(ends[1]));
+        leaves = leaves.min(ends[0].max(ends[1]));
+    }
+    match enters <= leaves {
+        true => vec![enters, leaves],
+        false => Vec::new(),
+    }
+}
+
+/// Returns where a ray enters and leaves a ball around the origin.
+fn through_ball(from: Vector, way: Vector64, radius: f32) -> Vec<f64> {
+    let from = from.map(f64::from);
+    roots(
+        1.0,
+        dot(from, way),
+        dot(from, from) - f64::from(radius) * f64::from(radius),
+    )
+}
+
+/// Returns where a ray enters and leaves the cylindrical part of a capsule that begins at the origin.
+fn through_side(from: Vector, way: Vector64, axis: Vector, radius: f32) -> Vec<f64> {
+    let (from, axis) = (from.map(f64::from), axis.map(f64::from));
+    let squared = dot(axis, axis);
+    let across = |v: Vector64| minus(v, scaled(axis, dot(v, axis) / squared));
+    let (begin, step) = (across(from), across(way));
+    let far = roots(
+        dot(step, step),
+        dot(begin, step),
+        dot(begin, begin) - f64::from(radius) * f64::from(radius),
+    );
+    let is_between = |far: &f64| {
+        let along = dot(plus(from, scaled(way, *far)), axis) / squared;
+        (0.0..=1.0).contains(&along)
+    };
+    far.into_iter().filter(is_between).collect()
+}
+
+/// Returns the roots of a x² + 2 b x + c = 0; none if a is 0.
+fn roots(a: f64, b: f64, c: f64) -> Vec<f64> {
+    let under = b * b - a * c;
+    match under >= 0.0 && a > 0.0 {
+        true => [-1.0, 1.0]
+            .map(|sign| (sign * under.sqrt() - b) / a)
+            .to_vec(),
+        false => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::rotation::Rotation;
+
+    #[test]
+    fn ray_hits_every_shape_from_outside_and_inside() {
+        let shapes = [
+            Shape::half_space([0.0, 1.0, 0.0], [0.0, -0.3, 0.0]),
+            Shape::Box {
+                centre: [0.1, 0.0, 0.0],
+                half: [0.5, 0.3, 0.7],
+            },
+            Shape::Box {
+                centre: [0.0, 0.1, 0.0],
+                half: [0.5, 0.3, 0.7],
+            }
+            .rotated(Rotation::about([1.0, 2.0, 3.0], 0.8)),
+            Shape::Ball {
+                centre: [0.1, 0.2, 0.0],
+                radius: 0.6,
+            },
+            Shape::Capsule {
+                from: [-0.5, 0.0, 0.1],
+                to: [0.6, 0.2, 0.0],
+                radius: 0.25,
+            },
+        ];
+        let (mut met, mut missed) = (0, 0);
+        for shape in shapes {
+            for k in 0..400 {
+                let number = |step: i32| (k * step % 199) as f32 / 99.5 - 1.0;
+                let from = [2.0 * number(7), 2.0 * number(31), 2.0 * number(57)];
+                let way = minus([number(3), number(5), number(11)].map(|k| 0.5 * k), from);
+                let length = dot(way, way).sqrt();
+                let way = scaled(way, 1.0 / length);
+                let at = |far: f32| shape.distance(plus(from, scaled(way, far)));
+                let begins_inside = at(0.0).0 < 0.0;
+                let Some((far, normal)) = shape.ray(from, way) else {
+                    // A ray that misses never crosses the surface.
+                    assert!((0..400).all(|step| (at(0.02 * step as f32).0 < 0.0) == begins_inside));
+                    missed += 1;
+                    continue;
+                };
+                assert!(at(far).0.abs() < 1e-4, "{shape:?} {from:?} {way:?}: {far}");
+                let before = (0..50).map(|step| at(0.0199 * far * step as f32).0);
+                assert!({ before }.all(|gap| (gap < 1e-4) == begins_inside || gap.abs() < 1e-3));
+                let out = dot(normal, way);
+                assert!(
+                    (out > -1e-3) == begins_inside || out.abs() < 1e-2,
+                    "{shape:?} {out}"
+                );
+                met += 1;
+            }
+        }
+        assert!(met > 1100 && missed > 100, "{met} {missed}");
+        // Large distances, and a grazing ray.
+        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        assert_eq!(
+            floor.ray([0.0, 1000.0, 0.0], [0.0, -1.0, 0.0]).unwrap().0,
+            1000.0
+        );
+        let (far, _) = floor.ray([0.0, 1.0, 0.0], [0.9998, -0.02, 0.0]).unwrap();
+        assert!((far - 50.0).abs() < 1e-3);
+        let ball = Shape::Ball {
+            centre: [3000.0, 0.0, 0.0],
+            radius: 0.5,
+        };
+        assert!((ball.ray([0.0; 3], [1.0, 0.0, 0.0]).unwrap().0 - 2999.5).abs() < 1e-3);
+    }
+}

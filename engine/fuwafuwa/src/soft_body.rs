@@ -1,0 +1,372 @@
+//! Soft body: voxels, connectivity, mesh, and the state of the nodes.
+
+pub mod affine;
+pub mod damping;
+pub mod element_forces;
+pub mod element_law;
+pub mod element_state;
+pub mod momentum;
+pub mod plasticity;
+pub mod view;
+
+mod body_properties;
+mod body_state;
+mod body_topology;
+#[cfg(feature = "serde")]
+mod body_validation;
+mod caches;
+pub(crate) mod cooldowns;
+mod derived_caches;
+mod integration;
+mod placement;
+mod sleep_flags;
+
+use crate::foundation::arena::{Arena, SoftBodyHandle};
+use crate::foundation::dim::{Dim, Point};
+use crate::foundation::ids::{ElementId, NodeId};
+use crate::material::{BodyError, Material};
+use crate::math::vector::{as_row, dot, three};
+use crate::soft_body::element_forces::{ElementBatches, Row};
+use crate::soft_body::element_law::Law;
+use crate::soft_body::momentum::Momentum;
+use crate::topology::cell_hierarchy::{CellHierarchy, Grading};
+use crate::topology::changes::{Bookmark, Changes};
+use crate::topology::connectivity::Connectivity;
+use crate::topology::grid::VoxelGrid;
+use crate::topology::mesh::{Element, Mesh};
+use crate::topology::pieces::Pieces;
+use body_properties::{BodyProperties, elasticities, plasticities};
+pub(crate) use body_state::MAX_GRAVITY_SCALE;
+use body_state::State;
+use body_topology::Topology;
+use caches::Cache;
+
+/// Courant number of a substep: the largest fraction of a voxel that the fastest pressure wave may travel.
+///
+/// The fastest oscillator at rest is a free voxel. It is stable up to 2c / Ωs = 0.73 in space and 0.84 in the
+/// plane (Poisson's ratio 0.3). Squashed elements oscillate faster: with 0.6, a ball that is squashed to 40 %
+/// and hit at its wave speed stays stable.
+const COURANT: f64 = 0.6;
+/// Fraction used of the largest stable lead of a free voxel; about the margin that [`COURANT`] keeps of the
+/// squared substep.
+const LEAD_USED: f64 = 0.7;
+
+/// Arena of the bodies of a world.
+pub type SoftBodies<D> = Arena<SoftBodyHandle, SoftBody<D>>;
+
+/// Soft body, whole or in pieces.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
+pub struct SoftBody<D: Dim> {
+    // Snapshots contain `truth` and `state`.
+    pub(crate) topology: Topology<D>,
+    pub(crate) state: State<D>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) cache: Cache,
+}
+
+impl<D: Dim> SoftBody<D> {
+    /// Creates a body at rest that fills `grid`, with the low corner of the grid at the origin. A voxel of
+    /// material number n uses `materials[n - 1]`.
+    ///
+    /// # Errors
+    /// [`BodyError`] if a material is missing or has a field out of range.
+    pub fn new(grid: VoxelGrid<D>, materials: &[Material]) -> Result<Self, BodyError> {
+        Self::with_options(grid, materials, Law::default(), Grading::default())
+    }
+
+    /// Creates a body like [`SoftBody::new`], with a chosen law and grading. [`Grading::Coarse`] can be neither
+    /// torn nor cut.
+    ///
+    /// # Errors
+    /// See [`SoftBody::new`].
+    #[inline(never)]
+    pub fn with_options(
+        grid: VoxelGrid<D>,
+        materials: &[Material],
+        law: Law,
+        grading: Grading,
+    ) -> Result<Self, BodyError> {
+        let numbers = grid.voxels().map(|voxel| grid.material(voxel));
+        let number = numbers.max().unwrap_or(0);
+        if number as usize > materials.len() {
+            return Err(BodyError::MissingMaterial { number });
+        }
+        for (index, material) in materials.iter().enumerate() {
+            material.check(index + 1)?;
+        }
+        let sharing = Connectivity::new(&grid);
+        let pyramid = CellHierarchy::new(&grid, &sharing, grading);
+        let mesh = Mesh::grade(&grid, &sharing, &pyramid)?;
+        let mut blocks = ElementBatches::new(law, &elasticities(materials, 1.0), grid.voxel_size());
+        blocks.set_plasticities(&plasticities(materials));
+        let mut body = Self {
+            topology: Topology {
+                pieces: Pieces::new(&mesh),
+                materials: materials.to_vec(),
+                stiffness_scale: 1.0,
+                grid,
+                connectivity: sharing,
+                pyramid,
+                mesh,
+            },
+            state: State::new(blocks),
+            cache: Cache::default(),
+        };
+        body.make_room();
+        for (id, node) in body.topology.mesh.nodes() {
+            let at = node.at.map(|k| k as f32 * body.topology.grid.voxel_size());
+            body.state.position[id] = as_row(at);
+        }
+        body.state.ahead.clone_from(&body.state.position);
+        let elements: Vec<ElementId> = body.topology.mesh.elements().map(|(id, _)| id).collect();
+        body.state.blocks.update(
+            &body.topology.mesh,
+            &body.topology.grid,
+            &[],
+            &elements,
+            |_| false,
+        );
+        let all: Vec<NodeId> = body.topology.mesh.nodes().map(|(id, _)| id).collect();
+        body.weigh(&all);
+        body.rebuild();
+        Ok(body)
+    }
+
+    /// Recomputes the cache and the element stiffness from `truth` and `state`.
+    pub(crate) fn rebuild(&mut self) {
+        let Topology {
+            grid,
+            materials,
+            stiffness_scale,
+            ..
+        } = &self.topology;
+        self.cache.blend = BodyProperties::of(grid, materials);
+        let elasticities = elasticities(materials, *stiffness_scale);
+        self.state.blocks.set_elasticities(&elasticities);
+        self.make_room();
+        let voxels: Vec<Point> = self.topology.grid.voxels().collect();
+        self.expose(&voxels);
+        if self.topology.pyramid.grading() != Grading::Coarse {
+            let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
+            self.find_breakable(&nodes);
+        }
+        self.cache.awake_is_stale = true;
+        self.refresh_awake();
+    }
+
+    /// Returns the changes since `bookmark`, and moves the bookmark to the present.
+    ///
+    /// Returns `None` if the changes are not known: for a new bookmark, a bookmark of another body, or one
+    /// that is too old. The caller must then read the whole body again.
+    pub fn changes_since(&self, bookmark: &mut Bookmark) -> Option<Changes> {
+        let changes = self.cache.history.since(*bookmark);
+        *bookmark = self.bookmark();
+        changes
+    }
+
+    /// Returns a bookmark at the present state.
+    pub fn bookmark(&self) -> Bookmark {
+        self.cache.history.end()
+    }
+
+    /// Fixes a node: it keeps its velocity, and forces no longer change it.
+    ///
+    /// # Panics
+    /// If the id was never used.
+    pub fn fix_node(&mut self, id: NodeId) {
+        self.state.fixed[id] = true;
+        self.state.inverse_mass[id] = 0.0;
+    }
+
+    /// Frees a node that [`SoftBody::fix_node`] fixed.
+    ///
+    /// # Panics
+    /// If the id was never used.
+    pub fn free_node(&mut self, id: NodeId) {
+        self.state.fixed[id] = false;
+        if !self.topology.pieces.sleeps(id) {
+            self.state.inverse_mass[id] = 1.0 / self.state.mass[id];
+        }
+    }
+
+    /// Voxel grid from which the body was made.
+    pub fn grid(&self) -> &VoxelGrid<D> {
+        &self.topology.grid
+    }
+
+    /// Connectivity of the voxels.
+    pub fn connectivity(&self) -> &Connectivity<D> {
+        &self.topology.connectivity
+    }
+
+    /// Elements and nodes.
+    pub fn mesh(&self) -> &Mesh<D> {
+        &self.topology.mesh
+    }
+
+    /// Law of the elastic forces.
+    pub fn law(&self) -> Law {
+        self.state.blocks.law()
+    }
+
+    /// Grading of the elements.
+    pub fn grading(&self) -> Grading {
+        self.topology.pyramid.grading()
+    }
+
+    /// Pieces of the body.
+    pub fn pieces(&self) -> &Pieces {
+        &self.topology.pieces
+    }
+
+    /// Materials, number 1 first.
+    pub fn materials(&self) -> &[Material] {
+        &self.topology.materials
+    }
+
+    /// Material of an element of this body.
+    ///
+    /// # Panics
+    /// If the element belongs to another body.
+    pub fn material(&self, element: &Element) -> &Material {
+        let voxel = self.topology.mesh.first_voxel(element);
+        &self.topology.materials[self.topology.grid.material(voxel) as usize - 1]
+    }
+
+    /// Position [m], velocity [m/s] and mass [kg] of a node.
+    ///
+    /// # Panics
+    /// If the id was never used.
+    pub fn node_state(&self, id: NodeId) -> ([f32; 3], [f32; 3], f32) {
+        (
+            three(self.state.position[id]),
+            three(self.state.velocity[id]),
+            self.state.mass[id],
+        )
+    }
+
+    /// Sets the position [m] and velocity [m/s] of a node. Returns false, and changes nothing, if a component
+    /// is not finite.
+    ///
+    /// # Panics
+    /// If the id was never used.
+    pub fn set_node_state(&mut self, id: NodeId, position: [f32; 3], velocity: [f32; 3]) -> bool {
+        let finite = position.iter().chain(&velocity).all(|k| k.is_finite());
+        if finite {
+            self.state.position[id][..D::N].copy_from_slice(&position[..D::N]);
+            self.state.velocity[id][..D::N].copy_from_slice(&velocity[..D::N]);
+            self.state.ahead[id] = self.state.position[id];
+            self.state.placed = true;
+        }
+        finite
+    }
+
+    /// Elastic force [N] on a node at the start of the last step.
+    ///
+    /// # Panics
+    /// If the id was never used.
+    pub fn force_on(&self, id: NodeId) -> [f32; 3] {
+        three(self.state.blocks.force_on(id))
+    }
+
+    /// Linear and angular momentum of the whole body about the origin.
+    #[inline(never)]
+    pub fn momentum(&self) -> Momentum {
+        let ids: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
+        Momentum::of(self.states(&ids), [0.0; 3])
+    }
+
+    /// Kinetic energy [J].
+    #[inline(never)]
+    pub fn kinetic_energy(&self) -> f64 {
+        let states = self.topology.mesh.nodes().map(|(id, _)| {
+            let velocity = self.state.velocity[id].map(f64::from);
+            0.5 * f64::from(self.state.mass[id]) * dot(velocity, velocity)
+        });
+        states.sum()
+    }
+
+    /// Number of awake elements that were inverted when forces were last computed. Always 0 under
+    /// [`Law::Endo2004`], which does not check for inversion.
+    pub fn inverted_count(&self) -> u32 {
+        self.state.blocks.inverted_count()
+    }
+
+    /// Mass [kg].
+    #[inline(never)]
+    pub fn total_mass(&self) -> f64 {
+        let ids = self.topology.mesh.nodes();
+        ids.map(|(id, _)| f64::from(self.state.mass[id])).sum()
+    }
+
+    /// Returns the damping for substeps of `duration` [s]: the lead of the elastic forces [s], and the rate
+    /// [1/s] at which each piece relaxes towards its rigid motion.
+    ///
+    /// A lead τ damps the slowest mode ω with a ratio of τω/2. The fastest mode Ω, that of a single voxel, is
+    /// stable if Ω²h (h + 2τ) < 4, that is τ < (4/Ω² − h²) / 2h; [`LEAD_USED`] keeps a margin.
+    pub(crate) fn damping(&self, duration: f32) -> (f32, f32) {
+        let ratio = self.cache.blend.damping;
+        let slow = self.cache.blend.slow * self.topology.stiffness_scale.sqrt();
+        let fast = self.cache.blend.fastest_swing * self.topology.stiffness_scale.sqrt();
+        let step = f64::from(duration);
+        let most = LEAD_USED * (4.0 / (fast * fast) - step * step) / (2.0 * step);
+        let lead = (2.0 * ratio / slow).min(most).max(0.0);
+        let rate = 2.0 * slow * (ratio - 0.5 * lead * slow).max(0.0);
+        (lead as f32, rate as f32)
+    }
+
+    /// Friction coefficient of the surface.
+    pub(crate) fn friction(&self) -> f32 {
+        self.cache.blend.friction
+    }
+
+    /// Whether any material has a finite strength; otherwise the body cannot tear.
+    pub(crate) fn can_tear(&self) -> bool {
+        self.cache.blend.least_strength < f32::INFINITY
+    }
+
+    /// Longest stable substep [s] of the stiffest material: 0.6 s / c, with voxel size s and wave speed c.
+    pub fn longest_substep(&self) -> f64 {
+        let fastest = self.cache.blend.fastest_wave * self.topology.stiffness_scale.sqrt();
+        COURANT * f64::from(self.topology.grid.voxel_size()) / fastest
+    }
+
+    /// Factor by which Young's modulus was lowered to keep the substep stable; 1 = unchanged.
+    pub fn stiffness_scale(&self) -> f64 {
+        self.topology.stiffness_scale
+    }
+
+    /// Lowers the stiffness by as little as makes a substep of `duration` [s] stable.
+    pub(crate) fn scale_stiffness_for(&mut self, duration: f64) {
+        let size = f64::from(self.topology.grid.voxel_size());
+        let ratio = COURANT * size / self.cache.blend.fastest_wave / duration;
+        let stiffness_scale = (ratio * ratio).min(1.0);
+        if stiffness_scale == self.topology.stiffness_scale {
+            return;
+        }
+        self.topology.stiffness_scale = stiffness_scale;
+        let elasticities = elasticities(&self.topology.materials, stiffness_scale);
+        self.state.blocks.set_elasticities(&elasticities);
+    }
+
+    /// Speed of the fastest pressure wave [m/s], before any reduction of the stiffness.
+    pub(crate) fn fastest_wave(&self) -> f64 {
+        self.cache.blend.fastest_wave
+    }
+
+    pub(crate) fn states<'a>(
+        &'a self,
+        nodes: &'a [NodeId],
+    ) -> impl Iterator<Item = (Row, Row, f32)> + 'a {
+        let state = move |&id: &NodeId| {
+            (
+                self.state.position[id],
+                self.state.velocity[id],
+                self.state.mass[id],
+            )
+        };
+        nodes.iter().map(state)
+    }
+}

@@ -1,0 +1,161 @@
+//! Affine motion of elements: maps between the undeformed body and world space.
+
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{ElementId, NodeId};
+use crate::math::vector::{cross, dot, minus, plus, scaled, three};
+use crate::rigid_body::shape::Vector;
+use crate::soft_body::SoftBody;
+use crate::topology::element_class::slot_at;
+use crate::topology::mesh::Element;
+
+/// Volume ratio below which an element counts as flat. Inverting the motion of a flatter element would
+/// amplify the rounding of positions, about 1e-5 of a voxel, to a hundredth of its width and more.
+const FLAT: f32 = 0.01;
+
+impl<D: Dim> SoftBody<D> {
+    /// Returns the centre of an element [m], and its deformation gradient F by rows.
+    pub(crate) fn deformation(&self, element: &Element) -> (Vector, [Vector; 3]) {
+        let stencil = self.topology.mesh.stencil(element);
+        let half = 0.5 * self.topology.grid.voxel_size() * element.cell.width() as f32;
+        let scale = 1.0 / (stencil.volume as f32 * half);
+        let (mut centre, mut gradient) = ([0.0; 3], [[0.0; 3]; 3]);
+        for (place, &node) in element.nodes.iter().enumerate() {
+            let at = three(self.state.position[node]);
+            let share = (stencil.volumes[place] / stencil.volume) as f32;
+            centre = plus(centre, scaled(at, share));
+            let b = stencil.gradients[place].map(|k| k as f32);
+            for i in 0..D::N {
+                gradient[i] = plus(gradient[i], scaled(b, at[i] * scale));
+            }
+        }
+        gradient
+            .iter_mut()
+            .enumerate()
+            .skip(D::N)
+            .for_each(|(k, row)| row[k] = 1.0);
+        (centre, gradient)
+    }
+
+    /// Elastic part of the deformation gradient, without plastic deformation.
+    pub(crate) fn elastic_part(&self, id: ElementId, element: &Element) -> [Vector; 3] {
+        let (_, gradient) = self.deformation(element);
+        let Some(undone) = self.state.blocks.plastic_inverse(id) else {
+            return gradient;
+        };
+        let column = |j: usize| [undone[0][j], undone[1][j], undone[2][j]];
+        gradient.map(|row| [0, 1, 2].map(|j: usize| dot(row, column(j))))
+    }
+
+    /// Returns the affine motion of an element: maps a point of the undeformed body, in voxels, to its
+    /// position [m].
+    pub(crate) fn affine_map(&self, element: &Element) -> impl Fn(Vector) -> Vector + use<D> {
+        let (centre, gradient) = self.deformation(element);
+        let stencil = self.topology.mesh.stencil(element);
+        let size = self.topology.grid.voxel_size();
+        let half = 0.5 * size * element.cell.width() as f32;
+        // Slot in the low corner of the cell, relative to the volume centroid at rest.
+        let steps = slot_at(stencil.slots[0] as usize).map(|k| k as f32 * half);
+        let origin = minus(scaled(stencil.offsets[0].map(|k| k as f32), half), steps);
+        let low = element.cell.first_voxel().map(|k| k as f32);
+        move |point| {
+            let mut rest = origin;
+            for axis in 0..D::N {
+                rest[axis] += (point[axis] - low[axis]) * size;
+            }
+            let mut carried = [0.0; 3];
+            for axis in 0..D::N {
+                carried[axis] = centre[axis] + dot(gradient[axis], rest);
+            }
+            carried
+        }
+    }
+
+    /// Maps a position [m] back to the undeformed body, in voxels, by the motion of an element: the inverse
+    /// of [`SoftBody::affine_map`]. `None` if the element is flat.
+    pub(crate) fn at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
+        let stencil = self.topology.mesh.stencil(element);
+        let size = self.topology.grid.voxel_size();
+        let half = 0.5 * size * element.cell.width() as f32;
+        let from_centroid = self.offset_at_rest(element, at)?;
+        let corner = slot_at(stencil.slots[0] as usize);
+        let mut place = element.cell.first_voxel().map(|k| k as f32);
+        for axis in 0..D::N {
+            let from_corner = from_centroid[axis] / half - stencil.offsets[0][axis] as f32;
+            place[axis] += (from_corner + corner[axis] as f32) * half / size;
+        }
+        Some(place)
+    }
+
+    /// Returns the weight of each node of an element at a point of the undeformed body, in voxels. Linear
+    /// functions are interpolated exactly, so an impulse that is distributed with these weights keeps its
+    /// torque.
+    pub(crate) fn weights(&self, element: &Element, at: Vector) -> Vec<(NodeId, f32)> {
+        let stencil = self.topology.mesh.stencil(element);
+        let half = 0.5 * element.cell.width() as f32;
+        let corner = slot_at(stencil.slots[0] as usize);
+        let low = element.cell.first_voxel();
+        let mut rest = [0.0; 3];
+        for axis in 0..D::N {
+            let from_corner = (at[axis] - low[axis] as f32) / half - corner[axis] as f32;
+            rest[axis] = from_corner + stencil.offsets[0][axis] as f32;
+        }
+        let scale = 1.0 / stencil.volume as f32;
+        let weight = |place: usize| {
+            let share = (stencil.volumes[place] / stencil.volume) as f32;
+            share + scale * dot(stencil.gradients[place].map(|k| k as f32), rest)
+        };
+        let nodes = element.nodes.iter().enumerate();
+        nodes.map(|(place, &node)| (node, weight(place))).collect()
+    }
+
+    /// Velocity [m/s] at the point with these node weights.
+    pub(crate) fn velocity_of(&self, weights: &[(NodeId, f32)]) -> Vector {
+        let share = |&(node, weight): &(NodeId, f32)| scaled(self.state.velocity[node], weight);
+        three(weights.iter().map(share).fold([0.0; 4], plus))
+    }
+
+    /// Maps a position [m] to its rest offset from the centroid of an element [m], in all three coordinates.
+    fn offset_at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
+        let (centre, undo) = self.inverse_deformation(element)?;
+        Some(undo(minus(at, centre)))
+    }
+
+    /// Returns the centre of an element [m], and the inverse of its deformation: it maps present directions
+    /// to directions at rest. `None` if the element is flat.
+    pub(crate) fn inverse_deformation(
+        &self,
+        element: &Element,
+    ) -> Option<(Vector, impl Fn(Vector) -> Vector + use<D>)> {
+        let (centre, [x, y, z]) = self.deformation(element);
+        let volume = dot(x, cross(y, z));
+        if volume.abs() < FLAT {
+            return None;
+        }
+        // Cramer's rule.
+        let columns = [cross(y, z), cross(z, x), cross(x, y)];
+        let undo = move |way| {
+            let by = scaled(way, 1.0 / volume);
+            let along = |axis: usize| (0..3).map(|k| columns[k][axis] * by[k]).sum();
+            [0, 1, 2].map(along)
+        };
+        Some((centre, undo))
+    }
+
+    /// Returns the child of an element's cell that contains a position [m].
+    pub(crate) fn child_at(&self, element: &Element, at: Vector) -> Option<usize> {
+        let from_centroid = self.offset_at_rest(element, at)?;
+        let child_width = 0.5 * self.topology.grid.voxel_size() * element.cell.width() as f32;
+        let stencil = self.topology.mesh.stencil(element);
+        let corner = slot_at(stencil.slots[0] as usize);
+        let mut child = 0;
+        for axis in 0..D::N {
+            let from_corner = from_centroid[axis] / child_width - stencil.offsets[0][axis] as f32;
+            let along = from_corner + corner[axis] as f32;
+            if !(0.0..=2.0).contains(&along) {
+                return None;
+            }
+            child |= usize::from(along > 1.0) << axis;
+        }
+        Some(child)
+    }
+}

@@ -1,0 +1,84 @@
+//! Properties of a whole body, combined from the materials of its voxels.
+
+use crate::foundation::dim::Dim;
+use crate::material::Material;
+use crate::soft_body::element_law::Elasticity;
+use crate::soft_body::plasticity::Plasticity;
+use crate::topology::grid::VoxelGrid;
+
+/// Properties of a whole body, combined from the materials of its voxels.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct BodyProperties {
+    /// Damping ratio of the slowest mode; mean over the voxels.
+    pub damping: f64,
+    /// Angular frequency ω = π √(Y/ρ) / width of the slowest mode [1/s].
+    pub slow: f64,
+    /// Friction coefficient; mean over the voxels.
+    pub friction: f32,
+    /// Lowest strength of the materials in use [Pa].
+    pub least_strength: f32,
+    /// Speed of the fastest pressure wave of the materials in use [m/s].
+    pub fastest_wave: f64,
+    /// Angular frequency of the fastest mode, the breathing mode of a single voxel [1/s].
+    pub fastest_swing: f64,
+}
+
+impl BodyProperties {
+    pub fn of<D: Dim>(grid: &VoxelGrid<D>, materials: &[Material]) -> Self {
+        let mut counts = vec![0.0; materials.len()];
+        for number in grid.voxels().map(|voxel| grid.material(voxel)) {
+            if number > 0 {
+                counts[number as usize - 1] += 1.0;
+            }
+        }
+        let total: f64 = counts.iter().sum();
+        let used = || {
+            counts
+                .iter()
+                .zip(materials)
+                .filter(|(count, _)| **count > 0.0)
+        };
+        let mean = |of: &dyn Fn(&Material) -> f64| {
+            used()
+                .map(|(count, material)| count * of(material))
+                .sum::<f64>()
+                / total
+        };
+        let young = mean(&|material| material.elasticity.young);
+        let density = mean(&|material| f64::from(material.density));
+        let width = f64::from(grid.voxel_size()) * root(total, D::N);
+        let strengths = used().map(|(_, material)| material.strength);
+        let waves = used().map(|(_, material)| material.wave_speed());
+        let swings = used().map(|(_, material)| material.voxel_swing(D::N));
+        Self {
+            damping: mean(&|material| f64::from(material.damping)),
+            slow: std::f64::consts::PI * (young / density).sqrt() / width,
+            friction: mean(&|material| f64::from(material.friction)) as f32,
+            least_strength: strengths.fold(f32::INFINITY, f32::min),
+            fastest_wave: waves.fold(0.0, f64::max),
+            fastest_swing: swings.fold(0.0, f64::max) / f64::from(grid.voxel_size()),
+        }
+    }
+}
+
+pub fn plasticities(materials: &[Material]) -> Vec<Option<Plasticity>> {
+    materials.iter().map(Material::plasticity).collect()
+}
+
+pub fn elasticities(materials: &[Material], stiffness_scale: f64) -> Vec<Elasticity> {
+    let soft = |material: &Material| Elasticity {
+        young: material.elasticity.young * stiffness_scale,
+        ..material.elasticity
+    };
+    materials.iter().map(soft).collect()
+}
+
+/// Square or cube root by Newton's iteration: platform functions may round differently.
+fn root(of: f64, order: usize) -> f64 {
+    let mut root = of.max(1.0);
+    for _ in 0..60 {
+        let power = (1..order).fold(1.0, |power, _| power * root);
+        root -= (power * root - of) / (order as f64 * power);
+    }
+    root
+}

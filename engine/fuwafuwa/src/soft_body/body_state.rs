@@ -1,0 +1,73 @@
+//! State of a body that changes from substep to substep.
+
+use super::cooldowns::Cooldowns;
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{IndexVec, NodeId};
+use crate::rigid_body::layers::Layers;
+use crate::soft_body::element_forces::{ElementBatches, Row};
+
+/// Largest absolute factor on gravity for a body. With it, a body falls by 1 m within three ticks.
+pub const MAX_GRAVITY_SCALE: f32 = 100.0;
+
+/// State of a body that changes from substep to substep.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
+pub struct State<D: Dim> {
+    /// Position [m], velocity [m/s] and mass [kg] of each node.
+    pub position: IndexVec<NodeId, Row>,
+    pub velocity: IndexVec<NodeId, Row>,
+    pub mass: IndexVec<NodeId, f32>,
+    /// Inverse mass [1/kg]; 0 while a node is fixed or sleeps.
+    pub inverse_mass: IndexVec<NodeId, f32>,
+    pub fixed: IndexVec<NodeId, bool>,
+    /// Damage of each node; at 1 the node is split.
+    pub damage: IndexVec<NodeId, f32>,
+    /// Recent releases.
+    pub cooldowns: Cooldowns,
+    /// Extrapolated positions at which the damped forces are evaluated.
+    pub ahead: IndexVec<NodeId, Row>,
+    /// Factor on gravity.
+    pub gravity_scale: f32,
+    /// Collision layers.
+    pub layers: Layers,
+    /// User data.
+    pub user_data: u64,
+    /// Whether nodes were placed from outside since forces were last computed.
+    pub placed: bool,
+    /// Rotation of each element, and the forces of the last substep. Both are state: rotations are followed
+    /// iteratively, and the next crack follows the last forces. Snapshots contain only these.
+    pub blocks: ElementBatches<D>,
+}
+
+impl<D: Dim> State<D> {
+    /// Creates the state of a body without nodes.
+    pub fn new(blocks: ElementBatches<D>) -> Self {
+        Self {
+            position: IndexVec::default(),
+            velocity: IndexVec::default(),
+            mass: IndexVec::default(),
+            inverse_mass: IndexVec::default(),
+            fixed: IndexVec::default(),
+            damage: IndexVec::default(),
+            cooldowns: Cooldowns::default(),
+            ahead: IndexVec::default(),
+            gravity_scale: 1.0,
+            layers: Layers::default(),
+            user_data: 0,
+            placed: false,
+            blocks,
+        }
+    }
+
+    /// Makes room for `nodes` nodes.
+    pub fn make_room(&mut self, nodes: usize) {
+        self.position.resize(nodes, [0.0; 4]);
+        self.velocity.resize(nodes, [0.0; 4]);
+        self.mass.resize(nodes, 0.0);
+        self.inverse_mass.resize(nodes, 0.0);
+        self.fixed.resize(nodes, false);
+        self.damage.resize(nodes, 0.0);
+        self.ahead.resize(nodes, [0.0; 4]);
+    }
+}

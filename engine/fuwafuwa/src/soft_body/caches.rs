@@ -1,0 +1,33 @@
+//! Data derived from the truth and the state of a body.
+
+use super::body_properties::BodyProperties;
+use crate::foundation::dim::Point;
+use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
+use crate::fracture::breakable_nodes::BreakableNodes;
+use crate::soft_body::element_forces::Row;
+use crate::soft_body::momentum::RigidMotionF32;
+use crate::topology::changes::History;
+
+/// Data derived from the truth and the state of a body. Not part of snapshots: `SoftBody::rebuild` recomputes it,
+/// and each tick begins by recording `before`.
+#[derive(Clone, Debug, Default)]
+pub struct Cache {
+    /// Properties of the body, combined from its materials.
+    pub blend: BodyProperties,
+    /// Nodes of awake pieces, ascending; outdated while `awake_is_stale`.
+    pub awake: Vec<NodeId>,
+    pub awake_is_stale: bool,
+    /// Nodes at which a crack can start or continue, with their thresholds.
+    pub breakable: BreakableNodes,
+    /// Mask of the exposed faces of each level-0 element: bit 2 · axis + side.
+    pub bare: IndexVec<ElementId, u8>,
+    /// For elements with exposed faces: the surrounding voxels that share a node, see
+    /// [`Connectivity::connected_voxels`](crate::topology::connectivity::Connectivity::connected_voxels).
+    pub bound: IndexVec<ElementId, u32>,
+    /// Recent changes.
+    pub history: History,
+    /// Rigid motion of each piece at the last damping round; every tick begins with one.
+    pub rigid: IndexVec<PieceId, RigidMotionF32>,
+    /// Lattice point and position [m] of every node at the start of the tick, by id; NaN for unused ids.
+    pub before: Vec<(Point, Row)>,
+}

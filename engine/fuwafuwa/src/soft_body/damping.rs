@@ -1,0 +1,188 @@
+//! Damping of the internal vibration of pieces towards their rigid motion.
+//!
+//! Two dampers are combined. The elastic forces are evaluated at extrapolated positions (Kelvin–Voigt), which
+//! damps fast modes. Within the stability limit of the substep, it hardly damps the slow modes of a body. For
+//! these, the velocities of each piece relax towards its rigid motion, at the rate 2 ζ ω of a damped
+//! oscillator. Linear and angular momentum are not affected.
+
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{IndexVec, PieceId};
+use crate::foundation::threads;
+use crate::math::vector::{cross, dot, minus, plus, scaled, three};
+use crate::soft_body::SoftBody;
+use crate::soft_body::momentum::RigidMotion;
+
+/// Motion of one piece.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct PieceMotion {
+    /// Mass of the awake nodes [kg].
+    pub mass: f64,
+    /// Centre of mass [m].
+    pub centre: [f64; 3],
+    /// Velocity of the centre of mass [m/s].
+    pub velocity: [f64; 3],
+    /// Mean square speed [m²/s²].
+    pub speed_squared: f64,
+    /// Number of awake nodes.
+    pub nodes: u32,
+    /// Whether the piece has fixed nodes that move; such a piece never sleeps.
+    pub is_driven: bool,
+    /// Angular momentum about the centre [kg m²/s].
+    angular: [f64; 3],
+    /// Σ m x xᵀ about the centre [kg m²].
+    spread: [[f64; 3]; 3],
+}
+
+impl PieceMotion {
+    /// Adds a node at x relative to `origin`; [`PieceMotion::finish`] converts the sums to the centre of
+    /// mass.
+    #[inline(always)]
+    fn add<D: Dim>(&mut self, x: [f64; 3], velocity: [f64; 3], mass: f64) {
+        let (moment, impulse) = (scaled(x, mass), scaled(velocity, mass));
+        self.mass += mass;
+        self.nodes += 1;
+        self.speed_squared += dot(impulse, velocity);
+        match D::N {
+            // In 2D, angular momentum has only a third component.
+            2 => self.angular[2] += x[0] * impulse[1] - x[1] * impulse[0],
+            _ => self.angular = plus(self.angular, cross(x, impulse)),
+        }
+        for i in 0..D::N {
+            self.centre[i] += moment[i];
+            self.velocity[i] += impulse[i];
+            for j in i..D::N {
+                self.spread[i][j] += moment[i] * x[j];
+            }
+        }
+    }
+
+    /// Converts sums about `origin` to the values described at the fields.
+    fn finish(&mut self, origin: [f64; 3]) {
+        let share = 1.0 / self.mass;
+        let (from, impulse) = (scaled(self.centre, share), self.velocity);
+        self.velocity = scaled(impulse, share);
+        self.speed_squared *= share;
+        self.angular = minus(self.angular, cross(from, impulse));
+        for i in 0..3 {
+            for j in i..3 {
+                self.spread[i][j] -= self.mass * from[i] * from[j];
+                self.spread[j][i] = self.spread[i][j];
+            }
+        }
+        self.centre = plus(origin, from);
+    }
+
+    /// Returns the rigid motion with the same momentum; zero for a sleeping piece.
+    fn rigid(&self) -> RigidMotion {
+        if self.nodes == 0 {
+            return RigidMotion::default();
+        }
+        let squared = self.spread[0][0] + self.spread[1][1] + self.spread[2][2];
+        let mut inertia = self.spread.map(|row| scaled(row, -1.0));
+        (0..3).for_each(|k| inertia[k][k] += squared);
+        RigidMotion::of_spin(self.velocity, self.centre, &self.angular, &inertia)
+    }
+}
+
+/// Returns the motion of every piece, by number; sleeping pieces have no mass here.
+pub fn motions<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, PieceMotion> {
+    let count = body.topology.pieces.list.len();
+    let mut motions: IndexVec<PieceId, _> = vec![PieceMotion::default(); count].into();
+    // Sums are relative to a node of the piece: far from the world origin they would lose digits.
+    let mut origins: IndexVec<PieceId, _> = vec![[0.0; 3]; count].into();
+    let of_node = |id| body.topology.pieces.of_node(id);
+    // Consecutive nodes mostly belong to one piece: its sums stay in registers.
+    for nodes in body.cache.awake.chunk_by(|&a, &b| of_node(a) == of_node(b)) {
+        let piece = of_node(nodes[0]);
+        let (mut motion, origin) = (motions[piece], &mut origins[piece]);
+        if motion.nodes == 0 {
+            *origin = wide(body.state.position[nodes[0]]);
+        }
+        for (&id, (position, velocity, mass)) in nodes.iter().zip(body.states(nodes)) {
+            let x = minus(wide(position), *origin);
+            motion.add::<D>(x, wide(velocity), f64::from(mass));
+            motion.is_driven |= body.state.inverse_mass[id] == 0.0 && velocity != [0.0; 4];
+        }
+        motions[piece] = motion;
+    }
+    for (motion, origin) in motions.iter_mut().zip(origins.iter()) {
+        if motion.nodes > 0 {
+            motion.finish(*origin);
+        }
+    }
+    motions
+}
+
+/// Damping of a piece: rates [1/s], or the fractions lost in one round.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct PieceDamping {
+    /// Damping of the motion within the piece.
+    pub swing: f32,
+    /// Damping of the spin.
+    pub spin: f32,
+    /// Damping of all motion: drag of air, and of contacts.
+    pub drag: f32,
+}
+
+impl PieceDamping {
+    /// Converts rates to the fractions lost in a round of `duration` [s].
+    pub fn over(self, duration: f32) -> Self {
+        let share = |rate: f32| (rate * duration).min(1.0);
+        Self {
+            swing: share(self.swing),
+            spin: share(self.spin),
+            drag: share(self.drag),
+        }
+    }
+}
+
+/// Damps the pieces of a body, each by its own `slowing`, and stores their rigid motions.
+pub fn slow_down<D: Dim>(
+    body: &mut SoftBody<D>,
+    motions: &[PieceMotion],
+    slowing: &[PieceDamping],
+) {
+    let rigid: Vec<RigidMotion> = motions.iter().map(PieceMotion::rigid).collect();
+    body.cache.rigid.clear();
+    body.cache
+        .rigid
+        .extend(rigid.iter().map(RigidMotion::roughly));
+    if slowing
+        .iter()
+        .all(|slowing| *slowing == PieceDamping::default())
+    {
+        return;
+    }
+    // The velocity of the centre keeps 1 − drag. The spin keeps (1 − drag)(1 − spin), and the internal motion
+    // (1 − drag)(1 − swing): v ← kept v + pace(x).
+    let paces: Vec<_> = rigid
+        .iter()
+        .zip(slowing)
+        .map(|(rigid, &PieceDamping { swing, spin, drag })| {
+            let kept = 1.0 - drag;
+            let pace = rigid.times(f64::from(kept * swing), f64::from(kept * (swing - spin)));
+            (kept * (1.0 - swing), pace.roughly())
+        })
+        .collect();
+    let (inverse_mass, position, pieces) = (
+        &body.state.inverse_mass,
+        &body.state.position,
+        &body.topology.pieces,
+    );
+    let rows = threads::rows(&body.cache.awake, [&mut body.state.velocity]);
+    threads::map(rows, |rows| {
+        let [velocities] = rows.lists;
+        for &id in rows.nodes {
+            if inverse_mass[id] != 0.0 {
+                let (kept, pace) = &paces[pieces.of_node(id).index()];
+                let velocity = &mut velocities[id.index() - rows.first];
+                *velocity = plus(scaled(*velocity, *kept), pace.at::<D>(position[id]));
+            }
+        }
+    });
+}
+
+#[inline(always)]
+fn wide(row: [f32; 4]) -> [f64; 3] {
+    three(row).map(f64::from)
+}

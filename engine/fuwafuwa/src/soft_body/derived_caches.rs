@@ -1,0 +1,97 @@
+//! Data that a body derives from its mesh, initially and after releases.
+
+use super::SoftBody;
+use super::body_topology::Topology;
+use crate::foundation::dim::{Dim, Point};
+use crate::foundation::ids::NodeId;
+
+impl<D: Dim> SoftBody<D> {
+    pub(crate) fn make_room(&mut self) {
+        let Self {
+            topology: truth,
+            state,
+            cache,
+        } = self;
+        state.make_room(truth.mesh.node_capacity());
+        cache.bare.resize(truth.mesh.element_capacity(), 0);
+        cache.bound.resize(truth.mesh.element_capacity(), 0);
+        truth.pieces.make_room(&truth.mesh);
+    }
+
+    /// Fixes a new node if all nodes from which it inherits were fixed.
+    pub(crate) fn inherit_hold(&mut self, node: NodeId, from: &[(NodeId, f64)]) {
+        self.state.fixed[node] = from.iter().all(|&(old, _)| self.state.fixed[old]);
+    }
+
+    /// Recomputes the masses of nodes.
+    pub(crate) fn weigh(&mut self, nodes: &[NodeId]) {
+        for &id in nodes {
+            self.state.mass[id] = self.mass_of(id);
+            self.state.inverse_mass[id] = self.inverse_mass_of(id);
+        }
+    }
+
+    /// Mass of a node [kg], summed over the elements that carry it.
+    pub(super) fn mass_of(&self, id: NodeId) -> f32 {
+        let half = f64::from(self.topology.grid.voxel_size()) * 0.5;
+        let mut mass = 0.0;
+        for (element, place) in self.topology.mesh.carriers_of(id) {
+            let density = f64::from(self.material(element).density);
+            let child = half * f64::from(element.cell.width());
+            let volume = (0..D::N).fold(1.0, |volume, _| volume * child);
+            mass += density * volume * self.topology.mesh.stencil(element).volumes[place];
+        }
+        mass as f32
+    }
+
+    /// Inverse mass of a node [1/kg]; 0 while the node is fixed or sleeps.
+    pub(super) fn inverse_mass_of(&self, id: NodeId) -> f32 {
+        let free = !self.state.fixed[id] && !self.topology.pieces.sleeps(id);
+        match free {
+            true => 1.0 / self.state.mass[id],
+            false => 0.0,
+        }
+    }
+
+    /// Updates the exposed faces of the level-0 elements on these voxels.
+    pub(crate) fn expose(&mut self, voxels: &[Point]) {
+        for &voxel in voxels
+            .iter()
+            .filter(|&&voxel| self.topology.grid.is_present(voxel))
+        {
+            let owner = self
+                .topology
+                .mesh
+                .owner(voxel)
+                .expect("every remaining voxel has an owner");
+            let element = self.topology.mesh.element(owner).expect("owners are alive");
+            if element.cell.level > 0 {
+                continue;
+            }
+            // Seen from its low corner, the voxel lies on the far side of every axis.
+            let (around, octant) = (self.topology.connectivity.around(voxel), D::CORNERS - 1);
+            let mut bare = 0;
+            for axis in 0..D::N {
+                bare |= u8::from(!around.is_closed(octant, axis)) << (2 * axis);
+                bare |= u8::from(!around.is_far_face_closed(octant, axis)) << (2 * axis + 1);
+            }
+            self.cache.bare[owner] = bare;
+            if bare != 0 {
+                self.cache.bound[owner] = self.topology.connectivity.connected_voxels(voxel);
+            }
+        }
+    }
+
+    /// Updates which of `nodes` are breakable.
+    pub(crate) fn find_breakable(&mut self, nodes: &[NodeId]) {
+        let Topology {
+            grid,
+            connectivity: sharing,
+            mesh,
+            materials,
+            ..
+        } = &self.topology;
+        let breakable = &mut self.cache.breakable;
+        breakable.update(nodes, grid, sharing, mesh, materials);
+    }
+}

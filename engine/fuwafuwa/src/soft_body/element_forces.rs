@@ -1,0 +1,506 @@
+//! Forces of all elements, evaluated eight at a time.
+//!
+//! Elements occupy the lanes of a block. Each lane performs the operations of the scalar formula in the
+//! scalar order, and nothing is summed across lanes, so the vector width of the machine does not change the
+//! result. Tests compare the forces with [`crate::soft_body::element_law`]. An element writes to its own slots, and a node sums
+//! its slots in the order of the octants around it. So neither threads nor numbering change the result.
+//!
+//! All lanes of a block have one class, if the class has enough elements. The rest, a fifth of a body in
+//! about a hundred classes, is pooled by number of nodes, with one stencil per lane.
+
+mod batch;
+mod batch_assignment;
+mod force_kernel;
+mod plastic_kernel;
+#[cfg(feature = "serde")]
+mod restoring;
+mod rotation_extraction;
+#[cfg(feature = "serde")]
+mod saved_states;
+
+pub use crate::math::lanes::Row;
+
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{ElementId, IndexVec, NodeId};
+use crate::foundation::threads::{self, RowChunk};
+use crate::math::lanes::{Eight, LANES, on_widest_lanes, splat, sum, sum_of_squares};
+use crate::math::rotation::Rotation;
+use crate::math::vector::{plus, scaled};
+use crate::soft_body::element_law::{Elasticity, Law};
+use crate::soft_body::plasticity::Plasticity;
+use batch::{Batch, BatchKey, GROUP, Group, Shared, VACANT, evaluate_best};
+use fearless_simd::Simd;
+use force_kernel::{Moduli, Scratch};
+use plastic_kernel::PlasticFlowLimits;
+use std::collections::{BTreeMap, BTreeSet};
+use std::marker::PhantomData;
+
+/// Smallest number of blocks that are evaluated on several threads; about as many as fill enough chunks in
+/// [`threads`].
+#[cfg(feature = "parallel")]
+const LEAST_PARALLEL: usize = 1024;
+
+/// Padding after the last force, so that four numbers can be read from its start.
+const PAD: usize = 4;
+
+/// All elements of a body in blocks, with their nodal forces.
+#[derive(Clone, Debug)]
+pub struct ElementBatches<D: Dim> {
+    law: Law,
+    moduli: Vec<Moduli>,
+    /// Plastic flow of each material; `None` for elastic materials.
+    flows: Vec<Option<PlasticFlowLimits>>,
+    voxel_size: f32,
+    blocks: Vec<Batch>,
+    /// Blocks with vacant lanes.
+    open: BTreeMap<BatchKey, BTreeSet<u32>>,
+    /// Blocks without elements, by number of nodes and by whether their lanes have different classes.
+    empty: BTreeMap<(u32, bool), Vec<u32>>,
+    /// Start of the stencil in `numbers`, for each class that has blocks of its own.
+    stencils: BTreeMap<u32, u32>,
+    numbers: Vec<f32>,
+    /// Stencils of pooled lanes.
+    pooled: Vec<Eight>,
+    /// Block and lane of each element, by id; the block is [`VACANT`] if the element has none.
+    assigned: IndexVec<ElementId, (u32, u8)>,
+    /// Indices in `forces` of the forces on each node, by id: one per element, in the order of the octants.
+    /// Unused entries are 0, where a zero force is stored.
+    slots: IndexVec<NodeId, [u32; 8]>,
+    /// Nodes of all blocks: node k of lane l at k · LANES + l after the first of the block.
+    nodes: Vec<u32>,
+    /// Forces on these nodes with D::N components each. Padding to four would make up a quarter (3D) or half
+    /// (2D) of the memory traffic of a substep.
+    forces: Vec<f32>,
+    /// Reused by the next evaluation, so that it need not be cleared.
+    scratch: Option<Box<[Scratch; GROUP]>>,
+    /// State read from a file, until [`ElementBatches::restore`] distributes it.
+    #[cfg(feature = "serde")]
+    saved: Option<saved_states::SavedElementStates>,
+    dim: PhantomData<D>,
+}
+
+/// Parameters of the velocity update in a substep.
+#[derive(Copy, Clone, Debug)]
+pub struct VelocityUpdate<'a> {
+    /// Nodes to be moved, ascending.
+    pub nodes: &'a [NodeId],
+    /// Inverse mass of each node [1/kg], by id; 0 if the node is fixed.
+    pub inverse_mass: &'a [f32],
+    /// Length of the substep [s].
+    pub duration: f32,
+    /// Gravity [m/s²].
+    pub gravity: Row,
+}
+
+impl<D: Dim> ElementBatches<D> {
+    /// Creates blocks without elements. `elasticities[number - 1]` belongs to material `number`; `voxel_size`
+    /// is in metres.
+    pub fn new(law: Law, elasticities: &[Elasticity], voxel_size: f32) -> Self {
+        Self {
+            law,
+            moduli: moduli::<D>(elasticities),
+            flows: Vec::new(),
+            voxel_size,
+            blocks: Vec::new(),
+            open: BTreeMap::new(),
+            empty: BTreeMap::new(),
+            stencils: BTreeMap::new(),
+            numbers: Vec::new(),
+            pooled: Vec::new(),
+            assigned: IndexVec::default(),
+            slots: IndexVec::default(),
+            nodes: vec![VACANT; LANES],
+            forces: vec![0.0; LANES * D::N + PAD],
+            scratch: None,
+            #[cfg(feature = "serde")]
+            saved: None,
+            dim: PhantomData,
+        }
+    }
+
+    /// Law of the forces.
+    pub fn law(&self) -> Law {
+        self.law
+    }
+
+    /// Sets the elasticity of each material.
+    pub fn set_elasticities(&mut self, elasticities: &[Elasticity]) {
+        self.moduli = moduli::<D>(elasticities);
+    }
+
+    /// Sets the plasticity of each material; must be called before elements are added. Ignored under
+    /// [`Law::Endo2004`].
+    pub fn set_plasticities(&mut self, plasticities: &[Option<Plasticity>]) {
+        self.flows.clear();
+        if self.law == Law::CorotationalVem {
+            let flow = |plasticity: &Option<Plasticity>| plasticity.map(PlasticFlowLimits::of::<D>);
+            self.flows.extend(plasticities.iter().map(flow));
+        }
+    }
+
+    /// Returns the plastic state G of an element ([`crate::soft_body::plasticity`]) by rows; `None` if its material is
+    /// elastic.
+    pub fn plastic_inverse(&self, id: ElementId) -> Option<[[f32; 3]; 3]> {
+        let &(block, lane) = self.assigned.get(id.index())?;
+        let block = self.blocks.get(block as usize)?;
+        let undone = block.undone.as_ref()?;
+        Some(undone.get(lane as usize))
+    }
+
+    /// Sets the plastic state of an element.
+    pub fn set_plastic_inverse(&mut self, id: ElementId, undone: [[f32; 3]; 3]) {
+        let (block, lane) = self.assigned[id];
+        if let Some(own) = &mut self.blocks[block as usize].undone {
+            own.set(lane as usize, undone);
+        }
+    }
+
+    /// Whether any material is plastic.
+    pub fn has_plastic(&self) -> bool {
+        self.flows.iter().any(Option::is_some)
+    }
+
+    /// Computes the forces of all awake elements at the given node positions [m].
+    pub fn evaluate(&mut self, position: &[Row]) {
+        #[cfg(feature = "parallel")]
+        if self.blocks.len() >= LEAST_PARALLEL && rayon::current_num_threads() > 1 {
+            use rayon::prelude::*;
+            let groups: Vec<Group> = self.groups().collect();
+            let groups = groups.into_par_iter().with_min_len(8);
+            groups.for_each_init(
+                || [Scratch::EMPTY; GROUP],
+                |scratch, group| evaluate_best::<D>(group, position, scratch),
+            );
+            return;
+        }
+        let mut kept = self.scratch.take();
+        let scratch = kept.get_or_insert_with(|| Box::new([Scratch::EMPTY; GROUP]));
+        for group in self.groups() {
+            evaluate_best::<D>(group, position, scratch);
+        }
+        self.scratch = kept;
+    }
+
+    /// Splits the blocks into groups that write disjoint data, so that the result is bitwise identical for
+    /// any number of threads.
+    fn groups(&mut self) -> impl Iterator<Item = Group<'_>> {
+        let Self {
+            law,
+            moduli,
+            flows,
+            numbers,
+            pooled,
+            nodes,
+            ..
+        } = self;
+        let shared = Shared {
+            law: *law,
+            moduli,
+            flows,
+            numbers,
+            pooled,
+            nodes,
+        };
+        let mut forces = &mut self.forces[LANES * D::N..];
+        let mut first = LANES;
+        self.blocks.chunks_mut(GROUP).map(move |blocks| {
+            // Blocks are in the order of their forces.
+            let end = blocks.last().map_or(first, Batch::end);
+            let (own, others) = std::mem::take(&mut forces).split_at_mut((end - first) * D::N);
+            let group = Group {
+                blocks,
+                forces: own,
+                first,
+                shared,
+            };
+            (forces, first) = (others, end);
+            group
+        })
+    }
+
+    /// Force [N] on a node in the last evaluation.
+    #[inline]
+    pub fn force_on(&self, node: NodeId) -> Row {
+        on_widest_lanes!(simd => self.force_by(simd, node))
+    }
+
+    /// Forces [N] of the elements on a node in the last evaluation, in the order of the octants around it.
+    #[inline]
+    pub fn parts_on(&self, node: NodeId) -> impl Iterator<Item = Row> + '_ {
+        let places = self.slots[node].iter();
+        let places = places.take_while(|&&place| place != 0);
+        places.map(|&place| {
+            let mut force = [0.0; 4];
+            force[..D::N].copy_from_slice(&self.forces[place as usize..][..D::N]);
+            force
+        })
+    }
+
+    /// Sum of the squared forces of the elements on a node in the last evaluation [N²].
+    #[inline(always)]
+    pub fn squares_on<S: Simd>(&self, simd: S, node: NodeId) -> f32 {
+        let slots = &self.slots[node][..D::CORNERS];
+        let squares = sum_of_squares(simd, &self.forces, slots);
+        squares[..D::N].iter().sum()
+    }
+
+    #[inline(always)]
+    fn force_by<S: Simd>(&self, simd: S, node: NodeId) -> Row {
+        let mut sum = sum(simd, &self.forces, &self.slots[node][..D::CORNERS]);
+        sum[D::N..].fill(0.0);
+        sum
+    }
+
+    /// Rotation of an element in the last evaluation, by rows.
+    pub fn rotation(&self, id: ElementId) -> [[f32; 3]; 3] {
+        let turned = self.rotation_of(id);
+        // Stored as cosine and sine in 2D, as a quaternion in 3D.
+        if D::N == 2 {
+            let [cosine, sine, ..] = turned;
+            return [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]];
+        }
+        on_widest_lanes!(simd => {
+            let matrix = rotation_extraction::matrix_of(simd, turned.map(|part| splat(simd, part)));
+            matrix.map(|row| row.map(|entry| entry[0]))
+        })
+    }
+
+    /// Whether an element is in a block.
+    pub fn has(&self, id: ElementId) -> bool {
+        let assigned = self.assigned.get(id.index());
+        assigned.is_some_and(|&(block, _)| block != VACANT)
+    }
+
+    /// Sets the rotation of a 3D element, as a quaternion, from which the next evaluation starts.
+    pub fn set_rotation(&mut self, id: ElementId, turned: [f32; 4]) {
+        let (block, lane) = self.assigned[id];
+        let rotation = &mut self.blocks[block as usize].rotation;
+        for (all, part) in rotation.iter_mut().zip(turned) {
+            all[lane as usize] = part;
+        }
+    }
+
+    /// Rotates all elements, and the forces of the last evaluation. Rotations are stored as cosine and sine
+    /// in 2D, as quaternions in 3D.
+    pub fn rotate(&mut self, rotation: Rotation) {
+        for block in &mut self.blocks {
+            for lane in 0..LANES {
+                let turned = match (D::N, block.rotation.map(|part| part[lane])) {
+                    (2, [cosine, sine, ..]) => {
+                        let [x, y, _] = rotation.apply([cosine, sine, 0.0]);
+                        [x, y, 0.0, 0.0]
+                    }
+                    (_, turned) => rotation.after(turned),
+                };
+                for (all, part) in block.rotation.iter_mut().zip(turned) {
+                    all[lane] = part;
+                }
+            }
+        }
+        for force in self.forces.chunks_exact_mut(D::N) {
+            let mut turned = [0.0; 3];
+            turned[..D::N].copy_from_slice(force);
+            force.copy_from_slice(&rotation.apply(turned)[..D::N]);
+        }
+    }
+
+    /// Number of awake elements that were inverted in the last evaluation. Always 0 under [`Law::Endo2004`],
+    /// which does not check for inversion.
+    pub fn inverted_count(&self) -> u32 {
+        let awake = self.blocks.iter().filter(|block| !block.is_idle());
+        let inverted = |block: &Batch| (block.inverted & !block.vacant).count_ones();
+        awake.map(inverted).sum()
+    }
+
+    /// Applies the elastic forces and gravity of one substep to velocities [m/s].
+    pub fn kick(&self, kick: &VelocityUpdate, velocity: &mut [Row]) {
+        threads::map(threads::rows(kick.nodes, [velocity]), |rows| {
+            on_widest_lanes!(simd => self.kick_by(simd, kick, rows));
+        });
+    }
+
+    #[inline(always)]
+    fn kick_by<S: Simd>(&self, simd: S, kick: &VelocityUpdate, rows: RowChunk<Row, 1>) {
+        let [velocity] = rows.lists;
+        for &id in rows.nodes {
+            let node = id.index();
+            let inverse_mass = kick.inverse_mass[node];
+            if inverse_mass == 0.0 {
+                continue;
+            }
+            let acceleration = plus(scaled(self.force_by(simd, id), inverse_mass), kick.gravity);
+            let velocity = &mut velocity[node - rows.first];
+            *velocity = plus(*velocity, scaled(acceleration, kick.duration));
+        }
+    }
+
+    fn rotation_of(&self, id: ElementId) -> [f32; 4] {
+        match self.assigned.get(id.index()) {
+            Some(&(block, lane)) if block != VACANT => self.blocks[block as usize]
+                .rotation
+                .map(|part| part[lane as usize]),
+            // Identity, as cosine and sine or as a quaternion.
+            _ if D::N == 2 => [1.0, 0.0, 0.0, 0.0],
+            _ => [0.0, 0.0, 0.0, 1.0],
+        }
+    }
+}
+
+fn moduli<D: Dim>(elasticities: &[Elasticity]) -> Vec<Moduli> {
+    let elasticities = elasticities.iter().copied();
+    elasticities.map(Moduli::of::<D>).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::batch::evaluate_group;
+    use super::*;
+    use crate::foundation::dim::{Dim2, Dim3};
+    use crate::topology::cell_hierarchy::{CellHierarchy, Grading};
+    use crate::topology::connectivity::Connectivity;
+    use crate::topology::grid::VoxelGrid;
+    use crate::topology::mesh::Mesh;
+
+    /// Compares the widest lanes with others, on a body with every kind of block.
+    fn check_same_bits<D: Dim, S: Simd>(law: Law, simd: S) {
+        let grid = VoxelGrid::<D>::ball(24, 1.0).unwrap();
+        let sharing = Connectivity::new(&grid);
+        let pyramid = CellHierarchy::new(&grid, &sharing, Grading::Graded);
+        let mesh = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
+        let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
+        let mut wide = ElementBatches::new(law, &[elasticity], grid.voxel_size());
+        let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
+        wide.update(&mesh, &grid, &[], &all, |_| false);
+        let mut other = wide.clone();
+        let mut position = vec![[0.0; 4]; mesh.node_capacity()];
+        for (id, node) in mesh.nodes() {
+            let [x, y, z] = node.at.map(|k| k as f32 / 24.0);
+            let bent = [
+                1.2 * x - 0.7 * y * y,
+                0.6 * x + 0.8 * y,
+                z + 0.3 * x * y,
+                0.0,
+            ];
+            position[id.index()][..D::N].copy_from_slice(&bent[..D::N]);
+        }
+        for _ in 0..3 {
+            wide.evaluate(&position);
+            let mut scratch = [Scratch::EMPTY; GROUP];
+            for group in other.groups() {
+                let scratch = &mut scratch;
+                simd.vectorize(|| evaluate_group::<D, _>(simd, group, &position, scratch));
+            }
+        }
+        for (id, _) in mesh.nodes() {
+            let bits = |blocks: &ElementBatches<D>| blocks.force_on(id).map(f32::to_bits);
+            assert_eq!(bits(&wide), bits(&other));
+        }
+        let nodes: Vec<NodeId> = mesh.nodes().map(|(id, _)| id).collect();
+        let inverse_mass: Vec<f32> = (0..position.len()).map(|id| (id % 7) as f32).collect();
+        let kick = VelocityUpdate {
+            nodes: &nodes,
+            inverse_mass: &inverse_mass,
+            duration: 0.001,
+            gravity: [0.0, -9.81, 0.0, 0.0],
+        };
+        let mut velocities = [position.clone(), position];
+        let [by_best, by_other] = &mut velocities;
+        wide.kick(&kick, by_best);
+        for rows in threads::rows(&nodes, [by_other]) {
+            simd.vectorize(|| other.kick_by(simd, &kick, rows));
+        }
+        let [by_best, by_other] = velocities.map(|rows| {
+            let bits = rows.iter().flatten().map(|value| value.to_bits());
+            bits.collect::<Vec<u32>>()
+        });
+        assert_eq!(by_best, by_other);
+    }
+
+    /// Regression: sleeping elements in a block with awake ones were evaluated again, so waking depended on
+    /// the distribution over blocks. An element that entered a block also kept the forces of the previous one
+    /// in its lane.
+    fn check_sleepers<D: Dim>() {
+        let grid = VoxelGrid::<D>::ball(16, 1.0).unwrap();
+        let sharing = Connectivity::new(&grid);
+        let pyramid = CellHierarchy::new(&grid, &sharing, Grading::Graded);
+        let mesh = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
+        let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
+        let mut blocks =
+            ElementBatches::<D>::new(Law::CorotationalVem, &[elasticity], grid.voxel_size());
+        let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
+        blocks.update(&mesh, &grid, &[], &all, |_| false);
+        let mut position = vec![[0.0; 4]; mesh.node_capacity()];
+        let mut evaluate = |blocks: &mut ElementBatches<D>, bend: f32| {
+            for (id, node) in mesh.nodes() {
+                let [x, y, z] = node.at.map(|k| k as f32 / 16.0);
+                let bent = [x - bend * y * y, bend * x + y, z + bend * x * y, 0.0];
+                position[id.index()][..D::N].copy_from_slice(&bent[..D::N]);
+            }
+            blocks.evaluate(&position);
+        };
+        evaluate(&mut blocks, 0.1);
+        let sleeps = |id: &ElementId| id.0 % 4 < 3;
+        let state = |blocks: &ElementBatches<D>, id: ElementId| {
+            let nodes = mesh.element(id).unwrap().nodes.iter();
+            let forces = nodes.map(|&node| blocks.force_index(id, node) as usize);
+            let forces = forces.flat_map(|place| &blocks.forces[place..][..D::N]);
+            (blocks.rotation(id), forces.copied().collect::<Vec<f32>>())
+        };
+        let states = |blocks: &ElementBatches<D>| -> Vec<_> {
+            all.iter().map(|&id| state(blocks, id)).collect()
+        };
+        let evaluated = |blocks: &ElementBatches<D>| {
+            let awake = blocks.blocks.iter().filter(|block| !block.is_idle());
+            awake.count()
+        };
+        let (when_awake, before) = (evaluated(&blocks), states(&blocks));
+        // One by one, like crumbs.
+        let sleepers: Vec<ElementId> = all.iter().copied().filter(sleeps).collect();
+        for &id in &sleepers {
+            blocks.set_asleep(&mesh, &[id], true);
+        }
+        assert!(
+            2 * evaluated(&blocks) < when_awake,
+            "a quarter of the elements is awake, so most blocks must be idle"
+        );
+        assert_eq!(states(&blocks), before);
+        evaluate(&mut blocks, 0.2);
+        let after = states(&blocks);
+        for (at, id) in all.iter().enumerate() {
+            assert_eq!(after[at] == before[at], sleeps(id), "{id}");
+        }
+        blocks.set_asleep(&mesh, &sleepers, false);
+        assert_eq!(states(&blocks), after);
+        blocks.update(&mesh, &grid, &[], &all, |id| sleeps(&id));
+        for &id in &all {
+            assert!(state(&blocks, id).1.iter().all(|&force| force == 0.0));
+        }
+    }
+
+    #[test]
+    fn sleeping_elements_keep_state_beside_awake_ones() {
+        check_sleepers::<Dim2>();
+        check_sleepers::<Dim3>();
+    }
+
+    #[test]
+    fn lanes_of_all_widths_give_same_bits() {
+        for law in [Law::CorotationalVem, Law::Endo2004] {
+            // In debug builds with scalar lanes, compilation takes four minutes and several gigabytes.
+            #[cfg(not(debug_assertions))]
+            {
+                let plain = fearless_simd::Fallback::new();
+                check_same_bits::<Dim2, _>(law, plain);
+                check_same_bits::<Dim3, _>(law, plain);
+            }
+            // The widest lanes are the reference.
+            #[cfg(target_arch = "x86_64")]
+            {
+                let level = fearless_simd::Level::baseline();
+                let sse2 = level.as_sse2().expect("every x86-64 has SSE2");
+                check_same_bits::<Dim2, _>(law, sse2);
+                check_same_bits::<Dim3, _>(law, sse2);
+            }
+        }
+    }
+}

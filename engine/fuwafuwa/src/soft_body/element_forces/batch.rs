@@ -1,0 +1,208 @@
+//! Blocks of elements, and the evaluation of groups of blocks in the three loops of the kernel.
+
+use super::force_kernel::{
+    BlockView, Moduli, PerLane, Scratch, Uniform, forces, gradient, plain_forces, plain_gradient,
+    stress,
+};
+use super::plastic_kernel::{PlasticFlowLimits, PlasticInverseLanes, plastic_stress};
+use crate::foundation::dim::Dim;
+use crate::math::lanes::{Eight, LANES, Row, on_widest_lanes};
+use crate::soft_body::element_law::Law;
+use fearless_simd::Simd;
+use std::ops::Range;
+
+/// Number of blocks that pass through the three loops of the kernel together. Their scratch of 28 KB fits
+/// into an L1 cache of 32 KB.
+pub const GROUP: usize = 8;
+
+pub const VACANT: u32 = u32::MAX;
+pub const ALL_LANES: u8 = u8::MAX;
+
+/// Block of elements, with the indices of their nodes, forces and stencils.
+#[derive(Clone, Debug)]
+pub struct Batch {
+    pub home: BatchKey,
+    pub elements: [u32; LANES],
+    /// Mask of the lanes without an element.
+    pub vacant: u8,
+    /// Mask of the lanes that were inverted in the last evaluation.
+    pub inverted: u8,
+    pub half_size: Eight,
+    /// Quaternion in 3D; cosine and sine in 2D.
+    pub rotation: [Eight; 4],
+    /// Plastic state of each lane, if the material is plastic.
+    pub undone: Option<Box<PlasticInverseLanes>>,
+    pub node_count: u32,
+    /// Index of its first nodes and forces.
+    pub first: u32,
+    /// Start of its stencil in `numbers` or in `pooled`, and its length.
+    pub stencil: u32,
+    pub numbers: u32,
+}
+
+/// Properties that the elements of a block have in common.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct BatchKey {
+    pub kind: BatchKind,
+    /// Number of the material.
+    pub material: u8,
+    /// Whether the elements sleep; then their rotations and forces are not updated.
+    pub asleep: bool,
+}
+
+/// Classes of the elements of a block.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum BatchKind {
+    /// Whole cells with nodes only in their corners.
+    Plain,
+    /// One class.
+    Class(u32),
+    /// Any class with this number of nodes.
+    Pool(u32),
+}
+
+impl BatchKey {
+    pub fn is_pool(self) -> bool {
+        matches!(self.kind, BatchKind::Pool(_))
+    }
+}
+
+/// Data that all blocks read.
+#[derive(Copy, Clone)]
+pub struct Shared<'a> {
+    pub law: Law,
+    pub moduli: &'a [Moduli],
+    pub flows: &'a [Option<PlasticFlowLimits>],
+    pub numbers: &'a [f32],
+    pub pooled: &'a [Eight],
+    pub nodes: &'a [u32],
+}
+
+/// Some blocks, and the forces that they write; `first` is the index of the first force.
+pub struct Group<'a> {
+    pub blocks: &'a mut [Batch],
+    pub forces: &'a mut [f32],
+    pub first: usize,
+    pub shared: Shared<'a>,
+}
+
+impl Batch {
+    /// Index after its last force.
+    pub fn end(&self) -> usize {
+        self.first as usize + self.node_count as usize * LANES
+    }
+
+    /// Whether no element of the block is awake.
+    #[inline(always)]
+    pub fn is_idle(&self) -> bool {
+        self.home.asleep || self.vacant == ALL_LANES
+    }
+
+    /// Range of its forces within those of a group; `first` is the index of the first force of the group.
+    #[inline(always)]
+    fn forces<D: Dim>(&self, first: usize) -> Range<usize> {
+        (self.first as usize - first) * D::N..(self.end() - first) * D::N
+    }
+
+    /// Its stencil: one for all lanes, or one for each.
+    #[inline(always)]
+    fn stencil<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
+        let places = self.stencil as usize..(self.stencil + self.numbers) as usize;
+        match self.home.kind {
+            BatchKind::Plain => (&[], &[]),
+            BatchKind::Class(_) => (&shared.numbers[places], &[]),
+            BatchKind::Pool(_) => (&[], &shared.pooled[places]),
+        }
+    }
+
+    /// View for the kernel; `first` is the index of the first of the forces.
+    #[inline(always)]
+    fn view<'a, D: Dim>(
+        &'a mut self,
+        shared: &Shared<'a>,
+        forces: &'a mut [f32],
+        first: usize,
+    ) -> BlockView<'a> {
+        let places = self.first as usize..self.end();
+        let forces = &mut forces[self.forces::<D>(first)];
+        BlockView {
+            nodes: &shared.nodes[places.clone()],
+            half_size: &self.half_size,
+            rotation: &mut self.rotation,
+            forces,
+            inverted: &mut self.inverted,
+        }
+    }
+}
+
+/// Evaluates the awake blocks of a group.
+#[inline(always)]
+pub fn evaluate_group<D: Dim, S: Simd>(
+    simd: S,
+    group: Group,
+    position: &[Row],
+    scratch: &mut [Scratch; GROUP],
+) {
+    let Group {
+        blocks,
+        forces: all,
+        first,
+        shared,
+    } = group;
+    let law = shared.law;
+    for (block, scratch) in blocks.iter_mut().zip(&mut *scratch) {
+        if block.is_idle() {
+            continue;
+        }
+        let (home, stencil) = (block.home, block.stencil(&shared));
+        let view = block.view::<D>(&shared, all, first);
+        match (home.kind, stencil) {
+            (BatchKind::Plain, _) => plain_gradient::<D, S>(simd, position, &view, scratch),
+            (_, (one, [])) => gradient::<D, S>(simd, &Uniform(one), position, &view, scratch),
+            (_, (_, each)) => gradient::<D, S>(simd, &PerLane(each), position, &view, scratch),
+        }
+    }
+    for (block, scratch) in blocks.iter_mut().zip(&mut *scratch) {
+        if block.is_idle() {
+            continue;
+        }
+        let material = block.home.material as usize - 1;
+        let moduli = &shared.moduli[material];
+        let Some(Some(flow)) = shared.flows.get(material) else {
+            let mut view = block.view::<D>(&shared, all, first);
+            stress::<D, S>(simd, law, moduli, &mut view, scratch);
+            continue;
+        };
+        let mut undone = block.undone.take();
+        let mut view = block.view::<D>(&shared, all, first);
+        match &mut undone {
+            Some(undone) => {
+                plastic_stress::<D, S>(simd, (moduli, flow), &mut view, undone, scratch);
+            }
+            None => stress::<D, S>(simd, law, moduli, &mut view, scratch),
+        }
+        block.undone = undone;
+    }
+    for (block, scratch) in blocks.iter_mut().zip(&*scratch) {
+        if block.is_idle() {
+            continue;
+        }
+        let (home, stencil) = (block.home, block.stencil(&shared));
+        let moduli = &shared.moduli[home.material as usize - 1];
+        let view = &mut block.view::<D>(&shared, all, first);
+        match (home.kind, stencil) {
+            (BatchKind::Plain, _) => plain_forces::<D, S>(simd, moduli, view, scratch),
+            (_, (one, [])) => {
+                forces::<D, S>(simd, law, moduli, &Uniform(one), view, scratch);
+            }
+            (_, (_, each)) => {
+                forces::<D, S>(simd, law, moduli, &PerLane(each), view, scratch);
+            }
+        }
+    }
+}
+
+/// Evaluates a group with the widest lanes of the machine.
+pub fn evaluate_best<D: Dim>(group: Group, position: &[Row], scratch: &mut [Scratch; GROUP]) {
+    on_widest_lanes!(simd => evaluate_group::<D, _>(simd, group, position, scratch));
+}

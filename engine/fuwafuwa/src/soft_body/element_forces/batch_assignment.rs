@@ -1,0 +1,408 @@
+//! Assignment of elements to blocks and lanes, and its update after a remodelling.
+
+use super::batch::{ALL_LANES, Batch, BatchKey, BatchKind, VACANT};
+use super::force_kernel::{numbers, numbers_a_node, symmetric};
+use super::plastic_kernel::{IDENTITY, PlasticInverse, PlasticInverseLanes};
+use super::{ElementBatches, PAD};
+use crate::foundation::dim::Dim;
+use crate::foundation::id_lists::ascending;
+use crate::foundation::ids::{ElementId, NodeId};
+use crate::math::lanes::LANES;
+use crate::soft_body::element_law::Law;
+use crate::topology::element_class::ElementClass;
+use crate::topology::grid::VoxelGrid;
+use crate::topology::mesh::{Element, Mesh};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+impl<D: Dim> ElementBatches<D> {
+    /// Updates the blocks after a remodelling: removes the elements `removed`, and adds or moves the elements
+    /// `seated`, of which some are `asleep`. The cost is proportional to the changes.
+    pub fn update(
+        &mut self,
+        mesh: &Mesh<D>,
+        grid: &VoxelGrid<D>,
+        removed: &[ElementId],
+        seated: &[ElementId],
+        asleep: impl Fn(ElementId) -> bool,
+    ) {
+        let newcomer = |&id: &ElementId| {
+            let element = mesh.element(id).expect("seated elements are alive");
+            let material = grid.material(mesh.first_voxel(element));
+            self.newcomer(id, element, material, asleep(id))
+        };
+        let newcomers: Vec<PendingElement> = seated.iter().map(newcomer).collect();
+        for &id in removed.iter().chain(seated) {
+            self.take_out(id);
+        }
+        self.insert_pending(mesh, newcomers);
+    }
+
+    /// Puts elements to sleep, or wakes them. A block is evaluated as a whole. If all elements of a block
+    /// change, they stay together. If a block splits, the smaller group, at most half of the lanes, moves to
+    /// other blocks.
+    pub fn set_asleep(&mut self, mesh: &Mesh<D>, elements: &[ElementId], asleep: bool) {
+        let mut changing: BTreeMap<u32, u8> = BTreeMap::new();
+        for &id in elements {
+            let (index, lane) = self.assigned[id];
+            if self.blocks[index as usize].home.asleep != asleep {
+                *changing.entry(index).or_default() |= 1 << lane;
+            }
+        }
+        let is_few = |lanes: u8| lanes.count_ones() as usize <= LANES / 2;
+        let mut movers = Vec::new();
+        for (index, lanes) in changing {
+            let block = &self.blocks[index as usize];
+            let rest = !(lanes | block.vacant);
+            if rest == 0 && !is_few(lanes) {
+                self.change_key(index, asleep);
+                continue;
+            }
+            let rest = if is_few(rest) { rest } else { 0 };
+            for (lanes, asleep) in [(lanes, asleep), (rest, !asleep)] {
+                let lanes = (0..LANES).filter(|lane| lanes >> lane & 1 == 1);
+                movers.extend(lanes.map(|lane| (ElementId(block.elements[lane]), asleep)));
+            }
+        }
+        self.relocate(mesh, &movers);
+    }
+
+    /// Puts a whole block to sleep, or wakes it.
+    fn change_key(&mut self, index: u32, asleep: bool) {
+        let block = &mut self.blocks[index as usize];
+        let home = BatchKey {
+            asleep,
+            ..block.home
+        };
+        let before = std::mem::replace(&mut block.home, home);
+        let open = self.open.get_mut(&before);
+        if open.is_some_and(|open| open.remove(&index)) {
+            self.open.entry(home).or_default().insert(index);
+        }
+    }
+
+    /// Moves elements with their state to other blocks; the flag says whether the element sleeps there.
+    fn relocate(&mut self, mesh: &Mesh<D>, movers: &[(ElementId, bool)]) {
+        let state = |&(id, asleep): &(ElementId, bool)| {
+            let element = mesh.element(id).expect("only live elements sleep or wake");
+            let (index, lane) = self.assigned[id];
+            let block = &self.blocks[index as usize];
+            let newcomer = self.newcomer(id, element, block.home.material, asleep);
+            let forces = (0..element.nodes.len()).map(|node| self.force_range(index, lane, node));
+            let forces: Vec<f32> = forces
+                .flat_map(|place| &self.forces[place])
+                .copied()
+                .collect();
+            (newcomer, block.inverted >> lane & 1, forces)
+        };
+        let states: Vec<(PendingElement, u8, Vec<f32>)> = movers.iter().map(state).collect();
+        movers.iter().for_each(|&(id, _)| self.take_out(id));
+        let newcomers = states.iter().map(|(newcomer, ..)| *newcomer);
+        self.insert_pending(mesh, newcomers.collect());
+        for (PendingElement { id, .. }, inverted, forces) in states {
+            let (index, lane) = self.assigned[id];
+            self.blocks[index as usize].inverted |= inverted << lane;
+            for (node, force) in forces.chunks_exact(D::N).enumerate() {
+                let place = self.force_range(index, lane, node);
+                self.forces[place].copy_from_slice(force);
+            }
+        }
+    }
+
+    /// Collects the state of an element that is to be added to a block.
+    fn newcomer<'a>(
+        &self,
+        id: ElementId,
+        element: &'a Element,
+        material: u8,
+        asleep: bool,
+    ) -> PendingElement<'a> {
+        PendingElement {
+            id,
+            element,
+            material,
+            asleep,
+            rotation: self.rotation_of(id),
+            undone: self.plastic_inverse(id).unwrap_or(IDENTITY),
+        }
+    }
+
+    /// Adds elements that are in no block, and updates the indices of the forces on their nodes.
+    fn insert_pending(&mut self, mesh: &Mesh<D>, newcomers: Vec<PendingElement>) {
+        let nodes = newcomers
+            .iter()
+            .flat_map(|newcomer| newcomer.element.nodes.iter().copied());
+        let nodes = ascending(nodes, mesh.node_capacity());
+        let mut classes: BTreeMap<(bool, u8, u32), Vec<PendingElement>> = BTreeMap::new();
+        for newcomer in newcomers {
+            let PendingElement {
+                asleep,
+                material,
+                element,
+                ..
+            } = newcomer;
+            let class = classes
+                .entry((asleep, material, element.stencil))
+                .or_default();
+            class.push(newcomer);
+        }
+        for newcomers in classes.values() {
+            self.insert_class(mesh.stencil(newcomers[0].element), newcomers);
+        }
+        self.slots.resize(mesh.node_capacity(), [0; 8]);
+        for node in nodes {
+            let mut slots = [0; 8];
+            for (place, id) in slots.iter_mut().zip(mesh.carrier_ids(node)) {
+                *place = self.force_index(id, node);
+            }
+            self.slots[node] = slots;
+        }
+    }
+
+    /// Range in `forces` of the force on node `node` of the element in a lane of a block; nodes are counted
+    /// in the order of the element.
+    pub(super) fn force_range(&self, index: u32, lane: u8, node: usize) -> Range<usize> {
+        let first = self.blocks[index as usize].first as usize;
+        let place = (first + node * LANES + lane as usize) * D::N;
+        place..place + D::N
+    }
+
+    /// Index in `forces` of the force of an element on a node.
+    pub(super) fn force_index(&self, id: ElementId, node: NodeId) -> u32 {
+        let (block, lane) = self.assigned[id];
+        let block = &self.blocks[block as usize];
+        let first = block.first as usize + lane as usize;
+        let mut lane_nodes = self.nodes[first..].iter().step_by(LANES);
+        let place = lane_nodes
+            .position(|&other| other == node.0)
+            .expect("the element carries the node");
+        ((first + place * LANES) * D::N) as u32
+    }
+
+    fn take_out(&mut self, id: ElementId) {
+        let Some(&(index, lane)) = self.assigned.get(id.index()) else {
+            return;
+        };
+        if index == VACANT {
+            return;
+        }
+        self.assigned[id] = (VACANT, 0);
+        let block = &mut self.blocks[index as usize];
+        block.elements[lane as usize] = VACANT;
+        block.vacant |= 1 << lane;
+        let open = self.open.entry(block.home).or_default();
+        if block.vacant == ALL_LANES {
+            open.remove(&index);
+            let kind = (block.node_count, block.home.is_pool());
+            self.empty.entry(kind).or_default().push(index);
+        } else {
+            open.insert(index);
+        }
+    }
+
+    /// Adds elements of one class and material that are all asleep or all awake. They go to vacant lanes of
+    /// the class, then eight at a time to new blocks of the class, and the rest to the pool.
+    fn insert_class(&mut self, stencil: &ElementClass<D>, mut newcomers: &[PendingElement]) {
+        let PendingElement {
+            element,
+            material,
+            asleep,
+            ..
+        } = newcomers[0];
+        let class = element.stencil;
+        let is_plain = stencil.is_plain() && self.law == Law::CorotationalVem;
+        let home = |kind: BatchKind| BatchKey {
+            kind,
+            material,
+            asleep,
+        };
+        let own = home(match is_plain {
+            true => BatchKind::Plain,
+            false => BatchKind::Class(class),
+        });
+        let count = stencil.slots.len() as u32;
+        let numbers = numbers_of(self.law, stencil);
+        while let Some((newcomer, others)) = newcomers.split_first() {
+            let open = self.open.get(&own).and_then(|open| open.first().copied());
+            let index = match open {
+                Some(index) => index,
+                None if is_plain || newcomers.len() >= LANES => {
+                    let index = self.empty_block(own, count);
+                    self.blocks[index as usize].stencil = self.stencil_of(class, &numbers);
+                    index
+                }
+                None => {
+                    let pool = home(BatchKind::Pool(count));
+                    let open = self.open.get(&pool).and_then(|open| open.first().copied());
+                    open.unwrap_or_else(|| self.empty_block(pool, count))
+                }
+            };
+            self.assign(index, newcomer, &numbers);
+            newcomers = others;
+        }
+    }
+
+    /// Returns a block without elements, for elements with `count` nodes.
+    fn empty_block(&mut self, home: BatchKey, count: u32) -> u32 {
+        let kind = (count, home.is_pool());
+        if let Some(index) = self.empty.get_mut(&kind).and_then(Vec::pop) {
+            let undone = self.undone_in(home);
+            let block = &mut self.blocks[index as usize];
+            (block.home, block.undone) = (home, undone);
+            return index;
+        }
+        let first = self.nodes.len() as u32;
+        let stencil = self.pooled.len() as u32;
+        let rows = self.nodes.len() + count as usize * LANES;
+        self.nodes.resize(rows, VACANT);
+        self.forces.resize(rows * D::N + PAD, 0.0);
+        if home.is_pool() {
+            let length = self.pooled.len() + numbers::<D>(count as usize);
+            self.pooled.resize(length, [0.0; LANES]);
+        }
+        let undone = self.undone_in(home);
+        self.blocks.push(Batch {
+            home,
+            undone,
+            elements: [VACANT; LANES],
+            vacant: ALL_LANES,
+            inverted: 0,
+            half_size: [self.voxel_size; LANES],
+            rotation: [[0.0; LANES]; 4],
+            node_count: count,
+            first,
+            stencil,
+            numbers: numbers::<D>(count as usize) as u32,
+        });
+        self.blocks.len() as u32 - 1
+    }
+
+    /// Initial plastic state of the elements of a block, if their material is plastic.
+    fn undone_in(&self, home: BatchKey) -> Option<Box<PlasticInverseLanes>> {
+        let flow = self.flows.get(home.material as usize - 1);
+        flow.copied().flatten().map(|_| PlasticInverseLanes::none())
+    }
+
+    /// Returns the start of the stencil of a class in `numbers`; adds the stencil if necessary.
+    fn stencil_of(&mut self, class: u32, numbers: &[f32]) -> u32 {
+        let all = &mut self.numbers;
+        *self.stencils.entry(class).or_insert_with(|| {
+            all.extend_from_slice(numbers);
+            (all.len() - numbers.len()) as u32
+        })
+    }
+
+    /// Puts an element into a vacant lane of a block.
+    fn assign(&mut self, index: u32, newcomer: &PendingElement, numbers: &[f32]) {
+        let block = &mut self.blocks[index as usize];
+        let is_first = block.vacant == ALL_LANES;
+        assert_ne!(block.vacant, 0, "open blocks have vacant lanes");
+        let lane = block.vacant.trailing_zeros() as usize;
+        block.vacant &= !(1 << lane);
+        let is_last = block.vacant == 0;
+        // The first element of a block fills the vacant lanes with its numbers, so that they compute finite
+        // values.
+        let lanes = if is_first { 0..LANES } else { lane..lane + 1 };
+        let half_size = 0.5 * self.voxel_size * newcomer.element.cell.width() as f32;
+        let first = block.first as usize;
+        for lane in lanes {
+            block.half_size[lane] = half_size;
+            for part in 0..4 {
+                block.rotation[part][lane] = newcomer.rotation[part];
+            }
+            if let Some(undone) = &mut block.undone {
+                undone.set(lane, newcomer.undone);
+            }
+            for (place, &node) in newcomer.element.nodes.iter().enumerate() {
+                self.nodes[first + place * LANES + lane] = node.0;
+            }
+            if block.home.is_pool() {
+                let pooled = &mut self.pooled[block.stencil as usize..];
+                for (all, &number) in pooled.iter_mut().zip(numbers) {
+                    all[lane] = number;
+                }
+            }
+        }
+        // Clears the forces of the previous element: fracture may read them before the next evaluation.
+        for place in 0..newcomer.element.nodes.len() {
+            let force = (first + place * LANES + lane) * D::N;
+            self.forces[force..][..D::N].fill(0.0);
+        }
+        block.elements[lane] = newcomer.id.0;
+        block.inverted &= !(1 << lane);
+        let open = self.open.entry(block.home).or_default();
+        if is_last {
+            open.remove(&index);
+        } else {
+            open.insert(index);
+        }
+        let id = newcomer.id;
+        let capacity = self.assigned.len().max(id.index() + 1);
+        self.assigned.resize(capacity, (VACANT, 0));
+        self.assigned[id] = (index, lane as u8);
+    }
+}
+
+/// Element that is to be added to a block.
+#[derive(Copy, Clone)]
+struct PendingElement<'a> {
+    id: ElementId,
+    element: &'a Element,
+    material: u8,
+    asleep: bool,
+    rotation: [f32; 4],
+    undone: PlasticInverse,
+}
+
+/// Returns a stencil in single precision, in the layout of the kernel.
+fn numbers_of<D: Dim>(law: Law, stencil: &ElementClass<D>) -> Vec<f32> {
+    let count = stencil.slots.len();
+    let mut mean = [0.0; 3];
+    for offset in &stencil.offsets {
+        for axis in 0..3 {
+            mean[axis] += offset[axis] / count as f64;
+        }
+    }
+    let mut all = vec![0.0; numbers::<D>(count)];
+    let mut total = 0.0;
+    for k in 0..count {
+        let node = &mut all[numbers_a_node::<D>() * k..][..numbers_a_node::<D>()];
+        let w = stencil.volumes[k];
+        for axis in 0..D::N {
+            let centred = stencil.offsets[k][axis] - mean[axis];
+            total += centred * centred;
+            match law {
+                Law::CorotationalVem => {
+                    node[axis] = stencil.gradients[k][axis] as f32;
+                    node[D::N + axis] = (w * stencil.offsets[k][axis]) as f32;
+                }
+                Law::Endo2004 => node[axis] = centred as f32,
+            }
+        }
+        node[2 * D::N] = if law == Law::CorotationalVem {
+            w as f32
+        } else {
+            1.0
+        };
+    }
+    for i in 0..D::N {
+        for j in i..D::N {
+            let term =
+                |k: usize| stencil.volumes[k] * stencil.offsets[k][i] * stencil.offsets[k][j];
+            let spread: f64 = (0..count).map(term).sum();
+            all[numbers_a_node::<D>() * count + symmetric::<D>(i, j)] = spread as f32;
+        }
+    }
+    let volume = match law {
+        Law::CorotationalVem => stencil.volume,
+        Law::Endo2004 => count as f64,
+    };
+    let last = all.len() - 1;
+    all[last - 1] = (1.0 / volume) as f32;
+    let stiffness = match law {
+        Law::CorotationalVem => stencil.hourglass,
+        Law::Endo2004 => stencil.volume * D::N as f64 / total,
+    };
+    all[last] = stiffness as f32;
+    all
+}

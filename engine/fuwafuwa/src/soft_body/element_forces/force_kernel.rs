@@ -1,0 +1,424 @@
+//! Arithmetic of a block, all lanes at once.
+//!
+//! With x relative to the first node, unit stencil (b, r, w, V) and half size h, the formulas of
+//! [`crate::soft_body::element_law`] become
+//!
+//! ```text
+//! F = Σ x bᵀ / (V h)     G = Σ x (w r)ᵀ     c = Σ w x / V     W = Σ w r rᵀ
+//! A = (k / V) (G − h F W) − h^(d−1) P       B = k h F
+//! f = A b + B (w r) − k w (x − c)
+//! ```
+//!
+//! Small groups of blocks pass through three short loops: gradient, stress and forces. A single long loop
+//! would need far more registers than exist, and its chain of square roots and divisions would stall the
+//! machine.
+//!
+//! A plain cell has nodes only in its corners, and so w = 1, b and r of ±1 and no skew: its sums need only
+//! additions and subtractions. Four of five elements are plain.
+
+use super::rotation_extraction::{Matrix, turn};
+use crate::foundation::dim::Dim;
+use crate::math::lanes::{
+    Eight, LANES, Lanes, Row, at_least, gather, load, positive, scatter, splat,
+};
+use crate::soft_body::element_law::{Elasticity, Law, MIN_VOLUME_RATIO};
+use fearless_simd::prelude::*;
+
+/// Data of one block for the kernel.
+pub struct BlockView<'a> {
+    /// Node k of lane l at k · LANES + l.
+    pub nodes: &'a [u32],
+    pub half_size: &'a Eight,
+    /// Quaternion in 3D; cosine and sine in 2D.
+    pub rotation: &'a mut [Eight; 4],
+    /// Forces on the nodes, in their order, with D::N components each.
+    pub forces: &'a mut [f32],
+    /// Mask of the lanes with an inverted element.
+    pub inverted: &'a mut u8,
+}
+
+/// Elastic moduli of a material in single precision.
+#[derive(Copy, Clone, Debug)]
+pub struct Moduli {
+    pub twice_shear: f32,
+    pub lame: f32,
+    pub young: f32,
+    hourglass: f32,
+}
+
+impl Moduli {
+    pub fn of<D: Dim>(elasticity: Elasticity) -> Self {
+        Self {
+            twice_shear: (2.0 * elasticity.shear_modulus()) as f32,
+            lame: elasticity.lame() as f32,
+            young: elasticity.young as f32,
+            hourglass: (elasticity.young * D::HOURGLASS) as f32,
+        }
+    }
+}
+
+/// Numbers of a stencil: b, w r and w for each node, then the upper half of W, 1/V and the stiffness of the
+/// hourglass modes or of [`Law::Endo2004`]. `get` reads one number, for all lanes or for each.
+pub trait Stencils {
+    fn get<S: Simd>(&self, simd: S, index: usize) -> Lanes<S>;
+}
+
+/// Stencil of one class for all lanes.
+pub struct Uniform<'a>(pub &'a [f32]);
+
+/// Stencils with a class of its own in each lane.
+pub struct PerLane<'a>(pub &'a [Eight]);
+
+impl Stencils for Uniform<'_> {
+    #[inline(always)]
+    fn get<S: Simd>(&self, simd: S, index: usize) -> Lanes<S> {
+        splat(simd, self.0[index])
+    }
+}
+
+impl Stencils for PerLane<'_> {
+    #[inline(always)]
+    fn get<S: Simd>(&self, simd: S, index: usize) -> Lanes<S> {
+        load(simd, &self.0[index])
+    }
+}
+
+/// Number of values per node in a stencil.
+pub const fn numbers_a_node<D: Dim>() -> usize {
+    2 * D::N + 1
+}
+
+/// Number of values in a stencil.
+pub const fn numbers<D: Dim>(nodes: usize) -> usize {
+    numbers_a_node::<D>() * nodes + D::N * (D::N + 1) / 2 + 2
+}
+
+/// Intermediate results that one loop passes to the next.
+#[derive(Copy, Clone, Debug)]
+pub struct Scratch {
+    /// Positions of the nodes relative to the first one.
+    x: [[Eight; 3]; 27],
+    pub f: [[Eight; 3]; 3],
+    moment: [[Eight; 3]; 3],
+    centre: [Eight; 3],
+    /// Stress; the rotation under [`Law::Endo2004`].
+    pub stress: [[Eight; 3]; 3],
+}
+
+impl Scratch {
+    pub const EMPTY: Self = Self {
+        x: [[[0.0; LANES]; 3]; 27],
+        f: [[[0.0; LANES]; 3]; 3],
+        moment: [[[0.0; LANES]; 3]; 3],
+        centre: [[0.0; LANES]; 3],
+        stress: [[[0.0; LANES]; 3]; 3],
+    };
+}
+
+/// First loop: F and c of plain cells, by sums and differences.
+#[inline(always)]
+pub fn plain_gradient<D: Dim, S: Simd>(
+    simd: S,
+    position: &[Row],
+    view: &BlockView,
+    scratch: &mut Scratch,
+) {
+    let zero = splat(simd, 0.0);
+    let share = splat(simd, 1.0 / D::CORNERS as f32);
+    let scale = share / load(simd, view.half_size);
+    let origin = gather(simd, position, places(view.nodes, 0));
+    let mut x = [[zero; 3]; 8];
+    for node in 1..D::CORNERS {
+        let at = gather(simd, position, places(view.nodes, node));
+        for i in 0..D::N {
+            x[node][i] = at[i] - origin[i];
+            x[node][i].store_array(&mut scratch.x[node][i]);
+        }
+    }
+    for i in 0..D::N {
+        let (d0, s0) = (x[1][i], x[1][i]);
+        let (d1, s1) = (x[3][i] - x[2][i], x[3][i] + x[2][i]);
+        let f = &mut scratch.f[i];
+        // Pairs along the first axis, then pairs of those; 3D has one more axis.
+        if D::N == 2 {
+            (scale * (d0 + d1)).store_array(&mut f[0]);
+            (scale * (s1 - s0)).store_array(&mut f[1]);
+            (share * (s0 + s1)).store_array(&mut scratch.centre[i]);
+        } else {
+            let (d2, s2) = (x[5][i] - x[4][i], x[5][i] + x[4][i]);
+            let (d3, s3) = (x[7][i] - x[6][i], x[7][i] + x[6][i]);
+            let (low, high) = (s0 + s1, s2 + s3);
+            (scale * (d0 + d1 + (d2 + d3))).store_array(&mut f[0]);
+            (scale * (s1 - s0 + (s3 - s2))).store_array(&mut f[1]);
+            (scale * (high - low)).store_array(&mut f[2]);
+            (share * (low + high)).store_array(&mut scratch.centre[i]);
+        }
+    }
+}
+
+/// First loop: F, G and c of elements of any class.
+#[inline(always)]
+pub fn gradient<D: Dim, S: Simd>(
+    simd: S,
+    stencils: &impl Stencils,
+    position: &[Row],
+    view: &BlockView,
+    scratch: &mut Scratch,
+) {
+    let zero = splat(simd, 0.0);
+    let count = view.nodes.len() / LANES;
+    let a_node = numbers_a_node::<D>();
+    let origin = gather(simd, position, places(view.nodes, 0));
+    for i in 0..D::N {
+        zero.store_array(&mut scratch.x[0][i]);
+    }
+    let mut f = [[zero; 3]; 3];
+    let mut moment = [[zero; 3]; 3];
+    let mut centre = [zero; 3];
+    for node in 1..count {
+        let at = gather(simd, position, places(view.nodes, node));
+        let w = stencils.get(simd, a_node * node + 2 * D::N);
+        let mut x = [zero; 3];
+        for i in 0..D::N {
+            x[i] = at[i] - origin[i];
+            x[i].store_array(&mut scratch.x[node][i]);
+            centre[i] += x[i] * w;
+        }
+        for j in 0..D::N {
+            let b = stencils.get(simd, a_node * node + j);
+            let wr = stencils.get(simd, a_node * node + D::N + j);
+            for i in 0..D::N {
+                f[i][j] += x[i] * b;
+                moment[i][j] += x[i] * wr;
+            }
+        }
+    }
+    let inverse_volume = stencils.get(simd, numbers::<D>(count) - 2);
+    let scale = inverse_volume / load(simd, view.half_size);
+    for i in 0..D::N {
+        for j in 0..D::N {
+            (f[i][j] * scale).store_array(&mut scratch.f[i][j]);
+            moment[i][j].store_array(&mut scratch.moment[i][j]);
+        }
+        (centre[i] * inverse_volume).store_array(&mut scratch.centre[i]);
+    }
+}
+
+/// Second loop: updates the rotation and computes the stress.
+#[inline(always)]
+pub fn stress<D: Dim, S: Simd>(
+    simd: S,
+    law: Law,
+    moduli: &Moduli,
+    view: &mut BlockView,
+    scratch: &mut Scratch,
+) {
+    let mut f = [[splat(simd, 0.0); 3]; 3];
+    for i in 0..D::N {
+        for j in 0..D::N {
+            f[i][j] = load(simd, &scratch.f[i][j]);
+        }
+    }
+    let rotation = turn::<D, S>(simd, &f, view.rotation);
+    let stress = match law {
+        Law::CorotationalVem => stress_of::<D, S>(simd, moduli, &f, &rotation, view.inverted),
+        Law::Endo2004 => rotation,
+    };
+    for i in 0..D::N {
+        for j in 0..D::N {
+            stress[i][j].store_array(&mut scratch.stress[i][j]);
+        }
+    }
+}
+
+/// Third loop: forces of plain cells.
+#[inline(always)]
+pub fn plain_forces<D: Dim, S: Simd>(
+    simd: S,
+    moduli: &Moduli,
+    view: &mut BlockView,
+    scratch: &Scratch,
+) {
+    let half = load(simd, view.half_size);
+    let (stiffness, area) = scales::<D, S>(simd, moduli, half);
+    let bend = stiffness * half;
+    let mut force = [[splat(simd, 0.0); 3]; 8];
+    for i in 0..D::N {
+        let centre = load(simd, &scratch.centre[i]);
+        force[0][i] = stiffness * centre;
+        for node in 1..D::CORNERS {
+            force[node][i] = stiffness * (centre - load(simd, &scratch.x[node][i]));
+        }
+    }
+    for i in 0..D::N {
+        let mut m = [splat(simd, 0.0); 3];
+        for j in 0..D::N {
+            m[j] = bend * load(simd, &scratch.f[i][j]) - area * load(simd, &scratch.stress[i][j]);
+        }
+        // Sign combinations of the axes at each corner, with as few sums as there are corners.
+        if D::N == 2 {
+            let (sum, difference) = (m[0] + m[1], m[0] - m[1]);
+            force[0][i] -= sum;
+            force[1][i] += difference;
+            force[2][i] -= difference;
+            force[3][i] += sum;
+        } else {
+            let (sum, difference) = (m[1] + m[2], m[1] - m[2]);
+            let turns = [sum + m[0], sum - m[0], difference + m[0], difference - m[0]];
+            force[0][i] -= turns[0];
+            force[1][i] -= turns[1];
+            force[2][i] += turns[3];
+            force[3][i] += turns[2];
+            force[4][i] -= turns[2];
+            force[5][i] -= turns[3];
+            force[6][i] += turns[1];
+            force[7][i] += turns[0];
+        }
+    }
+    for node in 0..D::CORNERS {
+        scatter(simd, force[node], D::N, target::<D>(view.forces, node));
+    }
+}
+
+/// Third loop: forces of elements of any class.
+#[inline(always)]
+pub fn forces<D: Dim, S: Simd>(
+    simd: S,
+    law: Law,
+    moduli: &Moduli,
+    stencils: &impl Stencils,
+    view: &mut BlockView,
+    scratch: &Scratch,
+) {
+    let zero = splat(simd, 0.0);
+    let count = view.nodes.len() / LANES;
+    let a_node = numbers_a_node::<D>();
+    let half = load(simd, view.half_size);
+    let (mut pull, mut shear) = ([[zero; 3]; 3], [[zero; 3]; 3]);
+    let stiffness;
+    let own_stiffness = stencils.get(simd, numbers::<D>(count) - 1);
+    if law == Law::CorotationalVem {
+        let (plain_spring, area) = scales::<D, S>(simd, moduli, half);
+        let spring = plain_spring * own_stiffness;
+        let inverse_volume = stencils.get(simd, numbers::<D>(count) - 2);
+        let (bend, skew) = (spring * half, spring * inverse_volume);
+        stiffness = spring;
+        for i in 0..D::N {
+            for j in 0..D::N {
+                let mut bent = zero;
+                for k in 0..D::N {
+                    let spread = stencils.get(simd, a_node * count + symmetric::<D>(k, j));
+                    bent += load(simd, &scratch.f[i][k]) * spread;
+                }
+                let moment = load(simd, &scratch.moment[i][j]);
+                let stress = load(simd, &scratch.stress[i][j]);
+                pull[i][j] = skew * (moment - half * bent) - area * stress;
+                shear[i][j] = bend * load(simd, &scratch.f[i][j]);
+            }
+        }
+    } else {
+        // Young's modulus times the length h^(d−2).
+        let length = if D::N == 2 { splat(simd, 1.0) } else { half };
+        stiffness = splat(simd, moduli.young) * own_stiffness * length;
+        for i in 0..D::N {
+            for j in 0..D::N {
+                pull[i][j] = stiffness * half * load(simd, &scratch.stress[i][j]);
+            }
+        }
+    }
+    for node in 0..count {
+        let spring = stiffness * stencils.get(simd, a_node * node + 2 * D::N);
+        let mut force = [zero; 3];
+        for i in 0..D::N {
+            let centre = load(simd, &scratch.centre[i]);
+            let x = load(simd, &scratch.x[node][i]);
+            force[i] = spring * (centre - x);
+        }
+        for j in 0..D::N {
+            let b = stencils.get(simd, a_node * node + j);
+            let wr = stencils.get(simd, a_node * node + D::N + j);
+            for i in 0..D::N {
+                force[i] += pull[i][j] * b + shear[i][j] * wr;
+            }
+        }
+        scatter(simd, force, D::N, target::<D>(view.forces, node));
+    }
+}
+
+/// Returns k and h^(d−1): the stiffness of the hourglass term, and the factor from stress to force.
+#[inline(always)]
+fn scales<D: Dim, S: Simd>(simd: S, moduli: &Moduli, half: Lanes<S>) -> (Lanes<S>, Lanes<S>) {
+    let hourglass = splat(simd, moduli.hourglass);
+    if D::N == 2 {
+        (hourglass, half)
+    } else {
+        (hourglass * (half + half), half * half)
+    }
+}
+
+/// Returns the first Piola–Kirchhoff stress [Pa] of the deformation f with rotation r; sets the mask of the
+/// lanes where f is inverted.
+#[inline(always)]
+pub(super) fn stress_of<D: Dim, S: Simd>(
+    simd: S,
+    moduli: &Moduli,
+    f: &Matrix<S>,
+    r: &Matrix<S>,
+    inverted: &mut u8,
+) -> Matrix<S> {
+    let zero = splat(simd, 0.0);
+    let mut stretch = splat(simd, -(D::N as f32));
+    for i in 0..D::N {
+        for j in 0..D::N {
+            stretch += f[i][j] * r[i][j];
+        }
+    }
+    let twice_shear = splat(simd, moduli.twice_shear);
+    let pressure = splat(simd, moduli.lame) * stretch - twice_shear;
+    let mut cofactor = [[zero; 3]; 3];
+    // The minors of a 2 × 2 matrix are its entries.
+    if D::N == 2 {
+        cofactor[0] = [f[1][1], zero - f[1][0], zero];
+        cofactor[1] = [zero - f[0][1], f[0][0], zero];
+    } else {
+        for i in 0..3 {
+            let (a, b) = (f[(i + 1) % 3], f[(i + 2) % 3]);
+            for j in 0..3 {
+                let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+                cofactor[i][j] = a[k] * b[l] - a[l] * b[k];
+            }
+        }
+    }
+    let mut squash = splat(simd, MIN_VOLUME_RATIO as f32);
+    for j in 0..D::N {
+        squash -= f[0][j] * cofactor[0][j];
+    }
+    *inverted = positive(squash - splat(simd, MIN_VOLUME_RATIO as f32));
+    let barrier = splat(simd, moduli.young) * at_least(squash, zero);
+    let mut p = [[zero; 3]; 3];
+    for i in 0..D::N {
+        for j in 0..D::N {
+            p[i][j] = twice_shear * f[i][j] + pressure * r[i][j] - barrier * cofactor[i][j];
+        }
+    }
+    p
+}
+
+/// Index of row i and column j of W in its upper half.
+#[inline(always)]
+pub fn symmetric<D: Dim>(i: usize, j: usize) -> usize {
+    let (low, high) = if i < j { (i, j) } else { (j, i) };
+    low * D::N - low * (low + 1) / 2 + high
+}
+
+#[inline(always)]
+fn places(nodes: &[u32], node: usize) -> &[u32; LANES] {
+    nodes[node * LANES..][..LANES]
+        .try_into()
+        .expect("every node has one index per lane")
+}
+
+#[inline(always)]
+fn target<D: Dim>(forces: &mut [f32], node: usize) -> &mut [f32] {
+    &mut forces[node * D::N * LANES..][..D::N * LANES]
+}

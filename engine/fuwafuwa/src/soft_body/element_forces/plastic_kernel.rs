@@ -1,0 +1,294 @@
+//! Plastic elements, all lanes at once: [`crate::soft_body::plasticity`] in single precision.
+
+use super::force_kernel::{BlockView, Moduli, Scratch, stress_of};
+use super::rotation_extraction::{Matrix, turn};
+use crate::foundation::dim::Dim;
+use crate::math::lanes::{Eight, LANES, Lanes, at_least, if_positive, load, splat};
+use crate::soft_body::element_law::MIN_VOLUME_RATIO;
+use crate::soft_body::plasticity::{MAX_FLOW, MIN_FLOW_VOLUME_RATIO, Plasticity};
+use fearless_simd::prelude::*;
+
+/// Plastic state G of each lane, by rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlasticInverseLanes(pub [[Eight; 3]; 3]);
+
+/// Plastic state G of one element.
+pub type PlasticInverse = [[f32; 3]; 3];
+
+pub const IDENTITY: PlasticInverse = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// Flow parameters of a material in single precision.
+#[derive(Copy, Clone, Debug)]
+pub struct PlasticFlowLimits {
+    most_deviator: f32,
+    most_flown: f32,
+}
+
+impl PlasticFlowLimits {
+    pub fn of<D: Dim>(plasticity: Plasticity) -> Self {
+        Self {
+            most_deviator: plasticity.max_deviator::<D>() as f32,
+            most_flown: plasticity.max_plastic_norm_squared::<D>() as f32,
+        }
+    }
+}
+
+impl PlasticInverseLanes {
+    /// Returns the state without plastic deformation.
+    pub fn none() -> Box<Self> {
+        Box::new(Self(IDENTITY.map(|row| row.map(|entry| [entry; LANES]))))
+    }
+
+    pub fn get(&self, lane: usize) -> PlasticInverse {
+        self.0.map(|row| row.map(|entry| entry[lane]))
+    }
+
+    pub fn set(&mut self, lane: usize, dent: PlasticInverse) {
+        for (row, numbers) in self.0.iter_mut().zip(dent) {
+            for (entry, number) in row.iter_mut().zip(numbers) {
+                entry[lane] = number;
+            }
+        }
+    }
+}
+
+/// Second loop for plastic elements: computes the stress like that of the kernel, then applies plastic flow.
+/// Kept out of the kernel, and in separate functions: as one function, it took the compiler minutes with
+/// scalar lanes.
+#[inline(never)]
+pub fn plastic_stress<D: Dim, S: Simd>(
+    simd: S,
+    material: (&Moduli, &PlasticFlowLimits),
+    view: &mut BlockView,
+    undone: &mut PlasticInverseLanes,
+    scratch: &mut Scratch,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || flow_on::<D, S>(simd, material, view, undone, scratch),
+    );
+}
+
+#[inline(always)]
+fn flow_on<D: Dim, S: Simd>(
+    simd: S,
+    (moduli, flow): (&Moduli, &PlasticFlowLimits),
+    view: &mut BlockView,
+    undone: &mut PlasticInverseLanes,
+    scratch: &mut Scratch,
+) {
+    let zero = splat(simd, 0.0);
+    let (mut f, mut g) = ([[zero; 3]; 3], [[zero; 3]; 3]);
+    for i in 0..D::N {
+        for j in 0..D::N {
+            f[i][j] = load(simd, &scratch.f[i][j]);
+            g[i][j] = load(simd, &undone.0[i][j]);
+        }
+    }
+    let elastic = product::<D, S>(zero, &f, &g);
+    let rotation = turn::<D, S>(simd, &elastic, view.rotation);
+    let own = stress_of::<D, S>(simd, moduli, &elastic, &rotation, view.inverted);
+    let soft = kneaded_stiffness::<D, S>(simd, &g);
+    for i in 0..D::N {
+        for j in 0..D::N {
+            let mut sum = zero;
+            for k in 0..D::N {
+                sum += own[i][k] * g[j][k];
+            }
+            (soft * sum).store_array(&mut scratch.stress[i][j]);
+        }
+    }
+    let next = flown_apart::<D, S>(simd, (moduli, flow), &elastic, &rotation, &g);
+    for i in 0..D::N {
+        for j in 0..D::N {
+            next[i][j].store_array(&mut undone.0[i][j]);
+        }
+    }
+}
+
+#[inline(never)]
+fn flown_apart<D: Dim, S: Simd>(
+    simd: S,
+    material: (&Moduli, &PlasticFlowLimits),
+    elastic: &Matrix<S>,
+    rotation: &Matrix<S>,
+    g: &Matrix<S>,
+) -> Matrix<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || flown::<D, S>(simd, material, elastic, rotation, g),
+    )
+}
+
+#[inline(always)]
+fn flown<D: Dim, S: Simd>(
+    simd: S,
+    (moduli, flow): (&Moduli, &PlasticFlowLimits),
+    elastic: &Matrix<S>,
+    rotation: &Matrix<S>,
+    g: &Matrix<S>,
+) -> Matrix<S> {
+    let (zero, one) = (splat(simd, 0.0), splat(simd, 1.0));
+    let half = splat(simd, 0.5);
+    let mut stretch = [[zero; 3]; 3];
+    let mut mean = zero;
+    for i in 0..D::N {
+        for j in 0..D::N {
+            let mut both = zero;
+            for k in 0..D::N {
+                both += rotation[k][i] * elastic[k][j] + rotation[k][j] * elastic[k][i];
+            }
+            stretch[i][j] = half * both;
+        }
+        mean += stretch[i][i];
+    }
+    mean *= splat(simd, 1.0 / D::N as f32);
+    let (mut deviator, mut size) = (stretch, zero);
+    for i in 0..D::N {
+        deviator[i][i] -= mean;
+        for j in 0..D::N {
+            size += deviator[i][j] * deviator[i][j];
+        }
+    }
+    let size = size.sqrt();
+    let excess = size - splat(simd, flow.most_deviator);
+    let most = splat(simd, MAX_FLOW as f32);
+    let bounded = most - at_least(most - at_least(excess, zero), zero);
+    let share = bounded / at_least(size, splat(simd, 1e-6));
+    let mut step = [[zero; 3]; 3];
+    for i in 0..D::N {
+        for j in 0..D::N {
+            let own = if i == j { one } else { zero };
+            step[i][j] = own - share * deviator[i][j];
+        }
+    }
+    let mut next = product::<D, S>(zero, g, &step);
+    let scale = inverse_root::<D, S>(simd, determinant::<D, S>(&next));
+    for i in 0..D::N {
+        for j in 0..D::N {
+            next[i][j] *= scale;
+        }
+    }
+    let mut eased = product::<D, S>(zero, &stretch, &step);
+    for i in 0..D::N {
+        for j in 0..D::N {
+            eased[i][j] *= scale;
+        }
+    }
+    // Flow back towards the original shape makes the element stiffer; it must not store more energy than
+    // before.
+    let whole = determinant::<D, S>(elastic);
+    let before =
+        kneaded_stiffness::<D, S>(simd, g) * density::<D, S>(simd, moduli, &stretch, whole);
+    let after =
+        kneaded_stiffness::<D, S>(simd, &next) * density::<D, S>(simd, moduli, &eased, whole);
+    // Four conditions must hold; comparisons with NaN are false.
+    let (now, then) = (squared::<D, S>(zero, g), squared::<D, S>(zero, &next));
+    let room = splat(simd, flow.most_flown) - then;
+    let room = if_positive(room, room, now - then);
+    let volume = whole - splat(simd, MIN_FLOW_VOLUME_RATIO as f32);
+    let may = if_positive(room, if_positive(before - after, volume, zero), zero);
+    let may = if_positive(excess, may, zero);
+    let mut kept = *g;
+    for i in 0..D::N {
+        for j in 0..D::N {
+            kept[i][j] = if_positive(may, next[i][j], g[i][j]);
+        }
+    }
+    kept
+}
+
+/// Elastic energy density of a stretch in an element with volume ratio `volume`.
+#[inline(always)]
+fn density<D: Dim, S: Simd>(
+    simd: S,
+    moduli: &Moduli,
+    stretch: &Matrix<S>,
+    volume: Lanes<S>,
+) -> Lanes<S> {
+    let (zero, half) = (splat(simd, 0.0), splat(simd, 0.5));
+    let (mut strain, mut trace) = (*stretch, zero);
+    for i in 0..D::N {
+        strain[i][i] -= splat(simd, 1.0);
+        trace += strain[i][i];
+    }
+    let below = at_least(splat(simd, MIN_VOLUME_RATIO as f32) - volume, zero);
+    half * (splat(simd, moduli.twice_shear) * squared::<D, S>(zero, &strain)
+        + splat(simd, moduli.lame) * trace * trace
+        + splat(simd, moduli.young) * below * below)
+}
+
+/// Returns 1 / λ_max(GᵀG), estimated from the trace and the norm.
+#[inline(always)]
+fn kneaded_stiffness<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
+    let zero = splat(simd, 0.0);
+    let (mut trace, mut norm) = (zero, zero);
+    for i in 0..D::N {
+        for j in 0..D::N {
+            let mut sum = zero;
+            for k in 0..D::N {
+                sum += g[k][i] * g[k][j];
+            }
+            norm += sum * sum;
+            if i == j {
+                trace += sum;
+            }
+        }
+    }
+    let axes = D::N as f32;
+    let mean = trace / splat(simd, axes);
+    let spread = at_least(norm - trace * mean, zero);
+    let share = splat(simd, (axes - 1.0) / axes);
+    splat(simd, 1.0) / (mean + (share * spread).sqrt())
+}
+
+/// Returns 1 over the square root (2D) or cube root (3D) of a number near 1.
+#[inline(always)]
+fn inverse_root<D: Dim, S: Simd>(simd: S, of: Lanes<S>) -> Lanes<S> {
+    let one = splat(simd, 1.0);
+    if D::N == 2 {
+        return one / of.sqrt();
+    }
+    // Newton's iteration: from 1, three rounds are enough for 0.8 to 1.2.
+    let (four, third) = (splat(simd, 4.0), splat(simd, 1.0 / 3.0));
+    let mut root = one;
+    for _ in 0..3 {
+        root = root * (four - of * root * root * root) * third;
+    }
+    root
+}
+
+#[inline(always)]
+fn product<D: Dim, S: Simd>(zero: Lanes<S>, a: &Matrix<S>, b: &Matrix<S>) -> Matrix<S> {
+    let mut product = [[zero; 3]; 3];
+    for i in 0..D::N {
+        for j in 0..D::N {
+            for k in 0..D::N {
+                product[i][j] += a[i][k] * b[k][j];
+            }
+        }
+    }
+    product
+}
+
+#[inline(always)]
+fn determinant<D: Dim, S: Simd>(m: &Matrix<S>) -> Lanes<S> {
+    // The third axis is unchanged in 2D.
+    if D::N == 2 {
+        return m[0][0] * m[1][1] - m[0][1] * m[1][0];
+    }
+    m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
+        - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+        + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
+}
+
+#[inline(always)]
+fn squared<D: Dim, S: Simd>(zero: Lanes<S>, m: &Matrix<S>) -> Lanes<S> {
+    let mut sum = zero;
+    for i in 0..D::N {
+        for j in 0..D::N {
+            sum += m[i][j] * m[i][j];
+        }
+    }
+    sum
+}

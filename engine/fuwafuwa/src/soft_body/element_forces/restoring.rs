@@ -1,0 +1,140 @@
+//! Snapshots of the blocks. Only the state of each element is saved; the blocks are rebuilt from the mesh,
+//! because the distribution over blocks does not change the result.
+
+use super::ElementBatches;
+use super::batch::VACANT;
+use super::plastic_kernel::{IDENTITY, PlasticInverse};
+use super::saved_states::SavedElementStates;
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::ElementId;
+use crate::math::vector::{cross, dot};
+use crate::soft_body::plasticity::Plasticity;
+use crate::topology::grid::VoxelGrid;
+use crate::topology::mesh::{Element, Mesh};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+impl<D: Dim> ElementBatches<D> {
+    /// Whether a state read from a file matches the elements of a mesh. Its numbers may be arbitrary: pieces
+    /// that become non-finite are quarantined after the tick.
+    pub fn is_sound(&self, mesh: &Mesh<D>) -> bool {
+        let numbers = |(_, element): (_, &Element)| parts::<D>() + element.nodes.len() * D::N;
+        let numbers: usize = mesh.elements().map(numbers).sum();
+        let fits = |saved: &SavedElementStates| {
+            let undone = &saved.undone;
+            let is_one = |(id, dent): &(ElementId, PlasticInverse)| {
+                mesh.element(*id).is_some() && is_sound::<D>(dent)
+            };
+            saved.inverted.len() == mesh.element_count()
+                && saved.numbers.len() == numbers
+                && undone.is_sorted_by(|a, b| a.0 < b.0)
+                && undone.iter().all(is_one)
+        };
+        self.saved.as_ref().is_some_and(fits)
+    }
+
+    /// Puts the elements of a mesh, some of which are `asleep`, into blocks, and restores the state read from
+    /// a file. The elasticities must be set afterwards.
+    pub fn restore(
+        &mut self,
+        mesh: &Mesh<D>,
+        grid: &VoxelGrid<D>,
+        plasticities: &[Option<Plasticity>],
+        asleep: impl Fn(ElementId) -> bool,
+    ) {
+        let Some(SavedElementStates {
+            law,
+            numbers,
+            undone,
+            inverted,
+        }) = self.saved.take()
+        else {
+            return;
+        };
+        *self = Self::new(law, &[], grid.voxel_size());
+        self.set_plasticities(plasticities);
+        let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
+        self.update(mesh, grid, &[], &all, asleep);
+        for (id, dent) in undone {
+            self.set_plastic_inverse(id, dent);
+        }
+        let mut numbers = numbers.into_iter();
+        for (&id, inverted) in all.iter().zip(inverted) {
+            let (index, lane) = self.assigned[id];
+            let block = &mut self.blocks[index as usize];
+            block.inverted |= u8::from(inverted) << lane;
+            let rotation = block.rotation[..parts::<D>()].iter_mut();
+            for (part, number) in rotation.zip(numbers.by_ref()) {
+                part[lane as usize] = number;
+            }
+            for node in 0..block.node_count as usize {
+                let place = self.force_range(index, lane, node);
+                let forces = self.forces[place].iter_mut();
+                for (force, number) in forces.zip(numbers.by_ref()) {
+                    *force = number;
+                }
+            }
+        }
+    }
+
+    fn to_be_saved(&self) -> SavedElementStates {
+        let known = self.assigned.ids();
+        let undone = known.filter_map(|id| Some((id, self.plastic_inverse(id)?)));
+        let mut saved = SavedElementStates {
+            law: self.law,
+            numbers: Vec::new(),
+            undone: undone.filter(|(_, dent)| *dent != IDENTITY).collect(),
+            inverted: Vec::new(),
+        };
+        let assigned = self.assigned.iter();
+        for &(index, lane) in assigned.filter(|&&(index, _)| index != VACANT) {
+            let block = &self.blocks[index as usize];
+            let rotation = block.rotation[..parts::<D>()].iter();
+            let rotation = rotation.map(|part| part[lane as usize]);
+            saved.numbers.extend(rotation);
+            for node in 0..block.node_count as usize {
+                let place = self.force_range(index, lane, node);
+                saved.numbers.extend_from_slice(&self.forces[place]);
+            }
+            saved.inverted.push(block.inverted >> lane & 1 == 1);
+        }
+        saved
+    }
+}
+
+/// Whether a plastic state is possible: it preserves volume, and is flat in 2D.
+fn is_sound<D: Dim>(dent: &PlasticInverse) -> bool {
+    let [x, y, z] = *dent;
+    let volume = dot(x, cross(y, z));
+    let is_flat = (D::N..3).all(|axis| {
+        let column = [x[axis], y[axis], z[axis]];
+        dent[axis] == IDENTITY[axis] && column == IDENTITY[axis]
+    });
+    let most = dent
+        .iter()
+        .flatten()
+        .fold(0.0f32, |most, k| most.max(k.abs()));
+    is_flat && most < 100.0 && (volume - 1.0).abs() < 0.1
+}
+
+/// Number of components of a rotation: cosine and sine, or a quaternion.
+const fn parts<D: Dim>() -> usize {
+    match D::N {
+        2 => 2,
+        _ => 4,
+    }
+}
+
+impl<D: Dim> Serialize for ElementBatches<D> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.to_be_saved().serialize(serializer)
+    }
+}
+
+impl<'a, D: Dim> Deserialize<'a> for ElementBatches<D> {
+    fn deserialize<S: Deserializer<'a>>(deserializer: S) -> Result<Self, S::Error> {
+        let saved = SavedElementStates::deserialize(deserializer)?;
+        let mut blocks = Self::new(saved.law, &[], 0.0);
+        blocks.saved = Some(saved);
+        Ok(blocks)
+    }
+}

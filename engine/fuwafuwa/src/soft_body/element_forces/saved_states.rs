@@ -1,0 +1,18 @@
+//! State of the blocks in a snapshot: rotation and last forces of each element.
+
+use super::plastic_kernel::PlasticInverse;
+use crate::foundation::ids::ElementId;
+use crate::soft_body::element_law::Law;
+use serde::{Deserialize, Serialize};
+
+/// State of the elements, by ascending id.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SavedElementStates {
+    pub law: Law,
+    /// For each element its rotation, then the forces on its nodes [N], in their order.
+    pub numbers: Vec<f32>,
+    /// Plastic states other than the initial one, by ascending id.
+    pub undone: Vec<(ElementId, PlasticInverse)>,
+    /// Whether each element was inverted.
+    pub inverted: Vec<bool>,
+}

@@ -1,0 +1,447 @@
+//! Forces of one element in double precision: the reference for the vectorised implementation.
+//!
+//! Two laws are available. [`Law::Endo2004`] is that of the paper: the rest shape, rotated so that its
+//! moments balance [Endo 2004, Eq. 1], pulls each node back in proportion to its offset. It is simple and
+//! robust, but fails the patch test as soon as an element has hanging nodes. [`Law::CorotationalVem`], the
+//! default, is a corotational virtual element [Beirao da Veiga 2013]:
+//!
+//! ```text
+//! F = (1/V) Σ x_i b_iᵀ      R = its rotation      J = det F
+//! P = 2μ (F − R) + λ (tr RᵀF − d) R − k_J max(0, J_min − J) cof F
+//! h_i = x_i − c − F r_i     S = Σ w_i h_i r_iᵀ     (c, r_i about the volume centroid)
+//! f_i = −P b_i − k (w_i h_i − S b_i / V)           k = α β Y s^(d−2),  w_i = 2^d V_i / s^d
+//! ```
+//!
+//! α makes a whole cell bend correctly, β other classes: see [`ElementClass::hourglass`]. In 2D the law is plane
+//! strain with 1 m of depth: the same formulas with F₃₃ = R₃₃ = 1.
+
+use crate::foundation::dim::Dim;
+use crate::math::vector::{cross, dot, minus, plus, scaled};
+use crate::topology::element_class::{ElementClass, Vector64};
+use std::fmt;
+
+/// Law of the elastic forces of an element.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Law {
+    /// Shape-matching law of [Endo 2004, §3.1], unchanged.
+    Endo2004,
+    /// Corotational virtual element law; exact for every uniform strain, on any graded mesh.
+    #[default]
+    CorotationalVem,
+}
+
+/// Elastic constants of a material.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Elasticity {
+    /// Young's modulus Y [Pa]; about 5000 for a game body. The simulation diverges if it is too high for the
+    /// substep.
+    pub young: f64,
+    /// Poisson's ratio ν, 0 to 0.45: lateral expansion under compression.
+    pub poisson: f64,
+}
+
+/// Elastic constants of which one is out of range.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct BadElasticity {
+    /// Given constants.
+    pub given: Elasticity,
+}
+
+impl fmt::Display for BadElasticity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Elasticity { young, poisson } = self.given;
+        write!(
+            f,
+            "Young's modulus {young} Pa must be positive and finite, the Poisson ratio {poisson} between 0 and 0.45"
+        )
+    }
+}
+
+impl std::error::Error for BadElasticity {}
+
+/// Volume ratio J below which an element resists further compression, regardless of its material. A higher
+/// limit would stiffen soft contacts; with a lower one, strong contacts invert elements before the resistance
+/// sets in.
+pub const MIN_VOLUME_RATIO: f64 = 0.4;
+
+impl Elasticity {
+    /// Checks the constants.
+    ///
+    /// # Errors
+    /// [`BadElasticity`] if one is out of range or not a number.
+    pub fn new(young: f64, poisson: f64) -> Result<Self, BadElasticity> {
+        let given = Self { young, poisson };
+        let good = young.is_finite() && young > 0.0 && (0.0..=0.45).contains(&poisson);
+        if good {
+            Ok(given)
+        } else {
+            Err(BadElasticity { given })
+        }
+    }
+
+    /// Shear modulus μ [Pa].
+    pub fn shear_modulus(self) -> f64 {
+        self.young / (2.0 * (1.0 + self.poisson))
+    }
+
+    /// Lamé's first parameter λ [Pa].
+    pub fn lame(self) -> f64 {
+        self.young * self.poisson / ((1.0 + self.poisson) * (1.0 - 2.0 * self.poisson))
+    }
+}
+
+/// 3 × 3 matrix by rows; in 2D the third row and column are those of the identity.
+pub type Matrix = [[f64; 3]; 3];
+
+pub(crate) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// Returns the force [N] of an element of width `size` [m] on each of its nodes, at `positions` [m].
+///
+/// # Panics
+/// If the number of positions is not the number of nodes of the stencil.
+#[inline(never)]
+pub fn forces<D: Dim>(
+    law: Law,
+    elasticity: Elasticity,
+    stencil: &ElementClass<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> Vec<Vector64> {
+    assert_eq!(
+        positions.len(),
+        stencil.slots.len(),
+        "the number of positions must match the nodes of the stencil"
+    );
+    match law {
+        Law::Endo2004 => endo(elasticity, stencil, size, positions),
+        Law::CorotationalVem => patch_exact(elasticity, stencil, size, positions),
+    }
+}
+
+/// Returns f_i = (Y V d / Σ|R0|²) (M R0_i − r_i), with offsets from the mean of the nodes.
+fn endo<D: Dim>(
+    elasticity: Elasticity,
+    stencil: &ElementClass<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> Vec<Vector64> {
+    let (stiffness, apart) = shape_matching_offsets(elasticity, stencil, size, positions);
+    apart.into_iter().map(|d| scaled(d, stiffness)).collect()
+}
+
+/// Returns Y V d / Σ|R0|², and M R0_i − r_i of each node.
+pub(crate) fn shape_matching_offsets<D: Dim>(
+    elasticity: Elasticity,
+    stencil: &ElementClass<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> (f64, Vec<Vector64>) {
+    let half = 0.5 * size;
+    let rest: Vec<Vector64> = stencil.offsets.iter().map(|&r| scaled(r, half)).collect();
+    let count = positions.len() as f64;
+    let mean = |all: &[Vector64]| {
+        all.iter()
+            .fold([0.0; 3], |sum, &x| plus(sum, scaled(x, 1.0 / count)))
+    };
+    let (rest_mean, now_mean) = (mean(&rest), mean(positions));
+    let rest: Vec<Vector64> = rest.iter().map(|&r| minus(r, rest_mean)).collect();
+    let now: Vec<Vector64> = positions.iter().map(|&x| minus(x, now_mean)).collect();
+    let mut moment = [[0.0; 3]; 3];
+    let mut spread = 0.0;
+    for (r, x) in rest.iter().zip(&now) {
+        add_outer(&mut moment, *x, *r);
+        spread += dot(*r, *r);
+    }
+    // In 2D the rotation axis is the third one.
+    (D::N..3).for_each(|axis| moment[axis][axis] = spread);
+    let rotation = rotation_of(&moment);
+    let stiffness = elasticity.young * volume_of(stencil, half) * D::N as f64 / spread;
+    let apart = |(r, x): (&Vector64, &Vector64)| minus(apply(&rotation, *r), *x);
+    (stiffness, rest.iter().zip(&now).map(apart).collect())
+}
+
+fn patch_exact<D: Dim>(
+    elasticity: Elasticity,
+    stencil: &ElementClass<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> Vec<Vector64> {
+    let (deformation, _) = deformation_of(stencil, size, positions);
+    let stress = stress(elasticity, &deformation);
+    forces_of_stress(elasticity, &stress, stencil, size, positions)
+}
+
+/// Returns the forces of a stress [Pa], plus the stabilisation of the hourglass modes.
+pub(crate) fn forces_of_stress<D: Dim>(
+    elasticity: Elasticity,
+    stress: &Matrix,
+    stencil: &ElementClass<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> Vec<Vector64> {
+    let volume = volume_of(stencil, 0.5 * size);
+    let gradient = |k: usize| gradient_of(stencil, size, k);
+    let (deformation, centre) = deformation_of(stencil, size, positions);
+    let (stiffness, hourglass) =
+        hourglass(elasticity, stencil, size, positions, &deformation, centre);
+    let mut skew = [[0.0; 3]; 3];
+    for (k, &h) in hourglass.iter().enumerate() {
+        add_outer(&mut skew, h, scaled(stencil.offsets[k], 0.5 * size));
+    }
+    (0..positions.len())
+        .map(|k| {
+            let b = gradient(k);
+            let correction = plus(hourglass[k], scaled(apply(&skew, b), -1.0 / volume));
+            plus(
+                scaled(apply(stress, b), -1.0),
+                scaled(correction, -stiffness),
+            )
+        })
+        .collect()
+}
+
+/// Returns b of a node: x bᵀ is its contribution to V F.
+fn gradient_of<D: Dim>(stencil: &ElementClass<D>, size: f64, node: usize) -> Vector64 {
+    let half = 0.5 * size;
+    scaled(stencil.gradients[node], volume_scale::<D>(half) / half)
+}
+
+/// Returns the deformation gradient and the volume centroid.
+pub(crate) fn deformation_of<D: Dim>(
+    stencil: &ElementClass<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> (Matrix, Vector64) {
+    let volume = volume_of(stencil, 0.5 * size);
+    let mut deformation = [[0.0; 3]; 3];
+    let mut centre = [0.0; 3];
+    for (k, &x) in positions.iter().enumerate() {
+        let gradient = gradient_of(stencil, size, k);
+        add_outer(&mut deformation, scaled(x, 1.0 / volume), gradient);
+        centre = plus(centre, scaled(x, stencil.volumes[k] / stencil.volume));
+    }
+    deformation[D::N..].copy_from_slice(&IDENTITY[D::N..]);
+    (deformation, centre)
+}
+
+/// Returns the stiffness of the hourglass modes, and w h of each node.
+pub(crate) fn hourglass<D: Dim>(
+    elasticity: Elasticity,
+    stencil: &ElementClass<D>,
+    size: f64,
+    positions: &[Vector64],
+    deformation: &Matrix,
+    centre: Vector64,
+) -> (f64, Vec<Vector64>) {
+    let offset = |k: usize| scaled(stencil.offsets[k], 0.5 * size);
+    let motion = (0..positions.len()).map(|k| {
+        let affine = plus(centre, apply(deformation, offset(k)));
+        scaled(plus(positions[k], scaled(affine, -1.0)), stencil.volumes[k])
+    });
+    let modulus = D::HOURGLASS * stencil.hourglass * elasticity.young;
+    let stiffness = (2..D::N).fold(modulus, |stiffness, _| stiffness * size);
+    (stiffness, motion.collect())
+}
+
+/// Returns the first Piola–Kirchhoff stress [Pa] of a deformation.
+pub(crate) fn stress(elasticity: Elasticity, deformation: &Matrix) -> Matrix {
+    let rotation = rotation_of(deformation);
+    let stretch: f64 = (0..3).map(|i| dot(rotation[i], deformation[i])).sum();
+    let pressure = elasticity.lame() * (stretch - 3.0);
+    let cofactor = cofactor(deformation);
+    let squash = dot(deformation[0], cofactor[0]);
+    let barrier = elasticity.young * (MIN_VOLUME_RATIO - squash).max(0.0);
+    let mut stress = [[0.0; 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            stress[i][j] = 2.0 * elasticity.shear_modulus() * (deformation[i][j] - rotation[i][j])
+                + pressure * rotation[i][j]
+                - barrier * cofactor[i][j];
+        }
+    }
+    stress
+}
+
+/// Returns the rotation that balances the moments of a deformation [Endo 2004, Eq. 1].
+///
+/// Each iteration turns R by ω from (√3‖F‖·I − S) ω = axial(F Rᵀ), where S is the symmetric part of F Rᵀ.
+/// Unlike in a plain Newton step, the matrix is positive definite for every F. Unlike the usual division by
+/// |tr S| [Mueller 2016], the step does not lag behind a spinning body. The iteration ends if the turn is
+/// below rounding.
+///
+/// Moments also balance half a turn off, about any axis, but tr Rᵀ F is not maximal there. In that case the
+/// iteration restarts half a turn about each axis away: one of these starts is at most 120° off.
+pub fn rotation_of(deformation: &Matrix) -> Matrix {
+    from_quaternion(rotation_quaternion(deformation))
+}
+
+/// Returns the rotation of a deformation as a quaternion if `near` is a quarter turn off or more: too far for
+/// a few iterations from there.
+pub fn rotation_if_far_from(near: &Matrix, deformation: &Matrix) -> Option<[f64; 4]> {
+    if is_greatest(near, deformation) {
+        return None;
+    }
+    let turned = rotation_quaternion(deformation);
+    let gain = trace(&from_quaternion(turned), deformation) - trace(near, deformation);
+    // A rotation that is off by the angle a has a trace smaller by 2 − 2 cos a, and ‖F‖ = √3.
+    (gain > norm(deformation)).then_some(turned)
+}
+
+fn rotation_quaternion(deformation: &Matrix) -> [f64; 4] {
+    let mut turned = turn_from([0.0, 0.0, 0.0, 1.0], deformation);
+    let trace_of = |turned| trace(&from_quaternion(turned), deformation);
+    if is_greatest(&from_quaternion(turned), deformation) {
+        return turned;
+    }
+    // In 2D the rotation axis is always the third one.
+    let [[.., x], [.., y], third] = deformation;
+    let is_flat = [*x, *y] == [0.0; 2] && *third == IDENTITY[2];
+    for axis in if is_flat { 2..3 } else { 0..3 } {
+        let mut start = [0.0; 4];
+        start[axis] = 1.0;
+        let other = turn_from(start, deformation);
+        if trace_of(other) > trace_of(turned) + 1e-9 * norm(deformation) {
+            turned = other;
+        }
+    }
+    turned
+}
+
+/// Runs the iteration of [`rotation_of`] from a quaternion.
+fn turn_from(mut turned: [f64; 4], deformation: &Matrix) -> [f64; 4] {
+    let scale = 3f64.sqrt() * norm(deformation);
+    for _ in 0..100 {
+        let rotation = from_quaternion(turned);
+        let mut product = [[0.0; 3]; 3];
+        for i in 0..3 {
+            for j in 0..3 {
+                product[i][j] = dot(deformation[i], rotation[j]);
+            }
+        }
+        let axial = [
+            product[2][1] - product[1][2],
+            product[0][2] - product[2][0],
+            product[1][0] - product[0][1],
+        ];
+        let mut system = [[0.0; 3]; 3];
+        for i in 0..3 {
+            for j in 0..3 {
+                system[i][j] = -0.5 * (product[i][j] + product[j][i]);
+            }
+            system[i][i] += scale + 1e-12;
+        }
+        let adjugate = cofactor(&system);
+        let determinant = dot(system[0], adjugate[0]);
+        let turn = scaled(apply(&adjugate, axial), 1.0 / determinant);
+        turned = turn_quaternion(turned, turn);
+        if dot(turn, turn) < 1e-30 {
+            break;
+        }
+    }
+    turned
+}
+
+/// Whether the rotation is the best fit: no eigenvalue of F Rᵀ is above its trace.
+fn is_greatest(rotation: &Matrix, deformation: &Matrix) -> bool {
+    trace(rotation, deformation) > norm(deformation)
+}
+
+/// Returns tr Rᵀ F.
+fn trace(rotation: &Matrix, deformation: &Matrix) -> f64 {
+    (0..3).map(|i| dot(rotation[i], deformation[i])).sum()
+}
+
+fn norm(m: &Matrix) -> f64 {
+    m.iter().map(|&row| dot(row, row)).sum::<f64>().sqrt()
+}
+
+fn from_quaternion([x, y, z, w]: [f64; 4]) -> Matrix {
+    [
+        [
+            1.0 - 2.0 * (y * y + z * z),
+            2.0 * (x * y - w * z),
+            2.0 * (x * z + w * y),
+        ],
+        [
+            2.0 * (x * y + w * z),
+            1.0 - 2.0 * (x * x + z * z),
+            2.0 * (y * z - w * x),
+        ],
+        [
+            2.0 * (x * z - w * y),
+            2.0 * (y * z + w * x),
+            1.0 - 2.0 * (x * x + y * y),
+        ],
+    ]
+}
+
+/// Returns normalise((ω/2, 1) q), with ω in world axes.
+fn turn_quaternion([x, y, z, w]: [f64; 4], turn: Vector64) -> [f64; 4] {
+    let [a, b, c] = scaled(turn, 0.5);
+    let next = [
+        x + a * w + b * z - c * y,
+        y + b * w + c * x - a * z,
+        z + c * w + a * y - b * x,
+        w - a * x - b * y - c * z,
+    ];
+    let length = next.iter().map(|k| k * k).sum::<f64>().sqrt();
+    next.map(|k| k / length)
+}
+
+pub(crate) fn cofactor(m: &Matrix) -> Matrix {
+    [cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])]
+}
+
+fn volume_scale<D: Dim>(half: f64) -> f64 {
+    (0..D::N).fold(1.0, |scale, _| scale * half)
+}
+
+pub(crate) fn volume_of<D: Dim>(stencil: &ElementClass<D>, half: f64) -> f64 {
+    stencil.volume * volume_scale::<D>(half)
+}
+
+fn apply(m: &Matrix, v: Vector64) -> Vector64 {
+    [dot(m[0], v), dot(m[1], v), dot(m[2], v)]
+}
+
+fn add_outer(m: &mut Matrix, a: Vector64, b: Vector64) {
+    for (row, component) in m.iter_mut().zip(a) {
+        *row = plus(*row, scaled(b, component));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Regression: an iteration that started half a turn off did not move, and the body tore itself apart.
+    #[test]
+    fn rotation_of_finds_half_turn_about_any_axis() {
+        let axes = [
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [0.6, 0.8, 0.0],
+            [0.6, 0.0, -0.8],
+            [2.0 / 3.0, 1.0 / 3.0, 2.0 / 3.0],
+        ];
+        let stretch = [[1.1, 0.1, 0.0], [0.1, 0.9, 0.05], [0.0, 0.05, 1.2]];
+        for [x, y, z] in axes {
+            for w in [0.0, 1e-9, 1e-3, 0.3] {
+                let length = f64::sqrt(1.0 + w * w);
+                let turned = from_quaternion([x, y, z, w].map(|k| k / length));
+                // R S, by rows.
+                let deformation = turned.map(|row| {
+                    let rows = (0..3).map(|k| scaled(stretch[k], row[k]));
+                    rows.fold([0.0; 3], plus)
+                });
+                let found = rotation_of(&deformation);
+                for (found, expected) in found.iter().flatten().zip(turned.iter().flatten()) {
+                    assert!((found - expected).abs() < 1e-9, "{found} for {expected}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,348 @@
+//! Measurements on a body: strain and stress of elements, damage of nodes, and the energy of pieces.
+
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{ElementId, NodeId};
+use crate::math::vector::{dot, three};
+use crate::rigid_body::shape::Vector;
+use crate::soft_body::SoftBody;
+use crate::soft_body::element_law::{
+    Elasticity, IDENTITY, Law, MIN_VOLUME_RATIO, Matrix, cofactor, deformation_of, hourglass,
+    rotation_of, shape_matching_offsets, volume_of,
+};
+use crate::soft_body::plasticity::{elastic_part, plastic_stiffness_factor, stress_after};
+use crate::topology::element_class::{ElementClass, Vector64};
+
+/// State of an element: deformation, strain, stress and stored energy.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct ElementState {
+    /// Deformation gradient F by rows, including plastic deformation.
+    pub deformation: Matrix,
+    /// Biot strain, the symmetric part of RᵀF minus 1, along the axes of the body at rest: 0.1 is a stretch
+    /// by a tenth.
+    pub strain: Matrix,
+    /// Cauchy stress [Pa] along the axes of the world; 0 under [`Law::Endo2004`], which defines no stress.
+    pub stress: Matrix,
+    /// Elastic energy [J]; in 2D for 1 m of depth.
+    pub energy: f64,
+}
+
+/// Returns the state of an element of width `size` [m] with nodes at `positions` [m]. The forces of
+/// [`crate::soft_body::element_law::forces`] are the negative gradient of its energy.
+///
+/// # Panics
+/// If the number of positions is not the number of nodes of the stencil.
+#[inline(never)]
+pub fn element_state<D: Dim>(
+    law: Law,
+    elasticity: Elasticity,
+    stencil: &ElementClass<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> ElementState {
+    element_state_plastic(law, elasticity, &IDENTITY, stencil, size, positions)
+}
+
+/// Returns the state of an element with plastic deformation. `undone` is G of [`crate::soft_body::plasticity`]; the
+/// strain is the elastic part.
+///
+/// # Panics
+/// If the number of positions is not the number of nodes of the stencil.
+#[inline(never)]
+pub fn element_state_plastic<D: Dim>(
+    law: Law,
+    elasticity: Elasticity,
+    undone: &Matrix,
+    stencil: &ElementClass<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> ElementState {
+    assert_eq!(
+        positions.len(),
+        stencil.slots.len(),
+        "the number of positions must match the nodes of the stencil"
+    );
+    let (whole, centre) = deformation_of(stencil, size, positions);
+    let deformation = elastic_part(&whole, undone);
+    let rotation = rotation_of(&deformation);
+    let column = |m: &Matrix, k: usize| [m[0][k], m[1][k], m[2][k]];
+    let mut stretch = [[0.0; 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            stretch[i][j] = dot(column(&rotation, i), column(&deformation, j));
+        }
+    }
+    let mut strain = IDENTITY;
+    for i in 0..3 {
+        for j in 0..3 {
+            strain[i][j] = 0.5 * (stretch[i][j] + stretch[j][i]) - IDENTITY[i][j];
+        }
+    }
+    if law == Law::Endo2004 {
+        let (stiffness, apart) = shape_matching_offsets(elasticity, stencil, size, positions);
+        let energy = apart.iter().map(|&d| 0.5 * stiffness * dot(d, d)).sum();
+        return ElementState {
+            deformation: whole,
+            strain,
+            energy,
+            ..ElementState::default()
+        };
+    }
+    let squash = dot(deformation[0], cofactor(&deformation)[0]);
+    let nominal = stress_after::<D>(elasticity, &whole, undone);
+    let mut cauchy = [[0.0; 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            cauchy[i][j] = dot(nominal[i], whole[j]) / squash;
+        }
+    }
+    let squared: f64 = strain.iter().map(|&row| dot(row, row)).sum();
+    let spread = strain[0][0] + strain[1][1] + strain[2][2];
+    let below = (MIN_VOLUME_RATIO - squash).max(0.0);
+    let density = elasticity.shear_modulus() * squared
+        + 0.5 * elasticity.lame() * spread * spread
+        + 0.5 * elasticity.young * below * below;
+    let half = 0.5 * size;
+    let (stiffness, hourglass) = hourglass(elasticity, stencil, size, positions, &whole, centre);
+    let weights = stencil.volumes.iter().zip(&hourglass);
+    let swings = weights.map(|(&weight, &h)| dot(h, h) / weight);
+    let density = plastic_stiffness_factor::<D>(undone) * density;
+    let energy = density * volume_of(stencil, half) + 0.5 * stiffness * swings.sum::<f64>();
+    ElementState {
+        deformation: whole,
+        strain,
+        stress: cauchy,
+        energy,
+    }
+}
+
+/// Energy of a piece [J]; in 2D for 1 m of depth. Energy lost to damping, friction and cracks is not
+/// included.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Elastic energy.
+    pub elastic: f64,
+    /// Potential energy in the given gravity; 0 at the origin.
+    pub gravitational: f64,
+}
+
+impl Energy {
+    /// Sum of all parts [J].
+    pub fn total(self) -> f64 {
+        self.kinetic + self.elastic + self.gravitational
+    }
+}
+
+impl<D: Dim> SoftBody<D> {
+    /// Returns the strain, stress and energy of an element, if it is alive. Computed in double precision from
+    /// the positions of the nodes, with the reduced stiffness of the body (see [`SoftBody::stiffness_scale`]).
+    #[inline(never)]
+    pub fn element_state(&self, id: ElementId) -> Option<ElementState> {
+        let element = self.topology.mesh.element(id)?;
+        let at = |&node: &NodeId| three(self.state.position[node]).map(f64::from);
+        let positions: Vec<[f64; 3]> = element.nodes.iter().map(at).collect();
+        let mut elasticity = self.material(element).elasticity;
+        elasticity.young *= self.topology.stiffness_scale;
+        let size = f64::from(self.topology.grid.voxel_size()) * f64::from(element.cell.width());
+        let stencil = self.topology.mesh.stencil(element);
+        let law = self.state.blocks.law();
+        let undone = self.undone(id);
+        Some(element_state_plastic(
+            law, elasticity, &undone, stencil, size, &positions,
+        ))
+    }
+
+    /// Inverse G of the plastic deformation of an element.
+    fn undone(&self, id: ElementId) -> Matrix {
+        let undone = self.state.blocks.plastic_inverse(id);
+        undone.map_or(IDENTITY, |undone| undone.map(|row| row.map(f64::from)))
+    }
+
+    /// Plastic strain of an element, if it is alive: 0 without plastic deformation, 0.5 if it was permanently
+    /// compressed to 1 / 1.5 of its width along some axis, or in 2D stretched by as much. 0 for elastic
+    /// materials.
+    pub fn plastic_strain(&self, id: ElementId) -> Option<f32> {
+        self.topology.mesh.element(id)?;
+        let most = 1.0 / plastic_stiffness_factor::<D>(&self.undone(id));
+        Some((most.sqrt() - 1.0).max(0.0) as f32)
+    }
+
+    /// Damage of a node: from 0, intact, to 1, at which the node is split.
+    ///
+    /// # Panics
+    /// If the id was never used.
+    pub fn damage(&self, node: NodeId) -> f32 {
+        self.state.damage[node]
+    }
+
+    /// Returns the energy of each piece, by number, under `gravity` [m/s²]; 0 for removed pieces.
+    ///
+    /// ```
+    /// use fuwafuwa::{SoftBody, Dim2, Material, VoxelGrid};
+    ///
+    /// let body = SoftBody::new(VoxelGrid::<Dim2>::ball(8, 1.0)?, &[Material::default()])?;
+    /// let mass = body.total_mass();
+    /// let energy = body.thrown([2.0, 0.0, 0.0]).energies([0.0, -9.81, 0.0])[0];
+    /// assert!((energy.kinetic - 2.0 * mass).abs() < 1e-3 && energy.elastic < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[inline(never)]
+    pub fn energies(&self, gravity: Vector) -> Vec<Energy> {
+        let Self {
+            topology: truth,
+            state,
+            ..
+        } = self;
+        let mut energies = vec![Energy::default(); truth.pieces.list.len()];
+        let pull = f64::from(state.gravity_scale);
+        for (id, _) in truth.mesh.nodes() {
+            let (at, velocity, mass) = self.node_state(id);
+            let [at, velocity, gravity] = [at, velocity, gravity].map(|v| v.map(f64::from));
+            let mass = f64::from(mass);
+            let energy = &mut energies[truth.pieces.of_node(id).index()];
+            energy.kinetic += 0.5 * mass * dot(velocity, velocity);
+            energy.gravitational -= mass * pull * dot(gravity, at);
+        }
+        for (id, _) in truth.mesh.elements() {
+            let strained = self
+                .element_state(id)
+                .expect("`elements` returns live elements");
+            energies[truth.pieces.of_element(id).index()].elastic += strained.energy;
+        }
+        energies
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::foundation::dim::{Dim2, Dim3};
+    use crate::material::Material;
+    use crate::math::rotation::Rotation;
+    use crate::soft_body::element_law::forces;
+    use crate::topology::grid::VoxelGrid;
+
+    /// Displaces every node a little, each differently.
+    fn crooked<D: Dim>(amount: f32) -> SoftBody<D> {
+        let grid = VoxelGrid::<D>::ball(12, 1.0).unwrap();
+        let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
+        let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
+        for id in nodes {
+            let ([x, y, z], velocity, _) = body.node_state(id);
+            let sway = [4.0 * y * y - y, 3.0 * z * x + y, 5.0 * x * y - 2.0 * z];
+            let at =
+                [0, 1, 2].map(|k: usize| [x, y, z][k] * (1.0 - amount) + amount * 0.1 * sway[k]);
+            body.set_node_state(id, at, velocity);
+        }
+        body
+    }
+
+    fn check_slope<D: Dim>(law: Law) {
+        let body = crooked::<D>(0.1);
+        let elasticity = Material::default().elasticity;
+        let size = f64::from(body.grid().voxel_size());
+        for (_, element) in body.mesh().elements().step_by(7) {
+            let stencil = body.mesh().stencil(element);
+            let size = size * f64::from(element.cell.width());
+            let at = |&node: &NodeId| body.node_state(node).0.map(f64::from);
+            let positions: Vec<Vector64> = element.nodes.iter().map(at).collect();
+            let energy = |positions: &[Vector64]| {
+                element_state(law, elasticity, stencil, size, positions).energy
+            };
+            let forces = forces(law, elasticity, stencil, size, &positions);
+            let most = forces
+                .iter()
+                .flatten()
+                .fold(0.0f64, |most, k| most.max(k.abs()));
+            for node in 0..positions.len() {
+                for axis in 0..D::N {
+                    let step = 1e-5 * size;
+                    let moved = |by: f64| {
+                        let mut moved = positions.clone();
+                        moved[node][axis] += by;
+                        energy(&moved)
+                    };
+                    let slope = (moved(step) - moved(-step)) / (2.0 * step);
+                    let force = forces[node][axis];
+                    assert!(
+                        (slope + force).abs() < 1e-4 * most,
+                        "{law:?}: {slope} {force}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn forces_match_energy_gradient() {
+        for law in [Law::CorotationalVem, Law::Endo2004] {
+            check_slope::<Dim2>(law);
+            check_slope::<Dim3>(law);
+        }
+    }
+
+    /// Stretches a body by a twentieth along the first axis, and rotates it.
+    fn check_stretch<D: Dim>() {
+        let grid = VoxelGrid::<D>::cube(8, 1.0).unwrap();
+        let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
+        let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
+        for id in nodes {
+            let ([x, y, z], ..) = body.node_state(id);
+            body.set_node_state(id, [1.05 * x, y, z], [0.0; 3]);
+        }
+        let body = body.rotated(Rotation::in_plane(1.0), [0.0; 3]);
+        let Elasticity { young, poisson } = Material::default().elasticity;
+        let elasticity = Elasticity { young, poisson };
+        let along = (2.0 * elasticity.shear_modulus() + elasticity.lame()) * 0.05;
+        let size = f64::from(body.grid().voxel_size());
+        let voxel = (0..D::N).fold(1.0, |volume, _| volume * size);
+        let volume = voxel * body.grid().solid_count() as f64;
+        let energy = body.energies([0.0; 3])[0].elastic;
+        assert!(
+            (energy / (0.5 * along * 0.05 * volume) - 1.0).abs() < 1e-3,
+            "{energy}"
+        );
+        for (id, _) in body.mesh().elements() {
+            let ElementState { strain, stress, .. } = body.element_state(id).unwrap();
+            assert!((strain[0][0] - 0.05).abs() < 1e-4 && strain[1][1].abs() < 1e-4);
+            // Along the axis after its rotation by one radian. The stretch does not change the other axes, so
+            // areas are unchanged.
+            let direction = [libm::cos(1.0), libm::sin(1.0), 0.0];
+            let pulled = stress.map(|row| dot(row, direction));
+            assert!(
+                (dot(pulled, direction) / along - 1.0).abs() < 1e-3,
+                "{stress:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn strained_measures_uniform_stretch() {
+        check_stretch::<Dim2>();
+        check_stretch::<Dim3>();
+    }
+
+    #[test]
+    fn energy_is_conserved_without_damping() {
+        let calm = Material {
+            damping: 0.0,
+            strength: f32::INFINITY,
+            ..Material::default()
+        };
+        let grid = VoxelGrid::<Dim2>::ball(12, 1.0).unwrap();
+        let mut body = SoftBody::new(grid, &[calm])
+            .unwrap()
+            .with_velocity([1.0, 2.0, 0.0]);
+        let gravity = [0.0, -9.81, 0.0];
+        let before = body.energies(gravity)[0];
+        let duration = 1.0 / 960.0;
+        (0..480).for_each(|_| body.advance(duration, gravity));
+        let after = body.energies(gravity)[0];
+        assert!((after.kinetic - before.kinetic).abs() > 1.0);
+        assert!(
+            (after.total() / before.total() - 1.0).abs() < 0.01,
+            "{before:?} {after:?}"
+        );
+    }
+}

@@ -1,0 +1,148 @@
+//! Position, orientation, velocity and user settings of a whole body.
+
+use super::SoftBody;
+use super::body_state::State;
+use crate::foundation::dim::{Dim, turning};
+use crate::foundation::ids::NodeId;
+use crate::math::rotation::Rotation;
+use crate::math::vector::{as_row, cross, minus, plus, three};
+use crate::rigid_body::layers::Layers;
+use crate::rigid_body::shape::{Vector, flat};
+use crate::soft_body::element_forces::Row;
+use crate::soft_body::momentum::centre_of;
+
+impl<D: Dim> SoftBody<D> {
+    /// Collision layers of the body: see [`World::set_layers`](crate::World::set_layers).
+    pub fn layers(&self) -> Layers {
+        self.state.layers
+    }
+
+    /// User data of the body: see [`World::set_user_data`](crate::World::set_user_data).
+    pub fn user_data(&self) -> u64 {
+        self.state.user_data
+    }
+
+    /// Factor on gravity for this body: see [`World::set_gravity_scale`](crate::World::set_gravity_scale).
+    pub fn gravity_scale(&self) -> f32 {
+        self.state.gravity_scale
+    }
+
+    /// Returns the body translated by `by` [m]. Pieces that are then not finite are quarantined in their
+    /// first tick.
+    #[inline(never)]
+    pub fn translated(mut self, by: Vector) -> Self {
+        self.shift(by);
+        self
+    }
+
+    /// Returns the body rotated about the point `about` [m], without strain and without tearing. In 2D only
+    /// the rotation about the third axis counts. Pieces that are then not finite are quarantined in their
+    /// first tick.
+    ///
+    /// ```
+    /// use fuwafuwa::{SoftBody, Dim2, Material, Rotation, VoxelGrid};
+    ///
+    /// let grid = VoxelGrid::<Dim2>::from_fn([8, 4, 1], 0.25, |_| 1)?;
+    /// let body = SoftBody::new(grid, &[Material::default()])?;
+    /// let centre = body.centre_of_mass();
+    /// let upright = body.rotated(Rotation::in_plane(1.5708), centre);
+    /// assert!((upright.centre_of_mass()[0] - centre[0]).abs() < 1e-5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[inline(never)]
+    pub fn rotated(mut self, rotation: Rotation, about: Vector) -> Self {
+        self.turn(rotation, about);
+        self
+    }
+
+    /// Returns the body with every node moving at `velocity` [m/s].
+    #[inline(never)]
+    pub fn with_velocity(mut self, velocity: Vector) -> Self {
+        for row in self.state.velocity.iter_mut() {
+            row[..D::N].copy_from_slice(&velocity[..D::N]);
+        }
+        self
+    }
+
+    /// Centre of mass [m].
+    #[inline(never)]
+    pub fn centre_of_mass(&self) -> Vector {
+        let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
+        let states = self.states(&nodes).map(|(at, _, mass)| (at, mass));
+        centre_of(states).map(|k| k as f32)
+    }
+
+    pub(crate) fn shift(&mut self, by: Vector) {
+        let State {
+            position, ahead, ..
+        } = &mut self.state;
+        for row in position.iter_mut().chain(ahead.iter_mut()) {
+            for axis in 0..D::N {
+                row[axis] += by[axis];
+            }
+        }
+    }
+
+    pub(crate) fn turn(&mut self, rotation: Rotation, about: Vector) {
+        let rotation = rotation.seen_in::<D>();
+        let about = flat::<D>(about);
+        let State {
+            position,
+            velocity,
+            ahead,
+            blocks,
+            ..
+        } = &mut self.state;
+        for row in position.iter_mut().chain(ahead.iter_mut()) {
+            *row = as_row(rotation.apply_about(three(*row), about));
+        }
+        for row in velocity.iter_mut() {
+            *row = as_row(rotation.apply(three(*row)));
+        }
+        blocks.rotate(rotation);
+    }
+
+    /// Adds `linear` [m/s], and `angular` [rad/s] about the centre of mass, to the velocities of all nodes
+    /// that are neither fixed nor asleep.
+    pub(crate) fn add_velocity(&mut self, linear: Vector, angular: Vector) {
+        let centre = self.centre_of_mass();
+        let angular = turning::<D>(angular);
+        for (id, _) in self.topology.mesh.nodes() {
+            if self.state.inverse_mass[id] > 0.0 {
+                let lever = minus(three(self.state.position[id]), centre);
+                let added = plus(linear, cross(angular, lever));
+                add::<D>(&mut self.state.velocity[id], added);
+            }
+        }
+    }
+
+    /// Distributes an impulse [N s] over the nodes within `radius` [m] of the point `at`, in proportion to
+    /// their mass, so that all of them gain the same velocity. If there is no node within the radius, the
+    /// nearest one receives it. Fixed and sleeping nodes are skipped.
+    pub(crate) fn add_impulse(&mut self, at: Vector, radius: f32, impulse: Vector) {
+        let nodes = self.topology.mesh.nodes().map(|(id, _)| id);
+        let free = nodes.filter(|&id| self.state.inverse_mass[id] > 0.0);
+        let at = flat::<D>(at);
+        let squared = |id: NodeId| {
+            let apart = minus(three(self.state.position[id]), at);
+            apart.iter().map(|k| k * k).sum::<f32>()
+        };
+        let free: Vec<(NodeId, f32)> = free.map(|id| (id, squared(id))).collect();
+        let is_within = |(_, squared): &&(NodeId, f32)| *squared <= radius * radius;
+        let mut reached: Vec<NodeId> = free.iter().filter(is_within).map(|&(id, _)| id).collect();
+        if reached.is_empty() {
+            let nearest = free.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+            reached.extend(nearest.map(|&(id, _)| id));
+        }
+        let mass: f32 = reached.iter().map(|&id| self.state.mass[id]).sum();
+        for id in reached {
+            add::<D>(&mut self.state.velocity[id], impulse.map(|k| k / mass));
+        }
+    }
+}
+
+fn add<D: Dim>(row: &mut Row, vector: Vector) {
+    for axis in 0..D::N {
+        row[axis] += vector[axis];
+    }
+}

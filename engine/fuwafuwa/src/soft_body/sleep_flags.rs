@@ -1,0 +1,97 @@
+//! Sleeping, waking and quarantine of pieces.
+
+use super::SoftBody;
+use crate::foundation::dim::{Dim, Point};
+use crate::foundation::ids::{IndexVec, NodeId, PieceId};
+use crate::math::vector::{dot, is_finite, plus};
+use crate::soft_body::element_forces::Row;
+use crate::topology::mesh::Node;
+
+impl<D: Dim> SoftBody<D> {
+    /// Puts all marked pieces to sleep, or wakes them.
+    pub(crate) fn set_asleep(&mut self, marked: &IndexVec<PieceId, bool>, asleep: bool) {
+        let mut elements = Vec::new();
+        for (id, element) in self.topology.mesh.elements() {
+            if !marked[self.topology.pieces.of_element(id)] {
+                continue;
+            }
+            elements.push(id);
+            for &node in &element.nodes {
+                if asleep {
+                    self.state.velocity[node] = [0.0; 4];
+                    self.state.ahead[node] = self.state.position[node];
+                }
+                let free = !asleep && !self.state.fixed[node];
+                self.state.inverse_mass[node] = if free {
+                    1.0 / self.state.mass[node]
+                } else {
+                    0.0
+                };
+            }
+        }
+        let blocks = &mut self.state.blocks;
+        blocks.set_asleep(&self.topology.mesh, &elements, asleep);
+        let pieces = self.topology.pieces.list.iter_mut().zip(marked.iter());
+        for (piece, _) in pieces.filter(|(_, marked)| **marked) {
+            piece.asleep = asleep;
+            piece.sleep_timer = 0.0;
+        }
+        self.cache.awake_is_stale = true;
+    }
+
+    /// Records the positions of all nodes.
+    pub(crate) fn note_before(&mut self) {
+        let (mesh, before) = (&self.topology.mesh, &mut self.cache.before);
+        let both = |(id, &row): (NodeId, &Row)| match mesh.is_alive(id) {
+            true => (mesh.node(id).at, row),
+            false => ([0; 3], [f32::NAN; 4]),
+        };
+        before.clear();
+        before.extend(self.state.position.entries().map(both));
+    }
+
+    /// Quarantines pieces with a node that is not finite or faster than `top_speed` [m/s]: resets them to the
+    /// recorded positions and puts them to sleep for good. Returns their numbers.
+    pub(crate) fn quarantine(&mut self, top_speed: f32) -> Vec<PieceId> {
+        let mut marked: IndexVec<PieceId, _> = vec![false; self.topology.pieces.list.len()].into();
+        for &id in &self.cache.awake {
+            let velocity = self.state.velocity[id];
+            let speed = dot(velocity, velocity);
+            let sane = speed <= top_speed * top_speed && is_finite(self.state.position[id]);
+            marked[self.topology.pieces.of_node(id)] |= !sane;
+        }
+        if !marked.contains(&true) {
+            return Vec::new();
+        }
+        let nodes: Vec<(NodeId, Node)> = self.topology.mesh.nodes().collect();
+        let nodes = nodes.into_iter();
+        for (id, node) in nodes.filter(|&(id, _)| marked[self.topology.pieces.of_node(id)]) {
+            self.state.position[id] = self.position_before(id, node.at);
+        }
+        self.set_asleep(&marked, true);
+        let numbers: Vec<PieceId> = marked.ids().filter(|&piece| marked[piece]).collect();
+        for &piece in &numbers {
+            self.topology.pieces.list[piece].quarantined = true;
+        }
+        numbers
+    }
+
+    /// Recorded position of a node. A new node, or one whose id was reused, is placed relative to the nearest
+    /// recorded node of its elements, or at its rest position if there is none. Only its own elements count:
+    /// across a crack, lattice neighbours may be far away.
+    fn position_before(&self, id: NodeId, at: Point) -> Row {
+        let was = |id: NodeId, at: Point| {
+            let known = self.cache.before.get(id.index());
+            known.filter(|(point, row)| *point == at && is_finite(*row))
+        };
+        let carriers = self.topology.mesh.carriers_of(id);
+        let beside = carriers.flat_map(|(element, _)| element.nodes.iter());
+        let beside = beside.filter_map(|&other| was(other, self.topology.mesh.node(other).at));
+        let apart = |point: Point| [0, 1, 2].map(|axis: usize| at[axis] - point[axis]);
+        let squared = |(point, _): &&(Point, Row)| apart(*point).map(|k| k * k).iter().sum::<i32>();
+        let nearest = || beside.min_by_key(squared);
+        let (point, row) = was(id, at).or_else(nearest).copied().unwrap_or_default();
+        let [x, y, z] = apart(point).map(|k| k as f32 * self.topology.grid.voxel_size());
+        plus(row, [x, y, z, 0.0])
+    }
+}

@@ -1,0 +1,495 @@
+//! Views of a body: pieces, surface, elements, and the mass in a region.
+
+use crate::foundation::dim::{Dim, Dim2, Point, add, corner, face_corners, scale};
+use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
+use crate::math::vector::{cross, length, minus, plus, scaled, three};
+use crate::rigid_body::shape::{Shape, Vector};
+use crate::soft_body::SoftBody;
+use crate::topology::element_class::{slot_at, slot_index};
+use crate::topology::mesh::Element;
+
+/// Summary of a piece.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct PieceView {
+    /// Number of the piece.
+    pub number: PieceId,
+    /// Mass [kg].
+    pub mass: f32,
+    /// Centre of mass [m].
+    pub centre: Vector,
+    /// Velocity of the centre of mass [m/s].
+    pub velocity: Vector,
+    /// Lowest coordinates of the nodes [m].
+    pub low: Vector,
+    /// Highest coordinates of the nodes [m].
+    pub high: Vector,
+    /// Number of elements.
+    pub element_count: u32,
+    /// Whether the piece sleeps.
+    pub asleep: bool,
+    /// Whether the piece was quarantined: stopped for good because it was no longer finite.
+    pub quarantined: bool,
+    /// Whether the piece was removed; then all other values are 0.
+    pub removed: bool,
+}
+
+/// Exposed face of a voxel: a segment in 2D, a quad in 3D.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Facet {
+    /// Nodes of the face: two in 2D, four in 3D. In 3D they run counterclockwise as seen from outside; in 2D
+    /// the body lies to the left.
+    pub nodes: [NodeId; 4],
+    /// Positions of the nodes [m].
+    pub corners: [Vector; 4],
+    /// Outward unit normal.
+    pub normal: Vector,
+    /// Element of the face.
+    pub element: ElementId,
+    /// Piece of the element.
+    pub piece: PieceId,
+    /// Whether the face was exposed by a crack.
+    pub is_torn: bool,
+}
+
+/// Closed line around a piece of a 2D body, or around a hole in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// Piece inside the line.
+    pub piece: PieceId,
+    /// Node ids; the body lies to the left.
+    pub nodes: Vec<NodeId>,
+    /// Positions of the nodes [m].
+    pub points: Vec<Vector>,
+    /// Outward unit normals at the points.
+    pub normals: Vec<Vector>,
+    /// Whether a crack exposed the segment from each point to the next.
+    pub is_fresh: Vec<bool>,
+}
+
+/// Drawable view of an element.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElementView {
+    /// Id of the element.
+    pub id: ElementId,
+    /// Level of the cell; 0 = finest.
+    pub level: u8,
+    /// Piece of the element.
+    pub piece: PieceId,
+    /// Number of the material.
+    pub material: u8,
+    /// Mask of the children that the element fills in its cell.
+    pub children: u8,
+    /// Elastic strain ‖F − R‖; 0 at rest.
+    pub strain: f32,
+    /// Positions of the slots of the 3 × 3 (× 3) lattice [m]; slots that the element does not reach hold its
+    /// centre.
+    pub slots: [Vector; 27],
+}
+
+/// Boundary face of the region that an element fills.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct ElementFace {
+    /// Slots at the corners: two in 2D, four in 3D, in the order of [`face_corners`].
+    pub slots: [usize; 4],
+    /// In 3D: whether each side, from a corner to the next, is an edge at which no other face continues in
+    /// the same plane.
+    pub is_edge: [bool; 4],
+}
+
+/// Returns the blocks of slots that an element fills: their low corners, and their width in slots.
+pub fn blocks<D: Dim>(level: u8, children: u8) -> impl Iterator<Item = (Point, i32)> {
+    let whole = (level == 0).then_some(([0; 3], 2));
+    let filled = (0..D::CORNERS).filter(move |child| level > 0 && children >> child & 1 == 1);
+    let filled = filled.map(|child| (corner(child), 1));
+    whole.into_iter().chain(filled)
+}
+
+/// Returns the boundary faces of the region that an element fills, block by block.
+///
+/// ```text
+///     o──o──o        2D: the element fills three of its children. Where two of them meet there is no face;
+///     │     │        [`ring`] goes around the rest, the element to its left.
+///     o  o──o
+///     │  │
+///     o──o
+/// ```
+pub fn faces<D: Dim>(level: u8, children: u8) -> Vec<ElementFace> {
+    let is_filled = |block: Point| blocks::<D>(level, children).any(|(low, _)| low == block);
+    let mut faces = Vec::new();
+    for (low, width) in blocks::<D>(level, children) {
+        for face in 0..2 * D::N {
+            if is_filled(beyond(low, face)) {
+                continue;
+            }
+            let ring = face_corners::<D>(face);
+            let is_edge = [0, 1, 2, 3].map(|k| {
+                // Both its ends are on the same end of the axis that leads across it.
+                let (a, b) = (ring[k], ring[(k + 1) % 4]);
+                let mut axes = (0..D::N).filter(|&axis| axis != face / 2);
+                let across = axes.find(|axis| (a ^ b) >> axis & 1 == 0);
+                across.is_none_or(|axis| {
+                    let beside = beyond(low, 2 * axis + (a >> axis & 1));
+                    !is_filled(beside) || is_filled(beyond(beside, face))
+                })
+            });
+            let slot = |vertex| slot_index(add(low, scale(corner(vertex), width)));
+            let slots = ring.map(slot);
+            faces.push(ElementFace { slots, is_edge });
+        }
+    }
+    faces
+}
+
+/// Returns the slots around the region that a 2D element fills, in one round. A slot at which children meet
+/// only in a corner occurs twice.
+pub fn outline_slots(level: u8, children: u8) -> Vec<usize> {
+    let mut faces = faces::<Dim2>(level, children);
+    let mut at = faces.first().map(|face| face.slots[0]);
+    let mut ring = Vec::new();
+    // If several faces continue here, the last one belongs to another child.
+    while let Some(next) = faces.iter().rposition(|face| Some(face.slots[0]) == at) {
+        let [from, to, ..] = faces.remove(next).slots;
+        ring.push(from);
+        at = Some(to);
+    }
+    ring
+}
+
+/// Returns the block on the other side of a face of a block.
+fn beyond(mut block: Point, face: usize) -> Point {
+    block[face / 2] += 2 * (face % 2) as i32 - 1;
+    block
+}
+
+impl<D: Dim> SoftBody<D> {
+    /// Returns a summary of each piece, by number.
+    #[inline(never)]
+    pub fn piece_views(&self) -> Vec<PieceView> {
+        let none = |(number, piece): (PieceId, &crate::topology::pieces::Piece)| PieceView {
+            number,
+            mass: 0.0,
+            centre: [0.0; 3],
+            velocity: [0.0; 3],
+            low: [f32::MAX; 3],
+            high: [f32::MIN; 3],
+            element_count: 0,
+            asleep: piece.asleep,
+            quarantined: piece.quarantined,
+            removed: piece.removed,
+        };
+        let pieces = &self.topology.pieces;
+        let mut views: Vec<PieceView> = pieces.list.entries().map(none).collect();
+        for (id, _) in self.topology.mesh.elements() {
+            views[pieces.of_element(id).index()].element_count += 1;
+        }
+        for (id, _) in self.topology.mesh.nodes() {
+            let (at, velocity, mass) = self.node_state(id);
+            let view = &mut views[pieces.of_node(id).index()];
+            view.mass += mass;
+            view.centre = plus(view.centre, scaled(at, mass));
+            view.velocity = plus(view.velocity, scaled(velocity, mass));
+            for axis in 0..3 {
+                view.low[axis] = view.low[axis].min(at[axis]);
+                view.high[axis] = view.high[axis].max(at[axis]);
+            }
+        }
+        for view in &mut views {
+            if view.removed {
+                (view.low, view.high) = ([0.0; 3], [0.0; 3]);
+                continue;
+            }
+            view.centre = scaled(view.centre, 1.0 / view.mass);
+            view.velocity = scaled(view.velocity, 1.0 / view.mass);
+        }
+        views
+    }
+
+    /// Mass of all nodes inside a region [kg]; in 2D the third coordinate of the region is ignored.
+    #[inline(never)]
+    pub fn mass_inside(&self, region: &Shape) -> f32 {
+        let region = region.seen_in::<D>();
+        self.mass_where(|at| region.distance(at).0 < 0.0)
+    }
+
+    /// Mass of all nodes [kg] at positions [m] that satisfy a condition.
+    pub fn mass_where(&self, is_inside: impl Fn(Vector) -> bool) -> f32 {
+        let states = self
+            .topology
+            .mesh
+            .nodes()
+            .map(|(id, _)| self.node_state(id));
+        states
+            .filter(|&(at, _, _)| is_inside(at))
+            .fold(0.0, |sum, (_, _, mass)| sum + mass)
+    }
+
+    /// Returns all exposed faces, by element.
+    pub fn facets(&self) -> impl Iterator<Item = Facet> + '_ {
+        self.topology
+            .mesh
+            .elements()
+            .flat_map(move |(id, element)| {
+                let bare = self.bare_faces(id);
+                (0..2 * D::N)
+                    .filter(move |face| bare >> face & 1 == 1)
+                    .map(move |face| self.facet(id, element, face))
+            })
+    }
+
+    /// Mask of the exposed faces of an element: bit 2 · axis + side. Only elements of level 0 have any. Use
+    /// [`SoftBody::changes_since`] to learn where cracks changed the mask.
+    ///
+    /// # Panics
+    /// If the id was never used.
+    pub fn bare_faces(&self, element: ElementId) -> u8 {
+        match self.cache.bare[element] {
+            0 => 0,
+            bare => match self.topology.mesh.element(element) {
+                Some(alive) if alive.cell.level == 0 => bare,
+                _ => 0,
+            },
+        }
+    }
+
+    /// Positions of all nodes [m], by id, each padded with a 0. Entries of free ids are unspecified.
+    pub fn positions(&self) -> &IndexVec<NodeId, [f32; 4]> {
+        &self.state.position
+    }
+
+    /// Returns the closed lines around all pieces of a 2D body; empty in 3D.
+    #[inline(never)]
+    pub fn outlines(&self) -> Vec<Outline> {
+        // Quads of a 3D surface have no unique successor.
+        if D::N != 2 {
+            return Vec::new();
+        }
+        // Every node of the surface starts one segment and ends one.
+        let mut leaving: IndexVec<NodeId, Option<Facet>> =
+            vec![None; self.topology.mesh.node_capacity()].into();
+        for facet in self.facets() {
+            leaving[facet.nodes[0]] = Some(facet);
+        }
+        let mut outlines = Vec::new();
+        for start in leaving.ids() {
+            let mut ring: Vec<Facet> = Vec::new();
+            let mut at = start;
+            while let Some(facet) = leaving[at].take() {
+                at = facet.nodes[1];
+                ring.push(facet);
+            }
+            if let Some(last) = ring.last() {
+                let before = std::iter::once(last).chain(&ring);
+                let normals = ring.iter().zip(before);
+                let normals = normals.map(|(next, last)| unit(plus(last.normal, next.normal)));
+                outlines.push(Outline {
+                    piece: ring[0].piece,
+                    nodes: ring.iter().map(|facet| facet.nodes[0]).collect(),
+                    points: ring.iter().map(|facet| facet.corners[0]).collect(),
+                    normals: normals.collect(),
+                    is_fresh: ring.iter().map(|facet| facet.is_torn).collect(),
+                });
+            }
+        }
+        outlines
+    }
+
+    /// Returns views of all elements.
+    pub fn element_views(&self) -> impl Iterator<Item = ElementView> + '_ {
+        self.topology
+            .mesh
+            .elements()
+            .map(|(id, element)| self.view_of(id, element))
+    }
+
+    /// Returns the view of an element, if the element is alive.
+    #[inline(never)]
+    pub fn element_view(&self, id: ElementId) -> Option<ElementView> {
+        Some(self.view_of(id, self.topology.mesh.element(id)?))
+    }
+
+    #[inline(never)]
+    fn view_of(&self, id: ElementId, element: &Element) -> ElementView {
+        ElementView {
+            id,
+            level: element.cell.level,
+            piece: self.topology.pieces.of_element(id),
+            material: self
+                .topology
+                .grid
+                .material(self.topology.mesh.first_voxel(element)),
+            children: element.children,
+            strain: self.strain_of(id, element),
+            slots: self.slot_positions(element),
+        }
+    }
+
+    /// Elastic strain ‖F − R‖ of an element, if it is alive; 0.1 is a stretch by a tenth. [Plastic
+    /// strain](SoftBody::plastic_strain) is not included.
+    #[inline(never)]
+    pub fn strain(&self, id: ElementId) -> Option<f32> {
+        Some(self.strain_of(id, self.topology.mesh.element(id)?))
+    }
+
+    fn strain_of(&self, id: ElementId, element: &Element) -> f32 {
+        let deformation = self.elastic_part(id, element);
+        let rotation = self.state.blocks.rotation(id);
+        let mut sum = 0.0;
+        for i in 0..D::N {
+            for j in 0..D::N {
+                let difference = deformation[i][j] - rotation[i][j];
+                sum += difference * difference;
+            }
+        }
+        sum.sqrt()
+    }
+
+    /// Positions of the slots of an element: those of its nodes, or interpolated between the nodes that
+    /// represent them.
+    fn slot_positions(&self, element: &Element) -> [Vector; 27] {
+        let centre = self.deformation(element).0;
+        let mut positions: [Option<Vector>; 27] = [None; 27];
+        let slots = &self.topology.mesh.stencil(element).slots;
+        for (&slot, &node) in slots.iter().zip(&element.nodes) {
+            positions[slot as usize] = Some(three(self.state.position[node]));
+        }
+        // From edge middles to the centre: the mean of the slots on both sides.
+        for order in 1..=D::N {
+            for slot in 0..D::SLOTS {
+                let at = slot_at(slot);
+                let middles = at.iter().filter(|&&k| k == 1).count();
+                if positions[slot].is_some() || middles != order {
+                    continue;
+                }
+                let mut sum = [0.0; 3];
+                let mut count = 0.0;
+                for axis in (0..D::N).filter(|&axis| at[axis] == 1) {
+                    for end in [0, 2] {
+                        let mut near = at;
+                        near[axis] = end;
+                        if let Some(position) = positions[slot_index(near)] {
+                            sum = plus(sum, position);
+                            count += 1.0;
+                        }
+                    }
+                }
+                if count == 2.0 * order as f32 {
+                    positions[slot] = Some(scaled(sum, 1.0 / count));
+                }
+            }
+        }
+        positions.map(|position| position.unwrap_or(centre))
+    }
+
+    #[inline(never)]
+    fn facet(&self, id: ElementId, element: &Element, face: usize) -> Facet {
+        let ring = face_corners::<D>(face);
+        let mut nodes = [NodeId(u32::MAX); 4];
+        let mut corners = [[0.0; 3]; 4];
+        for place in 0..D::CORNERS / 2 {
+            nodes[place] = element.nodes[ring[place]];
+            corners[place] = three(self.state.position[nodes[place]]);
+        }
+        // Perpendicular to the segment, or to both diagonals of a quad, which need not be flat.
+        let normal = match D::N {
+            2 => {
+                let along = minus(corners[1], corners[0]);
+                [along[1], -along[0], 0.0]
+            }
+            _ => cross(minus(corners[2], corners[0]), minus(corners[3], corners[1])),
+        };
+        Facet {
+            nodes,
+            corners,
+            normal: unit(normal),
+            element: id,
+            piece: self.topology.pieces.of_element(id),
+            is_torn: self.topology.grid.is_solid(beyond(element.cell.at, face)),
+        }
+    }
+}
+
+impl ElementView {
+    /// Corners [m] of a child that the element fills, in the order of [`corner`]; at level 0, which has no
+    /// children, the corners of the whole cell.
+    pub fn child_corners<D: Dim>(&self, child: usize) -> Vec<Vector> {
+        let at = |vertex: usize| match self.level {
+            0 => scale(corner(vertex), 2),
+            _ => add(corner(child), corner(vertex)),
+        };
+        let position = |vertex: usize| self.slots[slot_index(at(vertex))];
+        (0..D::CORNERS).map(position).collect()
+    }
+}
+
+fn unit(v: Vector) -> Vector {
+    scaled(v, 1.0 / length(v).max(1e-12))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::foundation::dim::Dim3;
+
+    #[test]
+    fn faces_enclose_filled_children() {
+        let count = |faces: &[ElementFace]| {
+            let edges = faces.iter().flat_map(|face| face.is_edge);
+            (faces.len(), edges.filter(|&is| is).count())
+        };
+        let check = |level, children, expect| {
+            let faces = faces::<Dim3>(level, children);
+            assert_eq!(count(&faces), expect, "{children:#b} of level {level}");
+        };
+        check(0, 255, (6, 24));
+        check(1, 255, (24, 48));
+        check(1, 0b0001, (6, 24));
+        check(1, 0b0011, (10, 32));
+        check(1, 0b1001, (12, 48));
+    }
+
+    #[test]
+    fn ring_encloses_filled_children_once() {
+        let check = |level, children, expect: &[[i32; 2]]| {
+            let ring = outline_slots(level, children);
+            let low = ring
+                .iter()
+                .position(|&slot| slot == 0)
+                .expect("the element fills the low corner");
+            let around = ring.iter().cycle().skip(low).take(ring.len());
+            let around: Vec<[i32; 2]> = around
+                .map(|&slot| [slot_at(slot)[0], slot_at(slot)[1]])
+                .collect();
+            assert_eq!(around, expect, "{children:#b} of level {level}");
+        };
+        check(0, 15, &[[0, 0], [2, 0], [2, 2], [0, 2]]);
+        check(1, 0b0001, &[[0, 0], [1, 0], [1, 1], [0, 1]]);
+        check(
+            1,
+            0b0111,
+            &[
+                [0, 0],
+                [1, 0],
+                [2, 0],
+                [2, 1],
+                [1, 1],
+                [1, 2],
+                [0, 2],
+                [0, 1],
+            ],
+        );
+        check(
+            1,
+            0b1001,
+            &[
+                [0, 0],
+                [1, 0],
+                [1, 1],
+                [2, 1],
+                [2, 2],
+                [1, 2],
+                [1, 1],
+                [0, 1],
+            ],
+        );
+    }
+}

@@ -1,0 +1,150 @@
+//! Changes of a body by tears and removals, for readers that keep derived data: contact, rendering, a game.
+
+use crate::foundation::ids::{ElementId, NodeId, PieceId};
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Changes of a body since a bookmark.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Changes {
+    /// Nodes that were added or removed.
+    pub nodes: Vec<NodeId>,
+    /// Elements that were added or removed, or got other nodes or exposed faces.
+    pub elements: Vec<ElementId>,
+    /// Pieces that were detached.
+    pub detached: Vec<PieceId>,
+    /// Pieces that were removed, with their nodes and elements.
+    pub removed: Vec<PieceId>,
+}
+
+/// Point in the history of a body up to which a reader knows the changes. The default lies in no history.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Bookmark {
+    /// Number of the history (0 = none), and number of changes already read.
+    history: u64,
+    tears: u64,
+}
+
+/// Most recent changes of a body.
+#[derive(Debug)]
+pub(crate) struct History {
+    /// Number of the history, unique within the program, so that two bodies cannot be confused.
+    number: u64,
+    /// Number of changes before the first one that is kept.
+    forgotten: u64,
+    kept: VecDeque<Changes>,
+    /// Number of ids in `kept`.
+    size: usize,
+}
+
+impl Changes {
+    /// Number of ids.
+    fn size(&self) -> usize {
+        self.nodes.len() + self.elements.len() + self.detached.len() + self.removed.len()
+    }
+}
+
+impl Default for History {
+    fn default() -> Self {
+        // The simulation does not depend on this number.
+        static COUNT: AtomicU64 = AtomicU64::new(1);
+        Self {
+            number: COUNT.fetch_add(1, Ordering::Relaxed),
+            forgotten: 0,
+            kept: VecDeque::new(),
+            size: 0,
+        }
+    }
+}
+
+/// A clone starts its own history.
+impl Clone for History {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl History {
+    /// Appends a change. Drops the oldest ones while there are more than `most` ids: then reading the whole
+    /// body is faster.
+    pub fn add(&mut self, changes: &Changes, most: usize) {
+        self.kept.push_back(changes.clone());
+        self.size += changes.size();
+        while self.size > most {
+            let Some(first) = self.kept.pop_front() else {
+                break;
+            };
+            self.size -= first.size();
+            self.forgotten += 1;
+        }
+    }
+
+    /// Returns a bookmark at the present state.
+    pub fn end(&self) -> Bookmark {
+        Bookmark {
+            history: self.number,
+            tears: self.forgotten + self.kept.len() as u64,
+        }
+    }
+
+    /// Returns all changes since `bookmark`, each id once, ascending. Returns `None` if they are not known.
+    pub fn since(&self, bookmark: Bookmark) -> Option<Changes> {
+        if bookmark.history != self.number {
+            return None;
+        }
+        let known = bookmark.tears.checked_sub(self.forgotten)?;
+        let mut all = Changes::default();
+        for changes in self.kept.iter().skip(known as usize) {
+            all.nodes.extend(&changes.nodes);
+            all.elements.extend(&changes.elements);
+            all.detached.extend(&changes.detached);
+            all.removed.extend(&changes.removed);
+        }
+        sort(&mut all.nodes);
+        sort(&mut all.elements);
+        sort(&mut all.detached);
+        sort(&mut all.removed);
+        Some(all)
+    }
+}
+
+fn sort<T: Ord>(ids: &mut Vec<T>) {
+    ids.sort_unstable();
+    ids.dedup();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn changes(elements: &[u32]) -> Changes {
+        Changes {
+            elements: elements.iter().copied().map(ElementId).collect(),
+            ..Changes::default()
+        }
+    }
+
+    #[test]
+    fn history_reports_each_change_once() {
+        let mut history = History::default();
+        assert_eq!(history.since(Bookmark::default()), None);
+        let mut own = history.end();
+        assert_eq!(history.since(own), Some(changes(&[])));
+        history.add(&changes(&[5, 2]), 5);
+        history.add(&changes(&[3, 2]), 5);
+        assert_eq!(history.since(own), Some(changes(&[2, 3, 5])));
+        own = history.end();
+        assert_eq!(history.since(own), Some(changes(&[])));
+        // Changes are dropped: a reader that has read the last one continues, any other must start again.
+        let late = own;
+        history.add(&changes(&[1, 4]), 3);
+        assert_eq!(history.since(late), Some(changes(&[1, 4])));
+        history.add(&changes(&[6, 7, 8]), 3);
+        assert_eq!(history.since(late), None);
+        history.add(&changes(&[1, 2, 3, 4]), 3);
+        assert_eq!(history.since(late), None);
+        assert_eq!(history.since(history.end()), Some(changes(&[])));
+        assert_eq!(history.clone().since(late), None);
+        assert_eq!(history.clone().since(history.end()), None);
+    }
+}

@@ -1,0 +1,328 @@
+//! Voxel grids: the solid voxels, and their materials, from which a body starts.
+
+use crate::foundation::dim::{Dim, Point, points_in};
+use crate::rigid_body::shape::Vector;
+use std::fmt;
+use std::marker::PhantomData;
+use std::ops::RangeInclusive;
+
+mod shapes;
+
+/// Largest number of voxels on one axis. At this distance from the origin, single precision still resolves
+/// 1/10000 of a voxel.
+pub const MAX_EXTENT: usize = 1024;
+/// Largest number of voxels in the box of a grid, solid or not. They take 64 MiB, and eight corners of each
+/// can be numbered with 32 bits.
+pub const MAX_VOXELS: usize = 1 << 26;
+/// Valid edge lengths of a voxel [m]. Beyond them, volumes and positions leave the range of single precision.
+pub const VOXEL_SIZES: RangeInclusive<f32> = 1e-6..=1e3;
+
+/// Reason why a body or a grid could not be made.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BuildError {
+    /// No voxel is solid.
+    Empty,
+    /// The grid is larger than [`MAX_EXTENT`] or [`MAX_VOXELS`].
+    TooLarge {
+        /// Requested voxels on each axis.
+        size: [usize; 3],
+    },
+    /// The number of voxel values is not the product of the size.
+    WrongLength {
+        /// Number of values required by the size.
+        expected: usize,
+        /// Number of values given.
+        found: usize,
+    },
+    /// A 2D grid has more than one layer.
+    NotFlat {
+        /// Requested layers.
+        layers: usize,
+    },
+    /// The edge length of a voxel [m] is outside [`VOXEL_SIZES`].
+    BadVoxelSize(f32),
+}
+
+impl fmt::Display for BuildError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => write!(f, "the shape is empty: no voxel is solid"),
+            Self::TooLarge { size } => write!(
+                f,
+                "the grid of {} x {} x {} voxels is too large: at most {MAX_EXTENT} on an axis and {MAX_VOXELS} in all",
+                size[0], size[1], size[2]
+            ),
+            Self::WrongLength { expected, found } => {
+                write!(f, "the grid needs {expected} voxel values, got {found}")
+            }
+            Self::BadVoxelSize(size) => write!(
+                f,
+                "the voxel size {size} m is not between {} and {} m",
+                VOXEL_SIZES.start(),
+                VOXEL_SIZES.end()
+            ),
+            Self::NotFlat { layers } => {
+                write!(f, "a 2D grid must have one layer of voxels, got {layers}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for BuildError {}
+
+/// Box of voxels, each empty (0) or of a material (1 to 255).
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
+pub struct VoxelGrid<D: Dim> {
+    size: Point,
+    voxel_size: f32,
+    materials: Vec<u8>,
+    /// Whether each voxel was removed later; empty if no voxel was.
+    taken_out: Vec<bool>,
+    dim: PhantomData<D>,
+}
+
+impl<D: Dim> VoxelGrid<D> {
+    /// Creates a grid of `size` voxels with edge length `voxel_size` [m]; `material` returns the material of
+    /// each voxel (0 = empty).
+    ///
+    /// # Errors
+    /// [`BuildError`] if the grid is too large, empty, or not flat in 2D, or if the voxel size is outside
+    /// [`VOXEL_SIZES`].
+    pub fn from_fn(
+        size: [usize; 3],
+        voxel_size: f32,
+        mut material: impl FnMut(Point) -> u8,
+    ) -> Result<Self, BuildError> {
+        let size = Self::checked_size(size)?;
+        let high = [size[0] - 1, size[1] - 1, size[2] - 1];
+        let materials = points_in([0; 3], high).map(&mut material).collect();
+        Self::checked(size, voxel_size, materials)
+    }
+
+    /// Creates a grid from voxel values in memory order, the first axis fastest.
+    ///
+    /// # Errors
+    /// See [`VoxelGrid::from_fn`]; also if the number of values does not match the size.
+    pub fn from_materials(
+        size: [usize; 3],
+        voxel_size: f32,
+        materials: Vec<u8>,
+    ) -> Result<Self, BuildError> {
+        let size = Self::checked_size(size)?;
+        let expected = size.iter().map(|&extent| extent as usize).product();
+        if materials.len() != expected {
+            return Err(BuildError::WrongLength {
+                expected,
+                found: materials.len(),
+            });
+        }
+        Self::checked(size, voxel_size, materials)
+    }
+
+    /// Creates a grid like [`VoxelGrid::from_fn`], but calls `material` with the centre of each voxel [m],
+    /// measured from the low corner of the grid; the third coordinate is 0 in 2D. This turns signed distances
+    /// into voxels:
+    ///
+    /// ```
+    /// use fuwafuwa::{Dim3, Shape, VoxelGrid};
+    ///
+    /// let ball = |radius| Shape::Ball { centre: [0.5; 3], radius };
+    /// let (shell, core) = (ball(0.45), ball(0.2));
+    /// let grid = VoxelGrid::<Dim3>::from_centres([32; 3], 1.0 / 32.0, |at| {
+    ///     match (shell.distance(at).0 < 0.0, core.distance(at).0 < 0.0) {
+    ///         (_, true) => 2,
+    ///         (true, false) => 1,
+    ///         (false, false) => 0,
+    ///     }
+    /// })?;
+    /// assert_eq!(grid.material([16; 3]), 2);
+    /// # Ok::<(), fuwafuwa::BuildError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// See [`VoxelGrid::from_fn`].
+    pub fn from_centres(
+        size: [usize; 3],
+        voxel_size: f32,
+        mut material: impl FnMut(Vector) -> u8,
+    ) -> Result<Self, BuildError> {
+        Self::from_fn(size, voxel_size, |voxel| {
+            material(Self::centre(voxel, voxel_size))
+        })
+    }
+
+    /// Multiplies all lengths by `factor`; the number of voxels stays the same.
+    ///
+    /// # Errors
+    /// [`BuildError::BadVoxelSize`] if the new voxel size is outside [`VOXEL_SIZES`].
+    pub fn scaled(mut self, factor: f32) -> Result<Self, BuildError> {
+        self.voxel_size *= factor;
+        Self::checked(self.size, self.voxel_size, self.materials)
+    }
+
+    /// Centre of a voxel [m], measured from the low corner of a grid with this voxel size; the third
+    /// coordinate is 0 in 2D.
+    pub fn centre(voxel: Point, voxel_size: f32) -> Vector {
+        let mut centre = [0.0; 3];
+        for axis in 0..D::N {
+            centre[axis] = (voxel[axis] as f32 + 0.5) * voxel_size;
+        }
+        centre
+    }
+
+    /// Number of voxels on each axis; 1 on the third axis in 2D.
+    pub fn size(&self) -> Point {
+        self.size
+    }
+
+    /// Edge length of a voxel [m].
+    pub fn voxel_size(&self) -> f32 {
+        self.voxel_size
+    }
+
+    /// Number of solid voxels.
+    #[inline(never)]
+    pub fn solid_count(&self) -> usize {
+        self.materials.iter().filter(|&&m| m != 0).count()
+    }
+
+    /// Material of a voxel: 0 if it is empty or outside the grid.
+    #[inline]
+    pub fn material(&self, voxel: Point) -> u8 {
+        let inside = (0..3).all(|axis| voxel[axis] >= 0 && voxel[axis] < self.size[axis]);
+        if inside {
+            self.materials[self.index(voxel)]
+        } else {
+            0
+        }
+    }
+
+    /// Whether a voxel is solid; voxels outside the grid are not.
+    #[inline]
+    pub fn is_solid(&self, voxel: Point) -> bool {
+        self.material(voxel) != 0
+    }
+
+    /// Whether a voxel is solid and was not removed with its [piece](crate::World::remove_piece).
+    /// [`VoxelGrid::is_solid`] stays true for removed voxels.
+    #[inline]
+    pub fn is_present(&self, voxel: Point) -> bool {
+        self.is_solid(voxel) && (self.taken_out.is_empty() || !self.taken_out[self.index(voxel)])
+    }
+
+    /// Number of solid voxels that were not removed.
+    #[inline(never)]
+    pub fn left_count(&self) -> usize {
+        let gone = self.taken_out.iter().filter(|&&gone| gone).count();
+        self.solid_count() - gone
+    }
+
+    /// Marks solid voxels as removed.
+    pub(crate) fn remove_voxels(&mut self, voxels: &[Point]) {
+        self.taken_out.resize(self.materials.len(), false);
+        for &voxel in voxels {
+            let index = self.index(voxel);
+            self.taken_out[index] = true;
+        }
+    }
+
+    /// All voxels of the box, solid or not.
+    pub fn voxels(&self) -> impl Iterator<Item = Point> + use<D> {
+        let size = self.size;
+        points_in([0; 3], [size[0] - 1, size[1] - 1, size[2] - 1])
+    }
+
+    /// Index of a voxel inside the box, in memory order.
+    #[inline]
+    pub fn index(&self, voxel: Point) -> usize {
+        ((voxel[2] * self.size[1] + voxel[1]) * self.size[0] + voxel[0]) as usize
+    }
+
+    /// Whether a grid read from a file is valid.
+    #[cfg(feature = "serde")]
+    pub(crate) fn is_valid(&self) -> bool {
+        let size = self.size.map(|extent| usize::try_from(extent).unwrap_or(0));
+        let is_box = Self::from_materials(size, self.voxel_size, self.materials.clone()).is_ok();
+        let are_solid = |(&gone, &material): (&bool, &u8)| !gone || material != 0;
+        let gone = &self.taken_out;
+        let is_known = gone.is_empty() || gone.len() == self.materials.len();
+        is_box && is_known && gone.iter().zip(&self.materials).all(are_solid)
+    }
+
+    fn checked_size(size: [usize; 3]) -> Result<Point, BuildError> {
+        if size.contains(&0) {
+            return Err(BuildError::Empty);
+        }
+        if size[2] != D::depth(size[2]) {
+            return Err(BuildError::NotFlat { layers: size[2] });
+        }
+        let fits = size.iter().all(|&extent| extent <= MAX_EXTENT);
+        if !fits || size.iter().product::<usize>() > MAX_VOXELS {
+            return Err(BuildError::TooLarge { size });
+        }
+        Ok(size.map(|extent| extent as i32))
+    }
+
+    #[inline(never)]
+    fn checked(size: Point, voxel_size: f32, materials: Vec<u8>) -> Result<Self, BuildError> {
+        if !VOXEL_SIZES.contains(&voxel_size) {
+            return Err(BuildError::BadVoxelSize(voxel_size));
+        }
+        if materials.iter().all(|&m| m == 0) {
+            return Err(BuildError::Empty);
+        }
+        Ok(Self {
+            size,
+            voxel_size,
+            materials,
+            taken_out: Vec::new(),
+            dim: PhantomData,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::foundation::dim::{Dim2, Dim3};
+
+    #[test]
+    fn from_fn_reports_reason_for_invalid_grid() {
+        assert_eq!(VoxelGrid::<Dim2>::ball(0, 1.0), Err(BuildError::Empty));
+        let size = [2000, 1, 1];
+        let long = VoxelGrid::<Dim3>::from_fn(size, 1.0, |_| 1);
+        assert_eq!(long, Err(BuildError::TooLarge { size }));
+        let short = VoxelGrid::<Dim2>::from_materials([2, 2, 1], 1.0, vec![1; 3]);
+        let (expected, found) = (4, 3);
+        assert_eq!(short, Err(BuildError::WrongLength { expected, found }));
+        for width in [f32::NAN, f32::INFINITY, 0.0, -1.0, 1e-9, 1e9] {
+            let odd = VoxelGrid::<Dim2>::cube(2, width);
+            assert!(matches!(odd, Err(BuildError::BadVoxelSize(_))), "{width}");
+        }
+        let deep = VoxelGrid::<Dim2>::from_fn([4, 4, 2], 1.0, |_| 1);
+        assert_eq!(deep, Err(BuildError::NotFlat { layers: 2 }));
+    }
+
+    #[test]
+    fn ball_contains_voxels_at_smallest_sizes() {
+        for (n, [disc, ball]) in [(1, [1, 1]), (2, [4, 8]), (3, [1, 1]), (4, [4, 8])] {
+            let disc_of_n = VoxelGrid::<Dim2>::ball(n, 1.0).unwrap();
+            assert_eq!(disc_of_n.solid_count(), disc, "{n}");
+            let ball_of_n = VoxelGrid::<Dim3>::ball(n, 1.0).unwrap();
+            assert_eq!(ball_of_n.solid_count(), ball, "{n}");
+        }
+    }
+
+    #[test]
+    fn from_centres_fills_voxels_with_centre_inside() {
+        use crate::rigid_body::shape::Shape;
+        let (centre, radius) = ([0.5; 3], 0.3);
+        let inside = |at| u8::from(Shape::Ball { centre, radius }.distance(at).0 < 0.0);
+        let grid = VoxelGrid::<Dim3>::from_centres([5; 3], 0.2, inside).unwrap();
+        assert_eq!(grid.solid_count(), 19, "a cube of 3 without its 8 corners");
+        let centre = VoxelGrid::<Dim2>::centre([1, 2, 0], 2.0);
+        assert_eq!(centre, [3.0, 5.0, 0.0]);
+    }
+}

@@ -1,0 +1,199 @@
+//! Grids of named shapes: ball, cube, ring, heart, flower.
+//!
+//! One formula serves both the plane and space.
+
+use super::{BuildError, VoxelGrid};
+use crate::foundation::dim::{Dim, Point};
+use crate::rigid_body::shape::Vector;
+
+impl<D: Dim> VoxelGrid<D> {
+    /// Creates the disc (2D) or ball (3D) that fills a grid of `n` voxels across `diameter` metres.
+    ///
+    /// A voxel is solid if its centre lies within the radius minus half a voxel, so that the outermost layer
+    /// stays inside the box. With one or two voxels across, the ball fills the box.
+    ///
+    /// # Errors
+    /// See [`VoxelGrid::from_fn`].
+    #[inline(never)]
+    pub fn ball(n: usize, diameter: f32) -> Result<Self, BuildError> {
+        let centre = n as f32 * 0.5;
+        // Larger than the 0.87 of the corner voxels of 2 × 2 × 2, smaller than the 1 of three voxels.
+        let radius = (centre - 0.5).max(0.9);
+        Self::from_fn(Self::cube_size(n), diameter / n as f32, |at| {
+            let squared: f32 = at[..D::N]
+                .iter()
+                .map(|&k| (k as f32 + 0.5 - centre) * (k as f32 + 0.5 - centre))
+                .sum();
+            u8::from(squared < radius * radius)
+        })
+    }
+
+    /// Creates the square (2D) or cube (3D) of `n` voxels across `width` metres.
+    ///
+    /// # Errors
+    /// See [`VoxelGrid::from_fn`].
+    #[inline(never)]
+    pub fn cube(n: usize, width: f32) -> Result<Self, BuildError> {
+        Self::from_fn(Self::cube_size(n), width / n as f32, |_| 1)
+    }
+
+    /// Creates the ring (2D) or torus (3D, in the plane of the first two axes) of `n` voxels across
+    /// `diameter` metres. The hole is half as wide.
+    ///
+    /// # Errors
+    /// See [`VoxelGrid::from_fn`]; with a small `n` no voxel is solid.
+    #[inline(never)]
+    pub fn ring(n: usize, diameter: f32) -> Result<Self, BuildError> {
+        let size = [n, n, D::depth(n.div_ceil(4))];
+        // In half voxels; leaves one free on each side, like a ball.
+        let outer = n as f32 - 1.0;
+        let tube = 0.25 * outer;
+        Self::from_fn(size, diameter / n as f32, |voxel| {
+            let [x, y, z] = Self::from_middle(voxel, size);
+            let from_circle = (x * x + y * y).sqrt() - (outer - tube);
+            u8::from(from_circle * from_circle + z * z < tube * tube)
+        })
+    }
+
+    /// Creates a heart of `n` voxels across `width` metres, its point down.
+    ///
+    /// In space the heart is the sextic (x² + 9/4 z² + y² − 1)³ ≤ x²y³ + 9/80 z²y³ [Taubin 1994] with y up;
+    /// in the plane it is the section of that sextic at z = 0.
+    ///
+    /// # Errors
+    /// See [`VoxelGrid::from_fn`].
+    #[inline(never)]
+    pub fn heart(n: usize, width: f32) -> Result<Self, BuildError> {
+        // The curve spans −1.14 to 1.14 in x and −1 to 1.24 in y.
+        const HALF_WIDTH: f32 = 1.2;
+        const MIDDLE: f32 = 0.12;
+        let size = Self::cube_size(n);
+        let unit = HALF_WIDTH / n as f32;
+        Self::from_fn(size, width / n as f32, |voxel| {
+            let [x, y, z] = Self::from_middle(voxel, size).map(|k| k * unit);
+            let y = y + MIDDLE;
+            let ball = x * x + 2.25 * z * z + y * y - 1.0;
+            u8::from(ball * ball * ball <= (x * x + 0.1125 * z * z) * y * y * y)
+        })
+    }
+
+    /// Creates a flower of `n` voxels across `width` metres, with five petals, one of them up; in space a
+    /// cushion.
+    ///
+    /// The radius is 0.7 + 0.3 cos 5φ of the half width, with φ measured from the y axis. Because r⁵ cos 5φ
+    /// is the real part of (y + ix)⁵, no angle is computed.
+    ///
+    /// # Errors
+    /// See [`VoxelGrid::from_fn`].
+    #[inline(never)]
+    pub fn flower(n: usize, width: f32) -> Result<Self, BuildError> {
+        let size = Self::cube_size(n);
+        Self::from_fn(size, width / n as f32, |voxel| {
+            let [x, y, z] = Self::from_middle(voxel, size).map(|k| k / n as f32);
+            let (xx, yy) = (x * x, y * y);
+            let squared = xx + yy + z * z;
+            let fifth = squared * squared * squared.sqrt();
+            let petals = y * (yy * yy - 10.0 * yy * xx + 5.0 * xx * xx);
+            u8::from(squared * squared * squared <= 0.7 * fifth + 0.3 * petals)
+        })
+    }
+
+    fn cube_size(n: usize) -> [usize; 3] {
+        [n, n, D::depth(n)]
+    }
+
+    /// Centre of a voxel relative to the middle of a grid of `size`, in half voxels: whole numbers.
+    fn from_middle(voxel: Point, size: [usize; 3]) -> Vector {
+        [0, 1, 2].map(|axis| (2 * voxel[axis] + 1 - size[axis] as i32) as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::foundation::dim::{Dim2, Dim3};
+
+    /// Draws a flat grid, or the middle layer of a 3D grid; the highest row first.
+    fn picture<D: Dim>(grid: Result<VoxelGrid<D>, BuildError>) -> Vec<String> {
+        let grid = grid.unwrap();
+        let [width, height, depth] = grid.size();
+        let sign = |at| ['.', '#'][usize::from(grid.material(at))];
+        let row = |y| (0..width).map(|x| sign([x, y, depth / 2])).collect();
+        (0..height).rev().map(row).collect()
+    }
+
+    #[test]
+    fn named_shapes_match_pictures() {
+        let ring = [
+            ".........",
+            "..#####..",
+            ".###.###.",
+            ".##...##.",
+            ".#.....#.",
+            ".##...##.",
+            ".###.###.",
+            "..#####..",
+            ".........",
+        ];
+        assert_eq!(picture(VoxelGrid::<Dim2>::ring(9, 1.0)), ring);
+        assert_eq!(picture(VoxelGrid::<Dim3>::ring(9, 1.0)), ring);
+        let torus = VoxelGrid::<Dim3>::ring(33, 1.0).unwrap();
+        assert_eq!(torus.size(), [33, 33, 9]);
+        // The section of the tube is round, and the same on both sides.
+        let tube = (0..9).map(|z| torus.is_solid([1, 16, z]));
+        assert_eq!(tube.filter(|&solid| solid).count(), 5);
+        let heart = [
+            "..##...##..",
+            ".#########.",
+            "###########",
+            "###########",
+            "###########",
+            ".#########.",
+            ".#########.",
+            "..#######..",
+            "...#####...",
+            "....###....",
+            ".....#.....",
+        ];
+        assert_eq!(picture(VoxelGrid::<Dim2>::heart(11, 1.0)), heart);
+        assert_eq!(picture(VoxelGrid::<Dim3>::heart(11, 1.0)), heart);
+        let flower = [
+            ".......#.......",
+            "......###......",
+            "......###......",
+            "......###......",
+            ".###..###..###.",
+            "###############",
+            ".#############.",
+            "..###########..",
+            ".....#####.....",
+            "....#######....",
+            "...####.####...",
+            "...####.####...",
+            "...###...###...",
+            "...##.....##...",
+            "...............",
+        ];
+        assert_eq!(picture(VoxelGrid::<Dim2>::flower(15, 1.0)), flower);
+        assert_eq!(picture(VoxelGrid::<Dim3>::flower(15, 1.0)), flower);
+    }
+
+    #[test]
+    fn named_shapes_fail_below_smallest_size() {
+        assert_eq!(VoxelGrid::<Dim2>::heart(0, 1.0), Err(BuildError::Empty));
+        assert_eq!(VoxelGrid::<Dim3>::flower(0, 1.0), Err(BuildError::Empty));
+        assert_eq!(VoxelGrid::<Dim3>::ring(0, 1.0), Err(BuildError::Empty));
+        assert_eq!(VoxelGrid::<Dim2>::ring(4, 1.0), Err(BuildError::Empty));
+        assert!(VoxelGrid::<Dim2>::ring(5, 1.0).is_ok());
+        assert!(VoxelGrid::<Dim3>::ring(6, 1.0).is_ok());
+    }
+
+    #[test]
+    fn ball_has_known_voxel_count() {
+        // Number of solid voxels at n = 32 in 3D.
+        assert_eq!(
+            VoxelGrid::<Dim3>::ball(32, 1.0).unwrap().solid_count(),
+            15_408
+        );
+    }
+}

@@ -1,0 +1,366 @@
+//! Graded mesh: the elements and nodes that follow from the solid voxels and their connectivity.
+//!
+//! A node is a lattice point together with one group of voxels there. It exists exactly if it is a corner of
+//! the cell of some element, at a child that the element fills. Every element carries all nodes in the
+//! closure of its children. Hanging nodes are true nodes of the larger element.
+//!
+//! ```text
+//!   ┌───┬─┬─┐     the level-1 element on the left carries five nodes: its four corners and the
+//!   │   ├─┼─┤     middle of its right edge, which is a corner of its level-0 neighbours
+//!   └───┴─┴─┘
+//! ```
+
+mod element_nodes;
+mod mesh_validation;
+mod remodel;
+
+pub use remodel::{Inheritance, Remodelled};
+
+use crate::foundation::dim::{Dim, Point, points_in, voxel_around};
+use crate::foundation::id_lists::IdLists;
+use crate::foundation::ids::{ElementId, IndexVec, NodeId};
+use crate::topology::cell_hierarchy::{Cell, CellHierarchy, CellIndexing, Grading, parts};
+use crate::topology::connectivity::Connectivity;
+use crate::topology::element_class::{ElementClass, MissingCorner};
+use crate::topology::grid::VoxelGrid;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// Elastic element on a cell or on a face-connected part of a cell.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Element {
+    /// Cell of the element.
+    pub cell: Cell,
+    /// Mask of the children of the cell that the element fills; all bits are set at level 0.
+    pub children: u8,
+    /// Index of its class, see [`Mesh::stencil`].
+    pub stencil: u32,
+    /// Nodes, in the order of the slots of the stencil.
+    pub nodes: Vec<NodeId>,
+}
+
+/// Mass point: a lattice point, and the octants of the voxel group that shares it.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Node {
+    /// Lattice point at rest.
+    pub at: Point,
+    /// Mask of the octants of the voxels around the point that share this node.
+    pub group: u8,
+}
+
+/// Elements of one body, and the nodes that they share.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
+pub struct Mesh<D: Dim> {
+    elements: IndexVec<ElementId, Option<Element>>,
+    nodes: IndexVec<NodeId, Node>,
+    stencils: Vec<ElementClass<D>>,
+    /// Whether every lattice point of the surface is a node, regardless of the size of its elements.
+    dense_surface: bool,
+    places: CellIndexing,
+    /// Elements of each cell, by the index of the cell.
+    by_cell: IdLists<ElementId>,
+    /// Owner of each voxel as its element id + 1, by the index of its level-0 cell; 0 where there is no
+    /// element.
+    owners: Vec<u32>,
+    /// Nodes at each lattice point, by the index of the point.
+    by_point: IdLists<NodeId>,
+    classes: BTreeMap<(u8, u32), u32>,
+    /// Number of elements that carry each node; 0 = the id is free.
+    carriers: IndexVec<NodeId, u8>,
+    free_elements: Vec<ElementId>,
+    free_nodes: Vec<NodeId>,
+}
+
+/// Violated invariant of a mesh, as text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Defect(String);
+
+impl fmt::Display for Defect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl Defect {
+    #[cfg(feature = "serde")]
+    pub(crate) fn of(what: String) -> Self {
+        Self(what)
+    }
+}
+
+impl std::error::Error for Defect {}
+
+impl From<MissingCorner> for Defect {
+    fn from(missing: MissingCorner) -> Self {
+        Self(missing.to_string())
+    }
+}
+
+impl<D: Dim> Mesh<D> {
+    /// Builds the elements of a body from scratch.
+    ///
+    /// # Errors
+    /// A [`Defect`] if the pyramid does not match this grid and connectivity.
+    #[inline(never)]
+    pub fn grade(
+        grid: &VoxelGrid<D>,
+        sharing: &Connectivity<D>,
+        pyramid: &CellHierarchy<D>,
+    ) -> Result<Self, Defect> {
+        let mut mesh = Self {
+            elements: IndexVec::default(),
+            nodes: IndexVec::default(),
+            stencils: Vec::new(),
+            dense_surface: pyramid.grading() == Grading::Coarse,
+            places: pyramid.places().clone(),
+            by_cell: IdLists::new(pyramid.places().count()),
+            owners: vec![0; pyramid.places().count_of(0)],
+            by_point: IdLists::new(sharing.point_count()),
+            classes: BTreeMap::new(),
+            carriers: IndexVec::default(),
+            free_elements: Vec::new(),
+            free_nodes: Vec::new(),
+        };
+        for level in 0..pyramid.level_count() as u8 {
+            for cell in pyramid.cells(level) {
+                for children in parts::<D>(pyramid.filled(grid, cell)) {
+                    mesh.place(cell, children);
+                }
+            }
+        }
+        for id in mesh.elements.ids() {
+            mesh.seat(id, sharing, None)?;
+        }
+        Ok(mesh)
+    }
+
+    /// Returns the elements with their ids, ascending.
+    pub fn elements(&self) -> impl Iterator<Item = (ElementId, &Element)> {
+        let alive = self.elements.entries();
+        alive.filter_map(|(id, element)| Some((id, element.as_ref()?)))
+    }
+
+    /// Number of elements.
+    pub fn element_count(&self) -> usize {
+        self.elements.iter().flatten().count()
+    }
+
+    /// Returns the nodes with their ids, ascending.
+    pub fn nodes(&self) -> impl Iterator<Item = (NodeId, Node)> + '_ {
+        let alive = self.nodes.entries().zip(self.carriers.iter());
+        alive.filter_map(|((id, &node), &carriers)| (carriers > 0).then_some((id, node)))
+    }
+
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.nodes.len() - self.free_nodes.len()
+    }
+
+    /// Highest node id ever used plus one: the length of an array indexed by node.
+    pub fn node_capacity(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Highest element id ever used plus one: the length of an array indexed by element.
+    pub fn element_capacity(&self) -> usize {
+        self.elements.len()
+    }
+
+    /// Whether an element carries the node with this id.
+    pub fn is_alive(&self, id: NodeId) -> bool {
+        self.carriers[id] > 0
+    }
+
+    /// Returns the node with an id.
+    ///
+    /// # Panics
+    /// If the id was never used.
+    pub fn node(&self, id: NodeId) -> Node {
+        self.nodes[id]
+    }
+
+    /// Returns the element with an id, if it is alive.
+    pub fn element(&self, id: ElementId) -> Option<&Element> {
+        self.elements.get(id.index())?.as_ref()
+    }
+
+    /// Returns the elements that carry a node, each with the index of the node in the element. The order is
+    /// that of the octants around the node, which does not depend on the numbering of elements.
+    pub fn carriers_of(&self, id: NodeId) -> impl Iterator<Item = (&Element, usize)> {
+        self.carrier_ids(id).map(move |owner| {
+            let element = self.alive(owner);
+            let place = element.nodes.iter().position(|&node| node == id);
+            (
+                element,
+                place.expect("every element in a node's group carries the node"),
+            )
+        })
+    }
+
+    /// Returns the ids of the elements that carry a node, in the order of the octants around it.
+    pub fn carrier_ids(&self, id: NodeId) -> impl Iterator<Item = ElementId> + use<D> {
+        let node = self.node(id);
+        let (mut carriers, mut count) = ([ElementId(0); 8], 0);
+        for owner in self.owners_around(node.at, node.group) {
+            if !carriers[..count].contains(&owner) {
+                carriers[count] = owner;
+                count += 1;
+            }
+        }
+        carriers.into_iter().take(count)
+    }
+
+    /// Number of elements on each level, finest first.
+    #[inline(never)]
+    pub fn elements_per_level(&self) -> Vec<usize> {
+        let mut counts = Vec::new();
+        for (_, element) in self.elements() {
+            let level = element.cell.level as usize;
+            counts.resize(counts.len().max(level + 1), 0);
+            counts[level] += 1;
+        }
+        counts
+    }
+
+    /// Number of vertices if every element counts its own, as in [Endo 2004, §3.1].
+    #[inline(never)]
+    pub fn independent_vertex_count(&self) -> usize {
+        self.elements()
+            .map(|(_, element)| element.nodes.len())
+            .sum()
+    }
+
+    /// Stencil (element class) of an element.
+    pub fn stencil(&self, element: &Element) -> &ElementClass<D> {
+        &self.stencils[element.stencil as usize]
+    }
+
+    /// Returns the element that owns a solid voxel; `None` for an empty one.
+    pub fn owner(&self, voxel: Point) -> Option<ElementId> {
+        owner(self.owners[self.places.index(Cell::of(voxel))?])
+    }
+
+    /// Returns the element that owns a solid voxel; `None` for an empty one.
+    pub(crate) fn element_at(&self, voxel: Point) -> Option<&Element> {
+        self.element(self.owner(voxel)?)
+    }
+
+    /// Returns the elements that own the voxels in the given octants around a lattice point, in the order of
+    /// the octants.
+    pub fn owners_around(
+        &self,
+        at: Point,
+        octants: u8,
+    ) -> impl Iterator<Item = ElementId> + use<D> {
+        let mut owners = [0; 8];
+        match self.places.voxels_around::<D>(at) {
+            Some(places) => {
+                for octant in 0..D::CORNERS {
+                    owners[octant] = self.owners[places[octant]];
+                }
+            }
+            None => {
+                for octant in 0..D::CORNERS {
+                    let voxel = Cell::of(voxel_around::<D>(at, octant));
+                    let place = self.places.index(voxel);
+                    owners[octant] = place.map_or(0, |place| self.owners[place]);
+                }
+            }
+        }
+        let asked = (0..D::CORNERS).filter(move |octant| octants >> octant & 1 == 1);
+        asked.filter_map(move |octant| owner(owners[octant]))
+    }
+
+    /// Returns the first voxel that an element fills.
+    pub fn first_voxel(&self, element: &Element) -> Point {
+        let child = element.children.trailing_zeros() as usize;
+        match element.cell.level {
+            0 => element.cell.at,
+            _ => element.cell.child(child).first_voxel(),
+        }
+    }
+
+    /// Returns the voxels that an element fills.
+    pub fn voxels(&self, element: &Element) -> impl Iterator<Item = Point> + use<D> {
+        let cell = element.cell;
+        let is_voxel = cell.level == 0;
+        let reach = cell.width() / 2 - i32::from(!is_voxel);
+        let children = if is_voxel { 1 } else { element.children };
+        let filled = (0..D::CORNERS).filter(move |child| children >> child & 1 == 1);
+        filled.flat_map(move |child| {
+            let low = if is_voxel {
+                cell.at
+            } else {
+                cell.child(child).first_voxel()
+            };
+            let mut high = low;
+            high.iter_mut().take(D::N).for_each(|k| *k += reach);
+            points_in(low, high)
+        })
+    }
+
+    /// Whether two meshes are equal except for the numbering of elements and nodes.
+    #[inline(never)]
+    pub fn is_same_as(&self, other: &Self) -> bool {
+        self.canonical() == other.canonical()
+    }
+
+    fn alive(&self, id: ElementId) -> &Element {
+        self.elements[id]
+            .as_ref()
+            .expect("a cell lists live elements only")
+    }
+
+    /// Every element as its cell, children and nodes, sorted.
+    fn canonical(&self) -> Vec<(Cell, u8, Vec<Node>)> {
+        let mut all: Vec<_> = self
+            .elements()
+            .map(|(_, element)| {
+                let nodes = element.nodes.iter().map(|&id| self.node(id)).collect();
+                (element.cell, element.children, nodes)
+            })
+            .collect();
+        all.sort();
+        all
+    }
+
+    /// Adds an element without nodes.
+    fn place(&mut self, cell: Cell, children: u8) {
+        let element = Element {
+            cell,
+            children,
+            stencil: u32::MAX,
+            nodes: Vec::new(),
+        };
+        let next = self.elements.next_id();
+        let id = self.free_elements.pop().unwrap_or(next);
+        if id == next {
+            self.elements.push(Some(element));
+        } else {
+            self.elements[id] = Some(element);
+        }
+        let place = |cell| self.places.index(cell).expect("cells lie in the grid");
+        self.by_cell.append(place(cell), id);
+        for voxel in self.voxels(self.alive(id)) {
+            self.owners[place(Cell::of(voxel))] = id.0 + 1;
+        }
+    }
+}
+
+/// Decodes an entry of `owners`.
+fn owner(listed: u32) -> Option<ElementId> {
+    listed.checked_sub(1).map(ElementId)
+}
+
+/// Returns the cells that contain a voxel, finest first, each with the index of the child that contains the
+/// voxel.
+fn path<D: Dim>(voxel: Point) -> impl Iterator<Item = (Cell, usize)> {
+    // The largest grid has 2^10 voxels on an axis.
+    std::iter::successors(Some((Cell::of(voxel), 0)), |(cell, _)| {
+        (cell.level < 10).then(|| (cell.parent(), cell.child_index::<D>()))
+    })
+}

@@ -1,0 +1,145 @@
+//! Seating of elements: determines their nodes, and so their class, from the surroundings.
+
+use super::remodel::Past;
+use super::{Defect, Element, Mesh, Node};
+use crate::foundation::dim::{Dim, Point, add, corner, scale, voxel_around};
+use crate::foundation::ids::{ElementId, NodeId};
+use crate::topology::cell_hierarchy::Cell;
+use crate::topology::connectivity::Connectivity;
+use crate::topology::element_class::{ElementClass, cell_corners, slot_at};
+
+impl<D: Dim> Mesh<D> {
+    /// Gives an element the nodes and the class that follow from its surroundings; returns false if nothing
+    /// changed. A new node inherits its state from `past`, if given.
+    pub(super) fn seat(
+        &mut self,
+        id: ElementId,
+        sharing: &Connectivity<D>,
+        mut past: Option<&mut Past>,
+    ) -> Result<bool, Defect> {
+        let (cell, children) = (self.alive(id).cell, self.alive(id).children);
+        let corners = cell_corners::<D>();
+        let (mut slots, mut seated, mut count) = (0u32, [NodeId(0); 27], 0);
+        for slot in 0..D::SLOTS {
+            let is_corner = corners >> slot & 1 == 1;
+            if !is_corner && cell.level == 0 {
+                continue;
+            }
+            let Some((at, octant)) = seat_of::<D>(cell, children, slot) else {
+                continue;
+            };
+            let node = Node {
+                at,
+                group: sharing.groups(at).group_of(octant),
+            };
+            let on_surface = self.dense_surface && node.group != D::ALL_CORNERS;
+            if !is_corner && !on_surface && !self.is_node_beside(id, node) {
+                continue;
+            }
+            let (node, is_new) = self.node_id(node, sharing.index(at));
+            if let (true, Some(past)) = (is_new, &mut past) {
+                past.inherit(self, node, voxel_around::<D>(at, octant), at)?;
+            }
+            slots |= 1 << slot;
+            seated[count] = node;
+            count += 1;
+        }
+        let seated = &seated[..count];
+        // The nodes determine the slots, and so the class.
+        if self.alive(id).nodes == seated {
+            return Ok(false);
+        }
+        let stencil = self.class(children, slots)?;
+        let element = Element {
+            cell,
+            children,
+            stencil,
+            nodes: seated.to_vec(),
+        };
+        let old = self.elements[id].replace(element);
+        let old = old.expect("seated elements are alive");
+        for &node in seated {
+            self.carriers[node] += 1;
+        }
+        for &node in &old.nodes {
+            self.carriers[node] -= 1;
+        }
+        if let Some(past) = past {
+            past.replaced.push((id, old));
+        }
+        Ok(true)
+    }
+
+    /// Whether an element other than `id` has this (point, group) as a corner of its cell; it must not be a
+    /// corner of the cell of `id`.
+    fn is_node_beside(&self, id: ElementId, node: Node) -> bool {
+        // Only cells up to this level can have a corner at this point.
+        let [x, y, z] = node.at;
+        let highest = (x | y | z).trailing_zeros();
+        self.owners_around(node.at, node.group)
+            .any(|owner| owner != id && u32::from(self.alive(owner).cell.level) <= highest)
+    }
+
+    /// Returns the id of a node at the lattice point with index `point`, and whether the node was created by
+    /// this call.
+    fn node_id(&mut self, node: Node, point: usize) -> (NodeId, bool) {
+        let mut present = self.by_point.at(point);
+        if let Some(id) = present.find(|&id| self.node(id).group == node.group) {
+            return (id, false);
+        }
+        drop(present);
+        let next = self.nodes.next_id();
+        let id = self.free_nodes.pop().unwrap_or(next);
+        if id == next {
+            self.nodes.push(node);
+            self.carriers.push(0);
+        } else {
+            self.nodes[id] = node;
+        }
+        self.by_point.append(point, id);
+        (id, true)
+    }
+
+    fn class(&mut self, children: u8, slots: u32) -> Result<u32, Defect> {
+        if let Some(&class) = self.classes.get(&(children, slots)) {
+            return Ok(class);
+        }
+        let class = self.stencils.len() as u32;
+        self.stencils.push(ElementClass::new(children, slots)?);
+        self.classes.insert((children, slots), class);
+        Ok(class)
+    }
+}
+
+/// Returns the lattice point of a slot, and an octant there that belongs to the element. `None` if the slot
+/// is no corner of any of its children.
+fn seat_of<D: Dim>(cell: Cell, children: u8, slot: usize) -> Option<(Point, usize)> {
+    let steps = slot_at(slot);
+    let touching = children & TOUCHING[slot];
+    if touching == 0 {
+        return None;
+    }
+    let low = corner(touching.trailing_zeros() as usize);
+    let at = add(scale(cell.at, 2), steps).map(|k| (k << cell.level) / 2);
+    let octant = (0..D::N).fold(0, |octant, axis| {
+        octant | usize::from(steps[axis] == low[axis]) << axis
+    });
+    Some((at, octant))
+}
+
+/// Children that have each slot as a corner.
+const TOUCHING: [u8; 27] = {
+    // Along one axis: the near child, both, the far one.
+    let along = [
+        [0b0101_0101, 0b1111_1111, 0b1010_1010],
+        [0b0011_0011, 0b1111_1111, 0b1100_1100],
+        [0b0000_1111, 0b1111_1111, 0b1111_0000],
+    ];
+    let mut touching = [0; 27];
+    let mut slot = 0;
+    while slot < 27 {
+        touching[slot] = along[0][slot % 3] & along[1][slot / 3 % 3] & along[2][slot / 9];
+        slot += 1;
+    }
+    touching
+};

@@ -1,0 +1,250 @@
+//! Invariants of a mesh, checked by [`Mesh::validate`].
+
+use super::{Defect, Mesh};
+#[cfg(feature = "serde")]
+use super::{Element, Node};
+use crate::foundation::dim::{Dim, Point, neighbourhood};
+#[cfg(feature = "serde")]
+use crate::foundation::ids::{ElementId, Id};
+use crate::foundation::ids::{IndexVec, NodeId};
+#[cfg(feature = "serde")]
+use crate::topology::cell_hierarchy::Cell;
+use crate::topology::connectivity::Connectivity;
+#[cfg(feature = "serde")]
+use crate::topology::element_class::ElementClass;
+use crate::topology::grid::VoxelGrid;
+#[cfg(feature = "serde")]
+use std::collections::BTreeMap;
+
+impl<D: Dim> Mesh<D> {
+    /// Checks the mesh: every solid voxel has one owner, neighbours differ by at most one level, no coarse
+    /// element has a node at a split point, every node has the number of carriers that it counts, and
+    /// gradients balance at inner nodes.
+    ///
+    /// # Errors
+    /// The first [`Defect`] found.
+    #[inline(never)]
+    pub fn validate(&self, grid: &VoxelGrid<D>, sharing: &Connectivity<D>) -> Result<(), Defect> {
+        let levels = self.check_ownership(grid)?;
+        check_grading(grid, &levels)?;
+        self.check_split_points(sharing)?;
+        self.check_carriers()?;
+        self.check_gradients(sharing)
+    }
+
+    /// Checks the owners, and returns the level that owns each voxel; `u8::MAX` for empty voxels.
+    fn check_ownership(&self, grid: &VoxelGrid<D>) -> Result<Vec<u8>, Defect> {
+        let mut owners = vec![u8::MAX; grid.voxels().count()];
+        for (id, element) in self.elements() {
+            for voxel in self.voxels(element) {
+                if self.owner(voxel) != Some(id) {
+                    let other = self.owner(voxel);
+                    return Err(Defect(format!(
+                        "element {id} fills voxel {voxel:?}, which is listed for {other:?}"
+                    )));
+                }
+                if !grid.is_present(voxel) {
+                    let cell = element.cell;
+                    return Err(Defect(format!("{cell:?} fills the empty voxel {voxel:?}")));
+                }
+                let owner = &mut owners[grid.index(voxel)];
+                if *owner != u8::MAX {
+                    return Err(Defect(format!("two elements own the voxel {voxel:?}")));
+                }
+                *owner = element.cell.level;
+            }
+        }
+        let is_orphan =
+            |&voxel: &Point| grid.is_present(voxel) && owners[grid.index(voxel)] == u8::MAX;
+        match grid.voxels().find(is_orphan) {
+            Some(voxel) => Err(Defect(format!("no element owns the voxel {voxel:?}"))),
+            None => Ok(owners),
+        }
+    }
+
+    /// Checks a mesh read from a file: equal to `fresh`, which was graded from scratch, except for the
+    /// numbers of elements and nodes; and its lookup tables are consistent.
+    ///
+    /// # Errors
+    /// The first [`Defect`] found.
+    #[cfg(feature = "serde")]
+    pub(crate) fn check_against(
+        &self,
+        fresh: &Self,
+        sharing: &Connectivity<D>,
+    ) -> Result<(), Defect> {
+        let ensure = |good: bool, what: &str| match good {
+            true => Ok(()),
+            false => Err(Defect(format!("inconsistent {what}"))),
+        };
+        let tables = self.places == fresh.places
+            && self.dense_surface == fresh.dense_surface
+            && self.carriers.len() == self.nodes.len()
+            && self.owners.len() == fresh.owners.len();
+        ensure(tables, "tables of the mesh")?;
+        let is_class = |(&(children, slots), &class): (&(u8, u32), &u32)| {
+            let known = children != 0 && children <= D::ALL_CORNERS && slots >> D::SLOTS == 0;
+            let stencil = known
+                .then(|| ElementClass::<D>::new(children, slots).ok())
+                .flatten();
+            stencil.is_some() && self.stencils.get(class as usize) == stencil.as_ref()
+        };
+        let classes = self.classes.len() == self.stencils.len();
+        ensure(classes && self.classes.iter().all(is_class), "classes")?;
+        let is_whole = |(_, element): (ElementId, &Element)| {
+            let stencil = self.stencils.get(element.stencil as usize);
+            let nodes = element.nodes.iter();
+            stencil.is_some_and(|stencil| stencil.slots.len() == element.nodes.len()) && { nodes }
+                .all(|&node| node.index() < self.nodes.len())
+        };
+        ensure(self.elements().all(is_whole), "elements")?;
+        let shapes = self.by_shape();
+        ensure(
+            shapes.is_some()
+                && shapes == fresh.by_shape()
+                && self.node_count() == fresh.node_count(),
+            "elements and voxels",
+        )?;
+
+        let gone = |&id: &ElementId| self.elements[id].is_none();
+        let elements = self.elements.ids().filter(gone);
+        let bare = |&id: &NodeId| self.carriers[id] == 0;
+        let nodes = self.nodes.ids().filter(bare);
+        ensure(
+            are_just(&self.free_elements, elements) && are_just(&self.free_nodes, nodes),
+            "free ids",
+        )?;
+
+        let ends = self
+            .by_cell
+            .is_valid(self.places.count(), self.elements.len())
+            && self
+                .by_point
+                .is_valid(sharing.point_count(), self.nodes.len());
+        ensure(ends, "lists of ids")?;
+        let at = |cell| self.places.index(cell).into_iter();
+        let listed = |cell| at(cell).flat_map(|place| self.by_cell.at(place));
+        let mut elements = self.elements();
+        let found = elements.all(|(id, element)| listed(element.cell).any(|other| other == id));
+        let count = (0..self.places.count()).flat_map(|place| self.by_cell.at(place));
+        ensure(
+            found && count.count() == self.element_count(),
+            "lists of elements",
+        )?;
+        let beside = |node: Node| self.by_point.at(sharing.index(node.at));
+        let found = self
+            .nodes()
+            .all(|(id, node)| sharing.contains(node.at) && beside(node).any(|other| other == id));
+        let count = (0..sharing.point_count()).flat_map(|place| self.by_point.at(place));
+        ensure(
+            found && count.count() == self.node_count(),
+            "lists of nodes",
+        )?;
+        let owners = self.owners.iter().zip(&fresh.owners);
+        let same = { owners }.all(|(own, fresh)| (*own == 0) == (*fresh == 0));
+        ensure(same, "owners")
+    }
+
+    /// Returns the nodes of each element by its cell and children; `None` if a class is wrong or an element
+    /// occurs twice.
+    #[cfg(feature = "serde")]
+    fn by_shape(&self) -> Option<BTreeMap<(Cell, u8), Vec<Node>>> {
+        let mut shapes = BTreeMap::new();
+        for (_, element) in self.elements() {
+            let nodes = element.nodes.iter().map(|&id| self.node(id)).collect();
+            let stencil = self.stencil(element);
+            let is_class = self.classes.get(&(element.children, stencil.mask));
+            if is_class != Some(&element.stencil) {
+                return None;
+            }
+            if shapes
+                .insert((element.cell, element.children), nodes)
+                .is_some()
+            {
+                return None;
+            }
+        }
+        Some(shapes)
+    }
+
+    fn check_split_points(&self, sharing: &Connectivity<D>) -> Result<(), Defect> {
+        for (_, element) in self
+            .elements()
+            .filter(|(_, element)| element.cell.level > 0)
+        {
+            for &node in &element.nodes {
+                let at = self.node(node).at;
+                if sharing.groups(at).iter().count() > 1 {
+                    let cell = element.cell;
+                    return Err(Defect(format!(
+                        "{cell:?} has a node at the split point {at:?}"
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check_carriers(&self) -> Result<(), Defect> {
+        let mut counts: IndexVec<NodeId, u8> = vec![0; self.nodes.len()].into();
+        for (_, element) in self.elements() {
+            element.nodes.iter().for_each(|&node| counts[node] += 1);
+        }
+        match counts
+            .ids()
+            .find(|&node| counts[node] != self.carriers[node])
+        {
+            Some(node) => Err(Defect(format!(
+                "{:?} has {} carriers, but counts {}",
+                self.nodes[node], counts[node], self.carriers[node]
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    fn check_gradients(&self, sharing: &Connectivity<D>) -> Result<(), Defect> {
+        let mut sums: IndexVec<NodeId, _> = vec![[0.0; 3]; self.nodes.len()].into();
+        for (_, element) in self.elements() {
+            let half = element.cell.width() as f64 * 0.5;
+            let scale = (1..D::N).fold(1.0, |scale, _| scale * half);
+            for (&node, gradient) in element.nodes.iter().zip(&self.stencil(element).gradients) {
+                for axis in 0..3 {
+                    sums[node][axis] += gradient[axis] * scale;
+                }
+            }
+        }
+        for (id, node) in self.nodes() {
+            let inner = node.group == D::ALL_CORNERS && !sharing.is_open(node.at);
+            let sum = sums[id];
+            if inner && sum.iter().any(|&component: &f64| component.abs() > 1e-9) {
+                let at = node.at;
+                return Err(Defect(format!(
+                    "gradients do not balance at {at:?}: {sum:?}"
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether ids, in any order, are exactly the expected ones, which ascend.
+#[cfg(feature = "serde")]
+fn are_just<I: Id + Ord>(ids: &[I], expected: impl Iterator<Item = I>) -> bool {
+    let mut ids = ids.to_vec();
+    ids.sort_unstable();
+    ids.into_iter().eq(expected)
+}
+
+fn check_grading<D: Dim>(grid: &VoxelGrid<D>, levels: &[u8]) -> Result<(), Defect> {
+    for voxel in grid.voxels().filter(|&voxel| grid.is_present(voxel)) {
+        let level = levels[grid.index(voxel)];
+        for near in neighbourhood::<D>(voxel, 1).filter(|&near| grid.is_present(near)) {
+            if level.abs_diff(levels[grid.index(near)]) > 1 {
+                return Err(Defect(format!(
+                    "levels jump between {voxel:?} and {near:?}"
+                )));
+            }
+        }
+    }
+    Ok(())
+}

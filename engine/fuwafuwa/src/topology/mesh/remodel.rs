@@ -1,0 +1,327 @@
+//! Incremental update of the mesh while cracks grow, at a cost proportional to the changed elements.
+
+use super::{Defect, Element, Mesh, path};
+use crate::foundation::dim::{Dim, Point, add, corner, scale};
+use crate::foundation::id_lists::ascending;
+use crate::foundation::ids::{ElementId, IndexVec, NodeId};
+use crate::topology::cell_hierarchy::{Cell, CellHierarchy, parts};
+use crate::topology::connectivity::Connectivity;
+use crate::topology::element_class::{ElementClass, slot_index};
+use crate::topology::grid::VoxelGrid;
+use std::ops::Range;
+
+/// Changes made by one remodelling.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Remodelled {
+    /// Removed elements.
+    pub removed: Vec<ElementId>,
+    /// Elements that are new or carry other nodes than before, ascending.
+    pub seated: Vec<ElementId>,
+    /// New nodes, and the sources of their state.
+    pub inherited: Vec<Inheritance>,
+    /// Old nodes with weights, grouped by new node.
+    pub shares: Vec<(NodeId, f64)>,
+    /// Nodes that no element carries any more.
+    pub abandoned: Vec<NodeId>,
+    /// Cell, children and id of the removed elements, sorted by cell.
+    gone: Vec<(Cell, u8, ElementId)>,
+}
+
+/// New node, and the old nodes from which it inherits its state, with weights that add up to 1.
+///
+/// The weights are those by which a slot without a node distributes its share. So position, velocity and
+/// linear momentum are transferred exactly, and both sides of a face agree. The old ids are never new ids of
+/// the same remodelling.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inheritance {
+    /// New node.
+    pub node: NodeId,
+    /// Range of its entries in [`Remodelled::shares`].
+    pub from: Range<usize>,
+}
+
+impl Remodelled {
+    /// Returns the old nodes, with weights, from which a new node inherits its state.
+    pub fn from(&self, new: &Inheritance) -> &[(NodeId, f64)] {
+        &self.shares[new.from.clone()]
+    }
+
+    /// Returns the removed element that filled a voxel before.
+    pub fn origin<D: Dim>(&self, voxel: Point) -> Option<ElementId> {
+        path::<D>(voxel).find_map(|(cell, child)| {
+            let first = self.gone.partition_point(|gone| gone.0 < cell);
+            let mut here = self.gone[first..].iter().take_while(|gone| gone.0 == cell);
+            let own = here.find(|(_, children, _)| children >> child & 1 == 1);
+            own.map(|&(.., id)| id)
+        })
+    }
+}
+
+impl<D: Dim> Mesh<D> {
+    /// Updates the mesh after the groups at the `changed` points have changed and the cells `born` have been
+    /// created [Endo 2004, §3.2, Fig. 3]: generates children, rebuilds parents around the rest, and splits,
+    /// creates or drops nodes. The cost is proportional to the affected elements.
+    ///
+    /// # Errors
+    /// A [`Defect`] if the connectivity and the pyramid do not match; the mesh must then be graded from
+    /// scratch.
+    #[inline(never)]
+    pub fn remodel(
+        &mut self,
+        grid: &VoxelGrid<D>,
+        sharing: &Connectivity<D>,
+        pyramid: &CellHierarchy<D>,
+        changed: &[Point],
+        born: &[Cell],
+    ) -> Result<Remodelled, Defect> {
+        let parent_too = |&cell: &Cell| [cell, cell.parent()];
+        let mut refitted: Vec<Cell> = born.iter().flat_map(parent_too).collect();
+        refitted.sort_unstable();
+        refitted.dedup();
+        let mut past = Past::default();
+        let mut removed = Vec::new();
+        for &cell in &refitted {
+            self.refit(cell, pyramid.filled(grid, cell), &mut past, &mut removed);
+        }
+        let filled = { past.removed.iter() }.map(|element| (element.cell, element.children));
+        let gone = filled.zip(&removed);
+        let mut gone: Vec<_> = gone
+            .map(|((cell, children), &id)| (cell, children, id))
+            .collect();
+        gone.sort_unstable();
+        past.removed.sort_unstable_by_key(|element| element.cell);
+        let mut seated = Vec::new();
+        for id in self.elements_touched(sharing, changed, born, &refitted) {
+            if self.seat(id, sharing, Some(&mut past))? {
+                seated.push(id);
+            }
+        }
+        let abandoned = past.abandoned(&self.carriers);
+        for &id in &abandoned {
+            let point = sharing.index(self.node(id).at);
+            self.by_point.remove(point, id);
+        }
+        self.free_nodes.extend(&abandoned);
+        self.free_elements.extend(&removed);
+        Ok(Remodelled {
+            gone,
+            removed,
+            seated,
+            inherited: past.inherited,
+            shares: past.shares,
+            abandoned,
+        })
+    }
+
+    /// Removes elements, and returns the nodes that no other element carries; both are removed from the mesh.
+    /// The caller updates grid, connectivity and pyramid.
+    pub(crate) fn take_out(
+        &mut self,
+        sharing: &Connectivity<D>,
+        elements: &[ElementId],
+    ) -> Vec<NodeId> {
+        let mut nodes = Vec::new();
+        for &id in elements {
+            let Some(element) = self.elements[id].take() else {
+                continue;
+            };
+            if let Some(place) = self.places.index(element.cell) {
+                self.by_cell.remove(place, id);
+            }
+            for voxel in self.voxels(&element) {
+                if let Some(place) = self.places.index(Cell::of(voxel)) {
+                    self.owners[place] = 0;
+                }
+            }
+            for &node in &element.nodes {
+                self.carriers[node] -= 1;
+            }
+            self.free_elements.push(id);
+            nodes.extend(element.nodes);
+        }
+        nodes.retain(|&node| self.carriers[node] == 0);
+        let gone = ascending(nodes.into_iter(), self.carriers.len());
+        for &id in &gone {
+            let point = sharing.index(self.node(id).at);
+            self.by_point.remove(point, id);
+        }
+        self.free_nodes.extend(&gone);
+        gone
+    }
+
+    /// Returns the elements that may need other nodes, ascending: those in `refitted` cells, and those around
+    /// points whose groups have changed or which are corners of `born` cells. Nodes are created nowhere else.
+    fn elements_touched(
+        &self,
+        sharing: &Connectivity<D>,
+        changed: &[Point],
+        born: &[Cell],
+        refitted: &[Cell],
+    ) -> Vec<ElementId> {
+        let corners = |&cell: &Cell| {
+            let corner_of = move |vertex| scale(add(cell.at, corner(vertex)), cell.width());
+            (0..D::CORNERS).map(corner_of)
+        };
+        let corners = born.iter().flat_map(corners);
+        // Neighbouring cells share corners.
+        let points = sharing.each_once(changed.iter().copied().chain(corners));
+        let around = |at| self.owners_around(at, D::ALL_CORNERS);
+        let places = refitted.iter().filter_map(|&cell| self.places.index(cell));
+        let inside = places.flat_map(|place| self.by_cell.at(place));
+        let touched = points.into_iter().flat_map(around).chain(inside);
+        ascending(touched, self.elements.len())
+    }
+
+    /// Rebuilds the elements of a cell so that they fill `filled` [Endo 2004, §3.2, phase 2 d].
+    fn refit(&mut self, cell: Cell, filled: u8, past: &mut Past, removed: &mut Vec<ElementId>) {
+        let Some(place) = self.places.index(cell) else {
+            return;
+        };
+        let mut left = filled;
+        let present: Vec<ElementId> = self.by_cell.at(place).collect();
+        for id in present {
+            let children = self.alive(id).children;
+            if parts::<D>(filled).any(|part| part == children) {
+                left &= !children;
+                continue;
+            }
+            self.by_cell.remove(place, id);
+            let element = self.elements[id].take();
+            let element = element.expect("a cell lists live elements only");
+            for &node in &element.nodes {
+                self.carriers[node] -= 1;
+            }
+            past.removed.push(element);
+            removed.push(id);
+        }
+        for part in parts::<D>(left) {
+            self.place(cell, part);
+        }
+    }
+}
+
+/// State before a remodelling, and the state that new nodes inherit.
+#[derive(Default)]
+pub struct Past {
+    /// Removed elements, sorted by cell.
+    removed: Vec<Element>,
+    /// Old versions of elements with changed nodes, by ascending id; elements without nodes are new.
+    pub replaced: Vec<(ElementId, Element)>,
+    /// New nodes, and the sources of their state.
+    pub inherited: Vec<Inheritance>,
+    /// Old nodes with weights, grouped by new node.
+    shares: Vec<(NodeId, f64)>,
+}
+
+impl Past {
+    /// Adds a new node at `at` next to `voxel`, and computes the old nodes and weights from which it
+    /// inherits. They follow from the slots of the old owner of the voxel: slots without a node are
+    /// interpolated, and the child that contains the voxel is interpolated linearly.
+    pub fn inherit<D: Dim>(
+        &mut self,
+        mesh: &Mesh<D>,
+        node: NodeId,
+        voxel: Point,
+        at: Point,
+    ) -> Result<(), Defect> {
+        let mut shares = std::mem::take(&mut self.shares);
+        let first = shares.len();
+        let (owner, child) = self
+            .owner(mesh, voxel)
+            .ok_or_else(|| Defect(format!("the voxel {voxel:?} had no owner")))?;
+        let cell = owner.cell;
+        for vertex in 0..D::CORNERS {
+            let (slot, weight) = if cell.level == 0 {
+                let here = (0..D::N).all(|axis| at[axis] - cell.at[axis] == corner(vertex)[axis]);
+                (scale(corner(vertex), 2), f64::from(u8::from(here)))
+            } else {
+                let low = cell.child(child).first_voxel();
+                let weight = (0..D::N).fold(1.0, |weight, axis| {
+                    let part = f64::from(at[axis] - low[axis]) / f64::from(cell.width() / 2);
+                    weight
+                        * if vertex >> axis & 1 == 1 {
+                            part
+                        } else {
+                            1.0 - part
+                        }
+                });
+                (add(corner(child), corner(vertex)), weight)
+            };
+            if weight != 0.0 {
+                let own = (first, &mut shares);
+                collect_shares(mesh.stencil(owner), &owner.nodes, slot, weight, own);
+            }
+        }
+        let from = first..shares.len();
+        self.shares = shares;
+        self.inherited.push(Inheritance { node, from });
+        Ok(())
+    }
+
+    /// Returns the old owner of a voxel, and the child that contains the voxel.
+    fn owner<'a, D: Dim>(
+        &'a self,
+        mesh: &'a Mesh<D>,
+        voxel: Point,
+    ) -> Option<(&'a Element, usize)> {
+        path::<D>(voxel).find_map(|(cell, child)| {
+            let fills = |element: &&Element| element.children >> child & 1 == 1;
+            let first = self.removed.partition_point(|element| element.cell < cell);
+            let removed = self.removed[first..].iter();
+            let mut removed = removed.take_while(|element| element.cell == cell);
+            let here = || {
+                mesh.by_cell
+                    .at(mesh.places.index(cell)?)
+                    .find_map(|id| self.was(mesh, id).filter(fills))
+            };
+            let found = removed.find(fills).or_else(here)?;
+            Some((found, child))
+        })
+    }
+
+    /// Returns an element as it was before the remodelling, if it existed.
+    fn was<'a, D: Dim>(&'a self, mesh: &'a Mesh<D>, id: ElementId) -> Option<&'a Element> {
+        let place = self.replaced.binary_search_by_key(&id, |&(id, _)| id);
+        let element = match place {
+            Ok(place) => &self.replaced[place].1,
+            Err(_) => mesh.alive(id),
+        };
+        (!element.nodes.is_empty()).then_some(element)
+    }
+
+    /// Old nodes that no element carries any more, ascending.
+    fn abandoned(&self, carriers: &IndexVec<NodeId, u8>) -> Vec<NodeId> {
+        let replaced = self.replaced.iter().map(|(_, element)| element);
+        let old = self.removed.iter().chain(replaced);
+        let old = old.flat_map(|element| element.nodes.iter().copied());
+        ascending(old.filter(|&node| carriers[node] == 0), carriers.len())
+    }
+}
+
+/// Distributes `weight` of a slot to the nodes that represent it: its own node, or recursively those of the
+/// adjacent slots. The shares of the current new node start at index `first`.
+fn collect_shares<D: Dim>(
+    stencil: &ElementClass<D>,
+    nodes: &[NodeId],
+    slot: Point,
+    weight: f64,
+    (first, shares): (usize, &mut Vec<(NodeId, f64)>),
+) {
+    if let Some(place) = stencil.node_at(slot_index(slot)) {
+        let mut own = shares[first..].iter_mut();
+        match own.find(|share| share.0 == nodes[place]) {
+            Some(share) => share.1 += weight,
+            None => shares.push((nodes[place], weight)),
+        }
+        return;
+    }
+    let order = slot.iter().filter(|&&k| k == 1).count();
+    for axis in (0..D::N).filter(|&axis| slot[axis] == 1) {
+        for end in [0, 2] {
+            let mut next = slot;
+            next[axis] = end;
+            let weight = weight / (2 * order) as f64;
+            collect_shares(stencil, nodes, next, weight, (first, &mut *shares));
+        }
+    }
+}

@@ -1,0 +1,347 @@
+//! Pieces of a body: connected sets of elements.
+//!
+//! Elements that share a node belong to one piece. A release can divide a piece only at the points that it
+//! changed. So both sides are searched from there at the same pace until they meet or until one is exhausted:
+//! that one is the new piece. The cost is proportional to the smaller side. If many points were released at
+//! once, a search that meets an earlier one continues from there.
+
+use crate::foundation::dim::Dim;
+use crate::foundation::disjoint_sets::DisjointSets;
+use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
+use crate::topology::mesh::Mesh;
+use std::collections::{BTreeMap, VecDeque};
+
+/// Marks elements without a piece.
+const NONE: PieceId = PieceId(u32::MAX);
+
+/// Connected part of a body.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Piece {
+    /// Whether the piece sleeps: it is not simulated until something touches it.
+    pub asleep: bool,
+    /// Whether the piece was quarantined: it was no longer finite and was stopped for good.
+    pub quarantined: bool,
+    /// Whether the piece was [removed](crate::World::remove_piece): only its number remains.
+    pub removed: bool,
+    /// Sleep timer: time for which the piece has been slow [s].
+    pub sleep_timer: f32,
+}
+
+/// Pieces of one body, and the piece of each element and node.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Pieces {
+    /// Pieces by number. Numbers are never reused.
+    pub list: IndexVec<PieceId, Piece>,
+    of_element: IndexVec<ElementId, PieceId>,
+    of_node: IndexVec<NodeId, PieceId>,
+    /// Scratch of [`Pieces::detach`]: mark of the last search that visited each element and node.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    seen: IndexVec<ElementId, u32>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    node_seen: IndexVec<NodeId, u32>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    marked: u32,
+}
+
+/// Search along one side of a release.
+struct Search {
+    /// Index of this side among the sides of all releases.
+    place: usize,
+    found: Vec<ElementId>,
+    next: VecDeque<ElementId>,
+}
+
+/// State of the search along the sides of all simultaneous releases.
+struct Sides {
+    /// Mark of the first side.
+    first: u32,
+    /// Connected sides.
+    joined: DisjointSets,
+    /// Searches that are running, and searches that ended as soon as their sides had met.
+    running: VecDeque<Search>,
+    resting: Vec<Search>,
+    /// Detached pieces.
+    born: Vec<PieceId>,
+}
+
+impl Pieces {
+    /// Computes the pieces of a mesh, numbered by their lowest element.
+    pub fn new<D: Dim>(mesh: &Mesh<D>) -> Self {
+        let mut pieces = Self::default();
+        pieces.make_room(mesh);
+        pieces.of_element.fill(NONE);
+        for (first, _) in mesh.elements() {
+            if pieces.of_element[first] != NONE {
+                continue;
+            }
+            let number = pieces.list.next_id();
+            pieces.list.push(Piece::default());
+            let mut next = vec![first];
+            pieces.of_element[first] = number;
+            while let Some(id) = next.pop() {
+                for near in neighbours(mesh, id) {
+                    if pieces.of_element[near] == NONE {
+                        pieces.of_element[near] = number;
+                        next.push(near);
+                    }
+                }
+            }
+        }
+        for (id, element) in mesh.elements() {
+            for &node in &element.nodes {
+                pieces.of_node[node] = pieces.of_element[id];
+            }
+        }
+        pieces
+    }
+
+    /// Number of pieces that were not removed.
+    pub fn count(&self) -> usize {
+        self.list.iter().filter(|piece| !piece.removed).count()
+    }
+
+    /// Piece of an element.
+    ///
+    /// # Panics
+    /// If the id was never used.
+    #[inline]
+    pub fn of_element(&self, id: ElementId) -> PieceId {
+        self.of_element[id]
+    }
+
+    /// Piece of a node.
+    ///
+    /// # Panics
+    /// If the id was never used.
+    #[inline]
+    pub fn of_node(&self, id: NodeId) -> PieceId {
+        self.of_node[id]
+    }
+
+    /// Whether the piece of a node sleeps.
+    #[inline]
+    pub fn sleeps(&self, node: NodeId) -> bool {
+        self.list[self.of_node[node]].asleep
+    }
+
+    /// Makes room for the elements and nodes that a remodelling added.
+    pub fn make_room<D: Dim>(&mut self, mesh: &Mesh<D>) {
+        self.of_element.resize(mesh.element_capacity(), PieceId(0));
+        self.seen.resize(mesh.element_capacity(), 0);
+        self.of_node.resize(mesh.node_capacity(), PieceId(0));
+        self.node_seen.resize(mesh.node_capacity(), 0);
+    }
+
+    /// Whether every element and node id, alive or not, has an existing piece. Checks lists read from a file.
+    #[cfg(feature = "serde")]
+    pub(crate) fn has_room<D: Dim>(&self, mesh: &Mesh<D>) -> bool {
+        let is_there = |piece: &PieceId| piece.index() < self.list.len();
+        self.of_element.len() == mesh.element_capacity()
+            && self.of_node.len() == mesh.node_capacity()
+            && self
+                .of_element
+                .iter()
+                .chain(self.of_node.iter())
+                .all(is_there)
+    }
+
+    /// Assigns a new node to the piece of the node from which it inherited its state.
+    pub fn inherit(&mut self, node: NodeId, from: NodeId) {
+        self.of_node[node] = self.of_node[from];
+    }
+
+    /// Assigns a seated element to the piece of its nodes.
+    pub fn adopt(&mut self, element: ElementId, nodes: &[NodeId]) {
+        self.of_element[element] = self.of_node[nodes[0]];
+    }
+
+    /// Determines whether the elements around each place of a release are still connected. Every part that is
+    /// not connected to the rest of its piece becomes a new piece. Returns the numbers of the new pieces.
+    pub fn detach<D: Dim>(&mut self, mesh: &Mesh<D>, places: &[Vec<ElementId>]) -> Vec<PieceId> {
+        if self.marked > u32::MAX / 2 {
+            self.marked = 0;
+            self.seen.fill(0);
+            self.node_seen.fill(0);
+        }
+        let mut sides = Sides {
+            first: self.marked + 1,
+            joined: DisjointSets::new(0),
+            running: VecDeque::new(),
+            resting: Vec::new(),
+            born: Vec::new(),
+        };
+        let first_born = self.list.next_id();
+        for around in places {
+            self.part_at(mesh, around, &mut sides);
+        }
+        // Sides that were connected only through a detached piece share no place with each other, but each
+        // shares one with that piece.
+        let is_off = |&id: &ElementId| self.of_element(id) >= first_born;
+        let beside_off = places.iter().filter(|around| around.iter().any(is_off));
+        let around: Vec<ElementId> = beside_off.flatten().copied().collect();
+        self.part_at(mesh, &around, &mut sides);
+        self.marked += sides.joined.count() as u32;
+        sides.born
+    }
+
+    /// Does the work of [`Pieces::detach`] at one place.
+    fn part_at<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[ElementId], sides: &mut Sides) {
+        let mut by_piece: BTreeMap<PieceId, Vec<Vec<ElementId>>> = BTreeMap::new();
+        for side in sides_of(mesh, around) {
+            let of_piece = by_piece.entry(self.of_element(side[0]));
+            of_piece.or_default().push(side);
+        }
+        // Elements that are connected right here need no search.
+        for starts in by_piece.into_values().filter(|starts| starts.len() > 1) {
+            self.follow(mesh, starts, sides);
+        }
+    }
+
+    /// Searches along the sides of one piece until they have met or are exhausted.
+    fn follow<D: Dim>(&mut self, mesh: &Mesh<D>, starts: Vec<Vec<ElementId>>, sides: &mut Sides) {
+        let first = sides.first;
+        let mut known = Vec::new();
+        for mut found in starts {
+            let place = sides.joined.add();
+            found.retain(|&id| {
+                let seen = &mut self.seen[id];
+                let is_new = *seen < first;
+                if is_new {
+                    *seen = first + place as u32;
+                } else {
+                    known.push((place, *seen));
+                }
+                is_new
+            });
+            let next = found.iter().copied().collect();
+            sides.running.push_back(Search { place, found, next });
+        }
+        for (place, seen) in known {
+            let own = sides
+                .running
+                .iter()
+                .position(|search| sides.joined.lowest(search.place) == sides.joined.lowest(place));
+            sides.meet(
+                own.expect("sides that met are merged into one running search"),
+                seen,
+            );
+        }
+        let mut turn = 0;
+        while sides.running.len() > 1 {
+            turn %= sides.running.len();
+            let Some(id) = sides.running[turn].next.pop_front() else {
+                // Small pieces are removed from the front, which costs the other searches nothing.
+                let alone = sides
+                    .running
+                    .remove(turn)
+                    .expect("turn is a valid index of a running search");
+                sides.born.push(self.split_off(mesh, &alone.found));
+                continue;
+            };
+            let element = mesh.element(id).expect("searches find live elements");
+            for &node in &element.nodes {
+                let mark = first + sides.running[turn].place as u32;
+                let seen = std::mem::replace(&mut self.node_seen[node], mark);
+                if seen >= first {
+                    turn = sides.meet(turn, seen);
+                    continue;
+                }
+                for near in mesh.carrier_ids(node) {
+                    let seen = &mut self.seen[near];
+                    if *seen >= first {
+                        turn = sides.meet(turn, *seen);
+                        continue;
+                    }
+                    *seen = mark;
+                    sides.running[turn].found.push(near);
+                    let next = &mut sides.running[turn].next;
+                    // Searches meet soonest through the coarse interior.
+                    let level = |id| mesh.element(id).map(|element| element.cell.level);
+                    if level(near) > level(id) {
+                        next.push_front(near);
+                    } else {
+                        next.push_back(near);
+                    }
+                }
+            }
+            turn += 1;
+        }
+        sides.resting.extend(sides.running.drain(..));
+    }
+
+    /// Makes a piece of the given elements; inherits sleep and quarantine from their old piece.
+    fn split_off<D: Dim>(&mut self, mesh: &Mesh<D>, elements: &[ElementId]) -> PieceId {
+        let number = self.list.next_id();
+        let whole = &self.list[self.of_element[elements[0]]];
+        let part = Piece {
+            sleep_timer: 0.0,
+            ..whole.clone()
+        };
+        self.list.push(part);
+        for &id in elements {
+            self.of_element[id] = number;
+            let element = mesh.element(id).expect("searches find live elements");
+            for &node in &element.nodes {
+                self.of_node[node] = number;
+            }
+        }
+        number
+    }
+}
+
+impl Sides {
+    /// Handles the search at index `turn` that found something with the mark of another search: merges the
+    /// other search into it if they are different sides. Returns the new index of the search.
+    fn meet(&mut self, turn: usize, mark: u32) -> usize {
+        let own = self.joined.lowest(self.running[turn].place);
+        let other = self.joined.lowest((mark - self.first) as usize);
+        if own == other {
+            return turn;
+        }
+        let joined = &mut self.joined;
+        let mut is_met = |search: &Search| joined.lowest(search.place) == other;
+        let running = self.running.iter().position(&mut is_met);
+        let resting = self.resting.iter().position(&mut is_met);
+        self.joined.join(own, other);
+        let met = match (running, resting) {
+            (Some(place), _) => self.running.remove(place),
+            (_, Some(place)) => Some(self.resting.swap_remove(place)),
+            _ => None,
+        };
+        // The other side was detached before, and this side with it.
+        let Some(met) = met else {
+            return turn;
+        };
+        let turn = turn - usize::from(running.is_some_and(|place| place < turn));
+        self.running[turn].found.extend(met.found);
+        self.running[turn].next.extend(met.next);
+        turn
+    }
+}
+
+/// Groups elements by connection through nodes that they share with each other.
+fn sides_of<D: Dim>(mesh: &Mesh<D>, around: &[ElementId]) -> Vec<Vec<ElementId>> {
+    let mut nodes: Vec<(NodeId, usize)> = Vec::new();
+    for (place, &id) in around.iter().enumerate() {
+        let element = mesh.element(id);
+        let element = element.expect("elements around a release are alive");
+        nodes.extend(element.nodes.iter().map(|&node| (node, place)));
+    }
+    nodes.sort_unstable();
+    let mut joined = DisjointSets::new(around.len());
+    for two in nodes.windows(2).filter(|two| two[0].0 == two[1].0) {
+        joined.join(two[0].1, two[1].1);
+    }
+    joined.sort(around)
+}
+
+/// Returns the elements that share a node with an element, including itself; some occur more than once.
+fn neighbours<D: Dim>(mesh: &Mesh<D>, id: ElementId) -> impl Iterator<Item = ElementId> + '_ {
+    let element = mesh.element(id).expect("neighbours of a live element");
+    element
+        .nodes
+        .iter()
+        .flat_map(move |&node| mesh.carrier_ids(node))
+}

@@ -1,0 +1,101 @@
+//! Sleeping of pieces and rigid bodies that have been slow for a while.
+//!
+//! Each piece sleeps and wakes on its own. To all others, a sleeping piece is as immovable as a wall. A
+//! neighbour that moves wakes it, in either direction. So a heap falls asleep from the ground up while its
+//! top still settles, and nothing stays suspended when its support is removed.
+
+use crate::contact::solver::Hit;
+use crate::foundation::arena::{BodySlot, RigidSlot};
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{IndexVec, PieceId};
+use crate::rigid_body::RigidBodies;
+use crate::soft_body::SoftBodies;
+use crate::soft_body::damping::PieceMotion;
+use std::collections::BTreeSet;
+
+/// Sleep speed threshold [m/s], as root mean square over the nodes of a piece. A falling body exceeds it
+/// after 3 ms. Higher values let bodies sleep before contact forces have settled; with lower ones, piles take
+/// longer to sleep.
+const SLEEP_SPEED: f64 = 0.03;
+/// Time below the speed threshold until a piece sleeps [s]. Longer than the turning point of a flight or a
+/// vibration.
+const SLEEP_TIME: f32 = 0.5;
+
+/// Updates the sleep timers of all pieces, and puts those to sleep that reach [`SLEEP_TIME`]. Pieces in `handled`,
+/// which touch a coupled rigid body, stay awake. Returns the pieces that fell asleep.
+pub fn fall_asleep<D: Dim>(
+    bodies: &mut SoftBodies<D>,
+    motions: &[IndexVec<PieceId, PieceMotion>],
+    handled: &[Hit],
+    duration: f32,
+) -> Vec<Hit> {
+    for (body, motions) in bodies.iter_mut().zip(motions) {
+        for (piece, motion) in body.topology.pieces.list.iter_mut().zip(motions.iter()) {
+            let slow = motion.speed_squared < SLEEP_SPEED * SLEEP_SPEED && !motion.is_driven;
+            piece.sleep_timer = if slow {
+                piece.sleep_timer + duration
+            } else {
+                0.0
+            };
+        }
+    }
+    for &(body, piece) in handled {
+        bodies.at_mut(body).topology.pieces.list[piece].sleep_timer = 0.0;
+    }
+    change(bodies, true, |_, _, piece| {
+        !piece.asleep && piece.sleep_timer >= SLEEP_TIME
+    })
+}
+
+/// Updates the sleep timers of dynamic rigid bodies, and puts those to sleep that reach [`SLEEP_TIME`].
+/// Rigid bodies in `handled`, which touch a coupled rigid body, stay awake.
+pub fn fall_asleep_rigid(rigids: &mut RigidBodies, handled: &BTreeSet<RigidSlot>, duration: f32) {
+    for (slot, rigid) in rigids.by_slot_mut() {
+        if !rigid.is_dynamic() || rigid.asleep {
+            continue;
+        }
+        let slow = f64::from(rigid.top_speed()) < SLEEP_SPEED && !handled.contains(&slot);
+        rigid.sleep_timer = if slow {
+            rigid.sleep_timer + duration
+        } else {
+            0.0
+        };
+        if rigid.sleep_timer >= SLEEP_TIME {
+            rigid.asleep = true;
+            (rigid.velocity, rigid.angular_velocity) = ([0.0; 3], [0.0; 3]);
+        }
+    }
+}
+
+/// Wakes the pieces in `hits`; returns the pieces that woke.
+pub fn wake<D: Dim>(bodies: &mut SoftBodies<D>, hits: &[Hit]) -> Vec<Hit> {
+    if hits.is_empty() {
+        return Vec::new();
+    }
+    change(bodies, false, |body, number, piece| {
+        piece.asleep
+            && !piece.quarantined
+            && !piece.removed
+            && hits.binary_search(&(body, number)).is_ok()
+    })
+}
+
+/// Puts to sleep or wakes all pieces for which a condition on body, number and piece holds; returns them.
+fn change<D: Dim>(
+    bodies: &mut SoftBodies<D>,
+    asleep: bool,
+    applies: impl Fn(BodySlot, PieceId, &crate::topology::pieces::Piece) -> bool,
+) -> Vec<Hit> {
+    let mut changed = Vec::new();
+    for (slot, body) in bodies.by_slot_mut() {
+        let pieces = body.topology.pieces.list.entries();
+        let marked = pieces.map(|(number, piece)| applies(slot, number, piece));
+        let marked: IndexVec<PieceId, bool> = marked.collect();
+        let numbers = marked.ids().filter(|&piece| marked[piece]);
+        changed.extend(numbers.map(|piece| (slot, piece)));
+        if marked.contains(&true) {
+            body.set_asleep(&marked, asleep);
+        }
+    }
+    changed
+}

@@ -1,0 +1,242 @@
+//! Obstacles, hands and shapes of a scene file.
+
+use super::error::{FieldError, require, require_vector};
+use fuwafuwa::{Dim, MotionType, Refused, RigidBody, RigidBodyHandle, Shape, World};
+use serde::{Deserialize, Serialize};
+
+/// An `[[obstacle]]` table: a fixed rigid body. It requires exactly one shape.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObstacleText {
+    /// Half-space below a plane.
+    pub half_space: Option<HalfSpaceText>,
+    /// Axis-aligned box.
+    #[serde(rename = "box")]
+    pub boxed: Option<BoxText>,
+    /// Capsule.
+    pub capsule: Option<CapsuleText>,
+    /// Ball.
+    pub ball: Option<BallText>,
+    /// Coulomb friction, default 0.2.
+    #[serde(default = "usual_friction")]
+    pub friction: f32,
+}
+
+/// Half-space below a plane.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HalfSpaceText {
+    /// Normal of the plane, pointing out of the half-space; any length except 0.
+    pub normal: [f32; 3],
+    /// A point of the plane [m].
+    pub point: [f32; 3],
+}
+
+/// Axis-aligned box.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoxText {
+    /// Centre [m].
+    pub centre: [f32; 3],
+    /// Half widths on each axis [m]; the third is ignored in 2D.
+    pub half: [f32; 3],
+}
+
+/// Capsule: a bar with round ends.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CapsuleText {
+    /// Centre of one end [m].
+    pub from: [f32; 3],
+    /// Centre of the other end [m].
+    pub to: [f32; 3],
+    /// Radius [m].
+    pub radius: f32,
+}
+
+/// Ball.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BallText {
+    /// Centre [m].
+    pub centre: [f32; 3],
+    /// Radius [m].
+    pub radius: f32,
+}
+
+/// A `[[hand]]` table: a rigid body that follows a path. It requires exactly one of `radius`, `box` and
+/// `capsule`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HandText {
+    /// Radius of a ball (2D: a disc) [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f32>,
+    /// Axis-aligned box, relative to the target.
+    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
+    pub boxed: Option<BoxText>,
+    /// Capsule, relative to the target.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub capsule: Option<CapsuleText>,
+    /// Whether the hand is kinematic and follows its path exactly; otherwise a spring pulls it along.
+    #[serde(default)]
+    pub kinematic: bool,
+    /// Points of the path: time [s], then target position [m]; interpolated linearly.
+    pub path: Vec<[f32; 4]>,
+}
+
+impl ObstacleText {
+    pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>) -> Result<(), FieldError> {
+        let shape = ShapeChoice {
+            half_space: self.half_space.as_ref(),
+            boxed: self.boxed.as_ref(),
+            capsule: self.capsule.as_ref(),
+            ball: self.ball.as_ref(),
+        };
+        let good = self.friction >= 0.0;
+        let found = format!("expected 0 or more, found {}", self.friction);
+        require(good, "friction", found)?;
+        let added = world.add_rigid_body(RigidBody::fixed(shape.only::<D>()?, self.friction));
+        added
+            .map(|_| ())
+            .map_err(|reason| FieldError::new("friction", reason))
+    }
+}
+
+/// The possible shapes of a table; exactly one must be present.
+pub(super) struct ShapeChoice<'a> {
+    pub(super) half_space: Option<&'a HalfSpaceText>,
+    pub(super) boxed: Option<&'a BoxText>,
+    pub(super) capsule: Option<&'a CapsuleText>,
+    pub(super) ball: Option<&'a BallText>,
+}
+
+impl ShapeChoice<'_> {
+    /// Returns the only shape, checked.
+    pub(super) fn only<D: Dim>(&self) -> Result<Shape, FieldError> {
+        let vector = |field: &str, vector| require_vector(D::N, field, vector);
+        let (name, shape) = match (self.half_space, self.boxed, self.capsule, self.ball) {
+            (Some(text), None, None, None) => {
+                vector("half_space.normal", text.normal)?;
+                vector("half_space.point", text.point)?;
+                let is_zero = text.normal == [0.0; 3];
+                let expected = "expected a direction, found 0 on every axis";
+                require(!is_zero, "half_space.normal", expected)?;
+                let shape = Shape::half_space(text.normal, text.point);
+                ("half_space", shape)
+            }
+            (None, Some(text), None, None) => {
+                vector("box.centre", text.centre)?;
+                let (centre, mut half) = (text.centre, text.half);
+                half[D::N..].fill(1.0);
+                ("box", Shape::Box { centre, half })
+            }
+            (None, None, Some(text), None) => {
+                vector("capsule.from", text.from)?;
+                vector("capsule.to", text.to)?;
+                let (from, to, radius) = (text.from, text.to, text.radius);
+                ("capsule", Shape::Capsule { from, to, radius })
+            }
+            (None, None, None, Some(text)) => {
+                vector("ball.centre", text.centre)?;
+                let (centre, radius) = (text.centre, text.radius);
+                ("ball", Shape::Ball { centre, radius })
+            }
+            _ => {
+                let expected = "expected exactly one of half_space, box, capsule and ball";
+                return Err(FieldError::new("shape", expected));
+            }
+        };
+        let wrong = |bad: fuwafuwa::BadShape| {
+            let field = format!("{name}.{}", bad.field);
+            FieldError::new(&field, format!("expected {}", bad.expected))
+        };
+        shape.check().map(|()| shape).map_err(wrong)
+    }
+}
+
+/// Maximum number of points in the path of a hand: each tick searches it from the beginning.
+const MAX_POINTS: usize = 10_000;
+
+impl HandText {
+    pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>) -> Result<(), FieldError> {
+        require(
+            !self.path.is_empty(),
+            "path",
+            "expected a point [seconds, x, y, z] at least",
+        )?;
+        let found = self.path.len();
+        let expected = format!("expected {MAX_POINTS} points at most, found {found}");
+        require(found <= MAX_POINTS, "path", expected)?;
+        let mut before = 0.0;
+        for (index, &[seconds, x, y, z]) in self.path.iter().enumerate() {
+            let field = format!("path.{}", index + 1);
+            let expected = format!("expected a time of {before} s or more, found {seconds}");
+            require(seconds >= before && seconds.is_finite(), &field, expected)?;
+            require_vector(D::N, &field, [x, y, z])?;
+            before = seconds;
+        }
+        let form = self.form::<D>()?;
+        let drive = match self.kinematic {
+            true => MotionType::Kinematic,
+            false => MotionType::default(),
+        };
+        let hand = RigidBody::new(form, self.target(0.0), drive);
+        let added = world.add_rigid_body(hand);
+        added
+            .map(|_| ())
+            .map_err(|reason| FieldError::new("shape", reason))
+    }
+
+    /// Returns the shape relative to the target.
+    fn form<D: Dim>(&self) -> Result<Shape, FieldError> {
+        let shapes = ShapeChoice {
+            half_space: None,
+            boxed: self.boxed.as_ref(),
+            capsule: self.capsule.as_ref(),
+            ball: None,
+        };
+        match (self.radius, &self.boxed, &self.capsule) {
+            (Some(radius), None, None) => {
+                let good = radius > 0.0 && radius.is_finite();
+                let expected = format!("expected a positive number of metres, found {radius}");
+                require(good, "radius", expected)?;
+                let centre = [0.0; 3];
+                Ok(Shape::Ball { centre, radius })
+            }
+            (None, Some(_), None) | (None, None, Some(_)) => shapes.only::<D>(),
+            _ => {
+                let expected = "expected exactly one of radius, box and capsule";
+                Err(FieldError::new("radius", expected))
+            }
+        }
+    }
+
+    /// Returns the target position [m] at a time [s].
+    pub fn target(&self, seconds: f32) -> [f32; 3] {
+        let place = |point: &[f32; 4]| [point[1], point[2], point[3]];
+        let after = self.path.iter().position(|point| point[0] >= seconds);
+        match after {
+            None => self.path.last().map_or([0.0; 3], place),
+            Some(0) => place(&self.path[0]),
+            Some(next) => {
+                let (from, to) = (&self.path[next - 1], &self.path[next]);
+                let share = (seconds - from[0]) / (to[0] - from[0]).max(1e-6);
+                let (from, to) = (place(from), place(to));
+                [0, 1, 2].map(|axis: usize| from[axis] + share * (to[axis] - from[axis]))
+            }
+        }
+    }
+}
+
+/// Sets the targets of a world's hands, in order. A hand with a non-finite target keeps its old one.
+pub(crate) fn set_hand_targets<D: Dim>(world: &mut World<D>, goals: &[[f32; 3]]) {
+    let hands: Vec<RigidBodyHandle> = world.target_followers().map(|(hand, _)| hand).collect();
+    for (hand, &goal) in hands.into_iter().zip(goals) {
+        let _sent: Result<(), Refused> = world.set_target_position(hand, goal);
+    }
+}
+
+fn usual_friction() -> f32 {
+    0.2
+}
