@@ -10,9 +10,10 @@ pub mod shape;
 
 mod dynamics;
 mod inertia;
-mod invalid;
+mod reach;
 mod rigid_validation;
 
+use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, RigidBodyHandle};
 use crate::foundation::dim::{Dim, turning};
 use crate::math::rotation::Rotation;
@@ -20,8 +21,8 @@ use crate::math::vector::{is_finite, length, minus, plus, scaled};
 use crate::rigid_body::layers::Layers;
 use crate::rigid_body::shape::{Shape, Vector};
 use inertia::{Inertia, Matrix};
-pub use invalid::{BadRigid, FARTHEST};
-use invalid::{is_within_reach, require};
+pub use reach::FARTHEST;
+use reach::is_within_reach;
 
 /// Rigid bodies of a world.
 pub type RigidBodies = Arena<RigidBodyHandle, RigidBody>;
@@ -187,16 +188,16 @@ impl RigidBody {
     /// use fuwafuwa::{Dim3, RigidBody, Rotation, WorldConfig, Shape, World};
     ///
     /// let mut world = World::<Dim3>::new(WorldConfig::default())?;
-    /// world.add_rigid(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
+    /// world.add_rigid_body(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
     /// let cube = Shape::Box { centre: [0.0, 2.0, 0.0], half: [0.5; 3] };
     /// let turned = Rotation::about([1.0, 1.0, 0.0], 0.4);
-    /// let cube = world.add_rigid(RigidBody::dynamic(cube, 10.0).rotated(turned))?;
+    /// let cube = world.add_rigid_body(RigidBody::dynamic(cube, 10.0).rotated(turned))?;
     /// for _ in 0..180 {
     ///     world.step();
     /// }
-    /// let cube = &world.rigids()[cube];
+    /// let cube = &world.rigid_bodies()[cube];
     /// assert!((cube.position()[1] - 0.5).abs() < 0.01 && cube.is_asleep());
-    /// # Ok::<(), fuwafuwa::Refused>(())
+    /// # Ok::<(), fuwafuwa::Error>(())
     /// ```
     pub fn dynamic(shape: Shape, mass: f32) -> Self {
         let [low, high] = shape.bounds();
@@ -307,10 +308,22 @@ impl RigidBody {
         )
     }
 
+    /// Returns an error unless the body follows a target.
+    fn require_target(&self) -> Result<(), Error> {
+        let expected = "kinematic or coupled";
+        require(
+            self.follows_target(),
+            "motion_type",
+            expected,
+            self.motion_type,
+        )
+    }
+
     /// Sets the target position [m]; in 2D the third coordinate is ignored.
-    pub(crate) fn send<D: Dim>(&mut self, goal: Vector) -> Result<(), BadRigid> {
-        require(self.follows_target(), "drive", "kinematic or coupled")?;
-        require(is_within_reach(goal), "goal", "within 1e6 m of the origin")?;
+    pub(crate) fn send<D: Dim>(&mut self, goal: Vector) -> Result<(), Error> {
+        self.require_target()?;
+        let expected = "within 1e6 m of the origin";
+        require(is_within_reach(goal), "position", expected, goal)?;
         self.goal[..D::N].copy_from_slice(&goal[..D::N]);
         Ok(())
     }

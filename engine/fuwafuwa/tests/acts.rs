@@ -1,7 +1,7 @@
 //! Actions on bodies from outside: rotation, translation, impulses, sleep, settings, fields.
 
 use fuwafuwa::{
-    Bookmark, Dim, Dim2, Dim3, Event, Hooks, Material, MotionType, NodeId, Refused, RigidBody,
+    Bookmark, Dim, Dim2, Dim3, Error, Event, Hooks, Material, MotionType, NodeId, RigidBody,
     Rotation, Shape, SoftBody, SoftBodyHandle, Substep, VoxelGrid, World, WorldConfig,
     field_around,
 };
@@ -356,7 +356,7 @@ fn set_settings_applies_to_running_world() {
     assert_eq!(world.soft_bodies()[hard].stiffness_scale(), soft);
     let bad = WorldConfig { drag: -1.0, ..few };
     let told = world.set_config(bad).unwrap_err();
-    assert_eq!(told.to_string(), "the setting drag must be 0 to 10");
+    assert_eq!(told.to_string(), "drag must be 0 to 10, given -1.0");
     assert_eq!(*world.config(), upwards);
 }
 
@@ -434,7 +434,7 @@ fn act<D: Dim>(
     which: usize,
     body: SoftBodyHandle,
     k: f32,
-) -> Result<(), Refused> {
+) -> Result<(), Error> {
     let vector = [k, -0.5 * k, k];
     match which {
         0 => world.translate_body(body, vector),

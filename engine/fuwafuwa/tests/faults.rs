@@ -157,7 +157,7 @@ fn cut_keeps_turned_body_at_rest() {
 fn crumble_takes_linear_time() {
     let mut body = ball::<Dim3>(64);
     let start = std::time::Instant::now();
-    body.crumble().expect("the mesh stays valid");
+    body.crumble();
     let elapsed = start.elapsed();
     assert!(elapsed < Duration::from_secs(20), "{elapsed:?}");
 }
@@ -166,7 +166,7 @@ fn crumble_takes_linear_time() {
 fn crumble_detaches_every_voxel() {
     let mut body = ball::<Dim3>(24);
     let voxels = body.grid().solid_count();
-    let parted = body.crumble().expect("the mesh stays valid");
+    let parted = body.crumble();
     assert_eq!(parted.len(), voxels - 1);
     assert_eq!(body.pieces().list.len(), voxels);
     assert_eq!(body.mesh().node_count(), 8 * voxels);

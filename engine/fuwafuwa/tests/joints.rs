@@ -370,7 +370,7 @@ fn pin_keeps_voxels_while_body_crumbles() {
     for _ in 0..30 {
         world.step();
     }
-    world.soft_body_mut(id).unwrap().crumble().unwrap();
+    world.soft_body_mut(id).unwrap().crumble();
     for _ in 0..60 {
         world.step();
         let [held, place] = world.joint_anchor_positions(pin).unwrap().unwrap();
@@ -396,18 +396,18 @@ fn add_joint_names_invalid_field() {
         (Joint::new(good, JointKind::Rope { length: 0.0 }), "length"),
         (
             Joint::new(good, JointKind::Pin).breaking_at(f32::NAN),
-            "force",
+            "breaking_force",
         ),
         (
             Joint::pin(good[0], JointAnchor::Position([f32::NAN; 3])),
-            "place",
+            "joint anchor 2: at",
         ),
-        (Joint::pin(good[1], good[1]), "ends"),
-        (Joint::pin(good[0], good[0]), "ends"),
+        (Joint::pin(good[1], good[1]), "joint anchors"),
+        (Joint::pin(good[0], good[0]), "joint anchors"),
     ];
     for (joint, word) in bad {
-        let refused = world.add_joint(joint).unwrap_err().to_string();
-        assert!(refused.contains(word), "{refused}");
+        let error = world.add_joint(joint).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("{word} must be")), "{error}");
     }
     world.remove_rigid_body(bob).unwrap();
     assert!(world.add_joint(Joint::new(good, JointKind::Pin)).is_err());

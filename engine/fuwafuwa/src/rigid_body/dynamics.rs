@@ -1,8 +1,9 @@
 //! Motion of rigid bodies: integration, impulses, sleep.
 
 use super::inertia::{Inertia, times};
-use super::invalid::{BadRigid, is_within_reach, require};
+use super::reach::is_within_reach;
 use super::{MotionType, RigidBody};
+use crate::error::{Error, require};
 use crate::foundation::dim::Dim;
 use crate::math::rotation::Rotation;
 use crate::math::vector::{cross, dot, length, minus, plus, scaled};
@@ -82,8 +83,8 @@ impl RigidBody {
     }
 
     /// Sets the target rotation.
-    pub(crate) fn turn_to<D: Dim>(&mut self, rotation: Rotation) -> Result<(), BadRigid> {
-        require(self.follows_target(), "drive", "kinematic or coupled")?;
+    pub(crate) fn turn_to<D: Dim>(&mut self, rotation: Rotation) -> Result<(), Error> {
+        self.require_target()?;
         self.rotation_goal = rotation.seen_in::<D>();
         Ok(())
     }
@@ -93,9 +94,9 @@ impl RigidBody {
         &mut self,
         position: Vector,
         rotation: Rotation,
-    ) -> Result<(), BadRigid> {
+    ) -> Result<(), Error> {
         let expected = "within 1e6 m of the origin";
-        require(is_within_reach(position), "position", expected)?;
+        require(is_within_reach(position), "position", expected, position)?;
         (self.position, self.rotation) = (position, rotation);
         (self.position_before, self.rotation_before) = (position, rotation);
         self.stay();

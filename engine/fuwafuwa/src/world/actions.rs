@@ -1,8 +1,9 @@
 //! Actions on bodies from outside: translation, rotation, velocity, impulse, sleep.
 
-use super::{Refused, World, WorldConfig};
+use super::{World, WorldConfig};
 use crate::contact::broad_phase::{bounds_of, leaning_on_body, leaning_on_rigid};
 use crate::contact::solver::Hit;
+use crate::error::{Error, require};
 use crate::event::Event;
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::{Dim, turning};
@@ -19,10 +20,10 @@ impl<D: Dim> World<D> {
     /// it wake. Bookmarks stay valid, because only positions change.
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale, or a coordinate is not finite or beyond ±1e6 m.
+    /// [`Error`] if the handle is stale, or a coordinate is not finite or beyond ±1e6 m.
     #[inline(never)]
-    pub fn translate_body(&mut self, body: SoftBodyHandle, by: Vector) -> Result<(), Refused> {
-        let by = within("distance", by, FARTHEST, "at most 1e6 m on each axis")?;
+    pub fn translate_body(&mut self, body: SoftBodyHandle, by: Vector) -> Result<(), Error> {
+        let by = within("by", by, FARTHEST, "at most 1e6 m on each axis")?;
         self.displace(body, |body| body.shift(by))
     }
 
@@ -37,8 +38,8 @@ impl<D: Dim> World<D> {
         body: SoftBodyHandle,
         rotation: Rotation,
         about: Vector,
-    ) -> Result<(), Refused> {
-        let about = within("centre", about, FARTHEST, "within 1e6 m of the origin")?;
+    ) -> Result<(), Error> {
+        let about = within("about", about, FARTHEST, "within 1e6 m of the origin")?;
         self.displace(body, |body| body.turn(rotation, about))
     }
 
@@ -46,16 +47,21 @@ impl<D: Dim> World<D> {
     /// of a body. In 2D only the third component of `angular` counts. The body wakes.
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale, or a component is not finite or beyond ±1e6.
+    /// [`Error`] if the handle is stale, or a component is not finite or beyond ±1e6.
     #[inline(never)]
     pub fn add_velocity(
         &mut self,
         body: SoftBodyHandle,
         linear: Vector,
         angular: Vector,
-    ) -> Result<(), Refused> {
-        let linear = within("velocity", linear, FARTHEST, "at most 1e6 m/s on each axis")?;
-        let angular = within("spin", angular, FARTHEST, "at most 1e6 rad/s on each axis")?;
+    ) -> Result<(), Error> {
+        let linear = within("linear", linear, FARTHEST, "at most 1e6 m/s on each axis")?;
+        let angular = within(
+            "angular",
+            angular,
+            FARTHEST,
+            "at most 1e6 rad/s on each axis",
+        )?;
         self.wake_up(body)?;
         self.bodies.get_mut(body)?.add_velocity(linear, angular);
         Ok(())
@@ -70,15 +76,15 @@ impl<D: Dim> World<D> {
     ///
     /// let grid = VoxelGrid::<Dim2>::ball(16, 1.0)?;
     /// let mut world = World::new(WorldConfig { gravity: [0.0; 3], ..WorldConfig::default() })?;
-    /// let ball = world.add_body(SoftBody::new(grid, &[Material::default()])?);
+    /// let ball = world.add_soft_body(SoftBody::new(grid, &[Material::default()])?);
     /// world.apply_impulse(ball, [0.5, 0.5, 0.0], 1.0, [2.0, 0.0, 0.0])?;
-    /// let momentum = world.bodies()[ball].momentum().linear[0];
+    /// let momentum = world.soft_bodies()[ball].momentum().linear[0];
     /// assert!((momentum - 2.0).abs() < 1e-4);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale, a number is not finite or beyond ±1e6, or the radius is negative.
+    /// [`Error`] if the handle is stale, a number is not finite or beyond ±1e6, or the radius is negative.
     #[inline(never)]
     pub fn apply_impulse(
         &mut self,
@@ -86,10 +92,11 @@ impl<D: Dim> World<D> {
         at: Vector,
         radius: f32,
         impulse: Vector,
-    ) -> Result<(), Refused> {
-        let at = within("place", at, FARTHEST, "within 1e6 m of the origin")?;
+    ) -> Result<(), Error> {
+        let at = within("at", at, FARTHEST, "within 1e6 m of the origin")?;
         let impulse = within("impulse", impulse, FARTHEST, "at most 1e6 N s on each axis")?;
-        require((0.0..=FARTHEST).contains(&radius), "radius", "0 to 1e6 m")?;
+        let is_valid = (0.0..=FARTHEST).contains(&radius);
+        require(is_valid, "radius", "0 to 1e6 m", radius)?;
         self.wake_up(body)?;
         self.bodies.get_mut(body)?.add_impulse(at, radius, impulse);
         Ok(())
@@ -100,14 +107,14 @@ impl<D: Dim> World<D> {
     /// it wake.
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale or the position is out of range. The body then stays unchanged.
+    /// [`Error`] if the handle is stale or the position is out of range. The body then stays unchanged.
     #[inline(never)]
     pub fn set_rigid_body_pose(
         &mut self,
         rigid: RigidBodyHandle,
         position: Vector,
         rotation: Rotation,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), Error> {
         let before = self.rigids.get(rigid)?;
         let was = before.shape().bounds();
         let leaning = leaning_on_rigid(before, &self.bodies);
@@ -120,7 +127,7 @@ impl<D: Dim> World<D> {
     /// the third component of `angular` counts. The body wakes.
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale, the body is not dynamic, or a component is not finite or beyond
+    /// [`Error`] if the handle is stale, the body is not dynamic, or a component is not finite or beyond
     /// ±1e6.
     #[inline(never)]
     pub fn set_velocity(
@@ -128,9 +135,14 @@ impl<D: Dim> World<D> {
         rigid: RigidBodyHandle,
         linear: Vector,
         angular: Vector,
-    ) -> Result<(), Refused> {
-        let linear = within("velocity", linear, FARTHEST, "at most 1e6 m/s on each axis")?;
-        let angular = within("spin", angular, FARTHEST, "at most 1e6 rad/s on each axis")?;
+    ) -> Result<(), Error> {
+        let linear = within("linear", linear, FARTHEST, "at most 1e6 m/s on each axis")?;
+        let angular = within(
+            "angular",
+            angular,
+            FARTHEST,
+            "at most 1e6 rad/s on each axis",
+        )?;
         let free = self.free_mut(rigid)?;
         free.velocity = flat::<D>(linear);
         free.angular_velocity = turning::<D>(angular);
@@ -147,8 +159,8 @@ impl<D: Dim> World<D> {
         rigid: RigidBodyHandle,
         at: Vector,
         impulse: Vector,
-    ) -> Result<(), Refused> {
-        let at = within("place", at, FARTHEST, "within 1e6 m of the origin")?;
+    ) -> Result<(), Error> {
+        let at = within("at", at, FARTHEST, "within 1e6 m of the origin")?;
         let impulse = within("impulse", impulse, FARTHEST, "at most 1e6 N s on each axis")?;
         let free = self.free_mut(rigid)?;
         let lever = minus(flat::<D>(at), free.position());
@@ -164,22 +176,22 @@ impl<D: Dim> World<D> {
     ///
     /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
     /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.2 };
-    /// let ball = world.add_rigid(RigidBody::dynamic(ball, 1.0))?;
-    /// world.change_rigid(ball, |ball| ball.drive = MotionType::Fixed)?;
+    /// let ball = world.add_rigid_body(RigidBody::dynamic(ball, 1.0))?;
+    /// world.change_rigid(ball, |ball| ball.motion_type = MotionType::Fixed)?;
     /// world.step();
-    /// assert_eq!(world.rigids()[ball].position(), [0.0; 3]);
+    /// assert_eq!(world.rigid_bodies()[ball].position(), [0.0; 3]);
     /// assert!(world.change_rigid(ball, |ball| ball.friction = -1.0).is_err());
-    /// # Ok::<(), fuwafuwa::Refused>(())
+    /// # Ok::<(), fuwafuwa::Error>(())
     /// ```
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale or a field is out of range. The body then stays unchanged.
+    /// [`Error`] if the handle is stale or a field is out of range. The body then stays unchanged.
     #[inline(never)]
     pub fn change_rigid(
         &mut self,
         rigid: RigidBodyHandle,
         change: impl FnOnce(&mut RigidBody),
-    ) -> Result<(), Refused> {
+    ) -> Result<(), Error> {
         let mut changed = self.rigids.get(rigid)?.clone();
         let (drive, was) = (changed.motion_type, changed.shape().bounds());
         change(&mut changed);
@@ -196,9 +208,9 @@ impl<D: Dim> World<D> {
     /// Sets the collision layers of a body. The body and sleepers in contact with it wake.
     ///
     /// # Errors
-    /// [`Refused::Gone`] if the handle is stale.
+    /// [`Error::InvalidHandle`] if the handle is stale.
     #[inline(never)]
-    pub fn set_layers(&mut self, body: SoftBodyHandle, layers: Layers) -> Result<(), Refused> {
+    pub fn set_layers(&mut self, body: SoftBodyHandle, layers: Layers) -> Result<(), Error> {
         self.displace(body, |body| body.state.layers = layers)?;
         self.nearby.nodes.look_again();
         Ok(())
@@ -207,9 +219,9 @@ impl<D: Dim> World<D> {
     /// Sets the [`SoftBody::user_data`] of a body.
     ///
     /// # Errors
-    /// [`Refused::Gone`] if the handle is stale.
+    /// [`Error::InvalidHandle`] if the handle is stale.
     #[inline(never)]
-    pub fn set_user_data(&mut self, body: SoftBodyHandle, data: u64) -> Result<(), Refused> {
+    pub fn set_user_data(&mut self, body: SoftBodyHandle, data: u64) -> Result<(), Error> {
         self.bodies.get_mut(body)?.state.user_data = data;
         Ok(())
     }
@@ -218,14 +230,11 @@ impl<D: Dim> World<D> {
     /// wakes.
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale, or the scale is not finite or beyond ±100.
+    /// [`Error`] if the handle is stale, or the scale is not finite or beyond ±100.
     #[inline(never)]
-    pub fn set_gravity_scale(&mut self, body: SoftBodyHandle, scale: f32) -> Result<(), Refused> {
-        require(
-            scale.abs() <= MAX_GRAVITY_SCALE,
-            "gravity scale",
-            "-100 to 100",
-        )?;
+    pub fn set_gravity_scale(&mut self, body: SoftBodyHandle, scale: f32) -> Result<(), Error> {
+        let is_valid = scale.abs() <= MAX_GRAVITY_SCALE;
+        require(is_valid, "gravity_scale", "-100 to 100", scale)?;
         self.wake_up(body)?;
         self.bodies.get_mut(body)?.state.gravity_scale = scale;
         Ok(())
@@ -235,9 +244,9 @@ impl<D: Dim> World<D> {
     /// does not move.
     ///
     /// # Errors
-    /// [`Refused::Gone`] if the handle is stale.
+    /// [`Error::InvalidHandle`] if the handle is stale.
     #[inline(never)]
-    pub fn wake_up(&mut self, body: SoftBodyHandle) -> Result<(), Refused> {
+    pub fn wake_up(&mut self, body: SoftBodyHandle) -> Result<(), Error> {
         self.bodies.get(body)?;
         self.wake_body(body);
         self.keep_awake(body);
@@ -248,9 +257,9 @@ impl<D: Dim> World<D> {
     /// as a wall until something moves against it. Its [fixed](SoftBody::fix_node) nodes stop, too.
     ///
     /// # Errors
-    /// [`Refused::Gone`] if the handle is stale.
+    /// [`Error::InvalidHandle`] if the handle is stale.
     #[inline(never)]
-    pub fn put_to_sleep(&mut self, body: SoftBodyHandle) -> Result<(), Refused> {
+    pub fn put_to_sleep(&mut self, body: SoftBodyHandle) -> Result<(), Error> {
         let sleeper = self.bodies.get_mut(body)?;
         let awake = sleeper
             .topology
@@ -271,10 +280,10 @@ impl<D: Dim> World<D> {
     /// for the new maximum number of substeps, see [`SoftBody::stiffness_scale`].
     ///
     /// # Errors
-    /// [`Refused::Setting`] if a setting is out of range. Everything then stays unchanged.
+    /// [`Error::InvalidParameter`] if a setting is out of range. Everything then stays unchanged.
     #[inline(never)]
-    pub fn set_config(&mut self, settings: WorldConfig) -> Result<(), Refused> {
-        settings.check().map_err(Refused::setting)?;
+    pub fn set_config(&mut self, settings: WorldConfig) -> Result<(), Error> {
+        settings.check()?;
         self.settings = settings;
         let shortest = settings.shortest_substep();
         let mut all: Vec<Hit> = Vec::new();
@@ -296,7 +305,7 @@ impl<D: Dim> World<D> {
         &mut self,
         id: SoftBodyHandle,
         change: impl FnOnce(&mut SoftBody<D>),
-    ) -> Result<(), Refused> {
+    ) -> Result<(), Error> {
         let body = self.bodies.get(id)?;
         let own = id.slot();
         let leaning = leaning_on_body(body, &self.bodies);
@@ -312,7 +321,7 @@ impl<D: Dim> World<D> {
 
     /// Discards the contacts of a rigid body after a change of its pose or fields, and wakes sleepers in
     /// contact with its old and its new bounds.
-    fn forget_rigid(&mut self, id: RigidBodyHandle, was: Bounds) -> Result<(), Refused> {
+    fn forget_rigid(&mut self, id: RigidBodyHandle, was: Bounds) -> Result<(), Error> {
         let rigid = self.rigids.get(id)?;
         let is = rigid.shape().bounds();
         let leaning = leaning_on_rigid(rigid, &self.bodies);
@@ -323,11 +332,13 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns a dynamic rigid body and wakes it.
-    fn free_mut(&mut self, rigid: RigidBodyHandle) -> Result<&mut RigidBody, Refused> {
+    fn free_mut(&mut self, rigid: RigidBodyHandle) -> Result<&mut RigidBody, Error> {
+        let body = self.rigids.get(rigid)?;
         require(
-            self.rigids.get(rigid)?.is_dynamic(),
-            "rigid body",
-            "free (dynamic)",
+            body.is_dynamic(),
+            "motion_type",
+            "dynamic",
+            body.motion_type,
         )?;
         self.wake_rigids(&[rigid.slot()]);
         Ok(self.rigids.get_mut(rigid)?)
@@ -342,18 +353,12 @@ impl<D: Dim> World<D> {
     }
 }
 
-fn require(is_good: bool, field: &'static str, expected: &'static str) -> Result<(), Refused> {
-    is_good
-        .then_some(())
-        .ok_or(Refused::Argument { field, expected })
-}
-
 fn within(
     field: &'static str,
     vector: Vector,
     most: f32,
     expected: &'static str,
-) -> Result<Vector, Refused> {
+) -> Result<Vector, Error> {
     let is_good = vector.iter().all(|k| k.abs() <= most);
-    require(is_good, field, expected).map(|()| vector)
+    require(is_good, field, expected, vector).map(|()| vector)
 }
