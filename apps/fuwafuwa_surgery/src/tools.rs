@@ -117,9 +117,9 @@ impl HeldTool {
     pub fn put_away(mut self, world: &mut World<Dim3>) -> Result<(), Error> {
         self.open(world);
         if let Some((edge, _)) = self.edge.take() {
-            world.remove_knife(edge)?;
+            world.remove(edge)?;
         }
-        world.remove_rigid_body(self.holder)?;
+        world.remove(self.holder)?;
         Ok(())
     }
 
@@ -133,7 +133,7 @@ impl HeldTool {
             return Ok(());
         }
         if let Some((edge, _)) = self.edge.take() {
-            world.remove_knife(edge)?;
+            world.remove(edge)?;
         }
         let [half, height, _] = BLADE;
         let edge = [[-half, 0.0, 0.0], [half, 0.0, 0.0]];
@@ -209,7 +209,7 @@ impl HeldTool {
                 rigid: self.holder,
                 at,
             };
-            let joint = Joint::pin(soft, rigid).breaking_at(SLIPS);
+            let joint = Joint::pin(soft, rigid).with_breaking_force(SLIPS);
             self.grip = Some(world.add_joint(joint)?);
         }
         Ok(())
@@ -218,7 +218,7 @@ impl HeldTool {
     fn open(&mut self, world: &mut World<Dim3>) {
         if let Some(grip) = self.grip.take() {
             // A grip that slipped off was already removed.
-            let _ = world.remove_joint(grip);
+            let _ = world.remove(grip);
         }
     }
 

@@ -72,6 +72,7 @@ pub use fracture::knife::Knife;
 pub use material::Material;
 pub use math::rotation::Rotation;
 pub use math::vector::Vector;
+pub use math::velocity::{Impulse, Velocity};
 pub use query::{Queries, QueryHit, Thing};
 pub use rigid_body::layers::Layers;
 pub use rigid_body::shape::Shape;
@@ -85,6 +86,6 @@ pub use topology::cell_hierarchy::Grading;
 pub use topology::changes::{Bookmark, Changes};
 pub use topology::grid::{MAX_EXTENT, VoxelGrid};
 pub use world::{
-    FEWEST_SUBSTEPS, Hooks, LONGEST_TICK, PieceSize, Removed, SHORTEST_TICK, Substep, TICK,
-    USUAL_SUBSTEPS, World, WorldConfig, field_around,
+    BodyHandle, FEWEST_SUBSTEPS, Hooks, LONGEST_TICK, PieceSize, Removable, Removed, SHORTEST_TICK,
+    Substep, TICK, USUAL_SUBSTEPS, World, WorldConfig, field_around,
 };

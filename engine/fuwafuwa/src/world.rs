@@ -1,6 +1,7 @@
 //! The simulated world and its time step, [`World::step`].
 
 mod actions;
+mod body_handle;
 mod config;
 mod contact_events;
 mod contents;
@@ -25,6 +26,7 @@ use crate::rigid_body::RigidBodies;
 use crate::soft_body::damping::{PieceDamping, PieceMotion, motions, slow_down};
 use crate::soft_body::{SoftBodies, SoftBody};
 use crate::world::sleep::{fall_asleep, fall_asleep_rigid, wake};
+pub use body_handle::{BodyHandle, Removable};
 pub use config::{FEWEST_SUBSTEPS, LONGEST_TICK, SHORTEST_TICK, TICK, USUAL_SUBSTEPS, WorldConfig};
 pub use hooks::{Hooks, Substep, field_around};
 pub use removal::{PieceSize, Removed};

@@ -186,9 +186,7 @@ fn coupled_body_from_3d_stays_in_plane() {
         .set_target_position(space.nth_target_follower(0).unwrap(), [0.0, 0.0, 1.0])
         .unwrap();
     space.step();
-    let hand = space
-        .remove_rigid_body(space.nth_target_follower(0).unwrap())
-        .unwrap();
+    let hand = space.remove(space.nth_target_follower(0).unwrap()).unwrap();
     assert!(hand.velocity()[2] > 0.1);
     let mut plane = weightless::<Dim2>();
     plane.add_rigid_body(hand).expect("the hand is valid");

@@ -6,8 +6,8 @@ use fuwafuwa::inspect::Mesh;
 use fuwafuwa::snapshot::{load, save};
 use fuwafuwa::{
     Blade, Bookmark, Dim, Dim2, Dim3, Event, Grading, Joint, JointAnchor, Material, ObjectRef,
-    PieceId, PieceSize, Removed, RigidBody, Shape, SoftBody, SoftBodyHandle, VoxelGrid, World,
-    WorldConfig,
+    PieceId, PieceSize, Removed, RigidBody, Shape, SoftBody, SoftBodyHandle, Velocity, VoxelGrid,
+    World, WorldConfig,
 };
 
 const WEIGHTLESS: WorldConfig = WorldConfig {
@@ -153,7 +153,13 @@ fn halves<D: Dim>(settings: WorldConfig) -> (World<D>, SoftBodyHandle) {
 fn check_rest_untouched<D: Dim>() {
     let (mut world, cube) = halves::<D>(WEIGHTLESS);
     world
-        .add_velocity(cube, [0.3, 0.1, 0.0], [0.0, 0.0, 0.5])
+        .add_velocity(
+            cube,
+            Velocity {
+                linear: [0.3, 0.1, 0.0],
+                angular: [0.0, 0.0, 0.5],
+            },
+        )
         .unwrap();
     (0..3).for_each(|_| _ = world.step());
     let states = |world: &World<D>, piece: u32| -> Vec<_> {

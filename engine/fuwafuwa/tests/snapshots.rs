@@ -1,11 +1,10 @@
 //! Snapshots: a loaded world continues with the same bits.
 #![cfg(feature = "serde")]
 
-use fuwafuwa::Error;
 use fuwafuwa::inspect::Hash;
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Event, Joint, JointAnchor, JointKind, Knife, Material, MotionType,
-    RigidBody, Rotation, Shape, SoftBody, VoxelGrid, World, WorldConfig, snapshot,
+    Blade, Dim, Dim2, Dim3, Error, Event, Joint, JointAnchor, JointKind, Knife, Material,
+    MotionType, RigidBody, Rotation, Shape, SoftBody, VoxelGrid, World, WorldConfig, snapshot,
 };
 
 /// A ball that falls on a floor while a hand pushes it against a wall and through.
@@ -137,7 +136,7 @@ fn check_cut_resumes<D: Dim>() {
     let mut world = torn_world::<D>(14);
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let hand = world.nth_target_follower(0).unwrap();
-    world.remove_rigid_body(hand).unwrap();
+    world.remove(hand).unwrap();
     let mut holder =
         RigidBody::coupled_ball([-0.2, 0.45, depth], 0.05).with_motion_type(MotionType::Kinematic);
     holder.is_sensor = true;
@@ -384,14 +383,14 @@ fn loaded_world_continues_with_same_bits_after_changes() {
     type Change<'a> = &'a dyn Fn(&mut World<Dim2>);
     let changes: [Change<'_>; 4] = [
         &|world| assert!(world.cut(ids[0], &blade).unwrap() > 0),
-        &|world| drop(world.remove_soft_body(ids[1]).unwrap()),
+        &|world| drop(world.remove(ids[1]).unwrap()),
         &|world| {
             assert_eq!(
                 world.add_soft_body(ball(0.97)),
                 world.nth_soft_body(1).unwrap()
             )
         },
-        &|world| drop(world.remove_rigid_body(hand).unwrap()),
+        &|world| drop(world.remove(hand).unwrap()),
     ];
     for change in changes {
         let mut loaded = snapshot::load::<Dim2>(&snapshot::save(&world)).unwrap();
@@ -426,7 +425,7 @@ fn full_of_all<D: Dim>(n: usize) -> World<D> {
     world.add_soft_body(small([5.0, 3.0, 0.0]).with_velocity([f32::NAN; 3]));
     let gone = world.add_soft_body(small([-5.0, 1.0, 0.0]));
     push(&mut world, 0..40);
-    world.remove_soft_body(gone).unwrap();
+    world.remove(gone).unwrap();
     world
 }
 
@@ -475,7 +474,7 @@ fn check_changed<D: Dim>(n: usize, variants: u32) -> u32 {
             let again = load::<D>(&save(&world)).map(|again| again.hash());
             assert_eq!(again, Ok(world.hash()));
             for body in world.soft_bodies().ids().collect::<Vec<_>>() {
-                world.remove_soft_body(body).unwrap();
+                world.remove(body).unwrap();
             }
             1
         });

@@ -247,7 +247,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "radius = 0.5",
             "radius = -0.5",
-            ", line 11: obstacle 1, ball, radius: expected positive and finite, found -1.0",
+            ", line 11: obstacle 1, ball, radius: expected positive and finite, found -0.5",
         ),
         (
             obstacle,

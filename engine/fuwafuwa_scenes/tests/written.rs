@@ -364,7 +364,10 @@ fn error_names_line_and_field() {
         assert!(found.contains(expected), "{voxels}: {found}");
     }
     let state = "dim = 2\n[[body]]\nstate = \"AAAA\"\n";
-    assert!(complaint(state).contains("line 3: body 1, state: not a snapshot: the header is missing or truncated"));
+    assert!(
+        complaint(state)
+            .contains("line 3: body 1, state: not a snapshot: the header is missing or truncated")
+    );
 }
 
 #[test]

@@ -42,7 +42,7 @@ pub type Joints = Arena<JointHandle, Joint>;
 ///     world.step();
 /// }
 /// assert!(world.soft_bodies()[ball].centre_of_mass()[1] > 0.2);
-/// world.remove_joint(nail)?;
+/// world.remove(nail)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -84,7 +84,7 @@ impl Joint {
 
     /// Returns the joint with a breaking force [N].
     #[must_use]
-    pub fn breaking_at(self, force: f32) -> Self {
+    pub fn with_breaking_force(self, force: f32) -> Self {
         Self {
             breaking_force: force,
             ..self

@@ -55,7 +55,7 @@ pub type Knives = Arena<KnifeHandle, Knife>;
 ///     }).sum::<f32>();
 /// }
 /// assert!(area > 0.8);
-/// world.remove_knife(knife)?;
+/// world.remove(knife)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! Motion of rigid bodies: integration, impulses, sleep.
 
-use super::inertia::{Inertia, times};
+use super::inertia::times;
 use super::reach::is_within_reach;
 use super::{MotionType, RigidBody};
 use crate::error::{Error, require};
@@ -97,10 +97,10 @@ impl RigidBody {
     ) -> Result<(), Error> {
         let expected = "within 1e6 m of the origin";
         require(is_within_reach(position), "position", expected, position)?;
-        (self.position, self.rotation) = (position, rotation);
+        let (position, rotation) = (flat::<D>(position), rotation.seen_in::<D>());
+        self.stand_at(position, rotation);
         (self.position_before, self.rotation_before) = (position, rotation);
         self.stay();
-        *self = self.clone().seen_in::<D>();
         self.wake();
         Ok(())
     }
@@ -116,12 +116,16 @@ impl RigidBody {
         (self.asleep, self.sleep_timer) = (false, 0.0);
     }
 
-    /// Computes the moments of inertia for a world of `D`.
-    pub(super) fn take_inertia<D: Dim>(&mut self) {
-        self.inertia = match self.motion_type {
-            MotionType::Dynamic { mass } => Some(Inertia::of::<D>(&self.form, mass)),
-            _ => None,
-        };
+    /// Stops the body and puts it to sleep.
+    pub(crate) fn fall_asleep(&mut self) {
+        (self.velocity, self.angular_velocity) = ([0.0; 3], [0.0; 3]);
+        self.asleep = true;
+    }
+
+    /// Rotates the linear and the angular velocity.
+    pub(crate) fn rotate_velocity(&mut self, rotation: Rotation) {
+        self.velocity = rotation.apply(self.velocity);
+        self.angular_velocity = rotation.apply(self.angular_velocity);
     }
 
     /// Integrates gravity and air drag: velocities decay at the rate `drag` [1/s] over `duration` [s].

@@ -54,10 +54,10 @@ impl<D: Dim> World<D> {
     /// beyond [`FARTHEST`](crate::rigid_body::FARTHEST). The target then stays unchanged.
     pub fn set_target_position(
         &mut self,
-        hand: RigidBodyHandle,
-        goal: Vector,
+        rigid: RigidBodyHandle,
+        position: Vector,
     ) -> Result<(), Error> {
-        self.rigids.get_mut(hand)?.send::<D>(goal)
+        self.rigids.get_mut(rigid)?.send::<D>(position)
     }
 
     /// Sets the target rotation that a kinematic or coupled rigid body turns to until the end of the next
@@ -110,12 +110,9 @@ impl<D: Dim> World<D> {
         Ok(body)
     }
 
-    /// Removes a body. Other bodies keep their handles and state; sleepers in contact with it wake.
-    ///
-    /// # Errors
-    /// [`Error::InvalidHandle`] if the handle is stale.
+    /// Removes a soft body, see [`World::remove`].
     #[inline(never)]
-    pub fn remove_soft_body(&mut self, body: SoftBodyHandle) -> Result<SoftBody<D>, Error> {
+    pub(crate) fn remove_soft_body(&mut self, body: SoftBodyHandle) -> Result<SoftBody<D>, Error> {
         let removed = self.bodies.remove(body)?;
         self.nearby.remove_body(body.slot());
         let leaning = leaning_on_body(&removed, &self.bodies);
@@ -123,12 +120,9 @@ impl<D: Dim> World<D> {
         Ok(removed)
     }
 
-    /// Removes a rigid body. Others keep their handles and state; sleepers in contact with it wake.
-    ///
-    /// # Errors
-    /// [`Error::InvalidHandle`] if the handle is stale.
+    /// Removes a rigid body, see [`World::remove`].
     #[inline(never)]
-    pub fn remove_rigid_body(&mut self, rigid: RigidBodyHandle) -> Result<RigidBody, Error> {
+    pub(crate) fn remove_rigid_body(&mut self, rigid: RigidBodyHandle) -> Result<RigidBody, Error> {
         let removed = self.rigids.remove(rigid)?;
         self.nearby.remove_rigid(rigid.slot());
         let leaning = leaning_on_rigid(&removed, &self.bodies);

@@ -22,12 +22,9 @@ impl<D: Dim> World<D> {
         Ok(self.knives.insert(knife))
     }
 
-    /// Removes a knife; the rigid body that holds it stays.
-    ///
-    /// # Errors
-    /// [`Error::InvalidHandle`] if the handle is stale.
+    /// Removes a knife, see [`World::remove`].
     #[inline(never)]
-    pub fn remove_knife(&mut self, knife: KnifeHandle) -> Result<Knife, Error> {
+    pub(crate) fn remove_knife(&mut self, knife: KnifeHandle) -> Result<Knife, Error> {
         self.knives.remove(knife)
     }
 

@@ -39,7 +39,7 @@ pub struct Removed {
 impl<D: Dim> World<D> {
     /// Removes a piece of a body with its voxels, elements and nodes. Its contacts end and its joints break.
     /// Everything else keeps its position and state, but sleepers in contact with the piece wake. Piece
-    /// numbers are never reused. Removing the last piece removes the body, as [`World::remove_soft_body`] does,
+    /// numbers are never reused. Removing the last piece removes the body, as [`World::remove`] does,
     /// and makes its handle stale.
     ///
     /// ```

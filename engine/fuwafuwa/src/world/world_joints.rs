@@ -21,12 +21,9 @@ impl<D: Dim> World<D> {
         Ok(self.joints.insert(joint))
     }
 
-    /// Removes a joint. Both attached bodies wake.
-    ///
-    /// # Errors
-    /// [`Error::InvalidHandle`] if the handle is stale.
+    /// Removes a joint, see [`World::remove`].
     #[inline(never)]
-    pub fn remove_joint(&mut self, joint: JointHandle) -> Result<Joint, Error> {
+    pub(crate) fn remove_joint(&mut self, joint: JointHandle) -> Result<Joint, Error> {
         let joint = self.joints.remove(joint)?;
         self.wake_ends(&joint);
         Ok(joint)

@@ -5,7 +5,7 @@ use super::build::rotation_of;
 use super::error::{FieldError, require, require_vector};
 use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, ShapeChoice};
 use super::state;
-use fuwafuwa::{Dim, MotionType, RigidBody, RigidBodyHandle, Rotation, Shape, World};
+use fuwafuwa::{Dim, MotionType, RigidBody, RigidBodyHandle, Rotation, Shape, Velocity, World};
 use serde::{Deserialize, Serialize};
 
 /// A `[[rigid]]` table: one of the four shapes, given as if it stood at the origin, and its motion type; or
@@ -117,9 +117,9 @@ impl RigidBodyText {
             "allowed only with drive = \"free\"",
         )?;
         if moves {
-            let [velocity, spin] = [velocity, spin].map(Option::unwrap_or_default);
-            require_vector(D::N, "velocity", velocity)?;
-            let set = world.set_velocity(id, velocity, spin);
+            let [linear, angular] = [velocity, spin].map(Option::unwrap_or_default);
+            require_vector(D::N, "velocity", linear)?;
+            let set = world.set_velocity(id, Velocity { linear, angular });
             set.map_err(|error| FieldError::new("velocity", error))?;
         }
         Ok(id)

@@ -58,7 +58,7 @@ impl BodyText {
             }
         }
         if let Some(turned) = self.turned {
-            body = body.rotated(rotation_of::<D>(turned)?, [0.0; 3]);
+            body = body.rotated_about(rotation_of::<D>(turned)?, [0.0; 3]);
         }
         Ok(body.translated(self.at).with_velocity(self.velocity))
     }
