@@ -3,8 +3,8 @@
 use fuwafuwa::TICK;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    BodyError, BuildError, Dim3, Material, NodeId, Refused, RigidBody, Shape, SoftBody,
-    SoftBodyHandle, VoxelGrid, World, WorldConfig,
+    Dim3, Material, NodeId, RigidBody, Shape, SoftBody, SoftBodyHandle, VoxelGrid, World,
+    WorldConfig,
 };
 use fuwafuwa_scan::Organ;
 
@@ -39,15 +39,9 @@ pub struct Case {
 /// Reason why a case cannot be operated on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CaseError {
-    /// Invalid voxel grid.
+    /// The engine rejects the grid, a material or the organ.
     #[error("{0}")]
-    Grid(BuildError),
-    /// Invalid materials.
-    #[error("{0}")]
-    Body(BodyError),
-    /// The world rejected the organ.
-    #[error("{0}")]
-    World(Refused),
+    Engine(#[from] fuwafuwa::Error),
     /// A field is out of range.
     #[error("{field}: expected {expected}, found {found}")]
     Field {
@@ -58,12 +52,6 @@ pub enum CaseError {
         /// Given value.
         found: String,
     },
-}
-
-impl From<Refused> for CaseError {
-    fn from(refused: Refused) -> Self {
-        Self::World(refused)
-    }
 }
 
 /// An organ on its table.
@@ -189,7 +177,7 @@ impl Case {
             ..*tissue
         };
         let heavy: Vec<Material> = self.tissues.iter().map(heavier).collect();
-        let body = SoftBody::new(self.grid.clone(), &heavy).map_err(CaseError::Body)?;
+        let body = SoftBody::new(self.grid.clone(), &heavy)?;
         Ok((body, inertia))
     }
 
@@ -204,8 +192,8 @@ impl Case {
         let used: Vec<u8> = used.collect();
         let row =
             VoxelGrid::<Dim3>::from_materials([used.len(), 1, 1], self.grid.voxel_size(), used);
-        let row = row.map_err(CaseError::Grid)?;
-        let row = SoftBody::new(row, &self.tissues).map_err(CaseError::Body)?;
+        let row = row?;
+        let row = SoftBody::new(row, &self.tissues)?;
         Ok(row.longest_substep())
     }
 

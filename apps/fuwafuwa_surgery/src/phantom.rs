@@ -73,7 +73,7 @@ pub fn case(resolution: usize) -> Result<Case, CaseError> {
     });
     Ok(Case {
         name: "phantom".into(),
-        grid: grid.map_err(CaseError::Grid)?,
+        grid: grid?,
         tissues: tissues(4),
         corner,
     })

@@ -5,7 +5,7 @@ use crate::measures::{self, Sample};
 use crate::tools::{HeldTool, Tool, clearance};
 use fuwafuwa::TICK;
 use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
-use fuwafuwa::{Dim3, Event, Refused, RigidBody, Rotation, SoftBody, StepReport, Vector, World};
+use fuwafuwa::{Dim3, Error, Event, RigidBody, Rotation, SoftBody, StepReport, Vector, World};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -123,9 +123,9 @@ impl Procedure {
     /// Advances the procedure by a tick.
     ///
     /// # Errors
-    /// [`Refused`] if the world rejects the target. This does not occur, because targets are clamped to the
+    /// [`Error`] if the world rejects the target. This does not occur, because targets are clamped to the
     /// room.
-    pub fn step(&mut self, input: Input) -> Result<StepReport, Refused> {
+    pub fn step(&mut self, input: Input) -> Result<StepReport, Error> {
         self.take(input.tool)?;
         self.follow(&input);
         let world = &mut self.table.world;
@@ -207,7 +207,7 @@ impl Procedure {
     }
 
     /// Changes the tool. The new one enters from above, not inside tissue.
-    fn take(&mut self, tool: Tool) -> Result<(), Refused> {
+    fn take(&mut self, tool: Tool) -> Result<(), Error> {
         if tool == self.held.tool() {
             return Ok(());
         }

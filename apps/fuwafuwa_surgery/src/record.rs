@@ -15,7 +15,7 @@ use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 use fuwafuwa::inspect::Hash;
-use fuwafuwa::{Material, Refused, VoxelGrid};
+use fuwafuwa::{Error, Material, VoxelGrid};
 use serde::{Deserialize, Serialize};
 use std::io::{Read, Write};
 use std::sync::Arc;
@@ -73,7 +73,7 @@ pub enum RecordError {
     Case(#[from] CaseError),
     /// The world rejected an input.
     #[error("{0}")]
-    Refused(Refused),
+    Refused(Error),
     /// The replay differs from the recording.
     #[error("the replay differs from the recording in second {second}")]
     Differs {
@@ -208,7 +208,7 @@ impl Written {
         let grid = VoxelGrid::from_materials(size, self.voxel, self.materials);
         let case = Case {
             name: self.name,
-            grid: grid.map_err(CaseError::Grid)?,
+            grid: grid.map_err(CaseError::Engine)?,
             tissues: self.tissues,
             corner: self.corner,
         };

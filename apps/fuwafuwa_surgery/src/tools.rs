@@ -12,7 +12,7 @@
 
 use fuwafuwa::inspect::vector::plus;
 use fuwafuwa::{
-    Dim3, Joint, JointAnchor, JointHandle, Knife, KnifeHandle, MotionType, Refused, RigidBody,
+    Dim3, Error, Joint, JointAnchor, JointHandle, Knife, KnifeHandle, MotionType, RigidBody,
     RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, Vector, World,
 };
 use serde::{Deserialize, Serialize};
@@ -87,14 +87,14 @@ impl HeldTool {
     /// Adds a tool to the world of an organ, at rest at a position [m].
     ///
     /// # Errors
-    /// [`Refused`] if the position is out of range.
+    /// [`Error`] if the position is out of range.
     pub fn new(
         world: &mut World<Dim3>,
         organ: SoftBodyHandle,
         tool: Tool,
         at: Vector,
         rotation: Rotation,
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, Error> {
         let thinnest = thinnest(world.soft_bodies().get(organ)?);
         let mut rigid = RigidBody::new(form(tool, thinnest), at, DRIVE).rotated(rotation);
         rigid.friction = FRICTION;
@@ -113,27 +113,27 @@ impl HeldTool {
     /// Removes the tool from the world and releases gripped tissue.
     ///
     /// # Errors
-    /// [`Refused`] if the tool is not in this world.
-    pub fn put_away(mut self, world: &mut World<Dim3>) -> Result<(), Refused> {
+    /// [`Error`] if the tool is not in this world.
+    pub fn put_away(mut self, world: &mut World<Dim3>) -> Result<(), Error> {
         self.open(world);
         if let Some((edge, _)) = self.edge.take() {
-            world.remove_knife(edge)?;
+            world.remove(edge)?;
         }
-        world.remove_rigid_body(self.holder)?;
+        world.remove(self.holder)?;
         Ok(())
     }
 
     /// Sets the edge radius of the knife [µm]. A knife within tissue restarts its contact there.
     ///
     /// # Errors
-    /// [`Refused`] if the radius is out of range.
-    pub fn set_edge_radius(&mut self, world: &mut World<Dim3>, dull: u16) -> Result<(), Refused> {
+    /// [`Error`] if the radius is out of range.
+    pub fn set_edge_radius(&mut self, world: &mut World<Dim3>, dull: u16) -> Result<(), Error> {
         let is_so = self.edge.is_some_and(|(_, is)| is == dull);
         if self.tool != Tool::Knife || is_so {
             return Ok(());
         }
         if let Some((edge, _)) = self.edge.take() {
-            world.remove_knife(edge)?;
+            world.remove(edge)?;
         }
         let [half, height, _] = BLADE;
         let edge = [[-half, 0.0, 0.0], [half, 0.0, 0.0]];
@@ -161,13 +161,13 @@ impl HeldTool {
     /// Sets the kinematic target: position [m] and rotation.
     ///
     /// # Errors
-    /// [`Refused`] if the target is out of range.
+    /// [`Error`] if the target is out of range.
     pub fn send(
         &self,
         world: &mut World<Dim3>,
         goal: Vector,
         rotation: Rotation,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), Error> {
         world.set_target_position(self.holder, goal)?;
         if rotation != self.rigid(world).rotation() {
             world.set_target_rotation(self.holder, rotation)?;
@@ -178,13 +178,13 @@ impl HeldTool {
     /// Closes or opens the forceps.
     ///
     /// # Errors
-    /// [`Refused`] if the organ is not in this world.
+    /// [`Error`] if the organ is not in this world.
     pub fn close(
         &mut self,
         world: &mut World<Dim3>,
         organ: SoftBodyHandle,
         closes: bool,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), Error> {
         if self
             .grip
             .is_some_and(|grip| world.joints().get(grip).is_err())
@@ -209,7 +209,7 @@ impl HeldTool {
                 rigid: self.holder,
                 at,
             };
-            let joint = Joint::pin(soft, rigid).breaking_at(SLIPS);
+            let joint = Joint::pin(soft, rigid).with_breaking_force(SLIPS);
             self.grip = Some(world.add_joint(joint)?);
         }
         Ok(())
@@ -218,7 +218,7 @@ impl HeldTool {
     fn open(&mut self, world: &mut World<Dim3>) {
         if let Some(grip) = self.grip.take() {
             // A grip that slipped off was already removed.
-            let _ = world.remove_joint(grip);
+            let _ = world.remove(grip);
         }
     }
 

@@ -17,4 +17,4 @@ pub use crate::topology::connectivity::{Connectivity, Groups};
 pub use crate::topology::element_class::{
     ElementClass, Vector64, cell_corners, closure, slot_at, slot_index,
 };
-pub use crate::topology::mesh::{Element, Mesh, Node, Remodelled};
+pub use crate::topology::mesh::{Element, InvariantViolation, Mesh, Node, Remodelled};

@@ -36,6 +36,7 @@
 #![allow(clippy::needless_range_loop)]
 
 // In reading order: a module uses those above it.
+mod error;
 mod foundation;
 mod math;
 
@@ -61,20 +62,20 @@ pub mod instances;
 pub mod snapshot;
 
 pub use contact::joint::{Joint, JointAnchor, JointKind};
+pub use error::Error;
 pub use event::{Event, ObjectRef, StepReport, With};
-pub use foundation::arena::{
-    Arena, Gone, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle,
-};
+pub use foundation::arena::{Arena, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
 pub use foundation::dim::{Dim, Dim2, Dim3, Point};
 pub use foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 pub use fracture::blade::{Blade, CutReport};
 pub use fracture::knife::Knife;
-pub use material::{BodyError, Material};
+pub use material::Material;
 pub use math::rotation::Rotation;
 pub use math::vector::Vector;
+pub use math::velocity::{Impulse, Velocity};
 pub use query::{Queries, QueryHit, Thing};
 pub use rigid_body::layers::Layers;
-pub use rigid_body::shape::{BadShape, Shape};
+pub use rigid_body::shape::Shape;
 pub use rigid_body::{MotionType, Reaction, RigidBody};
 pub use soft_body::SoftBody;
 pub use soft_body::element_law::Law;
@@ -83,8 +84,8 @@ pub use soft_body::momentum::Momentum;
 pub use soft_body::view::{ElementView, Facet, Outline, PieceView};
 pub use topology::cell_hierarchy::Grading;
 pub use topology::changes::{Bookmark, Changes};
-pub use topology::grid::{BuildError, MAX_EXTENT, VoxelGrid};
+pub use topology::grid::{MAX_EXTENT, VoxelGrid};
 pub use world::{
-    FEWEST_SUBSTEPS, Hooks, LONGEST_TICK, PieceSize, Refused, Removed, SHORTEST_TICK, Substep,
-    TICK, USUAL_SUBSTEPS, World, WorldConfig, field_around,
+    BodyHandle, FEWEST_SUBSTEPS, Hooks, LONGEST_TICK, PieceSize, Removable, Removed, SHORTEST_TICK,
+    Substep, TICK, USUAL_SUBSTEPS, World, WorldConfig, field_around,
 };

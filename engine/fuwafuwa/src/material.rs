@@ -1,9 +1,8 @@
-//! Materials of voxels, and the errors of invalid ones.
+//! Materials of voxels.
 
-use crate::soft_body::element_law::{BadElasticity, Elasticity};
+use crate::error::{Error, require};
+use crate::soft_body::element_law::Elasticity;
 use crate::soft_body::plasticity::Plasticity;
-use crate::topology::mesh::Defect;
-use std::fmt;
 
 /// Material of a voxel.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -64,82 +63,16 @@ impl Default for Material {
     }
 }
 
-/// Reason why a body could not be made.
-#[derive(Clone, Debug, PartialEq)]
-pub enum BodyError {
-    /// The grid uses a material that was not given.
-    MissingMaterial {
-        /// Number of the material in the grid, from 1.
-        number: u8,
-    },
-    /// A field of a material is out of range.
-    BadMaterial {
-        /// Number of the material in the grid, from 1.
-        number: usize,
-        /// Name of the field.
-        field: &'static str,
-        /// Given value.
-        given: f32,
-        /// Expected range.
-        expected: &'static str,
-    },
-    /// The elastic constants of a material are out of range.
-    Elasticity {
-        /// Number of the material in the grid, from 1.
-        number: usize,
-        /// Invalid constants.
-        reason: BadElasticity,
-    },
-    /// The mesh is inconsistent, which is a bug in this library.
-    Mesh(Defect),
-}
-
-impl fmt::Display for BodyError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::MissingMaterial { number } => {
-                write!(f, "the grid uses material {number}, which was not given")
-            }
-            Self::BadMaterial {
-                number,
-                field,
-                given,
-                expected,
-            } => write!(f, "material {number}: {field} = {given} must be {expected}"),
-            Self::Elasticity { number, reason } => write!(f, "material {number}: {reason}"),
-            Self::Mesh(defect) => write!(
-                f,
-                "the mesh is inconsistent, which is a bug in fuwafuwa: {defect}"
-            ),
-        }
-    }
-}
-
-impl std::error::Error for BodyError {}
-
-impl From<Defect> for BodyError {
-    fn from(defect: Defect) -> Self {
-        Self::Mesh(defect)
-    }
-}
-
 impl Material {
-    /// Checks every field; `number` identifies the material in the error.
+    /// Checks every field.
     ///
     /// # Errors
-    /// [`BodyError`] with the first field that is out of range.
-    pub fn check(&self, number: usize) -> Result<(), BodyError> {
+    /// [`Error::InvalidParameter`] names the first field that is out of range.
+    pub fn check(&self) -> Result<(), Error> {
         let Elasticity { young, poisson } = self.elasticity;
-        Elasticity::new(young, poisson)
-            .map_err(|reason| BodyError::Elasticity { number, reason })?;
+        Elasticity::new(young, poisson)?;
         let within = |field, given: f32, low: f32, high: f32, expected| {
-            let bad = BodyError::BadMaterial {
-                number,
-                field,
-                given,
-                expected,
-            };
-            (given >= low && given <= high).then_some(()).ok_or(bad)
+            require(given >= low && given <= high, field, expected, given)
         };
         let (tiny, huge) = (f32::MIN_POSITIVE, f32::MAX);
         within("density", self.density, tiny, huge, "positive and finite")?;
@@ -164,15 +97,15 @@ impl Material {
     /// use fuwafuwa::{SoftBody, Dim2, Material, RigidBody, WorldConfig, Shape, VoxelGrid, World};
     ///
     /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
-    /// world.add_rigid(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
+    /// world.add_rigid_body(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
     /// let block = SoftBody::new(VoxelGrid::cube(12, 1.0)?, &[Material::clay()])?;
-    /// let block = world.add_body(block);
-    /// let hand = world.add_rigid(RigidBody::coupled_ball([0.5, 1.2, 0.0], 0.2))?;
+    /// let block = world.add_soft_body(block);
+    /// let hand = world.add_rigid_body(RigidBody::coupled_ball([0.5, 1.2, 0.0], 0.2))?;
     /// for height in [0.6, 1.6] {
-    ///     world.set_goal(hand, [0.5, height, 0.0])?;
+    ///     world.set_target_position(hand, [0.5, height, 0.0])?;
     ///     (0..60).for_each(|_| _ = world.step());
     /// }
-    /// let body = &world.bodies()[block];
+    /// let body = &world.soft_bodies()[block];
     /// let most = body.mesh().elements().filter_map(|(id, _)| body.plastic_strain(id));
     /// assert!(most.fold(0.0, f32::max) > 0.1);
     /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -3,3 +3,4 @@
 pub mod lanes;
 pub mod rotation;
 pub mod vector;
+pub mod velocity;

@@ -66,7 +66,7 @@ pub struct QueryHit {
 ///
 /// let mut world = World::new(WorldConfig::default())?;
 /// let grid = VoxelGrid::<Dim3>::ball(16, 1.0)?;
-/// let ball = world.add_body(SoftBody::new(grid, &[Material::default()])?);
+/// let ball = world.add_soft_body(SoftBody::new(grid, &[Material::default()])?);
 /// let queries = Queries::new(&world);
 /// let from_above = queries.ray([0.5, 3.0, 0.5], [0.0, -1.0, 0.0], 10.0, &|_| true);
 /// let found = from_above.expect("the ball is below");

@@ -10,18 +10,22 @@ pub mod shape;
 
 mod dynamics;
 mod inertia;
-mod invalid;
+mod reach;
 mod rigid_validation;
 
+use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, RigidBodyHandle};
 use crate::foundation::dim::{Dim, turning};
 use crate::math::rotation::Rotation;
 use crate::math::vector::{is_finite, length, minus, plus, scaled};
+use crate::math::velocity::Velocity;
 use crate::rigid_body::layers::Layers;
 use crate::rigid_body::shape::{Shape, Vector};
 use inertia::{Inertia, Matrix};
-pub use invalid::{BadRigid, FARTHEST};
-use invalid::{is_within_reach, require};
+pub use reach::FARTHEST;
+use reach::is_within_reach;
+use rigid_validation::check_motion_type;
+pub(crate) use rigid_validation::{check_friction, check_restitution};
 
 /// Rigid bodies of a world.
 pub type RigidBodies = Arena<RigidBodyHandle, RigidBody>;
@@ -54,6 +58,16 @@ pub enum MotionType {
         /// support sinks into it.
         mass: f32,
     },
+}
+
+impl MotionType {
+    /// Returns the moments of inertia of a dynamic body of the shape `form` in a world of `D`.
+    fn inertia<D: Dim>(self, form: &Shape) -> Option<Inertia> {
+        match self {
+            Self::Dynamic { mass } => Some(Inertia::of::<D>(form, mass)),
+            _ => None,
+        }
+    }
 }
 
 impl Default for MotionType {
@@ -187,16 +201,16 @@ impl RigidBody {
     /// use fuwafuwa::{Dim3, RigidBody, Rotation, WorldConfig, Shape, World};
     ///
     /// let mut world = World::<Dim3>::new(WorldConfig::default())?;
-    /// world.add_rigid(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
+    /// world.add_rigid_body(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
     /// let cube = Shape::Box { centre: [0.0, 2.0, 0.0], half: [0.5; 3] };
     /// let turned = Rotation::about([1.0, 1.0, 0.0], 0.4);
-    /// let cube = world.add_rigid(RigidBody::dynamic(cube, 10.0).rotated(turned))?;
+    /// let cube = world.add_rigid_body(RigidBody::dynamic(cube, 10.0).rotated(turned))?;
     /// for _ in 0..180 {
     ///     world.step();
     /// }
-    /// let cube = &world.rigids()[cube];
+    /// let cube = &world.rigid_bodies()[cube];
     /// assert!((cube.position()[1] - 0.5).abs() < 0.01 && cube.is_asleep());
-    /// # Ok::<(), fuwafuwa::Refused>(())
+    /// # Ok::<(), fuwafuwa::Error>(())
     /// ```
     pub fn dynamic(shape: Shape, mass: f32) -> Self {
         let [low, high] = shape.bounds();
@@ -222,12 +236,81 @@ impl RigidBody {
         }
     }
 
-    /// Returns the body with another motion type.
-    pub fn with_motion_type(self, drive: MotionType) -> Self {
+    /// Returns the body rotated about a point [m], velocities and target included.
+    #[must_use]
+    pub fn rotated_about(self, rotation: Rotation, point: Vector) -> Self {
+        let apart = minus(rotation.apply_about(self.position, point), self.position);
+        let mut rotated = self.translated(apart).rotated(rotation);
+        rotated.rotate_velocity(rotation);
+        rotated
+    }
+
+    /// Returns the body translated `by` [m], target included.
+    #[must_use]
+    pub fn translated(self, by: Vector) -> Self {
+        let position = plus(self.position, by);
+        let goal = plus(self.goal, by);
         Self {
-            motion_type: drive,
+            position,
+            position_before: position,
+            goal,
+            goal_before: goal,
+            shape: self.form.rotated(self.rotation).translated(position),
             ..self
         }
+    }
+
+    /// Returns the body with a velocity: linear, or linear and angular. Only dynamic bodies keep it.
+    #[must_use]
+    pub fn with_velocity(self, velocity: impl Into<Velocity>) -> Self {
+        let Velocity { linear, angular } = velocity.into();
+        Self {
+            velocity: linear,
+            angular_velocity: angular,
+            ..self
+        }
+    }
+
+    /// Returns the body with another motion type.
+    #[must_use]
+    pub fn with_motion_type(self, motion_type: MotionType) -> Self {
+        Self {
+            motion_type,
+            ..self
+        }
+    }
+
+    /// Returns the body with another [friction](RigidBody::friction) coefficient.
+    #[must_use]
+    pub fn with_friction(self, friction: f32) -> Self {
+        Self { friction, ..self }
+    }
+
+    /// Returns the body with another [restitution](RigidBody::restitution) coefficient.
+    #[must_use]
+    pub fn with_restitution(self, restitution: f32) -> Self {
+        Self {
+            restitution,
+            ..self
+        }
+    }
+
+    /// Returns the body with other collision layers.
+    #[must_use]
+    pub fn with_layers(self, layers: Layers) -> Self {
+        Self { layers, ..self }
+    }
+
+    /// Returns the body as a [sensor](RigidBody::is_sensor), or as a body with contacts.
+    #[must_use]
+    pub fn with_sensor(self, is_sensor: bool) -> Self {
+        Self { is_sensor, ..self }
+    }
+
+    /// Returns the body with other [user data](RigidBody::user_data).
+    #[must_use]
+    pub fn with_user_data(self, user_data: u64) -> Self {
+        Self { user_data, ..self }
     }
 
     /// Returns the body for a world of `D`: in 2D third coordinates are set to 0.
@@ -243,6 +326,14 @@ impl RigidBody {
             *rotation = rotation.seen_in::<D>();
         }
         self.angular_velocity = turning::<D>(self.angular_velocity);
+        self.clear_unused_motion();
+        self.inertia = self.motion_type.inertia::<D>(&self.form);
+        self.stand_at(self.position, self.rotation);
+        self
+    }
+
+    /// Sets the velocities to 0 that a body of this motion type cannot have.
+    fn clear_unused_motion(&mut self) {
         if self.motion_type == MotionType::Fixed {
             // The body may have been kinematic or coupled before.
             (self.velocity, self.goal_velocity) = ([0.0; 3], [0.0; 3]);
@@ -254,9 +345,19 @@ impl RigidBody {
         ) {
             self.angular_velocity = [0.0; 3];
         }
-        self.take_inertia::<D>();
+    }
+
+    /// Sets the motion type in a world of `D`. If it differs from the present one, the present pose becomes the target.
+    pub(crate) fn set_motion_type<D: Dim>(&mut self, motion_type: MotionType) -> Result<(), Error> {
+        let inertia = motion_type.inertia::<D>(&self.form);
+        check_motion_type(motion_type, &self.form, inertia.as_ref())?;
+        if motion_type != self.motion_type {
+            self.stay();
+        }
+        (self.motion_type, self.inertia) = (motion_type, inertia);
+        self.clear_unused_motion();
         self.stand_at(self.position, self.rotation);
-        self
+        Ok(())
     }
 
     /// Returns the position of the local origin [m]: the centre of a [`RigidBody::coupled_ball`].
@@ -307,10 +408,22 @@ impl RigidBody {
         )
     }
 
+    /// Returns an error unless the body follows a target.
+    fn require_target(&self) -> Result<(), Error> {
+        let expected = "kinematic or coupled";
+        require(
+            self.follows_target(),
+            "motion_type",
+            expected,
+            self.motion_type,
+        )
+    }
+
     /// Sets the target position [m]; in 2D the third coordinate is ignored.
-    pub(crate) fn send<D: Dim>(&mut self, goal: Vector) -> Result<(), BadRigid> {
-        require(self.follows_target(), "drive", "kinematic or coupled")?;
-        require(is_within_reach(goal), "goal", "within 1e6 m of the origin")?;
+    pub(crate) fn send<D: Dim>(&mut self, goal: Vector) -> Result<(), Error> {
+        self.require_target()?;
+        let expected = "within 1e6 m of the origin";
+        require(is_within_reach(goal), "position", expected, goal)?;
         self.goal[..D::N].copy_from_slice(&goal[..D::N]);
         Ok(())
     }

@@ -21,10 +21,11 @@ mod integration;
 mod placement;
 mod sleep_flags;
 
+use crate::error::Error;
 use crate::foundation::arena::{Arena, SoftBodyHandle};
 use crate::foundation::dim::{Dim, Point};
 use crate::foundation::ids::{ElementId, NodeId};
-use crate::material::{BodyError, Material};
+use crate::material::Material;
 use crate::math::vector::{as_row, dot, three};
 use crate::soft_body::element_forces::{ElementBatches, Row};
 use crate::soft_body::element_law::Law;
@@ -71,8 +72,9 @@ impl<D: Dim> SoftBody<D> {
     /// material number n uses `materials[n - 1]`.
     ///
     /// # Errors
-    /// [`BodyError`] if a material is missing or has a field out of range.
-    pub fn new(grid: VoxelGrid<D>, materials: &[Material]) -> Result<Self, BodyError> {
+    /// [`Error::MissingMaterial`] if the grid uses a material that is not in `materials`. [`Error::InvalidParameter`]
+    /// if a field of a material is out of range.
+    pub fn new(grid: VoxelGrid<D>, materials: &[Material]) -> Result<Self, Error> {
         Self::with_options(grid, materials, Law::default(), Grading::default())
     }
 
@@ -87,18 +89,22 @@ impl<D: Dim> SoftBody<D> {
         materials: &[Material],
         law: Law,
         grading: Grading,
-    ) -> Result<Self, BodyError> {
+    ) -> Result<Self, Error> {
         let numbers = grid.voxels().map(|voxel| grid.material(voxel));
         let number = numbers.max().unwrap_or(0);
         if number as usize > materials.len() {
-            return Err(BodyError::MissingMaterial { number });
+            let given = materials.len();
+            return Err(Error::MissingMaterial { number, given });
         }
         for (index, material) in materials.iter().enumerate() {
-            material.check(index + 1)?;
+            let of_material = |error: Error| error.of(format_args!("material {}", index + 1));
+            material.check().map_err(of_material)?;
         }
         let sharing = Connectivity::new(&grid);
         let pyramid = CellHierarchy::new(&grid, &sharing, grading);
-        let mesh = Mesh::grade(&grid, &sharing, &pyramid)?;
+        let mesh = Mesh::grade(&grid, &sharing, &pyramid).expect(
+            "a cell hierarchy matches the grid and the connectivity from which it was made",
+        );
         let mut blocks = ElementBatches::new(law, &elasticities(materials, 1.0), grid.voxel_size());
         blocks.set_plasticities(&plasticities(materials));
         let mut body = Self {

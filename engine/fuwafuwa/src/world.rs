@@ -1,6 +1,7 @@
 //! The simulated world and its time step, [`World::step`].
 
 mod actions;
+mod body_handle;
 mod config;
 mod contact_events;
 mod contents;
@@ -13,22 +14,22 @@ mod world_joints;
 use crate::contact::broad_phase::{Nearby, NodePair};
 use crate::contact::joint::{self, Joints};
 use crate::contact::solver::{Contacts, Hit, Hits};
+use crate::error::Error;
 use crate::event::{Event, ObjectRef, StepReport};
-use crate::foundation::arena::{BodySlot, Gone, RigidBodyHandle, RigidSlot};
+use crate::foundation::arena::{BodySlot, RigidBodyHandle, RigidSlot};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::fracture::crack_growth::{Failure, failures};
 use crate::fracture::knife::{Knife, Knives};
 use crate::math::vector::{is_finite, plus, three};
-use crate::rigid_body::{BadRigid, RigidBodies};
+use crate::rigid_body::RigidBodies;
 use crate::soft_body::damping::{PieceDamping, PieceMotion, motions, slow_down};
 use crate::soft_body::{SoftBodies, SoftBody};
 use crate::world::sleep::{fall_asleep, fall_asleep_rigid, wake};
-use config::BadSetting;
+pub use body_handle::{BodyHandle, Removable};
 pub use config::{FEWEST_SUBSTEPS, LONGEST_TICK, SHORTEST_TICK, TICK, USUAL_SUBSTEPS, WorldConfig};
 pub use hooks::{Hooks, Substep, field_around};
 pub use removal::{PieceSize, Removed};
-use std::fmt;
 
 /// Decay rate of the angular velocity of a one-voxel piece that touches something [1/s], because it does not
 /// roll. In 0.1 s it falls to an eighth. A higher rate would stop the rotation in the air between two
@@ -43,62 +44,6 @@ const SETTLING_SPEED: f64 = 0.1;
 /// 960 substeps a second. Smaller voxels cannot reach it, because no node moves by more than a voxel in a
 /// substep.
 const TOP_SPEED: f32 = 1000.0;
-
-/// Error of an operation on the world.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Refused {
-    /// A setting is out of range.
-    Setting {
-        /// Name of the setting.
-        field: &'static str,
-        /// Expected value.
-        expected: &'static str,
-    },
-    /// An argument is out of range.
-    Argument {
-        /// Name of the offending argument.
-        field: &'static str,
-        /// Expected value.
-        expected: &'static str,
-    },
-    /// Invalid rigid-body parameter.
-    RigidBody(BadRigid),
-    /// A handle is stale.
-    Gone(Gone),
-}
-
-impl Refused {
-    fn setting((field, expected): BadSetting) -> Self {
-        Self::Setting { field, expected }
-    }
-}
-
-impl From<BadRigid> for Refused {
-    fn from(bad: BadRigid) -> Self {
-        Self::RigidBody(bad)
-    }
-}
-
-impl From<Gone> for Refused {
-    fn from(gone: Gone) -> Self {
-        Self::Gone(gone)
-    }
-}
-
-impl fmt::Display for Refused {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Setting { field, expected } => {
-                write!(f, "the setting {field} must be {expected}")
-            }
-            Self::Argument { field, expected } => write!(f, "the {field} must be {expected}"),
-            Self::RigidBody(bad) => bad.fmt(f),
-            Self::Gone(gone) => gone.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for Refused {}
 
 /// Soft bodies, rigid bodies, joints and knives, and their simulation.
 #[derive(Clone, Debug)]
@@ -124,10 +69,10 @@ impl<D: Dim> World<D> {
     /// Returns an empty world.
     ///
     /// # Errors
-    /// [`Refused::Setting`] if a setting is out of range.
+    /// [`Error::InvalidParameter`] if a setting is out of range.
     #[inline(never)]
-    pub fn new(settings: WorldConfig) -> Result<Self, Refused> {
-        settings.check().map_err(Refused::setting)?;
+    pub fn new(settings: WorldConfig) -> Result<Self, Error> {
+        settings.check()?;
         Ok(Self {
             settings,
             bodies: SoftBodies::default(),
@@ -156,8 +101,8 @@ impl<D: Dim> World<D> {
     /// use fuwafuwa::{Dim2, Hooks, RigidBody, WorldConfig, World};
     ///
     /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
-    /// let hand = world.add_rigid(RigidBody::coupled_ball([0.0; 3], 0.1))?;
-    /// world.set_goal(hand, [0.1, 0.0, 0.0])?;
+    /// let hand = world.add_rigid_body(RigidBody::coupled_ball([0.0; 3], 0.1))?;
+    /// world.set_target_position(hand, [0.1, 0.0, 0.0])?;
     /// let mut forces = Vec::new();
     /// let mut note = |substep: &fuwafuwa::Substep| {
     ///     forces.push(substep.reaction(hand).map_or([0.0; 3], |felt| felt.coupling));
@@ -165,7 +110,7 @@ impl<D: Dim> World<D> {
     /// let report = world.step_with(&mut Hooks { after_substep: Some(&mut note), ..Hooks::default() });
     /// assert_eq!(forces.len(), report.substeps as usize);
     /// assert!(forces[15][0] < 0.0);
-    /// # Ok::<(), fuwafuwa::Refused>(())
+    /// # Ok::<(), fuwafuwa::Error>(())
     /// ```
     #[inline(never)]
     pub fn step_with(&mut self, hooks: &mut Hooks<'_>) -> StepReport {
@@ -243,7 +188,6 @@ impl<D: Dim> World<D> {
             self.events.extend(failures.iter().map(released));
             let sides = failures.iter().map(|failure| (failure.at, failure.side));
             let changes = body.tear(&sides.collect::<Vec<_>>());
-            let changes = changes.expect("splitting a node keeps the mesh valid");
             report.nodes_split += failures.len() as u32;
             report.pieces_detached += changes.detached.len() as u32;
             self.events.extend(Event::parted(id, &changes.detached));

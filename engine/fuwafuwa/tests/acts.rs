@@ -1,9 +1,9 @@
 //! Actions on bodies from outside: rotation, translation, impulses, sleep, settings, fields.
 
 use fuwafuwa::{
-    Bookmark, Dim, Dim2, Dim3, Event, Hooks, Material, MotionType, NodeId, Refused, RigidBody,
-    Rotation, Shape, SoftBody, SoftBodyHandle, Substep, VoxelGrid, World, WorldConfig,
-    field_around,
+    Bookmark, Dim, Dim2, Dim3, Error, Event, Hooks, Impulse, Material, MotionType, NodeId,
+    RigidBody, Rotation, Shape, SoftBody, SoftBodyHandle, Substep, Velocity, VoxelGrid, World,
+    WorldConfig, field_around,
 };
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -53,7 +53,7 @@ fn floor() -> RigidBody {
 fn check_turned<D: Dim>(rotation: Rotation) {
     let body = ball::<D>(16);
     let centre = body.centre_of_mass();
-    let turned = body.clone().rotated(rotation, centre);
+    let turned = body.clone().rotated_about(rotation, centre);
     assert!((turned.total_mass() - body.total_mass()).abs() < 1e-9);
     let (mut world, id) = with(WEIGHTLESS, turned.clone().translated(SOMEWHERE));
     for _ in 0..120 {
@@ -90,11 +90,11 @@ fn check_turned_in_motion<D: Dim>() {
     let (mut world, id) = with(WEIGHTLESS, ball::<D>(16));
     let [_, y, z] = world.soft_bodies()[id].centre_of_mass();
     world
-        .apply_impulse(id, [0.0, y, z], 0.3, [40.0, 0.0, 0.0])
+        .apply_impulse(id, Impulse::at([0.0, y, z], [40.0, 0.0, 0.0]).within(0.3))
         .unwrap();
     (0..3).for_each(|_| _ = world.step());
     let mut turned = world.clone();
-    turned.rotate_body(id, rotation, [0.0; 3]).unwrap();
+    turned.rotate_about(id, rotation, [0.0; 3]).unwrap();
     for _ in 0..20 {
         world.step();
         turned.step();
@@ -140,7 +140,7 @@ fn check_moved<D: Dim>() {
     let (mut world, id) = with(WEIGHTLESS, ball::<D>(8));
     let before = world.soft_bodies()[id].clone();
     let mut bookmark = world.soft_bodies()[id].bookmark();
-    world.translate_body(id, SOMEWHERE).unwrap();
+    world.translate(id, SOMEWHERE).unwrap();
     world.step();
     let body = &world.soft_bodies()[id];
     assert!(apart(body, &before.translated(SOMEWHERE)) < 1e-5);
@@ -178,7 +178,7 @@ fn check_pulled_away<D: Dim>() {
     }
     (0..10).for_each(|_| _ = world.step());
     assert_eq!(sleeps(&world), [true; 2]);
-    world.translate_body(below, [5.0, 0.0, 0.0]).unwrap();
+    world.translate(below, [5.0, 0.0, 0.0]).unwrap();
     assert_eq!(sleeps(&world), [false; 2]);
     (0..120).for_each(|_| _ = world.step());
     let height = world.soft_bodies()[above].centre_of_mass()[1];
@@ -197,7 +197,7 @@ fn check_pushed<D: Dim>() {
     for radius in [0.0, 0.1, 10.0] {
         let before = world.soft_bodies()[id].momentum();
         world
-            .apply_impulse(id, [0.5, 1.0, 0.0], radius, impulse)
+            .apply_impulse(id, Impulse::at([0.5, 1.0, 0.0], impulse).within(radius))
             .unwrap();
         let gained = world.soft_bodies()[id].momentum().less(before);
         assert!((0..2).all(|k| (gained.linear[k] - f64::from(impulse[k])).abs() < 1e-3));
@@ -206,7 +206,9 @@ fn check_pushed<D: Dim>() {
     let mut gained = |angular| {
         let before = world.soft_bodies()[id].momentum();
         let linear = [0.0, 2.0, 0.0];
-        world.add_velocity(id, linear, angular).unwrap();
+        world
+            .add_velocity(id, Velocity { linear, angular })
+            .unwrap();
         world.soft_bodies()[id].momentum().less(before)
     };
     let straight = gained([0.0; 3]);
@@ -356,7 +358,7 @@ fn set_settings_applies_to_running_world() {
     assert_eq!(world.soft_bodies()[hard].stiffness_scale(), soft);
     let bad = WorldConfig { drag: -1.0, ..few };
     let told = world.set_config(bad).unwrap_err();
-    assert_eq!(told.to_string(), "the setting drag must be 0 to 10");
+    assert_eq!(told.to_string(), "drag must be 0 to 10, given -1.0");
     assert_eq!(*world.config(), upwards);
 }
 
@@ -434,13 +436,19 @@ fn act<D: Dim>(
     which: usize,
     body: SoftBodyHandle,
     k: f32,
-) -> Result<(), Refused> {
+) -> Result<(), Error> {
     let vector = [k, -0.5 * k, k];
     match which {
-        0 => world.translate_body(body, vector),
-        1 => world.rotate_body(body, Rotation::about([1.0, k, 2.0], k), vector),
-        2 => world.add_velocity(body, vector, vector),
-        3 => world.apply_impulse(body, vector, k, vector),
+        0 => world.translate(body, vector),
+        1 => world.rotate_about(body, Rotation::about([1.0, k, 2.0], k), vector),
+        2 => world.add_velocity(
+            body,
+            Velocity {
+                linear: vector,
+                angular: vector,
+            },
+        ),
+        3 => world.apply_impulse(body, Impulse::at(vector, vector).within(k)),
         4 => world.set_gravity_scale(body, k),
         5 => world.wake_up(body),
         6 => world.put_to_sleep(body),
@@ -487,7 +495,7 @@ fn check_any<D: Dim>(seeds: std::ops::Range<u64>) {
                     1.0,
                     0.0,
                 ]))),
-                1 => _ = world.remove_soft_body(body),
+                1 => _ = world.remove(body),
                 2..5 => _ = world.step(),
                 _ => {
                     let is_there = world.soft_bodies().get(body).is_ok();

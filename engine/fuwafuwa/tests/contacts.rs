@@ -51,7 +51,7 @@ fn contacts_begin_and_end<D: Dim>() {
     let (mut began, mut ended) = (Vec::new(), 0);
     for tick in 0..500 {
         if tick == 450 {
-            world.translate_body(id, [0.0, 2.0, 0.0]).unwrap();
+            world.translate(id, [0.0, 2.0, 0.0]).unwrap();
         }
         world.step();
         for event in world.events() {
@@ -109,7 +109,7 @@ fn sleeping_body_keeps_contact_until_removed() {
     }
     assert!(world.rigid_bodies()[id].is_asleep());
     assert_eq!(ends, 0);
-    world.remove_rigid_body(id).unwrap();
+    world.remove(id).unwrap();
     world.step();
     let told = world.events().iter().any(
         |event| matches!(event, Event::ContactEnded { both } if both.contains(&ObjectRef::RigidBody(id))),
@@ -160,7 +160,7 @@ fn sensors_tell<D: Dim>() {
     let free = world.add_rigid_body(crate_of(5.5, 0.2)).unwrap();
     // Beside the ball, so that it does not bounce back.
     world
-        .set_rigid_body_pose(free, [3.0, 5.5, 0.5], Rotation::NONE)
+        .set_pose(free, [3.0, 5.5, 0.5], Rotation::NONE)
         .unwrap();
     let (mut entered, mut left) = (Vec::new(), Vec::new());
     for _ in 0..60 {
@@ -217,10 +217,12 @@ fn layers_filter_contacts() {
     layers_part::<Dim3>();
     let (mut world, floor) = floored::<Dim3>();
     let id = world.add_rigid_body(crate_of(0.5, 0.2)).unwrap();
+    let [own, other] = [floor, id].map(|id| world.rigid_bodies()[id].layers);
+    let (memberships, filters) = (2, 1);
     world
-        .change_rigid(floor, |floor| floor.layers.memberships = 2)
+        .set_layers(floor, Layers { memberships, ..own })
         .unwrap();
-    world.change_rigid(id, |it| it.layers.filters = 1).unwrap();
+    world.set_layers(id, Layers { filters, ..other }).unwrap();
     for _ in 0..60 {
         world.step();
     }
@@ -232,13 +234,11 @@ fn user_data_persists_until_removal() {
     let (mut world, floor) = floored::<Dim2>();
     let id = ball(&mut world, 0.0);
     world.set_user_data(id, 7).unwrap();
-    world
-        .change_rigid(floor, |floor| floor.user_data = 9)
-        .unwrap();
+    world.set_user_data(floor, 9).unwrap();
     world.step();
     assert_eq!(world.soft_bodies()[id].user_data(), 7);
     assert_eq!(world.rigid_bodies()[floor].user_data, 9);
-    world.remove_soft_body(id).unwrap();
+    world.remove(id).unwrap();
     assert!(
         world.set_user_data(id, 1).is_err() && world.set_layers(id, Layers::default()).is_err()
     );

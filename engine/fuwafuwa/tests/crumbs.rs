@@ -167,7 +167,7 @@ fn check_grinding<D: Dim>(n: usize, least: usize) {
     let ball = |n, width| SoftBody::new(VoxelGrid::<D>::ball(n, width).unwrap(), &[tough]).unwrap();
     world.add_soft_body(ball(n, 1.0));
     let mut dust = ball(n / 3, 0.33);
-    dust.crumble().unwrap();
+    dust.crumble();
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     world.add_soft_body(dust.translated([-0.36, 0.33, depth - 0.17]));
     world
@@ -218,7 +218,7 @@ fn check_way_out<D: Dim>(n: usize) {
         ..Material::default()
     };
     let mut dust = SoftBody::new(ball(n / 4, 0.25), &[tough]).unwrap();
-    dust.crumble().unwrap();
+    dust.crumble();
     let depth = if D::N == 3 { 0.37 } else { 0.0 };
     world.add_soft_body(dust.translated([0.1, 0.37, depth]));
     world.add_soft_body(SoftBody::new(ball(n, 1.0), &[tough]).unwrap());

@@ -157,7 +157,7 @@ fn cut_keeps_turned_body_at_rest() {
 fn crumble_takes_linear_time() {
     let mut body = ball::<Dim3>(64);
     let start = std::time::Instant::now();
-    body.crumble().expect("the mesh stays valid");
+    body.crumble();
     let elapsed = start.elapsed();
     assert!(elapsed < Duration::from_secs(20), "{elapsed:?}");
 }
@@ -166,7 +166,7 @@ fn crumble_takes_linear_time() {
 fn crumble_detaches_every_voxel() {
     let mut body = ball::<Dim3>(24);
     let voxels = body.grid().solid_count();
-    let parted = body.crumble().expect("the mesh stays valid");
+    let parted = body.crumble();
     assert_eq!(parted.len(), voxels - 1);
     assert_eq!(body.pieces().list.len(), voxels);
     assert_eq!(body.mesh().node_count(), 8 * voxels);
@@ -186,9 +186,7 @@ fn coupled_body_from_3d_stays_in_plane() {
         .set_target_position(space.nth_target_follower(0).unwrap(), [0.0, 0.0, 1.0])
         .unwrap();
     space.step();
-    let hand = space
-        .remove_rigid_body(space.nth_target_follower(0).unwrap())
-        .unwrap();
+    let hand = space.remove(space.nth_target_follower(0).unwrap()).unwrap();
     assert!(hand.velocity()[2] > 0.1);
     let mut plane = weightless::<Dim2>();
     plane.add_rigid_body(hand).expect("the hand is valid");

@@ -3,7 +3,8 @@
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
     Dim, Dim2, Dim3, Event, Joint, JointAnchor, JointKind, Material, MotionType, RigidBody,
-    RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, VoxelGrid, World, WorldConfig,
+    RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, Velocity, VoxelGrid, World,
+    WorldConfig,
 };
 use std::f32::consts::TAU;
 
@@ -128,7 +129,7 @@ fn it_hangs_on_a_nail<D: Dim>() {
     let force = world.joints().get(nail).unwrap().force();
     assert!((force / weight - 1.0).abs() < 0.1, "{force} {weight}");
     // The body wakes and falls when the joint is removed.
-    world.remove_joint(nail).unwrap();
+    world.remove(nail).unwrap();
     for _ in 0..60 {
         world.step();
     }
@@ -190,7 +191,9 @@ fn pin_keeps_two_soft_bodies_together() {
     let pin = world
         .add_joint(Joint::pin(end(a, -0.05), end(b, 0.05)))
         .unwrap();
-    world.add_velocity(a, [-2.0, 0.0, 0.0], [0.0; 3]).unwrap();
+    world
+        .add_velocity(a, Velocity::linear([-2.0, 0.0, 0.0]))
+        .unwrap();
     for _ in 0..120 {
         world.step();
     }
@@ -319,7 +322,7 @@ fn joint_breaks_above_breaking_force_with_event() {
             on(bob, [0.0, -1.0, 0.0]),
             JointAnchor::Position([0.0, -1.0, 0.0]),
         ];
-        let joint = Joint::new(ends, JointKind::Pin).breaking_at(bears);
+        let joint = Joint::new(ends, JointKind::Pin).with_breaking_force(bears);
         let id = world.add_joint(joint).unwrap();
         let mut told = 0;
         for _ in 0..60 {
@@ -345,11 +348,11 @@ fn joint_breaks_when_body_is_removed() {
         .add_joint(Joint::pin(end, JointAnchor::Position(UP)))
         .unwrap();
     world.step();
-    world.remove_soft_body(id).unwrap();
+    world.remove(id).unwrap();
     assert_eq!(world.joint_anchor_positions(joint).unwrap(), None);
     world.step();
     assert_eq!(turns(0, world.events()), 1);
-    assert!(world.remove_joint(joint).is_err());
+    assert!(world.remove(joint).is_err());
 }
 
 /// A pin keeps its voxels while the body tears around them.
@@ -370,7 +373,7 @@ fn pin_keeps_voxels_while_body_crumbles() {
     for _ in 0..30 {
         world.step();
     }
-    world.soft_body_mut(id).unwrap().crumble().unwrap();
+    world.soft_body_mut(id).unwrap().crumble();
     for _ in 0..60 {
         world.step();
         let [held, place] = world.joint_anchor_positions(pin).unwrap().unwrap();
@@ -395,21 +398,21 @@ fn add_joint_names_invalid_field() {
         (Joint::new(good, spring(1.0, 1.0, f32::INFINITY)), "length"),
         (Joint::new(good, JointKind::Rope { length: 0.0 }), "length"),
         (
-            Joint::new(good, JointKind::Pin).breaking_at(f32::NAN),
-            "force",
+            Joint::new(good, JointKind::Pin).with_breaking_force(f32::NAN),
+            "breaking_force",
         ),
         (
             Joint::pin(good[0], JointAnchor::Position([f32::NAN; 3])),
-            "place",
+            "joint anchor 2: at",
         ),
-        (Joint::pin(good[1], good[1]), "ends"),
-        (Joint::pin(good[0], good[0]), "ends"),
+        (Joint::pin(good[1], good[1]), "joint anchors"),
+        (Joint::pin(good[0], good[0]), "joint anchors"),
     ];
     for (joint, word) in bad {
-        let refused = world.add_joint(joint).unwrap_err().to_string();
-        assert!(refused.contains(word), "{refused}");
+        let error = world.add_joint(joint).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("{word} must be")), "{error}");
     }
-    world.remove_rigid_body(bob).unwrap();
+    world.remove(bob).unwrap();
     assert!(world.add_joint(Joint::new(good, JointKind::Pin)).is_err());
 }
 

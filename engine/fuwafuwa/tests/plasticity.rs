@@ -383,14 +383,26 @@ fn clay_stays_bounded_under_random_blows() {
 #[test]
 fn body_rejects_invalid_plasticity() {
     for (yield_strain, limit, expected) in [
-        (0.0, 2.0, "material 1: yield_strain = 0 must be positive"),
+        (
+            0.0,
+            2.0,
+            "material 1: yield_strain must be positive, given 0.0",
+        ),
         (
             f32::NAN,
             2.0,
-            "material 1: yield_strain = NaN must be positive",
+            "material 1: yield_strain must be positive, given NaN",
         ),
-        (0.1, 0.5, "material 1: plastic_limit = 0.5 must be 1 to 4"),
-        (0.1, 5.0, "material 1: plastic_limit = 5 must be 1 to 4"),
+        (
+            0.1,
+            0.5,
+            "material 1: plastic_limit must be 1 to 4, given 0.5",
+        ),
+        (
+            0.1,
+            5.0,
+            "material 1: plastic_limit must be 1 to 4, given 5.0",
+        ),
     ] {
         let material = Material {
             yield_strain,

@@ -35,7 +35,7 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
 /// The ball is rotated, so that no element is aligned with an axis.
 fn world<D: Dim>() -> World<D> {
     let mut world = World::new(WEIGHTLESS).unwrap();
-    world.add_soft_body(ball::<D>(16).rotated(Rotation::in_plane(0.4), [0.0; 3]));
+    world.add_soft_body(ball::<D>(16).rotated_about(Rotation::in_plane(0.4), [0.0; 3]));
     world
         .add_rigid_body(RigidBody::fixed(
             Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]),

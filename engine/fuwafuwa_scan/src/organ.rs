@@ -4,7 +4,7 @@ use crate::placement::Placement;
 use crate::region::{fill_holes, keep_largest, solid_box};
 use crate::scan::Scan;
 use crate::segmentation::Segmentation;
-use fuwafuwa::{BuildError, Dim3, Point, VoxelGrid};
+use fuwafuwa::{Dim3, Error, Point, VoxelGrid};
 use std::ops::RangeInclusive;
 
 /// Allowed numbers of voxels along an organ's longest side. Fewer show no shape; a MagicaVoxel model has no
@@ -63,7 +63,7 @@ pub enum OrganError {
     Empty,
     /// The engine rejects the grid.
     #[error("{0}")]
-    Grid(BuildError),
+    Grid(Error),
 }
 
 /// An organ on the engine's axes: x to the patient's right, y up to the head, z to the back.

@@ -89,7 +89,7 @@ pub use shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, Obstac
 use budget::Budget;
 use error::{FieldError, Origin, require, require_vector};
 use fuwafuwa::{Dim, Material, Shape, World, WorldConfig};
-use fuwafuwa::{Refused, SHORTEST_TICK, TICK};
+use fuwafuwa::{SHORTEST_TICK, TICK};
 use joint::JointTargets;
 use serde::{Deserialize, Serialize};
 
@@ -266,17 +266,8 @@ impl Scene {
             most_substeps: self.most_substeps,
             tick: self.tick,
         };
-        let mut world = World::new(settings).map_err(|refused| match refused {
-            Refused::Setting { field, expected } => {
-                let found = match field {
-                    "drag" => self.drag.to_string(),
-                    "tick" => self.tick.to_string(),
-                    _ => self.most_substeps.to_string(),
-                };
-                FieldError::new(field, format!("expected {expected}, found {found}"))
-            }
-            refused => FieldError::new("gravity", refused),
-        })?;
+        let world = World::new(settings);
+        let mut world = world.map_err(|error| FieldError::engine("gravity", error))?;
         let count = self.material.len();
         let expected = format!("expected {MAX_MATERIALS} at most, found {count}");
         require(count <= MAX_MATERIALS, "material", expected)?;

@@ -3,7 +3,7 @@
 mod damage;
 
 use damage::Noise;
-use fuwafuwa::{BuildError, Dim2, VoxelGrid};
+use fuwafuwa::{Dim2, Error, VoxelGrid};
 use fuwafuwa_scenes::import::{
     Colours, FilePosition, ImportError, MAX_FILE_BYTES, MAX_PIXELS, Picture, Problem, png,
 };
@@ -280,7 +280,7 @@ fn png_rejects_invalid_arguments() {
         let problem = error.problem;
         assert!(matches!(
             problem,
-            Problem::Grid(BuildError::BadVoxelSize(_))
+            Problem::Grid(Error::InvalidParameter { .. })
         ));
     }
 }

@@ -3,7 +3,7 @@
 mod damage;
 
 use damage::Noise;
-use fuwafuwa::{BuildError, Dim3, VoxelGrid};
+use fuwafuwa::{Dim3, Error, VoxelGrid};
 use fuwafuwa_scenes::import::{Colours, FilePosition, ImportError, Model, Problem, vox};
 
 fn chunk(name: &[u8; 4], contents: &[u8], children: &[u8]) -> Vec<u8> {
@@ -241,7 +241,7 @@ fn vox_rejects_invalid_voxel_size() {
     let problem = error.problem;
     assert!(matches!(
         problem,
-        Problem::Grid(BuildError::BadVoxelSize(_))
+        Problem::Grid(Error::InvalidParameter { .. })
     ));
 }
 

@@ -122,7 +122,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "dim = 2",
             "dim = 2\ndrag = 11",
-            ", line 2: drag: expected 0 to 10, found 11",
+            ", line 2: drag: expected 0 to 10, found 11.0",
         ),
         (
             "dim = 2",
@@ -132,7 +132,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "young = 5000.0",
             "young = -1.0",
-            ", line 3: material 1, young: expected a positive number of pascals, found -1",
+            ", line 3: material 1, young: expected positive and finite [Pa], found -1.0",
         ),
         (
             "young = 5000.0",
@@ -142,7 +142,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "young = 5000.0",
             "density = 0",
-            ", line 3: material 1, density: expected positive and finite, found 0",
+            ", line 3: material 1, density: expected positive and finite, found 0.0",
         ),
         (
             "shape = \"ball\"",
@@ -162,7 +162,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "shape = \"ball\"",
             "shape = \"empty\"",
-            ", line 5: body 1, part: the shape is empty: no voxel is solid",
+            ", line 5: body 1, part: the grid is empty: at least one voxel must be solid",
         ),
         (
             "n = 12",
@@ -182,7 +182,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "shape = \"ball\"\nn = 12",
             "shape = \"ring\"\nn = 1",
-            ", line 7: body 1, n: the shape is empty: no voxel is solid",
+            ", line 7: body 1, n: the grid is empty: at least one voxel must be solid",
         ),
         (
             body,
@@ -232,7 +232,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             body,
             "\n[[body.part]]\nfill = 0\nball = { centre = [0, 0, 0], radius = 9 }",
-            ", line 9: body 1, part: the shape is empty: no voxel is solid",
+            ", line 9: body 1, part: the grid is empty: at least one voxel must be solid",
         ),
         (
             obstacle,
@@ -247,12 +247,12 @@ fn error_names_file_line_field_and_expectation() {
         (
             "radius = 0.5",
             "radius = -0.5",
-            ", line 11: obstacle 1, ball, radius: expected positive and finite",
+            ", line 11: obstacle 1, ball, radius: expected positive and finite, found -0.5",
         ),
         (
             obstacle,
             "ball = { centre = [0, -1, 0], radius = 0.5 }\nfriction = nan",
-            ", line 12: obstacle 1, friction: expected 0 or more, found NaN",
+            ", line 12: obstacle 1, friction: expected 0 or more, and finite, found NaN",
         ),
         (
             "radius = 0.1",

@@ -41,9 +41,7 @@ impl<D: Dim> Round<D> {
         let starts: Vec<RigidBody> = starts.collect();
         // The other hands are added when their players join.
         for &hand in hands.iter().skip(1) {
-            world
-                .remove_rigid_body(hand)
-                .expect("the world has this hand");
+            world.remove(hand).expect("the world has this hand");
         }
         Self {
             players: hands.into_iter().take(1).collect(),

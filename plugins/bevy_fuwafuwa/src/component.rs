@@ -10,7 +10,9 @@ use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::world::DeferredWorld;
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
-use fuwafuwa::{BodyId, BuildError, MotionType, Layers, Material, RigidId, Shape, VoxelGrid};
+use fuwafuwa::{
+    Error, Layers, Material, MotionType, RigidBodyHandle, Shape, SoftBodyHandle, VoxelGrid,
+};
 use std::marker::PhantomData;
 
 /// Soft body, made from voxels. It enters the world at the beginning of the next tick, at the pose of its
@@ -26,7 +28,7 @@ pub struct SoftBody<D: Dimension> {
 /// Source of the voxels of a body.
 #[derive(Clone, Debug)]
 pub(crate) enum Source<D: Dimension> {
-    Grid(Result<VoxelGrid<D>, BuildError>),
+    Grid(Result<VoxelGrid<D>, Error>),
     Asset(Handle<Voxels<D>>),
 }
 
@@ -68,7 +70,7 @@ pub struct WithoutMesh;
 
 /// Engine id of the soft body of an entity. See also [`crate::SoftWorld::entity_of_body`].
 #[derive(Component, Copy, Clone, Debug, PartialEq, Eq)]
-pub struct SoftBodyId(pub BodyId);
+pub struct SoftBodyId(pub SoftBodyHandle);
 
 /// Rigid body: fixed, kinematic, coupled or dynamic. The shape is given in the frame of the entity, best
 /// centred on the origin; the `Transform` scales, rotates and translates it when it enters the world. After
@@ -111,7 +113,7 @@ pub struct TargetPosition(pub Vec3);
 
 /// Engine id of the rigid body of an entity. See also [`crate::SoftWorld::entity_of_rigid`].
 #[derive(Component, Copy, Clone, Debug, PartialEq, Eq)]
-pub struct RigidBodyId(pub RigidId);
+pub struct RigidBodyId(pub RigidBodyHandle);
 
 impl<D: Dimension> SoftBody<D> {
     /// Disc (2D) or ball (3D), `across` voxels wide, with a diameter in metres.
@@ -139,8 +141,8 @@ impl<D: Dimension> From<VoxelGrid<D>> for SoftBody<D> {
 }
 
 /// Keeps a failed grid; the error is reported when the body enters the world.
-impl<D: Dimension> From<Result<VoxelGrid<D>, BuildError>> for SoftBody<D> {
-    fn from(grid: Result<VoxelGrid<D>, BuildError>) -> Self {
+impl<D: Dimension> From<Result<VoxelGrid<D>, Error>> for SoftBody<D> {
+    fn from(grid: Result<VoxelGrid<D>, Error>) -> Self {
         Self {
             source: Source::Grid(grid),
         }
@@ -168,7 +170,7 @@ impl<D: Dimension> RigidBody<D> {
             restitution: 0.0,
             is_sensor: false,
             layers: Layers::default(),
-            drive: MotionType::Fixed,
+            motion_type: MotionType::Fixed,
             dim: PhantomData,
         }
     }
@@ -182,19 +184,24 @@ impl<D: Dimension> RigidBody<D> {
     /// Kinematic disc (2D) or ball (3D) of a radius [m], moved by its `Transform`.
     pub fn kinematic_ball(radius: f32) -> Self {
         let centre = [0.0; 3];
-        Self::fixed(Shape::Ball { centre, radius }).with_drive(MotionType::Kinematic)
+        Self::fixed(Shape::Ball { centre, radius }).with_motion_type(MotionType::Kinematic)
     }
 
     /// Dynamic rigid body with friction 0.5. The shape must be a ball, box or capsule; the mass [kg] is
     /// spread evenly over it. The body rotates about the middle of its shape, even if that is not the origin.
     pub fn dynamic(shape: Shape, mass: f32) -> Self {
-        let drive = MotionType::Dynamic { mass };
-        Self::fixed(shape).with_friction(0.5).with_drive(drive)
+        let motion_type = MotionType::Dynamic { mass };
+        Self::fixed(shape)
+            .with_friction(0.5)
+            .with_motion_type(motion_type)
     }
 
     /// Sets the type of motion.
-    pub fn with_motion_type(self, drive: MotionType) -> Self {
-        Self { drive, ..self }
+    pub fn with_motion_type(self, motion_type: MotionType) -> Self {
+        Self {
+            motion_type,
+            ..self
+        }
     }
 
     /// Sets the friction.

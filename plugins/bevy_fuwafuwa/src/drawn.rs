@@ -8,7 +8,7 @@ use bevy_asset::{Assets, Handle, RenderAssetUsages};
 use bevy_ecs::component::Component;
 use bevy_math::Vec3;
 use bevy_mesh::{Indices, Mesh, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues};
-use fuwafuwa::Body;
+use fuwafuwa::SoftBody;
 
 /// Mesh of a body and the surface from which it is written.
 #[derive(Component)]
@@ -46,7 +46,7 @@ impl<D: Dimension> BodyMesh<D> {
 
     /// Writes the mesh of a body relative to a pose. Does nothing if the body sleeps and the pose is
     /// unchanged.
-    pub fn follow(&mut self, body: &Body<D>, pose: &Pose, meshes: &mut Assets<Mesh>) {
+    pub fn follow(&mut self, body: &SoftBody<D>, pose: &Pose, meshes: &mut Assets<Mesh>) {
         let is_asleep = body.pieces().list.iter().all(|piece| piece.asleep);
         if is_asleep && self.asleep_at == Some(*pose) {
             return;

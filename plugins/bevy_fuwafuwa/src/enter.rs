@@ -8,7 +8,7 @@ use crate::component::{
 use crate::dimension::Dimension;
 use crate::drawn::{BodyMesh, empty_mesh};
 use crate::message::Rejection;
-use crate::pose::{Pose, engine_rotation};
+use crate::pose::{Pose, engine_rotation, engine_velocity};
 use crate::problem::{Problem, Rejected};
 use crate::queue::{Queue, Request};
 use crate::world::SoftWorld;
@@ -20,7 +20,7 @@ use bevy_ecs::world::World;
 use bevy_math::Vec3;
 use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
-use fuwafuwa::{Body, MotionType, Material, RigidBody, Shape, VoxelGrid};
+use fuwafuwa::{Material, MotionType, Shape, VoxelGrid};
 
 /// Outcome of a request to enter the world.
 enum Entry {
@@ -85,7 +85,7 @@ fn add_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Pr
     let transform = transform_of(world, entity)?;
     let pose = Pose::of(&transform)?;
     let materials = materials_of(world, entity, &grid);
-    let body = Body::new(grid.scaled(pose.scale)?, &materials)?;
+    let body = fuwafuwa::SoftBody::new(grid.scaled(pose.scale)?, &materials)?;
     let body = pose.place(body);
 
     let velocity = world.get::<Velocity>(entity).copied();
@@ -95,7 +95,7 @@ fn add_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Pr
     let engine = soft_world.engine_mut();
     let mut outcome = Ok(());
     if let Some(Velocity { linear, angular }) = velocity {
-        outcome = engine.add_velocity(id, linear.into(), angular.into());
+        outcome = engine.add_velocity(id, engine_velocity(linear, angular));
     }
     if let Some(GravityScale(scale)) = gravity {
         outcome = outcome.and_then(|()| engine.set_gravity_scale(id, scale));
@@ -176,9 +176,13 @@ fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, P
     let pose = Pose::of(&transform)?;
     let velocity = world.get::<Velocity>(entity).copied();
     let form = pose.form(rigid.shape);
-    let middle = middle_of(&form, rigid.drive);
+    let middle = middle_of(&form, rigid.motion_type);
     let at = pose.translation + pose.rotation * middle;
-    let own = RigidBody::driven(form.moved((-middle).into()), at.into(), rigid.drive);
+    let own = fuwafuwa::RigidBody::new(
+        form.translated((-middle).into()),
+        at.into(),
+        rigid.motion_type,
+    );
     let mut own = own.rotated(engine_rotation(transform.rotation));
     (own.friction, own.restitution) = (rigid.friction, rigid.restitution);
     (own.is_sensor, own.layers) = (rigid.is_sensor, rigid.layers);
@@ -187,10 +191,9 @@ fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, P
     let id = soft_world.add_rigid(entity, own)?;
     if let Some(Velocity { linear, angular }) = velocity
         && velocity != Some(Velocity::default())
-        && let Err(refused) =
-            soft_world
-                .engine_mut()
-                .set_velocity(id, linear.into(), angular.into())
+        && let Err(refused) = soft_world
+            .engine_mut()
+            .set_velocity(id, engine_velocity(linear, angular))
     {
         soft_world.remove_rigid(entity);
         return Err(refused.into());
@@ -207,10 +210,10 @@ fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, P
 
 /// Returns the point of the shape that becomes the origin in the engine: the middle of a dynamic body, about
 /// which it rotates.
-fn middle_of(form: &Shape, drive: MotionType) -> Vec3 {
+fn middle_of(form: &Shape, motion_type: MotionType) -> Vec3 {
     let [low, high] = form.bounds().map(Vec3::from);
     let middle = 0.5 * (low + high);
-    match drive {
+    match motion_type {
         // An unbounded shape has no middle; the engine rejects it.
         MotionType::Dynamic { .. } if middle.is_finite() => middle,
         _ => Vec3::ZERO,

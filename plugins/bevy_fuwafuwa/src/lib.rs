@@ -111,17 +111,19 @@ pub type RigidBody3d = RigidBody<Dim3>;
 /// The items that most programs need.
 pub mod prelude {
     pub use crate::component::{
-        ExternalImpulse, TargetPosition, GravityScale, RigidBody, SoftBody, SoftColours, SoftMaterials,
-        Velocity,
+        ExternalImpulse, GravityScale, RigidBody, SoftBody, SoftColours, SoftMaterials,
+        TargetPosition, Velocity,
     };
     pub use crate::message::{
-        ContactBegan, ContactEnded, Cut, SensorEntered, FellAsleep, JointBroke, SensorExited, PieceDetached, Rejection,
-        Removed, NodeSplit, Touched, Woke,
+        ContactBegan, ContactEnded, Cut, FellAsleep, JointBroke, NodeSplit, PieceDetached,
+        Rejection, Removed, SensorEntered, SensorExited, Touched, Woke,
     };
     pub use crate::{
         FuwafuwaPlugin, FuwafuwaPlugin2d, FuwafuwaPlugin3d, FuwafuwaSystems, Rejected, RigidBody2d,
         RigidBody3d, SoftBody2d, SoftBody3d, SoftQueries, SoftSettings, SoftWorld,
     };
     pub use fuwafuwa::inspect::Elasticity;
-    pub use fuwafuwa::{Dim2, Dim3, MotionType, Layers, Material as SoftMaterial, Shape, VoxelGrid};
+    pub use fuwafuwa::{
+        Dim2, Dim3, Layers, Material as SoftMaterial, MotionType, Shape, VoxelGrid,
+    };
 }

@@ -5,8 +5,8 @@ use crate::component::SoftBody;
 use crate::dimension::Dimension;
 use crate::enter::enter_and_leave;
 use crate::message::{
-    ContactBegan, ContactEnded, Cut, SensorEntered, FellAsleep, JointBroke, SensorExited, PieceDetached, Quarantined,
-    Rejection, Removed, NodeSplit, Touched, Woke,
+    ContactBegan, ContactEnded, Cut, FellAsleep, JointBroke, NodeSplit, PieceDetached, Quarantined,
+    Rejection, Removed, SensorEntered, SensorExited, Touched, Woke,
 };
 use crate::push::{change_settings, push_bodies};
 use crate::queue::Queue;
@@ -20,7 +20,7 @@ use bevy_ecs::intern::Interned;
 use bevy_ecs::schedule::{IntoScheduleConfigs, ScheduleLabel, SystemSet};
 use bevy_math::Vec3;
 use bevy_mesh::Mesh;
-use fuwafuwa::Settings;
+use fuwafuwa::WorldConfig;
 use std::marker::PhantomData;
 
 /// Plugin for soft bodies in 2D or 3D. Add it after `DefaultPlugins`. Without a preceding `AssetPlugin` there
@@ -28,7 +28,7 @@ use std::marker::PhantomData;
 #[derive(Debug)]
 pub struct FuwafuwaPlugin<D: Dimension> {
     schedule: Interned<dyn ScheduleLabel>,
-    settings: Settings,
+    settings: WorldConfig,
     dim: PhantomData<D>,
 }
 
@@ -48,14 +48,14 @@ impl<D: Dimension> Default for FuwafuwaPlugin<D> {
     fn default() -> Self {
         Self {
             schedule: FixedPostUpdate.intern(),
-            settings: Settings::default(),
+            settings: WorldConfig::default(),
             dim: PhantomData,
         }
     }
 }
 
 impl<D: Dimension> FuwafuwaPlugin<D> {
-    /// Runs the plugin in another schedule. Each run is one tick of length [`Settings::tick`], by default
+    /// Runs the plugin in another schedule. Each run is one tick of length [`WorldConfig::tick`], by default
     /// 1/60 s.
     pub fn in_schedule(self, schedule: impl ScheduleLabel) -> Self {
         let schedule = schedule.intern();
@@ -63,13 +63,13 @@ impl<D: Dimension> FuwafuwaPlugin<D> {
     }
 
     /// Sets the initial settings; change [`SoftSettings`] later.
-    pub fn with_settings(self, settings: Settings) -> Self {
+    pub fn with_settings(self, settings: WorldConfig) -> Self {
         Self { settings, ..self }
     }
 
     /// Sets gravity [m/s²].
     pub fn with_gravity(self, gravity: Vec3) -> Self {
-        let settings = Settings {
+        let settings = WorldConfig {
             gravity: gravity.into(),
             ..self.settings
         };

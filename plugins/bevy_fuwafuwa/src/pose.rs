@@ -3,7 +3,7 @@
 use crate::problem::Problem;
 use bevy_math::{Mat3, Quat, Vec3};
 use bevy_transform::components::Transform;
-use fuwafuwa::{Body, Dim, NodeId, Rotation, Shape, VoxelGrid};
+use fuwafuwa::{Dim, NodeId, Rotation, Shape, SoftBody, VoxelGrid};
 
 /// Maximum number of iterations for the rotation. From tick to tick one or two suffice.
 const ROUNDS: usize = 20;
@@ -70,11 +70,11 @@ impl Pose {
     }
 
     /// Moves a new body of a scaled grid to this pose. The origin of the pose is the middle of the grid.
-    pub fn place<D: Dim>(&self, body: Body<D>) -> Body<D> {
+    pub fn place<D: Dim>(&self, body: SoftBody<D>) -> SoftBody<D> {
         let middle = middle(body.grid());
-        body.moved((-middle).into())
-            .rotated(engine_rotation(self.rotation), [0.0; 3])
-            .moved(self.translation.into())
+        body.translated((-middle).into())
+            .rotated_about(engine_rotation(self.rotation), [0.0; 3])
+            .translated(self.translation.into())
     }
 
     /// Scales a shape, without rotation or translation.
@@ -116,10 +116,18 @@ pub fn engine_rotation(rotation: Quat) -> Rotation {
     Rotation::from_quaternion(rotation.to_array())
 }
 
+/// Converts a velocity to the type of the engine.
+pub fn engine_velocity(linear: Vec3, angular: Vec3) -> fuwafuwa::Velocity {
+    fuwafuwa::Velocity {
+        linear: linear.into(),
+        angular: angular.into(),
+    }
+}
+
 /// Returns pose and velocity of a body. The pose is the rigid motion from rest that fits the nodes of the
 /// largest piece best, weighted by mass. The rotation is found iteratively from the previous one [Mueller
 /// 2016]. The velocity is that of the whole body.
-pub fn motion_of<D: Dim>(body: &Body<D>, before: Pose) -> Motion {
+pub fn motion_of<D: Dim>(body: &SoftBody<D>, before: Pose) -> Motion {
     let (size, middle) = (body.grid().voxel_size(), middle(body.grid()));
     let nodes = || body.mesh().nodes();
     let pieces = body.pieces();
@@ -196,7 +204,7 @@ fn nearest_rotation(moment: Mat3, before: Quat) -> Quat {
 }
 
 /// Returns the velocity and angular velocity of a whole body; zero where the result is not finite.
-fn velocity_of<D: Dim>(body: &Body<D>) -> (Vec3, Vec3) {
+fn velocity_of<D: Dim>(body: &SoftBody<D>) -> (Vec3, Vec3) {
     let centre = Vec3::from(body.centre_of_mass());
     let (mut mass, mut linear, mut spin) = (0.0, Vec3::ZERO, Vec3::ZERO);
     let mut inertia = Mat3::ZERO;

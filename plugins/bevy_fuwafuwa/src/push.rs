@@ -3,7 +3,7 @@
 use crate::component::{ExternalImpulse, GravityScale, SoftBodyId, Velocity};
 use crate::dimension::Dimension;
 use crate::message::Rejection;
-use crate::pose::{Pose, engine_rotation};
+use crate::pose::{Pose, engine_rotation, engine_velocity};
 use crate::problem::Problem;
 use crate::world::{SoftSettings, SoftWorld};
 use crate::write::LastWritten;
@@ -12,7 +12,7 @@ use bevy_ecs::message::MessageWriter;
 use bevy_ecs::system::{Commands, Query};
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
-use fuwafuwa::BodyId;
+use fuwafuwa::SoftBodyHandle;
 
 /// Passes changed settings to the engine.
 pub fn change_settings<D: Dimension>(
@@ -21,8 +21,8 @@ pub fn change_settings<D: Dimension>(
     mut rejections: MessageWriter<Rejection>,
 ) {
     if settings.is_changed()
-        && settings.0 != *world.engine().settings()
-        && let Err(refused) = world.engine_mut().set_settings(settings.0)
+        && settings.0 != *world.engine().config()
+        && let Err(refused) = world.engine_mut().set_config(settings.0)
     {
         let (entity, problem) = (None, refused.into());
         rejections.write(Rejection { entity, problem });
@@ -52,7 +52,7 @@ pub fn push_bodies<D: Dimension>(
         else {
             continue;
         };
-        if own.0 != id || world.engine().bodies().get(id).is_err() {
+        if own.0 != id || world.engine().soft_bodies().get(id).is_err() {
             continue;
         }
         let mut reject = |problem| {
@@ -79,7 +79,7 @@ pub fn push_bodies<D: Dimension>(
             let linear = wanted.linear - before.linear;
             let angular = wanted.angular - before.angular;
             let engine = world.engine_mut();
-            if let Err(refused) = engine.add_velocity(id, linear.into(), angular.into()) {
+            if let Err(refused) = engine.add_velocity(id, engine_velocity(linear, angular)) {
                 reject(refused.into());
                 if let Some(mut velocity) = velocity {
                     *velocity = followed.velocity;
@@ -102,7 +102,10 @@ pub fn push_bodies<D: Dimension>(
         }) = impulse.copied()
         {
             let engine = world.engine_mut();
-            let outcome = engine.apply_impulse(id, at.into(), radius, impulse.into());
+            let outcome = engine.apply_impulse(
+                id,
+                fuwafuwa::Impulse::at(at.into(), impulse.into()).within(radius),
+            );
             if let Err(refused) = outcome {
                 reject(refused.into());
             }
@@ -114,7 +117,7 @@ pub fn push_bodies<D: Dimension>(
 /// Moves and rotates a body from its last pose to that of a transform. Returns the rotation applied.
 fn displace<D: Dimension>(
     world: &mut SoftWorld<D>,
-    id: BodyId,
+    id: SoftBodyHandle,
     transform: &Transform,
     followed: &mut LastWritten,
 ) -> Result<Quat, Problem> {
@@ -130,7 +133,7 @@ fn displace<D: Dimension>(
         by.z = 0.0;
     }
     if by != Vec3::ZERO {
-        engine.move_body(id, by.into())?;
+        engine.translate(id, by.into())?;
     }
     // Without a change by the user the body is not rotated at all, so that no rounding error accumulates.
     let mut turn = Quat::IDENTITY;
@@ -138,7 +141,7 @@ fn displace<D: Dimension>(
         to.rotation = from.rotation;
     } else {
         turn = to.rotation * from.rotation.inverse();
-        engine.rotate_body(id, engine_rotation(turn), to.translation.into())?;
+        engine.rotate_about(id, engine_rotation(turn), to.translation.into())?;
     }
     followed.pose = to;
     followed.transform = *transform;

@@ -6,7 +6,7 @@ use bevy_ecs::change_detection::Res;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::system::SystemParam;
 use bevy_math::Vec3;
-use fuwafuwa::{Found, PieceId, Queries, Shape, Thing};
+use fuwafuwa::{PieceId, Queries, Shape, Thing};
 
 /// Spatial queries on the current state. Each query first gathers all bare faces; use [`SoftQueries::engine`]
 /// for many queries at the same time.
@@ -68,12 +68,12 @@ impl<D: Dimension> SoftQueries<'_, D> {
         }
     }
 
-    fn hit(&self, found: Found) -> QueryHit {
+    fn hit(&self, found: fuwafuwa::QueryHit) -> QueryHit {
         let piece = match found.thing {
             Thing::Soft { piece, .. } => Some(piece),
             Thing::RigidBody(_) => None,
         };
-        Hit {
+        QueryHit {
             entity: self.entity(found.thing),
             piece,
             at: found.at.into(),

@@ -1,9 +1,9 @@
 //! Applies changed components to rigid bodies: target, pose, velocity, impulse.
 
-use crate::component::{ExternalImpulse, TargetPosition, RigidBodyId, SoftBodyId, Velocity};
+use crate::component::{ExternalImpulse, RigidBodyId, SoftBodyId, TargetPosition, Velocity};
 use crate::dimension::Dimension;
 use crate::message::Rejection;
-use crate::pose::{Pose, engine_rotation};
+use crate::pose::{Pose, engine_rotation, engine_velocity};
 use crate::problem::Problem;
 use crate::world::SoftWorld;
 use crate::write::LastWritten;
@@ -13,7 +13,7 @@ use bevy_ecs::query::Without;
 use bevy_ecs::system::{Commands, Query};
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
-use fuwafuwa::{MotionType, RigidId};
+use fuwafuwa::{MotionType, RigidBodyHandle};
 
 /// Components of a rigid body that can request a change.
 type RigidChanges<'a> = (
@@ -38,7 +38,7 @@ pub fn steer_rigids<D: Dimension>(
         else {
             continue;
         };
-        if own.0 != id || world.engine().rigids().get(id).is_err() {
+        if own.0 != id || world.engine().rigid_bodies().get(id).is_err() {
             continue;
         }
         let mut check = |outcome: Result<(), Problem>| match outcome {
@@ -61,8 +61,14 @@ pub fn steer_rigids<D: Dimension>(
         let goal = goal.map(|goal| goal.0);
         let bits = |goal: Vec3| goal.to_array().map(f32::to_bits);
         if goal.map(bits) != followed.goal.map(bits) {
-            if let (Some(goal), MotionType::Coupled { .. }) = (goal, engine.rigids()[id].drive) {
-                check(engine.set_goal(id, goal.into()).map_err(Problem::from));
+            if let (Some(goal), MotionType::Coupled { .. }) =
+                (goal, engine.rigid_bodies()[id].motion_type)
+            {
+                check(
+                    engine
+                        .set_target_position(id, goal.into())
+                        .map_err(Problem::from),
+                );
             }
             // Also set on failure, so that the error is reported only once.
             followed.goal = goal;
@@ -71,7 +77,7 @@ pub fn steer_rigids<D: Dimension>(
             && *velocity != followed.velocity
         {
             let Velocity { linear, angular } = *velocity;
-            let outcome = engine.set_velocity(id, linear.into(), angular.into());
+            let outcome = engine.set_velocity(id, engine_velocity(linear, angular));
             if check(outcome.map_err(Problem::from)) {
                 followed.velocity = *velocity;
             } else {
@@ -79,7 +85,10 @@ pub fn steer_rigids<D: Dimension>(
             }
         }
         if let Some(push) = impulse {
-            let outcome = engine.push_rigid(id, push.at.into(), push.impulse.into());
+            let outcome = engine.apply_impulse(
+                id,
+                fuwafuwa::Impulse::at(push.at.into(), push.impulse.into()),
+            );
             check(outcome.map_err(Problem::from));
             commands.entity(entity).try_remove::<ExternalImpulse>();
         }
@@ -89,7 +98,7 @@ pub fn steer_rigids<D: Dimension>(
 /// Moves a rigid body to the pose of a transform; a kinematic one gets it as its target.
 fn put<D: Dimension>(
     world: &mut SoftWorld<D>,
-    id: RigidId,
+    id: RigidBodyHandle,
     transform: &Transform,
     followed: &LastWritten,
 ) -> Result<(), Problem> {
@@ -105,10 +114,10 @@ fn put<D: Dimension>(
         at.z = 0.0;
     }
     let rotation = engine_rotation(transform.rotation);
-    let rigid = &engine.rigids()[id];
-    if rigid.drive == MotionType::Kinematic {
-        engine.set_goal(id, at.into())?;
-        engine.set_goal_rotation(id, rotation)?;
+    let rigid = &engine.rigid_bodies()[id];
+    if rigid.motion_type == MotionType::Kinematic {
+        engine.set_target_position(id, at.into())?;
+        engine.set_target_rotation(id, rotation)?;
         return Ok(());
     }
     // Without a change by the user the body is not rotated at all, so that no rounding error accumulates.
@@ -119,7 +128,7 @@ fn put<D: Dimension>(
         rigid.rotation()
     };
     if is_turned || at != Vec3::from(rigid.position()) {
-        engine.place_rigid(id, at.into(), rotation)?;
+        engine.set_pose(id, at.into(), rotation)?;
     }
     Ok(())
 }

@@ -2,8 +2,8 @@
 
 use crate::dimension::Dimension;
 use crate::message::{
-    ContactBegan, ContactEnded, Cut, SensorEntered, FellAsleep, JointBroke, SensorExited, PieceDetached, Quarantined,
-    Removed, NodeSplit, Touched, Woke,
+    ContactBegan, ContactEnded, Cut, FellAsleep, JointBroke, NodeSplit, PieceDetached, Quarantined,
+    Removed, SensorEntered, SensorExited, Touched, Woke,
 };
 use crate::world::SoftWorld;
 use bevy_ecs::change_detection::ResMut;

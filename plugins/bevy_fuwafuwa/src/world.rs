@@ -3,14 +3,15 @@
 use crate::dimension::Dimension;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::resource::Resource;
-use fuwafuwa::Gone;
-use fuwafuwa::{BodyId, Event, RigidBody, RigidId, Settings, StepReport, World};
+use fuwafuwa::{
+    Error, Event, RigidBody, RigidBodyHandle, SoftBodyHandle, StepReport, World, WorldConfig,
+};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Settings of all worlds of an app, such as gravity, drag and substeps. They can be changed at any time.
 /// Settings that the engine refuses are reported by [`crate::message::Rejection`] and have no effect.
 #[derive(Resource, Copy, Clone, Debug, Default, PartialEq)]
-pub struct SoftSettings(pub Settings);
+pub struct SoftSettings(pub WorldConfig);
 
 /// The engine's world, and the mapping between entities and bodies.
 ///
@@ -20,10 +21,10 @@ pub struct SoftSettings(pub Settings);
 #[derive(Resource, Debug)]
 pub struct SoftWorld<D: Dimension> {
     engine: World<D>,
-    bodies: Pairs<BodyId>,
-    rigids: Pairs<RigidId>,
+    bodies: Pairs<SoftBodyHandle>,
+    rigids: Pairs<RigidBodyHandle>,
     /// Rigid bodies that slept after the last tick.
-    sleepers: BTreeSet<RigidId>,
+    sleepers: BTreeSet<RigidBodyHandle>,
     is_paused: bool,
     single_ticks: u32,
     has_ticked: bool,
@@ -66,7 +67,7 @@ impl<Id: Copy + Ord> Pairs<Id> {
 impl<D: Dimension> Default for SoftWorld<D> {
     fn default() -> Self {
         Self {
-            engine: World::new(Settings::default()).expect("the default settings are valid"),
+            engine: World::new(WorldConfig::default()).expect("the default settings are valid"),
             bodies: Pairs::default(),
             rigids: Pairs::default(),
             sleepers: BTreeSet::new(),
@@ -91,22 +92,22 @@ impl<D: Dimension> SoftWorld<D> {
     }
 
     /// Returns the body of an entity, once it has entered.
-    pub fn body_of(&self, entity: Entity) -> Option<BodyId> {
+    pub fn body_of(&self, entity: Entity) -> Option<SoftBodyHandle> {
         self.bodies.ids.get(&entity).copied()
     }
 
     /// Returns the entity of a soft body.
-    pub fn entity_of_body(&self, body: BodyId) -> Option<Entity> {
+    pub fn entity_of_body(&self, body: SoftBodyHandle) -> Option<Entity> {
         self.bodies.entities.get(&body).copied()
     }
 
     /// Returns the rigid body of an entity, once it has entered.
-    pub fn rigid_of(&self, entity: Entity) -> Option<RigidId> {
+    pub fn rigid_of(&self, entity: Entity) -> Option<RigidBodyHandle> {
         self.rigids.ids.get(&entity).copied()
     }
 
     /// Returns the entity of a rigid body.
-    pub fn entity_of_rigid(&self, rigid: RigidId) -> Option<Entity> {
+    pub fn entity_of_rigid(&self, rigid: RigidBodyHandle) -> Option<Entity> {
         self.rigids.entities.get(&rigid).copied()
     }
 
@@ -162,9 +163,9 @@ impl<D: Dimension> SoftWorld<D> {
 
     /// Returns the rigid entities that fell asleep or woke since the last call, and whether they sleep.
     pub(crate) fn follow_sleep(&mut self) -> Vec<(Entity, bool)> {
-        let asleep = self.engine.rigids().entries();
+        let asleep = self.engine.rigid_bodies().entries();
         let asleep = asleep.filter(|(_, rigid)| rigid.is_asleep());
-        let asleep: BTreeSet<RigidId> = asleep.map(|(id, _)| id).collect();
+        let asleep: BTreeSet<RigidBodyHandle> = asleep.map(|(id, _)| id).collect();
         let before = std::mem::replace(&mut self.sleepers, asleep);
         let changed = before.symmetric_difference(&self.sleepers);
         let told = changed
@@ -173,19 +174,23 @@ impl<D: Dimension> SoftWorld<D> {
     }
 
     /// Returns soft bodies and their entities, in the order of ids.
-    pub(crate) fn soft_entities(&self) -> Vec<(BodyId, Entity)> {
+    pub(crate) fn soft_entities(&self) -> Vec<(SoftBodyHandle, Entity)> {
         let entities = self.bodies.entities.iter();
         entities.map(|(&id, &entity)| (id, entity)).collect()
     }
 
     /// Returns rigid bodies and their entities, in the order of ids.
-    pub(crate) fn rigid_entities(&self) -> Vec<(RigidId, Entity)> {
+    pub(crate) fn rigid_entities(&self) -> Vec<(RigidBodyHandle, Entity)> {
         let entities = self.rigids.entities.iter();
         entities.map(|(&id, &entity)| (id, entity)).collect()
     }
 
-    pub(crate) fn add_body(&mut self, entity: Entity, body: fuwafuwa::Body<D>) -> BodyId {
-        let id = self.engine.add_body(body);
+    pub(crate) fn add_body(
+        &mut self,
+        entity: Entity,
+        body: fuwafuwa::SoftBody<D>,
+    ) -> SoftBodyHandle {
+        let id = self.engine.add_soft_body(body);
         self.bodies.add(entity, id);
         id
     }
@@ -194,21 +199,21 @@ impl<D: Dimension> SoftWorld<D> {
         &mut self,
         entity: Entity,
         rigid: RigidBody,
-    ) -> Result<RigidId, fuwafuwa::Refused> {
-        let id = self.engine.add_rigid(rigid)?;
+    ) -> Result<RigidBodyHandle, Error> {
+        let id = self.engine.add_rigid_body(rigid)?;
         self.rigids.add(entity, id);
         Ok(id)
     }
 
     /// Removes the soft body of an entity. `None` if it has none.
-    pub(crate) fn remove_body(&mut self, entity: Entity) -> Option<Result<(), Gone>> {
+    pub(crate) fn remove_body(&mut self, entity: Entity) -> Option<Result<(), Error>> {
         let id = self.bodies.take(entity)?;
-        Some(self.engine.remove_body(id).map(drop))
+        Some(self.engine.remove(id).map(drop))
     }
 
     /// Removes the rigid body of an entity. `None` if it has none.
-    pub(crate) fn remove_rigid(&mut self, entity: Entity) -> Option<Result<(), Gone>> {
+    pub(crate) fn remove_rigid(&mut self, entity: Entity) -> Option<Result<(), Error>> {
         let id = self.rigids.take(entity)?;
-        Some(self.engine.remove_rigid(id).map(drop))
+        Some(self.engine.remove(id).map(drop))
     }
 }

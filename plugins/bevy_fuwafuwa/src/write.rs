@@ -75,7 +75,7 @@ pub fn write_bodies<D: Dimension>(
     }
     for (id, entity) in world.soft_entities() {
         let (Ok(body), Ok((own, mut transform, mut followed, velocity))) =
-            (world.engine().bodies().get(id), bodies.get_mut(entity))
+            (world.engine().soft_bodies().get(id), bodies.get_mut(entity))
         else {
             continue;
         };
@@ -119,17 +119,18 @@ pub fn write_rigids<D: Dimension>(
         return;
     }
     for (id, entity) in world.rigid_entities() {
-        let (Ok(rigid), Ok((own, mut transform, mut followed, velocity))) =
-            (world.engine().rigids().get(id), rigids.get_mut(entity))
-        else {
+        let (Ok(rigid), Ok((own, mut transform, mut followed, velocity))) = (
+            world.engine().rigid_bodies().get(id),
+            rigids.get_mut(entity),
+        ) else {
             continue;
         };
         let is_settled = followed.is_settled && rigid.is_asleep();
-        if own.0 != id || rigid.drive == MotionType::Fixed || is_settled {
+        if own.0 != id || rigid.motion_type == MotionType::Fixed || is_settled {
             continue;
         }
-        if rigid.drive != MotionType::Kinematic {
-            if rigid.is_free() {
+        if rigid.motion_type != MotionType::Kinematic {
+            if rigid.is_dynamic() {
                 transform.rotation = Quat::from_array(rigid.rotation().quaternion());
             }
             let middle = transform.rotation * followed.middle;
@@ -163,7 +164,7 @@ pub fn write_meshes<D: Dimension>(
     };
     for (id, entity) in world.soft_entities() {
         let (Ok(body), Ok((own, followed, mut drawn))) =
-            (world.engine().bodies().get(id), bodies.get_mut(entity))
+            (world.engine().soft_bodies().get(id), bodies.get_mut(entity))
         else {
             continue;
         };

@@ -46,8 +46,7 @@ mod world;
 
 use std::fmt;
 
-use fuwafuwa::Refused;
-use fuwafuwa::{BodyError, BuildError, Dim2, Dim3, VoxelGrid};
+use fuwafuwa::{Dim2, Dim3, VoxelGrid};
 
 pub use side::EngineResult;
 pub use squash::compare_drop;
@@ -130,12 +129,8 @@ impl Drop {
 /// Error of running a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
-    /// The voxel grid of the body is invalid.
-    Shape(BuildError),
-    /// The body is invalid.
-    Body(BodyError),
-    /// The world refused an operation.
-    World(Refused),
+    /// The engine rejected the grid, the body or an operation on the world.
+    Engine(fuwafuwa::Error),
     /// A field of the scene is out of range.
     Scene {
         /// Name of the field.
@@ -148,9 +143,7 @@ pub enum Error {
 impl fmt::Display for Error {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Error::Shape(error) => write!(formatter, "cannot build the body: {error}"),
-            Error::Body(error) => write!(formatter, "cannot build the body: {error}"),
-            Error::World(error) => write!(formatter, "the world refused the operation: {error}"),
+            Error::Engine(error) => error.fmt(formatter),
             Error::Scene { field, expected } => {
                 write!(formatter, "invalid scene: `{field}` must be {expected}")
             }
@@ -160,21 +153,9 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-impl From<BuildError> for Error {
-    fn from(error: BuildError) -> Self {
-        Error::Shape(error)
-    }
-}
-
-impl From<BodyError> for Error {
-    fn from(error: BodyError) -> Self {
-        Error::Body(error)
-    }
-}
-
-impl From<Refused> for Error {
-    fn from(error: Refused) -> Self {
-        Error::World(error)
+impl From<fuwafuwa::Error> for Error {
+    fn from(error: fuwafuwa::Error) -> Self {
+        Error::Engine(error)
     }
 }
 
@@ -254,7 +235,7 @@ mod tests {
         );
         assert_eq!(theirs(&scene, Effort::default()).err(), Some(error));
         let empty = Drop::stiff(3, 0);
-        let refused = Some(Error::Shape(BuildError::Empty));
+        let refused = Some(Error::Engine(fuwafuwa::Error::EmptyGrid));
         assert_eq!(theirs(&empty, Effort::default()).err(), refused);
         assert_eq!(ours(&empty, None).err(), refused);
     }

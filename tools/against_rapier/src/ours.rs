@@ -2,7 +2,7 @@
 
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{FEWEST_SUBSTEPS, TICK};
-use fuwafuwa::{Body, Dim, Material, RigidBody, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{Dim, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig};
 
 use crate::world::{Falling, Span};
 use crate::{Drop, Result, WIDTH};
@@ -24,23 +24,23 @@ pub fn world<D: Dim>(scene: &Drop, substeps: Option<usize>) -> Result<World<D>> 
         strength: f32::INFINITY,
         ..Material::default()
     };
-    let body = Body::new(VoxelGrid::<D>::ball(scene.n, WIDTH)?, &[material])?;
+    let body = SoftBody::new(VoxelGrid::<D>::ball(scene.n, WIDTH)?, &[material])?;
     let asked = (f64::from(TICK) / body.longest_substep()).ceil() as u32;
     let most = substeps.map_or(asked, |substeps| substeps as u32);
-    let mut world = World::<D>::new(Settings {
+    let mut world = World::<D>::new(WorldConfig {
         gravity: [0.0, -scene.gravity, 0.0],
         drag: 0.0,
         most_substeps: most.clamp(FEWEST_SUBSTEPS, MOST_SUBSTEPS),
-        ..Settings::default()
+        ..WorldConfig::default()
     })?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(RigidBody::fixed(floor, scene.friction))?;
+    world.add_rigid_body(RigidBody::fixed(floor, scene.friction))?;
     let lowest = span(&body).lowest;
-    world.add_body(body.moved([0.0, scene.height - lowest, 0.0]));
+    world.add_soft_body(body.translated([0.0, scene.height - lowest, 0.0]));
     Ok(world)
 }
 
-fn span<D: Dim>(body: &Body<D>) -> Span {
+fn span<D: Dim>(body: &SoftBody<D>) -> Span {
     let pieces = body.piece_views();
     Span::of(
         pieces
@@ -52,7 +52,7 @@ fn span<D: Dim>(body: &Body<D>) -> Span {
 impl<D: Dim> Falling for World<D> {
     fn engine(&self) -> String {
         let elements = self
-            .bodies()
+            .soft_bodies()
             .first()
             .expect("world with a body")
             .mesh()
@@ -65,7 +65,7 @@ impl<D: Dim> Falling for World<D> {
     }
 
     fn span(&self) -> Span {
-        span(self.bodies().first().expect("world with a body"))
+        span(self.soft_bodies().first().expect("world with a body"))
     }
 
     fn substeps(&self) -> usize {
@@ -73,14 +73,14 @@ impl<D: Dim> Falling for World<D> {
     }
 
     fn stiffness_scale(&self) -> f64 {
-        self.bodies()
+        self.soft_bodies()
             .first()
             .expect("world with a body")
             .stiffness_scale()
     }
 
     fn pieces(&self) -> usize {
-        self.bodies()
+        self.soft_bodies()
             .first()
             .expect("world with a body")
             .pieces()
@@ -90,7 +90,7 @@ impl<D: Dim> Falling for World<D> {
 
     fn asleep(&self) -> f64 {
         let pieces = &self
-            .bodies()
+            .soft_bodies()
             .first()
             .expect("world with a body")
             .pieces()

@@ -26,7 +26,7 @@ pub fn compare_tear(scene: &Drop, pitch: usize, effort: Effort) -> Result<[Engin
     cut_to_pieces(&mut theirs, scene, pitch, 0.0);
     let mut ours = ours::world::<Dim2>(scene, None)?;
     let whole = ours
-        .bodies()
+        .soft_bodies()
         .first()
         .expect("world with a body")
         .piece_views()[0];
@@ -63,7 +63,7 @@ trait Cut: Falling {
 impl Cut for World<Dim2> {
     fn cut_all(&mut self, [from, to]: [[f32; 2]; 2]) {
         self.cut(
-            self.nth_body(0).expect("world with a body"),
+            self.nth_soft_body(0).expect("world with a body"),
             &Blade::segment(from, to),
         )
         .unwrap();

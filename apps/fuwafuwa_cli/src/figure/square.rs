@@ -45,10 +45,10 @@ impl Release {
         })?;
         let mut before = SoftBody::<Dim2>::new(grid, &[Material::default()])?;
         for y in 1..height {
-            before.release(&[([MIDDLE, y, 0], RIGHT)])?;
+            before.release(&[([MIDDLE, y, 0], RIGHT)]);
         }
         let mut after = before.clone();
-        after.release(&[([MIDDLE, height, 0], RIGHT)])?;
+        after.release(&[([MIDDLE, height, 0], RIGHT)]);
         open_crack(&mut before, height);
         open_crack(&mut after, height);
         Ok(Self {

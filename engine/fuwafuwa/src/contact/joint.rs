@@ -8,7 +8,8 @@ mod attached_anchor;
 mod joint_anchor;
 mod joint_solver;
 
-use crate::foundation::arena::{Arena, Gone, JointHandle};
+use crate::error::{Error, require};
+use crate::foundation::arena::{Arena, JointHandle};
 use crate::foundation::dim::Dim;
 use crate::math::vector::length;
 use crate::rigid_body::shape::{Vector, flat};
@@ -33,15 +34,15 @@ pub type Joints = Arena<JointHandle, Joint>;
 ///
 /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
 /// let ball = SoftBody::new(VoxelGrid::ball(12, 1.0)?, &[Material::default()])?;
-/// let ball = world.add_body(ball);
+/// let ball = world.add_soft_body(ball);
 /// let top = [0.5, 1.0, 0.0];
 /// let end = JointAnchor::Soft { body: ball, at: top, radius: 0.2 };
 /// let nail = world.add_joint(Joint::pin(end, JointAnchor::Position(top)))?;
 /// for _ in 0..60 {
 ///     world.step();
 /// }
-/// assert!(world.bodies()[ball].centre_of_mass()[1] > 0.2);
-/// world.remove_joint(nail)?;
+/// assert!(world.soft_bodies()[ball].centre_of_mass()[1] > 0.2);
+/// world.remove(nail)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -59,9 +60,6 @@ pub struct Joint {
     /// Magnitude of the joint force in the last substep [N].
     force: f32,
 }
-
-/// Name of an invalid parameter, and the expected value.
-pub type BadJoint = (&'static str, &'static str);
 
 impl Joint {
     /// Returns a joint of any kind that never breaks.
@@ -86,7 +84,7 @@ impl Joint {
 
     /// Returns the joint with a breaking force [N].
     #[must_use]
-    pub fn breaking_at(self, force: f32) -> Self {
+    pub fn with_breaking_force(self, force: f32) -> Self {
         Self {
             breaking_force: force,
             ..self
@@ -103,7 +101,7 @@ impl Joint {
         &mut self,
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
-    ) -> Result<(), Gone> {
+    ) -> Result<(), Error> {
         for (anchor, end) in self.anchors.iter_mut().zip(&self.ends) {
             *anchor = AttachedAnchor::of(end, bodies, rigids)?;
         }
@@ -139,31 +137,37 @@ impl Joint {
     }
 
     /// Checks that all parameters are in range.
-    pub(crate) fn check(&self) -> Result<(), BadJoint> {
-        for end in &self.ends {
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        for (number, end) in (1..).zip(&self.ends) {
             let (at, radius) = match *end {
                 JointAnchor::Position(at) | JointAnchor::RigidBody { at, .. } => (at, 0.0),
                 JointAnchor::Soft { at, radius, .. } => (at, radius),
             };
             let is_near = at.iter().all(|k| k.abs() <= FARTHEST);
-            require(is_near, "place of an end", "within 1e6 m of the origin")?;
-            require(
-                (0.0..=FARTHEST).contains(&radius),
-                "radius of a soft joint anchor",
-                "0 to 1e6 m",
-            )?;
+            let of_anchor = |error: Error| error.of(format_args!("joint anchor {number}"));
+            let expected = "within 1e6 m of the origin";
+            require(is_near, "at", expected, at).map_err(of_anchor)?;
+            let is_valid = (0.0..=FARTHEST).contains(&radius);
+            require(is_valid, "radius", "0 to 1e6 m", radius).map_err(of_anchor)?;
         }
-        let is_of_two = match self.ends {
-            [JointAnchor::Position(_), JointAnchor::Position(_)] => false,
+        let wrong = match self.ends {
+            [JointAnchor::Position(_), JointAnchor::Position(_)] => Some("two points of the world"),
             [
                 JointAnchor::RigidBody { rigid, .. },
                 JointAnchor::RigidBody { rigid: other, .. },
-            ] => rigid != other,
-            _ => true,
+            ] if rigid == other => Some("twice the same rigid body"),
+            _ => None,
         };
-        let expected = "on two different objects, at least one of them a body";
-        require(is_of_two, "joint ends", expected)?;
-        require(self.breaking_force > 0.0, "breaking force", "positive")?;
+        if let Some(given) = wrong {
+            let expected = "on two different objects, at least one of them a body";
+            return Err(Error::parameter(
+                "joint anchors",
+                expected,
+                format_args!("{given}"),
+            ));
+        }
+        let force = self.breaking_force;
+        require(force > 0.0, "breaking_force", "positive", force)?;
         let is_within = |k: f32, least: f32| (least..=f32::MAX).contains(&k);
         match self.tie {
             JointKind::Pin => Ok(()),
@@ -171,6 +175,7 @@ impl Joint {
                 is_within(length, f32::MIN_POSITIVE),
                 "length",
                 "positive and finite",
+                length,
             ),
             JointKind::Spring {
                 stiffness,
@@ -178,9 +183,11 @@ impl Joint {
                 length,
             } => {
                 let is_stiff = is_within(stiffness, f32::MIN_POSITIVE);
-                require(is_stiff, "stiffness", "positive and finite")?;
-                require(is_within(damping, 0.0), "damping", "0 or more, and finite")?;
-                require(is_within(length, 0.0), "length", "0 or more, and finite")
+                let expected = "positive and finite";
+                require(is_stiff, "stiffness", expected, stiffness)?;
+                let expected = "0 or more, and finite";
+                require(is_within(damping, 0.0), "damping", expected, damping)?;
+                require(is_within(length, 0.0), "length", expected, length)
             }
         }
     }
@@ -246,8 +253,4 @@ pub(crate) fn relax<D: Dim>(
         }
     }
     broken
-}
-
-fn require(is_good: bool, field: &'static str, expected: &'static str) -> Result<(), BadJoint> {
-    is_good.then_some(()).ok_or((field, expected))
 }

@@ -1,6 +1,7 @@
 //! Generational arenas and their handles. An item keeps its slot while others are removed, and a handle to a
 //! removed item is detected as stale.
 
+use crate::error::Error;
 use crate::foundation::ids::{Id, IndexVec, id};
 use std::fmt;
 
@@ -90,7 +91,7 @@ impl BodySlot {
 handle! {
     /// Handle of a soft body in a [`World`](crate::World). Adding or removing other bodies does not change
     /// it.
-    SoftBodyHandle, "body", BodySlot
+    SoftBodyHandle, "soft body", BodySlot
 }
 handle! {
     /// Handle of a rigid body in a [`World`](crate::World). Adding or removing other rigid bodies does not
@@ -107,25 +108,6 @@ handle! {
     /// Handle of a knife in a [`World`](crate::World). Adding or removing other knives does not change it.
     KnifeHandle, "knife", KnifeSlot
 }
-
-/// Error for a stale handle: the item was removed, or was never in this world. A handle from another world is
-/// not always detected, because the same slot and generation may be in use in both.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Gone {
-    /// Kind of the item, such as "body" or "joint".
-    pub kind: &'static str,
-    /// Slot of the handle.
-    pub slot: u32,
-}
-
-impl fmt::Display for Gone {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { kind, slot } = self;
-        write!(f, "stale {kind} handle: slot {slot} was removed or reused")
-    }
-}
-
-impl std::error::Error for Gone {}
 
 /// Generational arena: items by handle, iterated in the order of their slots.
 #[derive(Clone, Debug)]
@@ -157,22 +139,22 @@ impl<K: Handle, T> Arena<K, T> {
     /// Returns the item of a handle.
     ///
     /// # Errors
-    /// [`Gone`] if the handle is stale.
-    pub fn get(&self, id: K) -> Result<&T, Gone> {
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    pub fn get(&self, id: K) -> Result<&T, Error> {
         let (own, generation) = id.parts();
         let slot = self.slots.get(own.index());
         let slot = slot.filter(|slot| slot.generation == generation);
         slot.and_then(|slot| slot.thing.as_ref())
-            .ok_or(gone::<K>(own))
+            .ok_or_else(|| stale::<K>(own))
     }
 
     /// Returns the item of a handle, mutably; see [`Arena::get`].
-    pub(crate) fn get_mut(&mut self, id: K) -> Result<&mut T, Gone> {
+    pub(crate) fn get_mut(&mut self, id: K) -> Result<&mut T, Error> {
         let (own, generation) = id.parts();
         let slot = self.slots.get_mut(own.index());
         let slot = slot.filter(|slot| slot.generation == generation);
         slot.and_then(|slot| slot.thing.as_mut())
-            .ok_or(gone::<K>(own))
+            .ok_or_else(|| stale::<K>(own))
     }
 
     /// Iterates over the items in the order of their slots.
@@ -225,12 +207,12 @@ impl<K: Handle, T> Arena<K, T> {
     }
 
     /// Removes an item; the others keep their slots.
-    pub(crate) fn remove(&mut self, id: K) -> Result<T, Gone> {
+    pub(crate) fn remove(&mut self, id: K) -> Result<T, Error> {
         let (own, _) = id.parts();
         self.get(id)?;
         let slot = &mut self.slots[own];
         slot.generation = slot.generation.wrapping_add(1);
-        slot.thing.take().ok_or(gone::<K>(own))
+        slot.thing.take().ok_or_else(|| stale::<K>(own))
     }
 
     /// Returns the number of slots, free ones included.
@@ -294,8 +276,9 @@ impl<K: Handle, T> Arena<K, T> {
     }
 }
 
-fn gone<K: Handle>(slot: K::Slot) -> Gone {
-    Gone {
+#[cold]
+fn stale<K: Handle>(slot: K::Slot) -> Error {
+    Error::InvalidHandle {
         kind: K::KIND,
         slot: slot.index() as u32,
     }
@@ -318,7 +301,7 @@ impl<K: Handle, T> std::ops::Index<K> for Arena<K, T> {
     /// # Panics
     /// If the handle is stale. [`Arena::get`] returns an error instead.
     fn index(&self, id: K) -> &T {
-        self.get(id).unwrap_or_else(|gone| panic!("{gone}"))
+        self.get(id).unwrap_or_else(|error| panic!("{error}"))
     }
 }
 
@@ -338,12 +321,12 @@ mod tests {
             ["ball", "cube", "heart"]
         );
         assert_ne!(cube, ring);
-        let gone = names.get(ring).unwrap_err();
+        let error = names.get(ring).unwrap_err();
         assert_eq!(
-            gone.to_string(),
-            "stale body handle: slot 1 was removed or reused"
+            error.to_string(),
+            "stale soft body handle: slot 1 was removed or reused, or belongs to another world"
         );
-        assert_eq!(names.remove(ring), Err(gone));
+        assert_eq!(names.remove(ring), Err(error));
         let all: Vec<SoftBodyHandle> = names.entries().map(|(id, _)| id).collect();
         assert_eq!(all, [ball, cube, heart]);
     }

@@ -11,7 +11,6 @@ use crate::soft_body::SoftBody;
 use crate::topology::cell_hierarchy::Grading;
 use crate::topology::changes::Changes;
 use crate::topology::connectivity::faces_around;
-use crate::topology::mesh::Defect;
 use std::collections::BTreeSet;
 
 /// Cutting segment or parallelogram: all points `from` + a `across` + b `along` with a and b between 0 and 1.
@@ -65,27 +64,21 @@ pub struct CutReport {
 
 impl<D: Dim> SoftBody<D> {
     /// Cuts along a blade.
-    ///
-    /// # Errors
-    /// A [`Defect`] if the mesh becomes inconsistent, which is a bug in this library.
     #[inline(never)]
-    pub fn cut(&mut self, blade: &Blade) -> Result<CutReport, Defect> {
+    pub fn cut(&mut self, blade: &Blade) -> CutReport {
         if self.topology.pyramid.grading() == Grading::Coarse {
-            return Ok(CutReport::default());
+            return CutReport::default();
         }
-        let (released, changes) = self.open(&self.faces_across(blade))?;
-        Ok(CutReport {
+        let (released, changes) = self.open(&self.faces_across(blade));
+        CutReport {
             released,
             detached: changes.detached,
-        })
+        }
     }
 
     /// Opens faces, each given by the voxel before it and its axis. Returns the positions at which nodes were
     /// released [m], and the changes.
-    pub(crate) fn open(
-        &mut self,
-        opened: &BTreeSet<(Point, usize)>,
-    ) -> Result<(Vec<Vector>, Changes), Defect> {
+    pub(crate) fn open(&mut self, opened: &BTreeSet<(Point, usize)>) -> (Vec<Vector>, Changes) {
         let mut points: BTreeSet<Point> = BTreeSet::new();
         for &(voxel, axis) in opened {
             for corner in 0..D::CORNERS / 2 {
@@ -98,15 +91,12 @@ impl<D: Dim> SoftBody<D> {
         }
         let positions = releases.iter().filter_map(|&(at, _)| self.position_of(at));
         let released = positions.collect();
-        Ok((released, self.tear(&releases)?))
+        (released, self.tear(&releases))
     }
 
     /// Separates all voxels, so that only pieces of one voxel remain. Returns the detached pieces.
-    ///
-    /// # Errors
-    /// A [`Defect`] if the mesh becomes inconsistent, which is a bug in this library.
     #[inline(never)]
-    pub fn crumble(&mut self) -> Result<Vec<PieceId>, Defect> {
+    pub fn crumble(&mut self) -> Vec<PieceId> {
         let octants = |at: Point| (0..D::CORNERS).map(move |octant| (at, 1 << octant));
         let everything: Vec<(Point, u8)> = self
             .topology

@@ -252,8 +252,7 @@ mod tests {
         for _ in 0..60 {
             let at = [0, 1, 2].map(|axis: usize| if axis < D::N { random(n as i32) } else { 0 });
             let side = random(254) as u8 + 1;
-            body.release(&[(at, side)])
-                .expect("the mesh stays consistent");
+            body.release(&[(at, side)]);
         }
         let mut fresh = BreakableNodes::default();
         let nodes: Vec<NodeId> = body.topology.mesh.nodes().map(|(id, _)| id).collect();

@@ -20,6 +20,7 @@ mod edge_sample;
 mod material_point;
 mod swept_area;
 
+use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, KnifeHandle, RigidBodyHandle};
 use crate::foundation::dim::Dim;
 use crate::math::vector::{cross, dot, is_finite, length, minus, scaled};
@@ -38,15 +39,15 @@ pub type Knives = Arena<KnifeHandle, Knife>;
 /// use fuwafuwa::{SoftBody, Dim2, Event, Knife, Material, RigidBody, WorldConfig, Shape, VoxelGrid, World};
 ///
 /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
-/// world.add_rigid(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
-/// world.add_body(SoftBody::new(VoxelGrid::cube(16, 1.0)?, &[Material::default()])?);
+/// world.add_rigid_body(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
+/// world.add_soft_body(SoftBody::new(VoxelGrid::cube(16, 1.0)?, &[Material::default()])?);
 /// let mut hand = RigidBody::coupled_ball([0.53, 1.2, 0.0], 0.05);
 /// hand.is_sensor = true; // the edge alone touches
-/// let hand = world.add_rigid(hand)?;
+/// let hand = world.add_rigid_body(hand)?;
 /// let knife = world.add_knife(Knife::new(hand, [[0.0; 3]; 2], [0.0, -1.0, 0.0]))?;
 /// let mut area = 0.0;
 /// for tick in 0..120 {
-///     world.set_goal(hand, [0.53, 1.2 - 0.01 * tick as f32, 0.0])?;
+///     world.set_target_position(hand, [0.53, 1.2 - 0.01 * tick as f32, 0.0])?;
 ///     world.step();
 ///     area += world.events().iter().map(|event| match event {
 ///         Event::Cut { area, .. } => *area,
@@ -54,7 +55,7 @@ pub type Knives = Arena<KnifeHandle, Knife>;
 ///     }).sum::<f32>();
 /// }
 /// assert!(area > 0.8);
-/// world.remove_knife(knife)?;
+/// world.remove(knife)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -87,9 +88,6 @@ pub struct Knife {
     area: f64,
     work: f64,
 }
-
-/// Name of an invalid parameter, and the expected value.
-pub type BadKnife = (&'static str, &'static str);
 
 impl Knife {
     /// Returns a sharp knife with the default height, 0.02 m.
@@ -136,29 +134,38 @@ impl Knife {
     }
 
     /// Checks that all parameters are in range for a world of `D`.
-    pub(crate) fn check<D: Dim>(&self, rigids: &RigidBodies) -> Result<(), BadKnife> {
-        let holder = rigids.get(self.holder);
-        let is_held = holder.is_ok_and(RigidBody::follows_target);
-        require(is_held, "holder", "a kinematic or coupled rigid body")?;
+    pub(crate) fn check<D: Dim>(&self, rigids: &RigidBodies) -> Result<(), Error> {
+        let holder = rigids.get(self.holder)?;
+        let expected = "a kinematic or coupled rigid body";
+        let is_held = holder.follows_target();
+        require(is_held, "holder", expected, holder.motion_type)?;
         self.check_numbers::<D>()
     }
 
-    fn check_numbers<D: Dim>(&self) -> Result<(), BadKnife> {
+    fn check_numbers<D: Dim>(&self) -> Result<(), Error> {
         let [from, to] = self.edge;
         let is_near = |at: &Vector| at.iter().all(|k| k.abs() <= FARTHEST);
         let are_near = self.edge.iter().all(is_near);
-        require(are_near, "edge", "within 1e6 m of its holder")?;
+        require(are_near, "edge", "within 1e6 m of its holder", self.edge)?;
         let along = minus(to, from);
         // In 2D the edge is a point.
         let has_length = D::N == 2 || length(along) > 0.0;
-        require(has_length, "edge", "of a length that is not 0")?;
+        require(has_length, "edge", "longer than 0", self.edge)?;
         let toward = flat::<D>(self.toward);
         let has_direction = is_finite(self.toward) && (0.01..=100.0).contains(&length(toward));
-        require(has_direction, "toward", "a direction of length 1")?;
+        let expected = "a direction, of a length of 0.01 to 100";
+        require(has_direction, "toward", expected, self.toward)?;
         let leans = D::N == 3 && dot(along, toward).abs() > 0.5 * length(along) * length(toward);
-        require(!leans, "toward", "across the edge, within 30°")?;
-        require((0.0..=1.0).contains(&self.radius), "radius", "0 to 1 m")?;
-        require((0.0..=10.0).contains(&self.height), "height", "0 to 10 m")
+        let expected = "across the edge, within 30°";
+        require(!leans, "toward", expected, self.toward)?;
+        let (radius, height) = (self.radius, self.height);
+        require((0.0..=1.0).contains(&radius), "radius", "0 to 1 m", radius)?;
+        require(
+            (0.0..=10.0).contains(&height),
+            "height",
+            "0 to 10 m",
+            height,
+        )
     }
 
     /// Returns whether a knife that was read from a file is valid.
@@ -216,8 +223,4 @@ impl EdgePose {
 
 fn direction(vector: Vector) -> Vector {
     scaled(vector, 1.0 / length(vector).max(f32::MIN_POSITIVE))
-}
-
-fn require(is_good: bool, field: &'static str, expected: &'static str) -> Result<(), BadKnife> {
-    is_good.then_some(()).ok_or((field, expected))
 }

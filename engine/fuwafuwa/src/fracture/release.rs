@@ -9,24 +9,21 @@ use crate::soft_body::element_forces::Row;
 use crate::soft_body::momentum::{Momentum, RigidMotion, centre_of};
 use crate::topology::cell_hierarchy::Grading;
 use crate::topology::changes::Changes;
-use crate::topology::mesh::{Defect, Inheritance, Remodelled};
+use crate::topology::mesh::{Inheritance, Remodelled};
 
 impl<D: Dim> SoftBody<D> {
     /// Releases shared nodes at lattice points, each between the octants of its mask and the rest, and
     /// remodels around them [Endo 2004, §3.2]. Positions and velocities are transferred; linear and angular
     /// momentum are preserved. Returns the detached pieces. Has no effect on a body of [`Grading::Coarse`].
-    ///
-    /// # Errors
-    /// A [`Defect`] if the mesh becomes inconsistent, which is a bug in this library.
     #[inline(never)]
-    pub fn release(&mut self, at: &[(Point, u8)]) -> Result<Vec<PieceId>, Defect> {
-        Ok(self.tear(at)?.detached)
+    pub fn release(&mut self, at: &[(Point, u8)]) -> Vec<PieceId> {
+        self.tear(at).detached
     }
 
     /// Does the work of [`SoftBody::release`], and returns all changes.
-    pub(crate) fn tear(&mut self, at: &[(Point, u8)]) -> Result<Changes, Defect> {
+    pub(crate) fn tear(&mut self, at: &[(Point, u8)]) -> Changes {
         if self.topology.pyramid.grading() == Grading::Coarse {
-            return Ok(Changes::default());
+            return Changes::default();
         }
         let mut changed: Vec<Point> = Vec::new();
         for &(point, side) in at {
@@ -36,7 +33,7 @@ impl<D: Dim> SoftBody<D> {
             }
         }
         if changed.is_empty() {
-            return Ok(Changes::default());
+            return Changes::default();
         }
         changed.extend(
             self.topology
@@ -48,13 +45,19 @@ impl<D: Dim> SoftBody<D> {
             self.topology
                 .pyramid
                 .refine(&self.topology.grid, &self.topology.connectivity, near);
-        let remodelled = self.topology.mesh.remodel(
-            &self.topology.grid,
-            &self.topology.connectivity,
-            &self.topology.pyramid,
-            &changed,
-            &born,
-        )?;
+        let remodelled = self
+            .topology
+            .mesh
+            .remodel(
+                &self.topology.grid,
+                &self.topology.connectivity,
+                &self.topology.pyramid,
+                &changed,
+                &born,
+            )
+            .expect(
+                "the cell hierarchy follows the connectivity, so that the mesh can follow both",
+            );
         let touched = self.nodes_of(&remodelled.seated);
         self.pass_on(&remodelled, &touched);
         self.expose(&beside::<D>(&changed));
@@ -73,7 +76,7 @@ impl<D: Dim> SoftBody<D> {
         };
         let most = self.topology.mesh.element_capacity();
         self.cache.history.add(&changes, most);
-        Ok(changes)
+        changes
     }
 
     /// Returns the elements around the given points, ascending, grouped by the places where they were
@@ -287,7 +290,7 @@ mod tests {
                 at[D::N..].fill(0);
                 releases.push((at, 1 << random(D::CORNERS)));
             }
-            body.release(&releases).expect("the mesh stays consistent");
+            body.release(&releases);
             let fresh = Pieces::new(&body.topology.mesh);
             let both = |(id, _)| (body.topology.pieces.of_element(id), fresh.of_element(id));
             let pairs: BTreeSet<(PieceId, PieceId)> =

@@ -1,8 +1,9 @@
 //! Motion of rigid bodies: integration, impulses, sleep.
 
-use super::inertia::{Inertia, times};
-use super::invalid::{BadRigid, is_within_reach, require};
+use super::inertia::times;
+use super::reach::is_within_reach;
 use super::{MotionType, RigidBody};
+use crate::error::{Error, require};
 use crate::foundation::dim::Dim;
 use crate::math::rotation::Rotation;
 use crate::math::vector::{cross, dot, length, minus, plus, scaled};
@@ -82,8 +83,8 @@ impl RigidBody {
     }
 
     /// Sets the target rotation.
-    pub(crate) fn turn_to<D: Dim>(&mut self, rotation: Rotation) -> Result<(), BadRigid> {
-        require(self.follows_target(), "drive", "kinematic or coupled")?;
+    pub(crate) fn turn_to<D: Dim>(&mut self, rotation: Rotation) -> Result<(), Error> {
+        self.require_target()?;
         self.rotation_goal = rotation.seen_in::<D>();
         Ok(())
     }
@@ -93,13 +94,13 @@ impl RigidBody {
         &mut self,
         position: Vector,
         rotation: Rotation,
-    ) -> Result<(), BadRigid> {
+    ) -> Result<(), Error> {
         let expected = "within 1e6 m of the origin";
-        require(is_within_reach(position), "position", expected)?;
-        (self.position, self.rotation) = (position, rotation);
+        require(is_within_reach(position), "position", expected, position)?;
+        let (position, rotation) = (flat::<D>(position), rotation.seen_in::<D>());
+        self.stand_at(position, rotation);
         (self.position_before, self.rotation_before) = (position, rotation);
         self.stay();
-        *self = self.clone().seen_in::<D>();
         self.wake();
         Ok(())
     }
@@ -115,12 +116,16 @@ impl RigidBody {
         (self.asleep, self.sleep_timer) = (false, 0.0);
     }
 
-    /// Computes the moments of inertia for a world of `D`.
-    pub(super) fn take_inertia<D: Dim>(&mut self) {
-        self.inertia = match self.motion_type {
-            MotionType::Dynamic { mass } => Some(Inertia::of::<D>(&self.form, mass)),
-            _ => None,
-        };
+    /// Stops the body and puts it to sleep.
+    pub(crate) fn fall_asleep(&mut self) {
+        (self.velocity, self.angular_velocity) = ([0.0; 3], [0.0; 3]);
+        self.asleep = true;
+    }
+
+    /// Rotates the linear and the angular velocity.
+    pub(crate) fn rotate_velocity(&mut self, rotation: Rotation) {
+        self.velocity = rotation.apply(self.velocity);
+        self.angular_velocity = rotation.apply(self.angular_velocity);
     }
 
     /// Integrates gravity and air drag: velocities decay at the rate `drag` [1/s] over `duration` [s].

@@ -1,84 +1,108 @@
 //! Validation of rigid bodies.
 
-use super::invalid::{BadRigid, is_within_reach, require};
+use super::inertia::Inertia;
+use super::reach::is_within_reach;
 use super::{MotionType, RigidBody};
-use crate::math::rotation::Rotation;
+use crate::error::{Error, require};
 use crate::math::vector::{is_finite, length, minus, plus};
+use crate::rigid_body::shape::Shape;
 
 impl RigidBody {
     /// Checks every field.
     ///
     /// # Errors
-    /// [`BadRigid`] names the first field that is out of range.
-    pub fn check(&self) -> Result<(), BadRigid> {
-        let within = |field, k: f32, low: f32, high: f32, expected| {
-            require(k >= low && k <= high, field, expected)
-        };
-        let (tiny, huge) = (f32::MIN_POSITIVE, f32::MAX);
+    /// [`Error::InvalidParameter`] names the first field that is out of range.
+    pub fn check(&self) -> Result<(), Error> {
         let positions = [
             ("position", self.position),
-            ("goal", self.goal),
-            ("goal", self.goal_before),
+            ("target_position", self.goal),
+            ("target_position", self.goal_before),
             ("position", self.position_before),
         ];
         for (field, position) in positions {
-            require(
-                is_within_reach(position),
-                field,
-                "within 1e6 m of the origin",
-            )?;
+            let expected = "within 1e6 m of the origin";
+            require(is_within_reach(position), field, expected, position)?;
         }
-        require(is_finite(self.velocity), "velocity", "finite")?;
-        require(
-            is_finite(self.angular_velocity),
-            "angular velocity",
-            "finite",
-        )?;
-        let rotations = [self.rotation, self.rotation_before, self.rotation_goal];
-        let are_rotations = rotations.into_iter().all(Rotation::is_unit);
-        require(are_rotations, "rotation", "of length 1")?;
-        require(self.sleep_timer >= 0.0, "sleep timer", "0 or more")?;
+        let velocities = [
+            ("velocity", self.velocity),
+            ("angular_velocity", self.angular_velocity),
+        ];
+        for (field, velocity) in velocities {
+            require(is_finite(velocity), field, "finite", velocity)?;
+        }
+        let rotations = [
+            ("rotation", self.rotation),
+            ("rotation", self.rotation_before),
+            ("target_rotation", self.rotation_goal),
+        ];
+        for (field, rotation) in rotations {
+            let quaternion = rotation.quaternion();
+            require(rotation.is_unit(), field, "of length 1", quaternion)?;
+        }
+        let timer = self.sleep_timer;
+        require(timer >= 0.0, "sleep_timer", "0 or more", timer)?;
         self.form.check()?;
         let is_moved = self.shape == self.form.rotated(self.rotation).translated(self.position);
         let expected = "the local shape, rotated and translated to the pose";
-        require(is_moved, "shape", expected)?;
-        within(
-            "friction",
-            self.friction,
-            0.0,
-            huge,
-            "0 or more, and finite",
-        )?;
-        within("restitution", self.restitution, 0.0, 1.0, "0 to 1")?;
-        if self.motion_type != MotionType::Fixed {
-            let ends = self.form.bounds().into_iter().all(is_within_reach);
-            require(ends, "shape", "bounded, within 1e6 m of its position")?;
+        require(is_moved, "shape", expected, self.shape)?;
+        check_friction(self.friction)?;
+        check_restitution(self.restitution)?;
+        check_motion_type(self.motion_type, &self.form, self.inertia.as_ref())
+    }
+}
+
+pub(crate) fn check_friction(friction: f32) -> Result<(), Error> {
+    within("friction", friction, 0.0, f32::MAX, "0 or more, and finite")
+}
+
+pub(crate) fn check_restitution(restitution: f32) -> Result<(), Error> {
+    within("restitution", restitution, 0.0, 1.0, "0 to 1")
+}
+
+/// Checks a motion type for a body of the shape `form` in local coordinates, with the moments of inertia of that
+/// shape if the body is dynamic.
+pub(super) fn check_motion_type(
+    motion_type: MotionType,
+    form: &Shape,
+    inertia: Option<&Inertia>,
+) -> Result<(), Error> {
+    let (tiny, huge) = (f32::MIN_POSITIVE, f32::MAX);
+    if motion_type != MotionType::Fixed {
+        let is_bounded = form.bounds().into_iter().all(is_within_reach);
+        let expected = "bounded, within 1e6 m of its position";
+        require(is_bounded, "shape", expected, form)?;
+    }
+    match motion_type {
+        MotionType::Fixed | MotionType::Kinematic => Ok(()),
+        MotionType::Dynamic { mass } => {
+            within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
+            let [low, high] = form.bounds();
+            let is_centred = length(plus(low, high)) <= 1e-3 * length(minus(high, low));
+            require(is_centred, "shape", "centred on its local origin", form)?;
+            let is_sound = inertia.is_none_or(|inertia| inertia.is_sound());
+            let expected = "of a size at which the moments of inertia are finite and positive";
+            require(is_sound, "shape", expected, form)
         }
-        match self.motion_type {
-            MotionType::Fixed | MotionType::Kinematic => Ok(()),
-            MotionType::Dynamic { mass } => {
-                within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
-                let [low, high] = self.form.bounds();
-                let off = length(plus(low, high)) <= 1e-3 * length(minus(high, low));
-                require(off, "shape", "one with its middle at the origin")?;
-                let is_sound = self.inertia.is_none_or(|inertia| inertia.is_sound());
-                require(
-                    is_sound,
-                    "shape",
-                    "neither too small nor too large to be turned",
-                )
-            }
-            MotionType::Coupled {
-                mass,
-                stiffness,
-                damping,
-                limit,
-            } => {
-                within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
-                within("stiffness", stiffness, tiny, huge, "positive and finite")?;
-                within("damping", damping, tiny, 10.0, "positive, at most 10")?;
-                within("limit", limit, tiny, f32::INFINITY, "positive")
-            }
+        MotionType::Coupled {
+            mass,
+            stiffness,
+            damping,
+            limit,
+        } => {
+            within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
+            within("stiffness", stiffness, tiny, huge, "positive and finite")?;
+            within("damping", damping, tiny, 10.0, "positive, at most 10")?;
+            within("limit", limit, tiny, f32::INFINITY, "positive")
         }
     }
+}
+
+fn within(
+    field: &'static str,
+    given: f32,
+    low: f32,
+    high: f32,
+    expected: &'static str,
+) -> Result<(), Error> {
+    require(given >= low && given <= high, field, expected, given)
 }

@@ -8,11 +8,11 @@ mod oriented_box;
 mod shape_distance;
 mod shape_ray;
 
+use crate::error::{Error, require};
 use crate::foundation::dim::Dim;
 use crate::math::rotation::Rotation;
 pub use crate::math::vector::Vector;
-use crate::math::vector::{dot, length, minus, plus, scaled};
-use std::fmt;
+use crate::math::vector::{dot, is_finite, length, minus, plus, scaled};
 
 /// Lower and upper corner of an axis-aligned box [m].
 pub type Bounds = [Vector; 2];
@@ -62,23 +62,6 @@ pub enum Shape {
     },
 }
 
-/// Invalid shape parameter.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct BadShape {
-    /// Name of the field.
-    pub field: &'static str,
-    /// Expected value.
-    pub expected: &'static str,
-}
-
-impl fmt::Display for BadShape {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "invalid shape: {} must be {}", self.field, self.expected)
-    }
-}
-
-impl std::error::Error for BadShape {}
-
 impl Shape {
     /// Returns the half-space with an outward normal of any length and its surface through `point` [m].
     pub fn half_space(normal: Vector, point: Vector) -> Self {
@@ -90,29 +73,21 @@ impl Shape {
     /// Checks that all numbers are finite, sizes positive, and normals and rotations normalised.
     ///
     /// # Errors
-    /// [`BadShape`] names the first invalid field.
-    pub fn check(&self) -> Result<(), BadShape> {
-        let finite = |field, v: Vector| {
-            let expected = "finite";
-            let good = v.iter().all(|k| k.is_finite());
-            good.then_some(()).ok_or(BadShape { field, expected })
-        };
-        let positive = |field, k: f32| {
-            let expected = "positive and finite";
-            let good = k.is_finite() && k > 0.0;
-            good.then_some(()).ok_or(BadShape { field, expected })
-        };
+    /// [`Error::InvalidParameter`] names the first invalid field.
+    pub fn check(&self) -> Result<(), Error> {
+        let finite = |field, v: Vector| require(is_finite(v), field, "finite", v);
+        let is_positive = |k: f32| k.is_finite() && k > 0.0;
+        let positive = |field, k: f32| require(is_positive(k), field, "positive and finite", k);
         match *self {
             Self::HalfSpace { normal, offset } => {
-                finite("offset", [offset; 3])?;
-                let expected = "of length 1";
-                let good = (length(normal) - 1.0).abs() < 1e-3;
-                let field = "normal";
-                good.then_some(()).ok_or(BadShape { field, expected })
+                require(offset.is_finite(), "offset", "finite", offset)?;
+                let is_unit = (length(normal) - 1.0).abs() < 1e-3;
+                require(is_unit, "normal", "of length 1", normal)
             }
             Self::Box { centre, half } => {
                 finite("centre", centre)?;
-                half.iter().try_for_each(|&k| positive("half", k))
+                let is_positive = half.into_iter().all(is_positive);
+                require(is_positive, "half", "positive and finite", half)
             }
             Self::OrientedBox {
                 centre,
@@ -120,9 +95,8 @@ impl Shape {
                 rotation,
             } => {
                 Self::Box { centre, half }.check()?;
-                let (field, expected) = ("rotation", "of length 1");
-                let is_good = rotation.is_unit();
-                is_good.then_some(()).ok_or(BadShape { field, expected })
+                let quaternion = rotation.quaternion();
+                require(rotation.is_unit(), "rotation", "of length 1", quaternion)
             }
             Self::Capsule { from, to, radius } => {
                 finite("from", from)?;
@@ -400,7 +374,8 @@ mod tests {
             centre: [0.0; 3],
             radius: -1.0,
         };
-        assert_eq!(ball.check().map_err(|bad| bad.field), Err("radius"));
+        let error = Error::parameter("radius", "positive and finite", -1.0);
+        assert_eq!(ball.check(), Err(error));
         let nowhere = Shape::half_space([0.0; 3], [0.0; 3]);
         assert!(nowhere.check().is_err());
     }

@@ -8,7 +8,7 @@ use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::soft_body::element_forces::Row;
 use crate::topology::cell_hierarchy::CellHierarchy;
-use crate::topology::mesh::{Defect, Mesh};
+use crate::topology::mesh::{InvariantViolation, Mesh};
 use crate::topology::pieces::Pieces;
 
 impl<D: Dim> SoftBody<D> {
@@ -16,8 +16,8 @@ impl<D: Dim> SoftBody<D> {
     /// every node has a valid state.
     ///
     /// # Errors
-    /// The first [`Defect`] found.
-    pub(crate) fn check(&self) -> Result<(), Defect> {
+    /// The first [`InvariantViolation`] found.
+    pub(crate) fn check(&self) -> Result<(), InvariantViolation> {
         self.topology.check()?;
         ensure(
             self.state.has_room(self.topology.mesh.node_capacity()),
@@ -33,7 +33,12 @@ impl<D: Dim> SoftBody<D> {
         let is_known = { points }.all(|at| self.topology.connectivity.contains(at));
         ensure(is_known, "cooldown points")?;
         for (id, node) in self.topology.mesh.nodes() {
-            let defect = |what: &str| Err(Defect::of(format!("the node at {:?} {what}", node.at)));
+            let defect = |what: &str| {
+                Err(InvariantViolation::of(format!(
+                    "the node at {:?} {what}",
+                    node.at
+                )))
+            };
             if !self.is_somewhere(id) {
                 return defect("has a position or velocity that is not finite or leaves the plane");
             }
@@ -77,11 +82,11 @@ impl<D: Dim> SoftBody<D> {
 }
 
 impl<D: Dim> Topology<D> {
-    fn check(&self) -> Result<(), Defect> {
+    fn check(&self) -> Result<(), InvariantViolation> {
         ensure(self.grid.is_valid(), "voxels")?;
         let numbers = self.grid.voxels().map(|voxel| self.grid.material(voxel));
         let number = usize::from(numbers.max().unwrap_or(0));
-        let are_good = { self.materials.iter() }.all(|material| material.check(0).is_ok())
+        let are_good = { self.materials.iter() }.all(|material| material.check().is_ok())
             && self.stiffness_scale > 0.0
             && self.stiffness_scale <= 1.0;
         ensure(number <= self.materials.len() && are_good, "materials")?;
@@ -106,10 +111,10 @@ impl<D: Dim> State<D> {
     }
 }
 
-fn ensure(good: bool, what: &str) -> Result<(), Defect> {
+fn ensure(good: bool, what: &str) -> Result<(), InvariantViolation> {
     match good {
         true => Ok(()),
-        false => Err(Defect::of(format!("invalid {what}"))),
+        false => Err(InvariantViolation::of(format!("invalid {what}"))),
     }
 }
 

@@ -15,10 +15,10 @@
 //! α makes a whole cell bend correctly, β other classes: see [`ElementClass::hourglass`]. In 2D the law is plane
 //! strain with 1 m of depth: the same formulas with F₃₃ = R₃₃ = 1.
 
+use crate::error::{Error, require};
 use crate::foundation::dim::Dim;
 use crate::math::vector::{cross, dot, minus, plus, scaled};
 use crate::topology::element_class::{ElementClass, Vector64};
-use std::fmt;
 
 /// Law of the elastic forces of an element.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -42,25 +42,6 @@ pub struct Elasticity {
     pub poisson: f64,
 }
 
-/// Elastic constants of which one is out of range.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct BadElasticity {
-    /// Given constants.
-    pub given: Elasticity,
-}
-
-impl fmt::Display for BadElasticity {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Elasticity { young, poisson } = self.given;
-        write!(
-            f,
-            "Young's modulus {young} Pa must be positive and finite, the Poisson ratio {poisson} between 0 and 0.45"
-        )
-    }
-}
-
-impl std::error::Error for BadElasticity {}
-
 /// Volume ratio J below which an element resists further compression, regardless of its material. A higher
 /// limit would stiffen soft contacts; with a lower one, strong contacts invert elements before the resistance
 /// sets in.
@@ -70,15 +51,13 @@ impl Elasticity {
     /// Checks the constants.
     ///
     /// # Errors
-    /// [`BadElasticity`] if one is out of range or not a number.
-    pub fn new(young: f64, poisson: f64) -> Result<Self, BadElasticity> {
-        let given = Self { young, poisson };
-        let good = young.is_finite() && young > 0.0 && (0.0..=0.45).contains(&poisson);
-        if good {
-            Ok(given)
-        } else {
-            Err(BadElasticity { given })
-        }
+    /// [`Error::InvalidParameter`] if one is out of range or not a number.
+    pub fn new(young: f64, poisson: f64) -> Result<Self, Error> {
+        let is_valid = young.is_finite() && young > 0.0;
+        require(is_valid, "young", "positive and finite [Pa]", young)?;
+        let is_valid = (0.0..=0.45).contains(&poisson);
+        require(is_valid, "poisson", "0 to 0.45", poisson)?;
+        Ok(Self { young, poisson })
     }
 
     /// Shear modulus μ [Pa].

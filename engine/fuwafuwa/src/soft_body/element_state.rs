@@ -183,7 +183,7 @@ impl<D: Dim> SoftBody<D> {
     ///
     /// let body = SoftBody::new(VoxelGrid::<Dim2>::ball(8, 1.0)?, &[Material::default()])?;
     /// let mass = body.total_mass();
-    /// let energy = body.thrown([2.0, 0.0, 0.0]).energies([0.0, -9.81, 0.0])[0];
+    /// let energy = body.with_velocity([2.0, 0.0, 0.0]).energies([0.0, -9.81, 0.0])[0];
     /// assert!((energy.kinetic - 2.0 * mass).abs() < 1e-3 && energy.elastic < 1e-6);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -291,7 +291,7 @@ mod tests {
             let ([x, y, z], ..) = body.node_state(id);
             body.set_node_state(id, [1.05 * x, y, z], [0.0; 3]);
         }
-        let body = body.rotated(Rotation::in_plane(1.0), [0.0; 3]);
+        let body = body.rotated_about(Rotation::in_plane(1.0), [0.0; 3]);
         let Elasticity { young, poisson } = Material::default().elasticity;
         let elasticity = Elasticity { young, poisson };
         let along = (2.0 * elasticity.shear_modulus() + elasticity.lame()) * 0.05;

@@ -2,6 +2,7 @@
 
 use crate::foundation::dim::Dim;
 use crate::math::vector::{cross, dot, minus, plus, scaled};
+use crate::math::velocity::Velocity;
 use crate::soft_body::element_forces::Row;
 
 /// Momentum of mass points about a common centre, in double precision.
@@ -111,6 +112,14 @@ impl RigidMotion {
             velocity: scaled(self.velocity, velocity),
             angular_velocity: scaled(self.angular_velocity, spin),
             centre: self.centre,
+        }
+    }
+
+    /// Velocity of the centre, and angular velocity about it.
+    pub(crate) fn velocity(&self) -> Velocity {
+        Velocity {
+            linear: self.velocity.map(|k| k as f32),
+            angular: self.angular_velocity.map(|k| k as f32),
         }
     }
 

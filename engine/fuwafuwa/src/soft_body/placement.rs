@@ -6,10 +6,11 @@ use crate::foundation::dim::{Dim, turning};
 use crate::foundation::ids::NodeId;
 use crate::math::rotation::Rotation;
 use crate::math::vector::{as_row, cross, minus, plus, three};
+use crate::math::velocity::Velocity;
 use crate::rigid_body::layers::Layers;
 use crate::rigid_body::shape::{Vector, flat};
 use crate::soft_body::element_forces::Row;
-use crate::soft_body::momentum::centre_of;
+use crate::soft_body::momentum::{Momentum, RigidMotion, centre_of};
 
 impl<D: Dim> SoftBody<D> {
     /// Collision layers of the body: see [`World::set_layers`](crate::World::set_layers).
@@ -35,7 +36,7 @@ impl<D: Dim> SoftBody<D> {
         self
     }
 
-    /// Returns the body rotated about the point `about` [m], without strain and without tearing. In 2D only
+    /// Returns the body rotated about a point [m], without strain and without tearing. In 2D only
     /// the rotation about the third axis counts. Pieces that are then not finite are quarantined in their
     /// first tick.
     ///
@@ -45,22 +46,59 @@ impl<D: Dim> SoftBody<D> {
     /// let grid = VoxelGrid::<Dim2>::from_fn([8, 4, 1], 0.25, |_| 1)?;
     /// let body = SoftBody::new(grid, &[Material::default()])?;
     /// let centre = body.centre_of_mass();
-    /// let upright = body.rotated(Rotation::in_plane(1.5708), centre);
+    /// let upright = body.rotated_about(Rotation::in_plane(1.5708), centre);
     /// assert!((upright.centre_of_mass()[0] - centre[0]).abs() < 1e-5);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[inline(never)]
-    pub fn rotated(mut self, rotation: Rotation, about: Vector) -> Self {
-        self.turn(rotation, about);
+    #[must_use]
+    pub fn rotated_about(mut self, rotation: Rotation, point: Vector) -> Self {
+        self.turn(rotation, point);
         self
     }
 
-    /// Returns the body with every node moving at `velocity` [m/s].
+    /// Returns the body rotated about its centre of mass; otherwise like [`SoftBody::rotated_about`].
+    #[must_use]
+    pub fn rotated(self, rotation: Rotation) -> Self {
+        let centre = self.centre_of_mass();
+        self.rotated_about(rotation, centre)
+    }
+
+    /// Returns the body with a velocity: linear, or linear and angular about its centre of mass. Every node gets the
+    /// velocity of that rigid motion.
+    #[must_use]
+    pub fn with_velocity(self, velocity: impl Into<Velocity>) -> Self {
+        self.moving_at(velocity.into())
+    }
+
     #[inline(never)]
-    pub fn with_velocity(mut self, velocity: Vector) -> Self {
+    pub(crate) fn moving_at(mut self, velocity: Velocity) -> Self {
+        let linear = velocity.linear;
         for row in self.state.velocity.iter_mut() {
-            row[..D::N].copy_from_slice(&velocity[..D::N]);
+            row[..D::N].copy_from_slice(&linear[..D::N]);
         }
+        let angular = turning::<D>(velocity.angular);
+        if angular != [0.0; 3] {
+            let centre = self.centre_of_mass();
+            for (id, _) in self.topology.mesh.nodes() {
+                let lever = minus(three(self.state.position[id]), centre);
+                add::<D>(&mut self.state.velocity[id], cross(angular, lever));
+            }
+        }
+        self
+    }
+
+    /// Returns the body with other collision layers.
+    #[must_use]
+    pub fn with_layers(mut self, layers: Layers) -> Self {
+        self.state.layers = layers;
+        self
+    }
+
+    /// Returns the body with other user data.
+    #[must_use]
+    pub fn with_user_data(mut self, user_data: u64) -> Self {
+        self.state.user_data = user_data;
         self
     }
 
@@ -100,6 +138,25 @@ impl<D: Dim> SoftBody<D> {
             *row = as_row(rotation.apply(three(*row)));
         }
         blocks.rotate(rotation);
+    }
+
+    /// Returns the rigid motion with the linear and angular momentum of the body.
+    pub(crate) fn rigid_velocity(&self) -> Velocity {
+        let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
+        let masses = || self.states(&nodes).map(|(at, _, mass)| (at, mass));
+        let centre = centre_of(masses());
+        let momentum = Momentum::of(self.states(&nodes), centre);
+        RigidMotion::with_momentum(masses(), centre, momentum).velocity()
+    }
+
+    /// Gives all nodes that are neither fixed nor asleep the velocity of a rigid motion about the centre of mass.
+    pub(crate) fn set_velocity(&mut self, velocity: Velocity) {
+        for (id, _) in self.topology.mesh.nodes() {
+            if self.state.inverse_mass[id] > 0.0 {
+                self.state.velocity[id] = [0.0; 4];
+            }
+        }
+        self.add_velocity(velocity.linear, velocity.angular);
     }
 
     /// Adds `linear` [m/s], and `angular` [rad/s] about the centre of mass, to the velocities of all nodes

@@ -1,8 +1,8 @@
 //! Voxel grids: the solid voxels, and their materials, from which a body starts.
 
+use crate::error::Error;
 use crate::foundation::dim::{Dim, Point, points_in};
 use crate::rigid_body::shape::Vector;
-use std::fmt;
 use std::marker::PhantomData;
 use std::ops::RangeInclusive;
 
@@ -16,59 +16,6 @@ pub const MAX_EXTENT: usize = 1024;
 pub const MAX_VOXELS: usize = 1 << 26;
 /// Valid edge lengths of a voxel [m]. Beyond them, volumes and positions leave the range of single precision.
 pub const VOXEL_SIZES: RangeInclusive<f32> = 1e-6..=1e3;
-
-/// Reason why a body or a grid could not be made.
-#[derive(Debug, Clone, PartialEq)]
-pub enum BuildError {
-    /// No voxel is solid.
-    Empty,
-    /// The grid is larger than [`MAX_EXTENT`] or [`MAX_VOXELS`].
-    TooLarge {
-        /// Requested voxels on each axis.
-        size: [usize; 3],
-    },
-    /// The number of voxel values is not the product of the size.
-    WrongLength {
-        /// Number of values required by the size.
-        expected: usize,
-        /// Number of values given.
-        found: usize,
-    },
-    /// A 2D grid has more than one layer.
-    NotFlat {
-        /// Requested layers.
-        layers: usize,
-    },
-    /// The edge length of a voxel [m] is outside [`VOXEL_SIZES`].
-    BadVoxelSize(f32),
-}
-
-impl fmt::Display for BuildError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Empty => write!(f, "the shape is empty: no voxel is solid"),
-            Self::TooLarge { size } => write!(
-                f,
-                "the grid of {} x {} x {} voxels is too large: at most {MAX_EXTENT} on an axis and {MAX_VOXELS} in all",
-                size[0], size[1], size[2]
-            ),
-            Self::WrongLength { expected, found } => {
-                write!(f, "the grid needs {expected} voxel values, got {found}")
-            }
-            Self::BadVoxelSize(size) => write!(
-                f,
-                "the voxel size {size} m is not between {} and {} m",
-                VOXEL_SIZES.start(),
-                VOXEL_SIZES.end()
-            ),
-            Self::NotFlat { layers } => {
-                write!(f, "a 2D grid must have one layer of voxels, got {layers}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for BuildError {}
 
 /// Box of voxels, each empty (0) or of a material (1 to 255).
 #[derive(Clone, Debug, PartialEq)]
@@ -88,13 +35,13 @@ impl<D: Dim> VoxelGrid<D> {
     /// each voxel (0 = empty).
     ///
     /// # Errors
-    /// [`BuildError`] if the grid is too large, empty, or not flat in 2D, or if the voxel size is outside
-    /// [`VOXEL_SIZES`].
+    /// [`Error::EmptyGrid`] if no voxel is solid. [`Error::InvalidParameter`] if the grid is too large, or not flat
+    /// in 2D, or if the voxel size is outside [`VOXEL_SIZES`].
     pub fn from_fn(
         size: [usize; 3],
         voxel_size: f32,
         mut material: impl FnMut(Point) -> u8,
-    ) -> Result<Self, BuildError> {
+    ) -> Result<Self, Error> {
         let size = Self::checked_size(size)?;
         let high = [size[0] - 1, size[1] - 1, size[2] - 1];
         let materials = points_in([0; 3], high).map(&mut material).collect();
@@ -109,14 +56,13 @@ impl<D: Dim> VoxelGrid<D> {
         size: [usize; 3],
         voxel_size: f32,
         materials: Vec<u8>,
-    ) -> Result<Self, BuildError> {
+    ) -> Result<Self, Error> {
         let size = Self::checked_size(size)?;
-        let expected = size.iter().map(|&extent| extent as usize).product();
+        let expected: usize = size.iter().map(|&extent| extent as usize).product();
         if materials.len() != expected {
-            return Err(BuildError::WrongLength {
-                expected,
-                found: materials.len(),
-            });
+            let expected = format!("{expected} voxel values, the product of the size");
+            let given = format_args!("{} voxel values", materials.len());
+            return Err(Error::parameter("materials", expected, given));
         }
         Self::checked(size, voxel_size, materials)
     }
@@ -138,7 +84,7 @@ impl<D: Dim> VoxelGrid<D> {
     ///     }
     /// })?;
     /// assert_eq!(grid.material([16; 3]), 2);
-    /// # Ok::<(), fuwafuwa::BuildError>(())
+    /// # Ok::<(), fuwafuwa::Error>(())
     /// ```
     ///
     /// # Errors
@@ -147,7 +93,7 @@ impl<D: Dim> VoxelGrid<D> {
         size: [usize; 3],
         voxel_size: f32,
         mut material: impl FnMut(Vector) -> u8,
-    ) -> Result<Self, BuildError> {
+    ) -> Result<Self, Error> {
         Self::from_fn(size, voxel_size, |voxel| {
             material(Self::centre(voxel, voxel_size))
         })
@@ -156,8 +102,8 @@ impl<D: Dim> VoxelGrid<D> {
     /// Multiplies all lengths by `factor`; the number of voxels stays the same.
     ///
     /// # Errors
-    /// [`BuildError::BadVoxelSize`] if the new voxel size is outside [`VOXEL_SIZES`].
-    pub fn scaled(mut self, factor: f32) -> Result<Self, BuildError> {
+    /// [`Error::InvalidParameter`] if the new voxel size is outside [`VOXEL_SIZES`].
+    pub fn scaled(mut self, factor: f32) -> Result<Self, Error> {
         self.voxel_size *= factor;
         Self::checked(self.size, self.voxel_size, self.materials)
     }
@@ -251,27 +197,32 @@ impl<D: Dim> VoxelGrid<D> {
         is_box && is_known && gone.iter().zip(&self.materials).all(are_solid)
     }
 
-    fn checked_size(size: [usize; 3]) -> Result<Point, BuildError> {
+    fn checked_size(size: [usize; 3]) -> Result<Point, Error> {
         if size.contains(&0) {
-            return Err(BuildError::Empty);
+            return Err(Error::EmptyGrid);
         }
         if size[2] != D::depth(size[2]) {
-            return Err(BuildError::NotFlat { layers: size[2] });
+            let expected = "1 voxel on the third axis in 2D";
+            return Err(Error::parameter("size", expected, size));
         }
         let fits = size.iter().all(|&extent| extent <= MAX_EXTENT);
         if !fits || size.iter().product::<usize>() > MAX_VOXELS {
-            return Err(BuildError::TooLarge { size });
+            let expected =
+                format!("at most {MAX_EXTENT} voxels on an axis and {MAX_VOXELS} in all");
+            return Err(Error::parameter("size", expected, size));
         }
         Ok(size.map(|extent| extent as i32))
     }
 
     #[inline(never)]
-    fn checked(size: Point, voxel_size: f32, materials: Vec<u8>) -> Result<Self, BuildError> {
+    fn checked(size: Point, voxel_size: f32, materials: Vec<u8>) -> Result<Self, Error> {
         if !VOXEL_SIZES.contains(&voxel_size) {
-            return Err(BuildError::BadVoxelSize(voxel_size));
+            let (low, high) = (VOXEL_SIZES.start(), VOXEL_SIZES.end());
+            let expected = format!("{low} to {high} m");
+            return Err(Error::parameter("voxel_size", expected, voxel_size));
         }
         if materials.iter().all(|&m| m == 0) {
-            return Err(BuildError::Empty);
+            return Err(Error::EmptyGrid);
         }
         Ok(Self {
             size,
@@ -286,23 +237,34 @@ impl<D: Dim> VoxelGrid<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Error;
     use crate::foundation::dim::{Dim2, Dim3};
 
     #[test]
     fn from_fn_reports_reason_for_invalid_grid() {
-        assert_eq!(VoxelGrid::<Dim2>::ball(0, 1.0), Err(BuildError::Empty));
-        let size = [2000, 1, 1];
-        let long = VoxelGrid::<Dim3>::from_fn(size, 1.0, |_| 1);
-        assert_eq!(long, Err(BuildError::TooLarge { size }));
-        let short = VoxelGrid::<Dim2>::from_materials([2, 2, 1], 1.0, vec![1; 3]);
-        let (expected, found) = (4, 3);
-        assert_eq!(short, Err(BuildError::WrongLength { expected, found }));
+        assert_eq!(VoxelGrid::<Dim2>::ball(0, 1.0), Err(Error::EmptyGrid));
+        let text = |grid: Result<VoxelGrid<Dim2>, Error>| grid.unwrap_err().to_string();
+        let long = VoxelGrid::<Dim3>::from_fn([2000, 1, 1], 1.0, |_| 1);
+        assert_eq!(
+            long.unwrap_err().to_string(),
+            "size must be at most 1024 voxels on an axis and 67108864 in all, given [2000, 1, 1]"
+        );
+        assert_eq!(
+            text(VoxelGrid::from_materials([2, 2, 1], 1.0, vec![1; 3])),
+            "materials must be 4 voxel values, the product of the size, given 3 voxel values"
+        );
         for width in [f32::NAN, f32::INFINITY, 0.0, -1.0, 1e-9, 1e9] {
-            let odd = VoxelGrid::<Dim2>::cube(2, width);
-            assert!(matches!(odd, Err(BuildError::BadVoxelSize(_))), "{width}");
+            let odd = text(VoxelGrid::cube(2, width));
+            let given = width / 2.0;
+            assert_eq!(
+                odd,
+                format!("voxel_size must be 0.000001 to 1000 m, given {given:?}")
+            );
         }
-        let deep = VoxelGrid::<Dim2>::from_fn([4, 4, 2], 1.0, |_| 1);
-        assert_eq!(deep, Err(BuildError::NotFlat { layers: 2 }));
+        assert_eq!(
+            text(VoxelGrid::from_fn([4, 4, 2], 1.0, |_| 1)),
+            "size must be 1 voxel on the third axis in 2D, given [4, 4, 2]"
+        );
     }
 
     #[test]

@@ -77,24 +77,24 @@ pub struct Mesh<D: Dim> {
 
 /// Violated invariant of a mesh, as text.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Defect(String);
+pub struct InvariantViolation(String);
 
-impl fmt::Display for Defect {
+impl fmt::Display for InvariantViolation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
     }
 }
 
-impl Defect {
+impl InvariantViolation {
     #[cfg(feature = "serde")]
     pub(crate) fn of(what: String) -> Self {
         Self(what)
     }
 }
 
-impl std::error::Error for Defect {}
+impl std::error::Error for InvariantViolation {}
 
-impl From<MissingCorner> for Defect {
+impl From<MissingCorner> for InvariantViolation {
     fn from(missing: MissingCorner) -> Self {
         Self(missing.to_string())
     }
@@ -104,13 +104,13 @@ impl<D: Dim> Mesh<D> {
     /// Builds the elements of a body from scratch.
     ///
     /// # Errors
-    /// A [`Defect`] if the pyramid does not match this grid and connectivity.
+    /// An [`InvariantViolation`] if the pyramid does not match this grid and connectivity.
     #[inline(never)]
     pub fn grade(
         grid: &VoxelGrid<D>,
         sharing: &Connectivity<D>,
         pyramid: &CellHierarchy<D>,
-    ) -> Result<Self, Defect> {
+    ) -> Result<Self, InvariantViolation> {
         let mut mesh = Self {
             elements: IndexVec::default(),
             nodes: IndexVec::default(),

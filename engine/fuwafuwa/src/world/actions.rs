@@ -1,256 +1,424 @@
 //! Actions on bodies from outside: translation, rotation, velocity, impulse, sleep.
 
-use super::{Refused, World, WorldConfig};
+use super::{BodyHandle, World, WorldConfig};
 use crate::contact::broad_phase::{bounds_of, leaning_on_body, leaning_on_rigid};
 use crate::contact::solver::Hit;
+use crate::error::{Error, require};
 use crate::event::Event;
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::{Dim, turning};
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::math::rotation::Rotation;
-use crate::math::vector::minus;
+use crate::math::vector::{minus, plus};
+use crate::math::velocity::{Impulse, Velocity};
 use crate::rigid_body::layers::Layers;
-use crate::rigid_body::shape::{Bounds, Vector, flat};
-use crate::rigid_body::{FARTHEST, RigidBody};
+use crate::rigid_body::shape::{Vector, flat};
+use crate::rigid_body::{FARTHEST, MotionType, RigidBody, check_friction, check_restitution};
 use crate::soft_body::{MAX_GRAVITY_SCALE, SoftBody};
 
 impl<D: Dim> World<D> {
-    /// Translates a body `by` [m] at once, through anything in between. The body and sleepers in contact with
-    /// it wake. Bookmarks stay valid, because only positions change.
+    /// Translates a body `by` [m] at once, through anything in between. The velocity stays, and a kinematic or coupled
+    /// body gets the new pose as its target. The body and sleepers in contact with it wake. Bookmarks of a soft body
+    /// stay valid, because only positions change.
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale, or a coordinate is not finite or beyond ±1e6 m.
-    #[inline(never)]
-    pub fn translate_body(&mut self, body: SoftBodyHandle, by: Vector) -> Result<(), Refused> {
-        let by = within("distance", by, FARTHEST, "at most 1e6 m on each axis")?;
-        self.displace(body, |body| body.shift(by))
+    /// [`Error`] if the handle is stale, or a coordinate is not finite or beyond ±1e6 m.
+    pub fn translate(&mut self, body: impl Into<BodyHandle>, by: Vector) -> Result<(), Error> {
+        self.translate_body(body.into(), by)
     }
 
-    /// Rotates a body about a point [m] at once, its velocities included; otherwise like
-    /// [`World::translate_body`]. See also [`SoftBody::rotated`].
+    #[inline(never)]
+    pub(crate) fn translate_body(&mut self, body: BodyHandle, by: Vector) -> Result<(), Error> {
+        let by = within("by", by, "at most 1e6 m on each axis")?;
+        match body {
+            BodyHandle::Soft(body) => self.displace(body, |body| body.shift(by)),
+            BodyHandle::Rigid(rigid) => {
+                let body = self.rigids.get(rigid)?;
+                let (position, rotation) = (plus(body.position(), by), body.rotation());
+                self.set_pose(rigid, position, rotation)
+            }
+        }
+    }
+
+    /// Rotates a body about a point [m] at once, velocities included; otherwise like [`World::translate`]. In 2D only
+    /// the rotation about the third axis counts.
     ///
     /// # Errors
-    /// As for [`World::translate_body`].
-    #[inline(never)]
-    pub fn rotate_body(
+    /// As for [`World::translate`].
+    pub fn rotate_about(
         &mut self,
-        body: SoftBodyHandle,
+        body: impl Into<BodyHandle>,
         rotation: Rotation,
-        about: Vector,
-    ) -> Result<(), Refused> {
-        let about = within("centre", about, FARTHEST, "within 1e6 m of the origin")?;
-        self.displace(body, |body| body.turn(rotation, about))
+        point: Vector,
+    ) -> Result<(), Error> {
+        self.rotate_body(body.into(), rotation, point)
     }
 
-    /// Adds a linear velocity [m/s], and an angular velocity [rad/s] about the centre of mass, to all nodes
-    /// of a body. In 2D only the third component of `angular` counts. The body wakes.
-    ///
-    /// # Errors
-    /// [`Refused`] if the handle is stale, or a component is not finite or beyond ±1e6.
     #[inline(never)]
-    pub fn add_velocity(
+    pub(crate) fn rotate_body(
         &mut self,
-        body: SoftBodyHandle,
-        linear: Vector,
-        angular: Vector,
-    ) -> Result<(), Refused> {
-        let linear = within("velocity", linear, FARTHEST, "at most 1e6 m/s on each axis")?;
-        let angular = within("spin", angular, FARTHEST, "at most 1e6 rad/s on each axis")?;
-        self.wake_up(body)?;
-        self.bodies.get_mut(body)?.add_velocity(linear, angular);
-        Ok(())
+        body: BodyHandle,
+        rotation: Rotation,
+        point: Vector,
+    ) -> Result<(), Error> {
+        let point = within("point", point, "within 1e6 m of the origin")?;
+        match body {
+            BodyHandle::Soft(body) => self.displace(body, |body| body.turn(rotation, point)),
+            BodyHandle::Rigid(rigid) => {
+                let rotation = rotation.seen_in::<D>();
+                let body = self.rigids.get(rigid)?;
+                let position = rotation.apply_about(body.position(), flat::<D>(point));
+                self.set_pose(rigid, position, body.rotation().then(rotation))?;
+                self.rigids.get_mut(rigid)?.rotate_velocity(rotation);
+                Ok(())
+            }
+        }
     }
 
-    /// Applies an impulse [N s] at a point [m]. It is distributed over the nodes within `radius` [m] so that
-    /// all gain the same velocity; without nodes in the radius the nearest node gets all of it. A strong
-    /// impulse can squash or tear the body there. The body wakes.
-    ///
-    /// ```
-    /// use fuwafuwa::{SoftBody, Dim2, Material, WorldConfig, VoxelGrid, World};
-    ///
-    /// let grid = VoxelGrid::<Dim2>::ball(16, 1.0)?;
-    /// let mut world = World::new(WorldConfig { gravity: [0.0; 3], ..WorldConfig::default() })?;
-    /// let ball = world.add_body(SoftBody::new(grid, &[Material::default()])?);
-    /// world.apply_impulse(ball, [0.5, 0.5, 0.0], 1.0, [2.0, 0.0, 0.0])?;
-    /// let momentum = world.bodies()[ball].momentum().linear[0];
-    /// assert!((momentum - 2.0).abs() < 1e-4);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// Moves a rigid body to a position [m] and a rotation relative to its form, at once. Its velocity stays, and a
+    /// kinematic or coupled body gets the new pose as its target. The body and sleepers in contact with it wake.
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale, a number is not finite or beyond ±1e6, or the radius is negative.
+    /// [`Error`] if the handle is stale or the position is out of range. The body then stays unchanged.
     #[inline(never)]
-    pub fn apply_impulse(
-        &mut self,
-        body: SoftBodyHandle,
-        at: Vector,
-        radius: f32,
-        impulse: Vector,
-    ) -> Result<(), Refused> {
-        let at = within("place", at, FARTHEST, "within 1e6 m of the origin")?;
-        let impulse = within("impulse", impulse, FARTHEST, "at most 1e6 N s on each axis")?;
-        require((0.0..=FARTHEST).contains(&radius), "radius", "0 to 1e6 m")?;
-        self.wake_up(body)?;
-        self.bodies.get_mut(body)?.add_impulse(at, radius, impulse);
-        Ok(())
-    }
-
-    /// Moves a rigid body to a position [m] and a rotation relative to its form, at once. Its velocity stays,
-    /// and a kinematic or coupled body gets the new pose as its target. The body and sleepers in contact with
-    /// it wake.
-    ///
-    /// # Errors
-    /// [`Refused`] if the handle is stale or the position is out of range. The body then stays unchanged.
-    #[inline(never)]
-    pub fn set_rigid_body_pose(
+    pub fn set_pose(
         &mut self,
         rigid: RigidBodyHandle,
         position: Vector,
         rotation: Rotation,
-    ) -> Result<(), Refused> {
-        let before = self.rigids.get(rigid)?;
-        let was = before.shape().bounds();
-        let leaning = leaning_on_rigid(before, &self.bodies);
-        self.rigids.get_mut(rigid)?.place::<D>(position, rotation)?;
-        self.wake(&leaning);
-        self.forget_rigid(rigid, was)
+    ) -> Result<(), Error> {
+        self.change_rigid(rigid, |body| body.place::<D>(position, rotation))
     }
 
-    /// Sets the linear velocity [m/s] and the angular velocity [rad/s] of a dynamic rigid body. In 2D only
-    /// the third component of `angular` counts. The body wakes.
+    /// Returns the velocity of a body. For a soft body, this is the rigid motion with the same linear and angular
+    /// momentum.
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale, the body is not dynamic, or a component is not finite or beyond
-    /// ±1e6.
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    pub fn velocity(&self, body: impl Into<BodyHandle>) -> Result<Velocity, Error> {
+        self.velocity_of(body.into())
+    }
+
     #[inline(never)]
+    pub(crate) fn velocity_of(&self, body: BodyHandle) -> Result<Velocity, Error> {
+        match body {
+            BodyHandle::Soft(body) => Ok(self.bodies.get(body)?.rigid_velocity()),
+            BodyHandle::Rigid(rigid) => {
+                let rigid = self.rigids.get(rigid)?;
+                Ok(Velocity {
+                    linear: rigid.velocity(),
+                    angular: rigid.angular_velocity(),
+                })
+            }
+        }
+    }
+
+    /// Sets the velocity of a soft body or a dynamic rigid body. Each node of a soft body gets the velocity of that
+    /// rigid motion, which ends all vibration; [fixed](SoftBody::fix_node) nodes keep their velocity. The body wakes.
+    ///
+    /// ```
+    /// use fuwafuwa::{Dim3, RigidBody, Shape, Velocity, World, WorldConfig};
+    ///
+    /// let mut world = World::<Dim3>::new(WorldConfig { gravity: [0.0; 3], ..WorldConfig::default() })?;
+    /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.1 };
+    /// let ball = world.add_rigid_body(RigidBody::dynamic(ball, 1.0))?;
+    /// world.set_velocity(ball, Velocity::linear([6.0, 0.0, 0.0]))?;
+    /// world.step();
+    /// assert!((world.rigid_bodies()[ball].position()[0] - 0.1).abs() < 1e-5);
+    /// # Ok::<(), fuwafuwa::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error`] if the handle is stale, the rigid body is not dynamic, or a component is not finite or beyond ±1e6.
     pub fn set_velocity(
         &mut self,
-        rigid: RigidBodyHandle,
-        linear: Vector,
-        angular: Vector,
-    ) -> Result<(), Refused> {
-        let linear = within("velocity", linear, FARTHEST, "at most 1e6 m/s on each axis")?;
-        let angular = within("spin", angular, FARTHEST, "at most 1e6 rad/s on each axis")?;
-        let free = self.free_mut(rigid)?;
-        free.velocity = flat::<D>(linear);
-        free.angular_velocity = turning::<D>(angular);
+        body: impl Into<BodyHandle>,
+        velocity: Velocity,
+    ) -> Result<(), Error> {
+        self.set_velocity_of(body.into(), velocity)
+    }
+
+    #[inline(never)]
+    pub(crate) fn set_velocity_of(
+        &mut self,
+        body: BodyHandle,
+        velocity: Velocity,
+    ) -> Result<(), Error> {
+        check_velocity(velocity)?;
+        match body {
+            BodyHandle::Soft(body) => {
+                self.wake_soft(body)?;
+                self.bodies.get_mut(body)?.set_velocity(velocity);
+            }
+            BodyHandle::Rigid(rigid) => {
+                let rigid = self.dynamic_mut(rigid)?;
+                rigid.velocity = flat::<D>(velocity.linear);
+                rigid.angular_velocity = turning::<D>(velocity.angular);
+            }
+        }
         Ok(())
     }
 
-    /// Applies an impulse [N s] to a dynamic rigid body at a point [m]. The body wakes.
+    /// Adds to the velocity of a soft body or a dynamic rigid body. All nodes of a soft body gain the velocity of
+    /// that rigid motion, except [fixed](SoftBody::fix_node) nodes. The body wakes.
     ///
     /// # Errors
     /// As for [`World::set_velocity`].
-    #[inline(never)]
-    pub fn apply_rigid_body_impulse(
+    pub fn add_velocity(
         &mut self,
-        rigid: RigidBodyHandle,
-        at: Vector,
-        impulse: Vector,
-    ) -> Result<(), Refused> {
-        let at = within("place", at, FARTHEST, "within 1e6 m of the origin")?;
-        let impulse = within("impulse", impulse, FARTHEST, "at most 1e6 N s on each axis")?;
-        let free = self.free_mut(rigid)?;
-        let lever = minus(flat::<D>(at), free.position());
-        free.kick(flat::<D>(impulse), lever);
+        body: impl Into<BodyHandle>,
+        velocity: Velocity,
+    ) -> Result<(), Error> {
+        self.add_velocity_to(body.into(), velocity)
+    }
+
+    #[inline(never)]
+    pub(crate) fn add_velocity_to(
+        &mut self,
+        body: BodyHandle,
+        velocity: Velocity,
+    ) -> Result<(), Error> {
+        check_velocity(velocity)?;
+        let Velocity { linear, angular } = velocity;
+        match body {
+            BodyHandle::Soft(body) => {
+                self.wake_soft(body)?;
+                self.bodies.get_mut(body)?.add_velocity(linear, angular);
+            }
+            BodyHandle::Rigid(rigid) => {
+                let rigid = self.dynamic_mut(rigid)?;
+                rigid.velocity = plus(rigid.velocity, flat::<D>(linear));
+                rigid.angular_velocity = plus(rigid.angular_velocity, turning::<D>(angular));
+            }
+        }
         Ok(())
     }
 
-    /// Changes the public fields of a rigid body: friction, restitution, motion type, layers, sensor flag and
-    /// user data. Its contacts restart; the body and sleepers in contact with it wake.
+    /// Applies an impulse to a soft body or a dynamic rigid body. A strong impulse can squash or tear a soft body at
+    /// that point. The body wakes.
     ///
     /// ```
-    /// use fuwafuwa::{Dim2, MotionType, RigidBody, WorldConfig, Shape, World};
+    /// use fuwafuwa::{Dim2, Impulse, Material, SoftBody, VoxelGrid, World, WorldConfig};
     ///
-    /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
-    /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.2 };
-    /// let ball = world.add_rigid(RigidBody::dynamic(ball, 1.0))?;
-    /// world.change_rigid(ball, |ball| ball.drive = MotionType::Fixed)?;
-    /// world.step();
-    /// assert_eq!(world.rigids()[ball].position(), [0.0; 3]);
-    /// assert!(world.change_rigid(ball, |ball| ball.friction = -1.0).is_err());
-    /// # Ok::<(), fuwafuwa::Refused>(())
+    /// let grid = VoxelGrid::<Dim2>::ball(16, 1.0)?;
+    /// let mut world = World::new(WorldConfig { gravity: [0.0; 3], ..WorldConfig::default() })?;
+    /// let ball = world.add_soft_body(SoftBody::new(grid, &[Material::default()])?);
+    /// world.apply_impulse(ball, Impulse::at([0.5, 0.5, 0.0], [2.0, 0.0, 0.0]).within(1.0))?;
+    /// let momentum = world.soft_bodies()[ball].momentum().linear[0];
+    /// assert!((momentum - 2.0).abs() < 1e-4);
+    /// # Ok::<(), fuwafuwa::Error>(())
     /// ```
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale or a field is out of range. The body then stays unchanged.
+    /// [`Error`] if the handle is stale, the rigid body is not dynamic, a number is not finite or beyond ±1e6, or the
+    /// radius is negative.
+    pub fn apply_impulse(
+        &mut self,
+        body: impl Into<BodyHandle>,
+        impulse: Impulse,
+    ) -> Result<(), Error> {
+        self.apply_impulse_to(body.into(), impulse)
+    }
+
     #[inline(never)]
-    pub fn change_rigid(
+    pub(crate) fn apply_impulse_to(
+        &mut self,
+        body: BodyHandle,
+        impulse: Impulse,
+    ) -> Result<(), Error> {
+        let Impulse {
+            point,
+            impulse,
+            radius,
+        } = impulse;
+        let point = within("point", point, "within 1e6 m of the origin")?;
+        let impulse = within("impulse", impulse, "at most 1e6 N s on each axis")?;
+        let is_valid = (0.0..=FARTHEST).contains(&radius);
+        require(is_valid, "radius", "0 to 1e6 m", radius)?;
+        match body {
+            BodyHandle::Soft(body) => {
+                self.wake_soft(body)?;
+                let body = self.bodies.get_mut(body)?;
+                body.add_impulse(point, radius, impulse);
+            }
+            BodyHandle::Rigid(rigid) => {
+                let rigid = self.dynamic_mut(rigid)?;
+                let lever = minus(flat::<D>(point), rigid.position());
+                rigid.kick(flat::<D>(impulse), lever);
+            }
+        }
+        Ok(())
+    }
+
+    /// Sets the motion type of a rigid body. If it differs from the present one, the present pose becomes the target.
+    /// The contacts of the body restart; the body and sleepers in contact with it wake.
+    ///
+    /// ```
+    /// use fuwafuwa::{Dim2, MotionType, RigidBody, Shape, World, WorldConfig};
+    ///
+    /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
+    /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.2 };
+    /// let ball = world.add_rigid_body(RigidBody::dynamic(ball, 1.0))?;
+    /// world.set_motion_type(ball, MotionType::Fixed)?;
+    /// world.step();
+    /// assert_eq!(world.rigid_bodies()[ball].position(), [0.0; 3]);
+    /// assert!(world.set_motion_type(ball, MotionType::Dynamic { mass: 0.0 }).is_err());
+    /// # Ok::<(), fuwafuwa::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error`] if the handle is stale, a parameter of the motion type is out of range, or the shape does not suit it.
+    #[inline(never)]
+    pub fn set_motion_type(
         &mut self,
         rigid: RigidBodyHandle,
-        change: impl FnOnce(&mut RigidBody),
-    ) -> Result<(), Refused> {
-        let mut changed = self.rigids.get(rigid)?.clone();
-        let (drive, was) = (changed.motion_type, changed.shape().bounds());
-        change(&mut changed);
-        if changed.motion_type != drive {
-            changed.stay();
-        }
-        let mut changed = changed.seen_in::<D>();
-        changed.check()?;
-        changed.wake();
-        *self.rigids.get_mut(rigid)? = changed;
-        self.forget_rigid(rigid, was)
+        motion_type: MotionType,
+    ) -> Result<(), Error> {
+        self.change_rigid(rigid, |body| body.set_motion_type::<D>(motion_type))
+    }
+
+    /// Sets the [friction](RigidBody::friction) of a rigid body. Its contacts restart; the body and sleepers in contact
+    /// with it wake.
+    ///
+    /// # Errors
+    /// [`Error`] if the handle is stale, or the coefficient is negative or not finite.
+    #[inline(never)]
+    pub fn set_friction(&mut self, rigid: RigidBodyHandle, friction: f32) -> Result<(), Error> {
+        check_friction(friction)?;
+        self.change_rigid(rigid, |body| {
+            body.friction = friction;
+            Ok(())
+        })
+    }
+
+    /// Sets the [restitution](RigidBody::restitution) of a rigid body; otherwise like [`World::set_friction`].
+    ///
+    /// # Errors
+    /// [`Error`] if the handle is stale, or the coefficient is not 0 to 1.
+    #[inline(never)]
+    pub fn set_restitution(
+        &mut self,
+        rigid: RigidBodyHandle,
+        restitution: f32,
+    ) -> Result<(), Error> {
+        check_restitution(restitution)?;
+        self.change_rigid(rigid, |body| {
+            body.restitution = restitution;
+            Ok(())
+        })
+    }
+
+    /// Sets whether a rigid body [is a sensor](RigidBody::is_sensor); otherwise like [`World::set_friction`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    #[inline(never)]
+    pub fn set_sensor(&mut self, rigid: RigidBodyHandle, is_sensor: bool) -> Result<(), Error> {
+        self.change_rigid(rigid, |body| {
+            body.is_sensor = is_sensor;
+            Ok(())
+        })
     }
 
     /// Sets the collision layers of a body. The body and sleepers in contact with it wake.
     ///
     /// # Errors
-    /// [`Refused::Gone`] if the handle is stale.
-    #[inline(never)]
-    pub fn set_layers(&mut self, body: SoftBodyHandle, layers: Layers) -> Result<(), Refused> {
-        self.displace(body, |body| body.state.layers = layers)?;
-        self.nearby.nodes.look_again();
-        Ok(())
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    pub fn set_layers(&mut self, body: impl Into<BodyHandle>, layers: Layers) -> Result<(), Error> {
+        self.set_layers_of(body.into(), layers)
     }
 
-    /// Sets the [`SoftBody::user_data`] of a body.
+    #[inline(never)]
+    pub(crate) fn set_layers_of(&mut self, body: BodyHandle, layers: Layers) -> Result<(), Error> {
+        match body {
+            BodyHandle::Soft(body) => {
+                self.displace(body, |body| body.state.layers = layers)?;
+                self.nearby.nodes.look_again();
+                Ok(())
+            }
+            BodyHandle::Rigid(rigid) => self.change_rigid(rigid, |body| {
+                body.layers = layers;
+                Ok(())
+            }),
+        }
+    }
+
+    /// Sets the number for use by the program, see [`SoftBody::user_data`] and [`RigidBody::user_data`].
     ///
     /// # Errors
-    /// [`Refused::Gone`] if the handle is stale.
-    #[inline(never)]
-    pub fn set_user_data(&mut self, body: SoftBodyHandle, data: u64) -> Result<(), Refused> {
-        self.bodies.get_mut(body)?.state.user_data = data;
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    pub fn set_user_data(&mut self, body: impl Into<BodyHandle>, data: u64) -> Result<(), Error> {
+        match body.into() {
+            BodyHandle::Soft(body) => self.bodies.get_mut(body)?.state.user_data = data,
+            BodyHandle::Rigid(rigid) => self.rigids.get_mut(rigid)?.user_data = data,
+        }
         Ok(())
     }
 
-    /// Sets the gravity scale of a body: 1 is normal, 0 is no gravity, negative values pull upwards. The body
+    /// Sets the gravity scale of a soft body: 1 is normal, 0 is no gravity, negative values pull upwards. The body
     /// wakes.
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale, or the scale is not finite or beyond ±100.
+    /// [`Error`] if the handle is stale, or the scale is not finite or beyond ±100.
     #[inline(never)]
-    pub fn set_gravity_scale(&mut self, body: SoftBodyHandle, scale: f32) -> Result<(), Refused> {
-        require(
-            scale.abs() <= MAX_GRAVITY_SCALE,
-            "gravity scale",
-            "-100 to 100",
-        )?;
-        self.wake_up(body)?;
-        self.bodies.get_mut(body)?.state.gravity_scale = scale;
+    pub fn set_gravity_scale(
+        &mut self,
+        body: SoftBodyHandle,
+        gravity_scale: f32,
+    ) -> Result<(), Error> {
+        let is_valid = gravity_scale.abs() <= MAX_GRAVITY_SCALE;
+        require(is_valid, "gravity_scale", "-100 to 100", gravity_scale)?;
+        self.wake_soft(body)?;
+        self.bodies.get_mut(body)?.state.gravity_scale = gravity_scale;
         Ok(())
     }
 
-    /// Wakes a body and restarts its sleep timers. It then stays awake for at least half a second, even if it
-    /// does not move.
+    /// Wakes a body and restarts its sleep timers. It then stays awake for at least half a second, even if it does not
+    /// move. Rigid bodies that are not dynamic never sleep.
     ///
     /// # Errors
-    /// [`Refused::Gone`] if the handle is stale.
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    pub fn wake_up(&mut self, body: impl Into<BodyHandle>) -> Result<(), Error> {
+        self.wake_up_body(body.into())
+    }
+
     #[inline(never)]
-    pub fn wake_up(&mut self, body: SoftBodyHandle) -> Result<(), Refused> {
+    pub(crate) fn wake_up_body(&mut self, body: BodyHandle) -> Result<(), Error> {
+        match body {
+            BodyHandle::Soft(body) => self.wake_soft(body),
+            BodyHandle::Rigid(rigid) => {
+                self.rigids.get(rigid)?;
+                self.wake_rigids(&[rigid.slot()]);
+                Ok(())
+            }
+        }
+    }
+
+    fn wake_soft(&mut self, body: SoftBodyHandle) -> Result<(), Error> {
         self.bodies.get(body)?;
         self.wake_body(body);
         self.keep_awake(body);
         Ok(())
     }
 
-    /// Puts a body to sleep at its present position, at rest. A sleeping body costs next to nothing and acts
-    /// as a wall until something moves against it. Its [fixed](SoftBody::fix_node) nodes stop, too.
+    /// Puts a soft body or a dynamic rigid body to sleep at its present position, at rest. A sleeping body costs next
+    /// to nothing and acts as a wall until something moves against it. [Fixed](SoftBody::fix_node) nodes stop, too.
     ///
     /// # Errors
-    /// [`Refused::Gone`] if the handle is stale.
+    /// [`Error`] if the handle is stale, or the rigid body is not dynamic.
+    pub fn put_to_sleep(&mut self, body: impl Into<BodyHandle>) -> Result<(), Error> {
+        self.put_body_to_sleep(body.into())
+    }
+
     #[inline(never)]
-    pub fn put_to_sleep(&mut self, body: SoftBodyHandle) -> Result<(), Refused> {
+    pub(crate) fn put_body_to_sleep(&mut self, body: BodyHandle) -> Result<(), Error> {
+        let body = match body {
+            BodyHandle::Soft(body) => body,
+            BodyHandle::Rigid(rigid) => {
+                self.dynamic_mut(rigid)?.fall_asleep();
+                return Ok(());
+            }
+        };
         let sleeper = self.bodies.get_mut(body)?;
         let awake = sleeper
             .topology
@@ -271,10 +439,10 @@ impl<D: Dim> World<D> {
     /// for the new maximum number of substeps, see [`SoftBody::stiffness_scale`].
     ///
     /// # Errors
-    /// [`Refused::Setting`] if a setting is out of range. Everything then stays unchanged.
+    /// [`Error::InvalidParameter`] if a setting is out of range. Everything then stays unchanged.
     #[inline(never)]
-    pub fn set_config(&mut self, settings: WorldConfig) -> Result<(), Refused> {
-        settings.check().map_err(Refused::setting)?;
+    pub fn set_config(&mut self, settings: WorldConfig) -> Result<(), Error> {
+        settings.check()?;
         self.settings = settings;
         let shortest = settings.shortest_substep();
         let mut all: Vec<Hit> = Vec::new();
@@ -296,7 +464,7 @@ impl<D: Dim> World<D> {
         &mut self,
         id: SoftBodyHandle,
         change: impl FnOnce(&mut SoftBody<D>),
-    ) -> Result<(), Refused> {
+    ) -> Result<(), Error> {
         let body = self.bodies.get(id)?;
         let own = id.slot();
         let leaning = leaning_on_body(body, &self.bodies);
@@ -304,33 +472,45 @@ impl<D: Dim> World<D> {
         let mut places = bounds_of(body, |_| true);
         self.nearby.remove_body(own);
         change(self.bodies.get_mut(id)?);
-        self.wake_up(id)?;
+        self.wake_soft(id)?;
         places.extend(bounds_of(self.bodies.get(id)?, |_| true));
         self.wake_leaning(leaning, places);
         Ok(())
     }
 
-    /// Discards the contacts of a rigid body after a change of its pose or fields, and wakes sleepers in
-    /// contact with its old and its new bounds.
-    fn forget_rigid(&mut self, id: RigidBodyHandle, was: Bounds) -> Result<(), Refused> {
-        let rigid = self.rigids.get(id)?;
-        let is = rigid.shape().bounds();
-        let leaning = leaning_on_rigid(rigid, &self.bodies);
-        self.nearby.remove_rigid(id.slot());
+    /// Changes the pose or fields of a rigid body, discards its contacts, and wakes it together with sleepers in
+    /// contact with its old and its new bounds. If `change` fails, nothing changes.
+    fn change_rigid(
+        &mut self,
+        rigid: RigidBodyHandle,
+        change: impl FnOnce(&mut RigidBody) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        let body = self.rigids.get(rigid)?;
+        let was = body.shape().bounds();
+        let leaning = leaning_on_rigid(body, &self.bodies);
+        let body = self.rigids.get_mut(rigid)?;
+        change(body)?;
+        body.wake();
+        let is = body.shape().bounds();
+        self.wake(&leaning);
+        let leaning = leaning_on_rigid(self.rigids.get(rigid)?, &self.bodies);
+        self.nearby.remove_rigid(rigid.slot());
         self.nearby.nodes.look_again();
         self.wake_leaning(leaning, vec![was, is]);
         Ok(())
     }
 
     /// Returns a dynamic rigid body and wakes it.
-    fn free_mut(&mut self, rigid: RigidBodyHandle) -> Result<&mut RigidBody, Refused> {
+    fn dynamic_mut(&mut self, rigid: RigidBodyHandle) -> Result<&mut RigidBody, Error> {
+        let body = self.rigids.get(rigid)?;
         require(
-            self.rigids.get(rigid)?.is_dynamic(),
-            "rigid body",
-            "free (dynamic)",
+            body.is_dynamic(),
+            "motion_type",
+            "dynamic",
+            body.motion_type,
         )?;
         self.wake_rigids(&[rigid.slot()]);
-        Ok(self.rigids.get_mut(rigid)?)
+        self.rigids.get_mut(rigid)
     }
 
     /// Restarts the sleep timers of a body.
@@ -342,18 +522,17 @@ impl<D: Dim> World<D> {
     }
 }
 
-fn require(is_good: bool, field: &'static str, expected: &'static str) -> Result<(), Refused> {
-    is_good
-        .then_some(())
-        .ok_or(Refused::Argument { field, expected })
+fn check_velocity(velocity: Velocity) -> Result<(), Error> {
+    within("linear", velocity.linear, "at most 1e6 m/s on each axis")?;
+    within(
+        "angular",
+        velocity.angular,
+        "at most 1e6 rad/s on each axis",
+    )?;
+    Ok(())
 }
 
-fn within(
-    field: &'static str,
-    vector: Vector,
-    most: f32,
-    expected: &'static str,
-) -> Result<Vector, Refused> {
-    let is_good = vector.iter().all(|k| k.abs() <= most);
-    require(is_good, field, expected).map(|()| vector)
+fn within(field: &'static str, vector: Vector, expected: &'static str) -> Result<Vector, Error> {
+    let is_within = vector.iter().all(|k| k.abs() <= FARTHEST);
+    require(is_within, field, expected, vector).map(|()| vector)
 }

@@ -1,5 +1,6 @@
 //! World settings: gravity, air drag, substeps and tick length.
 
+use crate::error::{Error, require};
 use crate::rigid_body::shape::Vector;
 
 /// Default tick length [s]; see [`WorldConfig::tick`].
@@ -18,8 +19,6 @@ pub const LONGEST_TICK: f32 = 1.0 / 30.0;
 /// Fracture and damping rounds per second: one in every four of the usual substeps, and one in the time that
 /// a node takes to give way.
 const ROUNDS: f64 = 240.0;
-/// Name of an invalid setting, and the expected value.
-pub(super) type BadSetting = (&'static str, &'static str);
 
 /// World settings.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -77,24 +76,19 @@ impl WorldConfig {
         f64::from(self.tick) / f64::from(self.most_in_tick())
     }
 
-    pub(super) fn check(&self) -> Result<(), BadSetting> {
-        let range = FEWEST_SUBSTEPS..=1024;
+    pub(super) fn check(&self) -> Result<(), Error> {
         let is_finite = self.gravity.iter().all(|k| k.is_finite());
-        let checks = [
-            ("gravity", "finite", is_finite),
-            ("drag", "0 to 10", (0.0..=10.0).contains(&self.drag)),
-            (
-                "most_substeps",
-                "8 to 1024",
-                range.contains(&self.most_substeps),
-            ),
-            (
-                "tick",
-                "1/240 to 1/30 s",
-                (SHORTEST_TICK..=LONGEST_TICK).contains(&self.tick),
-            ),
-        ];
-        let bad = checks.into_iter().find(|(.., is_good)| !is_good);
-        bad.map_or(Ok(()), |(field, expected, _)| Err((field, expected)))
+        require(is_finite, "gravity", "finite", self.gravity)?;
+        require(
+            (0.0..=10.0).contains(&self.drag),
+            "drag",
+            "0 to 10",
+            self.drag,
+        )?;
+        let substeps = self.most_substeps;
+        let is_valid = (FEWEST_SUBSTEPS..=1024).contains(&substeps);
+        require(is_valid, "most_substeps", "8 to 1024", substeps)?;
+        let is_valid = (SHORTEST_TICK..=LONGEST_TICK).contains(&self.tick);
+        require(is_valid, "tick", "1/240 to 1/30 s", self.tick)
     }
 }

@@ -1,12 +1,13 @@
 //! Contents of a world: insertion, removal, access and wake-up.
 
-use super::{Refused, World, WorldConfig};
+use super::{World, WorldConfig};
 use crate::contact::broad_phase::{bounds_of, leaning_on_body, leaning_on_rigid, sleeping_in};
 #[cfg(feature = "serde")]
 use crate::contact::joint::Joint;
 use crate::contact::solver::Hit;
+use crate::error::Error;
 use crate::event::Event;
-use crate::foundation::arena::{Gone, RigidBodyHandle, RigidSlot, SoftBodyHandle};
+use crate::foundation::arena::{RigidBodyHandle, RigidSlot, SoftBodyHandle};
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::Hash;
 use crate::fracture::blade::{Blade, CutReport};
@@ -37,9 +38,9 @@ impl<D: Dim> World<D> {
     /// Adds a rigid body. In 2D the third coordinates are ignored.
     ///
     /// # Errors
-    /// [`Refused::RigidBody`] if a parameter is out of range.
+    /// [`Error::InvalidParameter`] if a parameter is out of range.
     #[inline(never)]
-    pub fn add_rigid_body(&mut self, rigid: RigidBody) -> Result<RigidBodyHandle, Refused> {
+    pub fn add_rigid_body(&mut self, rigid: RigidBody) -> Result<RigidBodyHandle, Error> {
         let rigid = rigid.seen_in::<D>();
         rigid.check()?;
         Ok(self.rigids.insert(rigid))
@@ -49,43 +50,42 @@ impl<D: Dim> World<D> {
     /// tick.
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale, the body is fixed or dynamic, or the target is not finite or
+    /// [`Error`] if the handle is stale, the body is fixed or dynamic, or the target is not finite or
     /// beyond [`FARTHEST`](crate::rigid_body::FARTHEST). The target then stays unchanged.
     pub fn set_target_position(
         &mut self,
-        hand: RigidBodyHandle,
-        goal: Vector,
-    ) -> Result<(), Refused> {
-        Ok(self.rigids.get_mut(hand)?.send::<D>(goal)?)
+        rigid: RigidBodyHandle,
+        position: Vector,
+    ) -> Result<(), Error> {
+        self.rigids.get_mut(rigid)?.send::<D>(position)
     }
 
     /// Sets the target rotation that a kinematic or coupled rigid body turns to until the end of the next
     /// tick. In 2D only the rotation about the third axis counts.
     ///
     /// # Errors
-    /// [`Refused`] if the handle is stale, or the body is fixed or dynamic. The target then stays unchanged.
+    /// [`Error`] if the handle is stale, or the body is fixed or dynamic. The target then stays unchanged.
     pub fn set_target_rotation(
         &mut self,
         rigid: RigidBodyHandle,
         rotation: Rotation,
-    ) -> Result<(), Refused> {
-        Ok(self.rigids.get_mut(rigid)?.turn_to::<D>(rotation)?)
+    ) -> Result<(), Error> {
+        self.rigids.get_mut(rigid)?.turn_to::<D>(rotation)
     }
 
     /// Cuts a body along a blade at once, at any strength of the material, and returns the number of split
     /// nodes. The splits and the detached pieces are among the events until the next tick.
     ///
     /// # Errors
-    /// [`Gone`] if the handle is stale.
+    /// [`Error::InvalidHandle`] if the handle is stale.
     #[inline(never)]
-    pub fn cut(&mut self, body: SoftBodyHandle, blade: &Blade) -> Result<usize, Gone> {
+    pub fn cut(&mut self, body: SoftBodyHandle, blade: &Blade) -> Result<usize, Error> {
         self.bodies.get(body)?;
         self.wake_body(body);
-        let cut = self.bodies.get_mut(body)?.cut(blade);
         let CutReport {
             released,
             detached: parted,
-        } = cut.expect("splitting a node keeps the mesh valid");
+        } = self.bodies.get_mut(body)?.cut(blade);
         let energy = 0.0;
         let positions = released.iter();
         let releases = positions.map(|&at| Event::NodeSplit { body, at, energy });
@@ -99,9 +99,9 @@ impl<D: Dim> World<D> {
     /// to the reference, because it would not be softened; remove the old body and add the new one.
     ///
     /// # Errors
-    /// [`Gone`] if the handle is stale.
+    /// [`Error::InvalidHandle`] if the handle is stale.
     #[inline(never)]
-    pub fn soft_body_mut(&mut self, body: SoftBodyHandle) -> Result<&mut SoftBody<D>, Gone> {
+    pub fn soft_body_mut(&mut self, body: SoftBodyHandle) -> Result<&mut SoftBody<D>, Error> {
         self.bodies.get(body)?;
         self.wake_body(body);
         let body = self.bodies.get_mut(body)?;
@@ -110,12 +110,9 @@ impl<D: Dim> World<D> {
         Ok(body)
     }
 
-    /// Removes a body. Other bodies keep their handles and state; sleepers in contact with it wake.
-    ///
-    /// # Errors
-    /// [`Gone`] if the handle is stale.
+    /// Removes a soft body, see [`World::remove`].
     #[inline(never)]
-    pub fn remove_soft_body(&mut self, body: SoftBodyHandle) -> Result<SoftBody<D>, Gone> {
+    pub(crate) fn remove_soft_body(&mut self, body: SoftBodyHandle) -> Result<SoftBody<D>, Error> {
         let removed = self.bodies.remove(body)?;
         self.nearby.remove_body(body.slot());
         let leaning = leaning_on_body(&removed, &self.bodies);
@@ -123,12 +120,9 @@ impl<D: Dim> World<D> {
         Ok(removed)
     }
 
-    /// Removes a rigid body. Others keep their handles and state; sleepers in contact with it wake.
-    ///
-    /// # Errors
-    /// [`Gone`] if the handle is stale.
+    /// Removes a rigid body, see [`World::remove`].
     #[inline(never)]
-    pub fn remove_rigid_body(&mut self, rigid: RigidBodyHandle) -> Result<RigidBody, Gone> {
+    pub(crate) fn remove_rigid_body(&mut self, rigid: RigidBodyHandle) -> Result<RigidBody, Error> {
         let removed = self.rigids.remove(rigid)?;
         self.nearby.remove_rigid(rigid.slot());
         let leaning = leaning_on_rigid(&removed, &self.bodies);

@@ -1,9 +1,10 @@
 //! Knives of a world: insertion, removal, access and simulation.
 
-use super::{Refused, World};
+use super::World;
 use crate::contact::solver::Hit;
+use crate::error::Error;
 use crate::event::{Event, StepReport};
-use crate::foundation::arena::{Gone, KnifeHandle};
+use crate::foundation::arena::KnifeHandle;
 use crate::foundation::dim::Dim;
 use crate::fracture::knife::{Knife, Knives};
 
@@ -11,24 +12,19 @@ impl<D: Dim> World<D> {
     /// Attaches a knife to a kinematic or coupled rigid body.
     ///
     /// # Errors
-    /// [`Refused`] if the handle of the rigid body is stale, the body is fixed or dynamic, or a parameter is
+    /// [`Error`] if the handle of the rigid body is stale, the body is fixed or dynamic, or a parameter is
     /// out of range.
     #[inline(never)]
-    pub fn add_knife(&mut self, mut knife: Knife) -> Result<KnifeHandle, Refused> {
-        self.rigids.get(knife.holder)?;
-        let refused = |(field, expected)| Refused::Argument { field, expected };
-        knife.check::<D>(&self.rigids).map_err(refused)?;
+    pub fn add_knife(&mut self, mut knife: Knife) -> Result<KnifeHandle, Error> {
+        knife.check::<D>(&self.rigids)?;
         // Clears runtime state from another world.
         knife.forget();
         Ok(self.knives.insert(knife))
     }
 
-    /// Removes a knife; the rigid body that holds it stays.
-    ///
-    /// # Errors
-    /// [`Gone`] if the handle is stale.
+    /// Removes a knife, see [`World::remove`].
     #[inline(never)]
-    pub fn remove_knife(&mut self, knife: KnifeHandle) -> Result<Knife, Gone> {
+    pub(crate) fn remove_knife(&mut self, knife: KnifeHandle) -> Result<Knife, Error> {
         self.knives.remove(knife)
     }
 
@@ -50,9 +46,7 @@ impl<D: Dim> World<D> {
                     .bodies
                     .get_mut(cut.body)
                     .expect("the cut names a live body");
-                let (released, changes) = body
-                    .open(&cut.faces)
-                    .expect("splitting a node keeps the mesh valid");
+                let (released, changes) = body.open(&cut.faces);
                 if released.is_empty() {
                     continue;
                 }

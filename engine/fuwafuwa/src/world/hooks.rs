@@ -1,6 +1,7 @@
 //! Callbacks during a tick.
 
-use crate::foundation::arena::{Gone, RigidBodyHandle};
+use crate::error::Error;
+use crate::foundation::arena::RigidBodyHandle;
 use crate::rigid_body::shape::Vector;
 use crate::rigid_body::{Reaction, RigidBodies};
 
@@ -36,8 +37,8 @@ impl<'a> Substep<'a> {
     /// Zero for fixed rigid bodies.
     ///
     /// # Errors
-    /// [`Gone`] if the handle is stale.
-    pub fn reaction(&self, hand: RigidBodyHandle) -> Result<Reaction, Gone> {
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    pub fn reaction(&self, hand: RigidBodyHandle) -> Result<Reaction, Error> {
         let hand = self.rigids.get(hand)?;
         Ok(hand.reactions().last().copied().unwrap_or_default())
     }
@@ -45,8 +46,8 @@ impl<'a> Substep<'a> {
     /// Returns the position of a rigid body [m].
     ///
     /// # Errors
-    /// [`Gone`] if the handle is stale.
-    pub fn position(&self, hand: RigidBodyHandle) -> Result<Vector, Gone> {
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    pub fn position(&self, hand: RigidBodyHandle) -> Result<Vector, Error> {
         Ok(self.rigids.get(hand)?.position())
     }
 }

@@ -1,10 +1,11 @@
 //! Removal of pieces, and of everything that left a region.
 
-use super::{Refused, World};
+use super::World;
 use crate::contact::broad_phase::{bounds_of, leaning_on_pieces};
 use crate::contact::solver::Hit;
+use crate::error::Error;
 use crate::event::Event;
-use crate::foundation::arena::{Gone, RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::PieceId;
 use crate::math::vector::three;
@@ -38,7 +39,7 @@ pub struct Removed {
 impl<D: Dim> World<D> {
     /// Removes a piece of a body with its voxels, elements and nodes. Its contacts end and its joints break.
     /// Everything else keeps its position and state, but sleepers in contact with the piece wake. Piece
-    /// numbers are never reused. Removing the last piece removes the body, as [`World::remove_soft_body`] does,
+    /// numbers are never reused. Removing the last piece removes the body, as [`World::remove`] does,
     /// and makes its handle stale.
     ///
     /// ```
@@ -46,26 +47,26 @@ impl<D: Dim> World<D> {
     ///
     /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
     /// let cake = SoftBody::new(VoxelGrid::cube(16, 1.0)?, &[Material::default()])?;
-    /// let cake = world.add_body(cake);
+    /// let cake = world.add_soft_body(cake);
     /// let across = Blade::segment([0.3, -1.0], [0.3, 2.0]);
     /// world.cut(cake, &across)?;
-    /// assert_eq!(world.bodies()[cake].pieces().count(), 2);
+    /// assert_eq!(world.soft_bodies()[cake].pieces().count(), 2);
     /// let removed = world.remove_piece(cake, PieceId(1))?;
-    /// assert!((removed.mass + world.bodies()[cake].total_mass() - 100.0).abs() < 1e-3);
-    /// assert_eq!(world.bodies()[cake].pieces().count(), 1);
+    /// assert!((removed.mass + world.soft_bodies()[cake].total_mass() - 100.0).abs() < 1e-3);
+    /// assert_eq!(world.soft_bodies()[cake].pieces().count(), 1);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
-    /// [`Gone`] if the body or the piece does not exist.
+    /// [`Error::InvalidHandle`] if the body does not exist, [`Error::InvalidParameter`] if it has no such piece.
     #[inline(never)]
-    pub fn remove_piece(&mut self, body: SoftBodyHandle, piece: PieceId) -> Result<Removed, Gone> {
+    pub fn remove_piece(&mut self, body: SoftBodyHandle, piece: PieceId) -> Result<Removed, Error> {
         match self.bodies.get(body)?.has_piece(piece) {
             true => Ok(self.take_out(&[(body, piece)])),
-            false => Err(Gone {
-                kind: "piece",
-                slot: piece.0,
-            }),
+            false => {
+                let expected = "the number of a piece that the body still has";
+                Err(Error::parameter("piece", expected, piece.0))
+            }
         }
     }
 
@@ -78,8 +79,8 @@ impl<D: Dim> World<D> {
     ///
     /// let mut world = World::<Dim3>::new(WorldConfig::default())?;
     /// let ball = SoftBody::new(VoxelGrid::ball(8, 0.4)?, &[Material::default()])?;
-    /// let ball = world.add_body(ball);
-    /// world.body_mut(ball)?.crumble()?;
+    /// let ball = world.add_soft_body(ball);
+    /// world.soft_body_mut(ball)?.crumble()?;
     /// assert_eq!(world.remove_small_pieces(PieceSize::Voxels(1))?.pieces, []);
     /// let removed = world.remove_small_pieces(PieceSize::Voxels(2))?;
     /// assert_eq!(removed.bodies, [ball]);
@@ -87,18 +88,18 @@ impl<D: Dim> World<D> {
     /// ```
     ///
     /// # Errors
-    /// [`Refused::Argument`] if a volume or a mass is negative or not finite.
+    /// [`Error::InvalidParameter`] if a volume or a mass is negative or not finite.
     #[inline(never)]
-    pub fn remove_small_pieces(&mut self, below: PieceSize) -> Result<Removed, Refused> {
-        let (PieceSize::Volume(least) | PieceSize::Mass(least)) = below else {
-            return Ok(self.take_out_where(|body| is_below(body, below)));
+    pub fn remove_small_pieces(&mut self, size: PieceSize) -> Result<Removed, Error> {
+        let (PieceSize::Volume(least) | PieceSize::Mass(least)) = size else {
+            return Ok(self.take_out_where(|body| is_below(body, size)));
         };
         match least >= 0.0 && least.is_finite() {
-            true => Ok(self.take_out_where(|body| is_below(body, below))),
-            false => Err(Refused::Argument {
-                field: "size",
-                expected: "0 or more, and finite",
-            }),
+            true => Ok(self.take_out_where(|body| is_below(body, size))),
+            false => {
+                let expected = "0 or more, and finite";
+                Err(Error::parameter("size", expected, least))
+            }
         }
     }
 
@@ -111,7 +112,7 @@ impl<D: Dim> World<D> {
     ///
     /// let mut world = World::<Dim3>::new(WorldConfig::default())?;
     /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.1 };
-    /// let ball = world.add_rigid(RigidBody::dynamic(ball, 1.0))?;
+    /// let ball = world.add_rigid_body(RigidBody::dynamic(ball, 1.0))?;
     /// The solid side of this half-space is above the plane, because its normal points down.
     /// let above = Shape::half_space([0.0, -1.0, 0.0], [0.0, -2.0, 0.0]);
     /// let mut removed = world.remove_outside(&above)?;
@@ -119,20 +120,16 @@ impl<D: Dim> World<D> {
     ///     world.step();
     ///     removed = world.remove_outside(&above)?;
     /// }
-    /// assert_eq!((removed.rigids, world.rigids().len()), (vec![ball], 0));
-    /// # Ok::<(), fuwafuwa::Refused>(())
+    /// assert_eq!((removed.rigids, world.rigid_bodies().len()), (vec![ball], 0));
+    /// # Ok::<(), fuwafuwa::Error>(())
     /// ```
     ///
     /// # Errors
-    /// [`Refused::Argument`] if the region is not a valid [shape](Shape::check).
+    /// [`Error::InvalidParameter`] if the region is not a valid [shape](Shape::check).
     #[inline(never)]
-    pub fn remove_outside(&mut self, region: &Shape) -> Result<Removed, Refused> {
+    pub fn remove_outside(&mut self, region: &Shape) -> Result<Removed, Error> {
         let region = region.seen_in::<D>();
-        let checked = region.check();
-        checked.map_err(|bad| Refused::Argument {
-            field: bad.field,
-            expected: bad.expected,
-        })?;
+        region.check().map_err(|error| error.of("region"))?;
         let mut removed = self.take_out_where(|body| {
             let mut outside: Vec<bool> = vec![true; body.topology.pieces.list.len()];
             for (id, _) in body.topology.mesh.nodes() {

@@ -61,8 +61,7 @@ pub fn fall_asleep_rigid(rigids: &mut RigidBodies, handled: &BTreeSet<RigidSlot>
             0.0
         };
         if rigid.sleep_timer >= SLEEP_TIME {
-            rigid.asleep = true;
-            (rigid.velocity, rigid.angular_velocity) = ([0.0; 3], [0.0; 3]);
+            rigid.fall_asleep();
         }
     }
 }

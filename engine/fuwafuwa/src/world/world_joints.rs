@@ -1,9 +1,10 @@
 //! Joints of a world: insertion, removal, access.
 
-use super::{Refused, World};
+use super::World;
 use crate::contact::joint::{Joint, JointAnchor, Joints};
+use crate::error::Error;
 use crate::event::Event;
-use crate::foundation::arena::{Gone, JointHandle};
+use crate::foundation::arena::JointHandle;
 use crate::foundation::dim::Dim;
 use crate::rigid_body::shape::Vector;
 
@@ -11,22 +12,18 @@ impl<D: Dim> World<D> {
     /// Adds a joint between two anchors at their present positions. Both attached bodies wake.
     ///
     /// # Errors
-    /// [`Refused`] if a handle is stale or a parameter is out of range.
+    /// [`Error`] if a handle is stale or a parameter is out of range.
     #[inline(never)]
-    pub fn add_joint(&mut self, mut joint: Joint) -> Result<JointHandle, Refused> {
-        let refused = |(field, expected)| Refused::Argument { field, expected };
-        joint.check().map_err(refused)?;
+    pub fn add_joint(&mut self, mut joint: Joint) -> Result<JointHandle, Error> {
+        joint.check()?;
         joint.hold(&self.bodies, &self.rigids)?;
         self.wake_ends(&joint);
         Ok(self.joints.insert(joint))
     }
 
-    /// Removes a joint. Both attached bodies wake.
-    ///
-    /// # Errors
-    /// [`Gone`] if the handle is stale.
+    /// Removes a joint, see [`World::remove`].
     #[inline(never)]
-    pub fn remove_joint(&mut self, joint: JointHandle) -> Result<Joint, Gone> {
+    pub(crate) fn remove_joint(&mut self, joint: JointHandle) -> Result<Joint, Error> {
         let joint = self.joints.remove(joint)?;
         self.wake_ends(&joint);
         Ok(joint)
@@ -41,9 +38,9 @@ impl<D: Dim> World<D> {
     /// which can happen in the tick in which the joint is removed.
     ///
     /// # Errors
-    /// [`Gone`] if the handle is stale.
+    /// [`Error::InvalidHandle`] if the handle is stale.
     #[inline(never)]
-    pub fn joint_anchor_positions(&self, joint: JointHandle) -> Result<Option<[Vector; 2]>, Gone> {
+    pub fn joint_anchor_positions(&self, joint: JointHandle) -> Result<Option<[Vector; 2]>, Error> {
         Ok(self.joints.get(joint)?.places(&self.bodies, &self.rigids))
     }
 

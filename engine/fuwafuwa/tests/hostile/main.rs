@@ -112,7 +112,6 @@ fn check_coarse<D: Dim>(blade: Blade) {
             .soft_body_mut(world.nth_soft_body(0).unwrap())
             .unwrap()
             .crumble()
-            .unwrap()
             .is_empty()
     );
     step(&mut world, 5);

@@ -1,6 +1,6 @@
 //! Errors of imported files.
 
-use fuwafuwa::BuildError;
+use fuwafuwa::Error;
 use std::{fmt, io};
 
 /// Reason why a file could not be imported.
@@ -57,7 +57,7 @@ pub enum Problem {
     Empty(&'static str),
     /// The engine rejects the grid.
     #[error("{0}")]
-    Grid(BuildError),
+    Grid(Error),
 }
 
 impl fmt::Display for FilePosition {
@@ -92,9 +92,9 @@ pub fn in_file<T>(file: &str, outcome: Result<T, PositionedProblem>) -> Result<T
 }
 
 /// Converts an error of the grid; `sought` names what would have been solid.
-pub fn no_grid(error: BuildError, sought: &'static str) -> PositionedProblem {
+pub fn no_grid(error: Error, sought: &'static str) -> PositionedProblem {
     let problem = match error {
-        BuildError::Empty => Problem::Empty(sought),
+        Error::EmptyGrid => Problem::Empty(sought),
         error => Problem::Grid(error),
     };
     (FilePosition::File, problem)

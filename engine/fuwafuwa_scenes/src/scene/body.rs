@@ -1,11 +1,11 @@
 //! Bodies and materials of a scene file.
 
-use super::error::{FieldError, require};
+use super::error::FieldError;
 use super::shapes::{BallText, BoxText, CapsuleText, HalfSpaceText};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::inspect::Elasticity;
-use fuwafuwa::{BodyError, Layers, Material};
+use fuwafuwa::{Layers, Material};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -252,22 +252,8 @@ impl MaterialText {
 
     /// Checks the ranges of the material's fields.
     pub(super) fn check(&self) -> Result<(), FieldError> {
-        let material = self.material();
-        let Elasticity { young, poisson } = material.elasticity;
-        let good = young > 0.0 && young.is_finite();
-        let expected = format!("expected a positive number of pascals, found {young}");
-        require(good, "young", expected)?;
-        let expected = format!("expected 0 to 0.45, found {poisson}");
-        require((0.0..=0.45).contains(&poisson), "poisson", expected)?;
-        material.check(0).map_err(|error| match error {
-            BodyError::BadMaterial {
-                field,
-                given,
-                expected,
-                ..
-            } => FieldError::new(field, format!("expected {expected}, found {given}")),
-            error => FieldError::new("young", error),
-        })
+        let checked = self.material().check();
+        checked.map_err(|error| FieldError::engine("young", error))
     }
 }
 

@@ -7,7 +7,7 @@ use super::grid;
 use super::state;
 use fuwafuwa::Grading;
 use fuwafuwa::Law;
-use fuwafuwa::{Blade, BodyError, Dim, Material, Refused, Rotation, SoftBody, VoxelGrid, World};
+use fuwafuwa::{Blade, Dim, Error, Material, Rotation, SoftBody, VoxelGrid, World};
 
 impl BodyText {
     /// Builds the body, if the budget suffices for its work.
@@ -39,29 +39,26 @@ impl BodyText {
             true => Grading::Uniform,
             false => Grading::Graded,
         };
-        let broken = |reason: String| FieldError::new("shape", reason);
         let body = SoftBody::with_options(grid, materials, law, grading);
         let mut body = body.map_err(|error| match error {
-            BodyError::MissingMaterial { number } => {
-                let count = materials.len();
+            Error::MissingMaterial { number, given } => {
                 let reason = format!(
-                    "voxels have material {number}, but the scene has materials 1 to {count}"
+                    "voxels have material {number}, but the scene has materials 1 to {given}"
                 );
                 FieldError::new("material", reason)
             }
-            error => broken(error.to_string()),
+            error => FieldError::engine("shape", error),
         })?;
         if self.crumbled {
-            body.crumble().map_err(|error| broken(error.to_string()))?;
+            body.crumble();
         }
         if let Some(spacing) = self.diced {
             for blade in grid_of_blades(&body, spacing) {
-                let cut = body.cut(&blade);
-                cut.map_err(|error| broken(error.to_string()))?;
+                body.cut(&blade);
             }
         }
         if let Some(turned) = self.turned {
-            body = body.rotated(rotation_of::<D>(turned)?, [0.0; 3]);
+            body = body.rotated_about(rotation_of::<D>(turned)?, [0.0; 3]);
         }
         Ok(body.translated(self.at).with_velocity(self.velocity))
     }
@@ -74,7 +71,7 @@ impl BodyText {
         budget: &mut Budget,
     ) -> Result<(), FieldError> {
         let body = world.add_soft_body(self.build(materials, budget)?);
-        let wrong = |field: &'static str| move |refused: Refused| FieldError::new(field, refused);
+        let wrong = |field: &'static str| move |error: Error| FieldError::engine(field, error);
         if let Some(scale) = self.gravity_scale {
             let set = world.set_gravity_scale(body, scale);
             set.map_err(wrong("gravity_scale"))?;

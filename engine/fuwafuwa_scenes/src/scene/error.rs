@@ -133,6 +133,18 @@ impl FieldError {
         Self { path, reason }
     }
 
+    /// Converts an error of the engine. An error without a parameter is attributed to `field`.
+    pub(super) fn engine(field: &str, error: fuwafuwa::Error) -> Self {
+        match error {
+            fuwafuwa::Error::InvalidParameter {
+                field,
+                expected,
+                given,
+            } => Self::new(&field, format!("expected {expected}, found {given}")),
+            error => Self::new(field, error),
+        }
+    }
+
     /// Creates the error of a file that cannot be imported.
     pub(super) fn file(error: ImportError) -> Self {
         let (path, reason) = ("file".into(), Reason::Import(Box::new(error)));

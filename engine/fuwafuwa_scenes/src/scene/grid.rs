@@ -7,7 +7,7 @@ use super::shapes::ShapeChoice;
 use crate::import::{Colours, Model, Picture};
 use fuwafuwa::MAX_EXTENT;
 use fuwafuwa::inspect::points_in;
-use fuwafuwa::{BuildError, Dim, Dim2, Dim3, Shape, VoxelGrid};
+use fuwafuwa::{Dim, Dim2, Dim3, Error, Shape, VoxelGrid};
 
 /// Maximum number of colours that a body can name: the size of a palette.
 const MAX_COLOURS: usize = 255;
@@ -128,7 +128,9 @@ fn of_form<D: Dim>(text: &BodyText, form: Form, budget: &Budget) -> Result<Voxel
         Form::Box | Form::Empty => VoxelGrid::from_fn(extent, text.width / n as f32, |_| 1),
     };
     let grid = grid.map_err(|error| match error {
-        BuildError::BadVoxelSize(_) => FieldError::new("width", error),
+        Error::InvalidParameter { ref field, .. } if field == "voxel_size" => {
+            FieldError::new("width", error)
+        }
         _ if any_form => FieldError::new("proportions", error),
         _ => FieldError::new("n", error),
     })?;

@@ -91,7 +91,7 @@ impl JointText {
         let ends = [end(0, first)?, end(1, second)?];
         let mut joint = Joint::new(ends, self.tie()?);
         if let Some(force) = self.breaking_force {
-            joint = joint.breaking_at(force);
+            joint = joint.with_breaking_force(force);
         }
         let added = world.add_joint(joint);
         added

@@ -5,7 +5,7 @@ use super::build::rotation_of;
 use super::error::{FieldError, require, require_vector};
 use super::shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, ShapeChoice};
 use super::state;
-use fuwafuwa::{Dim, MotionType, Refused, RigidBody, RigidBodyHandle, Rotation, Shape, World};
+use fuwafuwa::{Dim, MotionType, RigidBody, RigidBodyHandle, Rotation, Shape, Velocity, World};
 use serde::{Deserialize, Serialize};
 
 /// A `[[rigid]]` table: one of the four shapes, given as if it stood at the origin, and its motion type; or
@@ -107,13 +107,8 @@ impl RigidBodyText {
         }
         let rigid = self.rigid::<D>()?;
         let is_free = rigid.is_dynamic();
-        let refused = |refused| match refused {
-            Refused::RigidBody(bad) => {
-                FieldError::new(bad.field, format!("expected {}", bad.expected))
-            }
-            refused => FieldError::new("shape", refused),
-        };
-        let id = world.add_rigid_body(rigid).map_err(refused)?;
+        let added = world.add_rigid_body(rigid);
+        let id = added.map_err(|error| FieldError::engine("shape", error))?;
         let (velocity, spin) = (self.velocity, self.spin);
         let moves = velocity.is_some() || spin.is_some();
         require(
@@ -122,10 +117,10 @@ impl RigidBodyText {
             "allowed only with drive = \"free\"",
         )?;
         if moves {
-            let [velocity, spin] = [velocity, spin].map(Option::unwrap_or_default);
-            require_vector(D::N, "velocity", velocity)?;
-            let set = world.set_velocity(id, velocity, spin);
-            set.map_err(|refused| FieldError::new("velocity", refused))?;
+            let [linear, angular] = [velocity, spin].map(Option::unwrap_or_default);
+            require_vector(D::N, "velocity", linear)?;
+            let set = world.set_velocity(id, Velocity { linear, angular });
+            set.map_err(|error| FieldError::new("velocity", error))?;
         }
         Ok(id)
     }

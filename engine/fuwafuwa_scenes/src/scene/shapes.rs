@@ -1,7 +1,7 @@
 //! Obstacles, hands and shapes of a scene file.
 
 use super::error::{FieldError, require, require_vector};
-use fuwafuwa::{Dim, MotionType, Refused, RigidBody, RigidBodyHandle, Shape, World};
+use fuwafuwa::{Dim, Error, MotionType, RigidBody, RigidBodyHandle, Shape, World};
 use serde::{Deserialize, Serialize};
 
 /// An `[[obstacle]]` table: a fixed rigid body. It requires exactly one shape.
@@ -93,13 +93,10 @@ impl ObstacleText {
             capsule: self.capsule.as_ref(),
             ball: self.ball.as_ref(),
         };
-        let good = self.friction >= 0.0;
-        let found = format!("expected 0 or more, found {}", self.friction);
-        require(good, "friction", found)?;
         let added = world.add_rigid_body(RigidBody::fixed(shape.only::<D>()?, self.friction));
         added
             .map(|_| ())
-            .map_err(|reason| FieldError::new("friction", reason))
+            .map_err(|error| FieldError::engine("friction", error))
     }
 }
 
@@ -147,10 +144,7 @@ impl ShapeChoice<'_> {
                 return Err(FieldError::new("shape", expected));
             }
         };
-        let wrong = |bad: fuwafuwa::BadShape| {
-            let field = format!("{name}.{}", bad.field);
-            FieldError::new(&field, format!("expected {}", bad.expected))
-        };
+        let wrong = |error: Error| FieldError::engine("shape", error).under(name);
         shape.check().map(|()| shape).map_err(wrong)
     }
 }
@@ -185,7 +179,7 @@ impl HandText {
         let added = world.add_rigid_body(hand);
         added
             .map(|_| ())
-            .map_err(|reason| FieldError::new("shape", reason))
+            .map_err(|error| FieldError::engine("shape", error))
     }
 
     /// Returns the shape relative to the target.
@@ -233,7 +227,7 @@ impl HandText {
 pub(crate) fn set_hand_targets<D: Dim>(world: &mut World<D>, goals: &[[f32; 3]]) {
     let hands: Vec<RigidBodyHandle> = world.target_followers().map(|(hand, _)| hand).collect();
     for (hand, &goal) in hands.into_iter().zip(goals) {
-        let _sent: Result<(), Refused> = world.set_target_position(hand, goal);
+        let _sent: Result<(), Error> = world.set_target_position(hand, goal);
     }
 }
 

@@ -25,7 +25,7 @@ pub(super) fn body<D: Dim>(text: &str) -> Result<SoftBody<D>, FieldError> {
     let id = world
         .nth_soft_body(0)
         .filter(|_| world.soft_bodies().len() == 1);
-    let body = id.and_then(|id| world.remove_soft_body(id).ok());
+    let body = id.and_then(|id| world.remove(id).ok());
     body.ok_or_else(|| FieldError::new("state", "expected the snapshot of a world with one body"))
 }
 
@@ -34,7 +34,7 @@ pub(super) fn rigid<D: Dim>(text: &str) -> Result<RigidBody, FieldError> {
     let mut world = world::<D>(text)?;
     let id = world.rigid_bodies().ids().next();
     let id = id.filter(|_| world.rigid_bodies().len() == 1);
-    let rigid = id.and_then(|id| world.remove_rigid_body(id).ok());
+    let rigid = id.and_then(|id| world.remove(id).ok());
     rigid.ok_or_else(|| {
         FieldError::new(
             "state",

@@ -198,7 +198,7 @@ fn with_properties_of<D: Dim>(made: SoftBody<D>, body: &SoftBody<D>) -> Option<S
     world.set_gravity_scale(id, body.gravity_scale()).ok()?;
     world.set_layers(id, body.layers()).ok()?;
     world.set_user_data(id, body.user_data()).ok()?;
-    world.remove_soft_body(id).ok()
+    world.remove(id).ok()
 }
 
 /// Returns the translation [m] from `made` to `body`, if it reproduces every node position exactly, rounding

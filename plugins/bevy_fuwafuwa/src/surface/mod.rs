@@ -6,7 +6,7 @@ pub mod space;
 
 use crate::colours::SoftColours;
 use bevy_math::Vec3;
-use fuwafuwa::{Body, Dim};
+use fuwafuwa::{Dim, SoftBody};
 
 /// Vertex of a triangle, in world space.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Vertex {
 /// Triangulated surface that follows a body.
 pub trait Surface<D: Dim>: Default + Send + Sync + 'static {
     /// Updates the surface to a body. Returns whether triangles or colours changed.
-    fn follow(&mut self, body: &Body<D>, colours: &SoftColours) -> bool;
+    fn follow(&mut self, body: &SoftBody<D>, colours: &SoftColours) -> bool;
 
     /// Returns the vertices; `None` for unused slots.
     fn vertices(&self) -> impl Iterator<Item = Option<Vertex>>;

@@ -15,11 +15,11 @@ use super::pool::Pool;
 use super::{Surface, Vertex, light_of};
 use crate::colours::SoftColours;
 use bevy_math::{Vec2, Vec3};
-use fuwafuwa::inspect::{add, corner, face_corners};
 use fuwafuwa::ids::Table;
 use fuwafuwa::inspect::Element;
+use fuwafuwa::inspect::{add, corner, face_corners};
 use fuwafuwa::inspect::{slot_at, slot_index};
-use fuwafuwa::{Body, Bookmark, Changes, Dim, Dim2, ElementId, NodeId};
+use fuwafuwa::{Bookmark, Changes, Dim, Dim2, ElementId, NodeId, SoftBody};
 use fuwafuwa_render::Rest;
 
 /// Factor of each smoothing round: fraction of the way from a point of the outline to the midpoint of its
@@ -87,7 +87,7 @@ const NO_SIDE: OutlineEdge = OutlineEdge {
 };
 
 impl Surface<Dim2> for PlaneSurface {
-    fn follow(&mut self, body: &Body<Dim2>, _: &SoftColours) -> bool {
+    fn follow(&mut self, body: &SoftBody<Dim2>, _: &SoftColours) -> bool {
         let changes = body.changes_since(&mut self.followed);
         let changes = changes.unwrap_or_else(|| {
             // First call, or too many changes to list: rebuilds everything.
@@ -141,7 +141,7 @@ impl Surface<Dim2> for PlaneSurface {
 
 impl PlaneSurface {
     /// Removes the triangles of changed elements and nodes and adds the new ones.
-    fn change(&mut self, body: &Body<Dim2>, changes: &Changes) {
+    fn change(&mut self, body: &SoftBody<Dim2>, changes: &Changes) {
         let mesh = body.mesh();
         self.forms.resize(mesh.element_capacity(), Form::default());
         self.of_node.resize(mesh.node_capacity(), NONE);
@@ -176,7 +176,7 @@ impl PlaneSurface {
         }
     }
 
-    fn put_up(&mut self, body: &Body<Dim2>, id: ElementId, element: &Element) {
+    fn put_up(&mut self, body: &SoftBody<Dim2>, id: ElementId, element: &Element) {
         let material = body.grid().material(body.mesh().first_voxel(element));
         let mut form = Form::default();
         let slots = &body.mesh().stencil(element).slots;
@@ -216,7 +216,13 @@ impl PlaneSurface {
     }
 
     /// Adds the bare sides of an element. An isolated voxel is small enough to keep its corners.
-    fn add_sides(&mut self, body: &Body<Dim2>, id: ElementId, element: &Element, form: &mut Form) {
+    fn add_sides(
+        &mut self,
+        body: &SoftBody<Dim2>,
+        id: ElementId,
+        element: &Element,
+        form: &mut Form,
+    ) {
         let bare = body.bare_faces(id);
         if bare == ALL_SIDES {
             return;
@@ -243,12 +249,16 @@ impl PlaneSurface {
         }
     }
 
-    fn place(&mut self, body: &Body<Dim2>) {
+    fn place(&mut self, body: &SoftBody<Dim2>) {
         let positions = body.positions();
         let at = |node: NodeId| Vec2::new(positions[node][0], positions[node][1]);
         let places = self.vertices.all.iter().map(|place| match place {
-            Some(VertexSource { nodes, .. }) if nodes.iter().all(|node| *node == nodes[0]) => at(nodes[0]),
-            Some(VertexSource { nodes, .. }) => nodes.iter().map(|&node| at(node)).sum::<Vec2>() / 8.0,
+            Some(VertexSource { nodes, .. }) if nodes.iter().all(|node| *node == nodes[0]) => {
+                at(nodes[0])
+            }
+            Some(VertexSource { nodes, .. }) => {
+                nodes.iter().map(|&node| at(node)).sum::<Vec2>() / 8.0
+            }
             None => Vec2::ZERO,
         });
         self.places.clear();

@@ -11,7 +11,7 @@ use super::{Surface, Vertex};
 use crate::colours::SoftColours;
 use bevy_math::Vec3;
 use fuwafuwa::inspect::face_corners;
-use fuwafuwa::{Body, Dim3, ElementId};
+use fuwafuwa::{Dim3, ElementId, SoftBody};
 use fuwafuwa_render::space::Skin;
 use fuwafuwa_render::space::skin::SkinVertex;
 
@@ -33,7 +33,7 @@ struct Crumb {
 }
 
 impl Surface<Dim3> for SpaceSurface {
-    fn follow(&mut self, body: &Body<Dim3>, colours: &SoftColours) -> bool {
+    fn follow(&mut self, body: &SoftBody<Dim3>, colours: &SoftColours) -> bool {
         let count = self.crumbs.len();
         let is_new = self.skin.follow(body, &colours.materials);
         self.crumbs.clear();
@@ -87,7 +87,7 @@ impl Surface<Dim3> for SpaceSurface {
 }
 
 impl Crumb {
-    fn of(body: &Body<Dim3>, id: ElementId) -> Option<Self> {
+    fn of(body: &SoftBody<Dim3>, id: ElementId) -> Option<Self> {
         let element = body.mesh().element(id)?;
         let place = |corner: usize| Vec3::from(body.node_state(element.nodes[corner]).0);
         let places: [Vec3; 8] = std::array::from_fn(place);

@@ -1,7 +1,7 @@
 //! Determinism: the app and the engine give the same hash.
 
 use super::{app, at, run, world};
-use bevy_fuwafuwa::fuwafuwa::{Body, RigidBody, Settings, World};
+use bevy_fuwafuwa::fuwafuwa::{RigidBody, SoftBody as Body, World, WorldConfig};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::Vec3;
 
@@ -25,7 +25,7 @@ fn hash_of_app() -> u64 {
             ball.insert(Velocity::default());
         }
     }
-    let hand = (RigidBody2d::hand(0.15), at(0.2, 3.0));
+    let hand = (RigidBody2d::kinematic_ball(0.15), at(0.2, 3.0));
     let hand = app.world_mut().spawn(hand).id();
     for tick in 0..TICKS {
         let to = hand_at(tick);
@@ -37,20 +37,20 @@ fn hash_of_app() -> u64 {
 
 #[test]
 fn app_has_the_hash_of_the_engine() -> Result<(), Box<dyn std::error::Error>> {
-    let mut world = World::<Dim2>::new(Settings::default())?;
+    let mut world = World::<Dim2>::new(WorldConfig::default())?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid(RigidBody::fixed(floor, 0.5))?;
+    world.add_rigid_body(RigidBody::fixed(floor, 0.5))?;
     for (across, x, y) in BALLS {
         let body = Body::new(VoxelGrid::ball(across, 1.0)?, &[SoftMaterial::default()])?;
-        world.add_body(body.moved([-0.5, -0.5, 0.0]).moved([x, y, 0.0]));
+        world.add_soft_body(body.translated([-0.5, -0.5, 0.0]).translated([x, y, 0.0]));
     }
     let (centre, radius) = ([0.0; 3], 0.15);
     let form = Shape::Ball { centre, radius };
-    let hand = RigidBody::driven(form, hand_at(0).into(), MotionType::Kinematic);
-    let hand = world.add_rigid(hand)?;
+    let hand = RigidBody::new(form, hand_at(0).into(), MotionType::Kinematic);
+    let hand = world.add_rigid_body(hand)?;
     let mut released = 0;
     for tick in 0..TICKS {
-        world.set_goal(hand, hand_at(tick).into())?;
+        world.set_target_position(hand, hand_at(tick).into())?;
         released += world.step().released;
     }
     assert!(

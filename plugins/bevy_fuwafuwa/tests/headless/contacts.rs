@@ -17,7 +17,7 @@ fn falling_box_passes_a_sensor_and_begins_one_contact_with_the_floor() {
     let floor = app.world_mut().spawn(RigidBody3d::floor()).id();
     let gate = RigidBody3d::fixed(block()).as_sensor();
     let gate = app.world_mut().spawn((gate, at(0.0, 1.2))).id();
-    let free = RigidBody3d::free(block(), 1.0);
+    let free = RigidBody3d::dynamic(block(), 1.0);
     let free = app.world_mut().spawn((free, at(0.0, 2.2))).id();
     let (mut began, mut ended) = (Vec::new(), 0);
     let (mut entered, mut left): (Vec<Entity>, Vec<Entity>) = (Vec::new(), Vec::new());
@@ -55,7 +55,7 @@ fn box_falls_through_the_floor_when_layers_exclude_it() {
         memberships: 2,
         filters: 2,
     };
-    let free = RigidBody3d::free(block(), 1.0).with_layers(ghost);
+    let free = RigidBody3d::dynamic(block(), 1.0).with_layers(ghost);
     let free = app.world_mut().spawn((free, at(0.0, 0.5))).id();
     for _ in 0..60 {
         app.update();

@@ -35,7 +35,10 @@ fn body_leaves_the_world_when_despawned_or_its_component_is_removed() {
     app.update();
     let own = world::<Dim2>(&app);
     assert_eq!(
-        (own.engine().bodies().len(), own.engine().rigids().len()),
+        (
+            own.engine().soft_bodies().len(),
+            own.engine().rigid_bodies().len()
+        ),
         (1, 0)
     );
     assert_eq!((own.body_of(low), own.body_of(high)), (None, None));
@@ -52,10 +55,10 @@ fn body_leaves_the_world_when_despawned_or_its_component_is_removed() {
         .insert(SoftBody2d::ball(10, 1.0));
     app.update();
     let own = world::<Dim2>(&app);
-    assert_eq!(own.engine().bodies().len(), 1);
+    assert_eq!(own.engine().soft_bodies().len(), 1);
     let size = own
         .body_of(top)
-        .map(|id| own.engine().bodies()[id].grid().size());
+        .map(|id| own.engine().soft_bodies()[id].grid().size());
     assert_eq!(size, Some([10, 10, 1]));
 }
 
@@ -129,16 +132,16 @@ fn knife_cuts_and_engine_removals_send_messages() {
     app.update();
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
     let engine = world.engine_mut();
-    let mut hand = Rigid::hand([0.03, 1.2, 0.0], 0.05);
+    let mut hand = RigidBody::coupled_ball([0.03, 1.2, 0.0], 0.05);
     hand.is_sensor = true; // only the cutting edge has contact
-    let hand = engine.add_rigid(hand).unwrap();
+    let hand = engine.add_rigid_body(hand).unwrap();
     let knife = Knife::new(hand, [[0.0; 3]; 2], [0.0, -1.0, 0.0]);
     let knife = engine.add_knife(knife).unwrap();
     let mut cuts: Vec<Cut> = Vec::new();
     for tick in 0..120 {
         let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
         let goal = [0.03, 1.2 - 0.01 * tick as f32, 0.0];
-        world.engine_mut().set_goal(hand, goal).unwrap();
+        world.engine_mut().set_target_position(hand, goal).unwrap();
         app.update();
         cuts.extend(messages::<Cut>(&app));
     }

@@ -13,8 +13,9 @@ use bevy_app::{App, TaskPoolPlugin, Update};
 use bevy_asset::{AssetPlugin, Assets};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::message::{Message, Messages};
+use bevy_fuwafuwa::Dimension;
+use bevy_fuwafuwa::fuwafuwa::SoftBody as Body;
 use bevy_fuwafuwa::prelude::*;
-use bevy_fuwafuwa::{Dimension, fuwafuwa::Body};
 use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
 
@@ -47,7 +48,7 @@ fn world<D: Dimension>(app: &App) -> &SoftWorld<D> {
 fn body<D: Dimension>(app: &App, entity: Entity) -> &Body<D> {
     let world = world::<D>(app);
     let id = world.body_of(entity).expect("the body has entered");
-    &world.engine().bodies()[id]
+    &world.engine().soft_bodies()[id]
 }
 
 fn mesh(app: &App, entity: Entity) -> &Mesh {

@@ -150,7 +150,7 @@ fn of_new_reader(app: &mut bevy_app::App, ball: Entity) -> Mesh {
     world.pause();
     let id = world.body_of(ball).expect("the body has entered");
     // Changing a body from outside forces all readers to rebuild.
-    assert!(world.engine_mut().body_mut(id).is_ok());
+    assert!(world.engine_mut().soft_body_mut(id).is_ok());
     app.update();
     app.world_mut().resource_mut::<SoftWorld<Dim2>>().resume();
     mesh(app, ball).clone()
@@ -165,7 +165,7 @@ fn ball_mesh_has_two_triangles_per_bare_face_while_it_tears() {
             .world_mut()
             .spawn((SoftBody3d::ball(12, 1.0), at(0.0, 0.6)))
             .id();
-        let blade = RigidBody3d::hand(0.12);
+        let blade = RigidBody3d::kinematic_ball(0.12);
         let blade = app.world_mut().spawn((blade, at(0.1, 1.6))).id();
         (ball, blade)
     };
@@ -233,5 +233,5 @@ fn mesh_is_written_once_a_tick_and_never_while_asleep() {
     assert_eq!(writes(&app), 1);
     assert!((transform(&app, cube).translation.x - 2.0).abs() < 1e-3);
     assert_eq!(app.world().resource::<Assets<Mesh>>().len(), 1);
-    assert_eq!(world::<Dim3>(&app).engine().bodies().len(), 1);
+    assert_eq!(world::<Dim3>(&app).engine().soft_bodies().len(), 1);
 }

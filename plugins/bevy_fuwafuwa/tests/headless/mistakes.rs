@@ -7,7 +7,7 @@ use bevy_ecs::bundle::Bundle;
 use bevy_ecs::entity::Entity;
 use bevy_fuwafuwa::asset::Voxels;
 use bevy_fuwafuwa::component::WithoutMesh;
-use bevy_fuwafuwa::fuwafuwa::{BuildError, Settings};
+use bevy_fuwafuwa::fuwafuwa::{Error, WorldConfig};
 use bevy_fuwafuwa::prelude::*;
 use bevy_fuwafuwa::{Problem, Rejected};
 use bevy_math::{Quat, Vec3};
@@ -38,7 +38,10 @@ fn rejected(bad: impl Bundle) -> String {
     );
     let own = world::<Dim2>(&app);
     assert_eq!(
-        (own.engine().bodies().len(), own.engine().rigids().len()),
+        (
+            own.engine().soft_bodies().len(),
+            own.engine().rigid_bodies().len()
+        ),
         (1, 0)
     );
     problem.to_string()
@@ -50,7 +53,10 @@ fn invalid_body_is_rejected_with_a_reason() {
     let check = |problem: String, expect: &str| assert!(problem.contains(expect), "{problem}");
     check(rejected(SoftBody2d::ball(0, 1.0)), "empty");
     check(rejected(SoftBody2d::ball(8, f32::NAN)), "voxel");
-    check(rejected(SoftBody2d::cube(100_000, 1.0)), "too large");
+    check(
+        rejected(SoftBody2d::cube(100_000, 1.0)),
+        "at most 1024 voxels",
+    );
     let material = SoftMaterial {
         density: f32::NAN,
         ..SoftMaterial::default()
@@ -77,17 +83,17 @@ fn invalid_body_is_rejected_with_a_reason() {
         linear: Vec3::splat(f32::INFINITY),
         ..Velocity::default()
     };
-    check(rejected((ball(), fast)), "velocity");
-    check(rejected((ball(), GravityScale(1e9))), "gravity scale");
+    check(rejected((ball(), fast)), "linear");
+    check(rejected((ball(), GravityScale(1e9))), "gravity_scale");
     let nowhere = Handle::<Voxels<Dim2>>::default();
     check(rejected(SoftBody2d::asset(nowhere)), "asset is not loading");
-    check(rejected(RigidBody2d::hand(-1.0)), "radius");
+    check(rejected(RigidBody2d::kinematic_ball(-1.0)), "radius");
     let (centre, half) = ([0.0; 3], [1.0; 3]);
-    let free = |mass| RigidBody2d::free(Shape::Box { centre, half }, mass);
+    let free = |mass| RigidBody2d::dynamic(Shape::Box { centre, half }, mass);
     check(rejected(free(f32::NAN)), "mass");
     check(rejected(free(0.0)), "mass");
     check(
-        rejected(RigidBody2d::floor().with_drive(MotionType::Dynamic { mass: 1.0 })),
+        rejected(RigidBody2d::floor().with_motion_type(MotionType::Dynamic { mass: 1.0 })),
         "shape",
     );
     check(rejected(free(1.0).with_restitution(2.0)), "restitution");
@@ -98,23 +104,26 @@ fn invalid_body_is_rejected_with_a_reason() {
     );
     check(rejected((free(1.0), at(f32::NAN, 0.0))), "finite");
     check(rejected((free(1.0), at(1e9, 0.0))), "position");
-    check(rejected((free(1.0), fast)), "velocity");
+    check(rejected((free(1.0), fast)), "linear");
     let slow = Velocity {
         linear: Vec3::X,
         ..Velocity::default()
     };
-    check(rejected((RigidBody2d::hand(1.0), slow)), "free");
+    check(
+        rejected((RigidBody2d::kinematic_ball(1.0), slow)),
+        "dynamic",
+    );
 }
 
 #[test]
 fn rigid_body_is_unchanged_after_an_invalid_request() {
     let mut app = app::<Dim2>();
-    app.insert_resource(SoftSettings(Settings {
+    app.insert_resource(SoftSettings(WorldConfig {
         gravity: [0.0; 3],
-        ..Settings::default()
+        ..WorldConfig::default()
     }));
     let (centre, radius) = ([0.0; 3], 0.2);
-    let free = RigidBody2d::free(Shape::Ball { centre, radius }, 1.0);
+    let free = RigidBody2d::dynamic(Shape::Ball { centre, radius }, 1.0);
     let free = (free, at(1.0, 2.0), Velocity::default());
     let free = app.world_mut().spawn(free).id();
     let wall = RigidBody2d::fixed(Shape::Ball { centre, radius });
@@ -146,18 +155,18 @@ fn rigid_body_is_unchanged_after_an_invalid_request() {
         linear: Vec3::ZERO,
         angular: Vec3::NAN,
     };
-    check(&mut app, free, Bad::Velocity(velocity), "spin");
+    check(&mut app, free, Bad::Velocity(velocity), "angular");
     let push = ExternalImpulse {
         impulse: Vec3::X,
         at: Vec3::INFINITY,
         radius: 0.0,
     };
-    check(&mut app, free, Bad::Push(push), "place");
+    check(&mut app, free, Bad::Push(push), "point");
     let push = ExternalImpulse {
         at: Vec3::ZERO,
         ..push
     };
-    check(&mut app, wall, Bad::Push(push), "free");
+    check(&mut app, wall, Bad::Push(push), "dynamic");
     let there = transform(&app, wall);
     check(&mut app, wall, Bad::Place(at(0.0, f32::NAN)), "finite");
     assert_eq!(transform(&app, wall), there);
@@ -173,9 +182,9 @@ enum Bad {
 #[test]
 fn soft_body_is_unchanged_after_an_invalid_request() {
     let mut app = app::<Dim3>();
-    app.insert_resource(SoftSettings(Settings {
+    app.insert_resource(SoftSettings(WorldConfig {
         gravity: [0.0; 3],
-        ..Settings::default()
+        ..WorldConfig::default()
     }));
     let ball = (SoftBody3d::ball(8, 1.0), at(0.0, 2.0), Velocity::default());
     let ball = app.world_mut().spawn(ball).id();
@@ -201,7 +210,7 @@ fn soft_body_is_unchanged_after_an_invalid_request() {
         ..Velocity::default()
     };
     app.world_mut().entity_mut(ball).insert(fast);
-    check(&mut app, "velocity");
+    check(&mut app, "linear");
     let push = ExternalImpulse {
         impulse: Vec3::NAN,
         at: Vec3::ZERO,
@@ -212,7 +221,7 @@ fn soft_body_is_unchanged_after_an_invalid_request() {
     app.world_mut()
         .entity_mut(ball)
         .insert(GravityScale(f32::NAN));
-    check(&mut app, "gravity scale");
+    check(&mut app, "gravity_scale");
     app.world_mut().resource_mut::<SoftSettings>().0.drag = -1.0;
     check(&mut app, "drag");
     app.update();
@@ -245,7 +254,7 @@ fn rejected_body_enters_after_correction() {
     let mut app = app::<Dim2>();
     let ball = app.world_mut().spawn(SoftBody2d::ball(0, 1.0)).id();
     app.update();
-    let expect = Rejected(Problem::Grid(BuildError::Empty));
+    let expect = Rejected(Problem::Engine(Error::EmptyGrid));
     assert_eq!(app.world().get::<Rejected>(ball), Some(&expect));
     app.world_mut()
         .entity_mut(ball)

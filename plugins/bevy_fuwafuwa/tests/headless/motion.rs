@@ -41,7 +41,7 @@ fn ball_falls_touches_the_floor_and_sleeps() {
 #[test]
 fn transform_places_a_new_body_and_then_follows_it() {
     let mut app = app::<Dim3>();
-    app.insert_resource(SoftSettings(bevy_fuwafuwa::fuwafuwa::Settings {
+    app.insert_resource(SoftSettings(bevy_fuwafuwa::fuwafuwa::WorldConfig {
         gravity: [0.0; 3],
         ..Default::default()
     }));
@@ -134,10 +134,14 @@ fn coupled_body_reaches_its_goal_and_fixed_body_its_transform() {
     let mut app = app::<Dim3>();
     let hand = app
         .world_mut()
-        .spawn((RigidBody3d::hand(0.1), at(0.0, 5.0)))
+        .spawn((RigidBody3d::kinematic_ball(0.1), at(0.0, 5.0)))
         .id();
-    let coupled = RigidBody3d::hand(0.1).with_drive(MotionType::default());
-    let coupled = (coupled, at(3.0, 5.0), TargetPosition(Vec3::new(3.0, 6.0, 0.0)));
+    let coupled = RigidBody3d::kinematic_ball(0.1).with_motion_type(MotionType::default());
+    let coupled = (
+        coupled,
+        at(3.0, 5.0),
+        TargetPosition(Vec3::new(3.0, 6.0, 0.0)),
+    );
     let coupled = app.world_mut().spawn(coupled).id();
     let half = [0.5; 3];
     let table = RigidBody3d::fixed(Shape::Box {
@@ -158,7 +162,9 @@ fn coupled_body_reaches_its_goal_and_fixed_body_its_transform() {
             Some(&RigidBodyId(id))
         );
         assert_eq!(world::<Dim3>(&app).entity_of_rigid(id), Some(entity));
-        let [low, high] = world::<Dim3>(&app).engine().rigids()[id].shape().bounds();
+        let [low, high] = world::<Dim3>(&app).engine().rigid_bodies()[id]
+            .shape()
+            .bounds();
         0.5 * (Vec3::from(low) + Vec3::from(high))
     };
     assert!(place(hand).distance(Vec3::new(0.5, 5.0, 0.0)) < 1e-4);
@@ -170,5 +176,5 @@ fn coupled_body_reaches_its_goal_and_fixed_body_its_transform() {
             < 1e-6
     );
     assert_eq!(place(table), Vec3::new(9.0, 2.0, 0.0));
-    assert_eq!(world::<Dim3>(&app).engine().rigids().len(), 3);
+    assert_eq!(world::<Dim3>(&app).engine().rigid_bodies().len(), 3);
 }

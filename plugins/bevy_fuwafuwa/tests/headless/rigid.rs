@@ -6,7 +6,7 @@ use bevy_ecs::bundle::Bundle;
 use bevy_ecs::entity::Entity;
 use bevy_fuwafuwa::Dimension;
 use bevy_fuwafuwa::component::RigidBodyId;
-use bevy_fuwafuwa::fuwafuwa::{Body, RigidBody, Rotation, Settings, World};
+use bevy_fuwafuwa::fuwafuwa::{RigidBody, Rotation, SoftBody as Body, World, WorldConfig};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
@@ -28,9 +28,9 @@ fn slab() -> Shape {
 /// An app without gravity.
 fn weightless<D: Dimension>() -> App {
     let mut app = app::<D>();
-    app.insert_resource(SoftSettings(Settings {
+    app.insert_resource(SoftSettings(WorldConfig {
         gravity: [0.0; 3],
-        ..Settings::default()
+        ..WorldConfig::default()
     }));
     app
 }
@@ -43,7 +43,7 @@ fn rigid<D: Dimension>(app: &App, entity: Entity) -> &RigidBody {
     let world = world::<D>(app);
     let id = world.rigid_of(entity).expect("the body has entered");
     assert_eq!(world.entity_of_rigid(id), Some(entity));
-    &world.engine().rigids()[id]
+    &world.engine().rigid_bodies()[id]
 }
 
 /// A tilted box falls and sleeps on the floor; its transform equals the pose in the engine.
@@ -95,7 +95,7 @@ fn soft_ball_contact_names_the_entity_of_the_box() {
         ..SoftMaterial::default()
     });
     let ball = spawn(&mut app, (SoftBody3d::ball(8, 1.0), firm, at(0.0, 0.5)));
-    let on_top = (RigidBody3d::free(block(), 2.0), at(0.0, 1.25));
+    let on_top = (RigidBody3d::dynamic(block(), 2.0), at(0.0, 1.25));
     let on_top = spawn(&mut app, on_top);
     let (mut touches, mut heights) = (0, Vec::new());
     for _ in 0..60 {
@@ -123,7 +123,7 @@ fn fixed_body_is_rotated_by_its_transform() {
         centre: [0.0; 3],
         radius: 0.2,
     };
-    let ball = spawn(&mut app, (RigidBody3d::free(ball, 1.0), at(0.0, 0.4)));
+    let ball = spawn(&mut app, (RigidBody3d::dynamic(ball, 1.0), at(0.0, 0.4)));
     run(&mut app, 30);
     let down = transform(&app, ball).translation;
     assert!(
@@ -144,10 +144,13 @@ fn fixed_body_is_rotated_by_its_transform() {
 fn rotating_kinematic_table_carries_a_box() {
     let mut app = app::<Dim3>();
     let table = RigidBody3d::fixed(slab())
-        .with_drive(MotionType::Kinematic)
+        .with_motion_type(MotionType::Kinematic)
         .with_friction(0.8);
     let table = spawn(&mut app, table);
-    let rider = (RigidBody3d::free(block(), 1.0), at(1.0, 0.1 + 0.5 * SIDE));
+    let rider = (
+        RigidBody3d::dynamic(block(), 1.0),
+        at(1.0, 0.1 + 0.5 * SIDE),
+    );
     let rider = spawn(&mut app, rider);
     run(&mut app, 30);
     for tick in 1..=60 {
@@ -168,12 +171,12 @@ fn rotating_kinematic_table_carries_a_box() {
 fn written_transform_moves_the_body_at_once() {
     let mut app = weightless::<Dim3>();
     // The middle of the box is 1 m from the origin about which the transform rotates it.
-    let shape = block().moved([1.0, 0.0, 0.0]);
+    let shape = block().translated([1.0, 0.0, 0.0]);
     let spin = Velocity {
         linear: Vec3::Y,
         angular: Vec3::Z,
     };
-    let thrown = (RigidBody3d::free(shape, 1.0), at(0.0, 0.0), spin);
+    let thrown = (RigidBody3d::dynamic(shape, 1.0), at(0.0, 0.0), spin);
     let thrown = spawn(&mut app, thrown);
     run(&mut app, 60);
     let middle = |app: &App| Vec3::from(rigid::<Dim3>(app, thrown).position());
@@ -191,8 +194,11 @@ fn written_transform_moves_the_body_at_once() {
     assert!(velocity.distance(Vec3::Y) < 1e-3, "{velocity}");
 
     // A coupled body is also moved at once, and then pulled back to its goal.
-    let hand = RigidBody3d::hand(0.1).with_drive(MotionType::default());
-    let hand = spawn(&mut app, (hand, at(0.0, 9.0), TargetPosition(Vec3::Y * 9.0)));
+    let hand = RigidBody3d::kinematic_ball(0.1).with_motion_type(MotionType::default());
+    let hand = spawn(
+        &mut app,
+        (hand, at(0.0, 9.0), TargetPosition(Vec3::Y * 9.0)),
+    );
     run(&mut app, 5);
     app.world_mut().entity_mut(hand).insert(at(0.0, 8.0));
     app.update();
@@ -206,7 +212,7 @@ fn written_transform_moves_the_body_at_once() {
 #[test]
 fn plugin_keeps_z_in_2d() {
     let mut app = weightless::<Dim2>();
-    let flat = (RigidBody2d::free(block(), 1.0), at(0.0, 0.0));
+    let flat = (RigidBody2d::dynamic(block(), 1.0), at(0.0, 0.0));
     let flat = spawn(&mut app, flat);
     run(&mut app, 60);
     assert!(rigid::<Dim2>(&app, flat).is_asleep());
@@ -230,7 +236,7 @@ fn plugin_keeps_z_in_2d() {
 fn sleeping_box_accepts_impulse_and_velocity() {
     let mut app = weightless::<Dim3>();
     let resting = (
-        RigidBody3d::free(block(), 2.0),
+        RigidBody3d::dynamic(block(), 2.0),
         at(0.0, 0.0),
         Velocity::default(),
     );
@@ -264,9 +270,9 @@ fn sleeping_box_accepts_impulse_and_velocity() {
 fn box_falls_when_its_support_is_despawned() {
     let mut app = app::<Dim2>();
     let floor = spawn(&mut app, RigidBody2d::floor());
-    let low = (RigidBody2d::free(block(), 1.0), at(0.0, 0.5 * SIDE));
+    let low = (RigidBody2d::dynamic(block(), 1.0), at(0.0, 0.5 * SIDE));
     let low = spawn(&mut app, low);
-    let high = (RigidBody2d::free(block(), 1.0), at(0.0, 1.5 * SIDE));
+    let high = (RigidBody2d::dynamic(block(), 1.0), at(0.0, 1.5 * SIDE));
     let high = spawn(&mut app, high);
     run(&mut app, 120);
     assert!(rigid::<Dim2>(&app, high).is_asleep());
@@ -278,7 +284,7 @@ fn box_falls_when_its_support_is_despawned() {
     app.world_mut().entity_mut(floor).remove::<RigidBody2d>();
     run(&mut app, 30);
     assert!(transform(&app, high).translation.y < 0.0);
-    assert_eq!(world::<Dim2>(&app).engine().rigids().len(), 1);
+    assert_eq!(world::<Dim2>(&app).engine().rigid_bodies().len(), 1);
 }
 
 /// Angle of the boxes of a tower.
@@ -294,7 +300,7 @@ const TICKS: usize = 120;
 
 fn hash_of_app<D: Dimension>() -> u64 {
     let mut app = app::<D>();
-    let table = RigidBody::<D>::fixed(slab()).with_drive(MotionType::Kinematic);
+    let table = RigidBody::<D>::fixed(slab()).with_motion_type(MotionType::Kinematic);
     let table = spawn(&mut app, table);
     for n in 0..4 {
         let own = RigidBody::<D>::free(block(), 2.0).with_restitution(0.3);
@@ -314,20 +320,23 @@ fn hash_of_app<D: Dimension>() -> u64 {
 
 fn hash_of_engine<D: Dimension>() -> Result<u64, Box<dyn std::error::Error>> {
     let rotation = |own: Quat| Rotation::from_quaternion(own.to_array());
-    let mut world = World::<D>::new(Settings::default())?;
-    let table = world.add_rigid(RigidBody::driven(slab(), [0.0; 3], MotionType::Kinematic))?;
+    let mut world = World::<D>::new(WorldConfig::default())?;
+    let table = world.add_rigid_body(RigidBody::new(slab(), [0.0; 3], MotionType::Kinematic))?;
     for n in 0..4 {
-        let shape = block().moved([0.0, 0.5 + n as f32, 0.0]);
+        let shape = block().translated([0.0, 0.5 + n as f32, 0.0]);
         let turned = rotation(Quat::from_rotation_z(askew(n)));
-        let mut own = RigidBody::free(shape, 2.0).rotated(turned);
+        let mut own = RigidBody::dynamic(shape, 2.0).rotated(turned);
         own.restitution = 0.3;
-        world.add_rigid(own)?;
+        world.add_rigid_body(own)?;
     }
     let body = Body::new(VoxelGrid::ball(8, 1.0)?, &[SoftMaterial::default()])?;
     let middle = if D::N == 2 { 0.0 } else { -0.5 };
-    world.add_body(body.moved([-0.5, -0.5, middle]).moved([1.0, 0.7, 0.0]));
+    world.add_soft_body(
+        body.translated([-0.5, -0.5, middle])
+            .translated([1.0, 0.7, 0.0]),
+    );
     for tick in 0..TICKS {
-        world.set_goal_rotation(table, rotation(table_at(tick)))?;
+        world.set_target_rotation(table, rotation(table_at(tick)))?;
         world.step();
     }
     Ok(world.hash())

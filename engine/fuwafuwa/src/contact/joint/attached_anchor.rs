@@ -1,7 +1,8 @@
 //! Joint anchors: a point of the world, a point of a rigid body, or the mean of some nodes.
 
 use super::joint_anchor::{JointAnchor, Woken};
-use crate::foundation::arena::{Gone, RigidBodyHandle, SoftBodyHandle};
+use crate::error::Error;
+use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::{Dim, Point, voxel_around};
 use crate::foundation::ids::NodeId;
 use crate::math::vector::{as_row, dot, minus, plus, scaled, three};
@@ -42,7 +43,7 @@ impl AttachedAnchor {
         end: &JointAnchor,
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
-    ) -> Result<Self, Gone> {
+    ) -> Result<Self, Error> {
         Ok(match *end {
             JointAnchor::Position(at) => Self::Position(flat::<D>(at)),
             JointAnchor::RigidBody { rigid: id, at } => {

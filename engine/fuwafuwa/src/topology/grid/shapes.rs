@@ -2,7 +2,8 @@
 //!
 //! One formula serves both the plane and space.
 
-use super::{BuildError, VoxelGrid};
+use super::VoxelGrid;
+use crate::error::Error;
 use crate::foundation::dim::{Dim, Point};
 use crate::rigid_body::shape::Vector;
 
@@ -15,7 +16,7 @@ impl<D: Dim> VoxelGrid<D> {
     /// # Errors
     /// See [`VoxelGrid::from_fn`].
     #[inline(never)]
-    pub fn ball(n: usize, diameter: f32) -> Result<Self, BuildError> {
+    pub fn ball(n: usize, diameter: f32) -> Result<Self, Error> {
         let centre = n as f32 * 0.5;
         // Larger than the 0.87 of the corner voxels of 2 × 2 × 2, smaller than the 1 of three voxels.
         let radius = (centre - 0.5).max(0.9);
@@ -33,7 +34,7 @@ impl<D: Dim> VoxelGrid<D> {
     /// # Errors
     /// See [`VoxelGrid::from_fn`].
     #[inline(never)]
-    pub fn cube(n: usize, width: f32) -> Result<Self, BuildError> {
+    pub fn cube(n: usize, width: f32) -> Result<Self, Error> {
         Self::from_fn(Self::cube_size(n), width / n as f32, |_| 1)
     }
 
@@ -43,7 +44,7 @@ impl<D: Dim> VoxelGrid<D> {
     /// # Errors
     /// See [`VoxelGrid::from_fn`]; with a small `n` no voxel is solid.
     #[inline(never)]
-    pub fn ring(n: usize, diameter: f32) -> Result<Self, BuildError> {
+    pub fn ring(n: usize, diameter: f32) -> Result<Self, Error> {
         let size = [n, n, D::depth(n.div_ceil(4))];
         // In half voxels; leaves one free on each side, like a ball.
         let outer = n as f32 - 1.0;
@@ -63,7 +64,7 @@ impl<D: Dim> VoxelGrid<D> {
     /// # Errors
     /// See [`VoxelGrid::from_fn`].
     #[inline(never)]
-    pub fn heart(n: usize, width: f32) -> Result<Self, BuildError> {
+    pub fn heart(n: usize, width: f32) -> Result<Self, Error> {
         // The curve spans −1.14 to 1.14 in x and −1 to 1.24 in y.
         const HALF_WIDTH: f32 = 1.2;
         const MIDDLE: f32 = 0.12;
@@ -86,7 +87,7 @@ impl<D: Dim> VoxelGrid<D> {
     /// # Errors
     /// See [`VoxelGrid::from_fn`].
     #[inline(never)]
-    pub fn flower(n: usize, width: f32) -> Result<Self, BuildError> {
+    pub fn flower(n: usize, width: f32) -> Result<Self, Error> {
         let size = Self::cube_size(n);
         Self::from_fn(size, width / n as f32, |voxel| {
             let [x, y, z] = Self::from_middle(voxel, size).map(|k| k / n as f32);
@@ -114,7 +115,7 @@ mod tests {
     use crate::foundation::dim::{Dim2, Dim3};
 
     /// Draws a flat grid, or the middle layer of a 3D grid; the highest row first.
-    fn picture<D: Dim>(grid: Result<VoxelGrid<D>, BuildError>) -> Vec<String> {
+    fn picture<D: Dim>(grid: Result<VoxelGrid<D>, Error>) -> Vec<String> {
         let grid = grid.unwrap();
         let [width, height, depth] = grid.size();
         let sign = |at| ['.', '#'][usize::from(grid.material(at))];
@@ -180,10 +181,10 @@ mod tests {
 
     #[test]
     fn named_shapes_fail_below_smallest_size() {
-        assert_eq!(VoxelGrid::<Dim2>::heart(0, 1.0), Err(BuildError::Empty));
-        assert_eq!(VoxelGrid::<Dim3>::flower(0, 1.0), Err(BuildError::Empty));
-        assert_eq!(VoxelGrid::<Dim3>::ring(0, 1.0), Err(BuildError::Empty));
-        assert_eq!(VoxelGrid::<Dim2>::ring(4, 1.0), Err(BuildError::Empty));
+        assert_eq!(VoxelGrid::<Dim2>::heart(0, 1.0), Err(Error::EmptyGrid));
+        assert_eq!(VoxelGrid::<Dim3>::flower(0, 1.0), Err(Error::EmptyGrid));
+        assert_eq!(VoxelGrid::<Dim3>::ring(0, 1.0), Err(Error::EmptyGrid));
+        assert_eq!(VoxelGrid::<Dim2>::ring(4, 1.0), Err(Error::EmptyGrid));
         assert!(VoxelGrid::<Dim2>::ring(5, 1.0).is_ok());
         assert!(VoxelGrid::<Dim3>::ring(6, 1.0).is_ok());
     }

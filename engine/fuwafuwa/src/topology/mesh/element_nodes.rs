@@ -1,7 +1,7 @@
 //! Seating of elements: determines their nodes, and so their class, from the surroundings.
 
 use super::remodel::Past;
-use super::{Defect, Element, Mesh, Node};
+use super::{Element, InvariantViolation, Mesh, Node};
 use crate::foundation::dim::{Dim, Point, add, corner, scale, voxel_around};
 use crate::foundation::ids::{ElementId, NodeId};
 use crate::topology::cell_hierarchy::Cell;
@@ -16,7 +16,7 @@ impl<D: Dim> Mesh<D> {
         id: ElementId,
         sharing: &Connectivity<D>,
         mut past: Option<&mut Past>,
-    ) -> Result<bool, Defect> {
+    ) -> Result<bool, InvariantViolation> {
         let (cell, children) = (self.alive(id).cell, self.alive(id).children);
         let corners = cell_corners::<D>();
         let (mut slots, mut seated, mut count) = (0u32, [NodeId(0); 27], 0);
@@ -100,7 +100,7 @@ impl<D: Dim> Mesh<D> {
         (id, true)
     }
 
-    fn class(&mut self, children: u8, slots: u32) -> Result<u32, Defect> {
+    fn class(&mut self, children: u8, slots: u32) -> Result<u32, InvariantViolation> {
         if let Some(&class) = self.classes.get(&(children, slots)) {
             return Ok(class);
         }

@@ -1,8 +1,8 @@
 //! Invariants of a mesh, checked by [`Mesh::validate`].
 
-use super::{Defect, Mesh};
 #[cfg(feature = "serde")]
 use super::{Element, Node};
+use super::{InvariantViolation, Mesh};
 use crate::foundation::dim::{Dim, Point, neighbourhood};
 #[cfg(feature = "serde")]
 use crate::foundation::ids::{ElementId, Id};
@@ -22,9 +22,13 @@ impl<D: Dim> Mesh<D> {
     /// gradients balance at inner nodes.
     ///
     /// # Errors
-    /// The first [`Defect`] found.
+    /// The first [`InvariantViolation`] found.
     #[inline(never)]
-    pub fn validate(&self, grid: &VoxelGrid<D>, sharing: &Connectivity<D>) -> Result<(), Defect> {
+    pub fn validate(
+        &self,
+        grid: &VoxelGrid<D>,
+        sharing: &Connectivity<D>,
+    ) -> Result<(), InvariantViolation> {
         let levels = self.check_ownership(grid)?;
         check_grading(grid, &levels)?;
         self.check_split_points(sharing)?;
@@ -33,23 +37,27 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// Checks the owners, and returns the level that owns each voxel; `u8::MAX` for empty voxels.
-    fn check_ownership(&self, grid: &VoxelGrid<D>) -> Result<Vec<u8>, Defect> {
+    fn check_ownership(&self, grid: &VoxelGrid<D>) -> Result<Vec<u8>, InvariantViolation> {
         let mut owners = vec![u8::MAX; grid.voxels().count()];
         for (id, element) in self.elements() {
             for voxel in self.voxels(element) {
                 if self.owner(voxel) != Some(id) {
                     let other = self.owner(voxel);
-                    return Err(Defect(format!(
+                    return Err(InvariantViolation(format!(
                         "element {id} fills voxel {voxel:?}, which is listed for {other:?}"
                     )));
                 }
                 if !grid.is_present(voxel) {
                     let cell = element.cell;
-                    return Err(Defect(format!("{cell:?} fills the empty voxel {voxel:?}")));
+                    return Err(InvariantViolation(format!(
+                        "{cell:?} fills the empty voxel {voxel:?}"
+                    )));
                 }
                 let owner = &mut owners[grid.index(voxel)];
                 if *owner != u8::MAX {
-                    return Err(Defect(format!("two elements own the voxel {voxel:?}")));
+                    return Err(InvariantViolation(format!(
+                        "two elements own the voxel {voxel:?}"
+                    )));
                 }
                 *owner = element.cell.level;
             }
@@ -57,7 +65,9 @@ impl<D: Dim> Mesh<D> {
         let is_orphan =
             |&voxel: &Point| grid.is_present(voxel) && owners[grid.index(voxel)] == u8::MAX;
         match grid.voxels().find(is_orphan) {
-            Some(voxel) => Err(Defect(format!("no element owns the voxel {voxel:?}"))),
+            Some(voxel) => Err(InvariantViolation(format!(
+                "no element owns the voxel {voxel:?}"
+            ))),
             None => Ok(owners),
         }
     }
@@ -66,16 +76,16 @@ impl<D: Dim> Mesh<D> {
     /// numbers of elements and nodes; and its lookup tables are consistent.
     ///
     /// # Errors
-    /// The first [`Defect`] found.
+    /// The first [`InvariantViolation`] found.
     #[cfg(feature = "serde")]
     pub(crate) fn check_against(
         &self,
         fresh: &Self,
         sharing: &Connectivity<D>,
-    ) -> Result<(), Defect> {
+    ) -> Result<(), InvariantViolation> {
         let ensure = |good: bool, what: &str| match good {
             true => Ok(()),
-            false => Err(Defect(format!("inconsistent {what}"))),
+            false => Err(InvariantViolation(format!("inconsistent {what}"))),
         };
         let tables = self.places == fresh.places
             && self.dense_surface == fresh.dense_surface
@@ -167,7 +177,7 @@ impl<D: Dim> Mesh<D> {
         Some(shapes)
     }
 
-    fn check_split_points(&self, sharing: &Connectivity<D>) -> Result<(), Defect> {
+    fn check_split_points(&self, sharing: &Connectivity<D>) -> Result<(), InvariantViolation> {
         for (_, element) in self
             .elements()
             .filter(|(_, element)| element.cell.level > 0)
@@ -176,7 +186,7 @@ impl<D: Dim> Mesh<D> {
                 let at = self.node(node).at;
                 if sharing.groups(at).iter().count() > 1 {
                     let cell = element.cell;
-                    return Err(Defect(format!(
+                    return Err(InvariantViolation(format!(
                         "{cell:?} has a node at the split point {at:?}"
                     )));
                 }
@@ -185,7 +195,7 @@ impl<D: Dim> Mesh<D> {
         Ok(())
     }
 
-    fn check_carriers(&self) -> Result<(), Defect> {
+    fn check_carriers(&self) -> Result<(), InvariantViolation> {
         let mut counts: IndexVec<NodeId, u8> = vec![0; self.nodes.len()].into();
         for (_, element) in self.elements() {
             element.nodes.iter().for_each(|&node| counts[node] += 1);
@@ -194,7 +204,7 @@ impl<D: Dim> Mesh<D> {
             .ids()
             .find(|&node| counts[node] != self.carriers[node])
         {
-            Some(node) => Err(Defect(format!(
+            Some(node) => Err(InvariantViolation(format!(
                 "{:?} has {} carriers, but counts {}",
                 self.nodes[node], counts[node], self.carriers[node]
             ))),
@@ -202,7 +212,7 @@ impl<D: Dim> Mesh<D> {
         }
     }
 
-    fn check_gradients(&self, sharing: &Connectivity<D>) -> Result<(), Defect> {
+    fn check_gradients(&self, sharing: &Connectivity<D>) -> Result<(), InvariantViolation> {
         let mut sums: IndexVec<NodeId, _> = vec![[0.0; 3]; self.nodes.len()].into();
         for (_, element) in self.elements() {
             let half = element.cell.width() as f64 * 0.5;
@@ -218,7 +228,7 @@ impl<D: Dim> Mesh<D> {
             let sum = sums[id];
             if inner && sum.iter().any(|&component: &f64| component.abs() > 1e-9) {
                 let at = node.at;
-                return Err(Defect(format!(
+                return Err(InvariantViolation(format!(
                     "gradients do not balance at {at:?}: {sum:?}"
                 )));
             }
@@ -235,12 +245,12 @@ fn are_just<I: Id + Ord>(ids: &[I], expected: impl Iterator<Item = I>) -> bool {
     ids.into_iter().eq(expected)
 }
 
-fn check_grading<D: Dim>(grid: &VoxelGrid<D>, levels: &[u8]) -> Result<(), Defect> {
+fn check_grading<D: Dim>(grid: &VoxelGrid<D>, levels: &[u8]) -> Result<(), InvariantViolation> {
     for voxel in grid.voxels().filter(|&voxel| grid.is_present(voxel)) {
         let level = levels[grid.index(voxel)];
         for near in neighbourhood::<D>(voxel, 1).filter(|&near| grid.is_present(near)) {
             if level.abs_diff(levels[grid.index(near)]) > 1 {
-                return Err(Defect(format!(
+                return Err(InvariantViolation(format!(
                     "levels jump between {voxel:?} and {near:?}"
                 )));
             }

@@ -1,6 +1,6 @@
 //! Incremental update of the mesh while cracks grow, at a cost proportional to the changed elements.
 
-use super::{Defect, Element, Mesh, path};
+use super::{Element, InvariantViolation, Mesh, path};
 use crate::foundation::dim::{Dim, Point, add, corner, scale};
 use crate::foundation::id_lists::ascending;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId};
@@ -63,7 +63,7 @@ impl<D: Dim> Mesh<D> {
     /// creates or drops nodes. The cost is proportional to the affected elements.
     ///
     /// # Errors
-    /// A [`Defect`] if the connectivity and the pyramid do not match; the mesh must then be graded from
+    /// An [`InvariantViolation`] if the connectivity and the pyramid do not match; the mesh must then be graded from
     /// scratch.
     #[inline(never)]
     pub fn remodel(
@@ -73,7 +73,7 @@ impl<D: Dim> Mesh<D> {
         pyramid: &CellHierarchy<D>,
         changed: &[Point],
         born: &[Cell],
-    ) -> Result<Remodelled, Defect> {
+    ) -> Result<Remodelled, InvariantViolation> {
         let parent_too = |&cell: &Cell| [cell, cell.parent()];
         let mut refitted: Vec<Cell> = born.iter().flat_map(parent_too).collect();
         refitted.sort_unstable();
@@ -223,12 +223,12 @@ impl Past {
         node: NodeId,
         voxel: Point,
         at: Point,
-    ) -> Result<(), Defect> {
+    ) -> Result<(), InvariantViolation> {
         let mut shares = std::mem::take(&mut self.shares);
         let first = shares.len();
         let (owner, child) = self
             .owner(mesh, voxel)
-            .ok_or_else(|| Defect(format!("the voxel {voxel:?} had no owner")))?;
+            .ok_or_else(|| InvariantViolation(format!("the voxel {voxel:?} had no owner")))?;
         let cell = owner.cell;
         for vertex in 0..D::CORNERS {
             let (slot, weight) = if cell.level == 0 {

@@ -118,7 +118,7 @@ fn furnish(
     ));
     commands.spawn((
         Hand,
-        RigidBody3d::hand(HAND_RADIUS),
+        RigidBody3d::kinematic_ball(HAND_RADIUS),
         Mesh3d(meshes.add(Sphere::new(HAND_RADIUS))),
         matt([0x3f, 0x7f, 0xe0]),
         Transform::from_translation(HAND),
@@ -223,7 +223,7 @@ fn stack_boxes(
         let place = TOWER + Vec3::new(0.05 * n, (n + 0.5) * BOX, 0.0);
         let turned = Quat::from_rotation_y(0.3 + 0.25 * n);
         commands.spawn((
-            RigidBody3d::free(Shape::Box { centre, half }, 0.6),
+            RigidBody3d::dynamic(Shape::Box { centre, half }, 0.6),
             cuboid.clone(),
             wood.clone(),
             Transform::from_translation(place).with_rotation(turned),

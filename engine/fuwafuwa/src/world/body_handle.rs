@@ -1,0 +1,85 @@
+//! Handles of soft and rigid bodies as one type, and removal by handle.
+
+use super::World;
+use crate::contact::joint::Joint;
+use crate::error::Error;
+use crate::foundation::arena::{Handle, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::dim::Dim;
+use crate::fracture::knife::Knife;
+use crate::rigid_body::RigidBody;
+use crate::soft_body::SoftBody;
+
+/// Handle of a soft body or a rigid body. Methods that act on both kinds accept the handle of either.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum BodyHandle {
+    /// Handle of a soft body.
+    Soft(SoftBodyHandle),
+    /// Handle of a rigid body.
+    Rigid(RigidBodyHandle),
+}
+
+impl From<SoftBodyHandle> for BodyHandle {
+    fn from(body: SoftBodyHandle) -> Self {
+        Self::Soft(body)
+    }
+}
+
+impl From<RigidBodyHandle> for BodyHandle {
+    fn from(rigid: RigidBodyHandle) -> Self {
+        Self::Rigid(rigid)
+    }
+}
+
+/// Handle of an item that [`World::remove`] can remove: a soft body, a rigid body, a joint or a knife.
+pub trait Removable<D: Dim>: Handle {
+    /// Type of the removed item.
+    type Item;
+
+    #[doc(hidden)]
+    fn remove_from(self, world: &mut World<D>) -> Result<Self::Item, Error>;
+}
+
+impl<D: Dim> Removable<D> for SoftBodyHandle {
+    type Item = SoftBody<D>;
+
+    fn remove_from(self, world: &mut World<D>) -> Result<SoftBody<D>, Error> {
+        world.remove_soft_body(self)
+    }
+}
+
+impl<D: Dim> Removable<D> for RigidBodyHandle {
+    type Item = RigidBody;
+
+    fn remove_from(self, world: &mut World<D>) -> Result<RigidBody, Error> {
+        world.remove_rigid_body(self)
+    }
+}
+
+impl<D: Dim> Removable<D> for JointHandle {
+    type Item = Joint;
+
+    fn remove_from(self, world: &mut World<D>) -> Result<Joint, Error> {
+        world.remove_joint(self)
+    }
+}
+
+impl<D: Dim> Removable<D> for KnifeHandle {
+    type Item = Knife;
+
+    fn remove_from(self, world: &mut World<D>) -> Result<Knife, Error> {
+        world.remove_knife(self)
+    }
+}
+
+impl<D: Dim> World<D> {
+    /// Removes a soft body, a rigid body, a joint or a knife, and returns it. Other items keep their handles and
+    /// state; sleepers in contact with a removed body, and the bodies of a removed joint, wake. The rigid body that
+    /// holds a removed knife stays.
+    ///
+    /// # Errors
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    pub fn remove<H: Removable<D>>(&mut self, handle: H) -> Result<H::Item, Error> {
+        handle.remove_from(self)
+    }
+}

@@ -1,0 +1,217 @@
+//! Actions that mean the same for soft and rigid bodies, in 2D and 3D.
+
+use fuwafuwa::{
+    BodyHandle, Dim, Dim2, Dim3, Impulse, Layers, Material, MotionType, RigidBody, Rotation, Shape,
+    SoftBody, Vector, Velocity, VoxelGrid, World, WorldConfig,
+};
+use std::f32::consts::FRAC_PI_2;
+
+const SPIN: Vector = [0.0, 0.0, 0.5];
+
+/// A soft and a rigid cube of 1 m, both centred on the origin, in layers that do not collide.
+fn cubes<D: Dim>() -> (World<D>, [BodyHandle; 2]) {
+    let gravity = [0.0; 3];
+    let config = WorldConfig {
+        gravity,
+        ..WorldConfig::default()
+    };
+    let mut world = World::<D>::new(config).unwrap();
+    let apart = Layers {
+        memberships: 2,
+        filters: 2,
+    };
+    let grid = VoxelGrid::<D>::cube(4, 1.0).unwrap();
+    let soft = SoftBody::new(grid, &[Material::default()]).unwrap();
+    let middle = soft.centre_of_mass().map(|k| -k);
+    let soft = world.add_soft_body(soft.translated(middle).with_layers(apart));
+    let cube = Shape::Box {
+        centre: [0.0; 3],
+        half: [0.5; 3],
+    };
+    let rigid = RigidBody::dynamic(cube, 100.0).with_friction(0.3);
+    let rigid = world.add_rigid_body(rigid).unwrap();
+    (world, [soft.into(), rigid.into()])
+}
+
+fn centre<D: Dim>(world: &World<D>, body: BodyHandle) -> Vector {
+    match body {
+        BodyHandle::Soft(body) => world.soft_bodies()[body].centre_of_mass(),
+        BodyHandle::Rigid(rigid) => world.rigid_bodies()[rigid].position(),
+    }
+}
+
+#[track_caller]
+fn assert_near(found: Vector, expected: Vector, tolerance: f32) {
+    let is_near = (0..3).all(|axis| (found[axis] - expected[axis]).abs() <= tolerance);
+    assert!(is_near, "{found:?}, expected {expected:?}");
+}
+
+fn check_velocity<D: Dim>() {
+    let (mut world, bodies) = cubes::<D>();
+    let linear = [1.0, -2.0, 0.0];
+    let angular = SPIN;
+    for body in bodies {
+        world
+            .add_velocity(body, Velocity::linear([9.0, 9.0, 0.0]))
+            .unwrap();
+        world
+            .set_velocity(body, Velocity { linear, angular })
+            .unwrap();
+        let found = world.velocity(body).unwrap();
+        assert_near(found.linear, linear, 1e-4);
+        assert_near(found.angular, angular, 1e-4);
+        world
+            .add_velocity(body, Velocity::angular(angular))
+            .unwrap();
+        let found = world.velocity(body).unwrap();
+        assert_near(found.linear, linear, 1e-4);
+        assert_near(found.angular, [0.0, 0.0, 1.0], 1e-4);
+    }
+    for _ in 0..30 {
+        world.step();
+    }
+    for body in bodies {
+        assert_near(centre(&world, body), [0.5, -1.0, 0.0], 1e-3);
+    }
+}
+
+#[test]
+fn set_velocity_moves_soft_and_rigid_bodies_alike() {
+    check_velocity::<Dim2>();
+    check_velocity::<Dim3>();
+}
+
+fn check_impulse<D: Dim>() {
+    let (mut world, bodies) = cubes::<D>();
+    for body in bodies {
+        // The mass is 100 kg in 2D and 3D. The moment of inertia of a cube is m/6 about its centre.
+        let impulse = Impulse::at([0.0; 3], [50.0, 0.0, 0.0]).within(2.0);
+        world.apply_impulse(body, impulse).unwrap();
+        assert_near(world.velocity(body).unwrap().linear, [0.5, 0.0, 0.0], 1e-4);
+    }
+    let [soft, rigid] = bodies;
+    world.set_velocity(rigid, Velocity::default()).unwrap();
+    let impulse = Impulse::at([0.5, 0.0, 0.0], [0.0, 10.0, 0.0]);
+    world.apply_impulse(rigid, impulse).unwrap();
+    let found = world.velocity(rigid).unwrap();
+    assert_near(found.linear, [0.0, 0.1, 0.0], 1e-5);
+    assert_near(found.angular, [0.0, 0.0, 0.3], 1e-5);
+    let before = world.velocity(soft).unwrap();
+    world.apply_impulse(soft, impulse).unwrap();
+    let gained = world.velocity(soft).unwrap();
+    assert_near(gained.linear, [0.5, 0.1, 0.0], 1e-4);
+    assert!(gained.angular[2] > before.angular[2] + 0.1, "{gained:?}");
+}
+
+#[test]
+fn apply_impulse_changes_momentum_by_impulse() {
+    check_impulse::<Dim2>();
+    check_impulse::<Dim3>();
+}
+
+fn check_pose<D: Dim>() {
+    let (mut world, bodies) = cubes::<D>();
+    let quarter = Rotation::in_plane(FRAC_PI_2);
+    for body in bodies {
+        world
+            .set_velocity(body, Velocity::linear([1.0, 0.0, 0.0]))
+            .unwrap();
+        world.translate(body, [2.0, 1.0, 0.0]).unwrap();
+        assert_near(centre(&world, body), [2.0, 1.0, 0.0], 1e-5);
+        assert_near(world.velocity(body).unwrap().linear, [1.0, 0.0, 0.0], 1e-4);
+        world.rotate_about(body, quarter, [1.0, 1.0, 0.0]).unwrap();
+        assert_near(centre(&world, body), [1.0, 2.0, 0.0], 1e-5);
+        assert_near(world.velocity(body).unwrap().linear, [0.0, 1.0, 0.0], 1e-4);
+        assert!(world.translate(body, [f32::NAN; 3]).is_err());
+        assert!(world.rotate_about(body, quarter, [2e6; 3]).is_err());
+    }
+    let lift = RigidBody::coupled_ball([0.0; 3], 0.1).with_motion_type(MotionType::Kinematic);
+    let lift = world.add_rigid_body(lift).unwrap();
+    world.translate(lift, [5.0, 0.0, 0.0]).unwrap();
+    world.step();
+    assert_near(centre(&world, lift.into()), [5.0, 0.0, 0.0], 1e-5);
+}
+
+#[test]
+fn translate_and_rotate_keep_velocity_in_body_axes() {
+    check_pose::<Dim2>();
+    check_pose::<Dim3>();
+}
+
+fn check_sleep<D: Dim>() {
+    let (mut world, bodies) = cubes::<D>();
+    let sleeps = |world: &World<D>, body| match body {
+        BodyHandle::Soft(body) => world.soft_bodies()[body].piece_views()[0].asleep,
+        BodyHandle::Rigid(rigid) => world.rigid_bodies()[rigid].is_asleep(),
+    };
+    for body in bodies {
+        world
+            .set_velocity(body, Velocity::linear([1.0, 0.0, 0.0]))
+            .unwrap();
+        world.put_to_sleep(body).unwrap();
+        assert!(sleeps(&world, body));
+        assert_eq!(world.velocity(body).unwrap().linear, [0.0; 3]);
+        world.step();
+        assert!(sleeps(&world, body));
+        world.wake_up(body).unwrap();
+        assert!(!sleeps(&world, body));
+        world.set_user_data(body, 7).unwrap();
+    }
+    let [BodyHandle::Soft(soft), BodyHandle::Rigid(rigid)] = bodies else {
+        unreachable!("the handles are those of a soft and a rigid body");
+    };
+    assert_eq!(world.soft_bodies()[soft].user_data(), 7);
+    assert_eq!(world.rigid_bodies()[rigid].user_data, 7);
+    world.set_motion_type(rigid, MotionType::Fixed).unwrap();
+    assert!(world.put_to_sleep(rigid).is_err());
+    assert_eq!(world.remove(rigid).unwrap().friction, 0.3);
+    assert!((world.remove(soft).unwrap().total_mass() - 100.0).abs() < 1e-3);
+    assert!(world.soft_bodies().is_empty() && world.rigid_bodies().is_empty());
+}
+
+#[test]
+fn put_to_sleep_stops_soft_and_dynamic_bodies() {
+    check_sleep::<Dim2>();
+    check_sleep::<Dim3>();
+}
+
+fn check_builders<D: Dim>() {
+    let (mut world, [soft, rigid]) = cubes::<D>();
+    let BodyHandle::Soft(soft) = soft else {
+        unreachable!("the first handle is that of a soft body")
+    };
+    let BodyHandle::Rigid(rigid) = rigid else {
+        unreachable!("the second handle is that of a rigid body")
+    };
+    let (linear, angular) = ([1.0, 2.0, 0.0], SPIN);
+    let velocity = Velocity { linear, angular };
+    let quarter = Rotation::in_plane(FRAC_PI_2);
+    let body = world.remove(soft).unwrap();
+    let body = body.translated([1.0, 0.0, 0.0]).rotated(quarter);
+    let body = body
+        .rotated_about(quarter, [0.0; 3])
+        .with_velocity(velocity);
+    let soft = world.add_soft_body(body.with_user_data(3)).into();
+    let body = world.remove(rigid).unwrap();
+    let body = body.translated([1.0, 0.0, 0.0]).rotated(quarter);
+    let body = body
+        .rotated_about(quarter, [0.0; 3])
+        .with_velocity(velocity);
+    let body = body
+        .with_restitution(0.5)
+        .with_sensor(true)
+        .with_user_data(3);
+    let rigid = world.add_rigid_body(body).unwrap().into();
+    for body in [soft, rigid] {
+        assert_near(centre(&world, body), [0.0, 1.0, 0.0], 1e-5);
+        let found = world.velocity(body).unwrap();
+        assert_near(found.linear, linear, 1e-4);
+        assert_near(found.angular, angular, 1e-4);
+    }
+}
+
+#[test]
+fn builders_set_pose_and_velocity_of_both_kinds() {
+    check_builders::<Dim2>();
+    check_builders::<Dim3>();
+}
