@@ -48,6 +48,8 @@ mod soft_body;
 mod contact;
 mod fracture;
 
+mod object_ref;
+
 mod event;
 mod query;
 mod world;
@@ -61,7 +63,7 @@ pub mod instances;
 pub mod snapshot;
 
 pub use contact::joint::{Joint, JointAnchor, JointKind};
-pub use event::{Event, ObjectRef, StepReport, With};
+pub use event::{Contact, Event, StepReport};
 pub use foundation::arena::{
     Arena, Gone, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle,
 };
@@ -72,7 +74,9 @@ pub use fracture::knife::Knife;
 pub use material::{BodyError, Material};
 pub use math::rotation::Rotation;
 pub use math::vector::Vector;
-pub use query::{Queries, QueryHit, Thing};
+pub use object_ref::{ObjectRef, ObjectSelector};
+pub use query::query_filter::QueryFilter;
+pub use query::{HitElement, QueryHit, QueryOverlap, Ray};
 pub use rigid_body::layers::Layers;
 pub use rigid_body::shape::{BadShape, Shape};
 pub use rigid_body::{MotionType, Reaction, RigidBody};

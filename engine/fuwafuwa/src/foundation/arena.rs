@@ -136,6 +136,9 @@ impl std::error::Error for Gone {}
 )]
 pub struct Arena<K: Handle, T> {
     slots: IndexVec<K::Slot, Slot<T>>,
+    /// Number of mutable accesses, see [`Arena::revision`].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    revision: u64,
 }
 
 /// Slot of an [`Arena`]: the number of items that have left it, and the present item.
@@ -148,8 +151,10 @@ struct Slot<T> {
 
 impl<K: Handle, T> Default for Arena<K, T> {
     fn default() -> Self {
-        let slots = IndexVec::default();
-        Self { slots }
+        Self {
+            slots: IndexVec::default(),
+            revision: 0,
+        }
     }
 }
 
@@ -168,6 +173,7 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Returns the item of a handle, mutably; see [`Arena::get`].
     pub(crate) fn get_mut(&mut self, id: K) -> Result<&mut T, Gone> {
+        self.revision += 1;
         let (own, generation) = id.parts();
         let slot = self.slots.get_mut(own.index());
         let slot = slot.filter(|slot| slot.generation == generation);
@@ -212,6 +218,7 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Inserts an item into the first free slot.
     pub(crate) fn insert(&mut self, thing: T) -> K {
+        self.revision += 1;
         let free = self.slots.iter().position(|slot| slot.thing.is_none());
         let own = free.map_or(self.slots.next_id(), K::Slot::of);
         if free.is_none() {
@@ -226,11 +233,18 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Removes an item; the others keep their slots.
     pub(crate) fn remove(&mut self, id: K) -> Result<T, Gone> {
+        self.revision += 1;
         let (own, _) = id.parts();
         self.get(id)?;
         let slot = &mut self.slots[own];
         slot.generation = slot.generation.wrapping_add(1);
         slot.thing.take().ok_or(gone::<K>(own))
+    }
+
+    /// Returns a number that increases with each mutable access to the arena or to an item. While it is the
+    /// same, no item has changed.
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
     }
 
     /// Returns the number of slots, free ones included.
@@ -251,12 +265,14 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Iterates over occupied slots and their items, mutably.
     pub(crate) fn by_slot_mut(&mut self) -> impl Iterator<Item = (K::Slot, &mut T)> {
+        self.revision += 1;
         let slots = self.slots.entries_mut();
         slots.filter_map(|(own, slot)| Some((own, slot.thing.as_mut()?)))
     }
 
     /// Iterates over handles and items, mutably.
     pub(crate) fn entries_mut(&mut self) -> impl Iterator<Item = (K, &mut T)> {
+        self.revision += 1;
         let slots = self.slots.entries_mut();
         slots.filter_map(|(own, slot)| {
             let id = K::new(own, slot.generation);
@@ -266,6 +282,7 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Iterates over the items, mutably.
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        self.revision += 1;
         self.slots.iter_mut().filter_map(|slot| slot.thing.as_mut())
     }
 
@@ -284,6 +301,7 @@ impl<K: Handle, T> Arena<K, T> {
     /// Returns the item in an occupied slot, mutably.
     #[inline(always)]
     pub(crate) fn at_mut(&mut self, slot: K::Slot) -> &mut T {
+        self.revision += 1;
         let thing = self.slots[slot].thing.as_mut();
         thing.expect("internal slot lists contain occupied slots only")
     }
