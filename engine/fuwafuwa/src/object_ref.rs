@@ -60,7 +60,7 @@ impl From<RigidBodyHandle> for ObjectRef {
 pub enum ObjectSelector {
     /// All pieces of a soft body.
     SoftBody(SoftBodyHandle),
-    /// One object.
+    /// A rigid body, or one piece of a soft body.
     Object(ObjectRef),
 }
 

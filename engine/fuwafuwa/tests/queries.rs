@@ -268,7 +268,7 @@ fn check_filters<D: Dim>() {
     let ray = Ray::new([-5.0, 0.1, 0.0], [1.0, 0.0, 0.0]);
     let hit = |world: &World<D>, filter: QueryFilter<'_>| {
         let hit = world.ray_cast(ray, 100.0, filter.clone());
-        // The other queries respect the filter, too.
+        // All queries respect the filter.
         if let Some(hit) = hit {
             let behind = [hit.point[0] + 0.1, 0.1, 0.0];
             let probe = Shape::Ball {

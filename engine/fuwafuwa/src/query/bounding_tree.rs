@@ -9,6 +9,8 @@ const LEAF: usize = 4;
 
 /// Relative margin of a box around its content: ten times the tolerance of the primitives.
 const LITTLE: f32 = 1e-3;
+/// Margin relative to the largest coordinate: some eight units in the last place.
+const ROUNDING: f32 = 1e-6;
 
 /// Growth of the summed widths of all nodes by refitting that makes the tree worth rebuilding. Rotation alone
 /// increases the widths of a box by up to √3.
@@ -101,8 +103,8 @@ impl Tree {
         node
     }
 
-    /// Replaces the boxes by as many new ones and keeps the hierarchy. Returns false if the boxes have moved
-    /// apart so far that searches would be slow; a new tree is then better.
+    /// Replaces the boxes by new ones, given in the same order, and keeps the hierarchy. Returns false if the
+    /// nodes have become so wide that searches would be slow. The caller should then build a new tree.
     pub fn refit(&mut self, boxes: &[Bounds]) -> bool {
         for item in &mut self.items {
             item.bounds = boxes[item.index as usize];
@@ -188,8 +190,13 @@ pub fn around_all(points: impl IntoIterator<Item = Vector>) -> Bounds {
 
 /// Returns a box enlarged by a margin against rounding.
 pub fn with_margin([low, high]: Bounds) -> Bounds {
+    if low[0] > high[0] {
+        return EMPTY;
+    }
     let widths = [0, 1, 2].map(|axis: usize| high[axis] - low[axis]);
-    let little = LITTLE * widths.into_iter().fold(0.0, f32::max);
+    let coordinates = low.iter().chain(&high).map(|k| k.abs());
+    let little = LITTLE * widths.into_iter().fold(0.0, f32::max)
+        + ROUNDING * coordinates.fold(0.0, f32::max);
     [low.map(|k| k - little), high.map(|k| k + little)]
 }
 

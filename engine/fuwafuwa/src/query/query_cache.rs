@@ -93,7 +93,7 @@ pub struct ListTree<T> {
 }
 
 impl QueryCache {
-    /// Returns the trees for the present state of `world`, whose cache this is.
+    /// Returns the trees for the present state of `world`, the owner of the cache.
     pub fn trees<D: Dim>(&self, world: &World<D>) -> Arc<QueryTrees> {
         let revisions = [
             world.soft_bodies().revision(),
