@@ -2,10 +2,12 @@
 
 use crate::foundation::arena::{JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::ids::PieceId;
+use crate::object_ref::ObjectRef;
 use crate::rigid_body::shape::Vector;
 
 /// Event of the last tick, for sounds, scores and effects.
 #[derive(Copy, Clone, Debug, PartialEq)]
+#[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Event {
     /// A node was split: a crack advanced, or a cut passed here.
@@ -13,7 +15,7 @@ pub enum Event {
         /// The body.
         body: SoftBodyHandle,
         /// Position of the node [m].
-        at: Vector,
+        point: Vector,
         /// Elastic energy released [J]; 0 for an intentional cut.
         energy: f32,
     },
@@ -24,64 +26,31 @@ pub enum Event {
         /// Number of the new piece.
         piece: PieceId,
     },
-    /// A piece pressed on something during the tick.
-    Pressed {
-        /// The body.
-        body: SoftBodyHandle,
-        /// Number of the piece.
-        piece: PieceId,
-        /// Object that it pressed on.
-        with: With,
-        /// Position of the strongest contact [m].
-        at: Vector,
-        /// Unit contact normal there, from the object towards the piece.
-        normal: Vector,
-        /// Normal impulse, summed over the contacts and substeps of the tick [N s].
-        impulse: f32,
-    },
-    /// Two rigid bodies pressed on each other during the tick; at least the first one is dynamic.
-    RigidPressed {
-        /// The dynamic rigid body.
-        rigid: RigidBodyHandle,
-        /// Handle of the second rigid body.
-        with: RigidBodyHandle,
-        /// Position of the strongest contact [m].
-        at: Vector,
-        /// Unit contact normal there, from the second body towards the first.
-        normal: Vector,
-        /// Normal impulse, summed over the contacts and substeps of the tick [N s].
-        impulse: f32,
-    },
-    /// Two contact participants began to touch.
-    ContactStarted {
-        /// The participants, in ascending order.
-        both: [ObjectRef; 2],
-        /// Position of the strongest contact [m].
-        at: Vector,
-        /// Unit contact normal there, from the second participant towards the first.
-        normal: Vector,
-        /// Highest approach speed [m/s].
-        speed: f32,
-    },
-    /// Two contact participants stopped touching, or one of them was removed. Participants at rest side by
-    /// side still touch.
+    /// Two objects pressed on each other during the tick. Sent once per pair and tick, as long as contact
+    /// impulses act; a sleeping pair sends none. For a piece that folds onto itself, both objects of the pair
+    /// are the same.
+    ContactForce(Contact),
+    /// Two objects began to touch. The tick also has a [`Event::ContactForce`] with the same contact. Not sent
+    /// for a piece that folds onto itself.
+    ContactStarted(Contact),
+    /// Two objects stopped touching, or one of them was removed. Objects at rest side by side still touch.
     ContactEnded {
-        /// The participants, in ascending order.
-        both: [ObjectRef; 2],
+        /// The objects, in the order of [`Contact::pair`].
+        pair: [ObjectRef; 2],
     },
-    /// A sensor was entered.
+    /// An object entered a sensor.
     SensorEntered {
         /// The sensor.
         sensor: RigidBodyHandle,
         /// The piece or rigid body that entered.
-        who: ObjectRef,
+        object: ObjectRef,
     },
-    /// A sensor was exited, or the participant or the sensor was removed.
+    /// An object exited a sensor, or the object or the sensor was removed.
     SensorExited {
         /// The sensor.
         sensor: RigidBodyHandle,
-        /// The piece or rigid body that left.
-        who: ObjectRef,
+        /// The piece or rigid body that exited.
+        object: ObjectRef,
     },
     /// A knife opened faces between voxels.
     Cut {
@@ -90,7 +59,7 @@ pub enum Event {
         /// The body.
         body: SoftBodyHandle,
         /// Middle of the part of the cutting edge that is inside the body [m].
-        at: Vector,
+        point: Vector,
         /// Area cut since the last such event of this knife, in all bodies, measured at rest [m²].
         area: f32,
         /// Work done since the last such event of this knife, in all bodies [J].
@@ -151,45 +120,34 @@ impl Event {
     }
 }
 
-/// Object that a piece presses on.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+/// Contact between two objects, summed over all their contact points and over the substeps of a tick.
+#[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum With {
-    /// A fixed rigid body.
-    Obstacle(RigidBodyHandle),
-    /// A kinematic or coupled rigid body.
-    Hand(RigidBodyHandle),
-    /// A dynamic rigid body.
-    Free(RigidBodyHandle),
-    /// Another piece, or the same piece where it folds onto itself.
-    Piece {
-        /// The body.
-        body: SoftBodyHandle,
-        /// Number of the piece.
-        piece: PieceId,
-    },
+pub struct Contact {
+    /// The objects, in ascending order of [`ObjectRef`]: a piece stands before a rigid body, and two objects
+    /// of one kind are ordered by handle and piece number. The order of a pair therefore never changes.
+    pub pair: [ObjectRef; 2],
+    /// Position of the contact point with the largest normal impulse in a substep [m].
+    pub point: Vector,
+    /// Unit normal at `point`, from the second object towards the first. The contact pushes the first object
+    /// along the normal, and the second one against it.
+    pub normal: Vector,
+    /// Highest approach speed along the normal at any contact point, in any substep [m/s].
+    pub speed: f32,
+    /// Sum of the magnitudes of the normal impulses over all contact points and substeps [N s]. Divided by
+    /// the tick, it is the mean normal force [N]. Friction is not included.
+    pub impulse: f32,
 }
 
-/// Participant of a contact or a sensor overlap.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum ObjectRef {
-    /// A piece of a soft body.
-    Piece {
-        /// The body.
-        body: SoftBodyHandle,
-        /// Number of the piece.
-        piece: PieceId,
-    },
-    /// A rigid body.
-    RigidBody(RigidBodyHandle),
-}
-
-impl From<With> for ObjectRef {
-    fn from(with: With) -> Self {
-        match with {
-            With::Obstacle(id) | With::Hand(id) | With::Free(id) => Self::RigidBody(id),
-            With::Piece { body, piece } => Self::Piece { body, piece },
+impl Contact {
+    /// Returns the object that touches `object`, or `None` if `object` is not in the pair.
+    pub fn other(&self, object: impl Into<ObjectRef>) -> Option<ObjectRef> {
+        let object = object.into();
+        let [first, second] = self.pair;
+        match object {
+            _ if object == first => Some(second),
+            _ if object == second => Some(first),
+            _ => None,
         }
     }
 }

@@ -92,11 +92,10 @@ fn instances_of<D: Dim>() {
         crate::World::<D>::put_body_to_sleep as *const (),
         crate::World::<D>::set_config as *const (),
         crate::World::<D>::hash as *const (),
-        crate::Queries::<D>::new as *const (),
-        crate::Queries::<D>::ray as *const (),
-        crate::Queries::<D>::nearest as *const (),
-        crate::Queries::<D>::at as *const (),
-        crate::Queries::<D>::overlapping as *const (),
+        crate::World::<D>::ray_cast as *const (),
+        crate::World::<D>::closest_point as *const (),
+        crate::World::<D>::objects_at as *const (),
+        crate::World::<D>::overlaps as *const (),
     ]);
     #[cfg(feature = "serde")]
     black_box([

@@ -49,6 +49,8 @@ mod soft_body;
 mod contact;
 mod fracture;
 
+mod object_ref;
+
 mod event;
 mod query;
 mod world;
@@ -63,7 +65,7 @@ pub mod snapshot;
 
 pub use contact::joint::{Joint, JointAnchor, JointKind};
 pub use error::Error;
-pub use event::{Event, ObjectRef, StepReport, With};
+pub use event::{Contact, Event, StepReport};
 pub use foundation::arena::{Arena, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
 pub use foundation::dim::{Dim, Dim2, Dim3, Point};
 pub use foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
@@ -73,7 +75,9 @@ pub use material::Material;
 pub use math::rotation::Rotation;
 pub use math::vector::Vector;
 pub use math::velocity::{Impulse, Velocity};
-pub use query::{Queries, QueryHit, Thing};
+pub use object_ref::{ObjectRef, ObjectSelector};
+pub use query::query_filter::QueryFilter;
+pub use query::{HitElement, QueryHit, QueryOverlap, Ray};
 pub use rigid_body::layers::Layers;
 pub use rigid_body::shape::Shape;
 pub use rigid_body::{MotionType, Reaction, RigidBody};

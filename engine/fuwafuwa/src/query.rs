@@ -1,348 +1,480 @@
-//! Scene queries: ray cast, nearest point, objects at a point, overlap with a shape.
+//! Scene queries: ray cast, closest point, objects at a point, overlap with a shape.
 
 mod bounding_tree;
 mod intersection;
+pub mod query_cache;
+pub mod query_filter;
 
-use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::arena::SoftBodyHandle;
 use crate::foundation::dim::Dim;
-use crate::foundation::ids::{ElementId, PieceId};
+use crate::foundation::ids::ElementId;
 use crate::math::vector::{dot, is_finite, length, minus, plus, scaled};
+use crate::object_ref::ObjectRef;
 use crate::rigid_body::RigidBody;
 use crate::rigid_body::shape::{Bounds, Shape, Vector, flat};
-use crate::soft_body::SoftBody;
 use crate::soft_body::view::Facet;
 use crate::world::World;
-use bounding_tree::{Tree, around_all, distance_from, entry};
+use bounding_tree::{distance_from, entry, overlap};
 use intersection::{
     is_in_block, nearest_on_segment, nearest_on_triangle, ray_meets_segment, ray_meets_triangle,
 };
-use std::cell::OnceCell;
-use std::collections::BTreeSet;
+use query_cache::{BodyTrees, FilledCell, QueryTrees, TreeObject};
+use query_filter::QueryFilter;
+use std::sync::Arc;
 
 /// Ternary-search steps for the closest approach of a triangle to a shape, each of which keeps two thirds. 24
 /// steps leave 6·10⁻⁵ of the edge, less than the tolerance of the primitives.
 const NARROWINGS: usize = 24;
 
-/// Filter of a query: returns whether an object counts.
-type Counts<'a> = &'a dyn Fn(Thing) -> bool;
-
-/// Object found by a query.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Thing {
-    /// Rigid body.
-    RigidBody(RigidBodyHandle),
-    /// Element of a soft body.
-    Soft {
-        /// Handle of the body.
-        body: SoftBodyHandle,
-        /// Piece number.
-        piece: PieceId,
-        /// Element.
-        element: ElementId,
-        /// Material number at the element.
-        material: u8,
-    },
+/// Ray for [`World::ray_cast`].
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Ray {
+    /// Origin [m].
+    pub origin: Vector,
+    /// Direction, of any length except 0.
+    pub direction: Vector,
 }
 
-/// Hit of a query: a point on the surface of an object.
+impl Ray {
+    /// Creates a ray from an origin [m] along a direction of any length except 0.
+    pub fn new(origin: Vector, direction: Vector) -> Self {
+        Self { origin, direction }
+    }
+}
+
+/// Point on the surface of an object, found by a query.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct QueryHit {
     /// The object.
-    pub thing: Thing,
-    /// Position [m].
-    pub at: Vector,
-    /// Outward unit normal.
+    pub object: ObjectRef,
+    /// Element of the surface; `None` for a rigid body.
+    pub element: Option<HitElement>,
+    /// Position on the surface [m].
+    pub point: Vector,
+    /// Outward unit normal of the surface at `point`, also for queries that start inside the object.
     pub normal: Vector,
-    /// Distance from the origin of the query [m].
+    /// Distance of `point` from the origin of the ray, or from the given point [m]. Never negative.
     pub distance: f32,
 }
 
-/// Scene queries on the present state of a world. Construction costs about one pass over all bare faces; each
-/// query is then cheap. Sensors are never found, and layers are ignored. The filter of a query decides which
-/// objects count.
-///
-/// ```
-/// use fuwafuwa::{SoftBody, Dim3, Material, Queries, WorldConfig, Thing, VoxelGrid, World};
-///
-/// let mut world = World::new(WorldConfig::default())?;
-/// let grid = VoxelGrid::<Dim3>::ball(16, 1.0)?;
-/// let ball = world.add_soft_body(SoftBody::new(grid, &[Material::default()])?);
-/// let queries = Queries::new(&world);
-/// let from_above = queries.ray([0.5, 3.0, 0.5], [0.0, -1.0, 0.0], 10.0, &|_| true);
-/// let found = from_above.expect("the ball is below");
-/// assert!((2.0..2.1).contains(&found.distance) && found.normal[1] > 0.99);
-/// assert!(matches!(found.thing, Thing::Soft { body, material: 1, .. } if body == ball));
-/// assert_eq!(queries.at([0.5; 3]).len(), 1);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub struct Queries<'a, D: Dim> {
-    world: &'a World<D>,
-    facets: Vec<(SoftBodyHandle, Facet)>,
-    surface: Tree,
-    /// Filled cells of all elements, built by the first query that requires them.
-    filled: OnceCell<Filled>,
+/// Object that contains a point or overlaps a shape.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct QueryOverlap {
+    /// The object.
+    pub object: ObjectRef,
+    /// Element at the point, or the one with the lowest id that was found to overlap the shape; `None` for a
+    /// rigid body.
+    pub element: Option<HitElement>,
 }
 
-/// Filled cells of elements: the object of each, its corners, and a tree over them.
-struct Filled {
-    things: Vec<Thing>,
-    corners: Vec<Vector>,
-    tree: Tree,
+/// Element of a soft body, found by a query.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct HitElement {
+    /// Id of the element.
+    pub id: ElementId,
+    /// Number of the material at the element, 1 for the first.
+    pub material: u8,
 }
 
-impl<'a, D: Dim> Queries<'a, D> {
-    /// Builds the queries for a world.
+/// Queries on the present state. The world keeps search trees between queries and updates them by the first
+/// query after a change, which visits each exposed face of the bodies that moved; further queries are cheap,
+/// also from several threads. Of equally distant objects, the first one in the order of [`ObjectRef`] counts.
+impl<D: Dim> World<D> {
+    /// Casts a ray. Returns the first hit on the surface of an object, from outside or inside, within
+    /// `max_distance` [m], which may be infinite. Returns `None` if the direction has length 0, another
+    /// coordinate is not finite, or `max_distance` is negative or NaN. In 2D the third coordinates are
+    /// ignored.
+    ///
+    /// ```
+    /// use fuwafuwa::{Dim3, Material, QueryFilter, Ray, SoftBody, VoxelGrid, World, WorldConfig};
+    ///
+    /// let mut world = World::new(WorldConfig::default())?;
+    /// let grid = VoxelGrid::<Dim3>::ball(16, 1.0)?;
+    /// let ball = world.add_soft_body(SoftBody::new(grid, &[Material::default()])?);
+    /// let down = Ray::new([0.5, 3.0, 0.5], [0.0, -1.0, 0.0]);
+    /// let hit = world.ray_cast(down, 10.0, QueryFilter::default());
+    /// let hit = hit.expect("the ball is below");
+    /// assert!((2.0..2.1).contains(&hit.distance) && hit.normal[1] > 0.99);
+    /// assert_eq!(hit.object.soft_body(), Some(ball));
+    /// assert_eq!(hit.element.map(|element| element.material), Some(1));
+    /// assert_eq!(world.objects_at([0.5; 3], QueryFilter::default()).len(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[inline(never)]
-    pub fn new(world: &'a World<D>) -> Self {
-        let mut facets = Vec::new();
-        for (id, body) in world.soft_bodies().entries() {
-            facets.extend(body.facets().map(|facet| (id, facet)));
-        }
-        let bounds = |(_, facet): &(SoftBodyHandle, Facet)| around_all(corners::<D>(facet));
-        let boxes: Vec<Bounds> = facets.iter().map(bounds).collect();
-        Self {
-            world,
-            facets,
-            surface: Tree::new(&boxes),
-            filled: OnceCell::new(),
-        }
-    }
-
-    /// Iterates over the rigid bodies, except sensors.
-    fn rigids(&self) -> impl Iterator<Item = (RigidBodyHandle, &RigidBody)> + Clone {
-        let all = self.world.rigid_bodies().entries();
-        all.filter(|(_, rigid)| !rigid.is_sensor)
-    }
-
-    /// Casts a ray. Returns the first hit on any surface, from inside or outside, within the distance `most`
-    /// [m], which may be infinite. Returns `None` if the direction has no length, another value is not
-    /// finite, or `most` is negative.
-    #[inline(never)]
-    pub fn ray(
+    pub fn ray_cast(
         &self,
-        from: Vector,
-        direction: Vector,
-        most: f32,
-        counts: Counts<'_>,
+        ray: Ray,
+        max_distance: f32,
+        filter: QueryFilter<'_>,
     ) -> Option<QueryHit> {
-        let (from, direction) = (flat::<D>(from), flat::<D>(direction));
+        let (origin, direction) = (flat::<D>(ray.origin), flat::<D>(ray.direction));
         let long = direction.map(f64::from);
         let direction = scaled(long, 1.0 / dot(long, long).sqrt()).map(|k| k as f32);
-        if !is_finite(direction) || !is_finite(from) {
+        if !is_finite(direction) || !is_finite(origin) {
             return None;
         }
-        let mut best = Best::within(most)?;
-        for (id, rigid) in self.rigids() {
-            let met = rigid.shape().ray(from, direction);
-            let met =
-                met.map(|(distance, normal)| (distance, along(from, direction, distance), normal));
-            best.consider(met, counts, || Thing::RigidBody(id));
-        }
-        self.surface.search(
-            best.least,
-            |bounds| entry(bounds, from, direction),
-            |index| {
-                let (body, facet) = &self.facets[index];
-                let distance = distance_to::<D>(facet, from, direction);
-                let met = distance.map(|far| (far, along(from, direction, far), facet.normal));
-                best.consider(met, counts, || self.thing(*body, facet))
-            },
-        );
-        best.found
+        let along = |distance: f32| plus(origin, scaled(direction, distance));
+        let cost = |bounds: &Bounds| entry(bounds, origin, direction);
+        let query = Query::new(self, &filter);
+        let mut closest = Closest::within(max_distance)?;
+        query.search(max_distance, cost, |rank, at_least| {
+            match query.object(rank) {
+                Found::Rigid(rigid) => {
+                    if let Some((distance, normal)) = rigid.shape().ray(origin, direction) {
+                        let distance = distance.max(at_least);
+                        closest.consider(distance, [rank, 0], || {
+                            query.rigid_hit(rank, along(distance), normal, distance)
+                        });
+                    }
+                }
+                Found::Soft(trees) => {
+                    let surface = &trees.surface;
+                    surface.tree.search(closest.limit, cost, |index, at_least| {
+                        let facet = &surface.items[index];
+                        if let Some(distance) = distance_to::<D>(facet, origin, direction) {
+                            let distance = distance.max(at_least);
+                            closest.consider(distance, [rank, index], || {
+                                query.facet_hit(trees.body, facet, along(distance), distance)
+                            });
+                        }
+                        closest.limit
+                    });
+                }
+                Found::Filtered => {}
+            }
+            closest.limit
+        });
+        closest.hit
     }
 
-    /// Returns the point on any surface that is nearest to `at` [m], from inside or outside, within the
-    /// distance `most` [m], which may be infinite. Returns `None` if another value is not finite, or `most`
-    /// is negative.
+    /// Returns the closest point on the surface of any object, from outside or inside, within `max_distance`
+    /// [m], which may be infinite. Returns `None` if a coordinate is not finite, or `max_distance` is
+    /// negative or NaN. In 2D the third coordinates are ignored.
     #[inline(never)]
-    pub fn nearest(&self, at: Vector, most: f32, counts: Counts<'_>) -> Option<QueryHit> {
-        let at = flat::<D>(at);
-        if !is_finite(at) {
+    pub fn closest_point(
+        &self,
+        point: Vector,
+        max_distance: f32,
+        filter: QueryFilter<'_>,
+    ) -> Option<QueryHit> {
+        let point = flat::<D>(point);
+        if !is_finite(point) {
             return None;
         }
-        let mut best = Best::within(most)?;
-        for (id, rigid) in self.rigids() {
-            let (gap, normal) = rigid.shape().distance(at);
-            let met = (gap.abs(), along(at, normal, -gap), normal);
-            best.consider(Some(met), counts, || Thing::RigidBody(id));
-        }
-        self.surface.search(
-            best.least,
-            |bounds| distance_from(bounds, at),
-            |index| {
-                let (body, facet) = &self.facets[index];
-                let nearest = nearest_on::<D>(facet, at);
-                let met = (length(minus(nearest, at)), nearest, facet.normal);
-                best.consider(Some(met), counts, || self.thing(*body, facet))
-            },
-        );
-        best.found
+        let cost = |bounds: &Bounds| distance_from(bounds, point);
+        let query = Query::new(self, &filter);
+        let mut closest = Closest::within(max_distance)?;
+        query.search(max_distance, cost, |rank, at_least| {
+            match query.object(rank) {
+                Found::Rigid(rigid) => {
+                    let (gap, normal) = rigid.shape().distance(point);
+                    let distance = gap.abs().max(at_least);
+                    closest.consider(distance, [rank, 0], || {
+                        let on_surface = plus(point, scaled(normal, -gap));
+                        query.rigid_hit(rank, on_surface, normal, distance)
+                    });
+                }
+                Found::Soft(trees) => {
+                    let surface = &trees.surface;
+                    surface.tree.search(closest.limit, cost, |index, at_least| {
+                        let facet = &surface.items[index];
+                        let nearest = nearest_on::<D>(facet, point);
+                        let distance = length(minus(nearest, point)).max(at_least);
+                        closest.consider(distance, [rank, index], || {
+                            query.facet_hit(trees.body, facet, nearest, distance)
+                        });
+                        closest.limit
+                    });
+                }
+                Found::Filtered => {}
+            }
+            closest.limit
+        });
+        closest.hit
     }
 
-    /// Returns the objects at a point [m]; more than one if objects overlap. Each rigid body and each piece
-    /// is listed once. Returns nothing if a coordinate is not finite.
+    /// Returns the objects that contain a point [m], each once, in the order of [`ObjectRef`]; more than one
+    /// if objects overlap. Returns nothing if a coordinate is not finite. In 2D the third coordinate is
+    /// ignored.
     #[inline(never)]
-    pub fn at(&self, at: Vector) -> Vec<Thing> {
-        let at = flat::<D>(at);
-        if !is_finite(at) {
+    pub fn objects_at(&self, point: Vector, filter: QueryFilter<'_>) -> Vec<QueryOverlap> {
+        let point = flat::<D>(point);
+        if !is_finite(point) {
             return Vec::new();
         }
-        let rigids = self.rigids();
-        let rigids = rigids.filter(|(_, rigid)| rigid.shape().distance(at).0 <= 0.0);
-        let mut things: Vec<Thing> = rigids.map(|(id, _)| Thing::RigidBody(id)).collect();
-        let filled = self.filled.get_or_init(|| Filled::new(self.world));
-        filled.tree.search(
-            f32::INFINITY,
-            // Visits exactly the cells with a bounding box around the point.
-            |bounds| match distance_from(bounds, at) {
-                0.0 => 0.0,
-                _ => f32::INFINITY,
-            },
-            |block| {
-                let corners = &filled.corners[block * D::CORNERS..][..D::CORNERS];
-                if is_in_block::<D>(at, corners) {
-                    things.push(filled.things[block]);
+        let query = Query::new(self, &filter);
+        let mut found = query.pieces_at(point);
+        query.search(
+            0.0,
+            |bounds| zero_if(contains(bounds, point)),
+            |rank, _| {
+                if let Found::Rigid(rigid) = query.object(rank)
+                    && rigid.shape().distance(point).0 <= 0.0
+                {
+                    found.extend(query.rigid_overlap(rank));
                 }
-                f32::INFINITY
+                0.0
             },
         );
-        // Neighbouring elements share the point between them.
-        things.sort();
-        things.dedup_by_key(|thing| thing.owner());
-        things
+        each_once(found)
     }
 
-    /// Returns the objects that overlap a shape: rigid bodies, and for each overlapping piece one of its
-    /// elements. A piece overlaps if its surface intersects the shape, or if it contains the shape.
+    /// Returns the objects that overlap a shape, each once, in the order of [`ObjectRef`]. A piece overlaps
+    /// if its surface intersects the shape, or if it contains the shape. In 2D the third coordinates are
+    /// ignored.
     #[inline(never)]
-    pub fn overlapping(&self, shape: &Shape) -> Vec<Thing> {
+    pub fn overlaps(&self, shape: &Shape, filter: QueryFilter<'_>) -> Vec<QueryOverlap> {
         let shape = shape.seen_in::<D>();
-        let rigids = self.rigids();
-        let overlaps = |(_, rigid): &(RigidBodyHandle, &RigidBody)| overlap(rigid.shape(), &shape);
-        let rigids = rigids.filter(overlaps);
-        let mut things: BTreeSet<Thing> = rigids.map(|(id, _)| Thing::RigidBody(id)).collect();
-        self.surface.search(
-            f32::INFINITY,
-            |&[low, high]| {
-                let half = scaled(minus(high, low), 0.5);
-                let distance = shape.distance(plus(low, half)).0 - length(half);
-                if distance <= 0.0 { 0.0 } else { f32::INFINITY }
-            },
-            |place| {
-                let (body, facet) = &self.facets[place];
-                if is_near::<D>(facet, &shape) {
-                    things.insert(self.thing(*body, facet));
-                }
-                f32::INFINITY
-            },
-        );
-        // A shape that lies completely inside a piece is near no face of it.
         let [low, high] = shape.bounds();
-        things.extend(self.at(scaled(plus(low, high), 0.5)));
-        let mut things: Vec<Thing> = things.into_iter().collect();
-        things.dedup_by_key(|thing| thing.owner());
-        things
-    }
-
-    fn thing(&self, body: SoftBodyHandle, facet: &Facet) -> Thing {
-        soft(body, &self.world.soft_bodies()[body], facet.element)
+        let may_overlap = |bounds: &Bounds| match shape {
+            Shape::HalfSpace { normal, offset } => {
+                let deepest = [0, 1, 2].map(|axis: usize| {
+                    let side = usize::from(normal[axis] < 0.0);
+                    bounds[side][axis]
+                });
+                dot(normal, deepest) <= offset
+            }
+            _ => overlap(bounds, &[low, high]),
+        };
+        let query = Query::new(self, &filter);
+        let mut found = Vec::new();
+        let cost = |bounds: &Bounds| zero_if(may_overlap(bounds));
+        query.search(0.0, cost, |rank, _| {
+            match query.object(rank) {
+                Found::Rigid(rigid) if shapes_overlap(rigid.shape(), &shape) => {
+                    found.extend(query.rigid_overlap(rank));
+                }
+                Found::Soft(trees) => {
+                    let surface = &trees.surface;
+                    surface.tree.search(0.0, cost, |index, _| {
+                        let facet = &surface.items[index];
+                        if is_near::<D>(facet, &shape) {
+                            found.extend(query.facet_overlap(trees.body, facet));
+                        }
+                        0.0
+                    });
+                }
+                _ => {}
+            }
+            0.0
+        });
+        // A shape that lies completely inside a piece is near no face of it.
+        let centre = scaled(plus(low, high), 0.5);
+        if is_finite(centre) {
+            found.extend(query.pieces_at(centre));
+        }
+        each_once(found)
     }
 }
 
-impl Thing {
-    /// Returns the owner of the object: a rigid body, or a piece of a body.
-    pub fn owner(self) -> (Option<RigidBodyHandle>, Option<(SoftBodyHandle, PieceId)>) {
-        match self {
-            Self::RigidBody(rigid) => (Some(rigid), None),
-            Self::Soft { body, piece, .. } => (None, Some((body, piece))),
+/// Running query: the world, its search trees, and the filter.
+struct Query<'a, D: Dim> {
+    world: &'a World<D>,
+    trees: Arc<QueryTrees>,
+    filter: &'a QueryFilter<'a>,
+}
+
+/// Object of a running query.
+enum Found<'a> {
+    Rigid(&'a RigidBody),
+    Soft(&'a BodyTrees),
+    /// The filter rejects the object.
+    Filtered,
+}
+
+impl<'a, D: Dim> Query<'a, D> {
+    fn new(world: &'a World<D>, filter: &'a QueryFilter<'a>) -> Self {
+        Self {
+            world,
+            trees: world.query_cache.trees(world),
+            filter,
         }
     }
-}
 
-impl Filled {
-    fn new<D: Dim>(world: &World<D>) -> Self {
-        let (mut things, mut corners) = (Vec::new(), Vec::new());
-        for (id, body) in world.soft_bodies().entries() {
-            for view in body.element_views() {
-                let whole = if view.level == 0 { 1 } else { D::CORNERS };
-                let children = (0..whole).filter(|child| view.children >> child & 1 == 1);
-                for child in children {
-                    things.push(soft(id, body, view.id));
-                    corners.extend(view.child_corners::<D>(child));
+    /// Visits the objects that may have a cost of at most the smallest one found before, see
+    /// [`Tree::search`](bounding_tree::Tree::search). Objects are given by their rank in the order of
+    /// [`ObjectRef`].
+    fn search(
+        &self,
+        limit: f32,
+        cost: impl Fn(&Bounds) -> f32,
+        mut visit: impl FnMut(usize, f32) -> f32,
+    ) {
+        let trees = &self.trees;
+        let mut limit = limit;
+        for &rank in &trees.unbounded {
+            limit = limit.min(visit(rank as usize, 0.0));
+        }
+        trees.tree.search(limit, cost, |index, at_least| {
+            visit(trees.bounded[index] as usize, at_least)
+        });
+    }
+
+    /// Returns an object that the filter may admit.
+    fn object(&self, rank: usize) -> Found<'_> {
+        match self.trees.objects[rank] {
+            TreeObject::Rigid(id) => {
+                let rigid = &self.world.rigid_bodies()[id];
+                match self.filter.admits_rigid(rigid) {
+                    true => Found::Rigid(rigid),
+                    false => Found::Filtered,
+                }
+            }
+            TreeObject::Soft(index) => {
+                let trees = &self.trees.bodies[index as usize];
+                let body = &self.world.soft_bodies()[trees.body];
+                match self.filter.admits_body(trees.body, body) {
+                    true => Found::Soft(trees),
+                    false => Found::Filtered,
                 }
             }
         }
-        let boxes = corners.chunks(D::CORNERS);
-        let boxes = boxes.map(|corners| around_all(corners.iter().copied()));
-        Self {
-            tree: Tree::new(&boxes.collect::<Vec<Bounds>>()),
-            things,
-            corners,
+    }
+
+    fn rigid_overlap(&self, rank: usize) -> Option<QueryOverlap> {
+        let TreeObject::Rigid(id) = self.trees.objects[rank] else {
+            return None;
+        };
+        let object = ObjectRef::RigidBody(id);
+        let element = None;
+        { self.filter.admits(object) }.then_some(QueryOverlap { object, element })
+    }
+
+    fn rigid_hit(
+        &self,
+        rank: usize,
+        point: Vector,
+        normal: Vector,
+        distance: f32,
+    ) -> Option<QueryHit> {
+        let QueryOverlap { object, element } = self.rigid_overlap(rank)?;
+        Some(QueryHit {
+            object,
+            element,
+            point,
+            normal,
+            distance,
+        })
+    }
+
+    fn facet_overlap(&self, body: SoftBodyHandle, facet: &Facet) -> Option<QueryOverlap> {
+        let object = ObjectRef::Piece {
+            body,
+            piece: facet.piece,
+        };
+        if !self.filter.admits(object) {
+            return None;
         }
+        let body = &self.world.soft_bodies()[body];
+        let element = body.mesh().element(facet.element)?;
+        let element = Some(HitElement {
+            id: facet.element,
+            material: body.grid().material(body.mesh().first_voxel(element)),
+        });
+        Some(QueryOverlap { object, element })
+    }
+
+    fn facet_hit(
+        &self,
+        body: SoftBodyHandle,
+        facet: &Facet,
+        point: Vector,
+        distance: f32,
+    ) -> Option<QueryHit> {
+        let QueryOverlap { object, element } = self.facet_overlap(body, facet)?;
+        Some(QueryHit {
+            object,
+            element,
+            point,
+            normal: facet.normal,
+            distance,
+        })
+    }
+
+    /// Returns the pieces that contain a point, possibly repeated.
+    fn pieces_at(&self, point: Vector) -> Vec<QueryOverlap> {
+        let cost = |bounds: &Bounds| zero_if(contains(bounds, point));
+        let mut found = Vec::new();
+        let trees = &self.trees;
+        trees.tree.search(0.0, cost, |index, _| {
+            let Found::Soft(trees) = self.object(trees.bounded[index] as usize) else {
+                return 0.0;
+            };
+            let cells = trees.cells(&self.world.soft_bodies()[trees.body]);
+            cells.tree.search(0.0, cost, |index, _| {
+                let cell = &cells.items[index];
+                if is_in_block::<D>(point, &cell.corners[..D::CORNERS]) {
+                    found.extend(self.cell_overlap(trees.body, cell));
+                }
+                0.0
+            });
+            0.0
+        });
+        found
+    }
+
+    fn cell_overlap(&self, body: SoftBodyHandle, cell: &FilledCell) -> Option<QueryOverlap> {
+        let object = ObjectRef::Piece {
+            body,
+            piece: cell.piece,
+        };
+        let element = Some(HitElement {
+            id: cell.element,
+            material: cell.material,
+        });
+        { self.filter.admits(object) }.then_some(QueryOverlap { object, element })
     }
 }
 
-fn soft<D: Dim>(id: SoftBodyHandle, body: &SoftBody<D>, element: ElementId) -> Thing {
-    let mesh = body.mesh();
-    let alive = mesh.element(element).expect("the element is alive");
-    Thing::Soft {
-        body: id,
-        piece: body.pieces().of_element(element),
-        element,
-        material: body.grid().material(mesh.first_voxel(alive)),
-    }
+/// Closest hit of a running query.
+struct Closest {
+    hit: Option<QueryHit>,
+    /// Distance of the hit, or the largest distance that counts [m].
+    limit: f32,
+    /// Rank of the object of the hit, and index of the face; of equally distant hits, the lowest rank counts.
+    rank: [usize; 2],
 }
 
-/// Nearest hit of a running query.
-struct Best {
-    found: Option<QueryHit>,
-    /// Upper limit: only smaller distances count.
-    least: f32,
-}
-
-impl Best {
+impl Closest {
     /// Returns the initial state; `None` if the distance is negative or NaN.
-    fn within(most: f32) -> Option<Self> {
-        let found = None;
-        // A hit at exactly `most` counts, too.
-        let least = most.next_up();
-        (most >= 0.0).then_some(Self { found, least })
+    fn within(max_distance: f32) -> Option<Self> {
+        (max_distance >= 0.0).then_some(Self {
+            hit: None,
+            limit: max_distance,
+            rank: [usize::MAX; 2],
+        })
     }
 
-    /// Takes a hit, given by distance, position and normal, if it is nearer and counts. Returns its distance,
-    /// or infinity if it is not taken.
+    /// Takes a hit if it is closer and the filter admits it. The closure returns `None` if not.
     fn consider(
         &mut self,
-        met: Option<(f32, Vector, Vector)>,
-        counts: Counts<'_>,
-        thing: impl FnOnce() -> Thing,
-    ) -> f32 {
-        if let Some((distance, at, normal)) = met
-            && distance < self.least
-        {
-            let thing = thing();
-            if counts(thing) {
-                self.least = distance;
-                self.found = Some(QueryHit {
-                    thing,
-                    at,
-                    normal,
-                    distance,
-                });
-                return distance;
-            }
+        distance: f32,
+        rank: [usize; 2],
+        hit: impl FnOnce() -> Option<QueryHit>,
+    ) {
+        let is_closer = distance < self.limit
+            || (distance == self.limit && distance < f32::INFINITY && rank < self.rank);
+        if is_closer && let Some(hit) = hit() {
+            (self.limit, self.rank) = (distance, rank);
+            self.hit = Some(hit);
         }
-        f32::INFINITY
     }
 }
 
-fn along(from: Vector, direction: Vector, far: f32) -> Vector {
-    plus(from, scaled(direction, far))
+/// Sorts found objects, and keeps the lowest element of each.
+fn each_once(mut found: Vec<QueryOverlap>) -> Vec<QueryOverlap> {
+    found.sort_by_key(|found| (found.object, found.element));
+    found.dedup_by_key(|found| found.object);
+    found
 }
 
-/// Returns the corners of a bare face.
-fn corners<D: Dim>(facet: &Facet) -> impl Iterator<Item = Vector> {
-    facet.corners.into_iter().take(D::CORNERS / 2)
+/// Returns the cost of a box that is visited if a condition holds.
+fn zero_if(condition: bool) -> f32 {
+    if condition { 0.0 } else { f32::INFINITY }
+}
+
+fn contains(bounds: &Bounds, point: Vector) -> bool {
+    overlap(bounds, &[point, point])
 }
 
 /// Returns the two triangles of a quad.
@@ -413,7 +545,7 @@ fn is_near<D: Dim>(facet: &Facet, shape: &Shape) -> bool {
 }
 
 /// Returns whether two shapes overlap. Two half-spaces do, unless they face each other with a gap in between.
-fn overlap(a: &Shape, b: &Shape) -> bool {
+fn shapes_overlap(a: &Shape, b: &Shape) -> bool {
     match (*a, *b) {
         (
             Shape::HalfSpace { normal, offset },

@@ -15,13 +15,15 @@ use crate::contact::broad_phase::{Nearby, NodePair};
 use crate::contact::joint::{self, Joints};
 use crate::contact::solver::{Contacts, Hit, Hits};
 use crate::error::Error;
-use crate::event::{Event, ObjectRef, StepReport};
+use crate::event::{Contact, Event, StepReport};
 use crate::foundation::arena::{BodySlot, RigidBodyHandle, RigidSlot};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::fracture::crack_growth::{Failure, failures};
 use crate::fracture::knife::{Knife, Knives};
 use crate::math::vector::{is_finite, plus, three};
+use crate::object_ref::ObjectRef;
+use crate::query::query_cache::QueryCache;
 use crate::rigid_body::RigidBodies;
 use crate::soft_body::damping::{PieceDamping, PieceMotion, motions, slow_down};
 use crate::soft_body::{SoftBodies, SoftBody};
@@ -58,11 +60,13 @@ pub struct World<D: Dim> {
     ticks: u64,
     nearby: Nearby,
     events: Vec<Event>,
-    /// Contact pairs of the last tick, and participants inside each sensor; both ascending.
-    touching: Vec<[ObjectRef; 2]>,
+    /// Contacts of the last tick, and objects inside each sensor; both ascending.
+    touching: Vec<Contact>,
     inside: Vec<(RigidBodyHandle, ObjectRef)>,
     #[cfg_attr(feature = "serde", serde(skip))]
     contacts: Contacts,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) query_cache: QueryCache,
 }
 
 impl<D: Dim> World<D> {
@@ -85,6 +89,7 @@ impl<D: Dim> World<D> {
             touching: Vec::new(),
             inside: Vec::new(),
             contacts: Contacts::default(),
+            query_cache: QueryCache::default(),
         })
     }
 
@@ -182,7 +187,7 @@ impl<D: Dim> World<D> {
             }
             let released = |failure: &Failure| Event::NodeSplit {
                 body: id,
-                at: three(body.state.position[failure.node]),
+                point: three(body.state.position[failure.node]),
                 energy: failure.energy,
             };
             self.events.extend(failures.iter().map(released));

@@ -2,8 +2,8 @@
 
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Event, Layers, Material, ObjectRef, RigidBody, RigidBodyHandle, Rotation,
-    Shape, SoftBody, SoftBodyHandle, VoxelGrid, World, WorldConfig,
+    Contact, Dim, Dim2, Dim3, Event, Layers, Material, ObjectRef, PieceId, RigidBody,
+    RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, VoxelGrid, World, WorldConfig,
 };
 
 const UP: [f32; 3] = [0.0, 1.0, 0.0];
@@ -56,19 +56,16 @@ fn contacts_begin_and_end<D: Dim>() {
         world.step();
         for event in world.events() {
             match *event {
-                Event::ContactStarted {
-                    both,
-                    normal,
-                    speed,
-                    at,
-                } => {
-                    assert!(of_body(both[0], id) && both[1] == ObjectRef::RigidBody(floor));
-                    assert_eq!(normal, UP);
-                    assert!(at[1] < 0.1);
-                    began.push((tick, speed));
+                Event::ContactStarted(contact) => {
+                    let pair = contact.pair;
+                    assert!(of_body(pair[0], id) && pair[1] == ObjectRef::RigidBody(floor));
+                    assert_eq!(contact.normal, UP);
+                    assert!(contact.point[1] < 0.1);
+                    assert!(world.events().contains(&Event::ContactForce(contact)));
+                    began.push((tick, contact.speed));
                 }
-                Event::ContactEnded { both } => {
-                    assert!(of_body(both[0], id));
+                Event::ContactEnded { pair } => {
+                    assert!(of_body(pair[0], id));
                     ended += 1;
                 }
                 _ => {}
@@ -112,7 +109,7 @@ fn sleeping_body_keeps_contact_until_removed() {
     world.remove(id).unwrap();
     world.step();
     let told = world.events().iter().any(
-        |event| matches!(event, Event::ContactEnded { both } if both.contains(&ObjectRef::RigidBody(id))),
+        |event| matches!(event, Event::ContactEnded { pair } if pair.contains(&ObjectRef::RigidBody(id))),
     );
     assert!(told, "{:?}", world.events());
 }
@@ -126,17 +123,13 @@ fn rigid_contact_event_reports_impulse_and_speed() {
         world.step();
         for event in world.events() {
             match *event {
-                Event::RigidPressed {
-                    rigid,
-                    with,
-                    normal,
-                    impulse: felt,
-                    ..
-                } => {
-                    assert_eq!((rigid, with, normal), (id, floor, UP));
-                    impulse += felt;
+                Event::ContactForce(contact) => {
+                    // The floor has the lower handle, so that the normal points towards it.
+                    assert_eq!(contact.pair, [floor, id].map(ObjectRef::RigidBody));
+                    assert_eq!(contact.normal, [0.0, -1.0, 0.0]);
+                    impulse += contact.impulse;
                 }
-                Event::ContactStarted { speed: found, .. } => speed = speed.max(found),
+                Event::ContactStarted(contact) => speed = speed.max(contact.speed),
                 _ => {}
             }
         }
@@ -167,10 +160,10 @@ fn sensors_tell<D: Dim>() {
         world.step();
         for event in world.events() {
             match *event {
-                Event::SensorEntered { sensor, who } if sensor == gate => entered.push(who),
-                Event::SensorExited { sensor, who } if sensor == gate => left.push(who),
-                Event::ContactStarted { both, .. } => {
-                    assert!(!both.contains(&ObjectRef::RigidBody(gate)))
+                Event::SensorEntered { sensor, object } if sensor == gate => entered.push(object),
+                Event::SensorExited { sensor, object } if sensor == gate => left.push(object),
+                Event::ContactStarted(contact) => {
+                    assert!(!contact.pair.contains(&ObjectRef::RigidBody(gate)))
                 }
                 _ => {}
             }
@@ -242,4 +235,134 @@ fn user_data_persists_until_removal() {
     assert!(
         world.set_user_data(id, 1).is_err() && world.set_layers(id, Layers::default()).is_err()
     );
+}
+
+/// Returns the partners of an object.
+fn partners<D: Dim>(world: &World<D>, object: ObjectRef) -> Vec<ObjectRef> {
+    let contacts = world.contacts_of(object).unwrap();
+    contacts
+        .map(|contact| contact.other(object).unwrap())
+        .collect()
+}
+
+/// A soft ball on the floor carries a box, and another one lies beside it.
+fn contacts_of_stack<D: Dim>() {
+    let (mut world, floor) = floored::<D>();
+    let body = ball(&mut world, 0.0);
+    let beside = ball(&mut world, 0.0);
+    world.translate(beside, [3.0, 0.0, 0.0]).unwrap();
+    let load = world.add_rigid_body(crate_of(1.3, 0.25)).unwrap();
+    assert_eq!(world.contacts_of(body).unwrap().count(), 0, "no tick yet");
+    let piece = PieceId(0);
+    let [lower, lone] = [body, beside].map(|body| ObjectRef::Piece { body, piece });
+    let [floor, crate_ref] = [floor, load].map(ObjectRef::RigidBody);
+    let mut ticks = 0;
+    while partners(&world, lower).len() < 2 || partners(&world, lone).is_empty() {
+        world.step();
+        ticks += 1;
+        assert!(
+            ticks < 300,
+            "the ball must touch the floor and the box at the same time"
+        );
+    }
+    assert_eq!(partners(&world, lower), [floor, crate_ref]);
+    assert_eq!(partners(&world, crate_ref), [lower]);
+    assert_eq!(partners(&world, floor), [lower, lone]);
+    for contact in world.contacts_of(body).unwrap() {
+        // The floor pushes the ball up, and the box pushes it down.
+        let up = if contact.pair[1] == floor { 1.0 } else { -1.0 };
+        assert_eq!(contact.pair[0], lower);
+        assert!(up * contact.normal[1] > 0.9, "{contact:?}");
+        assert!(contact.impulse > 0.0 && contact.speed >= 0.0);
+        let forces = world.events().contains(&Event::ContactForce(*contact));
+        assert!(forces, "{contact:?}");
+    }
+    // A removed object is listed no more.
+    world.remove(load).unwrap();
+    assert_eq!(partners(&world, lower), [floor]);
+    assert!(world.contacts_of(load).is_err());
+    let missing = ObjectRef::Piece {
+        body,
+        piece: PieceId(7),
+    };
+    assert!(world.contacts_of(missing).is_err());
+    world.remove(body).unwrap();
+    assert!(world.contacts_of(body).is_err() && world.contacts_of(lower).is_err());
+    assert_eq!(partners(&world, floor), [lone]);
+    world.step();
+    assert!(!partners(&world, floor).contains(&lower));
+}
+
+#[test]
+fn contacts_of_returns_partners_until_they_are_removed() {
+    contacts_of_stack::<Dim2>();
+    contacts_of_stack::<Dim3>();
+}
+
+#[test]
+fn sleeping_contact_is_listed_and_survives_a_clone() {
+    let (mut world, floor) = floored::<Dim3>();
+    let id = world.add_rigid_body(crate_of(0.3, 0.25)).unwrap();
+    for _ in 0..240 {
+        world.step();
+    }
+    assert!(world.rigid_bodies()[id].is_asleep());
+    let contact = *world.contacts_of(id).unwrap().next().unwrap();
+    assert_eq!(contact.other(id), Some(ObjectRef::RigidBody(floor)));
+    // In the last tick before the sleep, the floor carried 1 kg.
+    assert!(
+        (contact.impulse / (9.81 / 60.0) - 1.0).abs() < 0.1,
+        "{contact:?}"
+    );
+    world.step();
+    let is_force = |event: &Event| matches!(event, Event::ContactForce(_));
+    assert!(
+        !world.events().iter().any(is_force),
+        "a sleeper sends no force"
+    );
+    let contacts = |world: &World<Dim3>| world.contacts_of(id).unwrap().copied().collect();
+    let known: Vec<Contact> = contacts(&world);
+    assert_eq!(known, [contact]);
+    assert_eq!(known, contacts(&world.clone()));
+}
+
+/// Two pieces that press on each other send one event per tick, with the lower piece first.
+fn pieces_press<D: Dim>() {
+    let (mut world, floor) = floored::<D>();
+    let bodies = [0.0, 1.02].map(|height| ball(&mut world, height));
+    let [low, high] = bodies.map(|body| ObjectRef::Piece {
+        body,
+        piece: PieceId(0),
+    });
+    let mut impulse = 0.0;
+    for _ in 0..30 {
+        world.step();
+        let forces = world.events().iter().filter_map(|event| match event {
+            Event::ContactForce(contact) if contact.pair == [low, high] => Some(contact),
+            Event::ContactForce(contact) => {
+                assert!(
+                    contact.pair[1] == ObjectRef::RigidBody(floor),
+                    "{contact:?}"
+                );
+                None
+            }
+            _ => None,
+        });
+        let forces: Vec<&Contact> = forces.collect();
+        assert!(forces.len() <= 1, "{forces:?}");
+        for contact in forces {
+            // From the upper ball towards the lower one.
+            assert!(contact.normal[1] < -0.5, "{contact:?}");
+            assert!(partners(&world, low).contains(&high));
+            assert!(partners(&world, high).contains(&low));
+            impulse += contact.impulse;
+        }
+    }
+    assert!(impulse > 0.0);
+}
+
+#[test]
+fn contact_force_of_two_pieces_is_one_event_with_normal_towards_the_first() {
+    pieces_press::<Dim2>();
+    pieces_press::<Dim3>();
 }

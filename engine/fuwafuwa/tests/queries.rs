@@ -1,8 +1,8 @@
 //! Queries on a world: rays, nearest surfaces, points, overlaps.
 
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Material, Queries, RigidBody, Rotation, Shape, SoftBody, Thing,
-    VoxelGrid, World, WorldConfig,
+    Blade, Dim, Dim2, Dim3, Layers, Material, ObjectRef, PieceId, QueryFilter, QueryHit,
+    QueryOverlap, Ray, RigidBody, Rotation, Shape, SoftBody, VoxelGrid, World, WorldConfig,
 };
 
 type Vector = [f32; 3];
@@ -63,57 +63,61 @@ fn around<D: Dim>() -> Vec<Vector> {
 
 fn check_rays<D: Dim>() {
     let world = world::<D>();
-    let queries = Queries::new(&world);
     let body = world.nth_soft_body(0).unwrap();
     let voxel = 1.0 / 16.0;
-    let is_soft = |thing: Thing| matches!(thing, Thing::Soft { .. });
+    let soft_hit = |origin, direction, max_distance| {
+        let filter = QueryFilter::default().only_soft();
+        world.ray_cast(Ray::new(origin, direction), max_distance, filter)
+    };
+    let hit = |origin, direction| {
+        world.ray_cast(Ray::new(origin, direction), 20.0, QueryFilter::default())
+    };
     for direction in around::<D>() {
         let from = direction.map(|k| 5.0 * k);
         let inwards = direction.map(|k| -k);
-        let found = queries.ray(from, inwards, 10.0, &is_soft).unwrap();
+        let found = soft_hit(from, inwards, 10.0).unwrap();
         // The surface consists of voxels, with corners up to two voxel widths from the sphere.
         assert!(
             (found.distance - 4.5).abs() < 2.0 * voxel,
             "{direction:?} {found:?}"
         );
-        assert!(matches!(found.thing, Thing::Soft { body: it, material: 1, .. } if it == body));
+        let piece = PieceId(0);
+        assert_eq!(found.object, ObjectRef::Piece { body, piece });
+        assert_eq!(found.element.map(|element| element.material), Some(1));
         let facing: f32 = (0..3).map(|k| found.normal[k] * direction[k]).sum();
         assert!(facing > 0.0, "{found:?}");
         // A ray from inside hits the surface on its way out.
-        let out = queries.ray([0.0; 3], direction, 10.0, &is_soft).unwrap();
+        let out = soft_hit([0.0; 3], direction, 10.0).unwrap();
         assert!((out.distance - 0.5).abs() < 2.0 * voxel, "{out:?}");
         assert!((out.distance + found.distance - 5.0).abs() < 1e-4);
-        assert!(queries.ray(from, direction, 10.0, &is_soft).is_none());
-        assert!(
-            queries
-                .ray(from, inwards, found.distance - 0.01, &is_soft)
-                .is_none()
-        );
-        assert!(
-            queries
-                .ray(from, inwards, found.distance + 0.01, &is_soft)
-                .is_some()
+        assert!(soft_hit(from, direction, 10.0).is_none());
+        assert!(soft_hit(from, inwards, found.distance - 0.01).is_none());
+        assert!(soft_hit(from, inwards, found.distance).is_some());
+        assert_eq!(
+            soft_hit(from, inwards.map(|k| 7.0 * k), 10.0).map(|hit| hit.object),
+            Some(found.object)
         );
     }
     // Without a filter, the ray hits the first object.
-    let first = |from| {
-        queries
-            .ray(from, [-1.0, 0.0, 0.0], 20.0, &|_| true)
-            .unwrap()
-    };
+    let first = |from| hit(from, [-1.0, 0.0, 0.0]).unwrap();
     let bar = first([9.0, 0.0, 0.0]);
-    assert!(matches!(bar.thing, Thing::RigidBody(_)));
+    assert!(bar.object.rigid_body().is_some() && bar.element.is_none());
     assert!(
         (bar.distance - 5.75).abs() < 1e-3 && (bar.normal[0] - 1.0).abs() < 1e-3,
         "{bar:?}"
     );
-    assert!(is_soft(first([2.0, 0.0, 0.0]).thing));
-    let floor = queries
-        .ray([9.0, 0.0, 0.0], [0.1, -1.0, 0.0], 20.0, &|_| true)
-        .unwrap();
-    assert!((floor.at[1] + 2.0).abs() < 1e-3, "{floor:?}");
+    assert!(first([2.0, 0.0, 0.0]).object.soft_body().is_some());
+    let floor = hit([9.0, 0.0, 0.0], [0.1, -1.0, 0.0]).unwrap();
+    assert!((floor.point[1] + 2.0).abs() < 1e-3, "{floor:?}");
+    let ray = Ray::new([9.0, 0.0, 0.0], [-1.0, 0.0, 0.0]);
+    for max_distance in [-1.0, f32::NAN] {
+        assert_eq!(
+            world.ray_cast(ray, max_distance, QueryFilter::default()),
+            None
+        );
+    }
     for (from, direction) in [([f32::NAN; 3], [1.0, 0.0, 0.0]), ([0.0; 3], [0.0; 3])] {
-        assert!(queries.ray(from, direction, 9.0, &|_| true).is_none());
+        assert!(hit(from, direction).is_none());
     }
 }
 
@@ -125,13 +129,13 @@ fn ray_hits_first_surface() {
 
 fn check_nearest<D: Dim>() {
     let world = world::<D>();
-    let queries = Queries::new(&world);
+    let closest =
+        |point, max_distance| world.closest_point(point, max_distance, QueryFilter::default());
     for direction in around::<D>() {
         for far in [0.2, 0.8, 1.4] {
             let at = direction.map(|k| far * k);
-            let found = queries
-                .nearest(at, 9.0, &|thing| matches!(thing, Thing::Soft { .. }))
-                .unwrap();
+            let filter = QueryFilter::default().only_soft();
+            let found = world.closest_point(at, 9.0, filter).unwrap();
             // No bare face may be nearer.
             let body = world.soft_bodies().first().unwrap();
             let corners = body
@@ -141,31 +145,31 @@ fn check_nearest<D: Dim>() {
             let corner = corners.map(apart).fold(f32::INFINITY, f32::min);
             assert!(found.distance <= corner + 1e-5, "{found:?} {corner}");
             assert!(corner - found.distance < 1.0 / 16.0, "{found:?} {corner}");
-            assert!((apart(found.at) - found.distance).abs() < 1e-5);
+            assert!((apart(found.point) - found.distance).abs() < 1e-5);
         }
     }
-    let floor = queries.nearest([0.0, -1.9, 0.0], 9.0, &|_| true).unwrap();
-    assert!(matches!(floor.thing, Thing::RigidBody(_)));
+    let floor = closest([0.0, -1.9, 0.0], 9.0).unwrap();
+    assert!(floor.object.rigid_body().is_some());
     assert!(
-        (floor.at[1] + 2.0).abs() < 1e-5 && (floor.distance - 0.1).abs() < 1e-5,
+        (floor.point[1] + 2.0).abs() < 1e-5 && (floor.distance - 0.1).abs() < 1e-5,
         "{floor:?}"
     );
-    assert!(queries.nearest([0.0, 9.0, 0.0], 1.0, &|_| true).is_none());
-    assert!(queries.nearest([f32::NAN; 3], 1.0, &|_| true).is_none());
+    assert!(closest([0.0, 9.0, 0.0], 1.0).is_none());
+    assert!(closest([f32::NAN; 3], 1.0).is_none());
 }
 
 #[test]
-fn nearest_finds_closest_surface() {
+fn closest_point_is_on_the_nearest_surface() {
     check_nearest::<Dim2>();
     check_nearest::<Dim3>();
 }
 
 fn check_places<D: Dim>() {
     let world = world::<D>();
-    let queries = Queries::new(&world);
-    let material = |at: Vector| match queries.at(at)[..] {
+    let objects_at = |point| world.objects_at(point, QueryFilter::default());
+    let material = |at: Vector| match objects_at(at)[..] {
         [] => 0,
-        [Thing::Soft { material, .. }] => material,
+        [QueryOverlap { element, .. }] => element.unwrap().material,
         ref other => panic!("{other:?}"),
     };
     for direction in around::<D>() {
@@ -180,19 +184,15 @@ fn check_places<D: Dim>() {
             assert_eq!(material(at), expect, "{at:?}");
         }
     }
-    assert!(matches!(
-        queries.at([3.0, 0.0, 0.0])[..],
-        [Thing::RigidBody(_)]
-    ));
-    assert!(matches!(
-        queries.at([7.0, -3.0, 0.0])[..],
-        [Thing::RigidBody(_)]
-    ));
-    assert!(queries.at([f32::NAN; 3]).is_empty());
+    for point in [[3.0, 0.0, 0.0], [7.0, -3.0, 0.0]] {
+        let found = objects_at(point);
+        assert!(found.len() == 1 && found[0].object.rigid_body().is_some());
+    }
+    assert!(objects_at([f32::NAN; 3]).is_empty());
 }
 
 #[test]
-fn at_finds_objects_and_materials_at_point() {
+fn objects_at_returns_objects_and_materials() {
     check_places::<Dim2>();
     check_places::<Dim3>();
 }
@@ -201,12 +201,9 @@ fn check_overlaps<D: Dim>() {
     let mut world = world::<D>();
     let body = world.nth_soft_body(0).unwrap();
     let count = |world: &World<D>, shape: Shape| {
-        let things = Queries::new(world).overlapping(&shape);
-        let soft = things
-            .iter()
-            .filter(|thing| matches!(thing, Thing::Soft { .. }))
-            .count();
-        [things.len() - soft, soft]
+        let found = world.overlaps(&shape, QueryFilter::default());
+        let soft = found.iter().filter(|found| found.element.is_some()).count();
+        [found.len() - soft, soft]
     };
     let probe = |x: f32, radius: f32| Shape::Ball {
         centre: [x, 0.0, 0.0],
@@ -234,7 +231,329 @@ fn check_overlaps<D: Dim>() {
 }
 
 #[test]
-fn overlapping_finds_pieces_and_rigid_bodies() {
+fn overlaps_returns_pieces_and_rigid_bodies() {
     check_overlaps::<Dim2>();
     check_overlaps::<Dim3>();
+}
+
+/// Two equal boxes side by side, a sensor in front of both, and a soft cube behind the first one.
+fn row<D: Dim>() -> (
+    World<D>,
+    [fuwafuwa::RigidBodyHandle; 3],
+    fuwafuwa::SoftBodyHandle,
+) {
+    let mut world = World::new(WEIGHTLESS).unwrap();
+    let cuboid = |centre| Shape::Box {
+        centre,
+        half: [0.5; 3],
+    };
+    let mut gate = RigidBody::fixed(cuboid([-2.0, 0.0, 0.0]), 0.3);
+    gate.is_sensor = true;
+    let mut second = RigidBody::fixed(cuboid([2.0, 0.0, 0.0]), 0.3);
+    second.layers = Layers {
+        memberships: 0b10,
+        filters: 0b01,
+    };
+    let first = RigidBody::fixed(cuboid([0.0; 3]), 0.3);
+    let rigids = [gate, first, second].map(|rigid| world.add_rigid_body(rigid).unwrap());
+    let half = [0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 }];
+    let cube = SoftBody::new(VoxelGrid::cube(4, 1.0).unwrap(), &[Material::default()]).unwrap();
+    let cube = cube.translated([4.0 - half[0], -half[1], -half[2]]);
+    let cube = world.add_soft_body(cube);
+    (world, rigids, cube)
+}
+
+fn check_filters<D: Dim>() {
+    let (mut world, [gate, first, second], cube) = row::<D>();
+    let ray = Ray::new([-5.0, 0.1, 0.0], [1.0, 0.0, 0.0]);
+    let hit = |world: &World<D>, filter: QueryFilter<'_>| {
+        let hit = world.ray_cast(ray, 100.0, filter.clone());
+        // All queries respect the filter.
+        if let Some(hit) = hit {
+            let behind = [hit.point[0] + 0.1, 0.1, 0.0];
+            let probe = Shape::Ball {
+                centre: behind,
+                radius: 0.05,
+            };
+            let inside = world.objects_at(behind, filter.clone());
+            assert_eq!(inside[0].object, hit.object);
+            assert_eq!(world.overlaps(&probe, filter.clone())[0].object, hit.object);
+            let closest = world.closest_point(hit.point, 1.0, filter).unwrap();
+            assert_eq!(closest.object, hit.object);
+        }
+        hit.map(|hit| hit.object)
+    };
+    let all = QueryFilter::default();
+    let rigid = |handle| Some(ObjectRef::RigidBody(handle));
+    let piece = |piece| ObjectRef::Piece { body: cube, piece };
+    assert_eq!(hit(&world, all.clone()), rigid(first));
+    assert_eq!(hit(&world, all.clone().including_sensors()), rigid(gate));
+    assert_eq!(hit(&world, all.clone().only_rigid()), rigid(first));
+    assert_eq!(
+        hit(&world, all.clone().only_soft()),
+        Some(piece(PieceId(0)))
+    );
+    assert_eq!(hit(&world, all.clone().excluding(first)), rigid(second));
+    let both = all.clone().excluding(first).excluding(second);
+    assert_eq!(hit(&world, both.clone()), Some(piece(PieceId(0))));
+    assert_eq!(hit(&world, both.excluding(cube)), None);
+    // The layers must match in both directions.
+    let only_second = Layers {
+        memberships: 0b01,
+        filters: 0b10,
+    };
+    assert_eq!(hit(&world, all.clone().layers(only_second)), rigid(second));
+    assert_eq!(
+        hit(&world, all.clone().layers(Layers::default())),
+        rigid(first)
+    );
+    let hidden = Layers {
+        memberships: 0b100,
+        filters: 0b100,
+    };
+    assert_eq!(hit(&world, all.clone().layers(hidden)), None);
+    world.set_layers(cube, hidden).unwrap();
+    let found = hit(&world, all.clone().layers(hidden));
+    assert_eq!(found, Some(piece(PieceId(0))));
+    let is_other = |object: ObjectRef| object != ObjectRef::RigidBody(first);
+    assert_eq!(
+        hit(&world, all.clone().with_predicate(&is_other)),
+        rigid(second)
+    );
+    // A predicate may query the world.
+    let is_isolated = |object: ObjectRef| {
+        let centre = match object.rigid_body() {
+            Some(rigid) => world.rigid_bodies()[rigid].position(),
+            None => return false,
+        };
+        let region = Shape::Ball {
+            centre,
+            radius: 1.8,
+        };
+        world.overlaps(&region, QueryFilter::default()).len() == 2
+    };
+    assert_eq!(
+        hit(&world, all.clone().with_predicate(&is_isolated)),
+        rigid(first)
+    );
+    // One piece can be excluded, and the other one stays.
+    let blade = Blade {
+        from: [4.0, -1.0, -1.0],
+        across: [0.0, 2.0, 0.0],
+        along: [0.0, 0.0, 2.0],
+    };
+    world.cut(cube, &blade).unwrap();
+    let near = hit(&world, all.clone().only_soft()).unwrap();
+    let far = hit(&world, all.only_soft().excluding(near)).unwrap();
+    assert_eq!(
+        (near.soft_body(), far.soft_body()),
+        (Some(cube), Some(cube))
+    );
+    assert_ne!(near, far);
+}
+
+#[test]
+fn filter_selects_objects_of_all_queries() {
+    check_filters::<Dim2>();
+    check_filters::<Dim3>();
+}
+
+#[test]
+fn ray_prefers_the_lowest_object_among_equally_distant_ones() {
+    let (mut world, [_, first, _], _) = row::<Dim3>();
+    let ray = Ray::new([-5.0, 0.1, 0.0], [1.0, 0.0, 0.0]);
+    let cuboid = world.rigid_bodies()[first].clone();
+    let copy = world.add_rigid_body(cuboid).unwrap();
+    let hit = |world: &World<Dim3>, filter| world.ray_cast(ray, 100.0, filter).unwrap().object;
+    assert_eq!(
+        hit(&world, QueryFilter::default()),
+        ObjectRef::RigidBody(first)
+    );
+    let filter = QueryFilter::default().excluding(first);
+    assert_eq!(hit(&world, filter), ObjectRef::RigidBody(copy));
+    world.remove(first).unwrap();
+    assert_eq!(
+        hit(&world, QueryFilter::default()),
+        ObjectRef::RigidBody(copy)
+    );
+}
+
+/// Returns the distance along a ray with a unit direction to an exposed face, by a formula in double
+/// precision that shares nothing with the engine.
+fn distance_to<D: Dim>(corners: [Vector; 4], origin: Vector, direction: Vector) -> Option<f64> {
+    let [origin, direction] = [origin, direction].map(|v| v.map(f64::from));
+    let corners = corners.map(|v| v.map(f64::from));
+    let minus = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k: usize| a[k] - b[k]);
+    let volume = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+            + a[1] * (b[2] * c[0] - b[0] * c[2])
+            + a[2] * (b[0] * c[1] - b[1] * c[0])
+    };
+    // Solves origin + t · direction = a + u · (b − a) + v · (c − a) by Cramer's rule.
+    let triangle = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
+        let (along, beside, reach) = (minus(b, a), minus(c, a), minus(origin, a));
+        let back = direction.map(|k| -k);
+        let all = volume(along, beside, back);
+        let u = volume(reach, beside, back) / all;
+        let v = volume(along, reach, back) / all;
+        let t = volume(along, beside, reach) / all;
+        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0).then_some(t)
+    };
+    let [a, b, c, d] = corners;
+    if D::N == 2 {
+        // A strip along the third axis, wide enough for every ray in the plane.
+        let up = |[x, y, _]: [f64; 3]| [x, y, 9.0];
+        let down = |[x, y, _]: [f64; 3]| [x, y, -9.0];
+        let halves = [
+            triangle(down(a), down(b), up(b)),
+            triangle(down(a), up(b), up(a)),
+        ];
+        return halves.into_iter().flatten().reduce(f64::min);
+    }
+    let halves = [triangle(a, b, c), triangle(a, c, d)];
+    halves.into_iter().flatten().reduce(f64::min)
+}
+
+/// All queries on a grid of points and rays.
+type Answers = (Vec<Option<QueryHit>>, Vec<Vec<QueryOverlap>>);
+
+fn answers<D: Dim>(world: &World<D>) -> Answers {
+    let (mut hits, mut overlaps) = (Vec::new(), Vec::new());
+    for (k, direction) in around::<D>().into_iter().enumerate() {
+        let origin = direction.map(|along| 4.0 * along);
+        let target = [0.03 * k as f32 - 0.6, 0.6 - 0.03 * k as f32, 0.0];
+        let inwards = [0, 1, 2].map(|axis: usize| target[axis] - origin[axis]);
+        for filter in [QueryFilter::default(), QueryFilter::default().only_soft()] {
+            hits.push(world.ray_cast(Ray::new(origin, inwards), 20.0, filter.clone()));
+            hits.push(world.closest_point(target, 20.0, filter.clone()));
+            overlaps.push(world.objects_at(target, filter.clone()));
+            let probe = Shape::Ball {
+                centre: direction.map(|along| 0.6 * along),
+                radius: 0.02 * k as f32 + 0.01,
+            };
+            overlaps.push(world.overlaps(&probe, filter));
+        }
+    }
+    (hits, overlaps)
+}
+
+/// Compares rays with brute force over all exposed faces, and all queries with those of a world without
+/// search trees.
+fn check_cache<D: Dim>(world: &World<D>, step: &str) {
+    let known = answers(world);
+    assert_eq!(known, answers(&world.clone()), "{step}");
+    #[cfg(feature = "serde")]
+    {
+        let bytes = fuwafuwa::snapshot::save(world);
+        let loaded = fuwafuwa::snapshot::load::<D>(&bytes).unwrap();
+        assert_eq!(known, answers(&loaded), "{step}");
+    }
+    let facets = || world.soft_bodies().iter().flat_map(|body| body.facets());
+    let mut hits = 0;
+    for direction in around::<D>() {
+        let origin = direction.map(|along| 4.0 * along);
+        let inwards = direction.map(|along| -along);
+        let expected =
+            facets().filter_map(|facet| distance_to::<D>(facet.corners, origin, inwards));
+        let expected = expected.reduce(f64::min);
+        let filter = QueryFilter::default().only_soft();
+        let found = world.ray_cast(Ray::new(origin, inwards), 20.0, filter);
+        match (expected, found) {
+            (Some(expected), Some(found)) => {
+                let gap = (f64::from(found.distance) - expected).abs();
+                assert!(gap < 1e-3, "{step}: {expected} {found:?}");
+                hits += 1;
+            }
+            (None, None) => {}
+            other => panic!("{step}: {other:?}"),
+        }
+    }
+    assert!(hits > 5, "{step}: {hits} rays hit");
+}
+
+fn check_queries_after_changes<D: Dim>() {
+    let mut world = World::<D>::new(WorldConfig::default()).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]);
+    world.add_rigid_body(RigidBody::fixed(floor, 0.3)).unwrap();
+    let free = Shape::Ball {
+        centre: [1.5, 0.0, 0.0],
+        radius: 0.2,
+    };
+    let free = world.add_rigid_body(RigidBody::dynamic(free, 1.0)).unwrap();
+    let body = world.add_soft_body(ball::<D>(12));
+    let other = world.add_soft_body(ball::<D>(8).translated([0.0, 1.2, 0.0]));
+    check_cache(&world, "start");
+    for _ in 0..20 {
+        world.step();
+        assert_eq!(answers(&world), answers(&world.clone()));
+    }
+    check_cache(&world, "ticks");
+    let blade = Blade {
+        from: [0.02, -2.0, -2.0],
+        across: [0.0, 4.0, 0.0],
+        along: [0.0, 0.0, 4.0],
+    };
+    world.cut(body, &blade).unwrap();
+    check_cache(&world, "cut");
+    for _ in 0..10 {
+        world.step();
+    }
+    check_cache(&world, "ticks after the cut");
+    world.remove_piece(body, PieceId(1)).unwrap();
+    check_cache(&world, "removed piece");
+    world.translate(body, [0.1, 0.2, 0.0]).unwrap();
+    world
+        .rotate_about(other, Rotation::in_plane(0.7), [0.0; 3])
+        .unwrap();
+    check_cache(&world, "moves");
+    world
+        .set_pose(free, [0.3, 1.1, 0.0], Rotation::NONE)
+        .unwrap();
+    check_cache(&world, "moved rigid body");
+    let nodes = world.soft_bodies()[other].mesh().nodes();
+    let nodes: Vec<_> = nodes.map(|(node, _)| node).collect();
+    let changed = world.soft_body_mut(other).unwrap();
+    for node in nodes {
+        let (at, velocity, _) = changed.node_state(node);
+        changed.set_node_state(node, [1.2 * at[0], 0.9 * at[1], at[2]], velocity);
+    }
+    check_cache(&world, "moved nodes");
+    *world.soft_body_mut(other).unwrap() = ball::<D>(9);
+    check_cache(&world, "replaced body");
+    world.remove(body).unwrap();
+    world.remove(free).unwrap();
+    check_cache(&world, "removed bodies");
+    let again = world.add_soft_body(ball::<D>(10).translated([0.3, 0.0, 0.0]));
+    check_cache(&world, "added body in the slot of another");
+    world.soft_body_mut(again).unwrap().crumble();
+    for _ in 0..20 {
+        world.step();
+    }
+    check_cache(&world, "crumbs");
+}
+
+#[test]
+fn queries_equal_those_of_a_fresh_world_after_any_change() {
+    check_queries_after_changes::<Dim2>();
+    check_queries_after_changes::<Dim3>();
+}
+
+#[test]
+fn queries_from_several_threads_give_the_same_answers() {
+    let mut world = world::<Dim3>();
+    world.step();
+    let expected = answers(&world.clone());
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..4).map(|_| scope.spawn(|| answers(&world))).collect();
+        for thread in threads {
+            assert_eq!(thread.join().unwrap(), expected);
+        }
+    });
+}
+
+#[test]
+fn world_is_send_and_sync() {
+    fn check<T: Send + Sync + Clone>() {}
+    check::<World<Dim2>>();
+    check::<World<Dim3>>();
 }

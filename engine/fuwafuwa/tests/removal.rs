@@ -301,7 +301,7 @@ fn check_leaning<D: Dim>() {
     };
     let ended = touching(&world);
     let told =
-        |event: &Event| matches!(event, Event::ContactEnded { both } if both.contains(&gone));
+        |event: &Event| matches!(event, Event::ContactEnded { pair } if pair.contains(&gone));
     assert!(ended.iter().any(told), "{ended:?}");
     (0..40).for_each(|_| _ = world.step());
     let now = world.soft_bodies()[on_right].centre_of_mass();
@@ -350,12 +350,12 @@ fn check_ties<D: Dim>() {
         events.contains(&Event::JointBroke { joint: to_right }),
         "{events:?}"
     );
-    let who = ObjectRef::Piece {
+    let object = ObjectRef::Piece {
         body: cube,
         piece: right,
     };
     assert!(
-        events.contains(&Event::SensorExited { sensor, who }),
+        events.contains(&Event::SensorExited { sensor, object }),
         "{events:?}"
     );
     assert!(world.joints().get(to_left).is_ok() && world.joints().get(to_right).is_err());

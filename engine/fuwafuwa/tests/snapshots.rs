@@ -110,7 +110,7 @@ fn check_tied_resumes<D: Dim>() {
         let is_change = |event: &&Event| {
             matches!(
                 event,
-                Event::ContactStarted { .. }
+                Event::ContactStarted(_)
                     | Event::ContactEnded { .. }
                     | Event::SensorEntered { .. }
                     | Event::SensorExited { .. }

@@ -76,7 +76,7 @@ fn landing<D: Dim>(tick: f32) -> [f32; 3] {
     pass(&mut world, 12.0, |world| {
         let seconds = world.ticks() as f32 * tick;
         if touched == 0.0 && { world.events().iter() }
-            .any(|event| matches!(event, Event::Pressed { .. }))
+            .any(|event| matches!(event, Event::ContactForce(_)))
         {
             touched = seconds;
         }

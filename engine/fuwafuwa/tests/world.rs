@@ -183,7 +183,7 @@ fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
     for _ in 0..600 {
         world.step();
         for event in world.events() {
-            hit |= matches!(event, Event::Pressed { impulse, .. } if *impulse > 1.0);
+            hit |= matches!(event, Event::ContactForce(contact) if contact.impulse > 1.0);
             slept |= matches!(event, Event::FellAsleep { .. });
         }
         if slept {

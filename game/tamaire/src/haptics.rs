@@ -25,11 +25,11 @@ pub fn contact(hand: &RigidBody) -> Vector {
 pub fn tears(round: &AnyRound) -> [f32; PLAYERS] {
     let mut counts = [0u32; PLAYERS];
     for event in round.events() {
-        let Event::NodeSplit { at, .. } = *event else {
+        let Event::NodeSplit { point, .. } = *event else {
             continue;
         };
         let away = |hand: &RigidBody| {
-            let square = |axis: usize| (hand.position()[axis] - at[axis]).powi(2);
+            let square = |axis: usize| (hand.position()[axis] - point[axis]).powi(2);
             square(0) + square(1) + square(2)
         };
         let hands = round.hands().into_iter().take(PLAYERS).enumerate();

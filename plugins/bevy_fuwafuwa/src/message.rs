@@ -29,14 +29,15 @@ pub struct PieceDetached {
     pub piece: PieceId,
 }
 
-/// Contact force during the tick, of a soft body on another body, or of a dynamic rigid body on a rigid body.
+/// Contact force between two bodies during the tick. The bodies are in the order of the engine's
+/// [`Contact::pair`](fuwafuwa::Contact::pair): soft bodies stand before rigid ones.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
 pub struct Touched {
-    /// The soft body or dynamic rigid body.
+    /// The first body, or the second one if the first has no entity.
     pub body: Entity,
     /// Piece of `body`; `None` for a rigid body.
     pub piece: Option<PieceId>,
-    /// The other body: rigid, soft, or `body` itself. `None` if it has no entity.
+    /// The other body: rigid, soft, or `body` itself where it folds. `None` if it has no entity.
     pub with: Option<Entity>,
     /// Piece of `with` if it is a soft body.
     pub with_piece: Option<PieceId>,

@@ -6,10 +6,10 @@ use bevy_ecs::change_detection::Res;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::system::SystemParam;
 use bevy_math::Vec3;
-use fuwafuwa::{PieceId, Queries, Shape, Thing};
+use fuwafuwa::{ObjectRef, PieceId, QueryFilter, Ray, Shape};
 
-/// Spatial queries on the current state. Each query first gathers all bare faces; use [`SoftQueries::engine`]
-/// for many queries at the same time.
+/// Spatial queries on the current state. The first query after a change visits the exposed faces of the bodies
+/// that moved; further queries are cheap.
 #[derive(SystemParam)]
 pub struct SoftQueries<'w, D: Dimension> {
     world: Res<'w, SoftWorld<D>>,
@@ -22,63 +22,66 @@ pub struct QueryHit {
     pub entity: Option<Entity>,
     /// Piece of a soft body; `None` for a rigid body.
     pub piece: Option<PieceId>,
-    /// Position, world space [m].
-    pub at: Vec3,
+    /// Position on the surface, world space [m].
+    pub point: Vec3,
     /// Outward unit normal.
     pub normal: Vec3,
-    /// Distance from the start of the query [m].
+    /// Distance from the origin of the ray, or from the given point [m].
     pub distance: f32,
 }
 
 impl<D: Dimension> SoftQueries<'_, D> {
-    /// Returns the first surface hit by a ray within the distance `most` [m], which may be infinite. Returns
-    /// `None` if the direction has length 0 or a value is not finite.
-    pub fn ray(&self, from: Vec3, direction: Vec3, most: f32) -> Option<QueryHit> {
-        let found = self
-            .engine()
-            .ray(from.into(), direction.into(), most, &|_| true)?;
-        Some(self.hit(found))
+    /// Returns the first surface hit by a ray within `max_distance` [m], which may be infinite. Returns `None`
+    /// if the direction has length 0 or a value is not finite.
+    pub fn ray_cast(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        max_distance: f32,
+        filter: QueryFilter<'_>,
+    ) -> Option<QueryHit> {
+        let ray = Ray::new(origin.into(), direction.into());
+        let hit = self.world.engine().ray_cast(ray, max_distance, filter)?;
+        Some(self.hit(hit))
     }
 
-    /// Returns the nearest point of any surface within the distance `most` [m].
-    pub fn nearest(&self, at: Vec3, most: f32) -> Option<QueryHit> {
-        let found = self.engine().nearest(at.into(), most, &|_| true)?;
-        Some(self.hit(found))
+    /// Returns the closest point of any surface within `max_distance` [m].
+    pub fn closest_point(
+        &self,
+        point: Vec3,
+        max_distance: f32,
+        filter: QueryFilter<'_>,
+    ) -> Option<QueryHit> {
+        let engine = self.world.engine();
+        let hit = engine.closest_point(point.into(), max_distance, filter)?;
+        Some(self.hit(hit))
     }
 
     /// Returns the entities that overlap a shape, each once, sorted.
-    pub fn overlapping(&self, shape: &Shape) -> Vec<Entity> {
-        let things = self.engine().overlapping(shape).into_iter();
-        let mut entities: Vec<Entity> = things.filter_map(|thing| self.entity(thing)).collect();
+    pub fn overlaps(&self, shape: &Shape, filter: QueryFilter<'_>) -> Vec<Entity> {
+        let found = self.world.engine().overlaps(shape, filter).into_iter();
+        let entities = found.filter_map(|found| self.entity(found.object));
+        let mut entities: Vec<Entity> = entities.collect();
         entities.sort();
         entities.dedup();
         entities
     }
 
-    /// Returns the engine's query object, which serves many queries at the same time.
-    pub fn engine(&self) -> Queries<'_, D> {
-        Queries::new(self.world.engine())
-    }
-
-    /// Returns the entity of an object found by the engine.
-    pub fn entity(&self, thing: Thing) -> Option<Entity> {
-        match thing {
-            Thing::RigidBody(rigid) => self.world.entity_of_rigid(rigid),
-            Thing::Soft { body, .. } => self.world.entity_of_body(body),
+    /// Returns the entity of an object of the engine.
+    pub fn entity(&self, object: ObjectRef) -> Option<Entity> {
+        match object {
+            ObjectRef::RigidBody(rigid) => self.world.entity_of_rigid(rigid),
+            ObjectRef::Piece { body, .. } => self.world.entity_of_body(body),
         }
     }
 
-    fn hit(&self, found: fuwafuwa::QueryHit) -> QueryHit {
-        let piece = match found.thing {
-            Thing::Soft { piece, .. } => Some(piece),
-            Thing::RigidBody(_) => None,
-        };
+    fn hit(&self, hit: fuwafuwa::QueryHit) -> QueryHit {
         QueryHit {
-            entity: self.entity(found.thing),
-            piece,
-            at: found.at.into(),
-            normal: found.normal.into(),
-            distance: found.distance,
+            entity: self.entity(hit.object),
+            piece: hit.object.piece(),
+            point: hit.point.into(),
+            normal: hit.normal.into(),
+            distance: hit.distance,
         }
     }
 }

@@ -9,6 +9,7 @@ use crate::world::SoftWorld;
 use bevy_ecs::change_detection::ResMut;
 use bevy_ecs::message::MessageWriter;
 use bevy_ecs::system::SystemParam;
+use bevy_math::Vec3;
 use fuwafuwa::{Event, ObjectRef};
 
 /// Writers of all messages.
@@ -50,93 +51,75 @@ impl Writers<'_> {
     /// Sends an event as a message, unless a body of it has no entity.
     fn tell<D: Dimension>(&mut self, world: &SoftWorld<D>, event: Event) -> Option<()> {
         let of_body = |body| world.entity_of_body(body);
-        let of = |party: ObjectRef| match party {
+        let of = |object: ObjectRef| match object {
             ObjectRef::Piece { body, piece } => Some((of_body(body)?, Some(piece))),
             ObjectRef::RigidBody(rigid) => Some((world.entity_of_rigid(rigid)?, None)),
         };
         match event {
-            Event::NodeSplit { body, at, energy } => {
-                let (body, at) = (of_body(body)?, at.into());
+            Event::NodeSplit {
+                body,
+                point,
+                energy,
+            } => {
+                let (body, at) = (of_body(body)?, point.into());
                 self.torn.write(NodeSplit { body, at, energy });
             }
             Event::PieceDetached { body, piece } => {
                 let body = of_body(body)?;
                 self.parted.write(PieceDetached { body, piece });
             }
-            Event::Pressed {
-                body,
-                piece,
-                with,
-                at,
-                normal,
-                impulse,
-            } => {
-                let with = of(with.into());
+            Event::ContactForce(contact) => {
+                // One of the bodies may have no entity; the other one is then `body`.
+                let [first, second] = contact.pair.map(of);
+                let normal = Vec3::from(contact.normal);
+                let ((body, piece), with, normal) = match first {
+                    Some(first) => (first, second, normal),
+                    None => (second?, None, -normal),
+                };
                 self.touched.write(Touched {
-                    body: of_body(body)?,
-                    piece: Some(piece),
+                    body,
+                    piece,
                     with: with.map(|(with, _)| with),
                     with_piece: with.and_then(|(_, piece)| piece),
-                    at: at.into(),
-                    normal: normal.into(),
-                    impulse,
+                    at: contact.point.into(),
+                    normal,
+                    impulse: contact.impulse,
                 });
             }
-            Event::RigidPressed {
-                rigid,
-                with,
-                at,
-                normal,
-                impulse,
-            } => {
-                self.touched.write(Touched {
-                    body: world.entity_of_rigid(rigid)?,
-                    piece: None,
-                    with: world.entity_of_rigid(with),
-                    with_piece: None,
-                    at: at.into(),
-                    normal: normal.into(),
-                    impulse,
-                });
-            }
-            Event::ContactStarted {
-                both: [first, second],
-                at,
-                normal,
-                speed,
-            } => {
+            Event::ContactStarted(contact) => {
+                let [first, second] = contact.pair;
                 let ((first, own), (second, other)) = (of(first)?, of(second)?);
                 self.contact_began.write(ContactBegan {
                     both: [first, second],
                     pieces: [own, other],
-                    at: at.into(),
-                    normal: normal.into(),
-                    speed,
+                    at: contact.point.into(),
+                    normal: contact.normal.into(),
+                    speed: contact.speed,
                 });
             }
             Event::ContactEnded {
-                both: [first, second],
+                pair: [first, second],
             } => {
                 let ((first, own), (second, other)) = (of(first)?, of(second)?);
                 let (both, pieces) = ([first, second], [own, other]);
                 self.contact_ended.write(ContactEnded { both, pieces });
             }
-            Event::SensorEntered { sensor, who } => {
-                let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(who)?);
+            Event::SensorEntered { sensor, object } => {
+                let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(object)?);
                 self.entered.write(SensorEntered { sensor, who, piece });
             }
-            Event::SensorExited { sensor, who } => {
-                let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(who)?);
+            Event::SensorExited { sensor, object } => {
+                let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(object)?);
                 self.left.write(SensorExited { sensor, who, piece });
             }
             Event::Cut {
                 knife,
                 body,
-                at,
+                point,
                 area,
                 work,
             } => {
-                let (body, at) = (of_body(body)?, at.into());
+                let (body, at) = (of_body(body)?, point.into());
                 self.cut.write(Cut {
                     knife,
                     body,
@@ -172,6 +155,8 @@ impl Writers<'_> {
                 let body = of_body(body)?;
                 self.quarantined.write(Quarantined { body, piece });
             }
+            // Events that the engine adds later have no message yet.
+            _ => {}
         }
         Some(())
     }

@@ -6,8 +6,8 @@
 use fuwafuwa::FEWEST_SUBSTEPS;
 use fuwafuwa::Law;
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Event, Material, RigidBody, RigidBodyHandle, Shape, SoftBody,
-    VoxelGrid, With, World, WorldConfig,
+    Blade, Contact, Dim, Dim2, Dim3, Event, Material, ObjectRef, RigidBody, RigidBodyHandle, Shape,
+    SoftBody, VoxelGrid, World, WorldConfig,
 };
 
 /// A simulation without input, and its expected hash.
@@ -124,11 +124,11 @@ fn hash_of_heap() -> u64 {
         assert_eq!(report.substeps, FEWEST_SUBSTEPS);
         released += report.nodes_split;
         for event in world.events() {
-            if let Event::Pressed {
-                with: With::Piece { .. },
+            if let Event::ContactForce(Contact {
+                pair: [_, ObjectRef::Piece { .. }],
                 impulse,
                 ..
-            } = event
+            }) = event
             {
                 touched += impulse;
             }

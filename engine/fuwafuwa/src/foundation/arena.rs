@@ -118,6 +118,9 @@ handle! {
 )]
 pub struct Arena<K: Handle, T> {
     slots: IndexVec<K::Slot, Slot<T>>,
+    /// Number of mutable accesses, see [`Arena::revision`].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    revision: u64,
 }
 
 /// Slot of an [`Arena`]: the number of items that have left it, and the present item.
@@ -130,8 +133,10 @@ struct Slot<T> {
 
 impl<K: Handle, T> Default for Arena<K, T> {
     fn default() -> Self {
-        let slots = IndexVec::default();
-        Self { slots }
+        Self {
+            slots: IndexVec::default(),
+            revision: 0,
+        }
     }
 }
 
@@ -150,6 +155,7 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Returns the item of a handle, mutably; see [`Arena::get`].
     pub(crate) fn get_mut(&mut self, id: K) -> Result<&mut T, Error> {
+        self.revision += 1;
         let (own, generation) = id.parts();
         let slot = self.slots.get_mut(own.index());
         let slot = slot.filter(|slot| slot.generation == generation);
@@ -194,6 +200,7 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Inserts an item into the first free slot.
     pub(crate) fn insert(&mut self, thing: T) -> K {
+        self.revision += 1;
         let free = self.slots.iter().position(|slot| slot.thing.is_none());
         let own = free.map_or(self.slots.next_id(), K::Slot::of);
         if free.is_none() {
@@ -208,11 +215,18 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Removes an item; the others keep their slots.
     pub(crate) fn remove(&mut self, id: K) -> Result<T, Error> {
+        self.revision += 1;
         let (own, _) = id.parts();
         self.get(id)?;
         let slot = &mut self.slots[own];
         slot.generation = slot.generation.wrapping_add(1);
         slot.thing.take().ok_or_else(|| stale::<K>(own))
+    }
+
+    /// Returns a number that increases with each mutable access to the arena or to an item. While it is the
+    /// same, no item has changed.
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
     }
 
     /// Returns the number of slots, free ones included.
@@ -233,12 +247,14 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Iterates over occupied slots and their items, mutably.
     pub(crate) fn by_slot_mut(&mut self) -> impl Iterator<Item = (K::Slot, &mut T)> {
+        self.revision += 1;
         let slots = self.slots.entries_mut();
         slots.filter_map(|(own, slot)| Some((own, slot.thing.as_mut()?)))
     }
 
     /// Iterates over handles and items, mutably.
     pub(crate) fn entries_mut(&mut self) -> impl Iterator<Item = (K, &mut T)> {
+        self.revision += 1;
         let slots = self.slots.entries_mut();
         slots.filter_map(|(own, slot)| {
             let id = K::new(own, slot.generation);
@@ -248,6 +264,7 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Iterates over the items, mutably.
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        self.revision += 1;
         self.slots.iter_mut().filter_map(|slot| slot.thing.as_mut())
     }
 
@@ -266,6 +283,7 @@ impl<K: Handle, T> Arena<K, T> {
     /// Returns the item in an occupied slot, mutably.
     #[inline(always)]
     pub(crate) fn at_mut(&mut self, slot: K::Slot) -> &mut T {
+        self.revision += 1;
         let thing = self.slots[slot].thing.as_mut();
         thing.expect("internal slot lists contain occupied slots only")
     }

@@ -4,108 +4,175 @@ use crate::math::vector::length;
 use crate::rigid_body::shape::{Bounds, Vector};
 use std::ops::Range;
 
-/// Maximum number of boxes in a leaf. Smaller leaves make queries faster and construction slower. The tree is
-/// built for each `Queries`, so 4 suits a small number of queries.
+/// Maximum number of boxes in a leaf. Smaller leaves make queries faster and construction slower.
 const LEAF: usize = 4;
 
 /// Relative margin of a box around its content: ten times the tolerance of the primitives.
 const LITTLE: f32 = 1e-3;
+/// Margin relative to the largest coordinate: some eight units in the last place.
+const ROUNDING: f32 = 1e-6;
+
+/// Growth of the summed widths of all nodes by refitting that makes the tree worth rebuilding. Rotation alone
+/// increases the widths of a box by up to √3.
+const WORN: f32 = 2.0;
+
+/// Box without content.
+const EMPTY: Bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
 /// Bounding-volume hierarchy over boxes, which are known by their index in a list.
+///
+/// Results of a search do not depend on the shape of the tree: the cost of a box never decreases from a box to
+/// the boxes within, not even by rounding, and every item is checked against its own box.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
-    knots: Vec<Knot>,
-    /// Indices of the list, in the order of the leaves.
-    places: Vec<u32>,
+    /// Nodes; a parent stands before its children.
+    nodes: Vec<TreeNode>,
+    /// Items, in the order of the leaves.
+    items: Vec<TreeItem>,
+    /// Summed widths of all nodes at construction [m].
+    built_width: f32,
 }
 
 #[derive(Clone, Debug)]
-struct Knot {
+struct TreeNode {
     bounds: Bounds,
-    /// Range of `places` in a leaf; empty for an inner node.
+    /// Range of `items` in a leaf; empty for an inner node.
     leaf: Range<u32>,
     /// Children of an inner node.
-    parts: [u32; 2],
+    children: [u32; 2],
+}
+
+#[derive(Clone, Debug)]
+struct TreeItem {
+    bounds: Bounds,
+    /// Index in the list.
+    index: u32,
 }
 
 impl Tree {
     /// Builds the hierarchy over boxes.
     pub fn new(boxes: &[Bounds]) -> Self {
+        let items = boxes.iter().zip(0..);
+        let items = items.map(|(&bounds, index)| TreeItem { bounds, index });
         let mut tree = Self {
-            knots: Vec::new(),
-            places: (0..boxes.len() as u32).collect(),
+            nodes: Vec::new(),
+            items: items.collect(),
+            built_width: 0.0,
         };
         if !boxes.is_empty() {
-            tree.grow(boxes, 0..boxes.len());
+            tree.grow(0..boxes.len());
         }
+        tree.built_width = tree.width();
         tree
     }
 
-    /// Adds a node over a range of `places`; returns its index.
-    fn grow(&mut self, boxes: &[Bounds], range: Range<usize>) -> u32 {
-        let places = &mut self.places[range.clone()];
-        let bounds = { places.iter() }.map(|&place| boxes[place as usize]);
-        let bounds = bounds.reduce(around).expect("ranges are not empty");
-        let knot = self.knots.len() as u32;
-        self.knots.push(Knot {
+    /// Adds a node over a range of `items`; returns its index.
+    fn grow(&mut self, range: Range<usize>) -> u32 {
+        let items = &mut self.items[range.clone()];
+        let bounds = around_items(items);
+        let node = self.nodes.len() as u32;
+        self.nodes.push(TreeNode {
             bounds,
             leaf: 0..0,
-            parts: [0; 2],
+            children: [0; 2],
         });
         if range.len() <= LEAF {
-            self.knots[knot as usize].leaf = range.start as u32..range.end as u32;
-            return knot;
+            self.nodes[node as usize].leaf = range.start as u32..range.end as u32;
+            return node;
         }
         let extent = |axis: usize| bounds[1][axis] - bounds[0][axis];
-        let axis = (0..3).fold(0, |most, axis| {
-            if extent(axis) > extent(most) {
+        let axis = (0..3).fold(0, |widest, axis| {
+            if extent(axis) > extent(widest) {
                 axis
             } else {
-                most
+                widest
             }
         });
-        let middle = |place: &u32| {
-            let [low, high] = boxes[*place as usize];
+        let middle = |item: &TreeItem| {
+            let [low, high] = item.bounds;
             low[axis] + high[axis]
         };
         let half = range.len() / 2;
-        places.select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)).then(a.cmp(b)));
+        items.select_nth_unstable_by(half, |a, b| {
+            let order = middle(a).total_cmp(&middle(b));
+            order.then(a.index.cmp(&b.index))
+        });
         let half = range.start + half;
-        let parts = [range.start..half, half..range.end].map(|part| self.grow(boxes, part));
-        self.knots[knot as usize].parts = parts;
-        knot
+        let children = [range.start..half, half..range.end].map(|part| self.grow(part));
+        self.nodes[node as usize].children = children;
+        node
     }
 
-    /// Visits the boxes with a cost below the smallest one found before. That limit begins at `least`.
-    /// `cost` must not be larger for a box than for its content. `look` receives the index of a box and
-    /// returns the cost of its content.
+    /// Replaces the boxes by new ones, given in the same order, and keeps the hierarchy. Returns false if the
+    /// nodes have become so wide that searches would be slow. The caller should then build a new tree.
+    pub fn refit(&mut self, boxes: &[Bounds]) -> bool {
+        for item in &mut self.items {
+            item.bounds = boxes[item.index as usize];
+        }
+        for node in (0..self.nodes.len()).rev() {
+            let TreeNode { leaf, children, .. } = &self.nodes[node];
+            let bounds = match leaf.is_empty() {
+                true => {
+                    let [a, b] = children.map(|child| self.nodes[child as usize].bounds);
+                    around(a, b)
+                }
+                false => around_items(&self.items[leaf.start as usize..leaf.end as usize]),
+            };
+            self.nodes[node].bounds = bounds;
+        }
+        let width = self.width();
+        width <= WORN * self.built_width
+    }
+
+    /// Returns the summed widths of all nodes [m].
+    fn width(&self) -> f32 {
+        let widths = |node: &TreeNode| {
+            let [low, high] = node.bounds;
+            (0..3).map(|axis| high[axis] - low[axis]).sum::<f32>()
+        };
+        self.nodes.iter().map(widths).sum()
+    }
+
+    /// Visits the items with a finite cost that is at most the smallest cost found before. That limit begins
+    /// at `limit`. `cost` must not be larger for a box than for a box within. `visit` receives the index of an
+    /// item and the cost of its box, and returns the cost of its content.
     pub fn search(
         &self,
-        mut least: f32,
+        mut limit: f32,
         cost: impl Fn(&Bounds) -> f32,
-        mut look: impl FnMut(usize) -> f32,
+        mut visit: impl FnMut(usize, f32) -> f32,
     ) {
-        let Some(root) = self.knots.first() else {
+        // Comparisons with NaN are false.
+        let counts = |cost: f32, limit: f32| cost <= limit && cost < f32::INFINITY;
+        let Some(root) = self.nodes.first() else {
             return;
         };
         let mut stack = vec![(0, cost(&root.bounds))];
-        while let Some((knot, at_least)) = stack.pop() {
-            // False if `at_least` is NaN.
-            if at_least < least {
-                let Knot { leaf, parts, .. } = &self.knots[knot as usize];
-                for place in leaf.clone() {
-                    least = least.min(look(self.places[place as usize] as usize));
+        while let Some((node, at_least)) = stack.pop() {
+            if !counts(at_least, limit) {
+                continue;
+            }
+            let TreeNode { leaf, children, .. } = &self.nodes[node as usize];
+            for item in &self.items[leaf.start as usize..leaf.end as usize] {
+                let own = cost(&item.bounds);
+                if counts(own, limit) {
+                    limit = limit.min(visit(item.index as usize, own));
                 }
-                if leaf.is_empty() {
-                    let mut parts =
-                        parts.map(|part| (part, cost(&self.knots[part as usize].bounds)));
-                    // The last one on the stack is visited first.
-                    parts.sort_by(|a, b| b.1.total_cmp(&a.1));
-                    stack.extend(parts);
-                }
+            }
+            if leaf.is_empty() {
+                let [a, b] =
+                    children.map(|child| (child, cost(&self.nodes[child as usize].bounds)));
+                // The last one on the stack is visited first.
+                let ordered = if b.1 < a.1 { [a, b] } else { [b, a] };
+                stack.extend(ordered.into_iter().filter(|child| counts(child.1, limit)));
             }
         }
     }
+}
+
+fn around_items(items: &[TreeItem]) -> Bounds {
+    let bounds = items.iter().map(|item| item.bounds);
+    bounds.reduce(around).unwrap_or(EMPTY)
 }
 
 /// Returns the box around two boxes.
@@ -117,12 +184,25 @@ pub fn around([a, b]: Bounds, [c, d]: Bounds) -> Bounds {
 
 /// Returns the box around points, with a margin against rounding.
 pub fn around_all(points: impl IntoIterator<Item = Vector>) -> Bounds {
-    let nothing = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
     let points = points.into_iter();
-    let [low, high] = points.fold(nothing, |bounds, at| around(bounds, [at, at]));
+    with_margin(points.fold(EMPTY, |bounds, at| around(bounds, [at, at])))
+}
+
+/// Returns a box enlarged by a margin against rounding.
+pub fn with_margin([low, high]: Bounds) -> Bounds {
+    if low[0] > high[0] {
+        return EMPTY;
+    }
     let widths = [0, 1, 2].map(|axis: usize| high[axis] - low[axis]);
-    let little = LITTLE * widths.into_iter().fold(0.0, f32::max);
+    let coordinates = low.iter().chain(&high).map(|k| k.abs());
+    let little = LITTLE * widths.into_iter().fold(0.0, f32::max)
+        + ROUNDING * coordinates.fold(0.0, f32::max);
     [low.map(|k| k - little), high.map(|k| k + little)]
+}
+
+/// Returns whether two boxes overlap.
+pub fn overlap([a, b]: &Bounds, [c, d]: &Bounds) -> bool {
+    (0..3).all(|axis| a[axis] <= d[axis] && c[axis] <= b[axis])
 }
 
 /// Returns the distance of a point from a box [m]; 0 inside.
@@ -153,36 +233,69 @@ pub fn entry([low, high]: &Bounds, from: Vector, direction: Vector) -> f32 {
 mod tests {
     use super::*;
 
+    fn scattered(count: usize) -> Vec<Bounds> {
+        let places = (0..count).map(|k| {
+            let at = |step: usize| (k * step % 101) as f32;
+            [at(37), at(53), at(71)]
+        });
+        places.map(|at| [at, at]).collect()
+    }
+
+    /// Returns the smallest distance from a goal, and the number of visited items.
+    fn nearest(tree: &Tree, boxes: &[Bounds], goal: Vector) -> (f32, usize) {
+        let (mut best, mut visited) = (f32::INFINITY, 0);
+        tree.search(
+            f32::INFINITY,
+            |bounds| distance_from(bounds, goal),
+            |index, _| {
+                visited += 1;
+                best = best.min(distance_from(&boxes[index], goal));
+                best
+            },
+        );
+        (best, visited)
+    }
+
     #[test]
     fn search_finds_the_nearest_box_in_few_visits() {
-        let places: Vec<Vector> = (0..500)
-            .map(|k| {
-                let at = |step: usize| (k * step % 101) as f32;
-                [at(37), at(53), at(71)]
-            })
-            .collect();
-        let boxes: Vec<Bounds> = places.iter().map(|&at| [at, at]).collect();
+        let boxes = scattered(500);
         let tree = Tree::new(&boxes);
         for goal in [[0.0; 3], [50.0, 20.0, 90.0], [-7.0, 300.0, 3.0]] {
-            let (mut best, mut looked) = (f32::INFINITY, 0);
-            tree.search(
-                f32::INFINITY,
-                |bounds| distance_from(bounds, goal),
-                |place| {
-                    looked += 1;
-                    best = best.min(distance_from(&boxes[place], goal));
-                    best
-                },
-            );
+            let (best, visited) = nearest(&tree, &boxes, goal);
             let all = boxes.iter().map(|bounds| distance_from(bounds, goal));
             assert_eq!(best, all.fold(f32::INFINITY, f32::min));
-            assert!(looked < 100, "{looked}");
+            assert!(visited < 100, "{visited}");
         }
         Tree::new(&[]).search(
             1.0,
             |_| 0.0,
-            |_| panic!("an empty tree has no boxes to visit"),
+            |_, _| panic!("an empty tree has no boxes to visit"),
         );
+    }
+
+    #[test]
+    fn refit_finds_the_nearest_box_after_moves() {
+        let boxes = scattered(500);
+        let mut tree = Tree::new(&boxes);
+        let shifted = boxes
+            .iter()
+            .map(|bounds| bounds.map(|at| at.map(|k| 2.0 - k)));
+        let shifted: Vec<Bounds> = shifted.map(|[a, b]| around([a, a], [b, b])).collect();
+        assert!(tree.refit(&shifted));
+        for goal in [[0.0; 3], [-50.0, -20.0, -90.0]] {
+            let (best, visited) = nearest(&tree, &shifted, goal);
+            let all = shifted.iter().map(|bounds| distance_from(bounds, goal));
+            assert_eq!(best, all.fold(f32::INFINITY, f32::min));
+            assert!(visited < 100, "{visited}");
+        }
+        // The same boxes in another order fit the tree badly, but the result stays correct.
+        let shuffled: Vec<Bounds> = (0..500).map(|k| boxes[k * 7 % 500]).collect();
+        assert!(!tree.refit(&shuffled));
+        let (best, _) = nearest(&tree, &shuffled, [0.0; 3]);
+        let all = shuffled
+            .iter()
+            .map(|bounds| distance_from(bounds, [0.0; 3]));
+        assert_eq!(best, all.fold(f32::INFINITY, f32::min));
     }
 
     #[test]

@@ -1,229 +1,229 @@
 //! Contact and sensor events of a tick.
 
 use super::World;
-use crate::event::{Event, ObjectRef, With};
+use crate::error::Error;
+use crate::event::{Contact, Event};
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::Dim;
-use crate::foundation::ids::PieceId;
 use crate::math::vector::{length, minus, scaled, three};
+use crate::object_ref::{ObjectRef, ObjectSelector};
 use crate::rigid_body::shape::Vector;
 use crate::rigid_body::{MotionType, RigidBody};
 use crate::soft_body::SoftBody;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Contact between two participants, accumulated over a tick.
-#[derive(Copy, Clone, Debug, Default)]
-struct Press {
-    /// Normal impulse: sum over the tick, and that of the strongest contact [N s].
-    impulse: f32,
-    strongest: f32,
-    /// Position of the strongest contact [m], and the normal from the second participant towards the first.
-    at: Vector,
-    normal: Vector,
-    /// Highest approach speed [m/s].
-    speed: f32,
+/// Contacts of a tick, summed by pair. Neighbours in a pair list mostly belong to the same pair of objects, so
+/// the place of the last pair is cached.
+#[derive(Default)]
+struct ContactSums {
+    places: BTreeMap<[ObjectRef; 2], usize>,
+    list: Vec<ContactSum>,
+    last: Option<([ObjectRef; 2], usize)>,
 }
 
-impl Press {
-    /// Adds a contact. The closure for its position and normal is called only if the contact is the strongest
-    /// up to now.
-    fn add(&mut self, impulse: f32, speed: f32, at_and_normal: impl FnOnce() -> [Vector; 2]) {
-        self.impulse += impulse;
-        self.speed = self.speed.max(speed);
-        if impulse > self.strongest {
-            self.strongest = impulse;
-            [self.at, self.normal] = at_and_normal();
-        }
-    }
-
-    /// Returns the contact with the participants swapped.
-    fn turned(mut self) -> Self {
-        self.normal = scaled(self.normal, -1.0);
-        self
-    }
-
-    /// Adds the contacts of `other` between the same participants.
-    fn join(&mut self, other: Self) {
-        self.impulse += other.impulse;
-        self.speed = self.speed.max(other.speed);
-        if other.strongest > self.strongest {
-            (self.strongest, self.at, self.normal) = (other.strongest, other.at, other.normal);
-        }
-    }
+/// Sum of a contact, and the largest normal impulse in it [N s].
+struct ContactSum {
+    contact: Contact,
+    largest: f32,
 }
 
-/// Accumulated contacts by key. Neighbours in a pair list mostly have the same key, so the last one is
-/// cached.
-struct Presses<K> {
-    places: BTreeMap<K, usize>,
-    list: Vec<Press>,
-    last: Option<(K, usize)>,
-}
-
-impl<K> Default for Presses<K> {
-    fn default() -> Self {
-        Self {
-            places: BTreeMap::new(),
-            list: Vec::new(),
-            last: None,
-        }
-    }
-}
-
-impl<K: Copy + Ord> Presses<K> {
-    /// Returns the contact of a key, inserting an empty one if it is new.
-    fn of(&mut self, key: K) -> &mut Press {
+impl ContactSums {
+    /// Adds the normal impulse [N s] and the approach speed [m/s] of a contact point. The closure returns the
+    /// position [m], and the normal from the second object towards the first; it is called only if the
+    /// impulse is the largest of the pair up to now.
+    fn add(
+        &mut self,
+        objects: [ObjectRef; 2],
+        impulse: f32,
+        speed: f32,
+        point_and_normal: impl FnOnce() -> [Vector; 2],
+    ) {
+        let [first, second] = objects;
+        let pair = [first.min(second), first.max(second)];
         let place = match self.last {
-            Some((last, place)) if last == key => place,
-            _ => *self.places.entry(key).or_insert_with(|| {
-                self.list.push(Press::default());
+            Some((last, place)) if last == pair => place,
+            _ => *self.places.entry(pair).or_insert_with(|| {
+                self.list.push(ContactSum {
+                    contact: Contact {
+                        pair,
+                        point: [0.0; 3],
+                        normal: [0.0; 3],
+                        speed: 0.0,
+                        impulse: 0.0,
+                    },
+                    largest: 0.0,
+                });
                 self.list.len() - 1
             }),
         };
-        self.last = Some((key, place));
-        &mut self.list[place]
+        self.last = Some((pair, place));
+        let ContactSum { contact, largest } = &mut self.list[place];
+        contact.impulse += impulse;
+        contact.speed = contact.speed.max(speed);
+        if impulse > *largest {
+            *largest = impulse;
+            let [point, normal] = point_and_normal();
+            let is_turned = first > second;
+            contact.point = point;
+            contact.normal = scaled(normal, if is_turned { -1.0 } else { 1.0 });
+        }
     }
 
-    /// Returns all contacts, ascending by key.
-    fn all(self) -> Vec<(K, Press)> {
-        let of = |(key, place): (K, usize)| (key, self.list[place]);
-        self.places.into_iter().map(of).collect()
+    /// Returns all contacts, ascending by pair.
+    fn contacts(self) -> Vec<Contact> {
+        let places = self.places.into_values();
+        places.map(|place| self.list[place].contact).collect()
     }
 }
 
 impl<D: Dim> World<D> {
+    /// Returns the contacts of a rigid body, of a piece, or of a whole soft body with all its pieces, in the
+    /// order of their pairs, as of the end of the last tick. A contact between two pieces of the selected body
+    /// is listed once; a piece that folds onto itself is not listed. While both objects sleep or stand still,
+    /// the contact keeps the values of the last tick in which one of them moved.
+    ///
+    /// ```
+    /// use fuwafuwa::{Dim2, ObjectRef, RigidBody, Shape, World, WorldConfig};
+    ///
+    /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
+    /// let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    /// let floor = world.add_rigid_body(RigidBody::fixed(floor, 0.5))?;
+    /// let ball = Shape::Ball { centre: [0.0, 0.1, 0.0], radius: 0.1 };
+    /// let ball = world.add_rigid_body(RigidBody::dynamic(ball, 1.0))?;
+    /// world.step();
+    /// let contact = world.contacts_of(ball)?.next().expect("the ball lies on the floor");
+    /// assert_eq!(contact.other(ball), Some(ObjectRef::RigidBody(floor)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::InvalidHandle`] if the body or the piece does not exist.
+    pub fn contacts_of(
+        &self,
+        object: impl Into<ObjectSelector>,
+    ) -> Result<impl Iterator<Item = &Contact>, Error> {
+        let selector = object.into();
+        match selector {
+            ObjectSelector::SoftBody(body) => {
+                self.bodies.get(body)?;
+            }
+            ObjectSelector::Object(ObjectRef::RigidBody(rigid)) => {
+                self.rigids.get(rigid)?;
+            }
+            ObjectSelector::Object(ObjectRef::Piece { body, piece }) => {
+                if !self.bodies.get(body)?.has_piece(piece) {
+                    return Err(Error::InvalidHandle {
+                        kind: "piece",
+                        slot: piece.0,
+                    });
+                }
+            }
+        }
+        let contacts = self.touching.iter();
+        Ok(contacts.filter(move |contact| {
+            let pair = contact.pair;
+            pair.iter().any(|&object| selector.contains(object))
+                // Objects removed since the last tick are in the list until the next one.
+                && pair.iter().all(|&object| self.exists(object))
+        }))
+    }
+
     /// Reports the contact and sensor events of the tick.
     pub(super) fn note_touches(&mut self) {
-        let soft = self.soft_presses();
-        let rigid = self.rigid_presses();
-        let known = rigid.iter();
-        let known = known.map(|(&both, press)| (both.map(ObjectRef::RigidBody), *press));
-        let mut presses: Vec<([ObjectRef; 2], Press)> = known.collect();
-        for ((body, piece, with), press) in soft {
-            self.events.push(Event::Pressed {
-                body,
-                piece,
-                with,
-                at: press.at,
-                normal: press.normal,
-                impulse: press.impulse,
-            });
-            let (first, second) = (ObjectRef::Piece { body, piece }, with.into());
-            // Ignores contacts within a piece: a folded piece always touches itself. Two pieces can press on
-            // each other from either side of the pair, so the order is normalised.
-            match (first, second) {
-                _ if first == second => {}
-                (_, ObjectRef::Piece { .. }) if second < first => {
-                    presses.push(([second, first], press.turned()));
-                }
-                _ => presses.push(([first, second], press)),
-            }
-        }
-        presses.sort_by_key(|&(both, _)| both);
-        presses.dedup_by(|(both, press), (known, sum)| {
-            let is_same = both == known;
-            if is_same {
-                sum.join(*press);
-            }
-            is_same
-        });
-        for ([rigid, with], press) in rigid {
-            self.events.push(Event::RigidPressed {
-                rigid,
-                with,
-                at: press.at,
-                normal: press.normal,
-                impulse: press.impulse,
-            });
-        }
-        self.note_changes(&presses);
+        let contacts = self.contacts_in_tick();
+        self.events
+            .extend(contacts.iter().copied().map(Event::ContactForce));
+        self.note_changes(contacts);
         self.note_sensors();
     }
 
-    /// Returns the contacts of soft pieces, by piece and by the object that it presses on.
-    fn soft_presses(&self) -> Vec<((SoftBodyHandle, PieceId, With), Press)> {
-        let mut presses = Presses::default();
+    /// Returns the contacts of the tick, ascending by pair.
+    fn contacts_in_tick(&self) -> Vec<Contact> {
+        let mut sums = ContactSums::default();
         let pairs = self.nearby.nodes.list.iter();
         for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
-            let id = self.rigids.id(pair.rigid);
-            let rigid = &self.rigids[id];
-            let with = match rigid.motion_type {
-                MotionType::Fixed => With::Obstacle(id),
-                MotionType::Dynamic { .. } => With::Free(id),
-                _ => With::Hand(id),
-            };
             let id = self.bodies.id(pair.body);
             let body = &self.bodies[id];
             let piece = body.topology.pieces.of_node(pair.node);
-            let press = presses.of((id, piece, with));
-            press.add(pair.impulse.total, pair.impulse.speed, || {
-                let at = three(body.state.position[pair.node]);
-                [at, rigid.shape().distance(at).1]
+            let rigid = self.rigids.id(pair.rigid);
+            let objects = [
+                ObjectRef::Piece { body: id, piece },
+                ObjectRef::RigidBody(rigid),
+            ];
+            sums.add(objects, pair.impulse.total, pair.impulse.speed, || {
+                let point = three(body.state.position[pair.node]);
+                [point, self.rigids[rigid].shape().distance(point).1]
             });
         }
         let spheres = &self.nearby.spheres;
         let pairs = self.nearby.pairs.list.iter();
         for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
-            let [a, b] = pair.both(&spheres.list);
-            let (body, piece) = (self.bodies.id(b.body), b.piece);
-            let with = With::Piece { body, piece };
-            let press = presses.of((self.bodies.id(a.body), a.piece, with));
-            press.add(pair.impulse.total, pair.impulse.speed, || {
-                let [at, other] = pair.spheres.map(|sphere| three(spheres.centres[sphere]));
-                let apart = minus(at, other);
-                [at, scaled(apart, 1.0 / length(apart).max(1e-9))]
+            let objects = pair.both(&spheres.list).map(|sphere| ObjectRef::Piece {
+                body: self.bodies.id(sphere.body),
+                piece: sphere.piece,
+            });
+            sums.add(objects, pair.impulse.total, pair.impulse.speed, || {
+                let [point, other] = pair.spheres.map(|sphere| three(spheres.centres[sphere]));
+                let apart = minus(point, other);
+                [point, scaled(apart, 1.0 / length(apart).max(1e-9))]
             });
         }
-        presses.all()
-    }
-
-    /// Returns the contacts between rigid bodies, by handles.
-    fn rigid_presses(&self) -> BTreeMap<[RigidBodyHandle; 2], Press> {
-        let mut presses: BTreeMap<_, Press> = BTreeMap::new();
         for touch in &self.nearby.rigids.passed {
-            let both = touch.both.map(|slot| self.rigids.id(slot));
-            let press = presses.entry(both).or_default();
-            press.add(touch.impulse, touch.speed, || [touch.at, touch.normal]);
+            let objects = { touch.both }.map(|slot| ObjectRef::RigidBody(self.rigids.id(slot)));
+            sums.add(objects, touch.impulse, touch.speed, || {
+                [touch.at, touch.normal]
+            });
         }
-        presses
+        sums.contacts()
     }
 
-    /// Compares the contact pairs, in ascending order, with those of the last tick, and reports beginnings
-    /// and ends. Pairs at rest still touch.
-    fn note_changes(&mut self, presses: &[([ObjectRef; 2], Press)]) {
+    /// Compares the contacts, in ascending order, with those of the last tick, and reports beginnings and
+    /// ends. Pairs at rest still touch.
+    fn note_changes(&mut self, contacts: Vec<Contact>) {
         let mut before = std::mem::take(&mut self.touching).into_iter().peekable();
-        let (mut touching, mut ended) = (Vec::with_capacity(presses.len()), Vec::new());
-        let mut leave = |both: [ObjectRef; 2], touching: &mut Vec<_>| match self.rest(both) {
-            true => touching.push(both),
-            false => ended.push(Event::ContactEnded { both }),
+        let mut touching = Vec::with_capacity(contacts.len());
+        let (mut started, mut ended) = (Vec::new(), Vec::new());
+        let mut leave = |old: Contact, touching: &mut Vec<Contact>| match self.rest(old.pair) {
+            true => touching.push(old),
+            false => ended.push(Event::ContactEnded { pair: old.pair }),
         };
-        let mut began = Vec::new();
-        for (both, press) in presses {
-            while let Some(old) = before.next_if(|old| old < both) {
+        for contact in contacts {
+            let pair = contact.pair;
+            // A folded piece always touches itself.
+            if pair[0] == pair[1] {
+                continue;
+            }
+            while let Some(old) = before.next_if(|old| old.pair < pair) {
                 leave(old, &mut touching);
             }
-            touching.push(*both);
-            if before.next_if_eq(both).is_none() {
-                began.push(Event::ContactStarted {
-                    both: *both,
-                    at: press.at,
-                    normal: press.normal,
-                    speed: press.speed,
-                });
+            touching.push(contact);
+            if before.next_if(|old| old.pair == pair).is_none() {
+                started.push(Event::ContactStarted(contact));
             }
         }
         before.for_each(|old| leave(old, &mut touching));
         self.touching = touching;
-        self.events.extend(began.into_iter().chain(ended));
+        self.events.extend(started.into_iter().chain(ended));
     }
 
-    /// Returns whether both participants exist and neither moves.
-    fn rest(&self, both: [ObjectRef; 2]) -> bool {
-        both.into_iter().all(|party| self.rests(party))
+    /// Returns whether an object exists.
+    fn exists(&self, object: ObjectRef) -> bool {
+        match object {
+            ObjectRef::RigidBody(rigid) => self.rigids.get(rigid).is_ok(),
+            ObjectRef::Piece { body, piece } => self
+                .bodies
+                .get(body)
+                .is_ok_and(|body| body.has_piece(piece)),
+        }
     }
 
-    fn rests(&self, party: ObjectRef) -> bool {
-        match party {
+    /// Returns whether both objects exist and neither moves.
+    fn rest(&self, pair: [ObjectRef; 2]) -> bool {
+        pair.into_iter().all(|object| self.rests(object))
+    }
+
+    fn rests(&self, object: ObjectRef) -> bool {
+        match object {
             ObjectRef::RigidBody(id) => self.rigids.get(id).is_ok_and(|rigid| !rigid.moves()),
             ObjectRef::Piece { body, piece } => self.bodies.get(body).is_ok_and(|body| {
                 let piece = body.topology.pieces.list.get(piece.index());
@@ -237,20 +237,20 @@ impl<D: Dim> World<D> {
         let sensors = self.rigids.entries().filter(|(_, rigid)| rigid.is_sensor);
         let mut inside: BTreeSet<(RigidBodyHandle, ObjectRef)> = BTreeSet::new();
         for (sensor, rigid) in sensors {
-            inside.extend(self.within(sensor, rigid).map(|party| (sensor, party)));
+            inside.extend(self.within(sensor, rigid).map(|object| (sensor, object)));
         }
         let before: BTreeSet<(RigidBodyHandle, ObjectRef)> =
             std::mem::take(&mut self.inside).into_iter().collect();
         let entered = inside.difference(&before);
         let left = before.difference(&inside);
         self.events
-            .extend(entered.map(|&(sensor, who)| Event::SensorEntered { sensor, who }));
+            .extend(entered.map(|&(sensor, object)| Event::SensorEntered { sensor, object }));
         self.events
-            .extend(left.map(|&(sensor, who)| Event::SensorExited { sensor, who }));
+            .extend(left.map(|&(sensor, object)| Event::SensorExited { sensor, object }));
         self.inside = inside.into_iter().collect();
     }
 
-    /// Returns the participants inside a sensor, possibly repeated.
+    /// Returns the objects inside a sensor, possibly repeated.
     fn within(&self, own: RigidBodyHandle, sensor: &RigidBody) -> impl Iterator<Item = ObjectRef> {
         let shape = sensor.shape();
         let bodies = self.bodies.entries();

@@ -88,7 +88,11 @@ impl<D: Dim> World<D> {
         } = self.bodies.get_mut(body)?.cut(blade);
         let energy = 0.0;
         let positions = released.iter();
-        let releases = positions.map(|&at| Event::NodeSplit { body, at, energy });
+        let releases = positions.map(|&point| Event::NodeSplit {
+            body,
+            point,
+            energy,
+        });
         self.events.extend(releases);
         self.events.extend(Event::parted(body, &parted));
         Ok(released.len())
@@ -248,8 +252,8 @@ impl<D: Dim> World<D> {
     pub(crate) fn rebuild(&mut self) {
         self.bodies.iter_mut().for_each(SoftBody::restore);
         self.nearby.keep_known(&self.bodies, &self.rigids);
-        self.touching.sort_unstable();
-        self.touching.dedup();
+        self.touching.sort_by_key(|contact| contact.pair);
+        self.touching.dedup_by_key(|contact| contact.pair);
         self.inside.sort_unstable();
         self.inside.dedup();
     }

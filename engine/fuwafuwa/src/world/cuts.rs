@@ -56,7 +56,7 @@ impl<D: Dim> World<D> {
                 self.events.push(Event::Cut {
                     knife: id,
                     body: cut.body,
-                    at: cut.at,
+                    point: cut.at,
                     area,
                     work,
                 });

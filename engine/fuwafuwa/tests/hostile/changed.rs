@@ -144,11 +144,11 @@ fn removal_keeps_other_handles_valid() {
     let sizes = world.soft_bodies().iter().map(|body| body.grid().size()[0]);
     assert_eq!(sizes.collect::<Vec<_>>(), [8, 16]);
     let with = |event: &Event| match *event {
-        Event::Pressed { body, with, .. } => Some((body, with)),
+        Event::ContactForce(contact) => Some((contact.pair[0].soft_body()?, contact.pair[1])),
         _ => None,
     };
     let touched: Vec<_> = world.events().iter().filter_map(with).collect();
-    let hand = |n: usize| With::Hand(hands[n]);
+    let hand = |n: usize| ObjectRef::RigidBody(hands[n]);
     assert!(touched.contains(&(bodies[2], hand(2))), "{touched:?}");
     assert!(!touched.contains(&(bodies[0], hand(0))), "{touched:?}");
 }
@@ -301,11 +301,11 @@ fn replaced_body_has_no_contacts_with_itself() {
     for _ in 0..30 {
         world.step();
         let is_own = |event: &&Event| {
-            let own = With::Piece {
+            let own = ObjectRef::Piece {
                 body: id,
                 piece: PieceId(0),
             };
-            matches!(event, Event::Pressed { with, .. } if *with == own)
+            matches!(event, Event::ContactForce(contact) if contact.pair == [own; 2])
         };
         touches += world.events().iter().filter(is_own).count();
     }

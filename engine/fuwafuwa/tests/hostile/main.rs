@@ -5,8 +5,8 @@ mod changed;
 mod quarantine;
 
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Event, Grading, Law, Material, MotionType, PieceId, RigidBody, Shape,
-    SoftBody, VoxelGrid, With, World, WorldConfig,
+    Blade, Dim, Dim2, Dim3, Event, Grading, Law, Material, MotionType, ObjectRef, PieceId,
+    RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
 };
 
 const FLOOR: Shape = Shape::HalfSpace {
@@ -270,10 +270,10 @@ fn cut_reports_positions_of_released_nodes() {
         .unwrap();
     let mut places = 0;
     for event in world.events() {
-        if let Event::NodeSplit { at, energy, .. } = event {
+        if let Event::NodeSplit { point, energy, .. } = event {
             assert!(
-                (at[0] - 3.5).abs() < 0.07 && (0.0..=1.0).contains(&at[1]),
-                "{at:?}"
+                (point[0] - 3.5).abs() < 0.07 && (0.0..=1.0).contains(&point[1]),
+                "{point:?}"
             );
             assert_eq!(*energy, 0.0);
             places += 1;

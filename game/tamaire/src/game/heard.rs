@@ -2,7 +2,7 @@
 
 use super::{Game, Screen};
 use app_shell::View;
-use fuwafuwa::{Dim, Event, PieceId, SoftBodyHandle, Vector, With};
+use fuwafuwa::{Contact, Dim, Event, MotionType, ObjectRef, PieceId, SoftBodyHandle, Vector};
 use std::collections::BTreeMap;
 use tamaire_play::rules::CRUMB;
 use tamaire_play::{AnyRound, Round};
@@ -50,6 +50,7 @@ pub(super) fn cues(round: &AnyRound, view: Option<View>) -> Vec<Cue> {
 
 fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
     let bodies = round.world().soft_bodies();
+    let rigids = round.world().rigid_bodies();
     // Masses of the pieces of each body [kg], computed when first used.
     let mut masses: BTreeMap<SoftBodyHandle, Vec<f32>> = BTreeMap::new();
     let mut mass_of = |body: SoftBodyHandle, piece: PieceId| {
@@ -62,23 +63,21 @@ fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
     let (mut torn, mut at) = (0.0, 0.0);
     for event in round.world().events() {
         match *event {
-            Event::NodeSplit {
-                at: position,
-                energy,
-                ..
-            } => {
+            Event::NodeSplit { point, energy, .. } => {
                 torn += energy.max(0.01);
-                at = across(view, position);
+                at = across(view, point);
             }
-            Event::Pressed {
-                with: With::Obstacle(_),
+            Event::ContactForce(Contact {
+                pair:
+                    [
+                        ObjectRef::Piece { body, piece },
+                        ObjectRef::RigidBody(rigid),
+                    ],
+                point,
                 impulse,
-                at: position,
-                body,
-                piece,
                 ..
-            } => {
-                let x = across(view, position);
+            }) if rigids[rigid].motion_type == MotionType::Fixed => {
+                let x = across(view, point);
                 let mass = mass_of(body, piece);
                 let speed = impulse / mass;
                 if mass > CRUMB * round.progress().mass {

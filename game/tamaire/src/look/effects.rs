@@ -4,7 +4,7 @@ use super::confetti::Confetti;
 use super::feelings::{Feeling, MoodInput};
 use app_shell::CameraRig;
 use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
-use fuwafuwa::{Dim, Event, NodeId, RigidBody, SoftBody, Vector, With};
+use fuwafuwa::{Contact, Dim, Event, NodeId, ObjectRef, RigidBody, SoftBody, Vector};
 use tamaire_play::{AnyRound, Round};
 
 /// Maximum number of particles.
@@ -135,22 +135,26 @@ impl Effects {
         let mut torn = vec![false; world.soft_bodies().len()];
         for event in world.events() {
             match *event {
-                Event::NodeSplit { body, at, energy } => {
+                Event::NodeSplit {
+                    body,
+                    point,
+                    energy,
+                } => {
                     let rank = world.soft_bodies().rank(body);
                     torn[rank.expect("the event names a body of this world")] = true;
                     camera.shake(0.002 + 0.002 * energy.clamp(0.0, 2.0));
                     if looked_up < LOOKED_UP {
                         looked_up += 1;
-                        material = material_at(&world.soft_bodies()[body], at);
+                        material = material_at(&world.soft_bodies()[body], point);
                     }
                     let count = if still { 1 } else { DUST };
-                    (0..count).for_each(|_| self.spawn_dust(at, material));
+                    (0..count).for_each(|_| self.spawn_dust(point, material));
                 }
-                Event::Pressed {
-                    with: With::Hand(_),
+                Event::ContactForce(Contact {
+                    pair: [ObjectRef::Piece { .. }, ObjectRef::RigidBody(rigid)],
                     impulse,
                     ..
-                } => {
+                }) if world.rigid_bodies()[rigid].follows_target() => {
                     pressed += impulse / fuwafuwa::TICK;
                 }
                 _ => {}

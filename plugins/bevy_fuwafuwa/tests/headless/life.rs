@@ -7,7 +7,7 @@ use bevy_ecs::resource::Resource;
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::system::ResMut;
 use bevy_fuwafuwa::component::SoftBodyId;
-use bevy_fuwafuwa::fuwafuwa::{Blade, Knife, PieceSize, RigidBody};
+use bevy_fuwafuwa::fuwafuwa::{Blade, Knife, PieceSize, QueryFilter, RigidBody};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::Vec3;
 use bevy_mesh::Mesh2d;
@@ -93,17 +93,18 @@ fn queries_return_entities() {
     let mut app = app::<Dim2>();
     app.init_resource::<Seen>();
     let look = |queries: SoftQueries<Dim2>, mut seen: ResMut<Seen>| {
-        let down = queries.ray(Vec3::new(0.0, 10.0, 0.0), Vec3::NEG_Y, 100.0);
+        let down = queries.ray_cast(Vec3::new(0.0, 10.0, 0.0), Vec3::NEG_Y, 100.0, QueryFilter::default());
         seen.0
             .push(down.and_then(|hit| Some((hit.entity?, hit.distance))));
-        let beside = queries.nearest(Vec3::new(4.0, 0.5, 0.0), 1.0);
+        let beside = queries.closest_point(Vec3::new(4.0, 0.5, 0.0), 1.0, QueryFilter::default());
         seen.0
             .push(beside.and_then(|hit| Some((hit.entity?, hit.distance))));
         let centre = [0.0, 3.0, 0.0];
-        let inside = queries.overlapping(&Shape::Ball {
+        let probe = Shape::Ball {
             centre,
             radius: 0.1,
-        });
+        };
+        let inside = queries.overlaps(&probe, QueryFilter::default());
         seen.0.push(inside.first().map(|&entity| (entity, 0.0)));
     };
     app.add_systems(Update, look.after(FuwafuwaSystems::Writeback));

@@ -1,0 +1,258 @@
+//! Search trees of a world, kept between queries.
+//!
+//! Each body has a tree over its exposed faces and, once a query requires it, one over its filled cells. A
+//! tree over all objects stands above them. Before a query, the trees of bodies that have changed are brought
+//! up to date: if the same faces have moved, their boxes are refitted; otherwise the tree is rebuilt. The
+//! trees are not part of the state of a world: clones and loaded worlds start without them.
+
+use super::bounding_tree::{Tree, around_all, with_margin};
+use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
+use crate::math::vector::three;
+use crate::rigid_body::shape::{Bounds, Shape, Vector};
+use crate::soft_body::SoftBody;
+use crate::soft_body::element_forces::Row;
+use crate::soft_body::view::Facet;
+use crate::topology::changes::Bookmark;
+use crate::world::World;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// Search trees of a world, shared by the queries that run at the same time.
+#[derive(Debug, Default)]
+pub struct QueryCache {
+    trees: Mutex<Arc<QueryTrees>>,
+}
+
+/// A clone of a world starts without trees.
+impl Clone for QueryCache {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+/// Search trees over all objects of a world.
+#[derive(Debug, Default)]
+pub struct QueryTrees {
+    /// Revisions of the soft and rigid bodies that the trees show; `None` before the first update.
+    revisions: Option<[u64; 2]>,
+    /// Trees of each soft body, by handle.
+    pub bodies: Vec<BodyTrees>,
+    /// All objects, in the order of [`ObjectRef`](crate::ObjectRef).
+    pub objects: Vec<TreeObject>,
+    /// Tree over the objects in `bounded`.
+    pub tree: Tree,
+    /// Indices of the objects with finite boxes, and of the others.
+    pub bounded: Vec<u32>,
+    pub unbounded: Vec<u32>,
+}
+
+/// Soft body, by its index in [`QueryTrees::bodies`], or rigid body.
+#[derive(Copy, Clone, Debug)]
+pub enum TreeObject {
+    Soft(u32),
+    Rigid(RigidBodyHandle),
+}
+
+/// Search trees of a soft body.
+#[derive(Debug)]
+pub struct BodyTrees {
+    pub body: SoftBodyHandle,
+    /// Topology and positions that the trees show.
+    bookmark: Bookmark,
+    positions: IndexVec<NodeId, Row>,
+    /// Box around all nodes.
+    bounds: Bounds,
+    /// Exposed faces, in the order of [`SoftBody::facets`].
+    pub surface: ListTree<Facet>,
+    /// Filled cells, built by the first query that requires them.
+    cells: OnceLock<ListTree<FilledCell>>,
+    /// Whether a query has used the cells since the last update.
+    uses_cells: AtomicBool,
+}
+
+/// Filled cell of an element.
+#[derive(Copy, Clone, Debug)]
+pub struct FilledCell {
+    pub element: ElementId,
+    pub piece: PieceId,
+    /// Material number.
+    pub material: u8,
+    /// Number of the child in the cell of the element.
+    child: u8,
+    /// Corners [m], in the order of [`corner`](crate::foundation::dim::corner); only the first four in 2D.
+    pub corners: [Vector; 8],
+}
+
+/// List of items and a tree over their boxes.
+#[derive(Debug)]
+pub struct ListTree<T> {
+    pub items: Vec<T>,
+    pub tree: Tree,
+}
+
+impl QueryCache {
+    /// Returns the trees for the present state of `world`, the owner of the cache.
+    pub fn trees<D: Dim>(&self, world: &World<D>) -> Arc<QueryTrees> {
+        let revisions = [
+            world.soft_bodies().revision(),
+            world.rigid_bodies().revision(),
+        ];
+        let mut shared = self.trees.lock().unwrap_or_else(PoisonError::into_inner);
+        if shared.revisions != Some(revisions) {
+            match Arc::get_mut(&mut shared) {
+                Some(trees) => trees.update(world, revisions),
+                None => {
+                    let mut trees = QueryTrees::default();
+                    trees.update(world, revisions);
+                    *shared = Arc::new(trees);
+                }
+            }
+        }
+        Arc::clone(&shared)
+    }
+}
+
+impl QueryTrees {
+    fn update<D: Dim>(&mut self, world: &World<D>, revisions: [u64; 2]) {
+        self.revisions = None;
+        let mut known = std::mem::take(&mut self.bodies).into_iter().peekable();
+        for (id, body) in world.soft_bodies().entries() {
+            while known.next_if(|trees| trees.body < id).is_some() {}
+            let trees = match known.next_if(|trees| trees.body == id) {
+                Some(mut trees) => {
+                    trees.update(body);
+                    trees
+                }
+                None => BodyTrees::new(id, body),
+            };
+            self.bodies.push(trees);
+        }
+        self.objects.clear();
+        self.bounded.clear();
+        self.unbounded.clear();
+        let mut boxes = Vec::new();
+        for trees in &self.bodies {
+            self.bounded.push(self.objects.len() as u32);
+            boxes.push(trees.bounds);
+            self.objects.push(TreeObject::Soft(boxes.len() as u32 - 1));
+        }
+        for (id, rigid) in world.rigid_bodies().entries() {
+            let index = self.objects.len() as u32;
+            match rigid.shape() {
+                Shape::HalfSpace { .. } => self.unbounded.push(index),
+                shape => {
+                    self.bounded.push(index);
+                    boxes.push(with_margin(shape.bounds()));
+                }
+            }
+            self.objects.push(TreeObject::Rigid(id));
+        }
+        self.tree = Tree::new(&boxes);
+        self.revisions = Some(revisions);
+    }
+}
+
+impl BodyTrees {
+    fn new<D: Dim>(id: SoftBodyHandle, body: &SoftBody<D>) -> Self {
+        Self {
+            body: id,
+            bookmark: body.bookmark(),
+            positions: body.positions().clone(),
+            bounds: body_bounds(body),
+            surface: ListTree::new(body.facets().collect(), facet_bounds::<D>),
+            cells: OnceLock::new(),
+            uses_cells: AtomicBool::new(false),
+        }
+    }
+
+    fn update<D: Dim>(&mut self, body: &SoftBody<D>) {
+        let is_same =
+            self.bookmark == body.bookmark() && self.positions.iter().eq(body.positions().iter());
+        if is_same {
+            return;
+        }
+        self.bookmark = body.bookmark();
+        self.positions.clone_from(body.positions());
+        self.bounds = body_bounds(body);
+        let is_same = |a: &Facet, b: &Facet| a.element == b.element && a.nodes == b.nodes;
+        let surface = &mut self.surface;
+        surface.update(body.facets().collect(), is_same, facet_bounds::<D>);
+        let uses_cells = std::mem::take(self.uses_cells.get_mut());
+        match self.cells.get_mut() {
+            Some(cells) if uses_cells => {
+                let is_same =
+                    |a: &FilledCell, b: &FilledCell| (a.element, a.child) == (b.element, b.child);
+                cells.update(filled_cells(body), is_same, cell_bounds::<D>);
+            }
+            _ => self.cells = OnceLock::new(),
+        }
+    }
+
+    /// Returns the filled cells of the body.
+    pub fn cells<D: Dim>(&self, body: &SoftBody<D>) -> &ListTree<FilledCell> {
+        self.uses_cells.store(true, Ordering::Relaxed);
+        { &self.cells }.get_or_init(|| ListTree::new(filled_cells(body), cell_bounds::<D>))
+    }
+}
+
+impl<T> ListTree<T> {
+    fn new(items: Vec<T>, bounds: impl Fn(&T) -> Bounds) -> Self {
+        let boxes: Vec<Bounds> = items.iter().map(bounds).collect();
+        Self {
+            tree: Tree::new(&boxes),
+            items,
+        }
+    }
+
+    /// Replaces the items. If they are the same as before, except for their positions, the tree is refitted.
+    fn update(
+        &mut self,
+        items: Vec<T>,
+        is_same: impl Fn(&T, &T) -> bool,
+        bounds: impl Fn(&T) -> Bounds,
+    ) {
+        let boxes: Vec<Bounds> = items.iter().map(bounds).collect();
+        let are_same = items.len() == self.items.len() && { items.iter().zip(&self.items) }
+            .all(|(new, old)| is_same(new, old));
+        self.items = items;
+        if !(are_same && self.tree.refit(&boxes)) {
+            self.tree = Tree::new(&boxes);
+        }
+    }
+}
+
+fn facet_bounds<D: Dim>(facet: &Facet) -> Bounds {
+    around_all(facet.corners.into_iter().take(D::CORNERS / 2))
+}
+
+fn cell_bounds<D: Dim>(cell: &FilledCell) -> Bounds {
+    around_all(cell.corners.into_iter().take(D::CORNERS))
+}
+
+/// Returns the box around all nodes of a body; filled cells are inside, even where the surface is folded in.
+fn body_bounds<D: Dim>(body: &SoftBody<D>) -> Bounds {
+    let nodes = body.mesh().nodes();
+    around_all(nodes.map(|(node, _)| three(body.positions()[node])))
+}
+
+/// Returns the filled cells of a body, by element.
+fn filled_cells<D: Dim>(body: &SoftBody<D>) -> Vec<FilledCell> {
+    let mut cells = Vec::new();
+    for view in body.element_views() {
+        let count = if view.level == 0 { 1 } else { D::CORNERS };
+        for child in (0..count).filter(|child| view.children >> child & 1 == 1) {
+            let mut corners = [[0.0; 3]; 8];
+            corners[..D::CORNERS].copy_from_slice(&view.child_corners::<D>(child));
+            cells.push(FilledCell {
+                element: view.id,
+                piece: view.piece,
+                material: view.material,
+                child: child as u8,
+                corners,
+            });
+        }
+    }
+    cells
+}

@@ -1,0 +1,127 @@
+//! Selection of the objects that a query considers.
+
+use crate::foundation::arena::SoftBodyHandle;
+use crate::foundation::dim::Dim;
+use crate::object_ref::{ObjectRef, ObjectSelector};
+use crate::rigid_body::RigidBody;
+use crate::rigid_body::layers::Layers;
+use crate::soft_body::SoftBody;
+use std::fmt;
+
+/// Selection of the objects that a query considers. By default these are all pieces and all rigid bodies in
+/// any layer, except sensors.
+///
+/// ```
+/// use fuwafuwa::{Dim2, QueryFilter, Ray, RigidBody, Shape, World, WorldConfig};
+///
+/// let mut world = World::<Dim2>::new(WorldConfig::default())?;
+/// let ball = |x| RigidBody::fixed(Shape::Ball { centre: [x, 0.0, 0.0], radius: 0.5 }, 0.3);
+/// let near = world.add_rigid_body(ball(2.0))?;
+/// world.add_rigid_body(ball(4.0))?;
+/// let ray = Ray::new([0.0; 3], [1.0, 0.0, 0.0]);
+/// let distance = |filter| world.ray_cast(ray, 10.0, filter).map(|hit| hit.distance);
+/// assert_eq!(distance(QueryFilter::default()), Some(1.5));
+/// assert_eq!(distance(QueryFilter::default().excluding(near)), Some(3.5));
+/// assert_eq!(distance(QueryFilter::default().only_soft()), None);
+/// # Ok::<(), fuwafuwa::Error>(())
+/// ```
+#[derive(Clone, Default)]
+pub struct QueryFilter<'a> {
+    excluded: Vec<ObjectSelector>,
+    layers: Option<Layers>,
+    kinds: Kinds,
+    includes_sensors: bool,
+    predicate: Option<&'a dyn Fn(ObjectRef) -> bool>,
+}
+
+/// Kinds of objects that count.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+enum Kinds {
+    #[default]
+    All,
+    Rigid,
+    Soft,
+}
+
+impl<'a> QueryFilter<'a> {
+    /// Excludes a rigid body, a piece, or a soft body with all its pieces. Further calls exclude further
+    /// objects. A stale handle excludes nothing.
+    #[must_use]
+    pub fn excluding(mut self, object: impl Into<ObjectSelector>) -> Self {
+        self.excluded.push(object.into());
+        self
+    }
+
+    /// Considers only objects that collide with these layers, see [`Layers::meet`].
+    #[must_use]
+    pub fn layers(mut self, layers: Layers) -> Self {
+        self.layers = Some(layers);
+        self
+    }
+
+    /// Considers only rigid bodies. Replaces [`QueryFilter::only_soft`].
+    #[must_use]
+    pub fn only_rigid(mut self) -> Self {
+        self.kinds = Kinds::Rigid;
+        self
+    }
+
+    /// Considers only soft bodies. Replaces [`QueryFilter::only_rigid`].
+    #[must_use]
+    pub fn only_soft(mut self) -> Self {
+        self.kinds = Kinds::Soft;
+        self
+    }
+
+    /// Considers sensors, too.
+    #[must_use]
+    pub fn including_sensors(mut self) -> Self {
+        self.includes_sensors = true;
+        self
+    }
+
+    /// Considers only objects for which `predicate` returns true. A query may call it several times for an
+    /// object, and in any order, so that it should be cheap and without side effects. It may itself query
+    /// the world.
+    #[must_use]
+    pub fn with_predicate(mut self, predicate: &'a dyn Fn(ObjectRef) -> bool) -> Self {
+        self.predicate = Some(predicate);
+        self
+    }
+
+    /// Returns whether a rigid body may count; [`QueryFilter::admits`] decides.
+    pub(super) fn admits_rigid(&self, rigid: &RigidBody) -> bool {
+        self.kinds != Kinds::Soft
+            && (self.includes_sensors || !rigid.is_sensor)
+            && self.meets(rigid.layers)
+    }
+
+    /// Returns whether pieces of a soft body may count; [`QueryFilter::admits`] decides.
+    pub(super) fn admits_body<D: Dim>(&self, id: SoftBodyHandle, body: &SoftBody<D>) -> bool {
+        self.kinds != Kinds::Rigid
+            && !self.excluded.contains(&ObjectSelector::SoftBody(id))
+            && self.meets(body.state.layers)
+    }
+
+    /// Returns whether an object counts that passed the check of its body.
+    pub(super) fn admits(&self, object: ObjectRef) -> bool {
+        !self.excluded.iter().any(|own| own.contains(object))
+            && self.predicate.is_none_or(|predicate| predicate(object))
+    }
+
+    fn meets(&self, layers: Layers) -> bool {
+        self.layers.is_none_or(|own| own.meet(layers))
+    }
+}
+
+impl fmt::Debug for QueryFilter<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("QueryFilter")
+            .field("excluded", &self.excluded)
+            .field("layers", &self.layers)
+            .field("kinds", &self.kinds)
+            .field("includes_sensors", &self.includes_sensors)
+            .field("has_predicate", &self.predicate.is_some())
+            .finish()
+    }
+}
