@@ -2,6 +2,7 @@
 
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::ids::PieceId;
+use crate::world::BodyHandle;
 
 /// Object that takes part in contacts, sensor overlaps and queries: a piece of a soft body, or a rigid body.
 ///
@@ -83,6 +84,15 @@ impl From<SoftBodyHandle> for ObjectSelector {
 impl From<RigidBodyHandle> for ObjectSelector {
     fn from(rigid: RigidBodyHandle) -> Self {
         Self::Object(rigid.into())
+    }
+}
+
+impl From<BodyHandle> for ObjectSelector {
+    fn from(body: BodyHandle) -> Self {
+        match body {
+            BodyHandle::Soft(body) => body.into(),
+            BodyHandle::Rigid(rigid) => rigid.into(),
+        }
     }
 }
 

@@ -97,7 +97,7 @@ impl<D: Dim> World<D> {
     /// ```
     ///
     /// # Errors
-    /// [`Error::InvalidHandle`] if the body or the piece does not exist.
+    /// [`Error::InvalidHandle`] if the body does not exist, [`Error::InvalidParameter`] if it has no such piece.
     pub fn contacts_of(
         &self,
         object: impl Into<ObjectSelector>,
@@ -112,10 +112,8 @@ impl<D: Dim> World<D> {
             }
             ObjectSelector::Object(ObjectRef::Piece { body, piece }) => {
                 if !self.bodies.get(body)?.has_piece(piece) {
-                    return Err(Error::InvalidHandle {
-                        kind: "piece",
-                        slot: piece.0,
-                    });
+                    let expected = "the number of a piece that the body still has";
+                    return Err(Error::parameter("piece", expected, piece.0));
                 }
             }
         }
