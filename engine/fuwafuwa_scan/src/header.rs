@@ -3,9 +3,8 @@
 //! The header has 348 bytes in NIfTI-1 and 540 in NIfTI-2, with the same fields at different offsets [Cox
 //! 2004]. The first number is this length, which also reveals the byte order.
 
-use crate::complaint::{PositionedProblem, too_large, unexpected};
 use crate::placement::{Placement, PlacementForms, Quaternion};
-use fuwafuwa_scenes::import::FilePosition;
+use fuwafuwa_scenes::import::{FilePosition, PositionedProblem, too_large, unexpected};
 
 /// Maximum number of voxels in a scan: 512 on each axis, half a gigabyte in memory.
 pub const MAX_VOXELS: u64 = 1 << 27;

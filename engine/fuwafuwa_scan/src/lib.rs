@@ -54,7 +54,6 @@
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
 mod choice;
-mod complaint;
 mod header;
 mod organ;
 mod placement;

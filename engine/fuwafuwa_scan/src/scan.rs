@@ -1,10 +1,9 @@
 //! Scans: a number for each voxel of a box, and the position of the box in the patient.
 
-use crate::complaint::{PositionedProblem, in_file};
 use crate::header::{Header, LONGEST};
 use crate::placement::Placement;
 use crate::stream::Stream;
-use fuwafuwa_scenes::import::ImportError;
+use fuwafuwa_scenes::import::{ImportError, PositionedProblem, in_file};
 
 /// Number of voxels read between two calls of `progress`.
 const CHUNK: usize = 1 << 16;
