@@ -17,7 +17,7 @@ pub enum Package {
 /// are marked `publish = false`.
 const CRATES: [(&str, &[&str]); 9] = [
     ("engine/fuwafuwa", &["src", "guide", "examples"]),
-    ("engine/fuwafuwa_scenes", &["src", "scenes", "examples"]),
+    ("engine/fuwafuwa_scenes", &["src", "scenes"]),
     ("engine/fuwafuwa_render", &["src"]),
     ("engine/fuwafuwa_painter", &["src"]),
     ("engine/fuwafuwa_scan", &["src"]),
