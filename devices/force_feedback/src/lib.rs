@@ -31,7 +31,7 @@
 //! let force = ForceThread::start(250)?;
 //! let recording = Recording::default();
 //! let line = force.add(Box::new(recording.clone()), Settings::default());
-//! line.feel(State {
+//! line.set_state(State {
 //!     contact: [-30.0, 0.0],
 //!     manner: StickMode::Position,
 //! });

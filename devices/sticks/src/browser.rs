@@ -208,5 +208,5 @@ fn about(id: &str) -> DeviceInfo {
     };
     let guid = format!("{known:0<32.32}");
     let name = name.trim().to_string();
-    About { name, guid, labels }
+    DeviceInfo { name, guid, labels }
 }

@@ -3,7 +3,7 @@
 use crate::latest::Latest;
 use crate::owner::{Actuator, Gamepad, pads};
 use crate::{DeviceId, Sticks};
-use force_feedback::{Ability, Gone, LENGTH, Output, Sink};
+use force_feedback::{Ability, Gone, OUTPUT_DURATION, Output, Sink};
 use js_sys::{Object, Promise, Reflect};
 use wasm_bindgen::JsValue;
 use wasm_bindgen_futures::JsFuture;
@@ -40,7 +40,7 @@ impl Sink for Haptic {
         }
     }
 
-    fn aim(&mut self) -> Result<[f32; 2], Gone> {
+    fn stick_position(&mut self) -> Result<[f32; 2], Gone> {
         let latest = self.latest.get();
         latest
             .device(self.id)
@@ -58,7 +58,7 @@ impl Sink for Haptic {
         }
         let parameters = Object::new();
         let numbers = [
-            ("duration", LENGTH.as_millis() as f64),
+            ("duration", OUTPUT_DURATION.as_millis() as f64),
             ("strongMagnitude", f64::from(low.clamp(0.0, 1.0))),
             ("weakMagnitude", f64::from(high.clamp(0.0, 1.0))),
         ];
