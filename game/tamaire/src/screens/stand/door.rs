@@ -1,7 +1,9 @@
 //! PIN pad for the staff.
 
-use super::super::widgets::{ButtonStyle, button, card, column, dim_background, fitted};
-use super::super::{icons, play::focus_first};
+use super::super::icons;
+use super::super::widgets::{
+    ButtonStyle, button, card, column, dim_background, fitted, focus_first,
+};
 use crate::exhibit::{CORNER, Stand};
 use crate::game::Game;
 use egui::{Sense, Stroke, Ui, Vec2, vec2};

@@ -1,9 +1,9 @@
 //! Staff pages: figures of the day, health of the stand, and its settings.
 
 use super::super::forces;
-use super::super::play::focus_first;
 use super::super::widgets::{
-    ButtonStyle, button, card, choice, dim_background, fitted, header, page, page_rect, row, slider,
+    ButtonStyle, button, card, choice, dim_background, fitted, focus_first, header, page,
+    page_rect, row, slider,
 };
 use crate::exhibit::config::ConfigChange;
 use crate::exhibit::staff::StaffPage;
@@ -69,11 +69,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: StaffPage, ui: &mu
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = GAP;
                 for (seen, name) in StaffPage::ALL.into_iter().zip(said.pages) {
-                    let weight = if seen == shown {
-                        ButtonStyle::Main
-                    } else {
-                        ButtonStyle::Other
-                    };
+                    let weight = ButtonStyle::of(seen == shown);
                     if button(ui, &theme, name, vec2(width, 48.0), weight).clicked() {
                         wish = Some(StaffAction::See(seen));
                     }
@@ -336,11 +332,7 @@ fn levels(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<ConfigChange> {
             } else {
                 name.to_string()
             };
-            let weight = if is_in {
-                ButtonStyle::Main
-            } else {
-                ButtonStyle::Other
-            };
+            let weight = ButtonStyle::of(is_in);
             if button(ui, &theme, &text, vec2(176.0, 42.0), weight).clicked() {
                 let others = chosen.iter().filter(|&&known| known != id);
                 let added = (!is_in).then_some(&id);
