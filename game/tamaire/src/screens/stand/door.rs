@@ -71,7 +71,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     });
     if leaves {
         game.blip(Menu::Back);
-        stand.leave(game);
+        stand.end_and_reset(game);
     } else if let Some(digit) = digit {
         game.blip(Menu::Confirm);
         stand.enter(game, digit);
