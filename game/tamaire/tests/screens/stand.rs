@@ -138,15 +138,20 @@ impl Shown {
     }
 }
 
+/// Returns a function that adds a row.
+fn into<T>(rows: &mut Vec<T>) -> impl FnMut(T) -> Result<(), Error> {
+    |row| {
+        rows.push(row);
+        Ok(())
+    }
+}
+
 fn read(folder: &Path) -> (Vec<Visit>, Vec<Round>, Vec<tamaire_logbook::Event>) {
     let logbook = Logbook::read(&StandFolder(folder.into()).logbook()).unwrap();
     let (mut visits, mut rounds, mut events) = (Vec::new(), Vec::new(), Vec::new());
-    let visit = |visit| Ok::<_, Error>(visits.push(visit));
-    logbook.visits(.., visit).unwrap();
-    let round = |round| Ok::<_, Error>(rounds.push(round));
-    logbook.rounds(.., round).unwrap();
-    let event = |event| Ok::<_, Error>(events.push(event));
-    logbook.events(.., event).unwrap();
+    logbook.visits(.., into(&mut visits)).unwrap();
+    logbook.rounds(.., into(&mut rounds)).unwrap();
+    logbook.events(.., into(&mut events)).unwrap();
     (visits, rounds, events)
 }
 
