@@ -4,10 +4,10 @@
 //! Data flow, which is also the reading order:
 //!
 //! ```text
-//! the game, at its own pace                        one thread, 125 to 250 times a second
-//! ─────────────────────────                        ─────────────────────────────────────
-//! Line::feel(State) ──► latest mail ──► Watchdog ──► Coupling ──► Give ──► Chain ──► Sink
-//! Line::tear(size)                      may it act?  F = K (…)    tears    safe      a device
+//! the game, at its own pace                             one thread, 125 to 250 times a second
+//! ─────────────────────────                             ─────────────────────────────────────
+//! Line::set_state(State) ──► latest mail ──► Watchdog ──► Coupling ──► TearFeedback ──► Chain ──► Sink
+//! Line::tear(size)                           may it act?  F = K (…)    tears            safe      a device
 //! Line::stop(why)
 //! ```
 //!

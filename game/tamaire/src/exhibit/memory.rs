@@ -154,9 +154,7 @@ impl Memory {
     pub fn pass(&mut self, config: &Config, is_idle: bool, seconds: f32) {
         for news in self.clips.pass(seconds) {
             match news {
-                StorageEvent::Saved(_) => {
-                    self.clips.thin_out(Kept::Clip, config.take_home.clips)
-                }
+                StorageEvent::Saved(_) => self.clips.thin_out(Kept::Clip, config.take_home.clips),
                 StorageEvent::Failed(reason) => self.note(Kind::Other("no_clip".into()), &reason),
                 StorageEvent::Full => self.note(Kind::FullDisk, "a clip was not kept"),
                 StorageEvent::Level(_) | StorageEvent::Damaged(_) => {}
