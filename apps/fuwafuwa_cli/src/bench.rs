@@ -369,7 +369,7 @@ fn torn<D: Dim>(n: usize, cracks: usize) -> Result<SoftBody<D>> {
                 let line = -reach(2)..=reach(2);
                 let points = line.map(|dz| [middle[0] + dx, middle[1] + dy, middle[2] + dz]);
                 let points = points.map(|[x, y, z]| ([x, y, if D::N == 2 { 0 } else { z }], side));
-                body.release(&points.collect::<Vec<_>>())?;
+                body.release(&points.collect::<Vec<_>>());
             }
         }
     }
