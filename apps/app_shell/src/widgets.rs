@@ -25,6 +25,16 @@ pub enum ButtonStyle {
     Other,
 }
 
+impl ButtonStyle {
+    /// Returns [`ButtonStyle::Main`] if `is_main`, otherwise [`ButtonStyle::Other`].
+    pub fn of(is_main: bool) -> Self {
+        match is_main {
+            true => Self::Main,
+            false => Self::Other,
+        }
+    }
+}
+
 /// Shows a large round button.
 pub fn button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: ButtonStyle) -> Response {
     let response = plain_button(ui, theme, text, size, weight);

@@ -50,32 +50,9 @@ enum Form {
     Ball,
 }
 
-/// Placing of the elements.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-enum Placing {
-    /// Single voxels at the surface, for bodies that can be cut.
-    Graded,
-    /// Elements of two voxels at the surface with a vertex at every lattice point there, as counted in the
-    /// paper.
-    Coarse,
-}
-
-impl Placing {
-    fn grading(self) -> Grading {
-        match self {
-            Self::Graded => Grading::Graded,
-            Self::Coarse => Grading::Coarse,
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Graded => "graded",
-            Self::Coarse => "coarse",
-        }
-    }
-}
+/// Placings of the elements: with single voxels at the surface, for bodies that can be cut; and with elements
+/// of two voxels there and a vertex at every lattice point of the surface, as counted in the paper.
+const PLACINGS: [(&str, Grading); 2] = [("graded", Grading::Graded), ("coarse", Grading::Coarse)];
 
 /// Counts of one body.
 #[derive(Clone, Debug, Serialize)]
@@ -87,7 +64,7 @@ struct Count {
     /// Voxels across.
     n: u16,
     /// Placing of the elements.
-    placing: Placing,
+    placing: &'static str,
     /// Number of solid voxels.
     voxels: usize,
     /// Number of elements on all levels.
@@ -110,7 +87,7 @@ fn count(dim: u8, shape: Form, all: &[u16]) -> Result<Vec<Count>> {
     progress.expect(2 * all.len() as u64);
     let mut counts = Vec::new();
     for &n in all {
-        for placing in [Placing::Graded, Placing::Coarse] {
+        for placing in PLACINGS {
             counts.push(match dim {
                 2 => count_one::<Dim2>(shape, n, placing)?,
                 _ => count_one::<Dim3>(shape, n, placing)?,
@@ -146,7 +123,7 @@ fn table(counts: &[Count]) -> String {
 fn row(count: &Count, levels: usize) -> Vec<String> {
     let mut row = vec![
         count.n.to_string(),
-        count.placing.name().into(),
+        count.placing.into(),
         count.voxels.to_string(),
         count.elements.to_string(),
     ];
@@ -167,7 +144,11 @@ fn row(count: &Count, levels: usize) -> Vec<String> {
     row
 }
 
-fn count_one<D: Dim>(shape: Form, n: u16, placing: Placing) -> Result<Count> {
+fn count_one<D: Dim>(
+    shape: Form,
+    n: u16,
+    (placing, grading): (&'static str, Grading),
+) -> Result<Count> {
     let across = usize::from(n);
     let grid = match shape {
         Form::Cube => VoxelGrid::<D>::cube(across, 1.0),
@@ -175,7 +156,7 @@ fn count_one<D: Dim>(shape: Form, n: u16, placing: Placing) -> Result<Count> {
     };
     let grid = grid.with_context(|| format!("cannot count n = {n} in {}D", D::N))?;
     let sharing = Connectivity::new(&grid);
-    let pyramid = CellHierarchy::new(&grid, &sharing, placing.grading());
+    let pyramid = CellHierarchy::new(&grid, &sharing, grading);
     let mesh = Mesh::grade(&grid, &sharing, &pyramid)?;
     Ok(Count {
         dim: D::N as u8,

@@ -1,7 +1,10 @@
 //! Slices show the inside at the right position: left on the left, and cuts.
 
+#[path = "../../../engine/fuwafuwa_scan/tests/phantom/mod.rs"]
+mod phantom;
+
 use fuwafuwa::{Blade, SoftBody};
-use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
+use fuwafuwa_scan::{Scan, Segmentation};
 use fuwafuwa_surgery::case::{Case, Table};
 use fuwafuwa_surgery::phantom::{GROWTH, HALF, case};
 use fuwafuwa_surgery::slices::{Cut, Slice};
@@ -115,55 +118,31 @@ fn closed_cut_is_visible() {
     );
 }
 
-/// NIfTI-1 file with 2 mm voxels. Its first axis runs to the patient's *left*; among voxels of label 1 a ball
-/// of label 2 lies on the right.
-fn scan() -> Vec<u8> {
-    let side = 32usize;
-    let mut bytes = vec![0; 352 + side * side * side];
-    bytes[..4].copy_from_slice(&348_i32.to_le_bytes());
-    let extent = side as i16;
-    for (index, number) in [3, extent, extent, extent, 1, 1, 1, 1]
-        .into_iter()
-        .enumerate()
-    {
-        bytes[40 + 2 * index..][..2].copy_from_slice(&i16::to_le_bytes(number));
-    }
-    (bytes[70], bytes[72], bytes[123], bytes[254]) = (2, 8, 2, 1);
-    bytes[108..112].copy_from_slice(&352_f32.to_le_bytes());
-    let rows = [
-        [-2.0, 0.0, 0.0, 31.0],
-        [0.0, 2.0, 0.0, -31.0],
-        [0.0, 0.0, 2.0, -31.0],
-    ];
-    for (index, number) in rows.as_flattened().iter().enumerate() {
-        bytes[280 + 4 * index..][..4].copy_from_slice(&f32::to_le_bytes(*number));
-    }
-    bytes[344..348].copy_from_slice(b"n+1\0");
-    for at in 0..side * side * side {
-        let voxel = [at % side, at / side % side, at / side / side].map(|k| 2.0 * k as f32 - 31.0);
-        let patient = [-voxel[0], voxel[1], voxel[2]];
-        let away = |middle: [f32; 3]| {
-            let squares = [0, 1, 2].map(|k: usize| (patient[k] - middle[k]).powi(2));
-            squares.iter().sum::<f32>().sqrt()
-        };
-        bytes[352 + at] = match (away([0.0; 3]) < 28.0, away([14.0, 0.0, 0.0]) < 8.0) {
-            (_, true) => 2,
-            (true, false) => 1,
-            (false, false) => 0,
-        };
-    }
-    bytes
+/// Scan with 2 mm voxels. Its first axis runs to the patient's *left*; among voxels of label 1 a ball of label
+/// 2 lies on the right.
+fn scan() -> Scan {
+    let axes = [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let away = |patient: [f64; 3], middle: [f64; 3]| {
+        let squares = [0, 1, 2].map(|k: usize| (patient[k] - middle[k]).powi(2));
+        squares.iter().sum::<f64>().sqrt()
+    };
+    let file = phantom::File::of(axes, [2.0; 3], |patient| {
+        match (
+            away(patient, [0.0; 3]) < 28.0,
+            away(patient, [14.0, 0.0, 0.0]) < 8.0,
+        ) {
+            (_, true) => 2.0,
+            (true, false) => 1.0,
+            (false, false) => 0.0,
+        }
+    });
+    file.scan()
 }
 
 #[test]
 fn scan_with_left_axis_shows_right_on_the_right() {
-    let scan = Scan::decode("marked.nii", &scan(), |_| {}).unwrap();
-    let options = Options {
-        resolution: 32,
-        ..Options::default()
-    };
     let labels = Segmentation::labels(&[(1, 1), (2, 2)]);
-    let organ = Organ::of(&[&scan], &labels, &options, |_| {}).unwrap();
+    let organ = phantom::organ(&scan(), &labels, 32);
     let case = Case::of("marked", &organ);
     let table = case.place_on_table().unwrap();
     let body = &table.world.soft_bodies()[table.organ];

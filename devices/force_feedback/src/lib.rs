@@ -4,10 +4,10 @@
 //! Data flow, which is also the reading order:
 //!
 //! ```text
-//! the game, at its own pace                        one thread, 125 to 250 times a second
-//! ─────────────────────────                        ─────────────────────────────────────
-//! Line::feel(State) ──► latest mail ──► Watchdog ──► Coupling ──► Give ──► Chain ──► Sink
-//! Line::tear(size)                      may it act?  F = K (…)    tears    safe      a device
+//! the game, at its own pace                             one thread, 125 to 250 times a second
+//! ─────────────────────────                             ─────────────────────────────────────
+//! Line::set_state(State) ──► latest mail ──► Watchdog ──► Coupling ──► TearFeedback ──► Chain ──► Sink
+//! Line::tear(size)                           may it act?  F = K (…)    tears            safe      a device
 //! Line::stop(why)
 //! ```
 //!
@@ -31,7 +31,7 @@
 //! let force = ForceThread::start(250)?;
 //! let recording = Recording::default();
 //! let line = force.add(Box::new(recording.clone()), Settings::default());
-//! line.feel(State {
+//! line.set_state(State {
 //!     contact: [-30.0, 0.0],
 //!     manner: StickMode::Position,
 //! });

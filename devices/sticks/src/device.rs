@@ -30,7 +30,7 @@ pub struct Device {
 }
 
 /// Properties that do not change while a device is plugged in.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DeviceInfo {
     /// Human-readable name.
     pub name: String,

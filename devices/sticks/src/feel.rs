@@ -256,12 +256,7 @@ mod tests {
     }
 
     fn stick(id: u32) -> Device {
-        let about = DeviceInfo {
-            name: "Stick".into(),
-            guid: String::new(),
-            labels: crate::Labels::default(),
-        };
-        Device::at_rest(DeviceId(id), about, 2, 0, 1)
+        Device::at_rest(DeviceId(id), DeviceInfo::default(), 2, 0, 1)
     }
 
     fn near(is: [f32; 2], wanted: [f32; 2]) {

@@ -139,23 +139,14 @@ impl Sdl {
         // compares a haptic device of its own driver with another. On Linux all devices use the kernel
         // driver: the kernel ends the effects of a killed process, which SDL's own drivers cannot.
         let started = unsafe {
-            SDL_SetHintWithPriority(
-                SDL_HINT_NO_SIGNAL_HANDLERS,
-                c"1".as_ptr(),
-                SDL_HINT_OVERRIDE,
-            );
-            SDL_SetHintWithPriority(
-                SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS,
-                c"1".as_ptr(),
-                SDL_HINT_OVERRIDE,
-            );
-            SDL_SetHintWithPriority(
-                SDL_HINT_JOYSTICK_HIDAPI_LG4FF,
-                c"0".as_ptr(),
-                SDL_HINT_OVERRIDE,
-            );
+            let set = |hint, value: &CStr| {
+                SDL_SetHintWithPriority(hint, value.as_ptr(), SDL_HINT_OVERRIDE)
+            };
+            set(SDL_HINT_NO_SIGNAL_HANDLERS, c"1");
+            set(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, c"1");
+            set(SDL_HINT_JOYSTICK_HIDAPI_LG4FF, c"0");
             if cfg!(target_os = "linux") {
-                SDL_SetHintWithPriority(SDL_HINT_JOYSTICK_HIDAPI, c"0".as_ptr(), SDL_HINT_OVERRIDE);
+                set(SDL_HINT_JOYSTICK_HIDAPI, c"0");
             }
             SDL_Init(SDL_INIT_GAMEPAD)
         };

@@ -18,9 +18,7 @@ fn snapshot_is_empty_without_devices() {
 #[test]
 fn flight_stick_reports_all_axes_buttons_and_hats() {
     let sticks = open();
-    let stick = sticks
-        .plug_in_stick("Wing", 7, 32, 2)
-        .expect("valid device");
+    let stick = stick(&sticks, "Wing", 7, 32, 2);
     for axis in 0..7 {
         assert!(stick.axis(axis, axis as f32 / 3.0 - 1.0));
     }
@@ -52,9 +50,7 @@ fn flight_stick_reports_all_axes_buttons_and_hats() {
 #[test]
 fn missing_controls_are_refused() {
     let sticks = open();
-    let stick = sticks
-        .plug_in_stick("Small", 2, 1, 1)
-        .expect("valid device");
+    let stick = stick(&sticks, "Small", 2, 1, 1);
     assert!(!stick.axis(2, 1.0));
     assert!(!stick.button(1, true));
     assert!(!stick.hat(1, &[]));
@@ -68,8 +64,7 @@ fn missing_controls_are_refused() {
 
 #[test]
 fn pad_has_the_standard_layout() {
-    let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("valid device");
+    let (sticks, pad) = open_with_pad();
     for (axis, value) in [0.5, -0.25, -1.0, 1.0, 1.0, 0.0].into_iter().enumerate() {
         assert!(pad.axis(axis, value));
     }
@@ -101,8 +96,7 @@ fn pad_has_the_standard_layout() {
 
 #[test]
 fn pad_at_rest_reports_zeros() {
-    let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("valid device");
+    let (sticks, pad) = open_with_pad();
     let layout = device(&sticks, &pad).pad.expect("SDL knows its layout");
     assert_eq!(
         (layout.left, layout.right, layout.triggers),
@@ -113,9 +107,7 @@ fn pad_at_rest_reports_zeros() {
 #[test]
 fn presses_between_two_polls_are_counted() {
     let sticks = open();
-    let stick = sticks
-        .plug_in_stick("Stick", 2, 2, 1)
-        .expect("valid device");
+    let stick = stick(&sticks, "Stick", 2, 2, 1);
     let before = sticks.snapshot();
     for _press in 0..5 {
         stick.button(1, true);
@@ -148,17 +140,13 @@ fn presses_between_two_polls_are_counted() {
 fn snapshots_report_connections_and_disconnections() {
     let sticks = open();
     let none = sticks.snapshot();
-    let first = sticks
-        .plug_in_stick("First", 2, 1, 0)
-        .expect("valid device");
+    let first = stick(&sticks, "First", 2, 1, 0);
     let one = sticks.snapshot();
     assert_eq!(one.since(&none), [Change::Connected(first.id())]);
 
     let id = first.id();
     drop(first);
-    let second = sticks
-        .plug_in_stick("First", 2, 1, 0)
-        .expect("valid device");
+    let second = stick(&sticks, "First", 2, 1, 0);
     assert_ne!(second.id(), id, "another connection has another id");
     assert_eq!(
         sticks.snapshot().since(&one),
@@ -168,11 +156,8 @@ fn snapshots_report_connections_and_disconnections() {
 
 #[test]
 fn device_unplugged_while_held_disappears() {
-    let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("valid device");
-    let stick = sticks
-        .plug_in_stick("Stick", 2, 1, 0)
-        .expect("valid device");
+    let (sticks, pad) = open_with_pad();
+    let stick = stick(&sticks, "Stick", 2, 1, 0);
     pad.axis(0, 1.0);
     pad.pad_button(PadButton::South, true);
     stick.button(0, true);
@@ -221,16 +206,14 @@ fn sticks_open_once_at_a_time_and_can_be_reopened() {
     assert!(matches!(Sticks::open(), Err(Error::AlreadyOpen)));
     drop(first);
     for _again in 0..20 {
-        let sticks = open();
-        let pad = sticks.plug_in_pad("Pad").expect("valid device");
+        let (sticks, pad) = open_with_pad();
         assert!(device(&sticks, &pad).pad.is_some());
     }
 }
 
 #[test]
 fn puppet_may_outlive_the_sticks() {
-    let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("valid device");
+    let (sticks, pad) = open_with_pad();
     let last = sticks.latest.clone();
     drop(sticks);
     assert!(!pad.pad_button(PadButton::South, true));
@@ -239,17 +222,9 @@ fn puppet_may_outlive_the_sticks() {
 
 #[test]
 fn panic_on_the_thread_releases_all_buttons() {
-    let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("valid device");
+    let (sticks, pad) = open_with_pad();
     pad.pad_button(PadButton::South, true);
-    let orders = sticks
-        .owner
-        .orders()
-        .upgrade()
-        .expect("the SDL thread runs");
-    orders
-        .send(Box::new(|_hub| panic!("intended panic of a test")))
-        .expect("the SDL thread runs");
+    order(&sticks, |_hub| panic!("intended panic of a test"));
     let end = Instant::now() + Duration::from_secs(5);
     while !sticks.snapshot().devices.is_empty() {
         assert!(
@@ -268,8 +243,7 @@ fn panic_on_the_thread_releases_all_buttons() {
 
 #[test]
 fn snapshots_miss_no_press_while_a_device_moves() {
-    let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("valid device");
+    let (sticks, pad) = open_with_pad();
     let start = sticks.snapshot();
     let seen = thread::scope(|scope| {
         let reader = scope.spawn(|| {
@@ -292,8 +266,7 @@ fn snapshots_miss_no_press_while_a_device_moves() {
 
 #[test]
 fn navigator_works_with_a_pad() {
-    let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("valid device");
+    let (sticks, pad) = open_with_pad();
     let mut navigator = Navigator::default();
     pad.pad_button(PadButton::Down, true);
     assert!(
@@ -335,12 +308,30 @@ fn open() -> Sticks {
     Sticks::open_for_puppets().expect("SDL starts, with or without devices")
 }
 
+fn open_with_pad() -> (Sticks, VirtualDevice) {
+    let sticks = open();
+    let pad = sticks.plug_in_pad("Pad").expect("valid device");
+    (sticks, pad)
+}
+
+fn stick(sticks: &Sticks, name: &str, axes: u16, buttons: u16, hats: u16) -> VirtualDevice {
+    let stick = sticks.plug_in_stick(name, axes, buttons, hats);
+    stick.expect("valid device")
+}
+
 fn device(sticks: &Sticks, puppet: &VirtualDevice) -> Device {
     sticks
         .snapshot()
         .device(puppet.id())
         .expect("the device is plugged in")
         .clone()
+}
+
+/// Sends a task to the thread that owns SDL.
+fn order(sticks: &Sticks, task: impl FnOnce(&mut crate::owner::Hub<'_>) + Send + 'static) {
+    let orders = sticks.owner.orders().upgrade();
+    let sent = orders.expect("the SDL thread runs").send(Box::new(task));
+    sent.expect("the SDL thread runs");
 }
 
 fn near(is: f32, wanted: f32) {

@@ -279,10 +279,8 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
     let grid = VoxelGrid::from_fn(size, 1.0 / WIDE as f32, |at| {
         u8::from(at == [0; 3] || at[0] as usize > WIDE / 2)
     });
-    world.add_soft_body(SoftBody::new(grid.unwrap(), &[material]).unwrap());
-    let body = world
-        .soft_body_mut(world.nth_soft_body(0).unwrap())
-        .unwrap();
+    let soft = world.add_soft_body(SoftBody::new(grid.unwrap(), &[material]).unwrap());
+    let body = world.soft_body_mut(soft).unwrap();
     let views = body.piece_views();
     let crumb = views.iter().find(|view| view.element_count == 1).unwrap();
     let ids = body.mesh().nodes().map(|(id, _)| id);
@@ -298,7 +296,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
     }
     let speeds = nodes
         .iter()
-        .map(|&node| world.soft_bodies().first().unwrap().node_state(node).1);
+        .map(|&node| world.soft_bodies()[soft].node_state(node).1);
     speeds.map(length).fold(0.0, f32::max)
 }
 

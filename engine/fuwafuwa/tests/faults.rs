@@ -24,13 +24,13 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
 /// again, with events.
 fn check_cut_twice<D: Dim>(n: usize) {
     let mut world = weightless::<D>();
-    world.add_soft_body(ball(n));
+    let id = world.add_soft_body(ball(n));
     let blade = Blade {
         from: [0.5, -1.0, -1.0],
         across: [0.0, 3.0, 0.0],
         along: [0.0, 0.0, 3.0],
     };
-    let first = world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap();
+    let first = world.cut(id, &blade).unwrap();
     let points = (n - 1) * (D::N - 1);
     assert!(first >= points && first < n * n, "{first}");
     let told = |world: &World<D>| {
@@ -38,26 +38,17 @@ fn check_cut_twice<D: Dim>(n: usize) {
         world.events().iter().filter(is_release).count()
     };
     assert_eq!(told(&world), first);
-    assert_eq!(world.soft_bodies().first().unwrap().pieces().list.len(), 2);
-    assert_eq!(
-        (
-            world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap(),
-            told(&world)
-        ),
-        (0, first)
-    );
+    assert_eq!(world.soft_bodies()[id].pieces().list.len(), 2);
+    assert_eq!((world.cut(id, &blade).unwrap(), told(&world)), (0, first));
     // A crossing blade releases only new nodes.
     let across = Blade {
         from: [-1.0, 0.5, -1.0],
         across: [3.0, 0.0, 0.0],
         along: [0.0, 0.0, 3.0],
     };
-    assert!(world.cut(world.nth_soft_body(0).unwrap(), &across).unwrap() >= points);
-    assert_eq!(
-        world.cut(world.nth_soft_body(0).unwrap(), &across).unwrap(),
-        0
-    );
-    assert_eq!(world.soft_bodies().first().unwrap().pieces().list.len(), 4);
+    assert!(world.cut(id, &across).unwrap() >= points);
+    assert_eq!(world.cut(id, &across).unwrap(), 0);
+    assert_eq!(world.soft_bodies()[id].pieces().list.len(), 4);
 }
 
 #[test]
@@ -103,14 +94,14 @@ fn body_stays_whole_when_turned_by_half_turn() {
         let mut world = weightless::<Dim3>();
         let mut body = ball(12);
         place(&mut body, turn);
-        world.add_soft_body(body);
+        let id = world.add_soft_body(body);
         for _ in 0..10 {
             assert_eq!(world.step().nodes_split, 0);
         }
         assert!(
-            fastest(world.soft_bodies().first().unwrap()) < 1e-3,
+            fastest(&world.soft_bodies()[id]) < 1e-3,
             "{}",
-            fastest(world.soft_bodies().first().unwrap())
+            fastest(&world.soft_bodies()[id])
         );
     }
 }
@@ -123,13 +114,13 @@ fn cut_keeps_turned_body_at_rest() {
         let mut body = ball(16);
         place(&mut body, turn);
         let from = body.piece_views()[0].centre;
-        world.add_soft_body(body);
+        let id = world.add_soft_body(body);
         world.step();
         let (across, along) = ([0.3, 1.0, 0.0], [0.0, 0.0, 1.0]);
         assert!(
             world
                 .cut(
-                    world.nth_soft_body(0).unwrap(),
+                    id,
                     &Blade {
                         from,
                         across,
@@ -143,9 +134,9 @@ fn cut_keeps_turned_body_at_rest() {
             assert_eq!(world.step().nodes_split, 0);
         }
         assert!(
-            fastest(world.soft_bodies().first().unwrap()) < 1e-2,
+            fastest(&world.soft_bodies()[id]) < 1e-2,
             "{}",
-            fastest(world.soft_bodies().first().unwrap())
+            fastest(&world.soft_bodies()[id])
         );
     }
 }
@@ -209,26 +200,21 @@ fn unused_weaker_material_has_no_effect_on_cracks() {
     let run = |materials: &[Material]| {
         let mut world = weightless::<Dim2>();
         let grid = VoxelGrid::ball(16, 1.0).expect("a ball is not empty");
-        world.add_soft_body(SoftBody::new(grid, materials).expect("the materials are valid"));
+        let id =
+            world.add_soft_body(SoftBody::new(grid, materials).expect("the materials are valid"));
         assert!(
             world
-                .cut(
-                    world.nth_soft_body(0).unwrap(),
-                    &Blade::segment([0.5, 0.4], [0.5, 2.0])
-                )
+                .cut(id, &Blade::segment([0.5, 0.4], [0.5, 2.0]))
                 .unwrap()
                 > 0
         );
         let hand =
             RigidBody::coupled_ball([0.5, 1.1, 0.0], 0.1).with_motion_type(MotionType::Kinematic);
-        world.add_rigid_body(hand).expect("the hand is valid");
+        let hand = world.add_rigid_body(hand).expect("the hand is valid");
         let mut released = 0;
         for tick in 0..40u8 {
             world
-                .set_target_position(
-                    world.nth_target_follower(0).unwrap(),
-                    [0.5, 1.1 - 0.02 * f32::from(tick), 0.0],
-                )
+                .set_target_position(hand, [0.5, 1.1 - 0.02 * f32::from(tick), 0.0])
                 .unwrap();
             released += world.step().nodes_split;
         }

@@ -1,13 +1,14 @@
 //! Draws named scenes at several moments into PNG files:
 //! `cargo run --release -p fuwafuwa_render --example stills -- FOLDER [SCENE …]`.
 
+mod shared;
+
 use fuwafuwa::{Dim2, Shape, World};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::{Ages, Basket, Camera, Frame, Look, Palette, Particle, Renderer, anchor};
 use fuwafuwa_scenes::Scene;
+use shared::{device, write};
 use std::error::Error;
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::Path;
 use std::time::Instant;
 
@@ -26,13 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = arguments.next().ok_or("expected a folder to write to")?;
     let chosen: Vec<String> = arguments.collect();
     std::fs::create_dir_all(&folder)?;
-    let instance = wgpu::Instance::default();
-    let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
-    println!("{}", adapter.get_info().name);
-    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-        required_limits: wgpu::Limits::downlevel_webgl2_defaults(),
-        ..Default::default()
-    }))?;
+    let (device, queue) = device()?;
     let mut renderer = Renderer::new(&device, wgpu::TextureFormat::Rgba8Unorm);
     let (candy, safe) = (Palette::candy(), Palette::colour_safe());
     for (name, moments) in MOMENTS {
@@ -80,7 +75,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE)?;
                 let path = Path::new(&folder).join(format!("{name}-{tick:03}-{look_name}.png"));
                 println!("{} {:?}", path.display(), begin.elapsed());
-                write(&path, &image)?;
+                write(&path, &image, SIZE)?;
             }
         }
     }
@@ -104,12 +99,4 @@ fn crumbs(world: &World<Dim2>) -> Vec<Particle> {
         }
     });
     around.collect()
-}
-
-fn write(path: &Path, image: &[u8]) -> Result<(), Box<dyn Error>> {
-    let file = BufWriter::new(File::create(path)?);
-    let mut encoder = png::Encoder::new(file, SIZE[0], SIZE[1]);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.write_header()?.write_image_data(image)?;
-    Ok(())
 }

@@ -2,14 +2,15 @@
 //! --release -p fuwafuwa_render --example stills3d -- FOLDER [PART OF A NAME …]`. With `WGPU_BACKEND=gl` it
 //! uses OpenGL ES, which is closest to browsers.
 
+mod shared;
+
 use fuwafuwa::{Dim3, World};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::space::{Camera, Cut, Renderer};
 use fuwafuwa_render::{Ages, Basket, Frame, Look, Palette, Particle};
 use fuwafuwa_scenes::Scene;
+use shared::{device, write};
 use std::error::Error;
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::Path;
 use std::time::Instant;
 
@@ -150,14 +151,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = arguments.next().ok_or("expected a folder to write to")?;
     let chosen: Vec<String> = arguments.collect();
     std::fs::create_dir_all(&folder)?;
-    let instance =
-        wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-    let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
-    println!("{}", adapter.get_info().name);
-    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-        required_limits: wgpu::Limits::downlevel_webgl2_defaults(),
-        ..Default::default()
-    }))?;
+    let (device, queue) = device()?;
     let mut renderer = Renderer::new(&device, wgpu::TextureFormat::Rgba8Unorm);
     let (candy, safe) = (Palette::candy(), Palette::colour_safe());
     for (take, text, moments, turn) in TAKES {
@@ -229,7 +223,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE)?;
                 let path = Path::new(&folder).join(format!("{name}.png"));
                 println!("{} {:?}", path.display(), begin.elapsed());
-                write(&path, &image)?;
+                write(&path, &image, SIZE)?;
             }
         }
     }
@@ -256,12 +250,4 @@ fn dust(world: &World<Dim3>) -> Vec<Particle> {
         }
     });
     around.collect()
-}
-
-fn write(path: &Path, image: &[u8]) -> Result<(), Box<dyn Error>> {
-    let file = BufWriter::new(File::create(path)?);
-    let mut encoder = png::Encoder::new(file, SIZE[0], SIZE[1]);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.write_header()?.write_image_data(image)?;
-    Ok(())
 }

@@ -61,16 +61,13 @@ mod tests {
     fn age_restarts_for_elements_remodelled_by_a_cut() {
         let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(32, 1.0).unwrap();
-        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let id = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let mut ages = Ages::default();
         ages.update(&world, 0.0);
         let young = |ages: &Ages| ages.seconds[0].iter().filter(|&&age| age < 0.2).count();
         assert_eq!(young(&ages), 0);
         world
-            .cut(
-                world.nth_soft_body(0).unwrap(),
-                &Blade::segment([0.5, 0.5], [0.5, 2.0]),
-            )
+            .cut(id, &Blade::segment([0.5, 0.5], [0.5, 2.0]))
             .unwrap();
         ages.update(&world, 0.1);
         let remodelled = young(&ages);

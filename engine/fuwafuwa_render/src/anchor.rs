@@ -136,22 +136,17 @@ mod tests {
     fn anchor_rotates_with_largest_piece_and_ignores_squash() {
         let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(24, 1.0).unwrap();
-        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
-        let rest = anchor(world.soft_bodies().first().unwrap());
+        let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let rest = anchor(&world.soft_bodies()[soft]);
         assert!(
             (rest.scale - 0.48).abs() < 0.02 && (rest.axes[0][0] - 1.0).abs() < 1e-6,
             "{rest:?}"
         );
 
         world
-            .cut(
-                world.nth_soft_body(0).unwrap(),
-                &Blade::segment([0.25, -1.0], [0.25, 2.0]),
-            )
+            .cut(soft, &Blade::segment([0.25, -1.0], [0.25, 2.0]))
             .unwrap();
-        let body = world
-            .soft_body_mut(world.nth_soft_body(0).unwrap())
-            .unwrap();
+        let body = world.soft_body_mut(soft).unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         let (sin, cos) = 2.5f32.sin_cos();
         for id in ids {
@@ -168,7 +163,7 @@ mod tests {
                 body.set_node_state(id, [place[0] + gone, place[1], 0.0], [0.0; 3]);
             }
         }
-        let now = anchor(world.soft_bodies().first().unwrap());
+        let now = anchor(&world.soft_bodies()[soft]);
         let [right, up, _] = now.axes;
         assert!(
             (right[0] - cos).abs() < 1e-3 && (right[1] - sin).abs() < 1e-3,
@@ -182,10 +177,8 @@ mod tests {
     fn anchor_rotates_about_any_axis_in_3d() {
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(12, 1.0).unwrap();
-        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
-        let body = world
-            .soft_body_mut(world.nth_soft_body(0).unwrap())
-            .unwrap();
+        let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let body = world.soft_body_mut(soft).unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             // Half as high, then rotated so that x maps to y, y to z and z to x.
@@ -193,7 +186,7 @@ mod tests {
             body.set_node_state(id, [z, x, 0.5 * y], [0.0; 3]);
         }
         let wanted = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
-        for (axis, wanted) in anchor(world.soft_bodies().first().unwrap())
+        for (axis, wanted) in anchor(&world.soft_bodies()[soft])
             .axes
             .into_iter()
             .zip(wanted)

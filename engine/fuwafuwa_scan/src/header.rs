@@ -4,8 +4,7 @@
 //! 2004]. The first number is this length, which also reveals the byte order.
 
 use crate::placement::{Placement, PlacementForms, Quaternion};
-use crate::problem::{PositionedProblem, too_large, unexpected};
-use fuwafuwa_scenes::import::FilePosition;
+use fuwafuwa_scenes::import::{FilePosition, PositionedProblem, too_large, unexpected};
 
 /// Maximum number of voxels in a scan: 512 on each axis, half a gigabyte in memory.
 pub const MAX_VOXELS: u64 = 1 << 27;

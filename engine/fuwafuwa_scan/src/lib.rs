@@ -57,7 +57,6 @@ mod header;
 mod organ;
 mod parse;
 mod placement;
-mod problem;
 mod region;
 mod scan;
 mod segmentation;

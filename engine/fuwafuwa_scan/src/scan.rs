@@ -2,9 +2,8 @@
 
 use crate::header::{Header, LONGEST};
 use crate::placement::Placement;
-use crate::problem::{PositionedProblem, in_file};
 use crate::stream::Stream;
-use fuwafuwa_scenes::import::ImportError;
+use fuwafuwa_scenes::import::{ImportError, PositionedProblem, in_file};
 
 /// Number of voxels read between two calls of `progress`.
 const CHUNK: usize = 1 << 16;

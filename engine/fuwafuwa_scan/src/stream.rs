@@ -1,8 +1,7 @@
 //! Sequential access to the bytes of a file, decompressed on demand.
 
-use crate::problem::{PositionedProblem, too_large, unexpected};
 use flate2::bufread::MultiGzDecoder;
-use fuwafuwa_scenes::import::FilePosition;
+use fuwafuwa_scenes::import::{FilePosition, PositionedProblem, too_large, unexpected};
 use std::io::Read;
 
 /// Maximum size of a file and of its decompressed content [bytes]: a full scan of 64-bit numbers, and the

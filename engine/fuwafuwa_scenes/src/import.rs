@@ -11,7 +11,9 @@ mod png;
 mod vox;
 
 pub use self::colours::Colours;
-pub use self::error::{FilePosition, ImportError, Problem};
+pub use self::error::{
+    FilePosition, ImportError, PositionedProblem, Problem, in_file, too_large, unexpected,
+};
 pub use self::file::MAX_FILE_BYTES;
 pub use self::png::{MAX_PIXELS, Picture, png};
 pub use self::vox::{MAX_VOXELS_ACROSS, Model, vox};

@@ -46,17 +46,17 @@ pub struct Options {
     #[arg(long, requires = "headless", value_name = "FILE", conflicts_with_all = ["level", "bot", "seed", "seconds"])]
     pub replay: Option<PathBuf>,
     /// Make a film: a strip of moments (.png) or an animation (.gif)
-    #[arg(long, requires = "headless", value_name = "FILE", value_parser = film_path)]
+    #[arg(long, requires = "headless", value_name = "FILE", value_parser = path_to(&["png", "gif"]))]
     pub film: Option<PathBuf>,
     /// Make a photo of the end (.png)
-    #[arg(long, requires = "headless", value_name = "FILE", value_parser = photo_path)]
+    #[arg(long, requires = "headless", value_name = "FILE", value_parser = path_to(&["png"]))]
     pub photo: Option<PathBuf>,
     /// Write a replay of the round (.tamaire)
-    #[arg(long, requires = "headless", value_name = "FILE", conflicts_with = "replay", value_parser = replay_path)]
+    #[arg(long, requires = "headless", value_name = "FILE", conflicts_with = "replay", value_parser = path_to(&[REPLAY]))]
     pub save: Option<PathBuf>,
     /// Write the force feedback as a table (.csv): a row for each substep, and for each update of a pad and
     /// of a stick that points at the goal of the hand
-    #[arg(long, requires = "headless", value_name = "FILE", value_parser = table_path)]
+    #[arg(long, requires = "headless", value_name = "FILE", value_parser = path_to(&["csv"]))]
     pub force_log: Option<PathBuf>,
     /// Print the result as JSON
     #[arg(long, requires = "headless")]
@@ -85,6 +85,13 @@ enum HeadlessError {
     File { path: PathBuf, reason: io::Error },
     #[error("cannot make the film: {0}")]
     Film(#[from] FilmError),
+}
+
+impl HeadlessError {
+    fn file(path: &Path, reason: io::Error) -> Self {
+        let path = path.into();
+        Self::File { path, reason }
+    }
 }
 
 /// Plays a round and prints its report.
@@ -144,10 +151,8 @@ fn try_bot(options: &Options) -> Result<String, HeadlessError> {
     let played = of_bot(level, Bot::new(*kind, options.seed), most, &mut log);
     if let Some(path) = &options.save {
         let text = played.round.replay().text_to_keep();
-        let text = text.map_err(|reason| HeadlessError::File {
-            path: path.clone(),
-            reason: io::Error::other(reason.to_string()),
-        })?;
+        let text =
+            text.map_err(|reason| HeadlessError::file(path, io::Error::other(reason.to_string())))?;
         write(path, text.as_bytes())?;
     }
     let by = report::Player::Bot {
@@ -169,10 +174,7 @@ fn check(path: &Path, options: &Options) -> Result<String, HeadlessError> {
         reason,
     };
     let replay = replay_in(path).map_err(|error| match error {
-        ReplayError::Unreadable(reason) => HeadlessError::File {
-            path: path.into(),
-            reason: io::Error::other(reason),
-        },
+        ReplayError::Unreadable(reason) => HeadlessError::file(path, io::Error::other(reason)),
         error => refused(error),
     })?;
     let mut log = force_log(options)?;
@@ -224,21 +226,15 @@ fn pictures(options: &Options) -> impl Iterator<Item = &PathBuf> {
 
 /// Creates the table of forces, if requested.
 fn force_log(options: &Options) -> Result<Option<ForceLog>, HeadlessError> {
-    let create = |path: &PathBuf| {
-        ForceLog::create(path).map_err(|reason| HeadlessError::File {
-            path: path.clone(),
-            reason,
-        })
-    };
+    let create =
+        |path: &PathBuf| ForceLog::create(path).map_err(|reason| HeadlessError::file(path, reason));
     options.force_log.as_ref().map(create).transpose()
 }
 
 fn finish(log: Option<ForceLog>, options: &Options) -> Result<(), HeadlessError> {
     if let (Some(log), Some(path)) = (log, &options.force_log) {
-        log.finish().map_err(|reason| HeadlessError::File {
-            path: path.clone(),
-            reason,
-        })?;
+        log.finish()
+            .map_err(|reason| HeadlessError::file(path, reason))?;
         eprintln!("wrote {}", path.display());
     }
     Ok(())
@@ -253,16 +249,11 @@ fn can_be_written(path: &Path) -> Result<(), HeadlessError> {
         return Ok(());
     }
     let reason = io::Error::new(io::ErrorKind::NotFound, "the folder does not exist");
-    let path = path.into();
-    Err(HeadlessError::File { path, reason })
+    Err(HeadlessError::file(path, reason))
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), HeadlessError> {
-    let failed = |reason| HeadlessError::File {
-        path: path.into(),
-        reason,
-    };
-    std::fs::write(path, bytes).map_err(failed)?;
+    std::fs::write(path, bytes).map_err(|reason| HeadlessError::file(path, reason))?;
     eprintln!("wrote {}", path.display());
     Ok(())
 }
@@ -280,24 +271,11 @@ fn seconds(text: &str) -> Result<f32, String> {
         .ok_or("expected 1 to 3600 seconds".into())
 }
 
-/// Parses the path of a film.
-fn film_path(text: &str) -> Result<PathBuf, String> {
-    ends_in(text, &["png", "gif"])
-}
-
-/// Parses the path of a photo.
-fn photo_path(text: &str) -> Result<PathBuf, String> {
-    ends_in(text, &["png"])
-}
-
-/// Parses the path of a replay.
-fn replay_path(text: &str) -> Result<PathBuf, String> {
-    ends_in(text, &[REPLAY])
-}
-
-/// Parses the path of a table.
-fn table_path(text: &str) -> Result<PathBuf, String> {
-    ends_in(text, &["csv"])
+/// Returns a parser of paths with one of these file extensions.
+fn path_to(
+    endings: &'static [&'static str],
+) -> impl Fn(&str) -> Result<PathBuf, String> + Clone + Send + Sync {
+    move |text| ends_in(text, endings)
 }
 
 fn ends_in(text: &str, endings: &[&str]) -> Result<PathBuf, String> {

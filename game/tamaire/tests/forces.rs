@@ -140,7 +140,7 @@ fn stick(id: u32) -> Device {
     let about = DeviceInfo {
         name: "Stick".into(),
         guid: format!("{id:032}"),
-        labels: sticks::Labels::default(),
+        ..DeviceInfo::default()
     };
     Device::at_rest(DeviceId(id), about, 2, 12, 1)
 }

@@ -124,6 +124,13 @@ fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"))
 }
 
+/// Runs the game, checks that it succeeds, and returns the JSON that it prints.
+fn json_of(folder: &Path, arguments: &str) -> Value {
+    let output = tamaire(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    json(&output)
+}
+
 /// Checks that the arguments are refused with this status and a message that contains all of `words`.
 fn check_refused(arguments: &str, status: i32, words: &[&str]) {
     let folder = folder();
@@ -141,9 +148,7 @@ fn check_refused(arguments: &str, status: i32, words: &[&str]) {
 fn round_is_reported_as_json() {
     let folder = folder();
     let line = "--headless --level won.toml --bot idle --json";
-    let output = tamaire(folder.path(), line);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let told = json(&output);
+    let told = json_of(folder.path(), line);
     assert_eq!(told["level"], "won.toml");
     assert_eq!(told["bot"], "idle");
     assert_eq!(told["won"], true);
@@ -196,9 +201,7 @@ fn replay_is_genuine_until_changed() {
     let line = "--headless --level far.toml --bot random --seconds 2 --save it.tamaire --json";
     let played = json(&tamaire(folder.path(), line));
     let line = "--headless --replay it.tamaire --json";
-    let output = tamaire(folder.path(), line);
-    let replayed = json(&output);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let replayed = json_of(folder.path(), line);
     assert_eq!(replayed["genuine"], true);
     for field in ["hash", "ticks", "kept", "inside", "won"] {
         assert_eq!(replayed[field], played[field], "{field}");
@@ -416,9 +419,7 @@ fn round_3d_is_reported_recorded_and_filmed() {
     let folder = folder_in_space();
     let line = "--headless --level solid.toml --bot squeeze --seconds 20 --json --save it.tamaire \
                 --film it.png --force-log forces.csv";
-    let output = tamaire(folder.path(), line);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let told = json(&output);
+    let told = json_of(folder.path(), line);
     assert_eq!(
         (&told["bot"], &told["won"]),
         (&"squeeze".into(), &true.into()),
@@ -469,9 +470,7 @@ fn round_3d_is_reported_recorded_and_filmed() {
 fn shaving_bot_tears_3d_body_and_film_is_written() {
     let folder = folder_in_space();
     let line = "--headless --level solid.toml --bot shave --seconds 1 --json --film it.gif";
-    let output = tamaire(folder.path(), line);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let told = json(&output);
+    let told = json_of(folder.path(), line);
     assert!(told["pieces"].as_u64().unwrap() > 1, "{told}");
     assert!(told["kept"].as_f64().unwrap() < 0.99, "{told}");
     let film = fs::read(folder.path().join("it.gif")).unwrap();

@@ -237,7 +237,7 @@ impl Logbook {
         self.map_error(found.optional().map(Option::flatten))
     }
 
-    /// Sets the server whose missing rows [`Logbook::forget_before`] keeps, however old they are; `None`
+    /// Sets the server whose missing rows [`Logbook::delete_before`] keeps, however old they are; `None`
     /// keeps no row for a server.
     pub(crate) fn set_server(&self, server: Option<&str>) -> Result<(), Error> {
         self.map_error(sent::await_server(&self.connection, server))

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{MORNING, STAND, all, entries, open, place};
+use common::{MORNING, STAND, all, entries, execute, open, place};
 use rusqlite::Connection;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -54,22 +54,15 @@ fn open_sets_aside_files_that_are_no_logbooks() {
         assert_eq!(expect_set_aside(&path, "not a database"), text.as_bytes());
     }
     fs::remove_file(&path).unwrap();
-    let other = Connection::open(&path).unwrap();
-    other
-        .execute_batch("CREATE TABLE recipes (text TEXT)")
-        .unwrap();
-    drop(other);
+    execute(&path, "CREATE TABLE recipes (text TEXT)");
     expect_set_aside(&path, "another program");
     // A logbook by its application id, but with other tables.
-    let other = Connection::open(&path).unwrap();
-    other
-        .execute_batch("DROP TABLE replays; ALTER TABLE rounds DROP COLUMN inside")
-        .unwrap();
-    drop(other);
+    execute(
+        &path,
+        "DROP TABLE replays; ALTER TABLE rounds DROP COLUMN inside",
+    );
     expect_set_aside(&path, "no such");
-    let other = Connection::open(&path).unwrap();
-    other.execute_batch("DELETE FROM book").unwrap();
-    drop(other);
+    execute(&path, "DELETE FROM book");
     expect_set_aside(&path, "no rows");
 }
 
@@ -98,18 +91,11 @@ fn open_sets_aside_a_truncated_file_unchanged() {
     fill(&path);
     let whole = fs::read(&path).unwrap();
     assert!(whole.len() > 10 * 4096, "{}", whole.len());
-    for length in [
-        1,
-        99,
-        100,
-        512,
-        4095,
-        4096,
-        5000,
-        3 * 4096,
-        whole.len() - 4096,
-        whole.len() - 1,
-    ] {
+    let near_end = [whole.len() - 4096, whole.len() - 1];
+    for length in [1, 99, 100, 512, 4095, 4096, 5000, 12_288]
+        .into_iter()
+        .chain(near_end)
+    {
         fs::write(&path, &whole[..length]).unwrap();
         assert_eq!(expect_set_aside(&path, ""), whole[..length]);
     }
@@ -209,11 +195,10 @@ fn set_aside_also_renames_the_write_ahead_log() {
 fn open_leaves_a_newer_version_unchanged() {
     let (_folder, path) = place();
     fill(&path);
-    let later = Connection::open(&path).unwrap();
-    later
-        .execute_batch("CREATE TABLE weather (text TEXT); PRAGMA user_version = 2")
-        .unwrap();
-    drop(later);
+    execute(
+        &path,
+        "CREATE TABLE weather (text TEXT); PRAGMA user_version = 2",
+    );
     let before = fs::read(&path).unwrap();
     for error in [
         Logbook::open(&path, STAND).map(drop),

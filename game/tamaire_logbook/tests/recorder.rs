@@ -2,7 +2,10 @@
 
 mod common;
 
-use common::{DAY, MINUTE, MORNING, STAND, all, entries, event, open, place, round, visit};
+use common::{
+    DAY, LONG, MINUTE, MORNING, STAND, all, entries, event, execute, open, place, round, visit,
+    wait_for,
+};
 use rusqlite::Connection;
 use std::fs;
 use std::path::Path;
@@ -11,23 +14,8 @@ use std::time::{Duration, Instant};
 use tamaire_logbook::{Entry, Health, Kind, Logbook, Moment, Options, Recorder};
 use tamaire_play::Route;
 
-const LONG: Duration = Duration::from_secs(20);
-
 fn begin(path: &Path) -> Recorder {
     Recorder::begin(path, STAND, Options::default())
-}
-
-/// Waits until `is_so` holds.
-fn wait_for(recorder: &Recorder, what: &str, is_so: impl Fn(&Health) -> bool) -> Health {
-    let start = Instant::now();
-    loop {
-        let health = recorder.health();
-        if is_so(&health) {
-            return health;
-        }
-        assert!(start.elapsed() < LONG, "{what}: {health:?}");
-        thread::sleep(Duration::from_millis(5));
-    }
 }
 
 /// Records entries and checks that no call blocks.
@@ -242,11 +230,7 @@ fn recorder_sets_aside_a_file_damaged_during_recording() {
     wait_for(&recorder, "written", |health| {
         health.is_recording && health.waiting == 0
     });
-    let other = Connection::open(&path).unwrap();
-    other
-        .execute_batch("PRAGMA writable_schema = on; DROP TABLE events")
-        .unwrap();
-    drop(other);
+    execute(&path, "PRAGMA writable_schema = on; DROP TABLE events");
     record(&recorder, vec![Entry::Event(event(MORNING, Kind::Began))]);
     let health = wait_for(&recorder, "mended", |health| {
         health.waiting == 0 && health.is_recording && health.set_aside.is_some()
@@ -262,9 +246,7 @@ fn recorder_sets_aside_a_file_damaged_during_recording() {
 fn recorder_leaves_a_newer_file_unchanged_and_limits_waiting_entries() {
     let (_folder, path) = place();
     drop(open(&path));
-    let later = Connection::open(&path).unwrap();
-    later.execute_batch("PRAGMA user_version = 2").unwrap();
-    drop(later);
+    execute(&path, "PRAGMA user_version = 2");
     let recorder = begin(&path);
     wait_for(&recorder, "newer", |health| {
         health

@@ -1,20 +1,17 @@
-//! Makes a logbook of a million rounds, and measures a report on it.
+//! Makes a logbook of a million rounds, to measure a report on it.
 //!
-//! `cargo run --release -p tamaire_report --example million -- make a.logbook 1000000 300` lets bots play 300
-//! rounds and writes copies of them as plausible visits at many times. `… -- report a.logbook out` makes a
-//! report of it and prints its duration and peak memory. With `ja` the report is in Japanese; with `rerun`
-//! all rounds are run again.
+//! `cargo run --release -p tamaire_report --example million -- a.logbook 1000000 300` lets bots play 300 rounds
+//! and writes copies of them as plausible visits at many times. `/usr/bin/time -v tamaire report --csv --json
+//! --out out a.logbook` measures duration and peak memory of a report of it.
 
 use fastrand::Rng;
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
-use std::time::Instant;
 use tamaire_logbook::{Entry, Event, Id, Kind, Logbook, Moment, Round, RoundEnd, Visit};
 use tamaire_play::{AnyRound, Bot, BotKind, Level, Route};
-use tamaire_report::{Language, Options, report};
 
 /// Level, bot and maximum number of ticks of the rounds played.
 const PLAYED: [(&str, BotKind, usize); 8] = [
@@ -33,42 +30,10 @@ const DAY_MS: i64 = 86_400_000;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    match words[..] {
-        ["make", file, rounds, bots] => make(Path::new(file), rounds.parse()?, bots.parse()?),
-        ["report", file, out, ref more @ ..] => tell(file.into(), Path::new(out), more),
-        _ => Err("expected `make FILE ROUNDS BOTS` or `report FILE FOLDER [ja] [rerun]`".into()),
+    match &arguments[..] {
+        [file, rounds, bots] => make(Path::new(file), rounds.parse()?, bots.parse()?),
+        _ => Err("expected the arguments FILE ROUNDS BOTS".into()),
     }
-}
-
-fn tell(file: PathBuf, out: &Path, more: &[&str]) -> Result<(), Box<dyn Error>> {
-    let language = match more.contains(&"ja") {
-        true => Language::Japanese,
-        false => Language::English,
-    };
-    let options = Options {
-        language,
-        csv: true,
-        json: true,
-        rerun: more.contains(&"rerun"),
-        ..Options::default()
-    };
-    let start = Instant::now();
-    let report = report(&[file], out, &options, None, &mut |_| {})?;
-    let seconds = start.elapsed().as_secs_f32();
-    let (visits, rounds) = (report.figures.total.visits, report.figures.total.rounds.all);
-    println!(
-        "{visits} visits, {rounds} rounds: {seconds:.1} s, {}",
-        peak()
-    );
-    Ok(())
-}
-
-/// Returns the peak memory of this process.
-fn peak() -> String {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find(|line| line.starts_with("VmHWM"));
-    line.unwrap_or("peak memory unknown on this system").into()
 }
 
 fn make(file: &Path, count: usize, bots: usize) -> Result<(), Box<dyn Error>> {

@@ -12,7 +12,7 @@
 //!
 //! let mut synth = Synth::new(48_000);
 //! let press = Press { force: 400.0, slip: 0.5, x: -0.3 };
-//! synth.hear(&Soundscape { presses: [press, Press::default()], ..Soundscape::default() });
+//! synth.set_soundscape(&Soundscape { presses: [press, Press::default()], ..Soundscape::default() });
 //! synth.play(Cue::Tear { energy: 1.0, x: 0.2 });
 //! let mut stereo = [0.0; 2 * 800]; // left, right, left, ... for 1/60 s
 //! synth.render(&mut stereo);

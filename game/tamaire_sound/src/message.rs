@@ -33,7 +33,7 @@ impl Message {
     /// Maximum size [bytes]; entries beyond it are dropped.
     pub const MOST_BYTES: usize = 4096;
 
-    /// Records a call of [`Synth::hear`].
+    /// Records a call of [`Synth::set_soundscape`].
     pub fn hear(&mut self, soundscape: &Soundscape) {
         self.put(&Entry::Soundscape(*soundscape), 0);
     }

@@ -1,33 +1,9 @@
 //! The device thread must never allocate memory: neither cues nor rendering do.
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+mod shared;
+
+use shared::TAKEN;
 use tamaire_sound::{Cue, Press, Route, Soundscape, Synth};
-
-/// Allocator that counts allocations per thread, since the test harness may allocate meanwhile.
-struct Counting;
-
-thread_local! {
-    static TAKEN: Cell<usize> = const { Cell::new(0) };
-}
-
-// SAFETY: forwards everything to the system's allocator.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // A thread may allocate while it ends, after the counter was destroyed.
-        let _ = TAKEN.try_with(|taken| taken.set(taken.get() + 1));
-        // SAFETY: the caller fulfils the same contract.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        // SAFETY: as above.
-        unsafe { System.dealloc(memory, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn playing_allocates_no_memory() {

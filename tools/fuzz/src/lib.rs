@@ -26,69 +26,29 @@ pub struct Door {
 
 /// All doors.
 pub const DOORS: &[Door] = &[
-    Door {
-        name: "scene",
-        seeds: seeds::scenes,
-        enter: doors::scene,
-    },
-    Door {
-        name: "level",
-        seeds: seeds::levels,
-        enter: doors::level,
-    },
-    Door {
-        name: "png",
-        seeds: seeds::pictures,
-        enter: doors::png,
-    },
-    Door {
-        name: "vox",
-        seeds: seeds::models,
-        enter: doors::vox,
-    },
-    Door {
-        name: "scan",
-        seeds: seeds::scans,
-        enter: doors::scan,
-    },
-    Door {
-        name: "replay",
-        seeds: seeds::replays,
-        enter: doors::replay,
-    },
-    Door {
-        name: "link",
-        seeds: seeds::links,
-        enter: doors::link,
-    },
-    Door {
-        name: "recording",
-        seeds: seeds::recordings,
-        enter: doors::recording,
-    },
-    Door {
-        name: "procedure",
-        seeds: seeds::procedures,
-        enter: doors::procedure,
-    },
-    Door {
-        name: "snapshot",
-        seeds: seeds::snapshots,
-        enter: doors::snapshot,
-    },
-    Door {
-        name: "settings",
-        seeds: game_files::settings_seeds,
-        enter: game_files::settings,
-    },
-    Door {
-        name: "records",
-        seeds: game_files::records_seeds,
-        enter: game_files::records,
-    },
+    Door::new("scene", seeds::scenes, doors::scene),
+    Door::new("level", seeds::levels, doors::level),
+    Door::new("png", seeds::pictures, doors::png),
+    Door::new("vox", seeds::models, doors::vox),
+    Door::new("scan", seeds::scans, doors::scan),
+    Door::new("replay", seeds::replays, doors::replay),
+    Door::new("link", seeds::links, doors::link),
+    Door::new("recording", seeds::recordings, doors::recording),
+    Door::new("procedure", seeds::procedures, doors::procedure),
+    Door::new("snapshot", seeds::snapshots, doors::snapshot),
+    Door::new("settings", game_files::settings_seeds, game_files::settings),
+    Door::new("records", game_files::records_seeds, game_files::records),
 ];
 
 impl Door {
+    const fn new(
+        name: &'static str,
+        seeds: fn() -> Vec<Vec<u8>>,
+        enter: fn(&[u8]) -> bool,
+    ) -> Self {
+        Self { name, seeds, enter }
+    }
+
     /// Returns the door of this name.
     pub fn named(name: &str) -> Option<&'static Self> {
         DOORS.iter().find(|door| door.name == name)

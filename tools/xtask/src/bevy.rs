@@ -1,7 +1,7 @@
 //! Bevy plugin, `plugins/bevy_fuwafuwa`: a workspace of its own with its own target folder.
 
 use crate::packages::{IfMissing, Purpose, provide};
-use crate::shell::{FAILED, Failure, cargo, execute, root, target};
+use crate::shell::{Failure, cargo, execute, root, target};
 use std::fs;
 use std::process::Command;
 
@@ -24,32 +24,21 @@ pub fn run(bevy: Bevy, if_missing: IfMissing) -> Result<(), Failure> {
 }
 
 fn check() -> Result<(), Failure> {
-    let steps: [(&[&str], &str); 4] = [
+    for (words, hint) in [
         (
-            &["fmt", "--all", "--check"],
+            "fmt --all --check",
             "run `cargo fmt --all` in plugins/bevy_fuwafuwa",
         ),
         (
-            &[
-                "clippy",
-                "--workspace",
-                "--all-targets",
-                "--",
-                "-D",
-                "warnings",
-            ],
+            "clippy --workspace --all-targets -- -D warnings",
             "fix the warnings above; the examples may use an outdated API of the plugin or of Bevy",
         ),
         (
-            &["test"],
+            "test",
             "a test of the plugin failed or did not compile, see above",
         ),
-        (
-            &["doc", "--no-deps"],
-            "fix the documentation warnings above",
-        ),
-    ];
-    for (words, hint) in steps {
+        ("doc --no-deps", "fix the documentation warnings above"),
+    ] {
         let mut command = in_workspace(words);
         command.env("RUSTDOCFLAGS", "-Dwarnings");
         execute(&mut command, hint)?;
@@ -63,13 +52,15 @@ fn pictures(if_missing: IfMissing) -> Result<(), Failure> {
         if_missing,
     );
     let example = ["--package", "bevy_fuwafuwa_examples", "--bin", "scene"];
-    let mut build = in_workspace(&["build"]);
+    let mut build = in_workspace("build");
     build.args(example);
     execute(&mut build, "the scene does not compile, see above")?;
     let folder = folder().join("pictures");
-    fs::create_dir_all(&folder).map_err(|error| Failure {
-        message: format!("{}: cannot create the folder: {error}", folder.display()),
-        code: FAILED,
+    fs::create_dir_all(&folder).map_err(|error| {
+        Failure::failed(format!(
+            "{}: cannot create the folder: {error}",
+            folder.display()
+        ))
     })?;
     let mut play = Command::new("xvfb-run");
     play.args(["--auto-servernum", "--server-args=-screen 0 1280x720x24"]);
@@ -84,12 +75,13 @@ fn pictures(if_missing: IfMissing) -> Result<(), Failure> {
 }
 
 /// Returns a cargo command for the workspace of the plugin.
-fn in_workspace(words: &[&str]) -> Command {
-    let (task, rest) = words
-        .split_first()
-        .expect("the first word is a cargo command");
+fn in_workspace(words: &str) -> Command {
+    let mut words = words.split(' ');
     let mut command = cargo();
-    command.args([task, "--manifest-path", MANIFEST]).args(rest);
+    command
+        .args(words.next())
+        .args(["--manifest-path", MANIFEST])
+        .args(words);
     command.env("CARGO_TARGET_DIR", folder());
     command
 }

@@ -2,7 +2,7 @@
 
 use crate::debian;
 use crate::packages::{IfMissing, MissingItem, apt_get, install_arguments, list_lacks};
-use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, root, target};
+use crate::shell::{Failure, cargo, execute, is_on_path, root, target};
 use crate::wine;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -83,14 +83,13 @@ impl System {
             apt_get(&install_arguments(names));
             found = self.find(wanted);
         }
-        found.map_err(|lacks| Failure {
-            message: format!(
+        found.map_err(|lacks| {
+            Failure::cannot(format!(
                 "{undone}:\n{}\nOn Debian, add `--install` to install the packages. \
                  Elsewhere, run `rustup target add {}` and put the programs on the path.",
                 list_lacks(&lacks),
                 self.triple
-            ),
-            code: CANNOT,
+            ))
         })
     }
 
@@ -203,17 +202,10 @@ pub fn check(system: &'static System, if_missing: IfMissing) -> Result<(), Failu
     )?;
     let folder = root().join(target()).join("replays");
     let replays = folder.display().to_string();
-    let example = [
-        "run",
-        "--release",
-        "--package",
-        "determinism_checks",
-        "--example",
-        "replays",
-        "--",
-    ];
+    let example = "run --release --package determinism_checks --example replays --";
+    let example: Vec<&str> = example.split(' ').collect();
     let mut record = cargo();
-    record.args(example).args(["record", &replays]);
+    record.args(&example).args(["record", &replays]);
     execute(&mut record, "the rounds of the bots could not be recorded")?;
     execute(
         &mut compiler.cargo(&[&example[..], &["verify", &replays]].concat()),
@@ -236,10 +228,7 @@ fn watch_all(system: &System, game: &Path, replays: &Path) -> Result<(), Failure
     let entries = fs::read_dir(replays);
     let (copied, entries) = copied
         .and_then(|copied| Ok((copied, entries?)))
-        .map_err(|error| Failure {
-            message: format!("{}: {error}", game.display()),
-            code: FAILED,
-        })?;
+        .map_err(|error| Failure::failed(format!("{}: {error}", game.display())))?;
     let files = entries.flatten().map(|entry| entry.path());
     let mut count = 0;
     for file in files.filter(|file| file.extension().is_some_and(|name| name == "tamaire")) {

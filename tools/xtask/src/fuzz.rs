@@ -2,7 +2,7 @@
 //! needs a nightly compiler only for sanitizers; the coverage passes are part of every LLVM.
 
 use crate::packages::{IfMissing, Purpose, provide};
-use crate::shell::{FAILED, Failure, cargo, execute, output_of, root, target};
+use crate::shell::{Failure, cargo, execute, output_of, root, target};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -32,7 +32,7 @@ struct Outcome {
 
 /// Fuzzes the named doors, or all, sharing the given number of minutes.
 pub fn run(words: &[String]) -> Result<(), Failure> {
-    let (minutes, doors) = parse_arguments(words).map_err(failure)?;
+    let (minutes, doors) = parse_arguments(words).map_err(Failure::failed)?;
     provide(&[Purpose::Build, Purpose::Fuzzing], IfMissing::Install);
     let (program, folder) = build()?;
     let doors = match doors.is_empty() {
@@ -40,13 +40,13 @@ pub fn run(words: &[String]) -> Result<(), Failure> {
         false => doors.to_vec(),
     };
     let found = folder.join("found");
-    fs::create_dir_all(&found).map_err(|error| failure(error.to_string()))?;
+    fs::create_dir_all(&found).map_err(|error| Failure::failed(error.to_string()))?;
     let seconds = (60.0 * minutes / doors.len() as f32).max(1.0) as u32;
     println!("door        inputs  coverage    corpus  seconds  slowest [s]  memory [MiB]");
     let mut bad = Vec::new();
     for door in &doors {
         let outcome = fuzz_door(&program, &folder, door, seconds);
-        let outcome = outcome.map_err(|error| failure(format!("{door}: {error}")))?;
+        let outcome = outcome.map_err(|error| Failure::failed(format!("{door}: {error}")))?;
         println!("{door:10}{}", row(&outcome));
         if !outcome.is_good {
             bad.push(door.as_str());
@@ -55,17 +55,12 @@ pub fn run(words: &[String]) -> Result<(), Failure> {
     if bad.is_empty() {
         return Ok(());
     }
-    Err(failure(format!(
+    Err(Failure::failed(format!(
         "{} failed: the inputs are in {}, the logs beside it; fix the fault, and add \
          the input to tools/fuzz/found",
         bad.join(", "),
         found.display()
     )))
-}
-
-fn failure(message: String) -> Failure {
-    let code = FAILED;
-    Failure { message, code }
 }
 
 /// Parses the number of minutes and the names of the doors.
@@ -83,7 +78,7 @@ fn parse_arguments(words: &[String]) -> Result<(f32, &[String]), String> {
 fn build() -> Result<(PathBuf, PathBuf), Failure> {
     let host = output_of("rustc", &["-vV"]).unwrap_or_default();
     let host = host.lines().find_map(|line| line.strip_prefix("host: "));
-    let host = host.ok_or_else(|| failure("`rustc -vV` prints no host triple".into()))?;
+    let host = host.ok_or_else(|| Failure::failed("`rustc -vV` prints no host triple"))?;
     let folder = root().join(target()).join("fuzz");
     let mut command = cargo();
     command.args(["build", "--profile", "fuzz", "--package", "fuzz_targets"]);
@@ -106,7 +101,7 @@ fn build() -> Result<(PathBuf, PathBuf), Failure> {
 
 /// Returns the names of all doors. Each one has a folder of seeds.
 fn all_doors(seeds: &Path) -> Result<Vec<String>, Failure> {
-    let folders = fs::read_dir(seeds).map_err(|error| failure(error.to_string()))?;
+    let folders = fs::read_dir(seeds).map_err(|error| Failure::failed(error.to_string()))?;
     let folders = folders.flatten().filter(|entry| entry.path().is_dir());
     let mut doors: Vec<_> = folders
         .map(|entry| entry.file_name().to_string_lossy().into_owned())

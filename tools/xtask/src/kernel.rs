@@ -8,9 +8,7 @@
 use crate::packages::{
     self, IfMissing, MissingItem, Purpose, apt_get, install_arguments, list_lacks,
 };
-use crate::shell::{
-    CANNOT, FAILED, Failure, answers, cargo, execute, output_of, root, show, target,
-};
+use crate::shell::{Failure, answers, cargo, execute, output_of, root, show, target};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -49,9 +47,10 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
     let guest = found.map_err(|lacks| cannot(&lacks, if_missing))?;
     packages::provide(&[Purpose::Build], if_missing);
     let test = build()?;
-    pack(&folder, &guest, &test).map_err(|error| Failure {
-        message: format!("the RAM disk of the machine could not be packed: {error}"),
-        code: FAILED,
+    pack(&folder, &guest, &test).map_err(|error| {
+        Failure::failed(format!(
+            "the RAM disk of the machine could not be packed: {error}"
+        ))
     })?;
     boot(&folder, &guest.kernel)
 }
@@ -158,20 +157,8 @@ fn fetch(folder: &Path, package: &str, files: &[&str]) {
 fn build() -> Result<PathBuf, Failure> {
     let mut command = cargo();
     command
-        .args([
-            "test",
-            "--no-run",
-            "--message-format",
-            "json-render-diagnostics",
-        ])
-        .args([
-            "--package",
-            "sticks",
-            "--features",
-            "haptic",
-            "--test",
-            "kernel",
-        ]);
+        .args("test --package sticks --features haptic --test kernel".split(' '))
+        .args("--no-run --message-format json-render-diagnostics".split(' '));
     eprintln!("xtask: {}", show(&command));
     let output = command
         .current_dir(root())
@@ -179,10 +166,7 @@ fn build() -> Result<PathBuf, Failure> {
         .output();
     let built = output.ok().filter(|output| output.status.success());
     let test = built.and_then(|output| executable_of(&String::from_utf8_lossy(&output.stdout)));
-    test.ok_or_else(|| Failure {
-        message: "the tests could not be built, see above".to_string(),
-        code: FAILED,
-    })
+    test.ok_or_else(|| Failure::failed("the tests could not be built, see above"))
 }
 
 /// Returns the last executable in cargo's JSON messages.
@@ -242,33 +226,10 @@ fn boot(folder: &Path, kernel: &Path) -> Result<(), Failure> {
     let _ = fs::remove_file(&status);
     let mut machine = Command::new("timeout");
     machine
-        .args([
-            "--foreground",
-            PATIENCE,
-            QEMU,
-            "-accel",
-            "tcg",
-            "-cpu",
-            "max",
-            "-smp",
-            "2",
-        ])
-        .args([
-            "-m",
-            "512",
-            "-nodefaults",
-            "-no-user-config",
-            "-no-reboot",
-            "-display",
-            "none",
-        ])
-        .args([
-            "-append",
-            "console=ttyS0 quiet panic=-1",
-            "-serial",
-            "stdio",
-            "-serial",
-        ])
+        .args(["--foreground", PATIENCE, QEMU])
+        .args("-accel tcg -cpu max -smp 2 -m 512 -nodefaults -no-user-config".split(' '))
+        .args("-no-reboot -display none -serial stdio".split(' '))
+        .args(["-append", "console=ttyS0 quiet panic=-1", "-serial"])
         .arg(format!("file:{}", status.display()))
         .arg("-kernel")
         .arg(kernel)
@@ -283,11 +244,9 @@ fn boot(folder: &Path, kernel: &Path) -> Result<(), Failure> {
     if said.trim() == "0" {
         return Ok(());
     }
-    Err(Failure {
-        message: "a test failed in the machine, or the machine stopped before, see above"
-            .to_string(),
-        code: FAILED,
-    })
+    Err(Failure::failed(
+        "a test failed in the machine, or the machine stopped before, see above",
+    ))
 }
 
 fn cannot(lacks: &[MissingItem], if_missing: IfMissing) -> Failure {
@@ -297,14 +256,11 @@ fn cannot(lacks: &[MissingItem], if_missing: IfMissing) -> Failure {
         }
         IfMissing::Install => "The packages available from apt are not sufficient, see above.",
     };
-    Failure {
-        message: format!(
-            "force feedback was NOT tested against a kernel:\n{}\n{advice}\n\
+    Failure::cannot(format!(
+        "force feedback was NOT tested against a kernel:\n{}\n{advice}\n\
              This task requires Linux on x86-64.",
-            list_lacks(lacks)
-        ),
-        code: CANNOT,
-    }
+        list_lacks(lacks)
+    ))
 }
 
 #[cfg(test)]

@@ -58,15 +58,8 @@ fn main() -> ExitCode {
         Task::Kernel(if_missing) => kernel::run(if_missing),
         Task::Soak(words) => soak(&words),
         Task::Stand(if_missing) => {
-            packages::provide(
-                &[
-                    Purpose::Build,
-                    Purpose::Window,
-                    Purpose::Drawing,
-                    Purpose::Staging,
-                ],
-                if_missing,
-            );
+            use Purpose::{Build, Drawing, Staging, Window};
+            packages::provide(&[Build, Window, Drawing, Staging], if_missing);
             run_all(STAND)
         }
         Task::Fuzz(words) => fuzz::run(&words),
@@ -124,146 +117,76 @@ fn soak(words: &[String]) -> Result<(), Failure> {
 /// Tests draw into images and open no window; one of them starts a database server.
 const FOR_TESTS: &[Purpose] = &[Purpose::Build, Purpose::Drawing, Purpose::Serving];
 
-/// Cargo command.
-struct Step {
-    arguments: &'static [&'static str],
-    environment: &'static [(&'static str, &'static str)],
-    /// Advice if the command fails.
-    hint: &'static str,
-}
+/// Arguments of a cargo command, and advice if it fails.
+type Step = (&'static str, &'static str);
 
 const CHECK: &[Step] = &[
-    Step {
-        arguments: &["fmt", "--all", "--check"],
-        environment: &[],
-        hint: "run `cargo fmt --all`; if cargo has no fmt, `rustup component add rustfmt`",
-    },
-    Step {
-        arguments: &[
-            "clippy",
-            "--workspace",
-            "--all-targets",
-            "--all-features",
-            "--",
-            "-D",
-            "warnings",
-        ],
-        environment: &[],
-        hint: "fix the warnings above; if cargo has no clippy, `rustup component add clippy`",
-    },
-    Step {
-        arguments: &[
-            "check",
-            "--package",
-            "tamaire",
-            "--no-default-features",
-            "--all-targets",
-        ],
-        environment: &[],
-        hint: "the game must compile without the feature for force feedback",
-    },
-    Step {
-        arguments: &["doc", "--workspace", "--all-features", "--no-deps"],
-        environment: &[("RUSTDOCFLAGS", "-Dwarnings")],
-        hint: "fix the documentation warnings above; most are broken links",
-    },
+    (
+        "fmt --all --check",
+        "run `cargo fmt --all`; if cargo has no fmt, `rustup component add rustfmt`",
+    ),
+    (
+        "clippy --workspace --all-targets --all-features -- -D warnings",
+        "fix the warnings above; if cargo has no clippy, `rustup component add clippy`",
+    ),
+    (
+        "check --package tamaire --no-default-features --all-targets",
+        "the game must compile without the feature for force feedback",
+    ),
+    (
+        "doc --workspace --all-features --no-deps",
+        "fix the documentation warnings above; most are broken links",
+    ),
 ];
 
 // With all features, as in CHECK, because other features would recompile everything. CHECK covers the
 // examples.
 const TEST: &[Step] = &[
-    Step {
-        arguments: &["test", "--workspace", "--all-features", "--tests"],
-        environment: &[],
-        hint: "a test failed or did not compile, see above",
-    },
-    Step {
-        arguments: &[
-            "test",
-            "--workspace",
-            "--all-features",
-            "--test",
-            "images",
-            "--test",
-            "space",
-            "--",
-            "--ignored",
-        ],
-        environment: &[],
-        hint: "the renderer failed, or there is no graphics adapter, such as that of mesa-vulkan-drivers; see above",
-    },
-    Step {
-        arguments: &[
-            "test",
-            "--workspace",
-            "--all-features",
-            "--lib",
-            "--",
-            "--ignored",
-            "film::studio",
-        ],
-        environment: &[],
-        hint: "the studio failed, or there is no graphics adapter, such as that of mesa-vulkan-drivers; see above",
-    },
-    Step {
-        arguments: &["test", "--workspace", "--all-features", "--doc"],
-        environment: &[],
-        hint: "an example in the documentation failed or did not compile, see above",
-    },
-    Step {
-        arguments: &[
-            "test",
-            "--release",
-            "--tests",
-            "--package",
-            "fuwafuwa",
-            "--package",
-            "determinism_checks",
-            "--all-features",
-        ],
-        environment: &[],
-        hint: "passes in debug but not in release: look for side effects inside a debug_assert!, \
-               and for sums whose order depends on the number of threads",
-    },
+    (
+        "test --workspace --all-features --tests",
+        "a test failed or did not compile, see above",
+    ),
+    (
+        "test --workspace --all-features --test images --test space -- --ignored",
+        "the renderer failed, or there is no graphics adapter, such as that of mesa-vulkan-drivers; see above",
+    ),
+    (
+        "test --workspace --all-features --lib -- --ignored film::studio",
+        "the studio failed, or there is no graphics adapter, such as that of mesa-vulkan-drivers; see above",
+    ),
+    (
+        "test --workspace --all-features --doc",
+        "an example in the documentation failed or did not compile, see above",
+    ),
+    (
+        "test --release --tests --package fuwafuwa --package determinism_checks --all-features",
+        "passes in debug but not in release: look for side effects inside a debug_assert!, \
+         and for sums whose order depends on the number of threads",
+    ),
 ];
 
-const STAND: &[Step] = &[Step {
-    arguments: &[
-        "test",
-        "--release",
-        "--package",
-        "tamaire",
-        "--test",
-        "stand",
-        "--",
-        "--ignored",
-        "--nocapture",
-    ],
-    environment: &[],
-    hint: "the stand did not restart, or lost a completed round, see above",
-}];
+const STAND: &[Step] = &[(
+    "test --release --package tamaire --test stand -- --ignored --nocapture",
+    "the stand did not restart, or lost a completed round, see above",
+)];
 
-const RAPIER: &[Step] = &[Step {
-    arguments: &[
-        "check",
-        "--all-targets",
-        "--manifest-path",
-        "tools/against_rapier/Cargo.toml",
-    ],
-    environment: &[],
-    hint: "the comparison does not compile with the current engine or Rapier, see above",
-}];
+const RAPIER: &[Step] = &[(
+    "check --all-targets --manifest-path tools/against_rapier/Cargo.toml",
+    "the comparison does not compile with the current engine or Rapier, see above",
+)];
 
 /// Runs the steps in order at the root of the workspace, up to the first failure.
 fn run_all(steps: &[Step]) -> Result<(), Failure> {
     steps.iter().try_for_each(run)
 }
 
-fn run(step: &Step) -> Result<(), Failure> {
+fn run((arguments, hint): &Step) -> Result<(), Failure> {
     let mut command = cargo();
-    command.args(step.arguments);
-    command.envs(step.environment.iter().copied());
-    execute(&mut command, step.hint)
+    command.args(arguments.split(' '));
+    if arguments.starts_with("doc ") {
+        command.env("RUSTDOCFLAGS", "-Dwarnings");
+    }
+    execute(&mut command, hint)
 }
 
 #[cfg(test)]

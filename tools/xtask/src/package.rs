@@ -1,6 +1,6 @@
 //! Packages of the crates that can be published.
 
-use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, output_of, root, target};
+use crate::shell::{Failure, cargo, execute, output_of, root, target};
 use std::path::Path;
 use std::process::Command;
 
@@ -17,7 +17,7 @@ pub enum Package {
 /// are marked `publish = false`.
 const CRATES: [(&str, &[&str]); 9] = [
     ("engine/fuwafuwa", &["src", "guide", "examples"]),
-    ("engine/fuwafuwa_scenes", &["src", "scenes", "examples"]),
+    ("engine/fuwafuwa_scenes", &["src", "scenes"]),
     ("engine/fuwafuwa_render", &["src"]),
     ("engine/fuwafuwa_painter", &["src"]),
     ("engine/fuwafuwa_scan", &["src"]),
@@ -62,14 +62,11 @@ pub fn run(package: Package) -> Result<(), Failure> {
                 .try_for_each(|(path, _)| check_size(name_of(path)))
         }
         Package::Build => {
-            let oldest = oldest_rust()?;
-            let toolchain = toolchain_of(&oldest).ok_or_else(|| Failure {
-                message: format!(
+            let oldest = field("rust-version")?;
+            let toolchain = toolchain_of(&oldest).ok_or_else(|| Failure::cannot(format!(
                     "Rust {oldest}, the minimum supported version, is neither active nor installed by \
                      rustup: run `rustup toolchain install {oldest} --profile minimal`"
-                ),
-                code: CANNOT,
-            })?;
+                )))?;
             pack(&[], &toolchain)
         }
     }
@@ -116,22 +113,19 @@ fn check_list(path: &str, folders: &[&str]) -> Result<(), Failure> {
     let name = name_of(path);
     let manifest = root().join(path).join("Cargo.toml");
     let manifest = manifest.display().to_string();
-    let words = [
-        "package",
-        "--list",
-        "--quiet",
-        "--allow-dirty",
-        "--manifest-path",
-        &manifest,
-    ];
+    let words = ["--list", "--quiet", "--allow-dirty", "--manifest-path"];
     let program = cargo().get_program().to_string_lossy().into_owned();
-    let list = output_of(&program, &words).ok_or_else(|| failure(format!(
+    let words = [&["package"], &words[..], &[&manifest]].concat();
+    let list = output_of(&program, &words).ok_or_else(|| Failure::failed(format!(
         "the contents of package {name} cannot be listed: run `cargo package --list --manifest-path {manifest}`"
     )))?;
     let wrong = complaints(&list, folders);
     match wrong.is_empty() {
         true => Ok(()),
-        false => Err(failure(format!("package {name} {}", wrong.join("; ")))),
+        false => Err(Failure::failed(format!(
+            "package {name} {}",
+            wrong.join("; ")
+        ))),
     }
 }
 
@@ -162,7 +156,7 @@ fn check_size(name: &str) -> Result<(), Failure> {
     println!("{name} {version}: {} KiB", bytes.div_ceil(1024));
     match bytes <= MOST_BYTES {
         true => Ok(()),
-        false => Err(failure(format!(
+        false => Err(Failure::failed(format!(
             "package {name} has {bytes} bytes, more than the limit of {MOST_BYTES}: check its contents"
         ))),
     }
@@ -170,20 +164,18 @@ fn check_size(name: &str) -> Result<(), Failure> {
 
 fn size(file: &Path) -> Result<u64, Failure> {
     let found = std::fs::metadata(file).map(|file| file.len());
-    found.map_err(|error| failure(format!("{}: cannot read its size: {error}", file.display())))
-}
-
-/// MSRV of the workspace.
-fn oldest_rust() -> Result<String, Failure> {
-    field("rust-version")
+    found.map_err(|error| {
+        Failure::failed(format!("{}: cannot read its size: {error}", file.display()))
+    })
 }
 
 /// Value of a field of `[workspace.package]`.
 fn field(name: &str) -> Result<String, Failure> {
     let manifest = root().join("Cargo.toml");
     let text = std::fs::read_to_string(&manifest);
-    let text = text.map_err(|error| failure(format!("{}: {error}", manifest.display())))?;
-    value_of(&text, name).ok_or_else(|| failure(format!("Cargo.toml: missing field {name}")))
+    let text = text.map_err(|error| Failure::failed(format!("{}: {error}", manifest.display())))?;
+    value_of(&text, name)
+        .ok_or_else(|| Failure::failed(format!("Cargo.toml: missing field {name}")))
 }
 
 /// Returns the quoted value of a field.
@@ -191,13 +183,6 @@ fn value_of(text: &str, name: &str) -> Option<String> {
     let mut lines = text.lines().filter_map(|line| line.split_once(" = "));
     let (_, value) = lines.find(|(own, _)| *own == name)?;
     Some(value.trim().trim_matches('"').to_string())
-}
-
-fn failure(message: String) -> Failure {
-    Failure {
-        message,
-        code: FAILED,
-    }
 }
 
 #[cfg(test)]
@@ -244,7 +229,8 @@ mod tests {
     /// All documents name the same MSRV.
     #[test]
     fn documents_name_the_same_msrv() {
-        let oldest = oldest_rust().unwrap_or_else(|_| panic!("Cargo.toml has no rust-version"));
+        let oldest =
+            field("rust-version").unwrap_or_else(|_| panic!("Cargo.toml has no rust-version"));
         let says = format!("Rust {oldest}");
         let packed = CRATES.iter().map(|(path, _)| format!("{path}/README.md"));
         let documents = [

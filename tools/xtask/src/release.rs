@@ -10,7 +10,7 @@ mod windows;
 
 use crate::packages::Purpose::{Build, Listing, Packing, Paging, Zipping};
 use crate::packages::{self, IfMissing, Purpose};
-use crate::shell::{CANNOT, FAILED, Failure, execute};
+use crate::shell::{FAILED, Failure, execute};
 use crate::web;
 use files::zip;
 use kit::{ReleaseBuild, size};
@@ -133,18 +133,15 @@ fn make(part: &Part, kit: &mut ReleaseBuild) -> PartResult {
     }
 }
 
-/// Marks a failure as [`CANNOT`] if packages are missing, and names them.
+/// Marks a failure as one of this machine if packages are missing, and names them.
 fn for_lack(failure: Failure, lacks: &[&str]) -> Failure {
     match lacks {
         [] => failure,
-        _ => Failure {
-            message: format!(
-                "{}\n           not installed: {}",
-                failure.message,
-                lacks.join(", ")
-            ),
-            code: CANNOT,
-        },
+        _ => Failure::cannot(format!(
+            "{}\n           not installed: {}",
+            failure.message,
+            lacks.join(", ")
+        )),
     }
 }
 
@@ -161,10 +158,7 @@ fn too_large(kit: &ReleaseBuild) -> Result<(), Failure> {
             let message = format!(
                 "{name} has {bytes} bytes, more than the limit of {MOST_BYTES}: see profile.dist in Cargo.toml"
             );
-            return Err(Failure {
-                message,
-                code: FAILED,
-            });
+            return Err(Failure::failed(message));
         }
     }
     Ok(())
@@ -188,13 +182,10 @@ mod tests {
 
     #[test]
     fn failure_names_missing_packages() {
-        let failure = || Failure {
-            message: "it could not be built".to_string(),
-            code: FAILED,
-        };
+        let failure = || Failure::failed("it could not be built");
         assert_eq!(for_lack(failure(), &[]).code, FAILED);
         let named = for_lack(failure(), &["cmake", "zip"]);
-        assert_eq!(named.code, CANNOT);
+        assert_eq!(named.code, crate::shell::CANNOT);
         assert!(named.message.contains("could not be built"));
         assert!(named.message.ends_with("not installed: cmake, zip"));
     }

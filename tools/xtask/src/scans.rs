@@ -1,7 +1,7 @@
 //! Real scans for experiments: the MNI152 templates of a brain, averaged from 152 people, from the Python
 //! package nilearn. They stay in the target folder and are not part of this repository.
 
-use crate::shell::{CANNOT, FAILED, Failure, answers, execute, root, target};
+use crate::shell::{Failure, answers, execute, root, target};
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -34,16 +34,12 @@ package.unlink()
 /// Downloads the scans.
 pub fn run() -> Result<(), Failure> {
     if !answers("python3") {
-        return Err(Failure {
-            message: "python3 not found on the path; its pip downloads the package".into(),
-            code: CANNOT,
-        });
+        return Err(Failure::cannot(
+            "python3 not found on the path; its pip downloads the package",
+        ));
     }
     let folder = root().join(target()).join("scans");
-    prepare(&folder).map_err(|error| Failure {
-        message: format!("{}: {error}", folder.display()),
-        code: FAILED,
-    })?;
+    prepare(&folder).map_err(|error| Failure::failed(format!("{}: {error}", folder.display())))?;
     let mut fetch = Command::new("python3");
     fetch.args(["-m", "pip", "download", "--no-deps", "--only-binary=:all:"]);
     fetch
@@ -60,10 +56,9 @@ pub fn run() -> Result<(), Failure> {
     let unpacked = unpack.status().is_ok_and(|status| status.success());
     let scans = folder.join("mni_icbm152_t1_tal_nlin_sym_09a_converted.nii.gz");
     if !unpacked || !scans.is_file() {
-        return Err(Failure {
-            message: "the package does not contain the expected scans".into(),
-            code: FAILED,
-        });
+        return Err(Failure::failed(
+            "the package does not contain the expected scans",
+        ));
     }
     println!(
         "{LICENCE}\nThe scans are in {}, together with this text.",

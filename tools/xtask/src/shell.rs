@@ -16,6 +16,26 @@ pub struct Failure {
     pub code: u8,
 }
 
+impl Failure {
+    /// Failed step.
+    pub fn failed(message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self {
+            message,
+            code: FAILED,
+        }
+    }
+
+    /// Task that cannot run on this machine.
+    pub fn cannot(message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self {
+            message,
+            code: CANNOT,
+        }
+    }
+}
+
 pub fn cargo() -> Command {
     Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
@@ -24,11 +44,8 @@ pub fn cargo() -> Command {
 pub fn execute(command: &mut Command, hint: &str) -> Result<(), Failure> {
     let line = show(command);
     eprintln!("xtask: {line}");
-    let failure = |how: String| Failure {
-        message: format!("`{line}` {how}\n       {hint}"),
-        // Never the status of the command, which could equal `CANNOT`.
-        code: FAILED,
-    };
+    // Never with the status of the command, which could equal `CANNOT`.
+    let failure = |how: String| Failure::failed(format!("`{line}` {how}\n       {hint}"));
     match command.current_dir(root()).status() {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(failure(format!("failed ({status})"))),
@@ -38,18 +55,12 @@ pub fn execute(command: &mut Command, hint: &str) -> Result<(), Failure> {
 
 /// Converts an error about a file.
 pub fn file_error(path: &Path, error: &dyn std::error::Error) -> Failure {
-    Failure {
-        message: format!("{}: {error}", path.display()),
-        code: FAILED,
-    }
+    Failure::failed(format!("{}: {error}", path.display()))
 }
 
 /// Returns the failure for a missing program.
 pub fn lacking(program: &str, how: &str) -> Failure {
-    Failure {
-        message: format!("{program} not found: {how}"),
-        code: CANNOT,
-    }
+    Failure::cannot(format!("{program} not found: {how}"))
 }
 
 /// Formats the command as a user would type it, without the folder of the program.

@@ -1,6 +1,6 @@
 //! Changes the version in all files that contain it, without committing.
 
-use crate::shell::{FAILED, Failure, cargo, execute, output_of, root};
+use crate::shell::{Failure, cargo, execute, output_of, root};
 use std::fmt;
 use std::fs;
 
@@ -52,27 +52,16 @@ pub fn raise(version: &Version) -> Result<(), Failure> {
     let read = |path: &str| fs::read_to_string(root().join(path));
     let files = manifests()
         .and_then(|manifests| changed(version, date.trim(), &manifests, read))
-        .map_err(|message| Failure {
-            message,
-            code: FAILED,
-        })?;
+        .map_err(Failure::failed)?;
     for (path, text) in files {
         let written = fs::write(root().join(&path), text);
-        written.map_err(|error| Failure {
-            message: format!("{path}: {error}"),
-            code: FAILED,
-        })?;
+        written.map_err(|error| Failure::failed(format!("{path}: {error}")))?;
         eprintln!("xtask: {path}");
     }
-    for manifest in [MAIN, OTHERS[0], OTHERS[1], OTHERS[3]] {
+    for manifest in [MAIN, OTHERS[0], OTHERS[1]] {
         let mut lock = cargo();
-        lock.args([
-            "update",
-            "--workspace",
-            "--offline",
-            "--manifest-path",
-            manifest,
-        ]);
+        lock.args(["update", "--workspace", "--offline"]);
+        lock.args(["--manifest-path", manifest]);
         execute(
             &mut lock,
             "the lock file still has the old version: run this command with a network and without `--offline`",

@@ -7,7 +7,7 @@
 use crate::debian;
 use crate::folders;
 use crate::packages::{IfMissing, MissingItem, apt_get, install_arguments, list_lacks};
-use crate::shell::{CANNOT, FAILED, Failure, answers, cargo, execute, root, target};
+use crate::shell::{Failure, answers, cargo, execute, root, target};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -155,10 +155,9 @@ fn native_times() -> Result<Vec<String>, Failure> {
         .stderr(Stdio::inherit())
         .output();
     let Some(output) = output.ok().filter(|output| output.status.success()) else {
-        return Err(Failure {
-            message: "the native durations of the golden scenes could not be measured".to_string(),
-            code: FAILED,
-        });
+        return Err(Failure::failed(
+            "the native durations of the golden scenes could not be measured",
+        ));
     };
     let times = String::from_utf8_lossy(&output.stdout);
     Ok(times.split_whitespace().map(str::to_string).collect())
@@ -174,14 +173,11 @@ fn cannot(undone: &str, lacks: &[MissingItem], if_missing: IfMissing) -> Failure
         IfMissing::Say => "On Debian, add `--install` to install the packages.",
         IfMissing::Install => "Debian's packages are not sufficient, see above.",
     };
-    Failure {
-        message: format!(
-            "{undone}:\n{}\n{advice}\n\
+    Failure::cannot(format!(
+        "{undone}:\n{}\n{advice}\n\
              Elsewhere, run `rustup target add {TARGET}`, and put Node on the path.",
-            list_lacks(lacks)
-        ),
-        code: CANNOT,
-    }
+        list_lacks(lacks)
+    ))
 }
 
 #[cfg(test)]
@@ -239,6 +235,6 @@ mod tests {
             "{}",
             failure.message
         );
-        assert_eq!(failure.code, CANNOT);
+        assert_eq!(failure.code, crate::shell::CANNOT);
     }
 }

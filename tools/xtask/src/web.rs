@@ -4,7 +4,7 @@
 //! and the page (`game/tamaire/web`), and `tools/xtask/web/pack.mjs` packs the folder.
 
 use crate::packages::{self, IfMissing, Purpose};
-use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, root, target};
+use crate::shell::{Failure, cargo, execute, is_on_path, root, target};
 use crate::wasm::{self, Compiler, TARGET};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -55,16 +55,8 @@ pub fn folder() -> PathBuf {
 fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
     let stage = folder().join("stage");
     let game = wasm::compile(compiler, &["tamaire", "--bin", "tamaire"])?;
-    let sound = wasm::compile(
-        compiler,
-        &[
-            "tamaire_sound",
-            "--features",
-            "worklet",
-            "--crate-type",
-            "cdylib",
-        ],
-    )?;
+    let sound = "tamaire_sound --features worklet --crate-type cdylib";
+    let sound = wasm::compile(compiler, &sound.split(' ').collect::<Vec<_>>())?;
     let mut bind = cargo();
     bind.args(["run", "--package", "xtask_bindgen", "--"])
         .args([&game, &stage]);
@@ -73,10 +65,8 @@ fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
         "the bindings between the game and the page could not be generated",
     )?;
     let licences = folder().join("licences.txt");
-    fs::copy(sound, stage.join("sound.wasm")).map_err(|error| Failure {
-        message: format!("{}: {error}", folder().display()),
-        code: FAILED,
-    })?;
+    fs::copy(sound, stage.join("sound.wasm"))
+        .map_err(|error| Failure::failed(format!("{}: {error}", folder().display())))?;
     provide_node_modules()?;
     node(
         "licences.mjs",
@@ -125,12 +115,9 @@ fn provide_browsers(if_missing: IfMissing) -> Result<(), Failure> {
         .collect();
     match missing[..] {
         [] => Ok(()),
-        _ => Err(Failure {
-            message: format!(
-                "the game was NOT tested in browsers: {} not found on the path",
-                missing.join(", ")
-            ),
-            code: CANNOT,
-        }),
+        _ => Err(Failure::cannot(format!(
+            "the game was NOT tested in browsers: {} not found on the path",
+            missing.join(", ")
+        ))),
     }
 }

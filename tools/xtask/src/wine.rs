@@ -1,6 +1,6 @@
 //! Wine with a separate prefix, so that it does not touch the user's files.
 
-use crate::shell::{FAILED, Failure, execute, file_error, root, target};
+use crate::shell::{Failure, execute, file_error, root, target};
 use std::env;
 use std::fs;
 use std::path::PathBuf;
@@ -39,10 +39,10 @@ pub fn prepare(compiler: &str) -> Result<(), Failure> {
         return Ok(());
     }
     if !system.is_dir() {
-        return Err(Failure {
-            message: format!("Wine did not create {}", system.display()),
-            code: FAILED,
-        });
+        return Err(Failure::failed(format!(
+            "Wine did not create {}",
+            system.display()
+        )));
     }
     // Compiles to a temporary name, so that an interruption leaves no incomplete library.
     let part = system.join("bcryptprimitives.part");

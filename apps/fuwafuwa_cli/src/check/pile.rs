@@ -54,62 +54,29 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
 
 fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
     let mut world = scene.build::<D>()?;
-    let count = |world: &World<D>| {
-        world
-            .soft_bodies()
-            .first()
-            .expect("the scene has a body")
-            .piece_views()
-            .len()
-    };
-    let before = count(&world);
-    let mass = world
-        .soft_bodies()
-        .first()
-        .expect("the scene has a body")
-        .total_mass();
+    let id = world.nth_soft_body(0).expect("the scene has a body");
+    let body = &world.soft_bodies()[id];
+    let (before, mass) = (body.piece_views().len(), body.total_mass());
     let mut asleep = f64::INFINITY;
     let mut depth = 0.0f64;
     for tick in 0..(PATIENCE * 60.0) as usize {
         let report = world.step();
         anyhow::ensure!(report.quarantined == 0, "a piece was quarantined");
         depth = depth.max(deepest(&world));
-        if world
-            .soft_bodies()
-            .first()
-            .expect("the scene has a body")
-            .pieces()
-            .list
-            .iter()
-            .all(|piece| piece.asleep)
-        {
+        let pieces = &world.soft_bodies()[id].pieces().list;
+        if pieces.iter().all(|piece| piece.asleep) {
             asleep = (tick + 1) as f64 / 60.0;
             break;
         }
     }
-    let views = world
-        .soft_bodies()
-        .first()
-        .expect("the scene has a body")
-        .piece_views();
-    let size = f64::from(
-        world
-            .soft_bodies()
-            .first()
-            .expect("the scene has a body")
-            .grid()
-            .voxel_size(),
-    );
+    let body = &world.soft_bodies()[id];
+    let views = body.piece_views();
+    let size = f64::from(body.grid().voxel_size());
     let outside = views.iter().filter(|view| {
         let mut obstacles = world.fixed_rigid_bodies();
         obstacles.any(|obstacle| obstacle.shape().distance(view.centre).0 < 0.0)
     });
-    let kept = world
-        .soft_bodies()
-        .first()
-        .expect("the scene has a body")
-        .total_mass()
-        / mass;
+    let kept = body.total_mass() / mass;
     anyhow::ensure!(
         (kept - 1.0).abs() < 1e-6,
         "the mass changed by a factor of {kept}"

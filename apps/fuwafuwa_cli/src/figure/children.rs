@@ -12,25 +12,12 @@ use fuwafuwa_painter::{Painter, PaperTransform, Role, Sample};
 pub fn conditions() -> Result<Painter> {
     let mut painter = Painter::new(1120, 736);
     let voxel = Release::at(1)?;
-    let frame = frame_of(0, 0);
-    title(
-        &mut painter,
-        frame,
-        "a  parent of level 1",
-        "a corner of the child has lost part of its connection",
-    );
-    draw(&mut painter, frame, &voxel.before);
     let parent = Cell {
         level: 1,
         at: [MIDDLE / 2 - 1, 1, 0],
     };
-    mark(
-        &mut painter,
-        frame,
-        &voxel.before,
-        &[parent].into(),
-        Role::Marked,
-    );
+    let detail = "a corner of the child has lost part of its connection";
+    let frame = parent_panel(&mut painter, 0, "a", detail, &voxel, parent);
     let child = [MIDDLE - 1, 2, 0];
     square(&mut painter, frame, child, 1);
     draw_nodes(&mut painter, frame, &voxel.before);
@@ -42,25 +29,12 @@ pub fn conditions() -> Result<Painter> {
     released(&mut painter, frame, voxel.height);
 
     let coarse = Release::at(2)?;
-    let frame = frame_of(1, 0);
-    title(
-        &mut painter,
-        frame,
-        "b  parent of level 2",
-        "the child touches an element two levels below the parent",
-    );
-    draw(&mut painter, frame, &coarse.before);
     let parent = Cell {
         level: 2,
         at: [MIDDLE / 4 - 1, 1, 0],
     };
-    mark(
-        &mut painter,
-        frame,
-        &coarse.before,
-        &[parent].into(),
-        Role::Marked,
-    );
+    let detail = "the child touches an element two levels below the parent";
+    let frame = parent_panel(&mut painter, 1, "b", detail, &coarse, parent);
     square(&mut painter, frame, [MIDDLE - 2, 4, 0], 2);
     let near = Cell {
         level: 0,
@@ -92,6 +66,29 @@ pub fn conditions() -> Result<Painter> {
     ];
     painter.legend(682.0, &entries);
     Ok(painter)
+}
+
+/// Draws the title of a panel of figure 4, the body before a release, and the outline of a parent.
+fn parent_panel(
+    painter: &mut Painter,
+    column: usize,
+    name: &str,
+    detail: &str,
+    release: &Release,
+    parent: Cell,
+) -> PaperTransform {
+    let frame = frame_of(column, 0);
+    let text = format!("{name}  parent of level {}", parent.level);
+    title(painter, frame, &text, detail);
+    draw(painter, frame, &release.before);
+    mark(
+        painter,
+        frame,
+        &release.before,
+        &[parent].into(),
+        Role::Marked,
+    );
+    frame
 }
 
 /// Draws figure 5: generated children and rebuilt parents, before and after a release.

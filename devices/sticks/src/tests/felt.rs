@@ -6,6 +6,10 @@ use force_feedback::{
 };
 
 const PATIENCE: Duration = Duration::from_secs(20);
+const HUM: Output = Output::Rumble {
+    low: 0.5,
+    high: 1.0,
+};
 
 fn until(what: &str, mut holds: impl FnMut() -> bool) {
     let end = Instant::now() + PATIENCE;
@@ -17,20 +21,15 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
 
 #[test]
 fn pad_rumble_ends_by_itself_and_on_drop() {
-    let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("valid device");
+    let (sticks, pad) = open_with_pad();
     let mut haptic = sticks.haptic(pad.id());
     until("the pad can rumble", || haptic.ability() == Ability::Rumble);
     assert_eq!(haptic.stick_position(), Ok([0.0; 2]));
     assert_eq!(pad.rumble(), [0, 0]);
-    let hum = Output::Rumble {
-        low: 0.5,
-        high: 1.0,
-    };
     let mut start = Instant::now();
     until("the pad rumbles", || {
         start = Instant::now();
-        assert!(haptic.play(hum).is_ok());
+        assert!(haptic.play(HUM).is_ok());
         pad.rumble() == [32768, 65534]
     });
     until("the rumble ends", || pad.rumble() == [0, 0]);
@@ -44,7 +43,7 @@ fn pad_rumble_ends_by_itself_and_on_drop() {
         let mut haptic = sticks.haptic(pad.id());
         until("the pad can rumble", || haptic.ability() == Ability::Rumble);
         until("the pad rumbles again", || {
-            assert!(haptic.play(hum).is_ok());
+            assert!(haptic.play(HUM).is_ok());
             pad.rumble() == [32768, 65534]
         });
         let start = Instant::now();
@@ -57,48 +56,29 @@ fn pad_rumble_ends_by_itself_and_on_drop() {
 
 #[test]
 fn new_sink_works_after_the_old_one_is_dropped() {
-    let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("valid device");
+    let (sticks, pad) = open_with_pad();
     let old = sticks.haptic(pad.id());
     // As when a line is replaced: the new sink is created first, since the old one is dropped on another
     // thread.
     let mut new = sticks.haptic(pad.id());
     drop(old);
-    let hum = Output::Rumble {
-        low: 0.5,
-        high: 1.0,
-    };
     until("the pad can rumble", || new.ability() == Ability::Rumble);
     until("the pad rumbles", || {
-        assert!(new.play(hum).is_ok());
+        assert!(new.play(HUM).is_ok());
         pad.rumble() == [32768, 65534]
     });
 }
 
 #[test]
 fn obsolete_output_is_not_played() {
-    let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("valid device");
+    let (sticks, pad) = open_with_pad();
     let mut haptic = sticks.haptic(pad.id());
     until("the pad can rumble", || haptic.ability() == Ability::Rumble);
-    let orders = sticks
-        .owner
-        .orders()
-        .upgrade()
-        .expect("the SDL thread runs");
     // Blocks the thread, as in a stopped process.
-    orders
-        .send(Box::new(|_| thread::sleep(OUTPUT_DURATION)))
-        .expect("the SDL thread runs");
-    let hum = Output::Rumble {
-        low: 0.5,
-        high: 1.0,
-    };
-    assert!(haptic.play(hum).is_ok());
+    order(&sticks, |_| thread::sleep(OUTPUT_DURATION));
+    assert!(haptic.play(HUM).is_ok());
     let (tell, told) = std::sync::mpsc::channel();
-    orders
-        .send(Box::new(move |_| tell.send(()).expect("the test waits")))
-        .expect("the SDL thread runs");
+    order(&sticks, move |_| tell.send(()).expect("the test waits"));
     told.recv().expect("the task has run");
     assert_eq!(pad.rumble(), [0, 0]);
 }
@@ -106,9 +86,7 @@ fn obsolete_output_is_not_played() {
 #[test]
 fn force_output_does_not_rumble() {
     let sticks = open();
-    let stick = sticks
-        .plug_in_stick("Stick", 2, 1, 0)
-        .expect("valid device");
+    let stick = stick(&sticks, "Stick", 2, 1, 0);
     let mut haptic = sticks.haptic(stick.id());
     until("a virtual stick can only rumble", || {
         haptic.ability() == Ability::Rumble
@@ -164,8 +142,7 @@ fn force_thread_drives_pads_until_they_are_unplugged() {
 
 #[test]
 fn sink_of_a_missing_device_does_nothing() {
-    let sticks = open();
-    let pad = sticks.plug_in_pad("Pad").expect("valid device");
+    let (sticks, pad) = open_with_pad();
     let id = pad.id();
     drop(pad);
     let mut haptic = sticks.haptic(id);

@@ -7,11 +7,9 @@ fn replaced_body_may_have_fewer_nodes_and_pieces() {
     let mut world = world::<Dim2>();
     let mut dust = ball(16);
     dust.crumble();
-    world.add_soft_body(dust);
+    let id = world.add_soft_body(dust);
     step(&mut world, 20);
-    *world
-        .soft_body_mut(world.nth_soft_body(0).unwrap())
-        .unwrap() = ball(8);
+    *world.soft_body_mut(id).unwrap() = ball(8);
     step(&mut world, 5);
     assert_finite(&world);
 }
@@ -24,10 +22,10 @@ fn sleeper() -> World<Dim2> {
         ..Material::default()
     };
     let grid = VoxelGrid::ball(16, 1.0).unwrap();
-    world.add_soft_body(SoftBody::new(grid, &[damped]).unwrap());
+    let id = world.add_soft_body(SoftBody::new(grid, &[damped]).unwrap());
     for _ in 0..900 {
         world.step();
-        if world.soft_bodies().first().unwrap().piece_views()[0].asleep {
+        if world.soft_bodies()[id].piece_views()[0].asleep {
             return world;
         }
     }
@@ -84,9 +82,9 @@ fn sleeping_body_wakes_when_added_elsewhere() {
         .remove(world.nth_soft_body(0).unwrap())
         .unwrap()
         .translated([0.0, 3.0, 0.0]);
-    world.add_soft_body(body);
+    let id = world.add_soft_body(body);
     step(&mut world, 30);
-    let view = world.soft_bodies().first().unwrap().piece_views()[0];
+    let view = world.soft_bodies()[id].piece_views()[0];
     assert!(!view.asleep && view.low[1] < 2.5, "{view:?}");
 }
 
@@ -239,7 +237,7 @@ fn coupled_box_and_capsule_push_and_stop_at_floor() {
         },
     ] {
         let mut world = world::<Dim2>();
-        world.add_soft_body(ball(12));
+        let id = world.add_soft_body(ball(12));
         let plate = RigidBody::new(form, [0.5, 1.2, 0.0], MotionType::default());
         let plate = world.add_rigid_body(plate).unwrap();
         for tick in 0..60u8 {
@@ -251,7 +249,7 @@ fn coupled_box_and_capsule_push_and_stop_at_floor() {
         }
         let felt = world.rigid_bodies()[plate].reactions().last().unwrap();
         assert!(felt.contact[1] > 5.0, "{felt:?}");
-        let high = world.soft_bodies().first().unwrap().piece_views()[0].high[1];
+        let high = world.soft_bodies()[id].piece_views()[0].high[1];
         assert!(high < 0.9, "{form:?}: the ball is {high} m high");
         // Beside the ball, the plate stops on the floor.
         for _ in 0..60 {
@@ -274,15 +272,12 @@ fn fixed_node_falls_when_freed() {
     let mut body = ball::<Dim2>(8);
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     nodes.iter().for_each(|&id| body.fix_node(id));
-    world.add_soft_body(body);
-    let height =
-        |world: &World<Dim2>| world.soft_bodies().first().unwrap().piece_views()[0].centre[1];
+    let soft = world.add_soft_body(body);
+    let height = |world: &World<Dim2>| world.soft_bodies()[soft].piece_views()[0].centre[1];
     let start = height(&world);
     step(&mut world, 120);
     assert_eq!(height(&world), start);
-    let body = world
-        .soft_body_mut(world.nth_soft_body(0).unwrap())
-        .unwrap();
+    let body = world.soft_body_mut(soft).unwrap();
     nodes.iter().for_each(|&id| body.free_node(id));
     step(&mut world, 30);
     assert!(height(&world) < start - 1.0);
@@ -291,13 +286,10 @@ fn fixed_node_falls_when_freed() {
 #[test]
 fn replaced_body_has_no_contacts_with_itself() {
     let mut world = world::<Dim2>();
-    world.add_soft_body(bar([2, 7]));
+    let id = world.add_soft_body(bar([2, 7]));
     world.step();
-    *world
-        .soft_body_mut(world.nth_soft_body(0).unwrap())
-        .unwrap() = bar([2, 8]).with_velocity([0.0, -4.0, 0.0]);
+    *world.soft_body_mut(id).unwrap() = bar([2, 8]).with_velocity([0.0, -4.0, 0.0]);
     let mut touches = 0;
-    let id = world.nth_soft_body(0).unwrap();
     for _ in 0..30 {
         world.step();
         let is_own = |event: &&Event| {

@@ -89,31 +89,19 @@ fn check_coarse<D: Dim>(blade: Blade) {
         Grading::Coarse,
     );
     let mut world = world::<D>();
-    world.add_soft_body(coarse.unwrap());
+    let id = world.add_soft_body(coarse.unwrap());
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let hand =
         RigidBody::coupled_ball([0.5, 1.2, depth], 0.1).with_motion_type(MotionType::Kinematic);
-    world.add_rigid_body(hand).unwrap();
+    let hand = world.add_rigid_body(hand).unwrap();
     for tick in 0..60u16 {
         world
-            .set_target_position(
-                world.nth_target_follower(0).unwrap(),
-                [0.5, 1.2 - 0.02 * f32::from(tick), depth],
-            )
+            .set_target_position(hand, [0.5, 1.2 - 0.02 * f32::from(tick), depth])
             .unwrap();
         assert_eq!(world.step().nodes_split, 0);
     }
-    assert_eq!(
-        world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap(),
-        0
-    );
-    assert!(
-        world
-            .soft_body_mut(world.nth_soft_body(0).unwrap())
-            .unwrap()
-            .crumble()
-            .is_empty()
-    );
+    assert_eq!(world.cut(id, &blade).unwrap(), 0);
+    assert!(world.soft_body_mut(id).unwrap().crumble().is_empty());
     step(&mut world, 5);
     assert_finite(&world);
 }
@@ -155,6 +143,7 @@ fn add_rigid_rejects_out_of_range_hand() {
     let bad = [
         (RigidBody::coupled_ball([0.0, 1e30, 0.0], 0.1), "position"),
         (RigidBody::coupled_ball([0.0; 3], infinite), "radius"),
+        (RigidBody::coupled_ball([0.0; 3], -1.0), "radius"),
         (slippery, "friction"),
         (drive(infinite, stiffness, damping, limit), "mass"),
         (drive(1e-30, stiffness, damping, limit), "mass"),
@@ -171,6 +160,12 @@ fn add_rigid_rejects_out_of_range_hand() {
             .add_rigid_body(RigidBody::fixed(FLOOR, infinite))
             .is_err()
     );
+    let nowhere = FLOOR.translated([0.0, infinite, 0.0]);
+    assert!(
+        world
+            .add_rigid_body(RigidBody::fixed(nowhere, 0.1))
+            .is_err()
+    );
     world
         .add_rigid_body(drive(mass, stiffness, damping, infinite))
         .unwrap();
@@ -179,7 +174,13 @@ fn add_rigid_rejects_out_of_range_hand() {
         .unwrap();
     for hand in 0..2 {
         let hand = world.nth_target_follower(hand).unwrap();
-        assert!(world.set_target_position(hand, [1e38, 0.0, 0.0]).is_err());
+        for nowhere in [1e38, f32::NAN] {
+            assert!(
+                world
+                    .set_target_position(hand, [nowhere, 0.0, 0.0])
+                    .is_err()
+            );
+        }
         assert!(world.set_target_position(hand, [1e6, -1e6, 0.0]).is_ok());
     }
     world.step();
@@ -204,12 +205,12 @@ fn plane_world_ignores_third_coordinates() {
     for shape in shapes {
         let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         world.add_rigid_body(RigidBody::fixed(shape, 0.5)).unwrap();
-        world.add_soft_body(ball(12).translated([0.0, 0.02, 0.0]));
+        let id = world.add_soft_body(ball(12).translated([0.0, 0.02, 0.0]));
         let hand = RigidBody::coupled_ball([0.5, 0.9, 0.05], 0.1);
         world.add_rigid_body(hand).unwrap();
         step(&mut world, 30);
         assert_finite(&world);
-        let low = world.soft_bodies().first().unwrap().piece_views()[0].low[1];
+        let low = world.soft_bodies()[id].piece_views()[0].low[1];
         assert!(low > -0.03, "{shape:?}: {low}");
     }
     let edge_on = Shape::half_space([0.0, 0.0, 1.0], [0.0; 3]);
@@ -239,8 +240,9 @@ fn unused_material_has_no_effect() {
     };
     let hash_with = |materials: &[Material]| {
         let mut world = world::<Dim2>();
-        world.add_soft_body(SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap());
-        assert_eq!(world.soft_bodies().first().unwrap().stiffness_scale(), 1.0);
+        let id = world
+            .add_soft_body(SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap());
+        assert_eq!(world.soft_bodies()[id].stiffness_scale(), 1.0);
         let hand =
             RigidBody::coupled_ball([0.5, 1.1, 0.0], 0.1).with_motion_type(MotionType::Kinematic);
         let hand = world.add_rigid_body(hand).unwrap();
@@ -261,12 +263,9 @@ fn unused_material_has_no_effect() {
 #[test]
 fn cut_reports_positions_of_released_nodes() {
     let mut world = world::<Dim2>();
-    world.add_soft_body(ball(16).translated([3.0, 0.0, 0.0]));
+    let id = world.add_soft_body(ball(16).translated([3.0, 0.0, 0.0]));
     let count = world
-        .cut(
-            world.nth_soft_body(0).unwrap(),
-            &Blade::segment([3.5, -0.1], [3.5, 1.1]),
-        )
+        .cut(id, &Blade::segment([3.5, -0.1], [3.5, 1.1]))
         .unwrap();
     let mut places = 0;
     for event in world.events() {

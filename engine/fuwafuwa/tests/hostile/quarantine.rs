@@ -38,14 +38,11 @@ fn quarantine_restores_positions_of_torn_piece() {
     world.add_soft_body(ball(24).translated([5.0, 0.0, 0.0]));
     let hand =
         RigidBody::coupled_ball([5.5, 1.1, 0.0], 0.08).with_motion_type(MotionType::Kinematic);
-    world.add_rigid_body(hand).unwrap();
+    let hand = world.add_rigid_body(hand).unwrap();
     let mut both = 0;
     for tick in 0..40u16 {
         world
-            .set_target_position(
-                world.nth_target_follower(0).unwrap(),
-                [5.5, 1.1 - 0.03 * f32::from(tick), 0.0],
-            )
+            .set_target_position(hand, [5.5, 1.1 - 0.03 * f32::from(tick), 0.0])
             .unwrap();
         world.step();
         let mut doomed = world.clone();
@@ -99,15 +96,12 @@ fn quarantine_leaves_neighbours_unaffected() {
 #[test]
 fn piece_detached_from_quarantined_one_is_quarantined() {
     let mut world = world::<Dim2>();
-    world.add_soft_body(ball(12).with_velocity([f32::NAN, 0.0, 0.0]));
+    let id = world.add_soft_body(ball(12).with_velocity([f32::NAN, 0.0, 0.0]));
     world.step();
     world
-        .cut(
-            world.nth_soft_body(0).unwrap(),
-            &Blade::segment([0.5, -1.0], [0.5, 2.0]),
-        )
+        .cut(id, &Blade::segment([0.5, -1.0], [0.5, 2.0]))
         .unwrap();
-    let views = world.soft_bodies().first().unwrap().piece_views();
+    let views = world.soft_bodies()[id].piece_views();
     assert_eq!(views.len(), 2);
     assert!(views.iter().all(|view| view.asleep && view.quarantined));
 }

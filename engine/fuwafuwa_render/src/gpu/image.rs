@@ -4,18 +4,22 @@ use super::Renderer;
 use super::targets::{clear, new_texture};
 use crate::frame::Frame;
 use fuwafuwa::{Dim2, World};
-use std::fmt;
 use std::future::poll_fn;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::{Poll, Waker};
 use wgpu::*;
 
 /// Reason why an image could not be rendered.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum ImageError {
     /// The renderer's target format is neither Rgba8 nor Bgra8.
+    #[error("unsupported image format: expected Rgba8 or Bgra8, the renderer draws in {0:?}")]
     Format(TextureFormat),
     /// The image is larger than the device allows.
+    #[error(
+        "image too large: {} x {} pixels requested, the device allows {side} pixels per side and {bytes} bytes in total",
+        size[0], size[1]
+    )]
     Size {
         /// Requested size [px].
         size: [u32; 2],
@@ -25,36 +29,15 @@ pub enum ImageError {
         bytes: u64,
     },
     /// Waiting for the device failed.
+    #[error("waiting for the GPU failed: {0}")]
     Poll(PollError),
     /// Mapping the image buffer failed.
+    #[error("mapping the image buffer failed: {0}")]
     Map(BufferAsyncError),
     /// Reading the mapped image buffer failed.
+    #[error("reading the image buffer failed: {0}")]
     Range(MapRangeError),
 }
-
-impl fmt::Display for ImageError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Format(format) => write!(
-                f,
-                "unsupported image format: expected Rgba8 or Bgra8, the renderer draws in {format:?}"
-            ),
-            Self::Size {
-                size: [width, height],
-                side,
-                bytes,
-            } => write!(
-                f,
-                "image too large: {width} x {height} pixels requested, the device allows {side} pixels per side and {bytes} bytes in total"
-            ),
-            Self::Poll(error) => write!(f, "waiting for the GPU failed: {error}"),
-            Self::Map(error) => write!(f, "mapping the image buffer failed: {error}"),
-            Self::Range(error) => write!(f, "reading the image buffer failed: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for ImageError {}
 
 impl Renderer {
     /// Draws a world into an image of `size` pixels and waits for the result. Returns red, green, blue and

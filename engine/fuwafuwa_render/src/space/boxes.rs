@@ -159,7 +159,7 @@ mod tests {
     fn small_view_matches_element_view() {
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
-        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let hand = RigidBody::coupled_ball([0.5, 1.3, 0.5], 0.3);
         let hand = world.add_rigid_body(hand).unwrap();
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
@@ -168,7 +168,7 @@ mod tests {
             world.set_target_position(hand, [0.5, 0.8, 0.4]).unwrap();
             world.step();
         }
-        let body = world.soft_bodies().first().unwrap();
+        let body = &world.soft_bodies()[soft];
         let mut most = 0.0f32;
         for (id, element) in body.mesh().elements().filter(|(_, of)| of.cell.level == 0) {
             let exact = body.element_view(id).unwrap();
@@ -186,7 +186,7 @@ mod tests {
     fn boxes_fill_the_uncut_part_in_any_orientation() {
         let grid = VoxelGrid::<Dim3>::cube(8, 1.0).unwrap();
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
-        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let volume = |world: &World<Dim3>, share: f32| {
             let towards = [0.6, 0.0, 0.8];
             let (palette, cut) = (
@@ -199,7 +199,7 @@ mod tests {
             let mut boxes = Boxes::default();
             boxes.add(
                 0,
-                world.soft_bodies().first().unwrap(),
+                &world.soft_bodies()[soft],
                 &palette,
                 ElementColour::Level,
                 &[],
@@ -227,9 +227,7 @@ mod tests {
         assert!((0.84..0.97).contains(&volume(&world, 1.0).0));
         assert_eq!(volume(&world, 0.0).0, 0.0);
         // Rotates the body onto its side and moves it away.
-        let body = world
-            .soft_body_mut(world.nth_soft_body(0).unwrap())
-            .unwrap();
+        let body = world.soft_body_mut(soft).unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             let [x, y, z] = body.node_state(id).0;

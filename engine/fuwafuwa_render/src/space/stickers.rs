@@ -192,7 +192,7 @@ mod tests {
     fn sticker_lies_on_the_skin_and_on_torn_faces() {
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(32, 1.0).unwrap();
-        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let outline = [[-0.6, -0.6], [0.6, -0.6], [0.6, 0.6], [-0.6, 0.6]].to_vec();
         let mark = Mark {
             outline,
@@ -209,7 +209,7 @@ mod tests {
         };
         let mut skin = Skin::default();
         let mut stuck = |world: &World<Dim3>, sticker: &Sticker| {
-            let body = world.soft_bodies().first().unwrap();
+            let body = &world.soft_bodies()[soft];
             skin.update(body, &Palette::candy().materials);
             let mut stickers = Stickers::default();
             stickers.add(sticker, &skin, body, [0.5, 0.5, 9.0]);
@@ -230,8 +230,8 @@ mod tests {
             across,
             along,
         };
-        world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap();
-        let body = world.soft_bodies().first().unwrap();
+        world.cut(soft, &blade).unwrap();
+        let body = &world.soft_bodies()[soft];
         let nodes = body.mesh().nodes();
         let inside = nodes.min_by(|a, b| {
             let away = |id| length(minus(body.node_state(id).0, [0.5; 3]));

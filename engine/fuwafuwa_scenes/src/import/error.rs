@@ -74,15 +74,30 @@ impl fmt::Display for FilePosition {
 /// Position and problem; the caller adds the name of the file.
 pub type PositionedProblem = (FilePosition, Problem);
 
+/// Returns the problem of content that is not as expected.
 pub fn unexpected(
     place: FilePosition,
     expected: impl Into<String>,
-    found: impl Into<String>,
+    found: impl ToString,
 ) -> PositionedProblem {
-    let (expected, found) = (expected.into(), found.into());
+    let (expected, found) = (expected.into(), found.to_string());
     (place, Problem::Unexpected { expected, found })
 }
 
+/// Returns the problem of a number above its limit. `what` is the unit of the number, in the plural.
+pub fn too_large(
+    place: FilePosition,
+    what: &'static str,
+    found: u64,
+    limit: u64,
+) -> PositionedProblem {
+    (place, Problem::TooLarge { what, found, limit })
+}
+
+/// Adds the name of the file to a problem.
+///
+/// # Errors
+/// The problem of `outcome`.
 pub fn in_file<T>(file: &str, outcome: Result<T, PositionedProblem>) -> Result<T, ImportError> {
     outcome.map_err(|(place, problem)| ImportError {
         file: file.to_owned(),

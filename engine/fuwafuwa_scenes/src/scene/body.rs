@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 /// A `[[material]]` table. Missing fields take the values of [`Material::default`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub struct MaterialText {
     /// Young's modulus [Pa].
     pub young: Option<f64>,
@@ -28,19 +28,16 @@ pub struct MaterialText {
     /// Fracture toughness [Pa √m].
     pub toughness: Option<f32>,
     /// Yield strain, beyond which the deformation is permanent; purely elastic if missing.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub yield_strain: Option<f32>,
     /// Limit of permanent deformation: the factor by which the material can be flattened for good.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plastic_limit: Option<f32>,
     /// Whether the material never tears: infinite strength and toughness.
-    #[serde(default)]
     pub unbreakable: bool,
 }
 
 /// A `[[body]]` table. It requires exactly one of `shape`, `file`, `voxels` and `state`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub struct BodyText {
     /// Basic shape that fills the grid.
     pub shape: Option<Form>,
@@ -50,62 +47,47 @@ pub struct BodyText {
     /// Content of `file` in base64, once it is embedded.
     pub content: Option<String>,
     /// List of voxels in place of a shape.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voxels: Option<VoxelsText>,
     /// Complete state of a body in place of a shape, with cracks, deformation and velocity; see
     /// [`Scene::of_world`].
     ///
     /// [`Scene::of_world`]: super::Scene::of_world
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub state: Option<String>,
     /// Voxels across; for a silhouette the maximum; not allowed for a model.
     pub n: Option<usize>,
     /// Width of the grid [m]; for a file, length of its longest side. Default 1.
-    #[serde(default = "one")]
     pub width: f32,
     /// Number of voxels on each axis in multiples of `n`, e.g. [3.0, 1.0, 1.0]; only for a box or an empty
     /// grid.
-    #[serde(default = "unit_proportions")]
     pub proportions: [f32; 3],
     /// Number of the material, default 1; not allowed for models, nor for a picture with `colours`.
     pub material: Option<u8>,
     /// Material number for each colour of the file (`"#d04030" = 2`; the nearest colour decides) or palette
     /// index of a model (`"79" = 2`); 0 leaves the voxel empty. Without `colours`, the palette indices of a
     /// model are material numbers.
-    #[serde(default)]
     pub colours: BTreeMap<String, u8>,
     /// Changes to the grid, applied in order.
-    #[serde(default)]
     pub part: Vec<PartText>,
     /// Position of the low corner [m].
-    #[serde(default)]
     pub at: [f32; 3],
     /// Velocity [m/s].
-    #[serde(default)]
     pub velocity: [f32; 3],
     /// Rotation about the low corner, before the translation: axis times angle [rad]; in 2D only about the
     /// third axis.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turned: Option<[f32; 3]>,
     /// Factor on gravity for this body; default 1.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_scale: Option<f32>,
     /// Contact layers.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layers: Option<LayersText>,
     /// Arbitrary number of the user.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub user_data: Option<u64>,
     /// Spacing of planes, on every axis, along which the body is cut [m].
     pub diced: Option<f32>,
     /// Whether the body is cut into single voxels.
-    #[serde(default)]
     pub crumbled: bool,
     /// True for elements of single voxels everywhere, for comparison with graded elements.
-    #[serde(default)]
     pub uniform: bool,
     /// Whether the elastic force is that of the paper instead of the corotational virtual element law.
-    #[serde(default)]
     pub paper_law: bool,
 }
 
@@ -287,8 +269,8 @@ impl Default for BodyText {
             voxels: None,
             state: None,
             n: None,
-            width: one(),
-            proportions: unit_proportions(),
+            width: 1.0,
+            proportions: [1.0; 3],
             material: None,
             colours: BTreeMap::new(),
             part: Vec::new(),
@@ -304,12 +286,4 @@ impl Default for BodyText {
             paper_law: false,
         }
     }
-}
-
-fn one() -> f32 {
-    1.0
-}
-
-fn unit_proportions() -> [f32; 3] {
-    [1.0; 3]
 }

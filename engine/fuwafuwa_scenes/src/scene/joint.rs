@@ -13,16 +13,12 @@ pub struct JointText {
     /// The two anchors.
     pub ends: Vec<JointAnchorText>,
     /// Spring stiffness [N/m]; required for a spring.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f32>,
     /// Spring damping [N s/m]; default 0.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<f32>,
     /// Rest length of a spring or maximum length of a rope [m]; required for both.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length: Option<f32>,
     /// Force at which the joint breaks [N]; unbreakable if missing.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub breaking_force: Option<f32>,
 }
 
@@ -44,22 +40,17 @@ pub enum JointKindText {
 #[serde(deny_unknown_fields)]
 pub struct JointAnchorText {
     /// Number of a `[[body]]`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<usize>,
     /// Number of an `[[obstacle]]`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub obstacle: Option<usize>,
     /// Number of a `[[hand]]`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hand: Option<usize>,
     /// Number of a `[[rigid]]`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rigid: Option<usize>,
     /// Position in the world [m].
     pub at: [f32; 3],
     /// Radius around `at` in which the nodes of a body are attached [m]; without nodes in it, the nearest
     /// node is attached.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f32>,
 }
 

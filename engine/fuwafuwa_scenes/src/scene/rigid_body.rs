@@ -11,67 +11,48 @@ use serde::{Deserialize, Serialize};
 /// A `[[rigid]]` table: one of the four shapes, given as if it stood at the origin, and its motion type; or
 /// only a `state`, which contains everything.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub struct RigidBodyText {
     /// Half-space below a plane; only for fixed rigid bodies.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub half_space: Option<HalfSpaceText>,
     /// Axis-aligned box.
-    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "box")]
     pub boxed: Option<BoxText>,
     /// Capsule.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub capsule: Option<CapsuleText>,
     /// Ball.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ball: Option<BallText>,
     /// Complete state of a rigid body; see [`Scene::of_world`](super::Scene::of_world).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub state: Option<String>,
     /// Motion type, default fixed.
-    #[serde(default)]
     pub drive: MotionTypeText,
     /// Mass [kg]; required for `drive = "free"`, allowed for `drive = "hand"`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass: Option<f32>,
     /// Stiffness of the coupling spring [N/m]; only for `drive = "hand"`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f32>,
     /// Damping ratio of the coupling spring; only for `drive = "hand"`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<f32>,
     /// Maximum force of the coupling spring [N]; only for `drive = "hand"`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<f32>,
     /// Translation from the origin [m].
-    #[serde(default)]
     pub at: [f32; 3],
     /// Rotation before the translation: axis times angle [rad]; in 2D only about the third axis.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turned: Option<[f32; 3]>,
     /// Exact rotation, in place of `turned`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<Rotation>,
     /// Velocity [m/s]; only for `drive = "free"`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity: Option<[f32; 3]>,
     /// Angular velocity [rad/s]; only for `drive = "free"`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spin: Option<[f32; 3]>,
     /// Coulomb friction; default 0.5 for dynamic rigid bodies, otherwise 0.2.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<f32>,
     /// Coefficient of restitution against other rigid bodies, default 0.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub restitution: Option<f32>,
     /// Whether the body is a sensor: it has no contact forces and reports bodies that enter and exit.
-    #[serde(default)]
     pub sensor: bool,
     /// Contact layers.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layers: Option<LayersText>,
     /// Arbitrary number of the user.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub user_data: Option<u64>,
 }
 

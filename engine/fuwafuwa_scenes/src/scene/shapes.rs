@@ -70,13 +70,11 @@ pub struct BallText {
 #[serde(deny_unknown_fields)]
 pub struct HandText {
     /// Radius of a ball (2D: a disc) [m].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f32>,
     /// Axis-aligned box, relative to the target.
-    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "box")]
     pub boxed: Option<BoxText>,
     /// Capsule, relative to the target.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub capsule: Option<CapsuleText>,
     /// Whether the hand is kinematic and follows its path exactly; otherwise a spring pulls it along.
     #[serde(default)]

@@ -178,56 +178,35 @@ checked! {
     }
 }
 
-/// Duration of 1 to 600 s.
-#[derive(Copy, Clone, Debug, PartialEq, Deserialize)]
-#[serde(try_from = "f32")]
-pub struct Seconds(pub f32);
+checked! {
+    /// Duration of 1 to 600 s.
+    #[derive(Copy)]
+    Seconds(f32), f32, |seconds| match (1.0..=600.0).contains(&seconds) {
+        true => Ok(seconds),
+        false => Err(format!("expected 1 to 600 seconds, found {seconds}")),
+    }
+}
+checked! {
+    /// Fraction, 0 to 1.
+    #[derive(Copy)]
+    Fraction(f32), f32, |share| match (0.0..=1.0).contains(&share) {
+        true => Ok(share),
+        false => Err(format!("expected a number from 0 to 1, found {share}")),
+    }
+}
+checked! {
+    /// Time of day, `10:00`.
+    #[derive(Copy, Eq)]
+    Hour(Time), String, |text| {
+        let wrong = |_| format!("expected a time of day such as \"10:00\", found {text:?}");
+        Time::strptime("%H:%M", &text).map_err(wrong)
+    }
+}
 
 impl Seconds {
     /// Returns the longer of two durations.
     pub fn max(self, other: Self) -> Self {
         Self(self.0.max(other.0))
-    }
-}
-
-impl TryFrom<f32> for Seconds {
-    type Error = String;
-
-    fn try_from(seconds: f32) -> Result<Self, String> {
-        match (1.0..=600.0).contains(&seconds) {
-            true => Ok(Self(seconds)),
-            false => Err(format!("expected 1 to 600 seconds, found {seconds}")),
-        }
-    }
-}
-
-/// Fraction, 0 to 1.
-#[derive(Copy, Clone, Debug, PartialEq, Deserialize)]
-#[serde(try_from = "f32")]
-pub struct Fraction(pub f32);
-
-impl TryFrom<f32> for Fraction {
-    type Error = String;
-
-    fn try_from(share: f32) -> Result<Self, String> {
-        match (0.0..=1.0).contains(&share) {
-            true => Ok(Self(share)),
-            false => Err(format!("expected a number from 0 to 1, found {share}")),
-        }
-    }
-}
-
-/// Time of day, `10:00`.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, Deserialize)]
-#[serde(try_from = "String")]
-pub struct Hour(pub Time);
-
-impl TryFrom<String> for Hour {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        let wrong = |_| format!("expected a time of day such as \"10:00\", found {text:?}");
-        Time::strptime("%H:%M", &text).map(Self).map_err(wrong)
     }
 }
 
@@ -409,8 +388,8 @@ mod tests {
     #[test]
     fn closing_before_opening_means_open_over_midnight() {
         let hours = |open: &str, close: &str| Hours {
-            open: Hour::try_from(open.to_string()).unwrap(),
-            close: Hour::try_from(close.to_string()).unwrap(),
+            open: Hour(Time::strptime("%H:%M", open).unwrap()),
+            close: Hour(Time::strptime("%H:%M", close).unwrap()),
         };
         let at = |hour| Time::constant(hour, 0, 0, 0);
         let day = hours("10:00", "18:00");

@@ -7,11 +7,12 @@
 //! - [`home`]: QR code of a round
 //! - [`staff`]: staff access
 //! - [`health`]: frame times
+//! - [`memory`]: logbook, best rounds and clips
 
 pub mod config;
 pub mod health;
 pub mod home;
-mod memory;
+pub mod memory;
 pub mod presence;
 pub mod staff;
 mod visit;
@@ -31,7 +32,7 @@ use staff::{Entrance, PinResult, StaffPage};
 use std::sync::Arc;
 use std::time::Instant;
 use sticks::DeviceId;
-use tamaire_logbook::{Health, Kind, RoundEnd, Today};
+use tamaire_logbook::{Kind, RoundEnd};
 use tamaire_play::Level;
 use visit::Visit;
 
@@ -86,7 +87,8 @@ pub struct Stand {
     /// Time for which the result has been shown [s].
     result_since: f32,
     file: TextFile,
-    memory: Memory,
+    /// Logbook and other storage.
+    pub memory: Memory,
     presence: Presence,
     visit: Option<Visit>,
     /// Clock that is not affected by changes of the system clock.
@@ -260,7 +262,7 @@ impl Stand {
     }
 
     /// Ends the visit and resets the stand for the next visitor.
-    fn end_and_reset(&mut self, game: &mut Game) {
+    pub fn end_and_reset(&mut self, game: &mut Game) {
         self.end_visit(game, RoundEnd::Left);
         self.freshen(game);
         self.phase = Phase::Attract;
@@ -399,11 +401,6 @@ impl Stand {
         self.entrance.pause(self.clock.now())
     }
 
-    /// Leaves the PIN page or the staff pages.
-    pub fn leave(&mut self, game: &mut Game) {
-        self.end_and_reset(game);
-    }
-
     /// Applies a change by staff to the stand and to its configuration file.
     pub fn change(&mut self, game: &mut Game, change: &ConfigChange) {
         let changed = self.file.read_or(config::DEFAULT_CONFIG);
@@ -421,31 +418,6 @@ impl Stand {
             }
             Err(error) => self.answer = Some(error),
         }
-    }
-
-    /// Requests a copy of the logbook in its folder.
-    pub fn export(&mut self) {
-        self.memory.export();
-    }
-
-    /// Returns the result of [`Self::export`] once: the path, or the error.
-    pub fn take_exported(&mut self) -> Option<Result<String, String>> {
-        self.memory.take_exported()
-    }
-
-    /// Figures of the day, as of the last query.
-    pub fn today(&self) -> Today {
-        self.memory.today()
-    }
-
-    /// State of the logbook recorder.
-    pub fn logbook(&self) -> Health {
-        self.memory.health()
-    }
-
-    /// Free disk space in the folder of the logbook [bytes]. `None` if unknown.
-    pub fn room(&self) -> Option<u64> {
-        self.memory.room()
     }
 
     /// Ends the stand, whether staff ended it or not. Pending entries are written when `self` is dropped.

@@ -130,7 +130,7 @@ fn is_deed(event: &Event) -> bool {
 mod tests {
     use super::super::config::Seconds;
     use super::*;
-    use sticks::{Device, DeviceInfo, Labels};
+    use sticks::{Device, DeviceInfo};
 
     const TIMES: Times = Times {
         rest: Seconds(20.0),
@@ -139,12 +139,7 @@ mod tests {
     };
 
     fn stick(lean: f32) -> Snapshot {
-        let about = DeviceInfo {
-            name: "worn".into(),
-            guid: String::new(),
-            labels: Labels::Unknown,
-        };
-        let mut device = Device::at_rest(DeviceId(1), about, 2, 0, 0);
+        let mut device = Device::at_rest(DeviceId(1), DeviceInfo::default(), 2, 0, 0);
         device.axes[0] = lean;
         Snapshot {
             devices: vec![device],

@@ -126,12 +126,7 @@ mod tests {
     use sticks::{DeviceInfo, Pad};
 
     fn pad(id: u32, right: [f32; 2], triggers: [f32; 2]) -> Device {
-        let about = DeviceInfo {
-            name: String::new(),
-            guid: String::new(),
-            labels: sticks::Labels::default(),
-        };
-        let mut device = Device::at_rest(DeviceId(id), about, 6, 12, 0);
+        let mut device = Device::at_rest(DeviceId(id), DeviceInfo::default(), 6, 12, 0);
         let mut held = Pad::default();
         (held.right, held.triggers) = (right, triggers);
         device.pad = Some(held);

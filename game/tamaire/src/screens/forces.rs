@@ -29,7 +29,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let area = page_rect(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         let response = header(ui, &theme, said.back, said.forces);
-        super::play::focus_first(ui, &response);
+        super::widgets::focus_first(ui, &response);
         back |= response.clicked();
         page(ui, "forces", 860.0, |ui| {
             card(ui, &theme, |ui| {

@@ -50,7 +50,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                         ui.vertical(|ui| {
                             let response = tile(ui, game, maps, index, size);
                             if index == game.chosen {
-                                super::play::focus_first(ui, &response);
+                                super::widgets::focus_first(ui, &response);
                             }
                             if response.clicked() {
                                 wanted = Some(LevelAction::Play(index));

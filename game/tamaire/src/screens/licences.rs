@@ -23,7 +23,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let area = page_rect(ui);
     ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {
         let response = header(ui, &theme, said.back, said.licences);
-        super::play::focus_first(ui, &response);
+        super::widgets::focus_first(ui, &response);
         back |= response.clicked();
         page(ui, "licences", 820.0, |ui| {
             if cfg!(target_family = "wasm") {

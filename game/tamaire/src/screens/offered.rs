@@ -1,14 +1,13 @@
 //! Screen for a round that was opened from a link, to watch it or to race it.
 
 use super::icons;
-use super::widgets::{Act, card, column, dim_background};
+use super::widgets::{Act, card, column, dim_background, menu, perform};
 use crate::game::Game;
 use crate::look::Stage;
-use app_shell::widgets::{ButtonStyle, button, fitted};
+use app_shell::widgets::fitted;
 use egui::{Rect, Sense, Stroke, StrokeKind, Ui, vec2};
 use std::sync::Arc;
 use tamaire_play::{Replay, ReplayError};
-use tamaire_sound::Menu;
 
 /// Size of the level's thumbnail, and of a button [points].
 const PICTURE: egui::Vec2 = vec2(300.0, 200.0);
@@ -21,8 +20,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         return game.go_back();
     };
     let maps = stage.maps(&game.pictured(), &theme);
-    let mut wanted: Option<Act> = None;
-    column(ui, 400.0, 0.5, |ui| {
+    let wanted = column(ui, 400.0, 0.5, |ui| {
         card(ui, &theme, |ui| {
             let line = |ui: &mut Ui, text: &str, size: f32, ink| {
                 let galley = fitted(ui.painter(), text, size, BUTTON.x, ink);
@@ -54,29 +52,10 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                 (said.race, |game| take(game, Game::race)),
                 (said.back, Game::go_back),
             ];
-            for (index, (text, act)) in options.into_iter().enumerate() {
-                let weight = match index {
-                    0 => ButtonStyle::Main,
-                    _ => ButtonStyle::Other,
-                };
-                let response = button(ui, &theme, text, BUTTON, weight);
-                if index == 0 {
-                    super::play::focus_first(ui, &response);
-                }
-                if response.clicked() {
-                    wanted = Some(act);
-                }
-                ui.add_space(10.0);
-            }
-        });
+            menu(ui, &theme, BUTTON, &options)
+        })
     });
-    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
-        wanted = Some(Game::go_back);
-    }
-    if let Some(act) = wanted {
-        game.blip(Menu::Confirm);
-        act(game);
-    }
+    perform(game, ui, wanted, Game::go_back);
 }
 
 fn take(game: &mut Game, act: fn(&mut Game, Arc<Replay>) -> Result<(), ReplayError>) {

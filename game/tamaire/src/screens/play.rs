@@ -3,7 +3,7 @@
 use super::{hud, offers};
 use crate::game::{Game, Screen};
 use crate::look::{DrawOptions, Hint, Stage, view_of_level};
-use egui::{Response, Ui};
+use egui::Ui;
 
 /// Draws the world behind the current screen.
 pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
@@ -64,12 +64,5 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let is_seen = game.bout.round().progress().outcome.is_none() || game.bout.has_cheered();
     if !game.bout.session.is_played() && game.bout.session.is_over() && is_seen {
         game.leave_round();
-    }
-}
-
-/// Focuses a widget if nothing else has the focus, so that a pad alone can navigate from there.
-pub(super) fn focus_first(ui: &Ui, response: &Response) {
-    if ui.memory(|memory| memory.focused().is_none()) {
-        response.request_focus();
     }
 }

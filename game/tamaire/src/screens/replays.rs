@@ -40,7 +40,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let area = page_rect(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         let response = header_to_open(ui, game, said.replays);
-        super::play::focus_first(ui, &response);
+        super::widgets::focus_first(ui, &response);
         back |= response.clicked();
         page(ui, "replays", 960.0, |ui| {
             if game.shelf.is_empty() {

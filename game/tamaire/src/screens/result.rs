@@ -1,7 +1,7 @@
 //! Result of a round, with a challenge to try the other route.
 
 use super::icons;
-use super::widgets::{Act, card, column_beside, dim_background};
+use super::widgets::{Act, card, column_beside, dim_background, perform};
 use crate::game::{Game, Screen};
 use crate::words::Words;
 use app_shell::Theme;
@@ -9,7 +9,6 @@ use app_shell::widgets::{ButtonStyle, button, fitted};
 use egui::{Align, Layout, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
 use tamaire_play::{Level, Outcome, Route, Wish};
-use tamaire_sound::Menu;
 
 /// Width of the card [points].
 const WIDE: f32 = 490.0;
@@ -29,7 +28,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let basket = level.game().basket.as_ref();
     let is_right = basket.is_some_and(|basket| basket.centre[0] > 0.0);
     let across = if is_right { 0.05 } else { 0.95 };
-    let mut wanted = column_beside(ui, WIDE, (across, false), |ui| {
+    let wanted = column_beside(ui, WIDE, (across, false), |ui| {
         card(ui, &theme, |ui| {
             ui.spacing_mut().item_spacing = Vec2::ZERO;
             headline(ui, &theme, said, outcome.route);
@@ -57,13 +56,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             buttons(ui, &theme, said, is_reached)
         })
     });
-    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
-        wanted = Some(to_levels);
-    }
-    if let Some(act) = wanted {
-        game.blip(Menu::Confirm);
-        act(game);
-    }
+    perform(game, ui, wanted, to_levels);
 }
 
 /// Returns the assists of the level as text, if there are any.
@@ -151,7 +144,7 @@ fn buttons(ui: &mut Ui, theme: &Theme, said: &Words, is_reached: bool) -> Option
         (again, next)
     };
     let response = button(ui, theme, main.0, vec2(width, 60.0), ButtonStyle::Main);
-    super::play::focus_first(ui, &response);
+    super::widgets::focus_first(ui, &response);
     if response.clicked() {
         wanted = Some(main.1);
     }

@@ -23,76 +23,46 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let area = page_rect(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         let response = header(ui, &theme, said.back, said.settings);
-        super::play::focus_first(ui, &response);
+        super::widgets::focus_first(ui, &response);
         back |= response.clicked();
         page(ui, "settings", 820.0, |ui| {
             let options = [(false, said.off), (true, said.on)];
+            let switch = |ui: &mut Ui, name: &str, is_on: &mut bool| {
+                choice(ui, &theme, name, is_on, &options);
+            };
+            let share = |ui: &mut Ui, name: &str, value: &mut f32| {
+                slider(ui, &theme, name, value, 0.0, 1.0, 0.05);
+            };
             card(ui, &theme, |ui| {
                 ui.set_width(ui.available_width());
-                choice(
-                    ui,
-                    &theme,
-                    said.language,
-                    &mut chosen.language,
-                    &Language::ALL,
-                );
+                let language = &mut chosen.language;
+                choice(ui, &theme, said.language, language, &Language::ALL);
             });
             section(ui, &theme, said.sound_section, |ui| {
-                slider(ui, &theme, said.volume, &mut chosen.volume, 0.0, 1.0, 0.05);
-                slider(
-                    ui,
-                    &theme,
-                    said.effects,
-                    &mut chosen.effects,
-                    0.0,
-                    1.0,
-                    0.05,
-                );
-                slider(ui, &theme, said.music, &mut chosen.music, 0.0, 1.0, 0.05);
-                slider(
-                    ui,
-                    &theme,
-                    said.interface,
-                    &mut chosen.interface,
-                    0.0,
-                    1.0,
-                    0.05,
-                );
+                share(ui, said.volume, &mut chosen.volume);
+                share(ui, said.effects, &mut chosen.effects);
+                share(ui, said.music, &mut chosen.music);
+                share(ui, said.interface, &mut chosen.interface);
             });
             section(ui, &theme, said.play_section, |ui| {
                 slider(ui, &theme, said.speed, &mut chosen.speed, 0.5, 1.0, 0.05);
-                slider(
-                    ui,
-                    &theme,
-                    said.sensitivity,
-                    &mut chosen.sensitivity,
-                    0.3,
-                    3.0,
-                    0.1,
-                );
-                choice(
-                    ui,
-                    &theme,
-                    said.stick_places,
-                    &mut chosen.stick_places,
-                    &options,
-                );
-                choice(ui, &theme, said.race_best, &mut chosen.race_best, &options);
-                let strength = &mut chosen.haptics;
-                slider(ui, &theme, said.haptics, strength, 0.0, 1.0, 0.05);
+                let sensitivity = &mut chosen.sensitivity;
+                slider(ui, &theme, said.sensitivity, sensitivity, 0.3, 3.0, 0.1);
+                switch(ui, said.stick_places, &mut chosen.stick_places);
+                switch(ui, said.race_best, &mut chosen.race_best);
+                share(ui, said.haptics, &mut chosen.haptics);
                 let size = vec2(ui.available_width(), 44.0);
                 to_forces = button(ui, &theme, said.try_forces, size, ButtonStyle::Other).clicked();
             });
             section(ui, &theme, said.hands_section, |ui| {
-                let toggles = &mut chosen.toggle_keys;
-                choice(ui, &theme, said.toggle_keys, toggles, &options);
-                choice(ui, &theme, said.dwell, &mut chosen.dwell, &options);
+                switch(ui, said.toggle_keys, &mut chosen.toggle_keys);
+                switch(ui, said.dwell, &mut chosen.dwell);
                 scanning(ui, &theme, said, &mut chosen.scanning);
             });
             section(ui, &theme, said.assists_section, |ui| {
                 for assist in [Assist::WiderBasket, Assist::Unbreakable] {
                     let mut is_on = chosen.assists.contains(&assist);
-                    choice(ui, &theme, (said.assist)(assist), &mut is_on, &options);
+                    switch(ui, (said.assist)(assist), &mut is_on);
                     match is_on {
                         true => chosen.assists.insert(assist),
                         false => chosen.assists.remove(&assist),
@@ -100,47 +70,15 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 }
             });
             section(ui, &theme, said.look_section, |ui| {
-                choice(
-                    ui,
-                    &theme,
-                    said.full_screen,
-                    &mut chosen.full_screen,
-                    &options,
-                );
-                choice(
-                    ui,
-                    &theme,
-                    said.reduced_motion,
-                    &mut chosen.reduced_motion,
-                    &options,
-                );
-                choice(
-                    ui,
-                    &theme,
-                    said.colour_safe,
-                    &mut chosen.colour_safe,
-                    &options,
-                );
-                slider(
-                    ui,
-                    &theme,
-                    said.text_size,
-                    &mut chosen.text_size,
-                    0.8,
-                    1.6,
-                    0.1,
-                );
+                switch(ui, said.full_screen, &mut chosen.full_screen);
+                switch(ui, said.reduced_motion, &mut chosen.reduced_motion);
+                switch(ui, said.colour_safe, &mut chosen.colour_safe);
+                let text_size = &mut chosen.text_size;
+                slider(ui, &theme, said.text_size, text_size, 0.8, 1.6, 0.1);
             });
             controls(ui, game, &mut chosen);
-            if button(
-                ui,
-                &theme,
-                said.reset,
-                vec2(240.0, 48.0),
-                ButtonStyle::Other,
-            )
-            .clicked()
-            {
+            let size = vec2(240.0, 48.0);
+            if button(ui, &theme, said.reset, size, ButtonStyle::Other).clicked() {
                 let usual = Settings::default();
                 chosen = Settings {
                     language: chosen.language,
@@ -155,14 +93,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 };
             }
             ui.add_space(8.0);
-            to_licences = button(
-                ui,
-                &theme,
-                said.licences,
-                vec2(240.0, 48.0),
-                ButtonStyle::Other,
-            )
-            .clicked();
+            to_licences = button(ui, &theme, said.licences, size, ButtonStyle::Other).clicked();
         });
     });
     if chosen != before {
@@ -225,11 +156,7 @@ fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
                 true => said.press_any.to_string(),
                 false => format!("{}: {keys}  ·  {buttons}", (said.action)(action)),
             };
-            let weight = if listens {
-                ButtonStyle::Main
-            } else {
-                ButtonStyle::Other
-            };
+            let weight = ButtonStyle::of(listens);
             let response = button(ui, &theme, &text, vec2(ui.available_width(), 44.0), weight);
             if listens {
                 // While waiting, arrows, Tab and Escape are ordinary keys.

@@ -39,7 +39,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             ui.add_space(8.0);
             let response = button(ui, &theme, text, size, weight);
             if index == 0 {
-                super::play::focus_first(ui, &response);
+                super::widgets::focus_first(ui, &response);
             }
             if response.clicked() {
                 wanted = Some(screen);

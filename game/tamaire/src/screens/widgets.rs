@@ -10,6 +10,7 @@ use egui::{
     Align, Align2, Color32, FocusDirection, FontId, Id, Key, Layout, Pos2, Rect, Response, Role,
     Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
+use tamaire_sound::Menu;
 
 /// Margin between the window and a page [points].
 pub const EDGE: Vec2 = vec2(28.0, 22.0);
@@ -36,6 +37,38 @@ pub fn words(ui: &Ui, at: Pos2, text: &str, size: f32, colour: Color32) {
         FontId::proportional(size),
         colour,
     );
+}
+
+/// Shows the buttons of a menu below each other, with the main one first. Returns the chosen action.
+pub fn menu(ui: &mut Ui, theme: &Theme, size: Vec2, options: &[(&str, Act)]) -> Option<Act> {
+    let mut wanted = None;
+    for (index, &(text, act)) in options.iter().enumerate() {
+        let response = button(ui, theme, text, size, ButtonStyle::of(index == 0));
+        if index == 0 {
+            focus_first(ui, &response);
+        }
+        if response.clicked() {
+            wanted = Some(act);
+        }
+        ui.add_space(10.0);
+    }
+    wanted
+}
+
+/// Performs the chosen action of a menu, or `on_escape` if the Escape key was pressed.
+pub fn perform(game: &mut Game, ui: &Ui, wanted: Option<Act>, on_escape: Act) {
+    let is_escape = ui.input(|input| input.key_pressed(Key::Escape));
+    if let Some(act) = is_escape.then_some(on_escape).or(wanted) {
+        game.blip(Menu::Confirm);
+        act(game);
+    }
+}
+
+/// Focuses a widget if nothing else has the focus, so that a pad alone can navigate from there.
+pub fn focus_first(ui: &Ui, response: &Response) {
+    if ui.memory(|memory| memory.focused().is_none()) {
+        response.request_focus();
+    }
 }
 
 /// Shows contents on a white card.
@@ -146,10 +179,11 @@ pub fn choice<T: Copy + PartialEq>(
         for &(option, text) in options {
             let is_chosen = *value == option;
             // A dot marks the chosen option, not only its colour.
-            let (weight, marked) = match is_chosen {
-                true => (ButtonStyle::Main, mark(text)),
-                false => (ButtonStyle::Other, text.to_string()),
+            let marked = match is_chosen {
+                true => mark(text),
+                false => text.to_string(),
             };
+            let weight = ButtonStyle::of(is_chosen);
             let response = plain_button(ui, theme, &marked, vec2(width, HIGH), weight);
             let role = Role::RadioButton;
             let told = format!("{name}: {text}");

@@ -56,9 +56,9 @@ fn retry_key_restarts_round_at_once() {
 
 #[test]
 fn round_is_won_saved_watched_raced_and_deleted() {
-    let folder = folder("win");
-    let files = Files::in_folder(&folder);
-    let mut window = window(Files::in_folder(&folder));
+    let folder = folder();
+    let files = Files::in_folder(folder.path());
+    let mut window = window(Files::in_folder(folder.path()));
     game(&mut window).start(0);
     win(&mut window);
     let (outcome, is_best) = game(&mut window).bout.won.unwrap();
@@ -159,14 +159,13 @@ fn round_is_won_saved_watched_raced_and_deleted() {
     click(&mut window, "Really?");
     assert!(files.replays().is_empty());
     window.get_by_label_contains("No replays yet");
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
 fn settings_are_saved_and_language_changes_at_once() {
-    let folder = folder("settings");
-    let files = Files::in_folder(&folder);
-    let mut window = window(Files::in_folder(&folder));
+    let folder = folder();
+    let files = Files::in_folder(folder.path());
+    let mut window = window(Files::in_folder(folder.path()));
     click(&mut window, "Settings");
     let slider = egui::accesskit::Role::Slider;
     let before = game(&mut window).settings.volume;
@@ -194,8 +193,8 @@ fn settings_are_saved_and_language_changes_at_once() {
     let again = Game::new(files, Sound::none(), Pads::none());
     assert_eq!(again.settings.language, Language::Japanese);
     assert_eq!(again.settings.volume, after);
-    fs::write(folder.join("settings.toml"), "volume = [").unwrap();
-    let again = Game::new(Files::in_folder(&folder), Sound::none(), Pads::none());
+    fs::write(folder.path().join("settings.toml"), "volume = [").unwrap();
+    let again = Game::new(Files::in_folder(folder.path()), Sound::none(), Pads::none());
     // Without readable settings no force is allowed.
     let usual = Settings {
         haptics: 0.0,
@@ -204,7 +203,6 @@ fn settings_are_saved_and_language_changes_at_once() {
     assert_eq!(again.settings, usual);
     let aside = |notice: &Notice| notice.text.contains("settings.broken-1.toml");
     assert!(again.notices.iter().any(aside));
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
@@ -294,22 +292,9 @@ fn mouse_and_keys_move_two_hands() {
         Some(InputSource::Keys)
     );
     frames(&mut window, 2);
-    let hands = |window: &Window| {
-        let hands = window.state().game.bout.round().hands();
-        hands
-            .iter()
-            .map(|hand| hand.target_position())
-            .collect::<Vec<_>>()
-    };
-    let before = hands(&window);
-    let start = window
-        .state()
-        .game
-        .bout
-        .round()
-        .level()
-        .scene()
-        .hand_targets(0);
+    let before = hand_targets(&window);
+    let level = window.state().game.bout.round().level().clone();
+    let start = level.scene().hand_targets(0);
     for (at, start) in before.iter().zip(&start) {
         let is_near = (0..2).all(|axis| (at[axis] - start[axis]).abs() < 1e-3);
         assert!(
@@ -320,7 +305,7 @@ fn mouse_and_keys_move_two_hands() {
     window.key_down(Key::D);
     window.hover_at(egui::pos2(480.0, 100.0));
     frames(&mut window, 20);
-    let after = hands(&window);
+    let after = hand_targets(&window);
     assert!(after[0][1] > before[0][1] + 0.3, "{before:?} {after:?}");
     assert!(after[1][0] > before[1][0] + 0.3, "{before:?} {after:?}");
     assert!(
@@ -350,8 +335,8 @@ fn font_contains_all_characters_of_the_game() {
 
 #[test]
 fn full_screen_key_toggles_and_is_saved() {
-    let folder = folder("full-screen");
-    let mut window = window(Files::in_folder(&folder));
+    let folder = folder();
+    let mut window = window(Files::in_folder(folder.path()));
     for wanted in [true, false, true] {
         window.key_press(Key::F11);
         // The viewport command follows within two frames.
@@ -364,15 +349,14 @@ fn full_screen_key_toggles_and_is_saved() {
         assert!(asked && game(&mut window).settings.full_screen == wanted);
     }
     drop(window);
-    let again = Game::new(Files::in_folder(&folder), Sound::none(), Pads::none());
+    let again = Game::new(Files::in_folder(folder.path()), Sound::none(), Pads::none());
     assert!(again.settings.full_screen);
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
 fn language_follows_system_until_chosen() {
-    let folder = folder("language");
-    let files = |locale: &str| Files::in_folder(&folder).speaking(locale);
+    let folder = folder();
+    let files = |locale: &str| Files::in_folder(folder.path()).speaking(locale);
     for (locale, language) in [
         ("ja_JP.UTF-8", Language::Japanese),
         ("ja", Language::Japanese),
@@ -392,7 +376,6 @@ fn language_follows_system_until_chosen() {
         Language::English,
         "the chosen language is kept"
     );
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]

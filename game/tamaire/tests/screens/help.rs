@@ -11,8 +11,8 @@ use tamaire_play::{Assist, Route};
 
 #[test]
 fn assisted_wins_are_recorded_separately() {
-    let folder = folder("help");
-    let mut window = window(Files::in_folder(&folder));
+    let folder = folder();
+    let mut window = window(Files::in_folder(folder.path()));
     let all = BTreeSet::from([Assist::WiderBasket, Assist::Unbreakable]);
     game(&mut window).settings.assists = all.clone();
     start(&mut window, "biscuit");
@@ -45,8 +45,6 @@ fn assisted_wins_are_recorded_separately() {
     game.go(Screen::Replays);
     frames(&mut window, 6);
     window.get_by_label_contains("s, easier play");
-    drop(window);
-    std::fs::remove_dir_all(folder).unwrap();
 }
 
 /// Waits until the switch would press the button with this name, then presses it.

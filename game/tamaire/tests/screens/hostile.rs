@@ -1,5 +1,6 @@
 //! Robustness against broken files and random input.
 
+use crate::pads::pad;
 use crate::window::*;
 use app_shell::Pads;
 use egui::accesskit::Role;
@@ -8,7 +9,7 @@ use egui_kittest::kittest::Queryable;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use sticks::{Device, DeviceId, DeviceInfo, Pad, PadButton, Snapshot};
+use sticks::{Device, DeviceId, DeviceInfo, PadButton, Snapshot};
 use tamaire::game::{Game, Screen};
 use tamaire::platform::Files;
 use tamaire::words::Language;
@@ -38,30 +39,20 @@ pub fn drop_file(window: &mut Window, path: PathBuf) {
 
 #[test]
 fn dropped_picture_is_played_and_broken_files_are_named() {
-    let folder = folder("drop");
-    let mut window = window(Files::in_folder(&folder));
-    let cat = "../tamaire_play/levels/cat.png";
-    drop_file(&mut window, Path::new(env!("CARGO_MANIFEST_DIR")).join(cat));
+    let folder = folder();
+    let mut window = window(Files::in_folder(folder.path()));
+    drop_file(&mut window, level_file("cat.png"));
     assert_eq!(
         (screen(&window), notices(&window).as_str()),
         (Screen::Play, "")
     );
     let name = |window: &Window| {
-        window
-            .state()
-            .game
-            .bout
-            .session
-            .round()
-            .level()
-            .game()
-            .name
-            .en
-            .clone()
+        let level = window.state().game.bout.round().level();
+        level.game().name.en.clone()
     };
     assert_eq!(name(&window), "cat");
 
-    let broken = folder.join("broken.toml");
+    let broken = folder.path().join("broken.toml");
     fs::write(&broken, "dim = 2\ngravity = \"down\"\n").unwrap();
     drop_file(&mut window, broken);
     let said = notices(&window);
@@ -75,7 +66,7 @@ fn dropped_picture_is_played_and_broken_files_are_named() {
         ("no.zip", b"\xff\xfe"),
         ("no", b""),
     ] {
-        let path = folder.join(file);
+        let path = folder.path().join(file);
         fs::write(&path, bytes).unwrap();
         drop_file(&mut window, path);
         assert!(
@@ -84,7 +75,11 @@ fn dropped_picture_is_played_and_broken_files_are_named() {
             notices(&window)
         );
     }
-    for path in [folder.join("nowhere.toml"), folder.clone(), PathBuf::new()] {
+    for path in [
+        folder.path().join("nowhere.toml"),
+        folder.path().into(),
+        PathBuf::new(),
+    ] {
         drop_file(&mut window, path.clone());
         assert_ne!(notices(&window), "", "{path:?}");
     }
@@ -92,13 +87,12 @@ fn dropped_picture_is_played_and_broken_files_are_named() {
     frames(&mut window, 5);
     assert_eq!(name(&window), "cat");
     assert!(ticks(&window) >= before + 5, "the game continues");
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[cfg(unix)]
 #[test]
 fn pipes_and_devices_are_refused_without_waiting() {
-    let folder = folder("pipes");
+    let folder = folder();
     let mut window = window(Files::nowhere());
     for (made, file) in [
         ("mkfifo", "a.toml"),
@@ -110,7 +104,7 @@ fn pipes_and_devices_are_refused_without_waiting() {
         ("ln -s /dev/zero", "b.png"),
         ("ln -s /dev/zero", "b.tamaire"),
     ] {
-        let path = folder.join(file);
+        let path = folder.path().join(file);
         let mut words = made.split(' ');
         let mut command =
             std::process::Command::new(words.next().expect("the command names a program"));
@@ -119,7 +113,6 @@ fn pipes_and_devices_are_refused_without_waiting() {
         let said = notices(&window);
         assert!(said.contains(file) && said.contains("a device"), "{said}");
     }
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
@@ -205,12 +198,11 @@ fn buttons_fit_into_small_windows_with_large_text() {
 
 #[test]
 fn random_input_causes_no_fault() {
-    let folder = folder("anything");
+    let folder = folder();
     let mut random = fastrand::Rng::with_seed(7);
-    let mut window = window(Files::in_folder(&folder));
-    let mut pad = Device::at_rest(DeviceId(1), about(), 6, 0, 0);
-    pad.pad = Some(Pad::default());
-    let mut devices = vec![pad, Device::at_rest(DeviceId(2), about(), 2, 8, 1)];
+    let mut window = window(Files::in_folder(folder.path()));
+    let stick = Device::at_rest(DeviceId(2), DeviceInfo::default(), 2, 8, 1);
+    let mut devices = vec![pad(1), stick];
     let mut seen = std::collections::BTreeSet::new();
     // Each event takes a frame of its own: a click takes three.
     for frame in 0..1000 {
@@ -219,12 +211,7 @@ fn random_input_causes_no_fault() {
             0..4 => {
                 window.event(Event::PointerMoved(at));
                 for pressed in [true, false] {
-                    window.event(Event::PointerButton {
-                        pos: at,
-                        button: PointerButton::Primary,
-                        pressed,
-                        modifiers: egui::Modifiers::NONE,
-                    });
+                    window.event(pointer_button(at, PointerButton::Primary, pressed));
                 }
             }
             4..7 => window.key_press(Key::ALL[random.usize(..Key::ALL.len())]),
@@ -265,15 +252,6 @@ fn random_input_causes_no_fault() {
         check(&window.state().game, frame);
     }
     assert!(seen.len() >= 6, "{seen:?}");
-    fs::remove_dir_all(folder).unwrap();
-}
-
-fn about() -> DeviceInfo {
-    DeviceInfo {
-        name: String::new(),
-        guid: String::new(),
-        labels: sticks::Labels::default(),
-    }
 }
 
 fn check(game: &Game, frame: usize) {

@@ -3,7 +3,7 @@
 use crate::window::*;
 use app_shell::Pads;
 use egui::accesskit::Role;
-use egui::{Event, Modifiers, PointerButton};
+use egui::{Event, PointerButton};
 use egui_kittest::kittest::Queryable;
 use std::collections::BTreeMap;
 use std::fs;
@@ -77,26 +77,13 @@ impl Storage for Memory {
     }
 }
 
-/// Runs frames until everything is written.
-fn wait(window: &mut Window) {
-    while game(window).files.is_busy() {
-        frames(window, 1);
-    }
-    frames(window, 1);
-}
-
 #[test]
 fn dragged_slider_is_saved_once_by_writer_thread() {
     let memory = Memory::default();
     let mut window = window(Files::on(memory.clone()));
     click(&mut window, "Settings");
     let slider = window.get_by_role_and_label(Role::Slider, "Volume").rect();
-    let button = |pos, pressed| Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
+    let button = |pos, pressed| pointer_button(pos, PointerButton::Primary, pressed);
     window.event(Event::PointerMoved(slider.center()));
     window.event(button(slider.center(), true));
     let mut seen = Vec::new();
@@ -112,7 +99,7 @@ fn dragged_slider_is_saved_once_by_writer_thread() {
     assert!(seen.len() > 5, "the slider moves: {seen:?}");
     assert_eq!(memory.writes(), 0);
     frames(&mut window, 70);
-    wait(&mut window);
+    wait_for_files(&mut window);
     assert_eq!(memory.writes(), 1);
     let volume = game(&mut window).settings.volume;
     let text = memory.text("settings");
@@ -134,18 +121,17 @@ fn last_change_is_saved_when_game_ends() {
 
 #[test]
 fn two_games_at_once_lose_no_record() {
-    let folder = folder("two-games");
-    let begin = || window(Files::in_folder(&folder));
+    let folder = folder();
+    let begin = || window(Files::in_folder(folder.path()));
     let mut windows = [begin(), begin()];
     for (window, level) in windows.iter_mut().zip(["classic", "classic-3d"]) {
         start(window, level);
         win(window);
     }
     drop(windows);
-    let (records, damage) = Files::in_folder(&folder).records();
+    let (records, damage) = Files::in_folder(folder.path()).records();
     assert_eq!(damage, None);
     assert!(records.of("classic").is_some() && records.of("classic-3d").is_some());
-    std::fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
@@ -159,7 +145,7 @@ fn full_disk_is_reported_once_and_game_continues() {
         game(&mut window).notices.clear();
         game(&mut window).settings.speed = speed;
         game(&mut window).keep_settings();
-        wait(&mut window);
+        wait_for_files(&mut window);
         told += notices(&window).matches(full).count();
     }
     assert_eq!((told, memory.writes()), (1, 3));
@@ -167,20 +153,20 @@ fn full_disk_is_reported_once_and_game_continues() {
     for _ in 0..2 {
         game(&mut window).notices.clear();
         game(&mut window).keep_replay();
-        wait(&mut window);
+        wait_for_files(&mut window);
         assert!(notices(&window).contains(full));
     }
     memory.0.lock().unwrap().is_full = false;
     game(&mut window).keep_settings();
-    wait(&mut window);
+    wait_for_files(&mut window);
     assert!(memory.text("settings").contains("speed = 0.8"));
     assert_eq!(screen(&window), Screen::Title);
 }
 
 #[test]
 fn missing_folder_is_reported_once() {
-    let folder = folder("no-folder");
-    let file = folder.join("file");
+    let folder = folder();
+    let file = folder.path().join("file");
     std::fs::write(&file, "in the way").unwrap();
     let nowhere = Nowhere {
         reason: Some("no home"),
@@ -191,23 +177,22 @@ fn missing_folder_is_reported_once() {
         game(&mut window).notices.clear();
         for _ in 0..3 {
             game(&mut window).keep_settings();
-            wait(&mut window);
+            wait_for_files(&mut window);
             told = format!("{told}\n{}", notices(&window));
             game(&mut window).notices.clear();
         }
         let count = told.matches("saved").count() + told.matches("read").count();
         assert_eq!(count, 1, "{told}");
     }
-    std::fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
 fn invalid_setting_is_reset_and_reported_once() {
-    let folder = folder("bad-setting");
-    let path = folder.join("settings.toml");
+    let folder = folder();
+    let path = folder.path().join("settings.toml");
     let bad = "speed = \"fast\"\nvolume = 0.25\nhaptics = 0.5\nwarp = 9\n";
     std::fs::write(&path, bad).unwrap();
-    let begin = || Game::new(Files::in_folder(&folder), Sound::none(), Pads::none());
+    let begin = || Game::new(Files::in_folder(folder.path()), Sound::none(), Pads::none());
     let told = |game: &Game| {
         let texts = game.notices.iter().map(|notice| notice.text.as_str());
         texts.collect::<Vec<_>>().join("\n")
@@ -218,20 +203,18 @@ fn invalid_setting_is_reset_and_reported_once() {
     let words = ["speed (", "warp (", "settings.broken-1.toml"];
     let said = told(&game);
     assert!(words.iter().all(|word| said.contains(word)), "{said}");
-    let aside = folder.join("settings.broken-1.toml");
+    let aside = folder.path().join("settings.broken-1.toml");
     assert_eq!(std::fs::read_to_string(aside).unwrap(), bad);
     drop(game);
     let again = begin();
     assert_eq!(told(&again), "");
     assert_eq!(again.settings.volume, 0.25);
-    drop(again);
-    std::fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
 fn photo_and_clip_are_saved_at_reported_path() {
-    let folder = folder("pictures");
-    let mut window = window(Files::in_folder(&folder));
+    let folder = folder();
+    let mut window = window(Files::in_folder(folder.path()));
     start(&mut window, "classic");
     win(&mut window);
     for (button, ending, magic) in [
@@ -245,21 +228,22 @@ fn photo_and_clip_are_saved_at_reported_path() {
             frames(&mut window, 1);
         }
         assert!(shares.is_sorted(), "{shares:?}");
-        let file = folder.join("pictures").join(format!("classic-1.{ending}"));
+        let file = folder
+            .path()
+            .join("pictures")
+            .join(format!("classic-1.{ending}"));
         let bytes = fs::read(&file).expect("the file was saved");
         assert!(bytes.starts_with(magic), "{button}");
         assert!(notices(&window).contains(&file.display().to_string()));
     }
-    drop(window);
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
 fn replay_names_avoid_existing_entries() {
-    let folder = folder("beside");
-    let replays = folder.join("replays");
+    let folder = folder();
+    let replays = folder.path().join("replays");
     fs::create_dir_all(replays.join("classic-1.tamaire")).unwrap();
-    let mut window = window(Files::in_folder(&folder));
+    let mut window = window(Files::in_folder(folder.path()));
     start(&mut window, "classic");
     win(&mut window);
     for name in ["classic-2", "classic-3"] {
@@ -272,5 +256,4 @@ fn replay_names_avoid_existing_entries() {
     let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
     game.keep_replay();
     assert_eq!(game.files.finish().len(), 1);
-    fs::remove_dir_all(folder).unwrap();
 }

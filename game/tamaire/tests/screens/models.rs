@@ -8,12 +8,12 @@ use tamaire::game::Screen;
 use tamaire::platform::{Files, OpenRequest};
 use tamaire_play::AnyRound;
 
-const MODEL: &str = "../tamaire_play/levels/pudding.vox";
+const MODEL: &str = "pudding.vox";
 
 #[test]
 fn dropped_model_is_played_in_3d() {
     let mut window = window(Files::nowhere());
-    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL);
+    let model = level_file(MODEL);
     for level in ["classic", "hoop"] {
         start(&mut window, level);
         frames(&mut window, 10);
@@ -46,7 +46,7 @@ fn dropped_model_is_played_in_3d() {
 fn level_of_command_line_is_played() {
     let mut window = window(Files::nowhere());
     let levels = window.state().game.levels.len();
-    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL);
+    let model = level_file(MODEL);
     for (named, expected, more) in [
         (Path::new("hoop"), "Through the hoop", 0),
         (&model, "pudding", 1),
@@ -67,9 +67,8 @@ fn level_of_command_line_is_played() {
 
 #[test]
 fn damaged_model_is_named_and_round_continues() {
-    let folder = folder("vox");
-    let whole = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL))
-        .expect("the level is built in");
+    let folder = folder();
+    let whole = std::fs::read(level_file(MODEL)).expect("the level is built in");
     let mut window = in_space();
     point_at(&mut window, -1.0, 0.7);
     let levels = window.state().game.levels.len();
@@ -93,7 +92,7 @@ fn damaged_model_is_named_and_round_continues() {
         ),
     ];
     for (file, bytes, told) in damaged {
-        let path = folder.join(file);
+        let path = folder.path().join(file);
         std::fs::write(&path, bytes).expect("the test owns the folder");
         let (before, at) = (ticks(&window), goal(&window, 0));
         drop_file(&mut window, path);
@@ -107,5 +106,4 @@ fn damaged_model_is_named_and_round_continues() {
         assert!(ticks(&window) > before, "{file}: the round continues");
         assert_near(goal(&window, 0), at);
     }
-    std::fs::remove_dir_all(folder).expect("the test owns the folder");
 }

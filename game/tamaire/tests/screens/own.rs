@@ -5,34 +5,27 @@ use crate::window::*;
 use egui::Key;
 use egui_kittest::kittest::Queryable;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use tamaire::game::Screen;
 use tamaire::platform::Files;
 
 /// Picture file to drop onto the window.
 fn cat() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tamaire_play/levels/cat.png")
+    level_file("cat.png")
 }
 
 /// Returns the ids of the player's own levels once all have been read.
 fn own(window: &mut Window) -> Vec<String> {
-    wait(window);
+    wait_for_files(window);
     let game = game(window);
     let places = (0..game.levels.len()).filter(|&place| game.is_own(place));
     places.map(|place| game.levels[place].id.clone()).collect()
 }
 
-fn wait(window: &mut Window) {
-    while game(window).files.is_busy() {
-        frames(window, 1);
-    }
-    frames(window, 1);
-}
-
 #[test]
 fn dropped_level_is_saved_until_removed() {
-    let folder = folder("own");
-    let begin = || window(Files::in_folder(&folder));
+    let folder = folder();
+    let begin = || window(Files::in_folder(folder.path()));
     let mut first = begin();
     drop_file(&mut first, cat());
     assert_eq!(screen(&first), Screen::Play);
@@ -57,8 +50,6 @@ fn dropped_level_is_saved_until_removed() {
     assert_eq!(own(&mut last).len(), 0);
     assert!(game(&mut last).records.of("cat.png").is_some());
     assert!(cat().exists(), "the original picture is not deleted");
-    drop(last);
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
@@ -83,13 +74,13 @@ fn level_removal_by_keys_needs_confirmation_in_time() {
 
 #[test]
 fn damaged_saved_level_is_moved_and_reported_once() {
-    let folder = folder("own-damaged");
-    let begin = || window(Files::in_folder(&folder));
+    let folder = folder();
+    let begin = || window(Files::in_folder(folder.path()));
     let mut first = begin();
     drop_file(&mut first, cat());
     assert_eq!(own(&mut first).len(), 1);
     drop(first);
-    let levels = folder.join("levels");
+    let levels = folder.path().join("levels");
     let good = fs::read_to_string(levels.join("cat.png.toml")).unwrap();
     let body = good
         .find("content = ")
@@ -114,24 +105,21 @@ fn damaged_saved_level_is_moved_and_reported_once() {
     drop(again);
     let mut last = begin();
     assert_eq!((own(&mut last).len(), notices(&last).as_str()), (1, ""));
-    drop(last);
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
 fn two_games_at_once_lose_no_level() {
-    let folder = folder("own-two");
-    let other = folder.join("other.png");
+    let folder = folder();
+    let other = folder.path().join("other.png");
     fs::copy(cat(), &other).unwrap();
-    let begin = || window(Files::in_folder(&folder));
+    let begin = || window(Files::in_folder(folder.path()));
     let mut windows = [begin(), begin()];
     for (window, file) in windows.iter_mut().zip([cat(), other]) {
         drop_file(window, file);
-        wait(window);
+        wait_for_files(window);
     }
     drop(windows);
     let mut ids = own(&mut begin());
     ids.sort();
     assert_eq!(ids, ["cat.png", "other.png"]);
-    fs::remove_dir_all(folder).unwrap();
 }

@@ -49,11 +49,23 @@ impl Table {
     }
 
     fn button(&mut self, button: PadButton) -> &mut sticks::Button {
-        let pad = self
-            .devices
-            .last_mut()
-            .and_then(|device| device.pad.as_mut());
-        pad.expect("the device is a pad").button_mut(button)
+        let last = self.devices.len() - 1;
+        self.pad(last).button_mut(button)
+    }
+
+    /// State of the pad at this place of `devices`.
+    pub fn pad(&mut self, place: usize) -> &mut Pad {
+        let pad = self.devices[place].pad.as_mut();
+        pad.expect("the device is a pad")
+    }
+
+    /// Presses a button of the d-pad until the widget with this name has the focus, at most `most` times.
+    fn tap_until(&mut self, button: PadButton, name: &str, most: usize) {
+        for _ in 0..most {
+            if !self.has_focus(name) {
+                self.tap(button);
+            }
+        }
     }
 
     fn screen(&self) -> Screen {
@@ -68,8 +80,8 @@ impl Table {
 pub fn about(name: &str) -> DeviceInfo {
     DeviceInfo {
         name: name.into(),
-        guid: String::new(),
-        labels: sticks::Labels::default(),
+        guid: name.into(),
+        ..DeviceInfo::default()
     }
 }
 
@@ -93,18 +105,15 @@ fn pad_alone_reaches_all_screens() {
     table.tap(South);
     assert_eq!(table.screen(), Screen::Play);
 
-    let hand = |table: &mut Table| {
-        let round = game(&mut table.window).bout.round();
-        round.hands()[0].target_position()
-    };
-    let before = hand(&mut table);
-    table.devices[0].pad.as_mut().unwrap().left = [0.0, 1.0];
+    let hand = |table: &Table| hand_targets(&table.window)[0];
+    let before = hand(&table);
+    table.pad(0).left = [0.0, 1.0];
     table.frames(15);
-    table.devices[0].pad.as_mut().unwrap().left = [0.0; 2];
+    table.pad(0).left = [0.0; 2];
     table.button(Right).press();
     table.frames(15);
     table.button(Right).down = false;
-    let after = hand(&mut table);
+    let after = hand(&table);
     assert!(
         after[0] > before[0] + 0.2 && after[1] > before[1] + 0.2,
         "{before:?} {after:?}"
@@ -140,11 +149,7 @@ fn pad_alone_reaches_all_screens() {
     assert!((before - after - 0.1).abs() < 1e-3, "{before} {after}");
 
     // Down to the end of the page, where the focused button must be visible.
-    for _ in 0..60 {
-        if !table.has_focus("Restore default settings") {
-            table.tap(Down);
-        }
-    }
+    table.tap_until(Down, "Restore default settings", 60);
     assert!(table.has_focus("Restore default settings"));
     let (seen, room) = (
         button(&table.window, "Restore default settings").rect(),
@@ -202,22 +207,14 @@ fn second_player_joins_leaves_and_is_unplugged() {
     table.tap(PadButton::Back);
     let second = |table: &mut Table| game(&mut table.window).controls.players.second();
     assert_eq!(second(&mut table), Some(InputSource::Stick(DeviceId(2))));
-    let hands = |table: &mut Table| {
-        let round = game(&mut table.window).bout.round();
-        let hands = round.hands();
-        hands
-            .iter()
-            .map(|hand| hand.target_position())
-            .collect::<Vec<_>>()
-    };
-    let before = hands(&mut table);
+    let before = hand_targets(&table.window);
     assert_eq!(before.len(), 2);
-    table.devices[1].pad.as_mut().unwrap().left = [1.0, 0.0];
+    table.pad(1).left = [1.0, 0.0];
     table.frames(10);
-    let after = hands(&mut table);
+    let after = hand_targets(&table.window);
     assert!(after[1][0] > before[1][0] + 0.2, "{before:?} {after:?}");
     assert_eq!(after[0], before[0]);
-    table.devices[1].pad.as_mut().unwrap().left = [0.0; 2];
+    table.pad(1).left = [0.0; 2];
     table.tap(PadButton::Back);
     assert_eq!(second(&mut table), None);
     table.tap(PadButton::Back);
@@ -241,26 +238,18 @@ fn pad_trial_captures_its_stick() {
     let mut table = Table::with(vec![pad(1)]);
     game(&mut table.window).go(Screen::Settings);
     table.frames(2);
-    for _ in 0..20 {
-        if !table.has_focus("Sticks and pads…") {
-            table.tap(Down);
-        }
-    }
+    table.tap_until(Down, "Sticks and pads…", 20);
     table.tap(South);
     assert!(matches!(table.screen(), Screen::Forces));
     // The ability of the pad is known once its thread has reported it.
-    for _ in 0..20 {
-        if !table.has_focus("Try it") {
-            table.tap(Down);
-        }
-    }
+    table.tap_until(Down, "Try it", 20);
     table.tap(South);
     assert!(game(&mut table.window).trial.is_some());
     assert!(table.has_focus("Stop"));
     table.rumbles.take();
     let strength = game(&mut table.window).settings.haptics;
     for lean in [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]] {
-        table.devices[0].pad.as_mut().unwrap().left = lean;
+        table.pad(0).left = lean;
         table.frames(20);
     }
     assert!(table.has_focus("Stop"));
@@ -276,11 +265,7 @@ fn pad_trial_captures_its_stick() {
     table.tap(RightStick);
     assert!(game(&mut table.window).forces.is_cut());
     table.tap(Up);
-    for _ in 0..20 {
-        if !table.has_focus("Switch forces on again") {
-            table.tap(Up);
-        }
-    }
+    table.tap_until(Up, "Switch forces on again", 20);
     table.tap(South);
     assert!(!game(&mut table.window).forces.is_cut());
     table.tap(East);

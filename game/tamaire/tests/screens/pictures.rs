@@ -1,14 +1,14 @@
 //! Appearance, compared with the pictures in `tests/snapshots`.
 
 use crate::hostile::drop_file;
+use crate::pads::about;
 use crate::window::*;
 use app_shell::Pads;
 use egui::{Key, Vec2, pos2, vec2};
 use egui_kittest::SnapshotOptions;
 use egui_kittest::kittest::Queryable;
 use force_feedback::{Ability, Recording};
-use std::path::Path;
-use sticks::{Device, DeviceId, DeviceInfo, Pad, Snapshot};
+use sticks::{Device, DeviceId, Pad, Snapshot};
 use tamaire::game::Screen;
 use tamaire::input::{Action, InputSource};
 use tamaire::platform::Files;
@@ -102,8 +102,7 @@ fn portrait_screens_match_pictures() {
 
 /// A dropped level is at the end of the list.
 fn own_level(window: &mut Window) {
-    let cat = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tamaire_play/levels/cat.png");
-    drop_file(window, cat);
+    drop_file(window, level_file("cat.png"));
     game(window).go(Screen::Levels);
     frames(window, 3);
     press(window, Key::ArrowDown);
@@ -114,8 +113,8 @@ fn own_level(window: &mut Window) {
 
 #[test]
 fn saved_round_shows_route() {
-    let folder = folder("kept-pictures");
-    let mut window = open(Files::in_folder(&folder), vec2(704.0, 440.0), 1.0);
+    let folder = folder();
+    let mut window = open(Files::in_folder(folder.path()), vec2(704.0, 440.0), 1.0);
     game(&mut window).start(0);
     win(&mut window);
     game(&mut window).keep_replay();
@@ -123,7 +122,6 @@ fn saved_round_shows_route() {
     game(&mut window).notices.clear();
     game(&mut window).go(Screen::Replays);
     frames(&mut window, 20);
-    std::fs::remove_dir_all(folder).unwrap();
     window.get_by_label_contains("Squeezed in!");
 }
 
@@ -142,11 +140,6 @@ fn touch_buttons_match_pictures() {
 
 /// A stick with force feedback and a rumbling pad, neither of them in use.
 fn sticks_and_pads() -> Pads {
-    let about = |name: &str| DeviceInfo {
-        name: name.into(),
-        guid: name.into(),
-        labels: sticks::Labels::default(),
-    };
     let mut stick = Device::at_rest(DeviceId(1), about("Force Stick 3D"), 4, 12, 1);
     stick.axes = vec![0.6, -0.4, 0.2, -1.0];
     stick.buttons[4].down = true;
@@ -173,9 +166,7 @@ fn round_2d_matches_picture() {
 #[test]
 fn round_3d_matches_pictures() {
     let mut window = open(Files::nowhere(), SMALLER, 1.0);
-    let mut levels = game(&mut window).levels.iter();
-    let classic = levels.position(|level| level.id == "classic-3d");
-    let classic = classic.expect("the level is built in");
+    let classic = place_of(game(&mut window), "classic-3d");
     // No instructions are shown after a win.
     let level = game(&mut window).levels[classic].clone();
     game(&mut window).records.note(&level, &WON);

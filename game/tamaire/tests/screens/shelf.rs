@@ -8,14 +8,18 @@ use tamaire_play::Route;
 
 #[test]
 fn saved_round_shows_level_date_and_result() {
-    let folder = folder("shelf");
-    let mut window = window(Files::in_folder(&folder));
+    let folder = folder();
+    let mut window = window(Files::in_folder(folder.path()));
     game(&mut window).start(0);
     win(&mut window);
     game(&mut window).keep_replay();
     game(&mut window).finish_writing();
     // An invalid replay stays in the list under its file name.
-    std::fs::write(folder.join("replays/other-1.tamaire"), "version = 999\n").unwrap();
+    std::fs::write(
+        folder.path().join("replays/other-1.tamaire"),
+        "version = 999\n",
+    )
+    .unwrap();
     game(&mut window).go(Screen::Replays);
     frames(&mut window, 6);
     let shelf = &window.state().game.shelf;
@@ -31,14 +35,13 @@ fn saved_round_shows_level_date_and_result() {
     // "Classic 1, 2026-11-22 23:10, Squeezed in! 9.7 s"
     window.get_by_label_contains("Classic 1, 20");
     window.get_by_label_contains(&format!("Squeezed in! {:.1} s", classic.seconds));
-    std::fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
 fn fastest_round_is_raced_when_enabled() {
-    let folder = folder("best");
-    let files = Files::in_folder(&folder);
-    let mut window = window(Files::in_folder(&folder));
+    let folder = folder();
+    let files = Files::in_folder(folder.path());
+    let mut window = window(Files::in_folder(folder.path()));
     game(&mut window).start(0);
     win(&mut window);
     game(&mut window).finish_writing();
@@ -60,10 +63,9 @@ fn fastest_round_is_raced_when_enabled() {
     game(&mut window).finish_writing();
     assert_eq!(files.best(&level).unwrap().ticks(), first);
     // An unreadable replay is no ghost.
-    let path = folder.join("best/classic.tamaire");
+    let path = folder.path().join("best/classic.tamaire");
     assert!(path.is_file() && Kind::Best.most_bytes() > 0);
     std::fs::write(path, "version = 1\n").unwrap();
     game(&mut window).start(0);
     assert!(!has_ghost(&window));
-    std::fs::remove_dir_all(folder).unwrap();
 }

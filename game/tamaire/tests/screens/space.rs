@@ -21,7 +21,7 @@ pub fn in_space() -> Window {
 
 /// Target position of a player's hand [m].
 pub fn goal(window: &Window, player: usize) -> Vector {
-    window.state().game.bout.round().hands()[player].target_position()
+    hand_targets(window)[player]
 }
 
 fn turned(window: &Window) -> [f32; 2] {
@@ -104,12 +104,7 @@ fn right_mouse_button_turns_only_the_camera() {
     let mut window = in_space();
     point_at(&mut window, -1.2, 0.6);
     let before = goal(&window, 0);
-    let button = |pressed, pos| Event::PointerButton {
-        pos,
-        button: PointerButton::Secondary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
+    let button = |pressed, pos| pointer_button(pos, PointerButton::Secondary, pressed);
     let view = window.state().game.bout.view.expect("the world is visible");
     let at = view.to_screen([-1.2, 0.0, 0.6]);
     window.event(button(true, at));
@@ -177,7 +172,7 @@ fn triggers_raise_hand_and_right_stick_turns_camera() {
     start(&mut table.window, "classic-3d");
     let before = goal(&table.window, 0);
     let hold = |table: &mut Table, right, triggers, count: usize| {
-        let pad = table.devices[0].pad.as_mut().expect("the device is a pad");
+        let pad = table.pad(0);
         (pad.right, pad.triggers) = (right, triggers);
         table.frames(1);
         match right {
@@ -343,9 +338,9 @@ fn keys_and_pad_move_element_cut_and_hint_names_them() {
 
 #[test]
 fn round_3d_is_won_saved_watched_and_raced() {
-    let folder = folder("space");
-    let files = Files::in_folder(&folder);
-    let mut window = window(Files::in_folder(&folder));
+    let folder = folder();
+    let files = Files::in_folder(folder.path());
+    let mut window = window(Files::in_folder(folder.path()));
     start(&mut window, "classic-3d");
     win(&mut window);
     let (outcome, is_best) = game(&mut window).bout.won.expect("the round was won");
@@ -359,13 +354,8 @@ fn round_3d_is_won_saved_watched_and_raced() {
     frames(&mut window, 30);
     let is_space = |round: &AnyRound| matches!(round, AnyRound::Space(_));
     let ghost = |window: &Window| {
-        let ghost = window
-            .state()
-            .game
-            .bout
-            .session
-            .ghost()
-            .expect("the session has a ghost");
+        let ghost = window.state().game.bout.session.ghost();
+        let ghost = ghost.expect("the session has a ghost");
         assert!(is_space(ghost));
         (ghost.frames().len(), ghost.hands()[0].position())
     };
@@ -393,5 +383,4 @@ fn round_3d_is_won_saved_watched_and_raced() {
     assert_eq!(game.bout.round().progress().outcome, Some(outcome));
     assert!(game.notices.iter().next().is_none(), "{:?}", game.notices);
     assert!(length(minus(goal(&window, 0), before)) > 0.1);
-    std::fs::remove_dir_all(folder).expect("the test owns the folder");
 }

@@ -1,8 +1,9 @@
 //! Public stand: visitors come, play and go, and staff use its pages.
 
+use crate::pads::about;
 use crate::window::*;
 use app_shell::{Clock, Pads};
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, pos2, vec2};
+use egui::{Event, Key, PointerButton, Pos2, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use fuwafuwa::TICK;
@@ -10,7 +11,7 @@ use jiff::civil::Time;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
-use sticks::{Device, DeviceId, DeviceInfo, Labels, Snapshot};
+use sticks::{Device, DeviceId, Snapshot};
 use tamaire::app::App;
 use tamaire::exhibit::config::DEFAULT_CONFIG;
 use tamaire::exhibit::presence::Attention;
@@ -23,12 +24,13 @@ use tamaire::screens::{CrashScreen, StandController};
 use tamaire::words::Language;
 use tamaire_logbook::{Error, Kind, Logbook, Round, RoundEnd, Visit};
 use tamaire_play::{BotKind, Playback, Replay};
+use tempfile::TempDir;
 
 /// Stand in a test window, shared with the test.
 struct Shown {
     window: Window,
     stand: Rc<RefCell<Stand>>,
-    folder: PathBuf,
+    folder: TempDir,
 }
 
 /// Lets the window own a stand that the test keeps access to.
@@ -53,17 +55,17 @@ impl StandController for Shared {
 }
 
 /// Opens a stand with the usual configuration file, changed by text replacements.
-fn shown(name: &str, size: Vec2, changes: &[(&str, &str)]) -> Shown {
-    let folder = folder(name);
+fn shown(size: Vec2, changes: &[(&str, &str)]) -> Shown {
+    let folder = folder();
     let mut text = DEFAULT_CONFIG.replace(
         "#folder = \"/var/lib/tam\"",
-        &format!("folder = {folder:?}"),
+        &format!("folder = {:?}", folder.path()),
     );
     for (usual, wanted) in changes {
         assert!(text.contains(usual), "{usual}");
         text = text.replace(usual, wanted);
     }
-    let file = TextFile(folder.join("exhibit.toml"));
+    let file = TextFile(folder.path().join("exhibit.toml"));
     file.write(&text).unwrap();
     let stand = Stand::open(file).unwrap().at(Time::constant(12, 0, 0, 0));
     let stand = Rc::new(RefCell::new(stand));
@@ -124,7 +126,7 @@ impl Shown {
     }
 
     /// Closes the stand and returns the contents of its logbook.
-    fn end(self) -> (Vec<Visit>, Vec<Round>) {
+    fn end(self) -> (Vec<Visit>, Vec<Round>, Vec<tamaire_logbook::Event>) {
         let Self {
             mut window,
             stand,
@@ -133,29 +135,30 @@ impl Shown {
         stand.borrow_mut().close(game(&mut window));
         drop(window);
         drop(stand);
-        read(&folder)
+        read(folder.path())
     }
 }
 
-fn read(folder: &Path) -> (Vec<Visit>, Vec<Round>) {
+/// Returns a function that adds a row.
+fn into<T>(rows: &mut Vec<T>) -> impl FnMut(T) -> Result<(), Error> {
+    |row| {
+        rows.push(row);
+        Ok(())
+    }
+}
+
+fn read(folder: &Path) -> (Vec<Visit>, Vec<Round>, Vec<tamaire_logbook::Event>) {
     let logbook = Logbook::read(&StandFolder(folder.into()).logbook()).unwrap();
-    let (mut visits, mut rounds) = (Vec::new(), Vec::new());
-    let visit = |visit| {
-        visits.push(visit);
-        Ok::<(), Error>(())
-    };
-    logbook.visits(.., visit).unwrap();
-    let round = |round| {
-        rounds.push(round);
-        Ok::<(), Error>(())
-    };
-    logbook.rounds(.., round).unwrap();
-    (visits, rounds)
+    let (mut visits, mut rounds, mut events) = (Vec::new(), Vec::new(), Vec::new());
+    logbook.visits(.., into(&mut visits)).unwrap();
+    logbook.rounds(.., into(&mut rounds)).unwrap();
+    logbook.events(.., into(&mut events)).unwrap();
+    (visits, rounds, events)
 }
 
 #[test]
 fn visit_starts_with_touch_and_is_logged() {
-    let mut shown = shown("visit", vec2(960.0, 600.0), &[]);
+    let mut shown = shown(vec2(960.0, 600.0), &[]);
     assert_eq!(shown.phase(), Phase::Attract);
     shown.rest(60.0);
     assert_eq!(shown.phase(), Phase::Attract, "no visitor yet");
@@ -176,7 +179,7 @@ fn visit_starts_with_touch_and_is_logged() {
     assert_eq!(shown.phase(), Phase::Visit);
     shown.rest(12.0);
     assert_eq!(shown.phase(), Phase::Attract);
-    let (visits, rounds) = shown.end();
+    let (visits, rounds, _) = shown.end();
     assert_eq!(visits.len(), 1);
     assert!(visits[0].ended.is_some());
     let ends: Vec<RoundEnd> = rounds.iter().map(|round| round.end).collect();
@@ -204,7 +207,7 @@ fn visit_starts_with_touch_and_is_logged() {
 
 #[test]
 fn countdown_is_cancelled_by_touch() {
-    let mut shown = shown("ring", vec2(960.0, 600.0), &[]);
+    let mut shown = shown(vec2(960.0, 600.0), &[]);
     shown.touch();
     shown.rest(25.0);
     frames(&mut shown.window, 2);
@@ -221,7 +224,7 @@ fn countdown_is_cancelled_by_touch() {
 
 #[test]
 fn next_visitor_finds_initial_state() {
-    let mut shown = shown("fresh", vec2(960.0, 600.0), &[]);
+    let mut shown = shown(vec2(960.0, 600.0), &[]);
     shown.touch();
     frames(&mut shown.window, 3);
     assert_eq!(
@@ -253,11 +256,7 @@ fn next_visitor_finds_initial_state() {
 
 #[test]
 fn visitor_cannot_leave_the_stand() {
-    let mut shown = shown(
-        "kiosk",
-        vec2(960.0, 600.0),
-        &[("#pin = \"…\"", "pin = \"2004\"")],
-    );
+    let mut shown = shown(vec2(960.0, 600.0), &[("#pin = \"…\"", "pin = \"2004\"")]);
     shown.touch();
     for key in [
         Key::Escape,
@@ -284,23 +283,14 @@ fn visitor_cannot_leave_the_stand() {
 /// Presses or releases the mouse button.
 fn button_at(window: &mut Window, pos: Pos2, pressed: bool) {
     window.event(Event::PointerMoved(pos));
-    window.event(Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    });
+    window.event(pointer_button(pos, PointerButton::Primary, pressed));
     frames(window, 1);
 }
 
 #[test]
 fn staff_enters_pin_and_changes_settings() {
     let pin = ("#pin = \"…\"", "pin = \"2004\"");
-    let mut shown = shown(
-        "staff",
-        vec2(960.0, 600.0),
-        &[pin, ("\"japanese\"", "\"english\"")],
-    );
+    let mut shown = shown(vec2(960.0, 600.0), &[pin, ("\"japanese\"", "\"english\"")]);
     let width = shown.window.ctx.content_rect().width();
     let corner = pos2(width - 10.0, 10.0);
     button_at(&mut shown.window, corner, true);
@@ -315,13 +305,13 @@ fn staff_enters_pin_and_changes_settings() {
         click(&mut shown.window, digit);
     }
     assert!(matches!(shown.phase(), Phase::Staff(_)));
-    let (visits, _) = read(&shown.folder);
+    let (visits, _, _) = read(shown.folder.path());
     assert!(visits.is_empty(), "staff does not count as a visitor");
     click(&mut shown.window, "Stand");
     let japanese = shown.window.get_by_label("Language: 日本語");
     japanese.click();
     frames(&mut shown.window, 2);
-    let file = TextFile(shown.folder.join("exhibit.toml"));
+    let file = TextFile(shown.folder.path().join("exhibit.toml"));
     assert!(
         file.read_or("")
             .unwrap()
@@ -345,19 +335,19 @@ fn stand_is_closed_outside_opening_hours() {
         ("#open = \"10:00\"", "open = \"13:30\""),
         ("#close = \"18:00\"", "close = \"18:00\""),
     ];
-    let mut shown = shown("hours", vec2(960.0, 600.0), &hours);
+    let mut shown = shown(vec2(960.0, 600.0), &hours);
     frames(&mut shown.window, 3);
     assert_eq!(shown.phase(), Phase::Closed);
     shown.touch();
     assert_eq!(shown.phase(), Phase::Closed);
-    let (visits, _) = shown.end();
+    let (visits, _, _) = shown.end();
     assert!(visits.is_empty());
 }
 
 #[test]
 fn invalid_configuration_is_reported_with_line() {
-    let folder = folder("wrong");
-    let file = TextFile(folder.join("exhibit.toml"));
+    let folder = folder();
+    let file = TextFile(folder.path().join("exhibit.toml"));
     file.write(&DEFAULT_CONFIG.replace("rest = 20", "rest = -1"))
         .unwrap();
     let Err(error) = Stand::open(file) else {
@@ -371,28 +361,17 @@ fn invalid_configuration_is_reported_with_line() {
 
 #[test]
 fn unplugged_stick_is_logged_and_play_continues() {
-    let mut shown = shown("pulled", vec2(960.0, 600.0), &[]);
-    let about = DeviceInfo {
-        name: "Stick".into(),
-        guid: "stick".into(),
-        labels: Labels::Unknown,
-    };
-    let stick = Device::at_rest(DeviceId(1), about, 2, 4, 0);
+    let mut shown = shown(vec2(960.0, 600.0), &[]);
+    let stick = Device::at_rest(DeviceId(1), about("Stick"), 2, 4, 0);
     shown.touch();
     for plugged in [vec![stick.clone()], Vec::new(), vec![stick]] {
         game(&mut shown.window).controls.pads = Pads::of(Snapshot { devices: plugged });
         frames(&mut shown.window, 3);
         assert_eq!(screen(&shown.window), Screen::Play);
     }
-    let folder = shown.folder.clone();
-    shown.end();
-    let mut kinds = Vec::new();
-    let logbook = Logbook::read(&StandFolder(folder.clone()).logbook()).unwrap();
-    let event = |event: tamaire_logbook::Event| {
-        kinds.push((event.kind, event.text));
-        Ok::<(), Error>(())
-    };
-    logbook.events(.., event).unwrap();
+    let (_, _, events) = shown.end();
+    let kinds = events.into_iter().map(|event| (event.kind, event.text));
+    let kinds: Vec<_> = kinds.collect();
     let told = |kind: Kind, text: &str| (kind, text.to_string());
     let expected = [
         told(Kind::DeviceFound, "Stick"),
@@ -429,7 +408,7 @@ fn stand_seen() {
                 ("#pin = \"…\"", "pin = \"2004\"".into()),
             ];
             let changes: Vec<_> = changes.iter().map(|(a, b)| (*a, b.as_str())).collect();
-            let mut shown = shown("seen", size, &changes);
+            let mut shown = shown(size, &changes);
             let save = |shown: &mut Shown, what: &str| {
                 let image = shown.window.render().unwrap();
                 image

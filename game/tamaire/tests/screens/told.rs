@@ -86,17 +86,9 @@ fn instructions_name_current_device_and_time_out() {
     ]);
     game(&mut table.window).settings.reduced_motion = true;
     start(&mut table.window, "hoop");
-    table.devices[0]
-        .pad
-        .as_mut()
-        .expect("the device is a pad")
-        .left = [0.0, 0.7];
+    table.pad(0).left = [0.0, 0.7];
     table.frames(2);
-    table.devices[0]
-        .pad
-        .as_mut()
-        .expect("the device is a pad")
-        .left = [0.0; 2];
+    table.pad(0).left = [0.0; 2];
     table.frames(2);
     assert!(tells(&table.window, "triggers") && tells(&table.window, "right stick"));
     table.devices[1].axes = vec![1.0, 0.0];

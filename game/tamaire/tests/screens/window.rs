@@ -2,14 +2,16 @@
 
 use app_shell::{Clock, Pads};
 use egui::accesskit::Role;
+use egui::{Event, PointerButton, Pos2};
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, Node};
-use fuwafuwa::TICK;
-use std::path::PathBuf;
+use fuwafuwa::{TICK, Vector};
+use std::path::{Path, PathBuf};
 use tamaire::app::App;
 use tamaire::game::{Game, Screen};
 use tamaire::platform::{Files, Sound};
 use tamaire_play::{Bot, BotKind};
+use tempfile::TempDir;
 
 pub type Window = Harness<'static, App>;
 
@@ -42,11 +44,38 @@ pub fn open(files: Files, size: egui::Vec2, pixels: f32) -> Window {
 }
 
 /// Creates an empty folder for a test.
-pub fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("tamaire-{name}-{}", std::process::id()));
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
+pub fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+/// Runs frames until everything is written.
+pub fn wait_for_files(window: &mut Window) {
+    while game(window).files.is_busy() {
+        frames(window, 1);
+    }
+    frames(window, 1);
+}
+
+/// Press or release of a mouse button.
+pub fn pointer_button(pos: Pos2, button: PointerButton, pressed: bool) -> Event {
+    Event::PointerButton {
+        pos,
+        button,
+        pressed,
+        modifiers: egui::Modifiers::NONE,
+    }
+}
+
+/// Targets of all hands [m].
+pub fn hand_targets(window: &Window) -> Vec<Vector> {
+    let hands = window.state().game.bout.round().hands();
+    hands.iter().map(|hand| hand.target_position()).collect()
+}
+
+/// Path of a file among the levels of the game.
+pub fn level_file(name: &str) -> PathBuf {
+    let levels = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tamaire_play/levels");
+    levels.join(name)
 }
 
 /// Runs `count` frames. The game always repaints, so there is no state to wait for.
@@ -79,9 +108,14 @@ pub fn notices(window: &Window) -> String {
 /// Starts the level with this id, and draws it.
 pub fn start(window: &mut Window, id: &str) {
     let game = game(window);
-    let index = game.levels.iter().position(|level| level.id == id);
-    game.start(index.expect("the level is built in"));
+    game.start(place_of(game, id));
     frames(window, 2);
+}
+
+/// Returns the index of the level with this id.
+pub fn place_of(game: &Game, id: &str) -> usize {
+    let index = game.levels.iter().position(|level| level.id == id);
+    index.expect("the level is built in")
 }
 
 /// Returns the button with this name.
@@ -138,12 +172,8 @@ pub fn touch(window: &mut Window, finger: u64, phase: egui::TouchPhase, pos: egu
     if finger == 0 {
         window.event(egui::Event::PointerMoved(pos));
         if phase != egui::TouchPhase::Move {
-            window.event(egui::Event::PointerButton {
-                pos,
-                button: egui::PointerButton::Primary,
-                pressed: phase == egui::TouchPhase::Start,
-                modifiers: egui::Modifiers::NONE,
-            });
+            let pressed = phase == egui::TouchPhase::Start;
+            window.event(pointer_button(pos, PointerButton::Primary, pressed));
         }
     }
     frames(window, 1);

@@ -150,7 +150,7 @@ impl SharedState {
         }
     }
 
-    /// Takes the next batch of entries. They count as waiting until [`SharedState::put_down`] is called.
+    /// Takes the next batch of entries. They count as waiting until [`SharedState::finish_batch`] is called.
     pub fn take_batch(&self) -> Vec<Entry> {
         let mut state = self.state();
         let count = state.queue.len().min(BATCH);

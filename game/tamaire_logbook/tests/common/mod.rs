@@ -1,8 +1,13 @@
 //! Example rows of a stand.
 #![allow(dead_code)] // no test file uses all of these
 
-use std::path::PathBuf;
-use tamaire_logbook::{Entry, Error, Event, Id, Kind, Logbook, Moment, Round, RoundEnd, Visit};
+use rusqlite::Connection;
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
+use tamaire_logbook::{
+    Entry, Error, Event, Health, Id, Kind, Logbook, Moment, Recorder, Round, RoundEnd, Visit,
+};
 use tamaire_play::Route;
 use tempfile::TempDir;
 
@@ -25,10 +30,32 @@ pub fn place() -> (TempDir, PathBuf) {
 }
 
 /// Opens a new logbook.
-pub fn open(path: &std::path::Path) -> Logbook {
+pub fn open(path: &Path) -> Logbook {
     let (book, set_aside) = Logbook::open(path, STAND).unwrap();
     assert_eq!(set_aside, None);
     book
+}
+
+/// Executes SQL in a file, as another program would.
+pub fn execute(path: &Path, sql: &str) {
+    let other = Connection::open(path).unwrap();
+    other.execute_batch(sql).unwrap();
+}
+
+/// Timeout of all waiting.
+pub const LONG: Duration = Duration::from_secs(60);
+
+/// Waits until `is_so` holds.
+pub fn wait_for(recorder: &Recorder, what: &str, is_so: impl Fn(&Health) -> bool) -> Health {
+    let start = Instant::now();
+    loop {
+        let health = recorder.health();
+        if is_so(&health) {
+            return health;
+        }
+        assert!(start.elapsed() < LONG, "{what}: {health:?}");
+        thread::sleep(Duration::from_millis(5));
+    }
 }
 
 pub fn visit(began: Moment) -> Visit {
@@ -101,19 +128,18 @@ pub struct All {
     pub events: Vec<Event>,
 }
 
+/// Returns a function that adds a row.
+fn into<T>(rows: &mut Vec<T>) -> impl FnMut(T) -> Result<(), Error> {
+    |row| {
+        rows.push(row);
+        Ok(())
+    }
+}
+
 pub fn all(book: &Logbook) -> Result<All, Error> {
     let mut all = All::default();
-    book.visits(.., |visit| {
-        all.visits.push(visit);
-        Ok::<(), Error>(())
-    })?;
-    book.rounds(.., |round| {
-        all.rounds.push(round);
-        Ok::<(), Error>(())
-    })?;
-    book.events(.., |event| {
-        all.events.push(event);
-        Ok::<(), Error>(())
-    })?;
+    book.visits(.., into(&mut all.visits))?;
+    book.rounds(.., into(&mut all.rounds))?;
+    book.events(.., into(&mut all.events))?;
     Ok(all)
 }

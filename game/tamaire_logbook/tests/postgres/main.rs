@@ -5,17 +5,17 @@
 mod common;
 mod server;
 
-use common::{DAY, MINUTE, MORNING, STAND, all, entries, event, open, place, round, visit};
+use common::{
+    DAY, LONG, MINUTE, MORNING, STAND, all, entries, event, open, place, round, visit, wait_for,
+};
 use postgres::Client;
 use server::Postgres;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
-use tamaire_logbook::{Entry, Event, Health, Kind, Moment, Options, Recorder, Server};
+use tamaire_logbook::{Entry, Event, Kind, Moment, Options, Recorder, Server};
 use tamaire_play::Route;
-
-const LONG: Duration = Duration::from_secs(60);
 
 fn begin(path: &Path, stand: &str, server: &Server) -> Recorder {
     let options = Options {
@@ -25,16 +25,10 @@ fn begin(path: &Path, stand: &str, server: &Server) -> Recorder {
     Recorder::begin(path, stand, options)
 }
 
-fn wait_for(recorder: &Recorder, what: &str, is_so: impl Fn(&Health) -> bool) -> Health {
-    let start = Instant::now();
-    loop {
-        let health = recorder.health();
-        if is_so(&health) {
-            return health;
-        }
-        assert!(start.elapsed() < LONG, "{what}: {health:?}");
-        thread::sleep(Duration::from_millis(20));
-    }
+/// Records a visit of three rounds.
+fn record(recorder: &Recorder, began: Moment) {
+    let entries = entries(began).into_iter();
+    entries.for_each(|entry| recorder.record(entry));
 }
 
 /// Waits until the server has `rows` rows and no entry is waiting.
@@ -91,9 +85,7 @@ fn rows_arrive_exactly_once_when_server_and_recorder_restart() {
     let address = server.named("postgres");
     let (_folder, path) = place();
     let recorder = begin(&path, STAND, &address);
-    for entry in entries(MORNING) {
-        recorder.record(entry);
-    }
+    record(&recorder, MORNING);
     let health = wait_for(&recorder, "away", |health| {
         health.problem.is_some() && health.unsent == 4
     });
@@ -115,9 +107,7 @@ fn rows_arrive_exactly_once_when_server_and_recorder_restart() {
             .take()
             .unwrap_or_else(|| begin(&path, STAND, &address));
         for minute in 0..200 {
-            for entry in entries(MORNING.after(minute * MINUTE)) {
-                writer.record(entry);
-            }
+            record(&writer, MORNING.after(minute * MINUTE));
         }
         rows += 800;
         server.start();
@@ -135,18 +125,10 @@ fn rows_arrive_exactly_once_when_server_and_recorder_restart() {
     wait_for_rows(&recorder, &mut client, rows);
     drop(recorder);
     let kept = all(&open(&path)).unwrap();
-    let expected: BTreeSet<_> = kept
-        .rounds
-        .iter()
-        .map(|round| round.id.to_string())
-        .collect();
-    assert_eq!(ids(&mut client, "rounds"), expected);
-    let expected: BTreeSet<_> = kept
-        .visits
-        .iter()
-        .map(|visit| visit.id.to_string())
-        .collect();
-    assert_eq!(ids(&mut client, "visits"), expected);
+    let expected = kept.rounds.iter().map(|round| round.id.to_string());
+    assert_eq!(ids(&mut client, "rounds"), expected.collect());
+    let expected = kept.visits.iter().map(|visit| visit.id.to_string());
+    assert_eq!(ids(&mut client, "visits"), expected.collect());
     assert_eq!(
         count(&mut client, "visits WHERE ended_ms IS NULL"),
         0,
@@ -176,9 +158,7 @@ fn server_receives_all_rows_after_an_hour_offline() {
     server.start();
     let mut rows = 0;
     let mut record = |minute| {
-        for entry in entries(MORNING.after(minute * MINUTE)) {
-            recorder.record(entry);
-        }
+        self::record(&recorder, MORNING.after(minute * MINUTE));
         rows += 4;
         rows
     };
@@ -343,9 +323,7 @@ fn lost_rows_are_sent_again(server: &Postgres) {
     let (_folder, path) = place();
     for rows in [4, 8] {
         let recorder = begin(&path, STAND, &address);
-        entries(MORNING)
-            .into_iter()
-            .for_each(|entry| recorder.record(entry));
+        record(&recorder, MORNING);
         wait_for_rows(&recorder, &mut server.ask("lost"), rows);
         drop(recorder);
         let drop_it = "DROP DATABASE lost WITH (FORCE)";
@@ -360,9 +338,7 @@ fn tables_of_a_newer_version_are_left_alone(server: &Postgres) {
     let address = server.database("newer");
     let (_folder, path) = place();
     let recorder = begin(&path, STAND, &address);
-    entries(MORNING)
-        .into_iter()
-        .for_each(|entry| recorder.record(entry));
+    record(&recorder, MORNING);
     let mut client = server.ask("newer");
     wait_for_rows(&recorder, &mut client, 4);
     drop(recorder);
@@ -370,9 +346,7 @@ fn tables_of_a_newer_version_are_left_alone(server: &Postgres) {
         .execute("UPDATE tamaire.version SET version = 7", &[])
         .unwrap();
     let recorder = begin(&path, STAND, &address);
-    entries(MORNING)
-        .into_iter()
-        .for_each(|entry| recorder.record(entry));
+    record(&recorder, MORNING);
     let health = wait_for(&recorder, "refused", |health| {
         health.problem.is_some() && health.unsent == 4
     });

@@ -1,19 +1,11 @@
 //! Invalid files and hostile texts.
 
 use crate::made_up::{Rows, rows};
-use crate::{logbooks, report_on};
+use crate::{all_files, logbooks, report_on};
 use std::fs;
 use std::path::Path;
 use tamaire_logbook::Logbook;
 use tamaire_report::{Language, Options};
-
-fn all() -> Options {
-    Options {
-        csv: true,
-        json: true,
-        ..Options::default()
-    }
-}
 
 /// Returns the names of the files in a folder.
 fn names(folder: &Path) -> Vec<String> {
@@ -41,7 +33,7 @@ fn report_names_unreadable_files_and_leaves_no_output() {
 
     for wrong in ["missing", "letter.txt", "empty", "newer", "short", "good"] {
         let files = [good.clone(), at(wrong)];
-        let error = report_on(&files, &at("report"), &all())
+        let error = report_on(&files, &at("report"), &all_files())
             .unwrap_err()
             .to_string();
         assert!(
@@ -50,7 +42,7 @@ fn report_names_unreadable_files_and_leaves_no_output() {
         );
         assert!(!at("report").exists(), "{wrong}");
     }
-    let error = report_on(&[], &at("report"), &all())
+    let error = report_on(&[], &at("report"), &all_files())
         .unwrap_err()
         .to_string();
     assert!(error.contains("at least one logbook"), "{error}");
@@ -72,7 +64,9 @@ fn report_names_unwritable_files_and_keeps_the_last_report() {
     let files = logbooks(&at("good"), &[rows(1, 3)]);
     fs::write(at("file"), "").unwrap();
     for out in ["file", "file/report"] {
-        let error = report_on(&files, &at(out), &all()).unwrap_err().to_string();
+        let error = report_on(&files, &at(out), &all_files())
+            .unwrap_err()
+            .to_string();
         assert!(error.contains(&at("file").display().to_string()), "{error}");
     }
 
@@ -81,7 +75,9 @@ fn report_names_unwritable_files_and_keeps_the_last_report() {
     assert_eq!(names(&out), ["index.html"]);
     let before = fs::read(out.join("index.html")).unwrap();
     fs::create_dir(out.join("report.json")).unwrap();
-    let error = report_on(&files, &out, &all()).unwrap_err().to_string();
+    let error = report_on(&files, &out, &all_files())
+        .unwrap_err()
+        .to_string();
     assert!(
         error.contains("report.json: cannot be written: a folder has this name"),
         "{error}"
@@ -90,7 +86,7 @@ fn report_names_unwritable_files_and_keeps_the_last_report() {
     assert_eq!(fs::read(out.join("index.html")).unwrap(), before);
 
     fs::remove_dir(out.join("report.json")).unwrap();
-    let report = report_on(&files, &out, &all()).unwrap();
+    let report = report_on(&files, &out, &all_files()).unwrap();
     assert_eq!(
         names(&out),
         [
@@ -123,7 +119,10 @@ fn hostile_texts_are_escaped_in_page_and_tables() {
     let folder = tempfile::tempdir().unwrap();
     let files = logbooks(folder.path(), &[rows]);
     for language in [Language::English, Language::Japanese] {
-        let options = Options { language, ..all() };
+        let options = Options {
+            language,
+            ..all_files()
+        };
         let report = report_on(&files, &folder.path().join("out"), &options).unwrap();
         let page = fs::read_to_string(&report.page).unwrap();
         assert!(page.contains("&lt;script&gt;"));
@@ -158,7 +157,10 @@ fn report_on_an_empty_logbook_says_so() {
         (Language::English, "no visit"),
         (Language::Japanese, "来場の記録がありません"),
     ] {
-        let options = Options { language, ..all() };
+        let options = Options {
+            language,
+            ..all_files()
+        };
         let report = report_on(&files, &folder.path().join("out"), &options).unwrap();
         let page = fs::read_to_string(&report.page).unwrap();
         assert!(page.contains(nothing) && !page.contains("NaN"));

@@ -1,10 +1,9 @@
 //! Completeness of the documentation for analysts.
 
 use crate::made_up::rows;
-use crate::{logbooks, report_on};
+use crate::{all_files, logbooks, report_on};
 use serde_json::Value;
 use std::collections::BTreeSet;
-use tamaire_report::Options;
 
 fn names(value: &Value, found: &mut BTreeSet<String>) {
     match value {
@@ -24,13 +23,8 @@ fn every_name_in_the_output_is_documented() {
     let described = include_str!("../../../../docs/report.md");
     let folder = tempfile::tempdir().unwrap();
     let files = logbooks(folder.path(), &[rows(4, 60)]);
-    let options = Options {
-        csv: true,
-        json: true,
-        ..Options::default()
-    };
     let out = folder.path().join("out");
-    report_on(&files, &out, &options).unwrap();
+    report_on(&files, &out, &all_files()).unwrap();
     let text = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
     let mut found = BTreeSet::new();
     names(

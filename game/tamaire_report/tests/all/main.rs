@@ -10,6 +10,15 @@ use made_up::{Rows, write};
 use std::path::{Path, PathBuf};
 use tamaire_report::{Error, Options, Report, report};
 
+/// Options for all files, without running rounds again.
+fn all_files() -> Options {
+    Options {
+        csv: true,
+        json: true,
+        ..Options::default()
+    }
+}
+
 /// Makes a report without clips and progress.
 fn report_on(files: &[PathBuf], out: &Path, options: &Options) -> Result<Report, Error> {
     report(files, out, options, None, &mut |_| {})

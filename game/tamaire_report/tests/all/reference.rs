@@ -1,7 +1,7 @@
 //! Slow reference implementation of the figures, from the raw rows.
 
 use crate::made_up::{Rows, rows};
-use crate::{logbooks, report_on};
+use crate::{all_files, logbooks, report_on};
 use jiff::Timestamp;
 use jiff::tz::Offset;
 use std::collections::{BTreeMap, BTreeSet};
@@ -362,12 +362,7 @@ fn figures_match_the_reference() {
         let folder = tempfile::tempdir().unwrap();
         let one = logbooks(&folder.path().join("one"), std::slice::from_ref(&rows));
         let out = folder.path().join("report");
-        let options = Options {
-            csv: true,
-            json: true,
-            ..Options::default()
-        };
-        let report = report_on(&one, &out, &options).unwrap();
+        let report = report_on(&one, &out, &all_files()).unwrap();
         compare(&report.figures, &told(&rows, [None, None]));
         compare_with_stand(&report.figures, &one[0]);
         let events: u64 = report.figures.events.iter().map(|event| event.count).sum();
@@ -387,13 +382,13 @@ fn figures_match_the_reference() {
         );
 
         let several = logbooks(&folder.path().join("several"), &shared_out(&rows, seed));
-        let shared = report_on(&several, &out, &options).unwrap().figures;
+        let shared = report_on(&several, &out, &all_files()).unwrap().figures;
         compare(&shared, &told(&rows, [None, None]));
         let repeated = shared.basis.repeated_rows;
         assert_eq!(repeated > 0, visits > 0);
         // A file given twice only adds repeated rows.
         let twice = [&one[..], &one[..]].concat();
-        let twice = report_on(&twice, &out, &options).unwrap().figures;
+        let twice = report_on(&twice, &out, &all_files()).unwrap().figures;
         let rows_of_one = (rows.visits.len() + rows.rounds.len() + rows.events.len()) as u64;
         assert_eq!(twice.basis.repeated_rows, rows_of_one);
         compare(&twice, &told(&rows, [None, None]));

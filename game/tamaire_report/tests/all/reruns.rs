@@ -4,7 +4,6 @@ use crate::made_up::{Rows, rows};
 use crate::{logbooks, report_on};
 use std::fs;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use tamaire_logbook::{Id, Round, RoundEnd};
 use tamaire_play::{AnyRound, Bot, BotKind, InputFrame, Level, Replay, Route};
 use tamaire_report::figures::Reason;
@@ -99,15 +98,11 @@ fn matching_rounds_are_counted_and_mapped() {
     let page = fs::read_to_string(&report.page).unwrap();
     assert_eq!(page.matches("Where hands moved: ").count(), 2);
 
-    let without = report_on(
-        &files,
-        &out,
-        &Options {
-            rerun: false,
-            ..RERUN
-        },
-    )
-    .unwrap();
+    let options = Options {
+        rerun: false,
+        ..RERUN
+    };
+    let without = report_on(&files, &out, &options).unwrap();
     let page = fs::read_to_string(&without.page).unwrap();
     assert!(page.contains("Create the report with --rerun"));
     assert_eq!(without.figures.total, report.figures.total);
@@ -128,102 +123,36 @@ fn mismatching_rounds_are_listed_and_not_counted() {
         rows.rounds.push(Round { id, ..round });
     };
     add(won.clone(), None);
-    for (wrong, reason) in [
+    type Change = fn(&mut Round);
+    let of_won: [(Change, Reason); 9] = [
+        (|round| round.seconds -= 1.0, Reason::Differs),
+        (|round| round.route = Some(Route::Shave), Reason::Differs),
         (
-            Round {
-                seconds: won.seconds - 1.0,
-                ..won.clone()
-            },
+            |round| (round.end, round.route) = (RoundEnd::Left, None),
             Reason::Differs,
         ),
+        (|round| round.level = "hoop".into(), Reason::Differs),
+        (|round| round.level_hash = 7, Reason::Differs),
+        (|round| round.pieces += 1, Reason::Differs),
+        (|round| round.replay += "AA", Reason::Unreadable),
+        (|round| round.replay = "hello".into(), Reason::Unreadable),
+        (|round| round.replay = tampered(round), Reason::Astray),
+    ];
+    let of_lost: [(Change, Reason); 4] = [
+        (|round| round.kept = 0.5, Reason::Differs),
         (
-            Round {
-                route: Some(Route::Shave),
-                ..won.clone()
-            },
+            |round| (round.end, round.route) = (RoundEnd::Won, Some(Route::Mix)),
             Reason::Differs,
         ),
-        (
-            Round {
-                end: RoundEnd::Left,
-                route: None,
-                ..won.clone()
-            },
-            Reason::Differs,
-        ),
-        (
-            Round {
-                level: "hoop".into(),
-                ..won.clone()
-            },
-            Reason::Differs,
-        ),
-        (
-            Round {
-                level_hash: 7,
-                ..won.clone()
-            },
-            Reason::Differs,
-        ),
-        (
-            Round {
-                pieces: won.pieces + 1,
-                ..won.clone()
-            },
-            Reason::Differs,
-        ),
-        (
-            Round {
-                kept: 0.5,
-                ..lost.clone()
-            },
-            Reason::Differs,
-        ),
-        (
-            Round {
-                end: RoundEnd::Won,
-                route: Some(Route::Mix),
-                ..lost.clone()
-            },
-            Reason::Differs,
-        ),
-        (
-            Round {
-                end: RoundEnd::Won,
-                ..lost.clone()
-            },
-            Reason::Contradictory,
-        ),
-        (
-            Round {
-                seconds: f32::INFINITY,
-                ..lost.clone()
-            },
-            Reason::Contradictory,
-        ),
-        (
-            Round {
-                replay: format!("{}AA", won.replay),
-                ..won.clone()
-            },
-            Reason::Unreadable,
-        ),
-        (
-            Round {
-                replay: "hello".into(),
-                ..won.clone()
-            },
-            Reason::Unreadable,
-        ),
-        (
-            Round {
-                replay: tampered(won),
-                ..won.clone()
-            },
-            Reason::Astray,
-        ),
-    ] {
-        add(wrong, Some(reason));
+        (|round| round.end = RoundEnd::Won, Reason::Contradictory),
+        (|round| round.seconds = f32::INFINITY, Reason::Contradictory),
+    ];
+    for (honest, changes) in [(won, &of_won[..]), (lost, &of_lost)] {
+        for (change, reason) in changes {
+            let mut wrong = honest.clone();
+            change(&mut wrong);
+            add(wrong, Some(*reason));
+        }
     }
     let folder = tempfile::tempdir().unwrap();
     let files = logbooks(folder.path(), &[rows]);
@@ -304,11 +233,9 @@ fn interrupted_rerun_continues_from_the_stored_results() {
     let killed = [lines[0], &old, "not JSON", &lines[1][..lines[1].len() / 2]].join("\n");
     fs::write(&path, &killed).unwrap();
 
-    let ran = AtomicUsize::new(0);
     let mut told = Vec::new();
     let again = report(&files, &out, &RERUN, None, &mut |progress| {
         if progress.stage == Stage::Rerun {
-            ran.fetch_add(1, Ordering::Relaxed);
             told.push((progress.done, progress.all));
         }
     });

@@ -1,7 +1,7 @@
 //! Reproducible files and archives: sorted by name, without owner, with the time of the commit.
 
 use super::kit::ReleaseBuild;
-use crate::shell::{FAILED, Failure, file_error, is_on_path, lacking, root};
+use crate::shell::{Failure, file_error, is_on_path, lacking, root};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -107,9 +107,6 @@ fn run(command: &mut Command, hint: &str) -> Result<(), Failure> {
         .map_err(|error| file_error(&program, &error))?;
     match status.success() {
         true => Ok(()),
-        false => Err(Failure {
-            message: format!("{hint} ({status})"),
-            code: FAILED,
-        }),
+        false => Err(Failure::failed(format!("{hint} ({status})"))),
     }
 }

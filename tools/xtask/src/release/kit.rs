@@ -1,7 +1,7 @@
 //! State of a release: version, time, folder, and which parts were built from the current commit.
 
 use crate::packages::IfMissing;
-use crate::shell::{CANNOT, FAILED, Failure, file_error, output_of, root, target};
+use crate::shell::{Failure, file_error, output_of, root, target};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,10 +26,8 @@ impl ReleaseBuild {
     pub fn open(if_missing: IfMissing) -> Result<Self, Failure> {
         let at = root().display().to_string();
         let git = |words: &[&str]| output_of("git", &[&["-C", &at], words].concat());
-        let cannot = || Failure {
-            message: "a release is built from a commit, but git finds none here".to_string(),
-            code: CANNOT,
-        };
+        let cannot =
+            || Failure::cannot("a release is built from a commit, but git finds none here");
         let changes = git(&["status", "--porcelain"]).ok_or_else(cannot)?;
         let line = |words| {
             git(words)
@@ -134,10 +132,9 @@ impl ReleaseBuild {
         let stage = self.folder.join("stage").join(name);
         match stage.is_dir() {
             true => Ok(stage),
-            false => Err(Failure {
-                message: format!("the required part `{part}` has not been built"),
-                code: CANNOT,
-            }),
+            false => Err(Failure::cannot(format!(
+                "the required part `{part}` has not been built"
+            ))),
         }
     }
 
@@ -173,10 +170,7 @@ impl ReleaseBuild {
 pub fn size(file: &Path) -> Result<u64, Failure> {
     let data = fs::metadata(file).map_err(|error| file_error(file, &error))?;
     match data.len() {
-        0 => Err(Failure {
-            message: format!("{} is empty", file.display()),
-            code: FAILED,
-        }),
+        0 => Err(Failure::failed(format!("{} is empty", file.display()))),
         bytes => Ok(bytes),
     }
 }

@@ -3,9 +3,7 @@
 use super::files::{compress, put, put_text, settle, tar as archive, text_of};
 use super::kit::ReleaseBuild;
 use super::programs;
-use crate::shell::{
-    CANNOT, FAILED, Failure, execute, file_error, is_on_path, lacking, output_of, root,
-};
+use crate::shell::{Failure, execute, file_error, is_on_path, lacking, output_of, root};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -23,10 +21,9 @@ const ICONS: [(&str, &str); 2] = [("192x192", "icon-192.png"), ("512x512", "icon
 /// Builds the tree of the packages, as below /usr.
 pub fn programs(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     if !cfg!(target_os = "linux") {
-        return Err(Failure {
-            message: "packages for Linux can only be built on Linux".to_string(),
-            code: CANNOT,
-        });
+        return Err(Failure::cannot(
+            "packages for Linux can only be built on Linux",
+        ));
     }
     let built = programs::build(kit, None)?;
     let tree = kit.stage("linux")?;
@@ -217,13 +214,10 @@ fn linked_packages(stage: &Path, package: &Path) -> Result<String, Failure> {
     let text = String::from_utf8_lossy(&output.stdout);
     match text.trim().strip_prefix("shlibs:Depends=") {
         Some(packages) if output.status.success() => Ok(packages.to_string()),
-        _ => Err(Failure {
-            message: format!(
-                "dpkg-shlibdeps: {}",
-                String::from_utf8_lossy(&output.stderr)
-            ),
-            code: FAILED,
-        }),
+        _ => Err(Failure::failed(format!(
+            "dpkg-shlibdeps: {}",
+            String::from_utf8_lossy(&output.stderr)
+        ))),
     }
 }
 
@@ -262,12 +256,9 @@ fn check_glibc(program: &Path) -> Result<(), Failure> {
     eprintln!("xtask: {asks}");
     match newest {
         Some(newest) if newest <= GLIBC => Ok(()),
-        _ => Err(Failure {
-            message: format!(
-                "{asks}, but the oldest supported system has {GLIBC:?}: build on Debian 12 or Ubuntu 22.04"
-            ),
-            code: FAILED,
-        }),
+        _ => Err(Failure::failed(format!(
+            "{asks}, but the oldest supported system has {GLIBC:?}: build on Debian 12 or Ubuntu 22.04"
+        ))),
     }
 }
 

@@ -4,9 +4,7 @@ use super::kit::ReleaseBuild;
 use super::programs;
 use crate::cross::WINDOWS;
 use crate::packages::IfMissing;
-use crate::shell::{
-    CANNOT, Failure, answers, cargo, execute, file_error, is_on_path, lacking, output_of,
-};
+use crate::shell::{Failure, answers, cargo, execute, file_error, is_on_path, lacking, output_of};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -50,14 +48,8 @@ pub fn deny(kit: &mut ReleaseBuild) -> Result<(), Failure> {
         return Err(lacking("cargo-deny", "`cargo install --locked cargo-deny`"));
     }
     let mut check = cargo();
-    check.args([
-        "deny",
-        "--all-features",
-        "check",
-        "licenses",
-        "bans",
-        "sources",
-    ]);
+    check.args(["deny", "--all-features", "check"]);
+    check.args(["licenses", "bans", "sources"]);
     execute(
         &mut check,
         "see deny.toml for the permitted contents and the reasons",
@@ -66,11 +58,9 @@ pub fn deny(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     let mut fetch = cargo();
     fetch.args(["deny", "fetch", "db"]);
     if execute(&mut fetch, "").is_err() {
-        return Err(Failure {
-            message: "the database of advisories could not be downloaded: known vulnerabilities were NOT checked"
-                .to_string(),
-            code: CANNOT,
-        });
+        return Err(Failure::cannot(
+            "the database of advisories could not be downloaded: known vulnerabilities were NOT checked",
+        ));
     }
     let mut check = cargo();
     check.args(["deny", "--all-features", "check", "advisories"]);
@@ -81,10 +71,7 @@ pub fn deny(kit: &mut ReleaseBuild) -> Result<(), Failure> {
 pub fn sums(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     let packages = kit.packages()?;
     if packages.is_empty() {
-        return Err(Failure {
-            message: "no packages found for the checksums".to_string(),
-            code: CANNOT,
-        });
+        return Err(Failure::cannot("no packages found for the checksums"));
     }
     if !is_on_path("sha256sum") {
         return Err(lacking("sha256sum", "Debian: coreutils"));

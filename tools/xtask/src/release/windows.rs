@@ -4,7 +4,7 @@ use super::files::{put, put_text, zip};
 use super::kit::ReleaseBuild;
 use super::programs;
 use crate::cross::{WINDOWS, Wanted};
-use crate::shell::{FAILED, Failure, file_error, lacking, output_of, root};
+use crate::shell::{Failure, file_error, lacking, output_of, root};
 use std::fs;
 use std::path::Path;
 
@@ -63,13 +63,10 @@ fn check_imports(program: &Path) -> Result<(), Failure> {
     let foreign: Vec<&str> = foreign.collect();
     match foreign[..] {
         [] => Ok(()),
-        _ => Err(Failure {
-            message: format!(
-                "{path} requires {}, which is not part of Windows",
-                foreign.join(", ")
-            ),
-            code: FAILED,
-        }),
+        _ => Err(Failure::failed(format!(
+            "{path} requires {}, which is not part of Windows",
+            foreign.join(", ")
+        ))),
     }
 }
 

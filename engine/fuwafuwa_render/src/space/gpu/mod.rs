@@ -265,26 +265,13 @@ impl Renderer {
             self.draw_skins(&mut pass);
             pass.set_pipeline(&pipelines.element_shadow);
             draw_mesh(&self.meter, &mut pass, &self.boxes, 0..1);
-            pass.set_vertex_buffer(1, self.rounded.all());
-            pass.set_pipeline(&pipelines.bar_shadow);
-            draw_mesh(
-                &self.meter,
+            self.draw_rounded(
                 &mut pass,
-                &self.fine,
-                self.clamped_to_buffer(&geometry.bars),
-            );
-            draw_mesh(
-                &self.meter,
-                &mut pass,
-                &self.fine,
-                self.clamped_to_buffer(&geometry.props),
-            );
-            pass.set_pipeline(&pipelines.crumb_shadow);
-            draw_mesh(
-                &self.meter,
-                &mut pass,
-                &self.coarse,
-                self.clamped_to_buffer(&geometry.crumbs),
+                [
+                    (&pipelines.bar_shadow, &self.fine, &geometry.bars),
+                    (&pipelines.bar_shadow, &self.fine, &geometry.props),
+                    (&pipelines.crumb_shadow, &self.coarse, &geometry.crumbs),
+                ],
             );
         }
     }

@@ -27,12 +27,7 @@ fn goals(players: &mut Players, devices: &Devices, manner: &InputMapping) -> [Op
 
 /// Creates a stick with this deflection to the right and upwards.
 fn stick(id: u32, lean: [f32; 2]) -> Device {
-    let about = DeviceInfo {
-        name: String::new(),
-        guid: String::new(),
-        labels: sticks::Labels::default(),
-    };
-    let mut stick = Device::at_rest(DeviceId(id), about, 2, 4, 1);
+    let mut stick = Device::at_rest(DeviceId(id), DeviceInfo::default(), 2, 4, 1);
     stick.axes = vec![lean[0], -lean[1]];
     stick
 }

@@ -1,7 +1,7 @@
 //! Choice of a level at the stand.
 
-use super::super::widgets::dim_background;
-use super::super::{levels::tile, play::focus_first};
+use super::super::levels::tile;
+use super::super::widgets::{dim_background, focus_first};
 use super::language::above;
 use crate::exhibit::Stand;
 use crate::game::Game;

@@ -1,7 +1,7 @@
 //! PIN pad for the staff.
 
-use super::super::widgets::{card, column, dim_background};
-use super::super::{icons, play::focus_first};
+use super::super::icons;
+use super::super::widgets::{card, column, dim_background, focus_first};
 use crate::exhibit::{CORNER, Stand};
 use crate::game::Game;
 use app_shell::widgets::{ButtonStyle, button, fitted};
@@ -70,7 +70,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     });
     if leaves {
         game.blip(Menu::Back);
-        stand.leave(game);
+        stand.end_and_reset(game);
     } else if let Some(digit) = digit {
         game.blip(Menu::Confirm);
         stand.enter(game, digit);

@@ -1,8 +1,7 @@
 //! Result of a round at the stand: play again, try the other route, and a code to take the round home.
 
-use super::super::play::focus_first;
 use super::super::result::{headline, line, numbers, other};
-use super::super::widgets::{card, column_beside, dim_background};
+use super::super::widgets::{card, column_beside, dim_background, focus_first};
 use super::code;
 use super::language::above;
 use crate::exhibit::Stand;

@@ -1,8 +1,9 @@
 //! Staff pages: figures of the day, health of the stand, and its settings.
 
 use super::super::forces;
-use super::super::play::focus_first;
-use super::super::widgets::{card, choice, dim_background, header, page, page_rect, row, slider};
+use super::super::widgets::{
+    card, choice, dim_background, focus_first, header, page, page_rect, row, slider,
+};
 use crate::exhibit::config::ConfigChange;
 use crate::exhibit::staff::StaffPage;
 use crate::exhibit::{Phase, Stand};
@@ -68,11 +69,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: StaffPage, ui: &mu
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = GAP;
                 for (seen, name) in StaffPage::ALL.into_iter().zip(said.pages) {
-                    let weight = if seen == shown {
-                        ButtonStyle::Main
-                    } else {
-                        ButtonStyle::Other
-                    };
+                    let weight = ButtonStyle::of(seen == shown);
                     if button(ui, &theme, name, vec2(width, 48.0), weight).clicked() {
                         wish = Some(StaffAction::See(seen));
                     }
@@ -112,7 +109,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: StaffPage, ui: &mu
             });
         });
     });
-    match stand.take_exported() {
+    match stand.memory.take_exported() {
         Some(Ok(path)) => stand.answer = Some((said.exported)(&path)),
         Some(Err(error)) => stand.answer = Some(error),
         None => {}
@@ -122,14 +119,14 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: StaffPage, ui: &mu
     };
     game.blip(Menu::Confirm);
     match wish {
-        StaffAction::Leave => stand.leave(game),
+        StaffAction::Leave => stand.end_and_reset(game),
         StaffAction::See(page) => stand.phase = Phase::Staff(page),
         StaffAction::Change(change) => stand.change(game, &change),
         StaffAction::TryStick => {
             game.go(Screen::Settings);
             game.go(Screen::Forces);
         }
-        StaffAction::Export => stand.export(),
+        StaffAction::Export => stand.memory.export(),
         StaffAction::End => stand.is_ended = true,
     }
 }
@@ -152,7 +149,7 @@ fn show_value(ui: &mut Ui, theme: &Theme, name: &str, value: &str) {
 
 fn today(stand: &Stand, game: &Game, ui: &mut Ui) {
     let (theme, said) = (game.theme(), game.settings.language.at_stand());
-    let day = stand.today();
+    let day = stand.memory.today();
     let share = |count: u64| match day.rounds {
         0 => count.to_string(),
         rounds => format!("{count}  ({:.0} %)", 100.0 * count as f64 / rounds as f64),
@@ -175,7 +172,7 @@ fn today(stand: &Stand, game: &Game, ui: &mut Ui) {
 
 fn health(stand: &Stand, game: &Game, ui: &mut Ui) {
     let (theme, said) = (game.theme(), game.settings.language.at_stand());
-    let logbook = stand.logbook();
+    let logbook = stand.memory.health();
     let frame = |percent| {
         stand
             .frames
@@ -205,7 +202,7 @@ fn health(stand: &Stand, game: &Game, ui: &mut Ui) {
         frame(50).unwrap_or_else(unknown),
         frame(99).unwrap_or_else(unknown),
         memory().map_or_else(unknown, said.bytes),
-        stand.room().map_or_else(unknown, said.bytes),
+        stand.memory.room().map_or_else(unknown, said.bytes),
         if names.is_empty() {
             "-".into()
         } else {
@@ -335,11 +332,7 @@ fn levels(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<ConfigChange> {
             } else {
                 name.to_string()
             };
-            let weight = if is_in {
-                ButtonStyle::Main
-            } else {
-                ButtonStyle::Other
-            };
+            let weight = ButtonStyle::of(is_in);
             if button(ui, &theme, &text, vec2(176.0, 42.0), weight).clicked() {
                 let others = chosen.iter().filter(|&&known| known != id);
                 let added = (!is_in).then_some(&id);

@@ -1,5 +1,5 @@
-//! Runs libFuzzer on one entry point of `hostile`, selected by the environment: `DOOR=level`. With
-//! `SEEDS=folder` it only writes valid seed inputs for each entry point into the folder, and next to them
+//! Runs libFuzzer on one door of `fuzz_targets`, selected by the environment: `DOOR=level`. With
+//! `SEEDS=folder` it only writes valid seed inputs for each door into the folder, and next to them
 //! dictionaries of their tokens.
 
 use fuzz_targets::{Door, noise};
@@ -22,7 +22,7 @@ static DOOR: LazyLock<&Door> = LazyLock::new(|| {
 libfuzzer_sys::fuzz_target!(
     init: {
         if let Some(folder) = env::var_os("SEEDS") {
-            for door in hostile::DOORS {
+            for door in fuzz_targets::DOORS {
                 write_seeds(door, Path::new(&folder)).expect("cannot write to SEEDS");
             }
             process::exit(0);
