@@ -80,7 +80,7 @@ impl<D: Dim> World<D> {
     /// let mut world = World::<Dim3>::new(WorldConfig::default())?;
     /// let ball = SoftBody::new(VoxelGrid::ball(8, 0.4)?, &[Material::default()])?;
     /// let ball = world.add_soft_body(ball);
-    /// world.soft_body_mut(ball)?.crumble()?;
+    /// world.soft_body_mut(ball)?.crumble();
     /// assert_eq!(world.remove_small_pieces(PieceSize::Voxels(1))?.pieces, []);
     /// let removed = world.remove_small_pieces(PieceSize::Voxels(2))?;
     /// assert_eq!(removed.bodies, [ball]);
@@ -113,7 +113,7 @@ impl<D: Dim> World<D> {
     /// let mut world = World::<Dim3>::new(WorldConfig::default())?;
     /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.1 };
     /// let ball = world.add_rigid_body(RigidBody::dynamic(ball, 1.0))?;
-    /// The solid side of this half-space is above the plane, because its normal points down.
+    /// // The solid side of this half-space is above the plane, because its normal points down.
     /// let above = Shape::half_space([0.0, -1.0, 0.0], [0.0, -2.0, 0.0]);
     /// let mut removed = world.remove_outside(&above)?;
     /// while removed.rigids.is_empty() && world.ticks() < 60 {
