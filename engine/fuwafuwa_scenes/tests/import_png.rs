@@ -277,11 +277,10 @@ fn png_rejects_invalid_arguments() {
     }
     for size in [f32::NAN, -1.0, 0.0, f32::INFINITY] {
         let error = png("test.png", &bytes, 8, size).unwrap_err();
-        let problem = error.problem;
-        assert!(matches!(
-            problem,
-            Problem::Grid(Error::InvalidParameter { .. })
-        ));
+        let Problem::Grid(error) = error.problem else {
+            panic!("{error}");
+        };
+        assert!(matches!(*error, Error::InvalidParameter { .. }));
     }
 }
 

@@ -238,11 +238,10 @@ fn error_names_position_of_each_fault() {
 fn vox_rejects_invalid_voxel_size() {
     let error = vox("test.vox", &full(), 0.0).unwrap_err();
     assert_eq!(error.position, FilePosition::File);
-    let problem = error.problem;
-    assert!(matches!(
-        problem,
-        Problem::Grid(Error::InvalidParameter { .. })
-    ));
+    let Problem::Grid(error) = error.problem else {
+        panic!("{error}");
+    };
+    assert!(matches!(*error, Error::InvalidParameter { .. }));
 }
 
 #[test]

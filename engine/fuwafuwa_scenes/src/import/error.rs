@@ -57,7 +57,7 @@ pub enum Problem {
     Empty(&'static str),
     /// The engine rejects the grid.
     #[error("{0}")]
-    Grid(Error),
+    Grid(Box<Error>),
 }
 
 impl fmt::Display for FilePosition {
@@ -110,7 +110,7 @@ pub fn in_file<T>(file: &str, outcome: Result<T, PositionedProblem>) -> Result<T
 pub fn no_grid(error: Error, sought: &'static str) -> PositionedProblem {
     let problem = match error {
         Error::EmptyGrid => Problem::Empty(sought),
-        error => Problem::Grid(error),
+        error => Problem::Grid(Box::new(error)),
     };
     (FilePosition::File, problem)
 }
