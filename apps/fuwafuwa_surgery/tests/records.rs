@@ -80,7 +80,10 @@ fn invalid_values_are_rejected_before_the_replay() {
     let corner = bad(|one| Arc::make_mut(&mut one.case).corner[1] = f64::NAN);
     assert!(corner.contains("corner"), "{corner}");
     let material = bad(|one| Arc::make_mut(&mut one.case).tissues[0].density = -1.0);
-    assert!(material.contains("density = -1"), "{material}");
+    assert!(
+        material.contains("material 1: density must be positive and finite, given -1"),
+        "{material}"
+    );
     let missing = bad(|one| Arc::make_mut(&mut one.case).tissues.clear());
     assert!(missing.contains("material"), "{missing}");
     let hashes = bad(|one| one.hashes.clear());

@@ -5,6 +5,7 @@ use fuwafuwa::{
     Contact, Dim, Dim2, Dim3, Event, Layers, Material, ObjectRef, PieceId, RigidBody,
     RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, VoxelGrid, World, WorldConfig,
 };
+use std::collections::BTreeSet;
 
 const UP: [f32; 3] = [0.0, 1.0, 0.0];
 
@@ -178,6 +179,87 @@ fn sensors_tell<D: Dim>() {
 fn sensor_reports_entered_and_exited_bodies() {
     sensors_tell::<Dim2>();
     sensors_tell::<Dim3>();
+}
+
+/// Pieces fly through sensors of all shapes. The events agree with a test of every node against every sensor.
+fn sensors_agree_with_test_of_every_node<D: Dim>() {
+    let mut world = World::<D>::new(WorldConfig::default()).unwrap();
+    let mut seed = 7u32;
+    let mut random = |low: f32, high: f32| {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        low + (high - low) * (seed >> 8) as f32 / (1u32 << 24) as f32
+    };
+    let mut point = || [random(0.0, 4.0), random(0.0, 4.0), random(0.0, 1.0)];
+    let mut sensors = vec![Shape::half_space([0.6, 0.8, 0.0], [1.0, 0.5, 0.0])];
+    for _ in 0..3 {
+        let (radius, half) = (0.3, [0.5, 0.1, 0.4]);
+        let centre = point();
+        sensors.push(Shape::Ball { centre, radius });
+        let centre = point();
+        sensors.push(Shape::Box { centre, half });
+        let (from, to) = (point(), point());
+        sensors.push(Shape::Capsule { from, to, radius });
+        let rotation = Rotation::about([0.0, 0.0, 1.0], 0.7);
+        let centre = point();
+        sensors.push(Shape::OrientedBox {
+            centre,
+            half,
+            rotation,
+        });
+    }
+    for shape in sensors {
+        let mut sensor = RigidBody::fixed(shape, 0.5);
+        sensor.is_sensor = true;
+        world.add_rigid_body(sensor).unwrap();
+    }
+    for k in 0..4 {
+        let grid = VoxelGrid::<D>::ball(6, 1.0).unwrap();
+        let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
+        if k % 2 == 0 {
+            body.crumble().unwrap();
+        }
+        let body = world.add_soft_body(body.translated(point()));
+        let [x, y, z] = point();
+        let velocity = [2.0 - x, 4.0 - y, 0.5 - z];
+        world.add_velocity(body, velocity, [0.0; 3]).unwrap();
+        let layers = Layers {
+            memberships: if k == 3 { 2 } else { 1 },
+            filters: if k == 3 { 2 } else { u32::MAX },
+        };
+        world.set_layers(body, layers).unwrap();
+    }
+    let (mut inside, mut changes) = (BTreeSet::new(), 0);
+    for tick in 0..60 {
+        world.step();
+        for event in world.events() {
+            match *event {
+                Event::SensorEntered { sensor, who } => assert!(inside.insert((sensor, who))),
+                Event::SensorExited { sensor, who } => assert!(inside.remove(&(sensor, who))),
+                _ => continue,
+            }
+            changes += 1;
+        }
+        let mut expected = BTreeSet::new();
+        for (sensor, rigid) in world.rigid_bodies().entries() {
+            for (body, soft) in world.soft_bodies().entries() {
+                for (node, _) in soft.mesh().nodes() {
+                    let is_inside = rigid.shape().distance(soft.node_state(node).0).0 < 0.0;
+                    if is_inside && soft.layers().meet(rigid.layers) {
+                        let piece = soft.pieces().of_node(node);
+                        expected.insert((sensor, ObjectRef::Piece { body, piece }));
+                    }
+                }
+            }
+        }
+        assert_eq!(inside, expected, "tick {tick}");
+    }
+    assert!(changes > 100, "{changes}");
+}
+
+#[test]
+fn sensor_events_agree_with_test_of_every_node() {
+    sensors_agree_with_test_of_every_node::<Dim2>();
+    sensors_agree_with_test_of_every_node::<Dim3>();
 }
 
 /// Two balls, one above the other, collide or not depending on their layers; the floor supports both.

@@ -240,6 +240,110 @@ fn spring_oscillates_at_natural_frequency() {
     );
 }
 
+/// A mass of 1 kg hangs at rest from parallel springs, all of them from one point to its centre. The springs
+/// stretch by m g / Σk, and each bears its share k / Σk of the weight. h² k / m is up to 0.4 per spring, so that
+/// one pass over the springs would be far from the solution.
+fn parallel_springs_hold_a_mass<D: Dim>() {
+    let mut world = world::<D>(-9.81);
+    let bob = ball(&mut world, [0.0; 3], 1.0);
+    let all = [4e5f32, 1e5, 2e5, 1e5, 3e5, 2e5];
+    let joints = all.map(|stiffness| {
+        let tie = JointKind::Spring {
+            stiffness,
+            damping: 2e-3 * stiffness,
+            length: 0.1,
+        };
+        let ends = [on(bob, [0.0; 3]), JointAnchor::Position([0.0, 0.1, 0.0])];
+        world.add_joint(Joint::new(ends, tie)).unwrap()
+    });
+    for _ in 0..300 {
+        world.step();
+    }
+    let sum = all.iter().sum::<f32>();
+    let stretch = -world.rigid_bodies()[bob].position()[1];
+    let expected = 9.81 / sum;
+    assert!(
+        (stretch / expected - 1.0).abs() < 0.02,
+        "{stretch} {expected}"
+    );
+    for (joint, stiffness) in joints.into_iter().zip(all) {
+        let force = world.joints().get(joint).unwrap().force();
+        let expected = 9.81 * stiffness / sum;
+        assert!((force / expected - 1.0).abs() < 0.02, "{force} {expected}");
+    }
+}
+
+#[test]
+fn parallel_springs_stretch_and_share_load_by_stiffness() {
+    parallel_springs_hold_a_mass::<Dim2>();
+    parallel_springs_hold_a_mass::<Dim3>();
+}
+
+/// A mass between four springs, two on each side of it: ω² = Σk/m along their axis.
+fn mass_between_springs_oscillates<D: Dim>() {
+    let mut world = world::<D>(0.0);
+    let bob = ball(&mut world, [0.1, 0.0, 0.0], 2.0);
+    let (mut sum, mut crossings) = (0.0, Vec::new());
+    for (stiffness, side) in [(40.0, 1.0), (10.0, -1.0), (20.0, 1.0), (30.0, -1.0)] {
+        let tie = JointKind::Spring {
+            stiffness,
+            damping: 0.0,
+            length: 1.0,
+        };
+        let at = [0.1, 0.0, 0.0];
+        let ends = [on(bob, at), JointAnchor::Position([side, 0.0, 0.0])];
+        world.add_joint(Joint::new(ends, tie)).unwrap();
+        sum += stiffness;
+    }
+    let mut before = 0.1;
+    for tick in 0..600 {
+        world.step();
+        let now = world.rigid_bodies()[bob].position()[0];
+        if before > 0.0 && now <= 0.0 {
+            crossings.push(tick as f32 + before / (before - now));
+        }
+        before = now;
+    }
+    let count = (crossings.len() - 1) as f32;
+    let period = (crossings[crossings.len() - 1] - crossings[0]) / count / 60.0;
+    let expected = TAU * (2.0f32 / sum).sqrt();
+    assert!(
+        (period / expected - 1.0).abs() < 0.01,
+        "{period} {expected}"
+    );
+}
+
+#[test]
+fn mass_between_springs_oscillates_at_natural_frequency() {
+    mass_between_springs_oscillates::<Dim2>();
+    mass_between_springs_oscillates::<Dim3>();
+}
+
+/// Two equal stiff springs bear half of a weight of 39.2 N each.
+#[test]
+fn parallel_springs_break_above_their_share_of_the_load() {
+    for (limit, holds) in [(22.0, true), (18.0, false)] {
+        let mut world = world::<Dim3>(-9.81);
+        let bob = ball(&mut world, [0.0, -1e-5, 0.0], 4.0);
+        let joints = [0, 1].map(|_| {
+            let tie = JointKind::Spring {
+                stiffness: 2e6,
+                damping: 4e3,
+                length: 0.1,
+            };
+            let at = [0.0, -1e-5, 0.0];
+            let ends = [on(bob, at), JointAnchor::Position([0.0, 0.1, 0.0])];
+            let joint = Joint::new(ends, tie).breaking_at(limit);
+            world.add_joint(joint).unwrap()
+        });
+        for _ in 0..60 {
+            world.step();
+        }
+        let held = joints.map(|joint| world.joints().get(joint).is_ok());
+        assert_eq!(held, [holds; 2], "{limit}");
+    }
+}
+
 #[test]
 fn very_stiff_spring_keeps_length() {
     let mut world = world::<Dim2>(-9.81);

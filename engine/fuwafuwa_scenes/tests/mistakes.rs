@@ -192,7 +192,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             body,
             "width = 1e-45",
-            ", line 8: body 1, width: the voxel size 0 m is not between 0.000001 and 1000 m",
+            ", line 8: body 1, width: voxel_size must be 0.000001 to 1000 m, given 0.0",
         ),
         (
             body,

@@ -3,6 +3,7 @@
 
 use crate::error::Error;
 use crate::foundation::ids::{Id, IndexVec, id};
+use std::collections::BTreeSet;
 use std::fmt;
 
 /// Generational handle into an [`Arena`]: a slot, and the number of items that have left the slot before.
@@ -114,13 +115,41 @@ handle! {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
-    serde(bound = "T: serde::Serialize + for<'a> serde::Deserialize<'a>")
+    serde(
+        from = "StoredArena<K, T>",
+        bound = "T: serde::Serialize + for<'a> serde::Deserialize<'a>"
+    )
 )]
 pub struct Arena<K: Handle, T> {
     slots: IndexVec<K::Slot, Slot<T>>,
     /// Number of mutable accesses, see [`Arena::revision`].
     #[cfg_attr(feature = "serde", serde(skip))]
     revision: u64,
+    /// Indices of the free slots. They follow from `slots`, so that a loaded arena reuses the same slots.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    free: BTreeSet<usize>,
+}
+
+/// Stored form of an [`Arena`].
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(bound = "T: for<'b> serde::Deserialize<'b>")]
+struct StoredArena<K: Handle, T> {
+    slots: IndexVec<K::Slot, Slot<T>>,
+}
+
+#[cfg(feature = "serde")]
+impl<K: Handle, T> From<StoredArena<K, T>> for Arena<K, T> {
+    fn from(StoredArena { slots }: StoredArena<K, T>) -> Self {
+        let free = slots.iter().enumerate();
+        let free = free.filter(|(_, slot)| slot.thing.is_none());
+        let free = free.map(|(index, _)| index).collect();
+        Self {
+            slots,
+            revision: 0,
+            free,
+        }
+    }
 }
 
 /// Slot of an [`Arena`]: the number of items that have left it, and the present item.
@@ -136,6 +165,7 @@ impl<K: Handle, T> Default for Arena<K, T> {
         Self {
             slots: IndexVec::default(),
             revision: 0,
+            free: BTreeSet::new(),
         }
     }
 }
@@ -198,18 +228,23 @@ impl<K: Handle, T> Arena<K, T> {
         self.first().is_none()
     }
 
-    /// Inserts an item into the first free slot.
+    /// Inserts an item into the lowest free slot.
     pub(crate) fn insert(&mut self, thing: T) -> K {
         self.revision += 1;
-        let free = self.slots.iter().position(|slot| slot.thing.is_none());
-        let own = free.map_or(self.slots.next_id(), K::Slot::of);
-        if free.is_none() {
-            self.slots.push(Slot {
-                generation: 0,
-                thing: None,
-            });
-        }
-        self.slots[own].thing = Some(thing);
+        let thing = Some(thing);
+        let own = match self.free.pop_first() {
+            Some(index) => {
+                let own = K::Slot::of(index);
+                self.slots[own].thing = thing;
+                own
+            }
+            None => {
+                let own = self.slots.next_id();
+                let generation = 0;
+                self.slots.push(Slot { generation, thing });
+                own
+            }
+        };
         self.id(own)
     }
 
@@ -220,6 +255,7 @@ impl<K: Handle, T> Arena<K, T> {
         self.get(id)?;
         let slot = &mut self.slots[own];
         slot.generation = slot.generation.wrapping_add(1);
+        self.free.insert(own.index());
         slot.thing.take().ok_or_else(|| stale::<K>(own))
     }
 
@@ -347,5 +383,44 @@ mod tests {
         assert_eq!(names.remove(ring), Err(error));
         let all: Vec<SoftBodyHandle> = names.entries().map(|(id, _)| id).collect();
         assert_eq!(all, [ball, cube, heart]);
+    }
+
+    /// Inserts and removes at random. `again` is applied after each operation, for example to store and load
+    /// the arena. The model is a list of items in which insertion scans for the first free slot.
+    fn check_slots(again: impl Fn(Arena<SoftBodyHandle, u32>) -> Arena<SoftBodyHandle, u32>) {
+        let mut arena = Arena::<SoftBodyHandle, u32>::default();
+        let mut model = Vec::<Option<u32>>::new();
+        let mut seed = 1u32;
+        for number in 0..2000 {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let (action, choice) = (seed >> 24 & 3, seed as usize >> 8 & 0xffff);
+            // Phases of growth and of shrinking.
+            if (action == 0) == (number / 250 % 2 == 0) && !arena.is_empty() {
+                let id = arena.ids().nth(choice % arena.len()).expect("an item");
+                assert_eq!(arena.remove(id).ok(), model[id.slot().index()].take());
+            } else {
+                let free = model.iter().position(Option::is_none);
+                let expected = free.unwrap_or(model.len());
+                model.resize(model.len().max(expected + 1), None);
+                model[expected] = Some(number);
+                assert_eq!(arena.insert(number).slot().index(), expected);
+            }
+            arena = again(arena);
+        }
+        assert!(arena.slots().eq(model.iter().map(Option::as_ref)));
+    }
+
+    #[test]
+    fn insert_uses_lowest_free_slot() {
+        check_slots(|arena| arena);
+    }
+
+    #[test]
+    #[cfg(feature = "serde")]
+    fn insert_uses_same_slots_after_loading() {
+        check_slots(|arena| {
+            let bytes = postcard::to_stdvec(&arena).expect("storable");
+            postcard::from_bytes(&bytes).expect("loadable")
+        });
     }
 }

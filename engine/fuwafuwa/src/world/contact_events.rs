@@ -3,11 +3,12 @@
 use super::World;
 use crate::error::Error;
 use crate::event::{Contact, Event};
-use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::arena::RigidBodyHandle;
 use crate::foundation::dim::Dim;
+use crate::foundation::ids::{IndexVec, PieceId};
 use crate::math::vector::{length, minus, scaled, three};
 use crate::object_ref::{ObjectRef, ObjectSelector};
-use crate::rigid_body::shape::Vector;
+use crate::rigid_body::shape::{Bounds, Shape, Vector};
 use crate::rigid_body::{MotionType, RigidBody};
 use crate::soft_body::SoftBody;
 use std::collections::{BTreeMap, BTreeSet};
@@ -233,9 +234,23 @@ impl<D: Dim> World<D> {
     /// Compares the contents of the sensors with those of the last tick, and reports entries and exits.
     fn note_sensors(&mut self) {
         let sensors = self.rigids.entries().filter(|(_, rigid)| rigid.is_sensor);
+        let sensors: Vec<(RigidBodyHandle, &RigidBody)> = sensors.collect();
         let mut inside: BTreeSet<(RigidBodyHandle, ObjectRef)> = BTreeSet::new();
-        for (sensor, rigid) in sensors {
-            inside.extend(self.within(sensor, rigid).map(|object| (sensor, object)));
+        for &(sensor, rigid) in &sensors {
+            inside.extend(self.rigids_within(sensor, rigid).map(|who| (sensor, who)));
+        }
+        for (body, soft) in self.bodies.entries() {
+            let meets = |(_, rigid): &&(_, &RigidBody)| rigid.layers.meet(soft.state.layers);
+            let mut met = sensors.iter().filter(meets).peekable();
+            // The bounds of the pieces serve all sensors.
+            let bounds = met.peek().map(|_| piece_bounds(soft));
+            for (&(sensor, rigid), bounds) in met.zip(bounds.iter().cycle()) {
+                let found = pieces_within(soft, bounds, rigid.shape());
+                let found = found
+                    .into_iter()
+                    .map(|piece| ObjectRef::Piece { body, piece });
+                inside.extend(found.map(|who| (sensor, who)));
+            }
         }
         let before: BTreeSet<(RigidBodyHandle, ObjectRef)> =
             std::mem::take(&mut self.inside).into_iter().collect();
@@ -248,24 +263,101 @@ impl<D: Dim> World<D> {
         self.inside = inside.into_iter().collect();
     }
 
-    /// Returns the objects inside a sensor, possibly repeated.
-    fn within(&self, own: RigidBodyHandle, sensor: &RigidBody) -> impl Iterator<Item = ObjectRef> {
+    /// Returns the rigid bodies inside a sensor.
+    fn rigids_within(
+        &self,
+        own: RigidBodyHandle,
+        sensor: &RigidBody,
+    ) -> impl Iterator<Item = ObjectRef> {
         let shape = sensor.shape();
-        let bodies = self.bodies.entries();
-        let bodies = bodies.filter(|(_, body)| sensor.layers.meet(body.state.layers));
-        let pieces = bodies.flat_map(move |(id, body): (SoftBodyHandle, &SoftBody<D>)| {
-            let nodes = body.topology.mesh.nodes().map(|(node, _)| node);
-            let inside =
-                nodes.filter(|&node| shape.distance(three(body.state.position[node])).0 < 0.0);
-            inside.map(move |node| ObjectRef::Piece {
-                body: id,
-                piece: body.topology.pieces.of_node(node),
-            })
-        });
         let rigids = self.rigids.entries().filter(move |&(id, rigid)| {
             let counts = id != own && rigid.motion_type != MotionType::Fixed && !rigid.is_sensor;
             counts && sensor.layers.meet(rigid.layers) && rigid.shape().gap(shape).0 < 0.0
         });
-        pieces.chain(rigids.map(|(id, _)| ObjectRef::RigidBody(id)))
+        rigids.map(|(id, _)| ObjectRef::RigidBody(id))
+    }
+}
+
+/// Returns the bounding box of the nodes of each piece; that of a piece without nodes overlaps nothing.
+fn piece_bounds<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, Bounds> {
+    let pieces = &body.topology.pieces;
+    let nothing = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+    let mut all: IndexVec<PieceId, Bounds> = vec![nothing; pieces.list.len()].into();
+    for (node, _) in body.topology.mesh.nodes() {
+        let at = three(body.state.position[node]);
+        let [low, high] = &mut all[pieces.of_node(node)];
+        for axis in 0..3 {
+            low[axis] = low[axis].min(at[axis]);
+            high[axis] = high[axis].max(at[axis]);
+        }
+    }
+    all
+}
+
+/// Returns the pieces with a node inside a shape. Tests only the nodes of pieces whose box overlaps that of the
+/// shape.
+fn pieces_within<D: Dim>(
+    body: &SoftBody<D>,
+    bounds: &IndexVec<PieceId, Bounds>,
+    shape: &Shape,
+) -> Vec<PieceId> {
+    let pieces = &body.topology.pieces;
+    let mut is_open = pieces_near::<D>(bounds, shape.bounds());
+    let mut open = is_open.iter().filter(|&&is_open| is_open).count();
+    let mut found = Vec::new();
+    for (node, _) in body.topology.mesh.nodes() {
+        if open == 0 {
+            break;
+        }
+        let piece = pieces.of_node(node);
+        if is_open[piece] && shape.distance(three(body.state.position[node])).0 < 0.0 {
+            found.push(piece);
+            is_open[piece] = false;
+            open -= 1;
+        }
+    }
+    found
+}
+
+/// Returns for each piece whether its box overlaps another one. The other box is enlarged, so that a point that
+/// the rounded distance of a shape puts inside is not lost.
+fn pieces_near<D: Dim>(
+    bounds: &IndexVec<PieceId, Bounds>,
+    [low, high]: Bounds,
+) -> IndexVec<PieceId, bool> {
+    let margin = |axis: usize| {
+        1e-3 * (high[axis] - low[axis]) + 1e-5 * low[axis].abs().max(high[axis].abs())
+    };
+    let margins = [0, 1, 2].map(margin);
+    let is_near = |[from, to]: &Bounds| {
+        (0..D::N).all(|axis| {
+            low[axis] - margins[axis] <= to[axis] && from[axis] <= high[axis] + margins[axis]
+        })
+    };
+    bounds.iter().map(is_near).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::foundation::dim::Dim3;
+    use crate::material::Material;
+    use crate::topology::grid::VoxelGrid;
+
+    #[test]
+    fn pieces_whose_box_misses_the_shape_are_skipped() {
+        let grid = VoxelGrid::<Dim3>::ball(6, 1.0).expect("a ball");
+        let mut body = SoftBody::new(grid, &[Material::default()]).expect("a body");
+        body.crumble();
+        let bounds = piece_bounds(&body);
+        let shape = Shape::Ball {
+            centre: [0.0, 0.5, 0.5],
+            radius: 0.3,
+        };
+        let near = pieces_near::<Dim3>(&bounds, shape.bounds());
+        let count = near.iter().filter(|&&is_near| is_near).count();
+        assert!((1..bounds.len() / 2).contains(&count), "{count}");
+        let inside = pieces_within(&body, &bounds, &shape);
+        assert!(!inside.is_empty() && inside.iter().all(|&piece| near[piece]));
     }
 }

@@ -10,8 +10,8 @@ use crate::rigid_body::RigidBodies;
 use crate::rigid_body::shape::Vector;
 use crate::soft_body::SoftBodies;
 
-/// Warm-starting factor of pins, the same as for contacts. Chains of pins with a heavy end swing more with
-/// other values.
+/// Warm-starting factor of pins and springs, the same as for contacts. Chains of pins with a heavy end swing
+/// more with other values.
 const WARM_START: f32 = 0.9;
 /// Share of the position error of pins and ropes that is corrected per substep, the same as for overlaps, and
 /// the maximum correction speed [m/s]. Twice the share is unstable.
@@ -42,7 +42,11 @@ impl Joint {
         }
         self.impulse = match self.tie {
             JointKind::Pin => scaled(self.impulse, WARM_START),
-            _ => [0.0; 3],
+            JointKind::Spring { .. } => direction(minus(first.at, second.at))
+                .map_or([0.0; 3], |(_, way)| {
+                    scaled(way, WARM_START * dot(self.impulse, way))
+                }),
+            JointKind::Rope { .. } => [0.0; 3],
         };
         self.push(bodies, rigids, self.impulse);
         true
@@ -85,20 +89,16 @@ impl Joint {
                 };
                 solved::<D>(&yields, scaled(plus(relative, draw), -1.0))
             }
+            // The spring force is not a position correction, so it stays in the velocity.
+            JointKind::Spring { .. } if !draws => [0.0; 3],
             JointKind::Spring {
                 stiffness,
                 damping,
                 length: rest,
-            } => match self.impulse == [0.0; 3] && draws {
-                true => spring(
-                    apart,
-                    relative,
-                    &yields,
-                    [stiffness, damping, rest],
-                    duration,
-                ),
-                false => [0.0; 3],
-            },
+            } => {
+                let spring = [stiffness, damping, rest];
+                self.spring(apart, relative, &yields, spring, duration)
+            }
             JointKind::Rope { length } => {
                 self.rope(apart, relative, &yields, length, duration, draws)
             }
@@ -107,6 +107,28 @@ impl Joint {
             self.impulse = plus(self.impulse, impulse);
             self.push(bodies, rigids, impulse);
         }
+    }
+
+    /// Returns the change of the impulse of an implicit spring in one iteration [Catto 2011]. The accumulated
+    /// impulse λ obeys λ = −(k x + k h v' + c v') h, where v' is the relative velocity after the substep. With
+    /// the softness γ = 1/(h (c + h k)) this reads v' + h k γ x + γ λ = 0, and an iteration solves it for the
+    /// change of λ. Without the term γ λ every iteration would add the whole impulse again.
+    fn spring(
+        &self,
+        apart: Vector,
+        relative: Vector,
+        yields: &[Vector; 3],
+        [stiffness, damping, rest]: [f32; 3],
+        duration: f32,
+    ) -> Vector {
+        let Some((distance, way)) = direction(apart) else {
+            return [0.0; 3];
+        };
+        let softness = 1.0 / (duration * (damping + duration * stiffness));
+        let push = (distance - rest) * duration * stiffness * softness;
+        let pulled = softness * dot(self.impulse, way);
+        let under = along(yields, way) + softness;
+        scaled(way, -(dot(relative, way) + push + pulled) / under)
     }
 
     /// Returns the impulse of a rope, which pulls and never pushes.
@@ -168,24 +190,6 @@ fn drawn(apart: Vector, duration: f32) -> Vector {
         true => scaled(draw, DRAW_SPEED / speed),
         false => draw,
     }
-}
-
-/// Returns the impulse of an implicit spring over a substep. It solves m⁻¹ λ = −v − (k x + k h v' + c v') h
-/// for the end velocity v'.
-fn spring(
-    apart: Vector,
-    relative: Vector,
-    yields: &[Vector; 3],
-    [stiffness, damping, rest]: [f32; 3],
-    duration: f32,
-) -> Vector {
-    let Some((distance, way)) = direction(apart) else {
-        return [0.0; 3];
-    };
-    let softness = 1.0 / (duration * (damping + duration * stiffness));
-    let push = (distance - rest) * duration * stiffness * softness;
-    let under = along(yields, way) + softness;
-    scaled(way, -(dot(relative, way) + push) / under)
 }
 
 /// Returns the length and direction of a vector; `None` for a zero vector.
