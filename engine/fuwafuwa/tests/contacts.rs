@@ -3,7 +3,8 @@
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
     Contact, Dim, Dim2, Dim3, Event, Layers, Material, ObjectRef, PieceId, RigidBody,
-    RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, VoxelGrid, World, WorldConfig,
+    RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, Velocity, VoxelGrid, World,
+    WorldConfig,
 };
 use std::collections::BTreeSet;
 
@@ -216,12 +217,14 @@ fn sensors_agree_with_test_of_every_node<D: Dim>() {
         let grid = VoxelGrid::<D>::ball(6, 1.0).unwrap();
         let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
         if k % 2 == 0 {
-            body.crumble().unwrap();
+            body.crumble();
         }
         let body = world.add_soft_body(body.translated(point()));
         let [x, y, z] = point();
         let velocity = [2.0 - x, 4.0 - y, 0.5 - z];
-        world.add_velocity(body, velocity, [0.0; 3]).unwrap();
+        world
+            .add_velocity(body, Velocity::linear(velocity))
+            .unwrap();
         let layers = Layers {
             memberships: if k == 3 { 2 } else { 1 },
             filters: if k == 3 { 2 } else { u32::MAX },
@@ -233,8 +236,8 @@ fn sensors_agree_with_test_of_every_node<D: Dim>() {
         world.step();
         for event in world.events() {
             match *event {
-                Event::SensorEntered { sensor, who } => assert!(inside.insert((sensor, who))),
-                Event::SensorExited { sensor, who } => assert!(inside.remove(&(sensor, who))),
+                Event::SensorEntered { sensor, object } => assert!(inside.insert((sensor, object))),
+                Event::SensorExited { sensor, object } => assert!(inside.remove(&(sensor, object))),
                 _ => continue,
             }
             changes += 1;

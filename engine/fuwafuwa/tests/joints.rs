@@ -333,7 +333,7 @@ fn parallel_springs_break_above_their_share_of_the_load() {
             };
             let at = [0.0, -1e-5, 0.0];
             let ends = [on(bob, at), JointAnchor::Position([0.0, 0.1, 0.0])];
-            let joint = Joint::new(ends, tie).breaking_at(limit);
+            let joint = Joint::new(ends, tie).with_breaking_force(limit);
             world.add_joint(joint).unwrap()
         });
         for _ in 0..60 {

@@ -270,7 +270,7 @@ fn photo_without_adapter_shows_elements_and_warns() {
         let output = tamaire_with(folder.path(), &line, &[("WGPU_BACKEND", none)]);
         let said = text(&output.stderr);
         assert_eq!(output.status.code(), Some(0), "{said}");
-        assert!(said.contains("nothing to draw with"), "{said}");
+        assert!(said.contains("no graphics adapter"), "{said}");
         assert_eq!(said.lines().count(), 2, "{said}");
         let photo = fs::read(folder.path().join("it.png")).unwrap();
         assert!(photo.starts_with(b"\x89PNG") && photo.len() > 1000);
@@ -290,7 +290,7 @@ fn invalid_arguments_are_refused_with_reason() {
     check_refused("--headless --seconds -3", 2, &["1 to 3600 seconds"]);
     check_refused("--headless --film film.mp4", 2, &[".png or .gif"]);
     check_refused("--headless --photo photo.gif", 2, &[".png"]);
-    check_refused("--headless --film no/folder.png", 2, &["no such folder"]);
+    check_refused("--headless --film no/folder.png", 2, &["the folder does not exist"]);
     check_refused("--headless --save it.txt", 2, &[".tamaire"]);
     check_refused("--headless --replay none.tamaire", 2, &["none.tamaire"]);
     check_refused("--headless --replay it.tamaire --bot idle", 2, &["--bot"]);
