@@ -210,7 +210,6 @@ fn bars_hands_walls_basket_and_particles_are_visible() {
         frame.basket = Some(Basket { region, fill: 1.0 });
         frame.particles = std::slice::from_ref(&particle);
     });
-    let picture = picture;
     let floor = picture.around([0.55, 0.3]);
     let [bar, wall, first, second, basket, dust] = [
         [0.5, 0.9],

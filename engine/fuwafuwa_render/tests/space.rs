@@ -194,7 +194,6 @@ fn cut_element_view_shows_the_colour_of_levels() {
         });
         frame.camera.elevation = 0.1;
     });
-    let picture = picture;
     let hue = |[red, green, blue]: Colour| [red / green, blue / green, 0.0];
     let mut count = 0;
     for view in world.soft_bodies().first().unwrap().element_views() {
@@ -300,7 +299,6 @@ fn bars_hands_walls_basket_and_particles_are_visible() {
         frame.basket = Some(Basket { region, fill: 1.0 });
         frame.particles = std::slice::from_ref(&particle);
     });
-    let picture = picture;
     let floor = picture.around([0.5, 0.0, 0.7]);
     let bar = picture.around([0.2, 0.09, 0.26]);
     let [first, second] = [0.3, 0.7].map(|x| picture.around([x, 0.9, -0.1]));

@@ -290,7 +290,11 @@ fn invalid_arguments_are_refused_with_reason() {
     check_refused("--headless --seconds -3", 2, &["1 to 3600 seconds"]);
     check_refused("--headless --film film.mp4", 2, &[".png or .gif"]);
     check_refused("--headless --photo photo.gif", 2, &[".png"]);
-    check_refused("--headless --film no/folder.png", 2, &["the folder does not exist"]);
+    check_refused(
+        "--headless --film no/folder.png",
+        2,
+        &["the folder does not exist"],
+    );
     check_refused("--headless --save it.txt", 2, &[".tamaire"]);
     check_refused("--headless --replay none.tamaire", 2, &["none.tamaire"]);
     check_refused("--headless --replay it.tamaire --bot idle", 2, &["--bot"]);

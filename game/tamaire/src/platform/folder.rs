@@ -227,6 +227,9 @@ mod tests {
         assert!(error.to_string().contains("a pipe"), "{error}");
         fs::write(folder.path().join("long.toml"), vec![b' '; 1 + (1 << 20)]).unwrap();
         let error = storage.read(Kind::Note, "long").unwrap_err();
-        assert!(error.to_string().contains("expected at most 1048576 bytes"), "{error}");
+        assert!(
+            error.to_string().contains("expected at most 1048576 bytes"),
+            "{error}"
+        );
     }
 }

@@ -93,7 +93,12 @@ fn queries_return_entities() {
     let mut app = app::<Dim2>();
     app.init_resource::<Seen>();
     let look = |queries: SoftQueries<Dim2>, mut seen: ResMut<Seen>| {
-        let down = queries.ray_cast(Vec3::new(0.0, 10.0, 0.0), Vec3::NEG_Y, 100.0, QueryFilter::default());
+        let down = queries.ray_cast(
+            Vec3::new(0.0, 10.0, 0.0),
+            Vec3::NEG_Y,
+            100.0,
+            QueryFilter::default(),
+        );
         seen.0
             .push(down.and_then(|hit| Some((hit.entity?, hit.distance))));
         let beside = queries.closest_point(Vec3::new(4.0, 0.5, 0.0), 1.0, QueryFilter::default());
