@@ -30,6 +30,7 @@
 //! axes if the device has motors for them, otherwise with rumble.
 
 #![deny(unsafe_code)]
+#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [s]
 
 mod device;
 mod feel;

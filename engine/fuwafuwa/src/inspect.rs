@@ -15,6 +15,6 @@ pub use crate::soft_body::view::{ElementFace, blocks, faces, outline_slots};
 pub use crate::topology::cell_hierarchy::{Cell, CellHierarchy};
 pub use crate::topology::connectivity::{Connectivity, Groups};
 pub use crate::topology::element_class::{
-    ElementClass, Vector64, cell_corners, closure, slot_at, slot_index,
+    ElementClass, MissingCorner, Vector64, cell_corners, closure, slot_at, slot_index,
 };
 pub use crate::topology::mesh::{Element, InvariantViolation, Mesh, Node, Remodelled};

@@ -31,6 +31,8 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 // Units and sources stand in brackets: [m], [Endo 2004, §3.1].
+// The tour names private modules.
+#![allow(rustdoc::private_intra_doc_links)]
 #![allow(rustdoc::broken_intra_doc_links)]
 // An axis indexes several vectors at once; zipping them would hide the formula.
 #![allow(clippy::needless_range_loop)]
@@ -88,7 +90,7 @@ pub use soft_body::momentum::Momentum;
 pub use soft_body::view::{ElementView, Facet, Outline, PieceView};
 pub use topology::cell_hierarchy::Grading;
 pub use topology::changes::{Bookmark, Changes};
-pub use topology::grid::{MAX_EXTENT, VoxelGrid};
+pub use topology::grid::{MAX_EXTENT, MAX_VOXELS, VOXEL_SIZES, VoxelGrid};
 pub use world::{
     BodyHandle, FEWEST_SUBSTEPS, Hooks, LONGEST_TICK, PieceSize, Removable, Removed, SHORTEST_TICK,
     Substep, TICK, USUAL_SUBSTEPS, World, WorldConfig, field_around,

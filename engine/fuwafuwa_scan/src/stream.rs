@@ -4,7 +4,7 @@ use flate2::bufread::MultiGzDecoder;
 use fuwafuwa_scenes::import::{FilePosition, PositionedProblem, too_large, unexpected};
 use std::io::Read;
 
-/// Maximum size of a file and of its decompressed content [bytes]: a full scan of 64-bit numbers, and the
+/// Maximum size of a file and of its decompressed content in bytes: a full scan of 64-bit numbers, and the
 /// bytes before it.
 pub const MAX_FILE_BYTES: u64 = (1 << 30) + (1 << 26);
 

@@ -7,7 +7,7 @@ use crate::problem::Problem;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::message::Message;
 use bevy_math::Vec3;
-use fuwafuwa::{JointId, KnifeId, PieceId};
+use fuwafuwa::{JointHandle, KnifeHandle, PieceId};
 
 /// A node was split: a crack grew.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
@@ -99,14 +99,14 @@ pub struct SensorExited {
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct JointBroke {
     /// The removed joint.
-    pub joint: JointId,
+    pub joint: JointHandle,
 }
 
 /// A knife of the engine cut through a soft body.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
 pub struct Cut {
     /// The knife.
-    pub knife: KnifeId,
+    pub knife: KnifeHandle,
     /// The soft body.
     pub body: Entity,
     /// Position, world space [m].

@@ -32,7 +32,7 @@ pub struct Writers<'w> {
 
 /// Runs a tick unless the world is paused.
 pub fn step<D: Dimension>(mut world: ResMut<SoftWorld<D>>, mut writers: Writers<'_>) {
-    let before = world.untold();
+    let before = world.unsent_events();
     if world.tick() {
         for event in before.iter().chain(world.engine().events()) {
             writers.tell(&world, *event);

@@ -1,6 +1,6 @@
 //! Records replays for browsers, and verifies replays recorded in browsers.
 //!
-//! `cargo run --release -p browser_checks --example replays -- record FOLDER` plays a series of rounds and
+//! `cargo run --release -p determinism_checks --example replays -- record FOLDER` plays a series of rounds and
 //! writes their replays into a folder. `… -- verify FOLDER` plays the replays of a folder; it fails if one
 //! differs from its recorded hashes or if the folder has none.
 

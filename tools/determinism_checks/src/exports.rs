@@ -55,7 +55,7 @@ pub extern "C" fn checks_output() -> *const u8 {
     STATE.with_borrow(|state| state.output.as_ptr())
 }
 
-/// Returns the length of the output [bytes].
+/// Returns the length of the output in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_output_length() -> usize {
     STATE.with_borrow(|state| state.output.len())

@@ -1,7 +1,7 @@
 //! Scenes with results that must be the same, bit by bit, on every platform.
 //!
 //! [`SCENES`] is the only table. The tests of this crate run it natively, on one thread and, with the feature
-//! `parallel`, on several; `cargo xtask wasm` runs it under Node, through the [`exports`]. A changed hash
+//! `parallel`, on several; `cargo xtask wasm` runs it under Node, through the [`exports`](crate::exports). A changed hash
 //! means a changed simulation: give the reason in the commit.
 use fuwafuwa::FEWEST_SUBSTEPS;
 use fuwafuwa::Law;

@@ -3,7 +3,7 @@
 //!
 //! `cargo xtask wasm` and `web --test` build it as a WebAssembly module with the profile of the game.
 //! `tools/xtask/golden.mjs` runs it under Node; `tools/xtask/web/test/bits.mjs` and `tools/xtask/web/test/speed.mjs` load it
-//! into browsers through the [`exports`]. Natively the example `replays` does the same.
+//! into browsers through the [`exports`](crate::exports). Natively the example `replays` does the same.
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{AnyRound, Bot, BotKind, InputFrame, Level, Playback, Replay};

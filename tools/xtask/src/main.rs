@@ -1,5 +1,7 @@
 //! Tasks of this repository, run as `cargo xtask <task>`. Depends on std only, so that it builds quickly.
 
+#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [s]
+
 mod bevy;
 mod cross;
 mod debian;

@@ -15,7 +15,7 @@ use super::pool::Pool;
 use super::{Surface, Vertex, light_of};
 use crate::colours::SoftColours;
 use bevy_math::{Vec2, Vec3};
-use fuwafuwa::ids::Table;
+use fuwafuwa::IndexVec;
 use fuwafuwa::inspect::Element;
 use fuwafuwa::inspect::{add, corner, face_corners};
 use fuwafuwa::inspect::{slot_at, slot_index};
@@ -38,12 +38,12 @@ pub struct PlaneSurface {
     vertices: Pool<VertexSource>,
     triangles: Pool<[u32; 3]>,
     /// Triangles, vertices and sides of each element.
-    forms: Table<ElementId, Form>,
+    forms: IndexVec<ElementId, Form>,
     /// Vertex of each node, or `NONE`.
-    of_node: Table<NodeId, u32>,
+    of_node: IndexVec<NodeId, u32>,
     /// Side of the outline that begins (`next`) or ends (`last`) at each node.
-    next: Table<NodeId, OutlineEdge>,
-    last: Table<NodeId, OutlineEdge>,
+    next: IndexVec<NodeId, OutlineEdge>,
+    last: IndexVec<NodeId, OutlineEdge>,
     /// Smoothing of the stair steps in the rest shape.
     rest: Rest,
     places: Vec<Vec2>,
@@ -94,7 +94,7 @@ impl Surface<Dim2> for PlaneSurface {
             let rest = std::mem::take(&mut self.rest);
             *self = Self {
                 followed: self.followed,
-                rest: match rest.fits(body.grid()) {
+                rest: match rest.matches_grid(body.grid()) {
                     true => rest,
                     false => Rest::new(body.grid()),
                 },
@@ -150,9 +150,9 @@ impl PlaneSurface {
         for &id in &changes.elements {
             let form = std::mem::take(&mut self.forms[id]);
             let triangles = form.triangles.into_iter();
-            triangles.for_each(|place| self.triangles.give_back(place));
+            triangles.for_each(|place| self.triangles.free(place));
             let means = form.means.into_iter();
-            means.for_each(|place| self.vertices.give_back(place));
+            means.for_each(|place| self.vertices.free(place));
             for [from, to] in form.sides {
                 (self.next[from], self.last[to]) = (NO_SIDE, NO_SIDE);
             }
@@ -160,7 +160,7 @@ impl PlaneSurface {
         for &id in &changes.nodes {
             let known = std::mem::replace(&mut self.of_node[id], NONE);
             if known != NONE {
-                self.vertices.give_back(known);
+                self.vertices.free(known);
             }
         }
         for &id in changes.nodes.iter().filter(|&&id| mesh.is_alive(id)) {

@@ -35,7 +35,7 @@ struct Crumb {
 impl Surface<Dim3> for SpaceSurface {
     fn follow(&mut self, body: &SoftBody<Dim3>, colours: &SoftColours) -> bool {
         let count = self.crumbs.len();
-        let is_new = self.skin.follow(body, &colours.materials);
+        let is_new = self.skin.update(body, &colours.materials);
         self.crumbs.clear();
         let crumbs = self.skin.crumbs().iter();
         self.crumbs
