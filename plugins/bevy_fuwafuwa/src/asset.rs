@@ -6,7 +6,7 @@
 //! # use bevy_fuwafuwa::{SoftBody2d, SoftBody3d};
 //! # let assets: &AssetServer = unimplemented!();
 //! let dice = SoftBody3d::asset(assets.load("dice.vox"));
-//! Other than the default voxel size:
+//! // With another voxel size than the default:
 //! let small = |settings: &mut VoxelsSettings| settings.voxel_size = 0.01;
 //! let cat = SoftBody2d::asset(assets.load_builder().with_settings(small).load("cat.png"));
 //! ```

@@ -6,8 +6,8 @@
 //! use bevy_transform::components::Transform;
 //!
 //! let mut app = App::new();
-//! In a program with a window: add DefaultPlugins first, leave out `in_schedule` (the default is
-//! FixedPostUpdate), and insert `Time::<Fixed>::from_hz(60.0)`.
+//! // In a program with a window: add DefaultPlugins first, leave out `in_schedule` (the default is
+//! // FixedPostUpdate), and insert `Time::<Fixed>::from_hz(60.0)`.
 //! app.add_plugins(FuwafuwaPlugin3d::default().in_schedule(bevy_app::Update));
 //! app.world_mut().spawn(RigidBody3d::floor());
 //! let ball = SoftBody3d::ball(12, 1.0);

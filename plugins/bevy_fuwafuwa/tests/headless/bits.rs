@@ -51,7 +51,7 @@ fn app_has_the_hash_of_the_engine() -> Result<(), Box<dyn std::error::Error>> {
     let mut released = 0;
     for tick in 0..TICKS {
         world.set_target_position(hand, hand_at(tick).into())?;
-        released += world.step().released;
+        released += world.step().nodes_split;
     }
     assert!(
         released > 0,

@@ -6,7 +6,7 @@ use bevy_ecs::bundle::Bundle;
 use bevy_ecs::entity::Entity;
 use bevy_fuwafuwa::Dimension;
 use bevy_fuwafuwa::component::RigidBodyId;
-use bevy_fuwafuwa::fuwafuwa::{RigidBody, Rotation, SoftBody as Body, World, WorldConfig};
+use bevy_fuwafuwa::fuwafuwa::{RigidBody as EngineBody, Rotation, SoftBody as Body, World, WorldConfig};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
@@ -39,7 +39,7 @@ fn spawn(app: &mut App, bundle: impl Bundle) -> Entity {
     app.world_mut().spawn(bundle).id()
 }
 
-fn rigid<D: Dimension>(app: &App, entity: Entity) -> &RigidBody {
+fn rigid<D: Dimension>(app: &App, entity: Entity) -> &EngineBody {
     let world = world::<D>(app);
     let id = world.rigid_of(entity).expect("the body has entered");
     assert_eq!(world.entity_of_rigid(id), Some(entity));
@@ -54,7 +54,7 @@ fn falls_and_sleeps<D: Dimension>() {
         .with_rotation(Quat::from_rotation_z(0.4))
         .with_scale(Vec3::splat(2.0));
     let askew = (
-        RigidBody::<D>::free(block(), 5.0),
+        RigidBody::<D>::dynamic(block(), 5.0),
         askew,
         Velocity::default(),
     );
@@ -303,7 +303,7 @@ fn hash_of_app<D: Dimension>() -> u64 {
     let table = RigidBody::<D>::fixed(slab()).with_motion_type(MotionType::Kinematic);
     let table = spawn(&mut app, table);
     for n in 0..4 {
-        let own = RigidBody::<D>::free(block(), 2.0).with_restitution(0.3);
+        let own = RigidBody::<D>::dynamic(block(), 2.0).with_restitution(0.3);
         let turned = Quat::from_rotation_z(askew(n));
         let place = at(0.0, 0.5 + n as f32).with_rotation(turned);
         spawn(&mut app, (own, place));
@@ -321,11 +321,11 @@ fn hash_of_app<D: Dimension>() -> u64 {
 fn hash_of_engine<D: Dimension>() -> Result<u64, Box<dyn std::error::Error>> {
     let rotation = |own: Quat| Rotation::from_quaternion(own.to_array());
     let mut world = World::<D>::new(WorldConfig::default())?;
-    let table = world.add_rigid_body(RigidBody::new(slab(), [0.0; 3], MotionType::Kinematic))?;
+    let table = world.add_rigid_body(EngineBody::new(slab(), [0.0; 3], MotionType::Kinematic))?;
     for n in 0..4 {
         let shape = block().translated([0.0, 0.5 + n as f32, 0.0]);
         let turned = rotation(Quat::from_rotation_z(askew(n)));
-        let mut own = RigidBody::dynamic(shape, 2.0).rotated(turned);
+        let mut own = EngineBody::dynamic(shape, 2.0).rotated(turned);
         own.restitution = 0.3;
         world.add_rigid_body(own)?;
     }
