@@ -28,7 +28,7 @@ pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[Eng
     let [exact] = fall([ours(scene, None)?], frames);
     let limit = exact.peak_squash + TOLERANCE;
     let range = FEWEST_SUBSTEPS as usize..exact.substeps;
-    let softened = enough(range, f64::INFINITY, |substeps| {
+    let softened = fewest_stiff_substeps(range, f64::INFINITY, |substeps| {
         Ok(stiff(ours(scene, Some(substeps))?, frames, limit))
     })?;
     let mut fastest = f64::INFINITY;
@@ -37,7 +37,7 @@ pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[Eng
         sweeps: SWEEPS[0],
     };
     for sweeps in SWEEPS {
-        let found = enough(1..MOST_SUBSTEPS + 1, fastest, |substeps| {
+        let found = fewest_stiff_substeps(1..MOST_SUBSTEPS + 1, fastest, |substeps| {
             let effort = Effort { substeps, sweeps };
             trying(effort);
             Ok(stiff(theirs(scene, effort)?, frames, limit))
@@ -135,21 +135,21 @@ mod tests {
                 tried.push(substeps);
                 Ok((substeps >= least, median(substeps)))
             };
-            let found = enough(range.clone(), f64::INFINITY, stiff);
+            let found = fewest_stiff_substeps(range.clone(), f64::INFINITY, stiff);
             assert_eq!(found, Ok(Some((least, median(least)))), "{tried:?}");
             assert!(tried.iter().all(|substeps| range.contains(substeps)));
-            let slow = enough(range, median(least), |substeps| {
+            let slow = fewest_stiff_substeps(range, median(least), |substeps| {
                 Ok((substeps >= least, median(substeps)))
             });
             assert_eq!(slow, Ok(None));
         }
         // The first sufficient number is too slow, but the smallest one is fast enough.
         let stiff = |substeps| Ok((substeps >= 25, median(substeps)));
-        assert_eq!(enough(8..31, 26.0, stiff), Ok(Some((25, 25.0))));
+        assert_eq!(fewest_stiff_substeps(8..31, 26.0, stiff), Ok(Some((25, 25.0))));
         let never = |substeps| Ok((false, median(substeps)));
-        assert_eq!(enough(8..31, f64::INFINITY, never), Ok(None));
+        assert_eq!(fewest_stiff_substeps(8..31, f64::INFINITY, never), Ok(None));
         // An empty range.
-        assert_eq!(enough(8..8, f64::INFINITY, never), Ok(None));
+        assert_eq!(fewest_stiff_substeps(8..8, f64::INFINITY, never), Ok(None));
     }
 
     #[test]
