@@ -445,7 +445,8 @@ impl Closest {
         })
     }
 
-    /// Takes a hit if it is closer and the filter admits it. The closure returns `None` if not.
+    /// Keeps a hit if it is closer than the best one, or equally close with a lower rank. `hit` is called only
+    /// in these cases; it returns `None` if the filter rejects the object.
     fn consider(
         &mut self,
         distance: f32,

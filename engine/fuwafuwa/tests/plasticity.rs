@@ -354,7 +354,8 @@ fn check_abuse<D: Dim>(seed: u32) {
         if tick % 8 == 0 {
             target = [random() * 2.0 - 0.5, random() * 1.2, random()];
         }
-        // The hand moves at most some metres per second; a faster one would hurl away rubber, too.
+        // Limits the speed of the hand to some metres per second. A faster one would hurl away any body, even an
+        // elastic one.
         let goal = [0, 1, 2].map(|k: usize| place[k] + (target[k] - place[k]).clamp(-0.08, 0.08));
         place = goal;
         world.set_target_position(hand, goal).unwrap();

@@ -89,7 +89,7 @@ impl Figure {
         }
     }
 
-    /// Ends a minute; returns its median.
+    /// Ends a minute and returns the median of its samples. Stores the median if `has_settled`.
     fn pass_minute(&mut self, has_settled: bool) -> f64 {
         let median = median(std::mem::take(&mut self.samples));
         if has_settled {

@@ -151,7 +151,7 @@ impl App {
             }
             let action = self.game.settings.bindings.of_button(control);
             match (control, action) {
-                // Cutting forces works on every screen, so that the player need not look for the right one.
+                // The button that switches the forces off works on every screen.
                 (_, Some(Action::CutForces)) => {
                     self.game.act(Action::CutForces, InputSource::Stick(device))
                 }

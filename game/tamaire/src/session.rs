@@ -102,9 +102,8 @@ impl Session {
         self.pace.forget();
     }
 
-    /// Lets `seconds` pass, a whole number of ticks of them, and fewer where the `clock` says that they take too
-    /// long. `wish` says what people want, in the very tick in which it counts; `seen` looks at the round after each
-    /// tick.
+    /// Advances by `seconds` in whole ticks; by fewer ticks if they take too long by `clock`. In a round that
+    /// people play, `wish` returns the input for each tick. `seen` is called with the round after each tick.
     pub fn advance(
         &mut self,
         seconds: f32,

@@ -122,7 +122,7 @@ impl Settings {
         toml::to_string(self).expect("settings have nothing that cannot be written")
     }
 
-    /// All that has a range, by name.
+    /// Returns the values that [`Settings::in_range`] limits, with their names; without calibrations.
     fn numbers(&self) -> [(&'static str, f32); 8] {
         [
             ("volume", self.volume),

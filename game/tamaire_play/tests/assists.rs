@@ -1,4 +1,4 @@
-//! With all assists, a bot that pushes the whole body in wins every level.
+//! Assists: with all of them, a bot wins every level by pushing the whole body into the basket.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

@@ -37,7 +37,7 @@ type Drawn = Result<(), Box<dyn Error>>;
 pub enum Fill {
     /// Plain red: squeezed, and visits.
     Squeeze,
-    /// Blue with stripes: shaved.
+    /// Blue with stripes: rounds won by tearing bits off the body.
     Shave,
     /// Yellow with dots: a mix of both.
     Mix,

@@ -79,7 +79,7 @@ fn find_compiler() -> Result<Compiler, Vec<MissingItem>> {
     }
 }
 
-/// Finds Debian's compiler from its version output, or everything that is missing.
+/// Returns Debian's compiler, recognized by its version output, or a list of all that is missing for it.
 fn find_debian(
     description: Option<&str>,
     exists: impl Fn(&Path) -> bool,

@@ -47,7 +47,7 @@ pub struct Session {
 }
 
 impl Session {
-    /// Creates a session by hand.
+    /// Creates a session in which the user operates.
     pub fn new(procedure: Procedure) -> Self {
         Self::of(MotionSource::Hand(Box::new(procedure)))
     }

@@ -174,7 +174,7 @@ impl<D: Dim> SoftBody<D> {
     }
 }
 
-/// Corner of the face after a voxel on an axis.
+/// Returns a corner of the face of a voxel on the positive side of `axis`; `corner` counts from 0.
 fn corner_of_face<D: Dim>(voxel: Point, axis: usize, corner: usize) -> Point {
     let mut at = voxel;
     at[axis] += 1;

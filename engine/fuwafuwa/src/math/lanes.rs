@@ -115,8 +115,8 @@ fn columns<S: Simd>(a: f32x4<S>, b: f32x4<S>, c: f32x4<S>, d: f32x4<S>) -> [f32x
 
 #[cfg(target_arch = "x86_64")]
 fearless_simd::kernel!(
-    /// [`columns`] for the low and high halves at once, with seven shuffles instead of fourteen. The vectors
-    /// of `fearless_simd` zip across the halves.
+    /// [`columns`] for the low and high halves at once, with seven shuffles instead of fourteen. It needs
+    /// intrinsics, because `fearless_simd` has no zip within each half.
     #[inline(always)]
     fn columns_of_both_halves(avx2: Avx2, a: Eight, b: Eight, c: Eight, d: Eight) -> [Eight; 3] {
         use std::arch::x86_64::*;

@@ -43,8 +43,9 @@ pub struct QueryTrees {
     pub objects: Vec<TreeObject>,
     /// Tree over the objects in `bounded`.
     pub tree: Tree,
-    /// Indices of the objects with finite boxes, and of the others.
+    /// Indices of the objects with finite boxes.
     pub bounded: Vec<u32>,
+    /// Indices of the other objects.
     pub unbounded: Vec<u32>,
 }
 

@@ -493,7 +493,7 @@ mod tests {
                 check_same_bits::<Dim2, _>(law, plain);
                 check_same_bits::<Dim3, _>(law, plain);
             }
-            // The widest lanes are the reference.
+            // The reference has the widest lanes of this machine, so only narrower ones are compared with it.
             #[cfg(target_arch = "x86_64")]
             {
                 let level = fearless_simd::Level::baseline();

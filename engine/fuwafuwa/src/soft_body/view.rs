@@ -352,7 +352,7 @@ impl<D: Dim> SoftBody<D> {
         for (&slot, &node) in slots.iter().zip(&element.nodes) {
             positions[slot as usize] = Some(three(self.state.position[node]));
         }
-        // From edge middles to the centre: the mean of the slots on both sides.
+        // Edge middles, then face centres, then the centre: each is the mean of its neighbours of lower order.
         for order in 1..=D::N {
             for slot in 0..D::SLOTS {
                 let at = slot_at(slot);

@@ -20,8 +20,9 @@ pub struct Changes {
 /// Point in the history of a body up to which a reader knows the changes. The default lies in no history.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bookmark {
-    /// Number of the history (0 = none), and number of changes already read.
+    /// [`History::number`]; 0 = no history.
     history: u64,
+    /// Number of changes that have been read.
     tears: u64,
 }
 

@@ -329,8 +329,8 @@ impl<D: Dim> Connectivity<D> {
     }
 }
 
-/// Groupings at a lattice point and its neighbours: they determine the faces that meet at the point, and the
-/// voxels around it.
+/// Voxel groups at a lattice point and its neighbours. They determine which voxels around the point exist, and
+/// which faces between these are closed.
 #[derive(Copy, Clone, Debug)]
 pub struct PointNeighbourhood<D: Dim> {
     /// The first axis fastest, the point itself in the middle.

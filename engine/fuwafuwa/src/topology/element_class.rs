@@ -201,7 +201,8 @@ impl<D: Dim> ElementClass<D> {
         parts.sum::<f64>() + self.volume / 12.0
     }
 
-    /// Returns Σ V_i |h_i|² of a motion of the nodes.
+    /// Returns Σ V_i |h_i|² for displacements of the nodes; h_i is the displacement of node i less its affine
+    /// part.
     fn not_affine(&self, moved: &[Vector64]) -> f64 {
         let (mut slope, mut mean) = ([[0.0; 3]; 3], [0.0; 3]);
         for (k, u) in moved.iter().enumerate() {

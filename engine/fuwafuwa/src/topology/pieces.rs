@@ -55,7 +55,7 @@ struct Search {
 
 /// State of the search along the sides of all simultaneous releases.
 struct Sides {
-    /// Mark of the first side.
+    /// Number in [`Pieces::seen`] that marks the elements of side 0; side k has this number plus k.
     first: u32,
     /// Connected sides.
     joined: DisjointSets,

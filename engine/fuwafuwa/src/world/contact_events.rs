@@ -319,8 +319,8 @@ fn pieces_within<D: Dim>(
     found
 }
 
-/// Returns for each piece whether its box overlaps another one. The other box is enlarged, so that a point that
-/// the rounded distance of a shape puts inside is not lost.
+/// Returns for each piece whether its box overlaps the box of a shape. That box is enlarged a little, because by
+/// rounding, a point just outside of it can have a negative distance from the shape.
 fn pieces_near<D: Dim>(
     bounds: &IndexVec<PieceId, Bounds>,
     [low, high]: Bounds,

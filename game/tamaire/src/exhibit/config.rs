@@ -28,7 +28,7 @@ pub struct Config {
     pub levels: Levels,
     /// Whether a second player may join.
     pub two_players: bool,
-    /// Times after which a visitor is considered gone.
+    /// Times without input until the stand is reset and until the pointer is hidden.
     pub times: Times,
     /// Sound volume.
     pub sound: SoundConfig,
@@ -47,7 +47,7 @@ pub struct Config {
     pub logbook: LogbookConfig,
 }
 
-/// Times after which a visitor is considered gone [s].
+/// Times without input until the stand is reset and until the pointer is hidden [s].
 #[derive(Copy, Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Times {

@@ -350,7 +350,8 @@ impl PieceSkin {
         judged.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Returns the place at a spot with the face upright for the camera.
+    /// Returns where to put a face at `spot`, upright as seen from the camera; `None` if the body there is too
+    /// small to define a rotation.
     fn place<D: Dim>(
         &self,
         body: &SoftBody<D>,

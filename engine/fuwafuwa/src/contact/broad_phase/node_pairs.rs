@@ -35,8 +35,8 @@ pub struct NodePair {
     pub node: NodeId,
     /// Impulses of the contact.
     pub impulse: Impulse,
-    /// Value of [`NodePairs::travel`] from which this node may be in contact with a shape that does not move
-    /// [m].
+    /// Until [`NodePairs::travel`] reaches this value [m], the node cannot come close to a shape that does not
+    /// move.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub clear: f32,
 }

@@ -1,4 +1,4 @@
-//! Contact points between rigid bodies of which one is dynamic, kept between substeps by feature key.
+//! Contact points between rigid bodies, at least one of them dynamic, kept between substeps by feature key.
 
 use super::known_impulse::Impulse;
 use crate::foundation::arena::RigidSlot;

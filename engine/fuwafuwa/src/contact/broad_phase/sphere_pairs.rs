@@ -307,7 +307,7 @@ impl SpherePairs {
         })
     }
 
-    /// Returns the pairs on opposite crack faces.
+    /// Returns the pairs on opposite crack faces that come close.
     fn lips(&self, spheres: &Spheres) -> Vec<Vec<[SphereId; 2]>> {
         // Index of each sphere in bin order.
         let mut order: IndexVec<SphereId, u32> = vec![0; self.binned.len()].into();

@@ -27,7 +27,8 @@ pub struct Near {
 pub struct Sample {
     /// Body and rest position that the sample is in.
     pub inside: Option<(SoftBodyHandle, Spot)>,
-    /// Body and rest position at the last sweep, where the swept area ends.
+    /// Body and rest position where the area swept so far ends. A sweep leaves it unchanged while tissue holds
+    /// the sample.
     pub passed: Option<(SoftBodyHandle, Spot)>,
     /// World-space position at the last sweep [m].
     pub before: Vector,

@@ -115,7 +115,7 @@ impl Batch {
         }
     }
 
-    /// View for the kernel; `first` is the index of the first of the forces.
+    /// View for the kernel. `forces` are those of the whole group; `first` is the index of the first one.
     #[inline(always)]
     fn view<'a, D: Dim>(
         &'a mut self,

@@ -159,8 +159,8 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Range in `forces` of the force on node `node` of the element in a lane of a block; nodes are counted
-    /// in the order of the element.
+    /// Returns where in `forces` the force on a node is. The element is given by its block and lane, and the
+    /// node by its number within the element.
     pub(super) fn force_range(&self, index: u32, lane: u8, node: usize) -> Range<usize> {
         let first = self.blocks[index as usize].first as usize;
         let place = (first + node * LANES + lane as usize) * D::N;

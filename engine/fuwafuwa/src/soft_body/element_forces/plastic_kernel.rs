@@ -12,7 +12,7 @@ use fearless_simd::prelude::*;
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlasticInverseLanes(pub [[Eight; 3]; 3]);
 
-/// Plastic state G of one element.
+/// Plastic state of one element, by rows: the inverse G = Fₚ⁻¹ of its plastic deformation gradient.
 pub type PlasticInverse = [[f32; 3]; 3];
 
 pub const IDENTITY: PlasticInverse = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

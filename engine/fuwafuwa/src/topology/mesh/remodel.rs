@@ -149,8 +149,8 @@ impl<D: Dim> Mesh<D> {
         gone
     }
 
-    /// Returns the elements that may need other nodes, ascending: those in `refitted` cells, and those around
-    /// points whose groups have changed or which are corners of `born` cells. Nodes are created nowhere else.
+    /// Returns the elements that may need other nodes, ascending: those in `refitted` cells, those around the
+    /// `changed` points, and those around the corners of `born` cells. New nodes appear only at these places.
     fn elements_touched(
         &self,
         sharing: &Connectivity<D>,

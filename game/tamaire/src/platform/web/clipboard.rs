@@ -12,7 +12,7 @@ impl Clipboard {
         host().copy(&text);
     }
 
-    /// Returns once whether the last copy succeeded.
+    /// Returns whether the last copy succeeded; `None` if that is not known yet or was already returned.
     pub fn took(&mut self) -> Option<bool> {
         host().take_copied()
     }
