@@ -67,7 +67,7 @@ impl CameraRig {
                 true => 0.0,
                 false => (1.0 - HOME * seconds).max(0.0),
             };
-            // Shorter way around.
+            // Takes the shorter way around.
             self.turn = left * (self.turn - TAU * (self.turn / TAU).round());
             self.rise *= left;
         }

@@ -1,43 +1,45 @@
-//! How many ticks a frame plays: as many as time has passed, as far as the machine can bear them.
+//! Number of ticks for each frame: real time, limited by the speed of the machine.
 //!
-//! Where it cannot, the round goes slower, evenly: a frame then plays one tick and is shown, instead of more and more
-//! of them in longer and longer frames. What was missed is not caught up on.
+//! On a slow machine the round slows down evenly: each frame plays one tick and is shown. Missed time is
+//! dropped, because catching up would need ever more ticks in ever longer frames.
 
 use fuwafuwa::TICK;
 
-/// Ticks in a frame take no longer than this together, but for the first [s]: with the time to draw, a frame then
-/// lasts a thirtieth of a second or so.
+/// Time limit for the ticks of a frame together [s]; the first tick is always played. With the time to draw,
+/// a frame then lasts about 1/30 s.
 const BUDGET: f64 = 0.025;
-/// After a long frame no more ticks than this are caught up on.
+/// Maximum number of ticks in a frame, for example after a long frame.
 const MOST_TICKS: u32 = 6;
-/// By this share the expected cost of a tick follows that of the last one: one hitch changes little.
+/// Smoothing factor of the expected cost of a tick, 0 to 1. At a small value a single hitch changes the
+/// estimate little.
 const ADAPTS: f64 = 0.1;
 
-/// How many ticks a frame plays.
+/// Scheduler of the ticks of each frame.
 #[derive(Clone, Debug, Default)]
 pub struct Pace {
-    /// Time that has passed and was not played yet [s].
+    /// Time that has passed but was not played yet [s].
     owed: f64,
-    /// What a tick is expected to cost [s].
+    /// Expected cost of a tick [s]; 0 = not measured yet.
     cost: f64,
-    /// In this frame: ticks, and what they cost [s].
+    /// Ticks of this frame and their total cost [s].
     ticks: u32,
     spent: f64,
 }
 
 impl Pace {
-    /// A frame begins, `seconds` after the last one.
+    /// Begins a frame, `seconds` after the previous one.
     pub fn begin(&mut self, seconds: f64) {
         self.owed += seconds;
         (self.ticks, self.spent) = (0, 0.0);
     }
 
-    /// Nothing is owed any more.
+    /// Drops the time that was not played yet.
     pub fn forget(&mut self) {
         self.owed = 0.0;
     }
 
-    /// Whether the frame is to play one more tick, which is then to be [noted](Self::note).
+    /// Whether the frame has to play another tick. If so, counts its time as played; report its cost with
+    /// [`Self::note`].
     pub fn is_due(&mut self) -> bool {
         let tick = f64::from(TICK);
         if self.owed < tick {
@@ -49,17 +51,17 @@ impl Pace {
             self.owed -= tick;
             return true;
         }
-        // The next frame begins with a tick, and no more is made up for.
+        // Keeps one tick for the next frame and drops the remaining time.
         self.owed = tick;
         false
     }
 
-    /// What a tick costs [s], as far as is known.
+    /// Expected cost of a tick [s]; 0 before the first tick.
     pub fn cost(&self) -> f64 {
         self.cost
     }
 
-    /// A tick was played, and cost so much [s].
+    /// Reports a played tick and its cost [s].
     pub fn note(&mut self, cost: f64) {
         self.ticks += 1;
         self.spent += cost;
@@ -72,16 +74,17 @@ impl Pace {
 mod tests {
     use super::*;
 
-    /// How a minute of it looks: frames a second, the longest frame [s], and ticks played of those that should be.
+    /// Result of a simulated minute: frames per second, longest frame [s], and played share of real time.
     struct Seen {
         frames: f64,
         longest: f64,
         speed: f64,
-        /// By how much the ticks of single seconds differ, as a share.
+        /// Difference between the most and the fewest ticks in a second, relative to the mean.
         uneven: f64,
     }
 
-    /// A clock that goes on by what ticks and pictures cost [s]; a screen shows `rate` pictures a second at most.
+    /// Simulates a minute in which a tick costs `tick` [s] and a picture `picture` [s], on a screen with at
+    /// most `rate` pictures per second.
     fn minute(tick: f64, picture: f64, rate: f64) -> Seen {
         let (mut pace, mut now, mut last) = (Pace::default(), 0.0f64, 0.0f64);
         let (mut frames, mut longest) = (0, 0.0f64);
@@ -91,7 +94,7 @@ mod tests {
             pace.begin(now - last);
             last = now;
             while pace.is_due() {
-                // Costs swing by a fifth, as they do when bodies are torn.
+                // Costs vary by a fifth, as they do when bodies are torn.
                 let cost = tick * (1.0 + 0.2 * (37.0 * now).sin());
                 now += cost;
                 pace.note(cost);
@@ -115,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn what_takes_too_long_makes_the_game_slower_evenly_and_never_jerky() {
+    fn pace_slows_down_evenly_if_ticks_are_expensive() {
         let mut before: Option<Seen> = None;
         for cost in 2..=60 {
             let seen = minute(1e-3 * f64::from(cost), 3e-3, 60.0);
@@ -126,11 +129,11 @@ mod tests {
                 100.0 * seen.speed,
                 100.0 * seen.uneven
             );
-            // As fast as it should go while there is time for it.
+            // Full speed while there is time for it.
             if cost <= 12 {
                 assert!(seen.speed > 0.98 && seen.frames > 45.0, "{told}");
             }
-            // Else it takes what there is: no time goes by idly, and a frame is a tick and its picture.
+            // Otherwise no time is idle, and a frame is one tick and its picture.
             let cost = 1e-3 * f64::from(cost);
             assert!(seen.longest < (1.25 * cost).max(BUDGET) + 4e-3, "{told}");
             assert!(
@@ -138,7 +141,7 @@ mod tests {
                 "{told}"
             );
             assert!(seen.uneven < 0.15, "{told}");
-            // No cliff.
+            // No sudden drop from one cost to the next.
             if let Some(before) = before {
                 assert!(seen.speed > 0.85 * before.speed, "{told}");
                 assert!(seen.frames > 0.75 * before.frames, "{told}");
@@ -148,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fast_screen_and_a_slow_picture_change_no_speed() {
+    fn pace_is_independent_of_frame_rate() {
         for (picture, rate) in [(1e-3, 144.0), (3e-3, 50.0), (15e-3, 60.0), (25e-3, 60.0)] {
             let seen = minute(4e-3, picture, rate);
             assert!(
@@ -160,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hitch_is_not_caught_up_on() {
+    fn pace_drops_missed_time_after_long_frame() {
         let mut pace = Pace::default();
         pace.begin(5.0);
         let mut played = 0;

@@ -1,20 +1,20 @@
 //! Soft bodies made of elements that are small at the surface, large inside, and refined where a crack runs
 //! in.
 //!
-//! Modules in reading order; each uses only those before it:
-//! - [`grid`]: solid voxels
-//! - [`sharing`]: connectivity of the voxels
-//! - [`pyramid`]: cell hierarchy
-//! - [`stencil`]: element classes
-//! - [`mesh`]: elements and nodes
-//! - [`law`]: forces of one element
-//! - [`solve`]: forces of all elements of a body
-//! - [`body`]: state of a body
-//! - `fracture` and `release`: location and execution of cracks
-//! - `touch` and `contact`: broad phase and contact forces
-//! - [`world`]: all bodies, and time
+//! Modules in reading order; each uses mainly those before it:
+//! - `foundation`: dimensions, ids, arenas, hashing, threads
+//! - `math`: vectors, rotations, SIMD lanes
+//! - `material`: elastic, plastic and fracture constants
+//! - `topology`: voxel grid, connectivity, cell hierarchy, element classes, mesh, pieces
+//! - `rigid_body`: rigid bodies, shapes, layers
+//! - `soft_body`: element laws, forces of all elements, state, views
+//! - `contact`: broad phase, contact solver, joints
+//! - `fracture`: crack growth, cuts, knives, removal
+//! - `event`, `object_ref`, `query`: results for programs
+//! - `world`: all bodies, and time
+//! - [`inspect`]: internals for figures and renderers
 //!
-//! Two and three dimensions share one implementation; [`dim`] contains everything that differs.
+//! Two and three dimensions share one implementation; the module `dim` contains everything that differs.
 //!
 //! New users start with the [`guide`], or with [`World`], [`SoftBody`] and [`VoxelGrid`]; `examples` contains
 //! complete programs. Debug builds are about a hundred times slower unless your `Cargo.toml` optimises this
@@ -31,7 +31,7 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 // Units and sources stand in brackets: [m], [Endo 2004, §3.1].
-// The tour names private modules.
+// Some public items refer to private ones.
 #![allow(rustdoc::private_intra_doc_links)]
 #![allow(rustdoc::broken_intra_doc_links)]
 // An axis indexes several vectors at once; zipping them would hide the formula.

@@ -1,17 +1,17 @@
-//! What plays by itself behind the title: recorded rounds.
+//! Recorded rounds that play behind the title.
 
 use crate::session::Session;
 use std::sync::Arc;
 use tamaire_play::Replay;
 
-/// One of each route. After a change of the engine, of the rules or of Classic they go astray, which
-/// a test notices; CONTRIBUTING.md says how to record them again.
+/// One recording for each route. A change of the engine, of the rules or of the level Classic can make them
+/// diverge, which a test detects; CONTRIBUTING.md tells how to record them again.
 const RECORDED: [&str; 2] = [
     include_str!("../attract/squeeze.tamaire"),
     include_str!("../attract/shave.tamaire"),
 ];
 
-/// One recorded round after the other, by number.
+/// Returns a session that plays recording `number`; numbers beyond the last start over.
 pub fn attract(number: usize) -> Session {
     let text = RECORDED[number % RECORDED.len()];
     let replay = Replay::read(text).map(Arc::new);
@@ -28,7 +28,7 @@ mod tests {
     use tamaire_play::{InputFrame, Level, Route};
 
     #[test]
-    fn what_was_recorded_still_goes_as_it_went() {
+    fn recordings_replay_without_divergence() {
         let classic = Level::open("classic").unwrap();
         for (number, route) in [Route::Squeeze, Route::Shave].into_iter().enumerate() {
             let (mut session, clock) = (attract(number), Clock::of_machine());

@@ -1,17 +1,17 @@
-//! What is felt of a tick, and by whom.
+//! Haptic feedback of a tick for each player.
 
 use force_feedback::Stop;
 use fuwafuwa::TICK;
 use fuwafuwa::{Event, RigidBody, Vector};
 use tamaire_play::{AnyRound, PLAYERS};
 
-/// A round has begun once it is so old [s]: until then hands are elsewhere.
+/// Time from the start of a round without feedback [s]: a restart puts the hands at other positions.
 const BEGUN: f32 = 0.1;
-/// What one node that is released is felt like, and each further one adds.
+/// Strength of the feedback for the first node split in a tick, and for each further one; 1 = full.
 const TEAR: f32 = 0.2;
 const MORE: f32 = 0.05;
 
-/// With what everything that a hand touches pushed it, averaged over the last tick [N].
+/// Contact force on a hand, averaged over the substeps of the last tick [N].
 pub fn contact(hand: &RigidBody) -> Vector {
     let all = hand.reactions();
     let mean = |axis: usize| {
@@ -21,7 +21,8 @@ pub fn contact(hand: &RigidBody) -> Vector {
     [0, 1, 2].map(mean)
 }
 
-/// How strongly each player feels what tore in the last tick, 0 to 1: whoever's hand is nearest of those that touch something.
+/// Strength of the feedback of tears in the last tick for each player, 0 to 1. Each tear counts for the
+/// nearest hand that touches a body.
 pub fn tears(round: &AnyRound) -> [f32; PLAYERS] {
     let mut counts = [0u32; PLAYERS];
     for event in round.events() {
@@ -45,7 +46,7 @@ pub fn tears(round: &AnyRound) -> [f32; PLAYERS] {
     })
 }
 
-/// Why nobody feels anything in a round that goes on, if so.
+/// Returns the reason why the round gives no feedback, if any.
 pub fn silence(round: &AnyRound) -> Option<Stop> {
     if round.progress().outcome.is_some() {
         return Some(Stop::Won);

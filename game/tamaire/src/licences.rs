@@ -1,26 +1,26 @@
-//! What is inside this program, and under which licences.
+//! Licences of the parts of this program.
 
 use std::sync::LazyLock;
 
-/// All of it: what `cargo xtask release` gathered, and in other builds what the project knows by itself. The page of a browser
-/// has a text of its own beside it.
+/// Licence texts: those gathered by `cargo xtask release`, or `THIRD-PARTY.md` in other builds. The web page
+/// has a separate text beside it.
 #[cfg(not(target_family = "wasm"))]
 pub const TEXT: &str = include_str!(env!("TAMAIRE_LICENCES"));
 
 #[cfg(target_family = "wasm")]
 const TEXT: &str = include_str!("../../../THIRD-PARTY.md");
 
-/// Letters of the longest line that fits on a screen.
+/// Maximum length of a line that fits on a screen [characters].
 const MOST: usize = 92;
 
 static LINES: LazyLock<Vec<&'static str>> = LazyLock::new(|| lines_of(TEXT));
 
-/// The text in lines that fit on a screen.
+/// Returns the licence texts in lines that fit on a screen.
 pub fn lines() -> &'static [&'static str] {
     &LINES
 }
 
-/// The lines of a text; one that is too long goes on in the next, with a word of its own where there is one.
+/// Wraps the lines of a text, at a space if possible.
 fn lines_of(text: &str) -> Vec<&str> {
     let mut lines = Vec::new();
     for mut rest in text.lines() {
@@ -39,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn long_lines_go_on_in_the_next_and_nothing_is_lost() {
+    fn lines_wrap_without_loss() {
         let word = "é".repeat(MOST + 5);
         let text = format!("short\n\n{}end\n{word}\n", "seven77 ".repeat(30));
         let lines = lines_of(&text);
@@ -51,7 +51,7 @@ mod tests {
     }
 
     #[test]
-    fn the_font_and_what_reads_sticks_are_named() {
+    fn text_names_font_and_stick_libraries() {
         for named in ["M PLUS Rounded 1c", "SDL", "SQLite"] {
             assert!(TEXT.contains(named), "{named}");
         }

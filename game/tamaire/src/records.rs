@@ -1,33 +1,33 @@
-//! What players reached, by level.
+//! Best results of the players, by level.
 
 use crate::sift::sift;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use tamaire_play::{Level, Outcome, Route, Wish};
 
-/// What was reached in all levels, by their ids.
+/// Results in all levels, by level id.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Records(BTreeMap<String, Record>);
 
-/// What was reached in a level.
+/// Results in a level.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Record {
-    /// Fewest ticks by each route.
+    /// Shortest time by route [ticks], without assists.
     pub best: BTreeMap<Route, u64>,
-    /// The same where something was made easier.
+    /// Shortest time by route [ticks], with assists.
     pub best_assisted: BTreeMap<Route, u64>,
-    /// Which of the level's wishes came true.
+    /// Wishes of the level that were fulfilled.
     pub wishes: BTreeSet<WishName>,
 }
 
-/// A wish by what it asks for, wherever it stands in its level.
+/// Name of a wish, made from its conditions and independent of its index in the level.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(from = "Written")]
 pub struct WishName(String);
 
-/// A wish as it was once written down, by its place, and as it is now.
+/// Wish in a file: a name, or an index in the old format.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Written {
@@ -45,7 +45,7 @@ impl From<Written> for WishName {
 }
 
 impl WishName {
-    /// That of a wish.
+    /// Returns the name of a wish.
     pub fn of(wish: &Wish) -> Self {
         let route = wish.route.map(|route| match route {
             Route::Squeeze => "squeeze".to_string(),
@@ -63,7 +63,7 @@ impl WishName {
 }
 
 impl Record {
-    /// Takes over what is better in another one of the same level.
+    /// Merges the better results of another record of the same level.
     fn take(&mut self, other: Self) {
         for (route, ticks) in other.best {
             lower(&mut self.best, route, ticks);
@@ -75,7 +75,7 @@ impl Record {
     }
 }
 
-/// Takes over a time that is better than the one by its route; says whether it was.
+/// Lowers the best time of a route to `ticks`; returns whether `ticks` is shorter.
 fn lower(best: &mut BTreeMap<Route, u64>, route: Route, ticks: u64) -> bool {
     let known = best.entry(route).or_insert(u64::MAX);
     let is_better = ticks < *known;
@@ -84,24 +84,24 @@ fn lower(best: &mut BTreeMap<Route, u64>, route: Route, ticks: u64) -> bool {
 }
 
 impl Records {
-    /// Those in a text, and what of it could not be used.
+    /// Reads records from TOML. Also returns a description of each entry that could not be used.
     pub fn read(text: &str) -> (Self, Vec<String>) {
         let sifted = sift::<Self>(text);
         (sifted.value, sifted.refused)
     }
 
-    /// It as a text.
+    /// Returns the records as TOML.
     pub fn text(&self) -> String {
         toml::to_string(self).expect("records have nothing that cannot be written")
     }
 
-    /// What was reached in a level.
+    /// Returns the results in a level, given by its id.
     pub fn of(&self, level: &str) -> Option<&Record> {
         self.0.get(level)
     }
 
-    /// Takes note of a win; says whether it was faster than any before by that route. Where something was made easier it
-    /// is held against such wins alone, and no wish comes true.
+    /// Records a win; returns whether it is the fastest by its route. A win with assists is only compared
+    /// with other assisted wins, and it fulfils no wishes.
     pub fn note(&mut self, level: &Level, outcome: &Outcome) -> bool {
         let record = self.0.entry(level.id.clone()).or_default();
         if !level.game().assists.is_empty() {
@@ -113,20 +113,20 @@ impl Records {
         lower(&mut record.best, outcome.route, outcome.ticks)
     }
 
-    /// Takes over what is better in others.
+    /// Merges the better results of other records.
     pub fn take(&mut self, others: Self) {
         for (level, record) in others.0 {
             self.0.entry(level).or_default().take(record);
         }
     }
 
-    /// The same with the wishes of these levels by name that were once written down by place.
-    /// Levels that are files were once known by their folders too.
+    /// Converts old records: wishes of `levels` from indices to names, and level files from paths to file
+    /// names.
     pub fn by_name<'a>(self, levels: impl Iterator<Item = &'a Level>) -> Self {
         let mut named = Self::default();
         for (id, record) in self.0 {
             let name = id.rsplit(['/', '\\']).next();
-            // One without an ending is no level that comes along.
+            // Only names of level files have an extension; ids of built-in levels have none.
             let name = name.filter(|name| name.contains('.')).unwrap_or(&id);
             named.0.entry(name.into()).or_default().take(record);
         }
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn the_best_of_each_route_and_every_wish_is_kept() {
+    fn records_keep_best_time_of_each_route_and_wishes() {
         let level = Level::open("classic").unwrap();
         let mut outcome = outcome();
         let mut records = Records::default();
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wish_is_known_by_what_it_asks_for() {
+    fn wish_name_is_made_from_conditions() {
         let level = Level::open("classic").unwrap();
         let wishes = &level.game().wish;
         let names: BTreeSet<WishName> = wishes.iter().map(WishName::of).collect();
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn the_better_of_two_is_kept_of_each() {
+    fn records_take_keeps_better_results() {
         let read = |text| Records::read(text).0;
         let mut mine = read("[a]\nwishes = [\"x\"]\nbest = { squeeze = 10, shave = 50 }\n");
         mine.take(read(
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_that_is_a_file_is_known_by_its_name() {
+    fn records_by_name_drops_folders_of_level_files() {
         let text = "[\"/home/me/own.toml\"]\nbest = { mix = 9 }\n['C:\\me\\own.toml']\nbest = { mix = 8 }\n['/me/classic']\n";
         let records = Records::read(text).0.by_name(std::iter::empty());
         assert_eq!(records.of("own.toml").unwrap().best[&Route::Mix], 8);
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_record_costs_that_record_alone() {
+    fn records_read_drops_only_invalid_entries() {
         let text =
             "[a]\nbest = { squeeze = 10, fly = 3, mix = -1 }\n[b]\nbest = 7\nwishes = [\"x\"]\n";
         let (records, refused) = Records::read(text);

@@ -1,37 +1,37 @@
-//! A round in time: played by people, tried by a bot, or watched again.
+//! Real-time control of a round that is played by people or replayed.
 
 use app_shell::{Clock, Pace};
 use fuwafuwa::TICK;
 use std::sync::Arc;
 use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError};
 
-/// A round in time.
+/// Round that advances in real time, played by people or replayed.
 pub struct Session {
     player: Player,
-    /// The same level as somebody played it before, to race against.
+    /// Earlier round of the same level, to race against.
     ghost: Option<Playback>,
     pace: Pace,
-    /// Why a replay or a ghost was stopped.
+    /// Error that stopped a replay or a ghost.
     complaint: Option<ReplayError>,
 }
 
-/// Who plays.
+/// Source of the input of a round.
 enum Player {
-    /// Whoever holds the devices.
+    /// The people at the input devices.
     People(AnyRound),
     Replay(Playback),
 }
 
 impl Session {
-    /// A new round for people.
+    /// Creates a new round that people play.
     pub fn of_people(level: Arc<Level>) -> Self {
         Self::of(Player::People(AnyRound::new(level)))
     }
 
-    /// A round as it was played.
+    /// Creates a session that plays a recorded round.
     ///
     /// # Errors
-    /// [`ReplayError`] when its level is broken or was changed.
+    /// [`ReplayError`] if the recorded level is invalid or was changed.
     pub fn of_replay(replay: Arc<Replay>) -> Result<Self, ReplayError> {
         Ok(Self::of(Player::Replay(Playback::new(replay)?)))
     }
@@ -45,13 +45,13 @@ impl Session {
         }
     }
 
-    /// The same against somebody who played the level before.
+    /// Adds a ghost: a recorded round of the level to race against.
     pub fn against(mut self, ghost: Playback) -> Self {
         self.ghost = Some(ghost);
         self
     }
 
-    /// The same from its start: a replay is watched again, and people race the same ghost again.
+    /// Returns the same session from its start, with the same replay or ghost.
     pub fn again(&self) -> Self {
         let again = match &self.player {
             Player::People(round) => Self::of_people(round.level().clone()),
@@ -61,7 +61,7 @@ impl Session {
         Self { ghost, ..again }
     }
 
-    /// The round as it is now.
+    /// Returns the current state of the round.
     pub fn round(&self) -> &AnyRound {
         match &self.player {
             Player::People(round) => round,
@@ -69,17 +69,17 @@ impl Session {
         }
     }
 
-    /// The round that is raced against.
+    /// Returns the round of the ghost, if any.
     pub fn ghost(&self) -> Option<&AnyRound> {
         self.ghost.as_ref().map(Playback::round)
     }
 
-    /// Whether people play.
+    /// Whether people play the round.
     pub fn is_played(&self) -> bool {
         matches!(self.player, Player::People(_))
     }
 
-    /// Whether there is nothing more to watch.
+    /// Whether the replay or the round has ended.
     pub fn is_over(&self) -> bool {
         match &self.player {
             Player::Replay(playback) => playback.is_over(),
@@ -87,23 +87,25 @@ impl Session {
         }
     }
 
-    /// Why a replay or a ghost was stopped, once.
+    /// Returns the error that stopped a replay or a ghost, once.
     pub fn take_complaint(&mut self) -> Option<ReplayError> {
         self.complaint.take()
     }
 
-    /// What share of its speed the round can reach on this machine, as far as is known: 1 where ticks cost less than they last.
+    /// Estimated speed that this machine can reach, as a share of real time; 1 if a tick costs at most its
+    /// own duration.
     pub fn bearable(&self) -> f64 {
         (f64::from(TICK) / self.pace.cost()).min(1.0)
     }
 
-    /// What has passed and was not played yet is not made up for.
+    /// Drops the time that has passed but was not played yet.
     pub fn forget_time(&mut self) {
         self.pace.forget();
     }
 
-    /// Advances by `seconds` in whole ticks; by fewer ticks if they take too long by `clock`. In a round that
-    /// people play, `wish` returns the input for each tick. `seen` is called with the round after each tick.
+    /// Advances by `seconds` in whole ticks, or by fewer ticks if they take too long by `clock`. If people
+    /// play the round, `wish` returns the input for each tick. `seen` is called with the round after each
+    /// tick.
     pub fn advance(
         &mut self,
         seconds: f32,
@@ -134,7 +136,7 @@ impl Session {
         if let Some(ghost) = &mut self.ghost
             && let Err(error) = ghost.step()
         {
-            // A ghost that goes astray is no ghost.
+            // Removes a ghost that no longer follows its recording.
             self.ghost = None;
             self.complaint = Some(error);
         }

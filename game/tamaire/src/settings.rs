@@ -1,4 +1,4 @@
-//! What players chose. It is kept in a file that a person can read.
+//! Settings of the players, stored as TOML.
 
 use crate::input::{Bindings, Scanning};
 use crate::sift::{Sifted, sift};
@@ -9,53 +9,53 @@ use std::collections::{BTreeMap, BTreeSet};
 use tamaire_play::Assist;
 use tamaire_sound::Volumes;
 
-/// Felt as full force [N]. In the levels hands are pushed with 100 to 500: with less all bodies would feel alike, with
-/// more a soft one would not be felt.
+/// Contact force that is felt at full strength [N]. Hands are pushed with 100 to 500 N in the levels: below
+/// this range all bodies would feel alike, above it a soft body could not be felt.
 pub const FULL: f32 = 500.0;
 
-/// What players chose.
+/// Settings of the players.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// What the game speaks.
+    /// Language of all text.
     pub language: Language,
-    /// All sound, 0 to 1.
+    /// Master volume, 0 to 1.
     pub volume: f32,
-    /// What the world does, 0 to 1.
+    /// Volume of the sounds of the world, 0 to 1.
     pub effects: f32,
-    /// The music, 0 to 1.
+    /// Volume of the music, 0 to 1.
     pub music: f32,
-    /// Menus and jingles, 0 to 1.
+    /// Volume of menus and jingles, 0 to 1.
     pub interface: f32,
-    /// How strongly sticks and pads push back, 0 to 1; at 0 they are not even taken hold of.
+    /// Strength of force feedback and rumble, 0 to 1; default 0.7. At 0 no device is opened for feedback.
     pub haptics: f32,
-    /// How those sticks are built in that were measured, by what names their model.
+    /// Measured motor calibrations, by device model.
     pub calibrations: BTreeMap<String, Calibration>,
-    /// Share of the usual speed, 0.5 to 1.
+    /// Speed of the game, as a share of the usual speed, 0.5 to 1.
     pub speed: f32,
-    /// How far keys and sticks move the hand, 0.3 to 3; 1 = usual.
+    /// Factor on the motion of the hand by keys and sticks, 0.3 to 3; 1 = usual.
     pub sensitivity: f32,
-    /// Whether a stick points at a place in the arena, instead of saying how fast to go.
+    /// Whether a stick sets the position of the hand in the arena instead of its velocity.
     pub stick_places: bool,
-    /// Whether keys that move something stay down until they are pressed again.
+    /// Whether movement keys stay pressed until they are pressed again.
     pub toggle_keys: bool,
-    /// Whether a mouse that rests on a button presses it.
+    /// Whether a button is pressed by keeping the mouse pointer on it.
     pub dwell: bool,
-    /// How fast what can be done is offered to whoever plays with one switch.
+    /// Speed of scanning, for players with a single switch.
     pub scanning: Scanning,
-    /// What is made easier in levels.
+    /// Assists that make levels easier.
     pub assists: BTreeSet<Assist>,
-    /// Whether one's fastest round is raced by itself.
+    /// Whether players race against the ghost of their own fastest round.
     pub race_best: bool,
-    /// Whether the window fills the screen.
+    /// Whether the window is in full-screen mode.
     pub full_screen: bool,
-    /// No shaking, no leaning, fewer particles.
+    /// Whether motion is reduced: no camera shake, no camera lean, fewer particles.
     pub reduced_motion: bool,
-    /// Colours that nobody mixes up.
+    /// Whether colours are safe for colour-blind players.
     pub colour_safe: bool,
-    /// 0.8 to 1.6; 1 = usual.
+    /// Factor on the text size, 0.8 to 1.6; 1 = usual.
     pub text_size: f32,
-    /// Keys and buttons.
+    /// Bindings of keys and buttons.
     pub bindings: Bindings,
 }
 
@@ -93,7 +93,8 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Those in a text, and what of it could not be used. What is not known to be good is not felt.
+    /// Reads settings from TOML. Also returns a description of each entry that could not be used. Turns force
+    /// feedback off if its strength or a calibration is in doubt.
     pub fn read(text: &str) -> (Self, Vec<String>) {
         let Sifted {
             value,
@@ -103,7 +104,7 @@ impl Settings {
         let mut settings = value.clone().in_range();
         let (found, kept) = (value.numbers(), settings.numbers());
         for ((name, found), (_, kept)) in found.into_iter().zip(kept) {
-            // What is no number is not even itself.
+            // NaN differs from itself, so a NaN is reported, too.
             if found != kept {
                 refused.push(format!("{name} ({found} is out of its range)"));
             }
@@ -111,13 +112,13 @@ impl Settings {
         let of_motors = |refused: &String| refused.starts_with("calibrations");
         let is_damaged = !refused.is_empty();
         if is_damaged && !table.contains_key("haptics") || refused.iter().any(of_motors) {
-            // Nobody knows how strong it was to be, or how the motors lie.
+            // The intended strength or the calibration of the motors is unknown.
             settings.haptics = 0.0;
         }
         (settings, refused)
     }
 
-    /// It as a text.
+    /// Returns the settings as TOML.
     pub fn text(&self) -> String {
         toml::to_string(self).expect("settings have nothing that cannot be written")
     }
@@ -136,7 +137,7 @@ impl Settings {
         ]
     }
 
-    /// The same with every number in its range, and a key for every action.
+    /// Limits all numbers to their ranges and binds a key to every action.
     pub fn in_range(mut self) -> Self {
         let usual = Self::default();
         let fit = |value: &mut f32, low: f32, high: f32, usual: f32| {
@@ -161,7 +162,7 @@ impl Settings {
         self
     }
 
-    /// How a device of this model is to be felt; not at all where forces are off.
+    /// Returns the feedback settings for a device model, or `None` if feedback is off.
     pub fn force(&self, model: &str) -> Option<force_feedback::Settings> {
         let calibration = self.calibrations.get(model).copied();
         let settings = force_feedback::Settings {
@@ -173,7 +174,7 @@ impl Settings {
         (self.haptics > 0.0).then_some(settings)
     }
 
-    /// How loud what is.
+    /// Returns the volumes of all sounds.
     pub fn volumes(&self) -> Volumes {
         Volumes {
             master: self.volume,
@@ -189,7 +190,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_measured_is_kept_and_nonsense_is_not_felt() {
+    fn settings_keep_calibrations_and_limit_numbers() {
         let text = "haptics = nan\n[calibrations.stick]\nswap = true\ngain = [nan, 7.0]\n";
         let settings = toml::from_str::<Settings>(text).unwrap().in_range();
         let wanted = Calibration {
@@ -208,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_value_is_named_and_all_else_stays() {
+    fn settings_read_reports_invalid_values_and_keeps_others() {
         let text = "speed = 0.75\nvolume = 7.0\nmusic = \"loud\"\nhaptics = 0.4\n";
         let (settings, refused) = Settings::read(text);
         let wanted = Settings {

@@ -1,33 +1,37 @@
-//! What can be used of a text that somebody may have changed: one bad value costs that value alone.
+//! Tolerant reading of TOML that users may have edited: an invalid value is dropped and all other values are
+//! kept.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::de::{DeTable, ValueDeserializer};
 use toml::{Table, Value};
 
-/// Most letters of a reason, and of what is quoted.
+/// Maximum length of a reason and of a quoted name [characters].
 const LETTERS: usize = 80;
 
-/// After so many lines that cannot be read a text is taken for another kind.
+/// Maximum number of unreadable lines that are dropped one by one. A text with more of them is probably not
+/// TOML.
 const MOST_LINES: usize = 32;
 
-/// When so much was taken out, more is not looked at one by one: what is wrong goes with its neighbours.
+/// Number of refused entries from which invalid entries are no longer isolated, but dropped together with
+/// their neighbours.
 const MOST_REFUSED: usize = 256;
 
-/// All of a text is read again for each of them: of a long one fewer are looked for [bytes].
+/// Limit of the text parsed while unreadable lines are searched [bytes]. Each search parses the whole text
+/// again, so a long text gets fewer searches.
 const MOST_READ: usize = 1 << 21;
 
-/// What is left of a text when all that cannot be used is taken out.
+/// Usable part of a text.
 pub struct Sifted<T> {
-    /// What it says.
+    /// Value read from [`Self::table`].
     pub value: T,
-    /// What of it was used, as it stands there.
+    /// Entries that were kept, as written in the text. Unknown keys are kept, too.
     pub table: Table,
-    /// What was taken out: where it stands, and why.
+    /// Refused entries: path or line, and reason.
     pub refused: Vec<String>,
 }
 
-/// Reads a text, but for what cannot be used of it.
+/// Reads a value from TOML without the entries that are invalid.
 pub fn sift<T: DeserializeOwned + Serialize + Default>(text: &str) -> Sifted<T> {
     let mut refused = Vec::new();
     let text = good_lines(text, &mut refused);
@@ -57,7 +61,7 @@ pub fn sift<T: DeserializeOwned + Serialize + Default>(text: &str) -> Sifted<T> 
     }
 }
 
-/// The same without the lines that are none of TOML.
+/// Returns the text with empty lines in place of those that are not valid TOML.
 fn good_lines(text: &str, refused: &mut Vec<String>) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
     let most = MOST_LINES.min(1 + MOST_READ / text.len().max(1));
@@ -69,7 +73,8 @@ fn good_lines(text: &str, refused: &mut Vec<String>) -> String {
         let start = error.span().map_or(0, |span| span.start);
         let breaks = text.as_bytes()[..start.min(text.len())].iter();
         let line = breaks.filter(|&&byte| byte == b'\n').count();
-        // What is missing at the end of a line may be missed on the next one that says something.
+        // An error at the end of a line may be reported on a later line, so the last non-empty line up to
+        // there is dropped.
         let at = (0..=line)
             .rev()
             .find(|&at| lines.get(at).is_some_and(|line| !line.is_empty()));
@@ -79,12 +84,12 @@ fn good_lines(text: &str, refused: &mut Vec<String>) -> String {
         refused.push(format!("line {} ({})", at + 1, brief(error.message())));
         lines[at] = "";
     }
-    // It is no such text at all.
+    // The text is probably not TOML.
     refused.push("all after that".into());
     lines.join("\n")
 }
 
-/// The part of a value with which the whole can still be read.
+/// Returns the part of a value with which the whole can still be read.
 fn good_part(path: &str, value: Value, read: &Read, refused: &mut Vec<String>) -> Value {
     match value {
         Value::Table(entries) => {
@@ -100,10 +105,10 @@ fn good_part(path: &str, value: Value, read: &Read, refused: &mut Vec<String>) -
     }
 }
 
-/// Says why a value cannot be read, if it cannot.
+/// Tests whether a value can be read; returns the reason if it cannot.
 type Read<'a> = dyn Fn(&Value) -> Result<(), String> + 'a;
 
-/// Something in a table or an array, by its name or number.
+/// Entry of a table or an array: key or number from 1, and value.
 type Entry = (String, Value);
 
 fn table_of(entries: &[Entry]) -> Value {
@@ -114,8 +119,8 @@ fn array_of(entries: &[Entry]) -> Value {
     Value::Array(entries.iter().map(|(_, entry)| entry.clone()).collect())
 }
 
-/// Those of some entries with which what is made `of` them can be read. They are halved until what is wrong is alone, so
-/// that many take as long as they are, and not as long as many times each other.
+/// Returns the entries that can be read together once `of` combines them. Bisection isolates the invalid
+/// entries, so that the time does not grow with the square of their number.
 fn good_entries(
     path: &str,
     entries: &[Entry],
@@ -135,7 +140,7 @@ fn good_entries(
             if with(&part).is_ok() {
                 return vec![(name.clone(), part)];
             }
-            // What is wrong with it is wrong with all of it.
+            // The entry as a whole is invalid: replaces the reasons for its parts by one for the entry.
             refused.truncate(before);
             refused.push(named(&path, &reason));
             Vec::new()
@@ -149,7 +154,7 @@ fn good_entries(
     }
 }
 
-/// Notes what stands in a table and means nothing.
+/// Reports keys of `table` that have no meaning, that is, are not in `meant`.
 fn name_unknown(path: &str, table: &Table, meant: &Table, refused: &mut Vec<String>) {
     for (key, value) in table {
         let path = inside(path, key);
@@ -173,7 +178,7 @@ fn inside(path: &str, key: &str) -> String {
 }
 
 fn named(path: &str, reason: &str) -> String {
-    // Nobody has to know Rust.
+    // Replaces names of Rust types, which users may not know.
     let types = ["f32", "f64", "u8", "u64", "usize"];
     let in_words = types.iter().fold(reason.to_string(), |reason, name| {
         reason.replace(&format!("expected {name}"), "expected a number")
@@ -190,7 +195,7 @@ mod tests {
     use super::*;
     use crate::settings::Settings;
 
-    /// What is left of a text, and what was refused.
+    /// Checks the part that is kept of a text, and the start of each refused entry.
     fn check(text: &str, left: &str, refused: &[&str]) {
         let found = sift::<Settings>(text);
         assert_eq!(
@@ -206,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn one_bad_value_costs_that_value_alone() {
+    fn sift_drops_only_invalid_values() {
         check("speed = 0.75", "speed = 0.75", &[]);
         check(
             "speed = \"fast\"\nvolume = 0.5\nwarp = 9\n",
@@ -238,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_is_no_line_costs_that_line_alone() {
+    fn sift_drops_only_unreadable_lines() {
         check(
             "speed = 0.75\n?!\nvolume = 0.5\n",
             "speed = 0.75\nvolume = 0.5\n",
@@ -252,9 +257,9 @@ mod tests {
         );
     }
 
-    /// It once took four times as long for twice as many.
+    /// Regression test: the time once grew with the square of the number of entries.
     #[test]
-    fn a_long_text_that_is_all_wrong_is_read_in_time() {
+    fn sift_reads_long_invalid_text_in_time() {
         let entries = |count: usize, value: &str| {
             let lines = (0..count).map(|number| format!("key{number} = {value}\n"));
             lines.collect::<String>()
@@ -276,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn anything_is_read_and_told_briefly() {
+    fn sift_reads_any_text_with_short_reasons() {
         let texts = [
             String::new(),
             "\u{0}\u{1}".repeat(1000),

@@ -30,7 +30,7 @@ pub struct WorldConfig {
     /// about 1, bodies float.
     pub drag: f32,
     /// Maximum number of substeps in 1/60 s, 8 to 1024, default 64; scaled in proportion for other tick
-    /// lengths. SoftBodies that require more are softened, see
+    /// lengths. Soft bodies that require more are softened, see
     /// [`SoftBody::stiffness_scale`](crate::SoftBody::stiffness_scale). Values below 16 make large soft bodies cheap.
     pub most_substeps: u32,
     /// Tick length [s], 1/240 to 1/30, default 1/60. It sets how often targets, events and contact changes

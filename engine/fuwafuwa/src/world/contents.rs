@@ -183,8 +183,10 @@ impl<D: Dim> World<D> {
         self.ticks
     }
 
-    /// Returns a hash of the simulation state. Except for hash collisions, two worlds have the same hash only
-    /// if their tick counters, nodes and moving rigid bodies are bit-identical.
+    /// Returns a hash of the motion. Except for hash collisions, two worlds have the same hash only if these are
+    /// bit-identical: tick counters, piece numbers, positions and velocities of all nodes, positions and velocities
+    /// of rigid bodies that are not fixed, and rotations and angular velocities of dynamic ones. Internal state, such
+    /// as damage, sleep timers and impulses of joints, is not part of the hash.
     #[inline(never)]
     pub fn hash(&self) -> u64 {
         let mut hash = Hash::NONE;

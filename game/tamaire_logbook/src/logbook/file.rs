@@ -35,7 +35,7 @@ pub fn open(path: &Path) -> Result<Connection, Error> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(|error| unusable(path, &error))?;
     }
-    // Read before the file itself, because another program that creates both creates the file first.
+    // A program that creates a logbook creates the file before its log, so a log seen here implies the file.
     let has_log = size(&sidecar_path(path, SIDECAR_SUFFIXES[0])) > 0;
     let is_there = path.try_exists().map_err(|error| unusable(path, &error))?;
     if !is_there && has_log {
