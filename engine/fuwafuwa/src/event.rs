@@ -1,6 +1,7 @@
 //! Events of a tick and the report of a step.
 
 use crate::foundation::arena::{JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::PieceId;
 use crate::object_ref::ObjectRef;
 use crate::rigid_body::shape::Vector;
@@ -111,6 +112,26 @@ pub enum Event {
     },
 }
 
+hash_state! {
+    enum Event {
+        NodeSplit { body, point, energy },
+        PieceDetached { body, piece },
+        ContactForce(contact),
+        ContactStarted(contact),
+        ContactEnded { pair },
+        SensorEntered { sensor, object },
+        SensorExited { sensor, object },
+        Cut { knife, body, point, area, work },
+        JointBroke { joint },
+        FellAsleep { body, piece },
+        WokeUp { body, piece },
+        PieceRemoved { body, piece },
+        BodyRemoved { body },
+        RigidRemoved { rigid },
+        Quarantined { body, piece },
+    }
+}
+
 impl Event {
     /// Returns the events for pieces detached from a body.
     pub(crate) fn parted(body: SoftBodyHandle, pieces: &[PieceId]) -> impl Iterator<Item = Self> {
@@ -138,6 +159,8 @@ pub struct Contact {
     /// the tick, it is the mean normal force [N]. Friction is not included.
     pub impulse: f32,
 }
+
+hash_state! { struct Contact { pair, point, normal, speed, impulse } }
 
 impl Contact {
     /// Returns the object that touches `object`, or `None` if `object` is not in the pair.

@@ -1,6 +1,7 @@
 //! Materials of voxels.
 
 use crate::error::{Error, require};
+use crate::foundation::hash::hash_state;
 use crate::soft_body::element_law::Elasticity;
 use crate::soft_body::plasticity::Plasticity;
 
@@ -40,6 +41,12 @@ pub struct Material {
     /// beyond it the material is elastic. Usually about 2; higher values allow thin sheets, whose elements
     /// are just as flat.
     pub plastic_limit: f32,
+}
+
+hash_state! {
+    struct Material {
+        elasticity, density, damping, friction, strength, toughness, yield_strain, plastic_limit,
+    }
 }
 
 impl Default for Material {

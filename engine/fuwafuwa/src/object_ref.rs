@@ -1,6 +1,7 @@
 //! References to the objects of a world.
 
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::PieceId;
 use crate::world::BodyHandle;
 
@@ -22,6 +23,8 @@ pub enum ObjectRef {
     /// Rigid body.
     RigidBody(RigidBodyHandle),
 }
+
+hash_state! { enum ObjectRef { Piece { body, piece }, RigidBody(rigid) } }
 
 impl ObjectRef {
     /// Returns the handle of a rigid body, or `None` for a piece.

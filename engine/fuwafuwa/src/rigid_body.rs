@@ -16,6 +16,7 @@ mod rigid_validation;
 use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, RigidBodyHandle};
 use crate::foundation::dim::{Dim, turning};
+use crate::foundation::hash::hash_state;
 use crate::math::rotation::Rotation;
 use crate::math::vector::{is_finite, length, minus, plus, scaled};
 use crate::math::velocity::Velocity;
@@ -58,6 +59,15 @@ pub enum MotionType {
         /// support sinks into it.
         mass: f32,
     },
+}
+
+hash_state! {
+    enum MotionType {
+        Fixed,
+        Kinematic,
+        Coupled { mass, stiffness, damping, limit },
+        Dynamic { mass },
+    }
 }
 
 impl MotionType {
@@ -132,6 +142,14 @@ pub struct RigidBody {
     pub(crate) reactions: Vec<Reaction>,
 }
 
+hash_state! {
+    struct RigidBody {
+        friction, restitution, motion_type, layers, is_sensor, user_data, form, shape, position, velocity,
+        rotation, angular_velocity, asleep, sleep_timer, position_before, rotation_before, inertia,
+        inverse_inertia, goal, rotation_goal, goal_before, goal_velocity, reactions,
+    }
+}
+
 /// Force and torque on a rigid body in one substep.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -144,6 +162,8 @@ pub struct Reaction {
     /// Reversed force of the virtual coupling [N]: the force to play on a force-feedback device.
     pub coupling: Vector,
 }
+
+hash_state! { struct Reaction { contact, torque, coupling } }
 
 impl RigidBody {
     /// Returns a fixed rigid body; usual friction 0.2.

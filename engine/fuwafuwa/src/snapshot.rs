@@ -10,7 +10,7 @@ use crate::foundation::hash::Hash;
 use crate::world::World;
 
 /// Version of the format. It changes when an older snapshot would be misread or would continue differently.
-pub const VERSION: u32 = 18;
+pub const VERSION: u32 = 19;
 
 const MAGIC: [u8; 4] = *b"fuwa";
 const HEADER: usize = 17;

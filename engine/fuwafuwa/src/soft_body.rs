@@ -24,6 +24,7 @@ mod sleep_flags;
 use crate::error::Error;
 use crate::foundation::arena::{Arena, SoftBodyHandle};
 use crate::foundation::dim::{Dim, Point};
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{ElementId, NodeId};
 use crate::material::Material;
 use crate::math::vector::{as_row, dot, three};
@@ -66,6 +67,8 @@ pub struct SoftBody<D: Dim> {
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) cache: Cache,
 }
+
+hash_state! { [D: Dim] struct SoftBody<D> { topology, state } skip { cache } }
 
 impl<D: Dim> SoftBody<D> {
     /// Creates a body at rest that fills `grid`, with the low corner of the grid at the origin. A voxel of

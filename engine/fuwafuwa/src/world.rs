@@ -18,6 +18,7 @@ use crate::error::Error;
 use crate::event::{Contact, Event, StepReport};
 use crate::foundation::arena::{BodySlot, RigidBodyHandle, RigidSlot};
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::fracture::crack_growth::{Failure, failures};
 use crate::fracture::knife::{Knife, Knives};
@@ -67,6 +68,12 @@ pub struct World<D: Dim> {
     contacts: Contacts,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) query_cache: QueryCache,
+}
+
+hash_state! {
+    [D: Dim] struct World<D> {
+        settings, bodies, rigids, joints, knives, ticks, nearby, events, touching, inside,
+    } skip { contacts, query_cache }
 }
 
 impl<D: Dim> World<D> {

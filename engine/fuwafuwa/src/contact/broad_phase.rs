@@ -20,6 +20,7 @@ mod swept_path;
 
 use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{ElementId, PieceId};
 use crate::rigid_body::RigidBodies;
 use crate::soft_body::{SoftBodies, SoftBody};
@@ -63,6 +64,10 @@ pub struct Nearby {
     left: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
     knows_captives: bool,
+}
+
+hash_state! {
+    struct Nearby { nodes, spheres, pairs, rigids } skip { captives, left, knows_captives }
 }
 
 impl Nearby {

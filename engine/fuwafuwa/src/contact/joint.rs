@@ -11,6 +11,7 @@ mod joint_solver;
 use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, JointHandle};
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::hash_state;
 use crate::math::vector::length;
 use crate::rigid_body::shape::{Vector, flat};
 use crate::rigid_body::{FARTHEST, RigidBodies};
@@ -60,6 +61,8 @@ pub struct Joint {
     /// Magnitude of the joint force in the last substep [N].
     force: f32,
 }
+
+hash_state! { struct Joint { ends, tie, breaking_force, anchors, impulse, force } }
 
 impl Joint {
     /// Returns a joint of any kind that never breaks.

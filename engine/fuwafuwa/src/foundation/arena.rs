@@ -2,6 +2,7 @@
 //! removed item is detected as stale.
 
 use crate::error::Error;
+use crate::foundation::hash::{HashState, hash_state};
 use crate::foundation::ids::{Id, IndexVec, id};
 use std::collections::BTreeSet;
 use std::fmt;
@@ -43,6 +44,8 @@ macro_rules! handle {
                 self.slot
             }
         }
+
+        hash_state! { struct $name { slot, generation } }
 
         impl sealed::Sealed for $name {}
 
@@ -159,6 +162,9 @@ struct Slot<T> {
     generation: u32,
     thing: Option<T>,
 }
+
+hash_state! { [K: Handle, T: HashState] struct Arena<K, T> { slots } skip { revision, free } }
+hash_state! { [T: HashState] struct Slot<T> { generation, thing } }
 
 impl<K: Handle, T> Default for Arena<K, T> {
     fn default() -> Self {

@@ -4,6 +4,7 @@
 //! Each index stores the first id of its list, and each id stores the next one. So lists need no allocation
 //! of their own and no search.
 
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::Id;
 use std::marker::PhantomData;
 
@@ -19,6 +20,8 @@ pub struct IdLists<I> {
     next: Vec<u32>,
     ids: PhantomData<I>,
 }
+
+hash_state! { [I] struct IdLists<I> { first, next } skip { ids } }
 
 impl<I: Id> IdLists<I> {
     /// Creates `places` empty lists.

@@ -3,6 +3,7 @@
 //! An id is an index into tables, and does not identify the body. Ids of nodes and elements are reused after
 //! their node or element is removed; ids of pieces are never reused.
 
+use crate::foundation::hash::{HashState, hash_state};
 use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut, Index, IndexMut};
 
@@ -43,6 +44,14 @@ macro_rules! id {
             }
         }
 
+        impl $crate::foundation::hash::HashState for $name {
+            #[inline(always)]
+            fn hash_state(&self, hash: &mut $crate::foundation::hash::Hash) {
+                let Self(index) = self;
+                index.hash_state(hash);
+            }
+        }
+
         impl std::fmt::Display for $name {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 self.0.fmt(f)
@@ -75,6 +84,8 @@ pub struct IndexVec<I, T> {
     #[cfg_attr(feature = "serde", serde(skip))]
     ids: PhantomData<I>,
 }
+
+hash_state! { [I, T: HashState] struct IndexVec<I, T> { list } skip { ids } }
 
 impl<I: Id, T> IndexVec<I, T> {
     /// Returns all entries with their ids, ascending.

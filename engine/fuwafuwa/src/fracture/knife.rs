@@ -23,6 +23,7 @@ mod swept_area;
 use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, KnifeHandle, RigidBodyHandle};
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::hash_state;
 use crate::math::vector::{cross, dot, is_finite, length, minus, scaled};
 use crate::rigid_body::shape::{Vector, flat};
 use crate::rigid_body::{FARTHEST, RigidBodies, RigidBody};
@@ -87,6 +88,12 @@ pub struct Knife {
     /// Area cut [m²] and work done [J] since the last event.
     area: f64,
     work: f64,
+}
+
+hash_state! {
+    struct Knife { holder, edge, toward, radius, height, samples, force, torque, area, work } skip {
+        near, knows_near,
+    }
 }
 
 impl Knife {

@@ -1,6 +1,7 @@
 //! Rotations.
 
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::hash_state;
 use crate::math::vector::{Vector, cross, dot, minus, plus, scaled};
 
 /// Rotation, stored as a unit quaternion. Identical on every machine, because it does not use the sine of the
@@ -11,6 +12,8 @@ pub struct Rotation {
     /// Components x, y, z, w.
     quaternion: [f64; 4],
 }
+
+hash_state! { struct Rotation { quaternion } }
 
 impl Default for Rotation {
     fn default() -> Self {

@@ -1,6 +1,7 @@
 //! Principal moments of inertia of shapes with uniform density.
 
 use crate::foundation::dim::{Dim, turning};
+use crate::foundation::hash::hash_state;
 use crate::math::rotation::Rotation;
 use crate::math::vector::{across, dot, length, minus, plus, scaled};
 use crate::rigid_body::shape::{Shape, Vector};
@@ -19,6 +20,8 @@ pub struct Inertia {
     /// Inverse moments [1/(kg m²)]; 0 about axes that the body cannot turn about.
     inverse: Vector,
 }
+
+hash_state! { struct Inertia { axes, moments, inverse } }
 
 impl Inertia {
     /// Returns the inertia of a shape centred on the origin, for a mass [kg].

@@ -1,5 +1,7 @@
 //! Collision layers.
 
+use crate::foundation::hash::hash_state;
+
 /// Collision layers of a body: the layers of which it is a member, and the layers that it collides with, bit
 /// by bit. Two bodies collide if each is a member of a layer that the other one collides with. The pieces of
 /// a body use its layers, also among each other.
@@ -18,6 +20,8 @@ pub struct Layers {
     /// Layers that the body collides with; all by default.
     pub filters: u32,
 }
+
+hash_state! { struct Layers { memberships, filters } }
 
 impl Default for Layers {
     fn default() -> Self {

@@ -10,6 +10,7 @@ mod shape_ray;
 
 use crate::error::{Error, require};
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::hash_state;
 use crate::math::rotation::Rotation;
 pub use crate::math::vector::Vector;
 use crate::math::vector::{dot, is_finite, length, minus, plus, scaled};
@@ -60,6 +61,16 @@ pub enum Shape {
         /// Radius [m].
         radius: f32,
     },
+}
+
+hash_state! {
+    enum Shape {
+        HalfSpace { normal, offset },
+        Box { centre, half },
+        OrientedBox { centre, half, rotation },
+        Capsule { from, to, radius },
+        Ball { centre, radius },
+    }
 }
 
 impl Shape {

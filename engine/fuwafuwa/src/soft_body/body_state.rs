@@ -2,6 +2,7 @@
 
 use super::cooldowns::Cooldowns;
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{IndexVec, NodeId};
 use crate::rigid_body::layers::Layers;
 use crate::soft_body::element_forces::{ElementBatches, Row};
@@ -38,6 +39,13 @@ pub struct State<D: Dim> {
     /// Rotation of each element, and the forces of the last substep. Both are state: rotations are followed
     /// iteratively, and the next crack follows the last forces. Snapshots contain only these.
     pub blocks: ElementBatches<D>,
+}
+
+hash_state! {
+    [D: Dim] struct State<D> {
+        position, velocity, mass, inverse_mass, fixed, damage, cooldowns, ahead, gravity_scale, layers,
+        user_data, placed, blocks,
+    }
 }
 
 impl<D: Dim> State<D> {

@@ -1,6 +1,7 @@
 //! Topology of a body: voxels, connectivity, and the mesh that follows from them.
 
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::hash_state;
 use crate::material::Material;
 use crate::topology::cell_hierarchy::CellHierarchy;
 use crate::topology::connectivity::Connectivity;
@@ -25,4 +26,10 @@ pub struct Topology<D: Dim> {
     pub materials: Vec<Material>,
     /// Factor by which the stiffness was lowered to keep the substep stable; 1 = unchanged.
     pub stiffness_scale: f64,
+}
+
+hash_state! {
+    [D: Dim] struct Topology<D> {
+        grid, connectivity, pyramid, mesh, pieces, materials, stiffness_scale,
+    }
 }

@@ -1,6 +1,7 @@
 //! Cooldowns after releases: no node nearby fails again before the stress waves have passed.
 
 use crate::foundation::dim::Point;
+use crate::foundation::hash::hash_state;
 
 /// Lattice steps around a release that cool down: half the distance that a wave travels during the cooldown.
 const REACH: i32 = 2;
@@ -14,6 +15,8 @@ pub struct Cooldowns {
     /// Number of fracture rounds up to now.
     pub rounds: u32,
 }
+
+hash_state! { struct Cooldowns { points, rounds } }
 
 impl Cooldowns {
     /// Advances by one round of `duration` [s].

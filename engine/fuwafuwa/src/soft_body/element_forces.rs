@@ -11,6 +11,7 @@
 mod batch;
 mod batch_assignment;
 mod force_kernel;
+mod hashing;
 mod plastic_kernel;
 #[cfg(feature = "serde")]
 mod restoring;
@@ -90,6 +91,14 @@ pub struct VelocityUpdate<'a> {
     pub duration: f32,
     /// Gravity [m/s²].
     pub gravity: Row,
+}
+
+/// Number of components of a rotation: cosine and sine, or a quaternion.
+const fn parts<D: Dim>() -> usize {
+    match D::N {
+        2 => 2,
+        _ => 4,
+    }
 }
 
 impl<D: Dim> ElementBatches<D> {

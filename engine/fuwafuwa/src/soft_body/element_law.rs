@@ -17,6 +17,7 @@
 
 use crate::error::{Error, require};
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::hash_state;
 use crate::math::vector::{cross, dot, minus, plus, scaled};
 use crate::topology::element_class::{ElementClass, Vector64};
 
@@ -31,6 +32,8 @@ pub enum Law {
     CorotationalVem,
 }
 
+hash_state! { enum Law { Endo2004, CorotationalVem } }
+
 /// Elastic constants of a material.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -41,6 +44,8 @@ pub struct Elasticity {
     /// Poisson's ratio ν, 0 to 0.45: lateral expansion under compression.
     pub poisson: f64,
 }
+
+hash_state! { struct Elasticity { young, poisson } }
 
 /// Volume ratio J below which an element resists further compression, regardless of its material. A higher
 /// limit would stiffen soft contacts; with a lower one, strong contacts invert elements before the resistance

@@ -13,6 +13,7 @@
 use crate::foundation::dim::{
     Dim, Point, add, corner, neighbourhood, points_in, scale, voxel_around,
 };
+use crate::foundation::hash::hash_state;
 use crate::topology::connectivity::Connectivity;
 use crate::topology::grid::VoxelGrid;
 use std::marker::PhantomData;
@@ -26,6 +27,8 @@ pub struct Cell {
     /// Position in units of the size of the cell.
     pub at: Point,
 }
+
+hash_state! { struct Cell { level, at } }
 
 impl Cell {
     /// Width in voxels.
@@ -87,6 +90,8 @@ pub struct CellIndexing {
     levels: Vec<(Point, usize)>,
     count: usize,
 }
+
+hash_state! { struct CellIndexing { levels, count } }
 
 /// Inverse of the largest width of a cell relative to the longest axis of its grid; small levels are exempt.
 ///
@@ -166,6 +171,8 @@ pub enum Grading {
     Coarse,
 }
 
+hash_state! { enum Grading { Graded, Uniform, Coarse } }
+
 /// Cell hierarchy of a body: the set of existing cells.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -176,6 +183,8 @@ pub struct CellHierarchy<D: Dim> {
     exists: Vec<bool>,
     dim: PhantomData<D>,
 }
+
+hash_state! { [D: Dim] struct CellHierarchy<D> { places, grading, exists } skip { dim } }
 
 impl<D: Dim> CellHierarchy<D> {
     /// Builds the cells of a body from scratch.

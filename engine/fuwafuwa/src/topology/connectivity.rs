@@ -13,6 +13,7 @@
 
 mod voxel_removal;
 use crate::foundation::dim::{Dim, FAR, Point, add, neighbourhood, points_in, voxel_around};
+use crate::foundation::hash::{Hash, HashState, hash_state};
 use crate::foundation::id_lists::ascending;
 use crate::foundation::ids::id;
 use crate::topology::grid::VoxelGrid;
@@ -26,6 +27,14 @@ const EMPTY: u32 = 15;
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Groups(u32);
+
+impl HashState for Groups {
+    #[inline]
+    fn hash_state(&self, hash: &mut Hash) {
+        let Self(mask) = self;
+        mask.hash_state(hash);
+    }
+}
 
 impl Groups {
     /// No voxels.
@@ -149,6 +158,8 @@ pub struct Connectivity<D: Dim> {
     groups: Vec<Groups>,
     dim: PhantomData<D>,
 }
+
+hash_state! { [D: Dim] struct Connectivity<D> { size, groups } skip { dim } }
 
 impl<D: Dim> Connectivity<D> {
     /// Connectivity of the uncut body: voxels at a point are together if closed faces around it connect them.

@@ -6,6 +6,7 @@
 //! are computed once per class.
 
 use crate::foundation::dim::{Dim, Point, add, corner};
+use crate::foundation::hash::hash_state;
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -86,6 +87,12 @@ pub struct ElementClass<D: Dim> {
     /// Stiffness of the hourglass modes relative to those of a plain cell: see [`ElementClass::new`].
     pub hourglass: f64,
     dim: PhantomData<D>,
+}
+
+hash_state! {
+    [D: Dim] struct ElementClass<D> {
+        children, slots, mask, offsets, gradients, volumes, volume, hourglass,
+    } skip { dim }
 }
 
 impl<D: Dim> ElementClass<D> {

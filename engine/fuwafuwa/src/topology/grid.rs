@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::foundation::dim::{Dim, Point, points_in};
+use crate::foundation::hash::hash_state;
 use crate::rigid_body::shape::Vector;
 use std::marker::PhantomData;
 use std::ops::RangeInclusive;
@@ -29,6 +30,8 @@ pub struct VoxelGrid<D: Dim> {
     taken_out: Vec<bool>,
     dim: PhantomData<D>,
 }
+
+hash_state! { [D: Dim] struct VoxelGrid<D> { size, voxel_size, materials, taken_out } skip { dim } }
 
 impl<D: Dim> VoxelGrid<D> {
     /// Creates a grid of `size` voxels with edge length `voxel_size` [m]; `material` returns the material of

@@ -17,6 +17,7 @@ mod remodel;
 pub use remodel::{Inheritance, Remodelled};
 
 use crate::foundation::dim::{Dim, Point, points_in, voxel_around};
+use crate::foundation::hash::hash_state;
 use crate::foundation::id_lists::IdLists;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId};
 use crate::topology::cell_hierarchy::{Cell, CellHierarchy, CellIndexing, Grading, parts};
@@ -40,6 +41,8 @@ pub struct Element {
     pub nodes: Vec<NodeId>,
 }
 
+hash_state! { struct Element { cell, children, stencil, nodes } }
+
 /// Mass point: a lattice point, and the octants of the voxel group that shares it.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -49,6 +52,8 @@ pub struct Node {
     /// Mask of the octants of the voxels around the point that share this node.
     pub group: u8,
 }
+
+hash_state! { struct Node { at, group } }
 
 /// Elements of one body, and the nodes that they share.
 #[derive(Clone, Debug)]
@@ -73,6 +78,13 @@ pub struct Mesh<D: Dim> {
     carriers: IndexVec<NodeId, u8>,
     free_elements: Vec<ElementId>,
     free_nodes: Vec<NodeId>,
+}
+
+hash_state! {
+    [D: Dim] struct Mesh<D> {
+        elements, nodes, stencils, dense_surface, places, by_cell, owners, by_point, classes, carriers,
+        free_elements, free_nodes,
+    }
 }
 
 /// Violated invariant of a mesh, as text.

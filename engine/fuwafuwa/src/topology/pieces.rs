@@ -7,6 +7,7 @@
 
 use crate::foundation::dim::Dim;
 use crate::foundation::disjoint_sets::DisjointSets;
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::topology::mesh::Mesh;
 use std::collections::{BTreeMap, VecDeque};
@@ -28,6 +29,8 @@ pub struct Piece {
     pub sleep_timer: f32,
 }
 
+hash_state! { struct Piece { asleep, quarantined, removed, sleep_timer } }
+
 /// Pieces of one body, and the piece of each element and node.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -44,6 +47,8 @@ pub struct Pieces {
     #[cfg_attr(feature = "serde", serde(skip))]
     marked: u32,
 }
+
+hash_state! { struct Pieces { list, of_element, of_node } skip { seen, node_seen, marked } }
 
 /// Search along one side of a release.
 struct Search {

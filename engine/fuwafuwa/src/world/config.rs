@@ -1,6 +1,7 @@
 //! World settings: gravity, air drag, substeps and tick length.
 
 use crate::error::{Error, require};
+use crate::foundation::hash::hash_state;
 use crate::rigid_body::shape::Vector;
 
 /// Default tick length [s]; see [`WorldConfig::tick`].
@@ -38,6 +39,8 @@ pub struct WorldConfig {
     /// ticks cost a little more. Worlds of different tick lengths behave alike but are not bit-identical.
     pub tick: f32,
 }
+
+hash_state! { struct WorldConfig { gravity, drag, most_substeps, tick } }
 
 impl Default for WorldConfig {
     fn default() -> Self {

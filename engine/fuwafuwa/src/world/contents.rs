@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::event::Event;
 use crate::foundation::arena::{RigidBodyHandle, RigidSlot, SoftBodyHandle};
 use crate::foundation::dim::Dim;
-use crate::foundation::hash::Hash;
+use crate::foundation::hash::{Hash, HashState};
 use crate::fracture::blade::{Blade, CutReport};
 #[cfg(feature = "serde")]
 use crate::fracture::knife::Knife;
@@ -215,6 +215,15 @@ impl<D: Dim> World<D> {
                 }
             }
         }
+        hash.number()
+    }
+
+    /// Returns a hash of the whole state: of everything that a snapshot contains.
+    #[doc(hidden)]
+    #[inline(never)]
+    pub fn hash_of_state(&self) -> u64 {
+        let mut hash = Hash::NONE;
+        self.hash_state(&mut hash);
         hash.number()
     }
 

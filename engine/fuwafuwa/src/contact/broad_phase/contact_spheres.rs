@@ -4,6 +4,7 @@
 use super::contact_sphere::{ContactSphere, NEAR, SphereId};
 use crate::foundation::arena::BodySlot;
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{ElementId, IndexVec, PieceId};
 use crate::math::vector::{dot, minus};
 use crate::soft_body::element_forces::Row;
@@ -45,6 +46,12 @@ pub struct Spheres {
     pub velocities: IndexVec<SphereId, Row>,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub moved: IndexVec<SphereId, f32>,
+}
+
+hash_state! {
+    struct Spheres { keys } skip {
+        list, by_voxel, crack_faces, followed, awake, centres, close, is_close, velocities, moved,
+    }
 }
 
 /// Stable key of a sphere: body and element.

@@ -2,9 +2,11 @@
 
 #[cfg(feature = "serde")]
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::hash_state;
 use crate::soft_body::element_forces::Row;
 
-/// Impulses of a contact, in the last substep and over the tick [N s].
+/// Impulses of a contact, in the last substep and over the tick [N s]. The sums over the tick are cleared at the
+/// start of the next one, so they are no state.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Impulse {
@@ -13,9 +15,20 @@ pub struct Impulse {
     /// Friction impulse.
     pub dragged: Row,
     /// Sum of the normal impulses since the start of the tick.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub total: f32,
     /// Highest approach speed since the start of the tick [m/s].
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub speed: f32,
+}
+
+hash_state! { struct Impulse { pressed, dragged } skip { total, speed } }
+
+impl Impulse {
+    /// Whether the contact had an impulse in the last substep.
+    pub fn is_known(&self) -> bool {
+        self.pressed != 0.0 || self.dragged != [0.0; 4]
+    }
 }
 
 #[cfg(feature = "serde")]

@@ -5,6 +5,7 @@ use super::known_impulse::Impulse;
 use super::sphere_pair::MARGIN;
 use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::{Hash, HashState, hash_all, hash_state};
 use crate::foundation::ids::{IndexVec, NodeId, PieceId};
 use crate::math::vector::{dot, length, minus, plus, scaled, three};
 use crate::rigid_body::shape::Shape;
@@ -41,11 +42,15 @@ pub struct NodePair {
     pub clear: f32,
 }
 
+hash_state! { struct NodePair { rigid, body, node, impulse } skip { clear } }
+
 /// Pairs of nodes and rigid shapes that may touch in this tick.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NodePairs {
-    /// Pairs, ascending by rigid body, soft body and node; sleeping nodes included.
+    /// Pairs, ascending by rigid body, soft body and node; sleeping nodes included. Which pairs without an impulse
+    /// are listed depends on the last search, so they are no state.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "serialize_known"))]
     pub list: Vec<NodePair>,
     /// Distance that the fastest nodes have moved since the last full search [m].
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -63,6 +68,26 @@ pub struct NodePairs {
     /// Nodes removed, added or woken since the last update.
     #[cfg_attr(feature = "serde", serde(skip))]
     changed: Vec<(BodySlot, NodeId)>,
+}
+
+impl HashState for NodePairs {
+    fn hash_state(&self, hash: &mut Hash) {
+        let Self {
+            list,
+            travel: _,
+            anchors: _,
+            spare: _,
+            leeways: _,
+            changed: _,
+        } = self;
+        hash_all(list.iter().filter(|pair| pair.impulse.is_known()), hash);
+    }
+}
+
+#[cfg(feature = "serde")]
+fn serialize_known<S: serde::Serializer>(list: &[NodePair], to: S) -> Result<S::Ok, S::Error> {
+    let known = list.iter().filter(|pair| pair.impulse.is_known());
+    serde::Serialize::serialize(&known.collect::<Vec<_>>(), to)
 }
 
 /// Allowed and actual movement of a rigid body [m].

@@ -4,6 +4,7 @@ use super::known_impulse::Impulse;
 use crate::foundation::arena::RigidSlot;
 #[cfg(feature = "serde")]
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::hash_state;
 #[cfg(feature = "serde")]
 use crate::rigid_body::RigidBodies;
 use crate::rigid_body::shape::Vector;
@@ -19,6 +20,8 @@ pub struct RigidTouch {
     /// Impulses of the point.
     pub impulse: Impulse,
 }
+
+hash_state! { struct RigidTouch { both, key, impulse } }
 
 /// Contact at a point in one substep.
 #[derive(Copy, Clone, Debug)]
@@ -45,6 +48,8 @@ pub struct RigidTouches {
     #[cfg_attr(feature = "serde", serde(skip))]
     pub passed: Vec<Passed>,
 }
+
+hash_state! { struct RigidTouches { list } skip { passed } }
 
 impl RigidTouch {
     fn order(&self) -> ([RigidSlot; 2], u32) {

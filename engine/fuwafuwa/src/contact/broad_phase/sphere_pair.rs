@@ -2,6 +2,7 @@
 
 use super::contact_sphere::{ContactSphere, SphereId};
 use super::known_impulse::Impulse;
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::IndexVec;
 use crate::foundation::threads::{self, CHUNK_SIZE};
 use crate::math::vector::scaled;
@@ -22,6 +23,8 @@ pub struct SpherePair {
     /// Whether the spheres have met face to face. If one is behind the other now, it was forced there.
     pub met_in_front: bool,
 }
+
+hash_state! { struct SpherePair { spheres, impulse, met_in_front } }
 
 /// Merges the found pairs with old ones that stay: those of unchanged spheres, and those that touched in this
 /// tick, which the events require. Known pairs keep their impulses.
@@ -103,6 +106,11 @@ impl SpherePair {
             impulse: Impulse::default(),
             met_in_front: false,
         }
+    }
+
+    /// Whether the pair differs from one that is found anew.
+    pub fn is_known(&self) -> bool {
+        self.impulse.is_known() || self.met_in_front
     }
 
     /// Returns both spheres.

@@ -18,6 +18,7 @@ use super::piece_neighbours::Neighbours;
 use super::sphere_pair::{SpherePair, merge};
 use super::swept_path::{Path, SLACK, Span, Start, SweptSphere, widened};
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::{Hash, HashState, hash_all};
 use crate::foundation::ids::IndexVec;
 use crate::foundation::threads::{self, CHUNK_SIZE};
 use crate::math::lanes::on_widest_lanes;
@@ -48,7 +49,8 @@ const LOOKS: usize = CHUNK_SIZE / 8;
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpherePairs {
-    /// Pairs, ascending.
+    /// Pairs, ascending. Which pairs without memory are listed depends on the last search, so they are no state.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "serialize_known"))]
     pub list: Vec<SpherePair>,
     #[cfg_attr(feature = "serde", serde(skip))]
     paths: IndexVec<SphereId, Path>,
@@ -98,6 +100,38 @@ pub struct SpherePairs {
     spare: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
     pace: f32,
+}
+
+impl HashState for SpherePairs {
+    fn hash_state(&self, hash: &mut Hash) {
+        let Self {
+            list,
+            paths: _,
+            starts: _,
+            bins: _,
+            binned_at: _,
+            binned: _,
+            frame: _,
+            short: _,
+            loose: _,
+            loose_at: _,
+            is_new_tick: _,
+            changed: _,
+            elapsed: _,
+            duration: _,
+            reach: _,
+            least_stray: _,
+            spare: _,
+            pace: _,
+        } = self;
+        hash_all(list.iter().filter(|pair| pair.is_known()), hash);
+    }
+}
+
+#[cfg(feature = "serde")]
+fn serialize_known<S: serde::Serializer>(list: &[SpherePair], to: S) -> Result<S::Ok, S::Error> {
+    let known = list.iter().filter(|pair| pair.is_known());
+    serde::Serialize::serialize(&known.collect::<Vec<_>>(), to)
 }
 
 impl SpherePairs {

@@ -4,6 +4,7 @@ use super::joint_anchor::{JointAnchor, Woken};
 use crate::error::Error;
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::{Dim, Point, voxel_around};
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
 use crate::math::vector::{as_row, dot, minus, plus, scaled, three};
 #[cfg(feature = "serde")]
@@ -24,6 +25,8 @@ pub enum AttachedAnchor {
     /// the body tears around it.
     Soft(SoftBodyHandle, Vec<(Point, Point)>),
 }
+
+hash_state! { enum AttachedAnchor { Position(at), RigidBody(rigid, at), Soft(body, corners) } }
 
 /// State and compliance of an anchor.
 #[derive(Copy, Clone, Debug)]

@@ -1,6 +1,7 @@
 //! Attachment points and kinds of joints.
 
 use crate::foundation::arena::{BodySlot, RigidBodyHandle, RigidSlot, SoftBodyHandle};
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::PieceId;
 use crate::rigid_body::shape::Vector;
 
@@ -29,6 +30,8 @@ pub enum JointAnchor {
     },
 }
 
+hash_state! { enum JointAnchor { Position(at), RigidBody { rigid, at }, Soft { body, at, radius } } }
+
 /// Kind of a joint.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -51,6 +54,8 @@ pub enum JointKind {
         length: f32,
     },
 }
+
+hash_state! { enum JointKind { Pin, Spring { stiffness, damping, length }, Rope { length } } }
 
 /// Sleepers to wake because the other anchor of their joint moves.
 #[derive(Debug, Default)]

@@ -3,6 +3,7 @@
 use super::material_point::Spot;
 use crate::foundation::arena::SoftBodyHandle;
 use crate::foundation::dim::Point;
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
 #[cfg(feature = "serde")]
 use crate::math::vector::is_finite;
@@ -36,6 +37,8 @@ pub struct Sample {
     pub slid: bool,
     pub cut: bool,
 }
+
+hash_state! { struct Sample { inside, passed, before, slid, cut } }
 
 impl Sample {
     /// Returns the rest position in a body at the last sweep.

@@ -1,6 +1,7 @@
 //! Rest positions of world-space points in a body.
 
 use crate::foundation::dim::{Dim, Point, voxel_around};
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
 use crate::math::vector::{cross, length, minus};
 use crate::rigid_body::shape::Vector;
@@ -22,6 +23,8 @@ pub struct Spot {
     /// Rest position [voxels].
     pub at: Vector,
 }
+
+hash_state! { struct Spot { voxel, at } }
 
 impl Spot {
     /// Finds a world-space point [m] in a body, starting from a voxel. Returns `None` if the point is not in

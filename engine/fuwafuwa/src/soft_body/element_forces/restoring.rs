@@ -1,10 +1,10 @@
 //! Snapshots of the blocks. Only the state of each element is saved; the blocks are rebuilt from the mesh,
 //! because the distribution over blocks does not change the result.
 
-use super::ElementBatches;
 use super::batch::VACANT;
 use super::plastic_kernel::{IDENTITY, PlasticInverse};
 use super::saved_states::SavedElementStates;
+use super::{ElementBatches, parts};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::ElementId;
 use crate::math::vector::{cross, dot};
@@ -114,14 +114,6 @@ fn is_sound<D: Dim>(dent: &PlasticInverse) -> bool {
         .flatten()
         .fold(0.0f32, |most, k| most.max(k.abs()));
     is_flat && most < 100.0 && (volume - 1.0).abs() < 0.1
-}
-
-/// Number of components of a rotation: cosine and sine, or a quaternion.
-const fn parts<D: Dim>() -> usize {
-    match D::N {
-        2 => 2,
-        _ => 4,
-    }
 }
 
 impl<D: Dim> Serialize for ElementBatches<D> {

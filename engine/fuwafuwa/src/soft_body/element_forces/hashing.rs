@@ -1,0 +1,63 @@
+//! State of the batches in the hash of a world: that of snapshots, in the same order.
+
+use super::batch::{Batch, VACANT};
+use super::plastic_kernel::IDENTITY;
+use super::{ElementBatches, parts};
+use crate::foundation::dim::Dim;
+use crate::foundation::hash::{Hash, HashState};
+
+impl<D: Dim> HashState for ElementBatches<D> {
+    fn hash_state(&self, hash: &mut Hash) {
+        // The fields without a name follow from the mesh, the materials and the order of the changes, and do not
+        // affect the result.
+        let Self {
+            law,
+            blocks,
+            assigned,
+            forces,
+            moduli: _,
+            flows: _,
+            voxel_size: _,
+            open: _,
+            empty: _,
+            stencils: _,
+            numbers: _,
+            pooled: _,
+            slots: _,
+            nodes: _,
+            scratch: _,
+            #[cfg(feature = "serde")]
+                saved: _,
+            dim: _,
+        } = self;
+        law.hash_state(hash);
+        for (id, &(index, lane)) in assigned.entries() {
+            if index == VACANT {
+                continue;
+            }
+            let Batch {
+                inverted,
+                rotation,
+                undone: _,
+                node_count,
+                home: _,
+                elements: _,
+                vacant: _,
+                half_size: _,
+                first: _,
+                stencil: _,
+                numbers: _,
+            } = &blocks[index as usize];
+            for part in &rotation[..parts::<D>()] {
+                part[lane as usize].hash_state(hash);
+            }
+            for node in 0..*node_count as usize {
+                let own = &forces[self.force_range(index, lane, node)];
+                own.iter().for_each(|force| force.hash_state(hash));
+            }
+            (inverted >> lane & 1 == 1).hash_state(hash);
+            let undone = self.plastic_inverse(id);
+            undone.filter(|undone| *undone != IDENTITY).hash_state(hash);
+        }
+    }
+}

@@ -1,0 +1,576 @@
+//! The hash of a world covers every number that a snapshot contains.
+//!
+//! A serialiser writes the world as snapshots do and notes where each number, flag, variant, option and list is.
+//! Each of them is then changed alone. The changed snapshot must be refused, or give a world with another hash.
+#![cfg(feature = "serde")]
+
+use fuwafuwa::inspect::Hash;
+use fuwafuwa::snapshot::{load, save};
+use fuwafuwa::{
+    Blade, Dim, Dim2, Dim3, Joint, JointAnchor, JointKind, Knife, Layers, Material, MotionType,
+    RigidBody, Rotation, Shape, SoftBody, VoxelGrid, World, WorldConfig,
+};
+use serde::de::value::Error;
+use serde::{Serialize, Serializer, ser};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Stored values that do not change the hash, by the end of their path, with the reason.
+const WITHOUT_EFFECT: [(&str, &str); 2] = [
+    (
+        "impulse.dragged.3",
+        "the fourth component is padding and cleared on loading",
+    ),
+    (
+        "impulse.dragged.2",
+        "in 2D the third component is cleared on loading",
+    ),
+];
+
+/// Names of the items of tuples and arrays.
+const INDICES: [&str; 9] = ["0", "1", "2", "3", "4", "5", "6", "7", "8"];
+
+/// Place of a stored value, and the bytes of another value.
+struct Site {
+    path: String,
+    place: Range<usize>,
+    other: Vec<u8>,
+}
+
+/// Writes postcard's format and notes the sites.
+#[derive(Default)]
+struct Sites {
+    bytes: Vec<u8>,
+    path: Vec<&'static str>,
+    all: Vec<Site>,
+}
+
+fn varint(mut number: u64) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    while number > 0x7f {
+        bytes.push(number as u8 | 0x80);
+        number >>= 7;
+    }
+    bytes.push(number as u8);
+    bytes
+}
+
+fn zigzag(number: i64) -> Vec<u8> {
+    varint((number << 1 ^ number >> 63) as u64)
+}
+
+impl Sites {
+    /// Writes a value and notes it with another one.
+    fn leaf(&mut self, own: &[u8], other: Vec<u8>) -> Result<(), Error> {
+        let first = self.bytes.len();
+        self.bytes.extend(own);
+        self.note(first, other);
+        Ok(())
+    }
+
+    /// Notes everything written since `first` with another value.
+    fn note(&mut self, first: usize, other: Vec<u8>) {
+        self.all.push(Site {
+            path: self.path.join("."),
+            place: first..self.bytes.len(),
+            other,
+        });
+    }
+
+    fn variant(&mut self, index: u32) {
+        let other = if index == 0 { 1 } else { index - 1 };
+        _ = self.leaf(&varint(index.into()), varint(other.into()));
+    }
+
+    /// Writes a field under its name.
+    fn field<T: Serialize + ?Sized>(&mut self, name: &'static str, value: &T) -> Result<(), Error> {
+        self.path.push(name);
+        value.serialize(&mut *self)?;
+        self.path.pop();
+        Ok(())
+    }
+}
+
+/// List that is being written. A list without its last item counts as another value of the list.
+struct List<'a> {
+    sites: &'a mut Sites,
+    /// Start of the length, of the items and of the last item.
+    first: usize,
+    items: usize,
+    last: usize,
+    length: u64,
+}
+
+impl List<'_> {
+    fn item<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Error> {
+        self.last = self.sites.bytes.len();
+        value.serialize(&mut *self.sites)
+    }
+
+    fn finish(self) {
+        if self.length > 0 {
+            let mut other = varint(self.length - 1);
+            other.extend(&self.sites.bytes[self.items..self.last]);
+            self.sites.note(self.first, other);
+        }
+    }
+}
+
+macro_rules! numbers {
+    ($($name:ident($number:ty) $own:ident => $bytes:expr, $other:expr;)*) => {
+        $(fn $name(self, $own: $number) -> Result<(), Error> {
+            let encode = |$own: $number| -> Vec<u8> { $bytes };
+            self.leaf(&encode($own), encode($other))
+        })*
+    };
+}
+
+impl<'a> Serializer for &'a mut Sites {
+    type Ok = ();
+    type Error = Error;
+    type SerializeSeq = List<'a>;
+    type SerializeTuple = Tuple<'a>;
+    type SerializeTupleStruct = Self;
+    type SerializeTupleVariant = Self;
+    type SerializeMap = List<'a>;
+    type SerializeStruct = Self;
+    type SerializeStructVariant = Self;
+
+    numbers! {
+        serialize_bool(bool) own => vec![own.into()], !own;
+        serialize_i8(i8) own => vec![own as u8], own.wrapping_add(1);
+        serialize_i16(i16) own => zigzag(own.into()), own.wrapping_add(1);
+        serialize_i32(i32) own => zigzag(own.into()), own.wrapping_add(1);
+        serialize_i64(i64) own => zigzag(own), own.wrapping_add(1);
+        serialize_u8(u8) own => vec![own], own.wrapping_add(1);
+        serialize_u16(u16) own => varint(own.into()), own.wrapping_add(1);
+        serialize_u32(u32) own => varint(own.into()), own.wrapping_add(1);
+        serialize_u64(u64) own => varint(own), own.wrapping_add(1);
+        serialize_f32(f32) own => own.to_le_bytes().to_vec(), next(own);
+        serialize_f64(f64) own => own.to_le_bytes().to_vec(), f64::from_bits(own.to_bits() + 1);
+    }
+
+    fn serialize_char(self, _: char) -> Result<(), Error> {
+        Err(ser::Error::custom("no character is stored"))
+    }
+
+    fn serialize_str(self, _: &str) -> Result<(), Error> {
+        Err(ser::Error::custom("no text is stored"))
+    }
+
+    fn serialize_bytes(self, _: &[u8]) -> Result<(), Error> {
+        Err(ser::Error::custom("no byte string is stored"))
+    }
+
+    fn serialize_none(self) -> Result<(), Error> {
+        self.bytes.push(0);
+        Ok(())
+    }
+
+    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<(), Error> {
+        let first = self.bytes.len();
+        self.bytes.push(1);
+        value.serialize(&mut *self)?;
+        self.note(first, vec![0]);
+        Ok(())
+    }
+
+    fn serialize_unit(self) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn serialize_unit_struct(self, _: &'static str) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn serialize_unit_variant(
+        self,
+        _: &'static str,
+        index: u32,
+        _: &'static str,
+    ) -> Result<(), Error> {
+        self.variant(index);
+        Ok(())
+    }
+
+    fn serialize_newtype_struct<T: Serialize + ?Sized>(
+        self,
+        _: &'static str,
+        value: &T,
+    ) -> Result<(), Error> {
+        value.serialize(self)
+    }
+
+    fn serialize_newtype_variant<T: Serialize + ?Sized>(
+        self,
+        _: &'static str,
+        index: u32,
+        name: &'static str,
+        value: &T,
+    ) -> Result<(), Error> {
+        self.variant(index);
+        self.field(name, value)
+    }
+
+    fn serialize_seq(self, length: Option<usize>) -> Result<List<'a>, Error> {
+        let length = length.ok_or_else(|| ser::Error::custom("a list has no length"))? as u64;
+        let first = self.bytes.len();
+        self.bytes.extend(varint(length));
+        let items = self.bytes.len();
+        Ok(List {
+            sites: self,
+            first,
+            items,
+            last: items,
+            length,
+        })
+    }
+
+    fn serialize_tuple(self, _: usize) -> Result<Tuple<'a>, Error> {
+        Ok(Tuple {
+            sites: self,
+            index: 0,
+        })
+    }
+
+    fn serialize_tuple_struct(self, _: &'static str, _: usize) -> Result<Self, Error> {
+        Ok(self)
+    }
+
+    fn serialize_tuple_variant(
+        self,
+        _: &'static str,
+        index: u32,
+        _: &'static str,
+        _: usize,
+    ) -> Result<Self, Error> {
+        self.variant(index);
+        Ok(self)
+    }
+
+    fn serialize_map(self, length: Option<usize>) -> Result<List<'a>, Error> {
+        self.serialize_seq(length)
+    }
+
+    fn serialize_struct(self, _: &'static str, _: usize) -> Result<Self, Error> {
+        Ok(self)
+    }
+
+    fn serialize_struct_variant(
+        self,
+        _: &'static str,
+        index: u32,
+        _: &'static str,
+        _: usize,
+    ) -> Result<Self, Error> {
+        self.variant(index);
+        Ok(self)
+    }
+
+    fn is_human_readable(&self) -> bool {
+        false
+    }
+}
+
+/// Next larger or smaller number; infinite becomes finite.
+fn next(number: f32) -> f32 {
+    match number.is_finite() {
+        true => f32::from_bits(number.to_bits() + 1),
+        false => 1.0,
+    }
+}
+
+impl ser::SerializeSeq for List<'_> {
+    type Ok = ();
+    type Error = Error;
+
+    fn serialize_element<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Error> {
+        self.item(value)
+    }
+
+    fn end(self) -> Result<(), Error> {
+        self.finish();
+        Ok(())
+    }
+}
+
+impl ser::SerializeMap for List<'_> {
+    type Ok = ();
+    type Error = Error;
+
+    fn serialize_key<T: Serialize + ?Sized>(&mut self, key: &T) -> Result<(), Error> {
+        self.item(key)
+    }
+
+    fn serialize_value<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Error> {
+        value.serialize(&mut *self.sites)
+    }
+
+    fn end(self) -> Result<(), Error> {
+        self.finish();
+        Ok(())
+    }
+}
+
+/// Tuple or array that is being written.
+struct Tuple<'a> {
+    sites: &'a mut Sites,
+    index: usize,
+}
+
+impl ser::SerializeTuple for Tuple<'_> {
+    type Ok = ();
+    type Error = Error;
+
+    fn serialize_element<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Error> {
+        let name = INDICES[self.index];
+        self.index += 1;
+        self.sites.field(name, value)
+    }
+
+    fn end(self) -> Result<(), Error> {
+        Ok(())
+    }
+}
+
+/// Implements tuples, whose fields have no names, and structs.
+macro_rules! fields {
+    ($($tuple:ident $element:ident),*; $($structure:ident),*) => {
+        $(impl ser::$tuple for &mut Sites {
+            type Ok = ();
+            type Error = Error;
+
+            fn $element<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Error> {
+                value.serialize(&mut **self)
+            }
+
+            fn end(self) -> Result<(), Error> {
+                Ok(())
+            }
+        })*
+        $(impl ser::$structure for &mut Sites {
+            type Ok = ();
+            type Error = Error;
+
+            fn serialize_field<T: Serialize + ?Sized>(
+                &mut self,
+                name: &'static str,
+                value: &T,
+            ) -> Result<(), Error> {
+                self.field(name, value)
+            }
+
+            fn end(self) -> Result<(), Error> {
+                Ok(())
+            }
+        })*
+    };
+}
+
+fields! {
+    SerializeTupleStruct serialize_field,
+    SerializeTupleVariant serialize_field;
+    SerializeStruct, SerializeStructVariant
+}
+
+/// Returns a snapshot of `state` with the header's version and a valid checksum.
+fn with_state(header: &[u8], state: &[u8]) -> Vec<u8> {
+    let mut changed = header[..9].to_vec();
+    changed.extend(Hash::of(state).to_le_bytes());
+    changed.extend(state);
+    changed
+}
+
+/// Whether a world stores a value with a path that ends in `end`, or a list of at least one item.
+fn stores<D: Dim>(world: &World<D>, end: &str) -> bool {
+    let mut sites = Sites::default();
+    world.serialize(&mut sites).unwrap();
+    sites.all.iter().any(|site| site.path.ends_with(end))
+}
+
+/// Changes each stored value of a world. Counts the changes by path.
+fn check_all_values<D: Dim>(world: &World<D>, counts: &mut BTreeMap<String, u32>) {
+    let mut sites = Sites::default();
+    world.serialize(&mut sites).unwrap();
+    let bytes = save(world);
+    let (header, state) = bytes.split_at(17);
+    assert!(
+        sites.bytes == state,
+        "the sites must be those of a snapshot"
+    );
+    let hash = world.hash_of_state();
+    assert_eq!(load::<D>(&bytes).unwrap().hash_of_state(), hash);
+    let mut missed = BTreeMap::<String, u32>::new();
+    for Site { path, place, other } in sites.all {
+        let (before, after) = (&state[..place.start], &state[place.end..]);
+        let changed = with_state(header, &[before, &other, after].concat());
+        if load::<D>(&changed).is_ok_and(|changed| changed.hash_of_state() == hash) {
+            *missed.entry(path.clone()).or_default() += 1;
+        }
+        *counts.entry(path).or_default() += 1;
+    }
+    let allowed = &WITHOUT_EFFECT[..if D::N == 2 { 2 } else { 1 }];
+    missed.retain(|path, _| !allowed.iter().any(|(end, _)| path.ends_with(end)));
+    assert!(missed.is_empty(), "not in the hash: {missed:#?}");
+}
+
+/// Soft and rigid bodies of all kinds with joints, a knife, a sensor, a tearing and plastic body, a body asleep, a
+/// fixed node, layers and free slots.
+fn world_of_everything<D: Dim>(n: usize) -> World<D> {
+    let mut world = World::<D>::new(WorldConfig::default()).unwrap();
+    let depth = if D::N == 3 { 0.2 } else { 0.0 };
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
+    let soft = |n: usize, at: [f32; 3], material: Material| {
+        let body = SoftBody::new(VoxelGrid::cube(n, 0.4).unwrap(), &[material]).unwrap();
+        body.translated(at)
+    };
+    let plastic = Material {
+        yield_strain: 0.02,
+        strength: 300.0,
+        toughness: 30.0,
+        ..Material::default()
+    };
+    let cube = world.add_soft_body(soft(n, [0.0, 0.02, 0.0], plastic));
+    let resting = world.add_soft_body(soft(1, [3.0, 0.0, 0.0], Material::default()));
+    let lying = world.add_soft_body(soft(1, [0.1, 0.45, 0.0], Material::default()));
+    let gone = world.add_soft_body(soft(1, [9.0, 0.0, 0.0], Material::default()));
+    let ghost = Layers {
+        memberships: 1,
+        filters: 3,
+    };
+    world.set_layers(resting, ghost).unwrap();
+    // A coupled body tears the cube.
+    let hand = RigidBody::coupled_ball([-0.2, 0.3, depth], 0.08);
+    let hand = world.add_rigid_body(hand).unwrap();
+    let mut holder = RigidBody::coupled_ball([0.5, 0.1, depth], 0.05);
+    holder = holder.with_motion_type(MotionType::Kinematic);
+    holder.is_sensor = true;
+    let holder = world.add_rigid_body(holder).unwrap();
+    let edge = [[0.0, 0.0, -0.3], [0.0, 0.0, 0.3]];
+    let knife = Knife::new(holder, edge, [-1.0, 0.0, 0.0]);
+    world.add_knife(knife).unwrap();
+    let gate = Shape::Capsule {
+        from: [0.0, 0.2, depth],
+        to: [0.4, 0.2, depth],
+        radius: 0.1,
+    };
+    let mut gate = RigidBody::fixed(gate, 0.5);
+    gate.is_sensor = true;
+    world.add_rigid_body(gate).unwrap();
+    let cuboid = |x: f32, y: f32| Shape::Box {
+        centre: [x, y, depth],
+        half: [0.1; 3],
+    };
+    let boxes = [(2.0, 0.1), (2.0, 0.31), (2.0, 0.8), (2.4, 0.8)].map(|(x, y)| {
+        let free = RigidBody::dynamic(cuboid(x, y), 0.5);
+        world
+            .add_rigid_body(free.rotated(Rotation::in_plane(0.02)))
+            .unwrap()
+    });
+    let on = |k: usize, at: [f32; 3]| JointAnchor::RigidBody {
+        rigid: boxes[k],
+        at,
+    };
+    let spring = JointKind::Spring {
+        stiffness: 50.0,
+        damping: 0.5,
+        length: 0.3,
+    };
+    let corner = JointAnchor::Soft {
+        body: resting,
+        at: [3.0, 0.4, 0.0],
+        radius: 0.1,
+    };
+    let joints = [
+        (
+            on(2, [2.2, 0.8, depth]),
+            on(3, [2.2, 0.8, depth]),
+            JointKind::Pin,
+        ),
+        (
+            on(2, [2.0, 0.8, depth]),
+            JointAnchor::Position([2.0, 1.2, depth]),
+            spring,
+        ),
+        (
+            on(3, [2.4, 0.8, depth]),
+            corner,
+            JointKind::Rope { length: 0.7 },
+        ),
+    ];
+    for (first, second, tie) in joints {
+        let joint = Joint::new([first, second], tie).with_breaking_force(1e3);
+        world.add_joint(joint).unwrap();
+    }
+    world.remove(gone).unwrap();
+    let body = world.soft_body_mut(lying).unwrap();
+    let (node, _) = body.mesh().nodes().next().unwrap();
+    body.fix_node(node);
+    for tick in 0..60 {
+        let at = [-0.2 + 0.03 * tick as f32, 0.3, depth];
+        world.set_target_position(hand, at).unwrap();
+        let at = [0.5 - 0.012 * tick as f32, 0.1, depth];
+        world.set_target_position(holder, at).unwrap();
+        if tick == 11 {
+            let blade = Blade::segment([0.3, -1.0], [0.3, 1.0]);
+            assert!(world.cut(cube, &blade).unwrap() > 0);
+        }
+        world.step();
+        // Only a crack starts a cooldown; a cut does not.
+        if tick > 11 && stores(&world, "state.cooldowns.points") {
+            return world;
+        }
+    }
+    panic!("no crack grows");
+}
+
+/// Parts of the state that the world must contain, so that the test covers them.
+const COVERED: [&str; 14] = [
+    "joints.slots.thing.anchors.1.Position",
+    "joints.slots.thing.tie.stiffness",
+    "knives.slots.thing.samples.passed",
+    "nearby.rigids.list.impulse.pressed",
+    "nearby.nodes.list.impulse.dragged",
+    "nearby.pairs.list.met_in_front",
+    "rigids.slots.thing.reactions.contact",
+    "bodies.slots.thing.state.damage",
+    "bodies.slots.thing.state.cooldowns.points",
+    "bodies.slots.thing.state.blocks.undone",
+    "bodies.slots.thing.topology.mesh.free_nodes",
+    "events.ContactForce.point",
+    "touching",
+    "inside",
+];
+
+fn check_everything<D: Dim>(n: usize) {
+    let mut world = world_of_everything::<D>(n);
+    let mut counts = BTreeMap::new();
+    check_all_values(&world, &mut counts);
+    let is_torn = |body: &SoftBody<D>| body.pieces().count() > 1;
+    assert!(world.soft_bodies().iter().any(is_torn));
+    // Asleep, after some time without the coupled body.
+    let hand = world.nth_target_follower(0).unwrap();
+    world.remove(hand).unwrap();
+    for _ in 0..300 {
+        world.step();
+    }
+    let mut bodies = world.soft_bodies().iter();
+    assert!(bodies.any(|body| body.pieces().list.iter().any(|piece| piece.asleep)));
+    assert!(world.rigid_bodies().iter().any(RigidBody::is_asleep));
+    check_all_values(&world, &mut counts);
+    for part in COVERED {
+        assert!(counts.keys().any(|path| path.starts_with(part)), "{part}");
+    }
+    println!("{} changes", counts.values().sum::<u32>());
+}
+
+#[test]
+fn every_stored_value_changes_the_hash_2d() {
+    check_everything::<Dim2>(5);
+}
+
+#[test]
+fn every_stored_value_changes_the_hash_3d() {
+    check_everything::<Dim3>(3);
+}
