@@ -21,7 +21,7 @@ use std::io::{Read, Write};
 use std::sync::Arc;
 
 /// Format version. It changes if older recordings would be misread or replay differently.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 /// Maximum size of a recording [bytes].
 pub const MOST_BYTES: usize = 1 << 26;
 /// Maximum size of the uncompressed contents [bytes]: the voxels of the finest organ and an hour of inputs.

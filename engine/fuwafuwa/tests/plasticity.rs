@@ -99,6 +99,15 @@ fn pressed_clay_stays_deformed_and_rubber_recovers() {
     check_dent::<Dim3>();
 }
 
+/// Positions and velocities of all nodes, for worlds that differ in other respects.
+fn node_states<D: Dim>(world: &World<D>) -> Vec<([f32; 3], [f32; 3], f32)> {
+    let states = |body: &SoftBody<D>| -> Vec<_> {
+        let nodes = body.mesh().nodes();
+        nodes.map(|(id, _)| body.node_state(id)).collect()
+    };
+    world.soft_bodies().iter().flat_map(states).collect()
+}
+
 /// A yield strain that is never reached gives the same bits as an infinite one.
 fn check_same_bits<D: Dim>() {
     let run = |material: Material| {
@@ -108,7 +117,7 @@ fn check_same_bits<D: Dim>() {
         let body = SoftBody::new(VoxelGrid::<D>::ball(10, 1.0).unwrap(), &[material]).unwrap();
         world.add_soft_body(body.translated([0.0, 0.2, 0.0]));
         (0..60).for_each(|_| _ = world.step());
-        world.hash()
+        node_states(&world)
     };
     let strong = |yield_strain| Material {
         strength: f32::INFINITY,

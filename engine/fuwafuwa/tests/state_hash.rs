@@ -398,13 +398,13 @@ fn check_all_values<D: Dim>(world: &World<D>, counts: &mut BTreeMap<String, u32>
         sites.bytes == state,
         "the sites must be those of a snapshot"
     );
-    let hash = world.hash_of_state();
-    assert_eq!(load::<D>(&bytes).unwrap().hash_of_state(), hash);
+    let hash = world.hash();
+    assert_eq!(load::<D>(&bytes).unwrap().hash(), hash);
     let mut missed = BTreeMap::<String, u32>::new();
     for Site { path, place, other } in sites.all {
         let (before, after) = (&state[..place.start], &state[place.end..]);
         let changed = with_state(header, &[before, &other, after].concat());
-        if load::<D>(&changed).is_ok_and(|changed| changed.hash_of_state() == hash) {
+        if load::<D>(&changed).is_ok_and(|changed| changed.hash() == hash) {
             *missed.entry(path.clone()).or_default() += 1;
         }
         *counts.entry(path).or_default() += 1;

@@ -6,8 +6,8 @@ use crate::scene::{BodyText, MAX_SECONDS, Scene, SceneError, shortened};
 use fuwafuwa::{Dim, World};
 use serde::{Deserialize, Serialize};
 
-/// Version of the format. It increases when an older recording would run differently.
-pub const VERSION: u32 = 1;
+/// Version of the format. It increases when an older recording would run differently or has other hashes.
+pub const VERSION: u32 = 2;
 /// Maximum size of a recording [bytes]: some hours of two hands.
 pub const MAX_BYTES: u64 = 1 << 26;
 /// Maximum number of ticks in a recording: the longest viewing time of a scene.
@@ -190,6 +190,18 @@ mod tests {
         assert_eq!(read.replay::<Dim2>(|_| {}).unwrap().differs_at, None);
         read.goals[30][0][0] += 0.01;
         assert!(read.replay::<Dim2>(|_| {}).unwrap().differs_at.is_some());
+    }
+
+    #[test]
+    fn read_refuses_older_format_by_its_number() {
+        let scene = Scene::open("drop", &["body.n=8".into()]).unwrap();
+        let recording = Recording::of::<Dim2>(&scene, 1, |_| {}).unwrap();
+        let text = recording.text().unwrap();
+        assert_eq!(Recording::read("mine", &text).unwrap(), recording);
+        let older = text.replacen("version = 2", "version = 1", 1);
+        let error = Recording::read("mine", &older).unwrap_err().to_string();
+        let expected = "mine: the recording has format 1, this library reads format 2";
+        assert_eq!(error, expected);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::str::Utf8Error;
 use std::sync::Arc;
 
 /// Version of the format and the rules. It changes when an older round would run differently.
-pub const VERSION: u32 = 6;
+pub const VERSION: u32 = 7;
 
 /// Maximum size of a replay; longer ones are not read [bytes].
 pub const MAX_BYTES: usize = 1 << 25;

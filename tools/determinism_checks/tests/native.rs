@@ -3,10 +3,12 @@
 use determinism_checks::golden::SCENES;
 
 fn check_all(how: &str) {
-    for scene in &SCENES {
-        let found = (scene.run)();
-        assert_eq!(found, scene.golden, "{}, {how}: {found:#018x}", scene.name);
-    }
+    let found = SCENES.iter().map(|scene| (scene, (scene.run)()));
+    let wrong = found.filter(|(scene, found)| *found != scene.golden);
+    let wrong: Vec<String> = wrong
+        .map(|(scene, found)| format!("{}: {found:#018x}", scene.name))
+        .collect();
+    assert!(wrong.is_empty(), "{how}: {wrong:#?}");
 }
 
 #[test]

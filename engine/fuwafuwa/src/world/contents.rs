@@ -183,45 +183,11 @@ impl<D: Dim> World<D> {
         self.ticks
     }
 
-    /// Returns a hash of the motion. Except for hash collisions, two worlds have the same hash only if these are
-    /// bit-identical: tick counters, piece numbers, positions and velocities of all nodes, positions and velocities
-    /// of rigid bodies that are not fixed, and rotations and angular velocities of dynamic ones. Internal state, such
-    /// as damage, sleep timers and impulses of joints, is not part of the hash.
+    /// Returns a hash of the whole state: of everything that a snapshot contains, and of nothing else. Except for
+    /// hash collisions, two worlds have the same hash only if they are bit-identical, and then they have the same
+    /// future.
     #[inline(never)]
     pub fn hash(&self) -> u64 {
-        let mut hash = Hash::NONE;
-        hash.add(self.ticks);
-        for body in self.bodies.iter() {
-            for (id, _) in body.topology.mesh.nodes() {
-                let (at, speed) = (body.state.position[id], body.state.velocity[id]);
-                hash.add(u64::from(body.topology.pieces.of_node(id).0));
-                for value in at.iter().chain(&speed) {
-                    hash.add(u64::from(value.to_bits()));
-                }
-            }
-        }
-        for rigid in self
-            .rigids
-            .iter()
-            .filter(|rigid| rigid.motion_type != MotionType::Fixed)
-        {
-            for value in rigid.position.iter().chain(&rigid.velocity) {
-                hash.add(u64::from(value.to_bits()));
-            }
-            if rigid.is_dynamic() {
-                let turned = rigid.rotation.quaternion();
-                for value in turned.iter().chain(&rigid.angular_velocity) {
-                    hash.add(u64::from(value.to_bits()));
-                }
-            }
-        }
-        hash.number()
-    }
-
-    /// Returns a hash of the whole state: of everything that a snapshot contains.
-    #[doc(hidden)]
-    #[inline(never)]
-    pub fn hash_of_state(&self) -> u64 {
         let mut hash = Hash::NONE;
         self.hash_state(&mut hash);
         hash.number()

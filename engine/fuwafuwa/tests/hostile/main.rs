@@ -228,6 +228,15 @@ fn plane_world_ignores_third_coordinates() {
     assert!((share - 1.0).abs() < 1e-5, "{share}");
 }
 
+/// Positions and velocities of all nodes, for worlds that differ in other respects.
+fn node_states<D: Dim>(world: &World<D>) -> Vec<([f32; 3], [f32; 3], f32)> {
+    let states = |body: &SoftBody<D>| -> Vec<_> {
+        let nodes = body.mesh().nodes();
+        nodes.map(|(id, _)| body.node_state(id)).collect()
+    };
+    world.soft_bodies().iter().flat_map(states).collect()
+}
+
 #[test]
 fn unused_material_has_no_effect() {
     let stiff = Material {
@@ -238,7 +247,7 @@ fn unused_material_has_no_effect() {
         friction: 2.0,
         ..Material::default()
     };
-    let hash_with = |materials: &[Material]| {
+    let states_with = |materials: &[Material]| {
         let mut world = world::<Dim2>();
         let id = world
             .add_soft_body(SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap());
@@ -253,10 +262,10 @@ fn unused_material_has_no_effect() {
             released += world.step().nodes_split;
         }
         assert!(released > 10, "the body must tear");
-        world.hash()
+        node_states(&world)
     };
     let usual = Material::default();
-    assert_eq!(hash_with(&[usual, stiff]), hash_with(&[usual]));
+    assert_eq!(states_with(&[usual, stiff]), states_with(&[usual]));
 }
 
 /// An intentional cut is reported like a tear, with its position, but releases no energy.
