@@ -6,7 +6,9 @@ use bevy_ecs::bundle::Bundle;
 use bevy_ecs::entity::Entity;
 use bevy_fuwafuwa::Dimension;
 use bevy_fuwafuwa::component::RigidBodyId;
-use bevy_fuwafuwa::fuwafuwa::{RigidBody as EngineBody, Rotation, SoftBody as Body, World, WorldConfig};
+use bevy_fuwafuwa::fuwafuwa::{
+    RigidBody as EngineBody, Rotation, SoftBody as Body, World, WorldConfig,
+};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
