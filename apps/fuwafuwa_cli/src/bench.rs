@@ -123,25 +123,20 @@ fn measures(arguments: &Arguments) -> Result<Vec<Measure>> {
 }
 
 fn ball<D: Dim>(n: usize) -> Result<Vec<Measure>> {
-    Ok(vec![element_time::<D>(n, 0)?, pushed_ball::<D>(n)?])
+    Ok(vec![element_time::<D>(n)?, pushed_ball::<D>(n)?])
 }
 
 fn usual(progress: &Progress) -> Result<Vec<Measure>> {
-    progress.expect(20);
+    progress.expect(16);
     let mut measures = Vec::new();
     let mut add = |measured: Result<Vec<Measure>>| -> Result<()> {
         measures.extend(measured?);
         progress.step();
         Ok(())
     };
-    add(one(element_time::<Dim2>(128, 0)))?;
-    add(one(element_time::<Dim2>(128, 200)))?;
-    for cracks in [0, 100, 600] {
-        add(one(element_time::<Dim3>(32, cracks)))?;
-    }
-    for cracks in [0, 300] {
-        add(one(element_time::<Dim3>(64, cracks)))?;
-    }
+    add(one(element_time::<Dim2>(128)))?;
+    add(one(element_time::<Dim3>(32)))?;
+    add(one(element_time::<Dim3>(64)))?;
     for n in [64, 128, 256, 512] {
         add(one(release_time::<Dim2>(n)))?;
     }
@@ -158,16 +153,12 @@ fn one(measure: Result<Measure>) -> Result<Vec<Measure>> {
     Ok(vec![measure?])
 }
 
-/// Measures a freely swinging body with a number of cracks: element pass and node pass together.
-fn element_time<D: Dim>(n: usize, cracks: usize) -> Result<Measure> {
-    let mut body = torn::<D>(n, cracks)?;
+/// Measures a freely swinging body: element pass and node pass together.
+fn element_time<D: Dim>(n: usize) -> Result<Measure> {
+    let mut body = swinging::<D>(n, Grading::Graded)?;
     let elements = body.mesh().element_count() as f64;
     let times = timed(400, || body.advance(1.0 / 7680.0, [0.0; 3]));
-    let torn = match cracks {
-        0 => String::new(),
-        _ => format!(", {cracks} cracks"),
-    };
-    let what = format!("{}D ball n = {n}{torn}, time per element and substep", D::N);
+    let what = format!("{}D ball n = {n}, time per element and substep", D::N);
     Ok(measure(what, "ns", times, 1e9 / elements))
 }
 
@@ -338,40 +329,6 @@ fn swinging<D: Dim>(n: usize, grading: Grading) -> Result<SoftBody<D>> {
     for id in nodes {
         let ([x, y, z], ..) = body.node_state(id);
         body.set_node_state(id, [1.05 * x, y, z], [0.0; 3]);
-    }
-    Ok(body)
-}
-
-/// Returns a swinging ball with `cracks` cracks, each normal to an axis, a few voxels wide and opened point by point.
-fn torn<D: Dim>(n: usize, cracks: usize) -> Result<SoftBody<D>> {
-    let mut body = swinging::<D>(n, Grading::Graded)?;
-    let mut seed = 1u64;
-    let mut random = |end: usize| {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        ((seed >> 33) % end as u64) as i32
-    };
-    for _ in 0..cracks {
-        let axis = random(D::N) as usize;
-        let middle = [0; 3].map(|_: i32| random(n + 1));
-        let radius = 2 + random(n / 6);
-        // Octants on the lower side of the crack.
-        let side = (0..D::CORNERS).filter(|octant| octant >> axis & 1 == 0);
-        let side: u8 = side.map(|octant| 1 << octant).sum();
-        let reach = |other: usize| {
-            if other < D::N && other != axis {
-                radius
-            } else {
-                0
-            }
-        };
-        for dx in -reach(0)..=reach(0) {
-            for dy in -reach(1)..=reach(1) {
-                let line = -reach(2)..=reach(2);
-                let points = line.map(|dz| [middle[0] + dx, middle[1] + dy, middle[2] + dz]);
-                let points = points.map(|[x, y, z]| ([x, y, if D::N == 2 { 0 } else { z }], side));
-                body.release(&points.collect::<Vec<_>>())?;
-            }
-        }
     }
     Ok(body)
 }

@@ -7,7 +7,7 @@
 use cpu_time::ThreadTime;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim3, Event, Knife, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid, World,
+    Dim3, Event, Knife, Material, MotionType, RigidBody, Shape, SoftBody, Vector, VoxelGrid, World,
     WorldConfig,
 };
 use std::error::Error;
@@ -56,12 +56,12 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn cut(voxels: usize, most_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn Error>> {
     let settings = WorldConfig {
         // As in a bath, where buoyancy carries most of the organ's weight.
-        gravity: [0.0, -1.0, 0.0],
+        gravity: Vector::NEG_Y,
         most_substeps,
         ..WorldConfig::default()
     };
     let mut world = World::<Dim3>::new(settings)?;
-    let table = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let table = Shape::half_space(Vector::Y, Vector::ZERO);
     world.add_rigid_body(RigidBody::fixed(table, 0.8))?;
     // 0.16 m wide, 0.1 m high.
     let size = 0.16 / voxels as f32;
@@ -73,17 +73,17 @@ fn cut(voxels: usize, most_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn 
     })?;
     let solid = grid.solid_count();
     let organ = world.add_soft_body(SoftBody::new(grid, &[organ()])?);
-    let mut holder =
-        RigidBody::coupled_ball([0.081, 0.14, 0.08], 0.01).with_motion_type(MotionType::Kinematic);
+    let mut holder = RigidBody::coupled_ball(Vector::new(0.081, 0.14, 0.08), 0.01)
+        .with_motion_type(MotionType::Kinematic);
     holder.is_sensor = true;
     let holder = world.add_rigid_body(holder)?;
     let edge = [[0.0, 0.0, -0.08], [0.0, 0.0, 0.08]];
-    let knife = world.add_knife(Knife::new(holder, edge, [0.0, -1.0, 0.0]))?;
+    let knife = world.add_knife(Knife::new(holder, edge.map(Vector::from), Vector::NEG_Y))?;
     let (mut times, mut sums, mut most) = (Vec::new(), [0.0; 2], 0.0f32);
     for tick in 0..180 {
         // The knife waits for half a second and then moves down for a bit over two seconds.
         let deep = 0.001 * (tick as f32 - 30.0).clamp(0.0, 135.0);
-        world.set_target_position(holder, [0.081, 0.14 - deep, 0.08])?;
+        world.set_target_position(holder, Vector::new(0.081, 0.14 - deep, 0.08))?;
         let began = ThreadTime::now();
         world.step();
         times.push(1000.0 * began.elapsed().as_secs_f64());

@@ -3,17 +3,18 @@
 //! `cargo run --release -p fuwafuwa --example tear`
 
 use fuwafuwa::{
-    Dim2, Event, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
+    Dim2, Event, Material, MotionType, RigidBody, Shape, SoftBody, Vector, VoxelGrid, World,
+    WorldConfig,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut world = World::<Dim2>::new(WorldConfig {
-        gravity: [0.0; 3],
+        gravity: Vector::ZERO,
         drag: 1.0,
         ..WorldConfig::default()
     })?;
     world.add_rigid_body(RigidBody::fixed(
-        Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]),
+        Shape::half_space(Vector::NEG_X, Vector::new(1.1, 0.0, 0.0)),
         0.2,
     ))?;
     let ball = world.add_soft_body(SoftBody::new(
@@ -27,10 +28,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         damping: 0.9,
         limit: f32::INFINITY,
     };
-    let hand = world
-        .add_rigid_body(RigidBody::coupled_ball([-0.2, 0.5, 0.0], 0.1).with_motion_type(strong))?;
+    let hand = world.add_rigid_body(
+        RigidBody::coupled_ball(Vector::new(-0.2, 0.5, 0.0), 0.1).with_motion_type(strong),
+    )?;
     for tick in 0..120u8 {
-        world.set_target_position(hand, [-0.2 + 0.012 * f32::from(tick), 0.5, 0.0])?;
+        world.set_target_position(hand, Vector::new(-0.2 + 0.012 * f32::from(tick), 0.5, 0.0))?;
         let report = world.step();
         let energy: f32 = world
             .events()

@@ -2,4 +2,5 @@
 
 pub mod lanes;
 pub mod rotation;
+pub mod row;
 pub mod vector;

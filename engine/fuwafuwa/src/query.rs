@@ -6,7 +6,6 @@ mod intersection;
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, PieceId};
-use crate::math::vector::{dot, is_finite, length, minus, plus, scaled};
 use crate::rigid_body::RigidBody;
 use crate::rigid_body::shape::{Bounds, Shape, Vector, flat};
 use crate::soft_body::SoftBody;
@@ -126,9 +125,9 @@ impl<'a, D: Dim> Queries<'a, D> {
         counts: Counts<'_>,
     ) -> Option<QueryHit> {
         let (from, direction) = (flat::<D>(from), flat::<D>(direction));
-        let long = direction.map(f64::from);
-        let direction = scaled(long, 1.0 / dot(long, long).sqrt()).map(|k| k as f32);
-        if !is_finite(direction) || !is_finite(from) {
+        let long = direction.as_dvec3();
+        let direction = (long * (1.0 / long.length())).as_vec3();
+        if !direction.is_finite() || !from.is_finite() {
             return None;
         }
         let mut best = Best::within(most)?;
@@ -157,7 +156,7 @@ impl<'a, D: Dim> Queries<'a, D> {
     #[inline(never)]
     pub fn nearest(&self, at: Vector, most: f32, counts: Counts<'_>) -> Option<QueryHit> {
         let at = flat::<D>(at);
-        if !is_finite(at) {
+        if !at.is_finite() {
             return None;
         }
         let mut best = Best::within(most)?;
@@ -172,7 +171,7 @@ impl<'a, D: Dim> Queries<'a, D> {
             |index| {
                 let (body, facet) = &self.facets[index];
                 let nearest = nearest_on::<D>(facet, at);
-                let met = (length(minus(nearest, at)), nearest, facet.normal);
+                let met = ((nearest - at).length(), nearest, facet.normal);
                 best.consider(Some(met), counts, || self.thing(*body, facet))
             },
         );
@@ -184,7 +183,7 @@ impl<'a, D: Dim> Queries<'a, D> {
     #[inline(never)]
     pub fn at(&self, at: Vector) -> Vec<Thing> {
         let at = flat::<D>(at);
-        if !is_finite(at) {
+        if !at.is_finite() {
             return Vec::new();
         }
         let rigids = self.rigids();
@@ -224,8 +223,8 @@ impl<'a, D: Dim> Queries<'a, D> {
         self.surface.search(
             f32::INFINITY,
             |&[low, high]| {
-                let half = scaled(minus(high, low), 0.5);
-                let distance = shape.distance(plus(low, half)).0 - length(half);
+                let half = (high - low) * 0.5;
+                let distance = shape.distance(low + half).0 - half.length();
                 if distance <= 0.0 { 0.0 } else { f32::INFINITY }
             },
             |place| {
@@ -238,7 +237,7 @@ impl<'a, D: Dim> Queries<'a, D> {
         );
         // A shape that lies completely inside a piece is near no face of it.
         let [low, high] = shape.bounds();
-        things.extend(self.at(scaled(plus(low, high), 0.5)));
+        things.extend(self.at((low + high) * 0.5));
         let mut things: Vec<Thing> = things.into_iter().collect();
         things.dedup_by_key(|thing| thing.owner());
         things
@@ -337,7 +336,7 @@ impl Best {
 }
 
 fn along(from: Vector, direction: Vector, far: f32) -> Vector {
-    plus(from, scaled(direction, far))
+    from + direction * far
 }
 
 /// Returns the corners of a bare face.
@@ -368,7 +367,7 @@ fn nearest_on<D: Dim>(facet: &Facet, at: Vector) -> Vector {
         return nearest_on_segment(at, [a, b]);
     }
     let [one, other] = triangles(facet.corners).map(|three| nearest_on_triangle(at, three));
-    let squared = |place: Vector| dot(minus(place, at), minus(place, at));
+    let squared = |place: Vector| (place - at).dot(place - at);
     if squared(other) < squared(one) {
         other
     } else {
@@ -389,7 +388,7 @@ fn is_near<D: Dim>(facet: &Facet, shape: &Shape) -> bool {
     }
     triangles(facet.corners).into_iter().any(|[a, b, c]| {
         let across = |share: f32| {
-            let end = |to: Vector| plus(a, scaled(minus(to, a), share));
+            let end = |to: Vector| a + (to - a) * share;
             gap(end(b), end(c))
         };
         let (mut low, mut high) = (0.0f32, 1.0f32);
@@ -421,7 +420,7 @@ fn overlap(a: &Shape, b: &Shape) -> bool {
                 normal: other,
                 offset: beyond,
             },
-        ) => dot(normal, other) > -1.0 + 1e-6 || offset + beyond >= 0.0,
+        ) => normal.dot(other) > -1.0 + 1e-6 || offset + beyond >= 0.0,
         _ => a.gap(b).0 <= 0.0,
     }
 }

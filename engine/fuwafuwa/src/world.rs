@@ -19,7 +19,6 @@ use crate::foundation::dim::Dim;
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::fracture::crack_growth::{Failure, failures};
 use crate::fracture::knife::{Knife, Knives};
-use crate::math::vector::{is_finite, plus, three};
 use crate::rigid_body::{BadRigid, RigidBodies};
 use crate::soft_body::damping::{PieceDamping, PieceMotion, motions, slow_down};
 use crate::soft_body::{SoftBodies, SoftBody};
@@ -237,7 +236,7 @@ impl<D: Dim> World<D> {
             }
             let released = |failure: &Failure| Event::NodeSplit {
                 body: id,
-                at: three(body.state.position[failure.node]),
+                at: body.state.position[failure.node].xyz(),
                 energy: failure.energy,
             };
             self.events.extend(failures.iter().map(released));
@@ -284,8 +283,8 @@ impl<D: Dim> World<D> {
             rigid.pull(duration);
             if rigid.is_dynamic() && rigid.moves() {
                 let field = hooks.field.map(|field| field(rigid.position()));
-                let field = field.filter(|pull| is_finite(*pull));
-                let pull = field.map_or(gravity, |field| plus(gravity, field));
+                let field = field.filter(|pull| pull.is_finite());
+                let pull = field.map_or(gravity, |field| gravity + field);
                 rigid.fall::<D>(pull, drag, duration);
             }
         }

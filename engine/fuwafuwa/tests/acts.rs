@@ -2,20 +2,18 @@
 
 use fuwafuwa::{
     Bookmark, Dim, Dim2, Dim3, Event, Hooks, Material, MotionType, NodeId, Refused, RigidBody,
-    Rotation, Shape, SoftBody, SoftBodyHandle, Substep, VoxelGrid, World, WorldConfig,
+    Rotation, Shape, SoftBody, SoftBodyHandle, Substep, Vector, VoxelGrid, World, WorldConfig,
     field_around,
 };
 use std::f32::consts::{FRAC_PI_2, PI};
 
-type Vector = [f32; 3];
-
 const WEIGHTLESS: WorldConfig = WorldConfig {
-    gravity: [0.0; 3],
+    gravity: Vector::ZERO,
     drag: 0.0,
     most_substeps: 64,
     tick: fuwafuwa::TICK,
 };
-const SOMEWHERE: Vector = [3.0, -2.0, 0.0];
+const SOMEWHERE: Vector = Vector::new(3.0, -2.0, 0.0);
 
 fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     SoftBody::new(VoxelGrid::ball(n, 1.0).unwrap(), &[Material::default()]).unwrap()
@@ -47,7 +45,7 @@ fn apart<D: Dim>(a: &SoftBody<D>, b: &SoftBody<D>) -> f32 {
 }
 
 fn floor() -> RigidBody {
-    RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.3)
+    RigidBody::fixed(Shape::half_space(Vector::Y, Vector::ZERO), 0.3)
 }
 
 fn check_turned<D: Dim>(rotation: Rotation) {
@@ -55,7 +53,7 @@ fn check_turned<D: Dim>(rotation: Rotation) {
     let centre = body.centre_of_mass();
     let turned = body.clone().rotated(rotation, centre);
     assert!((turned.total_mass() - body.total_mass()).abs() < 1e-9);
-    let (mut world, id) = with(WEIGHTLESS, turned.clone().translated(SOMEWHERE));
+    let (mut world, id) = with(WEIGHTLESS, turned.clone().translated(SOMEWHERE.into()));
     for _ in 0..120 {
         let report = world.step();
         assert_eq!(
@@ -70,7 +68,7 @@ fn check_turned<D: Dim>(rotation: Rotation) {
         "{rotation:?}: {} J",
         after.kinetic_energy()
     );
-    let gap = apart(after, &turned.translated(SOMEWHERE));
+    let gap = apart(after, &turned.translated(SOMEWHERE.into()));
     assert!(gap < 1e-4, "{rotation:?}: {gap} m");
 }
 
@@ -79,7 +77,7 @@ fn rotated_body_stays_at_rest() {
     for angle in [0.1, 1.0, FRAC_PI_2, 2.5, PI, -FRAC_PI_2] {
         check_turned::<Dim2>(Rotation::in_plane(angle));
         for axis in [[1.0, 0.0, 0.0], [0.0, 0.0, -2.0], [1.0, -1.0, 0.5]] {
-            check_turned::<Dim3>(Rotation::about(axis, angle));
+            check_turned::<Dim3>(Rotation::about(axis.into(), angle));
         }
     }
 }
@@ -88,13 +86,13 @@ fn rotated_body_stays_at_rest() {
 fn check_turned_in_motion<D: Dim>() {
     let rotation = Rotation::in_plane(PI);
     let (mut world, id) = with(WEIGHTLESS, ball::<D>(16));
-    let [_, y, z] = world.soft_bodies()[id].centre_of_mass();
+    let [_, y, z] = world.soft_bodies()[id].centre_of_mass().to_array();
     world
-        .apply_impulse(id, [0.0, y, z], 0.3, [40.0, 0.0, 0.0])
+        .apply_impulse(id, Vector::new(0.0, y, z), 0.3, Vector::new(40.0, 0.0, 0.0))
         .unwrap();
     (0..3).for_each(|_| _ = world.step());
     let mut turned = world.clone();
-    turned.rotate_body(id, rotation, [0.0; 3]).unwrap();
+    turned.rotate_body(id, rotation, Vector::ZERO).unwrap();
     for _ in 0..20 {
         world.step();
         turned.step();
@@ -140,10 +138,10 @@ fn check_moved<D: Dim>() {
     let (mut world, id) = with(WEIGHTLESS, ball::<D>(8));
     let before = world.soft_bodies()[id].clone();
     let mut bookmark = world.soft_bodies()[id].bookmark();
-    world.translate_body(id, SOMEWHERE).unwrap();
+    world.translate_body(id, SOMEWHERE.into()).unwrap();
     world.step();
     let body = &world.soft_bodies()[id];
-    assert!(apart(body, &before.translated(SOMEWHERE)) < 1e-5);
+    assert!(apart(body, &before.translated(SOMEWHERE.into())) < 1e-5);
     assert_eq!(body.changes_since(&mut bookmark), Some(Default::default()));
     assert_eq!(body.changes_since(&mut Bookmark::default()), None);
 }
@@ -164,7 +162,7 @@ fn check_pulled_away<D: Dim>() {
     let above = world.add_soft_body(
         SoftBody::new(VoxelGrid::cube(8, 1.0).unwrap(), &[Material::default()])
             .unwrap()
-            .translated([0.0, 1.001, 0.0]),
+            .translated(Vector::new(0.0, 1.001, 0.0)),
     );
     let sleeps = |world: &World<D>| {
         let is_still = |id: SoftBodyHandle| {
@@ -178,7 +176,9 @@ fn check_pulled_away<D: Dim>() {
     }
     (0..10).for_each(|_| _ = world.step());
     assert_eq!(sleeps(&world), [true; 2]);
-    world.translate_body(below, [5.0, 0.0, 0.0]).unwrap();
+    world
+        .translate_body(below, Vector::new(5.0, 0.0, 0.0))
+        .unwrap();
     assert_eq!(sleeps(&world), [false; 2]);
     (0..120).for_each(|_| _ = world.step());
     let height = world.soft_bodies()[above].centre_of_mass()[1];
@@ -197,7 +197,7 @@ fn check_pushed<D: Dim>() {
     for radius in [0.0, 0.1, 10.0] {
         let before = world.soft_bodies()[id].momentum();
         world
-            .apply_impulse(id, [0.5, 1.0, 0.0], radius, impulse)
+            .apply_impulse(id, Vector::new(0.5, 1.0, 0.0), radius, impulse.into())
             .unwrap();
         let gained = world.soft_bodies()[id].momentum().less(before);
         assert!((0..2).all(|k| (gained.linear[k] - f64::from(impulse[k])).abs() < 1e-3));
@@ -206,12 +206,12 @@ fn check_pushed<D: Dim>() {
     let mut gained = |angular| {
         let before = world.soft_bodies()[id].momentum();
         let linear = [0.0, 2.0, 0.0];
-        world.add_velocity(id, linear, angular).unwrap();
+        world.add_velocity(id, linear.into(), angular).unwrap();
         world.soft_bodies()[id].momentum().less(before)
     };
-    let straight = gained([0.0; 3]);
+    let straight = gained(Vector::ZERO);
     assert!((straight.linear[1] / mass - 2.0).abs() < 1e-3);
-    let turning = gained([0.0, 0.0, 3.0]);
+    let turning = gained(Vector::new(0.0, 0.0, 3.0));
     assert!((turning.linear[1] / mass - 2.0).abs() < 1e-3);
     // Moment of inertia about the centre: m r²/2 for a disc, 2/5 m r² for a ball.
     let share = if D::N == 2 { 0.5 } else { 0.4 };
@@ -229,7 +229,7 @@ fn gravity_change_resets_sleep_timer() {
         |world, _| {
             let gravity = [0.0, -1.0, 0.0];
             let settings = WorldConfig {
-                gravity,
+                gravity: gravity.into(),
                 ..WEIGHTLESS
             };
             world.set_config(settings).unwrap();
@@ -241,7 +241,7 @@ fn gravity_change_resets_sleep_timer() {
         let gravity = [0.0, if index == 0 { 0.0 } else { 10.0 * gravity[1] }, 0.0];
         let (mut world, body) = with(
             WorldConfig {
-                gravity,
+                gravity: gravity.into(),
                 ..WEIGHTLESS
             },
             ball(8),
@@ -270,7 +270,9 @@ fn check_pull<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let scales = [1.0, 0.5, 0.0, -2.0];
     let bodies: Vec<SoftBodyHandle> = (0..4)
-        .map(|k| world.add_soft_body(ball::<D>(8).translated([3.0 * k as f32, 0.0, 0.0])))
+        .map(|k| {
+            world.add_soft_body(ball::<D>(8).translated(Vector::new(3.0 * k as f32, 0.0, 0.0)))
+        })
         .collect();
     for (&body, scale) in bodies.iter().zip(scales) {
         world.set_gravity_scale(body, scale).unwrap();
@@ -299,7 +301,7 @@ fn check_sleep<D: Dim>() {
     (0..60).for_each(|_| _ = world.step());
     assert_eq!(apart(&world.soft_bodies()[sleeper], &before), 0.0);
     // A body that falls on the sleeping one wakes it.
-    world.add_soft_body(ball::<D>(8).translated([0.0, 1.5, 0.0]));
+    world.add_soft_body(ball::<D>(8).translated(Vector::new(0.0, 1.5, 0.0)));
     let woke = |world: &World<D>| {
         let events = world.events().iter();
         { events }.any(|event| matches!(event, Event::WokeUp { body, .. } if *body == sleeper))
@@ -325,7 +327,7 @@ fn put_to_sleep_lasts_until_impact_or_wake_up() {
 fn set_settings_applies_to_running_world() {
     let (mut world, id) = with(WorldConfig::default(), ball::<Dim2>(8));
     let upwards = WorldConfig {
-        gravity: [0.0, 9.81, 0.0],
+        gravity: Vector::new(0.0, 9.81, 0.0),
         ..WorldConfig::default()
     };
     world.set_config(upwards).unwrap();
@@ -346,7 +348,7 @@ fn set_settings_applies_to_running_world() {
     let hard = world.add_soft_body(
         SoftBody::new(grid, &[hard])
             .unwrap()
-            .translated([5.0, 0.0, 0.0]),
+            .translated(Vector::new(5.0, 0.0, 0.0)),
     );
     let soft = world.soft_bodies()[hard].stiffness_scale();
     world.set_config(few).unwrap();
@@ -362,9 +364,10 @@ fn set_settings_applies_to_running_world() {
 
 fn check_field<D: Dim>() {
     let mut world = World::<D>::new(WEIGHTLESS).unwrap();
-    let sides = [-3.0, 3.0].map(|x| world.add_soft_body(ball::<D>(8).translated([x, 0.0, 0.0])));
-    let planet = field_around([0.5, 0.5, 0.0], 5.0, 1.0);
-    let nowhere = |_| [f32::NAN; 3];
+    let sides =
+        [-3.0, 3.0].map(|x| world.add_soft_body(ball::<D>(8).translated(Vector::new(x, 0.0, 0.0))));
+    let planet = field_around(Vector::new(0.5, 0.5, 0.0), 5.0, 1.0);
+    let nowhere = |_| Vector::NAN;
     let fields: [&dyn Fn(Vector) -> Vector; 2] = [&planet, &nowhere];
     for field in fields {
         for _ in 0..6 {
@@ -394,14 +397,16 @@ fn field_accelerates_towards_centre() {
 fn check_torque<D: Dim>() {
     let (mut world, _) = with(WEIGHTLESS, ball::<D>(16));
     let bar = Shape::Capsule {
-        from: [-1.0, 0.0, 0.0],
-        to: [3.0, 0.0, 0.0],
+        from: Vector::NEG_X,
+        to: Vector::new(3.0, 0.0, 0.0),
         radius: 0.1,
     };
     let depth = if D::N == 2 { 0.0 } else { 0.5 };
-    let bar = RigidBody::new(bar, [-0.5, 1.12, depth], MotionType::default());
+    let bar = RigidBody::new(bar, Vector::new(-0.5, 1.12, depth), MotionType::default());
     let bar = world.add_rigid_body(bar).unwrap();
-    world.set_target_position(bar, [-0.5, 1.0, depth]).unwrap();
+    world
+        .set_target_position(bar, Vector::new(-0.5, 1.0, depth))
+        .unwrap();
     let (mut torque, mut force) = ([0.0; 3], 0.0);
     for _ in 0..10 {
         let mut feel = |substep: &Substep| {
@@ -437,15 +442,19 @@ fn act<D: Dim>(
 ) -> Result<(), Refused> {
     let vector = [k, -0.5 * k, k];
     match which {
-        0 => world.translate_body(body, vector),
-        1 => world.rotate_body(body, Rotation::about([1.0, k, 2.0], k), vector),
-        2 => world.add_velocity(body, vector, vector),
-        3 => world.apply_impulse(body, vector, k, vector),
+        0 => world.translate_body(body, vector.into()),
+        1 => world.rotate_body(
+            body,
+            Rotation::about(Vector::new(1.0, k, 2.0), k),
+            vector.into(),
+        ),
+        2 => world.add_velocity(body, vector.into(), vector.into()),
+        3 => world.apply_impulse(body, vector.into(), k, vector.into()),
         4 => world.set_gravity_scale(body, k),
         5 => world.wake_up(body),
         6 => world.put_to_sleep(body),
         _ => world.set_config(WorldConfig {
-            gravity: vector,
+            gravity: vector.into(),
             drag: k,
             most_substeps: 16,
             ..WorldConfig::default()
@@ -482,11 +491,11 @@ fn check_any<D: Dim>(seeds: std::ops::Range<u64>) {
         for _ in 0..30 {
             let body = bodies[random(bodies.len())];
             match random(12) {
-                0 => bodies.push(world.add_soft_body(ball::<D>(4).translated([
+                0 => bodies.push(world.add_soft_body(ball::<D>(4).translated(Vector::new(
                     random(5) as f32,
                     1.0,
                     0.0,
-                ]))),
+                )))),
                 1 => _ = world.remove_soft_body(body),
                 2..5 => _ = world.step(),
                 _ => {
@@ -504,10 +513,7 @@ fn check_any<D: Dim>(seeds: std::ops::Range<u64>) {
             body.mesh()
                 .validate(body.grid(), body.connectivity())
                 .unwrap();
-            assert!(
-                places(body).iter().flatten().all(|k| k.is_finite()),
-                "{seed}"
-            );
+            assert!(places(body).iter().all(|at| at.is_finite()), "{seed}");
         }
     }
 }

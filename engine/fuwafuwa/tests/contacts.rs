@@ -3,14 +3,14 @@
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
     Dim, Dim2, Dim3, Event, Layers, Material, ObjectRef, RigidBody, RigidBodyHandle, Rotation,
-    Shape, SoftBody, SoftBodyHandle, VoxelGrid, World, WorldConfig,
+    Shape, SoftBody, SoftBodyHandle, Vector, VoxelGrid, World, WorldConfig,
 };
 
-const UP: [f32; 3] = [0.0, 1.0, 0.0];
+const UP: Vector = Vector::Y;
 
 fn floored<D: Dim>() -> (World<D>, RigidBodyHandle) {
     let mut world = World::new(WorldConfig::default()).unwrap();
-    let floor = RigidBody::fixed(Shape::half_space(UP, [0.0; 3]), 0.5);
+    let floor = RigidBody::fixed(Shape::half_space(UP, Vector::ZERO), 0.5);
     let floor = world.add_rigid_body(floor).unwrap();
     (world, floor)
 }
@@ -28,13 +28,13 @@ fn ball<D: Dim>(world: &mut World<D>, height: f32) -> SoftBodyHandle {
     };
     let grid = VoxelGrid::<D>::ball(10, 1.0).unwrap();
     let body = SoftBody::new(grid, &[rubber]).unwrap();
-    world.add_soft_body(body.translated([0.0, height, 0.0]))
+    world.add_soft_body(body.translated(Vector::new(0.0, height, 0.0)))
 }
 
 fn crate_of(height: f32, half: f32) -> RigidBody {
     let shape = Shape::Box {
-        centre: [0.5, height, 0.5],
-        half: [half; 3],
+        centre: Vector::new(0.5, height, 0.5),
+        half: Vector::splat(half),
     };
     RigidBody::dynamic(shape, 1.0)
 }
@@ -51,7 +51,9 @@ fn contacts_begin_and_end<D: Dim>() {
     let (mut began, mut ended) = (Vec::new(), 0);
     for tick in 0..500 {
         if tick == 450 {
-            world.translate_body(id, [0.0, 2.0, 0.0]).unwrap();
+            world
+                .translate_body(id, Vector::new(0.0, 2.0, 0.0))
+                .unwrap();
         }
         world.step();
         for event in world.events() {
@@ -150,8 +152,8 @@ fn rigid_contact_event_reports_impulse_and_speed() {
 fn sensors_tell<D: Dim>() {
     let (mut world, _) = floored::<D>();
     let gate = Shape::Box {
-        centre: [0.5, 2.5, 0.5],
-        half: [4.0, 0.2, 2.0],
+        centre: Vector::new(0.5, 2.5, 0.5),
+        half: Vector::new(4.0, 0.2, 2.0),
     };
     let mut gate = RigidBody::fixed(gate, 0.5);
     gate.is_sensor = true;
@@ -160,7 +162,7 @@ fn sensors_tell<D: Dim>() {
     let free = world.add_rigid_body(crate_of(5.5, 0.2)).unwrap();
     // Beside the ball, so that it does not bounce back.
     world
-        .set_rigid_body_pose(free, [3.0, 5.5, 0.5], Rotation::NONE)
+        .set_rigid_body_pose(free, Vector::new(3.0, 5.5, 0.5), Rotation::NONE)
         .unwrap();
     let (mut entered, mut left) = (Vec::new(), Vec::new());
     for _ in 0..60 {

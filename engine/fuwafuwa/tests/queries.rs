@@ -1,18 +1,12 @@
 //! Queries on a world: rays, nearest surfaces, points, overlaps.
 
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Material, Queries, RigidBody, Rotation, Shape, SoftBody, Thing,
+    Blade, Dim, Dim2, Dim3, Material, Queries, RigidBody, Rotation, Shape, SoftBody, Thing, Vector,
     VoxelGrid, World, WorldConfig,
 };
 
-type Vector = [f32; 3];
-
-fn length(v: Vector) -> f32 {
-    v.iter().map(|k| k * k).sum::<f32>().sqrt()
-}
-
 const WEIGHTLESS: WorldConfig = WorldConfig {
-    gravity: [0.0; 3],
+    gravity: Vector::ZERO,
     drag: 0.0,
     most_substeps: 64,
     tick: fuwafuwa::TICK,
@@ -20,8 +14,8 @@ const WEIGHTLESS: WorldConfig = WorldConfig {
 
 /// A ball of two materials centred at the origin; material 2 fills a radius of 0.25 m.
 fn ball<D: Dim>(n: usize) -> SoftBody<D> {
-    let half = [0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 }];
-    let apart = |at: Vector| length([0, 1, 2].map(|axis: usize| at[axis] - half[axis]));
+    let half = Vector::new(0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 });
+    let apart = |at: Vector| (at - half).length();
     let size = [n, n, D::depth(n)];
     let grid = VoxelGrid::from_centres(size, 1.0 / n as f32, |at| match apart(at) {
         distance if distance < 0.25 => 2,
@@ -29,22 +23,22 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
         _ => 0,
     });
     let body = SoftBody::new(grid.unwrap(), &[Material::default(); 2]).unwrap();
-    body.translated(half.map(|k| -k))
+    body.translated(half.map(|k| -k).into())
 }
 
 /// The ball is rotated, so that no element is aligned with an axis.
 fn world<D: Dim>() -> World<D> {
     let mut world = World::new(WEIGHTLESS).unwrap();
-    world.add_soft_body(ball::<D>(16).rotated(Rotation::in_plane(0.4), [0.0; 3]));
+    world.add_soft_body(ball::<D>(16).rotated(Rotation::in_plane(0.4), Vector::ZERO));
     world
         .add_rigid_body(RigidBody::fixed(
-            Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]),
+            Shape::half_space(Vector::Y, Vector::new(0.0, -2.0, 0.0)),
             0.3,
         ))
         .unwrap();
     let bar = Shape::Capsule {
-        from: [3.0, -1.0, 0.0],
-        to: [3.0, 1.0, 0.0],
+        from: Vector::new(3.0, -1.0, 0.0),
+        to: Vector::new(3.0, 1.0, 0.0),
         radius: 0.25,
     };
     world.add_rigid_body(RigidBody::fixed(bar, 0.3)).unwrap();
@@ -54,9 +48,11 @@ fn world<D: Dim>() -> World<D> {
 /// Directions all around.
 fn around<D: Dim>() -> Vec<Vector> {
     let turned = |k: usize| {
-        let axis = [0.3, if D::N == 2 { 0.0 } else { 0.8 }, 1.0];
-        let axis = if D::N == 2 { [0.0, 0.0, 1.0] } else { axis };
-        Rotation::about(axis, 0.37 * k as f32).apply([1.0, 0.0, 0.0])
+        let axis = match D::N {
+            2 => Vector::Z,
+            _ => Vector::new(0.3, 0.8, 1.0),
+        };
+        Rotation::about(axis, 0.37 * k as f32).apply(Vector::X)
     };
     (0..40).map(turned).collect()
 }
@@ -70,7 +66,9 @@ fn check_rays<D: Dim>() {
     for direction in around::<D>() {
         let from = direction.map(|k| 5.0 * k);
         let inwards = direction.map(|k| -k);
-        let found = queries.ray(from, inwards, 10.0, &is_soft).unwrap();
+        let found = queries
+            .ray(from.into(), inwards.into(), 10.0, &is_soft)
+            .unwrap();
         // The surface consists of voxels, with corners up to two voxel widths from the sphere.
         assert!(
             (found.distance - 4.5).abs() < 2.0 * voxel,
@@ -80,40 +78,51 @@ fn check_rays<D: Dim>() {
         let facing: f32 = (0..3).map(|k| found.normal[k] * direction[k]).sum();
         assert!(facing > 0.0, "{found:?}");
         // A ray from inside hits the surface on its way out.
-        let out = queries.ray([0.0; 3], direction, 10.0, &is_soft).unwrap();
+        let out = queries
+            .ray(Vector::ZERO, direction.into(), 10.0, &is_soft)
+            .unwrap();
         assert!((out.distance - 0.5).abs() < 2.0 * voxel, "{out:?}");
         assert!((out.distance + found.distance - 5.0).abs() < 1e-4);
-        assert!(queries.ray(from, direction, 10.0, &is_soft).is_none());
         assert!(
             queries
-                .ray(from, inwards, found.distance - 0.01, &is_soft)
+                .ray(from.into(), direction.into(), 10.0, &is_soft)
                 .is_none()
         );
         assert!(
             queries
-                .ray(from, inwards, found.distance + 0.01, &is_soft)
+                .ray(from.into(), inwards.into(), found.distance - 0.01, &is_soft)
+                .is_none()
+        );
+        assert!(
+            queries
+                .ray(from.into(), inwards.into(), found.distance + 0.01, &is_soft)
                 .is_some()
         );
     }
     // Without a filter, the ray hits the first object.
-    let first = |from| {
-        queries
-            .ray(from, [-1.0, 0.0, 0.0], 20.0, &|_| true)
-            .unwrap()
-    };
-    let bar = first([9.0, 0.0, 0.0]);
+    let first = |from| queries.ray(from, Vector::NEG_X, 20.0, &|_| true).unwrap();
+    let bar = first(Vector::new(9.0, 0.0, 0.0));
     assert!(matches!(bar.thing, Thing::RigidBody(_)));
     assert!(
         (bar.distance - 5.75).abs() < 1e-3 && (bar.normal[0] - 1.0).abs() < 1e-3,
         "{bar:?}"
     );
-    assert!(is_soft(first([2.0, 0.0, 0.0]).thing));
+    assert!(is_soft(first(Vector::new(2.0, 0.0, 0.0)).thing));
     let floor = queries
-        .ray([9.0, 0.0, 0.0], [0.1, -1.0, 0.0], 20.0, &|_| true)
+        .ray(
+            Vector::new(9.0, 0.0, 0.0),
+            Vector::new(0.1, -1.0, 0.0),
+            20.0,
+            &|_| true,
+        )
         .unwrap();
     assert!((floor.at[1] + 2.0).abs() < 1e-3, "{floor:?}");
     for (from, direction) in [([f32::NAN; 3], [1.0, 0.0, 0.0]), ([0.0; 3], [0.0; 3])] {
-        assert!(queries.ray(from, direction, 9.0, &|_| true).is_none());
+        assert!(
+            queries
+                .ray(from.into(), direction.into(), 9.0, &|_| true)
+                .is_none()
+        );
     }
 }
 
@@ -128,7 +137,7 @@ fn check_nearest<D: Dim>() {
     let queries = Queries::new(&world);
     for direction in around::<D>() {
         for far in [0.2, 0.8, 1.4] {
-            let at = direction.map(|k| far * k);
+            let at = direction * far;
             let found = queries
                 .nearest(at, 9.0, &|thing| matches!(thing, Thing::Soft { .. }))
                 .unwrap();
@@ -137,21 +146,31 @@ fn check_nearest<D: Dim>() {
             let corners = body
                 .facets()
                 .flat_map(|facet| facet.corners.into_iter().take(D::CORNERS / 2));
-            let apart = |corner: Vector| length([0, 1, 2].map(|k: usize| corner[k] - at[k]));
+            let apart = |corner: Vector| (corner - at).length();
             let corner = corners.map(apart).fold(f32::INFINITY, f32::min);
             assert!(found.distance <= corner + 1e-5, "{found:?} {corner}");
             assert!(corner - found.distance < 1.0 / 16.0, "{found:?} {corner}");
             assert!((apart(found.at) - found.distance).abs() < 1e-5);
         }
     }
-    let floor = queries.nearest([0.0, -1.9, 0.0], 9.0, &|_| true).unwrap();
+    let floor = queries
+        .nearest(Vector::new(0.0, -1.9, 0.0), 9.0, &|_| true)
+        .unwrap();
     assert!(matches!(floor.thing, Thing::RigidBody(_)));
     assert!(
         (floor.at[1] + 2.0).abs() < 1e-5 && (floor.distance - 0.1).abs() < 1e-5,
         "{floor:?}"
     );
-    assert!(queries.nearest([0.0, 9.0, 0.0], 1.0, &|_| true).is_none());
-    assert!(queries.nearest([f32::NAN; 3], 1.0, &|_| true).is_none());
+    assert!(
+        queries
+            .nearest(Vector::new(0.0, 9.0, 0.0), 1.0, &|_| true)
+            .is_none()
+    );
+    assert!(
+        queries
+            .nearest(Vector::splat(f32::NAN), 1.0, &|_| true)
+            .is_none()
+    );
 }
 
 #[test]
@@ -163,7 +182,7 @@ fn nearest_finds_closest_surface() {
 fn check_places<D: Dim>() {
     let world = world::<D>();
     let queries = Queries::new(&world);
-    let material = |at: Vector| match queries.at(at)[..] {
+    let material = |at: Vector| match queries.at(at.into())[..] {
         [] => 0,
         [Thing::Soft { material, .. }] => material,
         ref other => panic!("{other:?}"),
@@ -175,20 +194,20 @@ fn check_places<D: Dim>() {
                 far if far < 0.5 => 1,
                 _ => 0,
             };
-            let at = direction.map(|k| far * k);
+            let at = direction * far;
             // At the boundary of materials, elements are of level 0, so each has a single material.
             assert_eq!(material(at), expect, "{at:?}");
         }
     }
     assert!(matches!(
-        queries.at([3.0, 0.0, 0.0])[..],
+        queries.at(Vector::new(3.0, 0.0, 0.0))[..],
         [Thing::RigidBody(_)]
     ));
     assert!(matches!(
-        queries.at([7.0, -3.0, 0.0])[..],
+        queries.at(Vector::new(7.0, -3.0, 0.0))[..],
         [Thing::RigidBody(_)]
     ));
-    assert!(queries.at([f32::NAN; 3]).is_empty());
+    assert!(queries.at(Vector::splat(f32::NAN)).is_empty());
 }
 
 #[test]
@@ -209,7 +228,7 @@ fn check_overlaps<D: Dim>() {
         [things.len() - soft, soft]
     };
     let probe = |x: f32, radius: f32| Shape::Ball {
-        centre: [x, 0.0, 0.0],
+        centre: Vector::new(x, 0.0, 0.0),
         radius,
     };
     assert_eq!(count(&world, probe(0.0, 0.05)), [0, 1], "inside");
@@ -218,16 +237,16 @@ fn check_overlaps<D: Dim>() {
     assert_eq!(count(&world, probe(0.0, 2.5)), [1, 1], "around it");
     assert_eq!(count(&world, probe(0.0, 2.9)), [2, 1], "as far as the bar");
     let needle = Shape::Capsule {
-        from: [-3.0, 0.013, 0.0],
-        to: [2.0, 0.013, 0.0],
+        from: Vector::new(-3.0, 0.013, 0.0),
+        to: Vector::new(2.0, 0.013, 0.0),
         radius: 0.001,
     };
     assert_eq!(count(&world, needle), [0, 1], "through it");
     // Cut in two, the body counts as two pieces.
     let blade = Blade {
-        from: [0.0, -1.0, -1.0],
-        across: [0.0, 2.0, 0.0],
-        along: [0.0, 0.0, 2.0],
+        from: Vector::new(0.0, -1.0, -1.0),
+        across: Vector::new(0.0, 2.0, 0.0),
+        along: Vector::new(0.0, 0.0, 2.0),
     };
     world.cut(body, &blade).unwrap();
     assert_eq!(count(&world, probe(0.0, 0.3)), [0, 2], "across the cut");

@@ -10,7 +10,6 @@ mod joint_solver;
 
 use crate::foundation::arena::{Arena, Gone, JointHandle};
 use crate::foundation::dim::Dim;
-use crate::math::vector::length;
 use crate::rigid_body::shape::{Vector, flat};
 use crate::rigid_body::{FARTHEST, RigidBodies};
 use crate::soft_body::SoftBodies;
@@ -71,10 +70,10 @@ impl Joint {
             tie,
             breaking_force: f32::INFINITY,
             anchors: [
-                AttachedAnchor::Position([0.0; 3]),
-                AttachedAnchor::Position([0.0; 3]),
+                AttachedAnchor::Position(Vector::ZERO),
+                AttachedAnchor::Position(Vector::ZERO),
             ],
-            impulse: [0.0; 3],
+            impulse: Vector::ZERO,
             force: 0.0,
         }
     }
@@ -110,7 +109,7 @@ impl Joint {
         if self.tie == JointKind::Pin {
             self.meet_soft_ends(bodies, rigids);
         }
-        (self.impulse, self.force) = ([0.0; 3], 0.0);
+        (self.impulse, self.force) = (Vector::ZERO, 0.0);
         Ok(())
     }
 
@@ -145,7 +144,7 @@ impl Joint {
                 JointAnchor::Position(at) | JointAnchor::RigidBody { at, .. } => (at, 0.0),
                 JointAnchor::Soft { at, radius, .. } => (at, radius),
             };
-            let is_near = at.iter().all(|k| k.abs() <= FARTHEST);
+            let is_near = at.to_array().iter().all(|k| k.abs() <= FARTHEST);
             require(is_near, "place of an end", "within 1e6 m of the origin")?;
             require(
                 (0.0..=FARTHEST).contains(&radius),
@@ -188,8 +187,8 @@ impl Joint {
     /// Returns whether a joint that was read from a file is valid.
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound<D: Dim>(&self) -> bool {
-        let is_finite = crate::math::vector::is_finite(self.impulse) && self.force >= 0.0;
-        let is_flat = self.impulse[D::N..].iter().all(|k| *k == 0.0);
+        let is_finite = self.impulse.is_finite() && self.force >= 0.0;
+        let is_flat = self.impulse.to_array()[D::N..].iter().all(|k| *k == 0.0);
         let mut both = self.anchors.iter().zip(&self.ends);
         self.check().is_ok()
             && is_finite
@@ -240,7 +239,7 @@ pub(crate) fn relax<D: Dim>(
             // Nothing attached can move, so the joint keeps its last force.
             continue;
         }
-        joint.force = length(flat::<D>(joint.impulse)) / duration;
+        joint.force = flat::<D>(joint.impulse).length() / duration;
         if joint.force > joint.breaking_force {
             broken.push(id);
         }

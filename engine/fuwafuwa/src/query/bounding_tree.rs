@@ -1,6 +1,5 @@
 //! Bounding-volume hierarchy for queries.
 
-use crate::math::vector::length;
 use crate::rigid_body::shape::{Bounds, Vector};
 use std::ops::Range;
 
@@ -112,23 +111,23 @@ impl Tree {
 pub fn around([a, b]: Bounds, [c, d]: Bounds) -> Bounds {
     let low = [0, 1, 2].map(|axis: usize| a[axis].min(c[axis]));
     let high = [0, 1, 2].map(|axis: usize| b[axis].max(d[axis]));
-    [low, high]
+    [low.into(), high.into()]
 }
 
 /// Returns the box around points, with a margin against rounding.
 pub fn around_all(points: impl IntoIterator<Item = Vector>) -> Bounds {
-    let nothing = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+    let nothing = [f32::INFINITY, f32::NEG_INFINITY].map(Vector::splat);
     let points = points.into_iter();
     let [low, high] = points.fold(nothing, |bounds, at| around(bounds, [at, at]));
-    let widths = [0, 1, 2].map(|axis: usize| high[axis] - low[axis]);
-    let little = LITTLE * widths.into_iter().fold(0.0, f32::max);
-    [low.map(|k| k - little), high.map(|k| k + little)]
+    let widths = (high - low).to_array();
+    let little = Vector::splat(LITTLE * widths.into_iter().fold(0.0, f32::max));
+    [low - little, high + little]
 }
 
 /// Returns the distance of a point from a box [m]; 0 inside.
 pub fn distance_from([low, high]: &Bounds, at: Vector) -> f32 {
     let beyond = |axis: usize| (low[axis] - at[axis]).max(at[axis] - high[axis]).max(0.0);
-    length([0, 1, 2].map(beyond))
+    Vector::from([0, 1, 2].map(beyond)).length()
 }
 
 /// Returns the distance along a ray to the entry into a box, in multiples of the direction; infinite if the
@@ -158,12 +157,16 @@ mod tests {
         let places: Vec<Vector> = (0..500)
             .map(|k| {
                 let at = |step: usize| (k * step % 101) as f32;
-                [at(37), at(53), at(71)]
+                Vector::new(at(37), at(53), at(71))
             })
             .collect();
         let boxes: Vec<Bounds> = places.iter().map(|&at| [at, at]).collect();
         let tree = Tree::new(&boxes);
-        for goal in [[0.0; 3], [50.0, 20.0, 90.0], [-7.0, 300.0, 3.0]] {
+        for goal in [
+            Vector::ZERO,
+            Vector::new(50.0, 20.0, 90.0),
+            Vector::new(-7.0, 300.0, 3.0),
+        ] {
             let (mut best, mut looked) = (f32::INFINITY, 0);
             tree.search(
                 f32::INFINITY,
@@ -187,12 +190,12 @@ mod tests {
 
     #[test]
     fn entry_returns_distance_or_infinity() {
-        let bounds = [[1.0, -1.0, 0.0], [2.0, 1.0, 0.0]];
-        assert_eq!(entry(&bounds, [0.0; 3], [1.0, 0.0, 0.0]), 1.0);
-        assert_eq!(entry(&bounds, [1.5, 0.0, 0.0], [0.0, 1.0, 0.0]), 0.0);
-        assert_eq!(entry(&bounds, [0.0; 3], [-1.0, 0.0, 0.0]), f32::INFINITY);
+        let bounds = [Vector::new(1.0, -1.0, 0.0), Vector::new(2.0, 1.0, 0.0)];
+        assert_eq!(entry(&bounds, Vector::ZERO, Vector::X), 1.0);
+        assert_eq!(entry(&bounds, Vector::new(1.5, 0.0, 0.0), Vector::Y), 0.0);
+        assert_eq!(entry(&bounds, Vector::ZERO, Vector::NEG_X), f32::INFINITY);
         assert_eq!(
-            entry(&bounds, [0.0, 2.0, 0.0], [1.0, 0.0, 0.0]),
+            entry(&bounds, Vector::new(0.0, 2.0, 0.0), Vector::X),
             f32::INFINITY
         );
     }

@@ -37,5 +37,5 @@ pub fn require(good: bool, field: &'static str, expected: &'static str) -> Resul
 
 /// Returns whether a position is allowed for rigid bodies and targets.
 pub fn is_within_reach(at: Vector) -> bool {
-    at.iter().all(|k| k.abs() <= FARTHEST)
+    at.to_array().iter().all(|k| k.abs() <= FARTHEST)
 }

@@ -3,7 +3,6 @@
 use super::invalid::{BadRigid, is_within_reach, require};
 use super::{MotionType, RigidBody};
 use crate::math::rotation::Rotation;
-use crate::math::vector::{is_finite, length, minus, plus};
 
 impl RigidBody {
     /// Checks every field.
@@ -28,9 +27,9 @@ impl RigidBody {
                 "within 1e6 m of the origin",
             )?;
         }
-        require(is_finite(self.velocity), "velocity", "finite")?;
+        require(self.velocity.is_finite(), "velocity", "finite")?;
         require(
-            is_finite(self.angular_velocity),
+            self.angular_velocity.is_finite(),
             "angular velocity",
             "finite",
         )?;
@@ -59,7 +58,7 @@ impl RigidBody {
             MotionType::Dynamic { mass } => {
                 within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
                 let [low, high] = self.form.bounds();
-                let off = length(plus(low, high)) <= 1e-3 * length(minus(high, low));
+                let off = (low + high).length() <= 1e-3 * (high - low).length();
                 require(off, "shape", "one with its middle at the origin")?;
                 let is_sound = self.inertia.is_none_or(|inertia| inertia.is_sound());
                 require(

@@ -5,7 +5,6 @@ use super::body_state::State;
 use crate::foundation::dim::{Dim, turning};
 use crate::foundation::ids::NodeId;
 use crate::math::rotation::Rotation;
-use crate::math::vector::{as_row, cross, minus, plus, three};
 use crate::rigid_body::layers::Layers;
 use crate::rigid_body::shape::{Vector, flat};
 use crate::soft_body::element_forces::Row;
@@ -59,7 +58,7 @@ impl<D: Dim> SoftBody<D> {
     #[inline(never)]
     pub fn with_velocity(mut self, velocity: Vector) -> Self {
         for row in self.state.velocity.iter_mut() {
-            row[..D::N].copy_from_slice(&velocity[..D::N]);
+            row[..D::N].copy_from_slice(&velocity.as_ref()[..D::N]);
         }
         self
     }
@@ -69,7 +68,7 @@ impl<D: Dim> SoftBody<D> {
     pub fn centre_of_mass(&self) -> Vector {
         let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
         let states = self.states(&nodes).map(|(at, _, mass)| (at, mass));
-        centre_of(states).map(|k| k as f32)
+        centre_of(states).as_vec3()
     }
 
     pub(crate) fn shift(&mut self, by: Vector) {
@@ -94,10 +93,10 @@ impl<D: Dim> SoftBody<D> {
             ..
         } = &mut self.state;
         for row in position.iter_mut().chain(ahead.iter_mut()) {
-            *row = as_row(rotation.apply_about(three(*row), about));
+            *row = Row::from(rotation.apply_about(row.xyz(), about));
         }
         for row in velocity.iter_mut() {
-            *row = as_row(rotation.apply(three(*row)));
+            *row = Row::from(rotation.apply(row.xyz()));
         }
         blocks.rotate(rotation);
     }
@@ -109,8 +108,8 @@ impl<D: Dim> SoftBody<D> {
         let angular = turning::<D>(angular);
         for (id, _) in self.topology.mesh.nodes() {
             if self.state.inverse_mass[id] > 0.0 {
-                let lever = minus(three(self.state.position[id]), centre);
-                let added = plus(linear, cross(angular, lever));
+                let lever = self.state.position[id].xyz() - centre;
+                let added = linear + angular.cross(lever);
                 add::<D>(&mut self.state.velocity[id], added);
             }
         }
@@ -124,8 +123,8 @@ impl<D: Dim> SoftBody<D> {
         let free = nodes.filter(|&id| self.state.inverse_mass[id] > 0.0);
         let at = flat::<D>(at);
         let squared = |id: NodeId| {
-            let apart = minus(three(self.state.position[id]), at);
-            apart.iter().map(|k| k * k).sum::<f32>()
+            let apart = self.state.position[id].xyz() - at;
+            apart.length_squared()
         };
         let free: Vec<(NodeId, f32)> = free.map(|id| (id, squared(id))).collect();
         let is_within = |(_, squared): &&(NodeId, f32)| *squared <= radius * radius;
@@ -136,7 +135,7 @@ impl<D: Dim> SoftBody<D> {
         }
         let mass: f32 = reached.iter().map(|&id| self.state.mass[id]).sum();
         for id in reached {
-            add::<D>(&mut self.state.velocity[id], impulse.map(|k| k / mass));
+            add::<D>(&mut self.state.velocity[id], impulse / mass);
         }
     }
 }

@@ -8,7 +8,6 @@ use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::{Dim, turning};
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::math::rotation::Rotation;
-use crate::math::vector::minus;
 use crate::rigid_body::layers::Layers;
 use crate::rigid_body::shape::{Bounds, Vector, flat};
 use crate::rigid_body::{FARTHEST, RigidBody};
@@ -151,7 +150,7 @@ impl<D: Dim> World<D> {
         let at = within("place", at, FARTHEST, "within 1e6 m of the origin")?;
         let impulse = within("impulse", impulse, FARTHEST, "at most 1e6 N s on each axis")?;
         let free = self.free_mut(rigid)?;
-        let lever = minus(flat::<D>(at), free.position());
+        let lever = flat::<D>(at) - free.position();
         free.kick(flat::<D>(impulse), lever);
         Ok(())
     }
@@ -354,6 +353,6 @@ fn within(
     most: f32,
     expected: &'static str,
 ) -> Result<Vector, Refused> {
-    let is_good = vector.iter().all(|k| k.abs() <= most);
+    let is_good = vector.to_array().iter().all(|k| k.abs() <= most);
     require(is_good, field, expected).map(|()| vector)
 }

@@ -43,7 +43,7 @@ pub struct WorldConfig {
 impl Default for WorldConfig {
     fn default() -> Self {
         Self {
-            gravity: [0.0, -9.81, 0.0],
+            gravity: Vector::new(0.0, -9.81, 0.0),
             drag: 0.0,
             most_substeps: 64,
             tick: TICK,
@@ -79,7 +79,7 @@ impl WorldConfig {
 
     pub(super) fn check(&self) -> Result<(), BadSetting> {
         let range = FEWEST_SUBSTEPS..=1024;
-        let is_finite = self.gravity.iter().all(|k| k.is_finite());
+        let is_finite = self.gravity.is_finite();
         let checks = [
             ("gravity", "finite", is_finite),
             ("drag", "0 to 10", (0.0..=10.0).contains(&self.drag)),

@@ -5,7 +5,6 @@ use crate::event::{Event, ObjectRef, With};
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::PieceId;
-use crate::math::vector::{length, minus, scaled, three};
 use crate::rigid_body::shape::Vector;
 use crate::rigid_body::{MotionType, RigidBody};
 use crate::soft_body::SoftBody;
@@ -38,7 +37,7 @@ impl Press {
 
     /// Returns the contact with the participants swapped.
     fn turned(mut self) -> Self {
-        self.normal = scaled(self.normal, -1.0);
+        self.normal = -self.normal;
         self
     }
 
@@ -157,7 +156,7 @@ impl<D: Dim> World<D> {
             let piece = body.topology.pieces.of_node(pair.node);
             let press = presses.of((id, piece, with));
             press.add(pair.impulse.total, pair.impulse.speed, || {
-                let at = three(body.state.position[pair.node]);
+                let at = body.state.position[pair.node].xyz();
                 [at, rigid.shape().distance(at).1]
             });
         }
@@ -169,9 +168,9 @@ impl<D: Dim> World<D> {
             let with = With::Piece { body, piece };
             let press = presses.of((self.bodies.id(a.body), a.piece, with));
             press.add(pair.impulse.total, pair.impulse.speed, || {
-                let [at, other] = pair.spheres.map(|sphere| three(spheres.centres[sphere]));
-                let apart = minus(at, other);
-                [at, scaled(apart, 1.0 / length(apart).max(1e-9))]
+                let [at, other] = pair.spheres.map(|sphere| spheres.centres[sphere].xyz());
+                let apart = at - other;
+                [at, apart * (1.0 / apart.length().max(1e-9))]
             });
         }
         presses.all()
@@ -258,7 +257,7 @@ impl<D: Dim> World<D> {
         let pieces = bodies.flat_map(move |(id, body): (SoftBodyHandle, &SoftBody<D>)| {
             let nodes = body.topology.mesh.nodes().map(|(node, _)| node);
             let inside =
-                nodes.filter(|&node| shape.distance(three(body.state.position[node])).0 < 0.0);
+                nodes.filter(|&node| shape.distance(body.state.position[node].xyz()).0 < 0.0);
             inside.map(move |node| ObjectRef::Piece {
                 body: id,
                 piece: body.topology.pieces.of_node(node),

@@ -195,7 +195,7 @@ impl<D: Dim> World<D> {
             for (id, _) in body.topology.mesh.nodes() {
                 let (at, speed) = (body.state.position[id], body.state.velocity[id]);
                 hash.add(u64::from(body.topology.pieces.of_node(id).0));
-                for value in at.iter().chain(&speed) {
+                for value in at.as_array().iter().chain(speed.as_array()) {
                     hash.add(u64::from(value.to_bits()));
                 }
             }
@@ -205,12 +205,13 @@ impl<D: Dim> World<D> {
             .iter()
             .filter(|rigid| rigid.motion_type != MotionType::Fixed)
         {
-            for value in rigid.position.iter().chain(&rigid.velocity) {
+            let linear = [rigid.position, rigid.velocity];
+            for value in linear.iter().flat_map(Vector::to_array) {
                 hash.add(u64::from(value.to_bits()));
             }
             if rigid.is_dynamic() {
                 let turned = rigid.rotation.quaternion();
-                for value in turned.iter().chain(&rigid.angular_velocity) {
+                for value in turned.into_iter().chain(rigid.angular_velocity.to_array()) {
                     hash.add(u64::from(value.to_bits()));
                 }
             }

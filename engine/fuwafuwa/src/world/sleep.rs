@@ -8,6 +8,7 @@ use crate::contact::solver::Hit;
 use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{IndexVec, PieceId};
+use crate::math::vector::Vector;
 use crate::rigid_body::RigidBodies;
 use crate::soft_body::SoftBodies;
 use crate::soft_body::damping::PieceMotion;
@@ -62,7 +63,7 @@ pub fn fall_asleep_rigid(rigids: &mut RigidBodies, handled: &BTreeSet<RigidSlot>
         };
         if rigid.sleep_timer >= SLEEP_TIME {
             rigid.asleep = true;
-            (rigid.velocity, rigid.angular_velocity) = ([0.0; 3], [0.0; 3]);
+            (rigid.velocity, rigid.angular_velocity) = (Vector::ZERO, Vector::ZERO);
         }
     }
 }

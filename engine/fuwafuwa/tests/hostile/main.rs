@@ -6,11 +6,11 @@ mod quarantine;
 
 use fuwafuwa::{
     Blade, Dim, Dim2, Dim3, Event, Grading, Law, Material, MotionType, PieceId, RigidBody, Shape,
-    SoftBody, VoxelGrid, With, World, WorldConfig,
+    SoftBody, Vector, VoxelGrid, With, World, WorldConfig,
 };
 
 const FLOOR: Shape = Shape::HalfSpace {
-    normal: [0.0, 1.0, 0.0],
+    normal: Vector::Y,
     offset: 0.0,
 };
 
@@ -37,15 +37,15 @@ fn assert_finite<D: Dim>(world: &World<D>) {
             .unwrap();
         for (id, _) in body.mesh().nodes() {
             let (at, velocity, mass) = body.node_state(id);
-            let mut all = at.iter().chain(&velocity).chain([&mass]);
-            assert!(all.all(|k| k.is_finite()), "{at:?} {velocity:?} {mass}");
+            let is_finite = at.is_finite() && velocity.is_finite() && mass.is_finite();
+            assert!(is_finite, "{at:?} {velocity:?} {mass}");
             assert!(D::N == 3 || (at[2] == 0.0 && velocity[2] == 0.0), "{at:?}");
         }
     }
     for (_, hand) in world.target_followers() {
         let (at, velocity) = (hand.position(), hand.velocity());
-        let mut all = at.iter().chain(&velocity);
-        assert!(all.all(|k| k.is_finite()), "{at:?} {velocity:?}");
+        let is_finite = at.is_finite() && velocity.is_finite();
+        assert!(is_finite, "{at:?} {velocity:?}");
     }
 }
 
@@ -57,13 +57,13 @@ fn bar(size: [usize; 2]) -> SoftBody<Dim2> {
 /// A weightless world with only two bars that fly towards each other.
 fn about_to_meet() -> World<Dim2> {
     let settings = WorldConfig {
-        gravity: [0.0; 3],
+        gravity: Vector::ZERO,
         ..WorldConfig::default()
     };
     let mut world = World::new(settings).unwrap();
-    world.add_soft_body(bar([6, 6]).with_velocity([1.0, 0.0, 0.0]));
-    let other = bar([6, 6]).translated([0.4, 0.0, 0.0]);
-    world.add_soft_body(other.with_velocity([-1.0, 0.0, 0.0]));
+    world.add_soft_body(bar([6, 6]).with_velocity(Vector::X));
+    let other = bar([6, 6]).translated(Vector::new(0.4, 0.0, 0.0));
+    world.add_soft_body(other.with_velocity(Vector::NEG_X));
     world
 }
 
@@ -91,14 +91,14 @@ fn check_coarse<D: Dim>(blade: Blade) {
     let mut world = world::<D>();
     world.add_soft_body(coarse.unwrap());
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand =
-        RigidBody::coupled_ball([0.5, 1.2, depth], 0.1).with_motion_type(MotionType::Kinematic);
+    let hand = RigidBody::coupled_ball(Vector::new(0.5, 1.2, depth), 0.1)
+        .with_motion_type(MotionType::Kinematic);
     world.add_rigid_body(hand).unwrap();
     for tick in 0..60u16 {
         world
             .set_target_position(
                 world.nth_target_follower(0).unwrap(),
-                [0.5, 1.2 - 0.02 * f32::from(tick), depth],
+                Vector::new(0.5, 1.2 - 0.02 * f32::from(tick), depth),
             )
             .unwrap();
         assert_eq!(world.step().nodes_split, 0);
@@ -123,16 +123,16 @@ fn check_coarse<D: Dim>(blade: Blade) {
 fn coarse_body_neither_tears_nor_is_cut() {
     check_coarse::<Dim2>(Blade::segment([0.5, -0.1], [0.5, 1.1]));
     check_coarse::<Dim3>(Blade {
-        from: [0.5, -0.1, -0.1],
-        across: [0.0, 1.2, 0.0],
-        along: [0.0, 0.0, 1.2],
+        from: Vector::new(0.5, -0.1, -0.1),
+        across: Vector::new(0.0, 1.2, 0.0),
+        along: Vector::new(0.0, 0.0, 1.2),
     });
 }
 
 #[test]
 fn add_rigid_rejects_out_of_range_hand() {
     let mut world = world::<Dim2>();
-    let usual = || RigidBody::coupled_ball([0.0, 3.0, 0.0], 0.1);
+    let usual = || RigidBody::coupled_ball(Vector::new(0.0, 3.0, 0.0), 0.1);
     let MotionType::Coupled {
         mass,
         stiffness,
@@ -154,8 +154,11 @@ fn add_rigid_rejects_out_of_range_hand() {
     let mut slippery = usual();
     slippery.friction = infinite;
     let bad = [
-        (RigidBody::coupled_ball([0.0, 1e30, 0.0], 0.1), "position"),
-        (RigidBody::coupled_ball([0.0; 3], infinite), "radius"),
+        (
+            RigidBody::coupled_ball(Vector::new(0.0, 1e30, 0.0), 0.1),
+            "position",
+        ),
+        (RigidBody::coupled_ball(Vector::ZERO, infinite), "radius"),
         (slippery, "friction"),
         (drive(infinite, stiffness, damping, limit), "mass"),
         (drive(1e-30, stiffness, damping, limit), "mass"),
@@ -180,8 +183,16 @@ fn add_rigid_rejects_out_of_range_hand() {
         .unwrap();
     for hand in 0..2 {
         let hand = world.nth_target_follower(hand).unwrap();
-        assert!(world.set_target_position(hand, [1e38, 0.0, 0.0]).is_err());
-        assert!(world.set_target_position(hand, [1e6, -1e6, 0.0]).is_ok());
+        assert!(
+            world
+                .set_target_position(hand, Vector::new(1e38, 0.0, 0.0))
+                .is_err()
+        );
+        assert!(
+            world
+                .set_target_position(hand, Vector::new(1e6, -1e6, 0.0))
+                .is_ok()
+        );
     }
     world.step();
     assert_finite(&world);
@@ -191,29 +202,29 @@ fn add_rigid_rejects_out_of_range_hand() {
 #[test]
 fn plane_world_ignores_third_coordinates() {
     let shapes = [
-        Shape::half_space([0.0, 1.0, 1.0], [0.0; 3]),
+        Shape::half_space(Vector::new(0.0, 1.0, 1.0), Vector::ZERO),
         Shape::Box {
-            centre: [0.5, -0.5, 7.0],
-            half: [2.0, 0.5, 0.0],
+            centre: Vector::new(0.5, -0.5, 7.0),
+            half: Vector::new(2.0, 0.5, 0.0),
         },
         Shape::Capsule {
-            from: [-1.0, -0.5, 0.2],
-            to: [2.0, -0.5, -0.1],
+            from: Vector::new(-1.0, -0.5, 0.2),
+            to: Vector::new(2.0, -0.5, -0.1),
             radius: 0.5,
         },
     ];
     for shape in shapes {
         let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         world.add_rigid_body(RigidBody::fixed(shape, 0.5)).unwrap();
-        world.add_soft_body(ball(12).translated([0.0, 0.02, 0.0]));
-        let hand = RigidBody::coupled_ball([0.5, 0.9, 0.05], 0.1);
+        world.add_soft_body(ball(12).translated(Vector::new(0.0, 0.02, 0.0)));
+        let hand = RigidBody::coupled_ball(Vector::new(0.5, 0.9, 0.05), 0.1);
         world.add_rigid_body(hand).unwrap();
         step(&mut world, 30);
         assert_finite(&world);
         let low = world.soft_bodies().first().unwrap().piece_views()[0].low[1];
         assert!(low > -0.03, "{shape:?}: {low}");
     }
-    let edge_on = Shape::half_space([0.0, 0.0, 1.0], [0.0; 3]);
+    let edge_on = Shape::half_space(Vector::Z, Vector::ZERO);
     assert!(
         world::<Dim2>()
             .add_rigid_body(RigidBody::fixed(edge_on, 0.5))
@@ -221,8 +232,8 @@ fn plane_world_ignores_third_coordinates() {
     );
     let body = ball::<Dim2>(12);
     let region = Shape::Box {
-        centre: [0.5, 0.5, 3.0],
-        half: [1.0, 1.0, 0.0],
+        centre: Vector::new(0.5, 0.5, 3.0),
+        half: Vector::new(1.0, 1.0, 0.0),
     };
     let share = f64::from(body.mass_inside(&region)) / body.total_mass();
     assert!((share - 1.0).abs() < 1e-5, "{share}");
@@ -242,13 +253,13 @@ fn unused_material_has_no_effect() {
         let mut world = world::<Dim2>();
         world.add_soft_body(SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap());
         assert_eq!(world.soft_bodies().first().unwrap().stiffness_scale(), 1.0);
-        let hand =
-            RigidBody::coupled_ball([0.5, 1.1, 0.0], 0.1).with_motion_type(MotionType::Kinematic);
+        let hand = RigidBody::coupled_ball(Vector::new(0.5, 1.1, 0.0), 0.1)
+            .with_motion_type(MotionType::Kinematic);
         let hand = world.add_rigid_body(hand).unwrap();
         let mut released = 0;
         for tick in 0..40u8 {
             let goal = [0.5, 1.1 - 0.03 * f32::from(tick), 0.0];
-            world.set_target_position(hand, goal).unwrap();
+            world.set_target_position(hand, goal.into()).unwrap();
             released += world.step().nodes_split;
         }
         assert!(released > 10, "the body must tear");
@@ -262,7 +273,7 @@ fn unused_material_has_no_effect() {
 #[test]
 fn cut_reports_positions_of_released_nodes() {
     let mut world = world::<Dim2>();
-    world.add_soft_body(ball(16).translated([3.0, 0.0, 0.0]));
+    world.add_soft_body(ball(16).translated(Vector::new(3.0, 0.0, 0.0)));
     let count = world
         .cut(
             world.nth_soft_body(0).unwrap(),
