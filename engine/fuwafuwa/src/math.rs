@@ -2,5 +2,6 @@
 
 pub mod lanes;
 pub mod rotation;
+pub mod row;
 pub mod vector;
 pub mod velocity;

@@ -8,7 +8,6 @@ pub mod query_filter;
 use crate::foundation::arena::SoftBodyHandle;
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::ElementId;
-use crate::math::vector::{dot, is_finite, length, minus, plus, scaled};
 use crate::object_ref::ObjectRef;
 use crate::rigid_body::RigidBody;
 use crate::rigid_body::shape::{Bounds, Shape, Vector, flat};
@@ -108,12 +107,12 @@ impl<D: Dim> World<D> {
         filter: QueryFilter<'_>,
     ) -> Option<QueryHit> {
         let (origin, direction) = (flat::<D>(ray.origin), flat::<D>(ray.direction));
-        let long = direction.map(f64::from);
-        let direction = scaled(long, 1.0 / dot(long, long).sqrt()).map(|k| k as f32);
-        if !is_finite(direction) || !is_finite(origin) {
+        let long = direction.as_dvec3();
+        let direction = (long * (1.0 / long.dot(long).sqrt())).as_vec3();
+        if !direction.is_finite() || !origin.is_finite() {
             return None;
         }
-        let along = |distance: f32| plus(origin, scaled(direction, distance));
+        let along = |distance: f32| origin + (direction * distance);
         let cost = |bounds: &Bounds| entry(bounds, origin, direction);
         let query = Query::new(self, &filter);
         let mut closest = Closest::within(max_distance)?;
@@ -158,7 +157,7 @@ impl<D: Dim> World<D> {
         filter: QueryFilter<'_>,
     ) -> Option<QueryHit> {
         let point = flat::<D>(point);
-        if !is_finite(point) {
+        if !point.is_finite() {
             return None;
         }
         let cost = |bounds: &Bounds| distance_from(bounds, point);
@@ -170,7 +169,7 @@ impl<D: Dim> World<D> {
                     let (gap, normal) = rigid.shape().distance(point);
                     let distance = gap.abs().max(at_least);
                     closest.consider(distance, [rank, 0], || {
-                        let on_surface = plus(point, scaled(normal, -gap));
+                        let on_surface = point + (normal * -gap);
                         query.rigid_hit(rank, on_surface, normal, distance)
                     });
                 }
@@ -179,7 +178,7 @@ impl<D: Dim> World<D> {
                     surface.tree.search(closest.limit, cost, |index, at_least| {
                         let facet = &surface.items[index];
                         let nearest = nearest_on::<D>(facet, point);
-                        let distance = length(minus(nearest, point)).max(at_least);
+                        let distance = (nearest - point).length().max(at_least);
                         closest.consider(distance, [rank, index], || {
                             query.facet_hit(trees.body, facet, nearest, distance)
                         });
@@ -199,7 +198,7 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub fn objects_at(&self, point: Vector, filter: QueryFilter<'_>) -> Vec<QueryOverlap> {
         let point = flat::<D>(point);
-        if !is_finite(point) {
+        if !point.is_finite() {
             return Vec::new();
         }
         let query = Query::new(self, &filter);
@@ -228,11 +227,9 @@ impl<D: Dim> World<D> {
         let [low, high] = shape.bounds();
         let may_overlap = |bounds: &Bounds| match shape {
             Shape::HalfSpace { normal, offset } => {
-                let deepest = [0, 1, 2].map(|axis: usize| {
-                    let side = usize::from(normal[axis] < 0.0);
-                    bounds[side][axis]
-                });
-                dot(normal, deepest) <= offset
+                let [low, high] = *bounds;
+                let deepest = Vector::select(normal.cmplt(Vector::ZERO), high, low);
+                normal.dot(deepest) <= offset
             }
             _ => overlap(bounds, &[low, high]),
         };
@@ -259,8 +256,8 @@ impl<D: Dim> World<D> {
             0.0
         });
         // A shape that lies completely inside a piece is near no face of it.
-        let centre = scaled(plus(low, high), 0.5);
-        if is_finite(centre) {
+        let centre = (low + high) * 0.5;
+        if centre.is_finite() {
             found.extend(query.pieces_at(centre));
         }
         each_once(found)
@@ -501,7 +498,7 @@ fn nearest_on<D: Dim>(facet: &Facet, at: Vector) -> Vector {
         return nearest_on_segment(at, [a, b]);
     }
     let [one, other] = triangles(facet.corners).map(|three| nearest_on_triangle(at, three));
-    let squared = |place: Vector| dot(minus(place, at), minus(place, at));
+    let squared = |place: Vector| (place - at).dot(place - at);
     if squared(other) < squared(one) {
         other
     } else {
@@ -522,7 +519,7 @@ fn is_near<D: Dim>(facet: &Facet, shape: &Shape) -> bool {
     }
     triangles(facet.corners).into_iter().any(|[a, b, c]| {
         let across = |share: f32| {
-            let end = |to: Vector| plus(a, scaled(minus(to, a), share));
+            let end = |to: Vector| a + (to - a) * share;
             gap(end(b), end(c))
         };
         let (mut low, mut high) = (0.0f32, 1.0f32);
@@ -554,7 +551,7 @@ fn shapes_overlap(a: &Shape, b: &Shape) -> bool {
                 normal: other,
                 offset: beyond,
             },
-        ) => dot(normal, other) > -1.0 + 1e-6 || offset + beyond >= 0.0,
+        ) => normal.dot(other) > -1.0 + 1e-6 || offset + beyond >= 0.0,
         _ => a.gap(b).0 <= 0.0,
     }
 }

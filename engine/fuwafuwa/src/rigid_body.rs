@@ -18,13 +18,12 @@ use crate::foundation::arena::{Arena, RigidBodyHandle};
 use crate::foundation::dim::{Dim, turning};
 use crate::foundation::hash::hash_state;
 use crate::math::rotation::Rotation;
-use crate::math::vector::{is_finite, length, minus, plus, scaled};
 use crate::math::velocity::Velocity;
 use crate::rigid_body::layers::Layers;
-use crate::rigid_body::shape::{Shape, Vector};
+use crate::rigid_body::shape::{Shape, Vector, flat};
 use inertia::{Inertia, Matrix};
 pub use reach::FARTHEST;
-use reach::is_within_reach;
+pub(crate) use reach::is_within_reach;
 use rigid_validation::check_motion_type;
 pub(crate) use rigid_validation::{check_friction, check_restitution};
 
@@ -170,14 +169,14 @@ impl RigidBody {
     pub fn fixed(shape: Shape, friction: f32) -> Self {
         Self {
             friction,
-            ..Self::new(shape, [0.0; 3], MotionType::Fixed)
+            ..Self::new(shape, Vector::ZERO, MotionType::Fixed)
         }
     }
 
     /// Returns a coupled rigid body with the default coupling, at rest at `position` [m]: a ball (2D: a disc)
     /// of the given radius [m].
     pub fn coupled_ball(position: Vector, radius: f32) -> Self {
-        let centre = [0.0; 3];
+        let centre = Vector::ZERO;
         Self::new(
             Shape::Ball { centre, radius },
             position,
@@ -198,19 +197,19 @@ impl RigidBody {
             shape: form.translated(position),
             position,
             restitution: 0.0,
-            velocity: [0.0; 3],
+            velocity: Vector::ZERO,
             rotation: Rotation::NONE,
-            angular_velocity: [0.0; 3],
+            angular_velocity: Vector::ZERO,
             asleep: false,
             sleep_timer: 0.0,
             position_before: position,
             rotation_before: Rotation::NONE,
             inertia: None,
-            inverse_inertia: [[0.0; 3]; 3],
+            inverse_inertia: [Vector::ZERO; 3],
             goal: position,
             rotation_goal: Rotation::NONE,
             goal_before: position,
-            goal_velocity: [0.0; 3],
+            goal_velocity: Vector::ZERO,
             reactions: Vec::new(),
         }
     }
@@ -234,9 +233,13 @@ impl RigidBody {
     /// ```
     pub fn dynamic(shape: Shape, mass: f32) -> Self {
         let [low, high] = shape.bounds();
-        let middle = scaled(plus(low, high), 0.5);
-        let middle = if is_finite(middle) { middle } else { [0.0; 3] };
-        let form = shape.translated(scaled(middle, -1.0));
+        let middle = (low + high) * 0.5;
+        let middle = if middle.is_finite() {
+            middle
+        } else {
+            Vector::ZERO
+        };
+        let form = shape.translated(-middle);
         Self {
             friction: 0.5,
             ..Self::new(form, middle, MotionType::Dynamic { mass })
@@ -259,7 +262,7 @@ impl RigidBody {
     /// Returns the body rotated about a point [m], velocities and target included.
     #[must_use]
     pub fn rotated_about(self, rotation: Rotation, point: Vector) -> Self {
-        let apart = minus(rotation.apply_about(self.position, point), self.position);
+        let apart = rotation.apply_about(self.position, point) - self.position;
         let mut rotated = self.translated(apart).rotated(rotation);
         rotated.rotate_velocity(rotation);
         rotated
@@ -268,8 +271,8 @@ impl RigidBody {
     /// Returns the body translated `by` [m], target included.
     #[must_use]
     pub fn translated(self, by: Vector) -> Self {
-        let position = plus(self.position, by);
-        let goal = plus(self.goal, by);
+        let position = self.position + by;
+        let goal = self.goal + by;
         Self {
             position,
             position_before: position,
@@ -339,7 +342,7 @@ impl RigidBody {
         let positions = [&mut self.position, &mut self.goal, &mut self.goal_before];
         let others = [&mut self.position_before, &mut self.velocity];
         for vector in positions.into_iter().chain(others) {
-            vector[D::N..].fill(0.0);
+            *vector = flat::<D>(*vector);
         }
         let rotations = [&mut self.rotation_before, &mut self.rotation_goal];
         for rotation in rotations.into_iter().chain([&mut self.rotation]) {
@@ -356,14 +359,14 @@ impl RigidBody {
     fn clear_unused_motion(&mut self) {
         if self.motion_type == MotionType::Fixed {
             // The body may have been kinematic or coupled before.
-            (self.velocity, self.goal_velocity) = ([0.0; 3], [0.0; 3]);
+            (self.velocity, self.goal_velocity) = (Vector::ZERO, Vector::ZERO);
             self.stay();
         }
         if matches!(
             self.motion_type,
             MotionType::Fixed | MotionType::Coupled { .. }
         ) {
-            self.angular_velocity = [0.0; 3];
+            self.angular_velocity = Vector::ZERO;
         }
     }
 
@@ -444,7 +447,7 @@ impl RigidBody {
         self.require_target()?;
         let expected = "within 1e6 m of the origin";
         require(is_within_reach(goal), "position", expected, goal)?;
-        self.goal[..D::N].copy_from_slice(&goal[..D::N]);
+        self.goal = flat::<D>(goal);
         Ok(())
     }
 
@@ -461,12 +464,12 @@ impl RigidBody {
     /// Starts a tick of `duration` [s], in which the target moves at a constant velocity.
     pub(crate) fn start_tick(&mut self, duration: f32) {
         (self.position_before, self.rotation_before) = (self.position, self.rotation);
-        self.goal_velocity = scaled(minus(self.goal, self.goal_before), 1.0 / duration);
+        self.goal_velocity = (self.goal - self.goal_before) * (1.0 / duration);
         if self.follows_target() && self.rotation != self.rotation_goal
             || self.motion_type == MotionType::Kinematic
         {
             let way = self.rotation.inverse().then(self.rotation_goal);
-            self.angular_velocity = scaled(way.scaled_axis(), 1.0 / duration);
+            self.angular_velocity = way.scaled_axis() * (1.0 / duration);
         }
         self.reactions.clear();
     }
@@ -479,25 +482,25 @@ impl RigidBody {
             self.stand_at(self.position, self.rotation_goal);
         }
         if matches!(self.motion_type, MotionType::Coupled { .. }) {
-            self.angular_velocity = [0.0; 3];
+            self.angular_velocity = Vector::ZERO;
         }
-        let is_finite = is_finite(self.velocity) && is_finite(self.angular_velocity);
+        let is_finite = self.velocity.is_finite() && self.angular_velocity.is_finite();
         if !is_finite || !is_within_reach(self.position) {
             self.stand_at(self.position_before, self.rotation_before);
-            (self.velocity, self.angular_velocity) = ([0.0; 3], [0.0; 3]);
+            (self.velocity, self.angular_velocity) = (Vector::ZERO, Vector::ZERO);
             self.reactions.fill(Reaction::default());
         }
     }
 
     /// Applies the virtual coupling, or the velocity of a kinematic body, for `duration` [s].
     pub(crate) fn pull(&mut self, duration: f32) {
-        self.goal_before = plus(self.goal_before, scaled(self.goal_velocity, duration));
+        self.goal_before += self.goal_velocity * duration;
         let mut reaction = Reaction::default();
         match self.motion_type {
             MotionType::Fixed => return,
             MotionType::Dynamic { .. } => {}
             MotionType::Kinematic => {
-                self.velocity = scaled(minus(self.goal_before, self.position), 1.0 / duration);
+                self.velocity = (self.goal_before - self.position) * (1.0 / duration);
             }
             MotionType::Coupled {
                 mass,
@@ -508,17 +511,17 @@ impl RigidBody {
                 // Limits the stiffness to the stability limit of this substep.
                 let stiffness = stiffness.min(0.25 * mass / (duration * duration));
                 let damper = 2.0 * damping * (stiffness * mass).sqrt();
-                let stretch = minus(self.goal_before, self.position);
-                let slip = minus(self.goal_velocity, self.velocity);
-                let wish = plus(scaled(stretch, stiffness), scaled(slip, damper));
-                let strength = length(wish);
+                let stretch = self.goal_before - self.position;
+                let slip = self.goal_velocity - self.velocity;
+                let wish = stretch * stiffness + slip * damper;
+                let strength = wish.length();
                 let force = if strength > limit {
-                    scaled(wish, limit / strength)
+                    wish * (limit / strength)
                 } else {
                     wish
                 };
-                self.velocity = plus(self.velocity, scaled(force, duration / mass));
-                reaction.coupling = scaled(force, -1.0);
+                self.velocity += force * (duration / mass);
+                reaction.coupling = -force;
             }
         }
         self.reactions.push(reaction);
@@ -541,7 +544,7 @@ impl RigidBody {
     /// Adds a torque [N m] to the reaction of this substep.
     pub(crate) fn twist(&mut self, torque: Vector) {
         if let Some(reaction) = self.reactions.last_mut() {
-            reaction.torque = plus(reaction.torque, torque);
+            reaction.torque += torque;
         }
     }
 

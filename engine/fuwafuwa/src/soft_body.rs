@@ -27,7 +27,7 @@ use crate::foundation::dim::{Dim, Point};
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{ElementId, NodeId};
 use crate::material::Material;
-use crate::math::vector::{as_row, dot, three};
+use crate::math::vector::Vector;
 use crate::soft_body::element_forces::{ElementBatches, Row};
 use crate::soft_body::element_law::Law;
 use crate::soft_body::momentum::Momentum;
@@ -42,6 +42,7 @@ pub(crate) use body_state::MAX_GRAVITY_SCALE;
 use body_state::State;
 use body_topology::Topology;
 use caches::Cache;
+use glam::DVec3;
 
 /// Courant number of a substep: the largest fraction of a voxel that the fastest pressure wave may travel.
 ///
@@ -126,7 +127,7 @@ impl<D: Dim> SoftBody<D> {
         body.make_room();
         for (id, node) in body.topology.mesh.nodes() {
             let at = node.at.map(|k| k as f32 * body.topology.grid.voxel_size());
-            body.state.position[id] = as_row(at);
+            body.state.position[id] = Row::from(Vector::from(at));
         }
         body.state.ahead.clone_from(&body.state.position);
         let elements: Vec<ElementId> = body.topology.mesh.elements().map(|(id, _)| id).collect();
@@ -248,10 +249,10 @@ impl<D: Dim> SoftBody<D> {
     ///
     /// # Panics
     /// If the id was never used.
-    pub fn node_state(&self, id: NodeId) -> ([f32; 3], [f32; 3], f32) {
+    pub fn node_state(&self, id: NodeId) -> (Vector, Vector, f32) {
         (
-            three(self.state.position[id]),
-            three(self.state.velocity[id]),
+            self.state.position[id].xyz(),
+            self.state.velocity[id].xyz(),
             self.state.mass[id],
         )
     }
@@ -261,11 +262,11 @@ impl<D: Dim> SoftBody<D> {
     ///
     /// # Panics
     /// If the id was never used.
-    pub fn set_node_state(&mut self, id: NodeId, position: [f32; 3], velocity: [f32; 3]) -> bool {
-        let finite = position.iter().chain(&velocity).all(|k| k.is_finite());
+    pub fn set_node_state(&mut self, id: NodeId, position: Vector, velocity: Vector) -> bool {
+        let finite = position.is_finite() && velocity.is_finite();
         if finite {
-            self.state.position[id][..D::N].copy_from_slice(&position[..D::N]);
-            self.state.velocity[id][..D::N].copy_from_slice(&velocity[..D::N]);
+            self.state.position[id][..D::N].copy_from_slice(&position.as_ref()[..D::N]);
+            self.state.velocity[id][..D::N].copy_from_slice(&velocity.as_ref()[..D::N]);
             self.state.ahead[id] = self.state.position[id];
             self.state.placed = true;
         }
@@ -276,23 +277,23 @@ impl<D: Dim> SoftBody<D> {
     ///
     /// # Panics
     /// If the id was never used.
-    pub fn force_on(&self, id: NodeId) -> [f32; 3] {
-        three(self.state.blocks.force_on(id))
+    pub fn force_on(&self, id: NodeId) -> Vector {
+        self.state.blocks.force_on(id).xyz()
     }
 
     /// Linear and angular momentum of the whole body about the origin.
     #[inline(never)]
     pub fn momentum(&self) -> Momentum {
         let ids: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
-        Momentum::of(self.states(&ids), [0.0; 3])
+        Momentum::of(self.states(&ids), DVec3::ZERO)
     }
 
     /// Kinetic energy [J].
     #[inline(never)]
     pub fn kinetic_energy(&self) -> f64 {
         let states = self.topology.mesh.nodes().map(|(id, _)| {
-            let velocity = self.state.velocity[id].map(f64::from);
-            0.5 * f64::from(self.state.mass[id]) * dot(velocity, velocity)
+            let velocity = self.state.velocity[id].xyz().as_dvec3();
+            0.5 * f64::from(self.state.mass[id]) * velocity.dot(velocity)
         });
         states.sum()
     }

@@ -22,7 +22,6 @@ use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::fracture::crack_growth::{Failure, failures};
 use crate::fracture::knife::{Knife, Knives};
-use crate::math::vector::{is_finite, plus, three};
 use crate::object_ref::ObjectRef;
 use crate::query::query_cache::QueryCache;
 use crate::rigid_body::RigidBodies;
@@ -194,7 +193,7 @@ impl<D: Dim> World<D> {
             }
             let released = |failure: &Failure| Event::NodeSplit {
                 body: id,
-                point: three(body.state.position[failure.node]),
+                point: body.state.position[failure.node].xyz(),
                 energy: failure.energy,
             };
             self.events.extend(failures.iter().map(released));
@@ -240,8 +239,8 @@ impl<D: Dim> World<D> {
             rigid.pull(duration);
             if rigid.is_dynamic() && rigid.moves() {
                 let field = hooks.field.map(|field| field(rigid.position()));
-                let field = field.filter(|pull| is_finite(*pull));
-                let pull = field.map_or(gravity, |field| plus(gravity, field));
+                let field = field.filter(|pull| pull.is_finite());
+                let pull = field.map_or(gravity, |field| gravity + field);
                 rigid.fall::<D>(pull, drag, duration);
             }
         }

@@ -8,11 +8,11 @@ use fuwafuwa::{
 };
 use std::collections::BTreeSet;
 
-const UP: [f32; 3] = [0.0, 1.0, 0.0];
+const UP: Vector = Vector::Y;
 
 fn floored<D: Dim>() -> (World<D>, RigidBodyHandle) {
     let mut world = World::new(WorldConfig::default()).unwrap();
-    let floor = RigidBody::fixed(Shape::half_space(UP, [0.0; 3]), 0.5);
+    let floor = RigidBody::fixed(Shape::half_space(UP, Vector::ZERO), 0.5);
     let floor = world.add_rigid_body(floor).unwrap();
     (world, floor)
 }
@@ -30,13 +30,13 @@ fn ball<D: Dim>(world: &mut World<D>, height: f32) -> SoftBodyHandle {
     };
     let grid = VoxelGrid::<D>::ball(10, 1.0).unwrap();
     let body = SoftBody::new(grid, &[rubber]).unwrap();
-    world.add_soft_body(body.translated([0.0, height, 0.0]))
+    world.add_soft_body(body.translated(Vector::new(0.0, height, 0.0)))
 }
 
 fn crate_of(height: f32, half: f32) -> RigidBody {
     let shape = Shape::Box {
-        centre: [0.5, height, 0.5],
-        half: [half; 3],
+        centre: Vector::new(0.5, height, 0.5),
+        half: Vector::splat(half),
     };
     RigidBody::dynamic(shape, 1.0)
 }
@@ -145,8 +145,8 @@ fn rigid_contact_event_reports_impulse_and_speed() {
 fn sensors_tell<D: Dim>() {
     let (mut world, _) = floored::<D>();
     let gate = Shape::Box {
-        centre: [0.5, 2.5, 0.5],
-        half: [4.0, 0.2, 2.0],
+        centre: Vector::new(0.5, 2.5, 0.5),
+        half: Vector::new(4.0, 0.2, 2.0),
     };
     let mut gate = RigidBody::fixed(gate, 0.5);
     gate.is_sensor = true;

@@ -1,11 +1,11 @@
 //! Crumbs under pressure: none stays embedded in a larger piece.
 
 use fuwafuwa::inspect::Elasticity;
-use fuwafuwa::inspect::vector::{cross, dot, length, minus, plus, scaled};
 use fuwafuwa::{
     Dim, Dim2, Dim3, Material, PieceId, RigidBody, Shape, SoftBody, Vector, VoxelGrid, World,
     WorldConfig,
 };
+use glam::DVec3;
 
 /// A crumb counts as embedded in a piece if its centre is in an element and at least this far from all faces
 /// [voxels].
@@ -15,10 +15,10 @@ const SMALL: u32 = 16;
 
 /// Returns twice the area of a triangle, or six times the volume of a tetrahedron.
 fn volume<D: Dim>(points: &[Vector]) -> f32 {
-    let [a, b] = [1, 2].map(|k| minus(points[k], points[0]));
+    let [a, b] = [1, 2].map(|k| points[k] - points[0]);
     match D::N {
         2 => a[0] * b[1] - a[1] * b[0],
-        _ => dot(cross(a, b), minus(points[3], points[0])),
+        _ => a.cross(b).dot(points[3] - points[0]),
     }
 }
 
@@ -70,8 +70,8 @@ fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
             .facets()
             .map(|facet| {
                 let corners = &facet.corners[..2 * (D::N - 1)];
-                let sum = corners.iter().copied().fold([0.0; 3], plus);
-                (facet.piece, scaled(sum, 1.0 / corners.len() as f32))
+                let sum = corners.iter().sum::<Vector>();
+                (facet.piece, sum * (1.0 / corners.len() as f32))
             })
             .collect();
         for view in body.element_views() {
@@ -92,7 +92,7 @@ fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
                         continue;
                     }
                     let mut faces = faces.iter().filter(|(piece, _)| *piece == view.piece);
-                    if faces.all(|(_, face)| length(minus(*face, at)) > DEPTH * size) {
+                    if faces.all(|(_, face)| (*face - at).length() > DEPTH * size) {
                         inside.push((own, crumb.number));
                     }
                 }
@@ -147,7 +147,7 @@ fn check<D: Dim>(
 
 fn weightless<D: Dim>() -> World<D> {
     let settings = WorldConfig {
-        gravity: [0.0; 3],
+        gravity: Vector::ZERO,
         drag: 1.0,
         most_substeps: 64,
         ..WorldConfig::default()
@@ -158,7 +158,7 @@ fn weightless<D: Dim>() -> World<D> {
 /// A hand presses dust into a body against a wall, grinds to and fro, and retreats.
 fn check_grinding<D: Dim>(n: usize, least: usize) {
     let mut world = weightless::<D>();
-    let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.05, 0.0, 0.0]);
+    let wall = Shape::half_space(Vector::NEG_X, Vector::new(1.05, 0.0, 0.0));
     world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
     let tough = Material {
         strength: f32::INFINITY,
@@ -169,16 +169,16 @@ fn check_grinding<D: Dim>(n: usize, least: usize) {
     let mut dust = ball(n / 3, 0.33);
     dust.crumble();
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    world.add_soft_body(dust.translated([-0.36, 0.33, depth - 0.17]));
+    world.add_soft_body(dust.translated(Vector::new(-0.36, 0.33, depth - 0.17)));
     world
-        .add_rigid_body(RigidBody::coupled_ball([-0.55, 0.5, depth], 0.2))
+        .add_rigid_body(RigidBody::coupled_ball(Vector::new(-0.55, 0.5, depth), 0.2))
         .unwrap();
     check(world, 240, 30, least, |seconds| {
         let in_and_out = seconds.min(0.8) - (seconds - 2.2).max(0.0);
         let turn = 2.0 * (seconds - 0.8).clamp(0.0, 1.4);
         // To and fro twice a second.
         let to_and_fro = 0.3 * ((turn - turn.floor() - 0.5).abs() - 0.5);
-        [-0.55 + 1.25 * in_and_out, 0.5 + to_and_fro, depth]
+        Vector::new(-0.55 + 1.25 * in_and_out, 0.5 + to_and_fro, depth)
     });
 }
 
@@ -193,22 +193,22 @@ fn dust_leaves_body_after_grinding() {
 #[test]
 fn crumbs_stay_outside_halves_of_torn_disc() {
     let mut world = weightless::<Dim2>();
-    let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.15, 0.0, 0.0]);
+    let wall = Shape::half_space(Vector::NEG_X, Vector::new(1.15, 0.0, 0.0));
     world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
     let disc = VoxelGrid::ball(64, 1.0).unwrap();
     world.add_soft_body(SoftBody::new(disc, &[Material::default()]).unwrap());
     world
-        .add_rigid_body(RigidBody::coupled_ball([-0.3, 0.55, 0.0], 0.08))
+        .add_rigid_body(RigidBody::coupled_ball(Vector::new(-0.3, 0.55, 0.0), 0.08))
         .unwrap();
     check(world, 150, 30, 20, |seconds| {
-        [-0.3 + 0.9 * seconds.min(1.5), 0.55, 0.0]
+        Vector::new(-0.3 + 0.9 * seconds.min(1.5), 0.55, 0.0)
     });
 }
 
 /// Dust that starts inside a body drifts out slowly, and momentum is preserved.
 fn check_way_out<D: Dim>(n: usize) {
     let mut world = World::<D>::new(WorldConfig {
-        gravity: [0.0; 3],
+        gravity: Vector::ZERO,
         ..WorldConfig::default()
     })
     .unwrap();
@@ -220,14 +220,14 @@ fn check_way_out<D: Dim>(n: usize) {
     let mut dust = SoftBody::new(ball(n / 4, 0.25), &[tough]).unwrap();
     dust.crumble();
     let depth = if D::N == 3 { 0.37 } else { 0.0 };
-    world.add_soft_body(dust.translated([0.1, 0.37, depth]));
+    world.add_soft_body(dust.translated(Vector::new(0.1, 0.37, depth)));
     world.add_soft_body(SoftBody::new(ball(n, 1.0), &[tough]).unwrap());
     let (before, count) = crumbs_inside(&world);
     assert!(5 * before.len() > 4 * count, "{} of {count}", before.len());
     for tick in 0..60 {
         world.step();
         for crumb in world.soft_bodies().first().unwrap().piece_views() {
-            let speed = length(crumb.velocity);
+            let speed = crumb.velocity.length();
             assert!(speed < 1.5, "tick {tick}: {speed} m/s");
         }
         // Later, the body touches crumbs outside, and slow contacts are damped.
@@ -236,9 +236,9 @@ fn check_way_out<D: Dim>(n: usize) {
                 .soft_bodies()
                 .iter()
                 .map(|body| body.momentum().linear);
-            let linear = linear.fold([0.0; 3], plus);
+            let linear = linear.sum::<DVec3>();
             let most = 1e-3 * world.soft_bodies().first().unwrap().total_mass();
-            assert!(linear.iter().all(|k| k.abs() < most), "{linear:?} kg m/s");
+            assert!(linear.abs().max_element() < most, "{linear:?} kg m/s");
         }
     }
     let (after, _) = crumbs_inside(&world);
@@ -267,7 +267,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
         ..Material::default()
     };
     let settings = WorldConfig {
-        gravity: [0.0; 3],
+        gravity: Vector::ZERO,
         drag: 0.0,
         most_substeps: substeps,
         ..WorldConfig::default()
@@ -289,7 +289,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
         .collect();
     for &node in &nodes {
         let (at, _, _) = body.node_state(node);
-        body.set_node_state(node, at, scaled(minus(at, crumb.centre), 0.1));
+        body.set_node_state(node, at, (at - crumb.centre) * 0.1);
     }
     for _ in 0..60 {
         world.step();
@@ -320,7 +320,7 @@ fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
         ..WorldConfig::default()
     };
     let mut world = World::<D>::new(settings).unwrap();
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
     let crumb = VoxelGrid::<D>::cube(1, VOXEL).unwrap();
     world.add_soft_body(SoftBody::new(crumb, &[Material::default()]).unwrap());
@@ -332,8 +332,8 @@ fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
     let mut heavy = Material::default();
     heavy.density *= 10.0;
     let block = SoftBody::new(block, &[heavy]).unwrap();
-    let thrown = block.with_velocity([0.0, -speed, 0.0]);
-    world.add_soft_body(thrown.translated([-0.3 * VOXEL, 4.0 * VOXEL, -0.2 * VOXEL]));
+    let thrown = block.with_velocity(Vector::new(0.0, -speed, 0.0));
+    world.add_soft_body(thrown.translated(Vector::new(-0.3 * VOXEL, 4.0 * VOXEL, -0.2 * VOXEL)));
     let mut lowest = f32::INFINITY;
     for _ in 0..20 {
         world.step();

@@ -1,15 +1,15 @@
 //! Regression tests: each comment describes the former fault.
 
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Event, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid,
-    World, WorldConfig,
+    Blade, Dim, Dim2, Dim3, Event, Material, MotionType, RigidBody, Shape, SoftBody, Vector,
+    VoxelGrid, World, WorldConfig,
 };
 use std::time::Duration;
 
 fn weightless<D: Dim>() -> World<D> {
     let gravity = [0.0; 3];
     let settings = WorldConfig {
-        gravity,
+        gravity: gravity.into(),
         ..WorldConfig::default()
     };
     World::new(settings).expect("the settings are valid")
@@ -26,9 +26,9 @@ fn check_cut_twice<D: Dim>(n: usize) {
     let mut world = weightless::<D>();
     let id = world.add_soft_body(ball(n));
     let blade = Blade {
-        from: [0.5, -1.0, -1.0],
-        across: [0.0, 3.0, 0.0],
-        along: [0.0, 0.0, 3.0],
+        from: Vector::new(0.5, -1.0, -1.0),
+        across: Vector::new(0.0, 3.0, 0.0),
+        along: Vector::new(0.0, 0.0, 3.0),
     };
     let first = world.cut(id, &blade).unwrap();
     let points = (n - 1) * (D::N - 1);
@@ -42,9 +42,9 @@ fn check_cut_twice<D: Dim>(n: usize) {
     assert_eq!((world.cut(id, &blade).unwrap(), told(&world)), (0, first));
     // A crossing blade releases only new nodes.
     let across = Blade {
-        from: [-1.0, 0.5, -1.0],
-        across: [3.0, 0.0, 0.0],
-        along: [0.0, 0.0, 3.0],
+        from: Vector::new(-1.0, 0.5, -1.0),
+        across: Vector::new(3.0, 0.0, 0.0),
+        along: Vector::new(0.0, 0.0, 3.0),
     };
     assert!(world.cut(id, &across).unwrap() >= points);
     assert_eq!(world.cut(id, &across).unwrap(), 0);
@@ -61,8 +61,8 @@ fn cut_releases_nothing_along_same_blade() {
 fn place<D: Dim>(body: &mut SoftBody<D>, to: impl Fn([f32; 3]) -> [f32; 3]) {
     let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in ids {
-        let at = to(body.node_state(id).0);
-        assert!(body.set_node_state(id, at, [0.0; 3]));
+        let at = to(body.node_state(id).0.to_array());
+        assert!(body.set_node_state(id, at.into(), Vector::ZERO));
     }
 }
 
@@ -81,7 +81,7 @@ fn turns() -> [fn([f32; 3]) -> [f32; 3]; 5] {
 fn fastest<D: Dim>(body: &SoftBody<D>) -> f32 {
     let speeds = body.mesh().nodes().map(|(id, _)| {
         let speed = body.node_state(id).1;
-        speed.iter().map(|k| k * k).sum::<f32>().sqrt()
+        speed.length()
     });
     speeds.fold(0.0, f32::max)
 }
@@ -123,8 +123,8 @@ fn cut_keeps_turned_body_at_rest() {
                     id,
                     &Blade {
                         from,
-                        across,
-                        along
+                        across: across.into(),
+                        along: along.into()
                     }
                 )
                 .unwrap()
@@ -171,10 +171,10 @@ fn crumble_detaches_every_voxel() {
 #[test]
 fn coupled_body_from_3d_stays_in_plane() {
     let mut space = weightless::<Dim3>();
-    let hand = RigidBody::coupled_ball([0.0, 0.0, 0.5], 0.1);
+    let hand = RigidBody::coupled_ball(Vector::new(0.0, 0.0, 0.5), 0.1);
     space.add_rigid_body(hand).expect("the hand is valid");
     space
-        .set_target_position(space.nth_target_follower(0).unwrap(), [0.0, 0.0, 1.0])
+        .set_target_position(space.nth_target_follower(0).unwrap(), Vector::Z)
         .unwrap();
     space.step();
     let hand = space.remove(space.nth_target_follower(0).unwrap()).unwrap();
@@ -242,12 +242,12 @@ fn quarantine_spares_ball_around_non_finite_crumb() {
         world.add_soft_body(ball(16));
         let grid = VoxelGrid::cube(1, 1.0 / 16.0).expect("a cube is not empty");
         let crumb = SoftBody::new(grid, &[Material::default()]).expect("the material is valid");
-        let crumb = world.add_soft_body(crumb.translated([0.45, 0.45, 0.0]));
+        let crumb = world.add_soft_body(crumb.translated(Vector::new(0.45, 0.45, 0.0)));
         for _ in 0..3 {
             world.step();
         }
         let crumb = world.soft_body_mut(crumb).unwrap();
-        *crumb = crumb.clone().with_velocity([0.0, nowhere, 0.0]);
+        *crumb = crumb.clone().with_velocity(Vector::new(0.0, nowhere, 0.0));
         let mut quarantined = 0;
         for _ in 0..10 {
             quarantined += world.step().quarantined;
@@ -266,7 +266,7 @@ fn quarantine_spares_ball_around_non_finite_crumb() {
 fn check_zeros<D: Dim>(n: usize) {
     let run = |zero: f32| {
         let settings = WorldConfig {
-            gravity: [zero, -9.81, zero],
+            gravity: Vector::new(zero, -9.81, zero),
             drag: zero,
             ..WorldConfig::default()
         };
@@ -280,24 +280,24 @@ fn check_zeros<D: Dim>(n: usize) {
         };
         let grid = VoxelGrid::ball(n, 1.0).expect("a ball is not empty");
         let body = SoftBody::new(grid, &[material]).expect("the material is valid");
-        let middle = body.clone().translated([-0.5, zero, zero]);
-        world.add_soft_body(middle.with_velocity([zero; 3]));
+        let middle = body.clone().translated(Vector::new(-0.5, zero, zero));
+        world.add_soft_body(middle.with_velocity(Vector::splat(zero)));
         let normal = [zero, 1.0, zero];
         let floor = Shape::HalfSpace {
-            normal,
+            normal: normal.into(),
             offset: zero,
         };
         world
             .add_rigid_body(RigidBody::fixed(floor, zero))
             .expect("the floor is valid");
-        let hand =
-            RigidBody::coupled_ball([zero, 1.2, 0.5], 0.1).with_motion_type(MotionType::Kinematic);
+        let hand = RigidBody::coupled_ball(Vector::new(zero, 1.2, 0.5), 0.1)
+            .with_motion_type(MotionType::Kinematic);
         let hand = world.add_rigid_body(hand).expect("the hand is valid");
         let mut released = 0;
         for tick in 0..40u8 {
             let goal = [zero, 1.2 - 0.02 * f32::from(tick), 0.5];
             world
-                .set_target_position(hand, goal)
+                .set_target_position(hand, goal.into())
                 .expect("the target is valid");
             released += world.step().nodes_split;
         }

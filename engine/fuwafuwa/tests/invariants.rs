@@ -10,6 +10,7 @@ use fuwafuwa::inspect::Remodelled;
 use fuwafuwa::inspect::{Elasticity, forces};
 use fuwafuwa::inspect::{neighbourhood, points_in};
 use fuwafuwa::{Dim, Dim2, Dim3, Point, VoxelGrid};
+use glam::DVec3;
 
 /// A small reproducible random generator (xorshift64*).
 struct Random(u64);
@@ -161,7 +162,7 @@ fn assert_uniform_strain_leaves_inner_nodes_at_rest<D: Dim>(
     let elasticity = Elasticity::new(1000.0, 0.3).unwrap();
     let strain = [[1.12, 0.07, 0.0], [-0.21, 0.91, 0.05], [0.0, 0.11, 1.04]];
     let deformed = |at: Point| {
-        let mut x = [0.0; 3];
+        let mut x = DVec3::ZERO;
         for i in 0..D::N {
             x[i] = (0..D::N).map(|j| strain[i][j] * f64::from(at[j])).sum();
         }

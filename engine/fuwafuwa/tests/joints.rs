@@ -8,13 +8,11 @@ use fuwafuwa::{
 };
 use std::f32::consts::TAU;
 
-type Vector = [f32; 3];
-
-const UP: Vector = [0.0, 1.0, 0.0];
+const UP: Vector = Vector::Y;
 
 fn world<D: Dim>(gravity: f32) -> World<D> {
     World::new(WorldConfig {
-        gravity: [0.0, gravity, 0.0],
+        gravity: Vector::new(0.0, gravity, 0.0),
         ..WorldConfig::default()
     })
     .unwrap()
@@ -39,12 +37,12 @@ fn soft<D: Dim>(world: &mut World<D>, middle: Vector) -> SoftBodyHandle {
     let body = SoftBody::new(grid, &[rubber(0.08)]).unwrap();
     let z = if D::N == 2 { 0.0 } else { 0.5 };
     let by = [middle[0] - 0.5, middle[1] - 0.5, middle[2] - z];
-    world.add_soft_body(body.translated(by))
+    world.add_soft_body(body.translated(by.into()))
 }
 
 fn ball<D: Dim>(world: &mut World<D>, at: Vector, mass: f32) -> RigidBodyHandle {
     let shape = Shape::Ball {
-        centre: at,
+        centre: at.into(),
         radius: 0.1,
     };
     world
@@ -53,7 +51,10 @@ fn ball<D: Dim>(world: &mut World<D>, at: Vector, mass: f32) -> RigidBodyHandle 
 }
 
 fn on(rigid: RigidBodyHandle, at: Vector) -> JointAnchor {
-    JointAnchor::RigidBody { rigid, at }
+    JointAnchor::RigidBody {
+        rigid,
+        at: at.into(),
+    }
 }
 
 fn apart(a: Vector, b: Vector) -> f32 {
@@ -69,20 +70,23 @@ fn turns(joints: usize, broken: &[Event]) -> usize {
 /// A pendulum swings for a minute. Its energy never exceeds the initial energy, and it keeps swinging.
 fn no_energy_comes_from<D: Dim>(tie: JointKind) {
     let mut world = world::<D>(-9.81);
-    let bob = ball(&mut world, [1.0, 0.0, 0.0], 2.0);
+    let bob = ball(&mut world, Vector::new(1.0, 0.0, 0.0), 2.0);
     let at = match tie {
         JointKind::Rope { .. } => [1.0, 0.0, 0.0],
         _ => [0.0; 3],
     };
-    let joint = Joint::new([on(bob, at), JointAnchor::Position([0.0; 3])], tie);
+    let joint = Joint::new(
+        [on(bob, at.into()), JointAnchor::Position(Vector::ZERO)],
+        tie,
+    );
     world.add_joint(joint).unwrap();
     let (mut lowest, mut most) = (0.0f32, f32::MIN);
     for tick in 0..3600 {
         world.step();
         let rigid = &world.rigid_bodies()[bob];
-        let [x, y, _] = rigid.position();
-        let speed = rigid.velocity().iter().map(|k| k * k).sum::<f32>();
-        let spin = rigid.angular_velocity().iter().map(|k| k * k).sum::<f32>();
+        let [x, y, _] = rigid.position().to_array();
+        let speed = rigid.velocity().length_squared();
+        let spin = rigid.angular_velocity().length_squared();
         // Moment of inertia: 2/5 m r² for a ball, m r²/2 for a disc.
         let share = if D::N == 2 { 0.5 } else { 0.4 };
         most = most.max(speed + share * 0.01 * spin + 2.0 * 9.81 * y);
@@ -104,23 +108,26 @@ fn pendulum_gains_no_energy_with_pin_and_rope() {
 
 fn it_hangs_on_a_nail<D: Dim>() {
     let mut world = world::<D>(-9.81);
-    let id = soft(&mut world, [0.0; 3]);
+    let id = soft(&mut world, Vector::ZERO);
     let top = [0.0, 0.5, 0.0];
     let end = JointAnchor::Soft {
         body: id,
-        at: top,
+        at: top.into(),
         radius: 0.25,
     };
     let nail = world
-        .add_joint(Joint::pin(end, JointAnchor::Position(top)))
+        .add_joint(Joint::pin(end, JointAnchor::Position(top.into())))
         .unwrap();
     for _ in 0..600 {
         world.step();
     }
     let [held, place] = world.joint_anchor_positions(nail).unwrap().unwrap();
-    assert!(apart(held, place) < 0.01, "{held:?}");
+    assert!(
+        apart(held.to_array().into(), place.to_array().into()) < 0.01,
+        "{held:?}"
+    );
     let body = &world.soft_bodies()[id];
-    let [x, y, z] = body.centre_of_mass();
+    let [x, y, z] = body.centre_of_mass().to_array();
     assert!(
         (-0.9..0.1).contains(&y) && x.abs() < 0.05 && z.abs() < 0.05,
         "{x} {y} {z}"
@@ -145,31 +152,42 @@ fn pinned_soft_body_hangs_until_joint_is_removed() {
 fn it_follows<D: Dim>() {
     let mut world = world::<D>(0.0);
     let arm = Shape::Box {
-        centre: [0.0; 3],
-        half: [1.0, 0.05, 0.05],
+        centre: Vector::ZERO,
+        half: Vector::new(1.0, 0.05, 0.05),
     };
-    let arm = RigidBody::new(arm, [0.0; 3], MotionType::Kinematic);
+    let arm = RigidBody::new(arm, Vector::ZERO, MotionType::Kinematic);
     let arm = world.add_rigid_body(arm).unwrap();
-    let id = soft(&mut world, [1.6, 0.0, 0.0]);
+    let id = soft(&mut world, Vector::new(1.6, 0.0, 0.0));
     let tip = [1.1, 0.0, 0.0];
     let end = JointAnchor::Soft {
         body: id,
-        at: tip,
+        at: tip.into(),
         radius: 0.2,
     };
-    let pin = world.add_joint(Joint::pin(end, on(arm, tip))).unwrap();
+    let pin = world
+        .add_joint(Joint::pin(end, on(arm, tip.into())))
+        .unwrap();
     let [first, place] = world.joint_anchor_positions(pin).unwrap().unwrap();
-    assert!(apart(first, place) < 1e-6 && apart(first, tip) < 0.2);
+    assert!(
+        apart(first.to_array().into(), place.to_array().into()) < 1e-6
+            && apart(first.to_array().into(), tip.into()) < 0.2
+    );
     for tick in 1..=300 {
         let share = tick as f32 / 300.0;
         let angle = TAU * share * share * (3.0 - 2.0 * share);
-        let way = Rotation::about([0.0, 0.0, 1.0], angle);
+        let way = Rotation::about(Vector::Z, angle);
         world.set_target_rotation(arm, way).unwrap();
         world.step();
         let [held, place] = world.joint_anchor_positions(pin).unwrap().unwrap();
-        assert!(apart(held, place) < 0.02, "{tick}: {held:?} {place:?}");
+        assert!(
+            apart(held.to_array().into(), place.to_array().into()) < 0.02,
+            "{tick}: {held:?} {place:?}"
+        );
         // The pin stays at the initial centre of the nodes.
-        assert!(apart(place, way.apply(first)) < 1e-3, "{tick}: {place:?}");
+        assert!(
+            apart(place.to_array().into(), way.apply(first).to_array().into()) < 1e-3,
+            "{tick}: {place:?}"
+        );
     }
 }
 
@@ -182,10 +200,10 @@ fn pinned_soft_body_follows_rotating_arm() {
 #[test]
 fn pin_keeps_two_soft_bodies_together() {
     let mut world = world::<Dim3>(0.0);
-    let [a, b] = [-0.55, 0.55].map(|x| soft(&mut world, [x, 0.0, 0.0]));
+    let [a, b] = [-0.55, 0.55].map(|x| soft(&mut world, Vector::new(x, 0.0, 0.0)));
     let end = |body: SoftBodyHandle, x: f32| JointAnchor::Soft {
         body,
-        at: [x, 0.0, 0.0],
+        at: Vector::new(x, 0.0, 0.0),
         radius: 0.2,
     };
     let pin = world
@@ -198,7 +216,7 @@ fn pin_keeps_two_soft_bodies_together() {
         world.step();
     }
     let [held, place] = world.joint_anchor_positions(pin).unwrap().unwrap();
-    assert!(apart(held, place) < 0.02);
+    assert!(apart(held.to_array().into(), place.to_array().into()) < 0.02);
     // Momentum is shared.
     let [a, b] = [a, b].map(|id| world.soft_bodies()[id].momentum().linear[0]);
     let mass = world.soft_bodies().iter().next().unwrap().total_mass();
@@ -213,13 +231,16 @@ fn pin_keeps_two_soft_bodies_together() {
 #[test]
 fn spring_oscillates_at_natural_frequency() {
     let mut world = world::<Dim3>(0.0);
-    let bob = ball(&mut world, [1.5, 0.0, 0.0], 2.0);
+    let bob = ball(&mut world, Vector::new(1.5, 0.0, 0.0), 2.0);
     let tie = JointKind::Spring {
         stiffness: 80.0,
         damping: 0.0,
         length: 1.0,
     };
-    let ends = [on(bob, [1.5, 0.0, 0.0]), JointAnchor::Position([0.0; 3])];
+    let ends = [
+        on(bob, Vector::new(1.5, 0.0, 0.0)),
+        JointAnchor::Position(Vector::ZERO),
+    ];
     world.add_joint(Joint::new(ends, tie)).unwrap();
     let mut crossings = Vec::new();
     let mut before = 0.5;
@@ -347,13 +368,16 @@ fn parallel_springs_break_above_their_share_of_the_load() {
 #[test]
 fn very_stiff_spring_keeps_length() {
     let mut world = world::<Dim2>(-9.81);
-    let bob = ball(&mut world, [0.0, -1.0, 0.0], 2.0);
+    let bob = ball(&mut world, Vector::new(0.0, -1.0, 0.0), 2.0);
     let tie = JointKind::Spring {
         stiffness: 1e9,
         damping: 0.0,
         length: 1.0,
     };
-    let ends = [on(bob, [0.0, -1.0, 0.0]), JointAnchor::Position([0.0; 3])];
+    let ends = [
+        on(bob, Vector::new(0.0, -1.0, 0.0)),
+        JointAnchor::Position(Vector::ZERO),
+    ];
     world.add_joint(Joint::new(ends, tie)).unwrap();
     for _ in 0..300 {
         world.step();
@@ -364,25 +388,25 @@ fn very_stiff_spring_keeps_length() {
 #[test]
 fn chain_of_ten_ropes_keeps_length() {
     let mut world = world::<Dim3>(-9.81);
-    let mut above = JointAnchor::Position([0.0; 3]);
+    let mut above = JointAnchor::Position(Vector::ZERO);
     let mut links = Vec::new();
     for k in 0..10 {
         let at = [0.25 * (k + 1) as f32, 0.0, 0.0];
-        let link = ball(&mut world, at, 0.5);
+        let link = ball(&mut world, at.into(), 0.5);
         world
             .add_joint(Joint::new(
-                [on(link, at), above],
+                [on(link, at.into()), above],
                 JointKind::Rope { length: 0.25 },
             ))
             .unwrap();
-        above = on(link, at);
+        above = on(link, at.into());
         links.push(link);
     }
     let (mut longest, mut lowest) = (0.0f32, 0.0f32);
     for _ in 0..1200 {
         world.step();
         let end = world.rigid_bodies()[links[9]].position();
-        longest = longest.max(apart(end, [0.0; 3]));
+        longest = longest.max(apart(end.to_array().into(), Vector::ZERO));
         lowest = lowest.min(end[1]);
     }
     assert!(longest < 2.7, "{longest}");
@@ -394,14 +418,16 @@ fn chain_of_ten_ropes_keeps_length() {
 fn chain_of_pins_stays_at_rest_under_load() {
     for heavy in [1.0, 10.0, 20.0] {
         let mut world = world::<Dim3>(-9.81);
-        let mut above = JointAnchor::Position([0.0; 3]);
+        let mut above = JointAnchor::Position(Vector::ZERO);
         let mut links = Vec::new();
         for k in 0..10 {
             let at = [0.0, -0.25 * (k + 1) as f32, 0.0];
-            let link = ball(&mut world, at, if k == 9 { heavy } else { 1.0 });
+            let link = ball(&mut world, at.into(), if k == 9 { heavy } else { 1.0 });
             let top = [0.0, -0.25 * k as f32, 0.0];
-            world.add_joint(Joint::pin(on(link, top), above)).unwrap();
-            above = on(link, at);
+            world
+                .add_joint(Joint::pin(on(link, top.into()), above))
+                .unwrap();
+            above = on(link, at.into());
             links.push(link);
         }
         let mut fastest = 0.0f32;
@@ -409,7 +435,7 @@ fn chain_of_pins_stays_at_rest_under_load() {
             world.step();
             for &link in &links {
                 let speed = world.rigid_bodies()[link].velocity();
-                fastest = fastest.max(apart(speed, [0.0; 3]));
+                fastest = fastest.max(apart(speed.to_array().into(), Vector::ZERO));
             }
         }
         assert!(fastest < 0.2, "{heavy}: {fastest}");
@@ -421,10 +447,10 @@ fn joint_breaks_above_breaking_force_with_event() {
     for (bears, holds) in [(60.0, true), (30.0, false)] {
         let mut world = world::<Dim3>(-9.81);
         // Load when hanging: 39.2 N.
-        let bob = ball(&mut world, [0.0, -1.0, 0.0], 4.0);
+        let bob = ball(&mut world, Vector::new(0.0, -1.0, 0.0), 4.0);
         let ends = [
-            on(bob, [0.0, -1.0, 0.0]),
-            JointAnchor::Position([0.0, -1.0, 0.0]),
+            on(bob, Vector::new(0.0, -1.0, 0.0)),
+            JointAnchor::Position(Vector::NEG_Y),
         ];
         let joint = Joint::new(ends, JointKind::Pin).with_breaking_force(bears);
         let id = world.add_joint(joint).unwrap();
@@ -442,7 +468,7 @@ fn joint_breaks_above_breaking_force_with_event() {
 #[test]
 fn joint_breaks_when_body_is_removed() {
     let mut world = world::<Dim3>(-9.81);
-    let id = soft(&mut world, [0.0; 3]);
+    let id = soft(&mut world, Vector::ZERO);
     let end = JointAnchor::Soft {
         body: id,
         at: UP,
@@ -468,11 +494,11 @@ fn pin_keeps_voxels_while_body_crumbles() {
     let at = [0.5, 0.95, 0.5];
     let end = JointAnchor::Soft {
         body: id,
-        at,
+        at: at.into(),
         radius: 0.0,
     };
     let pin = world
-        .add_joint(Joint::pin(end, JointAnchor::Position(at)))
+        .add_joint(Joint::pin(end, JointAnchor::Position(at.into())))
         .unwrap();
     for _ in 0..30 {
         world.step();
@@ -481,7 +507,10 @@ fn pin_keeps_voxels_while_body_crumbles() {
     for _ in 0..60 {
         world.step();
         let [held, place] = world.joint_anchor_positions(pin).unwrap().unwrap();
-        assert!(apart(held, place) < 0.15, "{held:?}");
+        assert!(
+            apart(held.to_array().into(), place.to_array().into()) < 0.15,
+            "{held:?}"
+        );
     }
     assert!(world.soft_bodies()[id].centre_of_mass()[1] < -2.0);
 }
@@ -489,8 +518,8 @@ fn pin_keeps_voxels_while_body_crumbles() {
 #[test]
 fn add_joint_names_invalid_field() {
     let mut world = world::<Dim2>(-9.81);
-    let bob = ball(&mut world, [0.0; 3], 1.0);
-    let good = [on(bob, [0.0; 3]), JointAnchor::Position([0.0; 3])];
+    let bob = ball(&mut world, Vector::ZERO, 1.0);
+    let good = [on(bob, Vector::ZERO), JointAnchor::Position(Vector::ZERO)];
     let spring = |stiffness, damping, length| JointKind::Spring {
         stiffness,
         damping,
@@ -524,15 +553,15 @@ fn add_joint_names_invalid_field() {
 fn slow_kinematic_body_moves_sleeping_load_by_joint() {
     let mut world = world::<Dim3>(-9.81);
     let crane = Shape::Ball {
-        centre: [0.0; 3],
+        centre: Vector::ZERO,
         radius: 0.1,
     };
     let crane = world
-        .add_rigid_body(RigidBody::new(crane, [0.0; 3], MotionType::Kinematic))
+        .add_rigid_body(RigidBody::new(crane, Vector::ZERO, MotionType::Kinematic))
         .unwrap();
-    let load = ball(&mut world, [0.0, -1.0, 0.0], 1.0);
+    let load = ball(&mut world, Vector::new(0.0, -1.0, 0.0), 1.0);
     let low = [0.0, -1.0, 0.0];
-    let ends = [on(load, low), on(crane, low)];
+    let ends = [on(load, low.into()), on(crane, low.into())];
     world.add_joint(Joint::new(ends, JointKind::Pin)).unwrap();
     for _ in 0..120 {
         world.step();
@@ -540,7 +569,7 @@ fn slow_kinematic_body_moves_sleeping_load_by_joint() {
     assert!(world.rigid_bodies()[load].is_asleep());
     for tick in 1..=240 {
         world
-            .set_target_position(crane, [0.0, 0.05 * tick as f32 / 60.0, 0.0])
+            .set_target_position(crane, Vector::new(0.0, 0.05 * tick as f32 / 60.0, 0.0))
             .unwrap();
         world.step();
     }

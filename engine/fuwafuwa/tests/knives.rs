@@ -7,12 +7,12 @@ use fuwafuwa::{
 };
 
 const NO_GRAVITY: WorldConfig = WorldConfig {
-    gravity: [0.0; 3],
+    gravity: Vector::ZERO,
     drag: 0.0,
     most_substeps: 64,
     tick: 1.0 / 60.0,
 };
-const DOWN: Vector = [0.0, -1.0, 0.0];
+const DOWN: Vector = Vector::NEG_Y;
 
 /// A block centred above the origin, fixed at its bottom. The cutting edge lies along the third axis.
 fn block<D: Dim>(
@@ -25,7 +25,7 @@ fn block<D: Dim>(
     let [x, _, z] = size.map(|k| k as f32 * voxel);
     let depth = if D::N == 3 { -0.5 * z } else { 0.0 };
     let body = SoftBody::new(grid, &[material]).unwrap();
-    let mut body = body.translated([-0.5 * x, 0.0, depth]);
+    let mut body = body.translated(Vector::new(-0.5 * x, 0.0, depth));
     let bottom: Vec<_> = body
         .mesh()
         .nodes()
@@ -55,7 +55,7 @@ fn knife<D: Dim>(
     holder.is_sensor = true;
     let holder = world.add_rigid_body(holder).unwrap();
     let edge = [[0.0, 0.0, -half], [0.0, 0.0, half]];
-    let mut knife = Knife::new(holder, edge, DOWN);
+    let mut knife = Knife::new(holder, edge.map(Vector::from), DOWN);
     knife.radius = radius;
     (holder, world.add_knife(knife).unwrap())
 }
@@ -75,7 +75,7 @@ fn go<D: Dim>(
     for tick in 1..=ticks {
         let share = tick as f32 / ticks as f32;
         let goal = [0, 1, 2].map(|k: usize| from[k] + share * way[k]);
-        world.set_target_position(holder, goal).unwrap();
+        world.set_target_position(holder, goal.into()).unwrap();
         world.step();
         each(world);
     }
@@ -109,22 +109,27 @@ fn force_in_slab<D: Dim>(
     let body = block(&mut world, size, voxel, Material::default());
     let top = size[1] as f32 * voxel;
     // Not in a plane of the voxel lattice.
-    let (holder, id) = knife(&mut world, [0.13 * voxel, top + 0.01, 0.0], 0.2, radius);
-    let turned = Rotation::about([0.0, 1.0, 0.0], turned);
+    let (holder, id) = knife(
+        &mut world,
+        Vector::new(0.13 * voxel, top + 0.01, 0.0),
+        0.2,
+        radius,
+    );
+    let turned = Rotation::about(Vector::Y, turned);
     world.set_target_rotation(holder, turned).unwrap();
     world.step();
     let (mut forces, mut sums) = (Vec::new(), [0.0; 2]);
     go(
         &mut world,
         holder,
-        [0.13 * voxel, 0.3 * top, 0.0],
+        Vector::new(0.13 * voxel, 0.3 * top, 0.0),
         0.1,
         |world| {
             let at = world.rigid_bodies()[holder].position()[1];
             if at < 0.8 * top {
                 forces.push(world.knives().get(id).unwrap().force()[1]);
                 let torque = world.knives().get(id).unwrap().torque();
-                assert!(torque.iter().all(|k| k.is_finite()));
+                assert!(torque.is_finite());
             }
             let [area, work] = cut(world);
             sums = [sums[0] + area, sums[1] + work];
@@ -169,12 +174,17 @@ fn pressed_before<D: Dim>(size: [usize; 3], radius: f32) -> f32 {
     let mut world = World::<D>::new(NO_GRAVITY).unwrap();
     block(&mut world, size, voxel, Material::default());
     let top = size[1] as f32 * voxel;
-    let (holder, _) = knife(&mut world, [0.13 * voxel, top + 0.005, 0.0], 0.15, radius);
+    let (holder, _) = knife(
+        &mut world,
+        Vector::new(0.13 * voxel, top + 0.005, 0.0),
+        0.15,
+        radius,
+    );
     let mut first = None;
     go(
         &mut world,
         holder,
-        [0.13 * voxel, 0.5 * top, 0.0],
+        Vector::new(0.13 * voxel, 0.5 * top, 0.0),
         0.1,
         |world| {
             if first.is_none() && cut(world) != [0.0; 2] {
@@ -205,13 +215,15 @@ fn goes_through<D: Dim>(size: [usize; 3], slant: f32) {
     let body = block(&mut world, size, voxel, Material::default());
     let top = size[1] as f32 * voxel;
     let start = [0.13 * voxel - 0.5 * slant, top + 0.02, 0.0];
-    let (holder, id) = knife(&mut world, start, 0.15, 0.0);
+    let (holder, id) = knife(&mut world, start.into(), 0.15, 0.0);
     let (mut area, mut most) = (0.0, 0.0f32);
     let end = [start[0] + slant, -0.02, 0.0];
     // The blade points in the direction of motion.
     let turned = Rotation::in_plane(libm::atanf(slant / (top + 0.04)));
     world.set_target_rotation(holder, turned).unwrap();
-    go(&mut world, holder, end, 0.5, |world| area += cut(world)[0]);
+    go(&mut world, holder, end.into(), 0.5, |world| {
+        area += cut(world)[0]
+    });
     validated(&world, body);
     let large = |world: &World<D>| {
         let pieces = world.soft_bodies()[body].piece_views();
@@ -235,10 +247,10 @@ fn goes_through<D: Dim>(size: [usize; 3], slant: f32) {
     );
     // The same way back and forth again: nothing is left to cut.
     let mut again = 0.0;
-    go(&mut world, holder, start, 0.5, |world| {
+    go(&mut world, holder, start.into(), 0.5, |world| {
         again += cut(world)[0]
     });
-    go(&mut world, holder, end, 0.5, |world| {
+    go(&mut world, holder, end.into(), 0.5, |world| {
         again += cut(world)[0];
         most = most.max(world.knives().get(id).unwrap().force()[1]);
     });
@@ -266,16 +278,19 @@ fn coupled_knife_cuts_only_with_enough_force() {
             damping: 1.0,
             limit: pull,
         };
-        let mut holder = RigidBody::coupled_ball([0.003, 0.25, 0.0], 0.01).with_motion_type(drive);
+        let mut holder =
+            RigidBody::coupled_ball(Vector::new(0.003, 0.25, 0.0), 0.01).with_motion_type(drive);
         holder.is_sensor = true;
         let holder = world.add_rigid_body(holder).unwrap();
         let edge = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]];
-        world.add_knife(Knife::new(holder, edge, DOWN)).unwrap();
+        world
+            .add_knife(Knife::new(holder, edge.map(Vector::from), DOWN))
+            .unwrap();
         let mut area = 0.0;
         for tick in 0..240 {
             let deep = 0.1f32.max(0.25 - 0.001 * tick as f32);
             world
-                .set_target_position(holder, [0.003, deep, 0.0])
+                .set_target_position(holder, Vector::new(0.003, deep, 0.0))
                 .unwrap();
             world.step();
             area += cut(&world)[0];
@@ -291,10 +306,22 @@ fn coupled_knife_cuts_only_with_enough_force() {
 fn blade_face_pushes_sideways() {
     let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
     let body = block(&mut world, [16, 12, 8], 0.02, Material::default());
-    let (holder, id) = knife(&mut world, [0.003, 0.26, 0.0], 0.1, 0.0);
-    go(&mut world, holder, [0.003, 0.12, 0.0], 0.2, |_| {});
+    let (holder, id) = knife(&mut world, Vector::new(0.003, 0.26, 0.0), 0.1, 0.0);
+    go(
+        &mut world,
+        holder,
+        Vector::new(0.003, 0.12, 0.0),
+        0.2,
+        |_| {},
+    );
     let before = world.soft_bodies()[body].centre_of_mass()[0];
-    go(&mut world, holder, [0.013, 0.12, 0.0], 0.05, |_| {});
+    go(
+        &mut world,
+        holder,
+        Vector::new(0.013, 0.12, 0.0),
+        0.05,
+        |_| {},
+    );
     let force = world.knives().get(id).unwrap().force()[0];
     let moved = world.soft_bodies()[body].centre_of_mass()[0] - before;
     assert!(force < -0.5, "{force} N");
@@ -306,10 +333,14 @@ fn knife_presses_unbreakable_block_and_wakes_it() {
     let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
     let body = block(&mut world, [12, 10, 6], 0.02, rubber());
     world.put_to_sleep(body).unwrap();
-    let (holder, _) = knife(&mut world, [0.003, 0.22, 0.0], 0.1, 0.0);
-    go(&mut world, holder, [0.003, 0.17, 0.0], 0.2, |world| {
-        assert_eq!(cut(world), [0.0; 2])
-    });
+    let (holder, _) = knife(&mut world, Vector::new(0.003, 0.22, 0.0), 0.1, 0.0);
+    go(
+        &mut world,
+        holder,
+        Vector::new(0.003, 0.17, 0.0),
+        0.2,
+        |world| assert_eq!(cut(world), [0.0; 2]),
+    );
     assert_eq!(world.soft_bodies()[body].piece_views().len(), 1);
     assert!(!world.soft_bodies()[body].piece_views()[0].asleep);
     let body = &world.soft_bodies()[body];
@@ -329,7 +360,7 @@ fn fixed_edge_cuts_moving_body_at_any_speed() {
         };
         let grid = VoxelGrid::cube(24, 0.24).unwrap();
         let body = SoftBody::new(grid, &[soft]).unwrap();
-        let body = world.add_soft_body(body.translated([-0.12, 0.02, 0.0]));
+        let body = world.add_soft_body(body.translated(Vector::new(-0.12, 0.02, 0.0)));
         world
             .add_velocity(body, Velocity::linear([0.0, -speed, 0.0]))
             .unwrap();
@@ -362,7 +393,7 @@ fn knife_without_height_has_finite_force_in_unbreakable_block() {
     });
     world.remove(holder).unwrap();
     world.step();
-    assert_eq!(world.knives().get(id).unwrap().force(), [0.0; 3]);
+    assert_eq!(world.knives().get(id).unwrap().force(), Vector::ZERO);
 }
 
 #[test]
@@ -373,12 +404,18 @@ fn knife_cuts_body_with_all_nodes_fixed() {
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     nodes.iter().for_each(|&id| body.fix_node(id));
     let body = world.add_soft_body(body);
-    let (holder, id) = knife(&mut world, [0.083, 0.2, 0.0], 0.1, 0.0);
+    let (holder, id) = knife(&mut world, Vector::new(0.083, 0.2, 0.0), 0.1, 0.0);
     let (mut area, mut most) = (0.0, 0.0f32);
-    go(&mut world, holder, [0.083, -0.05, 0.0], 0.2, |world| {
-        area += cut(world)[0];
-        most = most.max(world.knives().get(id).unwrap().force()[1]);
-    });
+    go(
+        &mut world,
+        holder,
+        Vector::new(0.083, -0.05, 0.0),
+        0.2,
+        |world| {
+            area += cut(world)[0];
+            most = most.max(world.knives().get(id).unwrap().force()[1]);
+        },
+    );
     assert_eq!(world.soft_bodies()[body].piece_views().len(), 2);
     assert!(
         (area - 0.16).abs() < 0.02 && most > 0.0,
@@ -389,9 +426,9 @@ fn knife_cuts_body_with_all_nodes_fixed() {
 #[test]
 fn add_knife_names_invalid_field() {
     let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
-    let (holder, id) = knife(&mut world, [0.0; 3], 0.1, 0.0);
+    let (holder, id) = knife(&mut world, Vector::ZERO, 0.1, 0.0);
     let good = world.knives().get(id).unwrap().clone();
-    let wall = RigidBody::coupled_ball([0.0; 3], 0.1).with_motion_type(MotionType::Fixed);
+    let wall = RigidBody::coupled_ball(Vector::ZERO, 0.1).with_motion_type(MotionType::Fixed);
     let wall = world.add_rigid_body(wall).unwrap();
     let change = |change: &dyn Fn(&mut Knife)| {
         let mut knife = good.clone();
@@ -399,14 +436,14 @@ fn add_knife_names_invalid_field() {
         knife
     };
     let bad = [
-        (change(&|knife| knife.edge = [[0.0; 3]; 2]), "edge"),
+        (change(&|knife| knife.edge = [Vector::ZERO; 2]), "edge"),
         (change(&|knife| knife.edge[0][1] = f32::NAN), "edge"),
-        (change(&|knife| knife.toward = [0.0; 3]), "toward"),
+        (change(&|knife| knife.toward = Vector::ZERO), "toward"),
         (
-            change(&|knife| knife.toward = [0.0, f32::NAN, 0.0]),
+            change(&|knife| knife.toward = Vector::new(0.0, f32::NAN, 0.0)),
             "toward",
         ),
-        (change(&|knife| knife.toward = [0.0, 0.0, 1.0]), "toward"),
+        (change(&|knife| knife.toward = Vector::Z), "toward"),
         (change(&|knife| knife.radius = -1.0), "radius"),
         (change(&|knife| knife.height = f32::INFINITY), "height"),
         (change(&|knife| knife.holder = wall), "holder"),

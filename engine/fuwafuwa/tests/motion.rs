@@ -24,27 +24,20 @@ fn arrange<D: Dim>(body: &mut SoftBody<D>, state: impl Fn([f32; 3]) -> ([f32; 3]
             }
         });
         let (position, velocity) = state(rest);
-        assert!(body.set_node_state(id, position, velocity));
+        assert!(body.set_node_state(id, position.into(), velocity.into()));
     }
 }
 
 /// Returns linear and angular momentum about the origin.
-fn momentum<D: Dim>(body: &SoftBody<D>) -> ([f64; 3], [f64; 3]) {
-    let (mut linear, mut angular) = ([0.0; 3], [0.0; 3]);
+fn momentum<D: Dim>(body: &SoftBody<D>) -> (DVec3, DVec3) {
+    let (mut linear, mut angular) = (DVec3::ZERO, DVec3::ZERO);
     for (id, _) in body.mesh().nodes() {
         let (x, v, mass) = body.node_state(id);
-        let (x, v, mass) = (x.map(f64::from), v.map(f64::from), f64::from(mass));
-        for axis in 0..3 {
-            let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
-            linear[axis] += mass * v[axis];
-            angular[axis] += mass * (x[j] * v[k] - x[k] * v[j]);
-        }
+        let (x, v, mass) = (x.as_dvec3(), v.as_dvec3(), f64::from(mass));
+        linear += mass * v;
+        angular += mass * x.cross(v);
     }
     (linear, angular)
-}
-
-fn length(v: [f64; 3]) -> f64 {
-    v.iter().map(|k| k * k).sum::<f64>().sqrt()
 }
 
 /// Compares the element batches in single precision with the law in double precision, on a bent, rotated
@@ -62,14 +55,14 @@ fn check_forces_against_the_law<D: Dim>(law: Law) {
     });
     // A step of zero length evaluates the forces; several let the rotations converge.
     for _ in 0..8 {
-        body.advance(0.0, [0.0; 3]);
+        body.advance(0.0, Vector::ZERO);
     }
-    let mut expected = vec![[0.0f64; 3]; body.mesh().node_capacity()];
+    let mut expected = vec![DVec3::ZERO; body.mesh().node_capacity()];
     for (_, element) in body.mesh().elements() {
-        let positions: Vec<[f64; 3]> = element
+        let positions: Vec<DVec3> = element
             .nodes
             .iter()
-            .map(|&node| body.node_state(node).0.map(f64::from))
+            .map(|&node| body.node_state(node).0.as_dvec3())
             .collect();
         let size = f64::from(element.cell.width()) / 16.0;
         let all = forces(
@@ -80,19 +73,17 @@ fn check_forces_against_the_law<D: Dim>(law: Law) {
             &positions,
         );
         for (&node, force) in element.nodes.iter().zip(all) {
-            for axis in 0..3 {
-                expected[node.index()][axis] += force[axis];
-            }
+            expected[node.index()] += force;
         }
     }
     let largest = expected
         .iter()
-        .map(|&force| length(force))
+        .map(|force| force.length())
         .fold(0.0, f64::max);
     for (id, node) in body.mesh().nodes() {
-        let found = body.force_on(id).map(f64::from);
+        let found = body.force_on(id).as_dvec3();
         let want = expected[id.index()];
-        let error = length([0, 1, 2].map(|axis: usize| found[axis] - want[axis]));
+        let error = (found - want).length();
         assert!(
             error < 2e-4 * largest,
             "{law:?} at {:?}: expected {want:?}, found {found:?}",
@@ -118,11 +109,10 @@ fn spinning_ball_preserves_angular_momentum() {
     });
     let (_, before) = momentum(&body);
     for _ in 0..5 * 960 {
-        body.advance(1.0 / 960.0, [0.0; 3]);
+        body.advance(1.0 / 960.0, Vector::ZERO);
     }
     let (_, after) = momentum(&body);
-    let kept =
-        (0..3).map(|k| before[k] * after[k]).sum::<f64>() / (length(before) * length(before));
+    let kept = before.dot(after) / before.length_squared();
     assert!((0.999..1.001).contains(&kept), "kept {kept}");
 }
 
@@ -153,16 +143,15 @@ fn check_releases_keep_momentum<D: Dim>(n: i32) {
         let side = [0b1010_1010, 0b1100_1100, 0b1111_0000][step as usize % D::N];
         body.release(&[(at, side)]);
         if step % 10 == 0 {
-            body.advance(1.0 / 960.0, [0.0; 3]);
+            body.advance(1.0 / 960.0, Vector::ZERO);
         }
     }
     body.mesh()
         .validate(body.grid(), body.connectivity())
         .unwrap();
     let (after, spin_after) = momentum(&body);
-    let drift = length([0, 1, 2].map(|k: usize| after[k] - before[k])) / length(before);
-    let spin =
-        length([0, 1, 2].map(|k: usize| spin_after[k] - spin_before[k])) / length(spin_before);
+    let drift = (after - before).length() / before.length();
+    let spin = (spin_after - spin_before).length() / spin_before.length();
     assert!((mass(&body) / mass_before - 1.0).abs() < 1e-5);
     assert!(drift < 1e-4, "linear momentum drifts by {drift}");
     assert!(spin < 1e-4, "angular momentum drifts by {spin}");
@@ -196,5 +185,5 @@ fn body_rejects_invalid_material_and_node_state() {
         "material 1: density must be positive and finite, given 0.0"
     );
     let mut body = SoftBody::new(grid(), &[Material::default()]).unwrap();
-    assert!(!body.set_node_state(NodeId(0), [f32::NAN, 0.0, 0.0], [0.0; 3]));
+    assert!(!body.set_node_state(NodeId(0), Vector::new(f32::NAN, 0.0, 0.0), Vector::ZERO));
 }

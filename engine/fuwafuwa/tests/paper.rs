@@ -9,6 +9,7 @@ use fuwafuwa::inspect::Mesh;
 use fuwafuwa::inspect::{Elasticity, forces};
 use fuwafuwa::inspect::{ElementClass, cell_corners};
 use fuwafuwa::{Dim, Dim2, Dim3, VoxelGrid};
+use glam::DVec3;
 
 fn graded<D: Dim>(grid: &VoxelGrid<D>) -> Mesh<D> {
     mesh_of(grid, Grading::Graded)
@@ -104,7 +105,7 @@ fn laws_reproduce_youngs_modulus_on_cube() {
         let positions: Vec<_> = stencil
             .offsets
             .iter()
-            .map(|r| [r[0] * 0.25 * (1.0 + strain), r[1] * 0.25, r[2] * 0.25])
+            .map(|r| *r * 0.25 * DVec3::new(1.0 + strain, 1.0, 1.0))
             .collect();
         let ideal = 2000.0 * strain * (1..D::N).fold(1.0, |area, _| area * size);
         for law in [Law::Endo2004, Law::CorotationalVem] {

@@ -5,8 +5,9 @@ use fuwafuwa::inspect::Plasticity;
 use fuwafuwa::inspect::{elastic_part, flow, forces_after};
 use fuwafuwa::{
     Blade, Dim, Dim2, Dim3, Material, MotionType, RigidBody, Shape, SoftBody, SoftBodyHandle,
-    VoxelGrid, World, WorldConfig,
+    Vector, VoxelGrid, World, WorldConfig,
 };
+use glam::DVec3;
 
 fn rubber() -> Material {
     Material {
@@ -17,7 +18,7 @@ fn rubber() -> Material {
 
 fn weightless() -> WorldConfig {
     WorldConfig {
-        gravity: [0.0; 3],
+        gravity: Vector::ZERO,
         ..WorldConfig::default()
     }
 }
@@ -31,10 +32,10 @@ fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, SoftB
     let plate = |y: f32| {
         let half = [3.0, 0.25, 3.0];
         let form = Shape::Box {
-            centre: [0.0; 3],
-            half,
+            centre: Vector::ZERO,
+            half: half.into(),
         };
-        let mut plate = RigidBody::new(form, [0.5, y, 0.0], MotionType::Kinematic);
+        let mut plate = RigidBody::new(form, Vector::new(0.5, y, 0.0), MotionType::Kinematic);
         plate.friction = 0.0;
         plate
     };
@@ -45,7 +46,7 @@ fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, SoftB
         for tick in 1..=ticks {
             let y = from + (to - from) * tick as f32 / ticks as f32;
             world
-                .set_target_position(high, [0.5, 0.25 + y, 0.0])
+                .set_target_position(high, Vector::new(0.5, 0.25 + y, 0.0))
                 .unwrap();
             let report = world.step();
             assert_eq!(report.quarantined, 0);
@@ -112,10 +113,10 @@ fn node_states<D: Dim>(world: &World<D>) -> Vec<([f32; 3], [f32; 3], f32)> {
 fn check_same_bits<D: Dim>() {
     let run = |material: Material| {
         let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        let floor = Shape::half_space(Vector::Y, Vector::ZERO);
         world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
         let body = SoftBody::new(VoxelGrid::<D>::ball(10, 1.0).unwrap(), &[material]).unwrap();
-        world.add_soft_body(body.translated([0.0, 0.2, 0.0]));
+        world.add_soft_body(body.translated(Vector::new(0.0, 0.2, 0.0)));
         (0..60).for_each(|_| _ = world.step());
         node_states(&world)
     };
@@ -158,7 +159,7 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
     let (id, element) = body.mesh().elements().next().unwrap();
     let element = element.clone();
     let stencil = body.mesh().stencil(&element).clone();
-    let mut undone = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut undone = DVec3::AXES;
     let plasticity = Plasticity {
         yield_strain: f64::from(clay.yield_strain),
         limit: f64::from(clay.plastic_limit),
@@ -167,19 +168,20 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
     for _ in 0..30 {
         for &node in &element.nodes {
             let rest = body.mesh().node(node).at.map(|k| k as f32);
-            let at = [0, 1, 2].map(|k: usize| rest[k] + 0.35 * random());
-            let mut at = at;
-            at[D::N..].fill(0.0);
-            assert!(body.set_node_state(node, at, [0.0; 3]));
+            let mut at = Vector::from(rest.map(|k| k + 0.35 * random()));
+            if D::N == 2 {
+                at.z = 0.0;
+            }
+            assert!(body.set_node_state(node, at, Vector::ZERO));
         }
-        let place = |&node: &_| body.node_state(node).0.map(f64::from);
-        let positions: Vec<[f64; 3]> = element.nodes.iter().map(place).collect();
+        let place = |&node: &_| body.node_state(node).0.as_dvec3();
+        let positions: Vec<DVec3> = element.nodes.iter().map(place).collect();
         let expected = forces_after(elasticity, &undone, &stencil, 1.0, &positions);
         let deformation = body.element_state(id).unwrap().deformation;
         let before = body.element_state(id).unwrap().energy;
         undone = flow::<D>(plasticity, elasticity, &deformation, &undone);
         // A substep of zero length moves no node.
-        body.advance(0.0, [0.0; 3]);
+        body.advance(0.0, Vector::ZERO);
         let after = body.element_state(id).unwrap().energy;
         assert!(after <= before * (1.0 + 1e-5), "energy {before} to {after}");
         for (&node, expected) in element.nodes.iter().zip(&expected) {
@@ -200,7 +202,7 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
             "{strain} for {expected}"
         );
         let left = elastic_part(&deformation, &undone);
-        assert!(left.iter().flatten().all(|k| k.is_finite()));
+        assert!(left.iter().all(|row| row.is_finite()));
     }
     body.plastic_strain(id).unwrap()
 }
@@ -230,10 +232,10 @@ fn check_kept<D: Dim>() {
         let [x, y, _] = [0, 1, 2].map(|k: usize| at[k] - 0.5);
         let mut velocity = [2.5 * x - 3.0 * y, -2.0 * y + 1.0 * x, 1.5 * x];
         velocity[D::N..].fill(0.0);
-        body.set_node_state(node, at, velocity);
+        body.set_node_state(node, at, velocity.into());
     }
     let energy = |world: &World<D>| {
-        let energies = world.soft_bodies()[id].energies([0.0; 3]);
+        let energies = world.soft_bodies()[id].energies(Vector::ZERO);
         energies.iter().map(|energy| energy.total()).sum::<f64>()
     };
     let momentum = world.soft_bodies()[id].momentum();
@@ -290,11 +292,11 @@ fn check_inherited<D: Dim>() {
     };
     let (dent, elements) = (mean(&world), world.soft_bodies()[id].mesh().element_count());
     assert!(dent > 0.1);
-    let [x, y, _] = world.soft_bodies()[id].centre_of_mass();
+    let [x, y, _] = world.soft_bodies()[id].centre_of_mass().to_array();
     let blade = Blade {
-        from: [x - 0.03, y - 2.0, -3.0],
-        across: [0.05, 4.0, 0.0],
-        along: [0.0, 0.0, 6.0],
+        from: Vector::new(x - 0.03, y - 2.0, -3.0),
+        across: Vector::new(0.05, 4.0, 0.0),
+        along: Vector::new(0.0, 0.0, 6.0),
     };
     world.cut(id, &blade).unwrap();
     let body = &world.soft_bodies()[id];
@@ -350,12 +352,12 @@ fn check_abuse<D: Dim>(seed: u32) {
         ..Material::clay()
     };
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
     let body = SoftBody::new(VoxelGrid::<D>::ball(8, 1.0).unwrap(), &[clay]).unwrap();
     let id = world.add_soft_body(body);
     let hand = world
-        .add_rigid_body(RigidBody::coupled_ball([0.5, 2.0, 0.5], 0.2))
+        .add_rigid_body(RigidBody::coupled_ball(Vector::new(0.5, 2.0, 0.5), 0.2))
         .unwrap();
     let limit = f64::from(clay.plastic_limit);
     let (mut place, mut target) = ([0.5, 2.0, 0.5], [0.5; 3]);
@@ -367,7 +369,7 @@ fn check_abuse<D: Dim>(seed: u32) {
         // elastic one.
         let goal = [0, 1, 2].map(|k: usize| place[k] + (target[k] - place[k]).clamp(-0.08, 0.08));
         place = goal;
-        world.set_target_position(hand, goal).unwrap();
+        world.set_target_position(hand, goal.into()).unwrap();
         let report = world.step();
         assert_eq!(report.quarantined, 0, "{}D, seed {seed}, tick {tick}", D::N);
     }

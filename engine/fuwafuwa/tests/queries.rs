@@ -5,14 +5,8 @@ use fuwafuwa::{
     QueryOverlap, Ray, RigidBody, Rotation, Shape, SoftBody, VoxelGrid, World, WorldConfig,
 };
 
-type Vector = [f32; 3];
-
-fn length(v: Vector) -> f32 {
-    v.iter().map(|k| k * k).sum::<f32>().sqrt()
-}
-
 const WEIGHTLESS: WorldConfig = WorldConfig {
-    gravity: [0.0; 3],
+    gravity: Vector::ZERO,
     drag: 0.0,
     most_substeps: 64,
     tick: fuwafuwa::TICK,
@@ -20,8 +14,8 @@ const WEIGHTLESS: WorldConfig = WorldConfig {
 
 /// A ball of two materials centred at the origin; material 2 fills a radius of 0.25 m.
 fn ball<D: Dim>(n: usize) -> SoftBody<D> {
-    let half = [0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 }];
-    let apart = |at: Vector| length([0, 1, 2].map(|axis: usize| at[axis] - half[axis]));
+    let half = Vector::new(0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 });
+    let apart = |at: Vector| (at - half).length();
     let size = [n, n, D::depth(n)];
     let grid = VoxelGrid::from_centres(size, 1.0 / n as f32, |at| match apart(at) {
         distance if distance < 0.25 => 2,
@@ -29,7 +23,7 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
         _ => 0,
     });
     let body = SoftBody::new(grid.unwrap(), &[Material::default(); 2]).unwrap();
-    body.translated(half.map(|k| -k))
+    body.translated(half.map(|k| -k).into())
 }
 
 /// The ball is rotated, so that no element is aligned with an axis.
@@ -38,13 +32,13 @@ fn world<D: Dim>() -> World<D> {
     world.add_soft_body(ball::<D>(16).rotated_about(Rotation::in_plane(0.4), [0.0; 3]));
     world
         .add_rigid_body(RigidBody::fixed(
-            Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]),
+            Shape::half_space(Vector::Y, Vector::new(0.0, -2.0, 0.0)),
             0.3,
         ))
         .unwrap();
     let bar = Shape::Capsule {
-        from: [3.0, -1.0, 0.0],
-        to: [3.0, 1.0, 0.0],
+        from: Vector::new(3.0, -1.0, 0.0),
+        to: Vector::new(3.0, 1.0, 0.0),
         radius: 0.25,
     };
     world.add_rigid_body(RigidBody::fixed(bar, 0.3)).unwrap();
@@ -54,9 +48,11 @@ fn world<D: Dim>() -> World<D> {
 /// Directions all around.
 fn around<D: Dim>() -> Vec<Vector> {
     let turned = |k: usize| {
-        let axis = [0.3, if D::N == 2 { 0.0 } else { 0.8 }, 1.0];
-        let axis = if D::N == 2 { [0.0, 0.0, 1.0] } else { axis };
-        Rotation::about(axis, 0.37 * k as f32).apply([1.0, 0.0, 0.0])
+        let axis = match D::N {
+            2 => Vector::Z,
+            _ => Vector::new(0.3, 0.8, 1.0),
+        };
+        Rotation::about(axis, 0.37 * k as f32).apply(Vector::X)
     };
     (0..40).map(turned).collect()
 }
@@ -141,7 +137,7 @@ fn check_nearest<D: Dim>() {
             let corners = body
                 .facets()
                 .flat_map(|facet| facet.corners.into_iter().take(D::CORNERS / 2));
-            let apart = |corner: Vector| length([0, 1, 2].map(|k: usize| corner[k] - at[k]));
+            let apart = |corner: Vector| (corner - at).length();
             let corner = corners.map(apart).fold(f32::INFINITY, f32::min);
             assert!(found.distance <= corner + 1e-5, "{found:?} {corner}");
             assert!(corner - found.distance < 1.0 / 16.0, "{found:?} {corner}");
@@ -179,7 +175,7 @@ fn check_places<D: Dim>() {
                 far if far < 0.5 => 1,
                 _ => 0,
             };
-            let at = direction.map(|k| far * k);
+            let at = direction * far;
             // At the boundary of materials, elements are of level 0, so each has a single material.
             assert_eq!(material(at), expect, "{at:?}");
         }
@@ -206,7 +202,7 @@ fn check_overlaps<D: Dim>() {
         [found.len() - soft, soft]
     };
     let probe = |x: f32, radius: f32| Shape::Ball {
-        centre: [x, 0.0, 0.0],
+        centre: Vector::new(x, 0.0, 0.0),
         radius,
     };
     assert_eq!(count(&world, probe(0.0, 0.05)), [0, 1], "inside");
@@ -215,16 +211,16 @@ fn check_overlaps<D: Dim>() {
     assert_eq!(count(&world, probe(0.0, 2.5)), [1, 1], "around it");
     assert_eq!(count(&world, probe(0.0, 2.9)), [2, 1], "as far as the bar");
     let needle = Shape::Capsule {
-        from: [-3.0, 0.013, 0.0],
-        to: [2.0, 0.013, 0.0],
+        from: Vector::new(-3.0, 0.013, 0.0),
+        to: Vector::new(2.0, 0.013, 0.0),
         radius: 0.001,
     };
     assert_eq!(count(&world, needle), [0, 1], "through it");
     // Cut in two, the body counts as two pieces.
     let blade = Blade {
-        from: [0.0, -1.0, -1.0],
-        across: [0.0, 2.0, 0.0],
-        along: [0.0, 0.0, 2.0],
+        from: Vector::new(0.0, -1.0, -1.0),
+        across: Vector::new(0.0, 2.0, 0.0),
+        along: Vector::new(0.0, 0.0, 2.0),
     };
     world.cut(body, &blade).unwrap();
     assert_eq!(count(&world, probe(0.0, 0.3)), [0, 2], "across the cut");

@@ -11,7 +11,7 @@ use fuwafuwa::{
 };
 
 const WEIGHTLESS: WorldConfig = WorldConfig {
-    gravity: [0.0; 3],
+    gravity: Vector::ZERO,
     drag: 0.0,
     most_substeps: 64,
     tick: fuwafuwa::TICK,
@@ -51,9 +51,9 @@ fn blade(seed: &mut u32) -> Blade {
     let from = [0.1 + 0.8 * number(), -1.0 - number(), -2.0];
     let along = [number() - 0.5, 4.0, number() - 0.5];
     Blade {
-        from,
-        across: along,
-        along: [0.0, 0.0, 5.0],
+        from: from.into(),
+        across: along.into(),
+        along: Vector::new(0.0, 0.0, 5.0),
     }
 }
 
@@ -67,7 +67,7 @@ fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
         ..Material::default()
     };
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor, 0.3)).unwrap();
     let body = SoftBody::new(VoxelGrid::<D>::ball(n, 1.0).unwrap(), &[soft]).unwrap();
     let id = world.add_soft_body(body);
@@ -141,9 +141,9 @@ fn halves<D: Dim>(settings: WorldConfig) -> (World<D>, SoftBodyHandle) {
     let cube = SoftBody::new(cube, &[Material::default()]).unwrap();
     let cube = world.add_soft_body(cube);
     let blade = Blade {
-        from: [0.5, -1.0, -1.0],
-        across: [0.0, 3.0, 0.0],
-        along: [0.0, 0.0, 3.0],
+        from: Vector::new(0.5, -1.0, -1.0),
+        across: Vector::new(0.0, 3.0, 0.0),
+        along: Vector::new(0.0, 0.0, 3.0),
     };
     world.cut(cube, &blade).unwrap();
     assert_eq!(world.soft_bodies()[cube].pieces().count(), 2);
@@ -218,7 +218,7 @@ fn remove_piece_has_no_effect_on_vibration_of_rest() {
                 PieceId(0) => at[1] *= 1.2,
                 _ => at[0] += 50.0,
             }
-            body.set_node_state(id, at, [0.0; 3]);
+            body.set_node_state(id, at, Vector::ZERO);
         }
     };
     far(&mut world);
@@ -238,7 +238,7 @@ fn remove_piece_has_no_effect_on_vibration_of_rest() {
 
 fn check_leaning<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor, 0.5)).unwrap();
     let cube = |n, width| {
         let strong = Material {
@@ -247,17 +247,17 @@ fn check_leaning<D: Dim>() {
         };
         SoftBody::new(VoxelGrid::<D>::cube(n, width).unwrap(), &[strong]).unwrap()
     };
-    let below = world.add_soft_body(cube(8, 0.8).translated([0.0, 0.0, 0.0]));
+    let below = world.add_soft_body(cube(8, 0.8).translated(Vector::new(0.0, 0.0, 0.0)));
     let blade = Blade {
-        from: [0.4, -1.0, -1.0],
-        across: [0.0, 3.0, 0.0],
-        along: [0.0, 0.0, 3.0],
+        from: Vector::new(0.4, -1.0, -1.0),
+        across: Vector::new(0.0, 3.0, 0.0),
+        along: Vector::new(0.0, 0.0, 3.0),
     };
     world.cut(below, &blade).unwrap();
     // One cube on each half, one elsewhere.
-    let on_left = world.add_soft_body(cube(3, 0.3).translated([0.05, 0.82, 0.2]));
-    let on_right = world.add_soft_body(cube(3, 0.3).translated([0.45, 0.82, 0.2]));
-    let far = world.add_soft_body(cube(3, 0.3).translated([5.0, 0.01, 0.0]));
+    let on_left = world.add_soft_body(cube(3, 0.3).translated(Vector::new(0.05, 0.82, 0.2)));
+    let on_right = world.add_soft_body(cube(3, 0.3).translated(Vector::new(0.45, 0.82, 0.2)));
+    let far = world.add_soft_body(cube(3, 0.3).translated(Vector::new(5.0, 0.01, 0.0)));
     let all_sleep = |world: &World<D>| {
         let pieces = world
             .soft_bodies()
@@ -319,7 +319,7 @@ fn check_ties<D: Dim>() {
     let (mut world, cube) = halves::<D>(WEIGHTLESS);
     let middle = if D::N == 3 { 0.5 } else { 0.0 };
     let sensor = Shape::Ball {
-        centre: [0.5, 0.5, middle],
+        centre: Vector::new(0.5, 0.5, middle),
         radius: 3.0,
     };
     let mut sensor = RigidBody::fixed(sensor, 0.0);
@@ -329,11 +329,11 @@ fn check_ties<D: Dim>() {
         let at = [x, 0.5, middle];
         let end = JointAnchor::Soft {
             body: cube,
-            at,
+            at: at.into(),
             radius: 0.1,
         };
         world
-            .add_joint(Joint::pin(end, JointAnchor::Position(at)))
+            .add_joint(Joint::pin(end, JointAnchor::Position(at.into())))
             .unwrap()
     });
     world.step();
@@ -441,7 +441,7 @@ fn check_outside<D: Dim>() {
     let ball = |x| {
         RigidBody::dynamic(
             Shape::Ball {
-                centre: [x, 0.0, 0.0],
+                centre: Vector::new(x, 0.0, 0.0),
                 radius: 0.2,
             },
             1.0,
@@ -450,11 +450,11 @@ fn check_outside<D: Dim>() {
     let near = world.add_rigid_body(ball(-2.1)).unwrap();
     let far = world.add_rigid_body(ball(-2.3)).unwrap();
     let hand = world
-        .add_rigid_body(RigidBody::coupled_ball([-9.0, 0.0, 0.0], 0.1))
+        .add_rigid_body(RigidBody::coupled_ball(Vector::new(-9.0, 0.0, 0.0), 0.1))
         .unwrap();
     let region = Shape::Box {
-        centre: [-0.8, 0.0, 0.0],
-        half: [1.2, 3.0, 3.0],
+        centre: Vector::new(-0.8, 0.0, 0.0),
+        half: Vector::new(1.2, 3.0, 3.0),
     };
     let removed = world.remove_outside(&region).unwrap();
     assert_eq!(
@@ -464,7 +464,7 @@ fn check_outside<D: Dim>() {
     assert!(world.rigid_bodies().get(near).is_ok() && world.rigid_bodies().get(hand).is_ok());
     assert!(world.events().contains(&Event::RigidRemoved { rigid: far }));
     let bad = Shape::Ball {
-        centre: [0.0; 3],
+        centre: Vector::ZERO,
         radius: -1.0,
     };
     let error = world.remove_outside(&bad).unwrap_err();

@@ -7,13 +7,11 @@ use fuwafuwa::{
 };
 use std::f32::consts::{FRAC_PI_4, PI};
 
-type Vector = [f32; 3];
-
-const UP: Vector = [0.0, 1.0, 0.0];
+const UP: Vector = Vector::Y;
 
 fn world<D: Dim>(gravity: f32) -> World<D> {
     let settings = WorldConfig {
-        gravity: [0.0, gravity, 0.0],
+        gravity: Vector::new(0.0, gravity, 0.0),
         ..WorldConfig::default()
     };
     World::new(settings).unwrap()
@@ -21,30 +19,30 @@ fn world<D: Dim>(gravity: f32) -> World<D> {
 
 fn floored<D: Dim>() -> World<D> {
     let mut world = world::<D>(-9.81);
-    let floor = RigidBody::fixed(Shape::half_space(UP, [0.0; 3]), 0.5);
+    let floor = RigidBody::fixed(Shape::half_space(UP, Vector::ZERO), 0.5);
     world.add_rigid_body(floor).unwrap();
     world
 }
 
 fn cube(centre: Vector, half: f32) -> Shape {
     Shape::Box {
-        centre,
-        half: [half; 3],
+        centre: centre.into(),
+        half: Vector::splat(half),
     }
 }
 
 fn bar(centre: Vector) -> Shape {
     Shape::Capsule {
-        from: [-0.4, 0.0, 0.0],
-        to: [0.4, 0.0, 0.0],
+        from: Vector::new(-0.4, 0.0, 0.0),
+        to: Vector::new(0.4, 0.0, 0.0),
         radius: 0.2,
     }
-    .translated(centre)
+    .translated(centre.into())
 }
 
 fn ball(centre: Vector) -> Shape {
     Shape::Ball {
-        centre,
+        centre: centre.into(),
         radius: 0.3,
     }
 }
@@ -55,19 +53,18 @@ fn upright(angle: f32) -> Vector {
 }
 
 fn speed(rigid: &RigidBody) -> f32 {
-    let squared = rigid.velocity().map(|k| k * k);
-    squared.iter().sum::<f32>().sqrt()
+    rigid.velocity().length()
 }
 
 /// Each shape falls tilted and settles on the floor in its lowest position.
 fn all_come_to_rest<D: Dim>() {
     let turned = match D::N {
         2 => Rotation::in_plane(0.5),
-        _ => Rotation::about([1.0, 0.3, 0.7], 0.6),
+        _ => Rotation::about(Vector::new(1.0, 0.3, 0.7), 0.6),
     };
     for (shape, height) in [
-        (cube([0.0, 1.0, 0.0], 0.3), 0.3),
-        (bar([0.0, 1.0, 0.0]), 0.2),
+        (cube(Vector::new(0.0, 1.0, 0.0), 0.3), 0.3),
+        (bar(Vector::new(0.0, 1.0, 0.0)), 0.2),
         (ball(UP), 0.3),
     ] {
         let mut world = floored::<D>();
@@ -100,7 +97,10 @@ fn a_tower_stands<D: Dim>() {
     let mut world = floored::<D>();
     let ids: Vec<RigidBodyHandle> = (0..10)
         .map(|n| {
-            let shape = cube([0.01 * (n % 3) as f32, 0.25 + 0.5 * n as f32, 0.0], 0.25);
+            let shape = cube(
+                Vector::new(0.01 * (n % 3) as f32, 0.25 + 0.5 * n as f32, 0.0),
+                0.25,
+            );
             world
                 .add_rigid_body(RigidBody::dynamic(shape, 2.0))
                 .unwrap()
@@ -111,7 +111,7 @@ fn a_tower_stands<D: Dim>() {
     }
     for (n, &id) in ids.iter().enumerate() {
         let rigid = &world.rigid_bodies()[id];
-        let [x, y, z] = rigid.position();
+        let [x, y, z] = rigid.position().to_array();
         assert!(x.abs() < 0.03 && z.abs() < 0.03, "{n}: {x} {z}");
         assert!((y - 0.25 - 0.5 * n as f32).abs() < 0.02, "{n}: {y}");
         assert!(
@@ -137,15 +137,16 @@ fn one_of_two_towers_falls<D: Dim>() {
     (material.elasticity.young, material.strength) = (2e5, f32::INFINITY);
     let mut tower = |x: f32| {
         let mut add = |rigid: RigidBody| world.add_rigid_body(rigid).unwrap();
-        let foot = add(RigidBody::fixed(cube([x, 0.25, 0.0], 0.25), 0.5));
-        let boxes = [0.75, 1.65].map(|y| add(RigidBody::dynamic(cube([x, y, 0.0], 0.25), 0.5)));
+        let foot = add(RigidBody::fixed(cube(Vector::new(x, 0.25, 0.0), 0.25), 0.5));
+        let boxes =
+            [0.75, 1.65].map(|y| add(RigidBody::dynamic(cube(Vector::new(x, y, 0.0), 0.25), 0.5)));
         let grid = VoxelGrid::<D>::cube(4, 0.4).unwrap();
         let soft = SoftBody::new(grid, std::slice::from_ref(&material)).unwrap();
         let z = if D::N == 2 { 0.0 } else { -0.2 };
         (
             foot,
             boxes,
-            world.add_soft_body(soft.translated([x - 0.2, 1.0, z])),
+            world.add_soft_body(soft.translated(Vector::new(x - 0.2, 1.0, z))),
         )
     };
     let (falling, standing) = (tower(0.0), tower(3.0));
@@ -181,7 +182,10 @@ fn it_rolls<D: Dim>() {
     let slope = 0.3f32;
     let normal = upright(slope);
     world
-        .add_rigid_body(RigidBody::fixed(Shape::half_space(normal, [0.0; 3]), 0.9))
+        .add_rigid_body(RigidBody::fixed(
+            Shape::half_space(normal.into(), Vector::ZERO),
+            0.9,
+        ))
         .unwrap();
     let start = normal.map(|k| 0.3 * k);
     let id = world
@@ -214,10 +218,13 @@ fn friction_holds_box_only_below_friction_angle() {
         let normal = upright(angle);
         // tan 0.3 = 0.31, tan 0.6 = 0.68
         world
-            .add_rigid_body(RigidBody::fixed(Shape::half_space(normal, [0.0; 3]), 0.5))
+            .add_rigid_body(RigidBody::fixed(
+                Shape::half_space(normal.into(), Vector::ZERO),
+                0.5,
+            ))
             .unwrap();
-        let shape = cube([0.0; 3], 0.3).rotated(Rotation::in_plane(-angle));
-        let shape = shape.translated(normal.map(|k| 0.3 * k));
+        let shape = cube(Vector::ZERO, 0.3).rotated(Rotation::in_plane(-angle));
+        let shape = shape.translated(normal.map(|k| 0.3 * k).into());
         let id = world
             .add_rigid_body(RigidBody::dynamic(shape, 2.0))
             .unwrap();
@@ -241,7 +248,7 @@ fn friction_holds_box_only_below_friction_angle() {
 fn ball_bounces_to_height_given_by_restitution() {
     for restitution in [0.0f32, 0.5, 0.8] {
         let mut world = floored::<Dim3>();
-        let mut rigid = RigidBody::dynamic(ball([0.0, 2.3, 0.0]), 1.0);
+        let mut rigid = RigidBody::dynamic(ball(Vector::new(0.0, 2.3, 0.0)), 1.0);
         rigid.restitution = restitution;
         let id = world.add_rigid_body(rigid).unwrap();
         let (mut hit, mut highest) = (false, 0.0f32);
@@ -264,9 +271,9 @@ fn ball_bounces_to_height_given_by_restitution() {
 
 /// Returns the linear momentum of dynamic boxes.
 fn momentum<D: Dim>(world: &World<D>, ids: &[RigidBodyHandle], mass: f32) -> Vector {
-    ids.iter().fold([0.0; 3], |sum, &id| {
+    ids.iter().fold(Vector::ZERO, |sum, &id| {
         let velocity = world.rigid_bodies()[id].velocity();
-        [0, 1, 2].map(|k: usize| sum[k] + mass * velocity[k])
+        [0, 1, 2].map(|k: usize| sum[k] + mass * velocity[k]).into()
     })
 }
 
@@ -275,7 +282,7 @@ fn collision_preserves_linear_momentum() {
     let mut world = world::<Dim3>(0.0);
     let ids = [[0.0, 0.0, 0.0], [2.0, 0.2, 0.1]].map(|at| {
         world
-            .add_rigid_body(RigidBody::dynamic(cube(at, 0.3), 2.0))
+            .add_rigid_body(RigidBody::dynamic(cube(at.into(), 0.3), 2.0))
             .unwrap()
     });
     world
@@ -299,7 +306,7 @@ fn collision_preserves_linear_momentum() {
         );
     }
     assert!(world.rigid_bodies()[ids[1]].velocity()[0] > 2.0);
-    assert!(world.rigid_bodies()[ids[1]].angular_velocity() != [0.0; 3]);
+    assert!(world.rigid_bodies()[ids[1]].angular_velocity() != Vector::ZERO);
 }
 
 /// A rigid box on a soft body sinks in a little and settles; neither is pushed away.
@@ -320,8 +327,8 @@ fn it_lies_on_a_soft_body<D: Dim>(mass: f32) {
         world.step();
     }
     let shape = Shape::Box {
-        centre: [0.5, 1.11, if D::N == 2 { 0.0 } else { 0.5 }],
-        half: [0.4, 0.1, 0.4],
+        centre: Vector::new(0.5, 1.11, if D::N == 2 { 0.0 } else { 0.5 }),
+        half: Vector::new(0.4, 0.1, 0.4),
     };
     let id = world
         .add_rigid_body(RigidBody::dynamic(shape, mass))
@@ -330,7 +337,7 @@ fn it_lies_on_a_soft_body<D: Dim>(mass: f32) {
         world.step();
     }
     let rigid = &world.rigid_bodies()[id];
-    let [_, y, _] = rigid.position();
+    let [_, y, _] = rigid.position().to_array();
     assert!((0.5..1.12).contains(&y), "{mass}: {:?}", rigid.position());
     let tilt = rigid.rotation().apply(UP)[1];
     assert!(tilt > 0.97, "{mass}: tilted, {tilt}");
@@ -349,7 +356,7 @@ fn box_rests_on_soft_body_at_any_mass() {
 fn soft_ball_pushes_and_rolls_rigid_ball() {
     let mut world = floored::<Dim3>();
     let id = world
-        .add_rigid_body(RigidBody::dynamic(ball([1.6, 0.3, 0.5]), 1.0))
+        .add_rigid_body(RigidBody::dynamic(ball(Vector::new(1.6, 0.3, 0.5)), 1.0))
         .unwrap();
     let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
     let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
@@ -375,13 +382,16 @@ fn soft_ball_pushes_and_rolls_rigid_ball() {
 fn kinematic_table_rotates_and_carries_box() {
     let mut world = world::<Dim3>(-9.81);
     let disc = Shape::Box {
-        centre: [0.0; 3],
-        half: [2.0, 0.1, 2.0],
+        centre: Vector::ZERO,
+        half: Vector::new(2.0, 0.1, 2.0),
     };
-    let table = RigidBody::new(disc, [0.0; 3], MotionType::Kinematic);
+    let table = RigidBody::new(disc, Vector::ZERO, MotionType::Kinematic);
     let table = world.add_rigid_body(table).unwrap();
     let id = world
-        .add_rigid_body(RigidBody::dynamic(cube([1.0, 0.31, 0.0], 0.2), 1.0))
+        .add_rigid_body(RigidBody::dynamic(
+            cube(Vector::new(1.0, 0.31, 0.0), 0.2),
+            1.0,
+        ))
         .unwrap();
     for tick in 1..=120 {
         // The rotation begins and ends gently, so that the box does not slip.
@@ -392,26 +402,25 @@ fn kinematic_table_rotates_and_carries_box() {
             .unwrap();
         world.step();
     }
-    let [x, _, z] = world.rigid_bodies()[id].position();
+    let [x, _, z] = world.rigid_bodies()[id].position().to_array();
     assert!(x.abs() < 0.05 && (z + 1.0).abs() < 0.05, "{x} {z}");
-    let turned = world.rigid_bodies()[table]
-        .rotation()
-        .apply([1.0, 0.0, 0.0]);
+    let turned = world.rigid_bodies()[table].rotation().apply(Vector::X);
     assert!((turned[2] + 1.0).abs() < 1e-4, "{turned:?}");
 }
 
 #[test]
 fn rotated_box_collides() {
     let mut world = world::<Dim2>(-9.81);
-    let ramp = RigidBody::fixed(cube([0.0; 3], 1.0), 0.0).rotated(Rotation::in_plane(FRAC_PI_4));
+    let ramp =
+        RigidBody::fixed(cube(Vector::ZERO, 1.0), 0.0).rotated(Rotation::in_plane(FRAC_PI_4));
     world.add_rigid_body(ramp).unwrap();
     let id = world
-        .add_rigid_body(RigidBody::dynamic(ball([0.3, 2.5, 0.0]), 1.0))
+        .add_rigid_body(RigidBody::dynamic(ball(Vector::new(0.3, 2.5, 0.0)), 1.0))
         .unwrap();
     for _ in 0..60 {
         world.step();
     }
-    let [x, y, _] = world.rigid_bodies()[id].position();
+    let [x, y, _] = world.rigid_bodies()[id].position().to_array();
     assert!(x > 1.0 && y < 1.2, "{x} {y}");
 }
 
@@ -419,14 +428,18 @@ fn rotated_box_collides() {
 fn add_rigid_names_invalid_field() {
     let mut world = floored::<Dim3>();
     let tiny = Shape::Ball {
-        centre: [0.0; 3],
+        centre: Vector::ZERO,
         radius: 1e-20,
     };
     let tiny = RigidBody::dynamic(tiny, 1e-6);
-    let endless = RigidBody::dynamic(Shape::half_space(UP, [0.0; 3]), 1.0);
-    let heavy = RigidBody::dynamic(cube([0.0; 3], 1.0), f32::NAN);
-    let off = RigidBody::new(cube(UP, 1.0), [0.0; 3], MotionType::Dynamic { mass: 1.0 });
-    let mut bouncy = RigidBody::dynamic(cube([0.0; 3], 1.0), 1.0);
+    let endless = RigidBody::dynamic(Shape::half_space(UP, Vector::ZERO), 1.0);
+    let heavy = RigidBody::dynamic(cube(Vector::ZERO, 1.0), f32::NAN);
+    let off = RigidBody::new(
+        cube(UP, 1.0),
+        Vector::ZERO,
+        MotionType::Dynamic { mass: 1.0 },
+    );
+    let mut bouncy = RigidBody::dynamic(cube(Vector::ZERO, 1.0), 1.0);
     bouncy.restitution = 2.0;
     for (rigid, word) in [
         (endless, "shape"),
@@ -439,7 +452,7 @@ fn add_rigid_names_invalid_field() {
         assert!(error.starts_with(&format!("{word} must be")), "{error}");
     }
     let id = world
-        .add_rigid_body(RigidBody::dynamic(cube([0.0; 3], 1.0), 1.0))
+        .add_rigid_body(RigidBody::dynamic(cube(Vector::ZERO, 1.0), 1.0))
         .unwrap();
     assert!(
         world
@@ -471,7 +484,13 @@ fn sleepers_hold<D: Dim>() {
     world.put_to_sleep(soft).unwrap();
     let depth = if D::N == 2 { 0.0 } else { 0.5 };
     let slow = world
-        .add_rigid_body(RigidBody::dynamic(cube([-0.4, 0.5, depth], 0.2), 1.0))
+        .add_rigid_body(RigidBody::dynamic(
+            cube(Vector::new(-0.4, 0.5, depth), 0.2),
+            1.0,
+        ))
+        .unwrap();
+    world
+        .set_velocity(slow, Vector::new(0.1, 0.0, 0.0), Vector::ZERO)
         .unwrap();
     world
         .set_velocity(slow, Velocity::linear([0.1, 0.0, 0.0]))
@@ -491,10 +510,13 @@ fn sleeping_body_stops_slow_rigid_body() {
 #[test]
 fn slow_kinematic_lift_moves_sleeping_load() {
     let mut world = world::<Dim3>(-9.81);
-    let lift = RigidBody::new(cube([0.0; 3], 0.5), [0.0; 3], MotionType::Kinematic);
+    let lift = RigidBody::new(cube(Vector::ZERO, 0.5), Vector::ZERO, MotionType::Kinematic);
     let lift = world.add_rigid_body(lift).unwrap();
     let load = world
-        .add_rigid_body(RigidBody::dynamic(cube([0.0, 0.75, 0.0], 0.25), 1.0))
+        .add_rigid_body(RigidBody::dynamic(
+            cube(Vector::new(0.0, 0.75, 0.0), 0.25),
+            1.0,
+        ))
         .unwrap();
     for _ in 0..120 {
         world.step();
@@ -502,7 +524,7 @@ fn slow_kinematic_lift_moves_sleeping_load() {
     assert!(world.rigid_bodies()[load].is_asleep());
     for tick in 1..=240 {
         world
-            .set_target_position(lift, [0.0, 0.05 * tick as f32 / 60.0, 0.0])
+            .set_target_position(lift, Vector::new(0.0, 0.05 * tick as f32 / 60.0, 0.0))
             .unwrap();
         world.step();
     }
@@ -514,7 +536,10 @@ fn slow_kinematic_lift_moves_sleeping_load() {
 fn drive_change_stops_falling_body() {
     let mut world = world::<Dim3>(-9.81);
     let id = world
-        .add_rigid_body(RigidBody::dynamic(cube([0.0; 3], 0.2), 1.0))
+        .add_rigid_body(RigidBody::dynamic(cube(Vector::ZERO, 0.2), 1.0))
+        .unwrap();
+    world
+        .set_velocity(id, Vector::ZERO, Vector::new(0.0, 3.0, 0.0))
         .unwrap();
     world
         .set_velocity(id, Velocity::angular([0.0, 3.0, 0.0]))
@@ -530,6 +555,6 @@ fn drive_change_stops_falling_body() {
         }
         let it = &world.rigid_bodies()[id];
         assert!((it.position()[1] - before[1]).abs() < 0.5, "{drive:?}");
-        assert_eq!(it.angular_velocity(), [0.0; 3]);
+        assert_eq!(it.angular_velocity(), Vector::ZERO);
     }
 }

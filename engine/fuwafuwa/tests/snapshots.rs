@@ -10,15 +10,15 @@ use fuwafuwa::{
 /// A ball that falls on a floor while a hand pushes it against a wall and through.
 fn torn_world<D: Dim>(n: usize) -> World<D> {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
-    let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
+    let wall = Shape::half_space(Vector::NEG_X, Vector::new(1.1, 0.0, 0.0));
     world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
     let ball = VoxelGrid::ball(n, 1.0).unwrap();
     let body = SoftBody::new(ball, &[Material::default()]).unwrap();
-    world.add_soft_body(body.translated([0.0, 0.05, 0.0]));
+    world.add_soft_body(body.translated(Vector::new(0.0, 0.05, 0.0)));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = RigidBody::coupled_ball([-0.3, 0.5, depth], 0.08);
+    let hand = RigidBody::coupled_ball(Vector::new(-0.3, 0.5, depth), 0.08);
     world.add_rigid_body(hand).unwrap();
     world
 }
@@ -29,7 +29,7 @@ fn push<D: Dim>(world: &mut World<D>, ticks: std::ops::Range<u32>) {
         world
             .set_target_position(
                 world.nth_target_follower(0).unwrap(),
-                [-0.3 + tick as f32 * 0.03, 0.5, depth],
+                Vector::new(-0.3 + tick as f32 * 0.03, 0.5, depth),
             )
             .unwrap();
         world.step();
@@ -59,8 +59,8 @@ fn tied_world<D: Dim>() -> World<D> {
     let mut world = torn_world::<D>(10);
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let cube = |x: f32, y: f32| Shape::Box {
-        centre: [x, y, depth],
-        half: [0.12; 3],
+        centre: Vector::new(x, y, depth),
+        half: Vector::splat(0.12),
     };
     let mut gate = RigidBody::fixed(cube(0.5, 1.3), 0.5).rotated(Rotation::in_plane(0.3));
     gate.is_sensor = true;
@@ -74,11 +74,11 @@ fn tied_world<D: Dim>() -> World<D> {
         .collect();
     let on = |k: usize, y: f32| JointAnchor::RigidBody {
         rigid: boxes[k],
-        at: [0.4, y, depth],
+        at: Vector::new(0.4, y, depth),
     };
     let ball = JointAnchor::Soft {
         body: world.nth_soft_body(0).unwrap(),
-        at: [0.5, 1.0, depth],
+        at: Vector::new(0.5, 1.0, depth),
         radius: 0.2,
     };
     let spring = JointKind::Spring {
@@ -86,7 +86,7 @@ fn tied_world<D: Dim>() -> World<D> {
         damping: 0.5,
         length: 0.3,
     };
-    let place = JointAnchor::Position([0.4, 4.0, depth]);
+    let place = JointAnchor::Position(Vector::new(0.4, 4.0, depth));
     let ties = [
         (on(0, 1.4), ball, JointKind::Pin),
         (on(1, 1.7), on(2, 2.0), spring),
@@ -143,13 +143,13 @@ fn check_cut_resumes<D: Dim>() {
     let holder = world.add_rigid_body(holder).unwrap();
     let edge = [[0.0, 0.0, -0.4], [0.0, 0.0, 0.4]];
     world
-        .add_knife(Knife::new(holder, edge, [1.0, 0.0, 0.0]))
+        .add_knife(Knife::new(holder, edge.map(Vector::from), Vector::X))
         .unwrap();
     let (mut resumed, mut cuts) = (load::<D>(&save(&world)).unwrap(), 0);
     for tick in 0..90 {
         for world in [&mut world, &mut resumed] {
             let at = [-0.2 + 0.015 * tick as f32, 0.45, depth];
-            world.set_target_position(holder, at).unwrap();
+            world.set_target_position(holder, at.into()).unwrap();
             world
                 .set_target_rotation(holder, Rotation::in_plane(0.002 * tick as f32))
                 .unwrap();
@@ -180,13 +180,15 @@ fn check_crumbs_resume<D: Dim>(n: usize) {
     let crumbs = world.add_soft_body(cube.translated([-1.5, 0.0, 0.3]));
     world.soft_body_mut(crumbs).unwrap().crumble();
     let hand = world
-        .add_rigid_body(RigidBody::coupled_ball([-3.0, 0.1, 0.5], 0.1))
+        .add_rigid_body(RigidBody::coupled_ball(Vector::new(-3.0, 0.1, 0.5), 0.1))
         .unwrap();
     let (mut mixed, mut resumed) = (0, load::<D>(&save(&world)).unwrap());
     for tick in 0..240 {
         let along = (tick as f32 - 100.0).max(0.0) * 0.02 - 3.0;
         for world in [&mut world, &mut resumed] {
-            world.set_target_position(hand, [along, 0.1, 0.5]).unwrap();
+            world
+                .set_target_position(hand, Vector::new(along, 0.1, 0.5))
+                .unwrap();
             push(world, tick.min(50)..tick.min(50) + 1);
             if tick == 45 {
                 let blade = Blade::segment([0.5, -2.0], [0.6, 2.0]);
@@ -217,8 +219,8 @@ fn check_any_state<D: Dim>(n: usize) {
     let nowhere = SoftBody::new(nowhere, &[Material::default()]).unwrap();
     let other = world.add_soft_body(
         nowhere
-            .with_velocity([f32::NAN; 3])
-            .translated([5.0, 3.0, 0.0]),
+            .with_velocity(Vector::splat(f32::NAN))
+            .translated(Vector::new(5.0, 3.0, 0.0)),
     );
     let ball = world.nth_soft_body(0).unwrap();
     for tick in 0..60 {
@@ -229,7 +231,7 @@ fn check_any_state<D: Dim>(n: usize) {
                 let held: Vec<_> = body.mesh().nodes().map(|(id, _)| id).take(9).collect();
                 for id in held {
                     body.fix_node(id);
-                    assert!(body.set_node_state(id, [0.1, 0.2, 0.3], [1.0; 3]));
+                    assert!(body.set_node_state(id, Vector::new(0.1, 0.2, 0.3), Vector::ONE));
                 }
             }
             40 => drop(world.soft_body_mut(other).unwrap().crumble()),
@@ -350,8 +352,8 @@ fn load_rejects_node_off_plane_or_non_finite() {
             }
             let change =
                 |row: &mut [u8]| row[4 * axis..][..4].copy_from_slice(&wrong.to_le_bytes());
-            check(written(at), &change);
-            check(written(velocity), &change);
+            check(written(at.to_array()), &change);
+            check(written(velocity.to_array()), &change);
         }
     }
     let lighter = |row: &mut [u8]| row.copy_from_slice(&(0.5 * mass).to_le_bytes());
@@ -365,18 +367,20 @@ fn loaded_world_continues_with_same_bits_after_changes() {
     let ball = |x: f32| {
         let grid = VoxelGrid::<Dim2>::ball(16, 1.0).unwrap();
         let body = SoftBody::new(grid, &[Material::default()]).unwrap();
-        body.translated([x, 0.02, 0.0])
+        body.translated(Vector::new(x, 0.02, 0.0))
     };
     let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
     let ids = [0.0, 0.97, 1.94].map(|x| world.add_soft_body(ball(x)));
     let (down, blade) = (
-        RigidBody::coupled_ball([1.4, 1.2, 0.0], 0.1),
+        RigidBody::coupled_ball(Vector::new(1.4, 1.2, 0.0), 0.1),
         Blade::segment([0.5, -1.0], [0.5, 2.0]),
     );
     let hand = world.add_rigid_body(down).unwrap();
-    world.set_target_position(hand, [1.4, 0.7, 0.0]).unwrap();
+    world
+        .set_target_position(hand, Vector::new(1.4, 0.7, 0.0))
+        .unwrap();
     (0..30).for_each(|_| {
         world.step();
     });
@@ -417,12 +421,12 @@ fn full_of_all<D: Dim>(n: usize) -> World<D> {
     let small = |at: [f32; 3]| {
         let grid = VoxelGrid::ball(2, 0.2).unwrap();
         let body = SoftBody::new(grid, &[Material::default()]).unwrap();
-        body.translated(at)
+        body.translated(at.into())
     };
     world.add_soft_body(small([0.4, 1.05, 0.4]));
     world.add_soft_body(small([-3.0, 0.0, 0.0]));
     world.add_soft_body(small([-2.9, 0.2, 0.0]));
-    world.add_soft_body(small([5.0, 3.0, 0.0]).with_velocity([f32::NAN; 3]));
+    world.add_soft_body(small([5.0, 3.0, 0.0]).with_velocity(Vector::splat(f32::NAN)));
     let gone = world.add_soft_body(small([-5.0, 1.0, 0.0]));
     push(&mut world, 0..40);
     world.remove(gone).unwrap();

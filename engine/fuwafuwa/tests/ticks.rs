@@ -21,7 +21,7 @@ fn world<D: Dim>(tick: f32) -> World<D> {
         ..WorldConfig::default()
     };
     let mut world = World::new(settings).unwrap();
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
     world
 }
@@ -48,7 +48,7 @@ fn check_fall<D: Dim>() {
     // In half a second a body falls 1.226 m, at any tick.
     for tick in TICKS {
         let mut world = world::<D>(tick);
-        let ball = world.add_soft_body(ball::<D>(12).translated([0.0, 5.0, 0.0]));
+        let ball = world.add_soft_body(ball::<D>(12).translated(Vector::new(0.0, 5.0, 0.0)));
         let start = world.soft_bodies()[ball].centre_of_mass()[1];
         pass(&mut world, 0.5, |_| {});
         let seconds = (0.5 / tick).round() * tick;
@@ -71,7 +71,7 @@ fn fall_distance_is_independent_of_tick() {
 /// time when it falls asleep.
 fn landing<D: Dim>(tick: f32) -> [f32; 3] {
     let mut world = world::<D>(tick);
-    let ball = world.add_soft_body(ball::<D>(12).translated([0.0, 0.5, 0.0]));
+    let ball = world.add_soft_body(ball::<D>(12).translated(Vector::new(0.0, 0.5, 0.0)));
     let (mut lowest, mut touched, mut slept) = (f32::MAX, 0.0, 0.0);
     pass(&mut world, 12.0, |world| {
         let seconds = world.ticks() as f32 * tick;
@@ -130,17 +130,17 @@ fn torn<D: Dim>(tick: f32) -> u32 {
     };
     let body = SoftBody::new(VoxelGrid::<D>::ball(12, 1.0).unwrap(), &[soft]).unwrap();
     world.add_soft_body(body);
-    let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
+    let wall = Shape::half_space(Vector::NEG_X, Vector::new(1.1, 0.0, 0.0));
     world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let hand = world
-        .add_rigid_body(RigidBody::coupled_ball([-0.3, 0.5, depth], 0.1))
+        .add_rigid_body(RigidBody::coupled_ball(Vector::new(-0.3, 0.5, depth), 0.1))
         .unwrap();
     let mut released = 0;
     for number in 1..=(1.0 / tick).round() as u32 {
         let along = -0.3 + 1.5 * number as f32 * tick;
         world
-            .set_target_position(hand, [along, 0.5, depth])
+            .set_target_position(hand, Vector::new(along, 0.5, depth))
             .unwrap();
         released += world.step().nodes_split;
     }
@@ -217,7 +217,7 @@ fn settings_reject_tick_out_of_range() {
 fn set_settings_takes_effect_immediately() {
     let usual = WorldConfig::default();
     let mut world = world::<Dim2>(TICK);
-    let ball = world.add_soft_body(ball::<Dim2>(12).translated([0.0, 50.0, 0.0]));
+    let ball = world.add_soft_body(ball::<Dim2>(12).translated(Vector::new(0.0, 50.0, 0.0)));
     let speed = |world: &World<Dim2>| {
         let body = &world.soft_bodies()[ball];
         body.momentum().linear[1] / body.total_mass()
@@ -234,7 +234,14 @@ fn set_settings_takes_effect_immediately() {
     let tick = f64::from(TICK);
     near(gain(usual).0, -9.81 * tick);
     let gravity = [0.0, 3.0, 0.0];
-    near(gain(WorldConfig { gravity, ..usual }).0, 3.0 * tick);
+    near(
+        gain(WorldConfig {
+            gravity: gravity.into(),
+            ..usual
+        })
+        .0,
+        3.0 * tick,
+    );
     let halved = WorldConfig {
         tick: 0.5 * TICK,
         ..usual
@@ -249,7 +256,7 @@ fn set_settings_takes_effect_immediately() {
     assert_eq!(gain(few).2, 8);
     let braked = WorldConfig {
         drag: 10.0,
-        gravity: [0.0; 3],
+        gravity: Vector::ZERO,
         ..usual
     };
     let (found, before, _) = gain(braked);
@@ -261,22 +268,22 @@ fn set_settings_takes_effect_immediately() {
 /// tick.
 fn check_callback<D: Dim>(tick: f32) {
     let mut world = world::<D>(tick);
-    world.add_soft_body(ball::<D>(12).translated([0.0, 0.0, 0.0]));
+    world.add_soft_body(ball::<D>(12).translated(Vector::new(0.0, 0.0, 0.0)));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     // A bar that meets the ball with one end, so that it is pushed and rotated.
     let bar = Shape::Capsule {
-        from: [-1.0, 0.0, 0.0],
-        to: [0.3, 0.0, 0.0],
+        from: Vector::NEG_X,
+        to: Vector::new(0.3, 0.0, 0.0),
         radius: 0.1,
     };
     let from = [-0.2, 1.2, depth];
-    let hand = RigidBody::new(bar, from, fuwafuwa::MotionType::default());
+    let hand = RigidBody::new(bar, from.into(), fuwafuwa::MotionType::default());
     let hand = world.add_rigid_body(hand).unwrap();
     let mut most = 0.0f32;
     for number in 1..=(0.5 / tick).round() as u32 {
         let down = (1.2 * number as f32 * tick).min(0.4);
         world
-            .set_target_position(hand, [-0.2, 1.2 - down, depth])
+            .set_target_position(hand, Vector::new(-0.2, 1.2 - down, depth))
             .unwrap();
         let mut felt = Vec::new();
         let mut time = 0.0;

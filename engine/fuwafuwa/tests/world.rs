@@ -3,13 +3,13 @@
 use fuwafuwa::Blade;
 use fuwafuwa::PieceView;
 use fuwafuwa::{
-    Dim, Dim2, Dim3, ElementId, Event, Material, NodeId, Shape, SoftBody, VoxelGrid, World,
+    Dim, Dim2, Dim3, ElementId, Event, Material, NodeId, Shape, SoftBody, Vector, VoxelGrid, World,
     WorldConfig,
 };
 use fuwafuwa::{MotionType, RigidBody};
 
 const WEIGHTLESS: WorldConfig = WorldConfig {
-    gravity: [0.0; 3],
+    gravity: Vector::ZERO,
     drag: 0.0,
     most_substeps: 64,
     tick: fuwafuwa::TICK,
@@ -47,7 +47,8 @@ fn volume_inside<D: Dim>(body: &SoftBody<D>) -> f32 {
                         + a[2] * (b[0] * c[1] - b[1] * c[0]))
                         / 6.0
                 };
-                triple(a, b, c) + triple(a, c, d)
+                triple(a.to_array(), b.to_array(), c.to_array())
+                    + triple(a.to_array(), c.to_array(), d.to_array())
             }
         }
     };
@@ -85,9 +86,9 @@ fn check_cut_in_two<D: Dim>(n: usize, blade: Blade) {
 fn cut_splits_body_in_two() {
     check_cut_in_two::<Dim2>(24, Blade::segment([0.47, -0.1], [0.55, 1.1]));
     let across = Blade {
-        from: [-0.1, 0.45, -0.1],
-        across: [1.2, 0.1, 0.0],
-        along: [0.0, 0.1, 1.2],
+        from: Vector::new(-0.1, 0.45, -0.1),
+        across: Vector::new(1.2, 0.1, 0.0),
+        along: Vector::new(0.0, 0.1, 1.2),
     };
     check_cut_in_two::<Dim3>(16, across);
 }
@@ -111,9 +112,9 @@ fn bare_faces_and_nodes_reveal_changes_of_cut() {
         .cut(
             soft,
             &Blade {
-                from,
-                across,
-                along,
+                from: from.into(),
+                across: across.into(),
+                along: along.into(),
             },
         )
         .unwrap();
@@ -122,7 +123,7 @@ fn bare_faces_and_nodes_reveal_changes_of_cut() {
     assert_eq!(told as usize, body.facets().count());
     for facet in body.facets() {
         for (node, corner) in facet.nodes.iter().zip(facet.corners) {
-            assert_eq!(body.positions()[*node][..3], corner);
+            assert_eq!(body.positions()[*node].xyz(), corner);
         }
         let (old, new) = (
             before.get(facet.element.index()),
@@ -166,7 +167,7 @@ fn short_cut_leaves_slit_in_one_piece() {
 
 fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor, 0.5)).unwrap();
     let damped = Material {
         damping: 0.3,
@@ -189,7 +190,10 @@ fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
     assert!(view.low[1] > -0.01 && view.high[1] > 0.5, "{view:?}");
     let still = world.hash();
     world.step();
-    let mut hand = RigidBody::coupled_ball([0.5, 2.0, if D::N == 3 { 0.5 } else { 0.0 }], 0.1);
+    let mut hand = RigidBody::coupled_ball(
+        Vector::new(0.5, 2.0, if D::N == 3 { 0.5 } else { 0.0 }),
+        0.1,
+    );
     hand.motion_type = MotionType::Kinematic;
     let hand = world.add_rigid_body(hand).unwrap();
     assert_ne!(world.hash(), still, "the hash must change with the tick");
@@ -242,7 +246,7 @@ fn check_slam<D: Dim>(n: usize, drive: MotionType) {
     let body = &world.soft_bodies()[soft];
     for (id, _) in body.mesh().nodes() {
         let (at, velocity, _) = body.node_state(id);
-        assert!(at.iter().chain(&velocity).all(|k| k.is_finite()));
+        assert!(at.is_finite() && velocity.is_finite());
     }
 }
 
@@ -261,7 +265,7 @@ fn inverted_body_recovers_and_stays_finite() {
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
         let (at, _, _) = body.node_state(id);
-        body.set_node_state(id, [1.0 - at[0], at[1], 0.0], [0.0; 3]);
+        body.set_node_state(id, Vector::new(1.0 - at[0], at[1], 0.0), Vector::ZERO);
     }
     let soft = world.add_soft_body(body);
     let inverted: Vec<u32> = (0..120).map(|_| world.step().inverted).collect();
@@ -281,7 +285,7 @@ fn inverted_body_recovers_and_stays_finite() {
 #[test]
 fn too_stiff_body_is_softened() {
     let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor, 0.5)).unwrap();
     let mut steel = unbreakable();
     steel.elasticity.young = 1e9;
@@ -305,8 +309,8 @@ fn check_no_tunnelling<D: Dim>(n: usize) {
         }
         world.add_soft_body(
             flying
-                .translated([-1.2, 0.0, 0.0])
-                .with_velocity([10.0, 0.0, 0.0]),
+                .translated(Vector::new(-1.2, 0.0, 0.0))
+                .with_velocity(Vector::new(10.0, 0.0, 0.0)),
         );
         world.add_soft_body(ball::<D>(n, unbreakable()));
         for tick in 0..40 {
@@ -334,17 +338,17 @@ fn fast_body_does_not_tunnel() {
 /// body, nor jump between substeps while the hand pushes in.
 fn check_smooth_reaction<D: Dim>(n: usize) {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor, 0.5)).unwrap();
     world.add_soft_body(ball::<D>(n, unbreakable()));
     let z = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = RigidBody::coupled_ball([0.5, 1.2, z], 0.15);
+    let hand = RigidBody::coupled_ball(Vector::new(0.5, 1.2, z), 0.15);
     let hand = world.add_rigid_body(hand).unwrap();
     let (mut steps, mut pressed) = (Vec::new(), Vec::new());
     for tick in 0..480u16 {
         let down = 0.5 * f32::from(tick.min(120)) / 120.0;
         world
-            .set_target_position(hand, [0.5, 1.2 - down, z])
+            .set_target_position(hand, Vector::new(0.5, 1.2 - down, z))
             .unwrap();
         world.step();
         let felt = world.rigid_bodies()[hand].reactions();
@@ -379,13 +383,13 @@ fn hand_reaction_is_smooth_between_substeps() {
 fn squash_is_equal_with_8_and_16_substeps() {
     let [eight, sixteen] = [8, 16].map(|most_substeps| {
         let mut world = World::<Dim3>::new(WorldConfig {
-            gravity: [0.0, -3.0, 0.0],
+            gravity: Vector::new(0.0, -3.0, 0.0),
             drag: 0.5,
             most_substeps,
             ..WorldConfig::default()
         })
         .unwrap();
-        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        let floor = Shape::half_space(Vector::Y, Vector::ZERO);
         world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
         let id = world.add_soft_body(ball::<Dim3>(16, unbreakable()));
         let hand = RigidBody::coupled_ball([0.5, 1.2, 0.5], 0.2);

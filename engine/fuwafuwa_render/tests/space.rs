@@ -26,14 +26,14 @@ fn take<'a>(
     world: &World<Dim3>,
     format: TextureFormat,
     change: impl Fn(&mut Frame<'a, Camera>),
-) -> Picture {
-    let (device, queue) = device();
+) -> Option<Picture> {
+    let (device, queue) = device()?;
     let mut frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], SIZE), &PALETTE);
     change(&mut frame);
     let mut renderer = Renderer::new(&device, format);
     let pixels = renderer.render_to_image(&device, &queue, world, &frame, SIZE);
     let (camera, pixels) = (frame.camera, pixels.expect("rendering an image"));
-    Picture { camera, pixels }
+    Some(Picture { camera, pixels })
 }
 
 impl Picture {
@@ -84,9 +84,10 @@ fn lightness([red, green, blue]: Colour) -> f32 {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn ball_is_warm_on_a_cool_floor_with_a_round_edge_and_a_shadow() {
-    let picture = take(&ball(), TextureFormat::Rgba8Unorm, |_| ());
+    let Some(picture) = take(&ball(), TextureFormat::Rgba8Unorm, |_| ()) else {
+        return;
+    };
     let [x, y] = picture.camera.to_pixel([0.5; 3], SIZE).unwrap();
     assert!(is_warm(picture.at_pixel([x, y], 2)));
     let floor = picture.around([-0.3, 0.0, 1.0]);
@@ -127,7 +128,6 @@ fn ball_is_warm_on_a_cool_floor_with_a_round_edge_and_a_shadow() {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn torn_face_is_paler_and_closed_cut_shows_no_gap() {
     let mut world = ball();
     let (from, across, along) = ([0.5, -0.2, -0.2], [0.0, 1.4, 0.0], [0.0, 0.0, 1.4]);
@@ -158,7 +158,10 @@ fn torn_face_is_paler_and_closed_cut_shows_no_gap() {
         body.set_node_state(id, [x + far, y, z], [0.0; 3]);
     }
     let from_right = |frame: &mut Frame<'_, Camera>| frame.camera.azimuth = 1.0;
-    let open = take(&world, TextureFormat::Rgba8Unorm, from_right);
+    let (Some(closed), Some(open)) = (closed, take(&world, TextureFormat::Rgba8Unorm, from_right))
+    else {
+        return;
+    };
     // A closed cut looks whole: the skin is warm all along it.
     for k in 0..20 {
         let rise = -0.4 + 0.07 * k as f32;
@@ -179,7 +182,6 @@ fn torn_face_is_paler_and_closed_cut_shows_no_gap() {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn cut_element_view_shows_the_colour_of_levels() {
     let world = ball();
     let picture = take(&world, TextureFormat::Rgba8Unorm, |frame| {
@@ -217,7 +219,6 @@ fn cut_element_view_shows_the_colour_of_levels() {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn sticker_is_visible_from_its_side_and_not_through_a_bar() {
     let outline = [[-0.3, -0.3], [0.3, -0.3], [0.3, 0.3], [-0.3, 0.3]].to_vec();
     let mark = Mark {
@@ -240,21 +241,22 @@ fn sticker_is_visible_from_its_side_and_not_through_a_bar() {
             frame.camera.azimuth = turn;
             frame.camera.elevation = 0.0;
         });
-        let [red, _, blue] = picture.around([0.5; 3]);
-        blue > red + 0.3
+        let [red, _, blue] = picture?.around([0.5; 3]);
+        Some(blue > red + 0.3)
     };
     let mut world = ball();
-    let from_the_front = is_seen(&world, 0.0);
+    let Some(from_the_front) = is_seen(&world, 0.0) else {
+        return;
+    };
     assert!(from_the_front);
-    assert!(!is_seen(&world, std::f32::consts::PI));
+    assert_eq!(is_seen(&world, std::f32::consts::PI), Some(false));
     let (from, to, radius) = ([0.0, 0.5, 1.2], [1.0, 0.5, 1.2], 0.1);
     let bar = Shape::Capsule { from, to, radius };
     world.add_rigid_body(RigidBody::fixed(bar, 0.2)).unwrap();
-    assert!(!is_seen(&world, 0.0));
+    assert_eq!(is_seen(&world, 0.0), Some(false));
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn ghost_is_transparent_and_hidden_by_an_equal_body() {
     let (world, mut ghost) = (floating(), floating());
     let grid = VoxelGrid::ball(16, 1.0).unwrap();
@@ -263,18 +265,19 @@ fn ghost_is_transparent_and_hidden_by_an_equal_body() {
         let picture = take(world, TextureFormat::Rgba8Unorm, |frame| {
             frame.ghost = ghost
         });
-        picture.around([0.5; 3])
+        Some(picture?.around([0.5; 3]))
     };
-    let floor = middle(&world, None);
-    let seen = middle(&world, Some(&ghost));
+    let Some(floor) = middle(&world, None) else {
+        return;
+    };
+    let seen = middle(&world, Some(&ghost)).unwrap();
     let less = lightness(floor) - lightness(seen);
     assert!((0.03..0.3).contains(&less), "{floor:?} {seen:?}");
-    let alone = middle(&ghost, None);
-    assert!(difference(alone, middle(&ghost, Some(&ghost))) < 0.01);
+    let alone = middle(&ghost, None).unwrap();
+    assert!(difference(alone, middle(&ghost, Some(&ghost)).unwrap()) < 0.01);
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn bars_hands_walls_basket_and_particles_are_visible() {
     let mut world = floating();
     let (from, to, radius) = ([0.1, 0.1, 0.2], [0.4, 0.1, 0.2], 0.06);
@@ -324,7 +327,6 @@ fn bars_hands_walls_basket_and_particles_are_visible() {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn picture_is_equal_in_every_format() {
     let formats = [
         TextureFormat::Rgba8Unorm,
@@ -333,22 +335,27 @@ fn picture_is_equal_in_every_format() {
     ];
     let world = ball();
     let pictures = formats.map(|format| take(&world, format, |_| ()));
-    for picture in &pictures {
+    for picture in pictures.iter().flatten() {
         for at in [[0.5; 3], [0.0; 3], [1.0, 0.0, 1.0]] {
-            let (seen, wanted) = (picture.around(at), pictures[0].around(at));
-            assert!(difference(seen, wanted) < 0.06, "{seen:?}, not {wanted:?}");
+            let wanted = pictures[0].as_ref().map(|first| first.around(at));
+            let seen = picture.around(at);
+            assert!(
+                wanted.is_some_and(|wanted| difference(seen, wanted) < 0.06),
+                "{seen:?}"
+            );
         }
     }
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn small_targets_and_small_buffers_render_without_error() {
     let limits = wgpu::Limits {
         max_buffer_size: 100_000,
         ..wgpu::Limits::downlevel_webgl2_defaults()
     };
-    let (device, queue) = device_with(limits);
+    let Some((device, queue)) = device_with(limits) else {
+        return;
+    };
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     for (world, size) in [(ball(), [1, 1]), (floating(), [3, 200]), (ball(), [96, 96])] {
         let mut frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], size), &PALETTE);
@@ -371,9 +378,10 @@ fn renderer_is_send_sync_static() {
 }
 
 #[test]
-#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn unchanged_triangles_are_not_uploaded_again() {
-    let (device, queue) = device();
+    let Some((device, queue)) = device() else {
+        return;
+    };
     let world = ball();
     let frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], SIZE), &PALETTE);
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);

@@ -12,9 +12,9 @@ use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, JointHandle};
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
-use crate::math::vector::length;
+
 use crate::rigid_body::shape::{Vector, flat};
-use crate::rigid_body::{FARTHEST, RigidBodies};
+use crate::rigid_body::{FARTHEST, RigidBodies, is_within_reach};
 use crate::soft_body::SoftBodies;
 use attached_anchor::AttachedAnchor;
 pub(crate) use joint_anchor::Woken;
@@ -72,10 +72,10 @@ impl Joint {
             tie,
             breaking_force: f32::INFINITY,
             anchors: [
-                AttachedAnchor::Position([0.0; 3]),
-                AttachedAnchor::Position([0.0; 3]),
+                AttachedAnchor::Position(Vector::ZERO),
+                AttachedAnchor::Position(Vector::ZERO),
             ],
-            impulse: [0.0; 3],
+            impulse: Vector::ZERO,
             force: 0.0,
         }
     }
@@ -111,7 +111,7 @@ impl Joint {
         if self.tie == JointKind::Pin {
             self.meet_soft_ends(bodies, rigids);
         }
-        (self.impulse, self.force) = ([0.0; 3], 0.0);
+        (self.impulse, self.force) = (Vector::ZERO, 0.0);
         Ok(())
     }
 
@@ -146,7 +146,7 @@ impl Joint {
                 JointAnchor::Position(at) | JointAnchor::RigidBody { at, .. } => (at, 0.0),
                 JointAnchor::Soft { at, radius, .. } => (at, radius),
             };
-            let is_near = at.iter().all(|k| k.abs() <= FARTHEST);
+            let is_near = is_within_reach(at);
             let of_anchor = |error: Error| error.of(format_args!("joint anchor {number}"));
             let expected = "within 1e6 m of the origin";
             require(is_near, "at", expected, at).map_err(of_anchor)?;
@@ -198,8 +198,8 @@ impl Joint {
     /// Returns whether a joint that was read from a file is valid.
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound<D: Dim>(&self) -> bool {
-        let is_finite = crate::math::vector::is_finite(self.impulse) && self.force >= 0.0;
-        let is_flat = self.impulse[D::N..].iter().all(|k| *k == 0.0);
+        let is_finite = self.impulse.is_finite() && self.force >= 0.0;
+        let is_flat = self.impulse.to_array()[D::N..].iter().all(|k| *k == 0.0);
         let mut both = self.anchors.iter().zip(&self.ends);
         self.check().is_ok()
             && is_finite
@@ -250,7 +250,7 @@ pub(crate) fn relax<D: Dim>(
             // Nothing attached can move, so the joint keeps its last force.
             continue;
         }
-        joint.force = length(flat::<D>(joint.impulse)) / duration;
+        joint.force = flat::<D>(joint.impulse).length() / duration;
         if joint.force > joint.breaking_force {
             broken.push(id);
         }

@@ -17,7 +17,6 @@ use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::{Dim, inner};
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::foundation::threads;
-use crate::math::vector::{as_row, cross, minus, scaled, three};
 use crate::rigid_body::RigidBodies;
 use crate::rigid_body::layers::Layers;
 use crate::soft_body::element_forces::Row;
@@ -116,13 +115,13 @@ impl Contacts {
                 if !moves && inner::<D>(velocity, velocity) < reachable * reachable {
                     continue;
                 }
-                let (gap, normal) = rigid.shape().distance(three(at));
-                let normal = as_row(normal);
+                let (gap, normal) = rigid.shape().distance(at.xyz());
+                let normal = Row::from(normal);
                 let own = match moves {
-                    true => as_row(rigid.velocity_near(three(at))),
-                    false => [0.0; 4],
+                    true => Row::from(rigid.velocity_near(at.xyz())),
+                    false => Row::ZERO,
                 };
-                let relative = minus(velocity, own);
+                let relative = velocity - own;
                 let size = body.topology.grid.voxel_size();
                 let approach = inner::<D>(relative, normal);
                 if !is_close(gap, approach, size, duration) {
@@ -145,7 +144,7 @@ impl Contacts {
                         hits.rigids.push(pair.rigid);
                     }
                 }
-                let inverse_mass = body.state.inverse_mass[node] + rigid.yields_near(three(at));
+                let inverse_mass = body.state.inverse_mass[node] + rigid.yields_near(at.xyz());
                 // For a dynamic rigid body, a sleeping node is a wall.
                 if body.state.inverse_mass[node] == 0.0 && !rigid.is_dynamic() {
                     continue;
@@ -165,7 +164,7 @@ impl Contacts {
                     node: self.motion.row(pair.body, pair.node),
                     mover: rigids.at(pair.rigid).moves().then(|| {
                         let at = bodies.at(pair.body).state.position[pair.node];
-                        let lever = minus(three(at), rigids.at(pair.rigid).position());
+                        let lever = at.xyz() - rigids.at(pair.rigid).position();
                         (pair.rigid, lever)
                     }),
                 }));
@@ -198,7 +197,7 @@ impl Contacts {
             let (mut contacts, mut hits) = (Vec::new(), Vec::new());
             for (pair, index) in pairs.iter_mut().zip(first..) {
                 let [a, b] = pair.spheres;
-                let apart = minus(centres[a.index()], centres[b.index()]);
+                let apart = centres[a.index()] - centres[b.index()];
                 let squared = inner::<D>(apart, apart);
                 let is_beyond = |touching: f32| {
                     let furthest = (1.0 + MARGIN) * touching;
@@ -224,15 +223,15 @@ impl Contacts {
                     continue;
                 }
                 let distance = squared.sqrt().max(1e-9);
-                let (mut normal, mut gap) = (scaled(apart, 1.0 / distance), distance - touching);
+                let (mut normal, mut gap) = (apart * (1.0 / distance), distance - touching);
                 if gap < 0.0 {
-                    let behind = behind_surface(bodies, both, scaled(normal, distance));
+                    let behind = behind_surface(bodies, both, normal * distance);
                     pair.met_in_front |= behind.is_none();
                     if let Some((out, ahead)) = behind.filter(|_| pair.met_in_front) {
                         (normal, gap) = (out, ahead - touching);
                     }
                 }
-                let relative = minus(all.velocities[a], all.velocities[b]);
+                let relative = all.velocities[a] - all.velocities[b];
                 let approach = inner::<D>(relative, normal);
                 if !is_close(gap, approach, touching, duration) {
                     pair.impulse.release();
@@ -316,11 +315,11 @@ impl Contacts {
                 motion.push_node(row, rigids, change, duration);
             });
             for_each(&mut self.hands, backwards, |row| {
-                let [own, other] = row.both.map(|slot| as_row(rigids.at(slot).velocity()));
-                let change = row.contact.solve::<D>(minus(own, other));
-                rigids.at_mut(row.both[0]).push(three(change), duration);
+                let [own, other] = row.both.map(|slot| Row::from(rigids.at(slot).velocity()));
+                let change = row.contact.solve::<D>(own - other);
+                rigids.at_mut(row.both[0]).push(change.xyz(), duration);
                 let other = rigids.at_mut(row.both[1]);
-                other.push(three(scaled(change, -1.0)), duration);
+                other.push((-change).xyz(), duration);
             });
             for_each(&mut self.free, backwards, |row| {
                 row.solve::<D>(rigids, duration)
@@ -374,8 +373,8 @@ impl Contacts {
         motion.store(bodies);
         for row in &self.nodes {
             if let Some((mover, lever)) = row.mover {
-                let impulse = scaled(three(row.contact.start()), -1.0 / duration);
-                rigids.at_mut(mover).twist(cross(lever, impulse));
+                let impulse = row.contact.start().xyz() * (-1.0 / duration);
+                rigids.at_mut(mover).twist(lever.cross(impulse));
             }
         }
     }
@@ -413,7 +412,7 @@ fn behind_surface<D: Dim>(
     };
     let out = wall.outward::<D>(&bodies.at(wall.body).state.position);
     let length = inner::<D>(out, out).sqrt();
-    let normal = scaled(out, sign / length.max(1e-9));
+    let normal = out * (sign / length.max(1e-9));
     let ahead = inner::<D>(apart, normal);
     let is_behind = ahead < -BEHIND * inner::<D>(apart, apart).sqrt();
     (is_behind && length > SHORTEST_WAY_OUT * wall.radius).then_some((normal, ahead))

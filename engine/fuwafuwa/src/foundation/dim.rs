@@ -3,6 +3,8 @@
 //! Lattice arithmetic is the same in both: a [`Point`] always has three coordinates, and the third one is 0
 //! in 2D. A dimension adds the number of axes ([`Dim::N`]) and the constants that follow from it.
 
+use crate::math::row::Row;
+use crate::math::vector::Vector;
 use std::fmt::Debug;
 
 /// Lattice point, voxel or cell, in lattice units. In 2D the third coordinate is 0.
@@ -91,7 +93,7 @@ pub fn scale(a: Point, k: i32) -> Point {
 
 /// Dot product over the components of the dimension; the others are 0.
 #[inline(always)]
-pub(crate) fn inner<D: Dim>(a: [f32; 4], b: [f32; 4]) -> f32 {
+pub(crate) fn inner<D: Dim>(a: Row, b: Row) -> f32 {
     let mut sum = a[0] * b[0];
     for axis in 1..D::N {
         sum += a[axis] * b[axis];
@@ -100,9 +102,9 @@ pub(crate) fn inner<D: Dim>(a: [f32; 4], b: [f32; 4]) -> f32 {
 }
 
 /// Keeps the components of a rotation that the dimension allows: in 2D only the third.
-pub(crate) fn turning<D: Dim>(mut about: [f32; 3]) -> [f32; 3] {
+pub(crate) fn turning<D: Dim>(mut about: Vector) -> Vector {
     if D::N == 2 {
-        about[..2].fill(0.0);
+        (about.x, about.y) = (0.0, 0.0);
     }
     about
 }

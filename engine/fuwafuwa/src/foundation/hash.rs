@@ -1,5 +1,7 @@
 //! Hashes and checksums, and the hash of the simulation state.
 
+use crate::math::row::Row;
+use glam::{DVec3, Vec3};
 use std::collections::BTreeMap;
 
 /// Incremental hash [FNV-1a]. Accepts bytes, for which FNV-1a is defined, or 64-bit words, which is faster
@@ -138,6 +140,27 @@ impl<T: HashState, const K: usize> HashState for [T; K] {
     #[inline]
     fn hash_state(&self, hash: &mut Hash) {
         self.iter().for_each(|item| item.hash_state(hash));
+    }
+}
+
+impl HashState for Vec3 {
+    #[inline]
+    fn hash_state(&self, hash: &mut Hash) {
+        self.to_array().hash_state(hash);
+    }
+}
+
+impl HashState for DVec3 {
+    #[inline]
+    fn hash_state(&self, hash: &mut Hash) {
+        self.to_array().hash_state(hash);
+    }
+}
+
+impl HashState for Row {
+    #[inline]
+    fn hash_state(&self, hash: &mut Hash) {
+        self.as_array().hash_state(hash);
     }
 }
 

@@ -5,7 +5,6 @@
 
 use crate::foundation::dim::{Dim, Point, voxel_around};
 use crate::foundation::ids::PieceId;
-use crate::math::vector::{cross, dot, minus, plus, scaled};
 use crate::rigid_body::shape::Vector;
 use crate::soft_body::SoftBody;
 use crate::topology::cell_hierarchy::Grading;
@@ -28,27 +27,24 @@ impl Blade {
     /// Creates a blade that cuts from one point of the plane to another [m].
     pub fn segment(from: [f32; 2], to: [f32; 2]) -> Self {
         Self {
-            from: [from[0], from[1], -0.5],
-            across: [to[0] - from[0], to[1] - from[1], 0.0],
-            along: [0.0, 0.0, 1.0],
+            from: Vector::new(from[0], from[1], -0.5),
+            across: Vector::new(to[0] - from[0], to[1] - from[1], 0.0),
+            along: Vector::Z,
         }
     }
 
     /// Whether the line between two points crosses the blade.
     fn parts(&self, a: Vector, b: Vector) -> bool {
-        let normal = cross(self.across, self.along);
-        let (over, under) = (
-            dot(normal, minus(a, self.from)),
-            dot(normal, minus(b, self.from)),
-        );
+        let normal = self.across.cross(self.along);
+        let (over, under) = (normal.dot(a - self.from), normal.dot(b - self.from));
         if (over > 0.0) == (under > 0.0) {
             return false;
         }
-        let meeting = plus(a, scaled(minus(b, a), over / (over - under)));
-        let reach = minus(meeting, self.from);
-        let squared = dot(normal, normal);
-        let first = dot(cross(reach, self.along), normal);
-        let second = dot(cross(self.across, reach), normal);
+        let meeting = a + (b - a) * (over / (over - under));
+        let reach = meeting - self.from;
+        let squared = normal.dot(normal);
+        let first = reach.cross(self.along).dot(normal);
+        let second = self.across.cross(reach).dot(normal);
         (0.0..=squared).contains(&first) && (0.0..=squared).contains(&second)
     }
 }
@@ -113,7 +109,7 @@ impl<D: Dim> SoftBody<D> {
         for (_, element) in self.topology.mesh.elements() {
             let carry = self.affine_map(element);
             for voxel in self.topology.mesh.voxels(element) {
-                let middle = carry(voxel.map(|k| k as f32 + 0.5));
+                let middle = carry(voxel.map(|k| k as f32 + 0.5).into());
                 middles[self.topology.grid.index(voxel)] = Some(middle);
             }
         }
@@ -143,7 +139,7 @@ impl<D: Dim> SoftBody<D> {
         let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
         let owner = { voxels }.find_map(|voxel| self.topology.mesh.owner(voxel))?;
         Some(self.affine_map(self.topology.mesh.element(owner)?)(
-            at.map(|k| k as f32),
+            at.map(|k| k as f32).into(),
         ))
     }
 

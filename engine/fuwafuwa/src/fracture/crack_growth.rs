@@ -17,7 +17,7 @@ use crate::foundation::ids::NodeId;
 use crate::foundation::threads;
 use crate::fracture::breakable_nodes::{BreakableNode, NodeCut};
 use crate::math::lanes::on_widest_lanes;
-use crate::math::vector::{dot, length, minus, plus, scaled};
+use crate::math::vector::Vector;
 use crate::soft_body::SoftBody;
 use crate::soft_body::cooldowns::is_near;
 use crate::soft_body::element_forces::Row;
@@ -137,31 +137,31 @@ fn is_surely_intact<D: Dim, S: Simd>(
 #[inline(never)]
 fn worst_cut<D: Dim>(body: &SoftBody<D>, id: NodeId, node: &BreakableNode) -> Option<Failure> {
     let size = body.topology.grid.voxel_size();
-    let mut forces = [[0.0; 4]; 8];
+    let mut forces = [Row::ZERO; 8];
     for (octant, force) in octants(node.group).zip(body.state.blocks.parts_on(id)) {
         forces[octant] = force;
     }
-    let total = forces.into_iter().fold([0.0; 4], plus);
+    let total = forces.into_iter().sum::<Row>();
     // Common rotation of its voxels, computed on demand.
-    let mut turn: Option<[[f32; 3]; 3]> = None;
+    let mut turn: Option<[Vector; 3]> = None;
     let mut worst: Option<(f32, f32, NodeCut)> = None;
     for cut in body.cache.breakable.cuts(node) {
-        let far = octants(cut.side).fold([0.0; 4], |sum, octant| plus(sum, forces[octant]));
-        let near = minus(total, far);
-        let pull = scaled(minus(far, near), 0.5);
+        let far = octants(cut.side).map(|octant| forces[octant]).sum::<Row>();
+        let near = total - far;
+        let pull = (far - near) * 0.5;
         let area = f32::from(cut.faces) * face_area::<D>(size);
         let is_crumb = cut.single_voxel_octants & node.crumbs != 0;
         let threshold = node.threshold * if is_crumb { CRUMB_FACTOR } else { 1.0 };
         let least = area * threshold * worst.map_or(1.0, |(excess, ..)| excess);
         // The tension is never larger than the pull.
-        if dot(pull, pull) <= least * least {
+        if pull.dot(pull) <= least * least {
             continue;
         }
         let turn = turn.get_or_insert_with(|| total_turn(body, id));
         let axis = cut.axis as usize;
-        let direction = [turn[0][axis], turn[1][axis], turn[2][axis], 0.0];
-        let normal = scaled(direction, 1.0 / length(direction).max(1e-12));
-        if dot(far, normal) <= 0.0 || dot(near, normal) >= 0.0 {
+        let direction = Row::from(Vector::new(turn[0][axis], turn[1][axis], turn[2][axis]));
+        let normal = direction * (1.0 / direction.length().max(1e-12));
+        if far.dot(normal) <= 0.0 || near.dot(normal) >= 0.0 {
             continue;
         }
         let tension = tension(pull, normal);
@@ -190,12 +190,12 @@ fn octants(mask: u8) -> impl Iterator<Item = usize> {
 }
 
 /// Returns the sum of the rotations of all elements around a node.
-fn total_turn<D: Dim>(body: &SoftBody<D>, id: NodeId) -> [[f32; 3]; 3] {
-    let mut turn = [[0.0; 3]; 3];
+fn total_turn<D: Dim>(body: &SoftBody<D>, id: NodeId) -> [Vector; 3] {
+    let mut turn = [Vector::ZERO; 3];
     for owner in body.topology.mesh.carrier_ids(id) {
         let rotation = body.state.blocks.rotation(owner);
         for row in 0..3 {
-            turn[row] = plus(turn[row], rotation[row]);
+            turn[row] += rotation[row];
         }
     }
     turn
@@ -209,8 +209,8 @@ fn face_area<D: Dim>(size: f32) -> f32 {
 
 /// Tension of a pull across a plane [N]: the opening part counts in full, the shear part by half.
 fn tension(pull: Row, normal: Row) -> f32 {
-    let opening = dot(pull, normal);
-    let shear = (dot(pull, pull) - opening * opening).max(0.0);
+    let opening = pull.dot(normal);
+    let shear = (pull.dot(pull) - opening * opening).max(0.0);
     (opening * opening + 0.25 * shear).sqrt()
 }
 

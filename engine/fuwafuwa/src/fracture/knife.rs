@@ -24,7 +24,6 @@ use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, KnifeHandle, RigidBodyHandle};
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
-use crate::math::vector::{cross, dot, is_finite, length, minus, scaled};
 use crate::rigid_body::shape::{Vector, flat};
 use crate::rigid_body::{FARTHEST, RigidBodies, RigidBody};
 #[cfg(feature = "serde")]
@@ -108,8 +107,8 @@ impl Knife {
             samples: Vec::new(),
             near: Vec::new(),
             knows_near: false,
-            force: [0.0; 3],
-            torque: [0.0; 3],
+            force: Vector::ZERO,
+            torque: Vector::ZERO,
             area: 0.0,
             work: 0.0,
         }
@@ -151,18 +150,18 @@ impl Knife {
 
     fn check_numbers<D: Dim>(&self) -> Result<(), Error> {
         let [from, to] = self.edge;
-        let is_near = |at: &Vector| at.iter().all(|k| k.abs() <= FARTHEST);
+        let is_near = |at: &Vector| at.to_array().iter().all(|k| k.abs() <= FARTHEST);
         let are_near = self.edge.iter().all(is_near);
         require(are_near, "edge", "within 1e6 m of its holder", self.edge)?;
-        let along = minus(to, from);
+        let along = to - from;
         // In 2D the edge is a point.
-        let has_length = D::N == 2 || length(along) > 0.0;
+        let has_length = D::N == 2 || along.length() > 0.0;
         require(has_length, "edge", "longer than 0", self.edge)?;
         let toward = flat::<D>(self.toward);
-        let has_direction = is_finite(self.toward) && (0.01..=100.0).contains(&length(toward));
+        let has_direction = self.toward.is_finite() && (0.01..=100.0).contains(&toward.length());
         let expected = "a direction, of a length of 0.01 to 100";
         require(has_direction, "toward", expected, self.toward)?;
-        let leans = D::N == 3 && dot(along, toward).abs() > 0.5 * length(along) * length(toward);
+        let leans = D::N == 3 && along.dot(toward).abs() > 0.5 * along.length() * toward.length();
         let expected = "across the edge, within 30°";
         require(!leans, "toward", expected, self.toward)?;
         let (radius, height) = (self.radius, self.height);
@@ -181,7 +180,7 @@ impl Knife {
         let numbers = [self.force, self.torque];
         // The holder may have been removed; the simulation handles that.
         self.check_numbers::<D>().is_ok()
-            && numbers.into_iter().all(is_finite)
+            && numbers.into_iter().all(Vector::is_finite)
             && self.work.is_finite()
             && self.area.is_finite()
             && self.samples.len() <= MOST_SAMPLES + 1
@@ -194,18 +193,18 @@ impl Knife {
         let levers = self.edge.map(|end| flat::<D>(turn(end)));
         // In 2D the edge is a point that stands for an edge along the third axis.
         let along = match D::N {
-            2 => [0.0, 0.0, 1.0],
-            _ => direction(minus(levers[1], levers[0])),
+            2 => Vector::Z,
+            _ => direction(levers[1] - levers[0]),
         };
         let toward = flat::<D>(turn(self.toward));
-        let lean = scaled(along, dot(along, toward));
-        let toward = direction(minus(toward, lean));
+        let lean = along * along.dot(toward);
+        let toward = direction(toward - lean);
         EdgePose {
             position: holder.position(),
             levers,
             along,
             toward,
-            across: cross(along, toward),
+            across: along.cross(toward),
         }
     }
 }
@@ -224,10 +223,10 @@ struct EdgePose {
 impl EdgePose {
     /// Returns the length of the edge [m].
     fn long(&self) -> f32 {
-        length(minus(self.levers[1], self.levers[0]))
+        (self.levers[1] - self.levers[0]).length()
     }
 }
 
 fn direction(vector: Vector) -> Vector {
-    scaled(vector, 1.0 / length(vector).max(f32::MIN_POSITIVE))
+    vector * (1.0 / vector.length().max(f32::MIN_POSITIVE))
 }

@@ -4,12 +4,14 @@ use crate::foundation::dim::{Dim, Point, voxel_around};
 use crate::foundation::disjoint_sets::DisjointSets;
 use crate::foundation::id_lists::ascending;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
+use crate::math::vector::Vector;
 use crate::soft_body::SoftBody;
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::momentum::{Momentum, RigidMotion, centre_of};
 use crate::topology::cell_hierarchy::Grading;
 use crate::topology::changes::Changes;
 use crate::topology::mesh::{Inheritance, Remodelled};
+use glam::DVec3;
 
 impl<D: Dim> SoftBody<D> {
     /// Releases shared nodes at lattice points, each between the octants of its mask and the rest, and
@@ -166,7 +168,7 @@ impl<D: Dim> SoftBody<D> {
         &self,
         remodelled: &Remodelled,
         new: &[ElementId],
-    ) -> Vec<(ElementId, [[f32; 3]; 3])> {
+    ) -> Vec<(ElementId, [Vector; 3])> {
         let blocks = &self.state.blocks;
         if !blocks.has_plastic() {
             return Vec::new();
@@ -207,7 +209,7 @@ impl<D: Dim> SoftBody<D> {
                     sum[axis] += weight * f64::from(rows[old][axis]);
                 }
             }
-            sum.map(|component| component as f32)
+            Row::from_array(sum.map(|component| component as f32))
         };
         let state = |new: &Inheritance| {
             let (position, velocity) = (&self.state.position, &self.state.velocity);
@@ -240,7 +242,7 @@ impl<D: Dim> SoftBody<D> {
     /// Adds the rigid motion that restores the momentum `before` about `centre`. Interpolation preserves
     /// linear momentum, but the angular momentum inside an element changes if new nodes are created between
     /// its corners, because their masses move.
-    fn restore_momentum(&mut self, nodes: &[NodeId], before: Momentum, centre: [f64; 3]) {
+    fn restore_momentum(&mut self, nodes: &[NodeId], before: Momentum, centre: DVec3) {
         let missing = before.less(Momentum::of(self.states(nodes), centre));
         let masses = self.states(nodes).map(|(x, _, mass)| (x, mass));
         let motion = RigidMotion::with_momentum(masses, centre, missing);

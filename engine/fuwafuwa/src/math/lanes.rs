@@ -4,10 +4,8 @@
 //! operation works within a lane and rounds once, so that all machines give the same bits. Only + − × ÷ √,
 //! comparisons and selections are used; no fused or approximate operations.
 
+use super::row::Row;
 use fearless_simd::{f32x4, f32x8, prelude::*};
-
-/// Three coordinates and padding, so that a row is one aligned load; in 2D the third is 0.
-pub type Row = [f32; 4];
 
 /// Number of elements in a block.
 pub const LANES: usize = 8;
@@ -102,7 +100,7 @@ pub fn gather<S: Simd>(simd: S, rows: &[Row], places: &[u32; LANES]) -> [Lanes<S
 
 #[inline(always)]
 fn row<S: Simd>(simd: S, rows: &[Row], place: u32) -> f32x4<S> {
-    f32x4::load_array_ref(simd, &rows[place as usize])
+    f32x4::load_array_ref(simd, rows[place as usize].as_array())
 }
 
 /// First three columns of four rows.
@@ -186,7 +184,7 @@ fearless_simd::kernel!(
 );
 
 #[inline(always)]
-fn four<S: Simd>(simd: S, values: Row) -> f32x4<S> {
+fn four<S: Simd>(simd: S, values: [f32; 4]) -> f32x4<S> {
     f32x4::load_array(simd, values)
 }
 
@@ -204,7 +202,7 @@ pub fn sum<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
     for &place in &places[1..] {
         sum += row_at(simd, numbers, place);
     }
-    sum.to_array()
+    Row::from_array(sum.to_array())
 }
 
 /// Sums the squares of the rows of four numbers that begin at the given indices, per column. Unused indices
@@ -216,7 +214,7 @@ pub fn sum_of_squares<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row 
         let row = row_at(simd, numbers, place);
         sum += row * row;
     }
-    sum.to_array()
+    Row::from_array(sum.to_array())
 }
 
 #[inline(always)]

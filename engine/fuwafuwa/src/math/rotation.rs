@@ -2,7 +2,8 @@
 
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
-use crate::math::vector::{Vector, cross, dot, minus, plus, scaled};
+use crate::math::vector::Vector;
+use glam::DVec3;
 
 /// Rotation, stored as a unit quaternion. Identical on every machine, because it does not use the sine of the
 /// system library.
@@ -39,16 +40,16 @@ impl Rotation {
     /// assert!(x.abs() < 1e-6 && (y - 1.0).abs() < 1e-6 && z == 0.0);
     /// ```
     pub fn about(axis: Vector, angle: f32) -> Self {
-        let axis = axis.map(f64::from);
+        let axis = axis.as_dvec3();
         let (sine, cosine) = libm::sincos(0.5 * f64::from(angle));
-        let part = sine / dot(axis, axis).sqrt();
-        let [x, y, z] = scaled(axis, part);
+        let part = sine / axis.length();
+        let [x, y, z] = (axis * part).to_array();
         Self::unit([x, y, z, cosine])
     }
 
     /// Creates a rotation in the plane by an angle [rad], counterclockwise.
     pub fn in_plane(angle: f32) -> Self {
-        Self::about([0.0, 0.0, 1.0], angle)
+        Self::about(Vector::Z, angle)
     }
 
     /// Creates a rotation from a quaternion x, y, z, w of any length. Returns [`Rotation::NONE`] if it has no
@@ -64,7 +65,7 @@ impl Rotation {
 
     /// Rotates a vector.
     pub fn apply(self, vector: Vector) -> Vector {
-        self.turn(vector.map(f64::from)).map(|part| part as f32)
+        self.turn(vector.as_dvec3()).as_vec3()
     }
 
     /// Returns the inverse rotation.
@@ -85,28 +86,28 @@ impl Rotation {
     /// Axis times angle [rad], with an angle of at most π.
     pub fn scaled_axis(self) -> Vector {
         let [x, y, z, w] = self.quaternion;
-        let (axis, sign) = ([x, y, z], if w < 0.0 { -1.0 } else { 1.0 });
-        let sine = dot(axis, axis).sqrt();
+        let (axis, sign) = (DVec3::new(x, y, z), if w < 0.0 { -1.0 } else { 1.0 });
+        let sine = axis.length();
         let angle = 2.0 * libm::atan2(sine, sign * w);
         let stretch = if sine > 1e-12 { angle / sine } else { 2.0 };
-        scaled(axis, sign * stretch).map(|part| part as f32)
+        (axis * (sign * stretch)).as_vec3()
     }
 
     /// Returns the three rotated axes.
     pub fn axes(self) -> [Vector; 3] {
-        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| self.apply(axis))
+        Vector::AXES.map(|axis| self.apply(axis))
     }
 
     /// Whether the quaternion has length 1; one read from a file may not.
     pub(crate) fn is_unit(self) -> bool {
-        (dot(self.quaternion, self.quaternion) - 1.0).abs() < 1e-9
+        (squared(self.quaternion) - 1.0).abs() < 1e-9
     }
 
     /// Rotates a position [m] about a centre.
     pub(crate) fn apply_about(self, place: Vector, centre: Vector) -> Vector {
-        let (place, centre) = (place.map(f64::from), centre.map(f64::from));
-        let turned = self.turn(minus(place, centre));
-        plus(centre, turned).map(|part| part as f32)
+        let (place, centre) = (place.as_dvec3(), centre.as_dvec3());
+        let turned = self.turn(place - centre);
+        (centre + turned).as_vec3()
     }
 
     /// Restricts the rotation to the dimension: in 2D to the third axis.
@@ -124,21 +125,26 @@ impl Rotation {
         product(self.quaternion, other.map(f64::from)).map(|part| part as f32)
     }
 
-    fn turn(self, vector: [f64; 3]) -> [f64; 3] {
+    fn turn(self, vector: DVec3) -> DVec3 {
         let [x, y, z, w] = self.quaternion;
-        let axis = [x, y, z];
-        let across = scaled(cross(axis, vector), 2.0);
-        plus(plus(vector, scaled(across, w)), cross(axis, across))
+        let axis = DVec3::new(x, y, z);
+        let across = axis.cross(vector) * 2.0;
+        vector + across * w + axis.cross(across)
     }
 
     fn unit(quaternion: [f64; 4]) -> Self {
-        let length = dot(quaternion, quaternion).sqrt();
-        let quaternion = scaled(quaternion, 1.0 / length);
+        let scale = 1.0 / squared(quaternion).sqrt();
+        let quaternion = quaternion.map(|part| part * scale);
         match quaternion.iter().all(|part| part.is_finite()) {
             true => Self { quaternion },
             false => Self::NONE,
         }
     }
+}
+
+/// Returns the squared length of a quaternion.
+fn squared([x, y, z, w]: [f64; 4]) -> f64 {
+    x * x + y * y + z * z + w * w
 }
 
 /// Returns the quaternion product a b: first b, then a.
@@ -159,13 +165,16 @@ mod tests {
 
     #[test]
     fn rotations_compose_in_order() {
-        let first = Rotation::about([1.0, 2.0, -1.0], 0.7);
-        let second = Rotation::about([0.0, -3.0, 1.0], -2.0);
+        let first = Rotation::about(Vector::new(1.0, 2.0, -1.0), 0.7);
+        let second = Rotation::about(Vector::new(0.0, -3.0, 1.0), -2.0);
         let both = Rotation::from_quaternion(second.after(first.quaternion()));
         let vector = [0.3, -0.8, 2.0];
-        let (one, two) = (both.apply(vector), second.apply(first.apply(vector)));
+        let (one, two) = (
+            both.apply(vector.into()),
+            second.apply(first.apply(vector.into())),
+        );
         assert!((0..3).all(|axis| (one[axis] - two[axis]).abs() < 1e-5));
-        let three = first.then(second).apply(vector);
+        let three = first.then(second).apply(vector.into());
         assert!((0..3).all(|axis| (one[axis] - three[axis]).abs() < 1e-5));
         assert_eq!(first.then(first.inverse()), Rotation::NONE);
     }
@@ -173,7 +182,7 @@ mod tests {
     #[test]
     fn scaled_axis_returns_axis_times_shortest_angle() {
         for angle in [0.0, 1e-7, 0.5, 3.0] {
-            let axis = Rotation::about([0.0, -2.0, 0.0], angle).scaled_axis();
+            let axis = Rotation::about(Vector::new(0.0, -2.0, 0.0), angle).scaled_axis();
             assert!((axis[1] + angle).abs() < 1e-6 && axis[0] == 0.0, "{axis:?}");
         }
         let far = Rotation::in_plane(6.0).scaled_axis();
@@ -183,16 +192,16 @@ mod tests {
     #[test]
     fn invalid_rotations_become_identity() {
         let bad = [
-            Rotation::about([0.0; 3], 1.0),
-            Rotation::about([1.0, 0.0, 0.0], f32::NAN),
-            Rotation::about([f32::INFINITY, 0.0, 0.0], 1.0),
+            Rotation::about(Vector::ZERO, 1.0),
+            Rotation::about(Vector::X, f32::NAN),
+            Rotation::about(Vector::new(f32::INFINITY, 0.0, 0.0), 1.0),
             Rotation::from_quaternion([0.0; 4]),
             Rotation::from_quaternion([f32::NAN, 0.0, 0.0, 1.0]),
-            Rotation::about([1.0, 0.0, 0.0], PI).seen_in::<Dim2>(),
+            Rotation::about(Vector::X, PI).seen_in::<Dim2>(),
         ];
         for (index, rotation) in bad.into_iter().enumerate() {
-            let turned = rotation.apply([1.0, 2.0, 3.0]);
-            assert_eq!(turned, [1.0, 2.0, 3.0], "{index}");
+            let turned = rotation.apply(Vector::new(1.0, 2.0, 3.0));
+            assert_eq!(turned, Vector::new(1.0, 2.0, 3.0), "{index}");
         }
     }
 }

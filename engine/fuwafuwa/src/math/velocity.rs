@@ -14,13 +14,13 @@ pub struct Velocity {
 impl Velocity {
     /// Returns a velocity without rotation [m/s].
     pub fn linear(linear: Vector) -> Self {
-        let angular = [0.0; 3];
+        let angular = Vector::ZERO;
         Self { linear, angular }
     }
 
     /// Returns a rotation about the centre of mass [rad/s].
     pub fn angular(angular: Vector) -> Self {
-        let linear = [0.0; 3];
+        let linear = Vector::ZERO;
         Self { linear, angular }
     }
 }

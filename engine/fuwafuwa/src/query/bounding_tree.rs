@@ -1,6 +1,5 @@
 //! Bounding-volume hierarchy for queries.
 
-use crate::math::vector::length;
 use crate::rigid_body::shape::{Bounds, Vector};
 use std::ops::Range;
 
@@ -17,7 +16,7 @@ const ROUNDING: f32 = 1e-6;
 const WORN: f32 = 2.0;
 
 /// Box without content.
-const EMPTY: Bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+const EMPTY: Bounds = [Vector::INFINITY, Vector::NEG_INFINITY];
 
 /// Bounding-volume hierarchy over boxes, which are known by their index in a list.
 ///
@@ -179,7 +178,7 @@ fn around_items(items: &[TreeItem]) -> Bounds {
 pub fn around([a, b]: Bounds, [c, d]: Bounds) -> Bounds {
     let low = [0, 1, 2].map(|axis: usize| a[axis].min(c[axis]));
     let high = [0, 1, 2].map(|axis: usize| b[axis].max(d[axis]));
-    [low, high]
+    [low.into(), high.into()]
 }
 
 /// Returns the box around points, with a margin against rounding.
@@ -193,11 +192,10 @@ pub fn with_margin([low, high]: Bounds) -> Bounds {
     if low[0] > high[0] {
         return EMPTY;
     }
-    let widths = [0, 1, 2].map(|axis: usize| high[axis] - low[axis]);
-    let coordinates = low.iter().chain(&high).map(|k| k.abs());
-    let little = LITTLE * widths.into_iter().fold(0.0, f32::max)
-        + ROUNDING * coordinates.fold(0.0, f32::max);
-    [low.map(|k| k - little), high.map(|k| k + little)]
+    let widths = high - low;
+    let largest = low.abs().max(high.abs()).max_element();
+    let little = LITTLE * widths.max_element().max(0.0) + ROUNDING * largest;
+    [low - Vector::splat(little), high + Vector::splat(little)]
 }
 
 /// Returns whether two boxes overlap.
@@ -208,7 +206,7 @@ pub fn overlap([a, b]: &Bounds, [c, d]: &Bounds) -> bool {
 /// Returns the distance of a point from a box [m]; 0 inside.
 pub fn distance_from([low, high]: &Bounds, at: Vector) -> f32 {
     let beyond = |axis: usize| (low[axis] - at[axis]).max(at[axis] - high[axis]).max(0.0);
-    length([0, 1, 2].map(beyond))
+    Vector::from([0, 1, 2].map(beyond)).length()
 }
 
 /// Returns the distance along a ray to the entry into a box, in multiples of the direction; infinite if the
@@ -300,12 +298,12 @@ mod tests {
 
     #[test]
     fn entry_returns_distance_or_infinity() {
-        let bounds = [[1.0, -1.0, 0.0], [2.0, 1.0, 0.0]];
-        assert_eq!(entry(&bounds, [0.0; 3], [1.0, 0.0, 0.0]), 1.0);
-        assert_eq!(entry(&bounds, [1.5, 0.0, 0.0], [0.0, 1.0, 0.0]), 0.0);
-        assert_eq!(entry(&bounds, [0.0; 3], [-1.0, 0.0, 0.0]), f32::INFINITY);
+        let bounds = [Vector::new(1.0, -1.0, 0.0), Vector::new(2.0, 1.0, 0.0)];
+        assert_eq!(entry(&bounds, Vector::ZERO, Vector::X), 1.0);
+        assert_eq!(entry(&bounds, Vector::new(1.5, 0.0, 0.0), Vector::Y), 0.0);
+        assert_eq!(entry(&bounds, Vector::ZERO, Vector::NEG_X), f32::INFINITY);
         assert_eq!(
-            entry(&bounds, [0.0, 2.0, 0.0], [1.0, 0.0, 0.0]),
+            entry(&bounds, Vector::new(0.0, 2.0, 0.0), Vector::X),
             f32::INFINITY
         );
     }

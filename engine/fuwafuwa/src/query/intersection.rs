@@ -2,8 +2,7 @@
 //! blocks.
 
 use crate::foundation::dim::{Dim, corner};
-use crate::math::vector::{cross, dot, minus, plus, scaled};
-use crate::rigid_body::shape::Vector;
+use crate::rigid_body::shape::{Vector, flat};
 
 /// Newton iterations to locate a point in a block. 6 are sufficient for blocks with corners displaced at
 /// random by up to 0.6 of their width; 12 leave a factor of 2.
@@ -15,7 +14,7 @@ const LITTLE: f32 = 1e-4;
 /// Returns the distance to the intersection of a ray with a segment in 2D, in multiples of the direction.
 pub fn ray_meets_segment(from: Vector, direction: Vector, [a, b]: [Vector; 2]) -> Option<f32> {
     let flat = |a: Vector, b: Vector| a[0] * b[1] - a[1] * b[0];
-    let (along, reach) = (minus(b, a), minus(a, from));
+    let (along, reach) = (b - a, a - from);
     let across = flat(direction, along);
     let (far, share) = (flat(reach, along) / across, flat(reach, direction) / across);
     // For parallel lines both are infinite or NaN.
@@ -26,39 +25,38 @@ pub fn ray_meets_segment(from: Vector, direction: Vector, [a, b]: [Vector; 2]) -
 /// Returns the distance to the intersection of a ray with a triangle, in multiples of the direction [Möller
 /// 1997].
 pub fn ray_meets_triangle(from: Vector, direction: Vector, [a, b, c]: [Vector; 3]) -> Option<f32> {
-    let (one, two, reach) = (minus(b, a), minus(c, a), minus(from, a));
-    let across = cross(direction, two);
-    let determinant = dot(one, across);
-    let u = dot(reach, across) / determinant;
-    let beside = cross(reach, one);
-    let v = dot(direction, beside) / determinant;
-    let far = dot(two, beside) / determinant;
+    let (one, two, reach) = (b - a, c - a, from - a);
+    let across = direction.cross(two);
+    let determinant = one.dot(across);
+    let u = reach.dot(across) / determinant;
+    let beside = reach.cross(one);
+    let v = direction.dot(beside) / determinant;
+    let far = two.dot(beside) / determinant;
     let is_in = u >= -LITTLE && v >= -LITTLE && u + v <= 1.0 + LITTLE;
     (is_in && far >= 0.0 && far.is_finite()).then_some(far)
 }
 
 /// Returns the nearest point on a segment.
 pub fn nearest_on_segment(at: Vector, [a, b]: [Vector; 2]) -> Vector {
-    let along = minus(b, a);
-    let share = dot(minus(at, a), along) / dot(along, along).max(f32::MIN_POSITIVE);
-    plus(a, scaled(along, share.clamp(0.0, 1.0)))
+    let along = b - a;
+    let share = (at - a).dot(along) / along.dot(along).max(f32::MIN_POSITIVE);
+    a + along * share.clamp(0.0, 1.0)
 }
 
 /// Returns the nearest point on a triangle: the projection if it is inside, otherwise the nearest point of an
 /// edge.
 pub fn nearest_on_triangle(at: Vector, [a, b, c]: [Vector; 3]) -> Vector {
-    let normal = cross(minus(b, a), minus(c, a));
-    let squared = dot(normal, normal);
-    let is_left =
-        |from: Vector, to: Vector| dot(cross(minus(to, from), minus(at, from)), normal) >= 0.0;
+    let normal = (b - a).cross(c - a);
+    let squared = normal.dot(normal);
+    let is_left = |from: Vector, to: Vector| (to - from).cross(at - from).dot(normal) >= 0.0;
     if squared > 0.0 && is_left(a, b) && is_left(b, c) && is_left(c, a) {
-        let height = dot(minus(at, a), normal) / squared;
-        return minus(at, scaled(normal, height));
+        let height = (at - a).dot(normal) / squared;
+        return at - normal * height;
     }
     let edges = [[a, b], [b, c], [c, a]].map(|edge| nearest_on_segment(at, edge));
     let squared = |place: &Vector| {
-        let apart = minus(*place, at);
-        dot(apart, apart)
+        let apart = *place - at;
+        apart.dot(apart)
     };
     let [first, others @ ..] = edges;
     let nearer = |best: Vector, next: Vector| match squared(&next) < squared(&best) {
@@ -72,33 +70,32 @@ pub fn nearest_on_triangle(at: Vector, [a, b, c]: [Vector; 3]) -> Vector {
 /// coordinates from 0 to 1 map to the point.
 pub fn is_in_block<D: Dim>(at: Vector, corners: &[Vector]) -> bool {
     // Relative to the point, which may be far from the origin.
-    let corners: Vec<Vector> = corners.iter().map(|&corner| minus(corner, at)).collect();
-    let mut shares = [0.5f32; 3];
-    shares[D::N..].fill(0.0);
+    let corners: Vec<Vector> = corners.iter().map(|&corner| corner - at).collect();
+    let mut shares = flat::<D>(Vector::splat(0.5));
     for _ in 0..ROUNDS {
         let (place, slopes) = in_block::<D>(shares, &corners);
-        let Some(step) = solved(slopes, scaled(place, -1.0)) else {
+        let Some(step) = solved(slopes, -place) else {
             return false;
         };
-        shares = plus(shares, step);
-        if !shares.iter().all(|share| share.abs() < 10.0) {
+        shares += step;
+        if !shares.to_array().iter().all(|share| share.abs() < 10.0) {
             return false;
         }
     }
     let (miss, _) = in_block::<D>(shares, &corners);
-    let width = minus(corners[D::CORNERS - 1], corners[0]);
-    let is_there = dot(miss, miss) <= LITTLE * LITTLE * dot(width, width);
+    let width = corners[D::CORNERS - 1] - corners[0];
+    let is_there = miss.dot(miss) <= LITTLE * LITTLE * width.dot(width);
     is_there
-        && shares[..D::N]
+        && shares.to_array()[..D::N]
             .iter()
             .all(|share| (-LITTLE..=1.0 + LITTLE).contains(share))
 }
 
 /// Returns the point at local coordinates of a block, and its derivatives by each of them.
 fn in_block<D: Dim>(shares: Vector, corners: &[Vector]) -> (Vector, [Vector; 3]) {
-    let mut place = [0.0; 3];
-    let mut slopes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    slopes[..D::N].fill([0.0; 3]);
+    let mut place = Vector::ZERO;
+    let mut slopes = Vector::AXES;
+    slopes[..D::N].fill(Vector::ZERO);
     for (index, &at) in corners.iter().enumerate() {
         let ends = corner(index);
         let weight = |axis: usize| match ends[axis] {
@@ -107,12 +104,12 @@ fn in_block<D: Dim>(shares: Vector, corners: &[Vector]) -> (Vector, [Vector; 3])
         };
         // In 2D corners differ along two axes only.
         let weights = [0, 1, 2].map(|axis| if axis < D::N { weight(axis) } else { 1.0 });
-        place = plus(place, scaled(at, weights.iter().product()));
+        place += at * weights.iter().product::<f32>();
         for axis in 0..D::N {
             let others = (0..3).filter(|&other| other != axis);
             let others: f32 = others.map(|other| weights[other]).product();
             let sign = 2.0 * ends[axis] as f32 - 1.0;
-            slopes[axis] = plus(slopes[axis], scaled(at, sign * others));
+            slopes[axis] += at * (sign * others);
         }
     }
     (place, slopes)
@@ -120,10 +117,10 @@ fn in_block<D: Dim>(shares: Vector, corners: &[Vector]) -> (Vector, [Vector; 3])
 
 /// Returns the solution x of the 3×3 system with columns `a`, `b`, `c`, or `None` if it is singular.
 fn solved([a, b, c]: [Vector; 3], wanted: Vector) -> Option<Vector> {
-    let determinant = dot(a, cross(b, c));
-    let parts = [cross(b, c), cross(c, a), cross(a, b)];
-    let found = parts.map(|part| dot(wanted, part) / determinant);
-    found.iter().all(|part| part.is_finite()).then_some(found)
+    let determinant = a.dot(b.cross(c));
+    let parts = [b.cross(c), c.cross(a), a.cross(b)];
+    let found = Vector::from(parts.map(|part| wanted.dot(part))) / determinant;
+    found.is_finite().then_some(found)
 }
 
 #[cfg(test)]
@@ -131,26 +128,39 @@ mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
 
-    const TRIANGLE: [Vector; 3] = [[0.0, 0.0, 1.0], [2.0, 0.0, 1.0], [0.0, 2.0, 1.0]];
+    const TRIANGLE: [Vector; 3] = [
+        Vector::Z,
+        Vector::new(2.0, 0.0, 1.0),
+        Vector::new(0.0, 2.0, 1.0),
+    ];
 
     #[test]
     fn ray_hits_only_in_front_of_its_origin() {
-        let up = [0.0, 0.0, 2.0];
-        assert_eq!(ray_meets_triangle([0.5, 0.5, 0.0], up, TRIANGLE), Some(0.5));
-        assert_eq!(ray_meets_triangle([0.5, 0.5, 2.0], up, TRIANGLE), None);
-        assert_eq!(ray_meets_triangle([1.5, 1.5, 0.0], up, TRIANGLE), None);
+        let up = Vector::new(0.0, 0.0, 2.0);
         assert_eq!(
-            ray_meets_triangle([0.5, 0.5, 0.0], [1.0, 0.0, 0.0], TRIANGLE),
+            ray_meets_triangle(Vector::new(0.5, 0.5, 0.0), up, TRIANGLE),
+            Some(0.5)
+        );
+        assert_eq!(
+            ray_meets_triangle(Vector::new(0.5, 0.5, 2.0), up, TRIANGLE),
             None
         );
-        let wall = [[1.0, -1.0, 0.0], [1.0, 1.0, 0.0]];
         assert_eq!(
-            ray_meets_segment([0.0; 3], [0.5, 0.0, 0.0], wall),
+            ray_meets_triangle(Vector::new(1.5, 1.5, 0.0), up, TRIANGLE),
+            None
+        );
+        assert_eq!(
+            ray_meets_triangle(Vector::new(0.5, 0.5, 0.0), Vector::X, TRIANGLE),
+            None
+        );
+        let wall = [Vector::new(1.0, -1.0, 0.0), Vector::new(1.0, 1.0, 0.0)];
+        assert_eq!(
+            ray_meets_segment(Vector::ZERO, Vector::new(0.5, 0.0, 0.0), wall),
             Some(2.0)
         );
-        assert_eq!(ray_meets_segment([0.0; 3], [0.0, 1.0, 0.0], wall), None);
+        assert_eq!(ray_meets_segment(Vector::ZERO, Vector::Y, wall), None);
         assert_eq!(
-            ray_meets_segment([0.0, 3.0, 0.0], [0.5, 0.0, 0.0], wall),
+            ray_meets_segment(Vector::new(0.0, 3.0, 0.0), Vector::new(0.5, 0.0, 0.0), wall),
             None
         );
     }
@@ -158,26 +168,26 @@ mod tests {
     #[test]
     fn nearest_point_on_triangle_is_inside_on_edge_or_at_corner() {
         let check = |at, expect| assert_eq!(nearest_on_triangle(at, TRIANGLE), expect);
-        check([0.5, 0.5, 3.0], [0.5, 0.5, 1.0]);
-        check([1.0, -4.0, 0.0], [1.0, 0.0, 1.0]);
-        check([2.0, 2.0, 1.0], [1.0, 1.0, 1.0]);
-        check([-1.0, -1.0, 0.0], [0.0, 0.0, 1.0]);
+        check(Vector::new(0.5, 0.5, 3.0), Vector::new(0.5, 0.5, 1.0));
+        check(Vector::new(1.0, -4.0, 0.0), Vector::new(1.0, 0.0, 1.0));
+        check(Vector::new(2.0, 2.0, 1.0), Vector::new(1.0, 1.0, 1.0));
+        check(Vector::new(-1.0, -1.0, 0.0), Vector::Z);
     }
 
     #[test]
     fn is_in_block_is_exact_for_deformed_blocks() {
         let crooked = |at: [i32; 3]| {
             let [x, y, z] = at.map(|k| k as f32);
-            [x + 0.2 * y, 1.5 * y - 0.1 * x * z, z + 0.3 * x * y]
+            Vector::new(x + 0.2 * y, 1.5 * y - 0.1 * x * z, z + 0.3 * x * y)
         };
         let corners: Vec<Vector> = (0..8).map(|index| crooked(corner(index))).collect();
-        let (inside, _) = in_block::<Dim3>([0.9, 0.1, 0.5], &corners);
-        let (outside, _) = in_block::<Dim3>([0.9, 1.1, 0.5], &corners);
+        let (inside, _) = in_block::<Dim3>(Vector::new(0.9, 0.1, 0.5), &corners);
+        let (outside, _) = in_block::<Dim3>(Vector::new(0.9, 1.1, 0.5), &corners);
         assert!(is_in_block::<Dim3>(inside, &corners));
         assert!(!is_in_block::<Dim3>(outside, &corners));
-        let flat: Vec<Vector> = corners[..4].iter().map(|&[x, y, _]| [x, y, 0.0]).collect();
-        assert!(is_in_block::<Dim2>([0.6, 0.7, 0.0], &flat));
-        assert!(!is_in_block::<Dim2>([0.05, 0.9, 0.0], &flat));
-        assert!(!is_in_block::<Dim2>([f32::NAN; 3], &flat));
+        let flat: Vec<Vector> = corners[..4].iter().map(|at| at.with_z(0.0)).collect();
+        assert!(is_in_block::<Dim2>(Vector::new(0.6, 0.7, 0.0), &flat));
+        assert!(!is_in_block::<Dim2>(Vector::new(0.05, 0.9, 0.0), &flat));
+        assert!(!is_in_block::<Dim2>(Vector::splat(f32::NAN), &flat));
     }
 }

@@ -9,7 +9,6 @@ use super::bounding_tree::{Tree, around_all, with_margin};
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
-use crate::math::vector::three;
 use crate::rigid_body::shape::{Bounds, Shape, Vector};
 use crate::soft_body::SoftBody;
 use crate::soft_body::element_forces::Row;
@@ -235,7 +234,7 @@ fn cell_bounds<D: Dim>(cell: &FilledCell) -> Bounds {
 /// Returns the box around all nodes of a body; filled cells are inside, even where the surface is folded in.
 fn body_bounds<D: Dim>(body: &SoftBody<D>) -> Bounds {
     let nodes = body.mesh().nodes();
-    around_all(nodes.map(|(node, _)| three(body.positions()[node])))
+    around_all(nodes.map(|(node, _)| body.positions()[node].xyz()))
 }
 
 /// Returns the filled cells of a body, by element.
@@ -244,7 +243,7 @@ fn filled_cells<D: Dim>(body: &SoftBody<D>) -> Vec<FilledCell> {
     for view in body.element_views() {
         let count = if view.level == 0 { 1 } else { D::CORNERS };
         for child in (0..count).filter(|child| view.children >> child & 1 == 1) {
-            let mut corners = [[0.0; 3]; 8];
+            let mut corners = [Vector::ZERO; 8];
             corners[..D::CORNERS].copy_from_slice(&view.child_corners::<D>(child));
             cells.push(FilledCell {
                 element: view.id,

@@ -6,7 +6,6 @@ use super::{MotionType, RigidBody};
 use crate::error::{Error, require};
 use crate::foundation::dim::Dim;
 use crate::math::rotation::Rotation;
-use crate::math::vector::{cross, dot, length, minus, plus, scaled};
 use crate::rigid_body::layers::Layers;
 use crate::rigid_body::shape::{Vector, flat};
 
@@ -26,7 +25,9 @@ impl RigidBody {
     pub(crate) fn pushes(&self) -> bool {
         match self.motion_type {
             MotionType::Coupled { .. } => true,
-            MotionType::Kinematic => self.velocity != [0.0; 3] || self.angular_velocity != [0.0; 3],
+            MotionType::Kinematic => {
+                self.velocity != Vector::ZERO || self.angular_velocity != Vector::ZERO
+            }
             MotionType::Fixed | MotionType::Dynamic { .. } => false,
         }
     }
@@ -53,7 +54,7 @@ impl RigidBody {
     #[inline(always)]
     pub(crate) fn velocity_at(&self, lever: Vector) -> Vector {
         match self.turns() {
-            true => plus(self.velocity, cross(self.angular_velocity, lever)),
+            true => self.velocity + self.angular_velocity.cross(lever),
             false => self.velocity,
         }
     }
@@ -62,16 +63,16 @@ impl RigidBody {
     #[inline(always)]
     pub(crate) fn velocity_near(&self, at: Vector) -> Vector {
         match self.turns() {
-            true => self.velocity_at(minus(at, self.position)),
+            true => self.velocity_at(at - self.position),
             false => self.velocity,
         }
     }
 
     /// Returns an upper bound of the speed of all body points [m/s].
     pub(crate) fn top_speed(&self) -> f32 {
-        let speed = length(self.velocity);
-        match self.turns() && self.angular_velocity != [0.0; 3] {
-            true => speed + length(self.angular_velocity) * self.extent(),
+        let speed = self.velocity.length();
+        match self.turns() && self.angular_velocity != Vector::ZERO {
+            true => speed + self.angular_velocity.length() * self.extent(),
             false => speed,
         }
     }
@@ -79,7 +80,8 @@ impl RigidBody {
     /// Returns the largest distance of the shape from its local origin [m].
     pub(crate) fn extent(&self) -> f32 {
         let [low, high] = self.form.bounds();
-        length([0, 1, 2].map(|axis: usize| low[axis].abs().max(high[axis].abs())))
+        let furthest = [0, 1, 2].map(|axis: usize| low[axis].abs().max(high[axis].abs()));
+        Vector::from(furthest).length()
     }
 
     /// Sets the target rotation.
@@ -118,7 +120,7 @@ impl RigidBody {
 
     /// Stops the body and puts it to sleep.
     pub(crate) fn fall_asleep(&mut self) {
-        (self.velocity, self.angular_velocity) = ([0.0; 3], [0.0; 3]);
+        (self.velocity, self.angular_velocity) = (Vector::ZERO, Vector::ZERO);
         self.asleep = true;
     }
 
@@ -130,10 +132,10 @@ impl RigidBody {
 
     /// Integrates gravity and air drag: velocities decay at the rate `drag` [1/s] over `duration` [s].
     pub(crate) fn fall<D: Dim>(&mut self, acceleration: Vector, drag: f32, duration: f32) {
-        let gain = scaled(flat::<D>(acceleration), duration);
+        let gain = flat::<D>(acceleration) * duration;
         let left = 1.0 / (1.0 + drag * duration);
-        self.velocity = scaled(plus(self.velocity, gain), left);
-        self.angular_velocity = scaled(self.angular_velocity, left);
+        self.velocity = (self.velocity + gain) * left;
+        self.angular_velocity *= left;
     }
 
     /// Integrates position and rotation.
@@ -141,13 +143,13 @@ impl RigidBody {
         if !self.moves() {
             return;
         }
-        let position = plus(self.position, scaled(self.velocity, duration));
-        if self.angular_velocity == [0.0; 3] {
+        let position = self.position + self.velocity * duration;
+        if self.angular_velocity == Vector::ZERO {
             return self.stand_at(position, self.rotation);
         }
         let way = Rotation::about(
             self.angular_velocity,
-            length(self.angular_velocity) * duration,
+            self.angular_velocity.length() * duration,
         );
         let rotation = self.rotation.then(way);
         if let Some(inertia) = &self.inertia {
@@ -160,7 +162,7 @@ impl RigidBody {
 
     /// Applies an impulse [N s] at a lever arm from the position [m].
     pub(crate) fn kick(&mut self, impulse: Vector, lever: Vector) {
-        self.velocity = plus(self.velocity, scaled(impulse, self.inverse_mass()));
+        self.velocity += impulse * self.inverse_mass();
         self.twirl(impulse, lever);
     }
 
@@ -175,8 +177,8 @@ impl RigidBody {
     #[inline(always)]
     fn twirl(&mut self, impulse: Vector, lever: Vector) {
         if self.can_be_turned() {
-            let twist = times(&self.inverse_inertia, cross(lever, impulse));
-            self.angular_velocity = plus(self.angular_velocity, twist);
+            let twist = times(&self.inverse_inertia, lever.cross(impulse));
+            self.angular_velocity += twist;
         }
     }
 
@@ -184,9 +186,9 @@ impl RigidBody {
     pub(crate) fn yields(&self, lever: Vector, way: Vector) -> f32 {
         let mut gain = self.inverse_mass();
         if self.can_be_turned() {
-            let arm = cross(lever, way);
+            let arm = lever.cross(way);
             let turned = times(&self.inverse_inertia, arm);
-            gain += dot(arm, turned);
+            gain += arm.dot(turned);
         }
         gain
     }
@@ -194,11 +196,11 @@ impl RigidBody {
     /// Returns the velocity that an impulse of 1 N s along a unit direction gives the point at a lever arm
     /// [1/kg].
     pub(crate) fn gain(&self, lever: Vector, way: Vector) -> Vector {
-        let gain = scaled(way, self.inverse_mass());
+        let gain = way * self.inverse_mass();
         match self.can_be_turned() {
             true => {
-                let spin = times(&self.inverse_inertia, cross(lever, way));
-                plus(gain, cross(spin, lever))
+                let spin = times(&self.inverse_inertia, lever.cross(way));
+                gain + spin.cross(lever)
             }
             false => gain,
         }
@@ -212,9 +214,9 @@ impl RigidBody {
         if !self.can_be_turned() {
             return gain;
         }
-        let lever = minus(at, self.position);
+        let lever = at - self.position;
         let [x, y, z] = self.inverse_inertia;
-        gain + (x[0] + y[1] + z[2]) * dot(lever, lever)
+        gain + (x[0] + y[1] + z[2]) * lever.dot(lever)
     }
 
     /// Returns whether contacts can turn the body.
@@ -229,7 +231,7 @@ impl RigidBody {
         match self.motion_type {
             MotionType::Fixed => false,
             MotionType::Kinematic | MotionType::Dynamic { .. } => true,
-            MotionType::Coupled { .. } => self.angular_velocity != [0.0; 3],
+            MotionType::Coupled { .. } => self.angular_velocity != Vector::ZERO,
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::foundation::dim::{Dim, turning};
 use crate::foundation::hash::hash_state;
 use crate::math::rotation::Rotation;
-use crate::math::vector::{across, dot, length, minus, plus, scaled};
+use crate::math::vector::across;
 use crate::rigid_body::shape::{Shape, Vector};
 use std::f32::consts::PI;
 
@@ -27,16 +27,16 @@ impl Inertia {
     /// Returns the inertia of a shape centred on the origin, for a mass [kg].
     pub fn of<D: Dim>(form: &Shape, mass: f32) -> Self {
         let (axes, shares) = match *form {
-            Shape::HalfSpace { .. } => (Rotation::NONE.axes(), [0.0; 3]),
+            Shape::HalfSpace { .. } => (Rotation::NONE.axes(), Vector::ZERO),
             Shape::Ball { radius, .. } => (Rotation::NONE.axes(), ball::<D>(radius)),
             Shape::Box { half, .. } => (Rotation::NONE.axes(), cuboid(half)),
             Shape::OrientedBox { half, rotation, .. } => (rotation.axes(), cuboid(half)),
             Shape::Capsule { from, to, radius } => (
-                axes_along(minus(to, from)),
-                bar::<D>(length(minus(to, from)), radius),
+                axes_along(to - from),
+                bar::<D>((to - from).length(), radius),
             ),
         };
-        let moments = turning::<D>(scaled(shares, mass));
+        let moments = turning::<D>(shares * mass);
         let inverse = moments.map(|moment| if moment > 0.0 { 1.0 / moment } else { 0.0 });
         // In 2D the only axis of rotation is the third one, for capsules of any direction.
         let axes = if D::N == 2 {
@@ -53,17 +53,16 @@ impl Inertia {
 
     /// Returns whether the inertia is finite and the body can turn.
     pub fn is_sound(&self) -> bool {
-        let numbers = self.moments.iter().chain(&self.inverse);
-        numbers.clone().all(|k| k.is_finite()) && self.inverse[2] > 0.0
+        self.moments.is_finite() && self.inverse.is_finite() && self.inverse[2] > 0.0
     }
 
     /// Returns the inverse inertia matrix about the world axes [1/(kg m²)] for a rotation of the body.
     pub fn inverse(&self, rotation: Rotation) -> Matrix {
-        let mut matrix = [[0.0; 3]; 3];
-        for (axis, inverse) in self.axes.into_iter().zip(self.inverse) {
+        let mut matrix = [Vector::ZERO; 3];
+        for (axis, inverse) in self.axes.into_iter().zip(self.inverse.to_array()) {
             let axis = rotation.apply(axis);
             for row in 0..3 {
-                matrix[row] = plus(matrix[row], scaled(axis, inverse * axis[row]));
+                matrix[row] += axis * (inverse * axis[row]);
             }
         }
         matrix
@@ -71,15 +70,15 @@ impl Inertia {
 
     /// Returns the angular velocity [rad/s] after a rotation, so that the angular momentum is preserved.
     pub fn spin_kept(&self, spin: Vector, before: Rotation, after: Rotation) -> Vector {
-        let axes = self.axes.into_iter().zip(self.moments);
-        let momentum = axes.fold([0.0; 3], |sum, (axis, moment)| {
+        let axes = self.axes.into_iter().zip(self.moments.to_array());
+        let momentum = axes.fold(Vector::ZERO, |sum, (axis, moment)| {
             let axis = before.apply(axis);
-            plus(sum, scaled(axis, moment * dot(axis, spin)))
+            sum + axis * (moment * axis.dot(spin))
         });
-        let axes = self.axes.into_iter().zip(self.inverse);
-        axes.fold([0.0; 3], |sum, (axis, inverse)| {
+        let axes = self.axes.into_iter().zip(self.inverse.to_array());
+        axes.fold(Vector::ZERO, |sum, (axis, inverse)| {
             let axis = after.apply(axis);
-            plus(sum, scaled(axis, inverse * dot(axis, momentum)))
+            sum + axis * (inverse * axis.dot(momentum))
         })
     }
 }
@@ -87,21 +86,22 @@ impl Inertia {
 /// Returns the product of a matrix and a vector.
 #[inline(always)]
 pub fn times(matrix: &Matrix, vector: Vector) -> Vector {
-    [0, 1, 2].map(|row: usize| dot(matrix[row], vector))
+    Vector::from([0, 1, 2].map(|row: usize| matrix[row].dot(vector)))
 }
 
 // The functions below return moments per unit mass.
 
-fn cuboid([x, y, z]: Vector) -> Vector {
+fn cuboid(half: Vector) -> Vector {
+    let [x, y, z] = half.to_array();
     let about = |a: f32, b: f32| (a * a + b * b) / 3.0;
     // In 2D the third half extent is `f32::MAX`, and only the moment about the third axis is used.
-    [about(y, z), about(z, x), about(x, y)]
+    Vector::new(about(y, z), about(z, x), about(x, y))
 }
 
 /// Returns the moments of a ball; in 2D of a disc.
 fn ball<D: Dim>(radius: f32) -> Vector {
     let share = if D::N == 2 { 0.5 } else { 0.4 };
-    [share * radius * radius; 3]
+    Vector::splat(share * radius * radius)
 }
 
 /// Returns the moments of a capsule along its own axis, the first one: a cylinder and two half balls; in 2D a
@@ -119,23 +119,23 @@ fn bar<D: Dim>(long: f32, radius: f32) -> Vector {
     };
     let whole = between + round;
     let (between, round) = (between / whole, round / whole);
-    let [own, ..] = ball::<D>(radius);
+    let own = ball::<D>(radius).x;
     let ends = own + 0.25 * long * long + long * middle;
     let side = match D::N {
         2 => (long * long + 4.0 * squared) / 12.0,
         _ => long * long / 12.0 + 0.25 * squared,
     };
     let aside = between * side + round * ends;
-    [0.5 * between * squared + round * own, aside, aside]
+    Vector::new(0.5 * between * squared + round * own, aside, aside)
 }
 
 /// Returns three orthonormal axes, the first along a direction.
 fn axes_along(way: Vector) -> [Vector; 3] {
-    let long = length(way);
+    let long = way.length();
     if long <= 0.0 {
         return Rotation::NONE.axes();
     }
-    let first = scaled(way, 1.0 / long);
+    let first = way * (1.0 / long);
     let [second, third] = across(first);
     [first, second, third]
 }
@@ -144,6 +144,7 @@ fn axes_along(way: Vector) -> [Vector; 3] {
 mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
+    use crate::rigid_body::shape::flat;
 
     /// Compares the moments with a sum over small cells.
     fn check<D: Dim>(form: Shape) {
@@ -154,8 +155,7 @@ mod tests {
         for cell in 0..count * count * depth {
             let cell = [cell % count, cell / count % count, cell / count / count];
             let share = cell.map(|k| (k as f32 + 0.5) / count as f32);
-            let mut at = [0, 1, 2].map(|k: usize| low[k] + share[k] * (high[k] - low[k]));
-            at[D::N..].fill(0.0);
+            let at = flat::<D>(low + Vector::from(share) * (high - low));
             if form.distance(at).0 > 0.0 {
                 continue;
             }
@@ -181,20 +181,20 @@ mod tests {
     fn moments_match_numeric_integration() {
         let [x, y, z] = [0.3, 0.5, 0.9];
         let long = Shape::Capsule {
-            from: [-x, 0.0, 0.0],
-            to: [x, 0.0, 0.0],
+            from: Vector::new(-x, 0.0, 0.0),
+            to: Vector::new(x, 0.0, 0.0),
             radius: 0.2,
         };
         let ball = Shape::Ball {
-            centre: [0.0; 3],
+            centre: Vector::ZERO,
             radius: x,
         };
         let cuboid = |half| Shape::Box {
-            centre: [0.0; 3],
+            centre: Vector::ZERO,
             half,
         };
-        check::<Dim3>(cuboid([x, y, z]));
-        check::<Dim2>(cuboid([x, y, f32::MAX]));
+        check::<Dim3>(cuboid(Vector::new(x, y, z)));
+        check::<Dim2>(cuboid(Vector::new(x, y, f32::MAX)));
         check::<Dim3>(long);
         check::<Dim2>(long);
         check::<Dim3>(ball);
@@ -204,27 +204,27 @@ mod tests {
     #[test]
     fn tumbling_preserves_angular_momentum() {
         let form = Shape::Box {
-            centre: [0.0; 3],
-            half: [0.3, 0.5, 0.9],
+            centre: Vector::ZERO,
+            half: Vector::new(0.3, 0.5, 0.9),
         };
         let inertia = Inertia::of::<Dim3>(&form, 3.0);
         let momentum = |spin: Vector, rotation: Rotation| {
-            let axes = rotation.axes().into_iter().zip(inertia.moments);
-            axes.fold([0.0; 3], |sum, (axis, moment)| {
-                plus(sum, scaled(axis, moment * dot(axis, spin)))
+            let axes = rotation.axes().into_iter().zip(inertia.moments.to_array());
+            axes.fold(Vector::ZERO, |sum, (axis, moment)| {
+                sum + axis * (moment * axis.dot(spin))
             })
         };
-        let (mut spin, mut rotation) = ([0.1, 5.0, 0.0], Rotation::NONE);
+        let (mut spin, mut rotation) = (Vector::new(0.1, 5.0, 0.0), Rotation::NONE);
         let before = momentum(spin, rotation);
         let mut most = 0.0f32;
         for _ in 0..5000 {
-            let next = rotation.then(Rotation::about(spin, length(spin) * 0.001));
+            let next = rotation.then(Rotation::about(spin, spin.length() * 0.001));
             spin = inertia.spin_kept(spin, rotation, next);
             rotation = next;
             most = most.max(spin[0].abs());
         }
-        let off = minus(momentum(spin, rotation), before);
-        assert!(length(off) < 1e-3 * length(before), "{off:?}");
+        let off = momentum(spin, rotation) - before;
+        assert!(off.length() < 1e-3 * before.length(), "{off:?}");
         // Rotation about the middle principal axis is unstable [Euler].
         assert!(most > 2.0, "{most}");
     }

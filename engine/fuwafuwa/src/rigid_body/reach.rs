@@ -8,5 +8,5 @@ pub const FARTHEST: f32 = 1e6;
 
 /// Returns whether a position is allowed for rigid bodies and targets.
 pub fn is_within_reach(at: Vector) -> bool {
-    at.iter().all(|k| k.abs() <= FARTHEST)
+    at.abs().max_element() <= FARTHEST && at.is_finite()
 }

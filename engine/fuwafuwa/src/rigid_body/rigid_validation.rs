@@ -4,7 +4,6 @@ use super::inertia::Inertia;
 use super::reach::is_within_reach;
 use super::{MotionType, RigidBody};
 use crate::error::{Error, require};
-use crate::math::vector::{is_finite, length, minus, plus};
 use crate::rigid_body::shape::Shape;
 
 impl RigidBody {
@@ -28,7 +27,7 @@ impl RigidBody {
             ("angular_velocity", self.angular_velocity),
         ];
         for (field, velocity) in velocities {
-            require(is_finite(velocity), field, "finite", velocity)?;
+            require(velocity.is_finite(), field, "finite", velocity)?;
         }
         let rotations = [
             ("rotation", self.rotation),
@@ -77,7 +76,7 @@ pub(super) fn check_motion_type(
         MotionType::Dynamic { mass } => {
             within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
             let [low, high] = form.bounds();
-            let is_centred = length(plus(low, high)) <= 1e-3 * length(minus(high, low));
+            let is_centred = (low + high).length() <= 1e-3 * (high - low).length();
             require(is_centred, "shape", "centred on its local origin", form)?;
             let is_sound = inertia.is_none_or(|inertia| inertia.is_sound());
             let expected = "of a size at which the moments of inertia are finite and positive";

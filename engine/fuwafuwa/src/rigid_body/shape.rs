@@ -13,7 +13,6 @@ use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::math::rotation::Rotation;
 pub use crate::math::vector::Vector;
-use crate::math::vector::{dot, is_finite, length, minus, plus, scaled};
 
 /// Lower and upper corner of an axis-aligned box [m].
 pub type Bounds = [Vector; 2];
@@ -76,8 +75,8 @@ hash_state! {
 impl Shape {
     /// Returns the half-space with an outward normal of any length and its surface through `point` [m].
     pub fn half_space(normal: Vector, point: Vector) -> Self {
-        let normal = scaled(normal, 1.0 / length(normal));
-        let offset = dot(normal, point);
+        let normal = normal * (1.0 / normal.length());
+        let offset = normal.dot(point);
         Self::HalfSpace { normal, offset }
     }
 
@@ -86,18 +85,18 @@ impl Shape {
     /// # Errors
     /// [`Error::InvalidParameter`] names the first invalid field.
     pub fn check(&self) -> Result<(), Error> {
-        let finite = |field, v: Vector| require(is_finite(v), field, "finite", v);
+        let finite = |field, v: Vector| require(v.is_finite(), field, "finite", v);
         let is_positive = |k: f32| k.is_finite() && k > 0.0;
         let positive = |field, k: f32| require(is_positive(k), field, "positive and finite", k);
         match *self {
             Self::HalfSpace { normal, offset } => {
                 require(offset.is_finite(), "offset", "finite", offset)?;
-                let is_unit = (length(normal) - 1.0).abs() < 1e-3;
+                let is_unit = (normal.length() - 1.0).abs() < 1e-3;
                 require(is_unit, "normal", "of length 1", normal)
             }
             Self::Box { centre, half } => {
                 finite("centre", centre)?;
-                let is_positive = half.into_iter().all(is_positive);
+                let is_positive = half.to_array().into_iter().all(is_positive);
                 require(is_positive, "half", "positive and finite", half)
             }
             Self::OrientedBox {
@@ -127,22 +126,22 @@ impl Shape {
     #[inline(always)]
     pub fn distance(&self, point: Vector) -> (f32, Vector) {
         match *self {
-            Self::HalfSpace { normal, offset } => (dot(normal, point) - offset, normal),
-            Self::Box { centre, half } => distance_from_box(minus(point, centre), half),
+            Self::HalfSpace { normal, offset } => (normal.dot(point) - offset, normal),
+            Self::Box { centre, half } => distance_from_box(point - centre, half),
             Self::OrientedBox {
                 centre,
                 half,
                 rotation,
-            } => distance_from_turned(minus(point, centre), half, rotation),
+            } => distance_from_turned(point - centre, half, rotation),
             Self::Capsule { from, to, radius } => {
-                let (axis, reach) = (minus(to, from), minus(point, from));
-                let along = dot(axis, reach) / dot(axis, axis).max(1e-12);
-                let nearest = scaled(axis, along.clamp(0.0, 1.0));
-                let (distance, normal) = away(minus(reach, nearest));
+                let (axis, reach) = (to - from, point - from);
+                let along = axis.dot(reach) / axis.dot(axis).max(1e-12);
+                let nearest = axis * along.clamp(0.0, 1.0);
+                let (distance, normal) = away(reach - nearest);
                 (distance - radius, normal)
             }
             Self::Ball { centre, radius } => {
-                let (distance, normal) = away(minus(point, centre));
+                let (distance, normal) = away(point - centre);
                 (distance - radius, normal)
             }
         }
@@ -153,10 +152,13 @@ impl Shape {
         let around = |from: Vector, to: Vector, half: Vector| {
             let low = [0, 1, 2].map(|axis: usize| from[axis].min(to[axis]) - half[axis]);
             let high = [0, 1, 2].map(|axis: usize| from[axis].max(to[axis]) + half[axis]);
-            [low, high]
+            [low.into(), high.into()]
         };
         match *self {
-            Self::HalfSpace { .. } => [[f32::NEG_INFINITY; 3], [f32::INFINITY; 3]],
+            Self::HalfSpace { .. } => [
+                Vector::splat(f32::NEG_INFINITY),
+                Vector::splat(f32::INFINITY),
+            ],
             Self::Box { centre, half } => around(
                 centre,
                 centre,
@@ -172,10 +174,10 @@ impl Shape {
                     let own = (0..3).map(|own| reach_of(axes[own][axis], half[own]));
                     own.sum::<f32>()
                 };
-                around(centre, centre, [0, 1, 2].map(reach))
+                around(centre, centre, [0, 1, 2].map(reach).into())
             }
-            Self::Capsule { from, to, radius } => around(from, to, [radius; 3]),
-            Self::Ball { centre, radius } => around(centre, centre, [radius; 3]),
+            Self::Capsule { from, to, radius } => around(from, to, Vector::splat(radius)),
+            Self::Ball { centre, radius } => around(centre, centre, Vector::splat(radius)),
         }
     }
 
@@ -184,7 +186,7 @@ impl Shape {
         match *self {
             Self::HalfSpace { .. } => f32::INFINITY,
             Self::Box { half, .. } | Self::OrientedBox { half, .. } => {
-                half.into_iter().fold(f32::INFINITY, f32::min)
+                half.to_array().into_iter().fold(f32::INFINITY, f32::min)
             }
             Self::Capsule { radius, .. } | Self::Ball { radius, .. } => radius,
         }
@@ -197,19 +199,19 @@ impl Shape {
         if D::N == 3 {
             return self;
         }
-        let flat = |[x, y, _]: Vector| [x, y, 0.0];
+        let flat = flat::<D>;
         match self {
             Self::HalfSpace { normal, .. } if normal[2] == 0.0 => self,
             Self::HalfSpace { normal, offset } => {
-                let steepness = length(flat(normal));
+                let steepness = flat(normal).length();
                 Self::HalfSpace {
-                    normal: scaled(flat(normal), 1.0 / steepness),
+                    normal: flat(normal) * (1.0 / steepness),
                     offset: offset / steepness,
                 }
             }
             Self::Box { centre, half } => Self::Box {
                 centre: flat(centre),
-                half: [half[0], half[1], f32::MAX],
+                half: Vector::new(half[0], half[1], f32::MAX),
             },
             Self::OrientedBox {
                 centre,
@@ -217,7 +219,7 @@ impl Shape {
                 rotation,
             } => Self::OrientedBox {
                 centre: flat(centre),
-                half: [half[0], half[1], f32::MAX],
+                half: Vector::new(half[0], half[1], f32::MAX),
                 rotation: rotation.seen_in::<D>(),
             },
             Self::Capsule { from, to, radius } => Self::Capsule {
@@ -237,10 +239,10 @@ impl Shape {
         match self {
             Self::HalfSpace { normal, offset } => Self::HalfSpace {
                 normal,
-                offset: offset + dot(normal, by),
+                offset: offset + normal.dot(by),
             },
             Self::Box { centre, half } => Self::Box {
-                centre: plus(centre, by),
+                centre: centre + by,
                 half,
             },
             Self::OrientedBox {
@@ -248,17 +250,17 @@ impl Shape {
                 half,
                 rotation,
             } => Self::OrientedBox {
-                centre: plus(centre, by),
+                centre: centre + by,
                 half,
                 rotation,
             },
             Self::Capsule { from, to, radius } => Self::Capsule {
-                from: plus(from, by),
-                to: plus(to, by),
+                from: from + by,
+                to: to + by,
                 radius,
             },
             Self::Ball { centre, radius } => Self::Ball {
-                centre: plus(centre, by),
+                centre: centre + by,
                 radius,
             },
         }
@@ -323,18 +325,20 @@ fn reach_of(cosine: f32, half: f32) -> f32 {
 
 /// Returns a vector for a world of `D`: in 2D with the third coordinate 0.
 pub(crate) fn flat<D: Dim>(mut vector: Vector) -> Vector {
-    vector[D::N..].fill(0.0);
+    if D::N == 2 {
+        vector.z = 0.0;
+    }
     vector
 }
 
 /// Returns the length and the direction of a vector; the direction of a vector of length 0 is upwards.
 #[inline]
 fn away(v: Vector) -> (f32, Vector) {
-    let distance = length(v);
+    let distance = v.length();
     if distance > 1e-9 {
-        (distance, scaled(v, 1.0 / distance))
+        (distance, v * (1.0 / distance))
     } else {
-        (0.0, [0.0, 1.0, 0.0])
+        (0.0, Vector::Y)
     }
 }
 
@@ -346,11 +350,11 @@ fn distance_from_box(at: Vector, half: Vector) -> (f32, Vector) {
     let sign = |k: usize| if at[k] < 0.0 { -1.0 } else { 1.0 };
     if beyond.iter().all(|&k| k <= 0.0) {
         let side = (0..3).fold(0, |side, k| if beyond[k] > beyond[side] { k } else { side });
-        let mut normal = [0.0; 3];
+        let mut normal = Vector::ZERO;
         normal[side] = sign(side);
         return (beyond[side], normal);
     }
-    away([0, 1, 2].map(|k| beyond[k].max(0.0) * sign(k)))
+    away([0, 1, 2].map(|k| beyond[k].max(0.0) * sign(k)).into())
 }
 
 #[cfg(test)]
@@ -360,29 +364,32 @@ mod tests {
     #[test]
     fn distance_returns_signed_distance_and_normal() {
         let wall = Shape::Box {
-            centre: [1.0, 0.0, 0.0],
-            half: [0.5, 2.0, 9.0],
+            centre: Vector::X,
+            half: Vector::new(0.5, 2.0, 9.0),
         };
-        assert_eq!(wall.distance([0.0, 1.0, 0.0]), (0.5, [-1.0, 0.0, 0.0]));
-        let (gap, normal) = wall.distance([0.75, 0.0, 0.0]);
-        assert_eq!((gap, normal), (-0.25, [-1.0, 0.0, 0.0]));
-        let (gap, _) = wall.distance([1.5 + 3.0, 2.0 + 4.0, 0.0]);
+        assert_eq!(wall.distance(Vector::Y), (0.5, Vector::NEG_X));
+        let (gap, normal) = wall.distance(Vector::new(0.75, 0.0, 0.0));
+        assert_eq!((gap, normal), (-0.25, Vector::NEG_X));
+        let (gap, _) = wall.distance(Vector::new(1.5 + 3.0, 2.0 + 4.0, 0.0));
         assert_eq!(gap, 5.0);
         let bar = Shape::Capsule {
-            from: [0.0; 3],
-            to: [2.0, 0.0, 0.0],
+            from: Vector::ZERO,
+            to: Vector::new(2.0, 0.0, 0.0),
             radius: 0.5,
         };
-        assert_eq!(bar.distance([1.0, 2.0, 0.0]), (1.5, [0.0, 1.0, 0.0]));
-        assert_eq!(bar.distance([5.0, 0.0, 4.0]).0, 4.5);
-        let floor = Shape::half_space([0.0, 2.0, 0.0], [7.0, 1.0, 0.0]);
-        assert_eq!(floor.distance([0.0, 0.5, 0.0]), (-0.5, [0.0, 1.0, 0.0]));
+        assert_eq!(bar.distance(Vector::new(1.0, 2.0, 0.0)), (1.5, Vector::Y));
+        assert_eq!(bar.distance(Vector::new(5.0, 0.0, 4.0)).0, 4.5);
+        let floor = Shape::half_space(Vector::new(0.0, 2.0, 0.0), Vector::new(7.0, 1.0, 0.0));
+        assert_eq!(
+            floor.distance(Vector::new(0.0, 0.5, 0.0)),
+            (-0.5, Vector::Y)
+        );
     }
 
     #[test]
     fn check_names_the_invalid_field() {
         let ball = Shape::Ball {
-            centre: [0.0; 3],
+            centre: Vector::ZERO,
             radius: -1.0,
         };
         let error = Error::parameter("radius", "positive and finite", -1.0);

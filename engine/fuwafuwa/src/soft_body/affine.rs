@@ -2,7 +2,7 @@
 
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, NodeId};
-use crate::math::vector::{cross, dot, minus, plus, scaled, three};
+use crate::math::row::Row;
 use crate::rigid_body::shape::Vector;
 use crate::soft_body::SoftBody;
 use crate::topology::element_class::slot_at;
@@ -18,14 +18,14 @@ impl<D: Dim> SoftBody<D> {
         let stencil = self.topology.mesh.stencil(element);
         let half = 0.5 * self.topology.grid.voxel_size() * element.cell.width() as f32;
         let scale = 1.0 / (stencil.volume as f32 * half);
-        let (mut centre, mut gradient) = ([0.0; 3], [[0.0; 3]; 3]);
+        let (mut centre, mut gradient) = (Vector::ZERO, [Vector::ZERO; 3]);
         for (place, &node) in element.nodes.iter().enumerate() {
-            let at = three(self.state.position[node]);
+            let at = self.state.position[node].xyz();
             let share = (stencil.volumes[place] / stencil.volume) as f32;
-            centre = plus(centre, scaled(at, share));
-            let b = stencil.gradients[place].map(|k| k as f32);
+            centre += at * share;
+            let b = stencil.gradients[place].as_vec3();
             for i in 0..D::N {
-                gradient[i] = plus(gradient[i], scaled(b, at[i] * scale));
+                gradient[i] += b * (at[i] * scale);
             }
         }
         gradient
@@ -42,8 +42,8 @@ impl<D: Dim> SoftBody<D> {
         let Some(undone) = self.state.blocks.plastic_inverse(id) else {
             return gradient;
         };
-        let column = |j: usize| [undone[0][j], undone[1][j], undone[2][j]];
-        gradient.map(|row| [0, 1, 2].map(|j: usize| dot(row, column(j))))
+        let column = |j: usize| Vector::new(undone[0][j], undone[1][j], undone[2][j]);
+        gradient.map(|row| Vector::from([0, 1, 2].map(|j: usize| row.dot(column(j)))))
     }
 
     /// Returns the affine motion of an element: maps a point of the undeformed body, in voxels, to its
@@ -54,17 +54,17 @@ impl<D: Dim> SoftBody<D> {
         let size = self.topology.grid.voxel_size();
         let half = 0.5 * size * element.cell.width() as f32;
         // Slot in the low corner of the cell, relative to the volume centroid at rest.
-        let steps = slot_at(stencil.slots[0] as usize).map(|k| k as f32 * half);
-        let origin = minus(scaled(stencil.offsets[0].map(|k| k as f32), half), steps);
+        let steps = Vector::from(slot_at(stencil.slots[0] as usize).map(|k| k as f32)) * half;
+        let origin = stencil.offsets[0].as_vec3() * half - steps;
         let low = element.cell.first_voxel().map(|k| k as f32);
         move |point| {
             let mut rest = origin;
             for axis in 0..D::N {
                 rest[axis] += (point[axis] - low[axis]) * size;
             }
-            let mut carried = [0.0; 3];
+            let mut carried = Vector::ZERO;
             for axis in 0..D::N {
-                carried[axis] = centre[axis] + dot(gradient[axis], rest);
+                carried[axis] = centre[axis] + gradient[axis].dot(rest);
             }
             carried
         }
@@ -78,7 +78,7 @@ impl<D: Dim> SoftBody<D> {
         let half = 0.5 * size * element.cell.width() as f32;
         let from_centroid = self.offset_at_rest(element, at)?;
         let corner = slot_at(stencil.slots[0] as usize);
-        let mut place = element.cell.first_voxel().map(|k| k as f32);
+        let mut place = Vector::from(element.cell.first_voxel().map(|k| k as f32));
         for axis in 0..D::N {
             let from_corner = from_centroid[axis] / half - stencil.offsets[0][axis] as f32;
             place[axis] += (from_corner + corner[axis] as f32) * half / size;
@@ -94,7 +94,7 @@ impl<D: Dim> SoftBody<D> {
         let half = 0.5 * element.cell.width() as f32;
         let corner = slot_at(stencil.slots[0] as usize);
         let low = element.cell.first_voxel();
-        let mut rest = [0.0; 3];
+        let mut rest = Vector::ZERO;
         for axis in 0..D::N {
             let from_corner = (at[axis] - low[axis] as f32) / half - corner[axis] as f32;
             rest[axis] = from_corner + stencil.offsets[0][axis] as f32;
@@ -102,7 +102,7 @@ impl<D: Dim> SoftBody<D> {
         let scale = 1.0 / stencil.volume as f32;
         let weight = |place: usize| {
             let share = (stencil.volumes[place] / stencil.volume) as f32;
-            share + scale * dot(stencil.gradients[place].map(|k| k as f32), rest)
+            share + scale * stencil.gradients[place].as_vec3().dot(rest)
         };
         let nodes = element.nodes.iter().enumerate();
         nodes.map(|(place, &node)| (node, weight(place))).collect()
@@ -110,14 +110,14 @@ impl<D: Dim> SoftBody<D> {
 
     /// Velocity [m/s] at the point with these node weights.
     pub(crate) fn velocity_of(&self, weights: &[(NodeId, f32)]) -> Vector {
-        let share = |&(node, weight): &(NodeId, f32)| scaled(self.state.velocity[node], weight);
-        three(weights.iter().map(share).fold([0.0; 4], plus))
+        let share = |&(node, weight): &(NodeId, f32)| self.state.velocity[node] * weight;
+        weights.iter().map(share).sum::<Row>().xyz()
     }
 
     /// Maps a position [m] to its rest offset from the centroid of an element [m], in all three coordinates.
     fn offset_at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
         let (centre, undo) = self.inverse_deformation(element)?;
-        Some(undo(minus(at, centre)))
+        Some(undo(at - centre))
     }
 
     /// Returns the centre of an element [m], and the inverse of its deformation: it maps present directions
@@ -127,16 +127,16 @@ impl<D: Dim> SoftBody<D> {
         element: &Element,
     ) -> Option<(Vector, impl Fn(Vector) -> Vector + use<D>)> {
         let (centre, [x, y, z]) = self.deformation(element);
-        let volume = dot(x, cross(y, z));
+        let volume = x.dot(y.cross(z));
         if volume.abs() < FLAT {
             return None;
         }
         // Cramer's rule.
-        let columns = [cross(y, z), cross(z, x), cross(x, y)];
-        let undo = move |way| {
-            let by = scaled(way, 1.0 / volume);
+        let columns = [y.cross(z), z.cross(x), x.cross(y)];
+        let undo = move |way: Vector| {
+            let by = way * (1.0 / volume);
             let along = |axis: usize| (0..3).map(|k| columns[k][axis] * by[k]).sum();
-            [0, 1, 2].map(along)
+            Vector::from([0, 1, 2].map(along))
         };
         Some((centre, undo))
     }

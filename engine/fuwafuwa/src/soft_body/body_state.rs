@@ -70,12 +70,12 @@ impl<D: Dim> State<D> {
 
     /// Makes room for `nodes` nodes.
     pub fn make_room(&mut self, nodes: usize) {
-        self.position.resize(nodes, [0.0; 4]);
-        self.velocity.resize(nodes, [0.0; 4]);
+        self.position.resize(nodes, Row::ZERO);
+        self.velocity.resize(nodes, Row::ZERO);
         self.mass.resize(nodes, 0.0);
         self.inverse_mass.resize(nodes, 0.0);
         self.fixed.resize(nodes, false);
         self.damage.resize(nodes, 0.0);
-        self.ahead.resize(nodes, [0.0; 4]);
+        self.ahead.resize(nodes, Row::ZERO);
     }
 }

@@ -70,8 +70,7 @@ impl<D: Dim> SoftBody<D> {
         let state = &self.state;
         let rows = [&state.position, &state.velocity, &state.ahead].map(|rows| rows[id]);
         let is_flat = |row: &Row| row[D::N..].iter().all(|&k| k == 0.0);
-        let is_finite = |row: &Row| row.iter().all(|k| k.is_finite());
-        rows.iter().all(|row| is_flat(row) && is_finite(row)) && !state.damage[id].is_nan()
+        rows.iter().all(|row| is_flat(row) && row.is_finite()) && !state.damage[id].is_nan()
     }
 
     /// Whether the mass and the inverse mass of a node are exactly those that follow from its elements.

@@ -8,9 +8,10 @@
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::foundation::threads;
-use crate::math::vector::{cross, dot, minus, plus, scaled, three};
+use crate::math::row::Row;
 use crate::soft_body::SoftBody;
 use crate::soft_body::momentum::RigidMotion;
+use glam::DVec3;
 
 /// Motion of one piece.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -18,9 +19,9 @@ pub struct PieceMotion {
     /// Mass of the awake nodes [kg].
     pub mass: f64,
     /// Centre of mass [m].
-    pub centre: [f64; 3],
+    pub centre: DVec3,
     /// Velocity of the centre of mass [m/s].
-    pub velocity: [f64; 3],
+    pub velocity: DVec3,
     /// Mean square speed [m²/s²].
     pub speed_squared: f64,
     /// Number of awake nodes.
@@ -28,24 +29,24 @@ pub struct PieceMotion {
     /// Whether the piece has fixed nodes that move; such a piece never sleeps.
     pub is_driven: bool,
     /// Angular momentum about the centre [kg m²/s].
-    angular: [f64; 3],
+    angular: DVec3,
     /// Σ m x xᵀ about the centre [kg m²].
-    spread: [[f64; 3]; 3],
+    spread: [DVec3; 3],
 }
 
 impl PieceMotion {
     /// Adds a node at x relative to `origin`; [`PieceMotion::finish`] converts the sums to the centre of
     /// mass.
     #[inline(always)]
-    fn add<D: Dim>(&mut self, x: [f64; 3], velocity: [f64; 3], mass: f64) {
-        let (moment, impulse) = (scaled(x, mass), scaled(velocity, mass));
+    fn add<D: Dim>(&mut self, x: DVec3, velocity: DVec3, mass: f64) {
+        let (moment, impulse) = (x * mass, velocity * mass);
         self.mass += mass;
         self.nodes += 1;
-        self.speed_squared += dot(impulse, velocity);
+        self.speed_squared += impulse.dot(velocity);
         match D::N {
             // In 2D, angular momentum has only a third component.
             2 => self.angular[2] += x[0] * impulse[1] - x[1] * impulse[0],
-            _ => self.angular = plus(self.angular, cross(x, impulse)),
+            _ => self.angular += x.cross(impulse),
         }
         for i in 0..D::N {
             self.centre[i] += moment[i];
@@ -57,19 +58,19 @@ impl PieceMotion {
     }
 
     /// Converts sums about `origin` to the values described at the fields.
-    fn finish(&mut self, origin: [f64; 3]) {
+    fn finish(&mut self, origin: DVec3) {
         let share = 1.0 / self.mass;
-        let (from, impulse) = (scaled(self.centre, share), self.velocity);
-        self.velocity = scaled(impulse, share);
+        let (from, impulse) = (self.centre * share, self.velocity);
+        self.velocity = impulse * share;
         self.speed_squared *= share;
-        self.angular = minus(self.angular, cross(from, impulse));
+        self.angular -= from.cross(impulse);
         for i in 0..3 {
             for j in i..3 {
                 self.spread[i][j] -= self.mass * from[i] * from[j];
                 self.spread[j][i] = self.spread[i][j];
             }
         }
-        self.centre = plus(origin, from);
+        self.centre = origin + from;
     }
 
     /// Returns the rigid motion with the same momentum; zero for a sleeping piece.
@@ -78,7 +79,7 @@ impl PieceMotion {
             return RigidMotion::default();
         }
         let squared = self.spread[0][0] + self.spread[1][1] + self.spread[2][2];
-        let mut inertia = self.spread.map(|row| scaled(row, -1.0));
+        let mut inertia = self.spread.map(|row| -row);
         (0..3).for_each(|k| inertia[k][k] += squared);
         RigidMotion::of_spin(self.velocity, self.centre, &self.angular, &inertia)
     }
@@ -89,7 +90,7 @@ pub fn motions<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, PieceMotion> {
     let count = body.topology.pieces.list.len();
     let mut motions: IndexVec<PieceId, _> = vec![PieceMotion::default(); count].into();
     // Sums are relative to a node of the piece: far from the world origin they would lose digits.
-    let mut origins: IndexVec<PieceId, _> = vec![[0.0; 3]; count].into();
+    let mut origins: IndexVec<PieceId, _> = vec![DVec3::ZERO; count].into();
     let of_node = |id| body.topology.pieces.of_node(id);
     // Consecutive nodes mostly belong to one piece: its sums stay in registers.
     for nodes in body.cache.awake.chunk_by(|&a, &b| of_node(a) == of_node(b)) {
@@ -99,9 +100,9 @@ pub fn motions<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, PieceMotion> {
             *origin = wide(body.state.position[nodes[0]]);
         }
         for (&id, (position, velocity, mass)) in nodes.iter().zip(body.states(nodes)) {
-            let x = minus(wide(position), *origin);
+            let x = wide(position) - *origin;
             motion.add::<D>(x, wide(velocity), f64::from(mass));
-            motion.is_driven |= body.state.inverse_mass[id] == 0.0 && velocity != [0.0; 4];
+            motion.is_driven |= body.state.inverse_mass[id] == 0.0 && velocity != Row::ZERO;
         }
         motions[piece] = motion;
     }
@@ -176,13 +177,13 @@ pub fn slow_down<D: Dim>(
             if inverse_mass[id] != 0.0 {
                 let (kept, pace) = &paces[pieces.of_node(id).index()];
                 let velocity = &mut velocities[id.index() - rows.first];
-                *velocity = plus(scaled(*velocity, *kept), pace.at::<D>(position[id]));
+                *velocity = *velocity * *kept + pace.at::<D>(position[id]);
             }
         }
     });
 }
 
 #[inline(always)]
-fn wide(row: [f32; 4]) -> [f64; 3] {
-    three(row).map(f64::from)
+fn wide(row: Row) -> DVec3 {
+    row.xyz().as_dvec3()
 }

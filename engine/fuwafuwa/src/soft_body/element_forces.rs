@@ -19,14 +19,14 @@ mod rotation_extraction;
 #[cfg(feature = "serde")]
 mod saved_states;
 
-pub use crate::math::lanes::Row;
+pub use crate::math::row::Row;
 
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId};
 use crate::foundation::threads::{self, RowChunk};
 use crate::math::lanes::{Eight, LANES, on_widest_lanes, splat, sum, sum_of_squares};
 use crate::math::rotation::Rotation;
-use crate::math::vector::{plus, scaled};
+use crate::math::vector::Vector;
 use crate::soft_body::element_law::{Elasticity, Law};
 use crate::soft_body::plasticity::Plasticity;
 use batch::{Batch, BatchKey, GROUP, Group, Shared, VACANT, evaluate_best};
@@ -149,7 +149,7 @@ impl<D: Dim> ElementBatches<D> {
 
     /// Returns the plastic state G of an element ([`crate::soft_body::plasticity`]) by rows; `None` if its material is
     /// elastic.
-    pub fn plastic_inverse(&self, id: ElementId) -> Option<[[f32; 3]; 3]> {
+    pub fn plastic_inverse(&self, id: ElementId) -> Option<[Vector; 3]> {
         let &(block, lane) = self.assigned.get(id.index())?;
         let block = self.blocks.get(block as usize)?;
         let undone = block.undone.as_ref()?;
@@ -157,7 +157,7 @@ impl<D: Dim> ElementBatches<D> {
     }
 
     /// Sets the plastic state of an element.
-    pub fn set_plastic_inverse(&mut self, id: ElementId, undone: [[f32; 3]; 3]) {
+    pub fn set_plastic_inverse(&mut self, id: ElementId, undone: [Vector; 3]) {
         let (block, lane) = self.assigned[id];
         if let Some(own) = &mut self.blocks[block as usize].undone {
             own.set(lane as usize, undone);
@@ -239,7 +239,7 @@ impl<D: Dim> ElementBatches<D> {
         let places = self.slots[node].iter();
         let places = places.take_while(|&&place| place != 0);
         places.map(|&place| {
-            let mut force = [0.0; 4];
+            let mut force = Row::ZERO;
             force[..D::N].copy_from_slice(&self.forces[place as usize..][..D::N]);
             force
         })
@@ -261,16 +261,20 @@ impl<D: Dim> ElementBatches<D> {
     }
 
     /// Rotation of an element in the last evaluation, by rows.
-    pub fn rotation(&self, id: ElementId) -> [[f32; 3]; 3] {
+    pub fn rotation(&self, id: ElementId) -> [Vector; 3] {
         let turned = self.rotation_of(id);
         // Stored as cosine and sine in 2D, as a quaternion in 3D.
         if D::N == 2 {
             let [cosine, sine, ..] = turned;
-            return [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]];
+            return [
+                Vector::new(cosine, -sine, 0.0),
+                Vector::new(sine, cosine, 0.0),
+                Vector::Z,
+            ];
         }
         on_widest_lanes!(simd => {
             let matrix = rotation_extraction::matrix_of(simd, turned.map(|part| splat(simd, part)));
-            matrix.map(|row| row.map(|entry| entry[0]))
+            matrix.map(|row| Vector::from(row.map(|entry| entry[0])))
         })
     }
 
@@ -296,7 +300,7 @@ impl<D: Dim> ElementBatches<D> {
             for lane in 0..LANES {
                 let turned = match (D::N, block.rotation.map(|part| part[lane])) {
                     (2, [cosine, sine, ..]) => {
-                        let [x, y, _] = rotation.apply([cosine, sine, 0.0]);
+                        let [x, y, _] = rotation.apply(Vector::new(cosine, sine, 0.0)).to_array();
                         [x, y, 0.0, 0.0]
                     }
                     (_, turned) => rotation.after(turned),
@@ -307,9 +311,10 @@ impl<D: Dim> ElementBatches<D> {
             }
         }
         for force in self.forces.chunks_exact_mut(D::N) {
-            let mut turned = [0.0; 3];
-            turned[..D::N].copy_from_slice(force);
-            force.copy_from_slice(&rotation.apply(turned)[..D::N]);
+            let mut turned = Vector::ZERO;
+            turned.as_mut()[..D::N].copy_from_slice(force);
+            let turned = rotation.apply(turned).to_array();
+            force.copy_from_slice(&turned[..D::N]);
         }
     }
 
@@ -337,9 +342,9 @@ impl<D: Dim> ElementBatches<D> {
             if inverse_mass == 0.0 {
                 continue;
             }
-            let acceleration = plus(scaled(self.force_by(simd, id), inverse_mass), kick.gravity);
+            let acceleration = self.force_by(simd, id) * inverse_mass + kick.gravity;
             let velocity = &mut velocity[node - rows.first];
-            *velocity = plus(*velocity, scaled(acceleration, kick.duration));
+            *velocity += acceleration * kick.duration;
         }
     }
 
@@ -381,7 +386,7 @@ mod tests {
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
         wide.update(&mesh, &grid, &[], &all, |_| false);
         let mut other = wide.clone();
-        let mut position = vec![[0.0; 4]; mesh.node_capacity()];
+        let mut position = vec![Row::ZERO; mesh.node_capacity()];
         for (id, node) in mesh.nodes() {
             let [x, y, z] = node.at.map(|k| k as f32 / 24.0);
             let bent = [
@@ -401,7 +406,8 @@ mod tests {
             }
         }
         for (id, _) in mesh.nodes() {
-            let bits = |blocks: &ElementBatches<D>| blocks.force_on(id).map(f32::to_bits);
+            let bits =
+                |blocks: &ElementBatches<D>| blocks.force_on(id).to_array().map(f32::to_bits);
             assert_eq!(bits(&wide), bits(&other));
         }
         let nodes: Vec<NodeId> = mesh.nodes().map(|(id, _)| id).collect();
@@ -410,7 +416,7 @@ mod tests {
             nodes: &nodes,
             inverse_mass: &inverse_mass,
             duration: 0.001,
-            gravity: [0.0, -9.81, 0.0, 0.0],
+            gravity: Row::from_array([0.0, -9.81, 0.0, 0.0]),
         };
         let mut velocities = [position.clone(), position];
         let [by_best, by_other] = &mut velocities;
@@ -419,7 +425,7 @@ mod tests {
             simd.vectorize(|| other.kick_by(simd, &kick, rows));
         }
         let [by_best, by_other] = velocities.map(|rows| {
-            let bits = rows.iter().flatten().map(|value| value.to_bits());
+            let bits = rows.iter().flat_map(|row| row.to_array().map(f32::to_bits));
             bits.collect::<Vec<u32>>()
         });
         assert_eq!(by_best, by_other);
@@ -438,7 +444,7 @@ mod tests {
             ElementBatches::<D>::new(Law::CorotationalVem, &[elasticity], grid.voxel_size());
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
         blocks.update(&mesh, &grid, &[], &all, |_| false);
-        let mut position = vec![[0.0; 4]; mesh.node_capacity()];
+        let mut position = vec![Row::ZERO; mesh.node_capacity()];
         let mut evaluate = |blocks: &mut ElementBatches<D>, bend: f32| {
             for (id, node) in mesh.nodes() {
                 let [x, y, z] = node.at.map(|k| k as f32 / 16.0);

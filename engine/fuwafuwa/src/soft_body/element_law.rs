@@ -18,8 +18,8 @@
 use crate::error::{Error, require};
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
-use crate::math::vector::{cross, dot, minus, plus, scaled};
-use crate::topology::element_class::{ElementClass, Vector64};
+use crate::topology::element_class::{ElementClass};
+use glam::DVec3;
 
 /// Law of the elastic forces of an element.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -77,9 +77,9 @@ impl Elasticity {
 }
 
 /// 3 × 3 matrix by rows; in 2D the third row and column are those of the identity.
-pub type Matrix = [[f64; 3]; 3];
+pub type Matrix = [DVec3; 3];
 
-pub(crate) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub(crate) const IDENTITY: Matrix = DVec3::AXES;
 
 /// Returns the force [N] of an element of width `size` [m] on each of its nodes, at `positions` [m].
 ///
@@ -91,8 +91,8 @@ pub fn forces<D: Dim>(
     elasticity: Elasticity,
     stencil: &ElementClass<D>,
     size: f64,
-    positions: &[Vector64],
-) -> Vec<Vector64> {
+    positions: &[DVec3],
+) -> Vec<DVec3> {
     assert_eq!(
         positions.len(),
         stencil.slots.len(),
@@ -109,10 +109,10 @@ fn endo<D: Dim>(
     elasticity: Elasticity,
     stencil: &ElementClass<D>,
     size: f64,
-    positions: &[Vector64],
-) -> Vec<Vector64> {
+    positions: &[DVec3],
+) -> Vec<DVec3> {
     let (stiffness, apart) = shape_matching_offsets(elasticity, stencil, size, positions);
-    apart.into_iter().map(|d| scaled(d, stiffness)).collect()
+    apart.into_iter().map(|d| d * stiffness).collect()
 }
 
 /// Returns Y V d / Σ|R0|², and M R0_i − r_i of each node.
@@ -120,29 +120,26 @@ pub(crate) fn shape_matching_offsets<D: Dim>(
     elasticity: Elasticity,
     stencil: &ElementClass<D>,
     size: f64,
-    positions: &[Vector64],
-) -> (f64, Vec<Vector64>) {
+    positions: &[DVec3],
+) -> (f64, Vec<DVec3>) {
     let half = 0.5 * size;
-    let rest: Vec<Vector64> = stencil.offsets.iter().map(|&r| scaled(r, half)).collect();
+    let rest: Vec<DVec3> = stencil.offsets.iter().map(|&r| r * half).collect();
     let count = positions.len() as f64;
-    let mean = |all: &[Vector64]| {
-        all.iter()
-            .fold([0.0; 3], |sum, &x| plus(sum, scaled(x, 1.0 / count)))
-    };
+    let mean = |all: &[DVec3]| all.iter().map(|&x| x * (1.0 / count)).sum::<DVec3>();
     let (rest_mean, now_mean) = (mean(&rest), mean(positions));
-    let rest: Vec<Vector64> = rest.iter().map(|&r| minus(r, rest_mean)).collect();
-    let now: Vec<Vector64> = positions.iter().map(|&x| minus(x, now_mean)).collect();
-    let mut moment = [[0.0; 3]; 3];
+    let rest: Vec<DVec3> = rest.iter().map(|&r| r - rest_mean).collect();
+    let now: Vec<DVec3> = positions.iter().map(|&x| x - now_mean).collect();
+    let mut moment = [DVec3::ZERO; 3];
     let mut spread = 0.0;
     for (r, x) in rest.iter().zip(&now) {
         add_outer(&mut moment, *x, *r);
-        spread += dot(*r, *r);
+        spread += r.dot(*r);
     }
     // In 2D the rotation axis is the third one.
     (D::N..3).for_each(|axis| moment[axis][axis] = spread);
     let rotation = rotation_of(&moment);
     let stiffness = elasticity.young * volume_of(stencil, half) * D::N as f64 / spread;
-    let apart = |(r, x): (&Vector64, &Vector64)| minus(apply(&rotation, *r), *x);
+    let apart = |(r, x): (&DVec3, &DVec3)| apply(&rotation, *r) - *x;
     (stiffness, rest.iter().zip(&now).map(apart).collect())
 }
 
@@ -150,8 +147,8 @@ fn patch_exact<D: Dim>(
     elasticity: Elasticity,
     stencil: &ElementClass<D>,
     size: f64,
-    positions: &[Vector64],
-) -> Vec<Vector64> {
+    positions: &[DVec3],
+) -> Vec<DVec3> {
     let (deformation, _) = deformation_of(stencil, size, positions);
     let stress = stress(elasticity, &deformation);
     forces_of_stress(elasticity, &stress, stencil, size, positions)
@@ -163,48 +160,45 @@ pub(crate) fn forces_of_stress<D: Dim>(
     stress: &Matrix,
     stencil: &ElementClass<D>,
     size: f64,
-    positions: &[Vector64],
-) -> Vec<Vector64> {
+    positions: &[DVec3],
+) -> Vec<DVec3> {
     let volume = volume_of(stencil, 0.5 * size);
     let gradient = |k: usize| gradient_of(stencil, size, k);
     let (deformation, centre) = deformation_of(stencil, size, positions);
     let (stiffness, hourglass) =
         hourglass(elasticity, stencil, size, positions, &deformation, centre);
-    let mut skew = [[0.0; 3]; 3];
+    let mut skew = [DVec3::ZERO; 3];
     for (k, &h) in hourglass.iter().enumerate() {
-        add_outer(&mut skew, h, scaled(stencil.offsets[k], 0.5 * size));
+        add_outer(&mut skew, h, stencil.offsets[k] * (0.5 * size));
     }
     (0..positions.len())
         .map(|k| {
             let b = gradient(k);
-            let correction = plus(hourglass[k], scaled(apply(&skew, b), -1.0 / volume));
-            plus(
-                scaled(apply(stress, b), -1.0),
-                scaled(correction, -stiffness),
-            )
+            let correction = hourglass[k] + apply(&skew, b) * (-1.0 / volume);
+            -apply(stress, b) - correction * stiffness
         })
         .collect()
 }
 
 /// Returns b of a node: x bᵀ is its contribution to V F.
-fn gradient_of<D: Dim>(stencil: &ElementClass<D>, size: f64, node: usize) -> Vector64 {
+fn gradient_of<D: Dim>(stencil: &ElementClass<D>, size: f64, node: usize) -> DVec3 {
     let half = 0.5 * size;
-    scaled(stencil.gradients[node], volume_scale::<D>(half) / half)
+    stencil.gradients[node] * (volume_scale::<D>(half) / half)
 }
 
 /// Returns the deformation gradient and the volume centroid.
 pub(crate) fn deformation_of<D: Dim>(
     stencil: &ElementClass<D>,
     size: f64,
-    positions: &[Vector64],
-) -> (Matrix, Vector64) {
+    positions: &[DVec3],
+) -> (Matrix, DVec3) {
     let volume = volume_of(stencil, 0.5 * size);
-    let mut deformation = [[0.0; 3]; 3];
-    let mut centre = [0.0; 3];
+    let mut deformation = [DVec3::ZERO; 3];
+    let mut centre = DVec3::ZERO;
     for (k, &x) in positions.iter().enumerate() {
         let gradient = gradient_of(stencil, size, k);
-        add_outer(&mut deformation, scaled(x, 1.0 / volume), gradient);
-        centre = plus(centre, scaled(x, stencil.volumes[k] / stencil.volume));
+        add_outer(&mut deformation, x * (1.0 / volume), gradient);
+        centre += x * (stencil.volumes[k] / stencil.volume);
     }
     deformation[D::N..].copy_from_slice(&IDENTITY[D::N..]);
     (deformation, centre)
@@ -215,14 +209,14 @@ pub(crate) fn hourglass<D: Dim>(
     elasticity: Elasticity,
     stencil: &ElementClass<D>,
     size: f64,
-    positions: &[Vector64],
+    positions: &[DVec3],
     deformation: &Matrix,
-    centre: Vector64,
-) -> (f64, Vec<Vector64>) {
-    let offset = |k: usize| scaled(stencil.offsets[k], 0.5 * size);
+    centre: DVec3,
+) -> (f64, Vec<DVec3>) {
+    let offset = |k: usize| stencil.offsets[k] * (0.5 * size);
     let motion = (0..positions.len()).map(|k| {
-        let affine = plus(centre, apply(deformation, offset(k)));
-        scaled(plus(positions[k], scaled(affine, -1.0)), stencil.volumes[k])
+        let affine = centre + apply(deformation, offset(k));
+        (positions[k] - affine) * stencil.volumes[k]
     });
     let modulus = D::HOURGLASS * stencil.hourglass * elasticity.young;
     let stiffness = (2..D::N).fold(modulus, |stiffness, _| stiffness * size);
@@ -232,12 +226,12 @@ pub(crate) fn hourglass<D: Dim>(
 /// Returns the first Piola–Kirchhoff stress [Pa] of a deformation.
 pub(crate) fn stress(elasticity: Elasticity, deformation: &Matrix) -> Matrix {
     let rotation = rotation_of(deformation);
-    let stretch: f64 = (0..3).map(|i| dot(rotation[i], deformation[i])).sum();
+    let stretch: f64 = (0..3).map(|i| rotation[i].dot(deformation[i])).sum();
     let pressure = elasticity.lame() * (stretch - 3.0);
     let cofactor = cofactor(deformation);
-    let squash = dot(deformation[0], cofactor[0]);
+    let squash = deformation[0].dot(cofactor[0]);
     let barrier = elasticity.young * (MIN_VOLUME_RATIO - squash).max(0.0);
-    let mut stress = [[0.0; 3]; 3];
+    let mut stress = [DVec3::ZERO; 3];
     for i in 0..3 {
         for j in 0..3 {
             stress[i][j] = 2.0 * elasticity.shear_modulus() * (deformation[i][j] - rotation[i][j])
@@ -280,8 +274,8 @@ fn rotation_quaternion(deformation: &Matrix) -> [f64; 4] {
         return turned;
     }
     // In 2D the rotation axis is always the third one.
-    let [[.., x], [.., y], third] = deformation;
-    let is_flat = [*x, *y] == [0.0; 2] && *third == IDENTITY[2];
+    let [first, second, third] = deformation;
+    let is_flat = [first.z, second.z] == [0.0; 2] && *third == IDENTITY[2];
     for axis in if is_flat { 2..3 } else { 0..3 } {
         let mut start = [0.0; 4];
         start[axis] = 1.0;
@@ -298,18 +292,18 @@ fn turn_from(mut turned: [f64; 4], deformation: &Matrix) -> [f64; 4] {
     let scale = 3f64.sqrt() * norm(deformation);
     for _ in 0..100 {
         let rotation = from_quaternion(turned);
-        let mut product = [[0.0; 3]; 3];
+        let mut product = [DVec3::ZERO; 3];
         for i in 0..3 {
             for j in 0..3 {
-                product[i][j] = dot(deformation[i], rotation[j]);
+                product[i][j] = deformation[i].dot(rotation[j]);
             }
         }
-        let axial = [
+        let axial = DVec3::new(
             product[2][1] - product[1][2],
             product[0][2] - product[2][0],
             product[1][0] - product[0][1],
-        ];
-        let mut system = [[0.0; 3]; 3];
+        );
+        let mut system = [DVec3::ZERO; 3];
         for i in 0..3 {
             for j in 0..3 {
                 system[i][j] = -0.5 * (product[i][j] + product[j][i]);
@@ -317,10 +311,10 @@ fn turn_from(mut turned: [f64; 4], deformation: &Matrix) -> [f64; 4] {
             system[i][i] += scale + 1e-12;
         }
         let adjugate = cofactor(&system);
-        let determinant = dot(system[0], adjugate[0]);
-        let turn = scaled(apply(&adjugate, axial), 1.0 / determinant);
+        let determinant = system[0].dot(adjugate[0]);
+        let turn = apply(&adjugate, axial) * (1.0 / determinant);
         turned = turn_quaternion(turned, turn);
-        if dot(turn, turn) < 1e-30 {
+        if turn.dot(turn) < 1e-30 {
             break;
         }
     }
@@ -334,36 +328,36 @@ fn is_greatest(rotation: &Matrix, deformation: &Matrix) -> bool {
 
 /// Returns tr Rᵀ F.
 fn trace(rotation: &Matrix, deformation: &Matrix) -> f64 {
-    (0..3).map(|i| dot(rotation[i], deformation[i])).sum()
+    (0..3).map(|i| rotation[i].dot(deformation[i])).sum()
 }
 
 fn norm(m: &Matrix) -> f64 {
-    m.iter().map(|&row| dot(row, row)).sum::<f64>().sqrt()
+    m.iter().map(|&row| row.dot(row)).sum::<f64>().sqrt()
 }
 
 fn from_quaternion([x, y, z, w]: [f64; 4]) -> Matrix {
     [
-        [
+        DVec3::new(
             1.0 - 2.0 * (y * y + z * z),
             2.0 * (x * y - w * z),
             2.0 * (x * z + w * y),
-        ],
-        [
+        ),
+        DVec3::new(
             2.0 * (x * y + w * z),
             1.0 - 2.0 * (x * x + z * z),
             2.0 * (y * z - w * x),
-        ],
-        [
+        ),
+        DVec3::new(
             2.0 * (x * z - w * y),
             2.0 * (y * z + w * x),
             1.0 - 2.0 * (x * x + y * y),
-        ],
+        ),
     ]
 }
 
 /// Returns normalise((ω/2, 1) q), with ω in world axes.
-fn turn_quaternion([x, y, z, w]: [f64; 4], turn: Vector64) -> [f64; 4] {
-    let [a, b, c] = scaled(turn, 0.5);
+fn turn_quaternion([x, y, z, w]: [f64; 4], turn: DVec3) -> [f64; 4] {
+    let [a, b, c] = (turn * 0.5).to_array();
     let next = [
         x + a * w + b * z - c * y,
         y + b * w + c * x - a * z,
@@ -375,7 +369,7 @@ fn turn_quaternion([x, y, z, w]: [f64; 4], turn: Vector64) -> [f64; 4] {
 }
 
 pub(crate) fn cofactor(m: &Matrix) -> Matrix {
-    [cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])]
+    [m[1].cross(m[2]), m[2].cross(m[0]), m[0].cross(m[1])]
 }
 
 fn volume_scale<D: Dim>(half: f64) -> f64 {
@@ -386,13 +380,13 @@ pub(crate) fn volume_of<D: Dim>(stencil: &ElementClass<D>, half: f64) -> f64 {
     stencil.volume * volume_scale::<D>(half)
 }
 
-fn apply(m: &Matrix, v: Vector64) -> Vector64 {
-    [dot(m[0], v), dot(m[1], v), dot(m[2], v)]
+fn apply(m: &Matrix, v: DVec3) -> DVec3 {
+    DVec3::new(m[0].dot(v), m[1].dot(v), m[2].dot(v))
 }
 
-fn add_outer(m: &mut Matrix, a: Vector64, b: Vector64) {
-    for (row, component) in m.iter_mut().zip(a) {
-        *row = plus(*row, scaled(b, component));
+fn add_outer(m: &mut Matrix, a: DVec3, b: DVec3) {
+    for (row, component) in m.iter_mut().zip(a.to_array()) {
+        *row += b * component;
     }
 }
 
@@ -411,19 +405,20 @@ mod tests {
             [0.6, 0.0, -0.8],
             [2.0 / 3.0, 1.0 / 3.0, 2.0 / 3.0],
         ];
-        let stretch = [[1.1, 0.1, 0.0], [0.1, 0.9, 0.05], [0.0, 0.05, 1.2]];
+        let stretch = [[1.1, 0.1, 0.0], [0.1, 0.9, 0.05], [0.0, 0.05, 1.2]].map(DVec3::from);
         for [x, y, z] in axes {
             for w in [0.0, 1e-9, 1e-3, 0.3] {
                 let length = f64::sqrt(1.0 + w * w);
                 let turned = from_quaternion([x, y, z, w].map(|k| k / length));
                 // R S, by rows.
                 let deformation = turned.map(|row| {
-                    let rows = (0..3).map(|k| scaled(stretch[k], row[k]));
-                    rows.fold([0.0; 3], plus)
+                    let rows = (0..3).map(|k| stretch[k] * row[k]);
+                    rows.sum()
                 });
                 let found = rotation_of(&deformation);
-                for (found, expected) in found.iter().flatten().zip(turned.iter().flatten()) {
-                    assert!((found - expected).abs() < 1e-9, "{found} for {expected}");
+                for (found, expected) in found.into_iter().zip(turned) {
+                    let off = (found - expected).abs().max_element();
+                    assert!(off < 1e-9, "{found} for {expected}");
                 }
             }
         }

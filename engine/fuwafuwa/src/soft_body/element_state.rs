@@ -2,7 +2,6 @@
 
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, NodeId};
-use crate::math::vector::{dot, three};
 use crate::rigid_body::shape::Vector;
 use crate::soft_body::SoftBody;
 use crate::soft_body::element_law::{
@@ -10,7 +9,8 @@ use crate::soft_body::element_law::{
     rotation_of, shape_matching_offsets, volume_of,
 };
 use crate::soft_body::plasticity::{elastic_part, plastic_stiffness_factor, stress_after};
-use crate::topology::element_class::{ElementClass, Vector64};
+use crate::topology::element_class::ElementClass;
+use glam::DVec3;
 
 /// State of an element: deformation, strain, stress and stored energy.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -37,7 +37,7 @@ pub fn element_state<D: Dim>(
     elasticity: Elasticity,
     stencil: &ElementClass<D>,
     size: f64,
-    positions: &[Vector64],
+    positions: &[DVec3],
 ) -> ElementState {
     element_state_plastic(law, elasticity, &IDENTITY, stencil, size, positions)
 }
@@ -54,7 +54,7 @@ pub fn element_state_plastic<D: Dim>(
     undone: &Matrix,
     stencil: &ElementClass<D>,
     size: f64,
-    positions: &[Vector64],
+    positions: &[DVec3],
 ) -> ElementState {
     assert_eq!(
         positions.len(),
@@ -64,11 +64,11 @@ pub fn element_state_plastic<D: Dim>(
     let (whole, centre) = deformation_of(stencil, size, positions);
     let deformation = elastic_part(&whole, undone);
     let rotation = rotation_of(&deformation);
-    let column = |m: &Matrix, k: usize| [m[0][k], m[1][k], m[2][k]];
-    let mut stretch = [[0.0; 3]; 3];
+    let column = |m: &Matrix, k: usize| DVec3::new(m[0][k], m[1][k], m[2][k]);
+    let mut stretch = [DVec3::ZERO; 3];
     for i in 0..3 {
         for j in 0..3 {
-            stretch[i][j] = dot(column(&rotation, i), column(&deformation, j));
+            stretch[i][j] = column(&rotation, i).dot(column(&deformation, j));
         }
     }
     let mut strain = IDENTITY;
@@ -79,7 +79,7 @@ pub fn element_state_plastic<D: Dim>(
     }
     if law == Law::Endo2004 {
         let (stiffness, apart) = shape_matching_offsets(elasticity, stencil, size, positions);
-        let energy = apart.iter().map(|&d| 0.5 * stiffness * dot(d, d)).sum();
+        let energy = apart.iter().map(|&d| 0.5 * stiffness * d.dot(d)).sum();
         return ElementState {
             deformation: whole,
             strain,
@@ -87,15 +87,15 @@ pub fn element_state_plastic<D: Dim>(
             ..ElementState::default()
         };
     }
-    let squash = dot(deformation[0], cofactor(&deformation)[0]);
+    let squash = deformation[0].dot(cofactor(&deformation)[0]);
     let nominal = stress_after::<D>(elasticity, &whole, undone);
-    let mut cauchy = [[0.0; 3]; 3];
+    let mut cauchy = [DVec3::ZERO; 3];
     for i in 0..3 {
         for j in 0..3 {
-            cauchy[i][j] = dot(nominal[i], whole[j]) / squash;
+            cauchy[i][j] = nominal[i].dot(whole[j]) / squash;
         }
     }
-    let squared: f64 = strain.iter().map(|&row| dot(row, row)).sum();
+    let squared: f64 = strain.iter().map(|&row| row.dot(row)).sum();
     let spread = strain[0][0] + strain[1][1] + strain[2][2];
     let below = (MIN_VOLUME_RATIO - squash).max(0.0);
     let density = elasticity.shear_modulus() * squared
@@ -104,7 +104,7 @@ pub fn element_state_plastic<D: Dim>(
     let half = 0.5 * size;
     let (stiffness, hourglass) = hourglass(elasticity, stencil, size, positions, &whole, centre);
     let weights = stencil.volumes.iter().zip(&hourglass);
-    let swings = weights.map(|(&weight, &h)| dot(h, h) / weight);
+    let swings = weights.map(|(&weight, &h)| h.dot(h) / weight);
     let density = plastic_stiffness_factor::<D>(undone) * density;
     let energy = density * volume_of(stencil, half) + 0.5 * stiffness * swings.sum::<f64>();
     ElementState {
@@ -140,8 +140,8 @@ impl<D: Dim> SoftBody<D> {
     #[inline(never)]
     pub fn element_state(&self, id: ElementId) -> Option<ElementState> {
         let element = self.topology.mesh.element(id)?;
-        let at = |&node: &NodeId| three(self.state.position[node]).map(f64::from);
-        let positions: Vec<[f64; 3]> = element.nodes.iter().map(at).collect();
+        let at = |&node: &NodeId| self.state.position[node].xyz().as_dvec3();
+        let positions: Vec<DVec3> = element.nodes.iter().map(at).collect();
         let mut elasticity = self.material(element).elasticity;
         elasticity.young *= self.topology.stiffness_scale;
         let size = f64::from(self.topology.grid.voxel_size()) * f64::from(element.cell.width());
@@ -156,7 +156,7 @@ impl<D: Dim> SoftBody<D> {
     /// Inverse G of the plastic deformation of an element.
     fn undone(&self, id: ElementId) -> Matrix {
         let undone = self.state.blocks.plastic_inverse(id);
-        undone.map_or(IDENTITY, |undone| undone.map(|row| row.map(f64::from)))
+        undone.map_or(IDENTITY, |undone| undone.map(|row| row.as_dvec3()))
     }
 
     /// Plastic strain of an element, if it is alive: 0 without plastic deformation, 0.5 if it was permanently
@@ -198,11 +198,11 @@ impl<D: Dim> SoftBody<D> {
         let pull = f64::from(state.gravity_scale);
         for (id, _) in truth.mesh.nodes() {
             let (at, velocity, mass) = self.node_state(id);
-            let [at, velocity, gravity] = [at, velocity, gravity].map(|v| v.map(f64::from));
+            let [at, velocity, gravity] = [at, velocity, gravity].map(Vector::as_dvec3);
             let mass = f64::from(mass);
             let energy = &mut energies[truth.pieces.of_node(id).index()];
-            energy.kinetic += 0.5 * mass * dot(velocity, velocity);
-            energy.gravitational -= mass * pull * dot(gravity, at);
+            energy.kinetic += 0.5 * mass * velocity.dot(velocity);
+            energy.gravitational -= mass * pull * gravity.dot(at);
         }
         for (id, _) in truth.mesh.elements() {
             let strained = self
@@ -229,10 +229,10 @@ mod tests {
         let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
         let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in nodes {
-            let ([x, y, z], velocity, _) = body.node_state(id);
-            let sway = [4.0 * y * y - y, 3.0 * z * x + y, 5.0 * x * y - 2.0 * z];
-            let at =
-                [0, 1, 2].map(|k: usize| [x, y, z][k] * (1.0 - amount) + amount * 0.1 * sway[k]);
+            let (at, velocity, _) = body.node_state(id);
+            let [x, y, z] = at.to_array();
+            let sway = Vector::new(4.0 * y * y - y, 3.0 * z * x + y, 5.0 * x * y - 2.0 * z);
+            let at = at * (1.0 - amount) + sway * (amount * 0.1);
             body.set_node_state(id, at, velocity);
         }
         body
@@ -245,15 +245,15 @@ mod tests {
         for (_, element) in body.mesh().elements().step_by(7) {
             let stencil = body.mesh().stencil(element);
             let size = size * f64::from(element.cell.width());
-            let at = |&node: &NodeId| body.node_state(node).0.map(f64::from);
-            let positions: Vec<Vector64> = element.nodes.iter().map(at).collect();
-            let energy = |positions: &[Vector64]| {
+            let at = |&node: &NodeId| body.node_state(node).0.as_dvec3();
+            let positions: Vec<DVec3> = element.nodes.iter().map(at).collect();
+            let energy = |positions: &[DVec3]| {
                 element_state(law, elasticity, stencil, size, positions).energy
             };
             let forces = forces(law, elasticity, stencil, size, &positions);
             let most = forces
                 .iter()
-                .flatten()
+                .flat_map(|force| force.to_array())
                 .fold(0.0f64, |most, k| most.max(k.abs()));
             for node in 0..positions.len() {
                 for axis in 0..D::N {
@@ -288,8 +288,8 @@ mod tests {
         let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
         let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in nodes {
-            let ([x, y, z], ..) = body.node_state(id);
-            body.set_node_state(id, [1.05 * x, y, z], [0.0; 3]);
+            let (at, ..) = body.node_state(id);
+            body.set_node_state(id, at.with_x(1.05 * at.x), Vector::ZERO);
         }
         let body = body.rotated_about(Rotation::in_plane(1.0), [0.0; 3]);
         let Elasticity { young, poisson } = Material::default().elasticity;
@@ -298,7 +298,7 @@ mod tests {
         let size = f64::from(body.grid().voxel_size());
         let voxel = (0..D::N).fold(1.0, |volume, _| volume * size);
         let volume = voxel * body.grid().solid_count() as f64;
-        let energy = body.energies([0.0; 3])[0].elastic;
+        let energy = body.energies(Vector::ZERO)[0].elastic;
         assert!(
             (energy / (0.5 * along * 0.05 * volume) - 1.0).abs() < 1e-3,
             "{energy}"
@@ -308,10 +308,10 @@ mod tests {
             assert!((strain[0][0] - 0.05).abs() < 1e-4 && strain[1][1].abs() < 1e-4);
             // Along the axis after its rotation by one radian. The stretch does not change the other axes, so
             // areas are unchanged.
-            let direction = [libm::cos(1.0), libm::sin(1.0), 0.0];
-            let pulled = stress.map(|row| dot(row, direction));
+            let direction = DVec3::new(libm::cos(1.0), libm::sin(1.0), 0.0);
+            let pulled = DVec3::from(stress.map(|row| row.dot(direction)));
             assert!(
-                (dot(pulled, direction) / along - 1.0).abs() < 1e-3,
+                (pulled.dot(direction) / along - 1.0).abs() < 1e-3,
                 "{stress:?}"
             );
         }
@@ -333,12 +333,12 @@ mod tests {
         let grid = VoxelGrid::<Dim2>::ball(12, 1.0).unwrap();
         let mut body = SoftBody::new(grid, &[calm])
             .unwrap()
-            .with_velocity([1.0, 2.0, 0.0]);
+            .with_velocity(Vector::new(1.0, 2.0, 0.0));
         let gravity = [0.0, -9.81, 0.0];
-        let before = body.energies(gravity)[0];
+        let before = body.energies(gravity.into())[0];
         let duration = 1.0 / 960.0;
-        (0..480).for_each(|_| body.advance(duration, gravity));
-        let after = body.energies(gravity)[0];
+        (0..480).for_each(|_| body.advance(duration, gravity.into()));
+        let after = body.energies(gravity.into())[0];
         assert!((after.kinetic - before.kinetic).abs() > 1.0);
         assert!(
             (after.total() / before.total() - 1.0).abs() < 0.01,

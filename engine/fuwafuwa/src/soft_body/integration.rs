@@ -4,7 +4,7 @@ use super::SoftBody;
 use crate::foundation::dim::{Dim, inner};
 use crate::foundation::ids::ElementId;
 use crate::foundation::threads;
-use crate::math::vector::{as_row, is_finite, minus, plus, scaled, three};
+use crate::math::row::Row;
 use crate::rigid_body::shape::Vector;
 use crate::soft_body::element_forces::VelocityUpdate;
 use crate::soft_body::element_law::rotation_if_far_from;
@@ -14,20 +14,20 @@ impl<D: Dim> SoftBody<D> {
     /// Advances an isolated body by `duration` [s] under `gravity` [m/s²], without contact or damping.
     /// Symplectic Euler, stable if `duration` is at most [`SoftBody::longest_substep`].
     #[inline(never)]
-    pub fn advance(&mut self, duration: f32, gravity: [f32; 3]) {
+    pub fn advance(&mut self, duration: f32, gravity: Vector) {
         self.push(duration, gravity);
         self.drift(duration, 0.0);
     }
 
     /// Applies elastic forces and gravity over `duration` [s] to the velocities.
-    pub(crate) fn push(&mut self, duration: f32, gravity: [f32; 3]) {
+    pub(crate) fn push(&mut self, duration: f32, gravity: Vector) {
         self.refresh_awake();
         if std::mem::take(&mut self.state.placed) {
             let all: Vec<ElementId> = self.topology.mesh.elements().map(|(id, _)| id).collect();
             self.settle(&all);
         }
         self.state.blocks.evaluate(&self.state.ahead);
-        let mut gravity = scaled(as_row(gravity), self.state.gravity_scale);
+        let mut gravity = Row::from(gravity) * self.state.gravity_scale;
         gravity[D::N..].fill(0.0);
         let kick = VelocityUpdate {
             nodes: &self.cache.awake,
@@ -41,8 +41,8 @@ impl<D: Dim> SoftBody<D> {
     /// Applies an acceleration field [m/s²] over `duration` [s] to the velocities.
     pub(crate) fn pull(&mut self, duration: f32, field: &dyn Fn(Vector) -> Vector) {
         for &id in &self.cache.awake {
-            let pull = as_row(field(three(self.state.position[id])));
-            if self.state.inverse_mass[id] > 0.0 && is_finite(pull) {
+            let pull = Row::from(field(self.state.position[id].xyz()));
+            if self.state.inverse_mass[id] > 0.0 && pull.is_finite() {
                 for axis in 0..D::N {
                     self.state.velocity[id][axis] += pull[axis] * duration;
                 }
@@ -63,7 +63,7 @@ impl<D: Dim> SoftBody<D> {
                 .mesh
                 .element(id)
                 .expect("`settle` is called with live elements");
-            let wide = |rows: [[f32; 3]; 3]| rows.map(|row| row.map(f64::from));
+            let wide = |rows: [Vector; 3]| rows.map(|row| row.as_dvec3());
             let (rotation, deformation) = (
                 self.state.blocks.rotation(id),
                 self.elastic_part(id, element),
@@ -109,13 +109,13 @@ impl<D: Dim> SoftBody<D> {
                     fastest = squared;
                 }
                 if squared > top_speed * top_speed {
-                    velocity = scaled(velocity, top_speed / squared.sqrt());
+                    velocity *= top_speed / squared.sqrt();
                     velocities[node] = velocity;
                 }
-                let position = plus(positions[node], scaled(velocity, duration));
+                let position = positions[node] + velocity * duration;
                 positions[node] = position;
                 let whole = rigid[pieces.of_node(id).index()].at::<D>(position);
-                ahead[node] = plus(position, scaled(minus(velocity, whole), lead));
+                ahead[node] = position + (velocity - whole) * lead;
             }
             fastest
         });

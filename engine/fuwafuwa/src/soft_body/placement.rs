@@ -5,7 +5,6 @@ use super::body_state::State;
 use crate::foundation::dim::{Dim, turning};
 use crate::foundation::ids::NodeId;
 use crate::math::rotation::Rotation;
-use crate::math::vector::{as_row, cross, minus, plus, three};
 use crate::math::velocity::Velocity;
 use crate::rigid_body::layers::Layers;
 use crate::rigid_body::shape::{Vector, flat};
@@ -75,14 +74,14 @@ impl<D: Dim> SoftBody<D> {
     pub(crate) fn moving_at(mut self, velocity: Velocity) -> Self {
         let linear = velocity.linear;
         for row in self.state.velocity.iter_mut() {
-            row[..D::N].copy_from_slice(&linear[..D::N]);
+            row[..D::N].copy_from_slice(&linear.as_ref()[..D::N]);
         }
         let angular = turning::<D>(velocity.angular);
-        if angular != [0.0; 3] {
+        if angular != Vector::ZERO {
             let centre = self.centre_of_mass();
             for (id, _) in self.topology.mesh.nodes() {
-                let lever = minus(three(self.state.position[id]), centre);
-                add::<D>(&mut self.state.velocity[id], cross(angular, lever));
+                let lever = self.state.position[id].xyz() - centre;
+                add::<D>(&mut self.state.velocity[id], angular.cross(lever));
             }
         }
         self
@@ -107,7 +106,7 @@ impl<D: Dim> SoftBody<D> {
     pub fn centre_of_mass(&self) -> Vector {
         let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
         let states = self.states(&nodes).map(|(at, _, mass)| (at, mass));
-        centre_of(states).map(|k| k as f32)
+        centre_of(states).as_vec3()
     }
 
     pub(crate) fn shift(&mut self, by: Vector) {
@@ -132,10 +131,10 @@ impl<D: Dim> SoftBody<D> {
             ..
         } = &mut self.state;
         for row in position.iter_mut().chain(ahead.iter_mut()) {
-            *row = as_row(rotation.apply_about(three(*row), about));
+            *row = Row::from(rotation.apply_about(row.xyz(), about));
         }
         for row in velocity.iter_mut() {
-            *row = as_row(rotation.apply(three(*row)));
+            *row = Row::from(rotation.apply(row.xyz()));
         }
         blocks.rotate(rotation);
     }
@@ -153,7 +152,7 @@ impl<D: Dim> SoftBody<D> {
     pub(crate) fn set_velocity(&mut self, velocity: Velocity) {
         for (id, _) in self.topology.mesh.nodes() {
             if self.state.inverse_mass[id] > 0.0 {
-                self.state.velocity[id] = [0.0; 4];
+                self.state.velocity[id] = Row::ZERO;
             }
         }
         self.add_velocity(velocity.linear, velocity.angular);
@@ -166,8 +165,8 @@ impl<D: Dim> SoftBody<D> {
         let angular = turning::<D>(angular);
         for (id, _) in self.topology.mesh.nodes() {
             if self.state.inverse_mass[id] > 0.0 {
-                let lever = minus(three(self.state.position[id]), centre);
-                let added = plus(linear, cross(angular, lever));
+                let lever = self.state.position[id].xyz() - centre;
+                let added = linear + angular.cross(lever);
                 add::<D>(&mut self.state.velocity[id], added);
             }
         }
@@ -181,8 +180,8 @@ impl<D: Dim> SoftBody<D> {
         let free = nodes.filter(|&id| self.state.inverse_mass[id] > 0.0);
         let at = flat::<D>(at);
         let squared = |id: NodeId| {
-            let apart = minus(three(self.state.position[id]), at);
-            apart.iter().map(|k| k * k).sum::<f32>()
+            let apart = self.state.position[id].xyz() - at;
+            apart.length_squared()
         };
         let free: Vec<(NodeId, f32)> = free.map(|id| (id, squared(id))).collect();
         let is_within = |(_, squared): &&(NodeId, f32)| *squared <= radius * radius;
@@ -193,7 +192,7 @@ impl<D: Dim> SoftBody<D> {
         }
         let mass: f32 = reached.iter().map(|&id| self.state.mass[id]).sum();
         for id in reached {
-            add::<D>(&mut self.state.velocity[id], impulse.map(|k| k / mass));
+            add::<D>(&mut self.state.velocity[id], impulse / mass);
         }
     }
 }

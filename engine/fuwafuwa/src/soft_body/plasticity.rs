@@ -19,12 +19,12 @@
 //! material, an element is purely elastic.
 
 use crate::foundation::dim::Dim;
-use crate::math::vector::{cross, dot};
 use crate::soft_body::element_law::{
     Elasticity, IDENTITY, MIN_VOLUME_RATIO, Matrix, deformation_of, forces_of_stress, rotation_of,
     stress,
 };
-use crate::topology::element_class::{ElementClass, Vector64};
+use crate::topology::element_class::ElementClass;
+use glam::DVec3;
 
 /// Largest plastic strain per evaluation. It keeps violently torn elements from jumping. Q is correct to
 /// first order, so its error is half the square, 2 %.
@@ -74,10 +74,10 @@ pub fn stress_after<D: Dim>(
 ) -> Matrix {
     let own = stress(elasticity, &elastic_part(deformation, undone));
     let soft = plastic_stiffness_factor::<D>(undone);
-    let mut total = [[0.0; 3]; 3];
+    let mut total = [DVec3::ZERO; 3];
     for i in 0..3 {
         for j in 0..3 {
-            total[i][j] = soft * dot(own[i], undone[j]);
+            total[i][j] = soft * own[i].dot(undone[j]);
         }
     }
     total
@@ -94,8 +94,8 @@ pub fn forces_after<D: Dim>(
     undone: &Matrix,
     stencil: &ElementClass<D>,
     size: f64,
-    positions: &[Vector64],
-) -> Vec<Vector64> {
+    positions: &[DVec3],
+) -> Vec<DVec3> {
     assert_eq!(
         positions.len(),
         stencil.slots.len(),
@@ -118,13 +118,13 @@ pub fn flow<D: Dim>(
         return *undone;
     }
     let rotation = rotation_of(&elastic);
-    let column = |m: &Matrix, k: usize| [m[0][k], m[1][k], m[2][k]];
+    let column = |m: &Matrix, k: usize| DVec3::new(m[0][k], m[1][k], m[2][k]);
     let whole = determinant(&elastic);
     let mut stretch = IDENTITY;
     for i in 0..D::N {
         for j in 0..D::N {
-            let one = dot(column(&rotation, i), column(&elastic, j));
-            let other = dot(column(&rotation, j), column(&elastic, i));
+            let one = column(&rotation, i).dot(column(&elastic, j));
+            let other = column(&rotation, j).dot(column(&elastic, i));
             stretch[i][j] = 0.5 * (one + other);
         }
     }
@@ -138,7 +138,7 @@ pub fn flow<D: Dim>(
         return *undone;
     }
     let share = excess.min(MAX_FLOW) / size;
-    let mut step = [[0.0; 3]; 3];
+    let mut step = [DVec3::ZERO; 3];
     for i in 0..3 {
         for j in 0..3 {
             step[i][j] = f64::from(u8::from(i == j)) - share * deviator[i][j];
@@ -164,13 +164,13 @@ pub fn flow<D: Dim>(
     // before.
     let eased = product(&stretch, &step);
     let eased = [0, 1, 2].map(|i: usize| {
-        [0, 1, 2].map(|j: usize| {
+        DVec3::from([0, 1, 2].map(|j: usize| {
             if i < D::N && j < D::N {
                 scale * eased[i][j]
             } else {
                 IDENTITY[i][j]
             }
-        })
+        }))
     });
     let before = plastic_stiffness_factor::<D>(undone) * density(elasticity, &stretch, whole);
     let after = plastic_stiffness_factor::<D>(&next) * density(elasticity, &eased, whole);
@@ -197,7 +197,7 @@ fn density(elasticity: Elasticity, stretch: &Matrix, volume: f64) -> f64 {
 /// norm of GᵀG; exact in 2D and for elements flattened along one axis.
 pub fn plastic_stiffness_factor<D: Dim>(undone: &Matrix) -> f64 {
     let axes = D::N as f64;
-    let mut squares = [[0.0; 3]; 3];
+    let mut squares = [DVec3::ZERO; 3];
     for i in 0..D::N {
         for j in 0..D::N {
             squares[i][j] = (0..D::N).map(|k| undone[k][i] * undone[k][j]).sum();
@@ -209,7 +209,7 @@ pub fn plastic_stiffness_factor<D: Dim>(undone: &Matrix) -> f64 {
 }
 
 fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    let mut product = [[0.0; 3]; 3];
+    let mut product = [DVec3::ZERO; 3];
     for i in 0..3 {
         for j in 0..3 {
             product[i][j] = (0..3).map(|k| a[i][k] * b[k][j]).sum();
@@ -219,11 +219,11 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
 }
 
 fn determinant(m: &Matrix) -> f64 {
-    dot(m[0], cross(m[1], m[2]))
+    m[0].dot(m[1].cross(m[2]))
 }
 
 fn squared(m: &Matrix) -> f64 {
-    m.iter().map(|&row| dot(row, row)).sum()
+    m.iter().map(|&row| row.dot(row)).sum()
 }
 
 #[cfg(test)]
@@ -287,13 +287,13 @@ mod tests {
     #[test]
     fn stress_after_flow_preserves_angular_momentum() {
         let mut undone = IDENTITY;
-        let sheared = [[1.0, 0.5, 0.0], [0.1, 1.0, 0.2], [0.0, 0.0, 1.0]];
+        let sheared = [[1.0, 0.5, 0.0], [0.1, 1.0, 0.2], [0.0, 0.0, 1.0]].map(DVec3::from);
         (0..20).for_each(|_| undone = flow::<Dim3>(CLAY, soft(), &sheared, &undone));
         let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
-        let other = [[0.9, -0.2, 0.3], [0.1, 1.2, 0.0], [-0.2, 0.1, 1.1]];
+        let other = [[0.9, -0.2, 0.3], [0.1, 1.2, 0.0], [-0.2, 0.1, 1.1]].map(DVec3::from);
         let stress = stress_after::<Dim3>(elasticity, &other, &undone);
         for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-            let spin = dot(stress[i], other[j]) - dot(stress[j], other[i]);
+            let spin = stress[i].dot(other[j]) - stress[j].dot(other[i]);
             assert!(spin.abs() < 1e-7 * elasticity.young, "{spin}");
         }
     }

@@ -3,7 +3,7 @@
 use super::SoftBody;
 use crate::foundation::dim::{Dim, Point};
 use crate::foundation::ids::{IndexVec, NodeId, PieceId};
-use crate::math::vector::{dot, is_finite, plus};
+use crate::math::vector::Vector;
 use crate::soft_body::element_forces::Row;
 use crate::topology::mesh::Node;
 
@@ -18,7 +18,7 @@ impl<D: Dim> SoftBody<D> {
             elements.push(id);
             for &node in &element.nodes {
                 if asleep {
-                    self.state.velocity[node] = [0.0; 4];
+                    self.state.velocity[node] = Row::ZERO;
                     self.state.ahead[node] = self.state.position[node];
                 }
                 let free = !asleep && !self.state.fixed[node];
@@ -44,7 +44,7 @@ impl<D: Dim> SoftBody<D> {
         let (mesh, before) = (&self.topology.mesh, &mut self.cache.before);
         let both = |(id, &row): (NodeId, &Row)| match mesh.is_alive(id) {
             true => (mesh.node(id).at, row),
-            false => ([0; 3], [f32::NAN; 4]),
+            false => ([0; 3], Row::from_array([f32::NAN; 4])),
         };
         before.clear();
         before.extend(self.state.position.entries().map(both));
@@ -56,8 +56,8 @@ impl<D: Dim> SoftBody<D> {
         let mut marked: IndexVec<PieceId, _> = vec![false; self.topology.pieces.list.len()].into();
         for &id in &self.cache.awake {
             let velocity = self.state.velocity[id];
-            let speed = dot(velocity, velocity);
-            let sane = speed <= top_speed * top_speed && is_finite(self.state.position[id]);
+            let speed = velocity.dot(velocity);
+            let sane = speed <= top_speed * top_speed && self.state.position[id].is_finite();
             marked[self.topology.pieces.of_node(id)] |= !sane;
         }
         if !marked.contains(&true) {
@@ -82,7 +82,7 @@ impl<D: Dim> SoftBody<D> {
     fn position_before(&self, id: NodeId, at: Point) -> Row {
         let was = |id: NodeId, at: Point| {
             let known = self.cache.before.get(id.index());
-            known.filter(|(point, row)| *point == at && is_finite(*row))
+            known.filter(|(point, row)| *point == at && row.is_finite())
         };
         let carriers = self.topology.mesh.carriers_of(id);
         let beside = carriers.flat_map(|(element, _)| element.nodes.iter());
@@ -91,7 +91,7 @@ impl<D: Dim> SoftBody<D> {
         let squared = |(point, _): &&(Point, Row)| apart(*point).map(|k| k * k).iter().sum::<i32>();
         let nearest = || beside.min_by_key(squared);
         let (point, row) = was(id, at).or_else(nearest).copied().unwrap_or_default();
-        let [x, y, z] = apart(point).map(|k| k as f32 * self.topology.grid.voxel_size());
-        plus(row, [x, y, z, 0.0])
+        let apart = apart(point).map(|k| k as f32 * self.topology.grid.voxel_size());
+        row + Row::from(Vector::from(apart))
     }
 }

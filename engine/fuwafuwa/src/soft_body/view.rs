@@ -2,7 +2,7 @@
 
 use crate::foundation::dim::{Dim, Dim2, Point, add, corner, face_corners, scale};
 use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
-use crate::math::vector::{cross, length, minus, plus, scaled, three};
+use crate::math::row::Row;
 use crate::rigid_body::shape::{Shape, Vector};
 use crate::soft_body::SoftBody;
 use crate::topology::element_class::{slot_at, slot_index};
@@ -168,10 +168,10 @@ impl<D: Dim> SoftBody<D> {
         let none = |(number, piece): (PieceId, &crate::topology::pieces::Piece)| PieceView {
             number,
             mass: 0.0,
-            centre: [0.0; 3],
-            velocity: [0.0; 3],
-            low: [f32::MAX; 3],
-            high: [f32::MIN; 3],
+            centre: Vector::ZERO,
+            velocity: Vector::ZERO,
+            low: Vector::splat(f32::MAX),
+            high: Vector::splat(f32::MIN),
             element_count: 0,
             asleep: piece.asleep,
             quarantined: piece.quarantined,
@@ -186,8 +186,8 @@ impl<D: Dim> SoftBody<D> {
             let (at, velocity, mass) = self.node_state(id);
             let view = &mut views[pieces.of_node(id).index()];
             view.mass += mass;
-            view.centre = plus(view.centre, scaled(at, mass));
-            view.velocity = plus(view.velocity, scaled(velocity, mass));
+            view.centre += at * mass;
+            view.velocity += velocity * mass;
             for axis in 0..3 {
                 view.low[axis] = view.low[axis].min(at[axis]);
                 view.high[axis] = view.high[axis].max(at[axis]);
@@ -195,11 +195,11 @@ impl<D: Dim> SoftBody<D> {
         }
         for view in &mut views {
             if view.removed {
-                (view.low, view.high) = ([0.0; 3], [0.0; 3]);
+                (view.low, view.high) = (Vector::ZERO, Vector::ZERO);
                 continue;
             }
-            view.centre = scaled(view.centre, 1.0 / view.mass);
-            view.velocity = scaled(view.velocity, 1.0 / view.mass);
+            view.centre *= 1.0 / view.mass;
+            view.velocity *= 1.0 / view.mass;
         }
         views
     }
@@ -252,7 +252,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Positions of all nodes [m], by id, each padded with a 0. Entries of free ids are unspecified.
-    pub fn positions(&self) -> &IndexVec<NodeId, [f32; 4]> {
+    pub fn positions(&self) -> &IndexVec<NodeId, Row> {
         &self.state.position
     }
 
@@ -280,7 +280,7 @@ impl<D: Dim> SoftBody<D> {
             if let Some(last) = ring.last() {
                 let before = std::iter::once(last).chain(&ring);
                 let normals = ring.iter().zip(before);
-                let normals = normals.map(|(next, last)| unit(plus(last.normal, next.normal)));
+                let normals = normals.map(|(next, last)| unit(last.normal + next.normal));
                 outlines.push(Outline {
                     piece: ring[0].piece,
                     nodes: ring.iter().map(|facet| facet.nodes[0]).collect(),
@@ -350,7 +350,7 @@ impl<D: Dim> SoftBody<D> {
         let mut positions: [Option<Vector>; 27] = [None; 27];
         let slots = &self.topology.mesh.stencil(element).slots;
         for (&slot, &node) in slots.iter().zip(&element.nodes) {
-            positions[slot as usize] = Some(three(self.state.position[node]));
+            positions[slot as usize] = Some(self.state.position[node].xyz());
         }
         // Edge middles, then face centres, then the centre: each is the mean of its neighbours of lower order.
         for order in 1..=D::N {
@@ -360,20 +360,20 @@ impl<D: Dim> SoftBody<D> {
                 if positions[slot].is_some() || middles != order {
                     continue;
                 }
-                let mut sum = [0.0; 3];
+                let mut sum = Vector::ZERO;
                 let mut count = 0.0;
                 for axis in (0..D::N).filter(|&axis| at[axis] == 1) {
                     for end in [0, 2] {
                         let mut near = at;
                         near[axis] = end;
                         if let Some(position) = positions[slot_index(near)] {
-                            sum = plus(sum, position);
+                            sum += position;
                             count += 1.0;
                         }
                     }
                 }
                 if count == 2.0 * order as f32 {
-                    positions[slot] = Some(scaled(sum, 1.0 / count));
+                    positions[slot] = Some(sum * (1.0 / count));
                 }
             }
         }
@@ -384,18 +384,18 @@ impl<D: Dim> SoftBody<D> {
     fn facet(&self, id: ElementId, element: &Element, face: usize) -> Facet {
         let ring = face_corners::<D>(face);
         let mut nodes = [NodeId(u32::MAX); 4];
-        let mut corners = [[0.0; 3]; 4];
+        let mut corners = [Vector::ZERO; 4];
         for place in 0..D::CORNERS / 2 {
             nodes[place] = element.nodes[ring[place]];
-            corners[place] = three(self.state.position[nodes[place]]);
+            corners[place] = self.state.position[nodes[place]].xyz();
         }
         // Perpendicular to the segment, or to both diagonals of a quad, which need not be flat.
         let normal = match D::N {
             2 => {
-                let along = minus(corners[1], corners[0]);
-                [along[1], -along[0], 0.0]
+                let along = corners[1] - corners[0];
+                Vector::new(along[1], -along[0], 0.0)
             }
-            _ => cross(minus(corners[2], corners[0]), minus(corners[3], corners[1])),
+            _ => (corners[2] - corners[0]).cross(corners[3] - corners[1]),
         };
         Facet {
             nodes,
@@ -422,7 +422,7 @@ impl ElementView {
 }
 
 fn unit(v: Vector) -> Vector {
-    scaled(v, 1.0 / length(v).max(1e-12))
+    v * (1.0 / v.length().max(1e-12))
 }
 
 #[cfg(test)]

@@ -7,11 +7,9 @@
 
 use crate::foundation::dim::{Dim, Point, add, corner};
 use crate::foundation::hash::hash_state;
+use glam::DVec3;
 use std::fmt;
 use std::marker::PhantomData;
-
-/// Vector in double precision; the third coordinate is 0 in 2D.
-pub type Vector64 = [f64; 3];
 
 /// Coordinates of a slot, each 0, 1 or 2.
 pub fn slot_at(slot: usize) -> Point {
@@ -76,10 +74,10 @@ pub struct ElementClass<D: Dim> {
     /// Mask of `slots`.
     pub mask: u32,
     /// Rest offset of each node from the volume centroid.
-    pub offsets: Vec<Vector64>,
+    pub offsets: Vec<DVec3>,
     /// ∂V/∂x of each node at rest: an exact gradient for every polygon or polyhedron [Beirao da Veiga 2013].
     /// Σ x bᵀ = V F for every affine motion.
-    pub gradients: Vec<Vector64>,
+    pub gradients: Vec<DVec3>,
     /// Part of the volume that belongs to each node.
     pub volumes: Vec<f64>,
     /// Volume: number of filled children.
@@ -140,19 +138,19 @@ impl<D: Dim> ElementClass<D> {
             .filter(|slot| slots >> slot & 1 == 1)
             .collect();
         let volume = f64::from(children.count_ones());
-        let at = |slot: u8| slot_at(slot as usize).map(f64::from);
-        let mut centroid = [0.0; 3];
+        let at = |slot: u8| DVec3::from(slot_at(slot as usize).map(f64::from));
+        let mut centroid = DVec3::ZERO;
         for &slot in &slots {
-            for axis in 0..3 {
-                centroid[axis] += volumes[slot as usize][0] * at(slot)[axis] / volume;
-            }
+            centroid += at(slot) * volumes[slot as usize][0] / volume;
         }
-        let offset = |&slot: &u8| [0, 1, 2].map(|axis: usize| at(slot)[axis] - centroid[axis]);
         let mut stencil = Self {
             children,
             mask: slots.iter().fold(0, |mask, slot| mask | 1 << slot),
-            offsets: slots.iter().map(offset).collect(),
-            gradients: slots.iter().map(|&slot| gradients[slot as usize]).collect(),
+            offsets: slots.iter().map(|&slot| at(slot) - centroid).collect(),
+            gradients: slots
+                .iter()
+                .map(|&slot| gradients[slot as usize].into())
+                .collect(),
             volumes: slots
                 .iter()
                 .map(|&slot| volumes[slot as usize][0])
@@ -186,13 +184,13 @@ impl<D: Dim> ElementClass<D> {
         for towards in 0..D::N {
             let due = 3.0 * self.second_moment(towards);
             for along in (0..D::N).filter(|&along| along != towards) {
-                let bent = |r: &Vector64| {
-                    let mut moved = [0.0; 3];
+                let bent = |r: &DVec3| {
+                    let mut moved = DVec3::ZERO;
                     moved[along] = r[along] * r[towards];
                     moved[towards] = -0.5 * r[along] * r[along];
                     moved
                 };
-                let moved: Vec<Vector64> = self.offsets.iter().map(bent).collect();
+                let moved: Vec<DVec3> = self.offsets.iter().map(bent).collect();
                 least = least.min(due / self.not_affine(&moved));
             }
         }
@@ -210,8 +208,8 @@ impl<D: Dim> ElementClass<D> {
 
     /// Returns Σ V_i |h_i|² for displacements of the nodes; h_i is the displacement of node i less its affine
     /// part.
-    fn not_affine(&self, moved: &[Vector64]) -> f64 {
-        let (mut slope, mut mean) = ([[0.0; 3]; 3], [0.0; 3]);
+    fn not_affine(&self, moved: &[DVec3]) -> f64 {
+        let (mut slope, mut mean) = ([DVec3::ZERO; 3], DVec3::ZERO);
         for (k, u) in moved.iter().enumerate() {
             for i in 0..D::N {
                 mean[i] += u[i] * self.volumes[k] / self.volume;

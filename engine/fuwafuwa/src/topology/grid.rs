@@ -114,7 +114,7 @@ impl<D: Dim> VoxelGrid<D> {
     /// Centre of a voxel [m], measured from the low corner of a grid with this voxel size; the third
     /// coordinate is 0 in 2D.
     pub fn centre(voxel: Point, voxel_size: f32) -> Vector {
-        let mut centre = [0.0; 3];
+        let mut centre = Vector::ZERO;
         for axis in 0..D::N {
             centre[axis] = (voxel[axis] as f32 + 0.5) * voxel_size;
         }
@@ -283,11 +283,11 @@ mod tests {
     #[test]
     fn from_centres_fills_voxels_with_centre_inside() {
         use crate::rigid_body::shape::Shape;
-        let (centre, radius) = ([0.5; 3], 0.3);
-        let inside = |at| u8::from(Shape::Ball { centre, radius }.distance(at).0 < 0.0);
+        let (centre, radius) = (Vector::splat(0.5), 0.3);
+        let inside = |at: Vector| u8::from(Shape::Ball { centre, radius }.distance(at).0 < 0.0);
         let grid = VoxelGrid::<Dim3>::from_centres([5; 3], 0.2, inside).unwrap();
         assert_eq!(grid.solid_count(), 19, "a cube of 3 without its 8 corners");
         let centre = VoxelGrid::<Dim2>::centre([1, 2, 0], 2.0);
-        assert_eq!(centre, [3.0, 5.0, 0.0]);
+        assert_eq!(centre, Vector::new(3.0, 5.0, 0.0));
     }
 }

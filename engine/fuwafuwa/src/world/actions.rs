@@ -9,11 +9,12 @@ use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::{Dim, turning};
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::math::rotation::Rotation;
-use crate::math::vector::{minus, plus};
 use crate::math::velocity::{Impulse, Velocity};
 use crate::rigid_body::layers::Layers;
 use crate::rigid_body::shape::{Vector, flat};
-use crate::rigid_body::{FARTHEST, MotionType, RigidBody, check_friction, check_restitution};
+use crate::rigid_body::{
+    FARTHEST, MotionType, RigidBody, check_friction, check_restitution, is_within_reach,
+};
 use crate::soft_body::{MAX_GRAVITY_SCALE, SoftBody};
 
 impl<D: Dim> World<D> {
@@ -34,7 +35,7 @@ impl<D: Dim> World<D> {
             BodyHandle::Soft(body) => self.displace(body, |body| body.shift(by)),
             BodyHandle::Rigid(rigid) => {
                 let body = self.rigids.get(rigid)?;
-                let (position, rotation) = (plus(body.position(), by), body.rotation());
+                let (position, rotation) = (body.position() + by, body.rotation());
                 self.set_pose(rigid, position, rotation)
             }
         }
@@ -187,8 +188,8 @@ impl<D: Dim> World<D> {
             }
             BodyHandle::Rigid(rigid) => {
                 let rigid = self.dynamic_mut(rigid)?;
-                rigid.velocity = plus(rigid.velocity, flat::<D>(linear));
-                rigid.angular_velocity = plus(rigid.angular_velocity, turning::<D>(angular));
+                rigid.velocity = rigid.velocity + flat::<D>(linear);
+                rigid.angular_velocity = rigid.angular_velocity + turning::<D>(angular);
             }
         }
         Ok(())
@@ -243,7 +244,7 @@ impl<D: Dim> World<D> {
             }
             BodyHandle::Rigid(rigid) => {
                 let rigid = self.dynamic_mut(rigid)?;
-                let lever = minus(flat::<D>(point), rigid.position());
+                let lever = flat::<D>(point) - rigid.position();
                 rigid.kick(flat::<D>(impulse), lever);
             }
         }
@@ -533,6 +534,6 @@ fn check_velocity(velocity: Velocity) -> Result<(), Error> {
 }
 
 fn within(field: &'static str, vector: Vector, expected: &'static str) -> Result<Vector, Error> {
-    let is_within = vector.iter().all(|k| k.abs() <= FARTHEST);
+    let is_within = is_within_reach(vector);
     require(is_within, field, expected, vector).map(|()| vector)
 }

@@ -45,7 +45,7 @@ hash_state! { struct WorldConfig { gravity, drag, most_substeps, tick } }
 impl Default for WorldConfig {
     fn default() -> Self {
         Self {
-            gravity: [0.0, -9.81, 0.0],
+            gravity: Vector::new(0.0, -9.81, 0.0),
             drag: 0.0,
             most_substeps: 64,
             tick: TICK,
@@ -80,7 +80,7 @@ impl WorldConfig {
     }
 
     pub(super) fn check(&self) -> Result<(), Error> {
-        let is_finite = self.gravity.iter().all(|k| k.is_finite());
+        let is_finite = self.gravity.is_finite();
         require(is_finite, "gravity", "finite", self.gravity)?;
         require(
             (0.0..=10.0).contains(&self.drag),

@@ -6,7 +6,6 @@ use crate::event::{Contact, Event};
 use crate::foundation::arena::RigidBodyHandle;
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{IndexVec, PieceId};
-use crate::math::vector::{length, minus, scaled, three};
 use crate::object_ref::{ObjectRef, ObjectSelector};
 use crate::rigid_body::shape::{Bounds, Shape, Vector};
 use crate::rigid_body::{MotionType, RigidBody};
@@ -47,8 +46,8 @@ impl ContactSums {
                 self.list.push(ContactSum {
                     contact: Contact {
                         pair,
-                        point: [0.0; 3],
-                        normal: [0.0; 3],
+                        point: Vector::ZERO,
+                        normal: Vector::ZERO,
                         speed: 0.0,
                         impulse: 0.0,
                     },
@@ -66,7 +65,7 @@ impl ContactSums {
             let [point, normal] = point_and_normal();
             let is_turned = first > second;
             contact.point = point;
-            contact.normal = scaled(normal, if is_turned { -1.0 } else { 1.0 });
+            contact.normal = normal * (if is_turned { -1.0 } else { 1.0 });
         }
     }
 
@@ -150,7 +149,7 @@ impl<D: Dim> World<D> {
                 ObjectRef::RigidBody(rigid),
             ];
             sums.add(objects, pair.impulse.total, pair.impulse.speed, || {
-                let point = three(body.state.position[pair.node]);
+                let point = body.state.position[pair.node].xyz();
                 [point, self.rigids[rigid].shape().distance(point).1]
             });
         }
@@ -162,9 +161,9 @@ impl<D: Dim> World<D> {
                 piece: sphere.piece,
             });
             sums.add(objects, pair.impulse.total, pair.impulse.speed, || {
-                let [point, other] = pair.spheres.map(|sphere| three(spheres.centres[sphere]));
-                let apart = minus(point, other);
-                [point, scaled(apart, 1.0 / length(apart).max(1e-9))]
+                let [point, other] = pair.spheres.map(|sphere| spheres.centres[sphere].xyz());
+                let apart = point - other;
+                [point, apart * (1.0 / apart.length().max(1e-9))]
             });
         }
         for touch in &self.nearby.rigids.passed {
@@ -281,10 +280,10 @@ impl<D: Dim> World<D> {
 /// Returns the bounding box of the nodes of each piece; that of a piece without nodes overlaps nothing.
 fn piece_bounds<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, Bounds> {
     let pieces = &body.topology.pieces;
-    let nothing = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+    let nothing = [Vector::INFINITY, Vector::NEG_INFINITY];
     let mut all: IndexVec<PieceId, Bounds> = vec![nothing; pieces.list.len()].into();
     for (node, _) in body.topology.mesh.nodes() {
-        let at = three(body.state.position[node]);
+        let at = body.state.position[node].xyz();
         let [low, high] = &mut all[pieces.of_node(node)];
         for axis in 0..3 {
             low[axis] = low[axis].min(at[axis]);
@@ -310,7 +309,7 @@ fn pieces_within<D: Dim>(
             break;
         }
         let piece = pieces.of_node(node);
-        if is_open[piece] && shape.distance(three(body.state.position[node])).0 < 0.0 {
+        if is_open[piece] && shape.distance(body.state.position[node].xyz()).0 < 0.0 {
             found.push(piece);
             is_open[piece] = false;
             open -= 1;

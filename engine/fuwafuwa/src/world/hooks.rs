@@ -66,14 +66,14 @@ impl<'a> Substep<'a> {
 /// ```
 pub fn field_around(centre: Vector, strength: f32, reach: f32) -> impl Fn(Vector) -> Vector {
     move |at| {
-        let apart = [0, 1, 2].map(|axis: usize| centre[axis] - at[axis]);
-        let distance = apart.iter().map(|k| k * k).sum::<f32>().sqrt();
+        let apart = centre - at;
+        let distance = apart.length();
         let far = reach / distance.max(reach);
         let near = (100.0 * distance / reach).min(1.0);
         let share = match distance > 0.0 && reach > 0.0 && reach.is_finite() {
             true => strength * far * far * near / distance,
             false => 0.0,
         };
-        apart.map(|k| k * share)
+        apart * share
     }
 }

@@ -8,7 +8,6 @@ use crate::event::Event;
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::PieceId;
-use crate::math::vector::three;
 use crate::rigid_body::shape::Shape;
 use crate::soft_body::SoftBody;
 
@@ -133,7 +132,7 @@ impl<D: Dim> World<D> {
         let mut removed = self.take_out_where(|body| {
             let mut outside: Vec<bool> = vec![true; body.topology.pieces.list.len()];
             for (id, _) in body.topology.mesh.nodes() {
-                let at = three(body.state.position[id]);
+                let at = body.state.position[id].xyz();
                 // Comparisons with NaN are false, so a non-finite position is outside of every region.
                 let is_inside = region.distance(at).0 <= 0.0;
                 outside[body.topology.pieces.of_node(id).index()] &= !is_inside;

@@ -1,6 +1,7 @@
 //! Changes, additions and removals between two ticks.
 
 use super::*;
+use fuwafuwa::Vector;
 
 #[test]
 fn replaced_body_may_have_fewer_nodes_and_pieces() {
@@ -38,7 +39,7 @@ fn sleeping_body_wakes_when_changed() {
     let body = thrown
         .soft_body_mut(thrown.nth_soft_body(0).unwrap())
         .unwrap();
-    *body = body.clone().with_velocity([0.0, 5.0, 0.0]);
+    *body = body.clone().with_velocity(Vector::new(0.0, 5.0, 0.0));
     let id = thrown.nth_soft_body(0).unwrap();
     let woke =
         |event: &Event| matches!(event, Event::WokeUp { body, piece: PieceId(0) } if *body == id);
@@ -123,12 +124,12 @@ fn removal_keeps_other_handles_valid() {
     let (mut bodies, mut hands) = (Vec::new(), Vec::new());
     for place in 0..3u8 {
         let x = 2.0 * f32::from(place);
-        let body = ball(8 + 4 * usize::from(place)).translated([x, 0.0, 0.0]);
+        let body = ball(8 + 4 * usize::from(place)).translated(Vector::new(x, 0.0, 0.0));
         bodies.push(world.add_soft_body(body));
-        let hand = RigidBody::coupled_ball([x + 0.5, 1.1, 0.0], 0.1);
+        let hand = RigidBody::coupled_ball(Vector::new(x + 0.5, 1.1, 0.0), 0.1);
         let hand = world.add_rigid_body(hand).unwrap();
         world
-            .set_target_position(hand, [x + 0.5, 0.8, 0.0])
+            .set_target_position(hand, Vector::new(x + 0.5, 0.8, 0.0))
             .unwrap();
         hands.push(hand);
     }
@@ -157,18 +158,18 @@ fn stale_handle_is_rejected() {
     let mut world = world::<Dim2>();
     let ball = world.add_soft_body(ball(8));
     let hand = world
-        .add_rigid_body(RigidBody::coupled_ball([3.0, 1.0, 0.0], 0.1))
+        .add_rigid_body(RigidBody::coupled_ball(Vector::new(3.0, 1.0, 0.0), 0.1))
         .unwrap();
     let floor = world.rigid_bodies().ids().next().unwrap();
     assert!(
-        world.set_target_position(floor, [0.0; 3]).is_err(),
+        world.set_target_position(floor, Vector::ZERO).is_err(),
         "a fixed body has no target"
     );
     let body = world.remove(ball).unwrap();
     world.remove(hand).unwrap();
     let heir = world.add_soft_body(body);
     world
-        .add_rigid_body(RigidBody::coupled_ball([3.0, 1.0, 0.0], 0.1))
+        .add_rigid_body(RigidBody::coupled_ball(Vector::new(3.0, 1.0, 0.0), 0.1))
         .unwrap();
     let error = world.soft_bodies().get(ball).unwrap_err().to_string();
     assert!(
@@ -199,7 +200,7 @@ fn removal_wakes_only_bodies_in_contact() {
     let cube = |at: [f32; 2]| {
         let grid = VoxelGrid::cube(8, 0.1).unwrap();
         let body = SoftBody::new(grid, &[damped]).unwrap();
-        body.translated([at[0], at[1], 0.0])
+        body.translated(Vector::new(at[0], at[1], 0.0))
     };
     let places = [[0.0, 0.0], [0.0, 0.101], [0.0, 0.202], [2.0, 0.0]];
     let ids = places.map(|at| world.add_soft_body(cube(at)));
@@ -229,10 +230,13 @@ fn coupled_box_and_capsule_push_and_stop_at_floor() {
     let centre = [0.0; 3];
     let half = [0.5, 0.1, 0.5];
     for form in [
-        Shape::Box { centre, half },
+        Shape::Box {
+            centre: centre.into(),
+            half: half.into(),
+        },
         Shape::Capsule {
-            from: [-0.4, 0.0, 0.0],
-            to: [0.4, 0.0, 0.0],
+            from: Vector::new(-0.4, 0.0, 0.0),
+            to: Vector::new(0.4, 0.0, 0.0),
             radius: 0.1,
         },
     ] {
@@ -243,7 +247,7 @@ fn coupled_box_and_capsule_push_and_stop_at_floor() {
         for tick in 0..60u8 {
             let height = 1.2 - 0.015 * f32::from(tick);
             world
-                .set_target_position(plate, [0.5, height, 0.0])
+                .set_target_position(plate, Vector::new(0.5, height, 0.0))
                 .unwrap();
             world.step();
         }
@@ -253,11 +257,15 @@ fn coupled_box_and_capsule_push_and_stop_at_floor() {
         assert!(high < 0.9, "{form:?}: the ball is {high} m high");
         // Beside the ball, the plate stops on the floor.
         for _ in 0..60 {
-            world.set_target_position(plate, [3.0, 0.4, 0.0]).unwrap();
+            world
+                .set_target_position(plate, Vector::new(3.0, 0.4, 0.0))
+                .unwrap();
             world.step();
         }
         for _ in 0..60 {
-            world.set_target_position(plate, [3.0, -0.4, 0.0]).unwrap();
+            world
+                .set_target_position(plate, Vector::new(3.0, -0.4, 0.0))
+                .unwrap();
             world.step();
         }
         let low = world.rigid_bodies()[plate].position()[1] - 0.1;
@@ -313,6 +321,6 @@ fn small_voxels_collide_after_large_ones_are_added() {
     world.step();
     let grid = VoxelGrid::from_fn([2, 2, 1], 1.0, |_| 1).unwrap();
     let large = SoftBody::new(grid, &[Material::default()]).unwrap();
-    world.add_soft_body(large.translated([0.0, -9.0, 0.0]));
+    world.add_soft_body(large.translated(Vector::new(0.0, -9.0, 0.0)));
     assert_they_meet(world);
 }

@@ -10,7 +10,7 @@ use fuwafuwa::{
 };
 
 const FLOOR: Shape = Shape::HalfSpace {
-    normal: [0.0, 1.0, 0.0],
+    normal: Vector::Y,
     offset: 0.0,
 };
 
@@ -37,15 +37,15 @@ fn assert_finite<D: Dim>(world: &World<D>) {
             .unwrap();
         for (id, _) in body.mesh().nodes() {
             let (at, velocity, mass) = body.node_state(id);
-            let mut all = at.iter().chain(&velocity).chain([&mass]);
-            assert!(all.all(|k| k.is_finite()), "{at:?} {velocity:?} {mass}");
+            let is_finite = at.is_finite() && velocity.is_finite() && mass.is_finite();
+            assert!(is_finite, "{at:?} {velocity:?} {mass}");
             assert!(D::N == 3 || (at[2] == 0.0 && velocity[2] == 0.0), "{at:?}");
         }
     }
     for (_, hand) in world.target_followers() {
         let (at, velocity) = (hand.position(), hand.velocity());
-        let mut all = at.iter().chain(&velocity);
-        assert!(all.all(|k| k.is_finite()), "{at:?} {velocity:?}");
+        let is_finite = at.is_finite() && velocity.is_finite();
+        assert!(is_finite, "{at:?} {velocity:?}");
     }
 }
 
@@ -57,13 +57,13 @@ fn bar(size: [usize; 2]) -> SoftBody<Dim2> {
 /// A weightless world with only two bars that fly towards each other.
 fn about_to_meet() -> World<Dim2> {
     let settings = WorldConfig {
-        gravity: [0.0; 3],
+        gravity: Vector::ZERO,
         ..WorldConfig::default()
     };
     let mut world = World::new(settings).unwrap();
-    world.add_soft_body(bar([6, 6]).with_velocity([1.0, 0.0, 0.0]));
-    let other = bar([6, 6]).translated([0.4, 0.0, 0.0]);
-    world.add_soft_body(other.with_velocity([-1.0, 0.0, 0.0]));
+    world.add_soft_body(bar([6, 6]).with_velocity(Vector::X));
+    let other = bar([6, 6]).translated(Vector::new(0.4, 0.0, 0.0));
+    world.add_soft_body(other.with_velocity(Vector::NEG_X));
     world
 }
 
@@ -110,16 +110,16 @@ fn check_coarse<D: Dim>(blade: Blade) {
 fn coarse_body_neither_tears_nor_is_cut() {
     check_coarse::<Dim2>(Blade::segment([0.5, -0.1], [0.5, 1.1]));
     check_coarse::<Dim3>(Blade {
-        from: [0.5, -0.1, -0.1],
-        across: [0.0, 1.2, 0.0],
-        along: [0.0, 0.0, 1.2],
+        from: Vector::new(0.5, -0.1, -0.1),
+        across: Vector::new(0.0, 1.2, 0.0),
+        along: Vector::new(0.0, 0.0, 1.2),
     });
 }
 
 #[test]
 fn add_rigid_rejects_out_of_range_hand() {
     let mut world = world::<Dim2>();
-    let usual = || RigidBody::coupled_ball([0.0, 3.0, 0.0], 0.1);
+    let usual = || RigidBody::coupled_ball(Vector::new(0.0, 3.0, 0.0), 0.1);
     let MotionType::Coupled {
         mass,
         stiffness,
@@ -191,14 +191,14 @@ fn add_rigid_rejects_out_of_range_hand() {
 #[test]
 fn plane_world_ignores_third_coordinates() {
     let shapes = [
-        Shape::half_space([0.0, 1.0, 1.0], [0.0; 3]),
+        Shape::half_space(Vector::new(0.0, 1.0, 1.0), Vector::ZERO),
         Shape::Box {
-            centre: [0.5, -0.5, 7.0],
-            half: [2.0, 0.5, 0.0],
+            centre: Vector::new(0.5, -0.5, 7.0),
+            half: Vector::new(2.0, 0.5, 0.0),
         },
         Shape::Capsule {
-            from: [-1.0, -0.5, 0.2],
-            to: [2.0, -0.5, -0.1],
+            from: Vector::new(-1.0, -0.5, 0.2),
+            to: Vector::new(2.0, -0.5, -0.1),
             radius: 0.5,
         },
     ];
@@ -213,7 +213,7 @@ fn plane_world_ignores_third_coordinates() {
         let low = world.soft_bodies()[id].piece_views()[0].low[1];
         assert!(low > -0.03, "{shape:?}: {low}");
     }
-    let edge_on = Shape::half_space([0.0, 0.0, 1.0], [0.0; 3]);
+    let edge_on = Shape::half_space(Vector::Z, Vector::ZERO);
     assert!(
         world::<Dim2>()
             .add_rigid_body(RigidBody::fixed(edge_on, 0.5))
@@ -221,8 +221,8 @@ fn plane_world_ignores_third_coordinates() {
     );
     let body = ball::<Dim2>(12);
     let region = Shape::Box {
-        centre: [0.5, 0.5, 3.0],
-        half: [1.0, 1.0, 0.0],
+        centre: Vector::new(0.5, 0.5, 3.0),
+        half: Vector::new(1.0, 1.0, 0.0),
     };
     let share = f64::from(body.mass_inside(&region)) / body.total_mass();
     assert!((share - 1.0).abs() < 1e-5, "{share}");
@@ -258,7 +258,7 @@ fn unused_material_has_no_effect() {
         let mut released = 0;
         for tick in 0..40u8 {
             let goal = [0.5, 1.1 - 0.03 * f32::from(tick), 0.0];
-            world.set_target_position(hand, goal).unwrap();
+            world.set_target_position(hand, goal.into()).unwrap();
             released += world.step().nodes_split;
         }
         assert!(released > 10, "the body must tear");

@@ -2,8 +2,8 @@
 
 use crate::foundation::dim::{Dim, Point};
 use crate::foundation::threads::CHUNK_SIZE;
-use crate::math::lanes::{LANES, Lanes, Row, splat};
-use crate::math::vector::{minus, plus};
+use crate::math::lanes::{LANES, Lanes, splat};
+use crate::math::row::Row;
 use fearless_simd::prelude::*;
 use std::ops::Range;
 
@@ -53,7 +53,7 @@ impl Bins {
         for (number, (point, &bin)) in points.iter().zip(&of_point).enumerate() {
             let place = next[bin as usize] as usize;
             bins.numbers[place] = number as u32;
-            for (places, &along) in bins.places.iter_mut().zip(point) {
+            for (places, &along) in bins.places.iter_mut().zip(point.as_array()) {
                 places[place] = along;
             }
             next[bin as usize] += 1;
@@ -77,7 +77,7 @@ impl Bins {
     #[inline(always)]
     pub fn point(&self, place: usize) -> Row {
         let [x, y, z] = self.places.each_ref().map(|places| places[place]);
-        [x, y, z, 0.0]
+        Row::from_array([x, y, z, 0.0])
     }
 
     /// Iterates over shares of the bins.
@@ -161,10 +161,10 @@ impl Bins {
     ) {
         near.clear();
         // With a small margin for rounding.
-        let mut aside = [0.0; 4];
+        let mut aside = Row::ZERO;
         aside[..D::N].fill(1.01 * reach);
-        let low = self.square(&minus(at, aside));
-        let high = self.square(&plus(at, aside));
+        let low = self.square(&(at - aside));
+        let high = self.square(&(at + aside));
         let count = |axis: usize| high[axis].wrapping_sub(low[axis]).wrapping_add(1);
         // The box covers the whole periodic grid.
         let is_far = |axis: usize| !(1..=self.mask).contains(&count(axis));
@@ -259,7 +259,6 @@ mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
     use crate::math::lanes::on_widest_lanes;
-    use crate::math::vector::dot;
 
     fn check<D: Dim>() {
         on_widest_lanes!(simd => check_on::<D, _>(simd));
@@ -273,7 +272,7 @@ mod tests {
         };
         let point = |_| {
             let z = if D::N == 3 { random() } else { 0.0 };
-            [random(), random(), z, 0.0]
+            Row::from_array([random(), random(), z, 0.0])
         };
         let points: Vec<Row> = (0..900).map(point).collect();
         let reach = 0.4;
@@ -294,8 +293,8 @@ mod tests {
         }
         found.sort_unstable();
         let is_near = |a: usize, b: usize| {
-            let apart = minus(points[a], points[b]);
-            dot(apart, apart) <= reach * reach
+            let apart = points[a] - points[b];
+            apart.dot(apart) <= reach * reach
         };
         let all = (0..points.len()).flat_map(|a| (a + 1..points.len()).map(move |b| (a, b)));
         let expected: Vec<_> = all.filter(|&(a, b)| is_near(a, b)).collect();
@@ -306,8 +305,8 @@ mod tests {
         for ((place, &at), steps) in points.iter().enumerate().zip(reaches) {
             let reach = steps * reach;
             let is_near = |a: usize, b: usize| {
-                let apart = minus(points[a], points[b]);
-                dot(apart, apart) <= reach * reach
+                let apart = points[a] - points[b];
+                apart.dot(apart) <= reach * reach
             };
             let mut found = Vec::new();
             bins.near::<D, _>(simd, at, reach, |_| 0, &mut found);

@@ -3,7 +3,6 @@
 use crate::foundation::arena::BodySlot;
 use crate::foundation::dim::{Dim, Point};
 use crate::foundation::ids::{ElementId, Id, IndexVec, NodeId, PieceId, id};
-use crate::math::vector::{plus, scaled};
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
 
@@ -50,9 +49,9 @@ pub struct ContactSphere {
 pub fn mean<D: Dim, I: Id>(rows: &IndexVec<I, Row>, nodes: &[I; 8]) -> Row {
     let mut sum = rows[nodes[0]];
     for &node in &nodes[1..D::CORNERS] {
-        sum = plus(sum, rows[node]);
+        sum += rows[node];
     }
-    scaled(sum, 1.0 / D::CORNERS as f32)
+    sum * (1.0 / D::CORNERS as f32)
 }
 
 impl ContactSphere {
@@ -116,7 +115,7 @@ impl ContactSphere {
 
     /// Returns the vector from the centre out of the body through the bare faces; 0 for a crumb or a sheet.
     pub fn outward<D: Dim>(&self, position: &IndexVec<NodeId, Row>) -> Row {
-        let mut sum = [0.0; 4];
+        let mut sum = Row::ZERO;
         for corner in 0..D::CORNERS {
             let is_bare = |axis: usize, side: usize| f32::from(self.bare >> (2 * axis + side) & 1);
             // Centre of a face minus the centre of the element: half a step across.
@@ -127,7 +126,7 @@ impl ContactSphere {
                 })
                 .sum();
             let at = position[self.nodes[corner]];
-            sum = plus(sum, scaled(at, weight / D::CORNERS as f32));
+            sum += at * (weight / D::CORNERS as f32);
         }
         sum
     }

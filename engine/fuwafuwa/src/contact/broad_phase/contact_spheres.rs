@@ -6,7 +6,6 @@ use crate::foundation::arena::BodySlot;
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{ElementId, IndexVec, PieceId};
-use crate::math::vector::{dot, minus};
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
 use crate::topology::changes::{Bookmark, Changes};
@@ -115,7 +114,7 @@ impl Spheres {
         // Reset, so that a world read from a file behaves like the original.
         self.close.clear();
         self.is_close.fill(false);
-        self.velocities.fill([0.0; 4]);
+        self.velocities.fill(Row::ZERO);
         self.moved.fill(0.0);
         self.awake.clear();
         let all = self.list.ids();
@@ -339,15 +338,15 @@ impl Spheres {
         let sphere = &self.list[id];
         let centre = sphere.mean::<D>(&bodies.at(sphere.body).state.position);
         if self.is_close[id] {
-            let moved = minus(centre, self.centres[id]);
-            self.moved[id] = dot(moved, moved);
+            let moved = centre - self.centres[id];
+            self.moved[id] = moved.dot(moved);
         }
         self.centres[id] = centre;
     }
 
     fn make_room(&mut self) {
         self.is_close.resize(self.list.len(), false);
-        self.velocities.resize(self.list.len(), [0.0; 4]);
+        self.velocities.resize(self.list.len(), Row::ZERO);
         self.moved.resize(self.list.len(), 0.0);
     }
 }

@@ -13,7 +13,6 @@ use crate::foundation::arena::BodySlot;
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, IndexVec, PieceId};
 use crate::math::lanes::on_widest_lanes;
-use crate::math::vector::{dot, minus, plus, scaled, three};
 use crate::rigid_body::shape::Vector;
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
@@ -73,8 +72,8 @@ impl Captives {
         for pair in pairs {
             let [a, b] = pair.both(&spheres.list);
             let [at, other] = pair.spheres.map(|sphere| spheres.centres[sphere]);
-            let (apart, reach) = (minus(at, other), a.radius + b.radius);
-            if dot(apart, apart) > reach * reach {
+            let (apart, reach) = (at - other, a.radius + b.radius);
+            if apart.dot(apart) > reach * reach {
                 continue;
             }
             for (inner, outer, at) in [(0, b, at), (1, a, other)] {
@@ -84,7 +83,7 @@ impl Captives {
                 let body = bodies.at(outer.body);
                 let layers = bodies.at(spheres.list[sphere].body).state.layers;
                 let may_be = is_smaller && layers.meet(body.state.layers);
-                if may_be && body.holds(outer.element, three(at)) {
+                if may_be && body.holds(outer.element, at.xyz()) {
                     self.captors[sphere] = Some(captor);
                 }
             }
@@ -123,7 +122,7 @@ impl Captives {
                 on_widest_lanes!(simd => bins.near::<D, _>(simd, at, reach, |_| 0, &mut inside));
                 for &at in &inside {
                     let number = bins.numbers()[at as usize] as usize;
-                    let (sphere, at) = (near[number], three(centres[number]));
+                    let (sphere, at) = (near[number], centres[number].xyz());
                     let body = bodies.at(inner.captor.0);
                     let layers = bodies.at(spheres.list[sphere].body).state.layers;
                     let is_smaller = own(&pieces, sphere) < inner.count;
@@ -199,8 +198,8 @@ impl Exits {
     /// Returns the exit nearest to a position [m]; the first of several equally near ones.
     fn nearest<D: Dim>(&self, at: Row) -> Option<SphereId> {
         let nearer = |nearest: (f32, u32), number: u32| {
-            let apart = minus(self.centres[number as usize], at);
-            let found = (dot(apart, apart), number);
+            let apart = self.centres[number as usize] - at;
+            let found = (apart.dot(apart), number);
             if found < nearest { found } else { nearest }
         };
         let none = (f32::INFINITY, u32::MAX);
@@ -239,9 +238,9 @@ fn inner_elements<D: Dim>(bodies: &SoftBodies<D>, pieces: &Extents, within: &Ext
             }
             let nodes = element.nodes.iter();
             let places = nodes.map(|&node| body.state.position[node]);
-            let sum = places.clone().fold([0.0; 4], plus);
-            let centre = scaled(sum, 1.0 / element.nodes.len() as f32);
-            let furthest = places.map(|at| minus(at, centre)).map(|way| dot(way, way));
+            let sum = places.clone().sum::<Row>();
+            let centre = sum * (1.0 / element.nodes.len() as f32);
+            let furthest = places.map(|at| at - centre).map(|way| way.dot(way));
             let radius = furthest.fold(0.0, f32::max).sqrt();
             if within.reaches(centre, radius) {
                 found.push(Inner {
@@ -285,8 +284,8 @@ impl Extent {
     const NONE: Self = Self {
         count: 0,
         has_inner: false,
-        low: [f32::MAX; 4],
-        high: [f32::MIN; 4],
+        low: Row::from_array([f32::MAX; 4]),
+        high: Row::from_array([f32::MIN; 4]),
     };
 
     /// Returns the box around some points.
@@ -297,8 +296,10 @@ impl Extent {
     }
 
     fn extend(&mut self, at: &Row) {
-        self.low = [0, 1, 2, 3].map(|axis: usize| self.low[axis].min(at[axis]));
-        self.high = [0, 1, 2, 3].map(|axis: usize| self.high[axis].max(at[axis]));
+        for axis in 0..4 {
+            self.low[axis] = self.low[axis].min(at[axis]);
+            self.high[axis] = self.high[axis].max(at[axis]);
+        }
     }
 
     /// Returns whether a ball may reach into the box.
@@ -350,7 +351,7 @@ mod tests {
             (seed >> 8) as f32 / (1 << 24) as f32
         };
         let centres: Vec<Row> = (0..400)
-            .map(|_| [random(), random(), random(), 0.0])
+            .map(|_| Row::from_array([random(), random(), random(), 0.0]))
             .collect();
         let reach = 0.1;
         let exits = Exits {
@@ -361,10 +362,10 @@ mod tests {
         };
         let (mut near, mut far) = (0, 0);
         for _ in 0..400 {
-            let at = [2.0 * random(), random(), random(), 0.0];
+            let at = Row::from_array([2.0 * random(), random(), random(), 0.0]);
             let apart = |number: &usize| {
-                let apart = minus(exits.centres[*number], at);
-                dot(apart, apart)
+                let apart = exits.centres[*number] - at;
+                apart.dot(apart)
             };
             let all = 0..exits.centres.len();
             let nearest = all.min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
@@ -387,7 +388,7 @@ mod tests {
             element: ElementId(0),
             captor: (BodySlot(0), PieceId(0)),
             count: 9,
-            centre: [0.0; 4],
+            centre: Row::ZERO,
             radius,
         };
         for stretched in [100.0, f32::INFINITY, f32::NAN] {

@@ -27,7 +27,7 @@ hash_state! { struct Impulse { pressed, dragged } skip { total, speed } }
 impl Impulse {
     /// Whether the contact had an impulse in the last substep.
     pub fn is_known(&self) -> bool {
-        self.pressed != 0.0 || self.dragged != [0.0; 4]
+        self.pressed != 0.0 || self.dragged != Row::ZERO
     }
 }
 

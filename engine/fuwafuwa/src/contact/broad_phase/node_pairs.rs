@@ -7,7 +7,6 @@ use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::{Hash, HashState, hash_all, hash_state};
 use crate::foundation::ids::{IndexVec, NodeId, PieceId};
-use crate::math::vector::{dot, length, minus, plus, scaled, three};
 use crate::rigid_body::shape::Shape;
 use crate::rigid_body::{RigidBodies, RigidBody};
 use crate::soft_body::element_forces::Row;
@@ -187,7 +186,7 @@ impl NodePairs {
             let is_near = |&&(slot, node): &&(BodySlot, NodeId)| {
                 let body = bodies.at(slot);
                 let reach = self.reach(slot, node, body.topology.grid.voxel_size());
-                let at = three(body.state.position[node]);
+                let at = body.state.position[node].xyz();
                 rigid.meets(body.state.layers)
                     && body.topology.mesh.is_alive(node)
                     && rigid.shape().distance(at).0 <= reach + leeway.most
@@ -241,7 +240,7 @@ impl NodePairs {
                 if rigid.moves() && body.cache.awake.len() < body.topology.mesh.node_count() {
                     let reach = leeway.most + MARGIN * body.topology.grid.voxel_size();
                     let is_near = |&node: &NodeId| {
-                        let at = three(body.state.position[node]);
+                        let at = body.state.position[node].xyz();
                         body.topology.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
                     };
                     near.extend(
@@ -269,11 +268,12 @@ impl NodePairs {
                 continue;
             };
             for &node in &body.cache.awake {
-                let Some(&[x, y, z, most]) = anchors.get(node.index()) else {
+                let Some(anchor) = anchors.get(node.index()) else {
                     continue;
                 };
-                let come = minus(body.state.position[node], [x, y, z, 0.0]);
-                let come = dot(come, come);
+                let [x, y, z, most] = anchor.to_array();
+                let come = body.state.position[node] - Row::from_array([x, y, z, 0.0]);
+                let come = come.dot(come);
                 if come > most * most {
                     self.changed.push((slot, node));
                 } else {
@@ -289,11 +289,11 @@ impl NodePairs {
     fn anchor<D: Dim>(&mut self, slot: BodySlot, node: NodeId, bodies: &SoftBodies<D>, left: f32) {
         let body = bodies.at(slot);
         let anchors = &mut self.anchors[slot];
-        anchors.resize(body.state.position.len(), [0.0; 4]);
-        let [x, y, z, _] = body.state.position[node];
-        let speed = length(body.state.velocity[node]);
+        anchors.resize(body.state.position.len(), Row::ZERO);
+        let [x, y, z, _] = body.state.position[node].to_array();
+        let speed = body.state.velocity[node].length();
         let most = SLACK * body.topology.grid.voxel_size() + speed * left;
-        anchors[node] = [x, y, z, most];
+        anchors[node] = Row::from_array([x, y, z, most]);
         self.spare = if most < self.spare { most } else { self.spare };
     }
 
@@ -382,7 +382,7 @@ impl Squares {
 
     /// Adds the nodes within their reach plus `range` of a shape [m].
     fn within(&self, range: f32, shape: &Shape, near: &mut Vec<NodeId>) {
-        let is_near = |at: Row, reach: f32| shape.distance(three(at)).0 <= reach;
+        let is_near = |at: Row, reach: f32| shape.distance(at.xyz()).0 <= reach;
         for square in &self.list {
             if !is_near(square.centre, square.radius + square.reach + range) {
                 continue;
@@ -399,7 +399,8 @@ impl Squares {
 
 impl Square {
     fn around(bins: &Bins, points: Range<usize>, nodes: &[(NodeId, f32)]) -> Self {
-        let (mut low, mut high, mut furthest) = ([f32::MAX; 4], [f32::MIN; 4], 0.0f32);
+        let (mut low, mut high) = ([f32::MAX; 4], [f32::MIN; 4]);
+        let mut furthest = 0.0f32;
         for place in points.clone() {
             let at = bins.point(place);
             for axis in 0..4 {
@@ -408,11 +409,12 @@ impl Square {
             }
             furthest = furthest.max(nodes[bins.numbers()[place] as usize].1);
         }
-        let centre = scaled(plus(low, high), 0.5);
+        let (low, high) = (Row::from_array(low), Row::from_array(high));
+        let centre = (low + high) * 0.5;
         Self {
             points,
             centre,
-            radius: length(minus(high, centre)),
+            radius: (high - centre).length(),
             reach: furthest,
         }
     }
@@ -423,6 +425,7 @@ mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
     use crate::material::Material;
+    use crate::math::vector::Vector;
     use crate::topology::grid::VoxelGrid;
     use std::collections::BTreeSet;
 
@@ -436,8 +439,8 @@ mod tests {
         let ball = bodies.insert(body).slot();
         let wall = |normal, offset| RigidBody::fixed(Shape::HalfSpace { normal, offset }, 0.0);
         let mut walls = RigidBodies::default();
-        walls.insert(wall([0.0, 1.0, 0.0], 0.3));
-        walls.insert(wall([-1.0, 0.0, 0.0], -0.8));
+        walls.insert(wall(Vector::Y, 0.3));
+        walls.insert(wall(Vector::NEG_X, -0.8));
         let mut seed = 5u32;
         let mut random = |below: usize| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -458,7 +461,7 @@ mod tests {
                     .all(|&(.., node)| body.topology.mesh.is_alive(node))
             );
             for (node, _) in body.topology.mesh.nodes() {
-                let at = three(body.state.position[node]);
+                let at = body.state.position[node].xyz();
                 for (own, wall) in walls.by_slot() {
                     let is_close = wall.shape().distance(at).0 <= MARGIN * size;
                     assert!(!is_close || listed.contains(&(own, ball, node)));

@@ -5,7 +5,6 @@ use super::known_impulse::Impulse;
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::IndexVec;
 use crate::foundation::threads::{self, CHUNK_SIZE};
-use crate::math::vector::scaled;
 
 /// Search margin of contacts [voxels]. Contacts that close by up to a sixth of a voxel in a substep, (0.3 −
 /// CLOSE) / AHEAD, are known in advance. That is a quarter of the wave speed; faster ones overlap and are
@@ -68,7 +67,7 @@ pub fn renumber(list: &mut Vec<SpherePair>, numbers: &IndexVec<SphereId, SphereI
         let [a, b] = pair.spheres.map(number);
         pair.spheres = [a.min(b), a.max(b)];
         if a > b {
-            pair.impulse.dragged = scaled(pair.impulse.dragged, -1.0);
+            pair.impulse.dragged = -pair.impulse.dragged;
         }
         pair.spheres[1] != SphereId::NONE
     });
@@ -144,6 +143,7 @@ fn by_first(pairs: &[Vec<[SphereId; 2]>], count: usize) -> Vec<[SphereId; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::row::Row;
 
     #[test]
     fn renumber_keeps_impulses_and_drops_removed_spheres() {
@@ -151,7 +151,7 @@ mod tests {
             spheres: spheres.map(SphereId),
             impulse: Impulse {
                 pressed,
-                dragged: [pressed; 4],
+                dragged: Row::from_array([pressed; 4]),
                 total: 0.0,
                 speed: 0.0,
             },
@@ -166,7 +166,8 @@ mod tests {
         assert_eq!(kept.spheres, [0, 1].map(SphereId));
         assert_eq!(kept.impulse.pressed, 2.0);
         assert_eq!(
-            kept.impulse.dragged, [-2.0; 4],
+            kept.impulse.dragged,
+            Row::from_array([-2.0; 4]),
             "the order of the spheres is swapped"
         );
     }

@@ -22,7 +22,6 @@ use crate::foundation::hash::{Hash, HashState, hash_all};
 use crate::foundation::ids::IndexVec;
 use crate::foundation::threads::{self, CHUNK_SIZE};
 use crate::math::lanes::on_widest_lanes;
-use crate::math::vector::{dot, length, minus, plus, scaled};
 use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
 
@@ -195,8 +194,8 @@ impl SpherePairs {
             let Some(path) = self.paths.get(sphere.index()) else {
                 continue;
             };
-            let strayed = minus(spheres.centres[sphere], path.at(self.elapsed));
-            let (strayed, most) = (dot(strayed, strayed), most_stray(spheres, sphere));
+            let strayed = spheres.centres[sphere] - path.at(self.elapsed);
+            let (strayed, most) = (strayed.dot(strayed), most_stray(spheres, sphere));
             if strayed > most * most {
                 self.changed.push(sphere);
             } else {
@@ -217,7 +216,7 @@ impl SpherePairs {
     fn lay<D: Dim>(&mut self, sphere: SphereId, spheres: &Spheres, bodies: &SoftBodies<D>) {
         let now = spheres.centres[sphere];
         let start = &mut self.starts[sphere];
-        let (mut velocity, mut laid) = ([0.0; 4], Start::UNKNOWN);
+        let (mut velocity, mut laid) = (Row::ZERO, Start::UNKNOWN);
         if !spheres.list[sphere].asleep {
             velocity = start.expected(now, self.elapsed, spheres.velocity(sphere, bodies));
             laid = Start {
@@ -226,9 +225,9 @@ impl SpherePairs {
             };
         }
         *start = laid;
-        let from = minus(now, scaled(velocity, self.elapsed));
+        let from = now - velocity * self.elapsed;
         self.paths[sphere] = Path { from, velocity };
-        let speed = length(velocity);
+        let speed = velocity.length();
         self.pace = if speed > self.pace { speed } else { self.pace };
     }
 
@@ -308,7 +307,7 @@ impl SpherePairs {
 
     /// Returns the speed of a path relative to the frame [m/s].
     fn speed(&self, sphere: SphereId) -> f32 {
-        length(minus(self.paths[sphere].velocity, self.frame))
+        (self.paths[sphere].velocity - self.frame).length()
     }
 
     /// Returns whether a sphere is found through the bins: its path is short and as it was when the bins were
@@ -451,8 +450,8 @@ impl SpherePairs {
                     false => true,
                 };
                 // Moved back along the frame, in which the binned spheres hardly move.
-                let shift = scaled(this.frame, span.middle - this.binned_at);
-                let at = minus(own.path.at(span.middle), shift);
+                let shift = this.frame * (span.middle - this.binned_at);
+                let at = own.path.at(span.middle) - shift;
                 let reach = this.reach + this.short + own.sweep;
                 bins.near::<D, _>(simd, at, reach, |_| 0, &mut near);
                 for &at in &near {
@@ -505,14 +504,14 @@ impl SpherePairs {
 
     /// Sets the frame to the mean velocity; 0 if any sphere sleeps.
     fn set_frame(&mut self, spheres: &Spheres) {
-        self.frame = [0.0; 4];
+        self.frame = Row::ZERO;
         if spheres.awake.len() < spheres.list.len() {
             return;
         }
-        let sum = { self.paths.iter() }.fold([0.0; 4], |sum, path| plus(sum, path.velocity));
-        let mean = scaled(sum, 1.0 / self.paths.len() as f32);
+        let sum = self.paths.iter().map(|path| path.velocity).sum::<Row>();
+        let mean = sum * (1.0 / self.paths.len() as f32);
         // Non-finite velocities are quarantined after the tick.
-        if mean.iter().all(|along| along.is_finite()) {
+        if mean.is_finite() {
             self.frame = mean;
         }
     }

@@ -9,7 +9,7 @@ use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{NodeId, PieceId};
 use crate::math::lanes::on_widest_lanes;
-use crate::math::vector::{minus, plus, three};
+use crate::math::vector::Vector;
 use crate::rigid_body::shape::Bounds;
 use crate::rigid_body::{RigidBodies, RigidBody};
 use crate::soft_body::element_forces::Row;
@@ -22,10 +22,10 @@ pub type Sleeper = (BodySlot, PieceId);
 
 /// Returns the boxes around pieces of a body, enlarged by the contact margin [m].
 pub fn bounds_of<D: Dim>(body: &SoftBody<D>, is_one: impl Fn(PieceId) -> bool) -> Vec<Bounds> {
-    let margin = [MARGIN * body.topology.grid.voxel_size(); 3];
+    let margin = Vector::splat(MARGIN * body.topology.grid.voxel_size());
     let pieces = body.piece_views().into_iter();
     let pieces = pieces.filter(|piece| !piece.removed && is_one(piece.number));
-    let bounds = pieces.map(|piece| [minus(piece.low, margin), plus(piece.high, margin)]);
+    let bounds = pieces.map(|piece| [piece.low - margin, piece.high + margin]);
     bounds.collect()
 }
 
@@ -49,7 +49,7 @@ pub fn leaning_on_rigid<D: Dim>(rigid: &RigidBody, bodies: &SoftBodies<D>) -> Ve
     for (slot, body) in bodies.by_slot() {
         let reach = MARGIN * body.topology.grid.voxel_size();
         let is_near = |node: NodeId| {
-            let at = three(body.state.position[node]);
+            let at = body.state.position[node].xyz();
             body.topology.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
         };
         let nodes = body.topology.mesh.nodes().map(|(node, _)| node);

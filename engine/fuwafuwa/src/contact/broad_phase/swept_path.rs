@@ -2,7 +2,6 @@
 
 use super::contact_sphere::SphereId;
 use super::sphere_pair::MARGIN;
-use crate::math::vector::{dot, minus, plus, scaled};
 use crate::soft_body::element_forces::Row;
 
 /// Slack: how far a sphere may deviate from its path [voxels]. Larger values mean longer lists, smaller ones
@@ -26,7 +25,7 @@ impl Path {
     /// Returns the position [m] at a time after the last full search [s].
     #[inline(always)]
     pub fn at(&self, time: f32) -> Row {
-        plus(self.from, scaled(self.velocity, time))
+        self.from + self.velocity * time
     }
 }
 
@@ -41,7 +40,7 @@ pub struct Start {
 
 impl Start {
     pub const UNKNOWN: Self = Self {
-        at: [0.0; 4],
+        at: Row::ZERO,
         time: f32::NAN,
     };
 
@@ -50,8 +49,8 @@ impl Start {
     pub fn expected(&self, here: Row, now: f32, velocity: Row) -> Row {
         let passed = now - self.time;
         if passed > 0.0 {
-            let mean = scaled(minus(here, self.at), 1.0 / passed);
-            plus(scaled(mean, AS_BEFORE), scaled(velocity, 1.0 - AS_BEFORE))
+            let mean = (here - self.at) * (1.0 / passed);
+            mean * AS_BEFORE + velocity * (1.0 - AS_BEFORE)
         } else {
             velocity
         }
@@ -80,21 +79,21 @@ impl SweptSphere {
     /// Returns whether two swept spheres come close within a time span.
     #[inline(always)]
     pub fn meets(&self, other: &Self, span: Span) -> bool {
-        let closing = minus(self.path.velocity, other.path.velocity);
-        let apart = minus(self.path.from, other.path.from);
-        let apart = plus(apart, scaled(closing, span.middle));
+        let closing = self.path.velocity - other.path.velocity;
+        let apart = self.path.from - other.path.from;
+        let apart = apart + closing * span.middle;
         let reach = widened(self.radius + other.radius);
         // Most pairs are too far apart for any direction of motion. The comparison is false for NaN.
         let furthest = reach + self.sweep + other.sweep;
-        let is_near = dot(apart, apart) <= furthest * furthest;
+        let is_near = apart.dot(apart) <= furthest * furthest;
         if !is_near || self.asleep && other.asleep {
             return false;
         }
         // Time of the closest approach, relative to the midpoint of the span.
-        let time = -dot(apart, closing) / dot(closing, closing).max(f32::MIN_POSITIVE);
+        let time = -apart.dot(closing) / closing.dot(closing).max(f32::MIN_POSITIVE);
         let time = time.clamp(-span.half, span.half);
-        let apart = plus(apart, scaled(closing, time));
-        dot(apart, apart) <= reach * reach
+        let apart = apart + closing * time;
+        apart.dot(apart) <= reach * reach
     }
 }
 

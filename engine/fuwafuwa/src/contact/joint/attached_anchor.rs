@@ -6,7 +6,7 @@ use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::{Dim, Point, voxel_around};
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
-use crate::math::vector::{as_row, dot, minus, plus, scaled, three};
+use crate::math::row::Row;
 #[cfg(feature = "serde")]
 use crate::rigid_body::FARTHEST;
 use crate::rigid_body::RigidBodies;
@@ -51,7 +51,7 @@ impl AttachedAnchor {
             JointAnchor::Position(at) => Self::Position(flat::<D>(at)),
             JointAnchor::RigidBody { rigid: id, at } => {
                 let rigid = rigids.get(id)?;
-                let apart = minus(flat::<D>(at), rigid.position());
+                let apart = flat::<D>(at) - rigid.position();
                 Self::RigidBody(id, rigid.rotation().inverse().apply(apart))
             }
             JointAnchor::Soft {
@@ -76,10 +76,7 @@ impl AttachedAnchor {
             Self::Position(place) => *place = at,
             Self::RigidBody(id, own) => {
                 if let Ok(rigid) = rigids.get(*id) {
-                    *own = rigid
-                        .rotation()
-                        .inverse()
-                        .apply(minus(at, rigid.position()));
+                    *own = rigid.rotation().inverse().apply(at - rigid.position());
                 }
             }
             Self::Soft(..) => {}
@@ -95,18 +92,17 @@ impl AttachedAnchor {
         match self {
             Self::Position(at) => Some(AnchorState {
                 at: *at,
-                velocity: [0.0; 3],
-                yields: [[0.0; 3]; 3],
+                velocity: Vector::ZERO,
+                yields: [Vector::ZERO; 3],
                 is_asleep: false,
             }),
             Self::RigidBody(id, own) => {
                 let rigid = rigids.get(*id).ok()?;
                 let lever = rigid.rotation().apply(*own);
-                let ways = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
                 Some(AnchorState {
-                    at: plus(rigid.position(), lever),
+                    at: rigid.position() + lever,
                     velocity: rigid.velocity_at(lever),
-                    yields: ways.map(|way| rigid.gain(lever, way)),
+                    yields: Vector::AXES.map(|way| rigid.gain(lever, way)),
                     is_asleep: rigid.is_asleep(),
                 })
             }
@@ -117,15 +113,15 @@ impl AttachedAnchor {
                     return None;
                 }
                 let share = 1.0 / nodes.len() as f32;
-                let (mut at, mut velocity, mut gain) = ([0.0; 3], [0.0; 3], 0.0);
+                let (mut at, mut velocity, mut gain) = (Vector::ZERO, Vector::ZERO, 0.0);
                 let mut is_asleep = true;
                 for node in nodes {
-                    at = plus(at, scaled(three(body.state.position[node]), share));
-                    velocity = plus(velocity, scaled(three(body.state.velocity[node]), share));
+                    at += body.state.position[node].xyz() * share;
+                    velocity += body.state.velocity[node].xyz() * share;
                     gain += body.state.inverse_mass[node] * share * share;
                     is_asleep &= body.topology.pieces.sleeps(node);
                 }
-                let mut yields = [[0.0; 3]; 3];
+                let mut yields = [Vector::ZERO; 3];
                 (0..D::N).for_each(|axis| yields[axis][axis] = gain);
                 Some(AnchorState {
                     at,
@@ -157,10 +153,10 @@ impl AttachedAnchor {
                     return;
                 };
                 let nodes: Vec<NodeId> = nodes(body, corners).collect();
-                let share = as_row(scaled(impulse, 1.0 / nodes.len() as f32));
+                let share = Row::from(impulse * (1.0 / nodes.len() as f32));
                 for node in nodes {
-                    let gain = scaled(share, body.state.inverse_mass[node]);
-                    body.state.velocity[node] = plus(body.state.velocity[node], gain);
+                    let gain = share * body.state.inverse_mass[node];
+                    body.state.velocity[node] += gain;
                 }
             }
         }
@@ -192,8 +188,8 @@ impl AttachedAnchor {
         };
         let is_somewhere = match self {
             Self::Position(at) | Self::RigidBody(_, at) => {
-                let is_near = at.iter().all(|k| k.abs() <= 4.0 * FARTHEST);
-                is_near && at[D::N..].iter().all(|k| *k == 0.0)
+                let is_near = at.to_array().iter().all(|k| k.abs() <= 4.0 * FARTHEST);
+                is_near && at.to_array()[D::N..].iter().all(|k| *k == 0.0)
             }
             Self::Soft(_, corners) => !corners.is_empty(),
         };
@@ -226,8 +222,8 @@ fn nodes<'a, D: Dim>(
 /// Returns the corners of a body within `radius` [m] of a point, or the nearest one.
 fn corners_near<D: Dim>(body: &SoftBody<D>, at: Vector, radius: f32) -> Vec<(Point, Point)> {
     let distance = |node: NodeId| {
-        let apart = minus(three(body.state.position[node]), at);
-        dot(apart, apart)
+        let apart = body.state.position[node].xyz() - at;
+        apart.dot(apart)
     };
     let mesh = &body.topology.mesh;
     let nodes = || mesh.nodes().map(|(node, _)| node);

@@ -5,7 +5,6 @@ use super::attached_anchor::AnchorState;
 use super::joint_anchor::{JointKind, Woken};
 use crate::contact::broad_phase::WAKE_SPEED;
 use crate::foundation::dim::Dim;
-use crate::math::vector::{cross, dot, length, minus, plus, scaled};
 use crate::rigid_body::RigidBodies;
 use crate::rigid_body::shape::Vector;
 use crate::soft_body::SoftBodies;
@@ -34,19 +33,19 @@ impl Joint {
         let [Some(first), Some(second)] = self.grips(bodies, rigids) else {
             return false;
         };
-        let is_strained = self.is_strained(length(minus(first.at, second.at)));
+        let is_strained = self.is_strained((first.at - second.at).length());
         for (own, other, anchor) in [(first, second, 0), (second, first, 1)] {
-            if own.is_asleep && (is_strained || length(other.velocity) > WAKE_SPEED) {
+            if own.is_asleep && (is_strained || other.velocity.length() > WAKE_SPEED) {
                 self.anchors[anchor].wake(bodies, woken);
             }
         }
         self.impulse = match self.tie {
-            JointKind::Pin => scaled(self.impulse, WARM_START),
-            JointKind::Spring { .. } => direction(minus(first.at, second.at))
-                .map_or([0.0; 3], |(_, way)| {
-                    scaled(way, WARM_START * dot(self.impulse, way))
+            JointKind::Pin => self.impulse * WARM_START,
+            JointKind::Spring { .. } => direction(first.at - second.at)
+                .map_or(Vector::ZERO, |(_, way)| {
+                    way * (WARM_START * self.impulse.dot(way))
                 }),
-            JointKind::Rope { .. } => [0.0; 3],
+            JointKind::Rope { .. } => Vector::ZERO,
         };
         self.push(bodies, rigids, self.impulse);
         true
@@ -77,20 +76,20 @@ impl Joint {
         let [Some(first), Some(second)] = self.grips(bodies, rigids) else {
             return;
         };
-        let apart = minus(first.at, second.at);
-        let relative = minus(first.velocity, second.velocity);
-        let yields = [0, 1, 2].map(|row: usize| plus(first.yields[row], second.yields[row]));
+        let apart = first.at - second.at;
+        let relative = first.velocity - second.velocity;
+        let yields = [0, 1, 2].map(|row: usize| first.yields[row] + second.yields[row]);
         let impulse = match self.tie {
             JointKind::Pin => {
                 let draw = if draws {
                     drawn(apart, duration)
                 } else {
-                    [0.0; 3]
+                    Vector::ZERO
                 };
-                solved::<D>(&yields, scaled(plus(relative, draw), -1.0))
+                solved::<D>(&yields, -(relative + draw))
             }
             // The spring force is not a position correction, so it stays in the velocity.
-            JointKind::Spring { .. } if !draws => [0.0; 3],
+            JointKind::Spring { .. } if !draws => Vector::ZERO,
             JointKind::Spring {
                 stiffness,
                 damping,
@@ -103,8 +102,8 @@ impl Joint {
                 self.rope(apart, relative, &yields, length, duration, draws)
             }
         };
-        if crate::math::vector::is_finite(impulse) {
-            self.impulse = plus(self.impulse, impulse);
+        if impulse.is_finite() {
+            self.impulse += impulse;
             self.push(bodies, rigids, impulse);
         }
     }
@@ -122,13 +121,13 @@ impl Joint {
         duration: f32,
     ) -> Vector {
         let Some((distance, way)) = direction(apart) else {
-            return [0.0; 3];
+            return Vector::ZERO;
         };
         let softness = 1.0 / (duration * (damping + duration * stiffness));
         let push = (distance - rest) * duration * stiffness * softness;
-        let pulled = softness * dot(self.impulse, way);
+        let pulled = softness * self.impulse.dot(way);
         let under = along(yields, way) + softness;
-        scaled(way, -(dot(relative, way) + push + pulled) / under)
+        way * (-(relative.dot(way) + push + pulled) / under)
     }
 
     /// Returns the impulse of a rope, which pulls and never pushes.
@@ -142,11 +141,11 @@ impl Joint {
         draws: bool,
     ) -> Vector {
         let Some((distance, way)) = direction(apart) else {
-            return [0.0; 3];
+            return Vector::ZERO;
         };
         let gain = along(yields, way);
         if gain <= 0.0 || !draws && distance < most {
-            return [0.0; 3];
+            return Vector::ZERO;
         }
         let beyond = distance - most;
         let wanted = match (draws, beyond > 0.0) {
@@ -154,16 +153,16 @@ impl Joint {
             (true, true) => -(DRAW * beyond / duration).min(DRAW_SPEED),
             (true, false) => -beyond / duration,
         };
-        let pulled = dot(self.impulse, way);
-        let change = (wanted - dot(relative, way)) / gain;
-        scaled(way, (pulled + change).min(0.0) - pulled)
+        let pulled = self.impulse.dot(way);
+        let change = (wanted - relative.dot(way)) / gain;
+        way * ((pulled + change).min(0.0) - pulled)
     }
 
     /// Returns whether at least one attached body can move.
     pub(super) fn yields<D: Dim>(&self, bodies: &SoftBodies<D>, rigids: &RigidBodies) -> bool {
         let grips = self.grips(bodies, rigids).into_iter().flatten();
         let mut ways = grips.flat_map(|grip| grip.yields);
-        ways.any(|way| way != [0.0; 3])
+        ways.any(|way| way != Vector::ZERO)
     }
 
     fn grips<D: Dim>(
@@ -178,29 +177,29 @@ impl Joint {
 
     fn push<D: Dim>(&self, bodies: &mut SoftBodies<D>, rigids: &mut RigidBodies, impulse: Vector) {
         self.anchors[0].push(bodies, rigids, impulse);
-        self.anchors[1].push(bodies, rigids, scaled(impulse, -1.0));
+        self.anchors[1].push(bodies, rigids, -impulse);
     }
 }
 
 /// Returns the velocity at which a pin corrects its position error [m/s].
 fn drawn(apart: Vector, duration: f32) -> Vector {
-    let draw = scaled(apart, DRAW / duration);
-    let speed = length(draw);
+    let draw = apart * (DRAW / duration);
+    let speed = draw.length();
     match speed > DRAW_SPEED {
-        true => scaled(draw, DRAW_SPEED / speed),
+        true => draw * (DRAW_SPEED / speed),
         false => draw,
     }
 }
 
 /// Returns the length and direction of a vector; `None` for a zero vector.
 fn direction(apart: Vector) -> Option<(f32, Vector)> {
-    let distance = length(apart);
-    (distance > 1e-6).then(|| (distance, scaled(apart, 1.0 / distance)))
+    let distance = apart.length();
+    (distance > 1e-6).then(|| (distance, apart * (1.0 / distance)))
 }
 
 /// Returns the inverse effective mass along a unit direction [1/kg].
 fn along(yields: &[Vector; 3], way: Vector) -> f32 {
-    dot(way, [0, 1, 2].map(|row: usize| dot(yields[row], way)))
+    way.dot(yields.map(|row| row.dot(way)).into())
 }
 
 /// Returns the impulse for a change of velocity; 0 if nothing can move.
@@ -208,16 +207,16 @@ fn solved<D: Dim>(yields: &[Vector; 3], velocity: Vector) -> Vector {
     let [x, y, mut z] = *yields;
     // In 2D the third row and the third velocity are 0.
     if D::N == 2 {
-        z = [0.0, 0.0, 1.0];
+        z = Vector::Z;
     }
-    let under = dot(x, cross(y, z));
+    let under = x.dot(y.cross(z));
     if under <= 0.0 {
-        return [0.0; 3];
+        return Vector::ZERO;
     }
     // Columns of the inverse of a symmetric matrix.
-    let columns = [cross(y, z), cross(z, x), cross(x, y)];
-    let sum = (0..D::N).fold([0.0; 3], |sum, axis| {
-        plus(sum, scaled(columns[axis], velocity[axis]))
+    let columns = [y.cross(z), z.cross(x), x.cross(y)];
+    let sum = (0..D::N).fold(Vector::ZERO, |sum, axis| {
+        sum + columns[axis] * velocity[axis]
     });
-    scaled(sum, 1.0 / under)
+    sum * (1.0 / under)
 }

@@ -2,7 +2,6 @@
 
 use crate::contact::broad_phase::Impulse;
 use crate::foundation::dim::{Dim, inner};
-use crate::math::vector::{minus, plus, scaled};
 use crate::soft_body::element_forces::Row;
 
 /// Warm-starting factor, applied to the impulses of the last substep. 1 is unstable, and with 0 piles never
@@ -50,7 +49,7 @@ impl Contact {
             inertia,
             friction,
             normal_impulse: 0.0,
-            friction_impulse: [0.0; 4],
+            friction_impulse: Row::ZERO,
             pair: 0,
         }
     }
@@ -62,8 +61,8 @@ impl Contact {
         if impulse.pressed > 0.0 {
             self.normal_impulse = WARM_START * impulse.pressed;
             let along = inner::<D>(impulse.dragged, self.normal);
-            let dragged = minus(impulse.dragged, scaled(self.normal, along));
-            self.friction_impulse = scaled(dragged, WARM_START);
+            let dragged = impulse.dragged - self.normal * along;
+            self.friction_impulse = dragged * WARM_START;
         }
         self
     }
@@ -77,10 +76,7 @@ impl Contact {
 
     /// Returns the warm-start impulse [N s].
     pub fn start(&self) -> Row {
-        plus(
-            scaled(self.normal, self.normal_impulse),
-            self.friction_impulse,
-        )
+        self.normal * self.normal_impulse + self.friction_impulse
     }
 
     /// Returns the change of impulse on the first side [N s], given its velocity relative to the second side
@@ -97,14 +93,14 @@ impl Contact {
         let approach = inner::<D>(relative, self.normal);
         let pressed =
             (self.normal_impulse + (self.min_normal_velocity - approach) * self.inertia).max(0.0);
-        let slip = minus(relative, scaled(self.normal, approach));
-        let mut dragged = minus(self.friction_impulse, scaled(slip, across));
+        let slip = relative - self.normal * approach;
+        let mut dragged = self.friction_impulse - slip * across;
         let (held, wanted) = (self.friction * pressed, inner::<D>(dragged, dragged));
         if wanted > held * held {
-            dragged = scaled(dragged, held / wanted.sqrt());
+            dragged *= held / wanted.sqrt();
         }
-        let press = scaled(self.normal, pressed - self.normal_impulse);
-        let change = plus(press, minus(dragged, self.friction_impulse));
+        let press = self.normal * (pressed - self.normal_impulse);
+        let change = press + (dragged - self.friction_impulse);
         self.normal_impulse = pressed;
         self.friction_impulse = dragged;
         change
@@ -115,7 +111,7 @@ impl Contact {
     pub fn relax<D: Dim>(&mut self, relative: Row) -> Row {
         let approach = inner::<D>(relative, self.normal);
         let pressed = (self.normal_impulse - approach * self.inertia).max(0.0);
-        let change = scaled(self.normal, pressed - self.normal_impulse);
+        let change = self.normal * (pressed - self.normal_impulse);
         self.normal_impulse = pressed;
         change
     }
@@ -131,7 +127,7 @@ impl Impulse {
     pub fn release(&mut self) {
         // Most pairs never touched, and without normal impulse there is no friction.
         if self.pressed > 0.0 {
-            (self.pressed, self.dragged) = (0.0, [0.0; 4]);
+            (self.pressed, self.dragged) = (0.0, Row::ZERO);
         }
     }
 

@@ -5,7 +5,6 @@ use super::contact_sides::SphereNodeRows;
 use super::solver_velocities::Motion;
 use crate::contact::broad_phase::{EmbeddedSphere, Spheres};
 use crate::foundation::dim::{Dim, inner};
-use crate::math::vector::{minus, plus, scaled};
 use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
 
@@ -33,22 +32,22 @@ impl EscapeContact {
         let both = [&spheres.list[a], &spheres.list[b]];
         let length = |way: Row| inner::<D>(way, way).sqrt().max(1e-9);
         let out = both[1].outward::<D>(&bodies.at(both[1].body).state.position);
-        let ahead = (both[0].radius + both[1].radius) / length(out);
-        let goal = plus(spheres.centres[b], scaled(out, ahead));
-        let way = minus(goal, spheres.centres[a]);
-        let speed = PUSH_OUT_SPEED.min(length(way) / duration);
+        let ahead = (both[0].radius + both[1].radius) / out.length();
+        let goal = spheres.centres[b] + out * ahead;
+        let way = goal - spheres.centres[a];
+        let speed = PUSH_OUT_SPEED.min(way.length() / duration);
         let [first, second] = both.map(|sphere| sphere.inverse_mass(bodies));
         let inverse_mass = first + second;
         // An embedded sphere that is too fast must not accelerate the other piece. The comparisons are false
         // for NaN.
-        let relative = minus(spheres.velocities[a], spheres.velocities[b]);
+        let relative = spheres.velocities[a] - spheres.velocities[b];
         let most = (both[0].radius + both[1].radius) / duration;
         let squared = |row: Row| inner::<D>(row, row);
         let is_way = squared(way) < f32::INFINITY && squared(relative) < most * most;
         (is_way && inverse_mass > 0.0).then(|| Self {
             grips: both.map(|sphere| motion.grip::<D>(sphere)),
             inertia: 1.0 / inverse_mass,
-            velocity: scaled(way, speed / length(way)),
+            velocity: way * (speed / way.length()),
         })
     }
 
@@ -59,11 +58,11 @@ impl EscapeContact {
 
     /// Removes, after the position update, the velocity of the escape.
     pub fn relax<D: Dim>(&self, motion: &mut Motion) {
-        self.push::<D>([0.0; 4], motion);
+        self.push::<D>(Row::ZERO, motion);
     }
 
     fn push<D: Dim>(&self, velocity: Row, motion: &mut Motion) {
-        let change = minus(velocity, motion.between::<D>(&self.grips));
-        motion.push_spheres::<D>(&self.grips, scaled(change, self.inertia));
+        let change = velocity - motion.between::<D>(&self.grips);
+        motion.push_spheres::<D>(&self.grips, change * self.inertia);
     }
 }

@@ -6,7 +6,7 @@ use super::contact_sides::{FreeContact, HandContact};
 use crate::contact::broad_phase::{Impulse, Passed, RigidTouch, RigidTouches, WAKE_SPEED};
 use crate::foundation::arena::RigidSlot;
 use crate::foundation::dim::{Dim, inner};
-use crate::math::vector::{across, as_row, length, minus, plus, scaled, three};
+use crate::math::vector::across;
 use crate::rigid_body::shape::Vector;
 use crate::rigid_body::{MotionType, RigidBodies, RigidBody};
 use crate::soft_body::element_forces::Row;
@@ -27,8 +27,8 @@ pub fn find_hands(rigids: &RigidBodies, duration: f32, found: &mut Vec<HandConta
             .filter(|(_, rigid)| !rigid.is_dynamic() && hand.meets_rigid(rigid));
         for (other, rigid) in others.filter(|&(at, rigid)| at < own || !rigid.follows_target()) {
             let inverse_mass = hand.inverse_mass() + rigid.inverse_mass();
-            let relative = minus(as_row(hand.velocity()), as_row(rigid.velocity()));
-            if inverse_mass == 0.0 || !relative.iter().all(|k| k.is_finite()) {
+            let relative = Row::from(hand.velocity()) - Row::from(rigid.velocity());
+            if inverse_mass == 0.0 || !relative.is_finite() {
                 continue;
             }
             let (gap, normal) = hand.shape().gap(rigid.shape());
@@ -40,7 +40,7 @@ pub fn find_hands(rigids: &RigidBodies, duration: f32, found: &mut Vec<HandConta
                 true => 0.5 * (hand.friction + rigid.friction),
                 false => hand.friction,
             };
-            let (normal, inertia) = (as_row(normal), 1.0 / inverse_mass);
+            let (normal, inertia) = (Row::from(normal), 1.0 / inverse_mass);
             found.push(HandContact {
                 contact: Contact::new(normal, gap, duration, inertia, friction),
                 both: [own, other],
@@ -65,8 +65,8 @@ pub fn find_free<D: Dim>(
     let boxes = rigids.by_slot().map(|(slot, rigid)| {
         let [low, high] = rigid.shape().bounds();
         let margin = margin(rigid, duration);
-        let by = [margin; 3];
-        (slot, rigid, [minus(low, by), plus(high, by)])
+        let by = Vector::splat(margin);
+        (slot, rigid, [low - by, high + by])
     });
     let boxes: Vec<(RigidSlot, &RigidBody, [Vector; 2])> = boxes.collect();
     for &(own, rigid, [low, high]) in boxes.iter().filter(|(_, rigid, _)| rigid.is_dynamic()) {
@@ -120,16 +120,16 @@ fn touch<D: Dim>(
         _ => 0.5 * (both[0].friction + both[1].friction),
     };
     let restitution = both[0].restitution.max(both[1].restitution);
-    let normal = as_row(manifold.normal);
+    let normal = Row::from(manifold.normal);
     for point in &manifold.points {
-        let levers = both.map(|rigid| minus(point.at, rigid.position()));
+        let levers = both.map(|rigid| point.at - rigid.position());
         let [own, other] = [0, 1].map(|k: usize| both[k].velocity_at(levers[k]));
-        let relative = minus(as_row(own), as_row(other));
+        let relative = Row::from(own) - Row::from(other);
         let approach = inner::<D>(relative, normal);
         if !is_close(point.gap, approach, size, duration) {
             continue;
         }
-        let speed = length(own).max(length(other));
+        let speed = own.length().max(other.length());
         if point.gap < CLOSE * size && (speed > WAKE_SPEED || both[1].pushes()) {
             let sleepers = [0, 1].into_iter().filter(|&k: &usize| both[k].is_asleep());
             hits.extend(sleepers.map(|k| slots[k]));
@@ -168,7 +168,7 @@ fn touch<D: Dim>(
 /// Returns two unit tangents of a normal; in 2D only the first one counts.
 fn tangents<D: Dim>(normal: Vector) -> [Vector; 2] {
     if D::N == 2 {
-        return [[normal[1], -normal[0], 0.0], [0.0; 3]];
+        return [Vector::new(normal[1], -normal[0], 0.0), Vector::ZERO];
     }
     across(normal)
 }
@@ -192,7 +192,7 @@ impl FreeContact {
             impulse: self.contact.normal_impulse,
             speed: self.speed,
             at: self.at,
-            normal: three(self.contact.normal),
+            normal: self.contact.normal.xyz(),
         };
         (passed.impulse > 0.0).then_some(passed)
     }
@@ -211,8 +211,8 @@ impl FreeContact {
     /// Removes, after the position update, the velocity that resolved an overlap, but keeps that of a bounce.
     pub fn relax<D: Dim>(&mut self, rigids: &mut RigidBodies, duration: f32) {
         if self.contact.was_pushed_out() {
-            let kept = scaled(self.contact.normal, self.bounce);
-            let relative = minus(self.relative(rigids), kept);
+            let kept = self.contact.normal * self.bounce;
+            let relative = self.relative(rigids) - kept;
             let change = self.contact.relax::<D>(relative);
             self.push(rigids, change, duration);
         }
@@ -222,15 +222,15 @@ impl FreeContact {
     fn relative(&self, rigids: &RigidBodies) -> Row {
         let [own, other] =
             [0, 1].map(|k: usize| rigids.at(self.both[k]).velocity_at(self.levers[k]));
-        as_row(minus(own, other))
+        Row::from(own - other)
     }
 
     fn push(&self, rigids: &mut RigidBodies, impulse: Row, duration: f32) {
-        let impulse = three(impulse);
+        let impulse = impulse.xyz();
         rigids
             .at_mut(self.both[0])
             .push_at(impulse, self.levers[0], duration);
-        let back = scaled(impulse, -1.0);
+        let back = -impulse;
         rigids
             .at_mut(self.both[1])
             .push_at(back, self.levers[1], duration);

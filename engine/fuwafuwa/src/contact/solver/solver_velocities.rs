@@ -5,7 +5,6 @@ use crate::contact::broad_phase::{ContactSphere, mean};
 use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{Id, IndexVec, NodeId};
-use crate::math::vector::{as_row, minus, plus, scaled, three};
 use crate::rigid_body::RigidBodies;
 use crate::rigid_body::shape::Vector;
 use crate::soft_body::SoftBodies;
@@ -37,7 +36,7 @@ impl Motion {
             let nodes = body.map_or(0, |body| body.state.velocity.len());
             count += nodes.next_multiple_of(STRETCH);
         }
-        self.rows.resize(count, [0.0; 4]);
+        self.rows.resize(count, Row::ZERO);
         self.is_touched.clear();
         self.is_touched.resize(count / STRETCH, false);
     }
@@ -100,17 +99,17 @@ impl Motion {
     #[inline(always)]
     pub fn between<D: Dim>(&self, grips: &[SphereNodeRows; 2]) -> Row {
         let [first, second] = grips.each_ref().map(|grip| mean::<D, _>(&self.rows, grip));
-        with_fourth(minus(first, second), 0.0)
+        with_fourth(first - second, 0.0)
     }
 
     /// Applies an impulse to the first sphere and its opposite to the second.
     #[inline(always)]
     pub fn push_spheres<D: Dim>(&mut self, grips: &[SphereNodeRows; 2], impulse: Row) {
-        let share = scaled(impulse, 1.0 / D::CORNERS as f32);
-        for (grip, share) in [(&grips[0], share), (&grips[1], scaled(share, -1.0))] {
+        let share = impulse * (1.0 / D::CORNERS as f32);
+        for (grip, share) in [(&grips[0], share), (&grips[1], -share)] {
             for &node in &grip[..D::CORNERS] {
                 let row = &mut self.rows[node];
-                *row = plus(*row, scaled(share, row[3]));
+                *row += share * row[3];
             }
         }
     }
@@ -119,8 +118,8 @@ impl Motion {
     #[inline(always)]
     pub fn of_node(&self, row: &NodeContact, rigids: &RigidBodies) -> Row {
         let own = self.rows[row.node];
-        let other = row.mover.map_or([0.0; 4], |mover| velocity(mover, rigids));
-        with_fourth(minus(own, other), 0.0)
+        let other = row.mover.map_or(Row::ZERO, |mover| velocity(mover, rigids));
+        with_fourth(own - other, 0.0)
     }
 
     /// Applies an impulse to a node and its opposite to a moving rigid body.
@@ -133,9 +132,9 @@ impl Motion {
         duration: f32,
     ) {
         let own = &mut self.rows[row.node];
-        *own = plus(*own, scaled(impulse, own[3]));
+        *own += impulse * own[3];
         if let Some(mover) = row.mover {
-            push(mover, rigids, scaled(impulse, -1.0), duration);
+            push(mover, rigids, -impulse, duration);
         }
     }
 }
@@ -144,7 +143,7 @@ impl Motion {
 /// down the other contacts.
 #[inline(never)]
 fn velocity((mover, lever): (RigidSlot, Vector), rigids: &RigidBodies) -> Row {
-    as_row(rigids.at(mover).velocity_at(lever))
+    Row::from(rigids.at(mover).velocity_at(lever))
 }
 
 /// Applies an impulse to a rigid body at a lever arm.
@@ -155,9 +154,7 @@ fn push(
     impulse: Row,
     duration: f32,
 ) {
-    rigids
-        .at_mut(mover)
-        .push_at(three(impulse), lever, duration);
+    rigids.at_mut(mover).push_at(impulse.xyz(), lever, duration);
 }
 
 /// Returns the row of a node of a body, given the row of the first node.
@@ -168,5 +165,5 @@ fn row_of(first: NodeRow, node: NodeId) -> NodeRow {
 
 #[inline(always)]
 fn with_fourth(row: Row, fourth: f32) -> Row {
-    [row[0], row[1], row[2], fourth]
+    Row::from_array([row[0], row[1], row[2], fourth])
 }

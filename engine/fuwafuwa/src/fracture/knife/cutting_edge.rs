@@ -6,7 +6,6 @@ use super::swept_area::{self, Faces, RestPosition};
 use super::{EdgePose, Knife};
 use crate::foundation::arena::SoftBodyHandle;
 use crate::foundation::dim::{Dim, Point};
-use crate::math::vector::{dot, length, minus, plus, scaled, three};
 use crate::rigid_body::RigidBody;
 use crate::rigid_body::shape::Vector;
 use crate::soft_body::{SoftBodies, SoftBody};
@@ -105,12 +104,12 @@ impl Knife {
             1 => 0.5,
             many => place as f32 / (many - 1) as f32,
         };
-        plus(from, scaled(minus(to, from), share))
+        from + (to - from) * share
     }
 
     /// Returns the world-space position of a sample [m].
     fn place(&self, stance: &EdgePose, place: usize) -> Vector {
-        plus(stance.position, self.lever(stance, place))
+        stance.position + self.lever(stance, place)
     }
 
     /// Adjusts the number of samples to the smallest voxel of all bodies.
@@ -118,7 +117,7 @@ impl Knife {
         let sizes = bodies.iter().map(|body| body.topology.grid.voxel_size());
         let least = sizes.fold(f32::INFINITY, f32::min);
         // In local coordinates, because the length of the rotated edge fluctuates by rounding.
-        let long = length(minus(self.edge[1], self.edge[0]));
+        let long = (self.edge[1] - self.edge[0]).length();
         let asked = (SAMPLES_PER_VOXEL * long / least).ceil() as usize;
         // In 2D the edge is a point.
         let count = match D::N {
@@ -145,7 +144,7 @@ impl Knife {
         self.knows_near = true;
         self.near.resize(self.samples.len(), Vec::new());
         self.near.iter_mut().for_each(Vec::clear);
-        let from = plus(stance.position, stance.levers[0]);
+        let from = stance.position + stance.levers[0];
         let long = stance.long();
         // In 2D a single sample is near all listed elements.
         let spacing = match D::N {
@@ -162,13 +161,13 @@ impl Knife {
                 let node = element.nodes[0];
                 let diagonal = size * element.cell.width() as f32 * (D::N as f32).sqrt();
                 let reach = STRETCH * diagonal + margin;
-                let apart = minus(three(body.state.position[node]), from);
+                let apart = body.state.position[node].xyz() - from;
                 let (along, span) = match D::N {
                     2 => (0.0, 0.0),
-                    _ => (dot(apart, stance.along), long),
+                    _ => (apart.dot(stance.along), long),
                 };
-                let nearest = scaled(stance.along, along.clamp(0.0, span));
-                if length(minus(apart, nearest)) > reach {
+                let nearest = stance.along * along.clamp(0.0, span);
+                if (apart - nearest).length() > reach {
                     continue;
                 }
                 let voxel = body.topology.mesh.first_voxel(element);
@@ -213,8 +212,8 @@ impl Knife {
             let Ok(body) = bodies.get(near.body) else {
                 return false;
             };
-            let node = three(body.state.position[near.node]);
-            length(minus(node, at)) <= near.reach
+            let node = body.state.position[near.node].xyz();
+            (node - at).length() <= near.reach
                 && (body.topology.mesh.element_at(near.voxel))
                     .is_some_and(|element| material_point::may_have(body, element, at))
         };
@@ -244,7 +243,7 @@ impl Knife {
         // In 2D a sample sweeps a line, which stands for an area across the body.
         if D::N == 2 {
             if let Some([from, to]) = rows[0] {
-                let deep = |[x, y, _]: RestPosition, z: f64| [x, y, z];
+                let deep = |place: RestPosition, z: f64| place.with_z(z);
                 let patch = [
                     deep(from, 0.0),
                     deep(from, 1.0),
@@ -311,22 +310,22 @@ impl Knife {
         let at = self.place(stance, place);
         let now = inside.map_or_else(|| base.extend(body, at), |spot| Some(spot.at))?;
         // The motion of the tissue counts, too: tissue that moves against a resting edge is cut.
-        let tissue = scaled(base.velocity(body)?, since);
-        let before = || base.extend(body, plus(sample.before, tissue));
+        let tissue = base.velocity(body)? * since;
+        let before = || base.extend(body, sample.before + tissue);
         let before = passed.map_or_else(before, |spot| Some(spot.at))?;
         if sample.is_stuck() {
-            let place = before.map(f64::from);
+            let place = before.as_dvec3();
             return Some([place, place]);
         }
         let [toward] = base.directions(body, [stance.toward])?;
-        let [now, before, toward] = [now, before, toward].map(|place| place.map(f64::from));
-        let way = minus(now, before);
-        let travel = length(minus(at, sample.before)) + length(tissue);
+        let [now, before, toward] = [now, before, toward].map(Vector::as_dvec3);
+        let way = now - before;
+        let travel = (at - sample.before).length() + tissue.length();
         let reach = f64::from(travel / size);
-        let is_jump = dot(way, way).sqrt() > MOST_STRETCH * reach + MOST_JUMP;
+        let is_jump = way.length() > MOST_STRETCH * reach + MOST_JUMP;
         // Moving backwards through its own cut opens nothing.
-        let forth = dot(way, toward) / dot(toward, toward).sqrt().max(1e-9);
-        let is_drawn_back = forth < 0.0 && 2.0 * forth * forth > dot(way, way);
+        let forth = way.dot(toward) / toward.length().max(1e-9);
+        let is_drawn_back = forth < 0.0 && 2.0 * forth * forth > way.dot(way);
         match is_jump || is_drawn_back {
             true => Some([now, now]),
             false => Some([before, now]),
@@ -335,6 +334,6 @@ impl Knife {
 }
 
 fn far(a: RestPosition, b: RestPosition) -> f64 {
-    let apart = minus(a, b);
-    dot(apart, apart).sqrt()
+    let apart = a - b;
+    apart.length()
 }

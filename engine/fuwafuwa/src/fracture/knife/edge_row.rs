@@ -5,7 +5,7 @@ use crate::foundation::arena::{BodySlot, SoftBodyHandle};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{NodeId, PieceId};
 use crate::material::Material;
-use crate::math::vector::{as_row, cross, dot, minus, plus, scaled};
+use crate::math::row::Row;
 use crate::rigid_body::shape::Vector;
 use crate::rigid_body::{RigidBodies, RigidBody};
 use crate::soft_body::{SoftBodies, SoftBody};
@@ -39,7 +39,7 @@ impl Knife {
         rigids: &mut RigidBodies,
         duration: f32,
     ) -> Vec<(BodySlot, PieceId)> {
-        (self.force, self.torque) = ([0.0; 3], [0.0; 3]);
+        (self.force, self.torque) = (Vector::ZERO, Vector::ZERO);
         let Ok(holder) = rigids.get_mut(self.holder) else {
             return Vec::new();
         };
@@ -71,15 +71,12 @@ impl Knife {
             let sample = &mut self.samples[*place];
             sample.slid |= is_at(0) || is_at(1);
             sample.cut |= is_at(0) && row.limits[0] > 0.0;
-            let given = plus(
-                scaled(ways[0], row.impulse[0]),
-                scaled(ways[1], row.impulse[1]),
-            );
-            let force = scaled(given, -1.0 / duration);
-            self.force = plus(self.force, force);
-            self.torque = plus(self.torque, cross(row.lever, force));
+            let given = ways[0] * row.impulse[0] + ways[1] * row.impulse[1];
+            let force = given * (-1.0 / duration);
+            self.force += force;
+            self.torque += row.lever.cross(force);
             let slip = slip(row, &bodies[row.body], holder);
-            let work = |way: usize| row.impulse[way] * dot(slip, ways[way]);
+            let work = |way: usize| row.impulse[way] * slip.dot(ways[way]);
             self.work += f64::from((work(0) + work(1)).max(0.0));
         }
         holder.twist(self.torque);
@@ -149,10 +146,7 @@ impl Knife {
 
 /// Returns the velocity of the edge relative to the tissue [m/s].
 fn slip<D: Dim>(row: &EdgeRow, body: &SoftBody<D>, holder: &RigidBody) -> Vector {
-    minus(
-        holder.velocity_at(row.lever),
-        body.velocity_of(&row.weights),
-    )
+    holder.velocity_at(row.lever) - body.velocity_of(&row.weights)
 }
 
 /// Applies the impulse that removes the slip, within the limits of the row.
@@ -166,7 +160,7 @@ fn solve_row<D: Dim>(
     for (way, direction) in ways.into_iter().enumerate() {
         // If neither side can move, the division by 0 drives the impulse to its limit.
         let yields = row.gain + holder.yields(row.lever, direction);
-        let speed = dot(slip(row, body, holder), direction);
+        let speed = slip(row, body, holder).dot(direction);
         let least = if way == 0 { 0.0 } else { -row.limits[way] };
         let wanted = (row.impulse[way] + speed / yields).clamp(least, row.limits[way]);
         let change = wanted - row.impulse[way];
@@ -174,11 +168,11 @@ fn solve_row<D: Dim>(
             continue;
         }
         row.impulse[way] = wanted;
-        let push = scaled(direction, change);
+        let push = direction * change;
         for &(node, weight) in &row.weights {
-            let gain = scaled(as_row(push), weight * body.state.inverse_mass[node]);
-            body.state.velocity[node] = plus(body.state.velocity[node], gain);
+            let gain = Row::from(push) * (weight * body.state.inverse_mass[node]);
+            body.state.velocity[node] += gain;
         }
-        holder.push_at(scaled(push, -1.0), row.lever, duration);
+        holder.push_at(-push, row.lever, duration);
     }
 }

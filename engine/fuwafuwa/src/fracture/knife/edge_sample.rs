@@ -6,7 +6,6 @@ use crate::foundation::dim::Point;
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
 #[cfg(feature = "serde")]
-use crate::math::vector::is_finite;
 use crate::rigid_body::shape::Vector;
 
 /// Maximum number of intervals between samples. It suffices for 256 voxels, a quarter of the largest grid.
@@ -62,6 +61,6 @@ impl Sample {
     #[cfg(feature = "serde")]
     pub fn is_sound(&self) -> bool {
         let spots = [self.inside, self.passed].into_iter().flatten();
-        is_finite(self.before) && { spots }.all(|(_, spot)| is_finite(spot.at))
+        self.before.is_finite() && { spots }.all(|(_, spot)| spot.at.is_finite())
     }
 }

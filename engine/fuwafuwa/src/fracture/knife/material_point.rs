@@ -3,7 +3,6 @@
 use crate::foundation::dim::{Dim, Point, voxel_around};
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
-use crate::math::vector::{cross, length, minus};
 use crate::rigid_body::shape::Vector;
 use crate::soft_body::SoftBody;
 use crate::topology::mesh::Element;
@@ -79,7 +78,7 @@ impl Spot {
     pub fn is_near<D: Dim>(&self, body: &SoftBody<D>, at: Vector) -> bool {
         let element = body.topology.mesh.element_at(self.voxel);
         let half = 0.5 * body.topology.grid.voxel_size();
-        element.is_some_and(|element| length(minus(body.affine_map(element)(self.at), at)) <= half)
+        element.is_some_and(|element| (body.affine_map(element)(self.at) - at).length() <= half)
     }
 
     /// Returns whether the material in front of an edge is whole: whether the next face that it opens is
@@ -90,11 +89,11 @@ impl Spot {
         along: Vector,
         toward: Vector,
     ) -> bool {
-        let ahead = [0, 1, 2].map(|k: usize| self.at[k] + 0.5 * toward[k]);
+        let ahead = self.at + toward * 0.5;
         let Some(voxel) = voxel_of::<D>(ahead).filter(|&at| body.topology.grid.is_solid(at)) else {
             return false;
         };
-        let normal = cross(along, toward);
+        let normal = along.cross(toward);
         let steepest = |a: &usize, b: &usize| normal[*a].abs().total_cmp(&normal[*b].abs());
         let axis = (0..D::N).max_by(steepest).unwrap_or(0);
         // Signed distance from the middle of the voxel to the swept plane, along the axis.

@@ -5,10 +5,11 @@
 //! triangles leave no gap, so neither does the swept area.
 
 use crate::foundation::dim::{Dim, Point};
+use glam::DVec3;
 use std::collections::BTreeSet;
 
 /// Rest position in the lattice of a body [voxels].
-pub type RestPosition = [f64; 3];
+pub type RestPosition = DVec3;
 
 /// Faces, each given by the voxel before it and its axis.
 pub type Faces = BTreeSet<(Point, usize)>;
@@ -32,8 +33,7 @@ pub fn area([a, b, c, d]: [RestPosition; 4]) -> f64 {
         };
         0.5 * (square(0, 1) + square(1, 2) + square(2, 0)).sqrt()
     };
-    let from = |place: RestPosition| [0, 1, 2].map(|k: usize| place[k] - a[k]);
-    half(from(b), from(c)) + half(from(c), from(d))
+    half(b - a, c - a) + half(c - a, d - a)
 }
 
 /// Adds the faces across an axis that a triangle crosses.
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn flat_swath_opens_exactly_the_crossed_faces() {
         let mut faces = Faces::new();
-        let at = |x: f64, y: f64, z: f64| [x, y, z];
+        let at = DVec3::new;
         let corners = [
             at(2.9, 0.0, 0.0),
             at(2.9, 4.0, 0.0),
@@ -113,7 +113,7 @@ mod tests {
             |x: f64, z: f64| 6.0 + 2.3 * libm::sin(0.7 * x) + 1.9 * libm::cos(0.55 * z + 0.3 * x);
         let place = |i: i32, k: i32| {
             let (x, z) = (0.173 * f64::from(i) - 0.5, 0.311 * f64::from(k) - 0.5);
-            [x, height(x, z), z]
+            DVec3::new(x, height(x, z), z)
         };
         let mut faces = Faces::new();
         for i in 0..80 {
@@ -155,7 +155,8 @@ mod tests {
             [far, 1.4, -far],
             [far, 1.4, far],
             [-far, 1.4, far],
-        ];
+        ]
+        .map(DVec3::from);
         let mut faces = Faces::new();
         go_through::<Dim3>(corners, [3; 3], &mut faces);
         let nine: Faces = (0..9).map(|k| ([k % 3, 0, k / 3], 1)).collect();
@@ -171,7 +172,8 @@ mod tests {
             [from[0], from[1], 1.0],
             [to[0], to[1], 1.0],
             [to[0], to[1], 0.0],
-        ];
+        ]
+        .map(DVec3::from);
         go_through::<Dim2>(corners, [6, 4, 1], &mut faces);
         let four: Faces = (0..4).map(|x| ([x, 1, 0], 1)).collect();
         assert_eq!(faces, four);

@@ -2,7 +2,6 @@
 
 use super::oriented_box::{Brick, Separation, Side};
 use super::{Shape, Vector};
-use crate::math::vector::{dot, length, minus, plus, scaled};
 
 /// Cosine limit for the end of a capsule to be a contact point: its normal must be within 26° of the
 /// manifold's normal. On a face all normals are equal.
@@ -58,7 +57,7 @@ impl Shape {
 impl Manifold {
     /// Returns the manifold with the shapes swapped.
     fn turned(mut self) -> Self {
-        self.normal = scaled(self.normal, -1.0);
+        self.normal = -self.normal;
         self
     }
 
@@ -70,7 +69,7 @@ impl Manifold {
 
 /// Returns the contact point between a ball and the surface below it.
 fn beneath(centre: Vector, normal: Vector, radius: f32, gap: f32, key: u32) -> ManifoldPoint {
-    let at = minus(centre, scaled(normal, radius + 0.5 * gap));
+    let at = centre - normal * (radius + 0.5 * gap);
     ManifoldPoint { at, gap, key }
 }
 
@@ -80,11 +79,11 @@ fn bar(own: &Shape, other: &Shape) -> Manifold {
         return Manifold::default();
     };
     let (distance, normal, share) = other.nearest_of_segment(from, to);
-    let nearest = plus(from, scaled(minus(to, from), share));
+    let nearest = from + (to - from) * share;
     let mut points = Vec::new();
     for (key, end) in [(1, from), (2, to)] {
         let (far, way) = other.distance(end);
-        if dot(way, normal) > ALONG {
+        if way.dot(normal) > ALONG {
             points.push(beneath(end, normal, radius, far - radius, key));
         }
     }
@@ -96,14 +95,14 @@ fn bar(own: &Shape, other: &Shape) -> Manifold {
     {
         for (key, end) in [(3, from), (4, to)] {
             let (far, way) = own.distance(end);
-            if dot(way, normal) < -ALONG {
-                let point = beneath(end, scaled(normal, -1.0), thickness, far - thickness, key);
+            if way.dot(normal) < -ALONG {
+                let point = beneath(end, -normal, thickness, far - thickness, key);
                 points.push(point);
             }
         }
     }
     let middle = beneath(nearest, normal, radius, distance - radius, 0);
-    let is_apart = |point: &ManifoldPoint| length(minus(point.at, middle.at)) > APART * radius;
+    let is_apart = |point: &ManifoldPoint| (point.at - middle.at).length() > APART * radius;
     if points.iter().all(is_apart) {
         points.push(middle);
     }
@@ -113,7 +112,7 @@ fn bar(own: &Shape, other: &Shape) -> Manifold {
 fn on_plane(brick: &Brick, normal: Vector, offset: f32) -> Manifold {
     let corners = (0..brick.corner_count()).map(|number| (number as u32, brick.corner(number)));
     let points = corners.map(|(key, corner)| {
-        let gap = dot(normal, corner) - offset;
+        let gap = normal.dot(corner) - offset;
         beneath(corner, normal, 0.0, gap, key)
     });
     Manifold {
@@ -129,13 +128,10 @@ fn bricks(own: &Brick, other: &Brick, margin: f32) -> Manifold {
     }
     let Separation { gap, normal, side } = separation;
     let points = match side {
-        Side::First(axis) => on_face(own, axis, scaled(normal, -1.0), other),
+        Side::First(axis) => on_face(own, axis, -normal, other),
         Side::Second(axis) => on_face(other, axis, normal, own),
         Side::Edges(first, second) => {
-            let [a, b] = [
-                edge(own, first, scaled(normal, -1.0)),
-                edge(other, second, normal),
-            ];
+            let [a, b] = [edge(own, first, -normal), edge(other, second, normal)];
             let at = between(a, own.axes[first], b, other.axes[second]);
             let key = 1000 + 3 * first as u32 + second as u32;
             vec![ManifoldPoint { at, gap, key }]
@@ -148,23 +144,23 @@ fn bricks(own: &Brick, other: &Brick, margin: f32) -> Manifold {
 /// with the outward normal `out`.
 fn on_face(ground: &Brick, axis: usize, out: Vector, brick: &Brick) -> Vec<ManifoldPoint> {
     let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != axis).collect();
-    let level = dot(out, ground.centre) + ground.half[axis];
+    let level = out.dot(ground.centre) + ground.half[axis];
     // The face with the normal most opposite to that of the ground face.
-    let facing = |k: &usize| dot(brick.axes[*k], out).abs();
+    let facing = |k: &usize| brick.axes[*k].dot(out).abs();
     let face = (0..brick.axis_count).max_by(|a, b| facing(a).total_cmp(&facing(b)));
     let face = face.unwrap_or(axis);
-    let is_upper = dot(brick.axes[face], out) < 0.0;
+    let is_upper = brick.axes[face].dot(out) < 0.0;
     let mut polygon: Vec<(Vector, u32)> = around(brick, face, is_upper);
     for (number, side) in others.into_iter().enumerate() {
         for (sign, plane) in [(1.0, 2 * number), (-1.0, 2 * number + 1)] {
-            let way = scaled(ground.axes[side], sign);
-            let most = dot(way, ground.centre) + ground.half[side];
+            let way = ground.axes[side] * sign;
+            let most = way.dot(ground.centre) + ground.half[side];
             polygon = clipped(&polygon, way, most, plane as u32);
         }
     }
     let point = |&(corner, key): &(Vector, u32)| {
-        let gap = dot(out, corner) - level;
-        let at = minus(corner, scaled(out, 0.5 * gap));
+        let gap = out.dot(corner) - level;
+        let at = corner - out * (0.5 * gap);
         ManifoldPoint { at, gap, key }
     };
     polygon.iter().map(point).collect()
@@ -190,7 +186,7 @@ fn clipped(polygon: &[(Vector, u32)], way: Vector, most: f32, plane: u32) -> Vec
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     let is_line = polygon.len() == 2;
     for (number, &(at, key)) in polygon.iter().enumerate() {
-        let beyond = dot(way, at) - most;
+        let beyond = way.dot(at) - most;
         if beyond <= 0.0 {
             kept.push((at, key));
         }
@@ -198,10 +194,10 @@ fn clipped(polygon: &[(Vector, u32)], way: Vector, most: f32, plane: u32) -> Vec
             break;
         }
         let (next, next_key) = polygon[(number + 1) % polygon.len()];
-        let next_beyond = dot(way, next) - most;
+        let next_beyond = way.dot(next) - most;
         if (beyond <= 0.0) != (next_beyond <= 0.0) {
             let share = beyond / (beyond - next_beyond);
-            let at = plus(at, scaled(minus(next, at), share));
+            let at = at + (next - at) * share;
             let (low, high) = (key.min(next_key), key.max(next_key));
             let own = low.wrapping_add(high.wrapping_mul(131));
             kept.push((at, own.wrapping_mul(4).wrapping_add(8 + plane)));
@@ -214,23 +210,23 @@ fn clipped(polygon: &[(Vector, u32)], way: Vector, most: f32, plane: u32) -> Vec
 fn edge(brick: &Brick, along: usize, way: Vector) -> Vector {
     let others = (0..brick.axis_count).filter(|&axis| axis != along);
     others.fold(brick.centre, |at, axis| {
-        let sign = if dot(brick.axes[axis], way) < 0.0 {
+        let sign = if brick.axes[axis].dot(way) < 0.0 {
             -1.0
         } else {
             1.0
         };
-        plus(at, scaled(brick.axes[axis], sign * brick.half[axis]))
+        at + brick.axes[axis] * (sign * brick.half[axis])
     })
 }
 
 /// Returns the midpoint between the nearest points of two lines that are not parallel.
 fn between(a: Vector, along: Vector, b: Vector, across: Vector) -> Vector {
-    let (apart, cosine) = (minus(b, a), dot(along, across));
+    let (apart, cosine) = (b - a, along.dot(across));
     let under = (1.0 - cosine * cosine).max(1e-6);
-    let (first, second) = (dot(apart, along), dot(apart, across));
-    let on_first = plus(a, scaled(along, (first - cosine * second) / under));
-    let on_second = plus(b, scaled(across, (cosine * first - second) / under));
-    scaled(plus(on_first, on_second), 0.5)
+    let (first, second) = (apart.dot(along), apart.dot(across));
+    let on_first = a + along * ((first - cosine * second) / under);
+    let on_second = b + across * ((cosine * first - second) / under);
+    (on_first + on_second) * 0.5
 }
 
 #[cfg(test)]
@@ -250,8 +246,8 @@ mod tests {
             let gaps = found.points.iter().map(|point| point.gap);
             let least = gaps.fold(f32::INFINITY, f32::min);
             assert!((least - gap).abs() < 1e-4, "{found:?}");
-            let off = minus(found.normal, scaled(normal, sign));
-            assert!(dot(off, off) < 1e-5, "{found:?}");
+            let off = found.normal - normal * sign;
+            assert!(off.dot(off) < 1e-5, "{found:?}");
             for point in &found.points {
                 let [one, two] = [first, second].map(|shape| shape.distance(point.at).0);
                 assert!((one - 0.5 * point.gap).abs() < 6e-3, "{point:?} {one}");
@@ -266,59 +262,71 @@ mod tests {
 
     #[test]
     fn manifold_points_are_correct_for_all_pairs_of_shapes() {
-        let up = [0.0, 1.0, 0.0];
-        let floor = Shape::half_space(up, [0.0; 3]);
-        let brick = cube([0.0, 0.49, 0.0], [1.0, 0.5, 0.7]);
+        let up = Vector::Y;
+        let floor = Shape::half_space(up, Vector::ZERO);
+        let brick = cube(Vector::new(0.0, 0.49, 0.0), Vector::new(1.0, 0.5, 0.7));
         check(brick, floor, 4, -0.01, up);
-        check(cube([0.3, 1.5, 0.2], [1.0, 0.5, 0.7]), brick, 4, 0.01, up);
-        let turned = Rotation::about(up, 0.7);
-        let above = cube([0.0; 3], [0.9, 0.5, 0.9]).rotated(turned);
-        check(above.translated([0.0, 1.48, 0.0]), brick, 8, -0.01, up);
-        // Boxes in 2D.
-        let flat = |centre: Vector| cube(centre, [1.0, 0.5, f32::MAX]);
-        check(flat([0.4, 0.99, 0.0]), flat([0.0; 3]), 2, -0.01, up);
-        check(flat([0.4, 0.49, 0.0]), floor, 2, -0.01, up);
-        // Capsules.
-        let bar = |y: f32, to: Vector| {
-            Shape::Capsule {
-                from: scaled(to, -1.0),
-                to,
-                radius: 0.25,
-            }
-            .translated([0.0, y, 0.0])
-        };
-        check(bar(0.24, [1.0, 0.0, 0.0]), floor, 2, -0.01, up);
-        check(bar(1.23, [0.8, 0.0, 0.0]), brick, 2, -0.01, up);
-        check(bar(1.23, [3.0, 0.0, 0.0]), brick, 1, -0.01, up);
         check(
-            bar(0.49, [1.0, 0.0, 0.0]),
-            bar(0.0, [0.0, 0.0, 1.0]),
-            1,
+            cube(Vector::new(0.3, 1.5, 0.2), Vector::new(1.0, 0.5, 0.7)),
+            brick,
+            4,
+            0.01,
+            up,
+        );
+        let turned = Rotation::about(up, 0.7);
+        let above = cube(Vector::ZERO, Vector::new(0.9, 0.5, 0.9)).rotated(turned);
+        check(
+            above.translated(Vector::new(0.0, 1.48, 0.0)),
+            brick,
+            8,
             -0.01,
             up,
         );
+        // Boxes in 2D.
+        let flat = |centre: Vector| cube(centre, Vector::new(1.0, 0.5, f32::MAX));
         check(
-            bar(0.49, [1.0, 0.0, 0.0]),
-            bar(0.0, [2.0, 0.0, 0.0]),
+            flat(Vector::new(0.4, 0.99, 0.0)),
+            flat(Vector::ZERO),
+            2,
+            -0.01,
+            up,
+        );
+        check(flat(Vector::new(0.4, 0.49, 0.0)), floor, 2, -0.01, up);
+        // Capsules.
+        let bar = |y: f32, to: Vector| {
+            Shape::Capsule {
+                from: -to,
+                to,
+                radius: 0.25,
+            }
+            .translated(Vector::new(0.0, y, 0.0))
+        };
+        check(bar(0.24, Vector::X), floor, 2, -0.01, up);
+        check(bar(1.23, Vector::new(0.8, 0.0, 0.0)), brick, 2, -0.01, up);
+        check(bar(1.23, Vector::new(3.0, 0.0, 0.0)), brick, 1, -0.01, up);
+        check(bar(0.49, Vector::X), bar(0.0, Vector::Z), 1, -0.01, up);
+        check(
+            bar(0.49, Vector::X),
+            bar(0.0, Vector::new(2.0, 0.0, 0.0)),
             2,
             -0.01,
             up,
         );
         let ball = Shape::Ball {
-            centre: [0.0, 1.24, 0.0],
+            centre: Vector::new(0.0, 1.24, 0.0),
             radius: 0.25,
         };
         check(ball, brick, 1, 0.0, up);
-        check(bar(1.73, [1.0, 0.0, 0.0]), ball, 1, -0.01, up);
+        check(bar(1.73, Vector::X), ball, 1, -0.01, up);
         // Two crossing edges.
         let quarter = std::f32::consts::FRAC_PI_4;
-        let beam = |axis| cube([0.0; 3], [1.0; 3]).rotated(Rotation::about(axis, quarter));
-        let high = beam([1.0, 0.0, 0.0]).translated([0.0, 2.0 * 2.0f32.sqrt() - 0.01, 0.0]);
-        check(high, beam([0.0, 0.0, 1.0]), 1, -0.01, up);
+        let beam = |axis| cube(Vector::ZERO, Vector::ONE).rotated(Rotation::about(axis, quarter));
+        let high = beam(Vector::X).translated(Vector::new(0.0, 2.0 * 2.0f32.sqrt() - 0.01, 0.0));
+        check(high, beam(Vector::Z), 1, -0.01, up);
         assert!(floor.manifold(&floor, 1.0).points.is_empty());
         assert!(
             brick
-                .manifold(&brick.translated([0.0, 3.0, 0.0]), 0.1)
+                .manifold(&brick.translated(Vector::new(0.0, 3.0, 0.0)), 0.1)
                 .points
                 .is_empty()
         );

@@ -2,7 +2,6 @@
 
 use super::{Shape, Vector};
 use crate::math::rotation::Rotation;
-use crate::math::vector::{cross, dot, minus, plus, scaled};
 
 /// Bias of the separating-axis test, as a share of the smallest half extent. A face axis of the second box
 /// must exceed the best one of the first box by it, and an edge axis must exceed both. Resting boxes so keep
@@ -63,8 +62,7 @@ impl Brick {
 
     /// Returns the extent from the centre along a direction [m].
     pub fn reach(&self, way: Vector) -> f32 {
-        let own =
-            (0..self.axis_count).map(|axis| dot(self.axes[axis], way).abs() * self.half[axis]);
+        let own = (0..self.axis_count).map(|axis| self.axes[axis].dot(way).abs() * self.half[axis]);
         own.sum()
     }
 
@@ -72,7 +70,7 @@ impl Brick {
     pub fn corner(&self, number: usize) -> Vector {
         (0..self.axis_count).fold(self.centre, |at, axis| {
             let sign = if number >> axis & 1 == 1 { 1.0 } else { -1.0 };
-            plus(at, scaled(self.axes[axis], sign * self.half[axis]))
+            at + self.axes[axis] * (sign * self.half[axis])
         })
     }
 
@@ -83,14 +81,10 @@ impl Brick {
 
     /// Returns the separating axis of two boxes.
     pub fn separation(&self, other: &Self) -> Separation {
-        let apart = minus(self.centre, other.centre);
+        let apart = self.centre - other.centre;
         let along = |way: Vector, side: Side| {
-            let distance = dot(apart, way);
-            let normal = if distance < 0.0 {
-                scaled(way, -1.0)
-            } else {
-                way
-            };
+            let distance = apart.dot(way);
+            let normal = if distance < 0.0 { -way } else { way };
             let gap = distance.abs() - self.reach(way) - other.reach(way);
             Separation { gap, normal, side }
         };
@@ -98,11 +92,11 @@ impl Brick {
             |best: Separation, next: Separation| if next.gap > best.gap { next } else { best };
         let none = Separation {
             gap: f32::NEG_INFINITY,
-            normal: [0.0, 1.0, 0.0],
+            normal: Vector::Y,
             side: Side::First(1),
         };
-        let sizes = [self, other].map(|brick| &brick.half[..brick.axis_count]);
-        let sizes = sizes.into_iter().flatten().copied();
+        let sizes = |brick: &Self| brick.half.to_array().into_iter().take(brick.axis_count);
+        let sizes = sizes(self).chain(sizes(other));
         let behind = BEHIND * sizes.fold(f32::MAX, f32::min);
         let first = (0..self.axis_count).map(|axis| along(self.axes[axis], Side::First(axis)));
         let second = (0..other.axis_count).map(|axis| along(other.axes[axis], Side::Second(axis)));
@@ -116,11 +110,11 @@ impl Brick {
         }
         let mut edges = none;
         for (own, others) in (0..9).map(|pair| (pair / 3, pair % 3)) {
-            let way = cross(self.axes[own], other.axes[others]);
-            let squared = dot(way, way);
+            let way = self.axes[own].cross(other.axes[others]);
+            let squared = way.dot(way);
             // Parallel edges cannot separate boxes that face axes do not separate.
             if squared > 1e-6 {
-                let way = scaled(way, 1.0 / squared.sqrt());
+                let way = way * (1.0 / squared.sqrt());
                 edges = larger(edges, along(way, Side::Edges(own, others)));
             }
         }

@@ -2,7 +2,6 @@
 
 use super::oriented_box::Brick;
 use super::{Shape, Vector, distance_from_box};
-use crate::math::vector::{dot, minus, plus, scaled};
 
 /// Ternary-search steps for the nearest point of a segment, each of which keeps two thirds. 40 steps leave
 /// 1e-7 of its length, the resolution of single precision.
@@ -29,23 +28,23 @@ impl Shape {
                     centre: middle,
                     half: size,
                 },
-            ) => distance_from_box(minus(centre, middle), plus(half, size)),
+            ) => distance_from_box(centre - middle, half + size),
             (Self::Box { centre, half }, Self::HalfSpace { normal, offset }) => {
                 let reach = [0, 1, 2].map(|axis: usize| half[axis] * normal[axis].abs());
                 let reach = reach.into_iter().sum::<f32>();
-                (dot(normal, centre) - offset - reach, normal)
+                (normal.dot(centre) - offset - reach, normal)
             }
             (Self::HalfSpace { .. }, Self::Box { .. } | Self::OrientedBox { .. }) => {
                 turned(other.gap(self))
             }
             (Self::OrientedBox { centre, .. }, Self::HalfSpace { normal, offset }) => {
                 let reach = Brick::of(self).map_or(0.0, |brick| brick.reach(normal));
-                (dot(normal, centre) - offset - reach, normal)
+                (normal.dot(centre) - offset - reach, normal)
             }
             (Self::Box { .. } | Self::OrientedBox { .. }, _) => {
                 let both = Brick::of(self).zip(Brick::of(other));
                 let separation = both.map(|(own, other)| own.separation(&other));
-                separation.map_or((f32::INFINITY, [0.0, 1.0, 0.0]), |found| {
+                separation.map_or((f32::INFINITY, Vector::Y), |found| {
                     (found.gap, found.normal)
                 })
             }
@@ -57,7 +56,7 @@ impl Shape {
 
 /// Returns the gap with the shapes swapped.
 fn turned((gap, normal): (f32, Vector)) -> (f32, Vector) {
-    (gap, scaled(normal, -1.0))
+    (gap, -normal)
 }
 
 impl Shape {
@@ -65,7 +64,7 @@ impl Shape {
     /// position on the segment from 0 to 1. A ternary search finds it, because along a segment the distance
     /// from a convex shape has a single minimum.
     pub(super) fn nearest_of_segment(&self, from: Vector, to: Vector) -> (f32, Vector, f32) {
-        let at = |share: f32| self.distance(plus(from, scaled(minus(to, from), share)));
+        let at = |share: f32| self.distance(from + (to - from) * share);
         let (mut low, mut high) = (0.0f32, 1.0f32);
         for _ in 0..NARROWINGS {
             let third = (high - low) / 3.0;
@@ -94,46 +93,61 @@ mod tests {
         for (first, second, sign) in [(a, b, 1.0), (b, a, -1.0)] {
             let (found, way) = first.gap(&second);
             assert!((found - gap).abs() < 1e-5, "{first:?} {second:?}: {found}");
-            let off = minus(way, scaled(normal, sign));
-            assert!(dot(off, off) < 1e-4, "{first:?} {second:?}: {way:?}");
+            let off = way - normal * sign;
+            assert!(off.dot(off) < 1e-4, "{first:?} {second:?}: {way:?}");
         }
     }
 
     #[test]
     fn gap_and_normal_are_correct_for_all_pairs_of_shapes() {
-        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        let floor = Shape::half_space(Vector::Y, Vector::ZERO);
         let ball = |centre| Shape::Ball {
             centre,
             radius: 0.5,
         };
         let cube = |centre| Shape::Box {
             centre,
-            half: [1.0, 0.5, 1.0],
+            half: Vector::new(1.0, 0.5, 1.0),
         };
         let bar = |from, to| Shape::Capsule {
             from,
             to,
             radius: 0.25,
         };
-        let (up, right) = ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]);
-        check(ball([0.0, 2.0, 0.0]), floor, 1.5, up);
-        check(ball([3.0, 0.0, 0.0]), cube([0.0; 3]), 1.5, right);
-        check(cube([0.0, 0.25, 0.0]), floor, -0.25, up);
-        check(cube([3.0, 0.0, 0.0]), cube([0.0; 3]), 1.0, right);
-        check(cube([1.9, 0.0, 0.0]), cube([0.0; 3]), -0.1, right);
-        let leaning = bar([0.0, 1.0, 0.0], [3.0, 2.0, 0.0]);
-        check(leaning, floor, 0.75, up);
-        check(leaning, ball([-2.0, 1.0, 0.0]), 1.25, right);
+        let (up, right) = (Vector::Y, Vector::X);
+        check(ball(Vector::new(0.0, 2.0, 0.0)), floor, 1.5, up);
         check(
-            bar([-4.0, 1.5, 0.0], [4.0, 1.5, 0.1]),
-            cube([0.0; 3]),
+            ball(Vector::new(3.0, 0.0, 0.0)),
+            cube(Vector::ZERO),
+            1.5,
+            right,
+        );
+        check(cube(Vector::new(0.0, 0.25, 0.0)), floor, -0.25, up);
+        check(
+            cube(Vector::new(3.0, 0.0, 0.0)),
+            cube(Vector::ZERO),
+            1.0,
+            right,
+        );
+        check(
+            cube(Vector::new(1.9, 0.0, 0.0)),
+            cube(Vector::ZERO),
+            -0.1,
+            right,
+        );
+        let leaning = bar(Vector::Y, Vector::new(3.0, 2.0, 0.0));
+        check(leaning, floor, 0.75, up);
+        check(leaning, ball(Vector::new(-2.0, 1.0, 0.0)), 1.25, right);
+        check(
+            bar(Vector::new(-4.0, 1.5, 0.0), Vector::new(4.0, 1.5, 0.1)),
+            cube(Vector::ZERO),
             0.75,
             up,
         );
         // Crossing capsules have their nearest points inside their segments.
         let [along, across] =
-            [[2.0, 0.0, 0.0], [0.0, 0.0, 2.0]].map(|way: Vector| (scaled(way, -1.0), way));
-        let above = |k: Vector| plus(k, up);
+            [Vector::new(2.0, 0.0, 0.0), Vector::new(0.0, 0.0, 2.0)].map(|way: Vector| (-way, way));
+        let above = |k: Vector| k + up;
         check(
             bar(above(along.0), above(along.1)),
             bar(across.0, across.1),
@@ -141,16 +155,16 @@ mod tests {
             up,
         );
         assert_eq!(floor.gap(&floor).0, f32::INFINITY);
-        let quarter = Rotation::about([0.0, 0.0, 1.0], std::f32::consts::FRAC_PI_4);
+        let quarter = Rotation::about(Vector::Z, std::f32::consts::FRAC_PI_4);
         let edge = |y| {
             Shape::Box {
-                centre: [0.0; 3],
-                half: [1.0; 3],
+                centre: Vector::ZERO,
+                half: Vector::ONE,
             }
             .rotated(quarter)
-            .translated([0.0, y, 0.0])
+            .translated(Vector::new(0.0, y, 0.0))
         };
         check(edge(2.0), floor, 2.0 - 2.0f32.sqrt(), up);
-        check(edge(2.0), cube([0.0; 3]), 1.5 - 2.0f32.sqrt(), up);
+        check(edge(2.0), cube(Vector::ZERO), 1.5 - 2.0f32.sqrt(), up);
     }
 }

@@ -1,43 +1,39 @@
 //! Ray casts against shapes.
 
 use super::{Shape, Vector};
-use crate::math::vector::{dot, minus, plus, scaled};
-
-type Vector64 = [f64; 3];
+use glam::DVec3;
 
 impl Shape {
     /// Casts a ray with a unit direction. Returns the distance [m] to the first intersection with the
     /// surface, from outside or inside, and the outward normal there.
     pub fn ray(&self, from: Vector, direction: Vector) -> Option<(f32, Vector)> {
-        let (begin, way) = (from.map(f64::from), direction.map(f64::from));
+        let (begin, way) = (from.as_dvec3(), direction.as_dvec3());
         let crossings: Vec<f64> = match *self {
             Self::HalfSpace { normal, offset } => {
-                let normal = normal.map(f64::from);
-                vec![(f64::from(offset) - dot(normal, begin)) / dot(normal, way)]
+                let normal = normal.as_dvec3();
+                vec![(f64::from(offset) - normal.dot(begin)) / normal.dot(way)]
             }
-            Self::Box { centre, half } => {
-                through_box(minus(from, centre).map(f64::from), way, half)
-            }
+            Self::Box { centre, half } => through_box((from - centre).as_dvec3(), way, half),
             Self::OrientedBox {
                 centre,
                 half,
                 rotation,
             } => {
                 let back = rotation.inverse();
-                let begin = back.apply(minus(from, centre)).map(f64::from);
-                through_box(begin, back.apply(direction).map(f64::from), half)
+                let begin = back.apply(from - centre).as_dvec3();
+                through_box(begin, back.apply(direction).as_dvec3(), half)
             }
-            Self::Ball { centre, radius } => through_ball(minus(from, centre), way, radius),
+            Self::Ball { centre, radius } => through_ball(from - centre, way, radius),
             Self::Capsule {
                 from: low,
                 to: high,
                 radius,
             } => {
-                let ends = [low, high].map(|end| through_ball(minus(from, end), way, radius));
-                let side = through_side(minus(from, low), way, minus(high, low), radius);
+                let ends = [low, high].map(|end| through_ball(from - end, way, radius));
+                let side = through_side(from - low, way, high - low, radius);
                 // Keeps intersections with an end ball only where the ball is on the surface of the capsule.
                 let is_bare = |far: &f64| {
-                    let at = plus(begin, scaled(way, *far)).map(|k| k as f32);
+                    let at = (begin + way * *far).as_vec3();
                     self.distance(at).0 >= -1e-4 * radius
                 };
                 let ends = ends.into_iter().flatten().filter(is_bare);
@@ -48,13 +44,13 @@ impl Shape {
             .into_iter()
             .filter(|far| *far >= 0.0 && far.is_finite());
         let far = ahead.reduce(f64::min)?;
-        let at = plus(begin, scaled(way, far)).map(|k| k as f32);
+        let at = (begin + way * far).as_vec3();
         Some((far as f32, self.distance(at).1))
     }
 }
 
 /// Returns where a ray enters and leaves a box around the origin.
-fn through_box(from: Vector64, way: Vector64, half: Vector) -> Vec<f64> {
+fn through_box(from: DVec3, way: DVec3, half: Vector) -> Vec<f64> {
     let (mut enters, mut leaves) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
         let half = f64::from(half[axis]);
@@ -75,28 +71,28 @@ fn through_box(from: Vector64, way: Vector64, half: Vector) -> Vec<f64> {
 }
 
 /// Returns where a ray enters and leaves a ball around the origin.
-fn through_ball(from: Vector, way: Vector64, radius: f32) -> Vec<f64> {
-    let from = from.map(f64::from);
+fn through_ball(from: Vector, way: DVec3, radius: f32) -> Vec<f64> {
+    let from = from.as_dvec3();
     roots(
         1.0,
-        dot(from, way),
-        dot(from, from) - f64::from(radius) * f64::from(radius),
+        from.dot(way),
+        from.dot(from) - f64::from(radius) * f64::from(radius),
     )
 }
 
 /// Returns where a ray enters and leaves the cylindrical part of a capsule that begins at the origin.
-fn through_side(from: Vector, way: Vector64, axis: Vector, radius: f32) -> Vec<f64> {
-    let (from, axis) = (from.map(f64::from), axis.map(f64::from));
-    let squared = dot(axis, axis);
-    let across = |v: Vector64| minus(v, scaled(axis, dot(v, axis) / squared));
+fn through_side(from: Vector, way: DVec3, axis: Vector, radius: f32) -> Vec<f64> {
+    let (from, axis) = (from.as_dvec3(), axis.as_dvec3());
+    let squared = axis.dot(axis);
+    let across = |v: DVec3| v - axis * (v.dot(axis) / squared);
     let (begin, step) = (across(from), across(way));
     let far = roots(
-        dot(step, step),
-        dot(begin, step),
-        dot(begin, begin) - f64::from(radius) * f64::from(radius),
+        step.dot(step),
+        begin.dot(step),
+        begin.dot(begin) - f64::from(radius) * f64::from(radius),
     );
     let is_between = |far: &f64| {
-        let along = dot(plus(from, scaled(way, *far)), axis) / squared;
+        let along = (from + way * *far).dot(axis) / squared;
         (0.0..=1.0).contains(&along)
     };
     far.into_iter().filter(is_between).collect()
@@ -121,23 +117,23 @@ mod tests {
     #[test]
     fn ray_hits_every_shape_from_outside_and_inside() {
         let shapes = [
-            Shape::half_space([0.0, 1.0, 0.0], [0.0, -0.3, 0.0]),
+            Shape::half_space(Vector::Y, Vector::new(0.0, -0.3, 0.0)),
             Shape::Box {
-                centre: [0.1, 0.0, 0.0],
-                half: [0.5, 0.3, 0.7],
+                centre: Vector::new(0.1, 0.0, 0.0),
+                half: Vector::new(0.5, 0.3, 0.7),
             },
             Shape::Box {
-                centre: [0.0, 0.1, 0.0],
-                half: [0.5, 0.3, 0.7],
+                centre: Vector::new(0.0, 0.1, 0.0),
+                half: Vector::new(0.5, 0.3, 0.7),
             }
-            .rotated(Rotation::about([1.0, 2.0, 3.0], 0.8)),
+            .rotated(Rotation::about(Vector::new(1.0, 2.0, 3.0), 0.8)),
             Shape::Ball {
-                centre: [0.1, 0.2, 0.0],
+                centre: Vector::new(0.1, 0.2, 0.0),
                 radius: 0.6,
             },
             Shape::Capsule {
-                from: [-0.5, 0.0, 0.1],
-                to: [0.6, 0.2, 0.0],
+                from: Vector::new(-0.5, 0.0, 0.1),
+                to: Vector::new(0.6, 0.2, 0.0),
                 radius: 0.25,
             },
         ];
@@ -145,11 +141,10 @@ mod tests {
         for shape in shapes {
             for k in 0..400 {
                 let number = |step: i32| (k * step % 199) as f32 / 99.5 - 1.0;
-                let from = [2.0 * number(7), 2.0 * number(31), 2.0 * number(57)];
-                let way = minus([number(3), number(5), number(11)].map(|k| 0.5 * k), from);
-                let length = dot(way, way).sqrt();
-                let way = scaled(way, 1.0 / length);
-                let at = |far: f32| shape.distance(plus(from, scaled(way, far)));
+                let from = Vector::new(2.0 * number(7), 2.0 * number(31), 2.0 * number(57));
+                let way = Vector::new(number(3), number(5), number(11)) * 0.5 - from;
+                let way = way * (1.0 / way.length());
+                let at = |far: f32| shape.distance(from + way * far);
                 let begins_inside = at(0.0).0 < 0.0;
                 let Some((far, normal)) = shape.ray(from, way) else {
                     // A ray that misses never crosses the surface.
@@ -160,7 +155,7 @@ mod tests {
                 assert!(at(far).0.abs() < 1e-4, "{shape:?} {from:?} {way:?}: {far}");
                 let before = (0..50).map(|step| at(0.0199 * far * step as f32).0);
                 assert!({ before }.all(|gap| (gap < 1e-4) == begins_inside || gap.abs() < 1e-3));
-                let out = dot(normal, way);
+                let out = normal.dot(way);
                 assert!(
                     (out > -1e-3) == begins_inside || out.abs() < 1e-2,
                     "{shape:?} {out}"
@@ -170,17 +165,22 @@ mod tests {
         }
         assert!(met > 1100 && missed > 100, "{met} {missed}");
         // Large distances, and a grazing ray.
-        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        let floor = Shape::half_space(Vector::Y, Vector::ZERO);
         assert_eq!(
-            floor.ray([0.0, 1000.0, 0.0], [0.0, -1.0, 0.0]).unwrap().0,
+            floor
+                .ray(Vector::new(0.0, 1000.0, 0.0), Vector::NEG_Y)
+                .unwrap()
+                .0,
             1000.0
         );
-        let (far, _) = floor.ray([0.0, 1.0, 0.0], [0.9998, -0.02, 0.0]).unwrap();
+        let (far, _) = floor
+            .ray(Vector::Y, Vector::new(0.9998, -0.02, 0.0))
+            .unwrap();
         assert!((far - 50.0).abs() < 1e-3);
         let ball = Shape::Ball {
-            centre: [3000.0, 0.0, 0.0],
+            centre: Vector::new(3000.0, 0.0, 0.0),
             radius: 0.5,
         };
-        assert!((ball.ray([0.0; 3], [1.0, 0.0, 0.0]).unwrap().0 - 2999.5).abs() < 1e-3);
+        assert!((ball.ray(Vector::ZERO, Vector::X).unwrap().0 - 2999.5).abs() < 1e-3);
     }
 }

@@ -6,7 +6,8 @@ use super::force_kernel::{
 };
 use super::plastic_kernel::{PlasticFlowLimits, PlasticInverseLanes, plastic_stress};
 use crate::foundation::dim::Dim;
-use crate::math::lanes::{Eight, LANES, Row, on_widest_lanes};
+use crate::math::lanes::{Eight, LANES, on_widest_lanes};
+use crate::math::row::Row;
 use crate::soft_body::element_law::Law;
 use fearless_simd::Simd;
 use std::ops::Range;

@@ -18,9 +18,8 @@
 
 use super::rotation_extraction::{Matrix, turn};
 use crate::foundation::dim::Dim;
-use crate::math::lanes::{
-    Eight, LANES, Lanes, Row, at_least, gather, load, positive, scatter, splat,
-};
+use crate::math::lanes::{Eight, LANES, Lanes, at_least, gather, load, positive, scatter, splat};
+use crate::math::row::Row;
 use crate::soft_body::element_law::{Elasticity, Law, MIN_VOLUME_RATIO};
 use fearless_simd::prelude::*;
 

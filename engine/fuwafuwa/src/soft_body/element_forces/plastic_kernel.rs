@@ -4,6 +4,7 @@ use super::force_kernel::{BlockView, Moduli, Scratch, stress_of};
 use super::rotation_extraction::{Matrix, turn};
 use crate::foundation::dim::Dim;
 use crate::math::lanes::{Eight, LANES, Lanes, at_least, if_positive, load, splat};
+use crate::math::vector::Vector;
 use crate::soft_body::element_law::MIN_VOLUME_RATIO;
 use crate::soft_body::plasticity::{MAX_FLOW, MIN_FLOW_VOLUME_RATIO, Plasticity};
 use fearless_simd::prelude::*;
@@ -13,9 +14,9 @@ use fearless_simd::prelude::*;
 pub struct PlasticInverseLanes(pub [[Eight; 3]; 3]);
 
 /// Plastic state of one element, by rows: the inverse G = Fₚ⁻¹ of its plastic deformation gradient.
-pub type PlasticInverse = [[f32; 3]; 3];
+pub type PlasticInverse = [Vector; 3];
 
-pub const IDENTITY: PlasticInverse = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub const IDENTITY: PlasticInverse = Vector::AXES;
 
 /// Flow parameters of a material in single precision.
 #[derive(Copy, Clone, Debug)]
@@ -36,16 +37,18 @@ impl PlasticFlowLimits {
 impl PlasticInverseLanes {
     /// Returns the state without plastic deformation.
     pub fn none() -> Box<Self> {
-        Box::new(Self(IDENTITY.map(|row| row.map(|entry| [entry; LANES]))))
+        Box::new(Self(
+            IDENTITY.map(|row| row.to_array().map(|entry| [entry; LANES])),
+        ))
     }
 
     pub fn get(&self, lane: usize) -> PlasticInverse {
-        self.0.map(|row| row.map(|entry| entry[lane]))
+        self.0.map(|row| row.map(|entry| entry[lane]).into())
     }
 
     pub fn set(&mut self, lane: usize, dent: PlasticInverse) {
         for (row, numbers) in self.0.iter_mut().zip(dent) {
-            for (entry, number) in row.iter_mut().zip(numbers) {
+            for (entry, number) in row.iter_mut().zip(numbers.to_array()) {
                 entry[lane] = number;
             }
         }

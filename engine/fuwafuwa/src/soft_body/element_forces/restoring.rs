@@ -7,7 +7,7 @@ use super::saved_states::SavedElementStates;
 use super::{ElementBatches, parts};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::ElementId;
-use crate::math::vector::{cross, dot};
+use crate::math::vector::Vector;
 use crate::soft_body::plasticity::Plasticity;
 use crate::topology::grid::VoxelGrid;
 use crate::topology::mesh::{Element, Mesh};
@@ -104,14 +104,14 @@ impl<D: Dim> ElementBatches<D> {
 /// Whether a plastic state is possible: it preserves volume, and is flat in 2D.
 fn is_sound<D: Dim>(dent: &PlasticInverse) -> bool {
     let [x, y, z] = *dent;
-    let volume = dot(x, cross(y, z));
+    let volume = x.dot(y.cross(z));
     let is_flat = (D::N..3).all(|axis| {
-        let column = [x[axis], y[axis], z[axis]];
+        let column = Vector::new(x[axis], y[axis], z[axis]);
         dent[axis] == IDENTITY[axis] && column == IDENTITY[axis]
     });
     let most = dent
         .iter()
-        .flatten()
+        .flat_map(|row| row.to_array())
         .fold(0.0f32, |most, k| most.max(k.abs()));
     is_flat && most < 100.0 && (volume - 1.0).abs() < 0.1
 }

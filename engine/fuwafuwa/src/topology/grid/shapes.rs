@@ -50,7 +50,7 @@ impl<D: Dim> VoxelGrid<D> {
         let outer = n as f32 - 1.0;
         let tube = 0.25 * outer;
         Self::from_fn(size, diameter / n as f32, |voxel| {
-            let [x, y, z] = Self::from_middle(voxel, size);
+            let [x, y, z] = Self::from_middle(voxel, size).to_array();
             let from_circle = (x * x + y * y).sqrt() - (outer - tube);
             u8::from(from_circle * from_circle + z * z < tube * tube)
         })
@@ -71,7 +71,7 @@ impl<D: Dim> VoxelGrid<D> {
         let size = Self::cube_size(n);
         let unit = HALF_WIDTH / n as f32;
         Self::from_fn(size, width / n as f32, |voxel| {
-            let [x, y, z] = Self::from_middle(voxel, size).map(|k| k * unit);
+            let [x, y, z] = (Self::from_middle(voxel, size) * unit).to_array();
             let y = y + MIDDLE;
             let ball = x * x + 2.25 * z * z + y * y - 1.0;
             u8::from(ball * ball * ball <= (x * x + 0.1125 * z * z) * y * y * y)
@@ -90,7 +90,7 @@ impl<D: Dim> VoxelGrid<D> {
     pub fn flower(n: usize, width: f32) -> Result<Self, Error> {
         let size = Self::cube_size(n);
         Self::from_fn(size, width / n as f32, |voxel| {
-            let [x, y, z] = Self::from_middle(voxel, size).map(|k| k / n as f32);
+            let [x, y, z] = (Self::from_middle(voxel, size) / n as f32).to_array();
             let (xx, yy) = (x * x, y * y);
             let squared = xx + yy + z * z;
             let fifth = squared * squared * squared.sqrt();
@@ -105,7 +105,9 @@ impl<D: Dim> VoxelGrid<D> {
 
     /// Centre of a voxel relative to the middle of a grid of `size`, in half voxels: whole numbers.
     fn from_middle(voxel: Point, size: [usize; 3]) -> Vector {
-        [0, 1, 2].map(|axis| (2 * voxel[axis] + 1 - size[axis] as i32) as f32)
+        [0, 1, 2]
+            .map(|axis| (2 * voxel[axis] + 1 - size[axis] as i32) as f32)
+            .into()
     }
 }
 

@@ -5,6 +5,7 @@ use crate::foundation::arena::BodySlot;
 use crate::foundation::dim::{Dim2, Dim3};
 use crate::foundation::ids::{ElementId, IndexVec, PieceId};
 use crate::material::Material;
+use crate::math::row::Row;
 use crate::soft_body::SoftBody;
 use crate::topology::grid::VoxelGrid;
 
@@ -34,9 +35,9 @@ fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &SoftBodies<D
     let centre = |sphere: &ContactSphere| sphere.mean::<D>(&bodies.at(sphere.body).state.position);
     for (b, second) in all.entries() {
         for (a, first) in all.entries().take(b.index()) {
-            let apart = minus(centre(first), centre(second));
+            let apart = centre(first) - centre(second);
             let reach = (1.0 + MARGIN) * (first.radius + second.radius);
-            let is_close = dot(apart, apart) < reach * reach;
+            let is_close = apart.dot(apart) < reach * reach;
             let is_found = pairs
                 .list
                 .binary_search_by(|pair| pair.spheres.cmp(&[a, b]))
@@ -87,7 +88,7 @@ fn check<D: Dim>(n: usize) {
                 } else {
                     60.0
                 };
-                let mut speed = [0.0; 4];
+                let mut speed = Row::ZERO;
                 (0..D::N).for_each(|axis| speed[axis] = fast * size * random(&mut seed));
                 speed
             })
@@ -101,7 +102,7 @@ fn check<D: Dim>(n: usize) {
                 } else {
                     sign(piece)
                 };
-                body.state.velocity[node] = scaled(speeds[piece], moves);
+                body.state.velocity[node] = speeds[piece] * moves;
             }
         };
         velocity(body, &|_| 1.0);
@@ -131,9 +132,9 @@ fn check<D: Dim>(n: usize) {
             let mut furthest = 0.0f32;
             let body = bodies.at_mut(BALL);
             for node in body.state.position.ids() {
-                let step = scaled(body.state.velocity[node], SUBSTEP);
-                furthest = furthest.max(length(step));
-                body.state.position[node] = plus(body.state.position[node], step);
+                let step = body.state.velocity[node] * SUBSTEP;
+                furthest = furthest.max(step.length());
+                body.state.position[node] += step;
             }
             pairs.pass(SUBSTEP, furthest);
         }
