@@ -1,22 +1,23 @@
 //! Events of a tick and the report of a step.
 
 use crate::foundation::arena::{JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::PieceId;
 use crate::object_ref::ObjectRef;
-use crate::rigid_body::shape::Vector;
 
 /// Event of the last tick, for sounds, scores and effects.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Event {
+#[cfg_attr(feature = "serde", serde(bound = ""))]
+pub enum Event<D: Dim> {
     /// A node was split: a crack advanced, or a cut passed here.
     NodeSplit {
         /// The body.
         body: SoftBodyHandle,
         /// Position of the node [m].
-        point: Vector,
+        point: D::Vector,
         /// Elastic energy released [J]; 0 for an intentional cut.
         energy: f32,
     },
@@ -30,10 +31,10 @@ pub enum Event {
     /// Two objects pressed on each other during the tick. Sent once per pair and tick, as long as contact
     /// impulses act; a sleeping pair sends none. For a piece that folds onto itself, both objects of the pair
     /// are the same.
-    ContactForce(Contact),
+    ContactForce(Contact<D>),
     /// Two objects began to touch. The tick also has a [`Event::ContactForce`] with the same contact. Not sent
     /// for a piece that folds onto itself.
-    ContactStarted(Contact),
+    ContactStarted(Contact<D>),
     /// Two objects stopped touching, or one of them was removed. Objects at rest side by side still touch.
     ContactEnded {
         /// The objects, in the order of [`Contact::pair`].
@@ -60,7 +61,7 @@ pub enum Event {
         /// The body.
         body: SoftBodyHandle,
         /// Middle of the part of the cutting edge that is inside the body [m].
-        point: Vector,
+        point: D::Vector,
         /// Area cut since the last such event of this knife, in all bodies, measured at rest [m²].
         area: f32,
         /// Work done since the last such event of this knife, in all bodies [J].
@@ -93,14 +94,14 @@ pub enum Event {
         piece: PieceId,
     },
     /// The last piece of a body was removed, and the body with it.
-    BodyRemoved {
+    SoftBodyRemoved {
         /// Handle of the removed body.
         body: SoftBodyHandle,
     },
     /// A rigid body was removed because it [left a region](crate::World::remove_outside).
-    RigidRemoved {
+    RigidBodyRemoved {
         /// Handle of the removed rigid body.
-        rigid: RigidBodyHandle,
+        body: RigidBodyHandle,
     },
     /// A piece became non-finite or too fast. It was stopped for good, so that it cannot affect the rest of
     /// the world.
@@ -113,7 +114,7 @@ pub enum Event {
 }
 
 hash_state! {
-    enum Event {
+    [D: Dim] enum Event<D> {
         NodeSplit { body, point, energy },
         PieceDetached { body, piece },
         ContactForce(contact),
@@ -126,13 +127,13 @@ hash_state! {
         FellAsleep { body, piece },
         WokeUp { body, piece },
         PieceRemoved { body, piece },
-        BodyRemoved { body },
-        RigidRemoved { rigid },
+        SoftBodyRemoved { body },
+        RigidBodyRemoved { body },
         Quarantined { body, piece },
     }
 }
 
-impl Event {
+impl<D: Dim> Event<D> {
     /// Returns the events for pieces detached from a body.
     pub(crate) fn parted(body: SoftBodyHandle, pieces: &[PieceId]) -> impl Iterator<Item = Self> {
         pieces
@@ -144,15 +145,16 @@ impl Event {
 /// Contact between two objects, summed over all their contact points and over the substeps of a tick.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Contact {
+#[cfg_attr(feature = "serde", serde(bound = ""))]
+pub struct Contact<D: Dim> {
     /// The objects, in ascending order of [`ObjectRef`]: a piece stands before a rigid body, and two objects
     /// of one kind are ordered by handle and piece number. The order of a pair therefore never changes.
     pub pair: [ObjectRef; 2],
     /// Position of the contact point with the largest normal impulse in a substep [m].
-    pub point: Vector,
+    pub point: D::Vector,
     /// Unit normal at `point`, from the second object towards the first. The contact pushes the first object
     /// along the normal, and the second one against it.
-    pub normal: Vector,
+    pub normal: D::Vector,
     /// Highest approach speed along the normal at any contact point, in any substep [m/s].
     pub speed: f32,
     /// Sum of the magnitudes of the normal impulses over all contact points and substeps [N s]. Divided by
@@ -160,9 +162,9 @@ pub struct Contact {
     pub impulse: f32,
 }
 
-hash_state! { struct Contact { pair, point, normal, speed, impulse } }
+hash_state! { [D: Dim] struct Contact<D> { pair, point, normal, speed, impulse } }
 
-impl Contact {
+impl<D: Dim> Contact<D> {
     /// Returns the object that touches `object`, or `None` if `object` is not in the pair.
     pub fn other(&self, object: impl Into<ObjectRef>) -> Option<ObjectRef> {
         let object = object.into();

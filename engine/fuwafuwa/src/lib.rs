@@ -65,24 +65,25 @@ pub mod instances;
 #[cfg(feature = "serde")]
 pub mod snapshot;
 
-pub use contact::joint::{Joint, JointAnchor, JointKind};
+pub use contact::joint::{Joint, JointAnchor, JointKind, JointRef};
 pub use error::Error;
 pub use event::{Contact, Event, StepReport};
-pub use foundation::arena::{Arena, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
-pub use foundation::dim::{Dim, Dim2, Dim3, Point};
+pub use foundation::arena::{JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
+pub use foundation::dim::{Dim, Dim2, Dim3, DimAngular, DimVector, Point};
 pub use foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 pub use fracture::blade::{Blade, CutReport};
-pub use fracture::knife::Knife;
+pub use fracture::knife::{Knife, KnifeRef};
+pub use glam;
+pub use glam::{Vec2, Vec3};
 pub use material::Material;
 pub use math::rotation::Rotation;
-pub use math::vector::Vector;
 pub use math::velocity::{Impulse, Velocity};
 pub use object_ref::{ObjectRef, ObjectSelector};
 pub use query::query_filter::QueryFilter;
 pub use query::{HitElement, QueryHit, QueryOverlap, Ray};
 pub use rigid_body::layers::Layers;
 pub use rigid_body::shape::Shape;
-pub use rigid_body::{MotionType, Reaction, RigidBody};
+pub use rigid_body::{MotionType, Reaction, RigidBody, RigidBodyRef};
 pub use soft_body::SoftBody;
 pub use soft_body::element_law::Law;
 pub use soft_body::element_state::{ElementState, Energy};
@@ -92,6 +93,6 @@ pub use topology::cell_hierarchy::Grading;
 pub use topology::changes::{Bookmark, Changes};
 pub use topology::grid::{MAX_EXTENT, MAX_VOXELS, VOXEL_SIZES, VoxelGrid};
 pub use world::{
-    BodyHandle, FEWEST_SUBSTEPS, Hooks, LONGEST_TICK, PieceSize, Removable, Removed, SHORTEST_TICK,
-    Substep, TICK, USUAL_SUBSTEPS, World, WorldConfig, field_around,
+    BodyHandle, DEFAULT_SUBSTEPS, DEFAULT_TICK, Hooks, MAX_TICK, MIN_SUBSTEPS, MIN_TICK, PieceSize,
+    Removable, Removed, Substep, World, WorldConfig, field_around,
 };

@@ -3,5 +3,6 @@
 pub mod lanes;
 pub mod rotation;
 pub mod row;
+pub mod twist;
 pub mod vector;
 pub mod velocity;

@@ -5,15 +5,18 @@ mod intersection;
 pub mod query_cache;
 pub mod query_filter;
 
+use crate::error::Error;
 use crate::foundation::arena::SoftBodyHandle;
-use crate::foundation::dim::Dim;
+use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::ids::ElementId;
 use crate::object_ref::ObjectRef;
-use crate::rigid_body::RigidBody;
-use crate::rigid_body::shape::{Bounds, Shape, Vector, flat};
+use crate::rigid_body::RigidState;
+use crate::rigid_body::shape::Shape;
+use crate::rigid_body::solid::{Bounds, Solid};
 use crate::soft_body::view::Facet;
 use crate::world::World;
 use bounding_tree::{distance_from, entry, overlap};
+use glam::Vec3;
 use intersection::{
     is_in_block, nearest_on_segment, nearest_on_triangle, ray_meets_segment, ray_meets_triangle,
 };
@@ -27,31 +30,31 @@ const NARROWINGS: usize = 24;
 
 /// Ray for [`World::ray_cast`].
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Ray {
+pub struct Ray<D: Dim> {
     /// Origin [m].
-    pub origin: Vector,
+    pub origin: D::Vector,
     /// Direction, of any length except 0.
-    pub direction: Vector,
+    pub direction: D::Vector,
 }
 
-impl Ray {
-    /// Creates a ray from an origin [m] along a direction of any length except 0.
-    pub fn new(origin: Vector, direction: Vector) -> Self {
+impl<D: Dim> Ray<D> {
+    /// Returns a ray from an origin [m] along a direction of any length except 0.
+    pub fn new(origin: D::Vector, direction: D::Vector) -> Self {
         Self { origin, direction }
     }
 }
 
 /// Point on the surface of an object, found by a query.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct QueryHit {
+pub struct QueryHit<D: Dim> {
     /// The object.
     pub object: ObjectRef,
     /// Element of the surface; `None` for a rigid body.
     pub element: Option<HitElement>,
     /// Position on the surface [m].
-    pub point: Vector,
+    pub point: D::Vector,
     /// Outward unit normal of the surface at `point`, also for queries that start inside the object.
-    pub normal: Vector,
+    pub normal: D::Vector,
     /// Distance of `point` from the origin of the ray, or from the given point [m]. Never negative.
     pub distance: f32,
 }
@@ -81,32 +84,31 @@ pub struct HitElement {
 impl<D: Dim> World<D> {
     /// Casts a ray. Returns the first hit on the surface of an object, from outside or inside, within
     /// `max_distance` [m], which may be infinite. Returns `None` if the direction has length 0, another
-    /// coordinate is not finite, or `max_distance` is negative or NaN. In 2D the third coordinates are
-    /// ignored.
+    /// coordinate is not finite, or `max_distance` is negative or NaN.
     ///
     /// ```
-    /// use fuwafuwa::{Dim3, Material, QueryFilter, Ray, SoftBody, VoxelGrid, World, WorldConfig};
+    /// use fuwafuwa::{Dim3, Material, QueryFilter, Ray, SoftBody, Vec3, VoxelGrid, World, WorldConfig};
     ///
     /// let mut world = World::new(WorldConfig::default())?;
     /// let grid = VoxelGrid::<Dim3>::ball(16, 1.0)?;
     /// let ball = world.add_soft_body(SoftBody::new(grid, &[Material::default()])?);
-    /// let down = Ray::new([0.5, 3.0, 0.5], [0.0, -1.0, 0.0]);
+    /// let down = Ray::new(Vec3::new(0.5, 3.0, 0.5), Vec3::NEG_Y);
     /// let hit = world.ray_cast(down, 10.0, QueryFilter::default());
     /// let hit = hit.expect("the ball is below");
-    /// assert!((2.0..2.1).contains(&hit.distance) && hit.normal[1] > 0.99);
+    /// assert!((2.0..2.1).contains(&hit.distance) && hit.normal.y > 0.99);
     /// assert_eq!(hit.object.soft_body(), Some(ball));
     /// assert_eq!(hit.element.map(|element| element.material), Some(1));
-    /// assert_eq!(world.objects_at([0.5; 3], QueryFilter::default()).len(), 1);
+    /// assert_eq!(world.objects_at(Vec3::splat(0.5), QueryFilter::default()).len(), 1);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[inline(never)]
     pub fn ray_cast(
         &self,
-        ray: Ray,
+        ray: Ray<D>,
         max_distance: f32,
         filter: QueryFilter<'_>,
-    ) -> Option<QueryHit> {
-        let (origin, direction) = (flat::<D>(ray.origin), flat::<D>(ray.direction));
+    ) -> Option<QueryHit<D>> {
+        let (origin, direction) = (ray.origin.to_vec3(), ray.direction.to_vec3());
         let long = direction.as_dvec3();
         let direction = (long * (1.0 / long.dot(long).sqrt())).as_vec3();
         if !direction.is_finite() || !origin.is_finite() {
@@ -148,15 +150,15 @@ impl<D: Dim> World<D> {
 
     /// Returns the closest point on the surface of any object, from outside or inside, within `max_distance`
     /// [m], which may be infinite. Returns `None` if a coordinate is not finite, or `max_distance` is
-    /// negative or NaN. In 2D the third coordinates are ignored.
+    /// negative or NaN.
     #[inline(never)]
     pub fn closest_point(
         &self,
-        point: Vector,
+        point: D::Vector,
         max_distance: f32,
         filter: QueryFilter<'_>,
-    ) -> Option<QueryHit> {
-        let point = flat::<D>(point);
+    ) -> Option<QueryHit<D>> {
+        let point = point.to_vec3();
         if !point.is_finite() {
             return None;
         }
@@ -193,11 +195,10 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns the objects that contain a point [m], each once, in the order of [`ObjectRef`]; more than one
-    /// if objects overlap. Returns nothing if a coordinate is not finite. In 2D the third coordinate is
-    /// ignored.
+    /// if objects overlap. Returns nothing if a coordinate is not finite.
     #[inline(never)]
-    pub fn objects_at(&self, point: Vector, filter: QueryFilter<'_>) -> Vec<QueryOverlap> {
-        let point = flat::<D>(point);
+    pub fn objects_at(&self, point: D::Vector, filter: QueryFilter<'_>) -> Vec<QueryOverlap> {
+        let point = point.to_vec3();
         if !point.is_finite() {
             return Vec::new();
         }
@@ -219,16 +220,23 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns the objects that overlap a shape, each once, in the order of [`ObjectRef`]. A piece overlaps
-    /// if its surface intersects the shape, or if it contains the shape. In 2D the third coordinates are
-    /// ignored.
+    /// if its surface intersects the shape, or if it contains the shape.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] if the shape is not [valid](Shape::check).
     #[inline(never)]
-    pub fn overlaps(&self, shape: &Shape, filter: QueryFilter<'_>) -> Vec<QueryOverlap> {
-        let shape = shape.seen_in::<D>();
+    pub fn overlaps(
+        &self,
+        shape: &Shape<D>,
+        filter: QueryFilter<'_>,
+    ) -> Result<Vec<QueryOverlap>, Error> {
+        shape.check().map_err(|error| error.of("shape"))?;
+        let shape = shape.solid();
         let [low, high] = shape.bounds();
         let may_overlap = |bounds: &Bounds| match shape {
-            Shape::HalfSpace { normal, offset } => {
+            Solid::HalfSpace { normal, offset } => {
                 let [low, high] = *bounds;
-                let deepest = Vector::select(normal.cmplt(Vector::ZERO), high, low);
+                let deepest = Vec3::select(normal.cmplt(Vec3::ZERO), high, low);
                 normal.dot(deepest) <= offset
             }
             _ => overlap(bounds, &[low, high]),
@@ -260,7 +268,7 @@ impl<D: Dim> World<D> {
         if centre.is_finite() {
             found.extend(query.pieces_at(centre));
         }
-        each_once(found)
+        Ok(each_once(found))
     }
 }
 
@@ -273,7 +281,7 @@ struct Query<'a, D: Dim> {
 
 /// Object of a running query.
 enum Found<'a> {
-    Rigid(&'a RigidBody),
+    Rigid(&'a RigidState),
     Soft(&'a BodyTrees),
     /// The filter rejects the object.
     Filtered,
@@ -311,7 +319,7 @@ impl<'a, D: Dim> Query<'a, D> {
     fn object(&self, rank: usize) -> Found<'_> {
         match self.trees.objects[rank] {
             TreeObject::Rigid(id) => {
-                let rigid = &self.world.rigid_bodies()[id];
+                let rigid = &self.world.rigids[id];
                 match self.filter.admits_rigid(rigid) {
                     true => Found::Rigid(rigid),
                     false => Found::Filtered,
@@ -319,7 +327,7 @@ impl<'a, D: Dim> Query<'a, D> {
             }
             TreeObject::Soft(index) => {
                 let trees = &self.trees.bodies[index as usize];
-                let body = &self.world.soft_bodies()[trees.body];
+                let body = &self.world.bodies[trees.body];
                 match self.filter.admits_body(trees.body, body) {
                     true => Found::Soft(trees),
                     false => Found::Filtered,
@@ -340,16 +348,16 @@ impl<'a, D: Dim> Query<'a, D> {
     fn rigid_hit(
         &self,
         rank: usize,
-        point: Vector,
-        normal: Vector,
+        point: Vec3,
+        normal: Vec3,
         distance: f32,
-    ) -> Option<QueryHit> {
+    ) -> Option<QueryHit<D>> {
         let QueryOverlap { object, element } = self.rigid_overlap(rank)?;
         Some(QueryHit {
             object,
             element,
-            point,
-            normal,
+            point: D::Vector::from_vec3(point),
+            normal: D::Vector::from_vec3(normal),
             distance,
         })
     }
@@ -362,7 +370,7 @@ impl<'a, D: Dim> Query<'a, D> {
         if !self.filter.admits(object) {
             return None;
         }
-        let body = &self.world.soft_bodies()[body];
+        let body = &self.world.bodies[body];
         let element = body.mesh().element(facet.element)?;
         let element = Some(HitElement {
             id: facet.element,
@@ -375,21 +383,21 @@ impl<'a, D: Dim> Query<'a, D> {
         &self,
         body: SoftBodyHandle,
         facet: &Facet,
-        point: Vector,
+        point: Vec3,
         distance: f32,
-    ) -> Option<QueryHit> {
+    ) -> Option<QueryHit<D>> {
         let QueryOverlap { object, element } = self.facet_overlap(body, facet)?;
         Some(QueryHit {
             object,
             element,
-            point,
-            normal: facet.normal,
+            point: D::Vector::from_vec3(point),
+            normal: D::Vector::from_vec3(facet.normal),
             distance,
         })
     }
 
     /// Returns the pieces that contain a point, possibly repeated.
-    fn pieces_at(&self, point: Vector) -> Vec<QueryOverlap> {
+    fn pieces_at(&self, point: Vec3) -> Vec<QueryOverlap> {
         let cost = |bounds: &Bounds| zero_if(contains(bounds, point));
         let mut found = Vec::new();
         let trees = &self.trees;
@@ -397,7 +405,7 @@ impl<'a, D: Dim> Query<'a, D> {
             let Found::Soft(trees) = self.object(trees.bounded[index] as usize) else {
                 return 0.0;
             };
-            let cells = trees.cells(&self.world.soft_bodies()[trees.body]);
+            let cells = trees.cells(&self.world.bodies[trees.body]);
             cells.tree.search(0.0, cost, |index, _| {
                 let cell = &cells.items[index];
                 if is_in_block::<D>(point, &cell.corners[..D::CORNERS]) {
@@ -424,15 +432,15 @@ impl<'a, D: Dim> Query<'a, D> {
 }
 
 /// Closest hit of a running query.
-struct Closest {
-    hit: Option<QueryHit>,
+struct Closest<D: Dim> {
+    hit: Option<QueryHit<D>>,
     /// Distance of the hit, or the largest distance that counts [m].
     limit: f32,
     /// Rank of the object of the hit, and index of the face; of equally distant hits, the lowest rank counts.
     rank: [usize; 2],
 }
 
-impl Closest {
+impl<D: Dim> Closest<D> {
     /// Returns the initial state; `None` if the distance is negative or NaN.
     fn within(max_distance: f32) -> Option<Self> {
         (max_distance >= 0.0).then_some(Self {
@@ -448,7 +456,7 @@ impl Closest {
         &mut self,
         distance: f32,
         rank: [usize; 2],
-        hit: impl FnOnce() -> Option<QueryHit>,
+        hit: impl FnOnce() -> Option<QueryHit<D>>,
     ) {
         let is_closer = distance < self.limit
             || (distance == self.limit && distance < f32::INFINITY && rank < self.rank);
@@ -471,18 +479,18 @@ fn zero_if(condition: bool) -> f32 {
     if condition { 0.0 } else { f32::INFINITY }
 }
 
-fn contains(bounds: &Bounds, point: Vector) -> bool {
+fn contains(bounds: &Bounds, point: Vec3) -> bool {
     overlap(bounds, &[point, point])
 }
 
 /// Returns the two triangles of a quad.
-fn triangles([a, b, c, d]: [Vector; 4]) -> [[Vector; 3]; 2] {
+fn triangles([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
 /// Returns the distance [m] along a ray with a unit direction to a bare face: a segment in 2D, two triangles
 /// in 3D.
-fn distance_to<D: Dim>(facet: &Facet, from: Vector, direction: Vector) -> Option<f32> {
+fn distance_to<D: Dim>(facet: &Facet, from: Vec3, direction: Vec3) -> Option<f32> {
     let [a, b, ..] = facet.corners;
     if D::N == 2 {
         return ray_meets_segment(from, direction, [a, b]);
@@ -492,13 +500,13 @@ fn distance_to<D: Dim>(facet: &Facet, from: Vector, direction: Vector) -> Option
 }
 
 /// Returns the point on a bare face that is nearest to `at`.
-fn nearest_on<D: Dim>(facet: &Facet, at: Vector) -> Vector {
+fn nearest_on<D: Dim>(facet: &Facet, at: Vec3) -> Vec3 {
     let [a, b, ..] = facet.corners;
     if D::N == 2 {
         return nearest_on_segment(at, [a, b]);
     }
     let [one, other] = triangles(facet.corners).map(|three| nearest_on_triangle(at, three));
-    let squared = |place: Vector| (place - at).dot(place - at);
+    let squared = |place: Vec3| (place - at).dot(place - at);
     if squared(other) < squared(one) {
         other
     } else {
@@ -508,10 +516,10 @@ fn nearest_on<D: Dim>(facet: &Facet, at: Vector) -> Vector {
 
 /// Returns whether a bare face intersects a shape. The ternary search for the closest approach is exact,
 /// because the distance from a convex shape has a single minimum.
-fn is_near<D: Dim>(facet: &Facet, shape: &Shape) -> bool {
-    let gap = |from: Vector, to: Vector| {
+fn is_near<D: Dim>(facet: &Facet, shape: &Solid) -> bool {
+    let gap = |from: Vec3, to: Vec3| {
         let radius = 0.0;
-        Shape::Capsule { from, to, radius }.gap(shape).0
+        Solid::Capsule { from, to, radius }.gap(shape).0
     };
     let [a, b, ..] = facet.corners;
     if D::N == 2 {
@@ -519,7 +527,7 @@ fn is_near<D: Dim>(facet: &Facet, shape: &Shape) -> bool {
     }
     triangles(facet.corners).into_iter().any(|[a, b, c]| {
         let across = |share: f32| {
-            let end = |to: Vector| a + (to - a) * share;
+            let end = |to: Vec3| a + (to - a) * share;
             gap(end(b), end(c))
         };
         let (mut low, mut high) = (0.0f32, 1.0f32);
@@ -543,11 +551,11 @@ fn is_near<D: Dim>(facet: &Facet, shape: &Shape) -> bool {
 }
 
 /// Returns whether two shapes overlap. Two half-spaces do, unless they face each other with a gap in between.
-fn shapes_overlap(a: &Shape, b: &Shape) -> bool {
+fn shapes_overlap(a: &Solid, b: &Solid) -> bool {
     match (*a, *b) {
         (
-            Shape::HalfSpace { normal, offset },
-            Shape::HalfSpace {
+            Solid::HalfSpace { normal, offset },
+            Solid::HalfSpace {
                 normal: other,
                 offset: beyond,
             },

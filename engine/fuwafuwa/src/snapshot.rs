@@ -69,7 +69,7 @@ pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, Error> {
     if let Some(reason) = world.defect() {
         return Err(invalid(reason.to_owned()));
     }
-    for (id, body) in world.soft_bodies().entries() {
+    for (id, body) in world.soft_bodies() {
         let slot = id.slot().index();
         let checked = body.check();
         checked.map_err(|violation| invalid(format!("soft body {slot}: {violation}")))?;

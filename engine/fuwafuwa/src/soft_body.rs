@@ -21,13 +21,12 @@ mod integration;
 mod placement;
 mod sleep_flags;
 
-use crate::error::Error;
+use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, SoftBodyHandle};
-use crate::foundation::dim::{Dim, Point};
+use crate::foundation::dim::{Dim, DimVector, Point};
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{ElementId, NodeId};
 use crate::material::Material;
-use crate::math::vector::Vector;
 use crate::soft_body::element_forces::{ElementBatches, Row};
 use crate::soft_body::element_law::Law;
 use crate::soft_body::momentum::Momentum;
@@ -43,6 +42,7 @@ use body_state::State;
 use body_topology::Topology;
 use caches::Cache;
 use glam::DVec3;
+use glam::Vec3;
 
 /// Courant number of a substep: the largest fraction of a voxel that the fastest pressure wave may travel.
 ///
@@ -127,7 +127,7 @@ impl<D: Dim> SoftBody<D> {
         body.make_room();
         for (id, node) in body.topology.mesh.nodes() {
             let at = node.at.map(|k| k as f32 * body.topology.grid.voxel_size());
-            body.state.position[id] = Row::from(Vector::from(at));
+            body.state.position[id] = Row::from(Vec3::from(at));
         }
         body.state.ahead.clone_from(&body.state.position);
         let elements: Vec<ElementId> = body.topology.mesh.elements().map(|(id, _)| id).collect();
@@ -249,36 +249,42 @@ impl<D: Dim> SoftBody<D> {
     ///
     /// # Panics
     /// If the id was never used.
-    pub fn node_state(&self, id: NodeId) -> (Vector, Vector, f32) {
+    pub fn node_state(&self, id: NodeId) -> (D::Vector, D::Vector, f32) {
         (
-            self.state.position[id].xyz(),
-            self.state.velocity[id].xyz(),
+            D::Vector::from_vec3(self.state.position[id].xyz()),
+            D::Vector::from_vec3(self.state.velocity[id].xyz()),
             self.state.mass[id],
         )
     }
 
-    /// Sets the position [m] and velocity [m/s] of a node. Returns false, and changes nothing, if a component
-    /// is not finite.
+    /// Sets the position [m] and velocity [m/s] of a node.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] if a component is not finite. The node then stays unchanged.
     ///
     /// # Panics
     /// If the id was never used.
-    pub fn set_node_state(&mut self, id: NodeId, position: Vector, velocity: Vector) -> bool {
-        let finite = position.is_finite() && velocity.is_finite();
-        if finite {
-            self.state.position[id][..D::N].copy_from_slice(&position.as_ref()[..D::N]);
-            self.state.velocity[id][..D::N].copy_from_slice(&velocity.as_ref()[..D::N]);
-            self.state.ahead[id] = self.state.position[id];
-            self.state.placed = true;
-        }
-        finite
+    pub fn set_node_state(
+        &mut self,
+        id: NodeId,
+        position: D::Vector,
+        velocity: D::Vector,
+    ) -> Result<(), Error> {
+        require(position.is_finite(), "position", "finite", position)?;
+        require(velocity.is_finite(), "velocity", "finite", velocity)?;
+        self.state.position[id] = Row::from(position.to_vec3());
+        self.state.velocity[id] = Row::from(velocity.to_vec3());
+        self.state.ahead[id] = self.state.position[id];
+        self.state.placed = true;
+        Ok(())
     }
 
     /// Elastic force [N] on a node at the start of the last step.
     ///
     /// # Panics
     /// If the id was never used.
-    pub fn force_on(&self, id: NodeId) -> Vector {
-        self.state.blocks.force_on(id).xyz()
+    pub fn force_on(&self, id: NodeId) -> D::Vector {
+        D::Vector::from_vec3(self.state.blocks.force_on(id).xyz())
     }
 
     /// Linear and angular momentum of the whole body about the origin.

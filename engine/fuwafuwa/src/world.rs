@@ -17,11 +17,11 @@ use crate::contact::solver::{Contacts, Hit, Hits};
 use crate::error::Error;
 use crate::event::{Contact, Event, StepReport};
 use crate::foundation::arena::{BodySlot, RigidBodyHandle, RigidSlot};
-use crate::foundation::dim::Dim;
+use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::fracture::crack_growth::{Failure, failures};
-use crate::fracture::knife::{Knife, Knives};
+use crate::fracture::knife::{KnifeState, Knives};
 use crate::object_ref::ObjectRef;
 use crate::query::query_cache::QueryCache;
 use crate::rigid_body::RigidBodies;
@@ -29,7 +29,7 @@ use crate::soft_body::damping::{PieceDamping, PieceMotion, motions, slow_down};
 use crate::soft_body::{SoftBodies, SoftBody};
 use crate::world::sleep::{fall_asleep, fall_asleep_rigid, wake};
 pub use body_handle::{BodyHandle, Removable};
-pub use config::{FEWEST_SUBSTEPS, LONGEST_TICK, SHORTEST_TICK, TICK, USUAL_SUBSTEPS, WorldConfig};
+pub use config::{DEFAULT_SUBSTEPS, DEFAULT_TICK, MAX_TICK, MIN_SUBSTEPS, MIN_TICK, WorldConfig};
 pub use hooks::{Hooks, Substep, field_around};
 pub use removal::{PieceSize, Removed};
 
@@ -52,16 +52,16 @@ const TOP_SPEED: f32 = 1000.0;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct World<D: Dim> {
-    settings: WorldConfig,
-    bodies: SoftBodies<D>,
-    rigids: RigidBodies,
+    config: WorldConfig<D>,
+    pub(crate) bodies: SoftBodies<D>,
+    pub(crate) rigids: RigidBodies,
     joints: Joints,
     knives: Knives,
     ticks: u64,
     nearby: Nearby,
-    events: Vec<Event>,
+    events: Vec<Event<D>>,
     /// Contacts of the last tick, and objects inside each sensor; both ascending.
-    touching: Vec<Contact>,
+    touching: Vec<Contact<D>>,
     inside: Vec<(RigidBodyHandle, ObjectRef)>,
     #[cfg_attr(feature = "serde", serde(skip))]
     contacts: Contacts,
@@ -71,7 +71,7 @@ pub struct World<D: Dim> {
 
 hash_state! {
     [D: Dim] struct World<D> {
-        settings, bodies, rigids, joints, knives, ticks, nearby, events, touching, inside,
+        config, bodies, rigids, joints, knives, ticks, nearby, events, touching, inside,
     } skip { contacts, query_cache }
 }
 
@@ -79,12 +79,12 @@ impl<D: Dim> World<D> {
     /// Returns an empty world.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] if a setting is out of range.
+    /// [`Error::InvalidParameter`] if a parameter is out of range.
     #[inline(never)]
-    pub fn new(settings: WorldConfig) -> Result<Self, Error> {
-        settings.check()?;
+    pub fn new(config: WorldConfig<D>) -> Result<Self, Error> {
+        config.check()?;
         Ok(Self {
-            settings,
+            config,
             bodies: SoftBodies::default(),
             rigids: RigidBodies::default(),
             joints: Joints::default(),
@@ -109,26 +109,26 @@ impl<D: Dim> World<D> {
     /// substep. A field does not act on sleeping pieces; [`wake_up`](World::wake_up) wakes them.
     ///
     /// ```
-    /// use fuwafuwa::{Dim2, Hooks, RigidBody, WorldConfig, World};
+    /// use fuwafuwa::{Dim2, Hooks, RigidBody, Shape, Substep, Vec2, World, WorldConfig};
     ///
     /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
-    /// let hand = world.add_rigid_body(RigidBody::coupled_ball([0.0; 3], 0.1))?;
-    /// world.set_target_position(hand, [0.1, 0.0, 0.0])?;
+    /// let hand = world.add_rigid_body(RigidBody::coupled(Shape::ball(0.1)))?;
+    /// world.set_target_position(hand, Vec2::new(0.1, 0.0))?;
     /// let mut forces = Vec::new();
-    /// let mut note = |substep: &fuwafuwa::Substep| {
-    ///     forces.push(substep.reaction(hand).map_or([0.0; 3], |felt| felt.coupling));
+    /// let mut note = |substep: &Substep<'_, Dim2>| {
+    ///     forces.push(substep.reaction(hand).unwrap_or_default().coupling);
     /// };
     /// let report = world.step_with(&mut Hooks { after_substep: Some(&mut note), ..Hooks::default() });
     /// assert_eq!(forces.len(), report.substeps as usize);
-    /// assert!(forces[15][0] < 0.0);
+    /// assert!(forces[15].x < 0.0);
     /// # Ok::<(), fuwafuwa::Error>(())
     /// ```
     #[inline(never)]
-    pub fn step_with(&mut self, hooks: &mut Hooks<'_>) -> StepReport {
+    pub fn step_with(&mut self, hooks: &mut Hooks<'_, D>) -> StepReport {
         self.events.clear();
         let substeps = self.substeps();
-        let duration = self.settings.tick / substeps as f32;
-        let rounds = self.settings.rounds();
+        let duration = self.config.tick / substeps as f32;
+        let rounds = self.config.rounds();
         let mut report = StepReport {
             substeps,
             ..StepReport::default()
@@ -161,18 +161,18 @@ impl<D: Dim> World<D> {
     pub fn substeps(&self) -> u32 {
         let longest = self.bodies.iter().map(SoftBody::longest_substep);
         let longest = longest.fold(f64::INFINITY, f64::min);
-        let asked = (f64::from(self.settings.tick) / longest - 1e-6).ceil() as u32;
-        let most = self.settings.most_in_tick();
-        let usual = self.settings.in_tick(60.0 * f64::from(USUAL_SUBSTEPS));
+        let asked = (f64::from(self.config.tick) / longest - 1e-6).ceil() as u32;
+        let most = self.config.most_in_tick();
+        let usual = self.config.in_tick(60.0 * f64::from(DEFAULT_SUBSTEPS));
         asked.clamp(usual.min(most), most)
     }
 
     fn start_tick(&mut self) {
         self.bodies.iter_mut().for_each(SoftBody::note_before);
         for rigid in self.rigids.iter_mut() {
-            rigid.start_tick(self.settings.tick);
+            rigid.start_tick(self.config.tick);
         }
-        self.nearby.start_tick(&self.bodies, self.settings.tick);
+        self.nearby.start_tick(&self.bodies, self.config.tick);
     }
 
     fn end_tick(&mut self) {
@@ -185,7 +185,7 @@ impl<D: Dim> World<D> {
 
     /// Splits overstrained nodes and remodels the elements around them.
     fn fracture(&mut self, report: &mut StepReport) {
-        let duration = self.settings.round();
+        let duration = self.config.round();
         for (id, body) in self.bodies.entries_mut() {
             let failures = failures(body, duration);
             if failures.is_empty() {
@@ -193,7 +193,7 @@ impl<D: Dim> World<D> {
             }
             let released = |failure: &Failure| Event::NodeSplit {
                 body: id,
-                point: body.state.position[failure.node].xyz(),
+                point: D::Vector::from_vec3(body.state.position[failure.node].xyz()),
                 energy: failure.energy,
             };
             self.events.extend(failures.iter().map(released));
@@ -208,7 +208,7 @@ impl<D: Dim> World<D> {
 
     /// Damps the internal vibration of each piece, and applies drag.
     fn damp(&mut self, substep: f32) {
-        let duration = self.settings.round();
+        let duration = self.config.round();
         let touching = self.touching();
         for (slot, body) in self.bodies.by_slot_mut() {
             body.refresh_awake();
@@ -218,7 +218,7 @@ impl<D: Dim> World<D> {
                 .iter()
                 .zip(&touching[slot])
                 .map(|(motion, &touches)| {
-                    slowing(motion, touches, rate, self.settings.drag, D::CORNERS)
+                    slowing(motion, touches, rate, self.config.drag, D::CORNERS)
                 })
                 .map(|slowing| slowing.over(duration))
                 .collect();
@@ -227,18 +227,20 @@ impl<D: Dim> World<D> {
     }
 
     /// Integrates velocities: elastic forces, gravity, external field and virtual coupling.
-    fn push(&mut self, duration: f32, hooks: &Hooks<'_>) {
+    fn push(&mut self, duration: f32, hooks: &Hooks<'_, D>) {
+        let WorldConfig { gravity, drag, .. } = self.config;
+        let gravity = gravity.to_vec3();
         for body in self.bodies.iter_mut() {
-            body.push(duration, self.settings.gravity);
+            body.push(duration, gravity);
             if let Some(field) = hooks.field {
                 body.pull(duration, field);
             }
         }
-        let WorldConfig { gravity, drag, .. } = self.settings;
         for rigid in self.rigids.iter_mut() {
             rigid.pull(duration);
             if rigid.is_dynamic() && rigid.moves() {
-                let field = hooks.field.map(|field| field(rigid.position()));
+                let at = D::Vector::from_vec3(rigid.position());
+                let field = hooks.field.map(|field| field(at).to_vec3());
                 let field = field.filter(|pull| pull.is_finite());
                 let pull = field.map_or(gravity, |field| gravity + field);
                 rigid.fall::<D>(pull, drag, duration);
@@ -311,21 +313,21 @@ impl<D: Dim> World<D> {
         let captives = self.nearby.captives.list.iter();
         let captives = captives.map(|captive| &self.nearby.spheres.list[captive.sphere]);
         let captives = captives.map(|sphere| (sphere.body, sphere.piece));
-        let is_pushed = |knife: &&Knife| {
+        let is_pushed = |knife: &&KnifeState| {
             let holder = self.rigids.get(knife.holder);
             holder.is_ok_and(|holder| holder.pushes())
         };
         let pushed = self.knives.iter().filter(is_pushed);
         let cut = pushed.flat_map(|knife| knife.held(&self.bodies));
         let handled: Vec<Hit> = handled.chain(captives).chain(cut).collect();
-        let fallen = fall_asleep(&mut self.bodies, &motions, &handled, self.settings.tick);
+        let fallen = fall_asleep(&mut self.bodies, &motions, &handled, self.config.tick);
         let events = fallen.iter().map(|&(body, piece)| Event::FellAsleep {
             body: self.bodies.id(body),
             piece,
         });
         self.events.extend(events);
         let handled = self.contacts.handled(&self.rigids);
-        fall_asleep_rigid(&mut self.rigids, &handled, self.settings.tick);
+        fall_asleep_rigid(&mut self.rigids, &handled, self.config.tick);
     }
 
     /// Wakes the dynamic rigid bodies that were hit.

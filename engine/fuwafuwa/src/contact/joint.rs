@@ -5,255 +5,150 @@
 //! are integrated implicitly and are stable at any stiffness.
 
 mod attached_anchor;
-mod joint_anchor;
+mod joint_end;
+mod joint_ref;
 mod joint_solver;
+mod joint_state;
 
-use crate::error::{Error, require};
-use crate::foundation::arena::{Arena, JointHandle};
+use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
+use crate::world::BodyHandle;
+pub(crate) use joint_end::JointEnd;
+pub use joint_ref::JointRef;
+pub(crate) use joint_state::{JointState, Joints, relax, solve};
 
-use crate::rigid_body::shape::{Vector, flat};
-use crate::rigid_body::{FARTHEST, RigidBodies, is_within_reach};
-use crate::soft_body::SoftBodies;
-use attached_anchor::AttachedAnchor;
-pub(crate) use joint_anchor::Woken;
-pub use joint_anchor::{JointAnchor, JointKind};
-
-/// Solver iterations over all joints per substep. Chains need more than one, because their links depend on
-/// each other.
-const ROUNDS: usize = 4;
-
-/// Joints of a world.
-pub type Joints = Arena<JointHandle, Joint>;
-
-/// Joint between two anchors.
+/// Joint between two anchors, to add with [`World::add_joint`](crate::World::add_joint).
 ///
 /// ```
-/// use fuwafuwa::{JointAnchor, Joint};
-/// use fuwafuwa::{SoftBody, Dim2, Material, WorldConfig, VoxelGrid, World};
+/// use fuwafuwa::{Dim2, Joint, JointAnchor, Material, SoftBody, Vec2, VoxelGrid, World, WorldConfig};
 ///
 /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
 /// let ball = SoftBody::new(VoxelGrid::ball(12, 1.0)?, &[Material::default()])?;
 /// let ball = world.add_soft_body(ball);
-/// let top = [0.5, 1.0, 0.0];
-/// let end = JointAnchor::Soft { body: ball, at: top, radius: 0.2 };
-/// let nail = world.add_joint(Joint::pin(end, JointAnchor::Position(top)))?;
+/// let top = Vec2::new(0.5, 1.0);
+/// let anchor = JointAnchor::on(ball, top).within(0.2);
+/// let nail = world.add_joint(Joint::pin(anchor, JointAnchor::Point(top)))?;
 /// for _ in 0..60 {
 ///     world.step();
 /// }
-/// assert!(world.soft_bodies()[ball].centre_of_mass()[1] > 0.2);
+/// assert!(world[ball].centre_of_mass().y > 0.2);
 /// world.remove(nail)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Joint {
-    /// Attachment points of both anchors.
-    pub ends: [JointAnchor; 2],
-    /// Joint kind.
-    pub tie: JointKind,
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Joint<D: Dim> {
+    /// Attachment points.
+    pub anchors: [JointAnchor<D>; 2],
+    /// Kind.
+    pub kind: JointKind,
     /// Force above which the joint breaks [N], in tension or compression; infinite (default) = never.
     pub breaking_force: f32,
-    anchors: [AttachedAnchor; 2],
-    /// Impulse on the first anchor in the last substep [N s].
-    impulse: Vector,
-    /// Magnitude of the joint force in the last substep [N].
-    force: f32,
 }
 
-hash_state! { struct Joint { ends, tie, breaking_force, anchors, impulse, force } }
-
-impl Joint {
+impl<D: Dim> Joint<D> {
     /// Returns a joint of any kind that never breaks.
-    pub fn new(ends: [JointAnchor; 2], tie: JointKind) -> Self {
+    pub fn new(anchors: [JointAnchor<D>; 2], kind: JointKind) -> Self {
+        let breaking_force = f32::INFINITY;
         Self {
-            ends,
-            tie,
-            breaking_force: f32::INFINITY,
-            anchors: [
-                AttachedAnchor::Position(Vector::ZERO),
-                AttachedAnchor::Position(Vector::ZERO),
-            ],
-            impulse: Vector::ZERO,
-            force: 0.0,
+            anchors,
+            kind,
+            breaking_force,
         }
     }
 
     /// Returns a pin, which keeps its anchors together.
-    pub fn pin(first: JointAnchor, second: JointAnchor) -> Self {
+    pub fn pin(first: JointAnchor<D>, second: JointAnchor<D>) -> Self {
         Self::new([first, second], JointKind::Pin)
+    }
+
+    /// Returns a rope of a maximum length [m].
+    pub fn rope(first: JointAnchor<D>, second: JointAnchor<D>, length: f32) -> Self {
+        Self::new([first, second], JointKind::Rope { length })
     }
 
     /// Returns the joint with a breaking force [N].
     #[must_use]
-    pub fn with_breaking_force(self, force: f32) -> Self {
+    pub fn with_breaking_force(self, breaking_force: f32) -> Self {
         Self {
-            breaking_force: force,
+            breaking_force,
             ..self
         }
     }
+}
 
-    /// Returns the magnitude of the joint force in the last substep [N].
-    pub fn force(&self) -> f32 {
-        self.force
-    }
+/// Attachment point of a joint. Positions are world-space positions at the time when the joint is added.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum JointAnchor<D: Dim> {
+    /// Point of the world [m].
+    Point(D::Vector),
+    /// Point of a rigid body, on its surface or elsewhere.
+    RigidBody {
+        /// Handle of the rigid body.
+        body: RigidBodyHandle,
+        /// Position [m].
+        point: D::Vector,
+    },
+    /// Mean of some nodes of a soft body.
+    SoftBody {
+        /// Handle of the soft body.
+        body: SoftBodyHandle,
+        /// Position [m].
+        point: D::Vector,
+        /// Radius within which nodes are attached [m], or the nearest node if it contains none. With more
+        /// nodes a pull tears off less.
+        radius: f32,
+    },
+}
 
-    /// Attaches the anchors to their bodies at the present positions.
-    pub(crate) fn hold<D: Dim>(
-        &mut self,
-        bodies: &SoftBodies<D>,
-        rigids: &RigidBodies,
-    ) -> Result<(), Error> {
-        for (anchor, end) in self.anchors.iter_mut().zip(&self.ends) {
-            *anchor = AttachedAnchor::of(end, bodies, rigids)?;
-        }
-        if self.tie == JointKind::Pin {
-            self.meet_soft_ends(bodies, rigids);
-        }
-        (self.impulse, self.force) = (Vector::ZERO, 0.0);
-        Ok(())
-    }
-
-    /// For a pin between a soft anchor and another one, moves the other to the soft anchor, so that nothing
-    /// jumps at the first step.
-    fn meet_soft_ends<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
-        let is_soft = self.anchors.each_ref().map(AttachedAnchor::is_soft);
-        for (own, other) in [(0, 1), (1, 0)] {
-            if is_soft[own] && !is_soft[other] {
-                let at = self.anchors[own].grip(bodies, rigids).map(|grip| grip.at);
-                at.into_iter()
-                    .for_each(|at| self.anchors[other].stand_at(at, rigids));
-            }
-        }
-    }
-
-    /// Returns the positions of both anchors [m]; `None` if an attached body is gone.
-    pub(crate) fn places<D: Dim>(
-        &self,
-        bodies: &SoftBodies<D>,
-        rigids: &RigidBodies,
-    ) -> Option<[Vector; 2]> {
-        let [first, second] = &self.anchors;
-        let at = |anchor: &AttachedAnchor| Some(anchor.grip(bodies, rigids)?.at);
-        Some([at(first)?, at(second)?])
-    }
-
-    /// Checks that all parameters are in range.
-    pub(crate) fn check(&self) -> Result<(), Error> {
-        for (number, end) in (1..).zip(&self.ends) {
-            let (at, radius) = match *end {
-                JointAnchor::Position(at) | JointAnchor::RigidBody { at, .. } => (at, 0.0),
-                JointAnchor::Soft { at, radius, .. } => (at, radius),
-            };
-            let is_near = is_within_reach(at);
-            let of_anchor = |error: Error| error.of(format_args!("joint anchor {number}"));
-            let expected = "within 1e6 m of the origin";
-            require(is_near, "at", expected, at).map_err(of_anchor)?;
-            let is_valid = (0.0..=FARTHEST).contains(&radius);
-            require(is_valid, "radius", "0 to 1e6 m", radius).map_err(of_anchor)?;
-        }
-        let wrong = match self.ends {
-            [JointAnchor::Position(_), JointAnchor::Position(_)] => Some("two points of the world"),
-            [
-                JointAnchor::RigidBody { rigid, .. },
-                JointAnchor::RigidBody { rigid: other, .. },
-            ] if rigid == other => Some("twice the same rigid body"),
-            _ => None,
-        };
-        if let Some(given) = wrong {
-            let expected = "on two different objects, at least one of them a body";
-            return Err(Error::parameter(
-                "joint anchors",
-                expected,
-                format_args!("{given}"),
-            ));
-        }
-        let force = self.breaking_force;
-        require(force > 0.0, "breaking_force", "positive", force)?;
-        let is_within = |k: f32, least: f32| (least..=f32::MAX).contains(&k);
-        match self.tie {
-            JointKind::Pin => Ok(()),
-            JointKind::Rope { length } => require(
-                is_within(length, f32::MIN_POSITIVE),
-                "length",
-                "positive and finite",
-                length,
-            ),
-            JointKind::Spring {
-                stiffness,
-                damping,
-                length,
-            } => {
-                let is_stiff = is_within(stiffness, f32::MIN_POSITIVE);
-                let expected = "positive and finite";
-                require(is_stiff, "stiffness", expected, stiffness)?;
-                let expected = "0 or more, and finite";
-                require(is_within(damping, 0.0), "damping", expected, damping)?;
-                require(is_within(length, 0.0), "length", expected, length)
-            }
+impl<D: Dim> JointAnchor<D> {
+    /// Returns an anchor at a point [m] of a rigid body, or at the nearest node of a soft body.
+    pub fn on(body: impl Into<BodyHandle>, point: D::Vector) -> Self {
+        match body.into() {
+            BodyHandle::Rigid(body) => Self::RigidBody { body, point },
+            BodyHandle::Soft(body) => Self::SoftBody {
+                body,
+                point,
+                radius: 0.0,
+            },
         }
     }
 
-    /// Returns whether a joint that was read from a file is valid.
-    #[cfg(feature = "serde")]
-    pub(crate) fn is_sound<D: Dim>(&self) -> bool {
-        let is_finite = self.impulse.is_finite() && self.force >= 0.0;
-        let is_flat = self.impulse.to_array()[D::N..].iter().all(|k| *k == 0.0);
-        let mut both = self.anchors.iter().zip(&self.ends);
-        self.check().is_ok()
-            && is_finite
-            && is_flat
-            && both.all(|(own, end)| own.is_sound::<D>(end))
+    /// Returns the anchor with all nodes of its soft body within a radius [m]; other anchors stay as they are.
+    #[must_use]
+    pub fn within(self, radius: f32) -> Self {
+        match self {
+            Self::SoftBody { body, point, .. } => Self::SoftBody {
+                body,
+                point,
+                radius,
+            },
+            other => other,
+        }
     }
 }
 
-/// Applies the joint impulses of a substep of `duration` [s]. Returns the joints that lost an anchor, and the
-/// sleepers to wake.
-pub(crate) fn solve<D: Dim>(
-    joints: &mut Joints,
-    bodies: &mut SoftBodies<D>,
-    rigids: &mut RigidBodies,
-    duration: f32,
-) -> (Vec<JointHandle>, Woken) {
-    let (mut broken, mut woken) = (Vec::new(), Woken::default());
-    for (id, joint) in joints.entries_mut() {
-        match joint.start(bodies, rigids, &mut woken) {
-            true => {}
-            false => broken.push(id),
-        }
-    }
-    for _ in 0..ROUNDS {
-        for joint in joints.iter_mut() {
-            joint.solve(bodies, rigids, duration, true);
-        }
-    }
-    (broken, woken)
+/// Kind of a joint.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum JointKind {
+    /// Pin: keeps the anchors together and lets them rotate. A soft anchor that is pinned to a rigid body or
+    /// a point is held where it is; other anchors that are apart are drawn together.
+    Pin,
+    /// Spring with a rest length.
+    Spring {
+        /// Stiffness [N/m], positive.
+        stiffness: f32,
+        /// Damping [N s/m], 0 or more.
+        damping: f32,
+        /// Rest length [m], 0 or more.
+        length: f32,
+    },
+    /// Rope: limits the distance of the anchors.
+    Rope {
+        /// Maximum distance [m], positive.
+        length: f32,
+    },
 }
 
-/// Removes, after the position update, the velocity that was added to correct pins and ropes. Returns the
-/// joints that exceeded their breaking force.
-pub(crate) fn relax<D: Dim>(
-    joints: &mut Joints,
-    bodies: &mut SoftBodies<D>,
-    rigids: &mut RigidBodies,
-    duration: f32,
-) -> Vec<JointHandle> {
-    let mut broken = Vec::new();
-    for _ in 0..ROUNDS {
-        for joint in joints.iter_mut() {
-            joint.solve(bodies, rigids, duration, false);
-        }
-    }
-    for (id, joint) in joints.entries_mut() {
-        if !joint.yields(bodies, rigids) {
-            // Nothing attached can move, so the joint keeps its last force.
-            continue;
-        }
-        joint.force = flat::<D>(joint.impulse).length() / duration;
-        if joint.force > joint.breaking_force {
-            broken.push(id);
-        }
-    }
-    broken
-}
+hash_state! { enum JointKind { Pin, Spring { stiffness, damping, length }, Rope { length } } }

@@ -374,7 +374,7 @@ impl Contacts {
         for row in &self.nodes {
             if let Some((mover, lever)) = row.mover {
                 let impulse = row.contact.start().xyz() * (-1.0 / duration);
-                rigids.at_mut(mover).twist(lever.cross(impulse));
+                rigids.at_mut(mover).add_torque(lever.cross(impulse));
             }
         }
     }

@@ -1,11 +1,15 @@
 //! Everything that differs between two and three dimensions.
 //!
-//! Lattice arithmetic is the same in both: a [`Point`] always has three coordinates, and the third one is 0
-//! in 2D. A dimension adds the number of axes ([`Dim::N`]) and the constants that follow from it.
+//! Inside the engine, arithmetic is the same in both: a [`Point`] of the lattice and a [`Vec3`] always have
+//! three coordinates, and the third one is 0 in 2D. A dimension adds the number of axes ([`Dim::N`]), the
+//! constants that follow from it, and the vectors of the public interface ([`Dim::Vector`]).
 
+use crate::foundation::hash::HashState;
 use crate::math::row::Row;
-use crate::math::vector::Vector;
+use glam::{Vec2, Vec3};
 use std::fmt::Debug;
+use std::iter::Sum;
+use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// Lattice point, voxel or cell, in lattice units. In 2D the third coordinate is 0.
 pub type Point = [i32; 3];
@@ -14,6 +18,10 @@ pub type Point = [i32; 3];
 pub trait Dim:
     sealed::Sealed + Copy + Clone + Debug + Default + PartialEq + Eq + Send + Sync + 'static
 {
+    /// Position, direction, velocity or force: [`Vec2`] in 2D, [`Vec3`] in 3D.
+    type Vector: DimVector;
+    /// Angular velocity or torque: [`f32`] in 2D (positive is counterclockwise), [`Vec3`] in 3D.
+    type Angular: DimAngular;
     /// Number of axes: 2 or 3.
     const N: usize;
     /// Number of corners of a cell, children of a cell, and voxels around a lattice point: 2^N.
@@ -48,14 +56,170 @@ mod sealed {
     pub trait Sealed {}
     impl Sealed for super::Dim2 {}
     impl Sealed for super::Dim3 {}
+    impl Sealed for glam::Vec2 {}
+    impl Sealed for glam::Vec3 {}
+    impl Sealed for f32 {}
+
+    /// With the feature `serde`, values that can be stored; otherwise any.
+    #[cfg(feature = "serde")]
+    pub trait Stored: serde::Serialize + serde::de::DeserializeOwned {}
+    #[cfg(feature = "serde")]
+    impl<T: serde::Serialize + serde::de::DeserializeOwned> Stored for T {}
+    #[cfg(not(feature = "serde"))]
+    pub trait Stored {}
+    #[cfg(not(feature = "serde"))]
+    impl<T> Stored for T {}
+}
+
+/// Vector of a dimension, for code that works in 2D and in 3D: [`Vec2`] or [`Vec3`].
+pub trait DimVector:
+    sealed::Sealed
+    + sealed::Stored
+    + HashState
+    + Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<f32, Output = Self>
+    + Div<f32, Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign<f32>
+    + Index<usize, Output = f32>
+    + IndexMut<usize>
+    + Sum
+{
+    /// Zero vector.
+    const ZERO: Self;
+    /// Unit vector of the first axis.
+    const X: Self;
+    /// Unit vector of the second axis, by default upwards.
+    const Y: Self;
+
+    /// Returns the vector with three coordinates; in 2D the third one is 0.
+    fn to_vec3(self) -> Vec3;
+
+    /// Returns the vector with the coordinates of the dimension; in 2D the third one is dropped.
+    fn from_vec3(vector: Vec3) -> Self;
+
+    /// Returns a vector with all coordinates equal.
+    fn splat(number: f32) -> Self;
+
+    /// Dot product.
+    fn dot(self, other: Self) -> f32;
+
+    /// Length.
+    fn length(self) -> f32;
+
+    /// Returns whether all coordinates are finite.
+    fn is_finite(self) -> bool;
+}
+
+/// Implements [`DimVector`] by the methods of the vector itself.
+macro_rules! dim_vector {
+    ($vector:ident, $to:expr, $from:expr) => {
+        impl DimVector for $vector {
+            const ZERO: Self = Self::ZERO;
+            const X: Self = Self::X;
+            const Y: Self = Self::Y;
+
+            #[inline(always)]
+            fn to_vec3(self) -> Vec3 {
+                $to(self)
+            }
+
+            #[inline(always)]
+            fn from_vec3(vector: Vec3) -> Self {
+                $from(vector)
+            }
+
+            #[inline(always)]
+            fn splat(number: f32) -> Self {
+                Self::splat(number)
+            }
+
+            #[inline(always)]
+            fn dot(self, other: Self) -> f32 {
+                $vector::dot(self, other)
+            }
+
+            #[inline(always)]
+            fn length(self) -> f32 {
+                $vector::length(self)
+            }
+
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                $vector::is_finite(self)
+            }
+        }
+    };
+}
+
+dim_vector!(Vec2, |vector: Vec2| vector.extend(0.0), |vector: Vec3| {
+    vector.truncate()
+});
+dim_vector!(Vec3, |vector: Vec3| vector, |vector: Vec3| vector);
+
+/// Angular velocity or torque of a dimension: [`f32`] or [`Vec3`].
+pub trait DimAngular:
+    sealed::Sealed
+    + sealed::Stored
+    + Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<f32, Output = Self>
+    + Neg<Output = Self>
+{
+    /// Returns the components about all three axes; in 2D only the third one is not 0.
+    fn to_vec3(self) -> Vec3;
+
+    /// Returns the components of the dimension; in 2D the third one.
+    fn from_vec3(vector: Vec3) -> Self;
+}
+
+impl DimAngular for f32 {
+    fn to_vec3(self) -> Vec3 {
+        Vec3::new(0.0, 0.0, self)
+    }
+
+    fn from_vec3(vector: Vec3) -> Self {
+        vector.z
+    }
+}
+
+impl DimAngular for Vec3 {
+    fn to_vec3(self) -> Vec3 {
+        self
+    }
+
+    fn from_vec3(vector: Vec3) -> Self {
+        vector
+    }
 }
 
 impl Dim for Dim2 {
+    type Vector = Vec2;
+    type Angular = f32;
     const N: usize = 2;
     const HOURGLASS: f64 = 1.0 / 3.0;
 }
 
 impl Dim for Dim3 {
+    type Vector = Vec3;
+    type Angular = Vec3;
     const N: usize = 3;
     const HOURGLASS: f64 = 1.0 / 6.0;
 }
@@ -102,7 +266,7 @@ pub(crate) fn inner<D: Dim>(a: Row, b: Row) -> f32 {
 }
 
 /// Keeps the components of a rotation that the dimension allows: in 2D only the third.
-pub(crate) fn turning<D: Dim>(mut about: Vector) -> Vector {
+pub(crate) fn turning<D: Dim>(mut about: Vec3) -> Vec3 {
     if D::N == 2 {
         (about.x, about.y) = (0.0, 0.0);
     }

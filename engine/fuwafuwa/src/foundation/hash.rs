@@ -1,7 +1,7 @@
 //! Hashes and checksums, and the hash of the simulation state.
 
 use crate::math::row::Row;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::collections::BTreeMap;
 
 /// Incremental hash [FNV-1a]. Accepts bytes, for which FNV-1a is defined, or 64-bit words, which is faster
@@ -59,11 +59,11 @@ macro_rules! hash_state {
         }
     };
     (
-        enum $type:ty {
+        $([$($generics:tt)*])? enum $type:ty {
             $($variant:ident $({ $($field:ident),* $(,)? })? $(( $($item:ident),* ))?),* $(,)?
         }
     ) => {
-        impl $crate::foundation::hash::HashState for $type {
+        impl $(<$($generics)*>)? $crate::foundation::hash::HashState for $type {
             fn hash_state(&self, hash: &mut $crate::foundation::hash::Hash) {
                 match self {
                     $(Self::$variant $({ $($field),* })? $(( $($item),* ))? => {
@@ -140,6 +140,14 @@ impl<T: HashState, const K: usize> HashState for [T; K] {
     #[inline]
     fn hash_state(&self, hash: &mut Hash) {
         self.iter().for_each(|item| item.hash_state(hash));
+    }
+}
+
+/// Hashed like a [`Vec3`] whose third coordinate is 0.
+impl HashState for Vec2 {
+    #[inline]
+    fn hash_state(&self, hash: &mut Hash) {
+        self.extend(0.0).hash_state(hash);
     }
 }
 

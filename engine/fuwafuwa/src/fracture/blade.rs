@@ -3,45 +3,60 @@
 //! A blade separates two neighbouring voxels if the line between their present centres crosses the blade. The
 //! shared nodes are then released, as they are when a body tears.
 
-use crate::foundation::dim::{Dim, Point, voxel_around};
+use crate::foundation::dim::{Dim, Dim2, Dim3, DimVector, Point, voxel_around};
 use crate::foundation::ids::PieceId;
-use crate::rigid_body::shape::Vector;
 use crate::soft_body::SoftBody;
 use crate::topology::cell_hierarchy::Grading;
 use crate::topology::changes::Changes;
 use crate::topology::connectivity::faces_around;
+use glam::{Vec2, Vec3};
 use std::collections::BTreeSet;
+use std::marker::PhantomData;
 
-/// Cutting segment or parallelogram: all points `from` + a `across` + b `along` with a and b between 0 and 1.
+/// Cutting segment in 2D, or cutting parallelogram in 3D.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Blade {
-    /// Corner [m].
-    pub from: Vector,
-    /// First edge [m].
-    pub across: Vector,
-    /// Second edge [m].
-    pub along: Vector,
+pub struct Blade<D: Dim> {
+    /// Corner [m], and both edges [m]. All points `corner` + a `across` + b `along` cut, with a and b between 0 and 1.
+    corner: Vec3,
+    across: Vec3,
+    along: Vec3,
+    dim: PhantomData<D>,
 }
 
-impl Blade {
-    /// Creates a blade that cuts from one point of the plane to another [m].
-    pub fn segment(from: [f32; 2], to: [f32; 2]) -> Self {
+impl Blade<Dim2> {
+    /// Returns a blade that cuts from one point [m] to another.
+    pub fn segment(from: Vec2, to: Vec2) -> Self {
         Self {
-            from: Vector::new(from[0], from[1], -0.5),
-            across: Vector::new(to[0] - from[0], to[1] - from[1], 0.0),
-            along: Vector::Z,
+            corner: from.extend(-0.5),
+            across: (to - from).extend(0.0),
+            along: Vec3::Z,
+            dim: PhantomData,
         }
     }
+}
 
+impl Blade<Dim3> {
+    /// Returns a blade with a corner [m] and the edges [m] that begin there.
+    pub fn parallelogram(corner: Vec3, first: Vec3, second: Vec3) -> Self {
+        Self {
+            corner,
+            across: first,
+            along: second,
+            dim: PhantomData,
+        }
+    }
+}
+
+impl<D: Dim> Blade<D> {
     /// Whether the line between two points crosses the blade.
-    fn parts(&self, a: Vector, b: Vector) -> bool {
+    fn parts(&self, a: Vec3, b: Vec3) -> bool {
         let normal = self.across.cross(self.along);
-        let (over, under) = (normal.dot(a - self.from), normal.dot(b - self.from));
+        let (over, under) = (normal.dot(a - self.corner), normal.dot(b - self.corner));
         if (over > 0.0) == (under > 0.0) {
             return false;
         }
         let meeting = a + (b - a) * (over / (over - under));
-        let reach = meeting - self.from;
+        let reach = meeting - self.corner;
         let squared = normal.dot(normal);
         let first = reach.cross(self.along).dot(normal);
         let second = self.across.cross(reach).dot(normal);
@@ -51,9 +66,9 @@ impl Blade {
 
 /// Result of a cut.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct CutReport {
-    /// Positions at which shared nodes were released [m].
-    pub released: Vec<Vector>,
+pub struct CutReport<D: Dim> {
+    /// Positions of the nodes that were split [m].
+    pub split_nodes: Vec<D::Vector>,
     /// Numbers of the detached pieces.
     pub detached: Vec<PieceId>,
 }
@@ -61,20 +76,20 @@ pub struct CutReport {
 impl<D: Dim> SoftBody<D> {
     /// Cuts along a blade.
     #[inline(never)]
-    pub fn cut(&mut self, blade: &Blade) -> CutReport {
+    pub fn cut(&mut self, blade: &Blade<D>) -> CutReport<D> {
         if self.topology.pyramid.grading() == Grading::Coarse {
             return CutReport::default();
         }
         let (released, changes) = self.open(&self.faces_across(blade));
         CutReport {
-            released,
+            split_nodes: released.into_iter().map(D::Vector::from_vec3).collect(),
             detached: changes.detached,
         }
     }
 
     /// Opens faces, each given by the voxel before it and its axis. Returns the positions at which nodes were
     /// released [m], and the changes.
-    pub(crate) fn open(&mut self, opened: &BTreeSet<(Point, usize)>) -> (Vec<Vector>, Changes) {
+    pub(crate) fn open(&mut self, opened: &BTreeSet<(Point, usize)>) -> (Vec<Vec3>, Changes) {
         let mut points: BTreeSet<Point> = BTreeSet::new();
         for &(voxel, axis) in opened {
             for corner in 0..D::CORNERS / 2 {
@@ -104,7 +119,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Faces that a blade crosses, each given by the voxel before it and its axis.
-    fn faces_across(&self, blade: &Blade) -> BTreeSet<(Point, usize)> {
+    fn faces_across(&self, blade: &Blade<D>) -> BTreeSet<(Point, usize)> {
         let mut middles = vec![None; self.topology.grid.voxels().count()];
         for (_, element) in self.topology.mesh.elements() {
             let carry = self.affine_map(element);
@@ -135,7 +150,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Present position of a lattice point [m], interpolated in one of the elements around it.
-    fn position_of(&self, at: Point) -> Option<Vector> {
+    fn position_of(&self, at: Point) -> Option<Vec3> {
         let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
         let owner = { voxels }.find_map(|voxel| self.topology.mesh.owner(voxel))?;
         Some(self.affine_map(self.topology.mesh.element(owner)?)(

@@ -17,11 +17,11 @@ use crate::foundation::ids::NodeId;
 use crate::foundation::threads;
 use crate::fracture::breakable_nodes::{BreakableNode, NodeCut};
 use crate::math::lanes::on_widest_lanes;
-use crate::math::vector::Vector;
 use crate::soft_body::SoftBody;
 use crate::soft_body::cooldowns::is_near;
 use crate::soft_body::element_forces::Row;
 use fearless_simd::Simd;
+use glam::Vec3;
 
 /// Node that fails.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -143,7 +143,7 @@ fn worst_cut<D: Dim>(body: &SoftBody<D>, id: NodeId, node: &BreakableNode) -> Op
     }
     let total = forces.into_iter().sum::<Row>();
     // Common rotation of its voxels, computed on demand.
-    let mut turn: Option<[Vector; 3]> = None;
+    let mut turn: Option<[Vec3; 3]> = None;
     let mut worst: Option<(f32, f32, NodeCut)> = None;
     for cut in body.cache.breakable.cuts(node) {
         let far = octants(cut.side).map(|octant| forces[octant]).sum::<Row>();
@@ -159,7 +159,7 @@ fn worst_cut<D: Dim>(body: &SoftBody<D>, id: NodeId, node: &BreakableNode) -> Op
         }
         let turn = turn.get_or_insert_with(|| total_turn(body, id));
         let axis = cut.axis as usize;
-        let direction = Row::from(Vector::new(turn[0][axis], turn[1][axis], turn[2][axis]));
+        let direction = Row::from(Vec3::new(turn[0][axis], turn[1][axis], turn[2][axis]));
         let normal = direction * (1.0 / direction.length().max(1e-12));
         if far.dot(normal) <= 0.0 || near.dot(normal) >= 0.0 {
             continue;
@@ -190,8 +190,8 @@ fn octants(mask: u8) -> impl Iterator<Item = usize> {
 }
 
 /// Returns the sum of the rotations of all elements around a node.
-fn total_turn<D: Dim>(body: &SoftBody<D>, id: NodeId) -> [Vector; 3] {
-    let mut turn = [Vector::ZERO; 3];
+fn total_turn<D: Dim>(body: &SoftBody<D>, id: NodeId) -> [Vec3; 3] {
+    let mut turn = [Vec3::ZERO; 3];
     for owner in body.topology.mesh.carrier_ids(id) {
         let rotation = body.state.blocks.rotation(owner);
         for row in 0..3 {

@@ -4,7 +4,6 @@ use crate::foundation::dim::{Dim, Point, voxel_around};
 use crate::foundation::disjoint_sets::DisjointSets;
 use crate::foundation::id_lists::ascending;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
-use crate::math::vector::Vector;
 use crate::soft_body::SoftBody;
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::momentum::{Momentum, RigidMotion, centre_of};
@@ -12,6 +11,7 @@ use crate::topology::cell_hierarchy::Grading;
 use crate::topology::changes::Changes;
 use crate::topology::mesh::{Inheritance, Remodelled};
 use glam::DVec3;
+use glam::Vec3;
 
 impl<D: Dim> SoftBody<D> {
     /// Releases shared nodes at lattice points, each between the octants of its mask and the rest, and
@@ -164,11 +164,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Plastic deformation of new elements, taken from the elements that filled their voxels before.
-    fn dents_of(
-        &self,
-        remodelled: &Remodelled,
-        new: &[ElementId],
-    ) -> Vec<(ElementId, [Vector; 3])> {
+    fn dents_of(&self, remodelled: &Remodelled, new: &[ElementId]) -> Vec<(ElementId, [Vec3; 3])> {
         let blocks = &self.state.blocks;
         if !blocks.has_plastic() {
             return Vec::new();

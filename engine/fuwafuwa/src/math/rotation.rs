@@ -1,9 +1,9 @@
 //! Rotations.
 
-use crate::foundation::dim::Dim;
+use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::hash::hash_state;
-use crate::math::vector::Vector;
 use glam::DVec3;
+use glam::Vec3;
 
 /// Rotation, stored as a unit quaternion. Identical on every machine, because it does not use the sine of the
 /// system library.
@@ -32,14 +32,13 @@ impl Rotation {
     /// tip. Returns [`Rotation::NONE`] if the axis has no length or a value is not finite.
     ///
     /// ```
-    /// use fuwafuwa::Rotation;
+    /// use fuwafuwa::{Rotation, Vec3};
     /// use std::f32::consts::FRAC_PI_2;
     ///
-    /// let quarter = Rotation::about([0.0, 0.0, 1.0], FRAC_PI_2);
-    /// let [x, y, z] = quarter.apply([1.0, 0.0, 0.0]);
-    /// assert!(x.abs() < 1e-6 && (y - 1.0).abs() < 1e-6 && z == 0.0);
+    /// let quarter = Rotation::about(Vec3::Z, FRAC_PI_2);
+    /// assert!(quarter.apply(Vec3::X).distance(Vec3::Y) < 1e-6);
     /// ```
-    pub fn about(axis: Vector, angle: f32) -> Self {
+    pub fn about(axis: Vec3, angle: f32) -> Self {
         let axis = axis.as_dvec3();
         let (sine, cosine) = libm::sincos(0.5 * f64::from(angle));
         let part = sine / axis.length();
@@ -49,7 +48,7 @@ impl Rotation {
 
     /// Creates a rotation in the plane by an angle [rad], counterclockwise.
     pub fn in_plane(angle: f32) -> Self {
-        Self::about(Vector::Z, angle)
+        Self::about(Vec3::Z, angle)
     }
 
     /// Creates a rotation from a quaternion x, y, z, w of any length. Returns [`Rotation::NONE`] if it has no
@@ -63,9 +62,10 @@ impl Rotation {
         self.quaternion.map(|part| part as f32)
     }
 
-    /// Rotates a vector.
-    pub fn apply(self, vector: Vector) -> Vector {
-        self.turn(vector.as_dvec3()).as_vec3()
+    /// Rotates a vector. In 2D only the rotation about the third axis counts.
+    pub fn apply<V: DimVector>(self, vector: V) -> V {
+        let turned = self.turn(vector.to_vec3().as_dvec3());
+        V::from_vec3(turned.as_vec3())
     }
 
     /// Returns the inverse rotation.
@@ -84,7 +84,7 @@ impl Rotation {
     }
 
     /// Axis times angle [rad], with an angle of at most π.
-    pub fn scaled_axis(self) -> Vector {
+    pub fn scaled_axis(self) -> Vec3 {
         let [x, y, z, w] = self.quaternion;
         let (axis, sign) = (DVec3::new(x, y, z), if w < 0.0 { -1.0 } else { 1.0 });
         let sine = axis.length();
@@ -94,8 +94,8 @@ impl Rotation {
     }
 
     /// Returns the three rotated axes.
-    pub fn axes(self) -> [Vector; 3] {
-        Vector::AXES.map(|axis| self.apply(axis))
+    pub fn axes(self) -> [Vec3; 3] {
+        Vec3::AXES.map(|axis| self.apply(axis))
     }
 
     /// Whether the quaternion has length 1; one read from a file may not.
@@ -104,7 +104,7 @@ impl Rotation {
     }
 
     /// Rotates a position [m] about a centre.
-    pub(crate) fn apply_about(self, place: Vector, centre: Vector) -> Vector {
+    pub(crate) fn apply_about(self, place: Vec3, centre: Vec3) -> Vec3 {
         let (place, centre) = (place.as_dvec3(), centre.as_dvec3());
         let turned = self.turn(place - centre);
         (centre + turned).as_vec3()
@@ -165,8 +165,8 @@ mod tests {
 
     #[test]
     fn rotations_compose_in_order() {
-        let first = Rotation::about(Vector::new(1.0, 2.0, -1.0), 0.7);
-        let second = Rotation::about(Vector::new(0.0, -3.0, 1.0), -2.0);
+        let first = Rotation::about(Vec3::new(1.0, 2.0, -1.0), 0.7);
+        let second = Rotation::about(Vec3::new(0.0, -3.0, 1.0), -2.0);
         let both = Rotation::from_quaternion(second.after(first.quaternion()));
         let vector = [0.3, -0.8, 2.0];
         let (one, two) = (
@@ -182,7 +182,7 @@ mod tests {
     #[test]
     fn scaled_axis_returns_axis_times_shortest_angle() {
         for angle in [0.0, 1e-7, 0.5, 3.0] {
-            let axis = Rotation::about(Vector::new(0.0, -2.0, 0.0), angle).scaled_axis();
+            let axis = Rotation::about(Vec3::new(0.0, -2.0, 0.0), angle).scaled_axis();
             assert!((axis[1] + angle).abs() < 1e-6 && axis[0] == 0.0, "{axis:?}");
         }
         let far = Rotation::in_plane(6.0).scaled_axis();
@@ -192,16 +192,16 @@ mod tests {
     #[test]
     fn invalid_rotations_become_identity() {
         let bad = [
-            Rotation::about(Vector::ZERO, 1.0),
-            Rotation::about(Vector::X, f32::NAN),
-            Rotation::about(Vector::new(f32::INFINITY, 0.0, 0.0), 1.0),
+            Rotation::about(Vec3::ZERO, 1.0),
+            Rotation::about(Vec3::X, f32::NAN),
+            Rotation::about(Vec3::new(f32::INFINITY, 0.0, 0.0), 1.0),
             Rotation::from_quaternion([0.0; 4]),
             Rotation::from_quaternion([f32::NAN, 0.0, 0.0, 1.0]),
-            Rotation::about(Vector::X, PI).seen_in::<Dim2>(),
+            Rotation::about(Vec3::X, PI).seen_in::<Dim2>(),
         ];
         for (index, rotation) in bad.into_iter().enumerate() {
-            let turned = rotation.apply(Vector::new(1.0, 2.0, 3.0));
-            assert_eq!(turned, Vector::new(1.0, 2.0, 3.0), "{index}");
+            let turned = rotation.apply(Vec3::new(1.0, 2.0, 3.0));
+            assert_eq!(turned, Vec3::new(1.0, 2.0, 3.0), "{index}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Vectors padded to four numbers.
 
-use crate::math::vector::Vector;
+use glam::Vec3;
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
 use std::slice::SliceIndex;
@@ -36,9 +36,9 @@ impl Row {
 
     /// Drops the fourth component.
     #[inline(always)]
-    pub const fn xyz(self) -> Vector {
+    pub const fn xyz(self) -> Vec3 {
         let [x, y, z, _] = self.0;
-        Vector::new(x, y, z)
+        Vec3::new(x, y, z)
     }
 
     /// Dot product over all four components.
@@ -62,9 +62,9 @@ impl Row {
 }
 
 /// Pads a vector with a fourth component 0.
-impl From<Vector> for Row {
+impl From<Vec3> for Row {
     #[inline(always)]
-    fn from(vector: Vector) -> Self {
+    fn from(vector: Vec3) -> Self {
         Self([vector.x, vector.y, vector.z, 0.0])
     }
 }

@@ -1,15 +1,16 @@
-//! Vectors in single precision.
+//! Helpers for vectors.
 
-/// Vector or position in space; the third coordinate is 0 in 2D.
-pub type Vector = glam::Vec3;
+use glam::Vec3;
 
-/// Returns two unit vectors that are perpendicular to the unit vector `way` and to each other.
-pub fn across(way: Vector) -> [Vector; 2] {
-    let least = (0..3).fold(0, |least, k| match way[k].abs() < way[least].abs() {
-        true => k,
-        false => least,
+/// Returns two unit vectors that are perpendicular to the unit vector `direction` and to each other.
+pub fn perpendiculars(direction: Vec3) -> [Vec3; 2] {
+    let least = (0..3).fold(0, |least, k| {
+        match direction[k].abs() < direction[least].abs() {
+            true => k,
+            false => least,
+        }
     });
-    let first = way.cross(Vector::AXES[least]);
+    let first = direction.cross(Vec3::AXES[least]);
     let first = first * (1.0 / first.length());
-    [first, way.cross(first)]
+    [first, direction.cross(first)]
 }

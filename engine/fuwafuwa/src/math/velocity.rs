@@ -1,51 +1,81 @@
 //! Velocities of bodies, and impulses.
 
-use crate::math::vector::Vector;
+use crate::foundation::dim::{Dim, Dim2, Dim3, DimAngular, DimVector};
+use crate::math::twist::Twist;
+use glam::{Vec2, Vec3};
 
 /// Linear and angular velocity of a body.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Velocity {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
+pub struct Velocity<D: Dim> {
     /// Linear velocity of the centre of mass [m/s].
-    pub linear: Vector,
-    /// Angular velocity about the centre of mass [rad/s]; in 2D only the third component counts.
-    pub angular: Vector,
+    pub linear: D::Vector,
+    /// Angular velocity about the centre of mass [rad/s]; in 2D positive is counterclockwise.
+    pub angular: D::Angular,
 }
 
-impl Velocity {
+impl<D: Dim> Velocity<D> {
     /// Returns a velocity without rotation [m/s].
-    pub fn linear(linear: Vector) -> Self {
-        let angular = Vector::ZERO;
-        Self { linear, angular }
+    pub fn linear(linear: D::Vector) -> Self {
+        Self {
+            linear,
+            ..Self::default()
+        }
     }
 
     /// Returns a rotation about the centre of mass [rad/s].
-    pub fn angular(angular: Vector) -> Self {
-        let linear = Vector::ZERO;
-        Self { linear, angular }
+    pub fn angular(angular: D::Angular) -> Self {
+        Self {
+            angular,
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn twist(self) -> Twist {
+        Twist {
+            linear: self.linear.to_vec3(),
+            angular: self.angular.to_vec3(),
+        }
     }
 }
 
-impl From<Vector> for Velocity {
-    fn from(linear: Vector) -> Self {
+impl<D: Dim> From<Twist> for Velocity<D> {
+    fn from(twist: Twist) -> Self {
+        Self {
+            linear: D::Vector::from_vec3(twist.linear),
+            angular: D::Angular::from_vec3(twist.angular),
+        }
+    }
+}
+
+impl From<Vec2> for Velocity<Dim2> {
+    fn from(linear: Vec2) -> Self {
+        Self::linear(linear)
+    }
+}
+
+impl From<Vec3> for Velocity<Dim3> {
+    fn from(linear: Vec3) -> Self {
         Self::linear(linear)
     }
 }
 
 /// Impulse at a point of a body.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Impulse {
+pub struct Impulse<D: Dim> {
     /// World-space point at which the impulse acts [m].
-    pub point: Vector,
+    pub point: D::Vector,
     /// Impulse [N s].
-    pub impulse: Vector,
+    pub impulse: D::Vector,
     /// Radius around the point [m], default 0. All nodes of a soft body within the radius gain the same velocity. If
     /// the radius contains no node, the nearest node receives the impulse. Rigid bodies ignore the radius.
     pub radius: f32,
 }
 
-impl Impulse {
+impl<D: Dim> Impulse<D> {
     /// Returns an impulse [N s] at a world-space point [m].
-    pub fn at(point: Vector, impulse: Vector) -> Self {
+    pub fn at(point: D::Vector, impulse: D::Vector) -> Self {
         let radius = 0.0;
         Self {
             point,

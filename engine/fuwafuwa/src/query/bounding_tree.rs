@@ -1,6 +1,7 @@
 //! Bounding-volume hierarchy for queries.
 
-use crate::rigid_body::shape::{Bounds, Vector};
+use crate::rigid_body::solid::Bounds;
+use glam::Vec3;
 use std::ops::Range;
 
 /// Maximum number of boxes in a leaf. Smaller leaves make queries faster and construction slower.
@@ -16,7 +17,7 @@ const ROUNDING: f32 = 1e-6;
 const WORN: f32 = 2.0;
 
 /// Box without content.
-const EMPTY: Bounds = [Vector::INFINITY, Vector::NEG_INFINITY];
+const EMPTY: Bounds = [Vec3::INFINITY, Vec3::NEG_INFINITY];
 
 /// Bounding-volume hierarchy over boxes, which are known by their index in a list.
 ///
@@ -182,7 +183,7 @@ pub fn around([a, b]: Bounds, [c, d]: Bounds) -> Bounds {
 }
 
 /// Returns the box around points, with a margin against rounding.
-pub fn around_all(points: impl IntoIterator<Item = Vector>) -> Bounds {
+pub fn around_all(points: impl IntoIterator<Item = Vec3>) -> Bounds {
     let points = points.into_iter();
     with_margin(points.fold(EMPTY, |bounds, at| around(bounds, [at, at])))
 }
@@ -195,7 +196,7 @@ pub fn with_margin([low, high]: Bounds) -> Bounds {
     let widths = high - low;
     let largest = low.abs().max(high.abs()).max_element();
     let little = LITTLE * widths.max_element().max(0.0) + ROUNDING * largest;
-    [low - Vector::splat(little), high + Vector::splat(little)]
+    [low - Vec3::splat(little), high + Vec3::splat(little)]
 }
 
 /// Returns whether two boxes overlap.
@@ -204,14 +205,14 @@ pub fn overlap([a, b]: &Bounds, [c, d]: &Bounds) -> bool {
 }
 
 /// Returns the distance of a point from a box [m]; 0 inside.
-pub fn distance_from([low, high]: &Bounds, at: Vector) -> f32 {
+pub fn distance_from([low, high]: &Bounds, at: Vec3) -> f32 {
     let beyond = |axis: usize| (low[axis] - at[axis]).max(at[axis] - high[axis]).max(0.0);
-    Vector::from([0, 1, 2].map(beyond)).length()
+    Vec3::from([0, 1, 2].map(beyond)).length()
 }
 
 /// Returns the distance along a ray to the entry into a box, in multiples of the direction; infinite if the
 /// ray misses the box.
-pub fn entry([low, high]: &Bounds, from: Vector, direction: Vector) -> f32 {
+pub fn entry([low, high]: &Bounds, from: Vec3, direction: Vec3) -> f32 {
     let (mut first, mut last) = (0.0f32, f32::INFINITY);
     for axis in 0..3 {
         if direction[axis] == 0.0 {
@@ -240,7 +241,7 @@ mod tests {
     }
 
     /// Returns the smallest distance from a goal, and the number of visited items.
-    fn nearest(tree: &Tree, boxes: &[Bounds], goal: Vector) -> (f32, usize) {
+    fn nearest(tree: &Tree, boxes: &[Bounds], goal: Vec3) -> (f32, usize) {
         let (mut best, mut visited) = (f32::INFINITY, 0);
         tree.search(
             f32::INFINITY,
@@ -298,12 +299,12 @@ mod tests {
 
     #[test]
     fn entry_returns_distance_or_infinity() {
-        let bounds = [Vector::new(1.0, -1.0, 0.0), Vector::new(2.0, 1.0, 0.0)];
-        assert_eq!(entry(&bounds, Vector::ZERO, Vector::X), 1.0);
-        assert_eq!(entry(&bounds, Vector::new(1.5, 0.0, 0.0), Vector::Y), 0.0);
-        assert_eq!(entry(&bounds, Vector::ZERO, Vector::NEG_X), f32::INFINITY);
+        let bounds = [Vec3::new(1.0, -1.0, 0.0), Vec3::new(2.0, 1.0, 0.0)];
+        assert_eq!(entry(&bounds, Vec3::ZERO, Vec3::X), 1.0);
+        assert_eq!(entry(&bounds, Vec3::new(1.5, 0.0, 0.0), Vec3::Y), 0.0);
+        assert_eq!(entry(&bounds, Vec3::ZERO, Vec3::NEG_X), f32::INFINITY);
         assert_eq!(
-            entry(&bounds, Vector::new(0.0, 2.0, 0.0), Vector::X),
+            entry(&bounds, Vec3::new(0.0, 2.0, 0.0), Vec3::X),
             f32::INFINITY
         );
     }

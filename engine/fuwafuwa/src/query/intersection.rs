@@ -2,7 +2,8 @@
 //! blocks.
 
 use crate::foundation::dim::{Dim, corner};
-use crate::rigid_body::shape::{Vector, flat};
+use crate::rigid_body::solid::flat;
+use glam::Vec3;
 
 /// Newton iterations to locate a point in a block. 6 are sufficient for blocks with corners displaced at
 /// random by up to 0.6 of their width; 12 leave a factor of 2.
@@ -12,8 +13,8 @@ const ROUNDS: usize = 12;
 const LITTLE: f32 = 1e-4;
 
 /// Returns the distance to the intersection of a ray with a segment in 2D, in multiples of the direction.
-pub fn ray_meets_segment(from: Vector, direction: Vector, [a, b]: [Vector; 2]) -> Option<f32> {
-    let flat = |a: Vector, b: Vector| a[0] * b[1] - a[1] * b[0];
+pub fn ray_meets_segment(from: Vec3, direction: Vec3, [a, b]: [Vec3; 2]) -> Option<f32> {
+    let flat = |a: Vec3, b: Vec3| a[0] * b[1] - a[1] * b[0];
     let (along, reach) = (b - a, a - from);
     let across = flat(direction, along);
     let (far, share) = (flat(reach, along) / across, flat(reach, direction) / across);
@@ -24,7 +25,7 @@ pub fn ray_meets_segment(from: Vector, direction: Vector, [a, b]: [Vector; 2]) -
 
 /// Returns the distance to the intersection of a ray with a triangle, in multiples of the direction [Möller
 /// 1997].
-pub fn ray_meets_triangle(from: Vector, direction: Vector, [a, b, c]: [Vector; 3]) -> Option<f32> {
+pub fn ray_meets_triangle(from: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f32> {
     let (one, two, reach) = (b - a, c - a, from - a);
     let across = direction.cross(two);
     let determinant = one.dot(across);
@@ -37,7 +38,7 @@ pub fn ray_meets_triangle(from: Vector, direction: Vector, [a, b, c]: [Vector; 3
 }
 
 /// Returns the nearest point on a segment.
-pub fn nearest_on_segment(at: Vector, [a, b]: [Vector; 2]) -> Vector {
+pub fn nearest_on_segment(at: Vec3, [a, b]: [Vec3; 2]) -> Vec3 {
     let along = b - a;
     let share = (at - a).dot(along) / along.dot(along).max(f32::MIN_POSITIVE);
     a + along * share.clamp(0.0, 1.0)
@@ -45,21 +46,21 @@ pub fn nearest_on_segment(at: Vector, [a, b]: [Vector; 2]) -> Vector {
 
 /// Returns the nearest point on a triangle: the projection if it is inside, otherwise the nearest point of an
 /// edge.
-pub fn nearest_on_triangle(at: Vector, [a, b, c]: [Vector; 3]) -> Vector {
+pub fn nearest_on_triangle(at: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let normal = (b - a).cross(c - a);
     let squared = normal.dot(normal);
-    let is_left = |from: Vector, to: Vector| (to - from).cross(at - from).dot(normal) >= 0.0;
+    let is_left = |from: Vec3, to: Vec3| (to - from).cross(at - from).dot(normal) >= 0.0;
     if squared > 0.0 && is_left(a, b) && is_left(b, c) && is_left(c, a) {
         let height = (at - a).dot(normal) / squared;
         return at - normal * height;
     }
     let edges = [[a, b], [b, c], [c, a]].map(|edge| nearest_on_segment(at, edge));
-    let squared = |place: &Vector| {
+    let squared = |place: &Vec3| {
         let apart = *place - at;
         apart.dot(apart)
     };
     let [first, others @ ..] = edges;
-    let nearer = |best: Vector, next: Vector| match squared(&next) < squared(&best) {
+    let nearer = |best: Vec3, next: Vec3| match squared(&next) < squared(&best) {
         true => next,
         false => best,
     };
@@ -68,10 +69,10 @@ pub fn nearest_on_triangle(at: Vector, [a, b, c]: [Vector; 3]) -> Vector {
 
 /// Returns whether a point is in a block, given by its corners in the order of [`corner`]: whether local
 /// coordinates from 0 to 1 map to the point.
-pub fn is_in_block<D: Dim>(at: Vector, corners: &[Vector]) -> bool {
+pub fn is_in_block<D: Dim>(at: Vec3, corners: &[Vec3]) -> bool {
     // Relative to the point, which may be far from the origin.
-    let corners: Vec<Vector> = corners.iter().map(|&corner| corner - at).collect();
-    let mut shares = flat::<D>(Vector::splat(0.5));
+    let corners: Vec<Vec3> = corners.iter().map(|&corner| corner - at).collect();
+    let mut shares = flat::<D>(Vec3::splat(0.5));
     for _ in 0..ROUNDS {
         let (place, slopes) = in_block::<D>(shares, &corners);
         let Some(step) = solved(slopes, -place) else {
@@ -92,10 +93,10 @@ pub fn is_in_block<D: Dim>(at: Vector, corners: &[Vector]) -> bool {
 }
 
 /// Returns the point at local coordinates of a block, and its derivatives by each of them.
-fn in_block<D: Dim>(shares: Vector, corners: &[Vector]) -> (Vector, [Vector; 3]) {
-    let mut place = Vector::ZERO;
-    let mut slopes = Vector::AXES;
-    slopes[..D::N].fill(Vector::ZERO);
+fn in_block<D: Dim>(shares: Vec3, corners: &[Vec3]) -> (Vec3, [Vec3; 3]) {
+    let mut place = Vec3::ZERO;
+    let mut slopes = Vec3::AXES;
+    slopes[..D::N].fill(Vec3::ZERO);
     for (index, &at) in corners.iter().enumerate() {
         let ends = corner(index);
         let weight = |axis: usize| match ends[axis] {
@@ -116,10 +117,10 @@ fn in_block<D: Dim>(shares: Vector, corners: &[Vector]) -> (Vector, [Vector; 3])
 }
 
 /// Returns the solution x of the 3×3 system with columns `a`, `b`, `c`, or `None` if it is singular.
-fn solved([a, b, c]: [Vector; 3], wanted: Vector) -> Option<Vector> {
+fn solved([a, b, c]: [Vec3; 3], wanted: Vec3) -> Option<Vec3> {
     let determinant = a.dot(b.cross(c));
     let parts = [b.cross(c), c.cross(a), a.cross(b)];
-    let found = Vector::from(parts.map(|part| wanted.dot(part))) / determinant;
+    let found = Vec3::from(parts.map(|part| wanted.dot(part))) / determinant;
     found.is_finite().then_some(found)
 }
 
@@ -128,39 +129,35 @@ mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
 
-    const TRIANGLE: [Vector; 3] = [
-        Vector::Z,
-        Vector::new(2.0, 0.0, 1.0),
-        Vector::new(0.0, 2.0, 1.0),
-    ];
+    const TRIANGLE: [Vec3; 3] = [Vec3::Z, Vec3::new(2.0, 0.0, 1.0), Vec3::new(0.0, 2.0, 1.0)];
 
     #[test]
     fn ray_hits_only_in_front_of_its_origin() {
-        let up = Vector::new(0.0, 0.0, 2.0);
+        let up = Vec3::new(0.0, 0.0, 2.0);
         assert_eq!(
-            ray_meets_triangle(Vector::new(0.5, 0.5, 0.0), up, TRIANGLE),
+            ray_meets_triangle(Vec3::new(0.5, 0.5, 0.0), up, TRIANGLE),
             Some(0.5)
         );
         assert_eq!(
-            ray_meets_triangle(Vector::new(0.5, 0.5, 2.0), up, TRIANGLE),
+            ray_meets_triangle(Vec3::new(0.5, 0.5, 2.0), up, TRIANGLE),
             None
         );
         assert_eq!(
-            ray_meets_triangle(Vector::new(1.5, 1.5, 0.0), up, TRIANGLE),
+            ray_meets_triangle(Vec3::new(1.5, 1.5, 0.0), up, TRIANGLE),
             None
         );
         assert_eq!(
-            ray_meets_triangle(Vector::new(0.5, 0.5, 0.0), Vector::X, TRIANGLE),
+            ray_meets_triangle(Vec3::new(0.5, 0.5, 0.0), Vec3::X, TRIANGLE),
             None
         );
-        let wall = [Vector::new(1.0, -1.0, 0.0), Vector::new(1.0, 1.0, 0.0)];
+        let wall = [Vec3::new(1.0, -1.0, 0.0), Vec3::new(1.0, 1.0, 0.0)];
         assert_eq!(
-            ray_meets_segment(Vector::ZERO, Vector::new(0.5, 0.0, 0.0), wall),
+            ray_meets_segment(Vec3::ZERO, Vec3::new(0.5, 0.0, 0.0), wall),
             Some(2.0)
         );
-        assert_eq!(ray_meets_segment(Vector::ZERO, Vector::Y, wall), None);
+        assert_eq!(ray_meets_segment(Vec3::ZERO, Vec3::Y, wall), None);
         assert_eq!(
-            ray_meets_segment(Vector::new(0.0, 3.0, 0.0), Vector::new(0.5, 0.0, 0.0), wall),
+            ray_meets_segment(Vec3::new(0.0, 3.0, 0.0), Vec3::new(0.5, 0.0, 0.0), wall),
             None
         );
     }
@@ -168,26 +165,26 @@ mod tests {
     #[test]
     fn nearest_point_on_triangle_is_inside_on_edge_or_at_corner() {
         let check = |at, expect| assert_eq!(nearest_on_triangle(at, TRIANGLE), expect);
-        check(Vector::new(0.5, 0.5, 3.0), Vector::new(0.5, 0.5, 1.0));
-        check(Vector::new(1.0, -4.0, 0.0), Vector::new(1.0, 0.0, 1.0));
-        check(Vector::new(2.0, 2.0, 1.0), Vector::new(1.0, 1.0, 1.0));
-        check(Vector::new(-1.0, -1.0, 0.0), Vector::Z);
+        check(Vec3::new(0.5, 0.5, 3.0), Vec3::new(0.5, 0.5, 1.0));
+        check(Vec3::new(1.0, -4.0, 0.0), Vec3::new(1.0, 0.0, 1.0));
+        check(Vec3::new(2.0, 2.0, 1.0), Vec3::new(1.0, 1.0, 1.0));
+        check(Vec3::new(-1.0, -1.0, 0.0), Vec3::Z);
     }
 
     #[test]
     fn is_in_block_is_exact_for_deformed_blocks() {
         let crooked = |at: [i32; 3]| {
             let [x, y, z] = at.map(|k| k as f32);
-            Vector::new(x + 0.2 * y, 1.5 * y - 0.1 * x * z, z + 0.3 * x * y)
+            Vec3::new(x + 0.2 * y, 1.5 * y - 0.1 * x * z, z + 0.3 * x * y)
         };
-        let corners: Vec<Vector> = (0..8).map(|index| crooked(corner(index))).collect();
-        let (inside, _) = in_block::<Dim3>(Vector::new(0.9, 0.1, 0.5), &corners);
-        let (outside, _) = in_block::<Dim3>(Vector::new(0.9, 1.1, 0.5), &corners);
+        let corners: Vec<Vec3> = (0..8).map(|index| crooked(corner(index))).collect();
+        let (inside, _) = in_block::<Dim3>(Vec3::new(0.9, 0.1, 0.5), &corners);
+        let (outside, _) = in_block::<Dim3>(Vec3::new(0.9, 1.1, 0.5), &corners);
         assert!(is_in_block::<Dim3>(inside, &corners));
         assert!(!is_in_block::<Dim3>(outside, &corners));
-        let flat: Vec<Vector> = corners[..4].iter().map(|at| at.with_z(0.0)).collect();
-        assert!(is_in_block::<Dim2>(Vector::new(0.6, 0.7, 0.0), &flat));
-        assert!(!is_in_block::<Dim2>(Vector::new(0.05, 0.9, 0.0), &flat));
-        assert!(!is_in_block::<Dim2>(Vector::splat(f32::NAN), &flat));
+        let flat: Vec<Vec3> = corners[..4].iter().map(|at| at.with_z(0.0)).collect();
+        assert!(is_in_block::<Dim2>(Vec3::new(0.6, 0.7, 0.0), &flat));
+        assert!(!is_in_block::<Dim2>(Vec3::new(0.05, 0.9, 0.0), &flat));
+        assert!(!is_in_block::<Dim2>(Vec3::splat(f32::NAN), &flat));
     }
 }

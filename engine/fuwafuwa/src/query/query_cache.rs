@@ -9,12 +9,13 @@ use super::bounding_tree::{Tree, around_all, with_margin};
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
-use crate::rigid_body::shape::{Bounds, Shape, Vector};
+use crate::rigid_body::solid::{Bounds, Solid};
 use crate::soft_body::SoftBody;
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::view::Facet;
 use crate::topology::changes::Bookmark;
 use crate::world::World;
+use glam::Vec3;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -82,7 +83,7 @@ pub struct FilledCell {
     /// Number of the child in the cell of the element.
     child: u8,
     /// Corners [m], in the order of [`corner`](crate::foundation::dim::corner); only the first four in 2D.
-    pub corners: [Vector; 8],
+    pub corners: [Vec3; 8],
 }
 
 /// List of items and a tree over their boxes.
@@ -95,10 +96,7 @@ pub struct ListTree<T> {
 impl QueryCache {
     /// Returns the trees for the present state of `world`, the owner of the cache.
     pub fn trees<D: Dim>(&self, world: &World<D>) -> Arc<QueryTrees> {
-        let revisions = [
-            world.soft_bodies().revision(),
-            world.rigid_bodies().revision(),
-        ];
+        let revisions = [world.bodies.revision(), world.rigids.revision()];
         let mut shared = self.trees.lock().unwrap_or_else(PoisonError::into_inner);
         if shared.revisions != Some(revisions) {
             match Arc::get_mut(&mut shared) {
@@ -118,7 +116,7 @@ impl QueryTrees {
     fn update<D: Dim>(&mut self, world: &World<D>, revisions: [u64; 2]) {
         self.revisions = None;
         let mut known = std::mem::take(&mut self.bodies).into_iter().peekable();
-        for (id, body) in world.soft_bodies().entries() {
+        for (id, body) in world.bodies.entries() {
             while known.next_if(|trees| trees.body < id).is_some() {}
             let trees = match known.next_if(|trees| trees.body == id) {
                 Some(mut trees) => {
@@ -138,10 +136,10 @@ impl QueryTrees {
             boxes.push(trees.bounds);
             self.objects.push(TreeObject::Soft(boxes.len() as u32 - 1));
         }
-        for (id, rigid) in world.rigid_bodies().entries() {
+        for (id, rigid) in world.rigids.entries() {
             let index = self.objects.len() as u32;
             match rigid.shape() {
-                Shape::HalfSpace { .. } => self.unbounded.push(index),
+                Solid::HalfSpace { .. } => self.unbounded.push(index),
                 shape => {
                     self.bounded.push(index);
                     boxes.push(with_margin(shape.bounds()));
@@ -243,7 +241,7 @@ fn filled_cells<D: Dim>(body: &SoftBody<D>) -> Vec<FilledCell> {
     for view in body.element_views() {
         let count = if view.level == 0 { 1 } else { D::CORNERS };
         for child in (0..count).filter(|child| view.children >> child & 1 == 1) {
-            let mut corners = [Vector::ZERO; 8];
+            let mut corners = [Vec3::ZERO; 8];
             corners[..D::CORNERS].copy_from_slice(&view.child_corners::<D>(child));
             cells.push(FilledCell {
                 element: view.id,

@@ -3,7 +3,7 @@
 use crate::foundation::arena::SoftBodyHandle;
 use crate::foundation::dim::Dim;
 use crate::object_ref::{ObjectRef, ObjectSelector};
-use crate::rigid_body::RigidBody;
+use crate::rigid_body::RigidState;
 use crate::rigid_body::layers::Layers;
 use crate::soft_body::SoftBody;
 use std::fmt;
@@ -12,13 +12,13 @@ use std::fmt;
 /// any layer, except sensors.
 ///
 /// ```
-/// use fuwafuwa::{Dim2, QueryFilter, Ray, RigidBody, Shape, World, WorldConfig};
+/// use fuwafuwa::{Dim2, QueryFilter, Ray, RigidBody, Shape, Vec2, World, WorldConfig};
 ///
 /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
-/// let ball = |x| RigidBody::fixed(Shape::Ball { centre: [x, 0.0, 0.0], radius: 0.5 }, 0.3);
+/// let ball = |x| RigidBody::fixed(Shape::ball(0.5)).at(Vec2::new(x, 0.0));
 /// let near = world.add_rigid_body(ball(2.0))?;
 /// world.add_rigid_body(ball(4.0))?;
-/// let ray = Ray::new([0.0; 3], [1.0, 0.0, 0.0]);
+/// let ray = Ray::new(Vec2::ZERO, Vec2::X);
 /// let distance = |filter| world.ray_cast(ray, 10.0, filter).map(|hit| hit.distance);
 /// assert_eq!(distance(QueryFilter::default()), Some(1.5));
 /// assert_eq!(distance(QueryFilter::default().excluding(near)), Some(3.5));
@@ -90,7 +90,7 @@ impl<'a> QueryFilter<'a> {
     }
 
     /// Returns whether a rigid body may count; [`QueryFilter::admits`] decides.
-    pub(super) fn admits_rigid(&self, rigid: &RigidBody) -> bool {
+    pub(super) fn admits_rigid(&self, rigid: &RigidState) -> bool {
         self.kinds != Kinds::Soft
             && (self.includes_sensors || !rigid.is_sensor)
             && self.meets(rigid.layers)

@@ -2,14 +2,15 @@
 
 use super::inertia::times;
 use super::reach::is_within_reach;
-use super::{MotionType, RigidBody};
+use super::{MotionType, RigidState};
 use crate::error::{Error, require};
 use crate::foundation::dim::Dim;
 use crate::math::rotation::Rotation;
 use crate::rigid_body::layers::Layers;
-use crate::rigid_body::shape::{Vector, flat};
+use crate::rigid_body::solid::flat;
+use glam::Vec3;
 
-impl RigidBody {
+impl RigidState {
     /// Returns whether the body is dynamic.
     pub fn is_dynamic(&self) -> bool {
         matches!(self.motion_type, MotionType::Dynamic { .. })
@@ -26,7 +27,7 @@ impl RigidBody {
         match self.motion_type {
             MotionType::Coupled { .. } => true,
             MotionType::Kinematic => {
-                self.velocity != Vector::ZERO || self.angular_velocity != Vector::ZERO
+                self.velocity != Vec3::ZERO || self.angular_velocity != Vec3::ZERO
             }
             MotionType::Fixed | MotionType::Dynamic { .. } => false,
         }
@@ -52,7 +53,7 @@ impl RigidBody {
 
     /// Returns the velocity [m/s] of a body point, given relative to [`position`](RigidBody::position) [m].
     #[inline(always)]
-    pub(crate) fn velocity_at(&self, lever: Vector) -> Vector {
+    pub(crate) fn velocity_at(&self, lever: Vec3) -> Vec3 {
         match self.turns() {
             true => self.velocity + self.angular_velocity.cross(lever),
             false => self.velocity,
@@ -61,7 +62,7 @@ impl RigidBody {
 
     /// Returns the velocity [m/s] of the body at a world-space point [m].
     #[inline(always)]
-    pub(crate) fn velocity_near(&self, at: Vector) -> Vector {
+    pub(crate) fn velocity_near(&self, at: Vec3) -> Vec3 {
         match self.turns() {
             true => self.velocity_at(at - self.position),
             false => self.velocity,
@@ -71,7 +72,7 @@ impl RigidBody {
     /// Returns an upper bound of the speed of all body points [m/s].
     pub(crate) fn top_speed(&self) -> f32 {
         let speed = self.velocity.length();
-        match self.turns() && self.angular_velocity != Vector::ZERO {
+        match self.turns() && self.angular_velocity != Vec3::ZERO {
             true => speed + self.angular_velocity.length() * self.extent(),
             false => speed,
         }
@@ -81,7 +82,7 @@ impl RigidBody {
     pub(crate) fn extent(&self) -> f32 {
         let [low, high] = self.form.bounds();
         let furthest = [0, 1, 2].map(|axis: usize| low[axis].abs().max(high[axis].abs()));
-        Vector::from(furthest).length()
+        Vec3::from(furthest).length()
     }
 
     /// Sets the target rotation.
@@ -94,7 +95,7 @@ impl RigidBody {
     /// Sets the pose at once and wakes the body; its velocity stays.
     pub(crate) fn place<D: Dim>(
         &mut self,
-        position: Vector,
+        position: Vec3,
         rotation: Rotation,
     ) -> Result<(), Error> {
         let expected = "within 1e6 m of the origin";
@@ -120,7 +121,7 @@ impl RigidBody {
 
     /// Stops the body and puts it to sleep.
     pub(crate) fn fall_asleep(&mut self) {
-        (self.velocity, self.angular_velocity) = (Vector::ZERO, Vector::ZERO);
+        (self.velocity, self.angular_velocity) = (Vec3::ZERO, Vec3::ZERO);
         self.asleep = true;
     }
 
@@ -131,7 +132,7 @@ impl RigidBody {
     }
 
     /// Integrates gravity and air drag: velocities decay at the rate `drag` [1/s] over `duration` [s].
-    pub(crate) fn fall<D: Dim>(&mut self, acceleration: Vector, drag: f32, duration: f32) {
+    pub(crate) fn fall<D: Dim>(&mut self, acceleration: Vec3, drag: f32, duration: f32) {
         let gain = flat::<D>(acceleration) * duration;
         let left = 1.0 / (1.0 + drag * duration);
         self.velocity = (self.velocity + gain) * left;
@@ -144,7 +145,7 @@ impl RigidBody {
             return;
         }
         let position = self.position + self.velocity * duration;
-        if self.angular_velocity == Vector::ZERO {
+        if self.angular_velocity == Vec3::ZERO {
             return self.stand_at(position, self.rotation);
         }
         let way = Rotation::about(
@@ -161,7 +162,7 @@ impl RigidBody {
     }
 
     /// Applies an impulse [N s] at a lever arm from the position [m].
-    pub(crate) fn kick(&mut self, impulse: Vector, lever: Vector) {
+    pub(crate) fn kick(&mut self, impulse: Vec3, lever: Vec3) {
         self.velocity += impulse * self.inverse_mass();
         self.twirl(impulse, lever);
     }
@@ -169,13 +170,13 @@ impl RigidBody {
     /// Applies an impulse [N s] of a contact at a lever arm from the position [m], within a substep of
     /// `duration` [s].
     #[inline(always)]
-    pub(crate) fn push_at(&mut self, impulse: Vector, lever: Vector, duration: f32) {
+    pub(crate) fn push_at(&mut self, impulse: Vec3, lever: Vec3, duration: f32) {
         self.push(impulse, duration);
         self.twirl(impulse, lever);
     }
 
     #[inline(always)]
-    fn twirl(&mut self, impulse: Vector, lever: Vector) {
+    fn twirl(&mut self, impulse: Vec3, lever: Vec3) {
         if self.can_be_turned() {
             let twist = times(&self.inverse_inertia, lever.cross(impulse));
             self.angular_velocity += twist;
@@ -183,7 +184,7 @@ impl RigidBody {
     }
 
     /// Returns the inverse effective mass [1/kg] at a lever arm [m] along a unit direction.
-    pub(crate) fn yields(&self, lever: Vector, way: Vector) -> f32 {
+    pub(crate) fn yields(&self, lever: Vec3, way: Vec3) -> f32 {
         let mut gain = self.inverse_mass();
         if self.can_be_turned() {
             let arm = lever.cross(way);
@@ -195,7 +196,7 @@ impl RigidBody {
 
     /// Returns the velocity that an impulse of 1 N s along a unit direction gives the point at a lever arm
     /// [1/kg].
-    pub(crate) fn gain(&self, lever: Vector, way: Vector) -> Vector {
+    pub(crate) fn gain(&self, lever: Vec3, way: Vec3) -> Vec3 {
         let gain = way * self.inverse_mass();
         match self.can_be_turned() {
             true => {
@@ -209,7 +210,7 @@ impl RigidBody {
     /// Returns an upper bound of the inverse effective mass at a world-space point [m], over all directions
     /// [1/kg].
     #[inline(always)]
-    pub(crate) fn yields_near(&self, at: Vector) -> f32 {
+    pub(crate) fn yields_near(&self, at: Vec3) -> f32 {
         let gain = self.inverse_mass();
         if !self.can_be_turned() {
             return gain;
@@ -231,7 +232,7 @@ impl RigidBody {
         match self.motion_type {
             MotionType::Fixed => false,
             MotionType::Kinematic | MotionType::Dynamic { .. } => true,
-            MotionType::Coupled { .. } => self.angular_velocity != Vector::ZERO,
+            MotionType::Coupled { .. } => self.angular_velocity != Vec3::ZERO,
         }
     }
 }

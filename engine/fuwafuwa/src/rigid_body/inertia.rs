@@ -3,35 +3,36 @@
 use crate::foundation::dim::{Dim, turning};
 use crate::foundation::hash::hash_state;
 use crate::math::rotation::Rotation;
-use crate::math::vector::across;
-use crate::rigid_body::shape::{Shape, Vector};
+use crate::math::vector::perpendiculars;
+use crate::rigid_body::solid::Solid;
+use glam::Vec3;
 use std::f32::consts::PI;
 
 /// Symmetric 3×3 matrix, by rows.
-pub type Matrix = [Vector; 3];
+pub type Matrix = [Vec3; 3];
 
 /// Principal axes and moments of inertia in local coordinates.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Inertia {
-    axes: [Vector; 3],
+    axes: [Vec3; 3],
     /// Principal moments [kg m²]; in 2D only the third is not 0.
-    moments: Vector,
+    moments: Vec3,
     /// Inverse moments [1/(kg m²)]; 0 about axes that the body cannot turn about.
-    inverse: Vector,
+    inverse: Vec3,
 }
 
 hash_state! { struct Inertia { axes, moments, inverse } }
 
 impl Inertia {
     /// Returns the inertia of a shape centred on the origin, for a mass [kg].
-    pub fn of<D: Dim>(form: &Shape, mass: f32) -> Self {
+    pub fn of<D: Dim>(form: &Solid, mass: f32) -> Self {
         let (axes, shares) = match *form {
-            Shape::HalfSpace { .. } => (Rotation::NONE.axes(), Vector::ZERO),
-            Shape::Ball { radius, .. } => (Rotation::NONE.axes(), ball::<D>(radius)),
-            Shape::Box { half, .. } => (Rotation::NONE.axes(), cuboid(half)),
-            Shape::OrientedBox { half, rotation, .. } => (rotation.axes(), cuboid(half)),
-            Shape::Capsule { from, to, radius } => (
+            Solid::HalfSpace { .. } => (Rotation::NONE.axes(), Vec3::ZERO),
+            Solid::Ball { radius, .. } => (Rotation::NONE.axes(), ball::<D>(radius)),
+            Solid::Box { half, .. } => (Rotation::NONE.axes(), cuboid(half)),
+            Solid::OrientedBox { half, rotation, .. } => (rotation.axes(), cuboid(half)),
+            Solid::Capsule { from, to, radius } => (
                 axes_along(to - from),
                 bar::<D>((to - from).length(), radius),
             ),
@@ -58,7 +59,7 @@ impl Inertia {
 
     /// Returns the inverse inertia matrix about the world axes [1/(kg m²)] for a rotation of the body.
     pub fn inverse(&self, rotation: Rotation) -> Matrix {
-        let mut matrix = [Vector::ZERO; 3];
+        let mut matrix = [Vec3::ZERO; 3];
         for (axis, inverse) in self.axes.into_iter().zip(self.inverse.to_array()) {
             let axis = rotation.apply(axis);
             for row in 0..3 {
@@ -69,14 +70,14 @@ impl Inertia {
     }
 
     /// Returns the angular velocity [rad/s] after a rotation, so that the angular momentum is preserved.
-    pub fn spin_kept(&self, spin: Vector, before: Rotation, after: Rotation) -> Vector {
+    pub fn spin_kept(&self, spin: Vec3, before: Rotation, after: Rotation) -> Vec3 {
         let axes = self.axes.into_iter().zip(self.moments.to_array());
-        let momentum = axes.fold(Vector::ZERO, |sum, (axis, moment)| {
+        let momentum = axes.fold(Vec3::ZERO, |sum, (axis, moment)| {
             let axis = before.apply(axis);
             sum + axis * (moment * axis.dot(spin))
         });
         let axes = self.axes.into_iter().zip(self.inverse.to_array());
-        axes.fold(Vector::ZERO, |sum, (axis, inverse)| {
+        axes.fold(Vec3::ZERO, |sum, (axis, inverse)| {
             let axis = after.apply(axis);
             sum + axis * (inverse * axis.dot(momentum))
         })
@@ -85,28 +86,28 @@ impl Inertia {
 
 /// Returns the product of a matrix and a vector.
 #[inline(always)]
-pub fn times(matrix: &Matrix, vector: Vector) -> Vector {
-    Vector::from([0, 1, 2].map(|row: usize| matrix[row].dot(vector)))
+pub fn times(matrix: &Matrix, vector: Vec3) -> Vec3 {
+    Vec3::from([0, 1, 2].map(|row: usize| matrix[row].dot(vector)))
 }
 
 // The functions below return moments per unit mass.
 
-fn cuboid(half: Vector) -> Vector {
+fn cuboid(half: Vec3) -> Vec3 {
     let [x, y, z] = half.to_array();
     let about = |a: f32, b: f32| (a * a + b * b) / 3.0;
     // In 2D the third half extent is `f32::MAX`, and only the moment about the third axis is used.
-    Vector::new(about(y, z), about(z, x), about(x, y))
+    Vec3::new(about(y, z), about(z, x), about(x, y))
 }
 
 /// Returns the moments of a ball; in 2D of a disc.
-fn ball<D: Dim>(radius: f32) -> Vector {
+fn ball<D: Dim>(radius: f32) -> Vec3 {
     let share = if D::N == 2 { 0.5 } else { 0.4 };
-    Vector::splat(share * radius * radius)
+    Vec3::splat(share * radius * radius)
 }
 
 /// Returns the moments of a capsule along its own axis, the first one: a cylinder and two half balls; in 2D a
 /// rectangle and two half discs.
-fn bar<D: Dim>(long: f32, radius: f32) -> Vector {
+fn bar<D: Dim>(long: f32, radius: f32) -> Vec3 {
     let squared = radius * radius;
     // `middle` is the distance of the centroid of a half ball from its flat side.
     let (between, round, middle) = match D::N {
@@ -126,17 +127,17 @@ fn bar<D: Dim>(long: f32, radius: f32) -> Vector {
         _ => long * long / 12.0 + 0.25 * squared,
     };
     let aside = between * side + round * ends;
-    Vector::new(0.5 * between * squared + round * own, aside, aside)
+    Vec3::new(0.5 * between * squared + round * own, aside, aside)
 }
 
 /// Returns three orthonormal axes, the first along a direction.
-fn axes_along(way: Vector) -> [Vector; 3] {
+fn axes_along(way: Vec3) -> [Vec3; 3] {
     let long = way.length();
     if long <= 0.0 {
         return Rotation::NONE.axes();
     }
     let first = way * (1.0 / long);
-    let [second, third] = across(first);
+    let [second, third] = perpendiculars(first);
     [first, second, third]
 }
 
@@ -144,10 +145,10 @@ fn axes_along(way: Vector) -> [Vector; 3] {
 mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
-    use crate::rigid_body::shape::flat;
+    use crate::rigid_body::solid::flat;
 
     /// Compares the moments with a sum over small cells.
-    fn check<D: Dim>(form: Shape) {
+    fn check<D: Dim>(form: Solid) {
         let [low, high] = form.bounds();
         let count = if D::N == 2 { 200 } else { 60 };
         let (mut mass, mut sums) = (0.0f64, [0.0f64; 3]);
@@ -155,7 +156,7 @@ mod tests {
         for cell in 0..count * count * depth {
             let cell = [cell % count, cell / count % count, cell / count / count];
             let share = cell.map(|k| (k as f32 + 0.5) / count as f32);
-            let at = flat::<D>(low + Vector::from(share) * (high - low));
+            let at = flat::<D>(low + Vec3::from(share) * (high - low));
             if form.distance(at).0 > 0.0 {
                 continue;
             }
@@ -180,21 +181,21 @@ mod tests {
     #[test]
     fn moments_match_numeric_integration() {
         let [x, y, z] = [0.3, 0.5, 0.9];
-        let long = Shape::Capsule {
-            from: Vector::new(-x, 0.0, 0.0),
-            to: Vector::new(x, 0.0, 0.0),
+        let long = Solid::Capsule {
+            from: Vec3::new(-x, 0.0, 0.0),
+            to: Vec3::new(x, 0.0, 0.0),
             radius: 0.2,
         };
-        let ball = Shape::Ball {
-            centre: Vector::ZERO,
+        let ball = Solid::Ball {
+            centre: Vec3::ZERO,
             radius: x,
         };
-        let cuboid = |half| Shape::Box {
-            centre: Vector::ZERO,
+        let cuboid = |half| Solid::Box {
+            centre: Vec3::ZERO,
             half,
         };
-        check::<Dim3>(cuboid(Vector::new(x, y, z)));
-        check::<Dim2>(cuboid(Vector::new(x, y, f32::MAX)));
+        check::<Dim3>(cuboid(Vec3::new(x, y, z)));
+        check::<Dim2>(cuboid(Vec3::new(x, y, f32::MAX)));
         check::<Dim3>(long);
         check::<Dim2>(long);
         check::<Dim3>(ball);
@@ -203,18 +204,18 @@ mod tests {
 
     #[test]
     fn tumbling_preserves_angular_momentum() {
-        let form = Shape::Box {
-            centre: Vector::ZERO,
-            half: Vector::new(0.3, 0.5, 0.9),
+        let form = Solid::Box {
+            centre: Vec3::ZERO,
+            half: Vec3::new(0.3, 0.5, 0.9),
         };
         let inertia = Inertia::of::<Dim3>(&form, 3.0);
-        let momentum = |spin: Vector, rotation: Rotation| {
+        let momentum = |spin: Vec3, rotation: Rotation| {
             let axes = rotation.axes().into_iter().zip(inertia.moments.to_array());
-            axes.fold(Vector::ZERO, |sum, (axis, moment)| {
+            axes.fold(Vec3::ZERO, |sum, (axis, moment)| {
                 sum + axis * (moment * axis.dot(spin))
             })
         };
-        let (mut spin, mut rotation) = (Vector::new(0.1, 5.0, 0.0), Rotation::NONE);
+        let (mut spin, mut rotation) = (Vec3::new(0.1, 5.0, 0.0), Rotation::NONE);
         let before = momentum(spin, rotation);
         let mut most = 0.0f32;
         for _ in 0..5000 {

@@ -1,83 +1,80 @@
-//! Rigid shapes with signed distances: half-spaces, boxes, capsules, balls.
-//!
-//! The same shapes serve 2D and 3D. In 2D all third coordinates are 0: a ball is a disc, and a capsule is a
-//! bar with round ends.
+//! Shapes of rigid bodies: half-spaces, boxes, capsules, balls.
 
-mod manifold;
-mod oriented_box;
-mod shape_distance;
-mod shape_ray;
-
-use crate::error::{Error, require};
-use crate::foundation::dim::Dim;
-use crate::foundation::hash::hash_state;
+use crate::error::Error;
+use crate::foundation::dim::{Dim, DimVector};
 use crate::math::rotation::Rotation;
-pub use crate::math::vector::Vector;
+use crate::rigid_body::solid::Solid;
+use glam::Vec3;
 
-/// Lower and upper corner of an axis-aligned box [m].
-pub type Bounds = [Vector; 2];
-
-/// Rigid shape.
+/// Shape of a rigid body or a region. In 2D a half-space is bounded by a line, a box is a rectangle, a ball a
+/// disc, and a capsule a bar with round ends.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Shape {
-    /// Half-space below a plane (2D: a line).
+#[cfg_attr(feature = "serde", serde(bound = ""))]
+pub enum Shape<D: Dim> {
+    /// Half-space below a plane.
     HalfSpace {
         /// Outward unit normal.
-        normal: Vector,
+        normal: D::Vector,
         /// Signed distance of the surface from the origin along the normal [m].
         offset: f32,
     },
     /// Axis-aligned box.
     Box {
         /// Centre [m].
-        centre: Vector,
-        /// Half extents [m]; in 2D the third one is ignored.
-        half: Vector,
+        centre: D::Vector,
+        /// Half extents [m].
+        half: D::Vector,
     },
     /// Oriented box.
     OrientedBox {
         /// Centre [m].
-        centre: Vector,
-        /// Half extents along the local axes [m]; in 2D the third one is ignored.
-        half: Vector,
+        centre: D::Vector,
+        /// Half extents along the local axes [m].
+        half: D::Vector,
         /// Rotation from local to world axes.
         rotation: Rotation,
     },
     /// Capsule: all points within `radius` of a segment.
     Capsule {
         /// First end of the segment [m].
-        from: Vector,
+        from: D::Vector,
         /// Second end of the segment [m].
-        to: Vector,
+        to: D::Vector,
         /// Radius [m].
         radius: f32,
     },
-    /// Ball; in 2D a disc.
+    /// Ball.
     Ball {
         /// Centre [m].
-        centre: Vector,
+        centre: D::Vector,
         /// Radius [m].
         radius: f32,
     },
 }
 
-hash_state! {
-    enum Shape {
-        HalfSpace { normal, offset },
-        Box { centre, half },
-        OrientedBox { centre, half, rotation },
-        Capsule { from, to, radius },
-        Ball { centre, radius },
-    }
-}
-
-impl Shape {
+impl<D: Dim> Shape<D> {
     /// Returns the half-space with an outward normal of any length and its surface through `point` [m].
-    pub fn half_space(normal: Vector, point: Vector) -> Self {
-        let normal = normal * (1.0 / normal.length());
-        let offset = normal.dot(point);
-        Self::HalfSpace { normal, offset }
+    pub fn half_space(normal: D::Vector, point: D::Vector) -> Self {
+        let solid = Solid::half_space(normal.to_vec3(), point.to_vec3());
+        Self::of(&solid)
+    }
+
+    /// Returns a box around the origin with half extents [m].
+    pub fn cuboid(half: D::Vector) -> Self {
+        let centre = D::Vector::ZERO;
+        Self::Box { centre, half }
+    }
+
+    /// Returns a ball around the origin with a radius [m].
+    pub fn ball(radius: f32) -> Self {
+        let centre = D::Vector::ZERO;
+        Self::Ball { centre, radius }
+    }
+
+    /// Returns all points within `radius` [m] of the segment between two points [m].
+    pub fn capsule(from: D::Vector, to: D::Vector, radius: f32) -> Self {
+        Self::Capsule { from, to, radius }
     }
 
     /// Checks that all numbers are finite, sizes positive, and normals and rotations normalised.
@@ -85,316 +82,144 @@ impl Shape {
     /// # Errors
     /// [`Error::InvalidParameter`] names the first invalid field.
     pub fn check(&self) -> Result<(), Error> {
-        let finite = |field, v: Vector| require(v.is_finite(), field, "finite", v);
-        let is_positive = |k: f32| k.is_finite() && k > 0.0;
-        let positive = |field, k: f32| require(is_positive(k), field, "positive and finite", k);
-        match *self {
-            Self::HalfSpace { normal, offset } => {
-                require(offset.is_finite(), "offset", "finite", offset)?;
-                let is_unit = (normal.length() - 1.0).abs() < 1e-3;
-                require(is_unit, "normal", "of length 1", normal)
-            }
-            Self::Box { centre, half } => {
-                finite("centre", centre)?;
-                let is_positive = half.to_array().into_iter().all(is_positive);
-                require(is_positive, "half", "positive and finite", half)
-            }
-            Self::OrientedBox {
-                centre,
-                half,
-                rotation,
-            } => {
-                Self::Box { centre, half }.check()?;
-                let quaternion = rotation.quaternion();
-                require(rotation.is_unit(), "rotation", "of length 1", quaternion)
-            }
-            Self::Capsule { from, to, radius } => {
-                finite("from", from)?;
-                finite("to", to)?;
-                positive("radius", radius)
-            }
-            Self::Ball { centre, radius } => {
-                finite("centre", centre)?;
-                positive("radius", radius)
-            }
-        }
+        self.solid().check()
     }
 
     /// Returns the signed distance of a point from the surface [m], negative inside, and the outward normal
     /// there.
-    // Inlined, because passing a point through memory takes as long as the computation.
-    #[inline(always)]
-    pub fn distance(&self, point: Vector) -> (f32, Vector) {
-        match *self {
-            Self::HalfSpace { normal, offset } => (normal.dot(point) - offset, normal),
-            Self::Box { centre, half } => distance_from_box(point - centre, half),
-            Self::OrientedBox {
-                centre,
-                half,
-                rotation,
-            } => distance_from_turned(point - centre, half, rotation),
-            Self::Capsule { from, to, radius } => {
-                let (axis, reach) = (to - from, point - from);
-                let along = axis.dot(reach) / axis.dot(axis).max(1e-12);
-                let nearest = axis * along.clamp(0.0, 1.0);
-                let (distance, normal) = away(reach - nearest);
-                (distance - radius, normal)
-            }
-            Self::Ball { centre, radius } => {
-                let (distance, normal) = away(point - centre);
-                (distance - radius, normal)
-            }
-        }
+    pub fn distance(&self, point: D::Vector) -> (f32, D::Vector) {
+        let (distance, normal) = self.solid().distance(point.to_vec3());
+        (distance, D::Vector::from_vec3(normal))
     }
 
-    /// Returns the axis-aligned bounding box [m]; that of a half-space is infinite. Ignored axes are 0.
-    pub fn bounds(&self) -> Bounds {
-        let around = |from: Vector, to: Vector, half: Vector| {
-            let low = [0, 1, 2].map(|axis: usize| from[axis].min(to[axis]) - half[axis]);
-            let high = [0, 1, 2].map(|axis: usize| from[axis].max(to[axis]) + half[axis]);
-            [low.into(), high.into()]
-        };
-        match *self {
-            Self::HalfSpace { .. } => [
-                Vector::splat(f32::NEG_INFINITY),
-                Vector::splat(f32::INFINITY),
-            ],
-            Self::Box { centre, half } => around(
-                centre,
-                centre,
-                half.map(|k| if k == f32::MAX { 0.0 } else { k }),
-            ),
-            Self::OrientedBox {
-                centre,
-                half,
-                rotation,
-            } => {
-                let axes = rotation.axes();
-                let reach = |axis: usize| {
-                    let own = (0..3).map(|own| reach_of(axes[own][axis], half[own]));
-                    own.sum::<f32>()
-                };
-                around(centre, centre, [0, 1, 2].map(reach).into())
-            }
-            Self::Capsule { from, to, radius } => around(from, to, Vector::splat(radius)),
-            Self::Ball { centre, radius } => around(centre, centre, Vector::splat(radius)),
-        }
+    /// Returns the lower and upper corner of the axis-aligned bounding box [m]; that of a half-space is infinite.
+    pub fn bounds(&self) -> [D::Vector; 2] {
+        self.solid().bounds().map(D::Vector::from_vec3)
     }
 
     /// Returns the radius of the largest ball that fits into the shape [m].
     pub fn inradius(&self) -> f32 {
-        match *self {
-            Self::HalfSpace { .. } => f32::INFINITY,
-            Self::Box { half, .. } | Self::OrientedBox { half, .. } => {
-                half.to_array().into_iter().fold(f32::INFINITY, f32::min)
-            }
-            Self::Capsule { radius, .. } | Self::Ball { radius, .. } => radius,
-        }
+        self.solid().inradius()
     }
 
-    /// Returns the shape for a world of `D`. In 2D third coordinates are removed, so that no contact pushes
-    /// out of the plane.
-    pub(crate) fn seen_in<D: Dim>(self) -> Self {
-        // The code below flattens shapes, for 2D only.
-        if D::N == 3 {
-            return self;
-        }
-        let flat = flat::<D>;
-        match self {
-            Self::HalfSpace { normal, .. } if normal[2] == 0.0 => self,
-            Self::HalfSpace { normal, offset } => {
-                let steepness = flat(normal).length();
-                Self::HalfSpace {
-                    normal: flat(normal) * (1.0 / steepness),
-                    offset: offset / steepness,
-                }
-            }
-            Self::Box { centre, half } => Self::Box {
-                centre: flat(centre),
-                half: Vector::new(half[0], half[1], f32::MAX),
+    /// Returns the shape translated `by` [m].
+    #[must_use]
+    pub fn translated(self, by: D::Vector) -> Self {
+        Self::of(&self.solid().translated(by.to_vec3()))
+    }
+
+    /// Returns the shape rotated about the origin. In 2D only the rotation about the third axis counts.
+    #[must_use]
+    pub fn rotated(self, by: Rotation) -> Self {
+        Self::of(&self.solid().rotated(by.seen_in::<D>()))
+    }
+
+    /// Returns the shape in three coordinates. In 2D, boxes are unbounded along the third axis, so that no contact
+    /// pushes out of the plane.
+    pub(crate) fn solid(&self) -> Solid {
+        let half_extents = |half: D::Vector| match D::N {
+            2 => half.to_vec3().with_z(f32::MAX),
+            _ => half.to_vec3(),
+        };
+        match *self {
+            Self::HalfSpace { normal, offset } => Solid::HalfSpace {
+                normal: normal.to_vec3(),
+                offset,
+            },
+            Self::Box { centre, half } => Solid::Box {
+                centre: centre.to_vec3(),
+                half: half_extents(half),
             },
             Self::OrientedBox {
                 centre,
                 half,
                 rotation,
-            } => Self::OrientedBox {
-                centre: flat(centre),
-                half: Vector::new(half[0], half[1], f32::MAX),
+            } => Solid::OrientedBox {
+                centre: centre.to_vec3(),
+                half: half_extents(half),
                 rotation: rotation.seen_in::<D>(),
             },
-            Self::Capsule { from, to, radius } => Self::Capsule {
+            Self::Capsule { from, to, radius } => Solid::Capsule {
+                from: from.to_vec3(),
+                to: to.to_vec3(),
+                radius,
+            },
+            Self::Ball { centre, radius } => Solid::Ball {
+                centre: centre.to_vec3(),
+                radius,
+            },
+        }
+    }
+
+    /// Returns the shape of a solid.
+    pub(crate) fn of(solid: &Solid) -> Self {
+        let flat = |vector: Vec3| D::Vector::from_vec3(vector);
+        match *solid {
+            Solid::HalfSpace { normal, offset } => Self::HalfSpace {
+                normal: flat(normal),
+                offset,
+            },
+            Solid::Box { centre, half } => Self::Box {
+                centre: flat(centre),
+                half: flat(half),
+            },
+            Solid::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => Self::OrientedBox {
+                centre: flat(centre),
+                half: flat(half),
+                rotation,
+            },
+            Solid::Capsule { from, to, radius } => Self::Capsule {
                 from: flat(from),
                 to: flat(to),
                 radius,
             },
-            Self::Ball { centre, radius } => Self::Ball {
+            Solid::Ball { centre, radius } => Self::Ball {
                 centre: flat(centre),
                 radius,
             },
         }
     }
-
-    /// Returns the shape translated `by` [m].
-    pub fn translated(self, by: Vector) -> Self {
-        match self {
-            Self::HalfSpace { normal, offset } => Self::HalfSpace {
-                normal,
-                offset: offset + normal.dot(by),
-            },
-            Self::Box { centre, half } => Self::Box {
-                centre: centre + by,
-                half,
-            },
-            Self::OrientedBox {
-                centre,
-                half,
-                rotation,
-            } => Self::OrientedBox {
-                centre: centre + by,
-                half,
-                rotation,
-            },
-            Self::Capsule { from, to, radius } => Self::Capsule {
-                from: from + by,
-                to: to + by,
-                radius,
-            },
-            Self::Ball { centre, radius } => Self::Ball {
-                centre: centre + by,
-                radius,
-            },
-        }
-    }
-}
-
-impl Shape {
-    /// Returns the shape rotated about the origin.
-    #[must_use]
-    pub fn rotated(self, by: Rotation) -> Self {
-        if by == Rotation::NONE {
-            return self;
-        }
-        match self {
-            Self::HalfSpace { normal, offset } => Self::HalfSpace {
-                normal: by.apply(normal),
-                offset,
-            },
-            Self::Box { centre, half } => Self::OrientedBox {
-                centre: by.apply(centre),
-                half,
-                rotation: by,
-            },
-            Self::OrientedBox {
-                centre,
-                half,
-                rotation,
-            } => Self::OrientedBox {
-                centre: by.apply(centre),
-                half,
-                rotation: rotation.then(by),
-            },
-            Self::Capsule { from, to, radius } => Self::Capsule {
-                from: by.apply(from),
-                to: by.apply(to),
-                radius,
-            },
-            Self::Ball { centre, radius } => Self::Ball {
-                centre: by.apply(centre),
-                radius,
-            },
-        }
-    }
-}
-
-/// Returns the distance from an oriented box, like [`distance_from_box`]. Not inlined, because it is rare and
-/// would slow down the common cases.
-#[inline(never)]
-fn distance_from_turned(point: Vector, half: Vector, rotation: Rotation) -> (f32, Vector) {
-    let own = rotation.inverse().apply(point);
-    let (distance, normal) = distance_from_box(own, half);
-    (distance, rotation.apply(normal))
-}
-
-/// Returns the extent of a half width along a world axis; 0 for the unbounded third axis of a 2D box.
-fn reach_of(cosine: f32, half: f32) -> f32 {
-    match half == f32::MAX {
-        true => 0.0,
-        false => cosine.abs() * half,
-    }
-}
-
-/// Returns a vector for a world of `D`: in 2D with the third coordinate 0.
-pub(crate) fn flat<D: Dim>(mut vector: Vector) -> Vector {
-    if D::N == 2 {
-        vector.z = 0.0;
-    }
-    vector
-}
-
-/// Returns the length and the direction of a vector; the direction of a vector of length 0 is upwards.
-#[inline]
-fn away(v: Vector) -> (f32, Vector) {
-    let distance = v.length();
-    if distance > 1e-9 {
-        (distance, v * (1.0 / distance))
-    } else {
-        (0.0, Vector::Y)
-    }
-}
-
-/// Returns the signed distance from a box around the origin and the normal. Inside it is that of the nearest
-/// face, outside that of the nearest point.
-#[inline]
-fn distance_from_box(at: Vector, half: Vector) -> (f32, Vector) {
-    let beyond = [0, 1, 2].map(|k: usize| at[k].abs() - half[k]);
-    let sign = |k: usize| if at[k] < 0.0 { -1.0 } else { 1.0 };
-    if beyond.iter().all(|&k| k <= 0.0) {
-        let side = (0..3).fold(0, |side, k| if beyond[k] > beyond[side] { k } else { side });
-        let mut normal = Vector::ZERO;
-        normal[side] = sign(side);
-        return (beyond[side], normal);
-    }
-    away([0, 1, 2].map(|k| beyond[k].max(0.0) * sign(k)).into())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::foundation::dim::{Dim2, Dim3};
+    use glam::Vec2;
 
     #[test]
-    fn distance_returns_signed_distance_and_normal() {
-        let wall = Shape::Box {
-            centre: Vector::X,
-            half: Vector::new(0.5, 2.0, 9.0),
-        };
-        assert_eq!(wall.distance(Vector::Y), (0.5, Vector::NEG_X));
-        let (gap, normal) = wall.distance(Vector::new(0.75, 0.0, 0.0));
-        assert_eq!((gap, normal), (-0.25, Vector::NEG_X));
-        let (gap, _) = wall.distance(Vector::new(1.5 + 3.0, 2.0 + 4.0, 0.0));
-        assert_eq!(gap, 5.0);
-        let bar = Shape::Capsule {
-            from: Vector::ZERO,
-            to: Vector::new(2.0, 0.0, 0.0),
-            radius: 0.5,
-        };
-        assert_eq!(bar.distance(Vector::new(1.0, 2.0, 0.0)), (1.5, Vector::Y));
-        assert_eq!(bar.distance(Vector::new(5.0, 0.0, 4.0)).0, 4.5);
-        let floor = Shape::half_space(Vector::new(0.0, 2.0, 0.0), Vector::new(7.0, 1.0, 0.0));
-        assert_eq!(
-            floor.distance(Vector::new(0.0, 0.5, 0.0)),
-            (-0.5, Vector::Y)
-        );
+    fn distance_of_rectangle_ignores_third_axis() {
+        let wall = Shape::<Dim2>::cuboid(Vec2::new(0.5, 2.0)).translated(Vec2::X);
+        assert_eq!(wall.distance(Vec2::new(0.0, 1.0)), (0.5, Vec2::NEG_X));
+        assert_eq!(wall.distance(Vec2::new(4.5, 6.0)).0, 5.0);
+        assert_eq!(wall.inradius(), 0.5);
+        assert_eq!(wall.bounds(), [Vec2::new(0.5, -2.0), Vec2::new(1.5, 2.0)]);
+    }
+
+    #[test]
+    fn solid_and_back_is_the_same_shape() {
+        let rotation = Rotation::about(Vec3::ONE, 0.4);
+        let shapes: [Shape<Dim3>; 5] = [
+            Shape::half_space(Vec3::new(0.0, 2.0, 0.0), Vec3::Y),
+            Shape::cuboid(Vec3::ONE),
+            Shape::cuboid(Vec3::ONE).rotated(rotation),
+            Shape::capsule(Vec3::X, Vec3::Y, 0.5),
+            Shape::ball(0.5).translated(Vec3::Z),
+        ];
+        for shape in shapes {
+            assert_eq!(Shape::of(&shape.solid()), shape);
+        }
     }
 
     #[test]
     fn check_names_the_invalid_field() {
-        let ball = Shape::Ball {
-            centre: Vector::ZERO,
-            radius: -1.0,
-        };
         let error = Error::parameter("radius", "positive and finite", -1.0);
-        assert_eq!(ball.check(), Err(error));
-        let nowhere = Shape::half_space([0.0; 3], [0.0; 3]);
+        assert_eq!(Shape::<Dim3>::ball(-1.0).check(), Err(error));
+        let nowhere = Shape::<Dim2>::half_space(Vec2::ZERO, Vec2::ZERO);
         assert!(nowhere.check().is_err());
     }
 }

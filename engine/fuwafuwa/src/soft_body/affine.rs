@@ -3,10 +3,10 @@
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, NodeId};
 use crate::math::row::Row;
-use crate::rigid_body::shape::Vector;
 use crate::soft_body::SoftBody;
 use crate::topology::element_class::slot_at;
 use crate::topology::mesh::Element;
+use glam::Vec3;
 
 /// Volume ratio below which an element counts as flat. Inverting the motion of a flatter element would
 /// amplify the rounding of positions, about 1e-5 of a voxel, to a hundredth of its width and more.
@@ -14,11 +14,11 @@ const FLAT: f32 = 0.01;
 
 impl<D: Dim> SoftBody<D> {
     /// Returns the centre of an element [m], and its deformation gradient F by rows.
-    pub(crate) fn deformation(&self, element: &Element) -> (Vector, [Vector; 3]) {
+    pub(crate) fn deformation(&self, element: &Element) -> (Vec3, [Vec3; 3]) {
         let stencil = self.topology.mesh.stencil(element);
         let half = 0.5 * self.topology.grid.voxel_size() * element.cell.width() as f32;
         let scale = 1.0 / (stencil.volume as f32 * half);
-        let (mut centre, mut gradient) = (Vector::ZERO, [Vector::ZERO; 3]);
+        let (mut centre, mut gradient) = (Vec3::ZERO, [Vec3::ZERO; 3]);
         for (place, &node) in element.nodes.iter().enumerate() {
             let at = self.state.position[node].xyz();
             let share = (stencil.volumes[place] / stencil.volume) as f32;
@@ -37,24 +37,24 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Elastic part of the deformation gradient, without plastic deformation.
-    pub(crate) fn elastic_part(&self, id: ElementId, element: &Element) -> [Vector; 3] {
+    pub(crate) fn elastic_part(&self, id: ElementId, element: &Element) -> [Vec3; 3] {
         let (_, gradient) = self.deformation(element);
         let Some(undone) = self.state.blocks.plastic_inverse(id) else {
             return gradient;
         };
-        let column = |j: usize| Vector::new(undone[0][j], undone[1][j], undone[2][j]);
-        gradient.map(|row| Vector::from([0, 1, 2].map(|j: usize| row.dot(column(j)))))
+        let column = |j: usize| Vec3::new(undone[0][j], undone[1][j], undone[2][j]);
+        gradient.map(|row| Vec3::from([0, 1, 2].map(|j: usize| row.dot(column(j)))))
     }
 
     /// Returns the affine motion of an element: maps a point of the undeformed body, in voxels, to its
     /// position [m].
-    pub(crate) fn affine_map(&self, element: &Element) -> impl Fn(Vector) -> Vector + use<D> {
+    pub(crate) fn affine_map(&self, element: &Element) -> impl Fn(Vec3) -> Vec3 + use<D> {
         let (centre, gradient) = self.deformation(element);
         let stencil = self.topology.mesh.stencil(element);
         let size = self.topology.grid.voxel_size();
         let half = 0.5 * size * element.cell.width() as f32;
         // Slot in the low corner of the cell, relative to the volume centroid at rest.
-        let steps = Vector::from(slot_at(stencil.slots[0] as usize).map(|k| k as f32)) * half;
+        let steps = Vec3::from(slot_at(stencil.slots[0] as usize).map(|k| k as f32)) * half;
         let origin = stencil.offsets[0].as_vec3() * half - steps;
         let low = element.cell.first_voxel().map(|k| k as f32);
         move |point| {
@@ -62,7 +62,7 @@ impl<D: Dim> SoftBody<D> {
             for axis in 0..D::N {
                 rest[axis] += (point[axis] - low[axis]) * size;
             }
-            let mut carried = Vector::ZERO;
+            let mut carried = Vec3::ZERO;
             for axis in 0..D::N {
                 carried[axis] = centre[axis] + gradient[axis].dot(rest);
             }
@@ -72,13 +72,13 @@ impl<D: Dim> SoftBody<D> {
 
     /// Maps a position [m] back to the undeformed body, in voxels, by the motion of an element: the inverse
     /// of [`SoftBody::affine_map`]. `None` if the element is flat.
-    pub(crate) fn at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
+    pub(crate) fn at_rest(&self, element: &Element, at: Vec3) -> Option<Vec3> {
         let stencil = self.topology.mesh.stencil(element);
         let size = self.topology.grid.voxel_size();
         let half = 0.5 * size * element.cell.width() as f32;
         let from_centroid = self.offset_at_rest(element, at)?;
         let corner = slot_at(stencil.slots[0] as usize);
-        let mut place = Vector::from(element.cell.first_voxel().map(|k| k as f32));
+        let mut place = Vec3::from(element.cell.first_voxel().map(|k| k as f32));
         for axis in 0..D::N {
             let from_corner = from_centroid[axis] / half - stencil.offsets[0][axis] as f32;
             place[axis] += (from_corner + corner[axis] as f32) * half / size;
@@ -89,12 +89,12 @@ impl<D: Dim> SoftBody<D> {
     /// Returns the weight of each node of an element at a point of the undeformed body, in voxels. Linear
     /// functions are interpolated exactly, so an impulse that is distributed with these weights keeps its
     /// torque.
-    pub(crate) fn weights(&self, element: &Element, at: Vector) -> Vec<(NodeId, f32)> {
+    pub(crate) fn weights(&self, element: &Element, at: Vec3) -> Vec<(NodeId, f32)> {
         let stencil = self.topology.mesh.stencil(element);
         let half = 0.5 * element.cell.width() as f32;
         let corner = slot_at(stencil.slots[0] as usize);
         let low = element.cell.first_voxel();
-        let mut rest = Vector::ZERO;
+        let mut rest = Vec3::ZERO;
         for axis in 0..D::N {
             let from_corner = (at[axis] - low[axis] as f32) / half - corner[axis] as f32;
             rest[axis] = from_corner + stencil.offsets[0][axis] as f32;
@@ -109,13 +109,13 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Velocity [m/s] at the point with these node weights.
-    pub(crate) fn velocity_of(&self, weights: &[(NodeId, f32)]) -> Vector {
+    pub(crate) fn velocity_of(&self, weights: &[(NodeId, f32)]) -> Vec3 {
         let share = |&(node, weight): &(NodeId, f32)| self.state.velocity[node] * weight;
         weights.iter().map(share).sum::<Row>().xyz()
     }
 
     /// Maps a position [m] to its rest offset from the centroid of an element [m], in all three coordinates.
-    fn offset_at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
+    fn offset_at_rest(&self, element: &Element, at: Vec3) -> Option<Vec3> {
         let (centre, undo) = self.inverse_deformation(element)?;
         Some(undo(at - centre))
     }
@@ -125,7 +125,7 @@ impl<D: Dim> SoftBody<D> {
     pub(crate) fn inverse_deformation(
         &self,
         element: &Element,
-    ) -> Option<(Vector, impl Fn(Vector) -> Vector + use<D>)> {
+    ) -> Option<(Vec3, impl Fn(Vec3) -> Vec3 + use<D>)> {
         let (centre, [x, y, z]) = self.deformation(element);
         let volume = x.dot(y.cross(z));
         if volume.abs() < FLAT {
@@ -133,16 +133,16 @@ impl<D: Dim> SoftBody<D> {
         }
         // Cramer's rule.
         let columns = [y.cross(z), z.cross(x), x.cross(y)];
-        let undo = move |way: Vector| {
+        let undo = move |way: Vec3| {
             let by = way * (1.0 / volume);
             let along = |axis: usize| (0..3).map(|k| columns[k][axis] * by[k]).sum();
-            Vector::from([0, 1, 2].map(along))
+            Vec3::from([0, 1, 2].map(along))
         };
         Some((centre, undo))
     }
 
     /// Returns the child of an element's cell that contains a position [m].
-    pub(crate) fn child_at(&self, element: &Element, at: Vector) -> Option<usize> {
+    pub(crate) fn child_at(&self, element: &Element, at: Vec3) -> Option<usize> {
         let from_centroid = self.offset_at_rest(element, at)?;
         let child_width = 0.5 * self.topology.grid.voxel_size() * element.cell.width() as f32;
         let stencil = self.topology.mesh.stencil(element);

@@ -26,12 +26,12 @@ use crate::foundation::ids::{ElementId, IndexVec, NodeId};
 use crate::foundation::threads::{self, RowChunk};
 use crate::math::lanes::{Eight, LANES, on_widest_lanes, splat, sum, sum_of_squares};
 use crate::math::rotation::Rotation;
-use crate::math::vector::Vector;
 use crate::soft_body::element_law::{Elasticity, Law};
 use crate::soft_body::plasticity::Plasticity;
 use batch::{Batch, BatchKey, GROUP, Group, Shared, VACANT, evaluate_best};
 use fearless_simd::Simd;
 use force_kernel::{Moduli, Scratch};
+use glam::Vec3;
 use plastic_kernel::PlasticFlowLimits;
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
@@ -149,7 +149,7 @@ impl<D: Dim> ElementBatches<D> {
 
     /// Returns the plastic state G of an element ([`crate::soft_body::plasticity`]) by rows; `None` if its material is
     /// elastic.
-    pub fn plastic_inverse(&self, id: ElementId) -> Option<[Vector; 3]> {
+    pub fn plastic_inverse(&self, id: ElementId) -> Option<[Vec3; 3]> {
         let &(block, lane) = self.assigned.get(id.index())?;
         let block = self.blocks.get(block as usize)?;
         let undone = block.undone.as_ref()?;
@@ -157,7 +157,7 @@ impl<D: Dim> ElementBatches<D> {
     }
 
     /// Sets the plastic state of an element.
-    pub fn set_plastic_inverse(&mut self, id: ElementId, undone: [Vector; 3]) {
+    pub fn set_plastic_inverse(&mut self, id: ElementId, undone: [Vec3; 3]) {
         let (block, lane) = self.assigned[id];
         if let Some(own) = &mut self.blocks[block as usize].undone {
             own.set(lane as usize, undone);
@@ -261,20 +261,20 @@ impl<D: Dim> ElementBatches<D> {
     }
 
     /// Rotation of an element in the last evaluation, by rows.
-    pub fn rotation(&self, id: ElementId) -> [Vector; 3] {
+    pub fn rotation(&self, id: ElementId) -> [Vec3; 3] {
         let turned = self.rotation_of(id);
         // Stored as cosine and sine in 2D, as a quaternion in 3D.
         if D::N == 2 {
             let [cosine, sine, ..] = turned;
             return [
-                Vector::new(cosine, -sine, 0.0),
-                Vector::new(sine, cosine, 0.0),
-                Vector::Z,
+                Vec3::new(cosine, -sine, 0.0),
+                Vec3::new(sine, cosine, 0.0),
+                Vec3::Z,
             ];
         }
         on_widest_lanes!(simd => {
             let matrix = rotation_extraction::matrix_of(simd, turned.map(|part| splat(simd, part)));
-            matrix.map(|row| Vector::from(row.map(|entry| entry[0])))
+            matrix.map(|row| Vec3::from(row.map(|entry| entry[0])))
         })
     }
 
@@ -300,7 +300,7 @@ impl<D: Dim> ElementBatches<D> {
             for lane in 0..LANES {
                 let turned = match (D::N, block.rotation.map(|part| part[lane])) {
                     (2, [cosine, sine, ..]) => {
-                        let [x, y, _] = rotation.apply(Vector::new(cosine, sine, 0.0)).to_array();
+                        let [x, y, _] = rotation.apply(Vec3::new(cosine, sine, 0.0)).to_array();
                         [x, y, 0.0, 0.0]
                     }
                     (_, turned) => rotation.after(turned),
@@ -311,7 +311,7 @@ impl<D: Dim> ElementBatches<D> {
             }
         }
         for force in self.forces.chunks_exact_mut(D::N) {
-            let mut turned = Vector::ZERO;
+            let mut turned = Vec3::ZERO;
             turned.as_mut()[..D::N].copy_from_slice(force);
             let turned = rotation.apply(turned).to_array();
             force.copy_from_slice(&turned[..D::N]);

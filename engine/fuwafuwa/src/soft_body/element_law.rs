@@ -18,7 +18,7 @@
 use crate::error::{Error, require};
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
-use crate::topology::element_class::{ElementClass};
+use crate::topology::element_class::ElementClass;
 use glam::DVec3;
 
 /// Law of the elastic forces of an element.

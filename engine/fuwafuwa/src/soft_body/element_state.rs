@@ -1,8 +1,7 @@
 //! Measurements on a body: strain and stress of elements, damage of nodes, and the energy of pieces.
 
-use crate::foundation::dim::Dim;
+use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::ids::{ElementId, NodeId};
-use crate::rigid_body::shape::Vector;
 use crate::soft_body::SoftBody;
 use crate::soft_body::element_law::{
     Elasticity, IDENTITY, Law, MIN_VOLUME_RATIO, Matrix, cofactor, deformation_of, hourglass,
@@ -183,12 +182,12 @@ impl<D: Dim> SoftBody<D> {
     ///
     /// let body = SoftBody::new(VoxelGrid::<Dim2>::ball(8, 1.0)?, &[Material::default()])?;
     /// let mass = body.total_mass();
-    /// let energy = body.with_velocity([2.0, 0.0, 0.0]).energies([0.0, -9.81, 0.0])[0];
+    /// let energy = body.with_velocity(2.0 * Vec2::X).energies(-9.81 * Vec2::Y)[0];
     /// assert!((energy.kinetic - 2.0 * mass).abs() < 1e-3 && energy.elastic < 1e-6);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[inline(never)]
-    pub fn energies(&self, gravity: Vector) -> Vec<Energy> {
+    pub fn energies(&self, gravity: D::Vector) -> Vec<Energy> {
         let Self {
             topology: truth,
             state,
@@ -198,7 +197,8 @@ impl<D: Dim> SoftBody<D> {
         let pull = f64::from(state.gravity_scale);
         for (id, _) in truth.mesh.nodes() {
             let (at, velocity, mass) = self.node_state(id);
-            let [at, velocity, gravity] = [at, velocity, gravity].map(Vector::as_dvec3);
+            let [at, velocity, gravity] =
+                [at, velocity, gravity].map(|vector| vector.to_vec3().as_dvec3());
             let mass = f64::from(mass);
             let energy = &mut energies[truth.pieces.of_node(id).index()];
             energy.kinetic += 0.5 * mass * velocity.dot(velocity);
@@ -231,7 +231,7 @@ mod tests {
         for id in nodes {
             let (at, velocity, _) = body.node_state(id);
             let [x, y, z] = at.to_array();
-            let sway = Vector::new(4.0 * y * y - y, 3.0 * z * x + y, 5.0 * x * y - 2.0 * z);
+            let sway = Vec3::new(4.0 * y * y - y, 3.0 * z * x + y, 5.0 * x * y - 2.0 * z);
             let at = at * (1.0 - amount) + sway * (amount * 0.1);
             body.set_node_state(id, at, velocity);
         }
@@ -289,7 +289,7 @@ mod tests {
         let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in nodes {
             let (at, ..) = body.node_state(id);
-            body.set_node_state(id, at.with_x(1.05 * at.x), Vector::ZERO);
+            body.set_node_state(id, at.with_x(1.05 * at.x), Vec3::ZERO);
         }
         let body = body.rotated_about(Rotation::in_plane(1.0), [0.0; 3]);
         let Elasticity { young, poisson } = Material::default().elasticity;
@@ -298,7 +298,7 @@ mod tests {
         let size = f64::from(body.grid().voxel_size());
         let voxel = (0..D::N).fold(1.0, |volume, _| volume * size);
         let volume = voxel * body.grid().solid_count() as f64;
-        let energy = body.energies(Vector::ZERO)[0].elastic;
+        let energy = body.energies(Vec3::ZERO)[0].elastic;
         assert!(
             (energy / (0.5 * along * 0.05 * volume) - 1.0).abs() < 1e-3,
             "{energy}"
@@ -333,7 +333,7 @@ mod tests {
         let grid = VoxelGrid::<Dim2>::ball(12, 1.0).unwrap();
         let mut body = SoftBody::new(grid, &[calm])
             .unwrap()
-            .with_velocity(Vector::new(1.0, 2.0, 0.0));
+            .with_velocity(Vec3::new(1.0, 2.0, 0.0));
         let gravity = [0.0, -9.81, 0.0];
         let before = body.energies(gravity.into())[0];
         let duration = 1.0 / 960.0;

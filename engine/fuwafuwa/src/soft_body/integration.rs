@@ -1,34 +1,33 @@
 //! Motion of the nodes of a body in a substep.
 
 use super::SoftBody;
-use crate::foundation::dim::{Dim, inner};
+use crate::foundation::dim::{Dim, DimVector, inner};
 use crate::foundation::ids::ElementId;
 use crate::foundation::threads;
 use crate::math::row::Row;
-use crate::rigid_body::shape::Vector;
 use crate::soft_body::element_forces::VelocityUpdate;
 use crate::soft_body::element_law::rotation_if_far_from;
 use crate::soft_body::momentum::RigidMotionF32;
+use glam::Vec3;
 
 impl<D: Dim> SoftBody<D> {
     /// Advances an isolated body by `duration` [s] under `gravity` [m/s²], without contact or damping.
     /// Symplectic Euler, stable if `duration` is at most [`SoftBody::longest_substep`].
     #[inline(never)]
-    pub fn advance(&mut self, duration: f32, gravity: Vector) {
-        self.push(duration, gravity);
+    pub fn advance(&mut self, duration: f32, gravity: D::Vector) {
+        self.push(duration, gravity.to_vec3());
         self.drift(duration, 0.0);
     }
 
     /// Applies elastic forces and gravity over `duration` [s] to the velocities.
-    pub(crate) fn push(&mut self, duration: f32, gravity: Vector) {
+    pub(crate) fn push(&mut self, duration: f32, gravity: Vec3) {
         self.refresh_awake();
         if std::mem::take(&mut self.state.placed) {
             let all: Vec<ElementId> = self.topology.mesh.elements().map(|(id, _)| id).collect();
             self.settle(&all);
         }
         self.state.blocks.evaluate(&self.state.ahead);
-        let mut gravity = Row::from(gravity) * self.state.gravity_scale;
-        gravity[D::N..].fill(0.0);
+        let gravity = Row::from(gravity) * self.state.gravity_scale;
         let kick = VelocityUpdate {
             nodes: &self.cache.awake,
             inverse_mass: &self.state.inverse_mass,
@@ -39,9 +38,10 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Applies an acceleration field [m/s²] over `duration` [s] to the velocities.
-    pub(crate) fn pull(&mut self, duration: f32, field: &dyn Fn(Vector) -> Vector) {
+    pub(crate) fn pull(&mut self, duration: f32, field: &dyn Fn(D::Vector) -> D::Vector) {
         for &id in &self.cache.awake {
-            let pull = Row::from(field(self.state.position[id].xyz()));
+            let point = D::Vector::from_vec3(self.state.position[id].xyz());
+            let pull = Row::from(field(point).to_vec3());
             if self.state.inverse_mass[id] > 0.0 && pull.is_finite() {
                 for axis in 0..D::N {
                     self.state.velocity[id][axis] += pull[axis] * duration;
@@ -63,7 +63,7 @@ impl<D: Dim> SoftBody<D> {
                 .mesh
                 .element(id)
                 .expect("`settle` is called with live elements");
-            let wide = |rows: [Vector; 3]| rows.map(|row| row.as_dvec3());
+            let wide = |rows: [Vec3; 3]| rows.map(|row| row.as_dvec3());
             let (rotation, deformation) = (
                 self.state.blocks.rotation(id),
                 self.elastic_part(id, element),

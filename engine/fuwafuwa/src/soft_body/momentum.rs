@@ -1,7 +1,7 @@
 //! Linear and angular momentum of a set of nodes, and the rigid motion with a given momentum.
 
 use crate::foundation::dim::Dim;
-use crate::math::velocity::Velocity;
+use crate::math::twist::Twist;
 use crate::soft_body::element_forces::Row;
 use glam::DVec3;
 
@@ -116,8 +116,8 @@ impl RigidMotion {
     }
 
     /// Velocity of the centre, and angular velocity about it.
-    pub(crate) fn velocity(&self) -> Velocity {
-        Velocity {
+    pub(crate) fn velocity(&self) -> Twist {
+        Twist {
             linear: self.velocity.as_vec3(),
             angular: self.angular_velocity.as_vec3(),
         }

@@ -2,14 +2,16 @@
 
 use super::SoftBody;
 use super::body_state::State;
-use crate::foundation::dim::{Dim, turning};
+use crate::foundation::dim::{Dim, DimVector, turning};
 use crate::foundation::ids::NodeId;
 use crate::math::rotation::Rotation;
+use crate::math::twist::Twist;
 use crate::math::velocity::Velocity;
 use crate::rigid_body::layers::Layers;
-use crate::rigid_body::shape::{Vector, flat};
+use crate::rigid_body::solid::flat;
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::momentum::{Momentum, RigidMotion, centre_of};
+use glam::Vec3;
 
 impl<D: Dim> SoftBody<D> {
     /// Collision layers of the body: see [`World::set_layers`](crate::World::set_layers).
@@ -30,8 +32,8 @@ impl<D: Dim> SoftBody<D> {
     /// Returns the body translated by `by` [m]. Pieces that are then not finite are quarantined in their
     /// first tick.
     #[inline(never)]
-    pub fn translated(mut self, by: Vector) -> Self {
-        self.shift(by);
+    pub fn translated(mut self, by: D::Vector) -> Self {
+        self.shift(by.to_vec3());
         self
     }
 
@@ -46,13 +48,13 @@ impl<D: Dim> SoftBody<D> {
     /// let body = SoftBody::new(grid, &[Material::default()])?;
     /// let centre = body.centre_of_mass();
     /// let upright = body.rotated_about(Rotation::in_plane(1.5708), centre);
-    /// assert!((upright.centre_of_mass()[0] - centre[0]).abs() < 1e-5);
+    /// assert!(upright.centre_of_mass().distance(centre) < 1e-5);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[inline(never)]
     #[must_use]
-    pub fn rotated_about(mut self, rotation: Rotation, point: Vector) -> Self {
-        self.turn(rotation, point);
+    pub fn rotated_about(mut self, rotation: Rotation, point: D::Vector) -> Self {
+        self.turn(rotation, point.to_vec3());
         self
     }
 
@@ -66,19 +68,19 @@ impl<D: Dim> SoftBody<D> {
     /// Returns the body with a velocity: linear, or linear and angular about its centre of mass. Every node gets the
     /// velocity of that rigid motion.
     #[must_use]
-    pub fn with_velocity(self, velocity: impl Into<Velocity>) -> Self {
-        self.moving_at(velocity.into())
+    pub fn with_velocity(self, velocity: impl Into<Velocity<D>>) -> Self {
+        self.moving_at(velocity.into().twist())
     }
 
     #[inline(never)]
-    pub(crate) fn moving_at(mut self, velocity: Velocity) -> Self {
+    pub(crate) fn moving_at(mut self, velocity: Twist) -> Self {
         let linear = velocity.linear;
         for row in self.state.velocity.iter_mut() {
-            row[..D::N].copy_from_slice(&linear.as_ref()[..D::N]);
+            *row = Row::from(linear);
         }
         let angular = turning::<D>(velocity.angular);
-        if angular != Vector::ZERO {
-            let centre = self.centre_of_mass();
+        if angular != Vec3::ZERO {
+            let centre = self.centre();
             for (id, _) in self.topology.mesh.nodes() {
                 let lever = self.state.position[id].xyz() - centre;
                 add::<D>(&mut self.state.velocity[id], angular.cross(lever));
@@ -102,14 +104,18 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Centre of mass [m].
+    pub fn centre_of_mass(&self) -> D::Vector {
+        D::Vector::from_vec3(self.centre())
+    }
+
     #[inline(never)]
-    pub fn centre_of_mass(&self) -> Vector {
+    fn centre(&self) -> Vec3 {
         let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
         let states = self.states(&nodes).map(|(at, _, mass)| (at, mass));
         centre_of(states).as_vec3()
     }
 
-    pub(crate) fn shift(&mut self, by: Vector) {
+    pub(crate) fn shift(&mut self, by: Vec3) {
         let State {
             position, ahead, ..
         } = &mut self.state;
@@ -120,7 +126,7 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    pub(crate) fn turn(&mut self, rotation: Rotation, about: Vector) {
+    pub(crate) fn turn(&mut self, rotation: Rotation, about: Vec3) {
         let rotation = rotation.seen_in::<D>();
         let about = flat::<D>(about);
         let State {
@@ -140,7 +146,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Returns the rigid motion with the linear and angular momentum of the body.
-    pub(crate) fn rigid_velocity(&self) -> Velocity {
+    pub(crate) fn rigid_velocity(&self) -> Twist {
         let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
         let masses = || self.states(&nodes).map(|(at, _, mass)| (at, mass));
         let centre = centre_of(masses());
@@ -149,7 +155,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Gives all nodes that are neither fixed nor asleep the velocity of a rigid motion about the centre of mass.
-    pub(crate) fn set_velocity(&mut self, velocity: Velocity) {
+    pub(crate) fn set_velocity(&mut self, velocity: Twist) {
         for (id, _) in self.topology.mesh.nodes() {
             if self.state.inverse_mass[id] > 0.0 {
                 self.state.velocity[id] = Row::ZERO;
@@ -160,8 +166,8 @@ impl<D: Dim> SoftBody<D> {
 
     /// Adds `linear` [m/s], and `angular` [rad/s] about the centre of mass, to the velocities of all nodes
     /// that are neither fixed nor asleep.
-    pub(crate) fn add_velocity(&mut self, linear: Vector, angular: Vector) {
-        let centre = self.centre_of_mass();
+    pub(crate) fn add_velocity(&mut self, linear: Vec3, angular: Vec3) {
+        let centre = self.centre();
         let angular = turning::<D>(angular);
         for (id, _) in self.topology.mesh.nodes() {
             if self.state.inverse_mass[id] > 0.0 {
@@ -175,7 +181,7 @@ impl<D: Dim> SoftBody<D> {
     /// Distributes an impulse [N s] over the nodes within `radius` [m] of the point `at`, in proportion to
     /// their mass, so that all of them gain the same velocity. If there is no node within the radius, the
     /// nearest one receives it. Fixed and sleeping nodes are skipped.
-    pub(crate) fn add_impulse(&mut self, at: Vector, radius: f32, impulse: Vector) {
+    pub(crate) fn add_impulse(&mut self, at: Vec3, radius: f32, impulse: Vec3) {
         let nodes = self.topology.mesh.nodes().map(|(id, _)| id);
         let free = nodes.filter(|&id| self.state.inverse_mass[id] > 0.0);
         let at = flat::<D>(at);
@@ -197,7 +203,7 @@ impl<D: Dim> SoftBody<D> {
     }
 }
 
-fn add<D: Dim>(row: &mut Row, vector: Vector) {
+fn add<D: Dim>(row: &mut Row, vector: Vec3) {
     for axis in 0..D::N {
         row[axis] += vector[axis];
     }

@@ -3,9 +3,9 @@
 use super::SoftBody;
 use crate::foundation::dim::{Dim, Point};
 use crate::foundation::ids::{IndexVec, NodeId, PieceId};
-use crate::math::vector::Vector;
 use crate::soft_body::element_forces::Row;
 use crate::topology::mesh::Node;
+use glam::Vec3;
 
 impl<D: Dim> SoftBody<D> {
     /// Puts all marked pieces to sleep, or wakes them.
@@ -92,6 +92,6 @@ impl<D: Dim> SoftBody<D> {
         let nearest = || beside.min_by_key(squared);
         let (point, row) = was(id, at).or_else(nearest).copied().unwrap_or_default();
         let apart = apart(point).map(|k| k as f32 * self.topology.grid.voxel_size());
-        row + Row::from(Vector::from(apart))
+        row + Row::from(Vec3::from(apart))
     }
 }

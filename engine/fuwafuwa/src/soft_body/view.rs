@@ -1,12 +1,13 @@
 //! Views of a body: pieces, surface, elements, and the mass in a region.
 
-use crate::foundation::dim::{Dim, Dim2, Point, add, corner, face_corners, scale};
+use crate::foundation::dim::{Dim, Dim2, DimVector, Point, add, corner, face_corners, scale};
 use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::math::row::Row;
-use crate::rigid_body::shape::{Shape, Vector};
+use crate::rigid_body::shape::Shape;
 use crate::soft_body::SoftBody;
 use crate::topology::element_class::{slot_at, slot_index};
 use crate::topology::mesh::Element;
+use glam::Vec3;
 
 /// Summary of a piece.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -16,13 +17,13 @@ pub struct PieceView {
     /// Mass [kg].
     pub mass: f32,
     /// Centre of mass [m].
-    pub centre: Vector,
+    pub centre: Vec3,
     /// Velocity of the centre of mass [m/s].
-    pub velocity: Vector,
+    pub velocity: Vec3,
     /// Lowest coordinates of the nodes [m].
-    pub low: Vector,
+    pub low: Vec3,
     /// Highest coordinates of the nodes [m].
-    pub high: Vector,
+    pub high: Vec3,
     /// Number of elements.
     pub element_count: u32,
     /// Whether the piece sleeps.
@@ -40,9 +41,9 @@ pub struct Facet {
     /// the body lies to the left.
     pub nodes: [NodeId; 4],
     /// Positions of the nodes [m].
-    pub corners: [Vector; 4],
+    pub corners: [Vec3; 4],
     /// Outward unit normal.
-    pub normal: Vector,
+    pub normal: Vec3,
     /// Element of the face.
     pub element: ElementId,
     /// Piece of the element.
@@ -59,9 +60,9 @@ pub struct Outline {
     /// Node ids; the body lies to the left.
     pub nodes: Vec<NodeId>,
     /// Positions of the nodes [m].
-    pub points: Vec<Vector>,
+    pub points: Vec<Vec3>,
     /// Outward unit normals at the points.
-    pub normals: Vec<Vector>,
+    pub normals: Vec<Vec3>,
     /// Whether a crack exposed the segment from each point to the next.
     pub is_fresh: Vec<bool>,
 }
@@ -83,7 +84,7 @@ pub struct ElementView {
     pub strain: f32,
     /// Positions of the slots of the 3 × 3 (× 3) lattice [m]; slots that the element does not reach hold its
     /// centre.
-    pub slots: [Vector; 27],
+    pub slots: [Vec3; 27],
 }
 
 /// Boundary face of the region that an element fills.
@@ -168,10 +169,10 @@ impl<D: Dim> SoftBody<D> {
         let none = |(number, piece): (PieceId, &crate::topology::pieces::Piece)| PieceView {
             number,
             mass: 0.0,
-            centre: Vector::ZERO,
-            velocity: Vector::ZERO,
-            low: Vector::splat(f32::MAX),
-            high: Vector::splat(f32::MIN),
+            centre: Vec3::ZERO,
+            velocity: Vec3::ZERO,
+            low: Vec3::splat(f32::MAX),
+            high: Vec3::splat(f32::MIN),
             element_count: 0,
             asleep: piece.asleep,
             quarantined: piece.quarantined,
@@ -183,7 +184,8 @@ impl<D: Dim> SoftBody<D> {
             views[pieces.of_element(id).index()].element_count += 1;
         }
         for (id, _) in self.topology.mesh.nodes() {
-            let (at, velocity, mass) = self.node_state(id);
+            let (at, velocity) = (self.state.position[id].xyz(), self.state.velocity[id].xyz());
+            let mass = self.state.mass[id];
             let view = &mut views[pieces.of_node(id).index()];
             view.mass += mass;
             view.centre += at * mass;
@@ -195,7 +197,7 @@ impl<D: Dim> SoftBody<D> {
         }
         for view in &mut views {
             if view.removed {
-                (view.low, view.high) = (Vector::ZERO, Vector::ZERO);
+                (view.low, view.high) = (Vec3::ZERO, Vec3::ZERO);
                 continue;
             }
             view.centre *= 1.0 / view.mass;
@@ -204,15 +206,15 @@ impl<D: Dim> SoftBody<D> {
         views
     }
 
-    /// Mass of all nodes inside a region [kg]; in 2D the third coordinate of the region is ignored.
+    /// Mass of all nodes inside a region [kg].
     #[inline(never)]
-    pub fn mass_inside(&self, region: &Shape) -> f32 {
-        let region = region.seen_in::<D>();
-        self.mass_where(|at| region.distance(at).0 < 0.0)
+    pub fn mass_inside(&self, region: &Shape<D>) -> f32 {
+        let region = region.solid();
+        self.mass_where(|at| region.distance(at.to_vec3()).0 < 0.0)
     }
 
     /// Mass of all nodes [kg] at positions [m] that satisfy a condition.
-    pub fn mass_where(&self, is_inside: impl Fn(Vector) -> bool) -> f32 {
+    pub fn mass_where(&self, is_inside: impl Fn(D::Vector) -> bool) -> f32 {
         let states = self
             .topology
             .mesh
@@ -345,9 +347,9 @@ impl<D: Dim> SoftBody<D> {
 
     /// Positions of the slots of an element: those of its nodes, or interpolated between the nodes that
     /// represent them.
-    fn slot_positions(&self, element: &Element) -> [Vector; 27] {
+    fn slot_positions(&self, element: &Element) -> [Vec3; 27] {
         let centre = self.deformation(element).0;
-        let mut positions: [Option<Vector>; 27] = [None; 27];
+        let mut positions: [Option<Vec3>; 27] = [None; 27];
         let slots = &self.topology.mesh.stencil(element).slots;
         for (&slot, &node) in slots.iter().zip(&element.nodes) {
             positions[slot as usize] = Some(self.state.position[node].xyz());
@@ -360,7 +362,7 @@ impl<D: Dim> SoftBody<D> {
                 if positions[slot].is_some() || middles != order {
                     continue;
                 }
-                let mut sum = Vector::ZERO;
+                let mut sum = Vec3::ZERO;
                 let mut count = 0.0;
                 for axis in (0..D::N).filter(|&axis| at[axis] == 1) {
                     for end in [0, 2] {
@@ -384,7 +386,7 @@ impl<D: Dim> SoftBody<D> {
     fn facet(&self, id: ElementId, element: &Element, face: usize) -> Facet {
         let ring = face_corners::<D>(face);
         let mut nodes = [NodeId(u32::MAX); 4];
-        let mut corners = [Vector::ZERO; 4];
+        let mut corners = [Vec3::ZERO; 4];
         for place in 0..D::CORNERS / 2 {
             nodes[place] = element.nodes[ring[place]];
             corners[place] = self.state.position[nodes[place]].xyz();
@@ -393,7 +395,7 @@ impl<D: Dim> SoftBody<D> {
         let normal = match D::N {
             2 => {
                 let along = corners[1] - corners[0];
-                Vector::new(along[1], -along[0], 0.0)
+                Vec3::new(along[1], -along[0], 0.0)
             }
             _ => (corners[2] - corners[0]).cross(corners[3] - corners[1]),
         };
@@ -411,7 +413,7 @@ impl<D: Dim> SoftBody<D> {
 impl ElementView {
     /// Corners [m] of a child that the element fills, in the order of [`corner`]; at level 0, which has no
     /// children, the corners of the whole cell.
-    pub fn child_corners<D: Dim>(&self, child: usize) -> Vec<Vector> {
+    pub fn child_corners<D: Dim>(&self, child: usize) -> Vec<Vec3> {
         let at = |vertex: usize| match self.level {
             0 => scale(corner(vertex), 2),
             _ => add(corner(child), corner(vertex)),
@@ -421,7 +423,7 @@ impl ElementView {
     }
 }
 
-fn unit(v: Vector) -> Vector {
+fn unit(v: Vec3) -> Vec3 {
     v * (1.0 / v.length().max(1e-12))
 }
 

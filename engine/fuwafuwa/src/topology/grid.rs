@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::foundation::dim::{Dim, Point, points_in};
 use crate::foundation::hash::hash_state;
-use crate::rigid_body::shape::Vector;
+use glam::Vec3;
 use std::marker::PhantomData;
 use std::ops::RangeInclusive;
 
@@ -95,7 +95,7 @@ impl<D: Dim> VoxelGrid<D> {
     pub fn from_centres(
         size: [usize; 3],
         voxel_size: f32,
-        mut material: impl FnMut(Vector) -> u8,
+        mut material: impl FnMut(Vec3) -> u8,
     ) -> Result<Self, Error> {
         Self::from_fn(size, voxel_size, |voxel| {
             material(Self::centre(voxel, voxel_size))
@@ -113,8 +113,8 @@ impl<D: Dim> VoxelGrid<D> {
 
     /// Centre of a voxel [m], measured from the low corner of a grid with this voxel size; the third
     /// coordinate is 0 in 2D.
-    pub fn centre(voxel: Point, voxel_size: f32) -> Vector {
-        let mut centre = Vector::ZERO;
+    pub fn centre(voxel: Point, voxel_size: f32) -> Vec3 {
+        let mut centre = Vec3::ZERO;
         for axis in 0..D::N {
             centre[axis] = (voxel[axis] as f32 + 0.5) * voxel_size;
         }
@@ -282,12 +282,12 @@ mod tests {
 
     #[test]
     fn from_centres_fills_voxels_with_centre_inside() {
-        use crate::rigid_body::shape::Shape;
-        let (centre, radius) = (Vector::splat(0.5), 0.3);
-        let inside = |at: Vector| u8::from(Shape::Ball { centre, radius }.distance(at).0 < 0.0);
+        use crate::rigid_body::solid::Solid;
+        let (centre, radius) = (Vec3::splat(0.5), 0.3);
+        let inside = |at: Vec3| u8::from(Solid::Ball { centre, radius }.distance(at).0 < 0.0);
         let grid = VoxelGrid::<Dim3>::from_centres([5; 3], 0.2, inside).unwrap();
         assert_eq!(grid.solid_count(), 19, "a cube of 3 without its 8 corners");
         let centre = VoxelGrid::<Dim2>::centre([1, 2, 0], 2.0);
-        assert_eq!(centre, Vector::new(3.0, 5.0, 0.0));
+        assert_eq!(centre, Vec3::new(3.0, 5.0, 0.0));
     }
 }

@@ -6,16 +6,18 @@ use crate::contact::solver::Hit;
 use crate::error::{Error, require};
 use crate::event::Event;
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
-use crate::foundation::dim::{Dim, turning};
+use crate::foundation::dim::{Dim, DimVector, turning};
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::math::rotation::Rotation;
+use crate::math::twist::Twist;
 use crate::math::velocity::{Impulse, Velocity};
 use crate::rigid_body::layers::Layers;
-use crate::rigid_body::shape::{Vector, flat};
+use crate::rigid_body::solid::flat;
 use crate::rigid_body::{
-    FARTHEST, MotionType, RigidBody, check_friction, check_restitution, is_within_reach,
+    FARTHEST, MotionType, RigidState, check_friction, check_restitution, is_within_reach,
 };
 use crate::soft_body::{MAX_GRAVITY_SCALE, SoftBody};
+use glam::Vec3;
 
 impl<D: Dim> World<D> {
     /// Translates a body `by` [m] at once, through anything in between. The velocity stays, and a kinematic or coupled
@@ -24,19 +26,19 @@ impl<D: Dim> World<D> {
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, or a coordinate is not finite or beyond ±1e6 m.
-    pub fn translate(&mut self, body: impl Into<BodyHandle>, by: Vector) -> Result<(), Error> {
-        self.translate_body(body.into(), by)
+    pub fn translate(&mut self, body: impl Into<BodyHandle>, by: D::Vector) -> Result<(), Error> {
+        self.translate_body(body.into(), by.to_vec3())
     }
 
     #[inline(never)]
-    pub(crate) fn translate_body(&mut self, body: BodyHandle, by: Vector) -> Result<(), Error> {
+    pub(crate) fn translate_body(&mut self, body: BodyHandle, by: Vec3) -> Result<(), Error> {
         let by = within("by", by, "at most 1e6 m on each axis")?;
         match body {
             BodyHandle::Soft(body) => self.displace(body, |body| body.shift(by)),
             BodyHandle::Rigid(rigid) => {
                 let body = self.rigids.get(rigid)?;
                 let (position, rotation) = (body.position() + by, body.rotation());
-                self.set_pose(rigid, position, rotation)
+                self.place_rigid(rigid, position, rotation)
             }
         }
     }
@@ -50,9 +52,9 @@ impl<D: Dim> World<D> {
         &mut self,
         body: impl Into<BodyHandle>,
         rotation: Rotation,
-        point: Vector,
+        point: D::Vector,
     ) -> Result<(), Error> {
-        self.rotate_body(body.into(), rotation, point)
+        self.rotate_body(body.into(), rotation, point.to_vec3())
     }
 
     #[inline(never)]
@@ -60,7 +62,7 @@ impl<D: Dim> World<D> {
         &mut self,
         body: BodyHandle,
         rotation: Rotation,
-        point: Vector,
+        point: Vec3,
     ) -> Result<(), Error> {
         let point = within("point", point, "within 1e6 m of the origin")?;
         match body {
@@ -69,7 +71,7 @@ impl<D: Dim> World<D> {
                 let rotation = rotation.seen_in::<D>();
                 let body = self.rigids.get(rigid)?;
                 let position = rotation.apply_about(body.position(), flat::<D>(point));
-                self.set_pose(rigid, position, body.rotation().then(rotation))?;
+                self.place_rigid(rigid, position, body.rotation().then(rotation))?;
                 self.rigids.get_mut(rigid)?.rotate_velocity(rotation);
                 Ok(())
             }
@@ -85,7 +87,16 @@ impl<D: Dim> World<D> {
     pub fn set_pose(
         &mut self,
         rigid: RigidBodyHandle,
-        position: Vector,
+        position: D::Vector,
+        rotation: Rotation,
+    ) -> Result<(), Error> {
+        self.place_rigid(rigid, position.to_vec3(), rotation)
+    }
+
+    fn place_rigid(
+        &mut self,
+        rigid: RigidBodyHandle,
+        position: Vec3,
         rotation: Rotation,
     ) -> Result<(), Error> {
         self.change_rigid(rigid, |body| body.place::<D>(position, rotation))
@@ -96,21 +107,15 @@ impl<D: Dim> World<D> {
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
-    pub fn velocity(&self, body: impl Into<BodyHandle>) -> Result<Velocity, Error> {
-        self.velocity_of(body.into())
+    pub fn velocity(&self, body: impl Into<BodyHandle>) -> Result<Velocity<D>, Error> {
+        self.velocity_of(body.into()).map(Velocity::from)
     }
 
     #[inline(never)]
-    pub(crate) fn velocity_of(&self, body: BodyHandle) -> Result<Velocity, Error> {
+    pub(crate) fn velocity_of(&self, body: BodyHandle) -> Result<Twist, Error> {
         match body {
             BodyHandle::Soft(body) => Ok(self.bodies.get(body)?.rigid_velocity()),
-            BodyHandle::Rigid(rigid) => {
-                let rigid = self.rigids.get(rigid)?;
-                Ok(Velocity {
-                    linear: rigid.velocity(),
-                    angular: rigid.angular_velocity(),
-                })
-            }
+            BodyHandle::Rigid(rigid) => Ok(self.rigids.get(rigid)?.twist()),
         }
     }
 
@@ -118,14 +123,14 @@ impl<D: Dim> World<D> {
     /// rigid motion, which ends all vibration; [fixed](SoftBody::fix_node) nodes keep their velocity. The body wakes.
     ///
     /// ```
-    /// use fuwafuwa::{Dim3, RigidBody, Shape, Velocity, World, WorldConfig};
+    /// use fuwafuwa::{Dim3, RigidBody, Shape, Vec3, World, WorldConfig};
     ///
-    /// let mut world = World::<Dim3>::new(WorldConfig { gravity: [0.0; 3], ..WorldConfig::default() })?;
-    /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.1 };
-    /// let ball = world.add_rigid_body(RigidBody::dynamic(ball, 1.0))?;
-    /// world.set_velocity(ball, Velocity::linear([6.0, 0.0, 0.0]))?;
+    /// let weightless = WorldConfig { gravity: Vec3::ZERO, ..WorldConfig::default() };
+    /// let mut world = World::<Dim3>::new(weightless)?;
+    /// let ball = world.add_rigid_body(RigidBody::dynamic(Shape::ball(0.1), 1.0))?;
+    /// world.set_velocity(ball, Vec3::new(6.0, 0.0, 0.0))?;
     /// world.step();
-    /// assert!((world.rigid_bodies()[ball].position()[0] - 0.1).abs() < 1e-5);
+    /// assert!((world.rigid_body(ball)?.position().x - 0.1).abs() < 1e-5);
     /// # Ok::<(), fuwafuwa::Error>(())
     /// ```
     ///
@@ -134,16 +139,16 @@ impl<D: Dim> World<D> {
     pub fn set_velocity(
         &mut self,
         body: impl Into<BodyHandle>,
-        velocity: Velocity,
+        velocity: impl Into<Velocity<D>>,
     ) -> Result<(), Error> {
-        self.set_velocity_of(body.into(), velocity)
+        self.set_velocity_of(body.into(), velocity.into().twist())
     }
 
     #[inline(never)]
     pub(crate) fn set_velocity_of(
         &mut self,
         body: BodyHandle,
-        velocity: Velocity,
+        velocity: Twist,
     ) -> Result<(), Error> {
         check_velocity(velocity)?;
         match body {
@@ -168,19 +173,19 @@ impl<D: Dim> World<D> {
     pub fn add_velocity(
         &mut self,
         body: impl Into<BodyHandle>,
-        velocity: Velocity,
+        velocity: impl Into<Velocity<D>>,
     ) -> Result<(), Error> {
-        self.add_velocity_to(body.into(), velocity)
+        self.add_velocity_to(body.into(), velocity.into().twist())
     }
 
     #[inline(never)]
     pub(crate) fn add_velocity_to(
         &mut self,
         body: BodyHandle,
-        velocity: Velocity,
+        velocity: Twist,
     ) -> Result<(), Error> {
         check_velocity(velocity)?;
-        let Velocity { linear, angular } = velocity;
+        let Twist { linear, angular } = velocity;
         match body {
             BodyHandle::Soft(body) => {
                 self.wake_soft(body)?;
@@ -188,8 +193,8 @@ impl<D: Dim> World<D> {
             }
             BodyHandle::Rigid(rigid) => {
                 let rigid = self.dynamic_mut(rigid)?;
-                rigid.velocity = rigid.velocity + flat::<D>(linear);
-                rigid.angular_velocity = rigid.angular_velocity + turning::<D>(angular);
+                rigid.velocity += flat::<D>(linear);
+                rigid.angular_velocity += turning::<D>(angular);
             }
         }
         Ok(())
@@ -199,13 +204,13 @@ impl<D: Dim> World<D> {
     /// that point. The body wakes.
     ///
     /// ```
-    /// use fuwafuwa::{Dim2, Impulse, Material, SoftBody, VoxelGrid, World, WorldConfig};
+    /// use fuwafuwa::{Dim2, Impulse, Material, SoftBody, Vec2, VoxelGrid, World, WorldConfig};
     ///
     /// let grid = VoxelGrid::<Dim2>::ball(16, 1.0)?;
-    /// let mut world = World::new(WorldConfig { gravity: [0.0; 3], ..WorldConfig::default() })?;
+    /// let mut world = World::new(WorldConfig { gravity: Vec2::ZERO, ..WorldConfig::default() })?;
     /// let ball = world.add_soft_body(SoftBody::new(grid, &[Material::default()])?);
-    /// world.apply_impulse(ball, Impulse::at([0.5, 0.5, 0.0], [2.0, 0.0, 0.0]).within(1.0))?;
-    /// let momentum = world.soft_bodies()[ball].momentum().linear[0];
+    /// world.apply_impulse(ball, Impulse::at(Vec2::splat(0.5), 2.0 * Vec2::X).within(1.0))?;
+    /// let momentum = world[ball].momentum().linear.x;
     /// assert!((momentum - 2.0).abs() < 1e-4);
     /// # Ok::<(), fuwafuwa::Error>(())
     /// ```
@@ -216,7 +221,7 @@ impl<D: Dim> World<D> {
     pub fn apply_impulse(
         &mut self,
         body: impl Into<BodyHandle>,
-        impulse: Impulse,
+        impulse: Impulse<D>,
     ) -> Result<(), Error> {
         self.apply_impulse_to(body.into(), impulse)
     }
@@ -225,14 +230,15 @@ impl<D: Dim> World<D> {
     pub(crate) fn apply_impulse_to(
         &mut self,
         body: BodyHandle,
-        impulse: Impulse,
+        impulse: Impulse<D>,
     ) -> Result<(), Error> {
         let Impulse {
             point,
             impulse,
             radius,
         } = impulse;
-        let point = within("point", point, "within 1e6 m of the origin")?;
+        let point = within("point", point.to_vec3(), "within 1e6 m of the origin")?;
+        let impulse = impulse.to_vec3();
         let impulse = within("impulse", impulse, "at most 1e6 N s on each axis")?;
         let is_valid = (0.0..=FARTHEST).contains(&radius);
         require(is_valid, "radius", "0 to 1e6 m", radius)?;
@@ -251,18 +257,17 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Sets the motion type of a rigid body. If it differs from the present one, the present pose becomes the target.
+    /// Sets the motion type of a rigid body. If the type differs from the present one, the present pose becomes the target.
     /// The contacts of the body restart; the body and sleepers in contact with it wake.
     ///
     /// ```
-    /// use fuwafuwa::{Dim2, MotionType, RigidBody, Shape, World, WorldConfig};
+    /// use fuwafuwa::{Dim2, MotionType, RigidBody, Shape, Vec2, World, WorldConfig};
     ///
     /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
-    /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.2 };
-    /// let ball = world.add_rigid_body(RigidBody::dynamic(ball, 1.0))?;
+    /// let ball = world.add_rigid_body(RigidBody::dynamic(Shape::ball(0.2), 1.0))?;
     /// world.set_motion_type(ball, MotionType::Fixed)?;
     /// world.step();
-    /// assert_eq!(world.rigid_bodies()[ball].position(), [0.0; 3]);
+    /// assert_eq!(world.rigid_body(ball)?.position(), Vec2::ZERO);
     /// assert!(world.set_motion_type(ball, MotionType::Dynamic { mass: 0.0 }).is_err());
     /// # Ok::<(), fuwafuwa::Error>(())
     /// ```
@@ -436,16 +441,16 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Changes the world settings from the next tick on. Everything wakes. Bodies are softened or stiffened
+    /// Changes the configuration of the world from the next tick on. Everything wakes. Bodies are softened or stiffened
     /// for the new maximum number of substeps, see [`SoftBody::stiffness_scale`].
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] if a setting is out of range. Everything then stays unchanged.
+    /// [`Error::InvalidParameter`] if a parameter is out of range. Everything then stays unchanged.
     #[inline(never)]
-    pub fn set_config(&mut self, settings: WorldConfig) -> Result<(), Error> {
-        settings.check()?;
-        self.settings = settings;
-        let shortest = settings.shortest_substep();
+    pub fn set_config(&mut self, config: WorldConfig<D>) -> Result<(), Error> {
+        config.check()?;
+        self.config = config;
+        let shortest = config.shortest_substep();
         let mut all: Vec<Hit> = Vec::new();
         for (slot, body) in self.bodies.by_slot_mut() {
             body.scale_stiffness_for(shortest);
@@ -484,7 +489,7 @@ impl<D: Dim> World<D> {
     fn change_rigid(
         &mut self,
         rigid: RigidBodyHandle,
-        change: impl FnOnce(&mut RigidBody) -> Result<(), Error>,
+        change: impl FnOnce(&mut RigidState) -> Result<(), Error>,
     ) -> Result<(), Error> {
         let body = self.rigids.get(rigid)?;
         let was = body.shape().bounds();
@@ -502,7 +507,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns a dynamic rigid body and wakes it.
-    fn dynamic_mut(&mut self, rigid: RigidBodyHandle) -> Result<&mut RigidBody, Error> {
+    fn dynamic_mut(&mut self, rigid: RigidBodyHandle) -> Result<&mut RigidState, Error> {
         let body = self.rigids.get(rigid)?;
         require(
             body.is_dynamic(),
@@ -523,7 +528,7 @@ impl<D: Dim> World<D> {
     }
 }
 
-fn check_velocity(velocity: Velocity) -> Result<(), Error> {
+fn check_velocity(velocity: Twist) -> Result<(), Error> {
     within("linear", velocity.linear, "at most 1e6 m/s on each axis")?;
     within(
         "angular",
@@ -533,7 +538,7 @@ fn check_velocity(velocity: Velocity) -> Result<(), Error> {
     Ok(())
 }
 
-fn within(field: &'static str, vector: Vector, expected: &'static str) -> Result<Vector, Error> {
+fn within(field: &'static str, vector: Vec3, expected: &'static str) -> Result<Vec3, Error> {
     let is_within = is_within_reach(vector);
     require(is_within, field, expected, vector).map(|()| vector)
 }

@@ -49,25 +49,25 @@ impl<D: Dim> Removable<D> for SoftBodyHandle {
 }
 
 impl<D: Dim> Removable<D> for RigidBodyHandle {
-    type Item = RigidBody;
+    type Item = RigidBody<D>;
 
-    fn remove_from(self, world: &mut World<D>) -> Result<RigidBody, Error> {
+    fn remove_from(self, world: &mut World<D>) -> Result<RigidBody<D>, Error> {
         world.remove_rigid_body(self)
     }
 }
 
 impl<D: Dim> Removable<D> for JointHandle {
-    type Item = Joint;
+    type Item = Joint<D>;
 
-    fn remove_from(self, world: &mut World<D>) -> Result<Joint, Error> {
+    fn remove_from(self, world: &mut World<D>) -> Result<Joint<D>, Error> {
         world.remove_joint(self)
     }
 }
 
 impl<D: Dim> Removable<D> for KnifeHandle {
-    type Item = Knife;
+    type Item = Knife<D>;
 
-    fn remove_from(self, world: &mut World<D>) -> Result<Knife, Error> {
+    fn remove_from(self, world: &mut World<D>) -> Result<Knife<D>, Error> {
         world.remove_knife(self)
     }
 }

@@ -1,22 +1,22 @@
 //! World settings: gravity, air drag, substeps and tick length.
 
 use crate::error::{Error, require};
+use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::hash::hash_state;
-use crate::rigid_body::shape::Vector;
 
 /// Default tick length [s]; see [`WorldConfig::tick`].
-pub const TICK: f32 = 1.0 / 60.0;
+pub const DEFAULT_TICK: f32 = 1.0 / 60.0;
 /// Minimum number of substeps in 1/60 s, unless the settings allow only fewer. It gives a force-feedback
 /// device 960 force updates a second.
-pub const USUAL_SUBSTEPS: u32 = 16;
-/// Smallest value of [`WorldConfig::most_substeps`]. With 8 substeps a soft ball is squashed as much as with 16.
-pub const FEWEST_SUBSTEPS: u32 = 8;
+pub const DEFAULT_SUBSTEPS: u32 = 16;
+/// Smallest value of [`WorldConfig::max_substeps`]. With 8 substeps a soft ball is squashed as much as with 16.
+pub const MIN_SUBSTEPS: u32 = 8;
 /// Shortest tick length [s], equal to the interval between two fracture rounds. Each tick has at least one
 /// round, so shorter ticks would mean more rounds per second.
-pub const SHORTEST_TICK: f32 = 1.0 / 240.0;
+pub const MIN_TICK: f32 = 1.0 / 240.0;
 /// Longest tick length [s]. Kinematic targets, embedded spheres and sleep are updated once per tick, and a
 /// longer tick would delay them visibly.
-pub const LONGEST_TICK: f32 = 1.0 / 30.0;
+pub const MAX_TICK: f32 = 1.0 / 30.0;
 /// Fracture and damping rounds per second: one in every four of the usual substeps, and one in the time that
 /// a node takes to give way.
 const ROUNDS: f64 = 240.0;
@@ -24,36 +24,37 @@ const ROUNDS: f64 = 240.0;
 /// World settings.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct WorldConfig {
-    /// Gravity [m/s²], default `[0.0, -9.81, 0.0]`. The third component is ignored in 2D.
-    pub gravity: Vector,
+#[cfg_attr(feature = "serde", serde(bound = ""))]
+pub struct WorldConfig<D: Dim> {
+    /// Gravity [m/s²], default 9.81 downwards, along the negative second axis.
+    pub gravity: D::Vector,
     /// Air drag: decay rate of all velocities [1/s], 0 to 10, default 0. Without gravity and with a drag of
     /// about 1, bodies float.
     pub drag: f32,
     /// Maximum number of substeps in 1/60 s, 8 to 1024, default 64; scaled in proportion for other tick
     /// lengths. Soft bodies that require more are softened, see
     /// [`SoftBody::stiffness_scale`](crate::SoftBody::stiffness_scale). Values below 16 make large soft bodies cheap.
-    pub most_substeps: u32,
+    pub max_substeps: u32,
     /// Tick length [s], 1/240 to 1/30, default 1/60. It sets how often targets, events and contact changes
     /// are exchanged with the program. Substeps, fracture and damping keep their rates per second; shorter
     /// ticks cost a little more. Worlds of different tick lengths behave alike but are not bit-identical.
     pub tick: f32,
 }
 
-hash_state! { struct WorldConfig { gravity, drag, most_substeps, tick } }
+hash_state! { [D: Dim] struct WorldConfig<D> { gravity, drag, max_substeps, tick } }
 
-impl Default for WorldConfig {
+impl<D: Dim> Default for WorldConfig<D> {
     fn default() -> Self {
         Self {
-            gravity: Vector::new(0.0, -9.81, 0.0),
+            gravity: D::Vector::Y * -9.81,
             drag: 0.0,
-            most_substeps: 64,
-            tick: TICK,
+            max_substeps: 64,
+            tick: DEFAULT_TICK,
         }
     }
 }
 
-impl WorldConfig {
+impl<D: Dim> WorldConfig<D> {
     /// Returns the number of occurrences per tick for a rate per second, at least 1.
     pub(super) fn in_tick(&self, per_second: f64) -> u32 {
         ((f64::from(self.tick) * per_second + 0.5) as u32).max(1)
@@ -71,7 +72,7 @@ impl WorldConfig {
 
     /// Returns the maximum number of substeps per tick.
     pub(super) fn most_in_tick(&self) -> u32 {
-        self.in_tick(60.0 * f64::from(self.most_substeps))
+        self.in_tick(60.0 * f64::from(self.max_substeps))
     }
 
     /// Returns the shortest substep [s]; bodies that require a shorter one are softened.
@@ -88,10 +89,10 @@ impl WorldConfig {
             "0 to 10",
             self.drag,
         )?;
-        let substeps = self.most_substeps;
-        let is_valid = (FEWEST_SUBSTEPS..=1024).contains(&substeps);
-        require(is_valid, "most_substeps", "8 to 1024", substeps)?;
-        let is_valid = (SHORTEST_TICK..=LONGEST_TICK).contains(&self.tick);
+        let substeps = self.max_substeps;
+        let is_valid = (MIN_SUBSTEPS..=1024).contains(&substeps);
+        require(is_valid, "max_substeps", "8 to 1024", substeps)?;
+        let is_valid = (MIN_TICK..=MAX_TICK).contains(&self.tick);
         require(is_valid, "tick", "1/240 to 1/30 s", self.tick)
     }
 }

@@ -4,30 +4,40 @@ use super::World;
 use crate::error::Error;
 use crate::event::{Contact, Event};
 use crate::foundation::arena::RigidBodyHandle;
-use crate::foundation::dim::Dim;
+use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::object_ref::{ObjectRef, ObjectSelector};
-use crate::rigid_body::shape::{Bounds, Shape, Vector};
-use crate::rigid_body::{MotionType, RigidBody};
+use crate::rigid_body::solid::{Bounds, Solid};
+use crate::rigid_body::{MotionType, RigidState};
 use crate::soft_body::SoftBody;
+use glam::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Contacts of a tick, summed by pair. Neighbours in a pair list mostly belong to the same pair of objects, so
 /// the place of the last pair is cached.
-#[derive(Default)]
-struct ContactSums {
+struct ContactSums<D: Dim> {
     places: BTreeMap<[ObjectRef; 2], usize>,
-    list: Vec<ContactSum>,
+    list: Vec<ContactSum<D>>,
     last: Option<([ObjectRef; 2], usize)>,
 }
 
 /// Sum of a contact, and the largest normal impulse in it [N s].
-struct ContactSum {
-    contact: Contact,
+struct ContactSum<D: Dim> {
+    contact: Contact<D>,
     largest: f32,
 }
 
-impl ContactSums {
+impl<D: Dim> Default for ContactSums<D> {
+    fn default() -> Self {
+        Self {
+            places: BTreeMap::new(),
+            list: Vec::new(),
+            last: None,
+        }
+    }
+}
+
+impl<D: Dim> ContactSums<D> {
     /// Adds the normal impulse [N s] and the approach speed [m/s] of a contact point. The closure returns the
     /// position [m], and the normal from the second object towards the first; it is called only if the
     /// impulse is the largest of the pair up to now.
@@ -36,7 +46,7 @@ impl ContactSums {
         objects: [ObjectRef; 2],
         impulse: f32,
         speed: f32,
-        point_and_normal: impl FnOnce() -> [Vector; 2],
+        point_and_normal: impl FnOnce() -> [Vec3; 2],
     ) {
         let [first, second] = objects;
         let pair = [first.min(second), first.max(second)];
@@ -46,8 +56,8 @@ impl ContactSums {
                 self.list.push(ContactSum {
                     contact: Contact {
                         pair,
-                        point: Vector::ZERO,
-                        normal: Vector::ZERO,
+                        point: D::Vector::ZERO,
+                        normal: D::Vector::ZERO,
                         speed: 0.0,
                         impulse: 0.0,
                     },
@@ -64,13 +74,14 @@ impl ContactSums {
             *largest = impulse;
             let [point, normal] = point_and_normal();
             let is_turned = first > second;
-            contact.point = point;
-            contact.normal = normal * (if is_turned { -1.0 } else { 1.0 });
+            contact.point = D::Vector::from_vec3(point);
+            let normal = if is_turned { -normal } else { normal };
+            contact.normal = D::Vector::from_vec3(normal);
         }
     }
 
     /// Returns all contacts, ascending by pair.
-    fn contacts(self) -> Vec<Contact> {
+    fn contacts(self) -> Vec<Contact<D>> {
         let places = self.places.into_values();
         places.map(|place| self.list[place].contact).collect()
     }
@@ -83,13 +94,13 @@ impl<D: Dim> World<D> {
     /// the contact keeps the values of the last tick in which one of them moved.
     ///
     /// ```
-    /// use fuwafuwa::{Dim2, ObjectRef, RigidBody, Shape, World, WorldConfig};
+    /// use fuwafuwa::{Dim2, ObjectRef, RigidBody, Shape, Vec2, World, WorldConfig};
     ///
     /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
-    /// let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    /// let floor = world.add_rigid_body(RigidBody::fixed(floor, 0.5))?;
-    /// let ball = Shape::Ball { centre: [0.0, 0.1, 0.0], radius: 0.1 };
-    /// let ball = world.add_rigid_body(RigidBody::dynamic(ball, 1.0))?;
+    /// let floor = Shape::half_space(Vec2::Y, Vec2::ZERO);
+    /// let floor = world.add_rigid_body(RigidBody::fixed(floor))?;
+    /// let ball = RigidBody::dynamic(Shape::ball(0.1), 1.0).at(Vec2::new(0.0, 0.1));
+    /// let ball = world.add_rigid_body(ball)?;
     /// world.step();
     /// let contact = world.contacts_of(ball)?.next().expect("the ball lies on the floor");
     /// assert_eq!(contact.other(ball), Some(ObjectRef::RigidBody(floor)));
@@ -101,7 +112,7 @@ impl<D: Dim> World<D> {
     pub fn contacts_of(
         &self,
         object: impl Into<ObjectSelector>,
-    ) -> Result<impl Iterator<Item = &Contact>, Error> {
+    ) -> Result<impl Iterator<Item = &Contact<D>>, Error> {
         let selector = object.into();
         match selector {
             ObjectSelector::SoftBody(body) => {
@@ -136,7 +147,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns the contacts of the tick, ascending by pair.
-    fn contacts_in_tick(&self) -> Vec<Contact> {
+    fn contacts_in_tick(&self) -> Vec<Contact<D>> {
         let mut sums = ContactSums::default();
         let pairs = self.nearby.nodes.list.iter();
         for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
@@ -177,11 +188,12 @@ impl<D: Dim> World<D> {
 
     /// Compares the contacts, in ascending order, with those of the last tick, and reports beginnings and
     /// ends. Pairs at rest still touch.
-    fn note_changes(&mut self, contacts: Vec<Contact>) {
+    fn note_changes(&mut self, contacts: Vec<Contact<D>>) {
         let mut before = std::mem::take(&mut self.touching).into_iter().peekable();
         let mut touching = Vec::with_capacity(contacts.len());
         let (mut started, mut ended) = (Vec::new(), Vec::new());
-        let mut leave = |old: Contact, touching: &mut Vec<Contact>| match self.rest(old.pair) {
+        let mut leave = |old: Contact<D>, touching: &mut Vec<Contact<D>>| match self.rest(old.pair)
+        {
             true => touching.push(old),
             false => ended.push(Event::ContactEnded { pair: old.pair }),
         };
@@ -233,13 +245,13 @@ impl<D: Dim> World<D> {
     /// Compares the contents of the sensors with those of the last tick, and reports entries and exits.
     fn note_sensors(&mut self) {
         let sensors = self.rigids.entries().filter(|(_, rigid)| rigid.is_sensor);
-        let sensors: Vec<(RigidBodyHandle, &RigidBody)> = sensors.collect();
+        let sensors: Vec<(RigidBodyHandle, &RigidState)> = sensors.collect();
         let mut inside: BTreeSet<(RigidBodyHandle, ObjectRef)> = BTreeSet::new();
         for &(sensor, rigid) in &sensors {
             inside.extend(self.rigids_within(sensor, rigid).map(|who| (sensor, who)));
         }
         for (body, soft) in self.bodies.entries() {
-            let meets = |(_, rigid): &&(_, &RigidBody)| rigid.layers.meet(soft.state.layers);
+            let meets = |(_, rigid): &&(_, &RigidState)| rigid.layers.meet(soft.state.layers);
             let mut met = sensors.iter().filter(meets).peekable();
             // The bounds of the pieces serve all sensors.
             let bounds = met.peek().map(|_| piece_bounds(soft));
@@ -266,7 +278,7 @@ impl<D: Dim> World<D> {
     fn rigids_within(
         &self,
         own: RigidBodyHandle,
-        sensor: &RigidBody,
+        sensor: &RigidState,
     ) -> impl Iterator<Item = ObjectRef> {
         let shape = sensor.shape();
         let rigids = self.rigids.entries().filter(move |&(id, rigid)| {
@@ -280,7 +292,7 @@ impl<D: Dim> World<D> {
 /// Returns the bounding box of the nodes of each piece; that of a piece without nodes overlaps nothing.
 fn piece_bounds<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, Bounds> {
     let pieces = &body.topology.pieces;
-    let nothing = [Vector::INFINITY, Vector::NEG_INFINITY];
+    let nothing = [Vec3::INFINITY, Vec3::NEG_INFINITY];
     let mut all: IndexVec<PieceId, Bounds> = vec![nothing; pieces.list.len()].into();
     for (node, _) in body.topology.mesh.nodes() {
         let at = body.state.position[node].xyz();
@@ -298,7 +310,7 @@ fn piece_bounds<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, Bounds> {
 fn pieces_within<D: Dim>(
     body: &SoftBody<D>,
     bounds: &IndexVec<PieceId, Bounds>,
-    shape: &Shape,
+    shape: &Solid,
 ) -> Vec<PieceId> {
     let pieces = &body.topology.pieces;
     let mut is_open = pieces_near::<D>(bounds, shape.bounds());
@@ -349,7 +361,7 @@ mod tests {
         let mut body = SoftBody::new(grid, &[Material::default()]).expect("a body");
         body.crumble();
         let bounds = piece_bounds(&body);
-        let shape = Shape::Ball {
+        let shape = Solid::Ball {
             centre: [0.0, 0.5, 0.5],
             radius: 0.3,
         };

@@ -3,21 +3,22 @@
 use super::{World, WorldConfig};
 use crate::contact::broad_phase::{bounds_of, leaning_on_body, leaning_on_rigid, sleeping_in};
 #[cfg(feature = "serde")]
-use crate::contact::joint::Joint;
+use crate::contact::joint::JointState;
 use crate::contact::solver::Hit;
 use crate::error::Error;
 use crate::event::Event;
 use crate::foundation::arena::{RigidBodyHandle, RigidSlot, SoftBodyHandle};
-use crate::foundation::dim::Dim;
+use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::hash::{Hash, HashState};
 use crate::fracture::blade::{Blade, CutReport};
 #[cfg(feature = "serde")]
-use crate::fracture::knife::Knife;
+use crate::fracture::knife::KnifeState;
 use crate::math::rotation::Rotation;
-use crate::rigid_body::shape::{Bounds, Vector};
-use crate::rigid_body::{MotionType, RigidBodies, RigidBody};
-use crate::soft_body::{SoftBodies, SoftBody};
+use crate::rigid_body::solid::Bounds;
+use crate::rigid_body::{RigidBody, RigidBodyRef, RigidState};
+use crate::soft_body::SoftBody;
 use crate::topology::changes::History;
+use std::ops::Index;
 
 /// Largest tick counter accepted from a saved world; some 6·10⁸ years of ticks.
 #[cfg(feature = "serde")]
@@ -28,20 +29,20 @@ impl<D: Dim> World<D> {
     /// [`SoftBody::stiffness_scale`].
     #[inline(never)]
     pub fn add_soft_body(&mut self, mut body: SoftBody<D>) -> SoftBodyHandle {
-        body.scale_stiffness_for(self.settings.shortest_substep());
+        body.scale_stiffness_for(self.config.shortest_substep());
         let id = self.bodies.insert(body);
         // The body may have fallen asleep in another world.
         self.wake_body(id);
         id
     }
 
-    /// Adds a rigid body. In 2D the third coordinates are ignored.
+    /// Adds a rigid body.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] if a parameter is out of range.
     #[inline(never)]
-    pub fn add_rigid_body(&mut self, rigid: RigidBody) -> Result<RigidBodyHandle, Error> {
-        let rigid = rigid.seen_in::<D>();
+    pub fn add_rigid_body(&mut self, body: RigidBody<D>) -> Result<RigidBodyHandle, Error> {
+        let rigid = RigidState::from(&body);
         rigid.check()?;
         Ok(self.rigids.insert(rigid))
     }
@@ -55,9 +56,9 @@ impl<D: Dim> World<D> {
     pub fn set_target_position(
         &mut self,
         rigid: RigidBodyHandle,
-        position: Vector,
+        position: D::Vector,
     ) -> Result<(), Error> {
-        self.rigids.get_mut(rigid)?.send::<D>(position)
+        self.rigids.get_mut(rigid)?.send(position.to_vec3())
     }
 
     /// Sets the target rotation that a kinematic or coupled rigid body turns to until the end of the next
@@ -79,15 +80,15 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
     #[inline(never)]
-    pub fn cut(&mut self, body: SoftBodyHandle, blade: &Blade) -> Result<usize, Error> {
+    pub fn cut(&mut self, body: SoftBodyHandle, blade: &Blade<D>) -> Result<usize, Error> {
         self.bodies.get(body)?;
         self.wake_body(body);
         let CutReport {
-            released,
+            split_nodes,
             detached: parted,
         } = self.bodies.get_mut(body)?.cut(blade);
         let energy = 0.0;
-        let positions = released.iter();
+        let positions = split_nodes.iter();
         let releases = positions.map(|&point| Event::NodeSplit {
             body,
             point,
@@ -95,7 +96,7 @@ impl<D: Dim> World<D> {
         });
         self.events.extend(releases);
         self.events.extend(Event::parted(body, &parted));
-        Ok(released.len())
+        Ok(split_nodes.len())
     }
 
     /// Returns a body for changes from outside, such as fixing nodes, translating or cutting. The whole body
@@ -126,41 +127,49 @@ impl<D: Dim> World<D> {
 
     /// Removes a rigid body, see [`World::remove`].
     #[inline(never)]
-    pub(crate) fn remove_rigid_body(&mut self, rigid: RigidBodyHandle) -> Result<RigidBody, Error> {
+    pub(crate) fn remove_rigid_body(
+        &mut self,
+        rigid: RigidBodyHandle,
+    ) -> Result<RigidBody<D>, Error> {
         let removed = self.rigids.remove(rigid)?;
         self.nearby.remove_rigid(rigid.slot());
         let leaning = leaning_on_rigid(&removed, &self.bodies);
         self.wake_leaning(leaning, vec![removed.shape().bounds()]);
-        Ok(removed)
+        Ok(removed.definition())
     }
 
-    /// Returns the settings.
-    pub fn config(&self) -> &WorldConfig {
-        &self.settings
+    /// Returns the configuration.
+    pub fn config(&self) -> &WorldConfig<D> {
+        &self.config
     }
 
-    /// Returns the soft bodies.
-    pub fn soft_bodies(&self) -> &SoftBodies<D> {
-        &self.bodies
+    /// Returns a soft body; `world[body]` does the same and panics if the handle is stale.
+    ///
+    /// # Errors
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    pub fn soft_body(&self, body: SoftBodyHandle) -> Result<&SoftBody<D>, Error> {
+        self.bodies.get(body)
     }
 
-    /// Returns the rigid bodies.
-    pub fn rigid_bodies(&self) -> &RigidBodies {
-        &self.rigids
+    /// Returns a rigid body.
+    ///
+    /// # Errors
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    pub fn rigid_body(&self, body: RigidBodyHandle) -> Result<RigidBodyRef<'_, D>, Error> {
+        self.rigids.get(body).map(RigidBodyRef::new)
     }
 
-    /// Iterates over the fixed rigid bodies.
-    pub fn fixed_rigid_bodies(&self) -> impl Iterator<Item = &RigidBody> + Clone {
-        self.rigids
-            .iter()
-            .filter(|rigid| rigid.motion_type == MotionType::Fixed)
+    /// Iterates over the handles and soft bodies, in the order of their slots.
+    pub fn soft_bodies(&self) -> impl Iterator<Item = (SoftBodyHandle, &SoftBody<D>)> + Clone {
+        self.bodies.entries()
     }
 
-    /// Iterates over the kinematic and coupled rigid bodies.
-    pub fn target_followers(&self) -> impl Iterator<Item = (RigidBodyHandle, &RigidBody)> + Clone {
-        self.rigids
-            .entries()
-            .filter(|(_, rigid)| rigid.follows_target())
+    /// Iterates over the handles and rigid bodies, in the order of their slots.
+    pub fn rigid_bodies(
+        &self,
+    ) -> impl Iterator<Item = (RigidBodyHandle, RigidBodyRef<'_, D>)> + Clone {
+        let rigids = self.rigids.entries();
+        rigids.map(|(id, rigid)| (id, RigidBodyRef::new(rigid)))
     }
 
     /// Returns the handle of the `n`-th body in slot order, counted from 0.
@@ -170,11 +179,15 @@ impl<D: Dim> World<D> {
 
     /// Returns the handle of the `n`-th kinematic or coupled rigid body in slot order, counted from 0.
     pub fn nth_target_follower(&self, n: usize) -> Option<RigidBodyHandle> {
-        self.target_followers().map(|(id, _)| id).nth(n)
+        let followers = self
+            .rigids
+            .entries()
+            .filter(|(_, rigid)| rigid.follows_target());
+        followers.map(|(id, _)| id).nth(n)
     }
 
     /// Returns the events of the last tick, and of operations since then.
-    pub fn events(&self) -> &[Event] {
+    pub fn events(&self) -> &[Event<D>] {
         &self.events
     }
 
@@ -197,11 +210,11 @@ impl<D: Dim> World<D> {
     #[cfg(feature = "serde")]
     pub(crate) fn defect(&self) -> Option<&'static str> {
         let is_sound =
-            |rigid: &RigidBody| rigid.check().is_ok() && rigid.clone().seen_in::<D>() == *rigid;
+            |rigid: &RigidState| rigid.check().is_ok() && rigid.clone().seen_in::<D>() == *rigid;
         let checks = [
             (
-                "its settings are out of range",
-                Self::new(self.settings).is_ok(),
+                "its configuration is out of range",
+                Self::new(self.config).is_ok(),
             ),
             (
                 "a rigid body in it is invalid",
@@ -209,11 +222,11 @@ impl<D: Dim> World<D> {
             ),
             (
                 "a joint in it is invalid",
-                self.joints.iter().all(Joint::is_sound::<D>),
+                self.joints.iter().all(JointState::is_sound::<D>),
             ),
             (
                 "a knife in it is invalid",
-                self.knives.iter().all(Knife::is_sound::<D>),
+                self.knives.iter().all(KnifeState::is_sound::<D>),
             ),
             (
                 "its tick counter is above the limit",
@@ -278,5 +291,17 @@ impl<D: Dim> World<D> {
         let pieces = self.bodies[body].topology.pieces.list.ids();
         let pieces: Vec<Hit> = pieces.map(|piece| (body.slot(), piece)).collect();
         self.wake(&pieces);
+    }
+}
+
+impl<D: Dim> Index<SoftBodyHandle> for World<D> {
+    type Output = SoftBody<D>;
+
+    /// Returns a soft body.
+    ///
+    /// # Panics
+    /// If the handle is stale.
+    fn index(&self, body: SoftBodyHandle) -> &SoftBody<D> {
+        &self.bodies[body]
     }
 }

@@ -5,8 +5,8 @@ use crate::contact::solver::Hit;
 use crate::error::Error;
 use crate::event::{Event, StepReport};
 use crate::foundation::arena::KnifeHandle;
-use crate::foundation::dim::Dim;
-use crate::fracture::knife::{Knife, Knives};
+use crate::foundation::dim::{Dim, DimVector};
+use crate::fracture::knife::{Knife, KnifeRef, KnifeState};
 
 impl<D: Dim> World<D> {
     /// Attaches a knife to a kinematic or coupled rigid body.
@@ -15,28 +15,36 @@ impl<D: Dim> World<D> {
     /// [`Error`] if the handle of the rigid body is stale, the body is fixed or dynamic, or a parameter is
     /// out of range.
     #[inline(never)]
-    pub fn add_knife(&mut self, mut knife: Knife) -> Result<KnifeHandle, Error> {
+    pub fn add_knife(&mut self, knife: Knife<D>) -> Result<KnifeHandle, Error> {
+        let knife = KnifeState::from(&knife);
         knife.check::<D>(&self.rigids)?;
-        // Clears runtime state from another world.
-        knife.forget();
         Ok(self.knives.insert(knife))
     }
 
     /// Removes a knife, see [`World::remove`].
     #[inline(never)]
-    pub(crate) fn remove_knife(&mut self, knife: KnifeHandle) -> Result<Knife, Error> {
-        self.knives.remove(knife)
+    pub(crate) fn remove_knife(&mut self, knife: KnifeHandle) -> Result<Knife<D>, Error> {
+        Ok(self.knives.remove(knife)?.definition())
     }
 
-    /// Returns the knives. A knife on a removed rigid body does not cut.
-    pub fn knives(&self) -> &Knives {
-        &self.knives
+    /// Returns a knife. A knife on a removed rigid body does not cut.
+    ///
+    /// # Errors
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    pub fn knife(&self, knife: KnifeHandle) -> Result<KnifeRef<'_, D>, Error> {
+        self.knives.get(knife).map(KnifeRef::new)
+    }
+
+    /// Iterates over the handles and knives, in the order of their slots.
+    pub fn knives(&self) -> impl Iterator<Item = (KnifeHandle, KnifeRef<'_, D>)> + Clone {
+        let knives = self.knives.entries();
+        knives.map(|(id, knife)| (id, KnifeRef::new(knife)))
     }
 
     /// Opens the faces that cutting edges have passed through.
     #[inline(never)]
     pub(super) fn cut_along_edges(&mut self, report: &mut StepReport) {
-        let round = self.settings.round();
+        let round = self.config.round();
         for (id, knife) in self.knives.entries_mut() {
             let Ok(holder) = self.rigids.get(knife.holder) else {
                 continue;
@@ -56,7 +64,7 @@ impl<D: Dim> World<D> {
                 self.events.push(Event::Cut {
                     knife: id,
                     body: cut.body,
-                    point: cut.at,
+                    point: D::Vector::from_vec3(cut.at),
                     area,
                     work,
                 });
@@ -71,7 +79,7 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub(super) fn hold_edges(&mut self, duration: f32) -> Vec<Hit> {
         let mut woken = Vec::new();
-        let round = self.settings.round();
+        let round = self.config.round();
         for knife in self.knives.iter_mut() {
             let Ok(holder) = self.rigids.get(knife.holder) else {
                 knife.forget();

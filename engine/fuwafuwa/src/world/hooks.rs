@@ -2,34 +2,45 @@
 
 use crate::error::Error;
 use crate::foundation::arena::RigidBodyHandle;
-use crate::rigid_body::shape::Vector;
+use crate::foundation::dim::{Dim, DimVector};
 use crate::rigid_body::{Reaction, RigidBodies};
+use std::marker::PhantomData;
 
 /// Callbacks during a tick; none by default. See [`World::step_with`](crate::World::step_with).
-#[derive(Default)]
-pub struct Hooks<'a> {
+pub struct Hooks<'a, D: Dim> {
     /// External acceleration field, added to gravity: acceleration [m/s²] at a world-space position [m]. It
     /// acts on everything that is awake. Non-finite values are ignored.
-    pub field: Option<&'a dyn Fn(Vector) -> Vector>,
+    pub field: Option<&'a dyn Fn(D::Vector) -> D::Vector>,
     /// Called at the end of each substep.
-    pub after_substep: Option<&'a mut dyn FnMut(&Substep<'_>)>,
+    pub after_substep: Option<&'a mut dyn FnMut(&Substep<'_, D>)>,
+}
+
+impl<D: Dim> Default for Hooks<'_, D> {
+    fn default() -> Self {
+        Self {
+            field: None,
+            after_substep: None,
+        }
+    }
 }
 
 /// State of the world after a substep.
-pub struct Substep<'a> {
+pub struct Substep<'a, D: Dim> {
     /// Index of the substep within the tick, from 0.
     pub number: u32,
     /// Length of the substep [s].
     pub duration: f32,
     rigids: &'a RigidBodies,
+    dim: PhantomData<D>,
 }
 
-impl<'a> Substep<'a> {
+impl<'a, D: Dim> Substep<'a, D> {
     pub(super) fn new(number: u32, duration: f32, rigids: &'a RigidBodies) -> Self {
         Self {
             number,
             duration,
             rigids,
+            dim: PhantomData,
         }
     }
 
@@ -38,17 +49,17 @@ impl<'a> Substep<'a> {
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
-    pub fn reaction(&self, hand: RigidBodyHandle) -> Result<Reaction, Error> {
-        let hand = self.rigids.get(hand)?;
-        Ok(hand.reactions().last().copied().unwrap_or_default())
+    pub fn reaction(&self, body: RigidBodyHandle) -> Result<Reaction<D>, Error> {
+        let last = self.rigids.get(body)?.reactions().last();
+        Ok(last.map(Reaction::from).unwrap_or_default())
     }
 
     /// Returns the position of a rigid body [m].
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
-    pub fn position(&self, hand: RigidBodyHandle) -> Result<Vector, Error> {
-        Ok(self.rigids.get(hand)?.position())
+    pub fn position(&self, body: RigidBodyHandle) -> Result<D::Vector, Error> {
+        Ok(D::Vector::from_vec3(self.rigids.get(body)?.position()))
     }
 }
 
@@ -58,15 +69,15 @@ impl<'a> Substep<'a> {
 /// field.
 ///
 /// ```
-/// use fuwafuwa::field_around;
+/// use fuwafuwa::{Vec2, field_around};
 ///
-/// let planet = field_around([0.0; 3], 9.81, 2.0);
-/// assert_eq!(planet([4.0, 0.0, 0.0]), [-9.81 / 4.0, 0.0, 0.0]);
-/// assert_eq!(planet([0.0; 3]), [0.0; 3]);
+/// let planet = field_around(Vec2::ZERO, 9.81, 2.0);
+/// assert_eq!(planet(Vec2::new(4.0, 0.0)), Vec2::new(-9.81 / 4.0, 0.0));
+/// assert_eq!(planet(Vec2::ZERO), Vec2::ZERO);
 /// ```
-pub fn field_around(centre: Vector, strength: f32, reach: f32) -> impl Fn(Vector) -> Vector {
-    move |at| {
-        let apart = centre - at;
+pub fn field_around<V: DimVector>(centre: V, strength: f32, reach: f32) -> impl Fn(V) -> V {
+    move |point| {
+        let apart = centre - point;
         let distance = apart.length();
         let far = reach / distance.max(reach);
         let near = (100.0 * distance / reach).min(1.0);

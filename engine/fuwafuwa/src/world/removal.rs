@@ -28,9 +28,9 @@ pub struct Removed {
     /// Removed pieces, ascending by body and number.
     pub pieces: Vec<(SoftBodyHandle, PieceId)>,
     /// Bodies without remaining pieces; they were removed, and their handles are stale.
-    pub bodies: Vec<SoftBodyHandle>,
+    pub soft_bodies: Vec<SoftBodyHandle>,
     /// Removed dynamic rigid bodies.
-    pub rigids: Vec<RigidBodyHandle>,
+    pub rigid_bodies: Vec<RigidBodyHandle>,
     /// Total mass of the removed pieces [kg].
     pub mass: f64,
 }
@@ -42,17 +42,17 @@ impl<D: Dim> World<D> {
     /// and makes its handle stale.
     ///
     /// ```
-    /// use fuwafuwa::{Blade, SoftBody, Dim2, Material, PieceId, WorldConfig, VoxelGrid, World};
+    /// use fuwafuwa::{Blade, Dim2, Material, PieceId, SoftBody, Vec2, VoxelGrid, World, WorldConfig};
     ///
     /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
     /// let cake = SoftBody::new(VoxelGrid::cube(16, 1.0)?, &[Material::default()])?;
     /// let cake = world.add_soft_body(cake);
-    /// let across = Blade::segment([0.3, -1.0], [0.3, 2.0]);
+    /// let across = Blade::segment(Vec2::new(0.3, -1.0), Vec2::new(0.3, 2.0));
     /// world.cut(cake, &across)?;
-    /// assert_eq!(world.soft_bodies()[cake].pieces().count(), 2);
+    /// assert_eq!(world[cake].pieces().count(), 2);
     /// let removed = world.remove_piece(cake, PieceId(1))?;
-    /// assert!((removed.mass + world.soft_bodies()[cake].total_mass() - 100.0).abs() < 1e-3);
-    /// assert_eq!(world.soft_bodies()[cake].pieces().count(), 1);
+    /// assert!((removed.mass + world[cake].total_mass() - 100.0).abs() < 1e-3);
+    /// assert_eq!(world[cake].pieces().count(), 1);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -107,28 +107,28 @@ impl<D: Dim> World<D> {
     /// To remove objects that fall for ever, use the half-space above a plane that is below the lowest floor:
     ///
     /// ```
-    /// use fuwafuwa::{Dim3, RigidBody, WorldConfig, Shape, World};
+    /// use fuwafuwa::{Dim3, RigidBody, Shape, Vec3, World, WorldConfig};
     ///
     /// let mut world = World::<Dim3>::new(WorldConfig::default())?;
-    /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.1 };
-    /// let ball = world.add_rigid_body(RigidBody::dynamic(ball, 1.0))?;
+    /// let ball = world.add_rigid_body(RigidBody::dynamic(Shape::ball(0.1), 1.0))?;
     /// // The solid side of this half-space is above the plane, because its normal points down.
-    /// let above = Shape::half_space([0.0, -1.0, 0.0], [0.0, -2.0, 0.0]);
+    /// let above = Shape::half_space(Vec3::NEG_Y, Vec3::new(0.0, -2.0, 0.0));
     /// let mut removed = world.remove_outside(&above)?;
-    /// while removed.rigids.is_empty() && world.ticks() < 60 {
+    /// while removed.rigid_bodies.is_empty() && world.ticks() < 60 {
     ///     world.step();
     ///     removed = world.remove_outside(&above)?;
     /// }
-    /// assert_eq!((removed.rigids, world.rigid_bodies().len()), (vec![ball], 0));
+    /// assert_eq!(removed.rigid_bodies, [ball]);
+    /// assert_eq!(world.rigid_bodies().count(), 0);
     /// # Ok::<(), fuwafuwa::Error>(())
     /// ```
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] if the region is not a valid [shape](Shape::check).
     #[inline(never)]
-    pub fn remove_outside(&mut self, region: &Shape) -> Result<Removed, Error> {
-        let region = region.seen_in::<D>();
+    pub fn remove_outside(&mut self, region: &Shape<D>) -> Result<Removed, Error> {
         region.check().map_err(|error| error.of("region"))?;
+        let region = region.solid();
         let mut removed = self.take_out_where(|body| {
             let mut outside: Vec<bool> = vec![true; body.topology.pieces.list.len()];
             for (id, _) in body.topology.mesh.nodes() {
@@ -144,10 +144,10 @@ impl<D: Dim> World<D> {
             .entries()
             .filter(|(_, rigid)| rigid.is_dynamic());
         let left = free.filter(|(_, rigid)| rigid.shape().gap(&region).0 > 0.0);
-        removed.rigids = left.map(|(id, _)| id).collect();
-        for &rigid in &removed.rigids {
-            if self.remove_rigid_body(rigid).is_ok() {
-                self.events.push(Event::RigidRemoved { rigid });
+        removed.rigid_bodies = left.map(|(id, _)| id).collect();
+        for &body in &removed.rigid_bodies {
+            if self.remove_rigid_body(body).is_ok() {
+                self.events.push(Event::RigidBodyRemoved { body });
             }
         }
         Ok(removed)
@@ -199,8 +199,8 @@ impl<D: Dim> World<D> {
             removed.mass += whole;
             if self.bodies.remove(id).is_ok() {
                 self.nearby.remove_body(id.slot());
-                self.events.push(Event::BodyRemoved { body: id });
-                removed.bodies.push(id);
+                self.events.push(Event::SoftBodyRemoved { body: id });
+                removed.soft_bodies.push(id);
             }
             return;
         }

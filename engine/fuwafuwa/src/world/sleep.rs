@@ -8,7 +8,6 @@ use crate::contact::solver::Hit;
 use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{IndexVec, PieceId};
-use crate::math::vector::Vector;
 use crate::rigid_body::RigidBodies;
 use crate::soft_body::SoftBodies;
 use crate::soft_body::damping::PieceMotion;

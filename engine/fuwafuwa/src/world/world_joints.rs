@@ -1,12 +1,11 @@
 //! Joints of a world: insertion, removal, access.
 
 use super::World;
-use crate::contact::joint::{Joint, JointAnchor, Joints};
+use crate::contact::joint::{Joint, JointEnd, JointRef, JointState};
 use crate::error::Error;
 use crate::event::Event;
 use crate::foundation::arena::JointHandle;
-use crate::foundation::dim::Dim;
-use crate::rigid_body::shape::Vector;
+use crate::foundation::dim::{Dim, DimVector};
 
 impl<D: Dim> World<D> {
     /// Adds a joint between two anchors at their present positions. Both attached bodies wake.
@@ -14,7 +13,8 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Error`] if a handle is stale or a parameter is out of range.
     #[inline(never)]
-    pub fn add_joint(&mut self, mut joint: Joint) -> Result<JointHandle, Error> {
+    pub fn add_joint(&mut self, joint: Joint<D>) -> Result<JointHandle, Error> {
+        let mut joint = JointState::from(&joint);
         joint.check()?;
         joint.hold(&self.bodies, &self.rigids)?;
         self.wake_ends(&joint);
@@ -23,15 +23,24 @@ impl<D: Dim> World<D> {
 
     /// Removes a joint, see [`World::remove`].
     #[inline(never)]
-    pub(crate) fn remove_joint(&mut self, joint: JointHandle) -> Result<Joint, Error> {
+    pub(crate) fn remove_joint(&mut self, joint: JointHandle) -> Result<Joint<D>, Error> {
         let joint = self.joints.remove(joint)?;
         self.wake_ends(&joint);
-        Ok(joint)
+        Ok(joint.definition())
     }
 
-    /// Returns the joints.
-    pub fn joints(&self) -> &Joints {
-        &self.joints
+    /// Returns a joint.
+    ///
+    /// # Errors
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    pub fn joint(&self, joint: JointHandle) -> Result<JointRef<'_, D>, Error> {
+        self.joints.get(joint).map(JointRef::new)
+    }
+
+    /// Iterates over the handles and joints, in the order of their slots.
+    pub fn joints(&self) -> impl Iterator<Item = (JointHandle, JointRef<'_, D>)> + Clone {
+        let joints = self.joints.entries();
+        joints.map(|(id, joint)| (id, JointRef::new(joint)))
     }
 
     /// Returns the world-space positions of both anchors of a joint [m]. `None` if an attached body is gone,
@@ -40,8 +49,12 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
     #[inline(never)]
-    pub fn joint_anchor_positions(&self, joint: JointHandle) -> Result<Option<[Vector; 2]>, Error> {
-        Ok(self.joints.get(joint)?.places(&self.bodies, &self.rigids))
+    pub fn joint_anchor_positions(
+        &self,
+        joint: JointHandle,
+    ) -> Result<Option<[D::Vector; 2]>, Error> {
+        let positions = self.joints.get(joint)?.places(&self.bodies, &self.rigids);
+        Ok(positions.map(|both| both.map(D::Vector::from_vec3)))
     }
 
     /// Removes broken joints, and reports an event for each.
@@ -55,16 +68,16 @@ impl<D: Dim> World<D> {
         }
     }
 
-    fn wake_ends(&mut self, joint: &Joint) {
+    fn wake_ends(&mut self, joint: &JointState) {
         for end in &joint.ends {
             match *end {
-                JointAnchor::Position(_) => {}
-                JointAnchor::RigidBody { rigid, .. } => {
+                JointEnd::Position(_) => {}
+                JointEnd::RigidBody { rigid, .. } => {
                     if self.rigids.get(rigid).is_ok_and(|rigid| rigid.is_asleep()) {
                         self.wake_rigids(&[rigid.slot()]);
                     }
                 }
-                JointAnchor::Soft { body, .. } => {
+                JointEnd::Soft { body, .. } => {
                     if self.bodies.get(body).is_ok() {
                         self.wake_body(body);
                     }

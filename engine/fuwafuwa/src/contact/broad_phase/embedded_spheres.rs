@@ -13,9 +13,9 @@ use crate::foundation::arena::BodySlot;
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, IndexVec, PieceId};
 use crate::math::lanes::on_widest_lanes;
-use crate::rigid_body::shape::Vector;
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
+use glam::Vec3;
 use std::collections::BTreeMap;
 
 /// Search radius for exits [voxels]. Few embedded spheres are deeper; for those all exits are compared.
@@ -329,7 +329,7 @@ fn extents<D: Dim>(body: Option<&SoftBody<D>>) -> IndexVec<PieceId, Extent> {
 
 impl<D: Dim> SoftBody<D> {
     /// Returns whether a position [m] is in an element, which is treated as evenly deformed.
-    fn holds(&self, id: ElementId, at: Vector) -> bool {
+    fn holds(&self, id: ElementId, at: Vec3) -> bool {
         let Some(element) = self.topology.mesh.element(id) else {
             return false;
         };

@@ -7,8 +7,8 @@ use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::{Hash, HashState, hash_all, hash_state};
 use crate::foundation::ids::{IndexVec, NodeId, PieceId};
-use crate::rigid_body::shape::Shape;
-use crate::rigid_body::{RigidBodies, RigidBody};
+use crate::rigid_body::solid::Solid;
+use crate::rigid_body::{RigidBodies, RigidState};
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
 use std::ops::Range;
@@ -208,7 +208,7 @@ impl NodePairs {
         self.spare = f32::INFINITY;
         let sizes = bodies.iter().map(|body| body.topology.grid.voxel_size());
         let size = sizes.fold(0.0, f32::max);
-        let leeway = |rigid: &RigidBody| {
+        let leeway = |rigid: &RigidState| {
             let slack = if rigid.moves() {
                 HAND_SLACK * size
             } else {
@@ -381,7 +381,7 @@ impl Squares {
     }
 
     /// Adds the nodes within their reach plus `range` of a shape [m].
-    fn within(&self, range: f32, shape: &Shape, near: &mut Vec<NodeId>) {
+    fn within(&self, range: f32, shape: &Solid, near: &mut Vec<NodeId>) {
         let is_near = |at: Row, reach: f32| shape.distance(at.xyz()).0 <= reach;
         for square in &self.list {
             if !is_near(square.centre, square.radius + square.reach + range) {
@@ -425,8 +425,8 @@ mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
     use crate::material::Material;
-    use crate::math::vector::Vector;
     use crate::topology::grid::VoxelGrid;
+    use glam::Vec3;
     use std::collections::BTreeSet;
 
     /// Tears a body and moves its nodes at random between two walls, and compares the list with all nodes.
@@ -437,10 +437,10 @@ mod tests {
         let size = body.topology.grid.voxel_size();
         let mut bodies = SoftBodies::default();
         let ball = bodies.insert(body).slot();
-        let wall = |normal, offset| RigidBody::fixed(Shape::HalfSpace { normal, offset }, 0.0);
+        let wall = |normal, offset| RigidState::fixed(Solid::HalfSpace { normal, offset }, 0.0);
         let mut walls = RigidBodies::default();
-        walls.insert(wall(Vector::Y, 0.3));
-        walls.insert(wall(Vector::NEG_X, -0.8));
+        walls.insert(wall(Vec3::Y, 0.3));
+        walls.insert(wall(Vec3::NEG_X, -0.8));
         let mut seed = 5u32;
         let mut random = |below: usize| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

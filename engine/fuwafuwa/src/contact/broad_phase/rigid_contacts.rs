@@ -7,7 +7,7 @@ use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 #[cfg(feature = "serde")]
 use crate::rigid_body::RigidBodies;
-use crate::rigid_body::shape::Vector;
+use glam::Vec3;
 
 /// Contact point between two rigid bodies.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -33,9 +33,9 @@ pub struct Passed {
     /// Approach speed [m/s].
     pub speed: f32,
     /// Position [m].
-    pub at: Vector,
+    pub at: Vec3,
     /// Unit normal from the second body to the first.
-    pub normal: Vector,
+    pub normal: Vec3,
 }
 
 /// All contact points between rigid bodies.

@@ -9,11 +9,11 @@ use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{NodeId, PieceId};
 use crate::math::lanes::on_widest_lanes;
-use crate::math::vector::Vector;
-use crate::rigid_body::shape::Bounds;
-use crate::rigid_body::{RigidBodies, RigidBody};
+use crate::rigid_body::solid::Bounds;
+use crate::rigid_body::{RigidBodies, RigidState};
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
+use glam::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
@@ -22,7 +22,7 @@ pub type Sleeper = (BodySlot, PieceId);
 
 /// Returns the boxes around pieces of a body, enlarged by the contact margin [m].
 pub fn bounds_of<D: Dim>(body: &SoftBody<D>, is_one: impl Fn(PieceId) -> bool) -> Vec<Bounds> {
-    let margin = Vector::splat(MARGIN * body.topology.grid.voxel_size());
+    let margin = Vec3::splat(MARGIN * body.topology.grid.voxel_size());
     let pieces = body.piece_views().into_iter();
     let pieces = pieces.filter(|piece| !piece.removed && is_one(piece.number));
     let bounds = pieces.map(|piece| [piece.low - margin, piece.high + margin]);
@@ -31,7 +31,7 @@ pub fn bounds_of<D: Dim>(body: &SoftBody<D>, is_one: impl Fn(PieceId) -> bool) -
 
 /// Returns the sleeping dynamic rigid bodies with a bounding box that overlaps one of `places`.
 pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &RigidBodies) -> Vec<RigidSlot> {
-    let is_there = |rigid: &RigidBody| {
+    let is_there = |rigid: &RigidState| {
         let [low, high] = rigid.shape().bounds();
         let margin = MARGIN * rigid.shape().inradius().min(1.0);
         places.iter().any(|[from, to]| {
@@ -44,7 +44,7 @@ pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &RigidBodies) -> Vec<Rigid
 }
 
 /// Returns the sleepers in contact with a rigid body, ascending by body and number.
-pub fn leaning_on_rigid<D: Dim>(rigid: &RigidBody, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
+pub fn leaning_on_rigid<D: Dim>(rigid: &RigidState, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let mut leaning = BTreeSet::new();
     for (slot, body) in bodies.by_slot() {
         let reach = MARGIN * body.topology.grid.voxel_size();

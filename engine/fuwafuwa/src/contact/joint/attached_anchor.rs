@@ -1,6 +1,6 @@
 //! Joint anchors: a point of the world, a point of a rigid body, or the mean of some nodes.
 
-use super::joint_anchor::{JointAnchor, Woken};
+use super::joint_end::{JointEnd, Woken};
 use crate::error::Error;
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::{Dim, Point, voxel_around};
@@ -10,17 +10,18 @@ use crate::math::row::Row;
 #[cfg(feature = "serde")]
 use crate::rigid_body::FARTHEST;
 use crate::rigid_body::RigidBodies;
-use crate::rigid_body::shape::{Vector, flat};
+use crate::rigid_body::solid::flat;
 use crate::soft_body::{SoftBodies, SoftBody};
+use glam::Vec3;
 
 /// Anchor of a joint.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum AttachedAnchor {
     /// Point of the world [m].
-    Position(Vector),
+    Position(Vec3),
     /// Point of a rigid body in local coordinates [m].
-    RigidBody(RigidBodyHandle, Vector),
+    RigidBody(RigidBodyHandle, Vec3),
     /// Corners of a soft body, each a voxel and the lattice point of its node. A voxel keeps its corner when
     /// the body tears around it.
     Soft(SoftBodyHandle, Vec<(Point, Point)>),
@@ -32,29 +33,29 @@ hash_state! { enum AttachedAnchor { Position(at), RigidBody(rigid, at), Soft(bod
 #[derive(Copy, Clone, Debug)]
 pub struct AnchorState {
     /// Position [m].
-    pub at: Vector,
+    pub at: Vec3,
     /// Velocity [m/s].
-    pub velocity: Vector,
+    pub velocity: Vec3,
     /// Inverse effective mass matrix, by rows [1/kg].
-    pub yields: [Vector; 3],
+    pub yields: [Vec3; 3],
     pub is_asleep: bool,
 }
 
 impl AttachedAnchor {
     /// Returns the anchor at an attachment point.
     pub fn of<D: Dim>(
-        end: &JointAnchor,
+        end: &JointEnd,
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
     ) -> Result<Self, Error> {
         Ok(match *end {
-            JointAnchor::Position(at) => Self::Position(flat::<D>(at)),
-            JointAnchor::RigidBody { rigid: id, at } => {
+            JointEnd::Position(at) => Self::Position(flat::<D>(at)),
+            JointEnd::RigidBody { rigid: id, at } => {
                 let rigid = rigids.get(id)?;
                 let apart = flat::<D>(at) - rigid.position();
                 Self::RigidBody(id, rigid.rotation().inverse().apply(apart))
             }
-            JointAnchor::Soft {
+            JointEnd::Soft {
                 body: id,
                 at,
                 radius,
@@ -71,7 +72,7 @@ impl AttachedAnchor {
     }
 
     /// Moves an anchor that is not soft to a world-space point [m].
-    pub fn stand_at(&mut self, at: Vector, rigids: &RigidBodies) {
+    pub fn stand_at(&mut self, at: Vec3, rigids: &RigidBodies) {
         match self {
             Self::Position(place) => *place = at,
             Self::RigidBody(id, own) => {
@@ -92,8 +93,8 @@ impl AttachedAnchor {
         match self {
             Self::Position(at) => Some(AnchorState {
                 at: *at,
-                velocity: Vector::ZERO,
-                yields: [Vector::ZERO; 3],
+                velocity: Vec3::ZERO,
+                yields: [Vec3::ZERO; 3],
                 is_asleep: false,
             }),
             Self::RigidBody(id, own) => {
@@ -102,7 +103,7 @@ impl AttachedAnchor {
                 Some(AnchorState {
                     at: rigid.position() + lever,
                     velocity: rigid.velocity_at(lever),
-                    yields: Vector::AXES.map(|way| rigid.gain(lever, way)),
+                    yields: Vec3::AXES.map(|way| rigid.gain(lever, way)),
                     is_asleep: rigid.is_asleep(),
                 })
             }
@@ -113,7 +114,7 @@ impl AttachedAnchor {
                     return None;
                 }
                 let share = 1.0 / nodes.len() as f32;
-                let (mut at, mut velocity, mut gain) = (Vector::ZERO, Vector::ZERO, 0.0);
+                let (mut at, mut velocity, mut gain) = (Vec3::ZERO, Vec3::ZERO, 0.0);
                 let mut is_asleep = true;
                 for node in nodes {
                     at += body.state.position[node].xyz() * share;
@@ -121,7 +122,7 @@ impl AttachedAnchor {
                     gain += body.state.inverse_mass[node] * share * share;
                     is_asleep &= body.topology.pieces.sleeps(node);
                 }
-                let mut yields = [Vector::ZERO; 3];
+                let mut yields = [Vec3::ZERO; 3];
                 (0..D::N).for_each(|axis| yields[axis][axis] = gain);
                 Some(AnchorState {
                     at,
@@ -138,7 +139,7 @@ impl AttachedAnchor {
         &self,
         bodies: &mut SoftBodies<D>,
         rigids: &mut RigidBodies,
-        impulse: Vector,
+        impulse: Vec3,
     ) {
         match self {
             Self::Position(_) => {}
@@ -179,11 +180,11 @@ impl AttachedAnchor {
 
     /// Returns whether an anchor that was read from a file is valid.
     #[cfg(feature = "serde")]
-    pub fn is_sound<D: Dim>(&self, end: &JointAnchor) -> bool {
+    pub fn is_sound<D: Dim>(&self, end: &JointEnd) -> bool {
         let is_of_it = match (self, end) {
-            (Self::Position(_), JointAnchor::Position(_)) => true,
-            (Self::RigidBody(own, _), JointAnchor::RigidBody { rigid, .. }) => own == rigid,
-            (Self::Soft(own, _), JointAnchor::Soft { body, .. }) => own == body,
+            (Self::Position(_), JointEnd::Position(_)) => true,
+            (Self::RigidBody(own, _), JointEnd::RigidBody { rigid, .. }) => own == rigid,
+            (Self::Soft(own, _), JointEnd::Soft { body, .. }) => own == body,
             _ => false,
         };
         let is_somewhere = match self {
@@ -220,7 +221,7 @@ fn nodes<'a, D: Dim>(
 }
 
 /// Returns the corners of a body within `radius` [m] of a point, or the nearest one.
-fn corners_near<D: Dim>(body: &SoftBody<D>, at: Vector, radius: f32) -> Vec<(Point, Point)> {
+fn corners_near<D: Dim>(body: &SoftBody<D>, at: Vec3, radius: f32) -> Vec<(Point, Point)> {
     let distance = |node: NodeId| {
         let apart = body.state.position[node].xyz() - at;
         apart.dot(apart)

@@ -1,13 +1,14 @@
 //! Impulses of pins, springs and ropes.
 
-use super::Joint;
+use super::JointKind;
+use super::JointState;
 use super::attached_anchor::AnchorState;
-use super::joint_anchor::{JointKind, Woken};
+use super::joint_end::Woken;
 use crate::contact::broad_phase::WAKE_SPEED;
 use crate::foundation::dim::Dim;
 use crate::rigid_body::RigidBodies;
-use crate::rigid_body::shape::Vector;
 use crate::soft_body::SoftBodies;
+use glam::Vec3;
 
 /// Warm-starting factor of pins and springs, the same as for contacts. Chains of pins with a heavy end swing
 /// more with other values.
@@ -22,7 +23,7 @@ const DRAW_SPEED: f32 = 2.0;
 const WAKE_STRETCH: f32 = 0.002;
 const WAKE_SHARE: f32 = 0.02;
 
-impl Joint {
+impl JointState {
     /// Begins a substep with a warm start. Returns whether both anchors exist.
     pub(super) fn start<D: Dim>(
         &mut self,
@@ -42,10 +43,10 @@ impl Joint {
         self.impulse = match self.tie {
             JointKind::Pin => self.impulse * WARM_START,
             JointKind::Spring { .. } => direction(first.at - second.at)
-                .map_or(Vector::ZERO, |(_, way)| {
+                .map_or(Vec3::ZERO, |(_, way)| {
                     way * (WARM_START * self.impulse.dot(way))
                 }),
-            JointKind::Rope { .. } => Vector::ZERO,
+            JointKind::Rope { .. } => Vec3::ZERO,
         };
         self.push(bodies, rigids, self.impulse);
         true
@@ -84,12 +85,12 @@ impl Joint {
                 let draw = if draws {
                     drawn(apart, duration)
                 } else {
-                    Vector::ZERO
+                    Vec3::ZERO
                 };
                 solved::<D>(&yields, -(relative + draw))
             }
             // The spring force is not a position correction, so it stays in the velocity.
-            JointKind::Spring { .. } if !draws => Vector::ZERO,
+            JointKind::Spring { .. } if !draws => Vec3::ZERO,
             JointKind::Spring {
                 stiffness,
                 damping,
@@ -114,14 +115,14 @@ impl Joint {
     /// change of λ. Without the term γ λ every iteration would add the whole impulse again.
     fn spring(
         &self,
-        apart: Vector,
-        relative: Vector,
-        yields: &[Vector; 3],
+        apart: Vec3,
+        relative: Vec3,
+        yields: &[Vec3; 3],
         [stiffness, damping, rest]: [f32; 3],
         duration: f32,
-    ) -> Vector {
+    ) -> Vec3 {
         let Some((distance, way)) = direction(apart) else {
-            return Vector::ZERO;
+            return Vec3::ZERO;
         };
         let softness = 1.0 / (duration * (damping + duration * stiffness));
         let push = (distance - rest) * duration * stiffness * softness;
@@ -133,19 +134,19 @@ impl Joint {
     /// Returns the impulse of a rope, which pulls and never pushes.
     fn rope(
         &self,
-        apart: Vector,
-        relative: Vector,
-        yields: &[Vector; 3],
+        apart: Vec3,
+        relative: Vec3,
+        yields: &[Vec3; 3],
         most: f32,
         duration: f32,
         draws: bool,
-    ) -> Vector {
+    ) -> Vec3 {
         let Some((distance, way)) = direction(apart) else {
-            return Vector::ZERO;
+            return Vec3::ZERO;
         };
         let gain = along(yields, way);
         if gain <= 0.0 || !draws && distance < most {
-            return Vector::ZERO;
+            return Vec3::ZERO;
         }
         let beyond = distance - most;
         let wanted = match (draws, beyond > 0.0) {
@@ -162,7 +163,7 @@ impl Joint {
     pub(super) fn yields<D: Dim>(&self, bodies: &SoftBodies<D>, rigids: &RigidBodies) -> bool {
         let grips = self.grips(bodies, rigids).into_iter().flatten();
         let mut ways = grips.flat_map(|grip| grip.yields);
-        ways.any(|way| way != Vector::ZERO)
+        ways.any(|way| way != Vec3::ZERO)
     }
 
     fn grips<D: Dim>(
@@ -175,14 +176,14 @@ impl Joint {
             .map(|anchor| anchor.grip(bodies, rigids))
     }
 
-    fn push<D: Dim>(&self, bodies: &mut SoftBodies<D>, rigids: &mut RigidBodies, impulse: Vector) {
+    fn push<D: Dim>(&self, bodies: &mut SoftBodies<D>, rigids: &mut RigidBodies, impulse: Vec3) {
         self.anchors[0].push(bodies, rigids, impulse);
         self.anchors[1].push(bodies, rigids, -impulse);
     }
 }
 
 /// Returns the velocity at which a pin corrects its position error [m/s].
-fn drawn(apart: Vector, duration: f32) -> Vector {
+fn drawn(apart: Vec3, duration: f32) -> Vec3 {
     let draw = apart * (DRAW / duration);
     let speed = draw.length();
     match speed > DRAW_SPEED {
@@ -192,31 +193,29 @@ fn drawn(apart: Vector, duration: f32) -> Vector {
 }
 
 /// Returns the length and direction of a vector; `None` for a zero vector.
-fn direction(apart: Vector) -> Option<(f32, Vector)> {
+fn direction(apart: Vec3) -> Option<(f32, Vec3)> {
     let distance = apart.length();
     (distance > 1e-6).then(|| (distance, apart * (1.0 / distance)))
 }
 
 /// Returns the inverse effective mass along a unit direction [1/kg].
-fn along(yields: &[Vector; 3], way: Vector) -> f32 {
+fn along(yields: &[Vec3; 3], way: Vec3) -> f32 {
     way.dot(yields.map(|row| row.dot(way)).into())
 }
 
 /// Returns the impulse for a change of velocity; 0 if nothing can move.
-fn solved<D: Dim>(yields: &[Vector; 3], velocity: Vector) -> Vector {
+fn solved<D: Dim>(yields: &[Vec3; 3], velocity: Vec3) -> Vec3 {
     let [x, y, mut z] = *yields;
     // In 2D the third row and the third velocity are 0.
     if D::N == 2 {
-        z = Vector::Z;
+        z = Vec3::Z;
     }
     let under = x.dot(y.cross(z));
     if under <= 0.0 {
-        return Vector::ZERO;
+        return Vec3::ZERO;
     }
     // Columns of the inverse of a symmetric matrix.
     let columns = [y.cross(z), z.cross(x), x.cross(y)];
-    let sum = (0..D::N).fold(Vector::ZERO, |sum, axis| {
-        sum + columns[axis] * velocity[axis]
-    });
+    let sum = (0..D::N).fold(Vec3::ZERO, |sum, axis| sum + columns[axis] * velocity[axis]);
     sum * (1.0 / under)
 }

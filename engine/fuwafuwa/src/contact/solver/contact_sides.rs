@@ -3,7 +3,7 @@
 use super::contact_row::Contact;
 use crate::foundation::arena::RigidSlot;
 use crate::foundation::ids::id;
-use crate::rigid_body::shape::Vector;
+use glam::Vec3;
 
 id! {
     /// Row of a node among those of all bodies.
@@ -16,7 +16,7 @@ pub struct NodeContact {
     pub contact: Contact,
     pub node: NodeRow,
     /// Rigid body, if it moves, and the lever arm of the node from its position [m].
-    pub mover: Option<(RigidSlot, Vector)>,
+    pub mover: Option<(RigidSlot, Vec3)>,
 }
 
 /// Contact between two contact spheres.
@@ -36,11 +36,11 @@ pub struct FreeContact {
     /// The dynamic body and the other one.
     pub both: [RigidSlot; 2],
     /// Lever arms of the point from the position of each body [m].
-    pub levers: [Vector; 2],
+    pub levers: [Vec3; 2],
     /// Tangential effective mass [kg]: a lower bound over all tangents.
     pub across: f32,
     /// Position of the point [m], and the approach speed there [m/s].
-    pub at: Vector,
+    pub at: Vec3,
     pub speed: f32,
     /// Separation speed of a bounce [m/s].
     pub bounce: f32,

@@ -6,10 +6,10 @@ use super::contact_sides::{FreeContact, HandContact};
 use crate::contact::broad_phase::{Impulse, Passed, RigidTouch, RigidTouches, WAKE_SPEED};
 use crate::foundation::arena::RigidSlot;
 use crate::foundation::dim::{Dim, inner};
-use crate::math::vector::across;
-use crate::rigid_body::shape::Vector;
-use crate::rigid_body::{MotionType, RigidBodies, RigidBody};
+use crate::math::vector::perpendiculars;
+use crate::rigid_body::{MotionType, RigidBodies, RigidState};
 use crate::soft_body::element_forces::Row;
+use glam::Vec3;
 
 /// Approach speed below which contacts do not bounce [m/s], so that bodies can fall asleep. It is the speed
 /// of a fall by 13 mm, fifty times the gain from gravity in a substep.
@@ -59,16 +59,16 @@ pub fn find_free<D: Dim>(
 ) -> Vec<RigidSlot> {
     found.clear();
     let mut hits = Vec::new();
-    if !rigids.iter().any(RigidBody::is_dynamic) {
+    if !rigids.iter().any(RigidState::is_dynamic) {
         return hits;
     }
     let boxes = rigids.by_slot().map(|(slot, rigid)| {
         let [low, high] = rigid.shape().bounds();
         let margin = margin(rigid, duration);
-        let by = Vector::splat(margin);
+        let by = Vec3::splat(margin);
         (slot, rigid, [low - by, high + by])
     });
-    let boxes: Vec<(RigidSlot, &RigidBody, [Vector; 2])> = boxes.collect();
+    let boxes: Vec<(RigidSlot, &RigidState, [Vec3; 2])> = boxes.collect();
     for &(own, rigid, [low, high]) in boxes.iter().filter(|(_, rigid, _)| rigid.is_dynamic()) {
         for &(other, against, [others_low, others_high]) in &boxes {
             let is_once = other < own || !against.is_dynamic();
@@ -95,18 +95,18 @@ pub fn find_free<D: Dim>(
 }
 
 /// Returns the distance at which a contact may matter within a substep [m].
-fn margin(rigid: &RigidBody, duration: f32) -> f32 {
+fn margin(rigid: &RigidState, duration: f32) -> f32 {
     CLOSE * rigid.shape().inradius().min(1.0) + margin_of_other(rigid, duration)
 }
 
-fn margin_of_other(rigid: &RigidBody, duration: f32) -> f32 {
+fn margin_of_other(rigid: &RigidState, duration: f32) -> f32 {
     AHEAD * duration * rigid.top_speed()
 }
 
 /// Finds the contacts between two bodies.
 fn touch<D: Dim>(
     slots: [RigidSlot; 2],
-    both: [&RigidBody; 2],
+    both: [&RigidState; 2],
     margin: f32,
     known: &RigidTouches,
     duration: f32,
@@ -134,7 +134,7 @@ fn touch<D: Dim>(
             let sleepers = [0, 1].into_iter().filter(|&k: &usize| both[k].is_asleep());
             hits.extend(sleepers.map(|k| slots[k]));
         }
-        let yields = |way: Vector| {
+        let yields = |way: Vec3| {
             let each = [0, 1].map(|k: usize| both[k].yields(levers[k], way));
             each[0] + each[1]
         };
@@ -166,11 +166,11 @@ fn touch<D: Dim>(
 }
 
 /// Returns two unit tangents of a normal; in 2D only the first one counts.
-fn tangents<D: Dim>(normal: Vector) -> [Vector; 2] {
+fn tangents<D: Dim>(normal: Vec3) -> [Vec3; 2] {
     if D::N == 2 {
-        return [Vector::new(normal[1], -normal[0], 0.0), Vector::ZERO];
+        return [Vec3::new(normal[1], -normal[0], 0.0), Vec3::ZERO];
     }
-    across(normal)
+    perpendiculars(normal)
 }
 
 impl FreeContact {

@@ -6,9 +6,9 @@ use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{Id, IndexVec, NodeId};
 use crate::rigid_body::RigidBodies;
-use crate::rigid_body::shape::Vector;
 use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
+use glam::Vec3;
 
 /// Number of nodes copied together: a larger block copies more unused nodes, a smaller one is tested more
 /// often.
@@ -142,18 +142,13 @@ impl Motion {
 /// Returns the velocity of a rigid body at a lever arm [m/s]. Not inlined, because it is rare and would slow
 /// down the other contacts.
 #[inline(never)]
-fn velocity((mover, lever): (RigidSlot, Vector), rigids: &RigidBodies) -> Row {
+fn velocity((mover, lever): (RigidSlot, Vec3), rigids: &RigidBodies) -> Row {
     Row::from(rigids.at(mover).velocity_at(lever))
 }
 
 /// Applies an impulse to a rigid body at a lever arm.
 #[inline(never)]
-fn push(
-    (mover, lever): (RigidSlot, Vector),
-    rigids: &mut RigidBodies,
-    impulse: Row,
-    duration: f32,
-) {
+fn push((mover, lever): (RigidSlot, Vec3), rigids: &mut RigidBodies, impulse: Row, duration: f32) {
     rigids.at_mut(mover).push_at(impulse.xyz(), lever, duration);
 }
 

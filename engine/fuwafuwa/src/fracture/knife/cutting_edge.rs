@@ -1,14 +1,14 @@
 //! Tracks a cutting edge through bodies: the position of each sample, and the area that the samples sweep.
 
 use super::edge_sample::{MOST_SAMPLES, Near, Sample};
+use super::knife_state::{EdgePose, KnifeState};
 use super::material_point::{self, Spot};
 use super::swept_area::{self, Faces, RestPosition};
-use super::{EdgePose, Knife};
 use crate::foundation::arena::SoftBodyHandle;
 use crate::foundation::dim::{Dim, Point};
-use crate::rigid_body::RigidBody;
-use crate::rigid_body::shape::Vector;
+use crate::rigid_body::RigidState;
 use crate::soft_body::{SoftBodies, SoftBody};
+use glam::Vec3;
 
 /// Edge samples per width of the smallest voxel, so that no voxel slips between two samples, even at an
 /// oblique edge. With one sample for two voxels, area and work of a cut are wrong by more than 10 %.
@@ -28,16 +28,16 @@ pub struct Cut {
     /// Swept area where the material was whole, at rest [m²].
     pub area: f64,
     /// Middle of the part of the edge that is inside the body [m].
-    pub at: Vector,
+    pub at: Vec3,
 }
 
-impl Knife {
+impl KnifeState {
     /// Updates the positions of the samples in the bodies. `ahead` is the time until the next search for
     /// nearby elements [s].
     pub(crate) fn follow<D: Dim>(
         &mut self,
         bodies: &SoftBodies<D>,
-        holder: &RigidBody,
+        holder: &RigidState,
         ahead: f32,
     ) {
         let stance = self.stance::<D>(holder);
@@ -56,7 +56,7 @@ impl Knife {
     pub(crate) fn pass<D: Dim>(
         &mut self,
         bodies: &SoftBodies<D>,
-        holder: &RigidBody,
+        holder: &RigidState,
         since: f32,
     ) -> Vec<Cut> {
         let stance = self.stance::<D>(holder);
@@ -98,7 +98,7 @@ impl Knife {
     }
 
     /// Returns the position of a sample relative to the holder [m].
-    pub(super) fn lever(&self, stance: &EdgePose, place: usize) -> Vector {
+    pub(super) fn lever(&self, stance: &EdgePose, place: usize) -> Vec3 {
         let [from, to] = stance.levers;
         let share = match self.samples.len() {
             1 => 0.5,
@@ -108,7 +108,7 @@ impl Knife {
     }
 
     /// Returns the world-space position of a sample [m].
-    fn place(&self, stance: &EdgePose, place: usize) -> Vector {
+    fn place(&self, stance: &EdgePose, place: usize) -> Vec3 {
         stance.position + self.lever(stance, place)
     }
 
@@ -138,7 +138,7 @@ impl Knife {
         &mut self,
         stance: &EdgePose,
         bodies: &SoftBodies<D>,
-        holder: &RigidBody,
+        holder: &RigidState,
         ahead: f32,
     ) {
         self.knows_near = true;
@@ -193,7 +193,7 @@ impl Knife {
         &self,
         bodies: &SoftBodies<D>,
         place: usize,
-        at: Vector,
+        at: Vec3,
     ) -> Option<(SoftBodyHandle, Spot)> {
         if let Some((id, spot)) = self.samples[place].inside
             && let Ok(body) = bodies.get(id)
@@ -318,7 +318,7 @@ impl Knife {
             return Some([place, place]);
         }
         let [toward] = base.directions(body, [stance.toward])?;
-        let [now, before, toward] = [now, before, toward].map(Vector::as_dvec3);
+        let [now, before, toward] = [now, before, toward].map(Vec3::as_dvec3);
         let way = now - before;
         let travel = (at - sample.before).length() + tissue.length();
         let reach = f64::from(travel / size);

@@ -1,14 +1,14 @@
 //! Solver rows between a cutting edge and the tissue that it is in.
 
-use super::{EdgePose, Knife};
+use super::knife_state::{EdgePose, KnifeState};
 use crate::foundation::arena::{BodySlot, SoftBodyHandle};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{NodeId, PieceId};
 use crate::material::Material;
 use crate::math::row::Row;
-use crate::rigid_body::shape::Vector;
-use crate::rigid_body::{RigidBodies, RigidBody};
+use crate::rigid_body::{RigidBodies, RigidState};
 use crate::soft_body::{SoftBodies, SoftBody};
+use glam::Vec3;
 
 /// Solver iterations over all rows per substep. Neighbouring samples push the same nodes; with 2 iterations a
 /// cut does not separate the parts.
@@ -25,13 +25,13 @@ struct EdgeRow {
     /// Inverse effective mass of the tissue [1/kg].
     gain: f32,
     /// Lever arm from the position of the holder [m].
-    lever: Vector,
+    lever: Vec3,
     /// Limits of the impulse in the cutting direction and sideways in the substep [N s], and the impulses.
     limits: [f32; 2],
     impulse: [f32; 2],
 }
 
-impl Knife {
+impl KnifeState {
     /// Solves the edge against the tissue for a substep of `duration` [s]. Returns the sleepers to wake.
     pub(crate) fn solve<D: Dim>(
         &mut self,
@@ -39,7 +39,7 @@ impl Knife {
         rigids: &mut RigidBodies,
         duration: f32,
     ) -> Vec<(BodySlot, PieceId)> {
-        (self.force, self.torque) = (Vector::ZERO, Vector::ZERO);
+        (self.force, self.torque) = (Vec3::ZERO, Vec3::ZERO);
         let Ok(holder) = rigids.get_mut(self.holder) else {
             return Vec::new();
         };
@@ -79,7 +79,7 @@ impl Knife {
             let work = |way: usize| row.impulse[way] * slip.dot(ways[way]);
             self.work += f64::from((work(0) + work(1)).max(0.0));
         }
-        holder.twist(self.torque);
+        holder.add_torque(self.torque);
         woken
     }
 
@@ -145,7 +145,7 @@ impl Knife {
 }
 
 /// Returns the velocity of the edge relative to the tissue [m/s].
-fn slip<D: Dim>(row: &EdgeRow, body: &SoftBody<D>, holder: &RigidBody) -> Vector {
+fn slip<D: Dim>(row: &EdgeRow, body: &SoftBody<D>, holder: &RigidState) -> Vec3 {
     holder.velocity_at(row.lever) - body.velocity_of(&row.weights)
 }
 
@@ -153,8 +153,8 @@ fn slip<D: Dim>(row: &EdgeRow, body: &SoftBody<D>, holder: &RigidBody) -> Vector
 fn solve_row<D: Dim>(
     row: &mut EdgeRow,
     body: &mut SoftBody<D>,
-    holder: &mut RigidBody,
-    ways: [Vector; 2],
+    holder: &mut RigidState,
+    ways: [Vec3; 2],
     duration: f32,
 ) {
     for (way, direction) in ways.into_iter().enumerate() {

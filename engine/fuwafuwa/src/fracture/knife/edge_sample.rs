@@ -6,7 +6,7 @@ use crate::foundation::dim::Point;
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
 #[cfg(feature = "serde")]
-use crate::rigid_body::shape::Vector;
+use glam::Vec3;
 
 /// Maximum number of intervals between samples. It suffices for 256 voxels, a quarter of the largest grid.
 pub const MOST_SAMPLES: usize = 512;
@@ -31,7 +31,7 @@ pub struct Sample {
     /// the sample.
     pub passed: Option<(SoftBodyHandle, Spot)>,
     /// World-space position at the last sweep [m].
-    pub before: Vector,
+    pub before: Vec3,
     /// Whether the sample has advanced through tissue since the last sweep, and whether through whole tissue.
     pub slid: bool,
     pub cut: bool,

@@ -3,9 +3,9 @@
 use crate::foundation::dim::{Dim, Point, voxel_around};
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
-use crate::rigid_body::shape::Vector;
 use crate::soft_body::SoftBody;
 use crate::topology::mesh::Element;
+use glam::Vec3;
 
 /// Maximum number of elements visited from the starting voxel.
 const STEPS: usize = 6;
@@ -20,7 +20,7 @@ pub struct Spot {
     /// Voxel that contains the point.
     pub voxel: Point,
     /// Rest position [voxels].
-    pub at: Vector,
+    pub at: Vec3,
 }
 
 hash_state! { struct Spot { voxel, at } }
@@ -28,7 +28,7 @@ hash_state! { struct Spot { voxel, at } }
 impl Spot {
     /// Finds a world-space point [m] in a body, starting from a voxel. Returns `None` if the point is not in
     /// the body or too far from the start.
-    pub fn find<D: Dim>(body: &SoftBody<D>, at: Vector, from: Point) -> Option<Self> {
+    pub fn find<D: Dim>(body: &SoftBody<D>, at: Vec3, from: Point) -> Option<Self> {
         let mesh = &body.topology.mesh;
         let mut voxel = from;
         for step in 0..STEPS {
@@ -54,12 +54,12 @@ impl Spot {
     }
 
     /// Returns the rest position of a world-space point [m], extrapolated with the deformation here.
-    pub fn extend<D: Dim>(&self, body: &SoftBody<D>, at: Vector) -> Option<Vector> {
+    pub fn extend<D: Dim>(&self, body: &SoftBody<D>, at: Vec3) -> Option<Vec3> {
         body.at_rest(body.topology.mesh.element_at(self.voxel)?, at)
     }
 
     /// Returns the velocity of the body here [m/s].
-    pub fn velocity<D: Dim>(&self, body: &SoftBody<D>) -> Option<Vector> {
+    pub fn velocity<D: Dim>(&self, body: &SoftBody<D>) -> Option<Vec3> {
         let element = body.topology.mesh.element_at(self.voxel)?;
         Some(body.velocity_of(&body.weights(element, self.at)))
     }
@@ -68,14 +68,14 @@ impl Spot {
     pub fn directions<D: Dim, const COUNT: usize>(
         &self,
         body: &SoftBody<D>,
-        ways: [Vector; COUNT],
-    ) -> Option<[Vector; COUNT]> {
+        ways: [Vec3; COUNT],
+    ) -> Option<[Vec3; COUNT]> {
         let (_, undo) = body.inverse_deformation(body.topology.mesh.element_at(self.voxel)?)?;
         Some(ways.map(undo))
     }
 
     /// Returns whether the point is within half a voxel of a world-space point [m].
-    pub fn is_near<D: Dim>(&self, body: &SoftBody<D>, at: Vector) -> bool {
+    pub fn is_near<D: Dim>(&self, body: &SoftBody<D>, at: Vec3) -> bool {
         let element = body.topology.mesh.element_at(self.voxel);
         let half = 0.5 * body.topology.grid.voxel_size();
         element.is_some_and(|element| (body.affine_map(element)(self.at) - at).length() <= half)
@@ -83,12 +83,7 @@ impl Spot {
 
     /// Returns whether the material in front of an edge is whole: whether the next face that it opens is
     /// closed. `along` is the direction of the edge and `toward` the cutting direction [voxels].
-    pub fn is_whole_ahead<D: Dim>(
-        &self,
-        body: &SoftBody<D>,
-        along: Vector,
-        toward: Vector,
-    ) -> bool {
+    pub fn is_whole_ahead<D: Dim>(&self, body: &SoftBody<D>, along: Vec3, toward: Vec3) -> bool {
         let ahead = self.at + toward * 0.5;
         let Some(voxel) = voxel_of::<D>(ahead).filter(|&at| body.topology.grid.is_solid(at)) else {
             return false;
@@ -124,7 +119,7 @@ fn is_closed<D: Dim>(body: &SoftBody<D>, voxel: Point, axis: usize) -> bool {
 }
 
 /// Returns the voxel at a rest position; `None` far from any grid.
-fn voxel_of<D: Dim>(at: Vector) -> Option<Point> {
+fn voxel_of<D: Dim>(at: Vec3) -> Option<Point> {
     let mut voxel = [0; 3];
     for axis in 0..D::N {
         if at[axis].abs() > 1e6 || at[axis].is_nan() {
@@ -136,7 +131,7 @@ fn voxel_of<D: Dim>(at: Vector) -> Option<Point> {
 }
 
 /// Returns whether an element may contain a point [m]: a test with the enlarged box around its nodes.
-pub fn may_have<D: Dim>(body: &SoftBody<D>, element: &Element, at: Vector) -> bool {
+pub fn may_have<D: Dim>(body: &SoftBody<D>, element: &Element, at: Vec3) -> bool {
     let margin = LITTLE * body.topology.grid.voxel_size() * element.cell.width() as f32;
     (0..D::N).all(|axis| {
         let apart = |&node: &NodeId| body.state.position[node][axis] - at[axis];
@@ -149,7 +144,7 @@ pub fn may_have<D: Dim>(body: &SoftBody<D>, element: &Element, at: Vector) -> bo
 }
 
 /// Returns the distance of a rest position from the cell of an element [voxels].
-fn distance<D: Dim>(element: &Element, at: Vector) -> f32 {
+fn distance<D: Dim>(element: &Element, at: Vec3) -> f32 {
     let (low, width) = (element.cell.first_voxel(), element.cell.width() as f32);
     let out = |axis: usize| {
         let along = at[axis] - low[axis] as f32;

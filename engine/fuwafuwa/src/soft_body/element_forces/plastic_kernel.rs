@@ -4,19 +4,19 @@ use super::force_kernel::{BlockView, Moduli, Scratch, stress_of};
 use super::rotation_extraction::{Matrix, turn};
 use crate::foundation::dim::Dim;
 use crate::math::lanes::{Eight, LANES, Lanes, at_least, if_positive, load, splat};
-use crate::math::vector::Vector;
 use crate::soft_body::element_law::MIN_VOLUME_RATIO;
 use crate::soft_body::plasticity::{MAX_FLOW, MIN_FLOW_VOLUME_RATIO, Plasticity};
 use fearless_simd::prelude::*;
+use glam::Vec3;
 
 /// Plastic state G of each lane, by rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlasticInverseLanes(pub [[Eight; 3]; 3]);
 
 /// Plastic state of one element, by rows: the inverse G = Fₚ⁻¹ of its plastic deformation gradient.
-pub type PlasticInverse = [Vector; 3];
+pub type PlasticInverse = [Vec3; 3];
 
-pub const IDENTITY: PlasticInverse = Vector::AXES;
+pub const IDENTITY: PlasticInverse = Vec3::AXES;
 
 /// Flow parameters of a material in single precision.
 #[derive(Copy, Clone, Debug)]

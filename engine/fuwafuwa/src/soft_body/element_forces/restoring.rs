@@ -7,10 +7,10 @@ use super::saved_states::SavedElementStates;
 use super::{ElementBatches, parts};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::ElementId;
-use crate::math::vector::Vector;
 use crate::soft_body::plasticity::Plasticity;
 use crate::topology::grid::VoxelGrid;
 use crate::topology::mesh::{Element, Mesh};
+use glam::Vec3;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 impl<D: Dim> ElementBatches<D> {
@@ -106,7 +106,7 @@ fn is_sound<D: Dim>(dent: &PlasticInverse) -> bool {
     let [x, y, z] = *dent;
     let volume = x.dot(y.cross(z));
     let is_flat = (D::N..3).all(|axis| {
-        let column = Vector::new(x[axis], y[axis], z[axis]);
+        let column = Vec3::new(x[axis], y[axis], z[axis]);
         dent[axis] == IDENTITY[axis] && column == IDENTITY[axis]
     });
     let most = dent

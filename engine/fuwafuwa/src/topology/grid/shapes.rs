@@ -5,7 +5,7 @@
 use super::VoxelGrid;
 use crate::error::Error;
 use crate::foundation::dim::{Dim, Point};
-use crate::rigid_body::shape::Vector;
+use glam::Vec3;
 
 impl<D: Dim> VoxelGrid<D> {
     /// Creates the disc (2D) or ball (3D) that fills a grid of `n` voxels across `diameter` metres.
@@ -104,7 +104,7 @@ impl<D: Dim> VoxelGrid<D> {
     }
 
     /// Centre of a voxel relative to the middle of a grid of `size`, in half voxels: whole numbers.
-    fn from_middle(voxel: Point, size: [usize; 3]) -> Vector {
+    fn from_middle(voxel: Point, size: [usize; 3]) -> Vec3 {
         [0, 1, 2]
             .map(|axis| (2 * voxel[axis] + 1 - size[axis] as i32) as f32)
             .into()

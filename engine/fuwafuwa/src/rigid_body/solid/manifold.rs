@@ -1,7 +1,8 @@
 //! Contact manifolds between shapes: a common normal and the contact points.
 
+use super::Solid;
 use super::oriented_box::{Brick, Separation, Side};
-use super::{Shape, Vector};
+use glam::Vec3;
 
 /// Cosine limit for the end of a capsule to be a contact point: its normal must be within 26° of the
 /// manifold's normal. On a face all normals are equal.
@@ -14,7 +15,7 @@ const APART: f32 = 0.5;
 #[derive(Clone, Debug, Default)]
 pub struct Manifold {
     /// Unit normal from the second shape to the first.
-    pub normal: Vector,
+    pub normal: Vec3,
     pub points: Vec<ManifoldPoint>,
 }
 
@@ -22,14 +23,14 @@ pub struct Manifold {
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct ManifoldPoint {
     /// Midpoint between both surfaces [m].
-    pub at: Vector,
+    pub at: Vec3,
     /// Distance of the surfaces there [m], negative if they overlap.
     pub gap: f32,
     /// Feature key, equal in the next substep for the same corners and edges.
     pub key: u32,
 }
 
-impl Shape {
+impl Solid {
     /// Returns the contact manifold with another shape: up to eight points with a gap below `margin` [m].
     pub fn manifold(&self, other: &Self, margin: f32) -> Manifold {
         let found = match (*self, *other) {
@@ -68,14 +69,14 @@ impl Manifold {
 }
 
 /// Returns the contact point between a ball and the surface below it.
-fn beneath(centre: Vector, normal: Vector, radius: f32, gap: f32, key: u32) -> ManifoldPoint {
+fn beneath(centre: Vec3, normal: Vec3, radius: f32, gap: f32, key: u32) -> ManifoldPoint {
     let at = centre - normal * (radius + 0.5 * gap);
     ManifoldPoint { at, gap, key }
 }
 
 /// Returns the manifold of a capsule with any shape except a ball: its nearest point and its ends.
-fn bar(own: &Shape, other: &Shape) -> Manifold {
-    let &Shape::Capsule { from, to, radius } = own else {
+fn bar(own: &Solid, other: &Solid) -> Manifold {
+    let &Solid::Capsule { from, to, radius } = own else {
         return Manifold::default();
     };
     let (distance, normal, share) = other.nearest_of_segment(from, to);
@@ -87,7 +88,7 @@ fn bar(own: &Shape, other: &Shape) -> Manifold {
             points.push(beneath(end, normal, radius, far - radius, key));
         }
     }
-    if let Shape::Capsule {
+    if let Solid::Capsule {
         from,
         to,
         radius: thickness,
@@ -109,7 +110,7 @@ fn bar(own: &Shape, other: &Shape) -> Manifold {
     Manifold { normal, points }
 }
 
-fn on_plane(brick: &Brick, normal: Vector, offset: f32) -> Manifold {
+fn on_plane(brick: &Brick, normal: Vec3, offset: f32) -> Manifold {
     let corners = (0..brick.corner_count()).map(|number| (number as u32, brick.corner(number)));
     let points = corners.map(|(key, corner)| {
         let gap = normal.dot(corner) - offset;
@@ -142,7 +143,7 @@ fn bricks(own: &Brick, other: &Brick, margin: f32) -> Manifold {
 
 /// Returns the contact points of a box on the face of another box, `ground`. The face is normal to `axis`,
 /// with the outward normal `out`.
-fn on_face(ground: &Brick, axis: usize, out: Vector, brick: &Brick) -> Vec<ManifoldPoint> {
+fn on_face(ground: &Brick, axis: usize, out: Vec3, brick: &Brick) -> Vec<ManifoldPoint> {
     let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != axis).collect();
     let level = out.dot(ground.centre) + ground.half[axis];
     // The face with the normal most opposite to that of the ground face.
@@ -150,7 +151,7 @@ fn on_face(ground: &Brick, axis: usize, out: Vector, brick: &Brick) -> Vec<Manif
     let face = (0..brick.axis_count).max_by(|a, b| facing(a).total_cmp(&facing(b)));
     let face = face.unwrap_or(axis);
     let is_upper = brick.axes[face].dot(out) < 0.0;
-    let mut polygon: Vec<(Vector, u32)> = around(brick, face, is_upper);
+    let mut polygon: Vec<(Vec3, u32)> = around(brick, face, is_upper);
     for (number, side) in others.into_iter().enumerate() {
         for (sign, plane) in [(1.0, 2 * number), (-1.0, 2 * number + 1)] {
             let way = ground.axes[side] * sign;
@@ -158,7 +159,7 @@ fn on_face(ground: &Brick, axis: usize, out: Vector, brick: &Brick) -> Vec<Manif
             polygon = clipped(&polygon, way, most, plane as u32);
         }
     }
-    let point = |&(corner, key): &(Vector, u32)| {
+    let point = |&(corner, key): &(Vec3, u32)| {
         let gap = out.dot(corner) - level;
         let at = corner - out * (0.5 * gap);
         ManifoldPoint { at, gap, key }
@@ -167,7 +168,7 @@ fn on_face(ground: &Brick, axis: usize, out: Vector, brick: &Brick) -> Vec<Manif
 }
 
 /// Returns the corners of a face in order around it, with their keys.
-fn around(brick: &Brick, face: usize, is_upper: bool) -> Vec<(Vector, u32)> {
+fn around(brick: &Brick, face: usize, is_upper: bool) -> Vec<(Vec3, u32)> {
     let fixed = usize::from(is_upper) << face;
     let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != face).collect();
     let numbers: Vec<usize> = match others[..] {
@@ -182,7 +183,7 @@ fn around(brick: &Brick, face: usize, is_upper: bool) -> Vec<(Vector, u32)> {
 }
 
 /// Clips a polygon (in 2D a segment) against the half-space up to `most` [m] in a direction.
-fn clipped(polygon: &[(Vector, u32)], way: Vector, most: f32, plane: u32) -> Vec<(Vector, u32)> {
+fn clipped(polygon: &[(Vec3, u32)], way: Vec3, most: f32, plane: u32) -> Vec<(Vec3, u32)> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     let is_line = polygon.len() == 2;
     for (number, &(at, key)) in polygon.iter().enumerate() {
@@ -207,7 +208,7 @@ fn clipped(polygon: &[(Vector, u32)], way: Vector, most: f32, plane: u32) -> Vec
 }
 
 /// Returns a point on the edge along an axis that is farthest in a direction.
-fn edge(brick: &Brick, along: usize, way: Vector) -> Vector {
+fn edge(brick: &Brick, along: usize, way: Vec3) -> Vec3 {
     let others = (0..brick.axis_count).filter(|&axis| axis != along);
     others.fold(brick.centre, |at, axis| {
         let sign = if brick.axes[axis].dot(way) < 0.0 {
@@ -220,7 +221,7 @@ fn edge(brick: &Brick, along: usize, way: Vector) -> Vector {
 }
 
 /// Returns the midpoint between the nearest points of two lines that are not parallel.
-fn between(a: Vector, along: Vector, b: Vector, across: Vector) -> Vector {
+fn between(a: Vec3, along: Vec3, b: Vec3, across: Vec3) -> Vec3 {
     let (apart, cosine) = (b - a, along.dot(across));
     let under = (1.0 - cosine * cosine).max(1e-6);
     let (first, second) = (apart.dot(along), apart.dot(across));
@@ -234,12 +235,12 @@ mod tests {
     use super::*;
     use crate::math::rotation::Rotation;
 
-    fn cube(centre: Vector, half: Vector) -> Shape {
-        Shape::Box { centre, half }
+    fn cube(centre: Vec3, half: Vec3) -> Solid {
+        Solid::Box { centre, half }
     }
 
     /// Checks the number of points, the smallest gap and the normal, in both orders.
-    fn check(a: Shape, b: Shape, count: usize, gap: f32, normal: Vector) {
+    fn check(a: Solid, b: Solid, count: usize, gap: f32, normal: Vec3) {
         for (first, second, sign) in [(a, b, 1.0), (b, a, -1.0)] {
             let found = first.manifold(&second, 0.1);
             assert_eq!(found.points.len(), count, "{first:?} {second:?} {found:?}");
@@ -262,71 +263,71 @@ mod tests {
 
     #[test]
     fn manifold_points_are_correct_for_all_pairs_of_shapes() {
-        let up = Vector::Y;
-        let floor = Shape::half_space(up, Vector::ZERO);
-        let brick = cube(Vector::new(0.0, 0.49, 0.0), Vector::new(1.0, 0.5, 0.7));
+        let up = Vec3::Y;
+        let floor = Solid::half_space(up, Vec3::ZERO);
+        let brick = cube(Vec3::new(0.0, 0.49, 0.0), Vec3::new(1.0, 0.5, 0.7));
         check(brick, floor, 4, -0.01, up);
         check(
-            cube(Vector::new(0.3, 1.5, 0.2), Vector::new(1.0, 0.5, 0.7)),
+            cube(Vec3::new(0.3, 1.5, 0.2), Vec3::new(1.0, 0.5, 0.7)),
             brick,
             4,
             0.01,
             up,
         );
         let turned = Rotation::about(up, 0.7);
-        let above = cube(Vector::ZERO, Vector::new(0.9, 0.5, 0.9)).rotated(turned);
+        let above = cube(Vec3::ZERO, Vec3::new(0.9, 0.5, 0.9)).rotated(turned);
         check(
-            above.translated(Vector::new(0.0, 1.48, 0.0)),
+            above.translated(Vec3::new(0.0, 1.48, 0.0)),
             brick,
             8,
             -0.01,
             up,
         );
         // Boxes in 2D.
-        let flat = |centre: Vector| cube(centre, Vector::new(1.0, 0.5, f32::MAX));
+        let flat = |centre: Vec3| cube(centre, Vec3::new(1.0, 0.5, f32::MAX));
         check(
-            flat(Vector::new(0.4, 0.99, 0.0)),
-            flat(Vector::ZERO),
+            flat(Vec3::new(0.4, 0.99, 0.0)),
+            flat(Vec3::ZERO),
             2,
             -0.01,
             up,
         );
-        check(flat(Vector::new(0.4, 0.49, 0.0)), floor, 2, -0.01, up);
+        check(flat(Vec3::new(0.4, 0.49, 0.0)), floor, 2, -0.01, up);
         // Capsules.
-        let bar = |y: f32, to: Vector| {
-            Shape::Capsule {
+        let bar = |y: f32, to: Vec3| {
+            Solid::Capsule {
                 from: -to,
                 to,
                 radius: 0.25,
             }
-            .translated(Vector::new(0.0, y, 0.0))
+            .translated(Vec3::new(0.0, y, 0.0))
         };
-        check(bar(0.24, Vector::X), floor, 2, -0.01, up);
-        check(bar(1.23, Vector::new(0.8, 0.0, 0.0)), brick, 2, -0.01, up);
-        check(bar(1.23, Vector::new(3.0, 0.0, 0.0)), brick, 1, -0.01, up);
-        check(bar(0.49, Vector::X), bar(0.0, Vector::Z), 1, -0.01, up);
+        check(bar(0.24, Vec3::X), floor, 2, -0.01, up);
+        check(bar(1.23, Vec3::new(0.8, 0.0, 0.0)), brick, 2, -0.01, up);
+        check(bar(1.23, Vec3::new(3.0, 0.0, 0.0)), brick, 1, -0.01, up);
+        check(bar(0.49, Vec3::X), bar(0.0, Vec3::Z), 1, -0.01, up);
         check(
-            bar(0.49, Vector::X),
-            bar(0.0, Vector::new(2.0, 0.0, 0.0)),
+            bar(0.49, Vec3::X),
+            bar(0.0, Vec3::new(2.0, 0.0, 0.0)),
             2,
             -0.01,
             up,
         );
-        let ball = Shape::Ball {
-            centre: Vector::new(0.0, 1.24, 0.0),
+        let ball = Solid::Ball {
+            centre: Vec3::new(0.0, 1.24, 0.0),
             radius: 0.25,
         };
         check(ball, brick, 1, 0.0, up);
-        check(bar(1.73, Vector::X), ball, 1, -0.01, up);
+        check(bar(1.73, Vec3::X), ball, 1, -0.01, up);
         // Two crossing edges.
         let quarter = std::f32::consts::FRAC_PI_4;
-        let beam = |axis| cube(Vector::ZERO, Vector::ONE).rotated(Rotation::about(axis, quarter));
-        let high = beam(Vector::X).translated(Vector::new(0.0, 2.0 * 2.0f32.sqrt() - 0.01, 0.0));
-        check(high, beam(Vector::Z), 1, -0.01, up);
+        let beam = |axis| cube(Vec3::ZERO, Vec3::ONE).rotated(Rotation::about(axis, quarter));
+        let high = beam(Vec3::X).translated(Vec3::new(0.0, 2.0 * 2.0f32.sqrt() - 0.01, 0.0));
+        check(high, beam(Vec3::Z), 1, -0.01, up);
         assert!(floor.manifold(&floor, 1.0).points.is_empty());
         assert!(
             brick
-                .manifold(&brick.translated(Vector::new(0.0, 3.0, 0.0)), 0.1)
+                .manifold(&brick.translated(Vec3::new(0.0, 3.0, 0.0)), 0.1)
                 .points
                 .is_empty()
         );

@@ -1,7 +1,8 @@
 //! Boxes with their axes, and the separating-axis test [Gottschalk 1996].
 
-use super::{Shape, Vector};
+use super::Solid;
 use crate::math::rotation::Rotation;
+use glam::Vec3;
 
 /// Bias of the separating-axis test, as a share of the smallest half extent. A face axis of the second box
 /// must exceed the best one of the first box by it, and an edge axis must exceed both. Resting boxes so keep
@@ -11,9 +12,9 @@ const BEHIND: f32 = 0.01;
 /// Box with its centre, half extents and axes.
 #[derive(Copy, Clone, Debug)]
 pub struct Brick {
-    pub centre: Vector,
-    pub half: Vector,
-    pub axes: [Vector; 3],
+    pub centre: Vec3,
+    pub half: Vec3,
+    pub axes: [Vec3; 3],
     /// Number of bounded axes: 2 for boxes of the plane, otherwise 3.
     pub axis_count: usize,
 }
@@ -24,7 +25,7 @@ pub struct Separation {
     /// Separation [m], negative if the boxes overlap.
     pub gap: f32,
     /// Unit normal from the second box to the first.
-    pub normal: Vector,
+    pub normal: Vec3,
     pub side: Side,
 }
 
@@ -41,10 +42,10 @@ pub enum Side {
 
 impl Brick {
     /// Returns the box of a box-shaped shape.
-    pub fn of(shape: &Shape) -> Option<Self> {
+    pub fn of(shape: &Solid) -> Option<Self> {
         let (centre, half, rotation) = match *shape {
-            Shape::Box { centre, half } => (centre, half, Rotation::NONE),
-            Shape::OrientedBox {
+            Solid::Box { centre, half } => (centre, half, Rotation::NONE),
+            Solid::OrientedBox {
                 centre,
                 half,
                 rotation,
@@ -61,13 +62,13 @@ impl Brick {
     }
 
     /// Returns the extent from the centre along a direction [m].
-    pub fn reach(&self, way: Vector) -> f32 {
+    pub fn reach(&self, way: Vec3) -> f32 {
         let own = (0..self.axis_count).map(|axis| self.axes[axis].dot(way).abs() * self.half[axis]);
         own.sum()
     }
 
     /// Returns a corner by number: bit `k` selects the upper side of axis `k`.
-    pub fn corner(&self, number: usize) -> Vector {
+    pub fn corner(&self, number: usize) -> Vec3 {
         (0..self.axis_count).fold(self.centre, |at, axis| {
             let sign = if number >> axis & 1 == 1 { 1.0 } else { -1.0 };
             at + self.axes[axis] * (sign * self.half[axis])
@@ -82,7 +83,7 @@ impl Brick {
     /// Returns the separating axis of two boxes.
     pub fn separation(&self, other: &Self) -> Separation {
         let apart = self.centre - other.centre;
-        let along = |way: Vector, side: Side| {
+        let along = |way: Vec3, side: Side| {
             let distance = apart.dot(way);
             let normal = if distance < 0.0 { -way } else { way };
             let gap = distance.abs() - self.reach(way) - other.reach(way);
@@ -92,7 +93,7 @@ impl Brick {
             |best: Separation, next: Separation| if next.gap > best.gap { next } else { best };
         let none = Separation {
             gap: f32::NEG_INFINITY,
-            normal: Vector::Y,
+            normal: Vec3::Y,
             side: Side::First(1),
         };
         let sizes = |brick: &Self| brick.half.to_array().into_iter().take(brick.axis_count);

@@ -2,11 +2,11 @@
 
 use super::inertia::Inertia;
 use super::reach::is_within_reach;
-use super::{MotionType, RigidBody};
+use super::{MotionType, RigidState};
 use crate::error::{Error, require};
-use crate::rigid_body::shape::Shape;
+use crate::rigid_body::solid::Solid;
 
-impl RigidBody {
+impl RigidState {
     /// Checks every field.
     ///
     /// # Errors
@@ -62,7 +62,7 @@ pub(crate) fn check_restitution(restitution: f32) -> Result<(), Error> {
 /// shape if the body is dynamic.
 pub(super) fn check_motion_type(
     motion_type: MotionType,
-    form: &Shape,
+    form: &Solid,
     inertia: Option<&Inertia>,
 ) -> Result<(), Error> {
     let (tiny, huge) = (f32::MIN_POSITIVE, f32::MAX);
@@ -86,12 +86,12 @@ pub(super) fn check_motion_type(
             mass,
             stiffness,
             damping,
-            limit,
+            max_force,
         } => {
             within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
             within("stiffness", stiffness, tiny, huge, "positive and finite")?;
             within("damping", damping, tiny, 10.0, "positive, at most 10")?;
-            within("limit", limit, tiny, f32::INFINITY, "positive")
+            within("max_force", max_force, tiny, f32::INFINITY, "positive")
         }
     }
 }

@@ -1,12 +1,13 @@
 //! Ray casts against shapes.
 
-use super::{Shape, Vector};
+use super::Solid;
 use glam::DVec3;
+use glam::Vec3;
 
-impl Shape {
+impl Solid {
     /// Casts a ray with a unit direction. Returns the distance [m] to the first intersection with the
     /// surface, from outside or inside, and the outward normal there.
-    pub fn ray(&self, from: Vector, direction: Vector) -> Option<(f32, Vector)> {
+    pub fn ray(&self, from: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         let (begin, way) = (from.as_dvec3(), direction.as_dvec3());
         let crossings: Vec<f64> = match *self {
             Self::HalfSpace { normal, offset } => {
@@ -50,7 +51,7 @@ impl Shape {
 }
 
 /// Returns where a ray enters and leaves a box around the origin.
-fn through_box(from: DVec3, way: DVec3, half: Vector) -> Vec<f64> {
+fn through_box(from: DVec3, way: DVec3, half: Vec3) -> Vec<f64> {
     let (mut enters, mut leaves) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
         let half = f64::from(half[axis]);
@@ -71,7 +72,7 @@ fn through_box(from: DVec3, way: DVec3, half: Vector) -> Vec<f64> {
 }
 
 /// Returns where a ray enters and leaves a ball around the origin.
-fn through_ball(from: Vector, way: DVec3, radius: f32) -> Vec<f64> {
+fn through_ball(from: Vec3, way: DVec3, radius: f32) -> Vec<f64> {
     let from = from.as_dvec3();
     roots(
         1.0,
@@ -81,7 +82,7 @@ fn through_ball(from: Vector, way: DVec3, radius: f32) -> Vec<f64> {
 }
 
 /// Returns where a ray enters and leaves the cylindrical part of a capsule that begins at the origin.
-fn through_side(from: Vector, way: DVec3, axis: Vector, radius: f32) -> Vec<f64> {
+fn through_side(from: Vec3, way: DVec3, axis: Vec3, radius: f32) -> Vec<f64> {
     let (from, axis) = (from.as_dvec3(), axis.as_dvec3());
     let squared = axis.dot(axis);
     let across = |v: DVec3| v - axis * (v.dot(axis) / squared);
@@ -117,23 +118,23 @@ mod tests {
     #[test]
     fn ray_hits_every_shape_from_outside_and_inside() {
         let shapes = [
-            Shape::half_space(Vector::Y, Vector::new(0.0, -0.3, 0.0)),
-            Shape::Box {
-                centre: Vector::new(0.1, 0.0, 0.0),
-                half: Vector::new(0.5, 0.3, 0.7),
+            Solid::half_space(Vec3::Y, Vec3::new(0.0, -0.3, 0.0)),
+            Solid::Box {
+                centre: Vec3::new(0.1, 0.0, 0.0),
+                half: Vec3::new(0.5, 0.3, 0.7),
             },
-            Shape::Box {
-                centre: Vector::new(0.0, 0.1, 0.0),
-                half: Vector::new(0.5, 0.3, 0.7),
+            Solid::Box {
+                centre: Vec3::new(0.0, 0.1, 0.0),
+                half: Vec3::new(0.5, 0.3, 0.7),
             }
-            .rotated(Rotation::about(Vector::new(1.0, 2.0, 3.0), 0.8)),
-            Shape::Ball {
-                centre: Vector::new(0.1, 0.2, 0.0),
+            .rotated(Rotation::about(Vec3::new(1.0, 2.0, 3.0), 0.8)),
+            Solid::Ball {
+                centre: Vec3::new(0.1, 0.2, 0.0),
                 radius: 0.6,
             },
-            Shape::Capsule {
-                from: Vector::new(-0.5, 0.0, 0.1),
-                to: Vector::new(0.6, 0.2, 0.0),
+            Solid::Capsule {
+                from: Vec3::new(-0.5, 0.0, 0.1),
+                to: Vec3::new(0.6, 0.2, 0.0),
                 radius: 0.25,
             },
         ];
@@ -141,8 +142,8 @@ mod tests {
         for shape in shapes {
             for k in 0..400 {
                 let number = |step: i32| (k * step % 199) as f32 / 99.5 - 1.0;
-                let from = Vector::new(2.0 * number(7), 2.0 * number(31), 2.0 * number(57));
-                let way = Vector::new(number(3), number(5), number(11)) * 0.5 - from;
+                let from = Vec3::new(2.0 * number(7), 2.0 * number(31), 2.0 * number(57));
+                let way = Vec3::new(number(3), number(5), number(11)) * 0.5 - from;
                 let way = way * (1.0 / way.length());
                 let at = |far: f32| shape.distance(from + way * far);
                 let begins_inside = at(0.0).0 < 0.0;
@@ -165,22 +166,20 @@ mod tests {
         }
         assert!(met > 1100 && missed > 100, "{met} {missed}");
         // Large distances, and a grazing ray.
-        let floor = Shape::half_space(Vector::Y, Vector::ZERO);
+        let floor = Solid::half_space(Vec3::Y, Vec3::ZERO);
         assert_eq!(
             floor
-                .ray(Vector::new(0.0, 1000.0, 0.0), Vector::NEG_Y)
+                .ray(Vec3::new(0.0, 1000.0, 0.0), Vec3::NEG_Y)
                 .unwrap()
                 .0,
             1000.0
         );
-        let (far, _) = floor
-            .ray(Vector::Y, Vector::new(0.9998, -0.02, 0.0))
-            .unwrap();
+        let (far, _) = floor.ray(Vec3::Y, Vec3::new(0.9998, -0.02, 0.0)).unwrap();
         assert!((far - 50.0).abs() < 1e-3);
-        let ball = Shape::Ball {
-            centre: Vector::new(3000.0, 0.0, 0.0),
+        let ball = Solid::Ball {
+            centre: Vec3::new(3000.0, 0.0, 0.0),
             radius: 0.5,
         };
-        assert!((ball.ray(Vector::ZERO, Vector::X).unwrap().0 - 2999.5).abs() < 1e-3);
+        assert!((ball.ray(Vec3::ZERO, Vec3::X).unwrap().0 - 2999.5).abs() < 1e-3);
     }
 }

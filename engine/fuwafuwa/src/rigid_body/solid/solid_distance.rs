@@ -1,16 +1,17 @@
 //! Distances between shapes.
 
 use super::oriented_box::Brick;
-use super::{Shape, Vector, distance_from_box};
+use super::{Solid, distance_from_box};
+use glam::Vec3;
 
 /// Ternary-search steps for the nearest point of a segment, each of which keeps two thirds. 40 steps leave
 /// 1e-7 of its length, the resolution of single precision.
 const NARROWINGS: usize = 40;
 
-impl Shape {
+impl Solid {
     /// Returns the distance to another shape [m], negative if they overlap, and the unit direction from the
     /// other shape to this one. For oriented boxes corner to corner the distance is a lower bound.
-    pub fn gap(&self, other: &Self) -> (f32, Vector) {
+    pub fn gap(&self, other: &Self) -> (f32, Vec3) {
         match (*self, *other) {
             (Self::Ball { centre, radius }, _) => {
                 let (distance, normal) = other.distance(centre);
@@ -44,9 +45,7 @@ impl Shape {
             (Self::Box { .. } | Self::OrientedBox { .. }, _) => {
                 let both = Brick::of(self).zip(Brick::of(other));
                 let separation = both.map(|(own, other)| own.separation(&other));
-                separation.map_or((f32::INFINITY, Vector::Y), |found| {
-                    (found.gap, found.normal)
-                })
+                separation.map_or((f32::INFINITY, Vec3::Y), |found| (found.gap, found.normal))
             }
             // Two half-spaces overlap without bound, so no push can separate them.
             (Self::HalfSpace { normal, .. }, Self::HalfSpace { .. }) => (f32::INFINITY, normal),
@@ -55,15 +54,15 @@ impl Shape {
 }
 
 /// Returns the gap with the shapes swapped.
-fn turned((gap, normal): (f32, Vector)) -> (f32, Vector) {
+fn turned((gap, normal): (f32, Vec3)) -> (f32, Vec3) {
     (gap, -normal)
 }
 
-impl Shape {
+impl Solid {
     /// Returns the smallest distance of a segment's points from the shape [m], the normal there, and the
     /// position on the segment from 0 to 1. A ternary search finds it, because along a segment the distance
     /// from a convex shape has a single minimum.
-    pub(super) fn nearest_of_segment(&self, from: Vector, to: Vector) -> (f32, Vector, f32) {
+    pub(super) fn nearest_of_segment(&self, from: Vec3, to: Vec3) -> (f32, Vec3, f32) {
         let at = |share: f32| self.distance(from + (to - from) * share);
         let (mut low, mut high) = (0.0f32, 1.0f32);
         for _ in 0..NARROWINGS {
@@ -89,7 +88,7 @@ mod tests {
     use crate::math::rotation::Rotation;
 
     /// Checks the gap and the direction, in both orders.
-    fn check(a: Shape, b: Shape, gap: f32, normal: Vector) {
+    fn check(a: Solid, b: Solid, gap: f32, normal: Vec3) {
         for (first, second, sign) in [(a, b, 1.0), (b, a, -1.0)] {
             let (found, way) = first.gap(&second);
             assert!((found - gap).abs() < 1e-5, "{first:?} {second:?}: {found}");
@@ -100,54 +99,44 @@ mod tests {
 
     #[test]
     fn gap_and_normal_are_correct_for_all_pairs_of_shapes() {
-        let floor = Shape::half_space(Vector::Y, Vector::ZERO);
-        let ball = |centre| Shape::Ball {
+        let floor = Solid::half_space(Vec3::Y, Vec3::ZERO);
+        let ball = |centre| Solid::Ball {
             centre,
             radius: 0.5,
         };
-        let cube = |centre| Shape::Box {
+        let cube = |centre| Solid::Box {
             centre,
-            half: Vector::new(1.0, 0.5, 1.0),
+            half: Vec3::new(1.0, 0.5, 1.0),
         };
-        let bar = |from, to| Shape::Capsule {
+        let bar = |from, to| Solid::Capsule {
             from,
             to,
             radius: 0.25,
         };
-        let (up, right) = (Vector::Y, Vector::X);
-        check(ball(Vector::new(0.0, 2.0, 0.0)), floor, 1.5, up);
+        let (up, right) = (Vec3::Y, Vec3::X);
+        check(ball(Vec3::new(0.0, 2.0, 0.0)), floor, 1.5, up);
+        check(ball(Vec3::new(3.0, 0.0, 0.0)), cube(Vec3::ZERO), 1.5, right);
+        check(cube(Vec3::new(0.0, 0.25, 0.0)), floor, -0.25, up);
+        check(cube(Vec3::new(3.0, 0.0, 0.0)), cube(Vec3::ZERO), 1.0, right);
         check(
-            ball(Vector::new(3.0, 0.0, 0.0)),
-            cube(Vector::ZERO),
-            1.5,
-            right,
-        );
-        check(cube(Vector::new(0.0, 0.25, 0.0)), floor, -0.25, up);
-        check(
-            cube(Vector::new(3.0, 0.0, 0.0)),
-            cube(Vector::ZERO),
-            1.0,
-            right,
-        );
-        check(
-            cube(Vector::new(1.9, 0.0, 0.0)),
-            cube(Vector::ZERO),
+            cube(Vec3::new(1.9, 0.0, 0.0)),
+            cube(Vec3::ZERO),
             -0.1,
             right,
         );
-        let leaning = bar(Vector::Y, Vector::new(3.0, 2.0, 0.0));
+        let leaning = bar(Vec3::Y, Vec3::new(3.0, 2.0, 0.0));
         check(leaning, floor, 0.75, up);
-        check(leaning, ball(Vector::new(-2.0, 1.0, 0.0)), 1.25, right);
+        check(leaning, ball(Vec3::new(-2.0, 1.0, 0.0)), 1.25, right);
         check(
-            bar(Vector::new(-4.0, 1.5, 0.0), Vector::new(4.0, 1.5, 0.1)),
-            cube(Vector::ZERO),
+            bar(Vec3::new(-4.0, 1.5, 0.0), Vec3::new(4.0, 1.5, 0.1)),
+            cube(Vec3::ZERO),
             0.75,
             up,
         );
         // Crossing capsules have their nearest points inside their segments.
         let [along, across] =
-            [Vector::new(2.0, 0.0, 0.0), Vector::new(0.0, 0.0, 2.0)].map(|way: Vector| (-way, way));
-        let above = |k: Vector| k + up;
+            [Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 2.0)].map(|way: Vec3| (-way, way));
+        let above = |k: Vec3| k + up;
         check(
             bar(above(along.0), above(along.1)),
             bar(across.0, across.1),
@@ -155,16 +144,16 @@ mod tests {
             up,
         );
         assert_eq!(floor.gap(&floor).0, f32::INFINITY);
-        let quarter = Rotation::about(Vector::Z, std::f32::consts::FRAC_PI_4);
+        let quarter = Rotation::about(Vec3::Z, std::f32::consts::FRAC_PI_4);
         let edge = |y| {
-            Shape::Box {
-                centre: Vector::ZERO,
-                half: Vector::ONE,
+            Solid::Box {
+                centre: Vec3::ZERO,
+                half: Vec3::ONE,
             }
             .rotated(quarter)
-            .translated(Vector::new(0.0, y, 0.0))
+            .translated(Vec3::new(0.0, y, 0.0))
         };
         check(edge(2.0), floor, 2.0 - 2.0f32.sqrt(), up);
-        check(edge(2.0), cube(Vector::ZERO), 1.5 - 2.0f32.sqrt(), up);
+        check(edge(2.0), cube(Vec3::ZERO), 1.5 - 2.0f32.sqrt(), up);
     }
 }

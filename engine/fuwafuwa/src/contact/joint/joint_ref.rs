@@ -1,0 +1,30 @@
+//! Read access to the joints of a world.
+
+use super::{Joint, JointState};
+use crate::foundation::dim::Dim;
+use std::marker::PhantomData;
+
+/// Joint of a world, for reading; see [`World::joint`](crate::World::joint).
+#[derive(Copy, Clone, Debug)]
+pub struct JointRef<'a, D: Dim> {
+    state: &'a JointState,
+    dim: PhantomData<D>,
+}
+
+impl<'a, D: Dim> JointRef<'a, D> {
+    pub(crate) fn new(state: &'a JointState) -> Self {
+        let dim = PhantomData;
+        Self { state, dim }
+    }
+
+    /// Returns the joint as it was added. For the present positions of its anchors see
+    /// [`World::joint_anchor_positions`](crate::World::joint_anchor_positions).
+    pub fn definition(&self) -> Joint<D> {
+        self.state.definition()
+    }
+
+    /// Returns the magnitude of the joint force in the last substep [N].
+    pub fn force(&self) -> f32 {
+        self.state.force()
+    }
+}

@@ -1,0 +1,258 @@
+//! State of a joint in the simulation.
+
+use super::attached_anchor::AttachedAnchor;
+use super::joint_end::{JointEnd, Woken};
+use super::{Joint, JointAnchor, JointKind};
+use crate::error::{Error, require};
+use crate::foundation::arena::{Arena, JointHandle};
+use crate::foundation::dim::{Dim, DimVector};
+use crate::foundation::hash::hash_state;
+
+use crate::rigid_body::solid::flat;
+use crate::rigid_body::{FARTHEST, RigidBodies, is_within_reach};
+use crate::soft_body::SoftBodies;
+use glam::Vec3;
+
+/// Solver iterations over all joints per substep. Chains need more than one, because their links depend on
+/// each other.
+const ROUNDS: usize = 4;
+
+/// Joints of a world.
+pub type Joints = Arena<JointHandle, JointState>;
+
+/// State of a joint in the simulation. The first fields are those of [`Joint`].
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct JointState {
+    /// Attachment points of both anchors.
+    pub ends: [JointEnd; 2],
+    /// Joint kind.
+    pub tie: JointKind,
+    /// Force above which the joint breaks [N], in tension or compression; infinite (default) = never.
+    pub breaking_force: f32,
+    pub(super) anchors: [AttachedAnchor; 2],
+    /// Impulse on the first anchor in the last substep [N s].
+    pub(super) impulse: Vec3,
+    /// Magnitude of the joint force in the last substep [N].
+    pub(super) force: f32,
+}
+
+hash_state! { struct JointState { ends, tie, breaking_force, anchors, impulse, force } }
+
+impl<D: Dim> From<&Joint<D>> for JointState {
+    fn from(joint: &Joint<D>) -> Self {
+        let end = |anchor: JointAnchor<D>| match anchor {
+            JointAnchor::Point(point) => JointEnd::Position(point.to_vec3()),
+            JointAnchor::RigidBody { body, point } => JointEnd::RigidBody {
+                rigid: body,
+                at: point.to_vec3(),
+            },
+            JointAnchor::SoftBody {
+                body,
+                point,
+                radius,
+            } => JointEnd::Soft {
+                body,
+                at: point.to_vec3(),
+                radius,
+            },
+        };
+        Self {
+            ends: joint.anchors.map(end),
+            tie: joint.kind,
+            breaking_force: joint.breaking_force,
+            anchors: [
+                AttachedAnchor::Position(Vec3::ZERO),
+                AttachedAnchor::Position(Vec3::ZERO),
+            ],
+            impulse: Vec3::ZERO,
+            force: 0.0,
+        }
+    }
+}
+
+impl JointState {
+    /// Returns the definition of the joint, with the anchors at the positions at which it was added.
+    pub fn definition<D: Dim>(&self) -> Joint<D> {
+        let anchor = |end: JointEnd| match end {
+            JointEnd::Position(at) => JointAnchor::Point(D::Vector::from_vec3(at)),
+            JointEnd::RigidBody { rigid, at } => JointAnchor::RigidBody {
+                body: rigid,
+                point: D::Vector::from_vec3(at),
+            },
+            JointEnd::Soft { body, at, radius } => JointAnchor::SoftBody {
+                body,
+                point: D::Vector::from_vec3(at),
+                radius,
+            },
+        };
+        Joint {
+            anchors: self.ends.map(anchor),
+            kind: self.tie,
+            breaking_force: self.breaking_force,
+        }
+    }
+
+    /// Returns the magnitude of the joint force in the last substep [N].
+    pub fn force(&self) -> f32 {
+        self.force
+    }
+
+    /// Attaches the anchors to their bodies at the present positions.
+    pub(crate) fn hold<D: Dim>(
+        &mut self,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+    ) -> Result<(), Error> {
+        for (anchor, end) in self.anchors.iter_mut().zip(&self.ends) {
+            *anchor = AttachedAnchor::of(end, bodies, rigids)?;
+        }
+        if self.tie == JointKind::Pin {
+            self.meet_soft_ends(bodies, rigids);
+        }
+        (self.impulse, self.force) = (Vec3::ZERO, 0.0);
+        Ok(())
+    }
+
+    /// For a pin between a soft anchor and another one, moves the other to the soft anchor, so that nothing
+    /// jumps at the first step.
+    fn meet_soft_ends<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
+        let is_soft = self.anchors.each_ref().map(AttachedAnchor::is_soft);
+        for (own, other) in [(0, 1), (1, 0)] {
+            if is_soft[own] && !is_soft[other] {
+                let at = self.anchors[own].grip(bodies, rigids).map(|grip| grip.at);
+                at.into_iter()
+                    .for_each(|at| self.anchors[other].stand_at(at, rigids));
+            }
+        }
+    }
+
+    /// Returns the positions of both anchors [m]; `None` if an attached body is gone.
+    pub(crate) fn places<D: Dim>(
+        &self,
+        bodies: &SoftBodies<D>,
+        rigids: &RigidBodies,
+    ) -> Option<[Vec3; 2]> {
+        let [first, second] = &self.anchors;
+        let at = |anchor: &AttachedAnchor| Some(anchor.grip(bodies, rigids)?.at);
+        Some([at(first)?, at(second)?])
+    }
+
+    /// Checks that all parameters are in range.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        for (number, end) in (1..).zip(&self.ends) {
+            let (at, radius) = match *end {
+                JointEnd::Position(at) | JointEnd::RigidBody { at, .. } => (at, 0.0),
+                JointEnd::Soft { at, radius, .. } => (at, radius),
+            };
+            let is_near = is_within_reach(at);
+            let of_anchor = |error: Error| error.of(format_args!("joint anchor {number}"));
+            let expected = "within 1e6 m of the origin";
+            require(is_near, "point", expected, at).map_err(of_anchor)?;
+            let is_valid = (0.0..=FARTHEST).contains(&radius);
+            require(is_valid, "radius", "0 to 1e6 m", radius).map_err(of_anchor)?;
+        }
+        let wrong = match self.ends {
+            [JointEnd::Position(_), JointEnd::Position(_)] => Some("two points of the world"),
+            [
+                JointEnd::RigidBody { rigid, .. },
+                JointEnd::RigidBody { rigid: other, .. },
+            ] if rigid == other => Some("twice the same rigid body"),
+            _ => None,
+        };
+        if let Some(given) = wrong {
+            let expected = "on two different objects, at least one of them a body";
+            return Err(Error::parameter(
+                "joint anchors",
+                expected,
+                format_args!("{given}"),
+            ));
+        }
+        let force = self.breaking_force;
+        require(force > 0.0, "breaking_force", "positive", force)?;
+        let is_within = |k: f32, least: f32| (least..=f32::MAX).contains(&k);
+        match self.tie {
+            JointKind::Pin => Ok(()),
+            JointKind::Rope { length } => require(
+                is_within(length, f32::MIN_POSITIVE),
+                "length",
+                "positive and finite",
+                length,
+            ),
+            JointKind::Spring {
+                stiffness,
+                damping,
+                length,
+            } => {
+                let is_stiff = is_within(stiffness, f32::MIN_POSITIVE);
+                let expected = "positive and finite";
+                require(is_stiff, "stiffness", expected, stiffness)?;
+                let expected = "0 or more, and finite";
+                require(is_within(damping, 0.0), "damping", expected, damping)?;
+                require(is_within(length, 0.0), "length", expected, length)
+            }
+        }
+    }
+
+    /// Returns whether a joint that was read from a file is valid.
+    #[cfg(feature = "serde")]
+    pub(crate) fn is_sound<D: Dim>(&self) -> bool {
+        let is_finite = self.impulse.is_finite() && self.force >= 0.0;
+        let is_flat = self.impulse.to_array()[D::N..].iter().all(|k| *k == 0.0);
+        let mut both = self.anchors.iter().zip(&self.ends);
+        self.check().is_ok()
+            && is_finite
+            && is_flat
+            && both.all(|(own, end)| own.is_sound::<D>(end))
+    }
+}
+
+/// Applies the joint impulses of a substep of `duration` [s]. Returns the joints that lost an anchor, and the
+/// sleepers to wake.
+pub(crate) fn solve<D: Dim>(
+    joints: &mut Joints,
+    bodies: &mut SoftBodies<D>,
+    rigids: &mut RigidBodies,
+    duration: f32,
+) -> (Vec<JointHandle>, Woken) {
+    let (mut broken, mut woken) = (Vec::new(), Woken::default());
+    for (id, joint) in joints.entries_mut() {
+        match joint.start(bodies, rigids, &mut woken) {
+            true => {}
+            false => broken.push(id),
+        }
+    }
+    for _ in 0..ROUNDS {
+        for joint in joints.iter_mut() {
+            joint.solve(bodies, rigids, duration, true);
+        }
+    }
+    (broken, woken)
+}
+
+/// Removes, after the position update, the velocity that was added to correct pins and ropes. Returns the
+/// joints that exceeded their breaking force.
+pub(crate) fn relax<D: Dim>(
+    joints: &mut Joints,
+    bodies: &mut SoftBodies<D>,
+    rigids: &mut RigidBodies,
+    duration: f32,
+) -> Vec<JointHandle> {
+    let mut broken = Vec::new();
+    for _ in 0..ROUNDS {
+        for joint in joints.iter_mut() {
+            joint.solve(bodies, rigids, duration, false);
+        }
+    }
+    for (id, joint) in joints.entries_mut() {
+        if !joint.yields(bodies, rigids) {
+            // Nothing attached can move, so the joint keeps its last force.
+            continue;
+        }
+        joint.force = flat::<D>(joint.impulse).length() / duration;
+        if joint.force > joint.breaking_force {
+            broken.push(id);
+        }
+    }
+    broken
+}

@@ -1,0 +1,12 @@
+//! Linear and angular velocity in three coordinates.
+
+use glam::Vec3;
+
+/// Linear and angular velocity, as the engine computes with it in both dimensions.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Twist {
+    /// Linear velocity of the centre of mass [m/s].
+    pub linear: Vec3,
+    /// Angular velocity about the centre of mass [rad/s]; in 2D only the third component is not 0.
+    pub angular: Vec3,
+}

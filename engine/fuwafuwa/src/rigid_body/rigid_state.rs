@@ -1,0 +1,374 @@
+//! State of a rigid body in the simulation.
+
+use crate::error::{Error, require};
+use crate::foundation::arena::{Arena, RigidBodyHandle};
+use crate::foundation::dim::{Dim, DimVector, turning};
+use crate::foundation::hash::hash_state;
+use crate::math::rotation::Rotation;
+use crate::math::twist::Twist;
+use crate::math::velocity::Velocity;
+use crate::rigid_body::inertia::{Inertia, Matrix};
+use crate::rigid_body::layers::Layers;
+use crate::rigid_body::reach::is_within_reach;
+use crate::rigid_body::rigid_state_check::check_motion_type;
+use crate::rigid_body::shape::Shape;
+use crate::rigid_body::solid::{Solid, flat};
+use crate::rigid_body::{MotionType, RigidBody};
+use glam::Vec3;
+use std::mem::discriminant;
+
+/// Rigid bodies of a world.
+pub type RigidBodies = Arena<RigidBodyHandle, RigidState>;
+
+/// State of a rigid body in the simulation, in three coordinates. The first fields are those of [`RigidBody`].
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RigidState {
+    pub friction: f32,
+    pub restitution: f32,
+    pub motion_type: MotionType,
+    pub layers: Layers,
+    pub is_sensor: bool,
+    pub user_data: u64,
+    /// Shape in local coordinates, and in the world.
+    pub(super) form: Solid,
+    pub(super) shape: Solid,
+    /// Position of the local origin [m].
+    pub(crate) position: Vec3,
+    /// Linear velocity [m/s].
+    pub(crate) velocity: Vec3,
+    /// Rotation from local to world axes.
+    pub(crate) rotation: Rotation,
+    /// Angular velocity [rad/s].
+    pub(crate) angular_velocity: Vec3,
+    /// Whether the body sleeps, and its sleep timer: for how long it has been slow [s].
+    pub(crate) asleep: bool,
+    pub(crate) sleep_timer: f32,
+    /// Position [m] and rotation at the start of the tick.
+    pub(super) position_before: Vec3,
+    pub(super) rotation_before: Rotation,
+    /// Moments of inertia, for dynamic bodies only, and the inverse inertia matrix about the world axes.
+    pub(super) inertia: Option<Inertia>,
+    pub(super) inverse_inertia: Matrix,
+    /// Target position [m] and target rotation.
+    pub(super) goal: Vec3,
+    pub(super) rotation_goal: Rotation,
+    /// Interpolated target position [m] and its velocity in this tick [m/s].
+    pub(super) goal_before: Vec3,
+    pub(super) goal_velocity: Vec3,
+    /// Reaction of each substep of the last tick.
+    pub(crate) reactions: Vec<ReactionSum>,
+}
+
+hash_state! {
+    struct RigidState {
+        friction, restitution, motion_type, layers, is_sensor, user_data, form, shape, position, velocity,
+        rotation, angular_velocity, asleep, sleep_timer, position_before, rotation_before, inertia,
+        inverse_inertia, goal, rotation_goal, goal_before, goal_velocity, reactions,
+    }
+}
+
+/// Force and torque on a rigid body in one substep.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ReactionSum {
+    /// Contact force [N]; jumps when something tears.
+    pub contact: Vec3,
+    /// Torque of the contacts and knives about the position [N m]; in 2D only the third
+    /// component.
+    pub torque: Vec3,
+    /// Reversed force of the virtual coupling [N]: the force to play on a force-feedback device.
+    pub coupling: Vec3,
+}
+
+hash_state! { struct ReactionSum { contact, torque, coupling } }
+
+impl<D: Dim> From<&RigidBody<D>> for RigidState {
+    fn from(body: &RigidBody<D>) -> Self {
+        let position = body.position.to_vec3();
+        let rotation = body.rotation.seen_in::<D>();
+        let Twist { linear, angular } = body.velocity.twist();
+        let form = body.shape.solid();
+        let mut state = Self {
+            friction: body.friction,
+            restitution: body.restitution,
+            motion_type: body.motion_type,
+            layers: body.layers,
+            is_sensor: body.is_sensor,
+            user_data: body.user_data,
+            form,
+            shape: form,
+            position,
+            velocity: linear,
+            rotation,
+            angular_velocity: angular,
+            asleep: false,
+            sleep_timer: 0.0,
+            position_before: position,
+            rotation_before: rotation,
+            inertia: body.motion_type.inertia::<D>(&form),
+            inverse_inertia: [Vec3::ZERO; 3],
+            goal: position,
+            rotation_goal: rotation,
+            goal_before: position,
+            goal_velocity: Vec3::ZERO,
+            reactions: Vec::new(),
+        };
+        state.clear_unused_motion();
+        state.stand_at(position, rotation);
+        state
+    }
+}
+
+impl RigidState {
+    /// Returns the definition of the body with its present pose and velocity.
+    pub fn definition<D: Dim>(&self) -> RigidBody<D> {
+        RigidBody {
+            motion_type: self.motion_type,
+            shape: Shape::of(&self.form),
+            position: D::Vector::from_vec3(self.position),
+            rotation: self.rotation,
+            velocity: Velocity::from(self.twist()),
+            friction: self.friction,
+            restitution: self.restitution,
+            layers: self.layers,
+            is_sensor: self.is_sensor,
+            user_data: self.user_data,
+        }
+    }
+
+    /// Returns the body for a world of `D`, as it would be after loading: in 2D third coordinates are 0.
+    #[cfg(feature = "serde")]
+    pub fn seen_in<D: Dim>(mut self) -> Self {
+        self.form = self.form.seen_in::<D>();
+        let positions = [&mut self.position, &mut self.goal, &mut self.goal_before];
+        let others = [&mut self.position_before, &mut self.velocity];
+        for vector in positions.into_iter().chain(others) {
+            *vector = flat::<D>(*vector);
+        }
+        let rotations = [&mut self.rotation_before, &mut self.rotation_goal];
+        for rotation in rotations.into_iter().chain([&mut self.rotation]) {
+            *rotation = rotation.seen_in::<D>();
+        }
+        self.angular_velocity = turning::<D>(self.angular_velocity);
+        self.clear_unused_motion();
+        self.inertia = self.motion_type.inertia::<D>(&self.form);
+        self.stand_at(self.position, self.rotation);
+        self
+    }
+
+    /// Sets the velocities to 0 that a body of this motion type cannot have.
+    fn clear_unused_motion(&mut self) {
+        if self.motion_type == MotionType::Fixed {
+            // The body may have been kinematic or coupled before.
+            (self.velocity, self.goal_velocity) = (Vec3::ZERO, Vec3::ZERO);
+            self.stay();
+        }
+        if matches!(
+            self.motion_type,
+            MotionType::Fixed | MotionType::Coupled { .. }
+        ) {
+            self.angular_velocity = Vec3::ZERO;
+        }
+    }
+
+    /// Sets the motion type in a world of `D`. If the type differs from the present one, the present
+    /// pose becomes the target; other parameters of the same type keep the target.
+    pub(crate) fn set_motion_type<D: Dim>(&mut self, motion_type: MotionType) -> Result<(), Error> {
+        let inertia = motion_type.inertia::<D>(&self.form);
+        check_motion_type(motion_type, &self.form, inertia.as_ref())?;
+        if discriminant(&motion_type) != discriminant(&self.motion_type) {
+            self.stay();
+        }
+        (self.motion_type, self.inertia) = (motion_type, inertia);
+        self.clear_unused_motion();
+        self.stand_at(self.position, self.rotation);
+        Ok(())
+    }
+
+    /// Returns the position of the local origin [m].
+    pub fn position(&self) -> Vec3 {
+        self.position
+    }
+
+    /// Returns the linear and angular velocity.
+    pub fn twist(&self) -> Twist {
+        Twist {
+            linear: self.velocity,
+            angular: self.angular_velocity,
+        }
+    }
+
+    /// Returns the linear velocity [m/s].
+    pub fn velocity(&self) -> Vec3 {
+        self.velocity
+    }
+
+    /// Returns the rotation from local to world axes.
+    pub fn rotation(&self) -> Rotation {
+        self.rotation
+    }
+
+    /// Returns the angular velocity [rad/s]; in 2D only the third component.
+    pub fn angular_velocity(&self) -> Vec3 {
+        self.angular_velocity
+    }
+
+    /// Returns the target position [m].
+    pub fn target_position(&self) -> Vec3 {
+        self.goal
+    }
+
+    /// Returns the target rotation.
+    pub fn target_rotation(&self) -> Rotation {
+        self.rotation_goal
+    }
+
+    /// Returns the reactions, one for each substep of the last tick.
+    pub fn reactions(&self) -> &[ReactionSum] {
+        &self.reactions
+    }
+
+    /// Returns the shape in local coordinates.
+    pub fn form(&self) -> &Solid {
+        &self.form
+    }
+
+    /// Returns the shape in world coordinates.
+    pub fn shape(&self) -> &Solid {
+        &self.shape
+    }
+
+    /// Returns whether the body follows a target: it is kinematic or coupled.
+    pub fn follows_target(&self) -> bool {
+        matches!(
+            self.motion_type,
+            MotionType::Kinematic | MotionType::Coupled { .. }
+        )
+    }
+
+    /// Returns an error unless the body follows a target.
+    pub(super) fn require_target(&self) -> Result<(), Error> {
+        let expected = "kinematic or coupled";
+        require(
+            self.follows_target(),
+            "motion_type",
+            expected,
+            self.motion_type,
+        )
+    }
+
+    /// Sets the target position [m]; .
+    pub(crate) fn send(&mut self, goal: Vec3) -> Result<(), Error> {
+        self.require_target()?;
+        let expected = "within 1e6 m of the origin";
+        require(is_within_reach(goal), "position", expected, goal)?;
+        self.goal = goal;
+        Ok(())
+    }
+
+    /// Returns the inverse mass for contacts [1/kg]; 0 for fixed, kinematic and sleeping bodies.
+    #[inline(always)]
+    pub(crate) fn inverse_mass(&self) -> f32 {
+        match self.motion_type {
+            MotionType::Fixed | MotionType::Kinematic => 0.0,
+            MotionType::Dynamic { .. } if self.asleep => 0.0,
+            MotionType::Coupled { mass, .. } | MotionType::Dynamic { mass } => 1.0 / mass,
+        }
+    }
+
+    /// Starts a tick of `duration` [s], in which the target moves at a constant velocity.
+    pub(crate) fn start_tick(&mut self, duration: f32) {
+        (self.position_before, self.rotation_before) = (self.position, self.rotation);
+        self.goal_velocity = (self.goal - self.goal_before) * (1.0 / duration);
+        if self.follows_target() && self.rotation != self.rotation_goal
+            || self.motion_type == MotionType::Kinematic
+        {
+            let way = self.rotation.inverse().then(self.rotation_goal);
+            self.angular_velocity = way.scaled_axis() * (1.0 / duration);
+        }
+        self.reactions.clear();
+    }
+
+    /// Ends a tick: the target stops, and the rotation is set to its target. A body that is non-finite or out
+    /// of range is reset to its pose at the start of the tick, at rest.
+    pub(crate) fn end_tick(&mut self) {
+        self.goal_before = self.goal;
+        if self.follows_target() && self.rotation != self.rotation_goal {
+            self.stand_at(self.position, self.rotation_goal);
+        }
+        if matches!(self.motion_type, MotionType::Coupled { .. }) {
+            self.angular_velocity = Vec3::ZERO;
+        }
+        let is_finite = self.velocity.is_finite() && self.angular_velocity.is_finite();
+        if !is_finite || !is_within_reach(self.position) {
+            self.stand_at(self.position_before, self.rotation_before);
+            (self.velocity, self.angular_velocity) = (Vec3::ZERO, Vec3::ZERO);
+            self.reactions.fill(ReactionSum::default());
+        }
+    }
+
+    /// Applies the virtual coupling, or the velocity of a kinematic body, for `duration` [s].
+    pub(crate) fn pull(&mut self, duration: f32) {
+        self.goal_before += self.goal_velocity * duration;
+        let mut reaction = ReactionSum::default();
+        match self.motion_type {
+            MotionType::Fixed => return,
+            MotionType::Dynamic { .. } => {}
+            MotionType::Kinematic => {
+                self.velocity = (self.goal_before - self.position) * (1.0 / duration);
+            }
+            MotionType::Coupled {
+                mass,
+                stiffness,
+                damping,
+                max_force,
+            } => {
+                // Limits the stiffness to the stability limit of this substep.
+                let stiffness = stiffness.min(0.25 * mass / (duration * duration));
+                let damper = 2.0 * damping * (stiffness * mass).sqrt();
+                let stretch = self.goal_before - self.position;
+                let slip = self.goal_velocity - self.velocity;
+                let wish = stretch * stiffness + slip * damper;
+                let strength = wish.length();
+                let force = if strength > max_force {
+                    wish * (max_force / strength)
+                } else {
+                    wish
+                };
+                self.velocity += force * (duration / mass);
+                reaction.coupling = -force;
+            }
+        }
+        self.reactions.push(reaction);
+    }
+
+    /// Applies an impulse [N s] of a contact, within a substep of `duration` [s].
+    #[inline(always)]
+    pub(crate) fn push(&mut self, impulse: Vec3, duration: f32) {
+        let inverse_mass = self.inverse_mass();
+        for axis in 0..3 {
+            if inverse_mass > 0.0 {
+                self.velocity[axis] += impulse[axis] * inverse_mass;
+            }
+            if let Some(reaction) = self.reactions.last_mut() {
+                reaction.contact[axis] += impulse[axis] / duration;
+            }
+        }
+    }
+
+    /// Adds a torque [N m] to the reaction of this substep.
+    pub(crate) fn add_torque(&mut self, torque: Vec3) {
+        if let Some(reaction) = self.reactions.last_mut() {
+            reaction.torque += torque;
+        }
+    }
+
+    pub(super) fn stand_at(&mut self, position: Vec3, rotation: Rotation) {
+        (self.position, self.rotation) = (position, rotation);
+        self.shape = self.form.rotated(rotation).translated(position);
+        if let Some(inertia) = &self.inertia {
+            self.inverse_inertia = inertia.inverse(rotation);
+        }
+    }
+}
