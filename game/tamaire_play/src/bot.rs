@@ -26,14 +26,15 @@ const CLOSER: f32 = 0.85;
 /// bot stops shaving for a while, because the rest may fit as it is. In 2D the last strokes go through the
 /// centre.
 const CLOSEST: [f32; 2] = [0.0, 0.4];
-/// Progress [m] and its reward [ticks] for heavy pieces on a 3D floor. Each time the pushed piece has come
-/// closer to the mouth by `NEARER`, a gathering bot's waiting time is reduced by `ON_ITS_WAY`.
+/// Credit for progress in 3D, where heavy pieces on a floor move slowly. Each time the pushed piece has come
+/// closer to the mouth by `NEARER` [m], the waiting time of a gathering bot is reduced by `ON_ITS_WAY`
+/// [ticks].
 const NEARER: f32 = 0.05;
 const ON_ITS_WAY: u32 = 20;
-/// Additional depth by which a gathering bot pushes at the end of the waiting time, in 2D and in 3D [m].
+/// Additional depth of a gathering bot's push after a long time without progress, in 2D and in 3D [m].
 const FIRMER: [f32; 2] = [0.12, 0.3];
-/// Value of [`Progress::kept`](crate::Progress::kept) below which the shaving bot starts to gather: to push
-/// the pieces in.
+/// Value of [`Progress::kept`](crate::Progress::kept) below which a bot stops shaving and starts to gather:
+/// it pushes the pieces in.
 const SMALL_ENOUGH: f32 = 0.92;
 /// Share of the total mass in the basket above which strokes are limited to the speed `BRISK`.
 const IN_THE_MOUTH: f32 = 0.1;
@@ -74,7 +75,7 @@ pub struct Bot {
     random_targets: [(Vector, u32); crate::PLAYERS],
     stroke: Stroke,
     strokes: u32,
-    /// Factor on the first offset for the next stroke; and the number of pieces before the last stroke.
+    /// Factor on [`FIRST_OFFSET`] for the next stroke, and number of pieces before the last stroke.
     off: f32,
     pieces: usize,
     gathers: bool,

@@ -134,7 +134,7 @@ impl Level {
             known.map_or_else(nothing, |(_, bytes)| Ok(bytes.to_vec()))
         };
         scene.embed_files(&fetch)?;
-        // The world is not built here, because tests build every built-in level.
+        // Does not build the world as a check: tests build every built-in level.
         Self::unbuilt(id, scene)
     }
 

@@ -15,7 +15,8 @@ const WHOLE: f32 = 0.99;
 /// Mean strain above which bodies at rest in the basket count as squeezed by the bars. The strain by the
 /// bodies' own weight is added to this limit.
 const SQUEEZED: f32 = 0.08;
-/// Interval between two evaluations of the strain, which are slow [ticks]. Squeezing a body in takes longer.
+/// Interval between two evaluations of the strain [ticks]. They take time, and squeezing a body in lasts
+/// longer than this.
 const LOOK: u64 = 4;
 
 /// Progress of a round.
@@ -34,8 +35,8 @@ pub struct Progress {
     pub pieces: usize,
     /// Time for which enough mass has rested in the basket [s].
     pub held: f32,
-    /// Whether the bars did not squeeze the content of the basket at some moment since enough mass has rested
-    /// there. If they always squeezed it, a win with a torn body counts as [`Route::Mix`].
+    /// Whether the content of the basket was free of squeezing by the bars at some moment since enough mass
+    /// has rested there. If it never was, a win with a torn body counts as [`Route::Mix`].
     pub relaxed: bool,
     /// Outcome, if the round was won.
     pub outcome: Option<Outcome>,

@@ -10,8 +10,8 @@ use std::cell::LazyCell;
 const CRUMB: f32 = 0.003;
 /// Maximum number of pieces to consider, in order of mass.
 const MOST: usize = 12;
-/// Additional cost of a path in a cell: `RIGID` in an obstacle, and `SOFT` times the share of the total mass
-/// in the cell.
+/// Cost of a path cell in an obstacle (`RIGID`), and additional cost of a cell with mass (`SOFT` times its
+/// share of the total mass).
 const RIGID: f32 = 1000.0;
 const SOFT: f32 = 400.0;
 
@@ -71,8 +71,8 @@ struct Basket {
 }
 
 impl Sight {
-    /// Returns the view of a round. `skips` is the number of more important pieces to pass over. A piece is
-    /// pushed straight in if its centre is at most `off` away from the axis through the mouth's centre [m].
+    /// Returns the view of a round. `skips` is the number of more important pieces to pass over. A piece as
+    /// wide as the mouth is pushed straight in if its centre is at most `off` beside the mouth's axis [m].
     pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
         let (world, arena) = (round.world(), round.level().arena());
         let region = round.basket()?;
@@ -261,8 +261,8 @@ fn opening(mouth: Vector, axis: Vector, across: usize, obstacles: &[&Shape]) -> 
     least
 }
 
-/// Returns a direction perpendicular to a direction along a coordinate axis: along the last used axis (y in
-/// 2D, z in 3D) if `axis` is along x, otherwise along x.
+/// Returns a direction perpendicular to the coordinate direction `axis`: along the last used axis (y in 2D, z
+/// in 3D) if `axis` is along x, otherwise along x.
 fn across<D: Dim>(axis: Vector) -> Vector {
     let mut across = [-axis[1] - axis[2], 0.0, 0.0];
     across[D::N - 1] = axis[0];

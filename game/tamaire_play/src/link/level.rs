@@ -34,7 +34,7 @@ pub(super) enum Content {
         /// Lower half of the level's hash.
         hash: u32,
     },
-    /// A deflated [`WholeScene`].
+    /// Any other level, as a deflated [`WholeScene`].
     Whole(Vec<u8>),
 }
 
