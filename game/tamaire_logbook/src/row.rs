@@ -45,7 +45,7 @@ pub struct Round {
     pub end: RoundEnd,
     /// Route by which the round was won; `None` if it was not won.
     pub route: Option<Route>,
-    /// Mass of the largest piece of each body, as a share of the mass of these pieces at the start.
+    /// Total mass of the largest piece of each body, as a share of the same total at the start.
     pub kept: f32,
     /// Share of the total mass that rests in the basket at the end, 0 to 1.
     pub inside: f32,

@@ -2,9 +2,9 @@
 //! stored once.
 //!
 //! Rows are sent in the order of their changes, at most 200 in a transaction. The transaction also stores the
-//! number of its last change, so that the server knows its position in the file. While the server cannot be
-//! reached, the thread keeps trying. The server may be a new one, or it may have lost rows because it was
-//! restored from a backup. The thread then sends all rows after the server's position that are still in the
+//! number of its last change: this is the server's position in the file. While the server cannot be reached,
+//! the thread keeps trying. The server may be a new one, or it may have lost rows because it was restored
+//! from a backup. In both cases the thread sends all rows after the server's position that are still in the
 //! file.
 
 mod tables;

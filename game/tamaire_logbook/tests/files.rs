@@ -101,8 +101,8 @@ fn open_sets_aside_a_truncated_file_unchanged() {
     }
 }
 
-/// A file with changed bytes is either opened or set aside unchanged. Writing and reading must not panic
-/// then.
+/// A file with changed bytes is either opened or set aside unchanged. In both cases, writing and reading must
+/// not panic.
 #[test]
 fn open_handles_changed_bytes_without_panic() {
     let (_folder, path) = place();

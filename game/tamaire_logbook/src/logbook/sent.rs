@@ -5,7 +5,8 @@ pub use since::{ChangedRow, SyncPosition, changes, sent, set_sent, unsent};
 
 use rusqlite::{Connection, params};
 
-/// Sets the server for which unsent rows are kept. If it differs from the last server, no row counts as received.
+/// Sets the server for which unsent rows are kept. If it differs from the last server, no row counts as
+/// received.
 pub fn await_server(connection: &Connection, server: Option<&str>) -> rusqlite::Result<()> {
     let sql = "UPDATE book SET server = ?1, sent = CASE WHEN ?1 IS NULL THEN sent ELSE 0 END WHERE server IS NOT ?1";
     connection.execute(sql, params![server])?;
