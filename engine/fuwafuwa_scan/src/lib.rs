@@ -35,8 +35,8 @@
 //!                        z
 //! ```
 //!
-//! A camera that looks against the engine's z axis, as the engine's pictures do, sees the patient from
-//! behind, with the left side on the left.
+//! A camera that looks along the negative z axis, as in the engine's pictures, sees the patient from behind,
+//! with the left side on the left.
 //!
 //! # Untrusted files
 //!
