@@ -9,7 +9,7 @@
 //! game, use the crate `fuwafuwa_render`.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![allow(rustdoc::broken_intra_doc_links)] // brackets hold units, such as [m]
 
 mod canvas;
 mod error;
