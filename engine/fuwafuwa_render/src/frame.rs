@@ -66,7 +66,7 @@ pub struct Prop {
     pub colour: Colour,
 }
 
-/// 2D camera. The picture fills the target, whatever its size.
+/// 2D camera. The picture fills a target of any size.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Camera {
     /// Point in the middle of the picture [m]. The third coordinate is ignored.

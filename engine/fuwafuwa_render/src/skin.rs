@@ -20,8 +20,8 @@ pub struct SkinVertex {
     pub at: Vec2,
     /// Colour and opacity.
     pub colour: [u8; 4],
-    /// Thickness (0 on the outline), freshness, strain, and the blending weight of these three; each 0 to
-    /// 255.
+    /// Thickness (0 on the outline), freshness (255 on torn surfaces), strain, and the blending weight of
+    /// these three; each 0 to 255.
     pub relief: [u8; 4],
 }
 

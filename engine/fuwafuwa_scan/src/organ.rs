@@ -11,8 +11,8 @@ use std::ops::RangeInclusive;
 /// into a MagicaVoxel model.
 pub const RESOLUTIONS: RangeInclusive<usize> = 8..=256;
 
-/// Minimum resolution of the search for an organ [voxels], whatever the final resolution: a coarser search
-/// misses small organs.
+/// Minimum resolution of the search for an organ [voxels], even if the final resolution is lower: a coarser
+/// search misses small organs.
 const MIN_SEARCH_RESOLUTION: usize = 64;
 
 /// Maximum number of samples along each axis of a voxel. More hardly change the result.

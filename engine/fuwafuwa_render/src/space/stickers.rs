@@ -13,7 +13,7 @@ use crate::palette::bytes;
 use fuwafuwa::{Dim3, SoftBody, Vector};
 use glam::{Mat3, Vec2, Vec3};
 
-/// Half extent of the height field [mark units], and its number of samples per side.
+/// Half extent of the height field [mark units, see [`Mark::outline`]], and its number of samples per side.
 const REACH: f32 = 1.2;
 const SIDE: usize = 25;
 /// Radius over which a height is averaged, in mark units and in voxels; the larger one applies.
