@@ -2,7 +2,7 @@
 
 use fuwafuwa_render::Colour;
 
-/// Device with exactly the limits of WebGL2.
+/// Creates a device with exactly the limits of WebGL2.
 pub fn device() -> (wgpu::Device, wgpu::Queue) {
     device_with(wgpu::Limits::downlevel_webgl2_defaults())
 }
