@@ -13,7 +13,7 @@ use bevy_fuwafuwa::{Problem, Rejected};
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
 
-/// Spawns an invalid bundle beside a ball and returns the reported problem.
+/// Spawns an invalid bundle beside a valid ball and returns the reported problem.
 fn rejected(bad: impl Bundle) -> String {
     let mut app = app::<Dim2>();
     let ball = app
