@@ -286,8 +286,8 @@ mod tests {
             let position = view.to_world(view.to_screen(at), at[1]);
             assert!(length(minus(position, at)) < 1e-2, "{position:?}");
         }
-        // Lowest camera position. One hand height is below the camera, the other above it, and the screen
-        // points are near the horizon: left and right are not swapped, and points stay far away.
+        // At the lowest elevation, rays at the upper edge of the screen are nearly horizontal. Left and right
+        // must not be swapped, and the points must lie beyond the arena.
         camera.face_front();
         camera.orbit(0.0, -9.0);
         let view = camera.view_of_space(rect, arena);
