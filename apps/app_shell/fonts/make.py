@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Makes the fonts of the game again: parts of M PLUS Rounded 1c, as TrueType.
+"""Generates the fonts of the game: subsets of M PLUS Rounded 1c, as TrueType.
 
     pip install fonttools==4.68.0 brotli==1.2.1
     python3 apps/app_shell/fonts/make.py
 
-Takes the font from npm (`npm pack`), where it lies in some 120 slices. One part has Latin letters, the symbols
-below and what the title says in each language; the other kana, the kanji of kanji.txt, and every other character
-that the sources and data of the game have in them, which a browser fetches when it is wanted. The same input
-gives the same bytes.
+The typeface comes from npm (`npm pack`) as some 120 slices. The Latin font contains Latin letters, the symbols
+below and the title in each language. The Japanese font, which a browser downloads on demand, contains kana, the
+kanji of kanji.txt, and every other character in the sources and data of the game. The same input gives the same
+bytes.
 """
 
 import subprocess
@@ -25,12 +25,12 @@ WEIGHTS = {700: "Bold"}
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
-# Where the words of the game are.
+# Folders with the texts of the game.
 SOURCES = ["game"]
 SUFFIXES = {".rs", ".toml"}
 
 SYMBOLS = "←→↑↓↔↕⇧⏎●○◎■□▲△▼▽▶◀◆◇★☆♥♡♪✓※♂♀①②③④⑤⑥⑦⑧⑨∞≠≤≥−√"
-# What is read before a language is chosen.
+# Characters of the title screen, which is shown before a language is chosen.
 TITLE = "玉入れ日本語"
 LATIN = [
     (0x20, 0x7E),
@@ -44,7 +44,7 @@ JAPANESE = [
 
 
 def named():
-    """The characters that somebody wrote down: they must be in the font."""
+    """Returns the characters that the fonts must contain: symbols, kanji.txt, and all texts of the game."""
     characters = set(SYMBOLS)
     for line in (HERE / "kanji.txt").read_text(encoding="utf-8").splitlines():
         if not line.startswith("#"):
@@ -61,7 +61,7 @@ def within(ranges):
 
 
 def slices(folder, weight):
-    """The slices of a weight, the one with nearly all first."""
+    """Returns the slices of a weight, beginning with the Japanese one, which has most characters."""
     japanese = f"m-plus-rounded-1c-japanese-{weight}-normal.woff2"
     others = sorted(folder.glob(f"m-plus-rounded-1c-*-{weight}-normal.woff2"))
     others = [path for path in others if path.name != japanese]
@@ -83,7 +83,7 @@ def add(font, character, other):
 
 
 def make(folder, weight, part, characters):
-    """Writes a part of the font of this weight; the characters that are in it."""
+    """Writes a subset of the font in this weight and returns the characters that it contains."""
     font, *others = slices(folder, weight)
     for table in ("vhea", "vmtx"):
         del font[table]

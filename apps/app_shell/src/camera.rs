@@ -8,22 +8,23 @@ use std::f32::consts::TAU;
 
 /// Margin around the arena [m]. It keeps the whole arena in view while the camera leans.
 const MARGIN: f32 = 0.1;
-/// Lean of the camera towards the hand, as a share of the distance from the arena's centre to the hand.
+/// Lean of the camera towards the hand that the player moves, as a fraction of the distance from the arena's
+/// centre to the hand.
 const LEAN: f32 = 0.03;
-/// Rate at which the lean follows the hand [1/s].
+/// Rate at which the lean approaches its goal [1/s].
 const PACE: f32 = 3.0;
 /// Decay rate of a shake [1/s]. Its angular frequency is [`SWING`] [rad/s].
 const CALM: f32 = 9.0;
-/// 3D: initial elevation of the camera, and its lower and upper limit [rad]. Below the lower limit a hand
-/// could be above the camera.
+/// 3D: initial elevation of the camera, and its lower and upper limit [rad]. Below the lower limit, the hand
+/// could be higher than the camera.
 const RISE: f32 = 0.6;
 const LOWEST: f32 = 0.35;
 const HIGHEST: f32 = 1.5;
-/// 3D: factor on the distance from which the whole arena is visible from all sides. Below 1, because the
-/// arena's corners hold nothing of interest.
+/// 3D: fraction of the camera distance at which the whole arena would be visible. Below 1 the camera is
+/// closer and may cut off the arena's corners, which are usually empty.
 const CLOSE: f32 = 0.66;
-/// 3D: offset of the camera's target below the centre of the arena [m], limited to a share of the arena's
-/// height. Bodies lie on the floor.
+/// 3D: distance of the camera's target below the centre of the arena [m], and its limit as a fraction of the
+/// arena's height. The target is low because bodies lie on the floor.
 const LOWER: f32 = 0.12;
 const LOWER_SHARE: f32 = 0.15;
 /// Rate at which the camera returns to its initial orientation [1/s].
@@ -285,8 +286,8 @@ mod tests {
             let position = view.to_world(view.to_screen(at), at[1]);
             assert!(length(minus(position, at)) < 1e-2, "{position:?}");
         }
-        // From far below: beyond the horizon and with the hand above the camera, left and right are not
-        // swapped and points stay far away.
+        // At the lowest elevation, rays at the upper edge of the screen are nearly horizontal. Left and right
+        // must not be swapped, and the points must lie beyond the arena.
         camera.face_front();
         camera.orbit(0.0, -9.0);
         let view = camera.view_of_space(rect, arena);

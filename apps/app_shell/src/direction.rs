@@ -1,11 +1,11 @@
-//! Directions of the user and of the world. The user points to the right and away; in space, "away" means along
-//! the floor, away from the camera.
+//! Conversion between directions as the user sees them and directions in the world. The user's directions are
+//! right and away. In 2D, away is up; in 3D, it is along the floor, away from the camera.
 
 use egui::Vec2;
 use fuwafuwa::Vector;
 
-/// Converts a direction of the user (right, away) to a direction in the world. `turn` is the rotation of the camera
-/// to the right [rad], `None` in the plane.
+/// Converts a direction of the user (right, away) to a direction in the world. `turn` is the azimuth of the
+/// camera, positive to the right [rad]; `None` in 2D.
 pub fn to_world(turn: Option<f32>, lean: Vec2) -> Vector {
     let Some(turn) = turn else {
         return [lean.x, lean.y, 0.0];
@@ -18,8 +18,8 @@ pub fn to_world(turn: Option<f32>, lean: Vec2) -> Vector {
     ]
 }
 
-/// Converts a vector in the world, such as a force [N], to a direction of the user (right, away): the inverse of
-/// [`to_world`]. In space the vertical component is dropped.
+/// Converts a vector in the world, such as a force [N], to a direction of the user (right, away). Inverse of
+/// [`to_world`], except that in 3D the vertical component is dropped.
 pub fn to_user(turn: Option<f32>, [x, y, z]: Vector) -> [f32; 2] {
     let Some(turn) = turn else {
         return [x, y];

@@ -1,4 +1,4 @@
-//! Force feedback and rumble of sticks and pads.
+//! Force feedback and rumble of sticks and gamepads.
 
 use crate::Pads;
 use force_feedback::{ForceThread, Line, Report, Settings, State, Stop};
@@ -12,14 +12,14 @@ const RATE: u32 = 250;
 #[derive(Default)]
 pub struct Forces {
     lines: BTreeMap<DeviceId, Line>,
-    /// Feedback thread. `None` while there is no device.
+    /// Driver of all devices, usually a thread. `None` while there is no device.
     force: Option<ForceThread>,
     is_cut: bool,
 }
 
 impl Forces {
     /// Opens new devices and releases disconnected ones. `settings` returns the feedback settings of a
-    /// device; a device without settings is released, too.
+    /// device, or `None` to release it.
     pub fn attend(
         &mut self,
         devices: &Snapshot,
@@ -44,8 +44,8 @@ impl Forces {
         }
     }
 
-    /// Returns the feedback thread and starts it if necessary. `None` if the system cannot start a thread;
-    /// then there is no feedback. In a browser, updates run without a thread.
+    /// Returns the driver and starts it if necessary. `None` if the system cannot start a thread; then there
+    /// is no feedback. In a browser the driver has no thread and needs [`Self::update`].
     fn force(&mut self) -> Option<&ForceThread> {
         if self.force.is_none() {
             self.force = match cfg!(target_family = "wasm") {
@@ -59,7 +59,7 @@ impl Forces {
         self.force.as_ref()
     }
 
-    /// Sends the wanted feedback to each device, or the reason for its absence.
+    /// Calls `wish` for each device: `Ok` sets its feedback, `Err` stops its feedback for the given reason.
     pub fn tell(&self, wish: impl Fn(DeviceId) -> Result<State, Stop>) {
         for (&id, line) in &self.lines {
             match wish(id) {
@@ -69,14 +69,14 @@ impl Forces {
         }
     }
 
-    /// Updates the devices in a browser, where no thread does so.
+    /// Updates the devices in a browser; call it once a frame. Elsewhere the thread updates them.
     pub fn update(&mut self) {
         if let Some(force) = &mut self.force {
             force.update();
         }
     }
 
-    /// Sends a tear impulse to a device; size 1 is the maximum.
+    /// Plays the impulse of a tear on a device; `size` is 0 to 1 (strongest).
     pub fn tear(&self, device: DeviceId, size: f32) {
         if let Some(line) = self.lines.get(&device) {
             line.tear(size);

@@ -10,9 +10,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 #[error("no graphics adapter: neither Vulkan nor OpenGL is available, not even in software")]
 pub struct NoGpu;
 
-/// Makes wgpu allocate memory in small blocks. By default it uses blocks of 64 MB and more, each of which
-/// stays allocated once used. On a GPU in software or with shared memory, the memory of a stand would vary by
-/// such steps all day.
+/// Makes wgpu allocate memory in small blocks. Its default blocks have 64 MB and more, and each stays
+/// allocated once used. On a software GPU or with shared memory, the memory use of a program that runs all
+/// day would vary by such steps.
 pub fn with_small_memory_blocks(mut setup: WgpuSetup) -> WgpuSetup {
     if let WgpuSetup::CreateNew(new) = &mut setup {
         let described = new.device_descriptor.clone();
@@ -24,18 +24,18 @@ pub fn with_small_memory_blocks(mut setup: WgpuSetup) -> WgpuSetup {
     setup
 }
 
-/// Monitor of a GPU.
+/// Monitor that notices the loss of a GPU.
 #[derive(Clone)]
 pub struct GpuWatch {
     queue: wgpu::Queue,
-    /// Buffer of four bytes that tests whether writing still works.
+    /// Buffer of four bytes. A write to it tests whether the GPU still works.
     probe: wgpu::Buffer,
     is_lost: Arc<AtomicBool>,
 }
 
 impl GpuWatch {
-    /// Creates the monitor of a window's GPU. The first error is printed under the name of the program and does
-    /// not end it, because the only remedy is to restart in a new window.
+    /// Creates the monitor of a window's GPU. The first GPU error is printed with the name of the program.
+    /// The program continues, because the only remedy is to restart in a new window.
     pub fn of(state: &RenderState, program: &'static str) -> Self {
         let is_lost = Arc::new(AtomicBool::new(false));
         let lost = is_lost.clone();
@@ -60,12 +60,12 @@ impl GpuWatch {
         }
     }
 
-    /// Whether the loss of the GPU has been reported.
+    /// Returns whether wgpu has reported the loss of the GPU.
     pub fn is_lost(&self) -> bool {
         self.is_lost.load(Ordering::Relaxed)
     }
 
-    /// Whether the GPU is lost, tested by a write.
+    /// Writes to the GPU and returns whether it is lost.
     pub fn probe_is_lost(&self) -> bool {
         let size = wgpu::BufferSize::new(wgpu::COPY_BUFFER_ALIGNMENT);
         let written = size.and_then(|size| self.queue.write_buffer_with(&self.probe, 0, size));

@@ -1,4 +1,4 @@
-//! Parts that programs with a window share. The game `tamaire` and the surgery trainer `fuwafuwa_surgery` stand on them.
+//! Parts shared by programs with a window: the game `tamaire` and the surgery trainer `fuwafuwa_surgery`.
 //!
 //! - [`Clock`] and [`Pace`]: monotonic time, and number of ticks for each frame
 //! - [`Pads`] and [`Forces`]: input of sticks and pads, and their force feedback
@@ -9,7 +9,7 @@
 //! - [`Theme`], [`style`] and [`widgets`]: colours, fonts and buttons
 //! - `window`: opening a window on a desktop, and the reason why it ended
 //!
-//! No module opens a file. All modules but `window` also compile for a browser.
+//! No module opens a file. All modules except `window` also compile for a browser.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units are written in brackets: [m]

@@ -1,17 +1,17 @@
 //! Number of ticks for each frame: real time, limited by the speed of the machine.
 //!
-//! On a slow machine the round slows down evenly: each frame plays one tick and is shown. Missed time is
+//! On a slow machine the simulation slows down evenly: each frame plays one tick and is shown. Missed time is
 //! dropped, because catching up would need ever more ticks in ever longer frames.
 
 use fuwafuwa::TICK;
 
-/// Time limit for the ticks of a frame together [s]; the first tick is always played. With the time to draw,
-/// a frame then lasts about 1/30 s.
+/// Time limit for all ticks of a frame together [s]; the first tick is always played. Including the time to
+/// draw, a frame then takes about 1/30 s.
 const BUDGET: f64 = 0.025;
 /// Maximum number of ticks in a frame, for example after a long frame.
 const MOST_TICKS: u32 = 6;
-/// Smoothing factor of the expected cost of a tick, 0 to 1. At a small value a single hitch changes the
-/// estimate little.
+/// Smoothing factor of the expected cost of a tick, 0 to 1. A small value keeps a single slow tick from
+/// changing the estimate much.
 const ADAPTS: f64 = 0.1;
 
 /// Scheduler of the ticks of each frame.
@@ -38,8 +38,8 @@ impl Pace {
         self.owed = 0.0;
     }
 
-    /// Whether the frame has to play another tick. If so, counts its time as played; report its cost with
-    /// [`Self::note`].
+    /// Returns whether another tick is due in this frame. If so, its time counts as played: play it, and
+    /// report its cost with [`Self::note`].
     pub fn is_due(&mut self) -> bool {
         let tick = f64::from(TICK);
         if self.owed < tick {
@@ -74,7 +74,8 @@ impl Pace {
 mod tests {
     use super::*;
 
-    /// Result of a simulated minute: frames per second, longest frame [s], and played share of real time.
+    /// Result of a simulated minute: frames per second, longest frame [s], and simulated time divided by real
+    /// time.
     struct Seen {
         frames: f64,
         longest: f64,
@@ -83,8 +84,8 @@ mod tests {
         uneven: f64,
     }
 
-    /// Simulates a minute in which a tick costs `tick` [s] and a picture `picture` [s], on a screen with at
-    /// most `rate` pictures per second.
+    /// Simulates a minute in which a tick takes `tick` [s] and drawing a frame takes `picture` [s], on a
+    /// screen with at most `rate` frames per second.
     fn minute(tick: f64, picture: f64, rate: f64) -> Seen {
         let (mut pace, mut now, mut last) = (Pace::default(), 0.0f64, 0.0f64);
         let (mut frames, mut longest) = (0, 0.0f64);
@@ -129,11 +130,12 @@ mod tests {
                 100.0 * seen.speed,
                 100.0 * seen.uneven
             );
-            // Full speed while there is time for it.
+            // Full speed while the ticks fit into the frames.
             if cost <= 12 {
                 assert!(seen.speed > 0.98 && seen.frames > 45.0, "{told}");
             }
-            // Otherwise no time is idle, and a frame is one tick and its picture.
+            // If they do not fit, the machine is never idle, and a frame takes the time of one tick and its
+            // picture.
             let cost = 1e-3 * f64::from(cost);
             assert!(seen.longest < (1.25 * cost).max(BUDGET) + 4e-3, "{told}");
             assert!(
@@ -141,7 +143,7 @@ mod tests {
                 "{told}"
             );
             assert!(seen.uneven < 0.15, "{told}");
-            // No sudden drop from one cost to the next.
+            // A slightly higher cost never causes a sudden drop.
             if let Some(before) = before {
                 assert!(seen.speed > 0.85 * before.speed, "{told}");
                 assert!(seen.frames > 0.75 * before.frames, "{told}");
@@ -173,7 +175,7 @@ mod tests {
         }
         assert_eq!(played, MOST_TICKS);
         pace.begin(0.0);
-        assert!(pace.is_due(), "one tick is owed at the most");
+        assert!(pace.is_due(), "one tick is kept after a long frame");
         pace.note(1e-4);
         assert!(!pace.is_due());
     }

@@ -1,4 +1,4 @@
-//! Sticks and pads.
+//! Input devices: sticks and gamepads, real or simulated.
 
 use force_feedback::{Nothing, Recording, Sink};
 use std::collections::BTreeMap;
@@ -19,12 +19,12 @@ impl Pads {
         Self(Sticks::open().map_or_else(Source::Nothing, Source::Sticks))
     }
 
-    /// Uses an existing source.
+    /// Uses sticks and gamepads that are already open.
     pub fn through(sticks: Sticks) -> Self {
         Self(Source::Sticks(sticks))
     }
 
-    /// Uses no devices, by choice.
+    /// Uses no devices. This is not an error: [`Self::open_error`] returns `None`.
     pub fn none() -> Self {
         Self::of(Snapshot::default())
     }
@@ -34,7 +34,7 @@ impl Pads {
         Self(Source::Told(snapshot, BTreeMap::new()))
     }
 
-    /// Records the feedback sent to simulated devices.
+    /// Records the feedback sent to the simulated devices in `notes`. Does nothing for real devices.
     pub fn noting(self, notes: BTreeMap<DeviceId, Recording>) -> Self {
         Self(match self.0 {
             Source::Told(snapshot, _) => Source::Told(snapshot, notes),
@@ -51,7 +51,8 @@ impl Pads {
         }
     }
 
-    /// Opens a device for feedback. Without the feature `haptic` the returned sink does nothing.
+    /// Opens a device for feedback. The returned sink does nothing without the feature `haptic`, or if a
+    /// simulated device has no recording.
     pub fn haptic(&self, device: DeviceId) -> Box<dyn Sink> {
         match &self.0 {
             #[cfg(feature = "haptic")]

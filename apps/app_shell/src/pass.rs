@@ -4,7 +4,7 @@ use eframe::egui_wgpu::{CallbackResources, CallbackTrait};
 use egui::{PaintCallbackInfo, Rect, Ui, vec2};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Callback that paints the frame prepared by a renderer in egui's pass.
+/// Callback that paints, in egui's render pass, the frame that a renderer has prepared.
 pub struct PaintCallback<R>(
     pub Arc<Mutex<R>>,
     pub fn(&R, &mut wgpu::RenderPass<'static>),
@@ -21,12 +21,12 @@ impl<R: Send + 'static> CallbackTrait for PaintCallback<R> {
     }
 }
 
-/// Locks `renderer`. A poisoned lock is used as it is: a panic leaves at worst an unfinished picture.
+/// Locks `renderer`. Ignores that the lock may be poisoned: a panic leaves at worst an unfinished picture.
 pub fn lock<R>(renderer: &Mutex<R>) -> MutexGuard<'_, R> {
     renderer.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Size of a part of the window on the screen [px].
+/// Size of a part of the window [px]; at least 1 × 1.
 pub fn pixels(ui: &Ui, rect: Rect) -> [u32; 2] {
     let size = (rect.size() * ui.ctx().pixels_per_point()).max(vec2(1.0, 1.0));
     [size.x.round() as u32, size.y.round() as u32]

@@ -1,4 +1,4 @@
-//! Drawing of any 3D world in a part of an egui window.
+//! Drawing of any 3D world into a part of an egui window.
 
 use crate::pass::{PaintCallback, lock, pixels};
 use eframe::egui_wgpu::{Callback, RenderState};
@@ -55,7 +55,7 @@ impl SpaceStage {
         cost.sum()
     }
 
-    /// Frees the images that worlds are drawn into, while nothing is drawn.
+    /// Frees the images that worlds are drawn into. The next call of [`Self::draw`] allocates them again.
     pub fn forget_images(&self) {
         if let Some(renderer) = &self.renderer {
             lock(renderer).forget_images(&self.state.device);

@@ -4,9 +4,9 @@ use egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
 use egui::{Context, FontData, FontDefinitions, FontFamily, vec2};
 use std::sync::Arc;
 
-/// Font with Latin letters, symbols and the characters of the title of the game; used for all font families.
+/// Font with Latin letters, symbols and the characters of the game's title; used for all font families.
 const LATIN: &[u8] = include_bytes!("../fonts/MPLUSRounded1c-Bold-latin.ttf");
-/// Font with kana and kanji. The browser version downloads it on demand.
+/// Font with kana and kanji. The browser version does not contain it, but downloads it on demand.
 #[cfg(not(target_family = "wasm"))]
 const JAPANESE: &[u8] = include_bytes!("../fonts/MPLUSRounded1c-Bold-japanese.ttf");
 
@@ -27,11 +27,11 @@ pub fn apply(context: &Context) {
     add("japanese", JAPANESE);
     context.set_fonts(fonts);
     context.set_theme(egui::Theme::Light);
-    // The game sets the text size itself.
+    // Turns egui's zoom keys off: the game sets the text size itself.
     context.options_mut(|options| {
         options.zoom_with_keyboard = false;
-        // A long press is a click, too: players may hold a button for long, and frames of a slow machine take
-        // long.
+        // A press counts as a click however long it lasts: players may hold a button for long, and frames of
+        // a slow machine take long.
         options.input_options.max_click_duration = f64::INFINITY;
     });
     context.all_styles_mut(|style| {
@@ -40,7 +40,7 @@ pub fn apply(context: &Context) {
     });
 }
 
-/// Adds the Japanese font after start-up.
+/// Adds the Japanese font after start-up, in the browser version.
 pub fn add_japanese_font(context: &Context, bytes: Vec<u8>) {
     let families = FAMILIES.map(|family| InsertFontFamily {
         family,

@@ -21,12 +21,12 @@ pub struct Theme {
     pub on_accent: Color32,
     /// Success.
     pub good: Color32,
-    /// Colours of the world.
+    /// Colours of bodies, hands and other parts of the simulated world.
     pub world: fuwafuwa_render::Palette,
 }
 
 impl Theme {
-    /// Returns the colour of a material.
+    /// Returns the colour of a material by its number, starting at 1.
     pub fn material(&self, number: u8) -> Color32 {
         colour(self.world.material(number))
     }
@@ -36,17 +36,17 @@ impl Theme {
         colour(self.world.hand(player))
     }
 
-    /// Returns the colour of elements of a level.
+    /// Returns the colour of elements by their level; level 0 is the finest.
     pub fn level(&self, level: u8) -> Color32 {
         colour(self.world.level(level))
     }
 
-    /// Returns the colour of a strain.
+    /// Returns the colour of an element by its strain (dimensionless).
     pub fn strain(&self, strain: f32) -> Color32 {
         colour(self.world.strain(strain))
     }
 
-    /// Returns the usual theme, or the colour-blind friendly one [Okabe 2008].
+    /// Returns the usual theme, or the theme for colour-blind users [Okabe 2008].
     pub fn of(colour_safe: bool) -> Self {
         let rgb = Color32::from_rgb;
         let usual = Self {

@@ -1,4 +1,4 @@
-//! Large, round buttons that can be reached with a pad, and the focus that they share with other widgets.
+//! Large round buttons, and focus handling for keys and gamepads.
 
 use crate::Theme;
 use egui::{
@@ -35,7 +35,7 @@ impl ButtonStyle {
     }
 }
 
-/// Shows a large round button.
+/// Shows a large round button, with its text as accessible name.
 pub fn button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: ButtonStyle) -> Response {
     let response = plain_button(ui, theme, text, size, weight);
     let enabled = ui.is_enabled();
@@ -95,25 +95,26 @@ pub fn fitted(painter: &Painter, text: &str, size: f32, width: f32, ink: Color32
     }
 }
 
-/// Notes whether menus are used with keys or a pad, which need a focus ring, or with mouse or touch.
+/// Stores whether menus are used with keys or a gamepad. Only these need a focus ring; mouse and touch do
+/// not.
 pub fn note_use_of_keys(ctx: &Context, by_keys: bool) {
     ctx.data_mut(|data| data.insert_temp(Id::unique("by keys"), by_keys));
 }
 
-/// Whether keys or a pad have focused this widget.
+/// Returns whether this widget has the focus and menus are used with keys or a gamepad.
 pub fn is_on(ui: &Ui, response: &Response) -> bool {
     let by_keys = ui.data(|data| data.get_temp(Id::unique("by keys")));
     response.has_focus() && by_keys == Some(true)
 }
 
-/// Notes the widget under the mouse, for [`take_hovered`].
+/// Stores the widget under the mouse, for [`take_hovered`].
 pub fn note_hovered(ui: &Ui, response: &Response) {
     if response.hovered() {
         ui.data_mut(|data| data.insert_temp(Id::unique("hovered"), Some(response.id)));
     }
 }
 
-/// Returns the widget that the mouse was over since the last call.
+/// Returns the widget that the mouse was over most recently since the last call.
 pub fn take_hovered(ctx: &Context) -> Option<Id> {
     ctx.data_mut(|data| data.remove_temp(Id::unique("hovered")).flatten())
 }

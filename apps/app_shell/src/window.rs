@@ -1,4 +1,4 @@
-//! The window of a program: opening it, and the reason why it ended.
+//! Opens the window of a program and reports why it ended.
 
 use crate::{GpuWatch, NoGpu, with_small_memory_blocks};
 use eframe::egui_wgpu::WgpuSetup;
@@ -10,8 +10,8 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Shortest run after which a lost GPU leads to a restart. After a shorter run the GPU would probably be lost
-/// again and again.
+/// Shortest run after which a lost GPU leads to a restart. After a shorter run, the restarted program would
+/// probably lose the GPU again.
 const LEAST_LIFE: Duration = Duration::from_secs(10);
 
 /// Outcome of a window.
@@ -28,7 +28,7 @@ pub enum WindowOutcome {
     Never(String),
 }
 
-/// App of a window with the monitor of its GPU, or an error if there is no GPU.
+/// App of a window and the monitor of its GPU, or an error if there is no GPU.
 pub type Made = Result<(Box<dyn eframe::App>, GpuWatch), NoGpu>;
 
 /// Opens a window of a program. Returns when the window is closed.
@@ -81,8 +81,8 @@ fn run_window(
     eframe::run_native(name, options, Box::new(create))
 }
 
-/// Selects the best adapter on which a device can be created. One driver may be broken where the next one
-/// works, for example Direct3D 12 beside Vulkan under Wine.
+/// Makes wgpu select the best adapter on which a device can be created. One driver may be broken while
+/// another one works, for example Direct3D 12 and Vulkan under Wine.
 fn on_what_lives(mut setup: WgpuSetup) -> WgpuSetup {
     let WgpuSetup::CreateNew(new) = &mut setup else {
         return setup;
@@ -98,7 +98,7 @@ fn on_what_lives(mut setup: WgpuSetup) -> WgpuSetup {
         let lives = |adapter: &&&wgpu::Adapter| {
             block_on(adapter.request_device(&described(adapter))).is_ok()
         };
-        // The last adapter is not tried here: if it fails, too, eframe reports its error.
+        // The last adapter is not tried here. If it fails, eframe reports the error.
         let (last, others) = fitting
             .split_last()
             .ok_or("no graphics adapter was found")?;
@@ -134,8 +134,8 @@ fn trouble(error: &eframe::Error) -> String {
     }
 }
 
-/// Whether there is a display to open a window on. Only Unix systems with X11 or Wayland tell in advance;
-/// elsewhere returns true.
+/// Returns whether there is a display to open a window on. Only Unix systems with X11 or Wayland tell in
+/// advance; on other systems the result is always true.
 pub fn has_display() -> bool {
     let says_so = cfg!(all(
         unix,

@@ -1,4 +1,4 @@
-//! Measures speed and memory. Because machines are shared and noisy, compared cases run in turns within one
+//! Measures speed and memory. Machines are shared and noisy, so cases to be compared take turns within one
 //! run. Use medians and ratios.
 
 mod rapier;
@@ -17,12 +17,12 @@ use serde::Serialize;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Measure speed and memory in this run, on this machine.
+/// Measure speed and memory on this machine.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Time the ticks of a scene, given by name or file, before and after its first tear, instead of the
-    /// usual list. Each tick counts with the shortest time of three runs. With --against rapier: run only
-    /// `stiff`, `soft` or `torn`.
+    /// Scene to measure, by name or file, instead of the usual list. Ticks before and after the first tear
+    /// are listed separately, and each tick counts with the shortest time of three runs. With --against
+    /// rapier: run only `stiff`, `soft` or `torn`.
     #[arg(long)]
     scene: Option<String>,
     /// Replace a value of that scene, for example most_substeps=8 or body.1.n=64; repeatable.
@@ -41,7 +41,7 @@ pub struct Arguments {
     /// With --against rapier: number of frames; default 300, or 240 for `torn`.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     frames: Option<u16>,
-    /// Opponent of a comparison.
+    /// Compare with a ball of single-voxel elements, or with Rapier.
     #[arg(long, value_enum)]
     against: Option<Rival>,
     /// Print JSON instead of a table.
@@ -51,10 +51,11 @@ pub struct Arguments {
 
 #[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
 enum Rival {
-    /// A swinging ball, graded and with elements of single voxels everywhere.
+    /// Compare a graded ball with a ball of single-voxel elements, both oscillating freely.
     Uniform,
-    /// Falling bodies and a torn one, against Rapier at equal peak squash. Builds Rapier from
-    /// tools/against_rapier, which takes minutes.
+    /// Compare falling bodies, whole and in pieces, with Rapier. Whole bodies are compared at equal peak
+    /// squash (largest relative loss of height). Builds Rapier from tools/against_rapier, which takes
+    /// minutes.
     Rapier,
 }
 
@@ -158,7 +159,8 @@ fn one(measure: Result<Measure>) -> Result<Vec<Measure>> {
     Ok(vec![measure?])
 }
 
-/// Measures a freely swinging body with a number of cracks: element pass and node pass together.
+/// Measures a substep of a freely oscillating ball with a number of cracks, per element: element pass and
+/// node pass together.
 fn element_time<D: Dim>(n: usize, cracks: usize) -> Result<Measure> {
     let mut body = torn::<D>(n, cracks)?;
     let elements = body.mesh().element_count() as f64;
@@ -171,11 +173,12 @@ fn element_time<D: Dim>(n: usize, cracks: usize) -> Result<Measure> {
     Ok(measure(what, "ns", times, 1e9 / elements))
 }
 
-/// Measures releases in a ball, each at another point near its surface.
+/// Measures releases (splits of a node, followed by remodelling) in a ball, each at another point near its
+/// surface.
 fn release_time<D: Dim>(n: usize) -> Result<Measure> {
     let grid = VoxelGrid::<D>::ball(n, 1.0)?;
     let mut body = SoftBody::new(grid, &[Material::default()])?;
-    // Points where every third column crosses the surface, within the middle half of the ball.
+    // Points where every third column of voxels enters the ball, within its middle half.
     let columns = || (n / 4..3 * n / 4).step_by(3);
     let rows = if D::N == 3 {
         columns().collect()
@@ -207,8 +210,8 @@ fn scene(name: &str, changes: &[String], progress: &Progress) -> Result<Vec<Meas
     }
 }
 
-/// Measures a scene several times. It runs identically each time, so the minimum time of a tick is its cost,
-/// and the rest is noise of the machine.
+/// Measures a scene several times. Each run is identical, so the minimum time of a tick is its cost; the rest
+/// is noise of the machine.
 fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Vec<Measure>> {
     const RUNS: u64 = 3;
     progress.expect(RUNS * scene.ticks());
@@ -244,7 +247,7 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Ve
     Ok(measures)
 }
 
-/// Measures the ticks of a soft ball on the floor that a hand pushes down by a third.
+/// Measures the ticks in which a hand presses a soft ball on the floor down by about a third of its height.
 fn pushed_ball<D: Dim>(n: usize) -> Result<Measure> {
     const TICKS: u16 = 60;
     let mut world = World::<D>::new(WorldConfig::default())?;
@@ -273,7 +276,7 @@ fn pushed_ball<D: Dim>(n: usize) -> Result<Measure> {
     Ok(measure(what, "ms", times, 1e3))
 }
 
-/// Measures the peak memory of the process after creating and advancing a ball of 128 voxels.
+/// Measures the peak memory of the process after it has created and advanced a ball 128 voxels across.
 fn memory() -> Result<Measure> {
     let mut body = swinging::<Dim3>(128, Grading::Graded)?;
     body.advance(1e-4, [0.0; 3]);
@@ -285,7 +288,8 @@ fn memory() -> Result<Measure> {
     Ok(measure(what, "MB", vec![peak / 1024.0], 1.0))
 }
 
-/// Measures a swinging ball, graded and uniform, in turns of a tick's worth of substeps.
+/// Compares an oscillating graded ball with a uniform one. They take turns of 16 substeps, as many as in a
+/// tick.
 fn against_uniform(arguments: &Arguments, progress: &Progress) -> Result<Vec<Measure>> {
     let n = arguments.n.map(usize::from);
     match arguments.dim {
@@ -329,7 +333,7 @@ fn against_uniform_in<D: Dim>(n: usize, progress: &Progress) -> Result<Vec<Measu
     ])
 }
 
-/// Returns a ball 1 m across, slightly stretched so that it swings.
+/// Returns a ball 1 m across, stretched by 5 % so that it oscillates.
 fn swinging<D: Dim>(n: usize, grading: Grading) -> Result<SoftBody<D>> {
     let grid = VoxelGrid::ball(n, 1.0)?;
     let mut body =
@@ -342,7 +346,8 @@ fn swinging<D: Dim>(n: usize, grading: Grading) -> Result<SoftBody<D>> {
     Ok(body)
 }
 
-/// Returns a swinging ball with `cracks` cracks, each normal to an axis, a few voxels wide and opened point by point.
+/// Returns an oscillating ball with `cracks` cracks, each perpendicular to an axis, a few voxels wide and
+/// opened point by point.
 fn torn<D: Dim>(n: usize, cracks: usize) -> Result<SoftBody<D>> {
     let mut body = swinging::<D>(n, Grading::Graded)?;
     let mut seed = 1u64;

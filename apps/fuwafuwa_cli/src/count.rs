@@ -17,7 +17,7 @@ pub struct Arguments {
     /// Number of space dimensions, 2 or 3.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u8).range(2..=3))]
     dim: u8,
-    /// Shape in the grid; in 2D a square or a disc.
+    /// Shape to count; in 2D a square or a disc.
     #[arg(long, value_enum, default_value_t = Form::Ball)]
     shape: Form,
     /// Voxels across, 3 to 1024; accepts several values.
@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Shape in the grid.
+/// Shape to count.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 enum Form {
@@ -50,8 +50,9 @@ enum Form {
     Ball,
 }
 
-/// Placings of the elements: with single voxels at the surface, for bodies that can be cut; and with elements
-/// of two voxels there and a vertex at every lattice point of the surface, as counted in the paper.
+/// Ways to place the elements. `graded`, for bodies that can be cut, has single-voxel elements at the
+/// surface. `coarse`, as counted in the paper, has elements of two voxels there and a vertex at every lattice
+/// point of the surface.
 const PLACINGS: [(&str, Grading); 2] = [("graded", Grading::Graded), ("coarse", Grading::Coarse)];
 
 /// Counts of one body.
@@ -63,7 +64,7 @@ struct Count {
     shape: Form,
     /// Voxels across.
     n: u16,
-    /// Placing of the elements.
+    /// Way to place the elements: `graded` or `coarse`.
     placing: &'static str,
     /// Number of solid voxels.
     voxels: usize,
@@ -71,17 +72,17 @@ struct Count {
     elements: usize,
     /// Number of elements on each level, finest first.
     elements_per_level: Vec<usize>,
-    /// Number of nodes shared by elements.
+    /// Number of nodes, each counted once.
     nodes: usize,
-    /// Number of vertices if each element has its own, as in the paper's §3.1.
+    /// Number of vertices if each element had its own, as in the paper's §3.1.
     independent_vertices: usize,
-    /// Count of the paper for a full box without levels: 2^d n^d.
+    /// The paper's number of vertices of a full box with single-voxel elements only: 2^d n^d.
     paper_uniform: usize,
-    /// Count of the paper for a full 3D box with levels: 26 n².
+    /// The paper's number of vertices of a full 3D box with elements of several levels: 26 n².
     paper_graded: Option<usize>,
 }
 
-/// Counts bodies with `n` voxels across for both placings.
+/// Counts bodies of all given sizes, each with both placings.
 fn count(dim: u8, shape: Form, all: &[u16]) -> Result<Vec<Count>> {
     let progress = Progress::new();
     progress.expect(2 * all.len() as u64);

@@ -1,11 +1,11 @@
-//! Output of results: aligned tables, outcomes of checks, and a progress bar.
+//! Output of results: aligned tables, outcomes of checks, a progress bar.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
-/// Running time from which the progress bar is shown.
+/// Running time after which the progress bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Outcome of a check for one measured value.
@@ -52,7 +52,7 @@ impl Outcome {
         }
     }
 
-    /// Creates an outcome without a requirement.
+    /// Creates an outcome without a requirement, shown for comparison.
     pub fn shown(case: String, value: f64) -> Self {
         Self {
             case,
@@ -82,7 +82,7 @@ impl Progress {
         }
     }
 
-    /// Adds expected steps.
+    /// Adds to the number of steps expected in all.
     pub fn expect(&self, steps: u64) {
         self.bar.inc_length(steps);
     }

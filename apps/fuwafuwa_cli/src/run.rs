@@ -14,7 +14,7 @@ use std::process::ExitCode;
 
 /// Width of a frame [px].
 const WIDTH: u32 = 420;
-/// Number of moments in a strip.
+/// Number of frames in a strip.
 const MOMENTS: usize = 12;
 /// Ticks between two frames of a GIF, and display time of a frame [1/100 s].
 const PACE: u64 = 3;
@@ -63,7 +63,7 @@ struct Summary {
     hash: String,
 }
 
-/// World that can be painted.
+/// Dimension whose worlds can be painted.
 trait Filmed: Dim {
     /// Paints the current state of a world, in the view of its scene.
     fn painted(world: &World<Self>, scene: &Scene, elements: bool) -> Result<Painter>;
@@ -284,7 +284,7 @@ mod tests {
             let error = run(&filmed(frames, film.into())).unwrap_err();
             error.to_string()
         };
-        // A run this long would never end.
+        // With so many ticks, a run that began before the check would never end.
         assert!(refused(u64::MAX, "nowhere/film.gif").contains("no such folder"));
         assert!(refused(u64::MAX, "film.mp4").contains(".png or .gif"));
         assert!(refused(0, "film.gif").contains("at least 1"));

@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Progress steps per scan, and for the organ.
+/// Progress steps for reading each scan, and again for making the organ.
 const STEPS: u64 = 100;
 
 /// Colours of materials in a model, starting at number 1; they repeat after the last.
@@ -123,7 +123,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns a callback that advances the bar to a fraction of the steps of one part.
+/// Returns a callback for the progress of one part, 0 to 1. It advances the bar by up to [`STEPS`] steps.
 fn follow(progress: &Progress) -> impl FnMut(f32) {
     let mut shown = 0;
     move |done| {
@@ -224,7 +224,7 @@ fn write_files(out: &Path, organ: &Organ, summary: &Summary) -> Result<()> {
     Ok(())
 }
 
-/// Returns a scene in which the organ, in its real size, sinks onto a table 1 cm below.
+/// Returns the TOML text of a scene in which the organ, in real size, falls onto a table 1 cm below.
 fn scene(model: &str, summary: &Summary) -> String {
     let last = summary.materials.last().map_or(1, |share| share.material);
     let [right, up, back] = summary.grid.map(|k| k as f32 * summary.voxel / 1000.0);

@@ -17,10 +17,11 @@ pub struct Options {
     pub folder: PathBuf,
 }
 
-/// Exit status if the folder cannot be written.
+/// Exit status for a folder or file that cannot be written.
 const NOT_WRITTEN: u8 = 2;
 
-/// Writes all files into the folder and reports errors on standard error. Returns the exit status.
+/// Writes the manual pages and completions of a program into the folder, and reports errors on standard
+/// error. Returns the exit status of the program.
 pub fn run(command: Command, options: &Options) -> ExitCode {
     let name = command.get_name().to_string();
     match write(command, &options.folder) {
@@ -32,7 +33,7 @@ pub fn run(command: Command, options: &Options) -> ExitCode {
     }
 }
 
-/// Writes all files into the folder, which is created if missing.
+/// Writes the manual pages and completions of a program into a folder, which is created if missing.
 ///
 /// # Errors
 /// If a file cannot be written.
@@ -41,7 +42,7 @@ pub fn write(mut command: Command, folder: &Path) -> io::Result<()> {
     fs::create_dir_all(&pages)?;
     fs::create_dir_all(&completions)?;
     let name = command.get_name().to_string();
-    // Without this, the `help` subcommand would get a page for each subcommand, all repeating the same text.
+    // Without this, each subcommand would get another page for `help SUBCOMMAND`, with the same text.
     clap_mangen::generate_to(command.clone().disable_help_subcommand(true), pages)?;
     for shell in [Shell::Bash, Shell::Fish, Shell::Zsh, Shell::PowerShell] {
         generate_to(shell, &mut command, &name, &completions)?;

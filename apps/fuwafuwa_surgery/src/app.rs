@@ -1,4 +1,4 @@
-//! Window with the organ, slices beside it and measurements below.
+//! Window of the surgery trainer: the organ, slices beside it and measurements below.
 
 mod bar;
 mod curves;
@@ -32,7 +32,7 @@ use std::path::PathBuf;
 /// Camera rotation by mouse [rad/point], and by keys and sticks [rad/s].
 const DRAG: f32 = 0.006;
 const LOOK: f32 = 1.2;
-/// Movement of the hand by the wheel [m/point].
+/// Movement of the hand per scrolled point of the mouse wheel [m/point].
 const WHEEL: f32 = 0.000_03;
 /// Display time of a message [s].
 const STAYS: f64 = 7.0;
@@ -41,9 +41,9 @@ const STAYS: f64 = 7.0;
 pub struct Setup {
     /// Organ or recording to open first.
     pub wanted: LoadRequest,
-    /// Assignment of materials for scans that are dropped onto the window.
+    /// Rule that assigns materials to the voxels of scans, also of scans dropped onto the window.
     pub segmentation: Segmentation,
-    /// Options for making organs from these scans.
+    /// Options for making organs from scans.
     pub options: Options,
     /// Folder for saved files.
     pub folder: PathBuf,
@@ -133,7 +133,7 @@ impl App {
             Err(error) => {
                 self.say(error.to_string());
                 if self.session.is_none() {
-                    // The table must not stay empty.
+                    // Loads the phantom instead, so that there is always an organ.
                     self.open(LoadRequest::Phantom(self.setup.options.resolution));
                 }
             }
@@ -200,7 +200,7 @@ impl App {
         }
     }
 
-    /// Restarts with the same organ, untouched.
+    /// Restarts with the uncut organ.
     fn again(&mut self) {
         let Some(session) = &self.session else {
             return;
@@ -429,8 +429,8 @@ pub fn wanted(files: Vec<PathBuf>, setup: &Setup) -> LoadRequest {
     }
 }
 
-/// Handles the mouse. It points at the height of the hand, the wheel raises and lowers the hand, the left
-/// button grips and the right button turns the camera.
+/// Handles the mouse. Its position moves the hand in the horizontal plane at the current height of the hand,
+/// and the wheel changes the height. The left button grips, and the right button turns the camera.
 fn hear_mouse(ctx: &egui::Context, view: &View, session: &mut Session, wishes: &mut HandInput) {
     let (at, delta, grips, turns, wheel, twice) = ctx.input(|input| {
         let pointer = &input.pointer;

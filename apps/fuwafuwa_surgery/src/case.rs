@@ -8,19 +8,19 @@ use fuwafuwa::{
 };
 use fuwafuwa_scan::Organ;
 
-/// Remaining fraction of the weight of an organ in saline. A brain of 1400 g weighs some 50 g in its fluid.
+/// Fraction of an organ's weight that remains in saline. A brain of 1400 g weighs some 50 g in its fluid.
 const AFLOAT: f32 = 0.04;
 /// Drag of the saline: relative loss of speed [1/s].
 const DRAG: f32 = 2.0;
-/// Fraction of the organ's height that is fixed in a mould.
+/// Lower part of the organ that is fixed in a mould, as a fraction of the organ's height.
 const HELD: f32 = 0.25;
-/// Maximum number of voxels along the longest side for the first number of substeps. Finer organs get the
-/// second number, because they would take too long otherwise.
+/// Limit between coarse and fine organs [voxels along the longest side]. Coarse organs get the first number
+/// of substeps. Fine ones get the second, because they would take too long otherwise.
 const FINE: usize = 40;
 const SUBSTEPS: [u32; 2] = [16, 8];
 /// Maximum length of a case name [characters].
 const MOST_LETTERS: usize = 200;
-/// Maximum number of materials. [`tissues`] repeats the ones it knows.
+/// Maximum number of materials: a voxel stores the numbers 1 to 255.
 const MOST_MATERIALS: usize = 255;
 
 /// Organ to be operated on.
@@ -60,12 +60,12 @@ pub struct Table {
     pub world: World<Dim3>,
     /// Handle of the organ.
     pub organ: SoftBodyHandle,
-    /// Room for tools: low and high corner [m].
+    /// Region in which tools can move: low and high corner [m].
     pub room: [[f32; 3]; 2],
     /// Initial position of the low corner of the organ's grid [m].
     pub corner: [f32; 3],
-    /// Mass scaling factor of the tissue, at least 1. It allows few substeps. Stiffness and weight at rest
-    /// are unchanged.
+    /// Mass scaling factor of the tissue, at least 1. Heavier tissue is stable with fewer substeps. Stiffness
+    /// and weight are unchanged; only motion is slower.
     pub inertia: f32,
 }
 
@@ -170,7 +170,8 @@ impl Case {
     fn body(&self, substeps: u32) -> Result<(SoftBody<Dim3>, f32), CaseError> {
         let wanted = f64::from(TICK) / f64::from(substeps);
         let ratio = wanted / self.longest_substep()?;
-        // With k times the mass, waves are √k times as slow. A thousandth is added against rounding.
+        // With k times the mass, waves are √k times as slow, so k is the square of the ratio. The factor
+        // 1.001 allows for rounding.
         let inertia = (1.001 * ratio * ratio).max(1.0) as f32;
         let heavier = |tissue: &Material| Material {
             density: tissue.density * inertia,
@@ -181,8 +182,8 @@ impl Case {
         Ok((body, inertia))
     }
 
-    /// Returns the longest stable substep of the stiffest material [s], measured on a row of one voxel of
-    /// each.
+    /// Returns the longest substep that is stable for all materials of the organ [s]. It is measured on a row
+    /// with one voxel of each material.
     fn longest_substep(&self) -> Result<f64, CaseError> {
         let mut is_used = [false; 256];
         for at in self.grid.voxels() {
@@ -211,7 +212,7 @@ impl Case {
     }
 }
 
-/// Returns default materials for an organ. They repeat after the fourth.
+/// Returns `count` default materials for an organ. Four kinds repeat.
 ///
 /// The stiffness of brain in slow tests is 1 to 2 kPa; other soft organs are somewhat stiffer. The cut
 /// energies are rough values, chosen so that a sharp edge cuts before the organ yields by more than a

@@ -66,7 +66,7 @@ pub fn operate(wanted: &LoadRequest, options: &Options) -> Result<(), String> {
     if options.bench {
         text += &format!("\n{}", told(&procedure, laid, costs));
     }
-    // Standard output may be closed.
+    // Ignores errors, because standard output may be closed.
     let _ = writeln!(std::io::stdout(), "{text}");
     if let Some(path) = &options.save {
         write(path, &Recording::of(&procedure).bytes())?;
@@ -117,7 +117,7 @@ fn again(
     Ok(playback.into_procedure())
 }
 
-/// Summarizes the computing times of all ticks except the first.
+/// Summarizes loading time and processor times of all ticks except the first.
 fn told(procedure: &Procedure, laid: f32, mut costs: Vec<f64>) -> String {
     costs = costs.split_off(costs.len().min(1));
     costs.sort_by(f64::total_cmp);

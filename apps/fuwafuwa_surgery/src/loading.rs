@@ -1,4 +1,4 @@
-//! Loads files into an organ on the table, in a background thread of the window.
+//! Loads an organ from files and lays it on the table. The window does so in a background thread.
 
 use crate::case::{Case, CaseError};
 use crate::phantom;
@@ -18,11 +18,11 @@ use std::thread;
 /// File extension of recordings.
 pub const ENDING: &str = "fuwacut";
 
-/// Progress after reading the scans, and after making the organ.
+/// Progress, 0 to 1, after reading the scans, and after making the organ.
 const READ: f32 = 0.35;
 const MADE: f32 = 0.9;
 
-/// Object to load.
+/// Source of an organ or a procedure to load.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LoadRequest {
     /// Synthetic organ with a number of voxels along its longest side.
@@ -40,7 +40,7 @@ pub enum LoadRequest {
     Recording(PathBuf),
 }
 
-/// Result of loading.
+/// Result of loading a [`LoadRequest`].
 pub enum Loaded {
     /// New procedure.
     Procedure(Box<Procedure>),
@@ -48,13 +48,13 @@ pub enum Loaded {
     Playback(Box<Playback>),
 }
 
-/// Warning about a loaded object.
+/// Warning about a loaded organ, as text for the user.
 pub type Warning = &'static str;
 
 /// Reason why loading failed.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
-    /// The file cannot be read.
+    /// The file cannot be read: name and reason.
     #[error("{0}: {1}")]
     File(String, String),
     /// The file is not a valid scan.
@@ -66,7 +66,7 @@ pub enum LoadError {
     /// The organ cannot be laid on the table.
     #[error("{0}")]
     Case(#[from] CaseError),
-    /// The file is not a valid recording.
+    /// The file is not a valid recording: name and reason.
     #[error("{0}: {1}")]
     Record(String, RecordError),
     /// The loading thread cannot be started.
@@ -77,7 +77,7 @@ pub enum LoadError {
     BrokeDown,
 }
 
-/// Loads an object. Calls `progress` with values from 0 to 1.
+/// Loads an organ or a procedure. Calls `progress` with values from 0 to 1.
 ///
 /// # Errors
 /// [`LoadError`] names the file and the problem.
@@ -131,7 +131,7 @@ fn read(file: &std::path::Path, most: u64) -> Result<Vec<u8>, LoadError> {
         .map_err(|error| LoadError::File(file.display().to_string(), error.to_string()))
 }
 
-/// Returns the name of an organ: its first file without folders and extensions.
+/// Returns the name of an organ: the name of its first file without folders and extensions.
 fn name_of(files: &[PathBuf]) -> String {
     let name = files.first().and_then(|file| file.file_name());
     let name = name.map(|name| name.to_string_lossy().into_owned());
@@ -158,7 +158,7 @@ impl Loading {
         let share = done.clone();
         let work = move || {
             let mut progress = |part: f32| share.store(part.to_bits(), Ordering::Relaxed);
-            // The receiver may have been dropped.
+            // Ignores the error if the window no longer waits for the result.
             let _ = tell.send(load(&wanted, &mut progress));
         };
         let thread = thread::Builder::new().name("loading".into()).spawn(work);

@@ -1,4 +1,4 @@
-//! Measurements of a procedure, tick by tick, and volumes of the pieces.
+//! Measurements of each tick of a procedure, and volumes of the pieces.
 
 use crate::tools::Tool;
 use fuwafuwa::{Dim3, SoftBody, Vector};
@@ -18,11 +18,11 @@ pub struct Sample {
     pub torque: Vector,
     /// Total cut area since the start [m²].
     pub area: f64,
-    /// Total work of the knife for these cuts [J].
+    /// Total work of the knife for all cuts since the start [J].
     pub work: f64,
-    /// Total path of the knife within tissue [m].
+    /// Total path of the knife within tissue since the start [m].
     pub path: f64,
-    /// Total number of nodes split by the knife or by pulling.
+    /// Total number of nodes split since the start, by the knife or by pulling.
     pub released: u32,
     /// Number of pieces.
     pub pieces: u32,
@@ -30,7 +30,7 @@ pub struct Sample {
     pub grips: bool,
 }
 
-/// Piece of the organ.
+/// Volume of a piece of the organ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PieceVolume {
     /// Rest volume [ml].
@@ -49,7 +49,8 @@ pub fn parts(body: &SoftBody<Dim3>, voxel: f64) -> Vec<PieceVolume> {
     let mut parts = vec![none; body.pieces().list.len()];
     let mesh = body.mesh();
     for (id, element) in mesh.elements() {
-        // Number of voxels of the filled children. An element of level 0 is one voxel without children.
+        // An element fills some children of its cell, of 8^(level − 1) voxels each. An element of level 0 is
+        // one voxel without children.
         let voxels = match element.cell.level {
             0 => 1,
             level => element.children.count_ones() << (3 * (u32::from(level) - 1)),

@@ -1,4 +1,4 @@
-//! Synthetic organ (phantom) for use without a scan. Left and right, front and back, head and feet differ:
+//! Synthetic organ (phantom), used without a scan. It is asymmetric, so that mirrored views can be noticed:
 //!
 //! ```text
 //!   from behind        S             from the left     S
@@ -18,7 +18,7 @@
 use crate::case::{Case, CaseError, tissues};
 use fuwafuwa::VoxelGrid;
 
-/// Half axes [mm]: to the patient's right, to the front, up.
+/// Half axes of the ellipsoid [mm]: left–right, front–back, up–down.
 pub const HALF: [f64; 3] = [48.0, 64.0, 36.0];
 /// Growth: centre (RAS+) and radius [mm].
 pub const GROWTH: ([f64; 3], f64) = ([22.0, 18.0, 12.0], 11.0);
@@ -35,7 +35,7 @@ pub fn material(patient: [f64; 3]) -> u8 {
         part * part
     };
     let is_inside = |of: f64| (0..3).map(|axis| share(axis, of)).sum::<f64>() < 1.0;
-    // A furrow from above separates the two halves, as in a brain.
+    // A furrow from above separates the left and right halves, as in a brain.
     let depth = up - 0.45 * HALF[2];
     if !is_inside(1.0) || right.abs() < (0.22 * depth).min(4.0) {
         return 0;

@@ -1,4 +1,4 @@
-//! A procedure, tick by tick. Its state is a function of the case and the inputs.
+//! A procedure, tick by tick. Its state depends only on the case and the inputs.
 
 use crate::case::{Case, CaseError, Table, bounds};
 use crate::measures::{self, Sample};
@@ -11,13 +11,14 @@ use std::sync::Arc;
 
 /// Resolution of recorded positions [m].
 const STEP: f32 = 1e-5;
-/// Recorded value of a quaternion component of 1.
+/// Recorded value that stands for 1 in a component of a quaternion.
 const PARTS: f32 = 32767.0;
 /// Maximum speed of a tool [m/s], for example after a jump of the mouse.
 const FASTEST: f32 = 0.25;
 /// Maximum angular speed of a tool [rad/s].
 const SPIN: f32 = 5.0;
-/// Entry height of tools above the organ, as a fraction of the organ's height. Large tools enter higher.
+/// Height above the organ at which tools enter, as a fraction of the organ's height. It is at least the
+/// clearance of the largest tool.
 const ENTRY: f32 = 0.2;
 /// Maximum length of a procedure [ticks]: one hour.
 pub const MOST_TICKS: usize = 60 * 60 * 60;
@@ -52,7 +53,7 @@ impl Default for Input {
 }
 
 impl Input {
-    /// Returns the input with another tool, target position [m] and rotation.
+    /// Returns the input with the given tool, target position [m] and rotation; the other fields are kept.
     #[must_use]
     pub fn at(self, tool: Tool, goal: Vector, rotation: Rotation) -> Self {
         Self {
@@ -79,7 +80,7 @@ pub struct Procedure {
     case: Arc<Case>,
     table: Table,
     held: HeldTool,
-    /// Kinematic target of the tool. It follows the input at limited speed.
+    /// Target position of the tool [m]. It follows the input at limited speed.
     goal: Vector,
     rotation: Rotation,
     inputs: Vec<Input>,
@@ -186,7 +187,7 @@ impl Procedure {
         &self.inputs
     }
 
-    /// Returns the measurements of each tick.
+    /// Returns the measurements after each tick.
     pub fn samples(&self) -> &[Sample] {
         &self.samples
     }
@@ -196,7 +197,7 @@ impl Procedure {
         bounds(self.organ())
     }
 
-    /// Returns the height at which tools enter [m]: above the organ and in view.
+    /// Returns the height at which tools enter [m]: above the organ, but within reach.
     pub fn entry(&self) -> f32 {
         entry(&self.table)
     }
@@ -206,7 +207,7 @@ impl Procedure {
         &self.hashes
     }
 
-    /// Changes the tool. The new one enters from above, not inside tissue.
+    /// Changes the tool. The new one enters above the organ, so that it does not start inside tissue.
     fn take(&mut self, tool: Tool) -> Result<(), Error> {
         if tool == self.held.tool() {
             return Ok(());
@@ -217,7 +218,7 @@ impl Procedure {
         std::mem::replace(&mut self.held, next).put_away(world)
     }
 
-    /// Moves the kinematic target towards the input, at limited speed and within the room.
+    /// Moves the target of the tool towards the input, at limited speed and within the room.
     fn follow(&mut self, input: &Input) {
         let [low, high] = self.table.room;
         let wanted = input.place();

@@ -5,9 +5,9 @@
 //! "fuwacut\n"  version u32  checksum u64  length u32  contents, deflated: postcard
 //! ```
 //!
-//! Numbers are little-endian. The checksum covers all bytes after it; the length is that of the uncompressed
-//! contents. A recording contains the voxels of the organ, so one made from a patient's scan contains part of
-//! that scan.
+//! Numbers are little-endian. The checksum covers all bytes after itself; the length is that of the
+//! uncompressed contents. A recording contains the voxels of the organ. A recording made from a patient's
+//! scan therefore contains part of that scan.
 
 use crate::case::{Case, CaseError};
 use crate::procedure::{Input, MOST_TICKS, Procedure};
@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 use std::io::{Read, Write};
 use std::sync::Arc;
 
-/// Format version. It changes if older recordings would be misread or replay differently.
+/// Format version. It is increased if older recordings would be misread or would replay differently.
 pub const VERSION: u32 = 3;
 /// Maximum size of a recording [bytes].
 pub const MOST_BYTES: usize = 1 << 26;
@@ -29,7 +29,7 @@ const MOST_INSIDE: usize = 1 << 25;
 const MAGIC: [u8; 8] = *b"fuwacut\n";
 /// Size of the header: magic, version, checksum, length [bytes].
 const HEADER: usize = 8 + 4 + 8 + 4;
-/// Ticks between two hashes.
+/// Ticks between two recorded hashes of the world.
 const BETWEEN: usize = 60;
 
 /// Recorded procedure.
@@ -77,12 +77,13 @@ pub enum RecordError {
     /// The replay differs from the recording.
     #[error("the replay differs from the recording in second {second}")]
     Differs {
-        /// Second of the first difference, starting at 0.
+        /// Second in which the first difference was found, starting at 0. The hashes are compared once a
+        /// second.
         second: usize,
     },
 }
 
-/// Serialized contents.
+/// Contents of a recording as they are serialized.
 #[derive(Serialize, Deserialize)]
 struct Written {
     name: String,
@@ -125,7 +126,7 @@ impl Recording {
         bytes
     }
 
-    /// Returns the uncompressed contents of the file.
+    /// Returns the uncompressed contents of the file, for tests.
     pub fn inside(&self) -> Vec<u8> {
         let grid = &self.case.grid;
         let written = Written {
@@ -164,7 +165,7 @@ impl Recording {
         let length = number(20) as usize;
         limit("bytes inside", length, MOST_INSIDE)?;
         let mut inside = Vec::new();
-        // One byte beyond the expected length detects contents that are too long.
+        // One more byte than the expected length is read, to detect contents that are too long.
         let inflated = ZlibDecoder::new(&bytes[HEADER..])
             .take(length as u64 + 1)
             .read_to_end(&mut inside);
@@ -179,7 +180,7 @@ impl Recording {
     /// Reads a recording from uncompressed contents, for tests that cannot provide a valid checksum.
     ///
     /// # Errors
-    /// As [`Recording::read`].
+    /// The same errors as [`Recording::read`].
     pub fn read_inside(inside: &[u8]) -> Result<Self, RecordError> {
         limit("bytes inside", inside.len(), MOST_INSIDE)?;
         let (written, rest) = postcard::take_from_bytes::<Written>(inside)
@@ -255,7 +256,7 @@ impl Playback {
         &self.procedure
     }
 
-    /// Returns the procedure, to be continued by hand.
+    /// Returns the procedure as replayed so far, to be continued by hand.
     pub fn into_procedure(self) -> Procedure {
         self.procedure
     }

@@ -90,7 +90,7 @@ pub fn svg(samples: &[Sample]) -> Result<String, Box<dyn Error>> {
     Ok(text)
 }
 
-/// Returns the points of a plot as (seconds, value). Long procedures are reduced to the maximum of every few
+/// Returns the points of a plot as (seconds, value). In long procedures each point is the maximum of several
 /// ticks.
 fn line(samples: &[Sample], value: fn(&Sample) -> f64) -> Vec<(f64, f64)> {
     let step = samples.len().div_ceil(POINTS).max(1);
@@ -139,7 +139,7 @@ fn draw(
         .x_label_formatter(&label)
         .label_style(("sans-serif", 14).into_font().color(&INK))
         .draw()?;
-    // Reverse order, so that the first line is on top.
+    // Draws the lines in reverse order, so that the first one is on top.
     for (name, colour, points) in lines.iter().rev() {
         let style = colour.stroke_width(2);
         chart

@@ -7,8 +7,9 @@
 //!        P                      I                        I
 //! ```
 //!
-//! Left is on the left, as in the main view, which shows the patient from behind. Many workstations show
-//! axial and coronal slices mirrored. Every slice is labelled with letters.
+//! The patient's left is on the left of the page, as in the main view, which shows the patient from behind.
+//! Many workstations show axial and coronal slices mirrored. Letters at the edges of every slice name the
+//! directions.
 
 use fuwafuwa::inspect::vector::{minus, plus, scaled};
 use fuwafuwa::{Dim3, ElementId, SoftBody, Vector};
@@ -31,23 +32,23 @@ pub struct Patch {
     pub corners: Vec<[f32; 2]>,
     /// Material number.
     pub material: u8,
-    /// Strain ‖F − R‖ of the element.
+    /// Strain ‖F − R‖ of the element: deformation gradient minus its rotation (dimensionless).
     pub strain: f32,
 }
 
-/// A slice.
+/// A slice. All corners and segments are in page coordinates (right, up) [m].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Slice {
     /// Cross-sections of elements.
     pub patches: Vec<Patch>,
-    /// Segments of the original surface [m].
+    /// Segments in which the plane cuts the original surface.
     pub rim: Vec<[[f32; 2]; 2]>,
-    /// Segments of surfaces created by cutting or tearing [m].
+    /// Segments in which the plane cuts surfaces created by cutting or tearing.
     pub cracks: Vec<[[f32; 2]; 2]>,
 }
 
-/// Tetrahedra of a block with eight corners, all around the diagonal from the first to the last corner.
-/// Adjacent blocks split their common face alike.
+/// Six tetrahedra that fill a block with eight corners. They share the diagonal from the first to the last
+/// corner, so that adjacent blocks divide their common face in the same way.
 const TETRAHEDRA: [[usize; 4]; 6] = [
     [0, 1, 3, 7],
     [0, 3, 2, 7],
@@ -79,8 +80,8 @@ impl Cut {
         }
     }
 
-    /// Returns the letters at the left, right, upper and lower edge: left, right, anterior, posterior,
-    /// superior, inferior.
+    /// Returns the letters at the left, right, upper and lower edge. They stand for left (L), right (R),
+    /// anterior (A), posterior (P), superior (S) and inferior (I).
     pub fn letters(self) -> [&'static str; 4] {
         match self {
             Self::Axial => ["L", "R", "A", "P"],
@@ -100,7 +101,8 @@ impl Cut {
 }
 
 impl Slice {
-    /// Computes the slice through an organ at a coordinate along the perpendicular axis [m].
+    /// Computes the slice through an organ. `at` is the position of the plane along the perpendicular axis
+    /// [m].
     pub fn of(organ: &SoftBody<Dim3>, cut: Cut, at: f32) -> Self {
         let mut slice = Self::default();
         let axis = cut.axis();
@@ -149,7 +151,7 @@ impl Slice {
                     material: view.material,
                     strain: view.strain,
                 };
-                // A plane through corners cuts some tetrahedra in a line or a point only.
+                // If the plane passes through corners, it may cut a tetrahedron only in a line or a point.
                 if patch.area() > 0.0 {
                     self.patches.push(patch);
                 }
@@ -157,13 +159,13 @@ impl Slice {
         }
     }
 
-    /// Returns the material at page coordinates [m], or `None` outside.
+    /// Returns the material at page coordinates [m], or `None` outside the organ.
     pub fn material_at(&self, at: [f32; 2]) -> Option<u8> {
         let patch = self.patches.iter().find(|patch| patch.holds(at));
         patch.map(|patch| patch.material)
     }
 
-    /// Returns the area [m²].
+    /// Returns the area of the organ in the slice [m²].
     pub fn area(&self) -> f32 {
         self.patches.iter().map(Patch::area).sum()
     }
@@ -244,7 +246,7 @@ mod tests {
             material: 1,
             strain: 0.0,
         };
-        // Each side is half of an edge of length 1; the two are perpendicular.
+        // The quad is a square with sides of 0.5.
         assert!((quad.area() - 0.25).abs() < 1e-6, "{quad:?}");
         assert!(quad.holds([0.25, 0.25]) && !quad.holds([0.6, 0.25]));
     }

@@ -17,7 +17,7 @@ use fuwafuwa::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Virtual coupling of a tool to the hand: yields by 2 mm per newton, with a maximum force of 30 N.
+/// Coupling of a tool to the hand. It yields by 2 mm per newton (500 N/m), and its maximum force is 30 N.
 const DRIVE: MotionType = MotionType::Coupled {
     mass: 0.1,
     stiffness: 500.0,
@@ -29,10 +29,10 @@ const DRIVE: MotionType = MotionType::Coupled {
 const FRICTION: f32 = 0.15;
 /// Half length of the knife's edge, height of its blade and half its thickness [m].
 const BLADE: [f32; 3] = [0.015, 0.01, 0.0006];
-/// Tip radius of the forceps for a fine organ [m].
+/// Tip radius of the forceps [m]. For coarse organs it is enlarged to [`THINNEST`].
 const TIP: f32 = 0.002;
-/// Minimum radius of tips and bars [voxels]. A thinner tip slips in between nodes when it is pressed in
-/// deeply.
+/// Minimum radius of tips and bars [voxels of the organ]. A thinner tip would slip between nodes when it is
+/// pressed in deeply.
 const THINNEST: f32 = 1.5;
 /// Maximum distance from the surface of the tip at which tissue is gripped [m].
 const REACH: f32 = 0.004;
@@ -40,7 +40,8 @@ const REACH: f32 = 0.004;
 const JAW: f32 = 0.004;
 /// Force at which the forceps slip off [N].
 const SLIPS: f32 = 8.0;
-/// Half length of the hook's bar, and its radius for a fine organ [m].
+/// Half length of the hook's bar, and its radius [m]. For coarse organs the radius is enlarged to
+/// [`THINNEST`].
 const BAR: [f32; 2] = [0.014, 0.0025];
 /// Length of the drawn handles [m].
 const HANDLE: f32 = 0.11;
@@ -48,10 +49,10 @@ const HANDLE: f32 = 0.11;
 /// Kind of tool.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Tool {
-    /// Cuts along its edge.
+    /// Blade that cuts tissue along its edge.
     #[default]
     Knife,
-    /// Grips tissue at its tip.
+    /// Tip that grips tissue.
     Forceps,
     /// Bar that pushes tissue aside.
     Hook,
@@ -76,7 +77,7 @@ impl Tool {
 pub struct HeldTool {
     tool: Tool,
     holder: RigidBodyHandle,
-    /// Knife of the tool and its edge radius [µm].
+    /// Knife of the engine and its edge radius [µm]; `None` if the tool is no knife.
     edge: Option<(KnifeHandle, u16)>,
     grip: Option<JointHandle>,
     /// Whether the forceps are closed, with or without tissue.
@@ -98,7 +99,8 @@ impl HeldTool {
         let thinnest = thinnest(world.soft_bodies().get(organ)?);
         let mut rigid = RigidBody::new(form(tool, thinnest), at, DRIVE).rotated(rotation);
         rigid.friction = FRICTION;
-        // A knife has contact only through its edge and its flat sides.
+        // The box of a knife has no contact: the engine's `Knife` cuts with its edge and has contact at its
+        // flat sides.
         rigid.is_sensor = tool == Tool::Knife;
         let holder = world.add_rigid_body(rigid)?;
         Ok(Self {
@@ -123,7 +125,8 @@ impl HeldTool {
         Ok(())
     }
 
-    /// Sets the edge radius of the knife [µm]. A knife within tissue restarts its contact there.
+    /// Sets the edge radius of the knife [µm]. If the radius changes, the knife of the engine is replaced and
+    /// restarts its contact with tissue around it. Does nothing for other tools.
     ///
     /// # Errors
     /// [`Error`] if the radius is out of range.
@@ -158,7 +161,7 @@ impl HeldTool {
         self.grip.is_some()
     }
 
-    /// Sets the kinematic target: position [m] and rotation.
+    /// Sets the target of the coupling: position [m] and rotation.
     ///
     /// # Errors
     /// [`Error`] if the target is out of range.
@@ -175,7 +178,7 @@ impl HeldTool {
         Ok(())
     }
 
-    /// Closes or opens the forceps.
+    /// Closes or opens the forceps. On closing they grip tissue near the tip; on opening they release it.
     ///
     /// # Errors
     /// [`Error`] if the organ is not in this world.
@@ -189,7 +192,7 @@ impl HeldTool {
             .grip
             .is_some_and(|grip| world.joints().get(grip).is_err())
         {
-            // The grip slipped off. Closed forceps do not grip again.
+            // The grip slipped off. The forceps have to open before they can grip again.
             self.grip = None;
         }
         let begins = closes && !self.is_closed;
@@ -273,12 +276,12 @@ impl HeldTool {
     }
 }
 
-/// Returns the minimum radius of round tools [m].
+/// Returns the minimum radius of tips and bars for an organ [m].
 fn thinnest(organ: &SoftBody<Dim3>) -> f32 {
     THINNEST * organ.grid().voxel_size()
 }
 
-/// Returns a distance from an organ at which no tool touches it in any rotation [m].
+/// Returns a distance between organ and working point at which no tool touches the organ in any rotation [m].
 pub(crate) fn clearance(organ: &SoftBody<Dim3>) -> f32 {
     let [half, radius] = BAR;
     half + radius.max(thinnest(organ)) + organ.grid().voxel_size()
@@ -310,7 +313,7 @@ fn form(tool: Tool, thinnest: f32) -> Shape {
     }
 }
 
-/// Returns the position of the node nearest to the surface of a tip [m], if it is within reach.
+/// Returns the position of the node nearest to the surface of a tip [m], if it is within [`REACH`].
 fn nearest(world: &World<Dim3>, organ: SoftBodyHandle, tip: &RigidBody) -> Option<Vector> {
     let body = world.soft_bodies().get(organ).ok()?;
     let places = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);

@@ -1,4 +1,5 @@
-//! Automatic trainee without skill, deterministic for each seed. For tests, measurements and demonstration.
+//! Automatic trainee for tests, measurements and demonstration. It has no skill; each seed always gives the
+//! same motions.
 
 use crate::procedure::{Input, Procedure};
 use crate::tools::Tool;
@@ -33,7 +34,7 @@ struct Plan {
 }
 
 impl Trainee {
-    /// Creates the trainee of a seed for the organ of a new procedure.
+    /// Creates the trainee for the organ of a new procedure. The seed selects its motions.
     pub fn new(procedure: &Procedure, seed: u64) -> Self {
         let [low, high] = procedure.span();
         let middle = scaled(plus(low, high), 0.5);
@@ -54,7 +55,7 @@ impl Trainee {
         }
     }
 
-    /// Returns the input of a tick.
+    /// Returns the input for tick number `tick`, starting at 0.
     pub fn input(&self, tick: usize) -> Input {
         let dull = self.dull;
         let base = Input {
@@ -76,7 +77,7 @@ impl Trainee {
         last.map_or(base, |leg| base.at(leg.tool, leg.to, leg.rotation))
     }
 
-    /// Returns the number of ticks of the sequence.
+    /// Returns the number of ticks of the whole sequence.
     pub fn ticks(&self) -> usize {
         self.legs.iter().map(|leg| leg.ticks).sum()
     }
@@ -87,7 +88,7 @@ impl Plan {
         low + (high - low) * self.random.f32()
     }
 
-    /// Adds a motion to a point at a speed [m/s].
+    /// Adds a straight motion to a point at a speed [m/s].
     fn go(&mut self, tool: Tool, to: Vector, rotation: Rotation, grips: bool, speed: f32) {
         let far = fuwafuwa::inspect::vector::length(minus(to, self.at));
         self.legs.push(Leg {

@@ -15,7 +15,7 @@ fn procedure(resolution: usize) -> Procedure {
     Procedure::new(Arc::new(phantom::case(resolution).unwrap())).unwrap()
 }
 
-/// Checks that the organ and the last sample are valid.
+/// Checks that the organ is valid and that the last sample is finite.
 fn check(procedure: &Procedure, what: &str) {
     let organ = procedure.organ();
     let valid = organ.mesh().validate(organ.grid(), organ.connectivity());
@@ -83,7 +83,8 @@ fn replay_is_identical_and_detects_changed_input() {
     );
     assert_eq!(playback.procedure().samples(), procedure.samples());
 
-    // The tool is held slightly lower in the third second. The replay reports it within that second.
+    // Changes the recorded inputs so that the tool is lower in the third second. The replay must report it
+    // within that second.
     let mut other = recording.clone();
     for input in &mut other.inputs[150..160] {
         input.goal[1] -= 700;
@@ -101,7 +102,7 @@ fn replay_is_identical_and_detects_changed_input() {
     );
 }
 
-/// Moves the tool from its position along a path at a speed [m/s]; returns the maximum force on the way [N].
+/// Moves the tool from its position along a path at a speed [m/s]. Returns the maximum force on the way [N].
 fn go(procedure: &mut Procedure, input: Input, way: &[Vector], pace: f32) -> f32 {
     let begun = procedure.samples().len();
     let here = procedure.tool().position();
@@ -141,7 +142,8 @@ fn dull_knife_cuts_less_and_presses_more() {
         let way = [[-0.02, 0.1, 0.02], [-0.02, 0.04, 0.02], [0.03, 0.04, 0.02]];
         felt.push(go(&mut procedure, input, &way, 0.06));
         let last = procedure.samples().last().unwrap();
-        // The 3 cm edge moves some 3 cm down and 5 cm sideways. A dull edge presses before it cuts.
+        // The edge is 3 cm long and moves about 3 cm down and 5 cm sideways, so the cut has several cm². A
+        // dull edge presses before it cuts.
         areas.push(1e4 * last.area);
         assert!(last.path > 0.03 && last.work > 0.0, "{last:?}");
         check(&procedure, "cut");
@@ -185,7 +187,7 @@ fn forceps_hold_and_release_tissue() {
         0.01,
     );
     assert!(!procedure.held().grips());
-    // There is nothing to grip far away from the organ.
+    // Far above the organ there is nothing to grip.
     go(
         &mut procedure,
         closed,

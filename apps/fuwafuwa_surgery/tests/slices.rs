@@ -1,4 +1,5 @@
-//! Slices show the inside at the right position: left on the left, and cuts.
+//! Slices show the inside of the organ at the correct position, with the patient's left on the left, and show
+//! cuts.
 
 #[path = "../../../engine/fuwafuwa_scan/tests/phantom/mod.rs"]
 mod phantom;
@@ -15,7 +16,7 @@ fn table() -> (Case, Table) {
     (case, table)
 }
 
-/// World position [m] of a point in the patient, RAS+ [mm].
+/// Returns the world position [m] of a point in the patient, RAS+ [mm].
 fn place(case: &Case, table: &Table, [right, front, up]: [f64; 3]) -> [f32; 3] {
     let own = [
         right - case.corner[0],
@@ -39,15 +40,16 @@ fn growth_appears_at_its_anatomical_position() {
         let page = cut.on_page(at);
         assert_eq!(slice.material_at(page), Some(3), "{cut:?}");
         let whole = cut.on_page(place(&case, &table, [0.0; 3]));
-        // On the page, right of the middle is the patient's right; seen from the left, it is the back. Above
-        // is front or up.
+        // The growth lies in the patient's right half, in front and above. Axial and coronal slices show it
+        // right of the middle; the sagittal slice, seen from the left, shows it left of the middle, where the
+        // front is.
         let beside = page[0] - whole[0];
         let above = page[1] - whole[1];
         match cut {
             Cut::Axial | Cut::Coronal => assert!(beside > 0.015 && above > 0.008, "{cut:?}"),
             Cut::Sagittal => assert!(beside < -0.015 && above > 0.008),
         }
-        // The mirrored position shows no growth.
+        // The position mirrored at the middle shows no growth.
         let other = [whole[0] - beside, page[1]];
         assert_ne!(slice.material_at(other), Some(3), "{cut:?}");
         assert_eq!(slice.material_at([page[0] + 1.0, page[1]]), None);
@@ -59,12 +61,12 @@ fn slice_area_matches_the_deformed_organ() {
     let (case, mut table) = table();
     let at = place(&case, &table, [0.0, 0.0, -8.0]);
     let [right, front, up] = HALF;
-    // Through an ellipsoid, below its centre.
+    // Area of the ellipse in which a plane 8 mm below the centre cuts the ellipsoid [m²].
     let share = 1.0 - (8.0 / up).powi(2);
     let ellipse = (1e-6 * std::f64::consts::PI * right * front * share) as f32;
     let area = Slice::of(organ(&table), Cut::Axial, at[1]).area();
     assert!((area / ellipse - 1.0).abs() < 0.03, "{area} {ellipse}");
-    // Stretched by a tenth to the right.
+    // Stretches the organ by a tenth along x.
     let body = table.world.soft_body_mut(table.organ).unwrap();
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
@@ -103,14 +105,14 @@ fn closed_cut_is_visible() {
         assert!((end[0] - at[0]).abs() < 1.5 * voxel, "{end:?}");
         assert!((end[1] + at[2]).abs() < 0.02 + 1.5 * voxel, "{end:?}");
     }
-    // The cut hides nothing of the organ.
+    // The slice of the cut organ has the same area as that of the uncut one.
     let whole = Slice::of(
         &SoftBody::new(case.grid.clone(), &case.tissues).unwrap(),
         Cut::Axial,
         at[1] - table.corner[1],
     );
     assert!((slice.area() / whole.area() - 1.0).abs() < 1e-3);
-    // No cracks beside the cut.
+    // A slice beside the cut shows no cracks.
     assert!(
         Slice::of(organ(&table), Cut::Sagittal, at[0] - 0.02)
             .cracks
@@ -118,8 +120,8 @@ fn closed_cut_is_visible() {
     );
 }
 
-/// Scan with 2 mm voxels. Its first axis runs to the patient's *left*; among voxels of label 1 a ball of label
-/// 2 lies on the right.
+/// Scan with 2 mm voxels, with the first axis towards the patient's *left*. A ball of label 2 lies in the
+/// right half of a ball of label 1.
 fn scan() -> Scan {
     let axes = [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let away = |patient: [f64; 3], middle: [f64; 3]| {

@@ -2,15 +2,15 @@
 
 use crate::Settings;
 
-/// Time over which the force ramps up after the first noticeable one [s].
+/// Duration of the ramp-up after a reset [s]. It begins with the first noticeable force.
 const ARMING: f32 = 1.0;
 /// Threshold of a noticeable force [full forces].
 const WORTH: f32 = 0.01;
-/// Longest step [s]. A thread that was delayed must not catch up with a jerk.
+/// Longest time that counts for one step [s], so that a delayed thread does not catch up with a jerk.
 const LONGEST: f32 = 0.01;
 
-/// Safety chain: gain → soft clip → slew limit → clamp → finite check. Both axes, each at most one full
-/// force.
+/// Safety chain: gain → soft clip → slew limit → clamp → finite check. Handles both axes; each output is at
+/// most one full force.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Chain {
     /// Progress of the ramp-up, 0 to 1; `None` before the first noticeable force.

@@ -3,9 +3,9 @@
 //!
 //! A spring and a damper connect the *current* stick position to a **proxy**: F = K (proxy − stick) + B Δv.
 //! Along the contact force the proxy stays fixed while the spring force is at most the contact force.
-//! Otherwise it slips towards the stick until the spring force equals the contact force. Across the contact
-//! force it always slips. In free space the proxy follows the stick and there is no force; at a wall it
-//! stops; on a soft body it slips as far as the body yields; when the body tears, it slips at once.
+//! Otherwise the proxy slips towards the stick until the two forces are equal. Across the contact force it
+//! always slips. In free space the proxy follows the stick and there is no force. At a wall the proxy stops;
+//! on a soft body it slips as far as the body yields; when the body tears, it slips at once.
 //!
 //! ```text
 //!      stick ──/\/\/\── proxy ──▐slips at the contact force▌── ground
@@ -13,33 +13,34 @@
 //! ```
 //!
 //! **Why no spring to the simulated hand itself?** The simulation reports at most 60 times a second, with a
-//! delay. A spring to an old hand position becomes harder and softer with the frame times, and its moving end
-//! can push. Here the simulation only sets the slip limit, and a spring with a slider is dissipative for
-//! every limit, even if it is late or noisy: slip is always in the direction of the pull. (The set of allowed
-//! pulls, from zero to the contact force, is convex and contains zero. The actual pull is the one nearest to
-//! the spring force.)
+//! delay. A spring to an old hand position would become harder and softer with the frame times, and its
+//! moving end could push. Here the simulation only sets the force at which the proxy slips. A spring with a
+//! slider is dissipative for every such limit, even a late or noisy one, because slip is always in the
+//! direction of the pull. (The set of allowed pulls, from zero to the contact force, is convex and contains
+//! zero. The actual pull is the one nearest to the spring force.)
 //!
-//! **Damper.** Between computing a force and feeling it pass up to T ≈ 20 ms in driver and cable, plus half
-//! an update. A spring with delay T acts like one with an additional damper −K T. B = `LEAD` · K compensates
-//! for that. K is limited to [`MAX_STIFFNESS`](crate::MAX_STIFFNESS): up to there, hinge and hand dissipate more than the
-//! remaining negative damping, and a delayed damper does not oscillate by itself. `tests/hand/closed_loop.rs`
-//! lists the sticks for which this holds. A stick with less damping in hinge and hand (damping × travel /
-//! full force below 8 ms) and a delay of 20 ms can still oscillate a little.
+//! **Damper.** Up to T ≈ 20 ms pass in driver and cable between computing a force and feeling it, plus half
+//! an update. A spring with delay T acts like one with an additional damper −K T, and B = `LEAD` · K
+//! compensates for that damper. K is limited to [`MAX_STIFFNESS`](crate::MAX_STIFFNESS): up to this
+//! stiffness, hinge and hand dissipate more than the remaining negative damping, and the delayed damper
+//! causes no oscillation of its own. `tests/hand/closed_loop.rs` lists the sticks for which this holds. A
+//! stick with less damping in hinge and hand (damping × travel / full force below 8 ms) and a delay of 20 ms
+//! can still oscillate a little.
 //!
 //! **Damping across the contact force.** The contact direction changes while the hand slides over a round
-//! surface, and it arrives late. Only the damper dissipates the sideways oscillation that this can excite
-//! through the spring.
+//! surface, and it arrives late. The spring can then excite sideways oscillation, which only the damper
+//! dissipates.
 //!
 //! **The cost:** nothing pushes a hand that holds still. The player only gets back the energy put in, which
-//! is a sound rule for a toy in public. A stick that steers has its proxy fixed in the middle and does feel
-//! approaching bodies.
+//! is a sound rule for a toy in public. In [`StickMode::Velocity`] the proxy is fixed in the middle, so there
+//! approaching bodies are felt.
 
 use crate::Settings;
 
-/// Damping over stiffness [s]: about the delay between computing a force and feeling it.
+/// Ratio of damping to stiffness [s], about the delay between computing a force and feeling it.
 const LEAD: f32 = 0.03;
-/// Time constant of the stick velocity [s]. A larger value lags; with a smaller one the steps of a coarse
-/// axis are felt.
+/// Time constant of the low-pass filter for the stick velocity [s]. A larger value lags; with a smaller one
+/// the steps of a coarse axis are felt.
 const SPEED: f32 = 0.008;
 /// Time constant of the contact force filter [s]: one tick. Without it the tick rate is felt as a hum.
 const TICK: f32 = 0.016;
@@ -59,16 +60,17 @@ pub struct State {
 /// Meaning of the stick position for the simulated hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StickMode {
-    /// The stick gives a position.
+    /// The stick gives a position. The proxy follows it in free space.
     Position,
     /// The stick gives a velocity. The proxy stays in the middle.
     Velocity,
-    /// The stick gives nothing: the contact force is passed on unchanged. Only for a
-    /// [`Measurement`](crate::Measurement); a force that depends on the stick position could oscillate.
+    /// Passes the contact force on unchanged and ignores the stick position. Only for a
+    /// [`Measurement`](crate::Measurement): motors of unknown mounting may push in the wrong direction, so a
+    /// force that depends on the stick position could oscillate.
     OpenLoop,
 }
 
-/// Spring, damper and slider.
+/// Spring, damper and slipping proxy of one device; see the head of this module.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Coupling {
     /// `None` before the first step.
@@ -77,7 +79,7 @@ pub struct Coupling {
 
 #[derive(Clone, Copy, Debug)]
 struct Memory {
-    /// Last stick position, and the same low-pass filtered.
+    /// Last stick position; `slow_aim` is its low-pass filtered value.
     aim: [f32; 2],
     slow_aim: [f32; 2],
     /// Filtered contact force [full forces].
@@ -87,7 +89,7 @@ struct Memory {
 }
 
 impl Coupling {
-    /// Resets the coupling.
+    /// Resets the coupling: the next step starts with the proxy at the stick.
     pub fn rest(&mut self) {
         self.memory = None;
     }
@@ -134,8 +136,8 @@ impl Coupling {
     }
 }
 
-/// Feedback of a tear, in addition to its effect on the contact force: the force drops for a moment. It only
-/// reduces a force, so it cannot push the player.
+/// Feedback of a tear, in addition to its effect on the contact force: the force drops for a moment. The
+/// feedback only reduces a force, so it cannot push the player.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TearFeedback(f32);
 

@@ -1,4 +1,4 @@
-//! The complete calculation for one device, one step at a time.
+//! Force of one device, from the command of the game to the device output, one step at a time.
 
 use crate::{
     Ability, Chain, Command, Coupling, MAX_STATE_AGE, Output, Settings, State, Stop, TearFeedback,
@@ -25,7 +25,7 @@ pub struct StepOutput {
     pub output: Output,
     /// Force before the safety chain [N].
     pub newtons: [f32; 2],
-    /// Reason for silence, if any.
+    /// Reason why no force is output; `None` while forces are allowed.
     pub silent: Option<Stop>,
 }
 
@@ -54,8 +54,8 @@ impl ForceController {
             .before
             .map_or(Duration::ZERO, |before| now.saturating_sub(before));
         if duration > MAX_STATE_AGE {
-            // The thread was delayed, for example because the process was stopped. The hand was released long
-            // ago and may have moved.
+            // The thread was delayed, for example because the process was stopped. The stick may have moved
+            // meanwhile, so the force ramps up from zero again.
             *self = Self::default();
             duration = Duration::ZERO;
         }

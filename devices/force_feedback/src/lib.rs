@@ -1,7 +1,8 @@
 //! Force feedback for joysticks, with the safety functions that it needs.
 //!
 //! This crate knows neither soft bodies nor drivers: it takes newtons and positions and gives device units.
-//! Data flow, which is also the reading order:
+//! The unit of an output is a *full force*, the strongest force of the device. Data flow, which is also the
+//! reading order:
 //!
 //! ```text
 //! the game, at its own pace                             one thread, 125 to 250 times a second
@@ -16,14 +17,15 @@
 //! - [`Watchdog`]: blocks forces, because of a requested stop or because the last state is too old.
 //! - [`Coupling`]: spring and damper from the *current* stick position to a proxy that the contact force
 //!   holds. A slow frame makes the stick neither harder nor softer.
-//! - [`ForceController`]: all of these for one device, one step at a time, without a clock. Used by headless runs and
-//!   tests.
-//! - [`Measurement`]: finds out how the motors of a device are mounted by pushing the stick.
+//! - [`ForceController`]: all of these for one device, one step at a time, without a clock. Used by headless
+//!   runs and tests.
+//! - [`Measurement`]: finds the mounting of the motors. It pushes the stick and observes its movement.
 //! - [`Sink`]: interface of a device. [`Recording`] and [`Nothing`] are stand-ins.
-//! - [`ForceThread`]: the thread that owns all sinks. A [`Line`] connects the game to one sink; dropping it, also
-//!   by a panic, stops the device.
+//! - [`ForceThread`]: the thread that owns all sinks. A [`Line`] connects the game to one sink. Dropping the
+//!   line, also by a panic, stops the device.
 //!
-//! An output lasts [`OUTPUT_DURATION`] and is repeated before that time, so that no force outlives the thread.
+//! An output ends by itself after [`OUTPUT_DURATION`] unless it is repeated. A force therefore outlives the
+//! thread by at most that time.
 //!
 //! ```
 //! use force_feedback::{ForceThread, StickMode, Recording, Settings, State, Stop};

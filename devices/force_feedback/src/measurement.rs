@@ -1,18 +1,20 @@
-//! Measures how the motors of a device are mounted by pushing the stick a little.
+//! Finds the mounting of the motors of a device: pushes the stick a little and observes its movement.
 //!
-//! Each motor pushes in both directions, gently and only until the stick has moved enough; then everything is
-//! repeated once. A push begins only after the stick was still for a while. If the stick moves before the
-//! push can have moved it, the wait begins again. A hand on the stick could only fake a result by waiting
-//! eight times and then moving with the push, twice in the same way.
+//! Each motor pushes in both directions, gently and only until the stick has moved enough. A second round
+//! repeats all pushes and must give the same result. A push begins only after the stick was still for a
+//! while. If the stick moves before the push can have moved it, the wait begins again. A hand on the stick
+//! could only fake a result by waiting before each of the eight pushes and then moving as a motor would, in
+//! both rounds alike.
 
 use crate::{Calibration, Settings};
 
 /// Directions of the pushes, in turn [full forces].
 const PUSHES: [[f32; 2]; 4] = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
-/// Number of repetitions of all pushes.
+/// Number of rounds. Each contains all pushes.
 const ROUNDS: usize = 2;
-/// Strongest push, and the largest force that moves no stick [full forces].
+/// Strongest push [full forces].
 const MOST: f32 = 0.4;
+/// Force below which no stick moves [full forces].
 const LEAST: f32 = 0.03;
 /// Time over which a push ramps up [s].
 const RISE: f32 = 1.5;
@@ -25,20 +27,22 @@ const FAR: f32 = 0.25;
 /// Maximum duration of a measurement [s].
 const PATIENCE: f32 = 45.0;
 
-/// Pushes a device and observes the stick.
+/// Measurement of the mounting of a device's motors, one step at a time.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measurement {
     /// Number of completed pushes.
     done: usize,
-    /// Time since the start of this push including its wait [s], and since the start of the measurement [s].
+    /// Time since the start of the current push, including the wait before it [s].
     time: f32,
+    /// Time since the start of the measurement [s].
     all: f32,
-    /// Stick position at the start of this push, and the movements of the completed pushes.
+    /// Stick position at the start of the current push.
     start: [f32; 2],
+    /// Movements of the stick in the completed pushes.
     moves: [[f32; 2]; ROUNDS * PUSHES.len()],
 }
 
-/// Progress of a measurement.
+/// Next action of a measurement, or its result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measured {
     /// Push the stick with this force [full forces], with [`StickMode::OpenLoop`](crate::StickMode::OpenLoop) and

@@ -2,24 +2,25 @@
 
 use std::ops::RangeInclusive;
 
-/// Maximum stiffness of a coupling [full forces per stick travel from the middle to the rim].
+/// Maximum stiffness of a coupling [full forces per stick travel from the middle to the rim]. With a stiffer
+/// coupling, a stick with a delay could oscillate.
 pub const MAX_STIFFNESS: f32 = 0.4;
 
 /// Strength and speed limits of the forces of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Overall strength, 0 to 1 (the slider in the menu). At 0 nothing is sent.
+    /// Overall strength, 0 to 1, default 0.8 (the slider in the menu). At 0 nothing is sent.
     pub strength: f32,
-    /// Simulated force that gives full force [N], 1 to 10,000; about 150. A smaller value makes forces
-    /// stronger and clips them earlier.
+    /// Simulated force that corresponds to a full force before the soft clip [N], 1 to 10,000, default 150. A
+    /// smaller value makes forces stronger and clips them earlier.
     pub full: f32,
-    /// Stiffness of the coupling [full forces per stick travel from the middle to the rim], 0 to [`MAX_STIFFNESS`].
-    /// A smaller value makes all contacts softer.
+    /// Stiffness of the coupling [full forces per stick travel from the middle to the rim], 0 to
+    /// [`MAX_STIFFNESS`], which is the default. A smaller value makes all contacts softer.
     pub stiffness: f32,
-    /// Maximum rate of change of the force [full forces/s], 10 to 100; about 30. A smaller value lags behind
-    /// the hand and oscillates; a larger one jerks.
+    /// Maximum rate of change of the force [full forces/s], 10 to 100, default 30. With a smaller value the
+    /// force lags behind the hand and oscillates; with a larger one it jerks.
     pub slew: f32,
-    /// Maximum force per axis [full forces], 0 to 1.
+    /// Maximum force per axis [full forces], 0 to 1, default 0.9.
     pub clamp: f32,
     /// Mounting of the motors.
     pub calibration: Calibration,
@@ -87,7 +88,7 @@ fn within(value: f32, range: RangeInclusive<f32>, otherwise: f32) -> f32 {
 }
 
 impl Calibration {
-    /// No correction.
+    /// Calibration of a device with the default mounting, which needs no correction.
     pub const IDENTITY: Self = Self {
         swap: false,
         invert: [false; 2],

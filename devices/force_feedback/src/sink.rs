@@ -4,8 +4,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use web_time::Instant;
 
-/// Duration of an output unless it is repeated: the second dead man's switch. Kernels stop the forces of
-/// a process that dies, but not of one that hangs.
+/// Duration of an output unless it is repeated. Ends the forces of a process that hangs: kernels stop forces
+/// only when the process dies.
 pub const OUTPUT_DURATION: Duration = Duration::from_millis(500);
 
 /// Capability of a device.
@@ -22,7 +22,8 @@ pub enum Ability {
 /// Output to a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Output {
-    /// Force on the stick: x to the right, y away from the player [full forces], each −1 to 1.
+    /// Forces of the two motors [full forces], each −1 to 1. With the default mounting, x pushes to the right
+    /// and y away from the player.
     Force([f32; 2]),
     /// Rumble strengths, each 0 to 1.
     Rumble {
@@ -45,14 +46,14 @@ pub trait Sink: Send {
     /// Returns the current stick position: x to the right, y away from the player, each −1 to 1.
     ///
     /// # Errors
-    /// [`Gone`] if the device was unplugged; nothing is played any more.
+    /// [`Gone`] if the device was unplugged; it then plays nothing any more.
     fn stick_position(&mut self) -> Result<[f32; 2], Gone>;
 
     /// Plays an output at once for [`OUTPUT_DURATION`], instead of the previous one. Repeating the same output
     /// restarts its duration.
     ///
     /// # Errors
-    /// [`Gone`] if the device was unplugged; nothing is played any more.
+    /// [`Gone`] if the device was unplugged; it then plays nothing any more.
     fn play(&mut self, output: Output) -> Result<(), Gone>;
 }
 
@@ -112,7 +113,7 @@ impl Recording {
         })))
     }
 
-    /// Sets the stick position, or unplugs the device.
+    /// Sets the stick position. `Err(Gone)` unplugs the device.
     pub fn lean(&self, aim: Result<[f32; 2], Gone>) {
         self.tape(|tape| tape.aim = aim);
     }

@@ -1,4 +1,5 @@
-//! Thread that owns all sinks (or the caller, where there are no threads), and its interface to the game.
+//! Thread that owns all sinks, and its interface to the game. Where there are no threads, as in a browser,
+//! [`ForceThread`] owns the sinks itself.
 
 use crate::{
     Ability, Command, ForceController, Output, Settings, Sink, State, StepOutput, Stop, Watchdog,
@@ -15,12 +16,13 @@ pub const RATES: RangeInclusive<u32> = 125..=250;
 /// Interval at which an unchanged output is repeated, well below [`OUTPUT_DURATION`](crate::OUTPUT_DURATION).
 const AGAIN: Duration = Duration::from_millis(200);
 
-/// Owner of all sinks or of the thread that has them. Dropping it stops all devices and waits for that.
+/// Owner of all sinks, or of the thread that owns them. Dropping it stops all devices and returns once they
+/// have stopped.
 #[must_use = "dropping it stops the force feedback"]
 pub struct ForceThread {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
-    /// Sinks that are not owned by a thread.
+    /// Sinks if there is no thread; otherwise empty.
     outlets: Vec<Outlet>,
 }
 
@@ -40,7 +42,7 @@ pub struct Report {
     pub output: Output,
     /// Force before the safety chain [N].
     pub newtons: [f32; 2],
-    /// Reason for silence, if any.
+    /// Reason why no force is output; `None` while forces are allowed.
     pub silent: Option<Stop>,
 }
 
@@ -50,14 +52,14 @@ struct Shared {
     news: Condvar,
 }
 
-/// Data shared by the game and the thread; locked only for copying. It holds the latest values and no queue.
+/// Data shared by the game and the thread, locked only for copying. Holds the latest values and no queue.
 #[derive(Default)]
 struct SharedState {
     watchdog: Watchdog,
     posts: BTreeMap<u64, Post>,
     arrivals: Vec<Outlet>,
     next_key: u64,
-    /// Wakes the thread before its next update.
+    /// Set to wake the thread before its next update is due.
     is_urgent: bool,
     is_closing: bool,
     has_ended: bool,
@@ -110,14 +112,15 @@ impl ForceThread {
         }
     }
 
-    /// Updates the devices once if there is no thread.
+    /// Updates all devices once. Does nothing if there is a thread, which then updates them.
     pub fn update(&mut self) {
         if self.thread.is_none() {
             self.shared.update(self.shared.desk(), &mut self.outlets);
         }
     }
 
-    /// Takes over a device.
+    /// Takes over a device and returns the connection to it. There is no force before the first
+    /// [`Line::set_state`].
     pub fn add(&self, sink: Box<dyn Sink>, settings: Settings) -> Line {
         let report = Report {
             ability: sink.ability(),
@@ -148,7 +151,7 @@ impl ForceThread {
         }
     }
 
-    /// Stops each device until its next state.
+    /// Stops all devices. Each one resumes with its next [`Line::set_state`].
     pub fn stop(&self, why: Stop) {
         let mail = self.shared.mail(Err(why));
         let mut desk = self.shared.desk();
@@ -188,18 +191,19 @@ impl Drop for ForceThread {
 }
 
 impl Line {
-    /// Reports the current state. Call it after each step of the simulation.
+    /// Reports the current state. Call it after each step of the simulation: the device stops if the last
+    /// state is older than [`MAX_STATE_AGE`](crate::MAX_STATE_AGE).
     pub fn set_state(&self, state: State) {
         let mail = self.shared.mail(Ok(state));
         self.post(|post| post.mail = mail);
     }
 
-    /// Reports a tear of a size from 0 to 1.
+    /// Reports a tear with a size from 0 to 1, which is felt as a short drop of the force.
     pub fn tear(&self, size: f32) {
         self.post(|post| post.tear = post.tear.max(size));
     }
 
-    /// Stops this device until the next state. Repeated calls are cheap.
+    /// Stops this device until the next [`Line::set_state`]. Repeated calls are cheap.
     pub fn stop(&self, why: Stop) {
         let mail = self.shared.mail(Err(why));
         let before = self.post(|post| std::mem::replace(&mut post.mail, mail));
@@ -208,7 +212,7 @@ impl Line {
         }
     }
 
-    /// Changes the settings.
+    /// Changes the settings, from the next update on.
     pub fn set(&self, settings: Settings) {
         self.post(|post| post.settings = settings);
     }
@@ -282,7 +286,7 @@ impl Shared {
         desk.is_urgent = false;
         outlets.append(&mut desk.arrivals);
         let watchdog = desk.watchdog;
-        // For a removed post `None` is kept, and its outlet is dropped outside the lock.
+        // A removed post gives `None`; its outlet is dropped below, outside the lock.
         let posts: Vec<Option<Post>> = outlets
             .iter()
             .map(|outlet| {
@@ -313,7 +317,7 @@ impl Shared {
     }
 }
 
-/// Informs the lines that the thread has ended, also after a panic.
+/// Guard that tells all lines on drop that the thread has ended, also after a panic.
 struct End<'a>(&'a Shared);
 
 impl Drop for End<'_> {
@@ -345,7 +349,7 @@ impl Outlet {
         }
     }
 
-    /// Sends an output to the device if it changed or if it is nonzero and due for repetition.
+    /// Sends an output to the device if the output has changed, or if it is nonzero and due for repetition.
     fn tell(&mut self, felt: StepOutput, now: Duration) -> StepOutput {
         let StepOutput { output, .. } = felt;
         let is_news = output.levels() != self.told.levels();
@@ -361,7 +365,7 @@ impl Outlet {
     }
 }
 
-/// Releases the device on drop, also by unwinding.
+/// Releases the device: plays a zero output, also while a panic unwinds.
 impl Drop for Outlet {
     fn drop(&mut self) {
         if !self.told.is_zero() {

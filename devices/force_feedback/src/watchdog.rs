@@ -1,13 +1,14 @@
-//! Reasons for silence.
+//! Reasons to output no force, and their check before each step.
 
 use crate::State;
 use std::fmt;
 use std::time::Duration;
 
-/// Maximum age of a state. Two updates at the slowest rate below the limit of 100 ms.
+/// Maximum age of a state that gives a force. The force must end within 100 ms of the last state; 84 ms leave
+/// time for two updates at the slowest of [`RATES`](crate::RATES).
 pub const MAX_STATE_AGE: Duration = Duration::from_millis(84);
 
-/// Reason for silence.
+/// Reason to output no force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
     /// No state was reported yet.
@@ -37,7 +38,7 @@ pub enum Stop {
 impl fmt::Display for Stop {
     fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
         to.write_str(match self {
-            Self::NoState => "unheard",
+            Self::NoState => "no state",
             Self::Idle => "idle",
             Self::Paused => "paused",
             Self::FocusLost => "focus lost",
@@ -55,13 +56,13 @@ impl fmt::Display for Stop {
 /// Last command of the game for a device, with its time on a shared clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Command {
-    /// State, or a reason for silence.
+    /// State, or a reason to output no force.
     pub wish: Result<State, Stop>,
     /// Time of the command.
     pub at: Duration,
 }
 
-/// Blocks forces.
+/// Blocks forces during an emergency stop, after other stops, and when the last state is too old.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Watchdog {
     emergency: bool,
@@ -77,20 +78,20 @@ impl Default for Command {
 }
 
 impl Watchdog {
-    /// Blocks all forces from now on.
+    /// Starts an emergency stop: blocks all forces until [`Watchdog::release`].
     pub fn latch(&mut self) {
         self.emergency = true;
     }
 
-    /// Ends the block.
+    /// Ends an emergency stop.
     pub fn release(&mut self) {
         self.emergency = false;
     }
 
-    /// Returns the state to be felt at the time `now`.
+    /// Returns the state from which the force at the time `now` is computed.
     ///
     /// # Errors
-    /// Returns the reason for silence.
+    /// Returns the reason to output no force.
     pub fn pass(&self, mail: &Command, now: Duration) -> Result<State, Stop> {
         if self.emergency {
             return Err(Stop::Emergency);

@@ -80,7 +80,7 @@ fn chain_keeps_slew_and_clamp_for_arbitrary_forces() {
 
 /// The same limits hold through `ForceController`, for arbitrary states and stick positions.
 #[test]
-fn feel_keeps_slew_and_clamp_for_arbitrary_states() {
+fn controller_keeps_slew_and_clamp_for_arbitrary_states() {
     let mut rng = Rng::with_seed(5);
     for _history in 0..2000 {
         let settings = settings(&mut rng);
@@ -124,7 +124,7 @@ fn feel_keeps_slew_and_clamp_for_arbitrary_states() {
 }
 
 #[test]
-fn feel_recovers_from_nan() {
+fn controller_recovers_from_nan() {
     let settings = Settings::default();
     let (watchdog, mut feel) = (Watchdog::default(), ForceController::default());
     let mut felt = None;

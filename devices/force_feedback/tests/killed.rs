@@ -8,11 +8,11 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// Environment variable with the output path of the child.
+/// Environment variable with the path of the file that the child writes.
 const PATH: &str = "FORCE_FEEDBACK_TEST_PATH";
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Writes the begin and end of each output in ms, as a device would store them.
+/// Device that writes a line for each output to a file: start and end [ms since 1970] and strength.
 struct Device(File);
 
 impl Sink for Device {
@@ -43,7 +43,7 @@ fn now() -> Duration {
         .expect("the time is after 1970")
 }
 
-/// Returns the outputs of the device: begin, end and strength.
+/// Returns the outputs in the file: start, end [ms since 1970] and strength.
 fn told(path: &std::path::Path) -> Vec<[i128; 3]> {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     // The last line may be half written.
@@ -67,7 +67,7 @@ fn push_until_killed() {
     let force = ForceThread::start(250).expect("a thread can be started");
     let line = force.add(Box::new(Device(file)), Settings::default());
     let start = std::time::Instant::now();
-    // Ends by itself if the parent is gone and cannot kill it.
+    // The loop has an end, in case the parent is gone and cannot kill this process.
     while start.elapsed() < PATIENCE {
         line.set_state(State {
             contact: [-300.0, 0.0],

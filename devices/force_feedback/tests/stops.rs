@@ -22,8 +22,7 @@ const MS: Duration = Duration::from_millis(1);
 /// Timeout on a busy machine for everything without a tighter limit.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// A hand that leans into something, with updates at a given rate and states at 60 Hz. Ends right after an
-/// update.
+/// Simulated device in a hand that leans into an obstacle, with updates at a given rate and states at 60 Hz.
 struct Simulated {
     feel: ForceController,
     watchdog: Watchdog,
@@ -148,7 +147,7 @@ fn emergency_stop_lasts_until_released() {
     assert_eq!(simulated.step().silent, None);
 }
 
-/// A real thread that pushes a recording.
+/// Starts a thread that pushes a recording, and waits until there is a force.
 fn pushed() -> (ForceThread, Line, Recording) {
     let force = ForceThread::start(250).expect("a thread can be started");
     let recording = Recording::default();
@@ -168,7 +167,7 @@ fn push(line: &Line, time: Duration) {
     }
 }
 
-/// Waits for a zero output. Returns the outputs and the time that it took.
+/// Waits for a zero output. Returns the outputs until then, and the time since `since`.
 fn zero(recording: &Recording, since: Instant) -> (Vec<Played>, Duration) {
     let mut played = recording.take();
     while played.last().is_none_or(|last| !last.output.is_zero()) {
@@ -179,7 +178,7 @@ fn zero(recording: &Recording, since: Instant) -> (Vec<Played>, Duration) {
     (played, since.elapsed())
 }
 
-/// Uses the quickest of several tries, since a busy machine only adds time.
+/// Checks that the quickest of several tries takes at most `most`: a busy machine only adds time.
 fn check_quick(most: Duration, what: &str, mut once: impl FnMut() -> Duration) {
     let mut quickest = Duration::MAX;
     for _try in 0..20 {

@@ -1,5 +1,5 @@
-//! `owner` for browsers: reads pads through the Gamepad API (W3C) each time a snapshot is taken. A browser
-//! shows a pad only after one of its buttons was pressed.
+//! Module `owner` of builds for browsers: reads pads through the Gamepad API (W3C) each time a snapshot is
+//! taken. A browser shows a pad only after one of its buttons was pressed.
 
 use crate::latest::{Error, Latest};
 use crate::{Button, Device, DeviceId, DeviceInfo, Labels, PadButton, Snapshot};
@@ -78,7 +78,8 @@ const TRIGGERS: [usize; 2] = [6, 7];
 /// Reader of the browser's pads.
 pub struct Owner {
     latest: Latest,
-    /// Index in the browser's list of each device of the last snapshot, and the number of devices ever seen.
+    /// Devices of the last snapshot with their indices in the browser's list, and the number of devices ever
+    /// seen.
     places: Mutex<(Vec<(DeviceId, u32)>, u32)>,
 }
 

@@ -19,13 +19,14 @@ pub struct Device {
     pub id: DeviceId,
     pub about: Arc<DeviceInfo>,
     /// Axes, each from −1 to 1, in the numbering of the device. On sticks the first two are usually x,
-    /// increasing to the right, and y, increasing towards the player. Unless the driver reports a lever's
-    /// position earlier, a lever is 0 until it is first moved.
+    /// increasing to the right, and y, increasing towards the player. A lever may read 0 until it is first
+    /// moved.
     pub axes: Vec<f32>,
     /// All buttons, in the numbering of the device.
     pub buttons: Vec<Button>,
     pub hats: Vec<Hat>,
-    /// State in the standard layout, if SDL knows the layout of this device. The device then is a pad.
+    /// State in the standard layout. `Some` if SDL knows the layout of this device, which is then called a
+    /// pad.
     pub pad: Option<Pad>,
 }
 
@@ -72,7 +73,7 @@ pub enum Direction {
     Left,
 }
 
-/// Thumb hat with eight directions, as four buttons of which two may be down.
+/// Thumb hat with eight directions, as four buttons of which two adjacent ones may be down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hat {
     buttons: [Button; Direction::ALL.len()],
@@ -113,7 +114,7 @@ pub enum PadButton {
     Right,
     /// Additional button, such as share, capture or microphone.
     Misc,
-    /// Upper or first right paddle on the back; the next three are paddles too.
+    /// Upper or primary right paddle on the back; the next three are paddles too.
     RightPaddle,
     LeftPaddle,
     LowerRightPaddle,
@@ -177,7 +178,7 @@ impl Snapshot {
 }
 
 impl Device {
-    /// Creates a device with `n` axes, buttons and hats, all at rest.
+    /// Creates a device with these numbers of axes, buttons and hats, all at rest.
     pub fn at_rest(
         id: DeviceId,
         about: DeviceInfo,
@@ -299,7 +300,7 @@ impl Pad {
 }
 
 impl PadButton {
-    /// Returns the label of a button, if it is known and is a word or a sign.
+    /// Returns the label printed on this button, or `None` if it is unknown.
     pub fn label(self, labels: Labels) -> Option<&'static str> {
         let place = match self {
             PadButton::South => 0,

@@ -10,8 +10,8 @@ pub struct Repeat {
     left: f32,
 }
 
-/// Moves the focus of a menu with a device: one step per press of the d-pad or hat and per push of the stick,
-/// and further steps while it is held.
+/// Navigation of a menu with a device: one step per press of the d-pad or hat and per push of the stick, and
+/// further steps while it is held.
 #[derive(Clone, Debug, Default)]
 pub struct Navigator {
     device: Option<DeviceId>,
@@ -21,9 +21,9 @@ pub struct Navigator {
 }
 
 /// Applies a radial dead zone in the middle, where a stick jitters or does not return to 0, and at the rim,
-/// which few sticks reach. Up to the length `inner` (usually 0.1 to 0.2) the result is 0, from `outer`
-/// (usually 0.95) on it has length 1. Between them it grows linearly from 0 and keeps the direction; a dead
-/// zone per axis would make the stick snap to the axes. Non-finite input gives 0.
+/// which few sticks reach. Up to the length `inner` (usually 0.1 to 0.2) the result is 0. From `outer`
+/// (usually 0.95) on it has length 1. Between them the length grows linearly and the direction is kept; a
+/// dead zone per axis would make the stick snap to the axes. Non-finite input gives 0.
 pub fn radial_dead_zone(stick: [f32; 2], inner: f32, outer: f32) -> [f32; 2] {
     let length = (stick[0] * stick[0] + stick[1] * stick[1]).sqrt();
     if !length.is_finite() || length <= inner || length == 0.0 {
@@ -63,8 +63,8 @@ impl Repeat {
     /// Interval between repetitions [s].
     pub const INTERVAL: f32 = 0.12;
 
-    /// Returns whether to repeat now, `seconds` after the last call. Starting to hold is not a repetition. At
-    /// most one repetition per call, so that a slow frame does not run through a menu.
+    /// Returns whether to repeat now, `seconds` after the last call. The start of holding a direction is no
+    /// repetition. At most one repetition per call, so that a slow frame does not run through a menu.
     pub fn step(&mut self, held: Option<Direction>, seconds: f32) -> bool {
         if held.is_none() || held != self.held {
             self.held = held;
@@ -249,7 +249,7 @@ mod tests {
         assert!(navigator.step(&two, 0.016).is_empty());
         assert!(
             navigator.step(&two, 0.016).is_empty(),
-            "its state is unchanged"
+            "the state of the device is unchanged"
         );
         one.axes[0] = -1.0;
         assert!(navigator.step(&one, 0.016).is_empty());

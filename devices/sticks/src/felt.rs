@@ -66,7 +66,7 @@ impl Sink for Haptic {
             // Setting a property of a new object cannot fail.
             let _ = Reflect::set(&parameters, &JsValue::from(name), &JsValue::from(number));
         }
-        // The promise resolves when the effect ends or is replaced.
+        // Not awaited: the promise resolves only when the effect ends or is replaced.
         let played = actuator.play_effect("dual-rumble", &parameters);
         played.map_err(|_| Gone).and_then(forget)
     }

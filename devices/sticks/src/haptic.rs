@@ -12,8 +12,8 @@ use crate::owner::{Hub, Order};
 use crate::{DeviceId, Sticks};
 
 /// Device as a sink of `force_feedback`. Dropping it releases the device, unless a newer sink of the device
-/// exists. Have only one sink per device at a time, except while one replaces another. Only the latest output
-/// is sent; it replaces pending ones.
+/// exists. A device may have two sinks only while one replaces the other. Only the latest output is sent; it
+/// replaces pending ones.
 pub struct Haptic {
     id: DeviceId,
     latest: Latest,
@@ -22,8 +22,8 @@ pub struct Haptic {
 }
 
 impl Sticks {
-    /// Returns the sink of a device. Its ability is known some ms later; until then, and for a missing
-    /// device, it is [`Ability::Nothing`].
+    /// Returns the sink of a device. Its ability is known some ms later. Until then the ability is
+    /// [`Ability::Nothing`], as it always is for a missing device.
     pub fn haptic(&self, id: DeviceId) -> Haptic {
         let haptic = Haptic {
             id,

@@ -8,12 +8,13 @@ use force_feedback::{Ability, OUTPUT_DURATION, Output};
 use crate::sdl::motors::Motors;
 use crate::sdl::{OpenDevice, Sdl};
 
-/// Interval at which a continuing force is started again. Some drivers, and Moza wheels, extend a force only
-/// by a start, not by a change of level. Starting it at each change would be felt.
+/// Interval at which a continuing force is started again. Some drivers, and Moza wheels, prolong a force only
+/// when it is started, not when its level changes. Starting it again at each change would be felt.
 const START_AGAIN: Duration = Duration::from_millis(150);
 
-/// USB vendor ids of devices that ignore effects of finite length. For these, this thread ends the effects.
-/// 0x346e is Moza; the behaviour of its bases is documented in the pull requests 11906 and 11915 of PCSX2.
+/// USB vendor ids of devices that ignore effects of finite length. The thread that owns SDL ends their
+/// effects. 0x346e is Moza; the behaviour of its bases is documented in the pull requests 11906 and 11915 of
+/// PCSX2.
 const ENDLESS: [u16; 1] = [0x346e];
 
 pub struct Slot {
@@ -30,6 +31,7 @@ pub struct Feedback<'sdl> {
     pub holder: Weak<Mutex<Slot>>,
     /// Time of the last nonzero output.
     told: Option<Instant>,
+    /// Time of the last start of a force.
     started: Option<Instant>,
 }
 

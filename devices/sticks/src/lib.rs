@@ -1,8 +1,8 @@
 //! Joysticks, flight sticks and pads.
 //!
-//! [`Sticks::open`] starts one thread that owns SDL: no other thread calls SDL, and it does not use window
-//! events or signals. The thread publishes the latest [`Snapshot`], which any thread can take at any time.
-//! Presses are counted, so comparing two snapshots misses none, even if they are far apart:
+//! [`Sticks::open`] starts one thread that owns SDL. No other thread calls SDL, and SDL handles neither
+//! window events nor signals. The thread publishes the latest [`Snapshot`], which any thread can take at any
+//! time. Presses are counted, so comparing two snapshots misses none, even if they are far apart:
 //!
 //! ```
 //! use sticks::{Change, Snapshot, Sticks};
@@ -23,11 +23,11 @@
 //! # Ok::<(), sticks::Error>(())
 //! ```
 //!
-//! Device values are raw: without dead zone or calibration. [`radial_dead_zone`], [`Navigator`] and similar
-//! functions are the caller's choice.
+//! Device values are raw: without dead zone or calibration. The caller may apply [`radial_dead_zone`], or
+//! move the focus of a menu with [`Navigator`].
 //!
-//! With the feature `haptic`, `Sticks::haptic` connects a device to `force_feedback`: with forces along two
-//! axes if the device has motors for them, otherwise with rumble.
+//! With the feature `haptic`, `Sticks::haptic` connects a device to the crate `force_feedback`: with forces
+//! along two axes if the device has motors for them, otherwise with rumble.
 
 #![deny(unsafe_code)]
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [s]
@@ -90,8 +90,8 @@ pub struct Sticks {
 
 impl Sticks {
     /// Starts the thread, which takes some ms; devices already connected appear in the first snapshot.
-    /// Finding no device is not an error. Builds without SDL never find one; a browser shows a pad once one
-    /// of its buttons was pressed.
+    /// Finding no device is not an error. Builds without SDL never find a device. A browser reports a pad
+    /// only after one of its buttons was pressed.
     pub fn open() -> Result<Sticks, Error> {
         let latest = Latest::default();
         Ok(Sticks {

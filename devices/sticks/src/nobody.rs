@@ -1,4 +1,4 @@
-//! `owner` for builds without SDL: finds no device.
+//! Module `owner` of builds without SDL: finds no device.
 
 use crate::latest::{Error, Latest};
 

@@ -22,7 +22,7 @@ const IDLE_PERIOD: Duration = Duration::from_millis(100);
 /// Timeout for starting SDL. A broken device can block SDL forever; the game must continue without it.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Owner of the thread; dropping it ends the thread and waits for that.
+/// Owner of the thread. Dropping it ends the thread and returns once the thread has ended.
 pub struct Owner {
     /// `None` only during drop.
     orders: Option<Arc<Sender<Order>>>,
@@ -41,7 +41,8 @@ pub struct Hub<'sdl> {
 }
 
 struct Connected<'sdl> {
-    /// Declared before `open`, so that it is dropped first.
+    /// Feedback of the device. Declared before `open`, so that its effects are removed before the device is
+    /// closed.
     #[cfg(feature = "haptic")]
     held: crate::held::Feedback<'sdl>,
     open: OpenDevice<'sdl>,
@@ -186,7 +187,7 @@ impl<'sdl> Hub<'sdl> {
         }
     }
 
-    /// Opens a device. One that cannot be opened, usually for lack of permission, is treated as absent.
+    /// Opens a device. A device that cannot be opened, usually for lack of permission, is treated as absent.
     fn add(&mut self, id: DeviceId) {
         let is_known = self
             .connected
@@ -250,8 +251,8 @@ impl Connected<'_> {
         }
     }
 
-    /// Reads buttons and axes. Presses are counted from events, since one may begin and end between two
-    /// reads.
+    /// Reads buttons and axes, but counts no presses: these come from events, since a press may begin and end
+    /// between two reads.
     fn read(&mut self) {
         let Connected { open, device, .. } = self;
         for (number, axis) in device.axes.iter_mut().enumerate() {

@@ -9,7 +9,7 @@ use crate::sdl::puppets::{PuppetAct, PuppetForm, Rumble};
 use crate::sdl::{HatBits, Sdl, SdlPermit};
 use crate::{DeviceId, Direction, Error, PadButton, Sticks};
 
-/// Virtual device. Dropping it unplugs the device. Each change is in the snapshot when the call returns.
+/// Virtual device. Dropping it unplugs the device. When a method returns, its change is in the snapshot.
 #[must_use = "a puppet is unplugged when it is dropped"]
 pub struct VirtualDevice {
     id: DeviceId,
@@ -19,7 +19,7 @@ pub struct VirtualDevice {
 
 impl Sticks {
     /// Opens virtual devices only, so that tests do not depend on real devices. Waits until no other `Sticks`
-    /// is open in this process: tests that use it run one after the other.
+    /// is open in this process, so tests that call it run one after the other.
     pub fn open_for_puppets() -> Result<Sticks, Error> {
         let latest = Latest::default();
         Ok(Sticks {
@@ -33,7 +33,7 @@ impl Sticks {
         self.plug_in(name, PuppetForm::Pad)
     }
 
-    /// Plugs in a flight stick.
+    /// Plugs in a flight stick with these numbers of axes, buttons and hats.
     pub fn plug_in_stick(
         &self,
         name: &str,
@@ -113,7 +113,7 @@ impl Drop for VirtualDevice {
     }
 }
 
-/// Runs a task on the thread and publishes its effects. Returns `None` if the thread has ended.
+/// Runs a task on the thread that owns SDL and publishes its effects. Returns `None` if the thread has ended.
 fn done<R: Send + 'static>(
     owner: &Weak<Sender<Order>>,
     act: impl FnOnce(&mut Hub<'_>) -> R + Send + 'static,

@@ -2,13 +2,13 @@
 //!
 //! Safety of every block below:
 //! - **One thread.** SDL is process-wide state, and its event pump belongs to the thread that started it. An
-//!   [`Sdl`] needs the only [`SdlPermit`], so there is one at a time. It is neither `Send` nor `Sync`, and neither
-//!   are the [`OpenDevice`] devices that borrow it. So all calls come from the thread that started SDL, between
-//!   `SDL_Init` and `SDL_Quit`.
-//! - **Pointers.** An `OpenDevice` holds pointers from SDL, reference-counted per open call, and returns them once,
-//!   when it is dropped. SDL keeps them valid until then, even if the device is unplugged: reads then give 0
-//!   or false. Indices out of range also give 0 or false. The pointers cannot outlive SDL, since `OpenDevice`
-//!   borrows `Sdl`.
+//!   [`Sdl`] needs the only [`SdlPermit`], so there is one at a time. `Sdl` is neither `Send` nor `Sync`, and
+//!   neither is an [`OpenDevice`], which borrows it. So all calls come from the thread that started SDL,
+//!   between `SDL_Init` and `SDL_Quit`.
+//! - **Pointers.** An `OpenDevice` holds pointers from SDL, which SDL counts per open call. Dropping the
+//!   `OpenDevice` returns each of them once. SDL keeps them valid until then, even if the device is
+//!   unplugged: reads then give 0 or false. Indices out of range also give 0 or false. The pointers cannot
+//!   outlive SDL, since `OpenDevice` borrows `Sdl`.
 //! - **Strings** from SDL are null or zero-terminated. They are copied at once, before the next call that
 //!   might change them.
 //! - **Events** are a union of plain data, zeroed before SDL writes to it. A member is read only after
@@ -58,7 +58,7 @@ use crate::{DeviceId, DeviceInfo, Direction, Labels, PadButton};
 /// Permission to run SDL, which exists once per process.
 pub struct SdlPermit(());
 
-/// SDL, running on this thread, reading devices only.
+/// SDL while it runs. Bound to the thread that started it; used for devices only.
 pub struct Sdl {
     _turn: SdlPermit,
     /// Whether force feedback is available.
@@ -88,7 +88,7 @@ pub enum ControlEvent {
     ButtonDown(usize),
     PadButtonDown(usize),
     Hat(usize, HatBits),
-    /// Comes last and stands for all simultaneous changes, including those already reported.
+    /// End of an update of the device. Any control may have changed, including those already reported.
     All,
 }
 
@@ -96,7 +96,7 @@ pub enum ControlEvent {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HatBits(pub u8);
 
-/// Whether the permission is available.
+/// `true` while the permission is available.
 static TURN: Mutex<bool> = Mutex::new(true);
 static GIVEN_BACK: Condvar = Condvar::new();
 
@@ -133,11 +133,14 @@ impl Sdl {
             feels: false,
             _stays_on_this_thread: PhantomData,
         };
-        // SAFETY: see the module; the hints are zero-terminated constants. Background events: without a
-        // window SDL never considers itself in the background, but drivers check the hint. Signals belong to
-        // the program. Logitech wheels use the kernel driver: SDL 3.4 reads the wrong structure when it
-        // compares a haptic device of its own driver with another. On Linux all devices use the kernel
-        // driver: the kernel ends the effects of a killed process, which SDL's own drivers cannot.
+        // SAFETY: see the module; the hints are zero-terminated constants. Reasons for the hints:
+        // - Signals: the program handles them itself.
+        // - Background events: without a window SDL never considers itself in the background, but drivers
+        //   check the hint.
+        // - Logitech wheels use the kernel driver: SDL 3.4 reads the wrong structure when it compares a
+        //   haptic device of its own driver with another.
+        // - On Linux all devices use the kernel driver: the kernel ends the effects of a killed process,
+        //   which SDL's own drivers cannot.
         let started = unsafe {
             let set = |hint, value: &CStr| {
                 SDL_SetHintWithPriority(hint, value.as_ptr(), SDL_HINT_OVERRIDE)
@@ -180,8 +183,8 @@ impl Sdl {
         }
     }
 
-    /// Opens a device, as a pad if SDL knows its layout. Returns `None` if it was unplugged or may not be
-    /// read.
+    /// Opens a device, as a pad if SDL knows its layout. Returns `None` if the device was unplugged or the
+    /// user may not read it.
     pub fn open(&self, id: DeviceId) -> Option<OpenDevice<'_>> {
         let id = SDL_JoystickID(id.0);
         // SAFETY: see the module; an unknown id gives null.

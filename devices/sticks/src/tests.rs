@@ -1,4 +1,4 @@
-//! Virtual devices through all of SDL.
+//! Tests with virtual devices, through all of SDL.
 
 #[cfg(feature = "haptic")]
 mod felt;
@@ -212,7 +212,7 @@ fn sticks_open_once_at_a_time_and_can_be_reopened() {
 }
 
 #[test]
-fn puppet_may_outlive_the_sticks() {
+fn virtual_device_may_outlive_the_sticks() {
     let (sticks, pad) = open_with_pad();
     let last = sticks.latest.clone();
     drop(sticks);

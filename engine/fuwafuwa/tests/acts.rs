@@ -497,7 +497,7 @@ fn check_any<D: Dim>(seeds: std::ops::Range<u64>) {
                     random(5) as f32,
                     1.0,
                     0.0,
-                ]))),
+                )))),
                 1 => _ = world.remove(body),
                 2..5 => _ = world.step(),
                 _ => {

@@ -48,7 +48,7 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// Creates empty paper [px].
+    /// Creates an empty canvas for an image of `width` × `height` pixels.
     pub fn new(camera: Camera, width: u32, height: u32) -> Self {
         let away = minus(camera.target, camera.eye);
         let forward = unit(away);
@@ -125,7 +125,7 @@ impl Canvas {
         unit(plus(sideways, self.axes[2]))
     }
 
-    /// Darkens pixels that are deeper than the mean of two opposite neighbours within `reach` [m].
+    /// Darkens creases: pixels that lie deeper than the mean of two opposite pixels at most `reach` [m] away.
     pub fn darken_creases(&mut self, reach: f32) {
         const DIRECTIONS: [[f32; 2]; 6] = [
             [1.0, 0.0],
@@ -201,7 +201,8 @@ impl Canvas {
         }
     }
 
-    /// Fills empty pixels with the floor, which fades into the paper in the distance.
+    /// Fills empty pixels below the horizon with a floor at `height` [m], which fades into the paper in the
+    /// distance.
     pub fn floor(&mut self, height: f32, shadow: &Shadow) {
         let (paper, floor) = (light_of(Role::Paper), light_of(Role::Floor));
         for y in 0..self.height {
@@ -247,7 +248,8 @@ impl Canvas {
     }
 }
 
-/// Returns a colour under both lights and the sky; back faces are lit like front faces.
+/// Returns the light that a surface of a colour reflects from both lights and the sky. Back faces are lit
+/// like front faces.
 fn shaded(colour: Vector, normal: Vector, look: Vector) -> Vector {
     let normal = if dot(normal, look) > 0.0 {
         scaled(normal, -1.0)

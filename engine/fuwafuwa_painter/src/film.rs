@@ -7,7 +7,8 @@ use tiny_skia::Pixmap;
 /// Gap between the pictures of a strip [px].
 const GAP: u32 = 12;
 
-/// An endless GIF, encoded frame by frame, so that a long one needs no more memory than its file.
+/// A GIF that repeats forever, encoded frame by frame, so that a long film needs no more memory than its
+/// file.
 #[derive(Default)]
 pub struct Gif {
     /// `None` before the first frame, which determines the size.

@@ -3,8 +3,8 @@
 
 use crate::PaperPoint;
 
-/// Returns the lines of a text. `at` is the top left corner of its first capital, `height` the height of a
-/// capital.
+/// Returns the strokes of a text as polylines. `at` is the top left corner of the text, `height` the height
+/// of a capital letter.
 pub fn lines(at: PaperPoint, height: f32, text: &str) -> Vec<Vec<PaperPoint>> {
     let unit = height / 6.0;
     let mut x = at[0];
@@ -51,7 +51,7 @@ fn room(letter: char) -> (f32, f32) {
     }
 }
 
-/// Rounds the corners of a stroke, except sharp ones and those of boxes.
+/// Rounds the corners of a stroke, except sharp corners and right angles between axis-parallel lines.
 fn rounded(spots: &[PaperPoint]) -> Vec<PaperPoint> {
     let mut curve = Vec::new();
     let closed = spots.len() > 2 && spots.first() == spots.last();

@@ -9,7 +9,7 @@
 //! game, use the crate `fuwafuwa_render`.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![allow(rustdoc::broken_intra_doc_links)] // brackets hold units, such as [m]
 
 mod canvas;
 mod error;
@@ -74,7 +74,7 @@ impl Painter {
         self.height += by;
     }
 
-    /// Creates empty paper [px].
+    /// Creates empty paper of `width` × `height` pixels.
     pub fn new(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -83,8 +83,9 @@ impl Painter {
         }
     }
 
-    /// Creates empty paper of a width [px] for a view from a low to a high corner [m], and the map from world
-    /// to paper. The height is clamped to 50 to 2000 px.
+    /// Creates empty paper for the view between a low and a high corner [m], and the map from the world to
+    /// the paper. The paper is `width` pixels wide. Its height follows from the view, limited to 50 to 2000
+    /// px.
     pub fn for_view([low, high]: [[f32; 3]; 2], width: u32) -> (Self, PaperTransform) {
         let unit = width as f32 / (high[0] - low[0]);
         let height = (unit * (high[1] - low[1])).round().clamp(50.0, 2000.0);
@@ -118,7 +119,7 @@ impl Painter {
         self.polygon(rectangle(low, size), role, edge, width);
     }
 
-    /// Adds an open line.
+    /// Adds an open line of a width [px].
     pub fn line(&mut self, spots: Vec<PaperPoint>, width: f32, role: Role) {
         self.shapes.push(Shape::Line {
             spots,
@@ -128,7 +129,7 @@ impl Painter {
         });
     }
 
-    /// Adds a closed line.
+    /// Adds a closed line of a width [px].
     pub fn ring(&mut self, spots: Vec<PaperPoint>, width: f32, role: Role) {
         self.shapes.push(Shape::Line {
             spots,
@@ -147,7 +148,7 @@ impl Painter {
         self.text([x, height + 0.7 * HEIGHT], HEIGHT, Role::Ink, text);
     }
 
-    /// Adds a disc.
+    /// Adds a disc of a radius [px].
     pub fn dot(&mut self, at: PaperPoint, radius: f32, role: Role) {
         self.shapes.push(Shape::Dot { at, radius, role });
     }
@@ -158,7 +159,7 @@ impl Painter {
         self.dot(at, radius, role);
     }
 
-    /// Adds a cross with a pale rim for contrast.
+    /// Adds a cross of half extent `reach` [px], with a pale rim for contrast.
     pub fn cross(&mut self, at: PaperPoint, reach: f32, role: Role) {
         for (width, role) in [(1.1 * reach, Role::Paper), (0.55 * reach, role)] {
             for side in [-reach, reach] {
@@ -168,8 +169,8 @@ impl Painter {
         }
     }
 
-    /// Adds a line of text. `at` is the top left corner of its first capital, `height` the height of a
-    /// capital [px].
+    /// Adds a line of text. `at` is the top left corner of the text, `height` the height of a capital letter
+    /// [px].
     pub fn text(&mut self, at: PaperPoint, height: f32, role: Role, text: &str) {
         for spots in letters::lines(at, height, text) {
             self.line(spots, 0.15 * height, role);
@@ -182,7 +183,7 @@ impl Painter {
         self.shapes.push(Shape::Image { at, pixels });
     }
 
-    /// Adds a centred row of named samples as a legend.
+    /// Adds a centred row of named samples as a legend. `y` is its upper edge [px].
     pub fn legend(&mut self, y: f32, entries: &[(Sample, &str)]) {
         let wide: f32 = entries.iter().map(|(_, name)| entry_width(name)).sum();
         let x = 0.5 * (self.width as f32 - wide + BETWEEN_ENTRIES);
@@ -232,7 +233,7 @@ pub enum Sample {
     Line(Role),
 }
 
-/// Returns the corners of a rectangle.
+/// Returns the corners of a rectangle with the top left corner `[x, y]`.
 pub fn rectangle([x, y]: PaperPoint, size: PaperPoint) -> Vec<PaperPoint> {
     let (right, bottom) = (x + size[0], y + size[1]);
     vec![[x, y], [right, y], [right, bottom], [x, bottom]]

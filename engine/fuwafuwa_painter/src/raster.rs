@@ -26,7 +26,7 @@ impl Painter {
     /// Renders the shapes to a PNG file.
     ///
     /// # Errors
-    /// As [`Painter::pixels`].
+    /// Same errors as [`Painter::pixels`].
     pub fn png(&self) -> Result<Vec<u8>, PaintError> {
         png_of(&self.pixels()?)
     }

@@ -1,10 +1,10 @@
 //! Roles of shapes, and their colours.
 //!
 //! The colours of levels run from coral through cream to blue. Neighbours differ in lightness or along the
-//! blue-yellow axis, so that they can be told apart with most kinds of colour vision. Added and removed are
-//! the blue and the vermilion of [Okabe 2008], and also differ in shape.
+//! blue-yellow axis, so that they can be told apart with most kinds of colour vision. `Added` and `Removed`
+//! have a blue and a vermilion after [Okabe 2008]. Pictures also give these two roles different shapes.
 
-/// Red, green, blue.
+/// Red, green and blue (sRGB), 0 to 255.
 pub type Colour = [u8; 3];
 
 /// Meaning of a shape, which determines its colour.

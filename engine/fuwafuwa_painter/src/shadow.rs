@@ -7,7 +7,7 @@ pub const KEY: Vector = [0.44, 0.71, 0.55];
 /// Number of cells of the map on each axis.
 const CELLS: usize = 256;
 
-/// Share of the stronger light that the floor misses, as a map around the bodies.
+/// Map around the bodies of the share of the stronger light that does not reach the floor.
 pub struct Shadow {
     low: [f32; 2],
     cell: f32,
@@ -70,7 +70,7 @@ impl Shadow {
         }
     }
 
-    /// Applies a box blur of `reach` cells to both sides, along each axis.
+    /// Applies a box blur along each axis, over `reach` cells to both sides.
     fn blur(&mut self, reach: usize) {
         for (along, across) in [(1, CELLS), (CELLS, 1)] {
             let old = self.dark.clone();
@@ -102,7 +102,7 @@ impl Shadow {
             + v * ((1.0 - u) * dark(0, 1) + u * dark(1, 1))
     }
 
-    /// Returns the distance of a point from the centre of the map, in half widths of the map.
+    /// Returns the distance of a point from the centre of the map, in multiples of half the map's width.
     pub fn distance(&self, at: Vector) -> f32 {
         let half = 0.5 * self.cell * CELLS as f32;
         let away = [at[0] - self.low[0] - half, at[2] - self.low[1] - half];

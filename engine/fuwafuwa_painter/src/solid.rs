@@ -55,7 +55,7 @@ impl Scene3d {
         self.segments.push((ends, width, role));
     }
 
-    /// Adds a ball.
+    /// Adds a ball of a radius [m].
     pub fn ball(&mut self, centre: Vector, radius: f32, role: Role) {
         const ROUND: usize = 48;
         let normal = |i: usize, j: usize| {
@@ -81,13 +81,13 @@ impl Scene3d {
         }
     }
 
-    /// Adds a capsule.
+    /// Adds a capsule between two points, with a radius [m].
     pub fn bar(&mut self, [from, to]: [Vector; 2], radius: f32, role: Role) {
         const ROUND: usize = 32;
         self.ball(from, radius, role);
         self.ball(to, radius, role);
         let along = minus(to, from);
-        // The axis with the smallest component of `along` is never parallel to it.
+        // The axis along which `along` extends least is never parallel to `along`.
         let least = (0..3).min_by(|&a, &b| along[a].abs().total_cmp(&along[b].abs()));
         let mut aside = [0.0; 3];
         aside[least.expect("there are three axes")] = 1.0;
@@ -105,7 +105,7 @@ impl Scene3d {
         }
     }
 
-    /// Adds a box.
+    /// Adds a box with half extents `half` [m], rotated about its centre.
     pub fn block(&mut self, centre: Vector, half: Vector, rotation: Rotation, role: Role) {
         for axis in 0..3 {
             for side in [-1.0, 1.0] {

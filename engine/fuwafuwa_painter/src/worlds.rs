@@ -161,7 +161,7 @@ pub fn space_elements(
     }
 }
 
-/// Paints the surface of a 3D body. The steps of voxels are smoothed; the edges of cracks are kept.
+/// Paints the surface of a 3D body. Smooths the voxel staircase, but keeps the edges of cracks.
 pub fn space_skin(solid: &mut Scene3d, body: &SoftBody<Dim3>) {
     let crumbs = crumbs(body);
     let inner: BTreeMap<ElementId, u8> = match body.materials() {
@@ -237,7 +237,7 @@ fn space_element(solid: &mut Scene3d, view: &ElementView) {
     }
 }
 
-/// Returns the pieces of a single element.
+/// Returns the pieces that consist of a single element.
 fn crumbs<D: Dim>(body: &SoftBody<D>) -> BTreeSet<PieceId> {
     let views = body.piece_views().into_iter();
     views

@@ -1,5 +1,5 @@
-//! Measures the time per image before and on the GPU (best of several runs) [ms], and the draw calls and
-//! bytes per image.
+//! Measures for one image: the CPU time for its vertices and the total time (best of several runs) [ms], the
+//! draw calls and the bytes written to the GPU.
 
 use fuwafuwa::Dim2;
 use fuwafuwa_render::frame::ElementColour;

@@ -98,7 +98,7 @@ fn best<T>(goes: &mut [T], mut act: impl FnMut(&mut T)) -> f64 {
     times.fold(f64::INFINITY, f64::min)
 }
 
-/// A sticker with as many corners as a face in the game.
+/// Returns a sticker with as many corners as a face in the game.
 fn face(world: &World<Dim3>) -> Sticker {
     let body = world.soft_bodies().first().unwrap();
     let anchor = anchor(body);

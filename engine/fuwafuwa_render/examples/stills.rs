@@ -82,7 +82,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Particles around the largest piece of the first body, to show how particles look.
+/// Returns particles around the largest piece of the first body, to show how particles look.
 fn crumbs(world: &World<Dim2>) -> Vec<Particle> {
     let Some(body) = world.soft_bodies().first() else {
         return Vec::new();

@@ -16,7 +16,7 @@ use std::time::Instant;
 
 const SIZE: [u32; 2] = [960, 640];
 
-/// A ball with a cap of another colour is pushed between three bars in a room.
+/// Scene in which a hand pushes a ball with a cap of another colour between bars in a room.
 const ROOM: &str = r#"
 dim = 3
 gravity = [0.0, -3.0, 0.0]
@@ -67,7 +67,7 @@ radius = 0.12
 path = [[0.0, 0.9, 1.1, 0.3], [2.5, 0.9, 1.1, 0.3]]
 "#;
 
-/// A ball of sand is broken.
+/// Scene in which a hand breaks a ball of sand.
 const CRUMBLE: &str = r#"
 dim = 3
 gravity = [0.0, -3.0, 0.0]
@@ -89,7 +89,7 @@ radius = 0.12
 path = [[0.0, 0.5, 1.2, 0.5], [0.8, 0.5, 0.13, 0.5], [1.2, 0.9, 0.13, 0.5], [1.6, 0.1, 0.13, 0.4], [2.5, 0.5, 1.0, 0.5]]
 "#;
 
-/// Non-round shapes, dropped onto the floor.
+/// Scene in which shapes that are not round drop onto the floor.
 const SHAPES: &str = r#"
 dim = 3
 gravity = [0.0, -3.0, 0.0]
@@ -230,7 +230,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Particles beside the first hand, to show how particles look.
+/// Returns particles beside the first hand, to show how particles look.
 fn dust(world: &World<Dim3>) -> Vec<Particle> {
     let Some((_, hand)) = world.target_followers().next() else {
         return Vec::new();

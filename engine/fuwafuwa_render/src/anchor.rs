@@ -5,7 +5,8 @@ use glam::{Mat3, Vec3};
 
 /// Iterations of the polar decomposition. Each one doubles the number of correct digits near convergence.
 const STEPS: usize = 12;
-/// Flatness limit: below this determinant, relative to the cubed norm of the matrix, no rotation is defined.
+/// Flatness limit: smallest determinant of a matrix, divided by its cubed norm, that still defines a
+/// rotation.
 const FLAT: f32 = 1.0e-7;
 
 /// Coordinate frame that follows the largest piece of a body.
@@ -55,9 +56,9 @@ pub fn anchor<D: Dim>(body: &SoftBody<D>) -> Anchor {
     }
 }
 
-/// Returns the current position [m] and axes of a rest point `place` of a piece. They are fitted to the nodes
-/// of the piece within `reach` of that point. `place` and `reach` are in voxels of the body at rest. Returns
-/// `None` if these nodes are too few or too flat to define a rotation.
+/// Returns the current position [m] of the rest point `place` and the axes of the piece around it. Both are
+/// fitted to the nodes of the piece within `reach` of `place`. `place` and `reach` are in voxels of the body
+/// at rest. Returns `None` if these nodes are too few or too flat to define a rotation.
 pub fn anchor_at<D: Dim>(
     body: &SoftBody<D>,
     piece: PieceId,
@@ -82,8 +83,8 @@ pub fn anchor_at<D: Dim>(
     Some((moved.into(), turn.to_cols_array_2d()))
 }
 
-/// Returns the mean current and rest positions of nodes and their rotation. Each state is (current position,
-/// rest position, mass).
+/// Returns the mean current position, the mean rest position and the rotation of nodes. Each state is
+/// (current position, rest position, mass).
 fn frame<D: Dim, I: Iterator<Item = (Vec3, Vec3, f32)>>(
     states: impl Fn() -> I,
 ) -> (Vec3, Vec3, Option<Mat3>) {
@@ -110,7 +111,8 @@ fn turn_of<D: Dim>(mut turn: Mat3) -> Option<Mat3> {
         columns.map(Vec3::length_squared).iter().sum::<f32>().sqrt()
     };
     if D::N == 2 {
-        // In 2D the rotation is about the third axis.
+        // All 2D nodes lie in a plane. A third axis makes the matrix invertible and keeps the rotation in the
+        // plane.
         turn.z_axis = Vec3::Z * size(turn);
     }
     for _ in 0..STEPS {

@@ -5,7 +5,7 @@ use crate::plane::flat;
 use fuwafuwa::{Dim3, PieceId, Shape, Vector, World};
 use glam::Vec2;
 
-/// Everything that a picture needs besides the world. A 3D picture takes a [`crate::space::Camera`].
+/// Everything besides the world that determines a picture. For a 3D picture, `C` is [`crate::space::Camera`].
 #[derive(Clone, Debug)]
 pub struct Frame<'a, C = Camera> {
     /// Camera.
@@ -18,24 +18,25 @@ pub struct Frame<'a, C = Camera> {
     pub basket: Option<Basket>,
     /// Particles such as crumbs, dust and sparks.
     pub particles: &'a [Particle],
-    /// Marks on the skins of 3D bodies. In 2D the caller paints between the two halves of
-    /// [`crate::Renderer::paint`].
+    /// Marks on the skins of 3D bodies. In 2D, the caller paints marks after
+    /// [`crate::Renderer::paint_bodies`].
     pub stickers: &'a [Sticker],
-    /// World with bodies and hands to be drawn transparently (3D only).
+    /// Second world whose bodies and hands are drawn transparently, such as a replay to race against (3D
+    /// only).
     pub ghost: Option<&'a World<Dim3>>,
-    /// Objects drawn like hands that are not part of the 3D world, such as the handle of a tool that a hand
-    /// holds.
+    /// Objects that are not in the world but look like hands, such as the handle of a tool in a hand (3D
+    /// only).
     pub props: &'a [Prop],
     /// Clock for slow decorative animation, such as marching dashes [s].
     pub seconds: f64,
 }
 
-/// Period of the animation clock [s]. Every clock-driven animation repeats after it, because shaders compute
-/// in single precision.
+/// Period of the animation clock [s]. All clock-driven animations repeat after this period, so that the time
+/// stays accurate in the single precision of shaders.
 const CYCLE: f64 = 16.0;
 
 impl<'a, C> Frame<'a, C> {
-    /// Returns the clock within its period, as the shaders take it [s].
+    /// Returns the clock modulo its period [s], for the shaders.
     pub(crate) fn phase(&self) -> f32 {
         self.seconds.rem_euclid(CYCLE) as f32
     }
@@ -65,7 +66,7 @@ pub struct Prop {
     pub colour: Colour,
 }
 
-/// 2D camera. The picture fills the target, whatever its size.
+/// 2D camera. The picture fills a target of any size.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Camera {
     /// Point in the middle of the picture [m]. The third coordinate is ignored.
@@ -127,14 +128,14 @@ pub struct Particle {
 /// Coloured patch of a sticker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
-    /// Corners, counterclockwise, as (right, up). The patch is the union of the triangles between its edges
-    /// and the mean corner.
+    /// Corners (right, up), counterclockwise, in mark units: lengths of the sticker's axes. The patch
+    /// consists of the triangles between each edge and the mean of the corners.
     pub outline: Vec<[f32; 2]>,
     /// Red, green, blue (sRGB), opacity; 0 to 1.
     pub colour: [f32; 4],
-    /// Height of the patch's centre above its edge, in coordinates of marks.
+    /// Height of the patch's centre above its edge [mark units].
     pub bulge: f32,
-    /// Height of the patch's edge above the skin, in coordinates of marks.
+    /// Height of the patch's edge above the skin [mark units].
     pub lift: f32,
 }
 
@@ -145,10 +146,11 @@ pub struct Sticker {
     pub body: usize,
     /// Piece of the body.
     pub piece: PieceId,
-    /// Point inside the piece [m]. The sticker lies on the skin visible from there.
+    /// Point inside the piece [m]. The sticker lies on the skin in front of this point, in the direction of
+    /// the third axis.
     pub origin: Vector,
-    /// Axes to the right, up and out of the skin. Their lengths are the size of one unit of mark coordinates
-    /// [m].
+    /// Axes to the right, up and out of the skin. The length of each axis [m] is one mark unit in its
+    /// direction.
     pub axes: [Vector; 3],
     /// Marks, bottom first.
     pub marks: Vec<Mark>,

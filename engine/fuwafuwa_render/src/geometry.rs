@@ -26,7 +26,7 @@ pub struct Geometry {
     rests: Vec<Rest>,
 }
 
-/// Index ranges of a body in the fans of the skin mesh.
+/// Index ranges of a body in [`SkinMesh::fans`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyParts {
     /// Fans that wind around the inside.
@@ -106,7 +106,7 @@ fn radius(body: &SoftBody<Dim2>) -> f32 {
 
 const NOWHERE: [Vec2; 2] = [Vec2::MAX, Vec2::MIN];
 
-/// Returns the smallest bounds that contain the given bounds and a point.
+/// Returns the smallest box that contains a given box and a point.
 fn around([low, high]: [Vec2; 2], at: Vec2) -> [Vec2; 2] {
     [low.min(at), high.max(at)]
 }

@@ -25,7 +25,7 @@
 //! The limits of WebGL2, `wgpu::Limits::downlevel_webgl2_defaults`, are sufficient.
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units are in brackets: [m]
+#![allow(rustdoc::broken_intra_doc_links)] // brackets hold units, such as [m]
 #![cfg_attr(not(feature = "gpu"), allow(dead_code))] // without `gpu`, most vertices are unused
 
 pub mod ages;

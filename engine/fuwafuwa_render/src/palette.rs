@@ -25,7 +25,7 @@ pub struct Palette {
     pub basket: Colour,
     /// Bodies by material number, starting at number 1. The list repeats after its end.
     pub materials: Vec<Colour>,
-    /// Inside of a body, mixed into the body's colour on torn surfaces.
+    /// Inside of a body. Torn surfaces mix this colour with the colour of the body.
     pub fresh: Colour,
     /// Hands by player. The list repeats after its end.
     pub hands: Vec<Colour>,
@@ -98,7 +98,7 @@ impl Palette {
         among(&self.levels, usize::from(level).min(last))
     }
 
-    /// Returns the colour of a strain ‖F − R‖. From 0.5 on, it is the colour of high strain.
+    /// Returns the colour of a strain ‖F − R‖. Strains of 0.5 and more have the colour of high strain.
     pub fn strain(&self, strain: f32) -> Colour {
         let [none, some, much] = self.strains;
         let share = (2.0 * strain).clamp(0.0, 1.0);

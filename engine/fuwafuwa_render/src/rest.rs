@@ -10,10 +10,11 @@ use glam::Vec2;
 
 /// Steps along the four sides of a voxel, counterclockwise starting with the one to the right.
 const STEPS: [[i32; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
-/// Standard deviation of the smoothing [sides], as a multiple of the square root of the number of sides of
-/// the ring. The longest steps of a disc, where it is flat, grow by the same law.
+/// Standard deviation of the blur [voxel sides], as a multiple of the square root of the number of sides of a
+/// ring. The longest stair steps of a voxelised disc grow with the same square root.
 const REACH: f32 = 0.5;
-/// Minimum number of sides of a smoothed ring. Smaller rings have no staircase, only corners.
+/// Minimum number of sides of a ring (closed line of exposed voxel sides) that is smoothed. Smaller rings
+/// have no staircase, only corners.
 pub const SMALL: usize = 12;
 /// Maximum offset of a point [voxels], so that a protrusion of a few voxels survives.
 const FARTHEST: f32 = 0.9;
@@ -21,7 +22,7 @@ const FARTHEST: f32 = 0.9;
 /// Smoothing offsets of a voxel shape.
 #[derive(Clone, Debug, Default)]
 pub struct Rest {
-    /// Index of a side in `offsets` by voxel and direction, or `u32::MAX`.
+    /// Index of a side in `offsets` by voxel and direction. `u32::MAX` for sides that are not on the surface.
     sides: Vec<u32>,
     /// Offsets at the start and at the end of each side [voxels].
     offsets: Vec<[Vec2; 2]>,
@@ -83,7 +84,7 @@ impl Rest {
     }
 
     /// Returns the offsets [voxels] at the start and at the end of a side of the original surface. The side
-    /// runs along `step` with the voxel to its left.
+    /// runs along `step` with the voxel to its left. Other sides have zero offsets.
     pub fn offsets(&self, grid: &VoxelGrid<Dim2>, voxel: [i32; 3], step: [i32; 2]) -> [Vec2; 2] {
         let direction = STEPS.iter().position(|&known| known == step);
         let side =
@@ -110,7 +111,7 @@ fn start_of([x, y, _]: [i32; 3], direction: usize) -> Vec2 {
     Vec2::new((x + dx) as f32, (y + dy) as f32)
 }
 
-/// Returns the side that follows a side. Voxels that touch only in a corner are not connected.
+/// Returns the next side of a ring. Voxels that touch only in a corner are not connected.
 fn next_side(grid: &VoxelGrid<Dim2>, voxel: [i32; 3], direction: usize) -> ([i32; 3], usize) {
     let ahead = beside(voxel, direction);
     let right = beside(ahead, (direction + 3) % 4);
@@ -152,7 +153,7 @@ fn blurred(ring: &[Vec2], sigma: f32) -> Vec<Vec2> {
 mod tests {
     use super::*;
 
-    /// Smoothed surface of a disc [voxels], as the start points of its sides.
+    /// Returns the smoothed surface of a grid as the start points of its sides [voxels].
     fn surface(grid: &VoxelGrid<Dim2>) -> Vec<Vec2> {
         let rest = Rest::new(grid);
         let mut points = Vec::new();
@@ -189,12 +190,12 @@ mod tests {
         let grid =
             VoxelGrid::<Dim2>::from_fn([2, 2, 1], 1.0, |[x, y, _]| u8::from(x == y)).unwrap();
         let (_, facing) = next_side(&grid, [0, 0, 0], 1);
-        assert_eq!(facing, 2, "around its own voxel");
+        assert_eq!(facing, 2, "the ring stays on its voxel");
         assert_eq!(surface(&grid).len(), 8);
     }
 
     #[test]
-    fn fits_rejects_other_grids() {
+    fn matches_grid_rejects_other_grids() {
         let [disc, larger] = [24, 25].map(|n| VoxelGrid::<Dim2>::ball(n, 1.0).unwrap());
         assert!(Rest::new(&disc).matches_grid(&disc));
         assert!(!Rest::new(&disc).matches_grid(&larger));

@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 use fuwafuwa::{Dim2, Shape, World};
 use glam::Vec2;
 
-/// Maximum number of half-spaces drawn, given by the uniform size of small devices.
+/// Maximum number of half-spaces drawn, limited by the size of uniform buffers on small devices.
 pub const MAX_WALLS: usize = 16;
 
 /// Shape with a colour, as an instance for the shader.
@@ -40,7 +40,7 @@ pub struct DotInstance {
     pub colour: [f32; 4],
 }
 
-/// Everything rigid in a picture.
+/// Rigid shapes and particles of a picture.
 #[derive(Clone, Debug, Default)]
 pub struct RigidShapes {
     /// Outward normal and offset [m] of each half-space.

@@ -1,10 +1,14 @@
 //! Smooth closed outlines of all pieces.
 //!
-//! A ring of bare voxel sides becomes a smooth curve in three steps. First its points move by the offsets of
-//! the shape at rest, carried along by the deformation of their voxels; torn sides have no offsets. Then
-//! corners are smoothed, torn ones only a little. The result is the control polygon of a quadratic B-spline,
-//! whose corners get more points than the rest. Both faces of a crack are smoothed alike, so that a closed
-//! crack stays closed.
+//! A ring of exposed voxel sides becomes a smooth curve in three steps:
+//!
+//! 1. Every point moves by its offset at rest, carried along by the deformation of its voxel. Torn sides have
+//!    no offsets.
+//! 2. Corners are smoothed, torn ones only a little. The result is the control polygon of a quadratic
+//!    B-spline.
+//! 3. The spline is sampled, more densely around corners.
+//!
+//! Both faces of a crack are smoothed alike, so that a closed crack stays closed.
 
 use crate::plane::flat;
 use crate::rest::{Rest, SMALL};
@@ -48,11 +52,11 @@ pub struct OutlinePoint {
     pub fresh: f32,
     /// Strain ‖F − R‖ of the adjacent voxels.
     pub strain: f32,
-    /// Constant pseudo-random value of the point, 0 to 1.
+    /// Pseudo-random value that stays the same for the point, 0 to 1. Varies the depth of torn bands.
     pub grain: f32,
 }
 
-/// Bare side of a voxel.
+/// Exposed side of a voxel.
 #[derive(Copy, Clone, Debug)]
 struct Side {
     to: NodeId,
@@ -77,7 +81,7 @@ struct Control {
 }
 
 const NONE: u32 = u32::MAX;
-/// Smoothing rounds for points of the original surface and for torn points.
+/// Rounds of smoothing: for points of the original surface, and for torn points.
 const SURFACE_ROUNDS: usize = 4;
 const TORN_ROUNDS: usize = 1;
 
@@ -145,8 +149,9 @@ impl Outlines {
         }
     }
 
-    /// Moves points half-way to the midpoint of their neighbours: torn points once, because they should look
-    /// rough; others in more rounds, because contacts press on the voxel staircase.
+    /// Moves points half-way to the midpoint of their neighbours. Torn points move once, because they should
+    /// look rough. Points of the original surface move more often, because contacts deform the unsmoothed
+    /// voxels below.
     fn smooth_corners(&mut self) {
         let count = self.ring.len();
         if count < SMALL {
@@ -235,7 +240,8 @@ pub fn sides([a, b, c, d]: [Vec2; 4]) -> (Vec2, Vec2) {
     (0.5 * (b - a + d - c), 0.5 * (c - a + d - b))
 }
 
-/// Returns ‖F − R‖ of a cell with the given edges and rest size [m].
+/// Returns the strain ‖F − R‖ of a cell with the given edges and rest size [m]. F is the deformation
+/// gradient, R its rotation.
 pub fn strain(right: Vec2, up: Vec2, size: f32) -> f32 {
     let turn = right - up.perp();
     let squared = right.length_squared() + up.length_squared();
@@ -269,7 +275,7 @@ mod tests {
         world
     }
 
-    /// Radius of the disc with the area of the world's first body [m].
+    /// Returns the radius of the disc with the area of the world's first body [m].
     fn round(world: &World<Dim2>) -> f32 {
         let grid = world.soft_bodies().first().unwrap().grid();
         grid.voxel_size() * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt()

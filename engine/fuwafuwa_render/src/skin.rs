@@ -9,7 +9,7 @@ use fuwafuwa::inspect::{corner, scale};
 use fuwafuwa::{Dim, Dim2, ElementView, SoftBody};
 use glam::Vec2;
 
-/// Maximum area of a crumb [voxels].
+/// Maximum area of a piece that counts as a crumb [areas of a voxel].
 const CRUMB: f32 = 14.0;
 
 /// Vertex of the skin.
@@ -20,7 +20,8 @@ pub struct SkinVertex {
     pub at: Vec2,
     /// Colour and opacity.
     pub colour: [u8; 4],
-    /// Thickness, freshness, strain and the weight of these three; 0 to 255.
+    /// Thickness (0 on the outline), freshness (255 on torn surfaces), strain, and the blending weight of
+    /// these three; each 0 to 255.
     pub relief: [u8; 4],
 }
 
@@ -55,7 +56,7 @@ impl SkinMesh {
                 at: middle,
                 ..SkinVertex::default()
             });
-            // The bands of a crumb meet in its centre, so all of it looks fresh.
+            // The bands of a crumb meet in its centre, so that all of the crumb looks torn.
             let is_crumb = (0.0..CRUMB * voxel * voxel).contains(&span.area);
             let count = points.len() as u32;
             for (k, point) in points.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! 2D pictures on any graphics adapter, Mesa's llvmpipe included. Without an adapter these tests print a
-//! notice and pass, unless CI is set to 1 or true.
+//! 2D pictures on any graphics adapter, Mesa's llvmpipe included. The tests that draw are ignored by default,
+//! because they fail without an adapter; `cargo xtask test` runs them.
 
 mod shared;
 
@@ -40,7 +40,7 @@ fn take<'a>(
 }
 
 impl Picture {
-    /// Bilinearly interpolated colour at a pixel.
+    /// Returns the bilinearly interpolated colour at a pixel.
     fn at_pixel(&self, [x, y]: [f32; 2]) -> Colour {
         let limit = |k: f32| k.clamp(0.5, SIZE[0] as f32 - 1.5);
         let (x, y) = (limit(x - 0.5), limit(y - 0.5));
@@ -54,7 +54,7 @@ impl Picture {
         })
     }
 
-    /// Mean colour around a point [m].
+    /// Returns the mean colour around a point [m].
     fn around(&self, at: [f32; 2]) -> Colour {
         let [x, y] = self.camera.to_pixel([at[0], at[1], 0.0], SIZE);
         let mut sum = [0.0; 3];
@@ -104,7 +104,7 @@ fn disc_is_warm_on_a_cool_floor_with_a_smooth_edge() {
     for degree in 0..360 {
         let angle = (degree as f32).to_radians();
         let half = 0.5 * (warmth(angle, round + 2.0 * voxel) + warmth(angle, round - voxel));
-        // From outside inwards, to the point of half the warmth.
+        // Searches inwards for the radius with half the warmth.
         let steps = (0..400).map(|k| round + (2.0 - 0.01 * k as f32) * voxel);
         let edge = steps
             .into_iter()

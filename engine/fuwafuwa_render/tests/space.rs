@@ -1,5 +1,5 @@
-//! 3D pictures on any graphics adapter, Mesa's llvmpipe included. Without an adapter these tests print a
-//! notice and pass, unless CI is set to 1 or true.
+//! 3D pictures on any graphics adapter, Mesa's llvmpipe included. The tests that draw are ignored by default,
+//! because they fail without an adapter; `cargo xtask test` runs them.
 
 mod shared;
 
@@ -37,7 +37,7 @@ fn take<'a>(
 }
 
 impl Picture {
-    /// Mean colour around a pixel.
+    /// Returns the mean colour around a pixel.
     fn at_pixel(&self, [x, y]: [f32; 2], reach: i32) -> Colour {
         let mut sum = [0.0; 3];
         let count = ((2 * reach + 1) * (2 * reach + 1)) as f32;
@@ -54,7 +54,7 @@ impl Picture {
         sum
     }
 
-    /// Mean colour around the pixel of a point [m].
+    /// Returns the mean colour around the pixel of a point [m].
     fn around(&self, at: [f32; 3]) -> Colour {
         self.at_pixel(self.camera.to_pixel(at, SIZE).unwrap(), 2)
     }

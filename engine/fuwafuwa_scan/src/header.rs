@@ -6,13 +6,13 @@
 use crate::placement::{Placement, PlacementForms, Quaternion};
 use fuwafuwa_scenes::import::{FilePosition, PositionedProblem, too_large, unexpected};
 
-/// Maximum number of voxels in a scan: 512 on each axis, half a gigabyte in memory.
+/// Maximum number of voxels in a scan, as many as 512 on each axis: half a gigabyte in memory.
 pub const MAX_VOXELS: u64 = 1 << 27;
 
 /// Length of the longer of the two headers [bytes].
 pub const LONGEST: usize = 540;
 
-/// Maximum offset of the first voxel [bytes]: header extensions lie before it.
+/// Maximum offset of the first voxel [bytes]. Header extensions lie between the header and the first voxel.
 const MAX_OFFSET: f64 = (1 << 26) as f64;
 
 /// Number format of a field or a voxel.
@@ -115,7 +115,7 @@ impl NumberFormat {
         }
     }
 
-    /// Decodes a number. 64-bit integers are rounded to 53 bits, which is far beyond all limits.
+    /// Decodes a number. 64-bit integers are rounded to 53 bits; all limits are far below 2⁵³.
     pub fn value(self, bytes: &[u8], is_big_endian: bool) -> f64 {
         let mut word = [0; 8];
         let used = &mut word[..self.bytes()];

@@ -35,8 +35,8 @@
 //!                        z
 //! ```
 //!
-//! A camera that looks against the engine's z axis, as the engine's pictures do, sees the patient from
-//! behind, with the left side on the left.
+//! A camera that looks along the negative z axis, as in the engine's pictures, sees the patient from behind,
+//! with the left side on the left.
 //!
 //! # Untrusted files
 //!
@@ -50,7 +50,7 @@
 //! format are needed, so this crate reads them itself.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [mm]
+#![allow(rustdoc::broken_intra_doc_links)] // brackets hold units, such as [mm]
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
 mod header;

@@ -7,12 +7,12 @@ use crate::segmentation::Segmentation;
 use fuwafuwa::{Dim3, Error, Point, VoxelGrid};
 use std::ops::RangeInclusive;
 
-/// Allowed numbers of voxels along an organ's longest side. Fewer show no shape; a MagicaVoxel model has no
-/// more.
+/// Allowed numbers of voxels along an organ's longest side. Fewer voxels show no shape. More would not fit
+/// into a MagicaVoxel model.
 pub const RESOLUTIONS: RangeInclusive<usize> = 8..=256;
 
-/// Minimum resolution of the search for an organ [voxels], whatever the final resolution: a coarser search
-/// misses small organs.
+/// Minimum resolution of the search for an organ [voxels], even if the final resolution is lower: a coarser
+/// search misses small organs.
 const MIN_SEARCH_RESOLUTION: usize = 64;
 
 /// Maximum number of samples along each axis of a voxel. More hardly change the result.
@@ -82,7 +82,7 @@ impl Organ {
     /// Builds the largest connected object in the scans. `progress` is called with increasing numbers from 0
     /// to 1.
     ///
-    /// A voxel is solid if at least half of it is. It gets the material with the largest share.
+    /// A voxel is solid if at least half of its samples have a material. It gets the most frequent material.
     ///
     /// # Errors
     /// [`OrganError`] names the problem with the scans, the materials or the resolution.
@@ -238,7 +238,7 @@ struct Lattice {
 }
 
 impl Lattice {
-    /// Covers a box, with `across` cubes along its longest side.
+    /// Creates the grid over a box, with `across` cubes along the longest side.
     fn over(region: &Region, across: usize) -> Self {
         let Region { low, high } = region;
         let voxel = region.longest() / across as f64;
@@ -281,8 +281,8 @@ impl Lattice {
         [right, up, -front].map(|k| (k / self.voxel).floor() as i32)
     }
 
-    /// Returns the material of each cube: that of most of its samples, or 0 if more than half of them are
-    /// empty.
+    /// Returns the material of each cube: the most frequent material of its samples, or 0 if more than half
+    /// of them are empty.
     fn materials(
         &self,
         scans: &[&Scan],

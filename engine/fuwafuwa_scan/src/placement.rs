@@ -60,7 +60,8 @@ pub struct PlacementProblem {
 }
 
 impl Placement {
-    /// Creates a placement from the best of the forms, with lengths in units of `unit` [mm].
+    /// Creates a placement from the first form present: matrix, rotation, spacing. `unit` is the length of
+    /// one unit of the forms [mm].
     pub(crate) fn of(forms: &PlacementForms, unit: f64) -> Result<Self, PlacementProblem> {
         let (affine, source) = match (&forms.sform, &forms.qform) {
             (Some(affine), _) => (*affine, PlacementSource::Matrix),
@@ -184,8 +185,8 @@ fn apply(affine: &Affine, [x, y, z]: [f64; 3]) -> [f64; 3] {
     affine.map(|[a, b, c, offset]| a * x + b * y + c * z + offset)
 }
 
-/// Returns the minor of the two rows and columns that follow cyclically, so that its sign is that of the
-/// cofactor.
+/// Returns the cofactor of an entry: the minor of the two rows and columns that follow cyclically. In this
+/// order the minor already has the sign of the cofactor.
 fn minor(affine: &Affine, row: usize, column: usize) -> f64 {
     let ([r, s], [c, d]) = (after(row), after(column));
     affine[r][c] * affine[s][d] - affine[r][d] * affine[s][c]

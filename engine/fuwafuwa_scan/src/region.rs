@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-/// Empties all connected components except the largest, the first of several.
+/// Empties all connected components except the largest. Of equally large components, the first one stays.
 pub fn keep_largest(size: [usize; 3], materials: &mut [u8]) {
     let mut is_seen = vec![false; materials.len()];
     let mut largest = (0, 0);
@@ -24,7 +24,8 @@ pub fn keep_largest(size: [usize; 3], materials: &mut [u8]) {
     }
 }
 
-/// Fills voxels without a path to the outside with the nearest material, by steps through faces.
+/// Fills enclosed empty voxels with the nearest material, counted in steps through faces. A voxel is enclosed
+/// if no empty path leads from it to the border of the box.
 pub fn fill_holes(size: [usize; 3], materials: &mut [u8]) {
     let is_border = |at: &usize| {
         let place = place(size, *at);
@@ -59,7 +60,8 @@ pub fn solid_box(size: [usize; 3], materials: &[u8]) -> Option<[[usize; 3]; 2]> 
     })
 }
 
-/// Marks everything connected to the seeds and returns the number of marked voxels.
+/// Marks the seeds and all voxels that are connected to them through voxels for which `belongs` holds.
+/// Returns the number of marked voxels.
 fn flood(
     size: [usize; 3],
     seeds: &[usize],
@@ -101,7 +103,7 @@ fn neighbours(size: [usize; 3], at: usize) -> impl Iterator<Item = usize> {
 mod tests {
     use super::*;
 
-    /// Applies `change` to a layer of voxels.
+    /// Checks that `change` turns the layer of voxels `before` into `after`. Each digit is a material.
     fn check(change: fn([usize; 3], &mut [u8]), before: &[&str], after: &[&str]) {
         let size = [before[0].len(), before.len(), 1];
         let digits = |rows: &[&str]| rows.concat().bytes().map(|k| k - b'0').collect::<Vec<_>>();

@@ -16,10 +16,10 @@ pub enum Segmentation {
     /// Integer labels and their materials, for one scan. The nearest voxel decides, because a value between
     /// two labels is not a label. Other labels are empty.
     Labels(BTreeMap<i32, u8>),
-    /// Probability maps: one scan for each material, number 1 first. A position is solid if the sum of
-    /// probabilities is at least 0.5, and gets the most probable material; where two are similar, no gap
-    /// arises. A scan with a highest value above 1 is divided by it, because programs write percentages or
-    /// bytes up to 255.
+    /// Probability maps: one scan for each material, number 1 first. A position is solid if the sum of all
+    /// probabilities is at least 0.5, so that no gap appears between two equally probable materials. It gets
+    /// the most probable material. A scan with values above 1 is divided by its highest value, because some
+    /// programs write percentages or bytes up to 255.
     Maps,
 }
 

@@ -4,8 +4,8 @@ use flate2::bufread::MultiGzDecoder;
 use fuwafuwa_scenes::import::{FilePosition, PositionedProblem, too_large, unexpected};
 use std::io::Read;
 
-/// Maximum size of a file and of its decompressed content in bytes: a full scan of 64-bit numbers, and the
-/// bytes before it.
+/// Maximum size of a file and of its decompressed content [bytes]. Large enough for [`crate::MAX_VOXELS`]
+/// 64-bit numbers and the bytes before them.
 pub const MAX_FILE_BYTES: u64 = (1 << 30) + (1 << 26);
 
 /// Maximum expansion of deflate: decompressed bytes per compressed byte.
@@ -95,7 +95,7 @@ impl<'a> Stream<'a> {
         (filled == buffer.len()).then_some(()).ok_or_else(missing)
     }
 
-    /// Reads the rest, which must be short. Only the end of a gzip stream has its checksum.
+    /// Reads the rest of the file, which must be short. At its end, a gzip stream verifies its checksum.
     pub fn finish(mut self) -> Result<(), PositionedProblem> {
         let mut buffer = [0; 1 << 12];
         let mut trailing = 0;

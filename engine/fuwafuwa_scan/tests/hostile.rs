@@ -1,4 +1,4 @@
-//! Damaged, truncated and malicious files give an error, and quickly.
+//! Damaged, truncated and malicious files give an error within a short time.
 
 mod phantom;
 
@@ -184,7 +184,7 @@ fn decode_stops_at_limit_for_gzip_bomb() {
     }
     let mut bomb = encoder.finish().unwrap();
     assert!(bomb.len() < 100_000);
-    // A reader that reaches the end would report this checksum instead.
+    // A decoder that read to the end would report this wrong checksum instead of the limit.
     let end = bomb.len() - 8;
     bomb[end..].fill(0xaa);
     match error(&bomb).problem {

@@ -12,7 +12,7 @@ fn distance(patient: [f64; 3], middle: [f64; 3]) -> f64 {
     squares.sum::<f64>().sqrt()
 }
 
-/// Falls from 1 to 0 over `across` [mm] around a border, as scanners blur borders.
+/// Returns a value that falls from 1 to 0 over `across` [mm] around a border, like the blur of a scanner.
 fn smeared(inside: f64, across: f64) -> f64 {
     (0.5 + inside / across).clamp(0.0, 1.0)
 }

@@ -7,12 +7,12 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// Reads a file of at most `most` bytes. Longer files are refused ([`ErrorKind::FileTooLarge`]), as are
-/// folders, pipes and devices ([`ErrorKind::InvalidInput`]): reading a pipe can block forever, and some
-/// devices are endless.
+/// Reads a file of at most `most` bytes. Refuses folders, pipes and devices: reading a pipe can block
+/// forever, and some devices are endless.
 ///
 /// # Errors
-/// Those two, and errors of the system.
+/// [`ErrorKind::FileTooLarge`] for a longer file, [`ErrorKind::InvalidInput`] for a folder, a pipe or a
+/// device, and errors of the system.
 pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if !path.metadata()?.is_file() {
         let reason = "expected a file, found a folder, a pipe or a device";
@@ -30,7 +30,7 @@ pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// Reads a UTF-8 text file of at most `most` bytes.
 ///
 /// # Errors
-/// As [`bytes_of`], and [`ErrorKind::InvalidData`] if the file is not UTF-8.
+/// Same errors as [`read_bytes`], and [`ErrorKind::InvalidData`] if the file is not UTF-8.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     let text = String::from_utf8(read_bytes(path, most)?);
     text.map_err(|_| io::Error::new(ErrorKind::InvalidData, "expected a text in UTF-8"))
@@ -41,7 +41,8 @@ pub fn reader_in(folder: &Path) -> impl Fn(&str) -> io::Result<Vec<u8>> {
     move |name| read_bytes(&folder.join(name), MAX_FILE_BYTES)
 }
 
-/// Opens a built-in scene by name, or a scene file with the files it names.
+/// Opens a built-in scene by name, otherwise a scene file together with the files that it names. `changes`
+/// replace values in the scene, as in [`Scene::open`].
 ///
 /// # Errors
 /// [`SceneError`] names the file, the line and the field.
@@ -66,7 +67,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn bytes_of_rejects_pipes_devices_and_folders_without_blocking() {
+    fn read_bytes_rejects_pipes_devices_and_folders_without_blocking() {
         let pipe = std::env::temp_dir().join(format!("fuwafuwa-pipe-{}", std::process::id()));
         assert!(
             Command::new("mkfifo")

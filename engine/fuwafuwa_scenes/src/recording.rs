@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub const VERSION: u32 = 2;
 /// Maximum size of a recording [bytes]: some hours of two hands.
 pub const MAX_BYTES: u64 = 1 << 26;
-/// Maximum number of ticks in a recording: the longest viewing time of a scene.
+/// Maximum number of ticks in a recording: the longest viewing time of a scene at 60 ticks a second.
 pub const MAX_TICKS: usize = (MAX_SECONDS * 60.0) as usize;
 
 /// A scene, the targets of its hands at each tick, and the resulting hashes.
@@ -40,7 +40,7 @@ pub enum RecordingError {
         /// Field, and what was expected.
         reason: String,
     },
-    /// The recording has another format.
+    /// The recording has another version of the format.
     #[error("{name}: the recording has format {found}, this library reads format {VERSION}")]
     Version {
         /// Name of the file.
@@ -63,13 +63,13 @@ impl Recording {
     /// Parses a recording; `name` names it in errors.
     ///
     /// # Errors
-    /// [`RecordingError`] if the text is not a recording, or has another format.
+    /// [`RecordingError`] if the text is not a recording, or has another version of the format.
     pub fn read(name: &str, text: &str) -> Result<Self, RecordingError> {
         let name = name.to_string();
         let recording: Self = match toml::from_str(text) {
             Ok(recording) => recording,
             Err(error) => {
-                // The line itself is omitted: it may contain the targets of hours.
+                // Omits the line itself, which may contain hours of hand targets.
                 let message = shortened(error.message(), 400);
                 let reason = format!("not a valid recording: {message}");
                 return Err(RecordingError::Text { name, reason });
@@ -88,7 +88,7 @@ impl Recording {
     /// Returns the recording as text that [`Recording::read`] accepts.
     ///
     /// # Errors
-    /// The limit that the recording exceeds.
+    /// Names the limit that the recording exceeds, or reports a body file without content.
     pub fn text(&self) -> Result<String, String> {
         self.check()?;
         let text = toml::to_string(self).map_err(|error| error.to_string())?;
@@ -104,7 +104,7 @@ impl Recording {
         }
         let mut bodies = self.scene.body.iter();
         if bodies.any(BodyText::lacks_content) {
-            // A recording may come from a stranger and must not choose which files of the reader are opened.
+            // A recording by a stranger must not decide which local files are opened.
             return Err("expected the content of every body that has a file".into());
         }
         Ok(())

@@ -102,8 +102,8 @@ pub const MAX_MATERIALS: usize = 255;
 /// Maximum number of bodies in a scene.
 pub const MAX_BODIES: usize = 1024;
 
-/// Maximum number of obstacles, of hands, of rigid bodies and of joints in a scene, each: moving nodes are
-/// tested against every rigid body.
+/// Maximum number of entries in each of the lists `obstacle`, `hand`, `rigid` and `joint`. It bounds the time
+/// of a step, because moving nodes are tested against every rigid body.
 pub const MAX_RIGID: usize = 256;
 
 /// Maximum number of voxels, solid or empty, in all grids of a scene together: the size of the largest model.
@@ -239,7 +239,7 @@ impl Scene {
     /// Builds the world, with at most `most_voxels` voxels in the grids of all bodies together.
     ///
     /// # Errors
-    /// As [`Scene::build`].
+    /// Same errors as [`Scene::build`].
     pub fn build_within<D: Dim>(&self, most_voxels: usize) -> Result<World<D>, SceneError> {
         self.try_build(most_voxels)
             .map_err(|wrong| self.origin.error(wrong))
@@ -322,7 +322,7 @@ impl Scene {
         Ok(world)
     }
 
-    /// Returns the region to be filled, if the scene is a level of the game with a basket.
+    /// Returns the target region, if the scene is a level of the game with a basket.
     ///
     /// # Errors
     /// [`SceneError::Build`] names the field of `[game]` and what is wrong with it.
@@ -334,8 +334,8 @@ impl Scene {
         basket.map_err(|wrong| self.origin.error(wrong.under("game")))
     }
 
-    /// Embeds the files that its bodies are made from, so that the scene is self-contained. A body with a
-    /// file cannot be built before its file is embedded.
+    /// Embeds the files that the scene's bodies are made from, so that the scene is self-contained. A body
+    /// with a file cannot be built before its file is embedded.
     ///
     /// # Errors
     /// [`SceneError::Shape`] names the body whose file could not be read.
@@ -417,7 +417,7 @@ mod tests {
     use fuwafuwa::{Dim2, Dim3};
 
     #[test]
-    fn named_scene_steps_without_quarantine_for_each() {
+    fn named_scenes_step_without_quarantine() {
         for (name, _) in NAMED {
             // The scenes are tested here, not the engine, so small bodies suffice.
             let small = ["body.n=12".to_string(), "body.diced=0.3".to_string()];

@@ -19,7 +19,7 @@ fn bodies<D: Dim>(text: &str) -> Vec<SoftBody<D>> {
         .collect()
 }
 
-/// Materials of a flat body, or of the middle layer of a 3D one; the highest row first.
+/// Returns the materials of a flat body, or of the middle layer of a 3D body; the highest row first.
 fn picture<D: Dim>(body: &SoftBody<D>) -> Vec<String> {
     let grid = body.grid();
     let [width, height, depth] = grid.size();
@@ -83,7 +83,7 @@ ball = { centre = [3.5, 3.5, 3.5], radius = 1.2 }
 }
 
 #[test]
-fn shape_builds_in_2d_and_3d_for_each() {
+fn shapes_build_in_2d_and_3d() {
     for form in ["ball", "box", "ring", "heart", "flower"] {
         let body = format!("[[body]]\nshape = \"{form}\"\nn = 16\n");
         let flat = bodies::<Dim2>(&format!("dim = 2\n{body}"));
@@ -156,7 +156,7 @@ fn open(folder: &std::path::Path) -> Result<Scene, SceneError> {
     open_scene(folder.join("scene.toml").to_str().unwrap(), &[])
 }
 
-/// A picture of red (`r`), blue (`b`) and transparent pixels (anything else).
+/// Encodes a picture of red (`r`), blue (`b`) and transparent pixels (anything else).
 fn painting(rows: &[&str]) -> Vec<u8> {
     let colour = |sign| match sign {
         b'r' => [230, 20, 20, 255],

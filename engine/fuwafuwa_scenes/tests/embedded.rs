@@ -11,7 +11,7 @@ use fuwafuwa::{Dim, Dim2, Dim3};
 use fuwafuwa_scenes::Scene;
 use picture::png_of;
 
-/// A picture of random red, green, blue and alpha.
+/// Encodes a picture of random red, green, blue and alpha.
 fn noisy_picture(width: u32, height: u32, is_opaque: bool) -> Vec<u8> {
     let mut noise = Noise(7);
     let samples = 4 * width * height;
@@ -23,7 +23,7 @@ fn noisy_picture(width: u32, height: u32, is_opaque: bool) -> Vec<u8> {
     png_of(width, height, &samples)
 }
 
-/// A model with one voxel in ten solid, and a large unknown chunk.
+/// Encodes a model with one voxel in ten solid, and a large unknown chunk.
 fn cluttered_model(size: [u8; 3]) -> Vec<u8> {
     let mut noise = Noise(7);
     let chunk = |name: &[u8; 4], contents: &[u8], children: &[u8]| {
@@ -106,7 +106,7 @@ fn embed_reduces_large_picture_to_voxels() {
     }
     let small = format!("n = 40\n{colours}\n");
     assert!(check::<Dim2>("b.png", &wide, &small) < 10_000);
-    // A drawing in which much is solid, and a picture that is solid everywhere.
+    // A drawing that is mostly solid, and a picture that is solid everywhere.
     let opaque = noisy_picture(200, 300, true);
     assert!(check::<Dim2>("c.png", &opaque, "n = 64\n") < 10_000);
     assert!(check::<Dim2>("d.png", &opaque, "n = 6\n") < 1000);

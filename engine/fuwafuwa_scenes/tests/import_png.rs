@@ -37,7 +37,7 @@ fn grey(width: u32, samples: &[u8]) -> Vec<u8> {
     encode([width, height], GREY, samples, |_| {})
 }
 
-/// A greyscale picture; `#` is black, anything else white; the first row is the top.
+/// Encodes a greyscale picture. `#` is black, anything else white; the first row is the top.
 fn drawing(rows: &[&str]) -> Vec<u8> {
     let sample = |sign| if sign == b'#' { 0 } else { 255 };
     let samples: Vec<u8> = rows
@@ -52,7 +52,7 @@ fn import(bytes: &[u8], across: usize) -> Result<VoxelGrid<Dim2>, ImportError> {
     png("test.png", bytes, across, 0.5)
 }
 
-/// Materials of a grid, the highest row first.
+/// Returns the materials of a grid, the highest row first.
 fn rows(grid: &VoxelGrid<Dim2>) -> Vec<String> {
     let [width, height, _] = grid.size();
     let sign = |at| char::from(b".#23456789"[usize::from(grid.material(at))]);
@@ -80,7 +80,8 @@ fn png_puts_top_row_highest() {
 fn png_decodes_each_colour_type_and_depth() {
     use BitDepth::{Eight, Four, One, Sixteen, Two};
     use ColorType::{Grayscale, GrayscaleAlpha, Indexed, Rgb, Rgba};
-    // Two pixels each: dark and light, opaque and transparent, or a colour and the transparent colour.
+    // Each case has a solid and an empty pixel: dark and light, opaque and transparent, or another colour and
+    // the transparent colour.
     let half = &[255, 255, 128, 0, 0, 0, 127, 255];
     let none = |_: &mut Setting| {};
     let palette = |encoder: &mut Setting| encoder.set_palette(vec![90, 0, 0, 255, 255, 200]);
@@ -123,8 +124,8 @@ fn png_decodes_each_colour_type_and_depth() {
     }
 }
 
-/// `data` as 2 × 2 pixels in the passes of Adam7, which the encoder cannot write. As raw bytes these are one
-/// row of 6 pixels, two of which stand for the filters of the later passes.
+/// Encodes 2 × 2 pixels in the passes of Adam7, which the encoder cannot write. As raw bytes, the passes
+/// equal one row of 6 pixels, two of which stand for the filters of the later passes.
 ///
 /// ```text
 ///   2 × 2 pixels:  0 a | 0 b | 0 c d     each pass begins each of its rows with a filter, here 0
@@ -151,7 +152,8 @@ fn png_selects_opaque_pixels_of_sprite_and_dark_pixels_of_drawing() {
     };
     let (black, white) = ([0, 0, 0, 255], [255; 4]);
     check(&pixels(&[black, white, [0, 0, 0, 127]]), 8, &["##."]);
-    // No pixel is more than half transparent: blended with white paper, where the result is grey.
+    // No pixel is more than half transparent, so the picture counts as a drawing: pixels are blended with
+    // white paper.
     check(&pixels(&[black, white, [0, 0, 0, 128]]), 8, &["#.#"]);
     check(&pixels(&[black, white, [20, 20, 20, 128]]), 8, &["#.."]);
     // Orange, yellow, pale pink, light grey.
@@ -342,7 +344,7 @@ fn decode_rejects_first_frame_smaller_than_picture() {
     assert!(complaint(&bytes).contains("expected a PNG picture"));
 }
 
-/// A small picture for each kind of decoding.
+/// Encodes a small picture for each kind of decoding.
 fn samples() -> Vec<Vec<u8>> {
     let indexed = encode(
         [5, 3],
@@ -379,7 +381,7 @@ fn samples() -> Vec<Vec<u8>> {
     ]
 }
 
-/// Two frames of 2 × 2 pixels; the first is the picture that still viewers show.
+/// Encodes two frames of 2 × 2 pixels. The first frame is the picture that viewers without animation show.
 fn animated() -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, 2, 2);
@@ -414,7 +416,7 @@ fn mend_checksums(bytes: &mut [u8]) {
     }
 }
 
-/// CRC of the PNG specification, annex D, bit by bit.
+/// Returns the CRC of the PNG specification, annex D, computed bit by bit.
 fn crc(bytes: &[u8]) -> u32 {
     let mut remainder = u32::MAX;
     for &byte in bytes {

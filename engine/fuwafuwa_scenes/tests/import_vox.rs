@@ -19,13 +19,13 @@ fn size(size: [u32; 3]) -> Vec<u8> {
     chunk(b"SIZE", &size.map(u32::to_le_bytes).concat(), &[])
 }
 
-/// A list of voxels with a stated length of `count`.
+/// Encodes a list of voxels with a stated length of `count`.
 fn voxels(count: usize, voxels: &[[u8; 4]]) -> Vec<u8> {
     let contents = [&(count as u32).to_le_bytes()[..], &voxels.concat()].concat();
     chunk(b"XYZI", &contents, &[])
 }
 
-/// A palette with red as colour 1, dark red as 2, green as 7 and black for all others.
+/// Encodes a palette with red as colour 1, dark red as 2, green as 7 and black for all others.
 fn palette() -> Vec<u8> {
     let mut colours = [[0, 0, 0, 255]; 256];
     colours[0] = [255, 0, 0, 255];
@@ -43,7 +43,7 @@ fn model(extent: [u32; 3], list: &[[u8; 4]]) -> Vec<u8> {
     file(150, &[size(extent), voxels(list.len(), list)])
 }
 
-/// A file with much that is ignored: a second model and unknown chunks.
+/// Encodes a file with much that is ignored: a second model and unknown chunks.
 fn full() -> Vec<u8> {
     let first = [[0, 0, 0, 1], [1, 2, 3, 7], [1, 0, 0, 2], [0, 2, 0, 255]];
     file(
@@ -274,7 +274,7 @@ fn decode_rejects_truncated_model_at_every_length() {
 #[test]
 fn decode_survives_damaged_models() {
     let mut noise = Noise(3);
-    // Without the ignored chunks of `full`, so that most damage hits relevant bytes.
+    // Leaves out the ignored chunks of `full`, so that most damage hits relevant bytes.
     let first = [[0, 0, 0, 1], [1, 2, 3, 7]];
     let chunks = [size([2, 3, 4]), voxels(2, &first), chunk(b"what", b"", &[])];
     let mut taken = 0;

@@ -386,7 +386,8 @@ fn build_limits_number_of_bodies_and_sum_of_voxels() {
     );
 }
 
-/// Regression: a text of 1 MB could require 10^12 distances, or obstacles that every node was tested against.
+/// Regression: a text of 1 MB could require 10^12 distance evaluations, or contain any number of obstacles
+/// that every node was tested against.
 #[test]
 fn build_rejects_expensive_scenes_before_work_begins() {
     let part = "[[body.part]]\nfill = 0\nball = { centre = [9.0, 9.0, 0.0], radius = 0.1 }\n";

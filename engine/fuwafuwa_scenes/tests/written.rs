@@ -116,7 +116,7 @@ fn check_round_trip<D: Dim>(scene: &Scene, what: &str) {
     let mut other = again(&world, what);
     assert_eq!(other.config(), world.config(), "{what}");
     assert_eq!(other.hash(), world.hash(), "{what}, tick 0");
-    // The text of a rebuilt world is the same text.
+    // The rebuilt world gives the same text.
     let texts = [&world, &other].map(|world| Scene::of_world(world).unwrap().text().unwrap());
     assert_eq!(texts[0], texts[1], "{what}");
     for tick in 0..60 {

@@ -1,4 +1,4 @@
-//! The main loop: devices → actions and wishes → time → picture and sound.
+//! The main loop: reads the devices, advances the game, draws it, and plays its sounds.
 
 mod dwell;
 mod fingers;
@@ -29,8 +29,8 @@ const ROOM: egui::Vec2 = egui::vec2(900.0, 640.0);
 const TALL_ROOM: egui::Vec2 = egui::vec2(600.0, 760.0);
 /// Number of zoom steps between 0 and 1.
 const STEPS: f32 = 32.0;
-/// Longest frame time that an exhibit counts [s]. Longer frames count as this long, for example after the
-/// machine was suspended.
+/// Longest frame time that counts at a stand [s]. A longer frame, for example after the machine was
+/// suspended, counts as this long.
 const LONGEST: f32 = 1.0;
 
 /// Keys that navigate menus.
@@ -61,10 +61,11 @@ pub struct App {
     clipboard: Clipboard,
     switch: Switch,
     screen_before: Screen,
-    /// Whether the window ever had the focus, whether it was told to be full screen, and whether the page was
-    /// full screen.
+    /// Whether the window has ever had the focus.
     had_focus: bool,
+    /// Full-screen state that the window was last told to have.
     is_full: bool,
+    /// Full-screen state of the web page when it last changed. Always false on a desktop.
     was_full: bool,
     /// Zoom factor: size of an egui point relative to a point of the system.
     pub zoom: f32,
@@ -177,7 +178,7 @@ impl App {
             for direction in self.navigators[index].1.step(device, seconds) {
                 note_use_of_keys(ctx, true);
                 self.game.controls.note_stick(device.id);
-                // A stick on the trial screen moves for its own test and does not navigate the menu.
+                // A stick under test or measurement does not navigate the menu.
                 let is_tried = self
                     .game
                     .trial
@@ -197,7 +198,7 @@ impl App {
     /// Applies the full-screen setting to the window.
     fn fill_screen(&mut self, ctx: &egui::Context) {
         if let Some(is_full) = full_screen_of_page().filter(|is_full| *is_full != self.was_full) {
-            // The browser changed it by a key or a gesture.
+            // The player left or entered full screen through the browser, with a key or a gesture.
             (self.was_full, self.is_full) = (is_full, is_full);
             self.game.settings.full_screen = is_full;
         }
@@ -300,7 +301,8 @@ impl App {
             };
             let is_switch = game.settings.scanning.is_on() && Switch::KEYS.contains(&key);
             if is_switch && game.controls.rebinding.take().is_some() {
-                // A player with a single switch could otherwise never leave the screen that waits for a key.
+                // The switch cancels the wait for a key: a player with a single switch could otherwise never
+                // leave it.
                 taken.push(key);
                 continue;
             }
@@ -324,7 +326,7 @@ impl App {
             if is_playing && game.settings.toggle_keys {
                 game.controls.latch.press(key, &game.settings.bindings);
             }
-            // In a browser, F11 belongs to the browser.
+            // Browsers handle F11 themselves.
             let fills = !cfg!(target_family = "wasm") && game.public.is_none();
             if key == Key::F11 && action.is_none() && fills {
                 game.settings.full_screen ^= true;
@@ -364,7 +366,7 @@ impl App {
 }
 
 impl eframe::App for App {
-    /// Runs even when nothing is drawn.
+    /// Called by eframe even when nothing is drawn, so that a stand keeps reporting that it is alive.
     fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
         if let Some(attendant) = &mut self.attendant {
             attendant.live(ctx);
@@ -434,13 +436,14 @@ impl eframe::App for App {
         ctx.request_repaint();
     }
 
-    /// eframe's web runner gets the app through this.
+    /// Called by eframe's web runner to access the app.
     #[cfg(target_family = "wasm")]
     fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
         Some(self)
     }
 
-    /// On some systems the program ends with its last window, without running destructors.
+    /// Closes the stand and the files here, because on some systems the program ends with its last window
+    /// without running destructors.
     fn on_exit(&mut self) {
         if let Some(attendant) = &mut self.attendant {
             attendant.close(&mut self.game);

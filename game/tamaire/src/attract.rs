@@ -4,8 +4,9 @@ use crate::session::Session;
 use std::sync::Arc;
 use tamaire_play::Replay;
 
-/// One recording for each route. A change of the engine, of the rules or of the level Classic can make them
-/// diverge, which a test detects; CONTRIBUTING.md tells how to record them again.
+/// Recorded rounds of the level Classic: one won by squeezing, one by shaving. Playback can diverge after a
+/// change of the engine, the rules or the level; a test detects this. CONTRIBUTING.md tells how to record the
+/// rounds again.
 const RECORDED: [&str; 2] = [
     include_str!("../attract/squeeze.tamaire"),
     include_str!("../attract/shave.tamaire"),
@@ -17,7 +18,7 @@ pub fn attract(number: usize) -> Session {
     let replay = Replay::read(text).map(Arc::new);
     replay
         .and_then(Session::of_replay)
-        .expect("the tests play it")
+        .expect("a test plays every recording")
 }
 
 #[cfg(test)]

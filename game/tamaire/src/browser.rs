@@ -1,4 +1,5 @@
-//! Entry point in a browser: the page passes a canvas and a host object, and says when it is closed.
+//! Entry point in a browser. The page passes a canvas and a host object, and calls [`Running::flush`] when it
+//! is hidden.
 
 mod labels;
 
@@ -49,9 +50,10 @@ impl Running {
         })
     }
 
-    /// Returns the state of the game, for a test or an exhibit.
+    /// Returns the state of the game, for tests and for exhibits in a browser.
     pub fn report(&self) -> Option<Report> {
-        // Labels are available from the next frame on.
+        // Turns on the accessibility tree, from which labels are read. It is available from the next frame
+        // on.
         self.context.enable_accesskit();
         let app = self.runner.app_mut::<App>()?;
         let (game, round, seen) = (&app.game, app.game.bout.round(), self.labels.seen());
@@ -98,14 +100,14 @@ impl Running {
         })
     }
 
-    /// Writes pending data, because the page may not come back.
+    /// Writes pending data. Called when the page is hidden, because it may be closed without notice.
     pub fn flush(&self) {
         if let Some(mut app) = self.runner.app_mut::<App>() {
             app.game.finish_writing();
         }
     }
 
-    /// Ends the game after its GPU was lost. The round is kept and can be watched later.
+    /// Ends the game. Called when its GPU was lost. A round in progress is saved as a replay.
     pub fn end(&self) {
         if let Some(mut app) = self.runner.app_mut::<App>() {
             app.game.rescue();
@@ -127,9 +129,9 @@ pub struct Report {
     pub ticks: u32,
     /// Whether the round is won.
     pub is_won: bool,
-    /// Levels with a record.
+    /// Ids of the levels that the player has won.
     pub won: Vec<String>,
-    /// Widgets that can be pressed, each as "x y name".
+    /// Labelled widgets, each as "x y name" with the position of its centre.
     pub labels: Vec<String>,
     /// Messages shown to the player.
     pub notices: Vec<String>,

@@ -1,4 +1,4 @@
-//! Entry point on a desktop: the command line, a window, and a round without one where no display is found.
+//! Entry point on a desktop: the command line, a window, and a round without a window if no display is found.
 
 mod exhibit;
 mod report;
@@ -164,7 +164,7 @@ fn again(program: &Path) -> Command {
 }
 
 fn print_licences() -> ExitCode {
-    // Writing fails if a pager was closed early, which is no error.
+    // Writing fails if the reader, for example a pager, was closed early. This is no error.
     let _read = std::io::stdout().write_all(licences::TEXT.as_bytes());
     ExitCode::SUCCESS
 }
@@ -172,8 +172,8 @@ fn print_licences() -> ExitCode {
 /// Prints `reason` and plays a round without a window.
 fn play_instead(reason: &str, options: &headless::Options) -> ExitCode {
     eprintln!(
-        "tamaire: {reason}, so a bot plays a round without a window; choose one by --headless with --level, --bot, \
-         --seed, --replay or --film, and see --help."
+        "tamaire: {reason}, so a bot plays a round without a window; choose the round with --headless and --level, --bot, \
+         --seed or --replay (see --help)"
     );
     headless::play(options)
 }

@@ -1,7 +1,8 @@
 //! Films of rounds: a strip of moments, an animation, a clip of the last seconds, or a photo of the end.
 //!
-//! The round is simulated a second time from its recorded input, so drawing does not disturb its timing.
-//! Pictures look as in the window. Without a graphics adapter, the elements of the bodies are drawn instead.
+//! The round is simulated again from its recorded input, so drawing does not disturb its timing. The pictures
+//! look the same as in the window. On a desktop without a graphics adapter, the elements of the bodies are
+//! drawn instead.
 
 #[cfg(not(target_family = "wasm"))]
 mod device;
@@ -24,27 +25,31 @@ use studio::Moment;
 pub use studio::Studio;
 use tamaire_play::{AnyRound, Route};
 
-/// Number of moments in a strip, and number of columns.
+/// Number of moments in a strip.
 const MOMENTS: usize = 12;
+/// Number of columns of a strip.
 const COLUMNS: usize = 4;
-/// Ticks between two frames of an animation, and display time of each frame [1/100 s].
+/// Ticks from one frame of an animation or clip to the next.
 const PACE: usize = 3;
+/// Display time of each frame [1/100 s], equal to [`PACE`] ticks.
 const HUNDREDTHS: u16 = 5;
-/// Display time of the last frame [1/100 s].
+/// Display time of the last frame before the animation repeats [1/100 s].
 const LAST: u16 = 200;
 /// Length of a clip [ticks].
 const LENGTH: usize = 240;
-/// Length of the celebration shown after a win [ticks].
+/// Length of the celebration that is added to a won round [ticks].
 const CHEER: usize = 60;
-/// Print formats: moment of a strip or animation, frame of a clip, and photo.
+/// Format of a moment of a strip or animation.
 const MOMENT: Print = Print {
     size: [480, 300],
     is_captioned: true,
 };
+/// Format of a frame of a clip.
 const CLIP: Print = Print {
     is_captioned: false,
     ..MOMENT
 };
+/// Format of a photo.
 const PHOTO: Print = Print {
     size: [1280, 800],
     is_captioned: false,
@@ -75,22 +80,22 @@ struct Print {
 /// Reason why a film could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum FilmError {
-    /// Drawing without a GPU failed.
+    /// Drawing without a GPU, or encoding, failed.
     #[error(transparent)]
     Paint(#[from] PaintError),
     /// Drawing on the GPU failed.
     #[error(transparent)]
     Draw(#[from] ImageError),
-    /// There is no GPU. In a browser there is no drawing without one.
+    /// There is no GPU, without which films cannot be drawn in a browser.
     #[cfg(target_family = "wasm")]
-    #[error("no graphics adapter to draw the film with")]
+    #[error("no graphics adapter was found to draw the film")]
     NoGpu,
 }
 
 impl Film {
     /// Makes the film of a round and returns the bytes of its file. `told` is called with the number of
-    /// finished ticks and the total. If `studio` is `None`, a studio is opened, which the next film can use,
-    /// too.
+    /// finished ticks and the total number. If `studio` is `None`, a studio is opened and stored in it for
+    /// the next film.
     ///
     /// # Errors
     /// If drawing or encoding fails.

@@ -1,5 +1,5 @@
-//! State of the game between two frames, and the actions on it. The screens are derived from this state
-//! alone.
+//! State of the game between two frames, and the actions that change it. The screens are drawn from this
+//! state alone.
 
 mod bout;
 mod controls;
@@ -60,7 +60,7 @@ pub struct Game {
     pub dialog: Dialog,
     /// Saved rounds.
     pub shelf: SavedRounds,
-    /// Round received by a link, and its level.
+    /// Round received through a link, and its level.
     pub offered: Option<(Arc<Replay>, Arc<Level>)>,
     /// Text to copy to the clipboard.
     pub copied: Option<String>,
@@ -68,7 +68,7 @@ pub struct Game {
     pub notices: Notices,
     /// Time since the start of the game [s].
     pub time: f64,
-    /// Clock that measures the time of ticks.
+    /// Clock that measures how long the computation of a tick takes.
     pub clock: Clock,
     /// Whether the window has lost the focus.
     pub is_away: bool,
@@ -131,7 +131,8 @@ impl Game {
             { damage.as_ref() }.is_some_and(|damage| damage.aside.is_some())
         };
         if is_aside(&settings_damage) {
-            // The damaged file was moved aside. Writing a new one makes the message appear only once.
+            // A copy of the damaged file was put aside. Overwriting the file makes the message appear only
+            // once.
             game.keep_settings();
         }
         if is_aside(&records_damage) {
@@ -162,7 +163,7 @@ impl Game {
         self.notices.tell(&text);
     }
 
-    /// Whether the player has turned the sound off.
+    /// Whether the sound was turned off when the game started, for example with `--mute`.
     pub fn is_mute(&self) -> bool {
         self.sound.is_off()
     }
@@ -177,7 +178,7 @@ impl Game {
         self.sound.play(Cue::Menu(menu));
     }
 
-    /// Plays the next recorded round.
+    /// Shows the next recorded round behind the title screen.
     fn attract(&mut self) {
         self.note_end();
         self.attracted += 1;
@@ -222,7 +223,7 @@ impl Game {
         }
     }
 
-    /// Starts a level.
+    /// Starts the level with this index in [`Self::levels`], viewed from the front.
     pub fn start(&mut self, level: usize) {
         let level = self.levels[level.min(self.levels.len() - 1)].clone();
         self.bout.camera.face_front();
@@ -257,7 +258,8 @@ impl Game {
 
     /// Starts the level of a replay with the replay as ghost.
     pub fn race(&mut self, replay: Arc<Replay>) -> Result<(), ReplayError> {
-        // Uses the listed level if it is equal, even under another name, so that a win counts.
+        // Prefers the level in the list if it has the same rules, even under another name, so that a win is
+        // recorded.
         let known = self
             .levels
             .iter()
@@ -386,7 +388,7 @@ impl Game {
             .collect()
     }
 
-    /// Index of a level in the list. Assists are ignored in the comparison.
+    /// Index of a level in [`Self::levels`]. Assists are ignored in the comparison.
     fn listed(&self, level: &Level) -> Option<usize> {
         self.levels
             .iter()
@@ -422,7 +424,7 @@ impl Game {
             }
             (Screen::Paused, Action::Pause) => self.go(Screen::Play),
             (Screen::Play | Screen::Title, Action::Elements) => self.bout.show_elements(self.time),
-            // After single steps, this key resumes the round.
+            // While the round advances by single steps, the key for slow motion resumes it.
             (Screen::Play, Action::Slow) if self.bout.stepping => self.bout.stepping = false,
             (Screen::Play, Action::Slow) => self.bout.slow = !self.bout.slow,
             (Screen::Play, Action::Step) => {
@@ -436,7 +438,8 @@ impl Game {
         }
     }
 
-    /// Whether a second player can and may join.
+    /// Whether a second player can join: the level has a second hand, and the operator of a stand allows two
+    /// players.
     pub fn takes_two(&self) -> bool {
         let may = self.public.as_ref().is_none_or(|public| public.takes_two);
         may && self.bout.takes_two()
@@ -460,7 +463,7 @@ impl Game {
         changes
     }
 
-    /// Whether the round is visible, even if dimmed. An invisible round runs neither in time nor in sound.
+    /// Whether the round is visible, even if dimmed. A hidden round stands still and is silent.
     pub fn is_seen(&self) -> bool {
         use Screen::{Forces, Levels, Licences, Replays, Settings};
         !matches!(

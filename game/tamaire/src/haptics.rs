@@ -1,14 +1,15 @@
-//! Haptic feedback of a tick for each player.
+//! Haptic feedback of the last tick, for each player: contact forces and tears.
 
 use force_feedback::Stop;
 use fuwafuwa::TICK;
 use fuwafuwa::{Event, RigidBody, Vector};
 use tamaire_play::{AnyRound, PLAYERS};
 
-/// Time from the start of a round without feedback [s]: a restart puts the hands at other positions.
+/// Time without feedback at the start of a round [s], because a restart moves the hands abruptly.
 const BEGUN: f32 = 0.1;
-/// Strength of the feedback for the first node split in a tick, and for each further one; 1 = full.
+/// Strength of the feedback for the first node split in a tick; 1 = full.
 const TEAR: f32 = 0.2;
+/// Additional strength for each further node split in the same tick.
 const MORE: f32 = 0.05;
 
 /// Contact force on a hand, averaged over the substeps of the last tick [N].

@@ -18,15 +18,14 @@ use std::sync::Arc;
 use tamaire_play::level::{LevelError, NAMED, NAMED_3D};
 use tamaire_play::{Bot, BotKind, Level, ReplayError};
 
-/// Exit status for a rejected replay.
+/// Exit status for a replay that is not genuine.
 const REFUSED: u8 = 1;
 /// Exit status for a request that cannot be carried out. Equal to clap's status for invalid arguments.
 pub const BAD_USAGE: u8 = 2;
 /// File extension of replays.
 const REPLAY: &str = "tamaire";
 
-/// Options of rounds without a window. The command line has a flag `headless`; without it, only the level is
-/// used.
+/// Options of rounds without a window. Except `level`, they require the flag `--headless`.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Without a window")]
 pub struct Options {
@@ -54,8 +53,8 @@ pub struct Options {
     /// Write a replay of the round (.tamaire)
     #[arg(long, requires = "headless", value_name = "FILE", conflicts_with = "replay", value_parser = path_to(&[REPLAY]))]
     pub save: Option<PathBuf>,
-    /// Write the force feedback as a table (.csv): a row for each substep, and for each update of a pad and
-    /// of a stick that points at the goal of the hand
+    /// Write the force feedback as a table (.csv): a row for each substep, and for each update of a simulated
+    /// stick and pad
     #[arg(long, requires = "headless", value_name = "FILE", value_parser = path_to(&["csv"]))]
     pub force_log: Option<PathBuf>,
     /// Print the result as JSON
@@ -74,7 +73,7 @@ impl Options {
     }
 }
 
-/// Reason why there is no report.
+/// Reason why a round without a window has no report.
 #[derive(Debug, thiserror::Error)]
 enum HeadlessError {
     #[error(transparent)]
@@ -125,7 +124,7 @@ pub fn play(options: &Options) -> ExitCode {
     }
 }
 
-/// Prints ids and names of the levels.
+/// Prints the id of each level and its names in English and Japanese.
 pub fn list() {
     let mut text = String::new();
     for (id, _) in NAMED.iter().chain(&NAMED_3D) {
@@ -137,7 +136,7 @@ pub fn list() {
     say(&text);
 }
 
-/// Plays a round by a bot.
+/// Lets a bot play a round, and returns the report.
 fn try_bot(options: &Options) -> Result<String, HeadlessError> {
     let level = options.level.as_deref().unwrap_or(NAMED[0].0);
     let level = Arc::new(level_at(level)?);
@@ -164,7 +163,7 @@ fn try_bot(options: &Options) -> Result<String, HeadlessError> {
     Ok(told)
 }
 
-/// Plays a replay and checks it.
+/// Plays a replay, checks that it is genuine, and returns the report.
 fn check(path: &Path, options: &Options) -> Result<String, HeadlessError> {
     for path in pictures(options) {
         can_be_written(path)?;
@@ -240,7 +239,8 @@ fn finish(log: Option<ForceLog>, options: &Options) -> Result<(), HeadlessError>
     Ok(())
 }
 
-/// Checks that the folder of `path` exists, before a long round instead of after it.
+/// Checks that the folder of `path` exists. Done before the round, so that a long round is not played in
+/// vain.
 fn can_be_written(path: &Path) -> Result<(), HeadlessError> {
     let folder = path
         .parent()

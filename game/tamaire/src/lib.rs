@@ -1,21 +1,21 @@
 //! Tamaire (玉入れ): push a soft body into a basket that is too small for it, whole or in pieces.
 //!
-//! Each module uses only the modules listed above it:
+//! Each module uses only the modules listed above it, except that [`platform`] draws pictures with [`film`]:
 //!
-//! - [`input`]: device input as wishes for the hands
+//! - [`input`]: device input, converted to actions and goals of the hands
 //! - [`words`]: texts in each language
-//! - [`sift`]: filter for text from outside
+//! - [`sift`]: tolerant reading of files that users may have edited
 //! - [`licences`]: third-party parts and their licences
 //! - [`settings`]: the player's settings
 //! - [`records`]: the player's results
 //! - [`platform`]: files, sound and dialogs
-//! - [`session`]: playing or watching a round in real time
+//! - [`session`]: playing a round or watching a replay in real time
 //! - [`haptics`]: force feedback and rumble
-//! - [`attract`]: the round behind the title screen
+//! - [`attract`]: the recorded rounds behind the title screen
 //! - [`look`]: rendering of rounds
 //! - [`film`]: films and photos of rounds
 //! - [`headless`]: rounds without a window
-//! - [`game`]: the state and the actions on it
+//! - [`game`]: the state of the game, and the actions that change it
 //! - [`exhibit`]: a public stand
 //! - [`screens`]: the screens and menus
 //! - [`app`]: the main loop

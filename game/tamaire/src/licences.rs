@@ -2,8 +2,8 @@
 
 use std::sync::LazyLock;
 
-/// Licence texts: those gathered by `cargo xtask release`, or `THIRD-PARTY.md` in other builds. The web page
-/// has a separate text beside it.
+/// Licence texts: those gathered by `cargo xtask release`, or `THIRD-PARTY.md` in other builds. In a browser
+/// the game shows `THIRD-PARTY.md` and links to a file with all texts.
 #[cfg(not(target_family = "wasm"))]
 pub const TEXT: &str = include_str!(env!("TAMAIRE_LICENCES"));
 

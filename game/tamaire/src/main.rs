@@ -13,7 +13,7 @@ fn main() -> std::process::ExitCode {
 
 #[cfg(target_family = "wasm")]
 fn main() {
-    // Links the functions that the page calls.
+    // This reference keeps the functions that the page calls in the program.
     let _ = tamaire::browser::Running::start;
 }
 

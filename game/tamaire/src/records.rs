@@ -75,7 +75,7 @@ impl Record {
     }
 }
 
-/// Lowers the best time of a route to `ticks`; returns whether `ticks` is shorter.
+/// Lowers the best time of a route to `ticks` if that is shorter; returns whether it was.
 fn lower(best: &mut BTreeMap<Route, u64>, route: Route, ticks: u64) -> bool {
     let known = best.entry(route).or_insert(u64::MAX);
     let is_better = ticks < *known;
@@ -92,7 +92,7 @@ impl Records {
 
     /// Returns the records as TOML.
     pub fn text(&self) -> String {
-        toml::to_string(self).expect("records have nothing that cannot be written")
+        toml::to_string(self).expect("all fields can be written as TOML")
     }
 
     /// Returns the results in a level, given by its id.
@@ -120,8 +120,8 @@ impl Records {
         }
     }
 
-    /// Converts old records: wishes of `levels` from indices to names, and level files from paths to file
-    /// names.
+    /// Converts records of older versions: wishes of `levels` from indices to names, and keys of level files
+    /// from paths to file names.
     pub fn by_name<'a>(self, levels: impl Iterator<Item = &'a Level>) -> Self {
         let mut named = Self::default();
         for (id, record) in self.0 {
@@ -185,7 +185,11 @@ mod tests {
         let level = Level::open("classic").unwrap();
         let wishes = &level.game().wish;
         let names: BTreeSet<WishName> = wishes.iter().map(WishName::of).collect();
-        assert_eq!(names.len(), wishes.len(), "each has its own: {names:?}");
+        assert_eq!(
+            names.len(),
+            wishes.len(),
+            "each wish has its own name: {names:?}"
+        );
         let wish = Wish {
             seconds: Some(20.0),
             kept: Some(0.9),

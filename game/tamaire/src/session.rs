@@ -23,7 +23,7 @@ enum Player {
 }
 
 impl Session {
-    /// Creates a new round that people play.
+    /// Creates a session for a new round that people play.
     pub fn of_people(level: Arc<Level>) -> Self {
         Self::of(Player::People(AnyRound::new(level)))
     }
@@ -51,7 +51,7 @@ impl Session {
         self
     }
 
-    /// Returns the same session from its start, with the same replay or ghost.
+    /// Creates a session that starts over, with the same level or replay, and the same ghost if there is one.
     pub fn again(&self) -> Self {
         let again = match &self.player {
             Player::People(round) => Self::of_people(round.level().clone()),
@@ -92,20 +92,20 @@ impl Session {
         self.complaint.take()
     }
 
-    /// Estimated speed that this machine can reach, as a share of real time; 1 if a tick costs at most its
-    /// own duration.
+    /// Estimated speed that this machine can reach, as a share of real time, at most 1. The value is 1 if
+    /// computing a tick takes no longer than the tick lasts.
     pub fn bearable(&self) -> f64 {
         (f64::from(TICK) / self.pace.cost()).min(1.0)
     }
 
-    /// Drops the time that has passed but was not played yet.
+    /// Discards elapsed time that was not simulated yet, so that the round does not catch up.
     pub fn forget_time(&mut self) {
         self.pace.forget();
     }
 
-    /// Advances by `seconds` in whole ticks, or by fewer ticks if they take too long by `clock`. If people
-    /// play the round, `wish` returns the input for each tick. `seen` is called with the round after each
-    /// tick.
+    /// Advances by `seconds` in whole ticks, or by fewer if computing them takes too long, as measured with
+    /// `clock`. If people play the round, `wish` returns the input for each tick. `seen` is called with the
+    /// round after each tick.
     pub fn advance(
         &mut self,
         seconds: f32,

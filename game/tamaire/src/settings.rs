@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use tamaire_play::Assist;
 use tamaire_sound::Volumes;
 
-/// Contact force that is felt at full strength [N]. Hands are pushed with 100 to 500 N in the levels: below
-/// this range all bodies would feel alike, above it a soft body could not be felt.
+/// Contact force that is felt at full strength [N]. Players push with 100 to 500 N: with a lower value all
+/// bodies would feel equally hard, with a higher one soft bodies could not be felt.
 pub const FULL: f32 = 500.0;
 
 /// Settings of the players.
@@ -39,9 +39,10 @@ pub struct Settings {
     pub stick_places: bool,
     /// Whether movement keys stay pressed until they are pressed again.
     pub toggle_keys: bool,
-    /// Whether a button is pressed by keeping the mouse pointer on it.
+    /// Whether keeping the mouse pointer on a button presses it (dwell click).
     pub dwell: bool,
-    /// Speed of scanning, for players with a single switch.
+    /// Speed of scanning: for players with a single switch, the game offers one action after the other, and
+    /// the switch chooses.
     pub scanning: Scanning,
     /// Assists that make levels easier.
     pub assists: BTreeSet<Assist>,
@@ -112,7 +113,7 @@ impl Settings {
         let of_motors = |refused: &String| refused.starts_with("calibrations");
         let is_damaged = !refused.is_empty();
         if is_damaged && !table.contains_key("haptics") || refused.iter().any(of_motors) {
-            // The intended strength or the calibration of the motors is unknown.
+            // The strength that the player had chosen or the calibration of the motors is unknown.
             settings.haptics = 0.0;
         }
         (settings, refused)
@@ -120,7 +121,7 @@ impl Settings {
 
     /// Returns the settings as TOML.
     pub fn text(&self) -> String {
-        toml::to_string(self).expect("settings have nothing that cannot be written")
+        toml::to_string(self).expect("all fields can be written as TOML")
     }
 
     /// Returns the values that [`Settings::in_range`] limits, with their names; without calibrations.
@@ -199,7 +200,11 @@ mod tests {
             ..Calibration::IDENTITY
         };
         assert_eq!(settings.calibrations["stick"], wanted);
-        assert_eq!(settings.force("stick"), None, "no number is no force");
+        assert_eq!(
+            settings.force("stick"),
+            None,
+            "a strength of NaN allows no force"
+        );
         let settings = Settings {
             haptics: 0.5,
             ..settings
@@ -227,11 +232,7 @@ mod tests {
         ] {
             let (settings, refused) = Settings::read(text);
             let found = (settings.haptics, refused.len());
-            assert_eq!(
-                found,
-                (0.0, 1),
-                "{text}: nobody knows how strong it is to be"
-            );
+            assert_eq!(found, (0.0, 1), "{text}: the intended strength is unknown");
         }
         assert_eq!(Settings::read(""), (Settings::default(), Vec::new()));
     }

@@ -6,22 +6,22 @@ use serde::de::DeserializeOwned;
 use toml::de::{DeTable, ValueDeserializer};
 use toml::{Table, Value};
 
-/// Maximum length of a reason and of a quoted name [characters].
+/// Maximum length of the reason why an entry was refused, and of a quoted name [characters].
 const LETTERS: usize = 80;
 
 /// Maximum number of unreadable lines that are dropped one by one. A text with more of them is probably not
 /// TOML.
 const MOST_LINES: usize = 32;
 
-/// Number of refused entries from which invalid entries are no longer isolated, but dropped together with
-/// their neighbours.
+/// Maximum number of refused entries that are isolated one by one. After that, a group of entries is dropped
+/// as a whole if one of them is invalid, which limits the time.
 const MOST_REFUSED: usize = 256;
 
-/// Limit of the text parsed while unreadable lines are searched [bytes]. Each search parses the whole text
-/// again, so a long text gets fewer searches.
+/// Maximum amount of text parsed in the search for unreadable lines [bytes]. Finding one line takes a pass
+/// over the whole text, so fewer lines are searched for in a long text.
 const MOST_READ: usize = 1 << 21;
 
-/// Usable part of a text.
+/// Usable part of a TOML text, and reports about the rest.
 pub struct Sifted<T> {
     /// Value read from [`Self::table`].
     pub value: T,
@@ -89,7 +89,8 @@ fn good_lines(text: &str, refused: &mut Vec<String>) -> String {
     lines.join("\n")
 }
 
-/// Returns the part of a value with which the whole can still be read.
+/// Removes the invalid entries of a value, at any depth. `read` tests whether the value can then be read as
+/// part of the whole text.
 fn good_part(path: &str, value: Value, read: &Read, refused: &mut Vec<String>) -> Value {
     match value {
         Value::Table(entries) => {
@@ -108,7 +109,7 @@ fn good_part(path: &str, value: Value, read: &Read, refused: &mut Vec<String>) -
 /// Tests whether a value can be read; returns the reason if it cannot.
 type Read<'a> = dyn Fn(&Value) -> Result<(), String> + 'a;
 
-/// Entry of a table or an array: key or number from 1, and value.
+/// Entry of a table or an array: key, or number from 1, and value.
 type Entry = (String, Value);
 
 fn table_of(entries: &[Entry]) -> Value {
@@ -119,8 +120,8 @@ fn array_of(entries: &[Entry]) -> Value {
     Value::Array(entries.iter().map(|(_, entry)| entry.clone()).collect())
 }
 
-/// Returns the entries that can be read together once `of` combines them. Bisection isolates the invalid
-/// entries, so that the time does not grow with the square of their number.
+/// Returns the valid entries of a table or an array; `of` builds a table or an array from entries. Bisection
+/// isolates the invalid ones, so that the time does not grow with the square of their number.
 fn good_entries(
     path: &str,
     entries: &[Entry],
@@ -140,7 +141,8 @@ fn good_entries(
             if with(&part).is_ok() {
                 return vec![(name.clone(), part)];
             }
-            // The entry as a whole is invalid: replaces the reasons for its parts by one for the entry.
+            // The entry is invalid as a whole, so one reason for the entry replaces the reasons for its
+            // parts.
             refused.truncate(before);
             refused.push(named(&path, &reason));
             Vec::new()
@@ -154,7 +156,7 @@ fn good_entries(
     }
 }
 
-/// Reports keys of `table` that have no meaning, that is, are not in `meant`.
+/// Reports the keys of `table` that are unknown, that is, missing in `meant`.
 fn name_unknown(path: &str, table: &Table, meant: &Table, refused: &mut Vec<String>) {
     for (key, value) in table {
         let path = inside(path, key);
@@ -164,7 +166,7 @@ fn name_unknown(path: &str, table: &Table, meant: &Table, refused: &mut Vec<Stri
             }
             (_, Some(_)) => {}
             (_, None) if refused.len() >= MOST_REFUSED => {}
-            (_, None) => refused.push(named(&path, "it means nothing here")),
+            (_, None) => refused.push(named(&path, "unknown key")),
         }
     }
 }

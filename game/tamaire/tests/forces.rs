@@ -46,7 +46,7 @@ impl Table {
         self.game.controls.pads = Pads::of(Snapshot { devices }).noting(notes);
     }
 
-    /// Tilts a stick to the right.
+    /// Sets the deflection of a stick to the right, −1 to 1.
     fn lean(&mut self, stick: usize, right: f32) {
         self.devices[stick].axes[0] = right;
         self.plug_in();
@@ -67,12 +67,12 @@ impl Table {
         }
     }
 
-    /// Last output of a stick since the last call.
+    /// Returns the last output to a stick since the previous call.
     fn told(&self, stick: usize) -> Option<Output> {
         self.notes[stick].take().last().map(|played| played.output)
     }
 
-    /// Moves a stick slowly from left to right across the body, again and again, until it is pushed.
+    /// Moves a stick slowly from left to right across the body until it is pushed, repeatedly if necessary.
     fn until_pushed(&mut self, stick: usize) {
         self.until_pushed_along(stick, |share| [0.8 * share - 0.6, 0.0]);
     }
@@ -183,7 +183,8 @@ fn stick_force_3d_follows_camera_orientation() {
         let mut share = 0.0;
         table.until("pushed back", |table| {
             share += if share < 1.0 { 0.01 } else { 0.0 };
-            // Path from in front of the ball to its centre [m], and the deflection of the stick for it.
+            // Path of the hand from in front of the ball to its centre [m], and the deflection of the stick
+            // that leads there.
             let [x, z] = [-0.6, 0.7 - 1.1 * share];
             let [right, away]: [f32; 2] = [[-z, -x / 1.6], [x / 1.6, -z]][axis];
             let long = right.hypot(away);
@@ -234,7 +235,7 @@ fn force_ends_on_pause_menu_new_round_and_lost_focus() {
 fn check_quick(mut once: impl FnMut() -> Duration) {
     let most = Duration::from_millis(20);
     let quick = (0..20).map(|_| once()).find(|time| *time <= most);
-    assert!(quick.is_some(), "never within {most:?}");
+    assert!(quick.is_some(), "the force never ended within {most:?}");
 }
 
 #[test]
@@ -316,7 +317,7 @@ fn emergency_key_cuts_force_until_restored() {
     table.until_let_go(0);
     table.hears_nothing(0);
     assert!(table.game.forces.is_cut() && table.game.notices.iter().next().is_some());
-    // In a new round as well.
+    // A new round does not restore the force.
     table.game.start(0);
     table.hears_nothing(0);
     table.game.forces.restore();
@@ -348,7 +349,7 @@ fn force_of_each_hand_goes_to_its_player() {
     // The second hand starts far above the body and stays there.
     table.until_pushed(0);
     assert_eq!(table.told(1), None);
-    // It pushes into the body from above.
+    // The second hand pushes into the body from above.
     table.until_pushed_along(1, |share| [-0.35, 0.9 - 0.8 * share]);
 }
 
@@ -368,7 +369,7 @@ fn unused_pad_stops_rumbling_while_hand_presses() {
     table.notes = vec![Recording::new(Ability::Rumble)];
     table.game.start(0);
     table.lean(0, 1.0);
-    // Until it has pushed the body against the far wall.
+    // Plays until the hand has pushed the body against the far wall.
     let mut hummed = false;
     table.until("pushed", |table| {
         hummed |= table.told(0).is_some_and(|output| !output.is_zero());
@@ -392,7 +393,7 @@ fn pad_rumbles_low_when_pushing_and_high_when_tearing() {
     table.lean(0, 1.0);
     let (mut hummed, mut rattled) = (false, false);
     table.until("torn", |table| {
-        // Back and forth at full deflection.
+        // The stick moves back and forth at full deflection.
         let to_and_fro = table.game.bout.round().ticks() / 20 % 3;
         table.lean(0, if to_and_fro == 2 { -1.0 } else { 1.0 });
         for played in table.notes[0].take() {
@@ -449,14 +450,16 @@ fn stick_can_be_tried_and_measured() {
     assert_eq!(known, Some(&wanted));
 }
 
-/// Goes through all of SDL, with a virtual pad.
+/// Tests the whole path through SDL with a virtual pad.
 #[test]
 #[cfg(feature = "haptic")]
 fn virtual_pad_plays_rumbles_and_unplugs() {
     use sticks::{PadButton, Sticks};
 
     let sticks = Sticks::open_for_puppets().expect("SDL starts");
-    let pad = sticks.plug_in_pad("Pad").expect("the device is a pad");
+    let pad = sticks
+        .plug_in_pad("Pad")
+        .expect("the virtual pad can be plugged in");
     let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::through(sticks));
     game.start(0);
     let until = |game: &mut Game, what: &str, is_so: &dyn Fn(&Game) -> bool| {

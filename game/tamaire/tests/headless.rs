@@ -28,7 +28,8 @@ fn small_level(basket_at: f32) -> String {
     )
 }
 
-/// Creates a folder with two levels: `won.toml`, won by waiting, and `far.toml`, with a distant basket.
+/// Creates a folder with two levels: `won.toml`, which is won by waiting, and `far.toml`, with a distant
+/// basket.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("won.toml"), small_level(0.0)).unwrap();
@@ -65,14 +66,14 @@ radius = 0.12
 path = [[0.0, -1.3, 0.3, 0.4]]
 "#;
 
-/// Creates a folder with that level: `solid.toml`.
+/// Creates a folder with [`SOLID_LEVEL`] as `solid.toml`.
 fn folder_in_space() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("solid.toml"), SOLID_LEVEL).unwrap();
     folder
 }
 
-/// Model of MagicaVoxel: a solid cube, `width` voxels wide.
+/// MagicaVoxel model of a solid cube, `width` voxels wide.
 fn cube_model(width: u8) -> Vec<u8> {
     let axis = || 0..width;
     let voxels = axis().flat_map(|z| axis().flat_map(move |y| axis().map(move |x| [x, y, z, 79])));
@@ -108,7 +109,7 @@ fn tamaire_with(folder: &Path, arguments: &str, variables: &[(&str, &str)]) -> O
     let arguments = arguments.split_whitespace();
     command
         .current_dir(folder)
-        // Some drivers complain if it is missing.
+        // Some drivers complain if this variable is missing.
         .env("XDG_RUNTIME_DIR", folder)
         .envs(variables.iter().copied())
         .args(arguments)
@@ -131,7 +132,7 @@ fn json_of(folder: &Path, arguments: &str) -> Value {
     json(&output)
 }
 
-/// Checks that the arguments are refused with this status and a message that contains all of `words`.
+/// Checks that the arguments are refused with this exit status and a message that contains all of `words`.
 fn check_refused(arguments: &str, status: i32, words: &[&str]) {
     let folder = folder();
     fs::write(folder.path().join("broken.toml"), "dim = 2\nbody = 5\n").unwrap();
@@ -252,7 +253,7 @@ fn films_and_photos_are_written() {
     }
 }
 
-/// Whether this machine must have a graphics adapter.
+/// Whether a graphics adapter must be present, as in continuous integration.
 fn has_adapter() -> bool {
     std::env::var("CI").is_ok_and(|value| value == "1" || value == "true")
 }

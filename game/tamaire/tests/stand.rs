@@ -22,7 +22,7 @@ const KILLS: usize = 54;
 const BORNE: usize = 9;
 /// Every ninth time the game is stopped instead of killed.
 const STOPPED: usize = 9;
-/// Timeout of all waiting.
+/// Timeout for everything that the test waits for.
 const LONG: Duration = Duration::from_secs(60);
 const SIZE: (u32, u32) = (640, 400);
 /// Number of colours above which the game counts as drawn; an empty screen has one.
@@ -56,7 +56,7 @@ impl Screen {
         }
     }
 
-    /// Whether the game is drawn on it.
+    /// Whether the game is drawn on this screen.
     fn is_drawn(&self) -> bool {
         let picture = fs::read(self.folder.path().join("Xvfb_screen0")).unwrap();
         let (width, height) = SIZE;
@@ -129,7 +129,7 @@ impl Drop for Hand {
     }
 }
 
-/// Stand, started as an operator does.
+/// Stand that was started from the command line, as an operator does.
 struct Stand {
     parent: Child,
 }
@@ -216,7 +216,7 @@ fn events(logbook: &Path) -> Vec<Kind> {
     found
 }
 
-/// Median and maximum, if there are any.
+/// Returns median and maximum, if there are any values.
 fn told(times: &mut [Duration]) -> Option<[Duration; 2]> {
     times.sort();
     Some([*times.get(times.len() / 2)?, *times.last()?])
@@ -275,7 +275,7 @@ fn stand_restarts_killed_game_without_losing_rounds() {
     stand.end();
     let kept = rounds(&logbook);
     println!(
-        "{kills} times, {stopped} of them stopped; {} rounds. Middle and worst time:",
+        "{kills} times, {stopped} of them stopped; {} rounds. Median and maximum time:",
         kept.len()
     );
     println!("  until it was back after a kill   {:.1?}", told(&mut back));

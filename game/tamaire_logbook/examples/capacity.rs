@@ -1,4 +1,4 @@
-//! Measures speed and size of a logbook: `capacity [ROUNDS]`, by default with a million rounds.
+//! Measures the speed and the size of a logbook: `capacity [ROUNDS]`, by default with a million rounds.
 
 use std::env;
 use std::error::Error;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 /// Reason why opening, reading or writing a logbook failed.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// A later version of the program wrote the file. Nothing in it was changed.
+    /// A later version of the program wrote the file. The file was not changed.
     #[error(
         "{path}: logbook of version {found}: this program supports up to version {known}; install a newer tamaire"
     )]

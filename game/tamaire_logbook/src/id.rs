@@ -24,7 +24,8 @@ impl Id {
         let mut bytes = [0; 16];
         match getrandom::fill(&mut bytes) {
             Ok(()) => Self(u128::from_be_bytes(bytes)),
-            // Without a system source of randomness, fastrand's seed (time and thread) has to do.
+            // If the operating system provides no randomness, fastrand does. It is seeded from the time and
+            // the thread.
             Err(_) => Self(fastrand::u128(..)),
         }
     }

@@ -1,5 +1,5 @@
-//! Record of a stand's visits, rounds and events in an SQLite file. It holds nothing that identifies a
-//! visitor.
+//! Record of the visits, rounds and events at a stand, in an SQLite file. A stand is a public installation of
+//! the game. The file holds nothing that identifies a visitor.
 //!
 //! The modules, each of which uses only those above it:
 //!
@@ -12,7 +12,8 @@
 //! - `sender`: the thread that sends the rows to that server (feature `postgres`)
 //! - [`recorder`]: the thread that writes the file during play
 //!
-//! Rows are ordered by the sequence in which they were written, never by the clock, which may be changed.
+//! Rows are ordered by the sequence in which they were written, never by their times, because the clock may
+//! be set back.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [ms]

@@ -81,8 +81,8 @@ impl Logbook {
 
     /// Writes an entry. Writing the same entry again has no effect.
     ///
-    /// When this function returns, the entry is on the disk: it survives a killed process and a power cut. A
-    /// round, or the end of a visit, whose visit is unknown creates that visit.
+    /// When this function returns, the entry is on the disk: it survives a killed process and a power cut. If
+    /// the visit of a round, or of a visit's end, is unknown, that visit is created.
     ///
     /// # Errors
     /// [`Error`]; then nothing of the entry is written.
@@ -159,7 +159,8 @@ impl Logbook {
         self.map_error(read::best(&self.connection, since, level, level_hash, most))
     }
 
-    /// Deletes rows that began before `moment`, except rows that the server has not received yet.
+    /// Deletes rows that began before `moment`, except rows that the server has not received yet and visits
+    /// with remaining rounds.
     ///
     /// # Errors
     /// [`Error`].
@@ -172,8 +173,8 @@ impl Logbook {
         file::bytes(&self.path)
     }
 
-    /// Writes a copy as a single file. Other connections may write meanwhile. An existing file at `path` is
-    /// not overwritten.
+    /// Writes a copy of the logbook to `path`, as a single file. Other connections may write meanwhile. An
+    /// existing file at `path` is not overwritten.
     ///
     /// # Errors
     /// [`Error`]; [`Error::Unusable`] with the path of the copy if a file exists there.
@@ -229,7 +230,7 @@ impl Logbook {
         self.map_error(limit())
     }
 
-    /// Returns the time of the oldest row by the clock [ms of UTC].
+    /// Returns the time of the oldest row by the clock [ms of UTC]; `None` without rows.
     pub(crate) fn oldest(&self) -> Result<Option<i64>, Error> {
         let sql = "SELECT min(began) FROM (SELECT min(began) AS began FROM visits
             UNION ALL SELECT min(began) FROM rounds UNION ALL SELECT min(at) FROM events)";
@@ -237,8 +238,8 @@ impl Logbook {
         self.map_error(found.optional().map(Option::flatten))
     }
 
-    /// Sets the server whose missing rows [`Logbook::delete_before`] keeps, however old they are; `None`
-    /// keeps no row for a server.
+    /// Sets the server that must receive a row before [`Logbook::delete_before`] may delete it. With `None`,
+    /// rows are deleted without waiting for a server.
     pub(crate) fn set_server(&self, server: Option<&str>) -> Result<(), Error> {
         self.map_error(sent::await_server(&self.connection, server))
     }

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;
 
-/// A time of the system clock, which may have been wrong, with the local offset from UTC. Moments are
-/// compared by their UTC time only.
+/// Time of the system clock with its offset from UTC. The clock may have been wrong. Moments are compared by
+/// their UTC time only.
 #[derive(Copy, Clone, Debug, Serialize, Deserialize)]
 pub struct Moment {
     /// Time since 1970-01-01 00:00 UTC [ms].
@@ -22,7 +22,7 @@ impl Moment {
         Self::of(&Zoned::now())
     }
 
-    /// Returns the moment `ms` later [ms]; earlier if negative.
+    /// Returns the moment `ms` milliseconds later, or earlier if `ms` is negative.
     pub fn after(self, ms: i64) -> Self {
         let utc_ms = self.utc_ms.saturating_add(ms);
         Self { utc_ms, ..self }
@@ -49,7 +49,8 @@ impl Moment {
         Some(time.to_zoned(TimeZone::fixed(offset)))
     }
 
-    /// Formats the local time for file names: `2026-11-23-101502`.
+    /// Formats the local time for file names: `2026-11-23-101502`. Empty if the time is outside the
+    /// calendar's range.
     pub(crate) fn file_stem(self) -> String {
         let time = self.zoned();
         time.map_or_else(String::new, |time| {

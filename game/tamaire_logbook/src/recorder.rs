@@ -22,8 +22,8 @@ use crate::sender::Sender;
 #[cfg(not(feature = "postgres"))]
 use no_sender::Sender;
 
-/// Handle of the thread that writes a logbook. Dropping it writes the waiting entries, as
-/// [`Recorder::finish`] does, within 3 s.
+/// Handle of the thread that writes a logbook. Dropping it blocks for at most 3 s to write the waiting
+/// entries.
 #[derive(Debug)]
 pub struct Recorder {
     desk: Arc<SharedState>,
@@ -34,8 +34,8 @@ pub struct Recorder {
 const LAST: Duration = Duration::from_secs(3);
 
 impl Recorder {
-    /// Starts recording for a stand into the file at `path`. The thread opens the file, and tries again if
-    /// that fails.
+    /// Starts the thread that records for a stand into the file at `path`. If the thread cannot open the
+    /// file, it tries again every 3 s.
     pub fn begin(path: &Path, stand: &str, options: Options) -> Self {
         let desk = Arc::new(SharedState::default());
         let writer = Writer::new(Arc::clone(&desk), path, stand, options.clone());
@@ -66,12 +66,13 @@ impl Recorder {
         health
     }
 
-    /// Requests the summary of everything since a moment; [`Recorder::today`] returns it a little later.
+    /// Requests a summary of the visits and rounds since a moment; [`Recorder::today`] returns it a little
+    /// later.
     pub fn ask_today(&self, since: Moment) {
         self.desk.ask(|questions| questions.today = Some(since));
     }
 
-    /// Returns the last answer to [`Recorder::ask_today`].
+    /// Returns the last answer to [`Recorder::ask_today`]; `None` before the first answer.
     pub fn today(&self) -> Option<Today> {
         self.desk.answer(|answers| answers.today.clone())
     }
@@ -89,7 +90,7 @@ impl Recorder {
         self.desk.ask(|questions| questions.best = Some(best));
     }
 
-    /// Returns the last answer to [`Recorder::ask_best`].
+    /// Returns the last answer to [`Recorder::ask_best`]; `None` before the first answer.
     pub fn best(&self) -> Option<Vec<Round>> {
         self.desk.answer(|answers| answers.best.clone())
     }

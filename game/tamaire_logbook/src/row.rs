@@ -1,10 +1,10 @@
-//! Records of a day at a stand. None of them identifies a visitor.
+//! Records of what happens at a stand. None of them identifies a visitor.
 
 use crate::{Id, Moment};
 use serde::{Deserialize, Serialize};
 use tamaire_play::Route;
 
-/// A visit: from the first touch until the stand is idle again, by one player or a group.
+/// Visit of one player or a group, from the first touch until the stand is idle again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Visit {
     /// Unique identifier.
@@ -37,29 +37,31 @@ pub struct Round {
     pub seconds: f32,
     /// Name of the level.
     pub level: String,
-    /// Hash of the level, [`tamaire_play::Level::hash`]. An easier variant of the level has another one.
+    /// Hash of the level, [`tamaire_play::Level::hash`]. It differs between a level and its easier variant.
     pub level_hash: u64,
     /// Number of players.
     pub players: u8,
-    /// End of the round.
+    /// Reason why the round ended.
     pub end: RoundEnd,
     /// Route by which the round was won; `None` if it was not won.
     pub route: Option<Route>,
-    /// Mass of the largest piece of each body, as a share of the mass at the start.
+    /// Total mass of the largest piece of each body, as a share of the same total at the start.
     pub kept: f32,
-    /// Share of the mass at rest in the basket at the end.
+    /// Share of the total mass that rests in the basket at the end, 0 to 1.
     pub inside: f32,
     /// Number of pieces at the end.
     pub pieces: u32,
-    /// Number of pieces outside the basket at the end, without crumbs.
+    /// Number of pieces outside the basket at the end of a won round, without crumbs
+    /// ([`tamaire_play::rules::CRUMB`]). 0 if the round was not won.
     pub lost: u32,
-    /// The other route, if the game suggested it before this round.
+    /// Route that the game suggested before this round, different from that of the last win. `None` without a
+    /// suggestion.
     pub dare: Option<Route>,
     /// Replay as text from [`tamaire_play::Replay::fragment`], a few kilobytes. Empty if there is no replay.
     pub replay: String,
 }
 
-/// End of a round.
+/// Reason why a round ended.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RoundEnd {
@@ -84,7 +86,7 @@ pub struct Event {
     pub at: Moment,
     /// Kind of the event.
     pub kind: Kind,
-    /// Details as a sentence, of at most [`MAX_TEXT_BYTES`].
+    /// Details as a sentence, at most [`MAX_TEXT_BYTES`] long.
     pub text: String,
 }
 
@@ -145,10 +147,10 @@ pub enum Entry {
     Event(Event),
 }
 
-/// Maximum length of a text in a row, replays excepted [bytes]. Longer texts are truncated.
+/// Maximum length of a text in a row, except for replays [bytes]. Longer texts are truncated.
 pub const MAX_TEXT_BYTES: usize = 1 << 14;
 
-/// Names of the kinds in the file. They are a file format and must not be changed.
+/// Names of the kinds, part of the file format. They must not be changed.
 const KINDS: [(&str, Kind); 14] = [
     ("began", Kind::Began),
     ("ended", Kind::Ended),

@@ -1,10 +1,11 @@
 //! A thread that sends the rows of a logbook to a PostgreSQL server. Each row is sent at least once and
 //! stored once.
 //!
-//! Rows are sent in the order of their changes, up to 200 in a transaction, together with the number of the
-//! last change. The server thus stores its own position in a file. While it cannot be reached, the thread
-//! keeps trying. If the server lost rows, because it is another one or was restored from a backup, all rows
-//! after its position that are still in the file are sent again.
+//! Rows are sent in the order of their changes, at most 200 in a transaction. The transaction also stores the
+//! number of its last change: this is the server's position in the file. While the server cannot be reached,
+//! the thread keeps trying. The server may be a new one, or it may have lost rows because it was restored
+//! from a backup. In both cases the thread sends all rows after the server's position that are still in the
+//! file.
 
 mod tables;
 
@@ -31,7 +32,7 @@ pub struct Sender {
 const BATCH: usize = 200;
 /// Interval between two searches for new rows, and first delay after a failure.
 const POLL_INTERVAL: Duration = Duration::from_secs(1);
-/// Number of failures in a row after which the delay, doubled at each failure, stays at half a minute.
+/// Number of consecutive failures after which the retry delay stops doubling and stays at 32 s.
 const MOST_DOUBLINGS: u32 = 6;
 /// Time limit for an answer of the server.
 const TIMEOUT: Duration = Duration::from_secs(20);
@@ -84,7 +85,7 @@ struct SenderThread {
     line: Option<Line>,
 }
 
-/// Connection to the server, with the position up to which it has received the file.
+/// Connection to the server, with the position up to which the server has received the file.
 struct Line {
     client: Client,
     inserts: Inserts,
@@ -141,7 +142,7 @@ impl SenderThread {
             }
         };
         let changes = book.changes(line.sent.change, BATCH)?;
-        // Closes the file, so that no lock is held while the server does not answer.
+        // Closes the file, so that it is not locked while this thread waits for the server.
         drop(book);
         let Some((last, ..)) = changes.last() else {
             return Ok(0);

@@ -1,6 +1,6 @@
 //! The server to which a logbook may be sent.
 
-/// A PostgreSQL server.
+/// A PostgreSQL server that receives copies of a logbook's rows.
 #[derive(Clone, PartialEq)]
 pub struct Server {
     /// Address as the `postgres` crate parses it: `host=… user=… password=… dbname=…`, or `postgresql://…`.
@@ -18,7 +18,7 @@ pub struct Progress {
 }
 
 impl Server {
-    /// Returns the name of the server in the file: its address without user and password.
+    /// Returns the name under which the logbook stores the server: its address without user and password.
     #[cfg(feature = "postgres")]
     pub(crate) fn name(&self) -> Result<String, String> {
         let config = self.config()?;

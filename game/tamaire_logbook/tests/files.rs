@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use tamaire_logbook::{Error, Logbook};
 
-/// Writes the rows of 30 visits and closes the logbook, so that no other files are left beside it.
+/// Writes the rows of 30 visits and closes the logbook, so that SQLite leaves no other files beside it.
 fn fill(path: &Path) {
     let mut book = open(path);
     for _ in 0..30 {
@@ -101,8 +101,8 @@ fn open_sets_aside_a_truncated_file_unchanged() {
     }
 }
 
-/// A file with changed bytes is either opened, or set aside unchanged; then writing and reading must not
-/// panic.
+/// A file with changed bytes is either opened or set aside unchanged. In both cases, writing and reading must
+/// not panic.
 #[test]
 fn open_handles_changed_bytes_without_panic() {
     let (_folder, path) = place();
@@ -133,7 +133,7 @@ fn open_handles_changed_bytes_without_panic() {
                 fs::remove_file(&set_aside.path).unwrap();
                 book.write_all(&entries(MORNING)).unwrap();
             }
-            // Damage that the check does not find may appear later and must then be reported.
+            // The check does not find all damage. If such damage appears later, it must be reported.
             Ok((mut book, None)) => {
                 silent += 1;
                 let written = book.write_all(&entries(MORNING));
@@ -181,7 +181,7 @@ fn set_aside_also_renames_the_write_ahead_log() {
     assert_eq!(fs::read(&aside).unwrap(), file[..file.len() / 2]);
     assert_eq!(fs::read(beside(&aside, "-wal")).unwrap(), log);
     drop(book);
-    // The same if the database file is missing altogether.
+    // If the database file is missing, its log is set aside in the same way.
     fs::remove_file(&path).unwrap();
     fs::write(beside(&path, "-wal"), &log).unwrap();
     let (book, set_aside) = Logbook::open(&path, STAND).unwrap();

@@ -16,8 +16,8 @@ use tamaire_logbook::{Entry, Kind, Logbook};
 /// Environment variable, set in the process to be killed: path of its logbook.
 const VICTIM: &str = "LOGBOOK_OF_VICTIM";
 
-/// In the child process, writes until it is killed and prints the id of each written round. Does nothing
-/// without the variable.
+/// Code of the child process: writes until it is killed, and prints the id of each written round. In a normal
+/// test run [`VICTIM`] is not set, and this test does nothing.
 #[test]
 fn victim() {
     let Some(path) = env::var_os(VICTIM) else {

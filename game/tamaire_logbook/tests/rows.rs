@@ -103,8 +103,8 @@ fn writing_an_entry_again_has_no_effect() {
         let kept = all(&once).unwrap();
         assert_eq!(kept, all(&often).unwrap());
         assert_eq!((kept.visits.len(), kept.rounds.len()), (2, 6));
-        // The first round or end of a visit creates it; the entry of its beginning fills in the missing
-        // values.
+        // Whichever entry of a visit comes first creates the visit. The entry of its beginning then fills in
+        // the missing values.
         let mut found = kept.visits.clone();
         found.sort_by_key(|visit| visit.began);
         assert_eq!(
@@ -271,7 +271,7 @@ fn best_returns_the_fastest_rounds_with_a_replay() {
 }
 
 #[test]
-fn forget_before_deletes_old_rows() {
+fn delete_before_removes_old_rows() {
     let (_folder, path) = place();
     let mut book = open(&path);
     for day in 0..5 {
@@ -280,7 +280,7 @@ fn forget_before_deletes_old_rows() {
         book.write(&Entry::Event(event(began, Kind::Began)))
             .unwrap();
     }
-    // A visit that began before the limit, with a round after it.
+    // A visit that began before the time limit, with a round after it.
     let long = visit(MORNING);
     let mut late = round(&long, 1, None);
     late.began = MORNING.after(3 * DAY);
@@ -296,7 +296,7 @@ fn forget_before_deletes_old_rows() {
     assert!(kept.visits.contains(&long));
     book.delete_before(MORNING.after(9 * DAY)).unwrap();
     assert_eq!(all(&book).unwrap(), All::default());
-    // Writing goes on afterwards.
+    // New rows can be written after a deletion.
     book.write_all(&entries(MORNING)).unwrap();
     assert_eq!(all(&book).unwrap().rounds.len(), 3);
 }
@@ -324,7 +324,7 @@ fn readers_and_writers_do_not_block_each_other() {
             .unwrap();
     }
     assert!(reader.join().unwrap() >= 3);
-    // The same during an iteration.
+    // A reader that iterates over rows does not block a writer either.
     let reader = Logbook::read(&path).unwrap();
     let mut seen = 0;
     reader

@@ -1,10 +1,14 @@
 //! Measures how often a bot wins a level as intended.
 //!
 //! `cargo run --release -p tamaire_play --example bots -- LEVEL|all squeeze|shave FROM TO` lets the bot play
-//! with the seeds FROM to TO, for at most a minute each, on two threads, and prints a row per level. It has
-//! the number of rounds won by the bot's route, won by another route, and lost, with the seeds of the latter
-//! two; and the medians of seconds, of the share kept in one piece, and of the pieces of the won rounds.
-//! `all` stands for all built-in levels that offer the route. `--rounds` also prints a row per round.
+//! with the seeds FROM to TO, for at most a minute each, on two threads. `all` stands for all built-in levels
+//! that offer the route. It prints a row per level with
+//!
+//! - the number of rounds won by the bot's route, won by another route, and lost,
+//! - the medians of the won rounds: seconds, share of the mass kept in the largest pieces, number of pieces,
+//! - the seeds of the rounds won by another route or lost.
+//!
+//! `--rounds` also prints a row per round.
 
 use clap::Parser;
 use std::error::Error;
@@ -18,7 +22,6 @@ use tamaire_play::{AnyRound, Bot, BotKind, Level, Outcome, Route};
 
 /// Time limit of a round [ticks].
 const MINUTE: usize = 60 * 60;
-/// Number of threads.
 const THREADS: usize = 2;
 /// Bots and their routes by name.
 const ROUTES: [(&str, BotKind, Route); 2] = [

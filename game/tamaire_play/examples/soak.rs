@@ -28,13 +28,13 @@ const LOOK: usize = 60;
 /// Tolerated depth of a piece in a wall, in voxels. A crumb between a hand and a wall is pressed flat and
 /// slightly into the wall.
 const MARGIN: f32 = 1.0;
-/// Tolerated depth of a hand, and of the centre of a piece [m].
+/// Tolerated depth of a hand, or of the centre of a piece, in a wall [m].
 const HAND_MARGIN: f32 = 1e-3;
 
-/// Maximum memory per element or node [bytes]. Tearing adds both.
+/// Maximum memory per element or node [bytes]. Tearing adds elements and nodes.
 const MOST_EACH: f32 = 1200.0;
-/// Maximum growth of the memory per element or node from the first half to the second. Vectors double their
-/// capacity now and then.
+/// Maximum factor by which the memory per element or node grows from the first half of a run to the second.
+/// It is above 1 because vectors double their capacity now and then.
 const GROWTH: f32 = 1.3;
 
 /// Allocator that counts the memory held by each thread.

@@ -25,7 +25,7 @@ struct Options {
     /// Names of built-in levels; `all` for all of them.
     #[arg(default_value = "classic")]
     levels: Vec<String>,
-    /// Number of seeds: bots play with the seeds 1 to this.
+    /// Number of seeds: each bot plays with the seeds 1 to this number.
     #[arg(long, default_value_t = 5)]
     seeds: u64,
     /// Number of times each round is played. The cost of a tick is the minimum of its times.
@@ -34,7 +34,7 @@ struct Options {
     /// Time limit of a round [s].
     #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=3600))]
     seconds: u64,
-    /// Bots to play.
+    /// Names of the bots that play, separated by commas.
     #[arg(long, value_delimiter = ',', default_value = "squeeze,shave,random")]
     bots: Vec<String>,
     /// Also measures engine and rules separately.
@@ -63,7 +63,7 @@ struct Row {
     ticks: usize,
     pieces: usize,
     milliseconds: Ranks,
-    /// Duration of the rules alone.
+    /// Duration of the rules alone [ms].
     rules: Option<Ranks>,
     /// Index of the slowest tick, and number of nodes split in it.
     worst_tick: usize,
@@ -259,8 +259,9 @@ fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64, most: usize) -> (V
     (ticks, round.progress().pieces)
 }
 
-/// Steps the world of a round alone, with the recorded targets; the difference to the duration of the round's
-/// tick is the cost of the rules. It does not run beside the round, because both would then share the caches.
+/// Steps the world without the rules, with the recorded targets, and stores the duration of each tick. The
+/// rest of the round's tick is the cost of the rules. This runs after the round, not beside it, because both
+/// would then compete for the caches.
 fn step_alone<D: Dim>(level: &Arc<Level>, ticks: &mut [Tick]) {
     let mut world = Round::<D>::new(level.clone()).world().clone();
     let mut hands: Vec<RigidBodyHandle> = world.target_followers().map(|(hand, _)| hand).collect();

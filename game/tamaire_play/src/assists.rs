@@ -1,5 +1,5 @@
 //! Assists, which make a level easier. They are stored in the level itself, so that the level of a round or a
-//! replay tells which assists were used.
+//! replay shows which assists were used.
 
 use crate::level::LevelError;
 use crate::{Assist, Level, Route};
@@ -9,7 +9,8 @@ use std::collections::BTreeSet;
 
 /// Growth of a basket on each side, as a share of its half width.
 const WIDER: f32 = 0.25;
-/// Minimum space behind a side that moves, as a multiple of that growth. A bar must fit in there.
+/// Minimum space between a side of the basket and the arena's end for the side to move, as a multiple of its
+/// movement. A bar must fit into this space.
 const ROOM: f32 = 2.5;
 
 impl Level {
@@ -100,8 +101,8 @@ impl Stretch {
         self.to[k] + share * (self.to[k + 1] - self.to[k])
     }
 
-    /// Returns the new centre of an object with radius `reach`. Its side that faces the basket follows the
-    /// map.
+    /// Returns the new centre of a ball or bar with centre `x` and radius `reach`. The side that faces the
+    /// basket follows the map, and the radius stays.
     fn middle(&self, x: f32, reach: f32) -> f32 {
         let out = x - 0.5 * (self.from[1] + self.from[2]);
         let side = out.clamp(-reach, reach);
@@ -155,7 +156,7 @@ mod tests {
         let basket = |level: &Level| level.game().basket.clone().unwrap();
         let [before, after] = [basket(&plain), basket(&wide)];
         assert!((after.half[1] - 1.25 * before.half[1]).abs() < 1e-5);
-        // At the end there is no space behind the bar, so that side stays.
+        // The bar at the basket's end has no space behind it, so that side stays.
         let end = |basket: &BoxText| basket.centre[0] + basket.half[0];
         assert!((end(&after) - end(&before)).abs() < 1e-5);
         assert_eq!(plain.arena(), wide.arena());
@@ -230,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn assisted_round_is_not_of_the_plain_level() {
+    fn replay_with_assists_is_not_of_the_plain_level() {
         let plain = Arc::new(Level::open("classic").unwrap());
         let all = BTreeSet::from([Assist::WiderBasket, Assist::Unbreakable]);
         let easy = Arc::new(plain.assisted(&all).unwrap());

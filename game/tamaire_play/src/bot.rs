@@ -17,22 +17,24 @@ const GENTLE: f32 = 0.7;
 const CAREFUL: f32 = 0.2;
 /// Number of ticks without progress after which a bot turns to another piece.
 const PATIENCE: u32 = 210;
-/// Offset of the first strokes from the centre of a piece, as a share of its reach, in 2D and in 3D. In 2D a
-/// stroke cuts off all that it passes; in 3D, a stroke so far out would only plough a furrow.
+/// Offset of the first strokes from the centre of a piece in 2D and in 3D, as a share of the piece's `reach`.
+/// In 2D a stroke cuts off everything outside its path. In 3D a stroke so far out would only plough a furrow.
 const FIRST_OFFSET: [f32; 2] = [0.78, 0.55];
 /// Factor on the offset after a stroke that took nothing off.
 const CLOSER: f32 = 0.85;
-/// Minimum offset of strokes, in 2D and in 3D. In 3D, when strokes this close to the centre take nothing off,
-/// the bot stops shaving for a while, because the rest may fit as it is. In 2D the strokes end up through the
+/// Minimum offset of strokes in 2D and in 3D. If strokes this close to the centre take nothing off in 3D, the
+/// bot stops shaving for a while, because the rest may fit as it is. In 2D the last strokes go through the
 /// centre.
 const CLOSEST: [f32; 2] = [0.0, 0.4];
-/// Rules for 3D, where heavy pieces lie on a floor. Whenever a piece came `NEARER` to the mouth [m], the
-/// gathering bot's waiting time is reduced by `ON_ITS_WAY` ticks. Until then it pushes ever harder: up to
-/// `FIRMER` deeper than at first [m], in 2D and in 3D.
+/// Credit for progress in 3D, where heavy pieces on a floor move slowly. Each time the pushed piece has come
+/// closer to the mouth by `NEARER` [m], the waiting time of a gathering bot is reduced by `ON_ITS_WAY`
+/// [ticks].
 const NEARER: f32 = 0.05;
 const ON_ITS_WAY: u32 = 20;
+/// Additional depth of a gathering bot's push after a long time without progress, in 2D and in 3D [m].
 const FIRMER: [f32; 2] = [0.12, 0.3];
-/// Share of the initial mass in the largest pieces at which the shaving bot starts to gather.
+/// Value of [`Progress::kept`](crate::Progress::kept) below which a bot stops shaving and starts to gather:
+/// it pushes the pieces in.
 const SMALL_ENOUGH: f32 = 0.92;
 /// Share of the total mass in the basket above which strokes are limited to the speed `BRISK`.
 const IN_THE_MOUTH: f32 = 0.1;
@@ -73,15 +75,14 @@ pub struct Bot {
     random_targets: [(Vector, u32); crate::PLAYERS],
     stroke: Stroke,
     strokes: u32,
-    /// Offset of the strokes from the centre, relative to the first one; and the number of pieces before the
-    /// last stroke.
+    /// Factor on [`FIRST_OFFSET`] for the next stroke, and number of pieces before the last stroke.
     off: f32,
     pieces: usize,
     gathers: bool,
-    /// Share of the initial mass in the largest pieces at which the bot starts to gather.
+    /// Value of [`Progress::kept`](crate::Progress::kept) below which the bot starts to gather.
     aim: f32,
-    /// Largest share in the basket yet, number of ticks since the last progress, and number of pieces given
-    /// up.
+    /// Share of the mass in the basket when the waiting for progress began, number of ticks waited since
+    /// then, and number of more important pieces to skip.
     best: f32,
     waited: u32,
     skips: usize,
@@ -91,7 +92,7 @@ pub struct Bot {
     pressed: u32,
 }
 
-/// Phase of a shaving stroke.
+/// State of a shaving stroke.
 #[derive(Copy, Clone, Debug, PartialEq)]
 enum Stroke {
     Rest,
@@ -134,7 +135,7 @@ impl Bot {
             temper,
             random_targets: Default::default(),
             stroke: Stroke::Rest,
-            // Half of the bots start on the one side, half on the other.
+            // Half of the bots start on one side, half on the other.
             strokes: u32::from(temper[0] > 0.0),
             off: 1.0,
             pieces: 0,
@@ -170,7 +171,7 @@ impl Bot {
         self.waited += 1;
         if inside > self.best + 0.02 {
             self.wait_from(inside);
-            // One tick later than in `shave`, which may decide first to go on shaving.
+            // One tick later than in `shave`, so that `shave` can first decide to go on shaving.
         } else if self.waited > PATIENCE + 1 {
             self.wait_from(inside);
             self.skips = (self.skips + 1) % 4;
@@ -238,8 +239,8 @@ impl Bot {
         straight(sight, goal, GENTLE * (1.0 + 0.1 * self.temper[2]))
     }
 
-    /// Strokes past the centre of the largest piece on alternate sides until it is small enough, then gathers
-    /// the required mass.
+    /// Moves the hand past the centre of the largest piece, on alternate sides, until this piece is small
+    /// enough. Then pushes in pieces until the basket holds the required mass.
     fn shave<D: Dim>(&mut self, sight: &Sight) -> Vector {
         self.gathers |= sight.kept < self.aim;
         // A piece stuck in front of the mouth must become smaller. This does not apply to a piece chosen

@@ -6,18 +6,18 @@ use serde::{Deserialize, Serialize};
 /// Maximum number of players in a round.
 pub const PLAYERS: usize = 2;
 
-/// Resolution of target positions: integers of 1/8192 m, so that a recording holds exactly the played input.
-/// The arena lies within ±4 m of the origin.
+/// Number of units of a target position per metre. Targets are integers, so that a recording holds exactly
+/// the played input. Coordinates range over ±4 m, and the arena lies within them.
 pub const UNITS_PER_METRE: f32 = 8192.0;
 
-/// Entry of a row for an absent player. No target has these coordinates.
+/// Coordinates that stand for an absent player in a recorded row. No target has these coordinates.
 const ABSENT: [i16; 3] = [i16::MIN; 3];
 
 /// Target positions of the players' hands at the end of a tick.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InputFrame {
-    /// Target of each player in units of 1/8192 m. `None` if the player gives no input: the hand enters the
-    /// room with the first target, and later stays where it is without one.
+    /// Target of each player in units of 1/8192 m. `None` if the player gives no input: the hand then keeps
+    /// its last target. The second player's hand enters the room with its first target.
     pub goals: [Option<[i16; 3]>; PLAYERS],
 }
 
@@ -27,14 +27,15 @@ impl InputFrame {
         Self::default().with(0, place)
     }
 
-    /// Returns the frame with a target for another player [m].
+    /// Returns the frame with a target for a player, counted from 0 [m]. Coordinates beyond ±4 m are clamped,
+    /// and NaN becomes 0.
     pub fn with(mut self, player: usize, place: Vector) -> Self {
         let unit = |k: f32| ((k * UNITS_PER_METRE).round() as i16).max(-i16::MAX);
         self.goals[player] = Some(place.map(unit));
         self
     }
 
-    /// Returns the frame as a row of numbers: three for each player, up to the last with a target.
+    /// Encodes the frame as a row of numbers: three for each player, up to the last player with a target.
     pub(crate) fn row(&self) -> Vec<i16> {
         let hands = self.goals.iter().rposition(Option::is_some);
         let goals = &self.goals[..hands.map_or(0, |last| last + 1)];
@@ -44,7 +45,7 @@ impl InputFrame {
             .collect()
     }
 
-    /// Returns the frame of a row.
+    /// Decodes a row from [`InputFrame::row`].
     pub(crate) fn of_row(row: &[i16]) -> Self {
         let mut frame = Self::default();
         for (goal, given) in frame.goals.iter_mut().zip(row.chunks_exact(3)) {

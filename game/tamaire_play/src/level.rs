@@ -73,12 +73,12 @@ pub enum LevelError {
     },
 }
 
-/// Maximum number of voxels in the grids of all bodies of a level, solid or not: eight squares of 64, or a
-/// ball of 32. Even split into single voxels, they are built within seconds and move, if slowly, and fit into
-/// one GPU buffer.
+/// Maximum number of voxels, solid or empty, in the grids of all bodies of a level: eight squares 64 voxels
+/// wide, or a ball 32 voxels wide. Even if all voxels are split apart, the world is built within seconds,
+/// moves slowly, and fits into one GPU buffer.
 pub const MAX_VOXELS: usize = 1 << 15;
-/// Maximum number of voxels in 3D, if all bodies start whole and with large elements inside: a ball of 64.
-/// Eight times as many voxels then give only five times as many elements.
+/// Maximum number of voxels in 3D if all bodies start whole and with large elements inside: a ball 64 voxels
+/// wide. These are eight times [`MAX_VOXELS`], but give only five times as many elements.
 pub const MAX_WHOLE_VOXELS: usize = 1 << 18;
 
 /// Maximum size of a stored level with its embedded files [bytes].
@@ -134,7 +134,7 @@ impl Level {
             known.map_or_else(nothing, |(_, bytes)| Ok(bytes.to_vec()))
         };
         scene.embed_files(&fetch)?;
-        // Not built here, because the tests build every built-in level.
+        // Does not build the world as a check: tests build every built-in level.
         Self::unbuilt(id, scene)
     }
 
@@ -308,11 +308,11 @@ impl Level {
     pub(crate) fn build<D: Dim>(&self) -> Start<D> {
         let start = self.start::<D>();
         start
-            .expect("tests build the built-in levels, Level::of all others")
+            .expect("tests build built-in levels, from_scene other levels")
             .clone()
     }
 
-    /// Returns the world at the start, which is built once, and the basket.
+    /// Returns the world at the start and the basket. The world is built at the first call.
     fn start<D: Dim>(&self) -> Result<&Start<D>, SceneError> {
         let known = match self.start.get() {
             Some(known) => known,
@@ -337,8 +337,8 @@ pub(crate) fn text_of(scene: &Scene) -> String {
     toml::to_string(scene).expect("a scene that was read can be serialized")
 }
 
-/// Removes the assists that an untrusted scene claims to have. Only rounds may state the assists of their
-/// level.
+/// Removes the assists that an untrusted scene claims to have. Only the level of a recorded round may state
+/// assists.
 pub(crate) fn without_assists(mut scene: Scene) -> Scene {
     if let Some(game) = &mut scene.game {
         game.assists.clear();

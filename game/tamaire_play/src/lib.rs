@@ -36,7 +36,7 @@
 //! ```
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![allow(rustdoc::broken_intra_doc_links)] // units in brackets, such as [m], are no links
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
 pub mod any;

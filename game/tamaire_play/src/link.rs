@@ -24,11 +24,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A fragment consists of a letter for its kind, a digit for its format, bytes in base64url [RFC 4648, §5],
-//! and a final `z`, because many programs that detect addresses in a text stop before a `-` or `_` at the
-//! end. The bytes are a checksum and a postcard encoding of `SentRound` or `SentLevel`. For a QR code, the
-//! bytes are written in decimal digits, with the format `0`. A built-in level is sent as its name and a hash
-//! only.
+//! A fragment consists of a letter for its kind (`r` or `l`), a digit for its format, bytes in base64url [RFC
+//! 4648, §5], and a final `z`. Many programs that detect addresses in a text stop before a `-` or `_` at the
+//! end; the `z` prevents this. The bytes are a checksum and a postcard encoding of `SentRound` or
+//! `SentLevel`. For a QR code, the bytes are written in decimal digits, with the format `0`. A built-in level
+//! is sent as its name, its assists and a hash only.
 
 mod coder;
 mod digits;

@@ -177,7 +177,7 @@ impl Replay {
     /// Returns the replay as a text, after checking that it can be read and watched again.
     ///
     /// # Errors
-    /// [`ReplayError`] with the reason otherwise.
+    /// [`ReplayError`] if the text could not be read or watched.
     pub fn text_to_keep(&self) -> Result<String, ReplayError> {
         let text = self.text();
         Self::read(&text)?.level()?;
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn text_to_keep_rejects_what_could_not_be_read_again() {
+    fn text_to_keep_rejects_an_unreadable_replay() {
         let level = Arc::new(Level::open("classic").unwrap());
         let mut replay = Replay::of(&Round::<Dim2>::new(level));
         assert_eq!(replay.text_to_keep().unwrap(), replay.text());

@@ -8,8 +8,8 @@ use std::sync::Arc;
 /// Maximum speed of a hand's target [m/s]. A hand much faster than a wave in the body would throw the body
 /// aside before it can deform.
 pub const TOP_SPEED: f32 = 6.0;
-/// Maximum distance between a hand and its target [m]. At this distance the coupling has its maximum force,
-/// and a hand that is suddenly free does not shoot far.
+/// Maximum distance between a hand and its target [m]. The coupling between them already has its maximum
+/// force there, so more distance would add nothing. A hand that suddenly comes free does not shoot far.
 pub const LEASH: f32 = 0.4;
 
 /// Maximum number of recorded ticks: an hour. A round may last longer.
@@ -88,7 +88,7 @@ impl<D: Dim> Round<D> {
         &self.world
     }
 
-    /// Returns the hands of the players that have joined, in their order.
+    /// Returns the hands of the players that have joined, in the order of the players.
     pub fn hands(&self) -> impl ExactSizeIterator<Item = &RigidBody> {
         self.players
             .iter()
@@ -144,7 +144,8 @@ impl<D: Dim> Round<D> {
         }
     }
 
-    /// Returns the position nearest to `wish` that the target can reach in a tick.
+    /// Returns the position nearest to `wish` that the target of a player's hand can reach in a tick. Without
+    /// a wish the target stays.
     fn reachable(&self, player: usize, wish: Option<Vector>) -> Vector {
         let hand = &self.world.rigid_bodies()[self.players[player]];
         let [low, high] = self.level.arena();

@@ -8,14 +8,15 @@ use serde::{Deserialize, Serialize};
 
 /// Speed below which a node counts as resting in the basket [m/s].
 const RESTING: f32 = 0.4;
-/// Share of the mass below which a piece is a crumb. Crumbs may get lost.
+/// Share of the total mass below which a piece is a crumb. A crumb outside the basket does not count as lost.
 pub const CRUMB: f32 = 0.002;
-/// Minimum share of the mass in the largest pieces for a body to count as whole.
+/// Minimum of [`Progress::kept`] at which the bodies count as whole.
 const WHOLE: f32 = 0.99;
-/// Mean strain at rest, beyond the strain by its own weight, above which a body counts as held squeezed by
-/// the bars.
+/// Mean strain above which bodies at rest in the basket count as squeezed by the bars. The strain by the
+/// bodies' own weight is added to this limit.
 const SQUEEZED: f32 = 0.08;
-/// Interval between two evaluations of the strain [ticks]. Squeezing a body in takes longer.
+/// Interval between two evaluations of the strain [ticks]. They take time, and squeezing a body in lasts
+/// longer than this.
 const LOOK: u64 = 4;
 
 /// Progress of a round.
@@ -27,15 +28,15 @@ pub struct Progress {
     pub inside: f32,
     /// Share of the mass in the basket, at rest or moving.
     pub within: f32,
-    /// Mass of the largest piece of each body, as a share of the mass of these pieces at the start. A body
-    /// may start in several pieces.
+    /// Sum of the masses of each body's largest piece, relative to this sum at the start. The sum at the
+    /// start is not the total mass, because a body may start in several pieces.
     pub kept: f32,
     /// Number of pieces.
     pub pieces: usize,
     /// Time for which enough mass has rested in the basket [s].
     pub held: f32,
-    /// Whether the content of the basket was unsqueezed at some moment since enough mass rests there. If so,
-    /// the bars do not clamp it once the hand withdraws.
+    /// Whether the content of the basket was free of squeezing by the bars at some moment since enough mass
+    /// has rested there. If it never was, a win with a torn body counts as [`Route::Mix`].
     pub relaxed: bool,
     /// Outcome, if the round was won.
     pub outcome: Option<Outcome>,
@@ -54,13 +55,13 @@ pub struct Outcome {
     pub ticks: u64,
     /// Route of the win.
     pub route: Route,
-    /// Mass of the largest piece of each body, as a share of the mass at the start.
+    /// Sum of the masses of each body's largest piece, relative to this sum at the start.
     pub kept: f32,
-    /// Share of the mass in the basket.
+    /// Share of the mass at rest in the basket.
     pub inside: f32,
     /// Number of pieces.
     pub pieces: usize,
-    /// Number of pieces outside the basket, without crumbs.
+    /// Number of pieces with their centre outside the basket, except crumbs.
     pub lost: usize,
 }
 
@@ -168,9 +169,9 @@ fn greatest(views: &[Vec<PieceView>]) -> f32 {
     greatest.sum()
 }
 
-/// Returns the largest mean strain of a body under its own weight. The estimate is a column of the body's
-/// height and of its material with the largest ratio of density to stiffness: the stress is ρ g h at the foot
-/// and zero at the top.
+/// Returns the largest mean strain of a body under its own weight. The estimate assumes a column as high as
+/// the body, of the body's material with the largest ratio of density to stiffness. The stress is ρ g h at
+/// the foot of the column and zero at the top.
 fn own_strain<D: Dim>(world: &World<D>, views: &[Vec<PieceView>]) -> f32 {
     let gravity = world.config().gravity;
     let of = |(body, pieces): (&SoftBody<D>, &Vec<PieceView>)| {
@@ -195,7 +196,7 @@ fn total_mass<D: Dim>(world: &World<D>) -> f32 {
         .sum()
 }
 
-/// Returns the mass in a region [kg]: that of nodes at rest, and that of all nodes.
+/// Returns the mass of the nodes in a region [kg]: of those at rest, and of all.
 fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
     let inside = |body: &SoftBody<D>| {
         let (mut resting, mut all) = (0.0, 0.0);
@@ -216,8 +217,8 @@ fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
     bodies.fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1))
 }
 
-/// Returns the mean strain, weighted by volume, of pieces of more than 50 elements whose centre is in a
-/// region.
+/// Returns the mean strain of the elements in a region, weighted by volume. Counts only pieces of more than
+/// 50 elements with their centre in the region.
 fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Shape) -> f32 {
     let (mut sum, mut volume) = (0.0, 0.0);
     for (body, pieces) in world.soft_bodies().iter().zip(views) {

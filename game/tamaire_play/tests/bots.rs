@@ -77,17 +77,17 @@ fn wins(id: &str, kind: BotKind, route: Route, seeds: RangeInclusive<u64>) {
 }
 
 #[test]
-fn squeezing_wins_twenty_of_twenty() {
+fn squeezing_wins_twenty_of_twenty_rounds() {
     wins("classic", BotKind::Squeeze, Route::Squeeze, 1..=20);
 }
 
 #[test]
-fn shaving_wins_twenty_of_twenty() {
+fn shaving_wins_twenty_of_twenty_rounds() {
     wins("classic", BotKind::Shave, Route::Shave, 1..=20);
 }
 
 #[test]
-fn both_routes_win_twenty_of_twenty_in_3d() {
+fn both_routes_win_twenty_of_twenty_rounds_in_3d() {
     wins("classic-3d", BotKind::Squeeze, Route::Squeeze, 1..=20);
     wins("classic-3d", BotKind::Shave, Route::Shave, 1..=20);
 }
@@ -106,7 +106,8 @@ fn is_shaved(id: &str, seeds: RangeInclusive<u64>, least: usize) {
     assert!(count >= least, "{id}: {count}, {outcomes:?}");
 }
 
-/// Levels of which the bot shaves fewer than eighteen of twenty, with the required number.
+/// Levels on which the shaving bot may win fewer than eighteen of twenty rounds, with the required number of
+/// wins.
 const FALLS_SHORT: [(&str, usize); 1] = [("twins", 12)];
 
 #[test]
@@ -118,7 +119,7 @@ fn shaving_wins_every_2d_level_that_offers_it() {
 
 #[test]
 #[ignore = "takes minutes: cargo test --release -p tamaire_play --test bots -- --ignored"]
-fn shaving_wins_eighteen_of_twenty_on_every_level_that_offers_it() {
+fn shaving_wins_eighteen_of_twenty_rounds_on_every_level_that_offers_it() {
     for id in shaved(&NAMED).into_iter().chain(shaved(&NAMED_3D)) {
         let short = FALLS_SHORT.iter().find(|(known, _)| *known == id);
         is_shaved(id, 1..=20, short.map_or(18, |(_, least)| *least));

@@ -121,7 +121,7 @@ fn hand(seed: u64, seconds: usize, rate: f32, grain: f32) -> Vec<InputFrame> {
         }));
         here = there;
     }
-    // A resonator driven by noise.
+    // The tremor is the output of a resonator driven by noise.
     let (pull, decay) = (
         2.0 * (std::f32::consts::TAU * 9.0 / STEPS as f32).cos(),
         0.99,
@@ -155,7 +155,7 @@ fn played_by_hand(frames: Vec<InputFrame>) -> Replay {
 }
 
 #[test]
-fn link_reproduces_a_hand_played_by_mouse_exactly() {
+fn link_reproduces_mouse_input_exactly() {
     let rows = [
         (20, 125.0, 8.0, 80.0),
         (20, 125.0, 1.0, 135.0),
@@ -399,7 +399,7 @@ fn round_from_a_link_can_be_stored() {
 }
 
 #[test]
-fn link_rejects_what_could_not_be_read_again() {
+fn link_of_an_unreadable_replay_is_rejected() {
     let text = played(&open("classic"), BotKind::Idle, 1, 61).text();
     let refused = |from: &str, to: &str| {
         let replay = Replay::read(&text.replacen(from, to, 1)).unwrap();
@@ -449,7 +449,7 @@ fn round_too_long_for_a_link_can_be_stored_as_fragment() {
 }
 
 #[test]
-fn round_in_digits_equals_the_linked_round() {
+fn code_in_digits_restores_the_same_round_as_the_link() {
     let mut round = AnyRound::new(Arc::new(Level::open("classic").unwrap()));
     for tick in 0..120 {
         round.step(InputFrame::towards([0.01 * tick as f32, 0.2, 0.0]));
@@ -466,7 +466,7 @@ fn round_in_digits_equals_the_linked_round() {
         panic!("{code}");
     };
     let Ok(Link::Round(linked)) = Link::read(&replay.link().unwrap()) else {
-        panic!("a link");
+        panic!("expected a link to a round");
     };
     assert_eq!(read, linked);
     assert!(matches!(Link::read(&code[..30]), Err(LinkError::CutShort)));

@@ -1,8 +1,9 @@
 //! Makes a logbook of a million rounds, to measure a report on it.
 //!
-//! `cargo run --release -p tamaire_report --example million -- a.logbook 1000000 300` lets bots play 300 rounds
-//! and writes copies of them as plausible visits at many times. `/usr/bin/time -v tamaire report --csv --json
-//! --out out a.logbook` measures duration and peak memory of a report of it.
+//! `cargo run --release -p tamaire_report --example million -- a.logbook 1000000 300` lets bots play 300
+//! rounds, and writes copies of these rounds as plausible visits spread over many days. `/usr/bin/time -v
+//! tamaire report --csv --json --out out a.logbook` measures duration and peak memory of a report on the
+//! logbook.
 
 use fastrand::Rng;
 use std::error::Error;
@@ -13,7 +14,7 @@ use std::thread;
 use tamaire_logbook::{Entry, Event, Id, Kind, Logbook, Moment, Round, RoundEnd, Visit};
 use tamaire_play::{AnyRound, Bot, BotKind, Level, Route};
 
-/// Level, bot and maximum number of ticks of the rounds played.
+/// Level, bot and maximum number of ticks of each kind of round that bots play.
 const PLAYED: [(&str, BotKind, usize); 8] = [
     ("classic", BotKind::Squeeze, 3600),
     ("classic", BotKind::Shave, 3600),
@@ -117,7 +118,7 @@ fn play_one(name: &str, kind: BotKind, ticks: usize, seed: u64) -> Round {
     }
 }
 
-/// Adds the entries of a visit, in which players learn and often try the other way. Returns its number of
+/// Adds the entries of a visit whose players learn and often try the other route. Returns the number of
 /// rounds.
 fn visit(random: &mut Rng, played: &[Round], days: i64, entries: &mut Vec<Entry>) -> usize {
     let began = moment(random, days);
@@ -173,7 +174,8 @@ fn visit(random: &mut Rng, played: &[Round], days: i64, entries: &mut Vec<Entry>
     number as usize
 }
 
-/// Returns a copy of one of the rounds played, with a result that is plausible for the number of the round.
+/// Returns a copy of one of the rounds played. Its result is plausible for the number of the round within its
+/// visit.
 fn chosen(random: &mut Rng, played: &[Round], number: u32, dare: Option<Route>) -> Round {
     let wins = random.f32() < [0.35, 0.5, 0.6, 0.65][(number as usize - 1).min(3)];
     let tries_dare = random.f32() < 0.4;

@@ -27,8 +27,9 @@ pub fn contradiction(round: &Round) -> Option<(Reason, String)> {
     Some((Reason::Contradictory, what.into()))
 }
 
-/// Runs those rounds of `each` again that have a replay and no stored result, and stores the results. `done`
-/// receives the number of finished rounds.
+/// Runs rounds again and stores the results, except for rounds without a replay or with a stored result.
+/// `each` must pass every round to the function that it receives. `done` receives the number of finished
+/// rounds.
 ///
 /// # Errors
 /// [`Error`], also an error of `each`.
@@ -51,7 +52,8 @@ pub fn run_all(
             let (jobs, tell) = (jobs.clone(), tell.clone());
             scope.spawn(move || work(&jobs, &tell));
         }
-        // The threads end when the channel of rounds or that of results is closed.
+        // Only the worker threads keep these ends of the channels, so that the channels close when the
+        // threads end.
         drop((jobs, tell));
         let all = each(&mut |round| {
             for (round, result) in results.try_iter() {
@@ -78,7 +80,7 @@ pub fn run_all(
 
 fn keep(kept: &mut RerunCache, round: &Round, result: Rerun) -> Result<(), Error> {
     match result {
-        // Not stored: another version of the program may support this level.
+        // Not stored: another version of the program may support the rules and the level of this replay.
         Rerun::Foreign(_) => Ok(()),
         result => kept.add(round, result),
     }

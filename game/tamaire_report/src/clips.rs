@@ -19,6 +19,7 @@ pub struct Clips {
 
 impl Clips {
     /// Makes the clips of the last day, one for each route. `replays` are the replays of [`Figures::best`].
+    /// `done` receives the number of clips made so far.
     pub fn of(
         figures: &Figures,
         replays: &[String],
@@ -39,7 +40,7 @@ impl Clips {
     }
 }
 
-/// Makes a clip of a replay that gives its recorded result.
+/// Makes a clip of a replay, unless the replay diverges from its hashes when run again.
 fn film(fragment: &str, clip: Clip<'_>) -> Result<Vec<u8>, String> {
     if fragment.is_empty() {
         return Err("the round has no replay, or a very long one".into());

@@ -17,20 +17,20 @@ pub enum Strategies {
     Few,
     /// Both strategies.
     Both,
-    /// Almost only this route.
+    /// Only this route reached the minimum share; [`Route::Mix`] if neither strategy reached it.
     Only(Route),
 }
 
-/// Whether visitors won without an explanation.
+/// Evidence on whether visitors win without an explanation.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Unexplained {
     /// Too few visits to tell.
     Few,
-    /// More than half of all visits won: the 95 % interval lies above one half.
+    /// More than half of all visits won: the 95 % confidence interval of their share lies above one half.
     Most,
-    /// The 95 % interval contains one half.
+    /// The 95 % confidence interval of the share of visits that won contains one half.
     Half,
-    /// Less than half of all visits won: the 95 % interval lies below one half.
+    /// Less than half of all visits won: the 95 % confidence interval of their share lies below one half.
     Minority,
 }
 
@@ -59,7 +59,7 @@ pub fn strategies(figures: &Figures) -> Strategies {
     }
 }
 
-/// Returns whether visitors won without an explanation.
+/// Returns the evidence on whether visitors win without an explanation.
 pub fn unexplained(figures: &Figures) -> Unexplained {
     let total = &figures.total;
     let [low, high] = interval(total.visits_won, total.visits);

@@ -18,8 +18,8 @@ impl CsvRow {
         row.end()
     }
 
-    /// Appends a cell with an untrusted text. An apostrophe is put before a text that a spreadsheet would
-    /// take for a formula.
+    /// Appends a cell with an untrusted text. If a spreadsheet would take the text for a formula, an
+    /// apostrophe is put before it.
     pub fn text(mut self, text: &str) -> Self {
         let formula = ['=', '+', '-', '@', '\t', '\r', '\n'];
         // Some programs treat full-width signs like ASCII ones.

@@ -21,7 +21,7 @@ pub struct Draft {
 }
 
 impl Drafts {
-    /// Starts in a folder, which is created if it does not exist.
+    /// Prepares a folder for new files. Creates the folder if it does not exist.
     ///
     /// # Errors
     /// [`Error::Unwritable`].
@@ -36,12 +36,12 @@ impl Drafts {
             is_new,
             all,
         };
-        // Fails now if the folder is not writable, not after an hour of work.
+        // An unwritable folder is reported now, not after an hour of work.
         draft_in(&drafts.folder)?;
         Ok(drafts)
     }
 
-    /// Starts a file.
+    /// Starts a file that will have this name in the folder.
     ///
     /// # Errors
     /// [`Error::Unwritable`].

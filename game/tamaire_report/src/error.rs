@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-/// Reason why a report was not made. No file of the report is left, except `reruns.jsonl`, from which the
-/// next report continues.
+/// Reason why a report was not made. An earlier report in the folder stays unchanged, except for
+/// `reruns.jsonl`, from which the next report continues.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// No logbook was given.
@@ -26,7 +26,7 @@ pub enum Error {
         /// Last day.
         to: crate::Day,
     },
-    /// The report cannot be written.
+    /// A file or folder of the report cannot be written, or the stored results cannot be read.
     #[error("{path}: cannot be written: {reason}")]
     Unwritable {
         /// Path of the file or folder.

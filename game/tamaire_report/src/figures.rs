@@ -103,7 +103,7 @@ pub struct Wins {
     pub all: u64,
     /// Rounds won by squeezing the whole body in.
     pub squeeze: u64,
-    /// Rounds won by shaving.
+    /// Rounds won by shaving bits off the body.
     pub shave: u64,
     /// Rounds won by a mix of both.
     pub mix: u64,
@@ -132,11 +132,12 @@ pub struct Hour {
 pub struct LevelFigures {
     /// Name of the level in the logbooks.
     pub level: String,
-    /// Hash of the level in hexadecimal. An easier variant of the level has another one.
+    /// Hash of the level in hexadecimal. It differs between a level and its easier variant.
     pub level_hash: String,
     /// Rounds by result.
     pub rounds: Wins,
-    /// Median playing time of its won rounds [s]. For an even count, the lower of the two middle values.
+    /// Median playing time of the level's won rounds [s]. For an even count, the lower of the two middle
+    /// values.
     pub median_win: Option<f64>,
     /// Map of the hand positions, if rounds were run again.
     pub hands: Option<Heat>,
@@ -160,10 +161,10 @@ pub struct Heat {
     pub seconds: Vec<f64>,
 }
 
-/// Distribution of times.
+/// Distribution of the playing times to the first win.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Times {
-    /// Number of visits with a known time.
+    /// Number of visits with a win.
     pub visits: u64,
     /// Quantiles 0.1, 0.25, 0.5, 0.75 and 0.9 [s].
     pub quantiles: Option<[f64; 5]>,
@@ -171,7 +172,7 @@ pub struct Times {
     pub bins: Vec<Bin>,
 }
 
-/// Number of visits with a time from `from` (inclusive) to `to` (exclusive).
+/// Number of visits whose time lies within two limits.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
 pub struct Bin {
     /// Lower limit, inclusive [s].
@@ -185,13 +186,12 @@ pub struct Bin {
 /// Routes of the first and the second win of visits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Switching {
-    /// For each route of the first win (squeeze, shave, mix): the visits, by the route of their second win.
-    /// The remaining visits did not win again.
+    /// Visits by the route of their second win, for each route of the first win: squeeze, shave, mix. `all`
+    /// includes visits that did not win again.
     pub after: [Wins; 3],
     /// Number of visits whose second win took another route than the first.
     pub switched: u64,
-    /// Number of those visits without a suggestion from the game after the first win, up to and including the
-    /// round of the second.
+    /// Number of these visits in which the game made no suggestion between the first and the second win.
     pub switched_undared: u64,
 }
 
@@ -206,7 +206,7 @@ pub struct Dares {
     pub won_otherwise: u64,
     /// Number of visits in which the game made the suggestion.
     pub visits: u64,
-    /// Visits that won by the suggested route, in a round before which it was suggested.
+    /// Number of visits that won a round by the route suggested before that round.
     pub visits_as_dared: u64,
 }
 
@@ -245,7 +245,7 @@ pub struct Best {
 pub struct Basis {
     /// Number of logbooks read.
     pub files: u64,
-    /// Number of rows whose id had been read already; they are counted once.
+    /// Number of rows whose id had been read already. Rows with the same id count once.
     pub repeated_rows: u64,
     /// Number of visits without an end: interrupted, or still going on.
     pub visits_without_end: u64,
@@ -255,8 +255,8 @@ pub struct Basis {
     pub is_rerun: bool,
     /// Number of rounds that gave the recorded result when run again.
     pub rerun: u64,
-    /// Number of rounds counted unchecked: without a replay, or with other rules or another level than this
-    /// program has.
+    /// Number of rounds counted unchecked: without a replay, or with rules or a level that this program does
+    /// not have.
     pub not_rerun: u64,
     /// Rounds that were not counted.
     pub refused: Vec<Refused>,
@@ -279,13 +279,13 @@ pub struct Refused {
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reason {
-    /// The values of its row contradict each other.
+    /// The values of the round's row contradict each other.
     Contradictory,
-    /// Its replay cannot be decoded.
+    /// The round's replay cannot be decoded.
     Unreadable,
-    /// Its replay diverges from the recorded hashes when run again.
+    /// The round's replay diverges from the recorded hashes when run again.
     Astray,
-    /// Its replay ends with another result than its row.
+    /// The round's replay ends with another result than the row has.
     Differs,
 }
 
@@ -306,7 +306,8 @@ impl Wins {
         self.squeeze + self.shave + self.mix
     }
 
-    /// Returns the rounds won by squeezing, by shaving and by both, and those not won.
+    /// Returns the numbers of rounds won by squeezing, by shaving and by a mix of both, and of rounds not
+    /// won.
     pub fn parts(&self) -> [u64; 4] {
         let lost = self.all.saturating_sub(self.won());
         [self.squeeze, self.shave, self.mix, lost]

@@ -15,7 +15,8 @@ pub fn escaped(text: &str) -> String {
             '>' => safe += "&gt;",
             '"' => safe += "&quot;",
             '\'' => safe += "&#39;",
-            // Removes bidirectional control characters, which would affect the rest of the page.
+            // Bidirectional control characters are removed: they would affect the text that follows on the
+            // page.
             '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}' => {}
             _ if letter.is_control() => safe.push(' '),
             _ => safe.push(letter),

@@ -1,5 +1,5 @@
-//! Stored results of rounds that were run again. The file has one line of JSON per round; an interrupted
-//! report continues from it.
+//! Stored results of rounds that were run again. The file has one line of JSON per round. After an
+//! interruption, the next report continues from the file.
 
 use crate::Error;
 use crate::rerun::Rerun;
@@ -124,7 +124,7 @@ impl RerunCache {
             if line.last() != Some(&b'\n') {
                 break;
             }
-            // Lines with other rules are kept in the file but not used.
+            // Lines of other versions of the rules stay in the file but are not used.
             if let Ok(Line { head, .. }) = serde_json::from_slice(&line)
                 && head.rules == VERSION
             {

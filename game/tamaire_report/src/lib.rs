@@ -3,16 +3,17 @@
 //!
 //! The modules, each of which uses only those above it:
 //!
-//! - Input: [`day`] days and hours in local time, [`error`] errors, [`options`] the options of a report
-//! - Counting: [`figures`] all figures, `spread` medians and bins, `visits` each visit once, `story` summary
-//!   of a visit, `tally` from rows to figures
-//! - Running rounds again: `room` map of a level, `rerun` one round, `kept` stored results, `check` all
-//!   rounds, `heat` hand positions
-//! - Output: `drafts` files that appear when complete, `csv` and `tables` for analysis, `plot` SVG plots,
-//!   `html` elements, `reading` comparison with 2004, `words` texts, `clips`, `page`
+//! - Input: [`day`] (days and hours in local time), [`error`] (errors), [`options`] (options of a report)
+//! - Counting: [`figures`] (all figures), `spread` (medians and histograms), `visits` (each visit once),
+//!   `story` (summary of a visit), `tally` (from rows to figures)
+//! - Running rounds again: `room` (map of a level), `rerun` (one round), `kept` (stored results), `check`
+//!   (all rounds), `heat` (hand positions)
+//! - Output: `drafts` (files that appear when all are complete), `csv` and `tables` (for analysis), `plot`
+//!   (SVG plots), `html` (elements), `comparison_2004` (comparison with the observations of 2004), `words`
+//!   (texts), `clips`, `page`
 //! - [`report`](mod@report): all steps in order
 //!
-//! Rows are read one at a time, and only the values that the summary of their visit needs are kept in memory.
+//! Rows are read one at a time. Only the values that the summary of each visit needs are kept in memory.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [s]

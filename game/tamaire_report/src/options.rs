@@ -3,7 +3,7 @@
 use crate::Day;
 use tamaire_play::Replay;
 
-/// Function that makes a small animated GIF of a round.
+/// Function that makes a small animated GIF of a round. The page shows an error instead of the clip.
 pub type Clip<'a> = &'a dyn Fn(&Replay) -> Result<Vec<u8>, String>;
 
 /// Options of a report.
@@ -15,14 +15,14 @@ pub struct Options {
     pub csv: bool,
     /// Whether `report.json`, which has all figures, is written beside the page.
     pub json: bool,
-    /// First day to count. A visit belongs to the day on which it began, in the local time of its stand, with
-    /// all of its rounds. `None` sets no limit.
+    /// First day to count. A visit counts with all of its rounds for the day on which it began, in the local
+    /// time of its stand. `None` sets no limit.
     pub from: Option<Day>,
     /// Last day to count. `None` sets no limit.
     pub to: Option<Day>,
     /// Whether all rounds are run again. Rounds with another result than recorded are not counted, and the
-    /// page shows the hand positions. Results are stored in `reruns.jsonl` beside the page, so that a later
-    /// report continues from there.
+    /// page shows the hand positions. The results are stored in `reruns.jsonl` beside the page, so that a
+    /// later report runs only rounds without a stored result.
     pub rerun: bool,
 }
 
@@ -32,7 +32,7 @@ pub enum Language {
     /// English.
     #[default]
     English,
-    /// 日本語
+    /// Japanese (日本語).
     Japanese,
 }
 

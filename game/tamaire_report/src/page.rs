@@ -13,13 +13,13 @@ use tamaire_play::{Level, Route};
 
 /// Maximum number of levels in plots.
 const LEVELS: usize = 12;
-/// Maximum number of rows of a table and of listed rounds that do not count.
+/// Maximum number of rows of a table, and of rounds in the list of uncounted rounds.
 const ROWS: usize = 40;
-/// Content security policy: the page loads nothing, even if a text from a logbook gets past the escaping.
+/// Content security policy. Even if a text from a logbook gets past the escaping, the page loads nothing.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 
-/// Returns the page. `strokes` are the objects in the rooms of the levels, in the order of
-/// [`Figures::levels`]; empty without a map.
+/// Returns the page. `strokes` has an entry for each of [`Figures::levels`]: the objects in the room of the
+/// level, or nothing if the level has no map.
 pub fn page(words: &Words, figures: &Figures, strokes: &[Vec<Stroke>], clips: &Clips) -> String {
     let (code, title) = (words.code, escaped(words.title));
     let css = include_str!("page.css");
@@ -206,7 +206,7 @@ fn dares(words: &Words, figures: &Figures) -> String {
 }
 
 fn per_visit(words: &Words, figures: &Figures) -> String {
-    // Up to the last entry with a visit, but at least to five rounds.
+    // The last column is the largest number of rounds of a visit, but at least five.
     let last = figures
         .rounds_per_visit
         .iter()
@@ -437,8 +437,8 @@ fn title_of(words: &Words, level: &LevelFigures) -> String {
     level_title(words, &level.level, &level.level_hash)
 }
 
-/// Returns the title of a built-in level, or the name of another one. Four digits of the hash follow unless
-/// it is the built-in version.
+/// Returns the title of a built-in level, or the name of any other level. The last four digits of the hash
+/// follow if the level is not exactly the built-in version.
 fn level_title(words: &Words, name: &str, hash: &str) -> String {
     let digits = &hash[hash.len().saturating_sub(4)..];
     let Ok(level) = Level::open(name) else {

@@ -19,7 +19,7 @@ const LINE: RGBColor = RGBColor(0xE6, 0xD8, 0xC8);
 const EDGE: RGBColor = RGBColor(0xC2, 0xAD, 0x98);
 const WOOD: RGBColor = RGBColor(0x92, 0x7A, 0x70);
 
-/// Colours of a map, from little time to much.
+/// Colours of the cells of a map, from short to long times.
 const SHADES: [RGBColor; 6] = [
     RGBColor(0xFD, 0xE6, 0xCF),
     RGBColor(0xFB, 0xC9, 0xA6),
@@ -35,13 +35,13 @@ type Drawn = Result<(), Box<dyn Error>>;
 /// Fill of an area. The fills also differ by pattern, for colour-blind readers.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Fill {
-    /// Plain red: squeezed, and visits.
+    /// Plain red: rounds won by squeezing. In plots of visits: visits.
     Squeeze,
     /// Blue with stripes: rounds won by tearing bits off the body.
     Shave,
     /// Yellow with dots: a mix of both.
     Mix,
-    /// Pale: not won, and rounds.
+    /// Pale with an outline: rounds not won. In the plot by hour: rounds.
     Pale,
 }
 
@@ -101,7 +101,7 @@ pub struct Columns<'a> {
     pub is_stacked: bool,
     /// Titles of the horizontal and the vertical axis.
     pub axes: [&'a str; 2],
-    /// Vertical line: its position in columns from the left edge, and its label.
+    /// Vertical line: its distance from the left edge in columns, and its label.
     pub mark: Option<(f64, String)>,
 }
 
@@ -188,7 +188,8 @@ impl Columns<'_> {
     }
 }
 
-/// Returns a plot with a bar of full width for each row, divided by share, with a label above it.
+/// Returns a plot with one bar of full width per row, divided into the shares of the row's four results. The
+/// label of a row stands above its bar.
 pub fn shares(rows: &[(String, [u64; 4])], axis: &str) -> String {
     const ROW: u32 = 46;
     let height = 50 + ROW * rows.len() as u32;
@@ -240,12 +241,12 @@ pub fn shares(rows: &[(String, [u64; 4])], axis: &str) -> String {
     })
 }
 
-/// Returns a map of the hand positions and the objects in the room.
+/// Returns a map of the hand positions and the objects in the room of a level.
 pub fn map(heat: &Heat, strokes: &[Stroke], axes: [&str; 2]) -> String {
     let rows = heat.seconds.len() / heat.columns.max(1);
     let [wide, high] = [heat.columns, rows].map(|count| count as f32 * heat.cell);
     let inner = WIDTH - 66 - 14;
-    // A room may be long and narrow.
+    // The height is limited, because a room may be long and narrow.
     let height = (inner as f32 * high / wide).clamp(60.0, 900.0);
     let scale = inner as f32 / wide;
     let [low, far] = [heat.low, [heat.low[0] + wide, heat.low[1] + high]];
@@ -303,8 +304,8 @@ pub fn map(heat: &Heat, strokes: &[Stroke], axes: [&str; 2]) -> String {
     })
 }
 
-/// Merges adjacent cells of one shade in a row: row, first and last column, shade. Cells without time are
-/// left out.
+/// Merges adjacent cells of the same shade within a row. Returns the row, the first and the last column, and
+/// the shade of each run. Cells without time are left out.
 fn runs(heat: &Heat) -> Vec<(usize, usize, usize, usize)> {
     let most = heat.seconds.iter().copied().fold(0.0, f64::max);
     let shade = |seconds: f64| {

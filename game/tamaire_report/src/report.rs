@@ -1,4 +1,4 @@
-//! From logbooks to a page.
+//! All steps from logbooks to a finished report.
 
 use crate::check::{contradiction, run_all};
 use crate::clips::Clips;
@@ -33,11 +33,11 @@ pub struct Report {
 
 /// Writes a report on logbooks into the folder `out`, which is created if it does not exist: `index.html`,
 /// and the files chosen by the options. A row that occurs in several logbooks counts once. With `clip`, the
-/// page shows the best rounds of the last day.
+/// page shows the best rounds of the last day as animated GIFs.
 ///
 /// # Errors
-/// [`Error`]; then the files in the folder are unchanged, except `reruns.jsonl`, from which the next report
-/// continues.
+/// [`Error`]; then the files in the folder are unchanged, except for `reruns.jsonl`, from which the next
+/// report continues.
 pub fn report(
     files: &[PathBuf],
     out: &Path,
@@ -110,7 +110,7 @@ pub fn report(
     })
 }
 
-/// State of counting.
+/// State while rounds and events are counted.
 struct Count {
     tally: Tally,
     kept: Option<RerunCache>,
@@ -287,7 +287,8 @@ fn each_round(
     Ok(repeated)
 }
 
-/// Moves the maps of hand positions to their levels. Returns the objects in the room of each level.
+/// Moves the maps of hand positions to the figures of their levels. Returns the objects in the room of each
+/// level.
 fn draw(figures: &mut Figures, heats: &mut Heats) -> Vec<Vec<Stroke>> {
     let levels = figures.levels.iter_mut();
     let drawn = levels.map(|level| match heats.take(&level.level, &level.level_hash) {

@@ -12,20 +12,20 @@ use tamaire_play::{Outcome, Playback, Replay, ReplayError};
 
 /// Duration of a tick [s].
 pub const TICK: f64 = 1.0 / 60.0;
-/// Tolerance of the playing time in a row, which was stored in single precision [s].
+/// Tolerance when playing times are compared [s]. The time in a row was stored in single precision.
 const SAME_TIME: f64 = 0.05;
 
 /// Result of running a replay again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rerun {
-    /// The replay matched its hashes; its final state.
+    /// The replay matched its hashes. Holds the final state.
     Ran(RerunResult),
-    /// The replay diverged from its hashes; the reason.
+    /// The replay diverged from its hashes. Holds the reason.
     Astray(String),
-    /// The replay cannot be decoded; the reason.
+    /// The replay cannot be decoded. Holds the reason.
     Unreadable(String),
-    /// The replay has other rules or another level than this program; the reason.
+    /// The replay has rules or a level that this program does not have. Holds the reason.
     Foreign(String),
 }
 
@@ -39,14 +39,14 @@ pub struct RerunResult {
     kept: f32,
     inside: f32,
     pieces: usize,
-    /// Whether the round went on after its recorded part, whose length is limited.
+    /// Whether the replay has the maximum length. The round may have gone on after it.
     is_cut: bool,
     /// Number of ticks that a hand spent in each cell of the level's [`Grid`].
     pub cells: Vec<(u16, u32)>,
 }
 
 impl Rerun {
-    /// Runs the replay of a row.
+    /// Runs the replay of a row, given as the text [`Round::replay`].
     pub fn of(fragment: &str) -> Self {
         let run = || match Replay::of_fragment(fragment) {
             Ok(replay) => run(replay),
@@ -57,7 +57,7 @@ impl Rerun {
         result.unwrap_or_else(|_| Self::Unreadable("the replay makes the simulation panic".into()))
     }
 
-    /// Returns the reason why a row with this result does not count, if it does not.
+    /// Returns the reason for not counting `row`, whose replay gave this result; `None` if the row counts.
     pub fn objection(&self, row: &Round) -> Option<(Reason, String)> {
         match self {
             Self::Ran(ran) => ran.difference(row).map(|what| (Reason::Differs, what)),

@@ -7,7 +7,7 @@ use tamaire_play::{AnyRound, Level};
 /// Number of cells along the longer side of a room.
 const CELLS: f32 = 64.0;
 
-/// Grid of a map.
+/// Grid of square cells over the room of a level.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Grid {
     /// Horizontal and vertical axis of the map: x and y in 2D; x and z in 3D, which is seen from above.
@@ -167,8 +167,8 @@ fn closed(of: ObjectKind, mut points: Vec<[f32; 2]>) -> Stroke {
     }
 }
 
-/// Returns the convex hull of points: along the lower side to the right, and back along the upper one [Andrew
-/// 1979].
+/// Returns the convex hull of points: along the lower side in the direction of +x, and back along the upper
+/// side [Andrew 1979].
 fn hull(mut points: Vec<[f32; 2]>) -> Vec<[f32; 2]> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let there = half_hull(points.iter().copied());
@@ -197,7 +197,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn grid_has_a_cell_for_every_position_and_strokes_for_every_kind() {
+    fn map_has_a_cell_for_every_position_and_a_stroke_for_every_kind() {
         for name in ["classic", "hoop"] {
             let level = Level::open(name).unwrap();
             let grid = Grid::of(&level);

@@ -2,12 +2,13 @@
 
 use crate::figures::{Bin, Times};
 
-/// Maximum number of bins; one more holds longer times.
+/// Maximum number of bins with an upper limit. One more bin holds all longer times.
 const MOST_BINS: f64 = 15.0;
 /// Possible widths of a bin [s].
 const WIDTHS: [f64; 8] = [2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 300.0, 1800.0];
 
-/// Returns the smallest of the sorted numbers such that at least this share of all numbers is not larger.
+/// Returns the smallest of the sorted numbers such that at least a share of `share` of all numbers is equal
+/// or smaller. `None` without numbers.
 pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let place = (share * sorted.len() as f64).ceil() as usize;
     sorted.get(place.saturating_sub(1)).copied()
@@ -19,7 +20,7 @@ pub fn median(mut numbers: Vec<f64>) -> Option<f64> {
     quantile(&numbers, 0.5).map(thousandth)
 }
 
-/// Returns the quantiles and the histogram of times.
+/// Returns the quantiles and the histogram of times [s].
 pub fn times(mut seconds: Vec<f64>) -> Times {
     seconds.sort_by(f64::total_cmp);
     let quantiles = [0.1, 0.25, 0.5, 0.75, 0.9].map(|share| quantile(&seconds, share));
@@ -53,7 +54,7 @@ pub fn thousandth(number: f64) -> f64 {
     (1000.0 * number).round() / 1000.0
 }
 
-/// Returns the 95 % confidence interval of a share, if `some` of `all` were counted [Wilson 1927].
+/// Returns the 95 % confidence interval of the share `some / all` [Wilson 1927].
 pub fn interval(some: u64, all: u64) -> [f64; 2] {
     const Z: f64 = 1.96;
     let n = all.max(1) as f64;

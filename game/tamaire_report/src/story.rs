@@ -32,7 +32,7 @@ pub struct VisitSummary {
     pub to_first_win: Option<f64>,
     /// Route of the second win.
     pub next: Option<Route>,
-    /// Whether a route was suggested between these two wins.
+    /// Whether a route was suggested between the first and the second win.
     pub is_next_dared: bool,
     /// Whether a route was suggested in any round.
     pub is_dared: bool,

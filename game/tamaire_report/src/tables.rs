@@ -46,7 +46,7 @@ const ROUNDS: [&str; 18] = [
 ];
 const EVENTS: [&str; 6] = ["id", "stand", "at", "at_utc_ms", "kind", "text"];
 
-/// `visits.csv`, `rounds.csv` and `events.csv`, being written.
+/// The files `visits.csv`, `rounds.csv` and `events.csv` while they are written.
 #[derive(Debug)]
 pub struct Tables {
     visits: Draft,
@@ -142,7 +142,7 @@ impl Tables {
         self.events.write(row.end().bytes())
     }
 
-    /// Completes the tables.
+    /// Adds the complete tables to `drafts`.
     ///
     /// # Errors
     /// [`Error::Unwritable`].

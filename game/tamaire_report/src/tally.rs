@@ -1,4 +1,5 @@
-//! From rows to figures. Only the values that the summary of a visit needs are kept of a row.
+//! Counting of rows into figures. Of each round, only the values that the summary of its visit needs are
+//! kept.
 
 use crate::day::hour;
 use crate::figures::{Best, Count, Figures, Hour, LevelFigures, Pieces, Totals, Wins};
@@ -11,17 +12,17 @@ use std::collections::{BTreeMap, HashMap};
 use tamaire_logbook::{Event, Round, RoundEnd};
 use tamaire_play::Route;
 
-/// Last index of [`Figures::rounds_per_visit`].
+/// Last index of [`Figures::rounds_per_visit`]. Visits with more rounds count there.
 const MOST_ROUNDS: usize = 20;
-/// Number of pieces above which [`Figures::pieces`] has a single entry.
+/// Number of pieces above which [`Figures::pieces`] has one entry for all larger numbers.
 const MOST_PIECES: u32 = 128;
-/// Maximum length of a stored replay [bytes]. Replays of fast wins are shorter.
+/// Maximum length of a replay that is kept for a clip [bytes]. Replays of fast wins are shorter.
 const LONG_REPLAY: usize = 1 << 16;
 
 /// Key of a level: its name and its hash.
 pub type LevelKey = (String, u64);
 
-/// Running counts.
+/// Counts of the rounds and events added so far.
 #[derive(Debug)]
 pub struct Tally {
     figures: Figures,
@@ -38,7 +39,7 @@ struct LevelTally {
     won_in: Vec<f32>,
 }
 
-/// Totals, and the times for their median.
+/// Totals of several visits, and their times to the first win, from which the median is computed.
 #[derive(Default)]
 struct Sum {
     totals: Totals,
@@ -83,7 +84,8 @@ impl Tally {
         }
     }
 
-    /// Counts a round of the visit with this index and note.
+    /// Counts a round that belongs to `visit`, which is at index `place`. With `keeps_replays`, keeps the
+    /// replay if the round is one of the best.
     pub fn round(
         &mut self,
         round: &Round,
@@ -230,7 +232,7 @@ impl Tally {
         self.best.insert((day, route), (best, replay));
     }
 
-    /// Counts a visit as a whole.
+    /// Adds a visit to the figures that depend on all of its rounds.
     fn tell(&mut self, note: &VisitEntry, plays: &[RoundSummary], story: &VisitSummary) {
         let figures = &mut self.figures;
         figures.hours[hour(note.began)].visits += 1;

@@ -1,4 +1,4 @@
-//! The visits of all logbooks, each once, even if several files contain it.
+//! Visits of all logbooks. Each visit counts once, even if several files contain it.
 
 use crate::{Day, Options};
 use std::collections::HashMap;
@@ -54,8 +54,9 @@ impl Visits {
         }
     }
 
-    /// Adds a row. Of repeated rows the first counts, unless its language is empty: a round created that row,
-    /// and another row has the true beginning. The end is taken from the first row that has one.
+    /// Adds a row. Of several rows with the same id, the first counts. If its language is empty, a round
+    /// created it, and the next row with a language replaces it. The end comes from the first row that has
+    /// one.
     pub fn add(&mut self, visit: &Visit) {
         let language = self.languages.number(&visit.language);
         let Some(&place) = self.places.get(&visit.id) else {
@@ -73,8 +74,8 @@ impl Visits {
         }
     }
 
-    /// Returns the index of a round's visit, if the visit counts. A visit without a row is created, beginning
-    /// with the first of its rounds that is read.
+    /// Returns the index of a round's visit, if the visit counts. If no row of the visit was read, the visit
+    /// is created and begins with this round.
     pub fn of(&mut self, round: &Round) -> Option<u32> {
         let place = match self.places.get(&round.visit) {
             Some(&place) => place,

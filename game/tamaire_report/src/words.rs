@@ -20,15 +20,16 @@ pub struct Words {
     pub days: fn(&Figures) -> String,
     /// Text of a page without a visit.
     pub nothing: &'static str,
-    /// Labels of the four numbers: visits, rounds, share that won, median time to the first win.
+    /// Labels of the four numbers at the top of the page: visits, rounds, share that won, median time to the
+    /// first win.
     pub numbers: [&'static str; 4],
-    /// Text below a share: `some` of `all`.
+    /// Text below a share, from a number and its total: `12 of 30`.
     pub of: fn(u64, u64) -> String,
     /// Replacement for a missing number.
     pub none: &'static str,
     /// Formats a time [s].
     pub time: fn(f64) -> String,
-    /// Results of a round: squeezed, shaved, a mix of both, not won.
+    /// Names of the results of a round: squeezed, shaved, a mix of both, not won.
     pub parts: [&'static str; 4],
     /// Name of a route.
     pub route: fn(Route) -> &'static str,
@@ -36,11 +37,11 @@ pub struct Words {
     pub tries: [&'static str; 4],
     /// Formats a number of rounds.
     pub rounds: fn(u64) -> String,
-    /// Comparison with 2004.
+    /// Comparison with the observations of 2004.
     pub reading: Reading,
     /// Plot of visits and rounds by hour.
     pub hours: Plot<fn(&Figures) -> String>,
-    /// Legend of that plot: visits, rounds.
+    /// Legend of the plot by hour: visits, rounds.
     pub hour_series: [&'static str; 2],
     /// Plot of results by level.
     pub by_level: Plot<&'static str>,
@@ -48,24 +49,24 @@ pub struct Words {
     pub by_try: Plot<&'static str>,
     /// Plot of the time to the first win.
     pub first_win: Plot<fn(&Figures) -> String>,
-    /// Label of the median in that plot.
+    /// Label of the median in the plot of the time to the first win. The argument is the median [s].
     pub median: fn(f64) -> String,
     /// Plot of rounds per visit.
     pub per_visit: Plot<fn(&Figures) -> String>,
     /// Plot of the routes of the first and the second win.
     pub switching: Plot<fn(&Switching) -> String>,
-    /// Label of a bar: route of the first win and number of visits.
+    /// Label of a bar in the plot of routes: route of the first win and number of visits.
     pub after: fn(Route, u64) -> String,
-    /// Name of the part that did not win again.
+    /// Legend entry for visits without a second win.
     pub no_more: &'static str,
     /// Plot of rounds with a suggestion from the game.
     pub dares: Plot<fn(&Dares) -> String>,
-    /// Parts of that plot: won as suggested, won another way, not won.
+    /// Legend of the plot of suggestions: won as suggested, won another way, not won.
     pub dare_parts: [&'static str; 3],
     /// Plot of the number of pieces.
     pub pieces: Plot<fn(&Figures) -> String>,
-    /// Map of the hand positions, with the axes in 2D. The arguments of the caption are the number of rounds,
-    /// the time per round in the darkest cell [s] and the width of a cell [cm].
+    /// Map of the hand positions, with the axes of a level in 2D. The arguments of the caption are the number
+    /// of rounds, the time per round in the darkest cell [s] and the width of a cell [cm].
     pub hands: Plot<fn(u64, f64, f64) -> String>,
     /// Vertical axis of a map seen from above, and the sentence added to its caption.
     pub from_above: [&'static str; 2],
@@ -73,25 +74,25 @@ pub struct Words {
     pub no_hands: &'static str,
     /// Table of the best rounds.
     pub best: Plot<&'static str>,
-    /// Columns of that table: day, route, level, time, stand.
+    /// Columns of the table of best rounds: day, route, level, time, stand.
     pub best_columns: [&'static str; 5],
-    /// Text before the id of a round without a clip and the reason.
+    /// Text before the id of a round that has no clip. The reason follows the id.
     pub no_clip: &'static str,
     /// Titles of the tables: stands, days, languages, events.
     pub tables: [&'static str; 4],
-    /// Columns of the tables: visits, rounds, share that won, median.
+    /// Columns of the tables of stands and days: visits, rounds, share that won, median.
     pub columns: [&'static str; 4],
     /// Note on the number of rows left out of a table.
     pub more: fn(usize) -> String,
-    /// Name of a language by its code.
+    /// Name of a language by its code; `None` if the code is unknown.
     pub language: fn(&str) -> Option<&'static str>,
-    /// Name of an event by its kind.
+    /// Name of an event by its kind; `None` if the kind is unknown.
     pub event: fn(&str) -> Option<&'static str>,
     /// Section on the data: title and sentences.
     pub basis: (&'static str, fn(&Basis) -> Vec<String>),
-    /// Text before the list of rounds that do not count.
+    /// Text before the list of rounds that were not counted, from their number.
     pub refused: fn(usize) -> String,
-    /// Name of a reason why a round does not count.
+    /// Text for a reason why a round was not counted.
     pub reason: fn(Reason) -> &'static str,
     /// Footer.
     pub foot: &'static str,
@@ -107,7 +108,7 @@ pub struct Plot<C> {
     pub caption: C,
 }
 
-/// Texts of the comparison with 2004.
+/// Texts of the comparison with the observations of 2004.
 pub struct Reading {
     /// Title.
     pub title: &'static str,
@@ -135,7 +136,7 @@ fn sure(some: u64, all: u64) -> [String; 3] {
     percents.map(|share| format!("{:.0}", 100.0 * share))
 }
 
-/// Returns the hour in which most visits began, and their number.
+/// Returns the hour in which most visits began, and the number of these visits; `None` without a visit.
 fn busiest(figures: &Figures) -> Option<(usize, u64)> {
     let hours = figures.hours.iter().enumerate();
     let most = hours.rev().max_by_key(|(_, hour)| hour.visits);
@@ -143,7 +144,7 @@ fn busiest(figures: &Figures) -> Option<(usize, u64)> {
         .filter(|(_, visits)| *visits > 0)
 }
 
-/// Returns the rounds that ended in two pieces, and in more than 128.
+/// Returns the number of rounds that ended in two pieces, and in more than 128.
 fn halves_and_dust(figures: &Figures) -> [u64; 2] {
     let of = |from: u32| {
         let bin = figures.pieces.iter().find(|bin| bin.from == from);
@@ -152,7 +153,7 @@ fn halves_and_dust(figures: &Figures) -> [u64; 2] {
     [of(2), of(129)]
 }
 
-/// Returns the visits with exactly one round, and with several.
+/// Returns the number of visits with exactly one round, and with several.
 fn once_and_often(figures: &Figures) -> [u64; 2] {
     let often = figures.rounds_per_visit.iter().skip(2).sum();
     [figures.rounds_per_visit.get(1).copied().unwrap_or(0), often]

@@ -7,7 +7,7 @@ use tamaire_sound::{Cue, Menu, Press, Route, Soundscape, Synth};
 
 const RATE: u32 = 48_000;
 
-/// Sounds of a tick of 1/60 s.
+/// Function that starts the cues of a tick (1/60 s) and returns its continuous sounds.
 type Story = fn(tick: u32, synth: &mut Synth) -> Soundscape;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,7 +1,7 @@
-//! Renders ten seconds of all sounds on this machine, as the reference for the module.
+//! Renders ten seconds of all sounds natively, as the reference for the WebAssembly module.
 //!
-//! Writes to standard output, for each 128 frames, little-endian: the length of a message u32, the message,
-//! interleaved left and right samples 256 × f32.
+//! For each block of 128 frames it writes to standard output, in little-endian order: the length of the
+//! block's message (`u32`), the message, and the interleaved left and right samples (256 × `f32`).
 //!
 //! `cargo run --release -p tamaire_sound --features worklet --example reference > reference.bin`
 

@@ -2,7 +2,7 @@
 
 use crate::part::clean;
 
-/// Event with a single sound. Non-finite values are replaced or clamped.
+/// Event with a single sound. Numbers out of range are clamped, and NaN becomes 0.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Cue {
@@ -13,7 +13,7 @@ pub enum Cue {
         /// Position, from −1 at the left edge of the picture to 1 at the right.
         x: f32,
     },
-    /// A tear: one node split, or all of a tick together.
+    /// A tear: a single node split, or all node splits of a tick together.
     Tear {
         /// Released elastic energy [J]; 0.1 for a small split, 10 for a rip through the whole body.
         energy: f32,
@@ -22,7 +22,7 @@ pub enum Cue {
     },
     /// A crumb landed.
     Crumb {
-        /// Impact speed [m/s]; about 1.
+        /// Impact speed [m/s], usually about 1.
         speed: f32,
         /// Position, from −1 to 1.
         x: f32,

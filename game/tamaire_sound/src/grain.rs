@@ -40,10 +40,11 @@ pub(crate) struct Grain {
     pub(crate) pitch: [f32; 2],
     /// Time constant of the glide between both frequencies [s].
     pub(crate) glide: f32,
-    /// Amplitude of the tone, 0 to 1, and its overtone content.
+    /// Amplitude of the tone, 0 to 1, and its overtone content, from 0 (sine) to 1.
     pub(crate) tone: f32,
     pub(crate) edge: f32,
-    /// Amplitude of the noise, 0 to 1, frequency ratio to the tone, and sharpness of its band.
+    /// Amplitude of the noise, 0 to 1; centre frequency of its band, relative to that of the tone; and ratio
+    /// of this centre frequency to the bandwidth.
     pub(crate) noise: f32,
     pub(crate) above: f32,
     pub(crate) sharpness: f32,
@@ -90,7 +91,8 @@ impl Voices {
         self.voices.len()
     }
 
-    /// Starts a grain. At the limit it replaces the faintest one, or is dropped if it is fainter.
+    /// Starts a grain. With [`MOST_VOICES`] grains it replaces the faintest of them, unless the new grain is
+    /// fainter still.
     pub(crate) fn start(&mut self, grain: Grain) {
         let voice = Voice::new(grain, self.rate);
         if self.voices.len() < MOST_VOICES {
@@ -173,7 +175,7 @@ impl Voice {
         }
     }
 
-    /// Returns the present loudness, or the future one while the grain rises.
+    /// Returns the current loudness. A grain that waits or rises counts with its future maximum.
     fn loudness(&self) -> f32 {
         self.grain.gain * if self.rises { 1.0 } else { self.envelope }
     }

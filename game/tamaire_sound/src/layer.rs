@@ -104,7 +104,7 @@ impl Squeak {
 pub(crate) struct Wobble {
     rate: f32,
     squash: Smooth,
-    /// Position [squash] and speed [squash/s] of the weight.
+    /// Position of the weight, in units of squash, and its speed [1/s].
     place: f32,
     speed: f32,
     gain: Smooth,
@@ -176,7 +176,8 @@ impl Chord {
     }
 
     pub(crate) fn add(&mut self, out: &mut [Stereo]) {
-        /// Rises from G to the C with which the jingles begin.
+        /// MIDI note of the lowest voice (G), its rise to the C with which the squeeze jingle begins, and the
+        /// intervals of the voices above the lowest [semitones].
         const LOWEST: f32 = 55.0;
         const RISE: f32 = 5.0;
         const ABOVE: [f32; 4] = [0.0, 4.0, 7.0, 12.0];

@@ -1,7 +1,8 @@
-//! Synthesised sounds of tamaire. The crate does not depend on soft bodies: in each frame the game reports
-//! the sounds to play.
+//! Synthesised sounds of tamaire. The crate does not depend on the engine: in each frame the game reports the
+//! sounds to play.
 //!
-//! - [`Soundscape`]: continuous sounds: hands that press and slip, squash, time held in the basket.
+//! - [`Soundscape`]: continuous sounds: pressing and slipping hands, the squash of the body, the time that it
+//!   has rested in the basket, and music.
 //! - [`Cue`]: momentary sounds: thud, tear, crumb, menu, win.
 //! - [`Synth`]: renders both to samples. It is deterministic: equal calls give equal samples.
 //! - [`Message`]: the calls of a remote synthesiser as bytes (feature `serde`).
@@ -20,7 +21,7 @@
 //! ```
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units are given in brackets: [m]
+#![allow(rustdoc::broken_intra_doc_links)] // units in brackets, such as [m], are no links
 
 mod cue;
 mod part;

@@ -2,7 +2,7 @@
 
 use crate::part::Stereo;
 
-/// Small room: a feedback delay network of four lines [Jot 1991].
+/// Reverb of a small room: a feedback delay network of four lines [Jot 1991].
 pub(crate) struct Room {
     lines: [Line; 4],
 }
@@ -44,8 +44,8 @@ impl Room {
     }
 }
 
-/// High-pass filter for inaudible low frequencies, such as the mean of a tone with many overtones. They would
-/// drive the limiter.
+/// High-pass filter that removes inaudible low frequencies, such as the non-zero mean of a tone with many
+/// overtones. They would make the limiter lower the volume.
 #[derive(Default)]
 pub(crate) struct HighPass {
     mean: Stereo,

@@ -6,8 +6,8 @@ use crate::soundscape::{Soundscape, Volumes};
 use crate::synth::Synth;
 use serde::{Deserialize, Serialize};
 
-/// Space reserved for menus and jingles [bytes]. A cue of the world is dropped if less would remain. Menus
-/// and jingles are few and must not be lost.
+/// Space reserved for menus and jingles [bytes]. They are few and must not be lost, so a thud, tear or crumb
+/// is dropped if less space would remain.
 const FOR_MENUS: usize = 512;
 
 /// Space reserved for soundscapes and volumes [bytes], several times the size of a soundscape. A menu or

@@ -25,7 +25,7 @@ pub(crate) struct Music {
     /// Samples until the next beat.
     left: f32,
     beat: u32,
-    /// Index in the scale of the last note.
+    /// Index of the last note in [`SCALE`].
     place: i32,
 }
 

@@ -1,4 +1,4 @@
-//! Grains of each cue.
+//! Sounds of the cues. Each consists of grains: short sounds of a tone and noise.
 
 use crate::cue::{Cue, Menu, Route};
 use crate::grain::{Bus, Grain, Voices};
@@ -94,7 +94,7 @@ fn tear(energy: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     }
 }
 
-/// Like a grain of rice falling on felt.
+/// Faint, short tick, like a rice grain falling on felt.
 fn crumb(speed: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     let fast = share(speed, 1.0);
     let pitch = noise.between(1300.0, 2800.0);
@@ -142,7 +142,7 @@ const SHAVE: Tune = &[
     (0.72, 91.0),
 ];
 
-/// A mix: the run of the first, then hops like the second.
+/// Mix of both: the run of `SQUEEZE`, then hops like those of `SHAVE`.
 const MIX: Tune = &[
     (0.0, 60.0),
     (0.09, 64.0),
@@ -223,7 +223,7 @@ pub(crate) fn bell(number: f32, delay: f32, gain: f32, ring: f32) -> Grain {
     }
 }
 
-/// Attack of the wooden bar: two octaves higher, and short.
+/// Attack of a bell: two octaves higher and short, like a mallet on a wooden bar.
 pub(crate) fn strike(bell: Grain) -> Grain {
     Grain {
         decay: 0.12 * bell.decay + 0.01,

@@ -23,9 +23,10 @@ pub struct Soundscape {
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Press {
-    /// Contact force [N]; about 400. Louder and higher with larger forces.
+    /// Contact force [N], usually about 400. Larger forces sound louder and higher.
     pub force: f32,
-    /// Slip speed along the body [m/s]; about 0.5. It squeaks only if the hand slips or the force changes.
+    /// Slip speed along the body [m/s], usually about 0.5. A hand squeaks only if it slips or its force
+    /// changes.
     pub slip: f32,
     /// Position, from −1 at the left edge of the picture to 1 at the right.
     pub x: f32,
@@ -38,9 +39,9 @@ pub enum Mute {
     /// Nothing is muted.
     #[default]
     Nothing,
-    /// Sounds of the world are muted, while the game is paused; menus and music continue.
+    /// Mutes the sounds of the world while the game is paused; menus and music continue.
     World,
-    /// Everything is muted, while the window is in the background.
+    /// Mutes everything while the window is in the background.
     Everything,
 }
 
@@ -48,13 +49,13 @@ pub enum Mute {
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Volumes {
-    /// Overall volume.
+    /// Overall volume, default 0.8.
     pub master: f32,
-    /// Sounds of the world.
+    /// Hands, impacts, tears and the other sounds of the world, default 1.
     pub effects: f32,
-    /// Background music.
+    /// Background music, default 0.6.
     pub music: f32,
-    /// Menus and jingles.
+    /// Menus and jingles, default 0.8.
     pub interface: f32,
 }
 

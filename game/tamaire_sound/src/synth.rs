@@ -104,7 +104,7 @@ impl Synth {
         }
     }
 
-    /// Returns the number of active grains, which is bounded.
+    /// Returns the number of short sounds that are playing or waiting, at most 64. A cue consists of several.
     pub fn voice_count(&self) -> usize {
         self.voices.count()
     }

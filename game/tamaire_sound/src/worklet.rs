@@ -1,8 +1,9 @@
 //! The synthesiser of tamaire as a WebAssembly module for an audio worklet. It is a separate module because a
 //! worklet shares no memory with the game and needs only a hundredth of its code.
 //!
-//! `cargo rustc --release -p tamaire_sound --features worklet --crate-type cdylib --target wasm32-unknown-unknown --
-//! -Cstrip=symbols` builds it, and `tools/xtask/web/test/module.mjs` plays it under Node.
+//! `cargo rustc --release -p tamaire_sound --features worklet --crate-type cdylib --target
+//! wasm32-unknown-unknown -- -Cstrip=symbols` builds it, and `tools/xtask/web/test/synth.mjs` compares it
+//! under Node with the native synthesiser.
 //!
 //! A [`Worklet`] has a message buffer and a sample buffer. `game/tamaire/web/worklet.js` fills the first and reads
 //! the second through the [`exports`].

@@ -59,7 +59,8 @@ fn loudness(samples: &[f32]) -> f32 {
     (samples.iter().map(|k| k * k).sum::<f32>() / samples.len() as f32).sqrt()
 }
 
-/// Returns the power-weighted frequency [Hz], from the power of the differences and that of the samples.
+/// Returns the RMS frequency [Hz], from the ratio of the power of the sample differences to that of the
+/// samples.
 fn centroid(samples: &[f32]) -> f32 {
     let power: f32 = samples.iter().map(|k| k * k).sum();
     let difference: f32 = samples.windows(2).map(|k| (k[1] - k[0]).powi(2)).sum();

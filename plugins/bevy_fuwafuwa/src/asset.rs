@@ -6,7 +6,7 @@
 //! # use bevy_fuwafuwa::{SoftBody2d, SoftBody3d};
 //! # let assets: &AssetServer = unimplemented!();
 //! let dice = SoftBody3d::asset(assets.load("dice.vox"));
-//! // With another voxel size than the default:
+//! With a voxel size other than the default:
 //! let small = |settings: &mut VoxelsSettings| settings.voxel_size = 0.01;
 //! let cat = SoftBody2d::asset(assets.load_builder().with_settings(small).load("cat.png"));
 //! ```
@@ -14,7 +14,7 @@
 //! Files are untrusted input. Every file gives either a grid or an error that names the byte position and the
 //! expected content. Sizes are checked against their limits before memory is allocated; a file has at most
 //! [`MAX_FILE_BYTES`]. In a `.vox` file the palette index of a voxel is its material number. A body without
-//! [`crate::component::SoftColours`] uses the colours of the file.
+//! [`crate::component::SoftColours`] uses the colours of its `.vox` file.
 
 use bevy_asset::io::Reader;
 use bevy_asset::{Asset, AssetLoader, AsyncReadExt, LoadContext};
@@ -86,9 +86,9 @@ impl From<ImportError> for VoxelsError {
     }
 }
 
-/// Reads PNG files as [`Voxels<Dim2>`]. Opaque pixels are solid if the picture has transparency, otherwise
-/// dark or strongly coloured pixels are. Bevy's own loader still reads PNG files as images: the requested
-/// asset type selects the loader.
+/// Reads PNG files as [`Voxels<Dim2>`]. If the picture has transparency, opaque pixels are solid; otherwise
+/// dark or strongly coloured pixels are. Bevy's own loader still reads PNG files as images, because the
+/// requested asset type selects the loader.
 #[derive(Copy, Clone, Debug, Default, TypePath)]
 pub struct SilhouetteLoader;
 
@@ -155,7 +155,7 @@ async fn bytes_of(reader: &mut dyn Reader) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Written by hand because the engine's dimension types do not implement `TypePath`.
+/// Implemented by hand, because the derive would require `TypePath` of the engine's dimension types.
 impl<D: Dim> TypePath for Voxels<D> {
     fn type_path() -> &'static str {
         match D::N {

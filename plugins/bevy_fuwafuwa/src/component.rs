@@ -16,8 +16,8 @@ use fuwafuwa::{
 use std::marker::PhantomData;
 
 /// Soft body, made from voxels. It enters the world at the beginning of the next tick, at the pose of its
-/// `Transform`, and gets [`SoftBodyId`] and a mesh. Inserting the component again replaces the body; removing
-/// it or despawning the entity removes the body.
+/// `Transform`, and gets [`SoftBodyId`] and a mesh. Inserting the component again replaces the body. Removing
+/// the component or despawning the entity removes the body.
 #[derive(Component, Clone, Debug)]
 #[component(on_insert = soft_body_arrives::<D>, on_discard = soft_body_leaves::<D>)]
 #[require(Transform, SoftMaterials)]
@@ -38,8 +38,8 @@ pub(crate) enum Source<D: Dimension> {
 pub struct SoftMaterials(pub Vec<Material>);
 
 /// Velocity of a soft body as a whole, or of a rigid body. It is the initial velocity when the body enters
-/// the world and is updated after each tick. Changing it adds the difference to a soft body in the next tick
-/// and sets the velocity of a dynamic rigid body. For other rigid bodies it is read-only.
+/// the world, and it is updated after each tick. If you change it, a soft body gets the difference added in
+/// the next tick, and the velocity of a dynamic rigid body is set. For other rigid bodies it is read-only.
 #[derive(Component, Copy, Clone, Debug, Default, PartialEq)]
 pub struct Velocity {
     /// Velocity of the centre of mass [m/s].
@@ -48,7 +48,8 @@ pub struct Velocity {
     pub angular: Vec3,
 }
 
-/// Impulse applied to a soft body or a dynamic rigid body in the next tick, which removes the component.
+/// Impulse on a soft body or a dynamic rigid body. It is applied in the next tick, and the component is
+/// removed.
 #[derive(Component, Copy, Clone, Debug, PartialEq)]
 pub struct ExternalImpulse {
     /// Impulse [N s].
@@ -72,18 +73,18 @@ pub struct WithoutMesh;
 #[derive(Component, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct SoftBodyId(pub SoftBodyHandle);
 
-/// Rigid body: fixed, kinematic, coupled or dynamic. The shape is given in the frame of the entity, best
-/// centred on the origin; the `Transform` scales, rotates and translates it when it enters the world. After
-/// that the size and all fields stay fixed: insert the component again to change them.
+/// Rigid body: fixed, kinematic, coupled or dynamic. The shape is given in the frame of the entity and should
+/// be centred on the origin. The `Transform` scales, rotates and translates it when it enters the world.
+/// After that the size and all fields stay fixed: insert the component again to change them.
 ///
 /// [`MotionType`] selects the type of motion:
 /// - [`MotionType::Fixed`] bodies do not move.
 /// - [`MotionType::Kinematic`] bodies reach the pose of their `Transform` at the end of the next tick, at constant
 ///   velocity.
-/// - [`MotionType::Coupled`] bodies are pulled to their [`TargetPosition`] without rotating; `Transform` is the position
-///   reached.
-/// - [`MotionType::Dynamic`] bodies are dynamic: they fall, rotate and are pushed by contacts; `Transform` follows
-///   them. See [`RigidBody::dynamic`].
+/// - [`MotionType::Coupled`] bodies are pulled to their [`TargetPosition`] without rotating; their
+///   `Transform` shows the position reached.
+/// - [`MotionType::Dynamic`] bodies fall, rotate and are pushed by contacts; their `Transform` follows them.
+///   See [`RigidBody::dynamic`].
 ///
 /// Writing the `Transform` of a body that is not kinematic teleports it and keeps its velocity.
 #[derive(Component, Clone, Debug, PartialEq)]
@@ -92,10 +93,10 @@ pub struct SoftBodyId(pub SoftBodyHandle);
 pub struct RigidBody<D: Dimension> {
     /// Shape in the frame of the entity.
     pub shape: Shape,
-    /// Coefficient of Coulomb friction; about 0.2.
+    /// Coefficient of Coulomb friction, usually 0.2 to 0.8.
     pub friction: f32,
-    /// Coefficient of restitution, 0 to 1, between two rigid bodies of which at least one is dynamic. The
-    /// larger of the two values is used.
+    /// Coefficient of restitution, 0 to 1, in contacts between two rigid bodies of which at least one is
+    /// dynamic. A contact uses the larger value of the two bodies.
     pub restitution: f32,
     /// Whether the body is a sensor: it has no contact response and sends
     /// [`SensorEntered`](crate::message::SensorEntered) and [`SensorExited`](crate::message::SensorExited).
@@ -116,12 +117,12 @@ pub struct TargetPosition(pub Vec3);
 pub struct RigidBodyId(pub RigidBodyHandle);
 
 impl<D: Dimension> SoftBody<D> {
-    /// Disc (2D) or ball (3D), `across` voxels wide, with a diameter in metres.
+    /// Disc (2D) or ball (3D), `across` voxels wide, with a diameter [m].
     pub fn ball(across: usize, diameter: f32) -> Self {
         VoxelGrid::ball(across, diameter).into()
     }
 
-    /// Square (2D) or cube (3D), `across` voxels wide, with a width in metres.
+    /// Square (2D) or cube (3D), `across` voxels wide, with a width [m].
     pub fn cube(across: usize, width: f32) -> Self {
         VoxelGrid::cube(across, width).into()
     }
@@ -140,7 +141,7 @@ impl<D: Dimension> From<VoxelGrid<D>> for SoftBody<D> {
     }
 }
 
-/// Keeps a failed grid; the error is reported when the body enters the world.
+/// Accepts the result of building a grid. An error is kept and reported when the body would enter the world.
 impl<D: Dimension> From<Result<VoxelGrid<D>, Error>> for SoftBody<D> {
     fn from(grid: Result<VoxelGrid<D>, Error>) -> Self {
         Self {
@@ -188,7 +189,8 @@ impl<D: Dimension> RigidBody<D> {
     }
 
     /// Dynamic rigid body with friction 0.5. The shape must be a ball, box or capsule; the mass [kg] is
-    /// spread evenly over it. The body rotates about the middle of its shape, even if that is not the origin.
+    /// spread evenly over it. The body rotates about the middle of its shape, even if the origin of the
+    /// entity is elsewhere.
     pub fn dynamic(shape: Shape, mass: f32) -> Self {
         let motion_type = MotionType::Dynamic { mass };
         Self::fixed(shape)
@@ -204,12 +206,12 @@ impl<D: Dimension> RigidBody<D> {
         }
     }
 
-    /// Sets the friction.
+    /// Sets the coefficient of friction.
     pub fn with_friction(self, friction: f32) -> Self {
         Self { friction, ..self }
     }
 
-    /// Makes it a sensor.
+    /// Makes the body a sensor.
     pub fn as_sensor(self) -> Self {
         Self {
             is_sensor: true,
@@ -222,7 +224,7 @@ impl<D: Dimension> RigidBody<D> {
         Self { layers, ..self }
     }
 
-    /// Sets the restitution.
+    /// Sets the coefficient of restitution, 0 to 1.
     pub fn with_restitution(self, restitution: f32) -> Self {
         Self {
             restitution,

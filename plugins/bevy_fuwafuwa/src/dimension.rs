@@ -1,4 +1,4 @@
-//! Differences between 2D and 3D in the plugin.
+//! Trait that covers the differences between 2D and 3D.
 
 use crate::asset::{ModelLoader, SilhouetteLoader};
 use crate::surface::Surface;

@@ -16,11 +16,11 @@ pub struct BodyMesh<D: Dimension> {
     mesh: Handle<Mesh>,
     colours: SoftColours,
     surface: D::Surface,
-    /// Pose at the last write if the whole body slept then.
+    /// Pose at the last write, if the whole body slept then; otherwise `None`.
     asleep_at: Option<Pose>,
 }
 
-/// A mesh without triangles.
+/// Returns a mesh without triangles.
 pub fn empty_mesh() -> Mesh {
     let mut mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::all());
     mesh.insert_attribute(Mesh::ATTRIBUTE_POSITION, Vec::<[f32; 3]>::new());
@@ -64,7 +64,8 @@ impl<D: Dimension> BodyMesh<D> {
     }
 
     fn write_places(&self, mesh: &mut Mesh, pose: &Pose) {
-        // Unused vertices lie at the origin, inside the body, so that they do not enlarge the bounds.
+        // Unused vertices are placed at the origin, inside the body, so that they do not enlarge the bounding
+        // box.
         let local = |vertex: Option<Vertex>| vertex.map_or(Vec3::ZERO, |own| pose.local(own.at));
         let back = pose.rotation.inverse();
         let normal = |vertex: Option<Vertex>| vertex.map_or(Vec3::Z, |own| back * own.normal);

@@ -1,4 +1,4 @@
-//! Adds entities to the world and removes them, in the order of the requests.
+//! Adds bodies of entities to the world and removes them, in the order of the requests.
 
 use crate::asset::Voxels;
 use crate::component::{
@@ -27,7 +27,7 @@ enum Entry {
     Entered,
     /// The asset is still loading.
     Waits,
-    /// The component or the entity no longer exists, or the body was removed.
+    /// The component or the entity no longer exists, or the request was to remove a body.
     Left,
 }
 
@@ -43,7 +43,7 @@ pub fn enter_and_leave<D: Dimension>(world: &mut World) {
             Request::AddBody => add_body::<D>(world, entity),
             Request::AddRigid => add_rigid::<D>(world, entity),
             Request::RemoveBody => {
-                // An entity that leaves before its asset is loaded stops waiting.
+                // A body that is removed before its asset is loaded no longer waits for the asset.
                 waiting.retain(|request| *request != (entity, Request::AddBody));
                 remove_body::<D>(world, entity)
             }
@@ -115,7 +115,7 @@ fn add_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Pr
     Ok(Entry::Entered)
 }
 
-/// Returns the materials of a grid; the last one is repeated for all higher numbers.
+/// Returns the materials of a body. The last one is repeated until each material number of the grid has one.
 fn materials_of<D: Dimension>(world: &World, entity: Entity, grid: &VoxelGrid<D>) -> Vec<Material> {
     let materials = world.get::<SoftMaterials>(entity).cloned();
     let SoftMaterials(mut materials) = materials.unwrap_or_default();
@@ -127,7 +127,7 @@ fn materials_of<D: Dimension>(world: &World, entity: Entity, grid: &VoxelGrid<D>
     materials
 }
 
-/// Returns the voxels of an asset if it is loaded.
+/// Returns the voxels of an asset; `None` while it is loading.
 fn find_voxels<D: Dimension>(
     world: &World,
     handle: &Handle<Voxels<D>>,
@@ -146,7 +146,8 @@ fn find_voxels<D: Dimension>(
     }
 }
 
-/// Gives a new body a mesh if the app has meshes. A body that replaces another reuses its mesh.
+/// Gives a new body a mesh, if the app has meshes and the entity is not marked [`WithoutMesh`]. A body that
+/// replaces another reuses its mesh.
 fn show<D: Dimension>(world: &mut World, entity: Entity, of_file: Vec<[f32; 3]>) {
     let is_shown = world.get::<WithoutMesh>(entity).is_none();
     let mut usual = SoftColours::default();
@@ -208,8 +209,8 @@ fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, P
     Ok(Entry::Entered)
 }
 
-/// Returns the point of the shape that becomes the origin in the engine: the middle of a dynamic body, about
-/// which it rotates.
+/// Returns the point of the shape that becomes the origin of the body in the engine. For a dynamic body this
+/// is the middle of the shape, about which it rotates; for others it is the origin of the entity.
 fn middle_of(form: &Shape, motion_type: MotionType) -> Vec3 {
     let [low, high] = form.bounds().map(Vec3::from);
     let middle = 0.5 * (low + high);
@@ -242,7 +243,8 @@ fn remove_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry
     Ok(Entry::Left)
 }
 
-/// Returns the transform of an entity that is about to enter.
+/// Returns the transform of an entity whose body is about to enter the world. Fails if the entity already has
+/// a body, or has a parent.
 fn transform_of(world: &World, entity: Entity) -> Result<Transform, Problem> {
     if world.get::<SoftBodyId>(entity).is_some() || world.get::<RigidBodyId>(entity).is_some() {
         return Err(Problem::Twice);

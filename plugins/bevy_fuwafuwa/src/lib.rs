@@ -25,10 +25,10 @@
 //! - [`SoftQueries`]: ray casts, nearest points, overlaps.
 //! - [`asset`]: shapes from files.
 //!
-//! Internal modules, in the order of a tick: `queue` collects requests to enter and leave, `enter` handles
-//! them, `push` and `steer` apply changed components, `step` runs the tick, `write` updates the components.
-//! `surface` turns a body into vertices, `drawn` writes them into a mesh, and `pose` converts between a
-//! `Transform` and a soft body.
+//! Internal modules, in the order of a tick: `queue` collects requests to enter and leave the world, `enter`
+//! handles them, `push` and `steer` apply changed components, `step` runs the tick, `write` updates the
+//! components. Helpers: `surface` turns a body into vertices, `drawn` writes them into a mesh, and `pose`
+//! converts between a `Transform` and a soft body.
 //!
 //! # Time
 //! Each run of the schedule is one tick of the engine, by default 1/60 s, independent of the clock. The
@@ -39,28 +39,30 @@
 //! # Coordinates
 //! Metres, y up. The origin of a soft body is the middle of its voxel grid. Its `Transform` gives the initial
 //! rotation, translation and uniform scale. After that the `Transform` follows the largest piece as if that
-//! piece were rigid. Writing to it moves and rotates the body at once and leaves its velocity unchanged.
-//! Bodies must not have parents. They may have children, which follow them and need `Visibility` from the
-//! start. Rigid bodies work the same way, but get no mesh: add your own. In 2D only rotation about z is used,
-//! and the z coordinate is never changed by the plugin.
+//! piece were rigid. Writing the `Transform` moves and rotates the body at once and leaves its velocity
+//! unchanged. Bodies must not have parents. They may have children, which follow them and need `Visibility`
+//! from the start. Rigid bodies work in the same way, but get no mesh: add your own. In 2D only rotation
+//! about z is used, and the plugin never changes the z coordinate.
 //!
 //! # Meshes
 //! A soft body gets one `Mesh`, as `Mesh3d` or `Mesh2d`. Add your own material; vertex colours show the voxel
 //! materials. The mesh is created once. After that each tick overwrites positions and normals in the same
-//! buffers. Split nodes come from [`fuwafuwa::SoftBody::changes_since`]; only the triangles of the affected
-//! elements are removed and added, in the free slots. Indices and colours are written only in such ticks, and
-//! nothing is written while a body sleeps. `Assets<Mesh>` sends `Modified` at most once a tick.
+//! buffers. [`fuwafuwa::SoftBody::changes_since`] lists the nodes and elements that a tear has changed; only
+//! the triangles of these elements are replaced, in free slots of the buffers. Indices and colours are
+//! written only in such ticks, and nothing is written while a body sleeps. `Assets<Mesh>` sends `Modified` at
+//! most once a tick.
 //!
 //! # Determinism
 //! Soft and rigid bodies enter the world in the order in which their components were inserted. They leave in
 //! the order in which they were removed or despawned. Both take effect at the beginning of the next tick. The
-//! same commands give the same [`fuwafuwa::World::hash`] as the same calls of the engine. Bodies with an
-//! asset as shape enter once it is loaded: wait for it where determinism matters.
+//! same commands give the same [`fuwafuwa::World::hash`] as the equivalent calls of the engine. A body with
+//! an asset as shape enters once the asset is loaded. Where determinism matters, wait for the asset before
+//! you spawn the body.
 //!
 //! # Errors
 //! A body that cannot be made does not enter the world; everything else continues. Its entity gets
-//! [`Rejected`], and [`message::Rejection`] gives the reason. The same message reports requests that could
-//! not be carried out.
+//! [`Rejected`], and [`message::Rejection`] gives the reason. The same message reports other requests that
+//! could not be carried out.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units are given in brackets: [m]

@@ -1,7 +1,7 @@
-//! Events of a tick, with the entities involved.
+//! Messages about the events of a tick, with the entities involved.
 //!
-//! These are Bevy's buffered messages, read with a `MessageReader`. Bodies without an entity, which were
-//! added directly to the engine, send none; `SoftWorld::engine().events()` has the events of all bodies.
+//! Read them with Bevy's `MessageReader`. Bodies without an entity, which were added directly to the engine,
+//! send none; `SoftWorld::engine().events()` has the events of all bodies.
 
 use crate::problem::Problem;
 use bevy_ecs::entity::Entity;
@@ -9,7 +9,7 @@ use bevy_ecs::message::Message;
 use bevy_math::Vec3;
 use fuwafuwa::{JointHandle, KnifeHandle, PieceId};
 
-/// A node was split: a crack grew.
+/// A node was split, so that a crack grew.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
 pub struct NodeSplit {
     /// The soft body.
@@ -29,15 +29,15 @@ pub struct PieceDetached {
     pub piece: PieceId,
 }
 
-/// Contact force between two bodies during the tick. The bodies are in the order of the engine's
-/// [`Contact::pair`](fuwafuwa::Contact::pair): soft bodies stand before rigid ones.
+/// Two bodies pressed on each other during the tick. Soft bodies come before rigid ones, as in
+/// [`Contact::pair`](fuwafuwa::Contact::pair) of the engine.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
 pub struct Touched {
     /// The first body, or the second one if the first has no entity.
     pub body: Entity,
     /// Piece of `body`; `None` for a rigid body.
     pub piece: Option<PieceId>,
-    /// The other body: rigid, soft, or `body` itself where it folds. `None` if it has no entity.
+    /// The other body: rigid, soft, or `body` itself if it touches itself. `None` if it has no entity.
     pub with: Option<Entity>,
     /// Piece of `with` if it is a soft body.
     pub with_piece: Option<PieceId>,
@@ -64,7 +64,8 @@ pub struct ContactBegan {
     pub speed: f32,
 }
 
-/// A contact between two bodies ended. Resting contacts persist. Not sent if one of the bodies was despawned.
+/// A contact between two bodies ended. A resting contact does not end. Not sent if one of the bodies was
+/// despawned.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct ContactEnded {
     /// The two bodies.
@@ -145,7 +146,7 @@ pub struct Woke {
     pub piece: Option<PieceId>,
 }
 
-/// A piece became non-finite and was stopped permanently.
+/// A piece got non-finite positions or velocities and was stopped permanently.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Quarantined {
     /// The soft body.
@@ -157,7 +158,7 @@ pub struct Quarantined {
 /// A request could not be carried out and was ignored.
 #[derive(Message, Clone, Debug, PartialEq)]
 pub struct Rejection {
-    /// Entity of the request; `None` for settings.
+    /// Entity that made the request; `None` for changed settings.
     pub entity: Option<Entity>,
     /// Reason.
     pub problem: Problem,

@@ -23,8 +23,8 @@ use bevy_mesh::Mesh;
 use fuwafuwa::WorldConfig;
 use std::marker::PhantomData;
 
-/// Plugin for soft bodies in 2D or 3D. Add it after `DefaultPlugins`. Without a preceding `AssetPlugin` there
-/// are no meshes and no files, which suits servers and tests.
+/// Plugin for soft bodies in 2D or 3D. Add it after `DefaultPlugins`. If no `AssetPlugin` was added before,
+/// there are no meshes and no shapes from files, which suits servers and tests.
 #[derive(Debug)]
 pub struct FuwafuwaPlugin<D: Dimension> {
     schedule: Interned<dyn ScheduleLabel>,
@@ -32,7 +32,7 @@ pub struct FuwafuwaPlugin<D: Dimension> {
     dim: PhantomData<D>,
 }
 
-/// System sets of a run of the schedule, in this order.
+/// System sets of the plugin. They run in this order, once per run of the schedule.
 #[derive(SystemSet, Copy, Clone, Debug, PartialEq, Eq, Hash)]
 pub enum FuwafuwaSystems {
     /// Adds and removes bodies and applies changed components.
@@ -62,7 +62,7 @@ impl<D: Dimension> FuwafuwaPlugin<D> {
         Self { schedule, ..self }
     }
 
-    /// Sets the initial settings; change [`SoftSettings`] later.
+    /// Sets the initial settings. To change settings later, write to [`SoftSettings`].
     pub fn with_settings(self, settings: WorldConfig) -> Self {
         Self { settings, ..self }
     }

@@ -5,7 +5,8 @@ use bevy_math::{Mat3, Quat, Vec3};
 use bevy_transform::components::Transform;
 use fuwafuwa::{Dim, NodeId, Rotation, Shape, SoftBody, VoxelGrid};
 
-/// Maximum number of iterations for the rotation. From tick to tick one or two suffice.
+/// Maximum number of iterations for the rotation. If it changed little since the last tick, one or two
+/// suffice.
 const ROUNDS: usize = 20;
 /// Convergence tolerance of the rotation [rad].
 const NEAR: f32 = 1e-6;
@@ -30,7 +31,7 @@ pub struct Motion {
 }
 
 impl Pose {
-    /// Converts a transform, or returns the reason why a body cannot have it.
+    /// Converts a transform, or returns the reason why it is invalid for a body.
     pub fn of(transform: &Transform) -> Result<Self, Problem> {
         let Transform {
             translation,
@@ -41,7 +42,7 @@ impl Pose {
             return Err(Problem::Pose("have a finite translation"));
         }
         if !rotation.is_finite() || rotation.length_squared() < 1e-6 {
-            return Err(Problem::Pose("have a rotation"));
+            return Err(Problem::Pose("have a finite, non-zero rotation"));
         }
         let is_even = scale == Vec3::splat(scale.x);
         if !is_even || !scale.x.is_finite() || scale.x <= 0.0 {
@@ -69,7 +70,8 @@ impl Pose {
         self.rotation.inverse() * (at - self.translation) / self.scale
     }
 
-    /// Moves a new body of a scaled grid to this pose. The origin of the pose is the middle of the grid.
+    /// Moves a new body to this pose, so that the middle of its grid is at the translation. The grid must
+    /// already be scaled.
     pub fn place<D: Dim>(&self, body: SoftBody<D>) -> SoftBody<D> {
         let middle = middle(body.grid());
         body.translated((-middle).into())
@@ -124,9 +126,9 @@ pub fn engine_velocity(linear: Vec3, angular: Vec3) -> fuwafuwa::Velocity {
     }
 }
 
-/// Returns pose and velocity of a body. The pose is the rigid motion from rest that fits the nodes of the
-/// largest piece best, weighted by mass. The rotation is found iteratively from the previous one [Mueller
-/// 2016]. The velocity is that of the whole body.
+/// Returns pose and velocity of a body. The pose is the rigid motion from rest that best fits the nodes of
+/// the largest piece, weighted by mass. The rotation is found iteratively, starting from `before` [Mueller
+/// 2016]. The velocity is that of the whole body, all pieces together.
 pub fn motion_of<D: Dim>(body: &SoftBody<D>, before: Pose) -> Motion {
     let (size, middle) = (body.grid().voxel_size(), middle(body.grid()));
     let nodes = || body.mesh().nodes();
@@ -135,7 +137,7 @@ pub fn motion_of<D: Dim>(body: &SoftBody<D>, before: Pose) -> Motion {
     for (id, _) in nodes() {
         masses[pieces.of_node(id).index()] += body.node_state(id).2;
     }
-    // The first of the largest pieces, so that equal halves do not alternate.
+    // The first of the largest pieces, so that the result does not alternate between two equal halves.
     let most = masses.iter().fold(0.0f32, |most, &mass| most.max(mass));
     let largest = masses.iter().position(|&mass| mass == most).unwrap_or(0);
 
@@ -179,8 +181,8 @@ fn middle<D: Dim>(grid: &VoxelGrid<D>) -> Vec3 {
     }
 }
 
-/// Returns the rotation R that maximises tr(Rᵀ A): rotates R by the torque of the columns of A on those of R
-/// until it vanishes.
+/// Returns the rotation R that maximises tr(Rᵀ A), with A = `moment`. Each iteration rotates R by the torque
+/// with which the columns of A pull on the columns of R, until the torque vanishes.
 fn nearest_rotation(moment: Mat3, before: Quat) -> Quat {
     let mut rotation = before;
     for _ in 0..ROUNDS {

@@ -11,9 +11,9 @@ pub enum Problem {
     Engine(Error),
     /// The asset of the shape could not be loaded or was removed.
     Asset(String),
-    /// The `Transform` is invalid.
+    /// The `Transform` is invalid. The text completes the sentence "the transform must …".
     Pose(&'static str),
-    /// The entity is already another body.
+    /// The entity already has a soft or rigid body.
     Twice,
 }
 

@@ -62,8 +62,8 @@ pub fn push_bodies<D: Dimension>(
         let mut before = followed.velocity;
         if !followed.is_at(&transform) {
             match displace(&mut world, id, &transform, &mut followed) {
-                // The engine rotated the velocity along with the body. That was not requested, so the
-                // difference is undone below.
+                // The engine has rotated the velocity together with the body. The user did not request that,
+                // so the code below subtracts the difference.
                 Ok(turn) => {
                     before.linear = turn * before.linear;
                     before.angular = turn * before.angular;
@@ -114,7 +114,7 @@ pub fn push_bodies<D: Dimension>(
     }
 }
 
-/// Moves and rotates a body from its last pose to that of a transform. Returns the rotation applied.
+/// Moves and rotates a body from its last pose to the pose of a transform. Returns the rotation applied.
 fn displace<D: Dimension>(
     world: &mut SoftWorld<D>,
     id: SoftBodyHandle,
@@ -124,7 +124,7 @@ fn displace<D: Dimension>(
     let (from, mut to) = (followed.pose, Pose::of(transform)?);
     if transform.scale != followed.transform.scale {
         return Err(Problem::Pose(
-            "keep its scale: a body is of one size once it has entered",
+            "keep its scale: the size of a soft body is fixed once it has entered",
         ));
     }
     let engine = world.engine_mut();
@@ -135,7 +135,7 @@ fn displace<D: Dimension>(
     if by != Vec3::ZERO {
         engine.translate(id, by.into())?;
     }
-    // Without a change by the user the body is not rotated at all, so that no rounding error accumulates.
+    // The body is only rotated if the user changed the rotation; otherwise rounding errors would accumulate.
     let mut turn = Quat::IDENTITY;
     if transform.rotation == followed.transform.rotation {
         to.rotation = from.rotation;

@@ -8,8 +8,8 @@ use bevy_ecs::system::SystemParam;
 use bevy_math::Vec3;
 use fuwafuwa::{ObjectRef, PieceId, QueryFilter, Ray, Shape};
 
-/// Spatial queries on the current state. The first query after a change visits the exposed faces of the bodies
-/// that moved; further queries are cheap.
+/// Spatial queries on the current state. After a change, the first query visits the exposed faces of the
+/// bodies that moved; further queries are cheap.
 #[derive(SystemParam)]
 pub struct SoftQueries<'w, D: Dimension> {
     world: Res<'w, SoftWorld<D>>,
@@ -18,7 +18,7 @@ pub struct SoftQueries<'w, D: Dimension> {
 /// Result of a query.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct QueryHit {
-    /// Entity of the body; `None` if the body has none.
+    /// Entity of the hit body; `None` if the body has none.
     pub entity: Option<Entity>,
     /// Piece of a soft body; `None` for a rigid body.
     pub piece: Option<PieceId>,
@@ -45,7 +45,8 @@ impl<D: Dimension> SoftQueries<'_, D> {
         Some(self.hit(hit))
     }
 
-    /// Returns the closest point of any surface within `max_distance` [m].
+    /// Returns the closest point of any surface within `max_distance` [m], also for a point inside a body.
+    /// `None` if there is none.
     pub fn closest_point(
         &self,
         point: Vec3,
@@ -57,7 +58,7 @@ impl<D: Dimension> SoftQueries<'_, D> {
         Some(self.hit(hit))
     }
 
-    /// Returns the entities that overlap a shape, each once, sorted.
+    /// Returns the entities with a body that overlaps a shape, each once, sorted.
     pub fn overlaps(&self, shape: &Shape, filter: QueryFilter<'_>) -> Vec<Entity> {
         let found = self.world.engine().overlaps(shape, filter).into_iter();
         let entities = found.filter_map(|found| self.entity(found.object));
@@ -67,7 +68,7 @@ impl<D: Dimension> SoftQueries<'_, D> {
         entities
     }
 
-    /// Returns the entity of an object of the engine.
+    /// Returns the entity of an object of the engine; `None` if it has none.
     pub fn entity(&self, object: ObjectRef) -> Option<Entity> {
         match object {
             ObjectRef::RigidBody(rigid) => self.world.entity_of_rigid(rigid),

@@ -1,4 +1,4 @@
-//! Requests to enter and leave the world, in order.
+//! Requests to enter and leave the world, in the order in which they were made.
 
 use bevy_ecs::entity::Entity;
 use bevy_ecs::resource::Resource;
@@ -30,7 +30,8 @@ impl<D: Dim> Default for Queue<D> {
 }
 
 impl<D: Dim> Queue<D> {
-    /// Calls `ask` with the queue of a world, if it has one.
+    /// Calls `ask` with the queue of a Bevy world. Does nothing if the world has no queue, that is, without
+    /// the plugin.
     pub fn of(world: &mut DeferredWorld<'_>, ask: impl FnOnce(&mut Self)) {
         if let Some(mut queue) = world.get_resource_mut::<Self>() {
             ask(&mut queue);
@@ -47,7 +48,7 @@ impl<D: Dim> Queue<D> {
         std::mem::take(&mut self.requests)
     }
 
-    /// Puts waiting requests back, before all newer requests.
+    /// Puts requests that must wait for an asset back, before all newer requests.
     pub fn wait(&mut self, mut waiting: Vec<(Entity, Request)>) {
         waiting.append(&mut self.requests);
         self.requests = waiting;

@@ -51,7 +51,7 @@ pub fn steer_rigids<D: Dimension>(
         };
         if !followed.is_at(&transform) {
             if check(put(&mut world, id, &transform, &followed)) {
-                // Forgets the goal, so that it is sent again from the new position.
+                // Forgets the target position, so that it is sent to the engine again after the move.
                 (followed.transform, followed.goal) = (*transform, None);
             } else {
                 *transform = followed.transform;
@@ -95,7 +95,7 @@ pub fn steer_rigids<D: Dimension>(
     }
 }
 
-/// Moves a rigid body to the pose of a transform; a kinematic one gets it as its target.
+/// Moves a rigid body to the pose of a transform. For a kinematic body the pose becomes its target.
 fn put<D: Dimension>(
     world: &mut SoftWorld<D>,
     id: RigidBodyHandle,
@@ -120,7 +120,7 @@ fn put<D: Dimension>(
         engine.set_target_rotation(id, rotation)?;
         return Ok(());
     }
-    // Without a change by the user the body is not rotated at all, so that no rounding error accumulates.
+    // The body is only rotated if the user changed the rotation; otherwise rounding errors would accumulate.
     let is_turned = transform.rotation != followed.transform.rotation;
     let rotation = if is_turned {
         rotation

@@ -48,7 +48,8 @@ pub fn step<D: Dimension>(mut world: ResMut<SoftWorld<D>>, mut writers: Writers<
 }
 
 impl Writers<'_> {
-    /// Sends an event as a message, unless a body of it has no entity.
+    /// Sends an event as a message. Sends nothing if a body in the event has no entity; only `Touched` allows
+    /// one such body.
     fn tell<D: Dimension>(&mut self, world: &SoftWorld<D>, event: Event) -> Option<()> {
         let of_body = |body| world.entity_of_body(body);
         let of = |object: ObjectRef| match object {
@@ -69,7 +70,7 @@ impl Writers<'_> {
                 self.parted.write(PieceDetached { body, piece });
             }
             Event::ContactForce(contact) => {
-                // One of the bodies may have no entity; the other one is then `body`.
+                // If the first body has no entity, the second one takes its place as `body`.
                 let [first, second] = contact.pair.map(of);
                 let normal = Vec3::from(contact.normal);
                 let ((body, piece), with, normal) = match first {

@@ -15,9 +15,9 @@ pub struct SoftSettings(pub WorldConfig);
 
 /// The engine's world, and the mapping between entities and bodies.
 ///
-/// It gives access to everything without a component, between two ticks: cuts, snapshots, energies, forces on
-/// rigid bodies. Bodies that you add directly to the engine move and collide as usual, but have no entity and
-/// send no messages.
+/// Use it between two ticks for everything that has no component: cuts, snapshots, energies, forces on rigid
+/// bodies. Bodies that you add directly to the engine move and collide as usual, but have no entity and send
+/// no messages.
 #[derive(Resource, Debug)]
 pub struct SoftWorld<D: Dimension> {
     engine: World<D>,
@@ -86,12 +86,13 @@ impl<D: Dimension> SoftWorld<D> {
         &self.engine
     }
 
-    /// Returns the engine's world for changes. If you remove a body there, its entity stays without a body.
+    /// Returns the engine's world for changes. If you remove a body there, its entity stays and has no body
+    /// any more.
     pub fn engine_mut(&mut self) -> &mut World<D> {
         &mut self.engine
     }
 
-    /// Returns the body of an entity, once it has entered.
+    /// Returns the soft body of an entity. `None` before it has entered the world.
     pub fn body_of(&self, entity: Entity) -> Option<SoftBodyHandle> {
         self.bodies.ids.get(&entity).copied()
     }
@@ -101,7 +102,7 @@ impl<D: Dimension> SoftWorld<D> {
         self.bodies.entities.get(&body).copied()
     }
 
-    /// Returns the rigid body of an entity, once it has entered.
+    /// Returns the rigid body of an entity. `None` before it has entered the world.
     pub fn rigid_of(&self, entity: Entity) -> Option<RigidBodyHandle> {
         self.rigids.ids.get(&entity).copied()
     }
@@ -126,12 +127,13 @@ impl<D: Dimension> SoftWorld<D> {
         self.is_paused
     }
 
-    /// Requests a single tick at the next run, even if paused.
+    /// Requests a tick for the next run of the schedule while paused. Repeated calls request one tick in each
+    /// of the following runs.
     pub fn step_once(&mut self) {
         self.single_ticks += 1;
     }
 
-    /// Returns the report of the last tick.
+    /// Returns the engine's report of the last tick, such as the number of split nodes.
     pub fn report(&self) -> StepReport {
         self.report
     }
@@ -147,7 +149,8 @@ impl<D: Dimension> SoftWorld<D> {
         self.has_ticked
     }
 
-    /// Returns the events since the last tick, caused by direct calls of the engine.
+    /// Returns the events of direct calls of the engine since the last tick. They were not sent as messages
+    /// yet.
     pub(crate) fn unsent_events(&self) -> Vec<Event> {
         self.engine
             .events()
@@ -161,7 +164,8 @@ impl<D: Dimension> SoftWorld<D> {
         self.has_ticked
     }
 
-    /// Returns the rigid entities that fell asleep or woke since the last call, and whether they sleep.
+    /// Returns the entities of rigid bodies that fell asleep (`true`) or woke up (`false`) since the last
+    /// call.
     pub(crate) fn follow_sleep(&mut self) -> Vec<(Entity, bool)> {
         let asleep = self.engine.rigid_bodies().entries();
         let asleep = asleep.filter(|(_, rigid)| rigid.is_asleep());

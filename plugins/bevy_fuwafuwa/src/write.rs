@@ -15,18 +15,18 @@ use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
 use fuwafuwa::MotionType;
 
-/// Values last written to the entity. A component that differs was changed by the user.
+/// Component values that the plugin wrote last. A component with another value was changed by the user.
 #[derive(Component, Copy, Clone, Debug)]
 pub struct LastWritten {
     pub pose: Pose,
     pub transform: Transform,
     pub velocity: Velocity,
     pub gravity: f32,
-    /// Offset from the entity's origin to the engine's origin of a rigid body, before rotation [m].
+    /// Position of the engine's origin of a rigid body in the frame of the entity [m].
     pub middle: Vec3,
     /// Target last sent to the engine, world space [m].
     pub goal: Option<Vec3>,
-    /// Whether the whole body slept then.
+    /// Whether the whole body slept at the last write.
     pub is_settled: bool,
 }
 
@@ -48,8 +48,8 @@ impl LastWritten {
         }
     }
 
-    /// Returns whether a transform is bitwise equal to the last one. Comparing bits makes a NaN count as
-    /// changed only once.
+    /// Returns whether a transform is bitwise equal to the last one. NaN is not equal to itself, so a
+    /// comparison of numbers would find a change in every tick.
     pub fn is_at(&self, transform: &Transform) -> bool {
         let bits = |transform: &Transform| {
             let (translation, scale) = (transform.translation, transform.scale);
@@ -102,7 +102,8 @@ pub fn write_bodies<D: Dimension>(
     }
 }
 
-/// Writes pose and velocity of moving rigid bodies; the transform of a kinematic one belongs to the user.
+/// Writes the velocity of all moving rigid bodies, and the pose of coupled and dynamic ones. The transform of
+/// a kinematic body belongs to the user.
 pub fn write_rigids<D: Dimension>(
     world: Res<SoftWorld<D>>,
     mut rigids: Query<
@@ -153,7 +154,7 @@ pub fn write_rigids<D: Dimension>(
     }
 }
 
-/// Updates the meshes.
+/// Updates the meshes of all soft bodies.
 pub fn write_meshes<D: Dimension>(
     world: Res<SoftWorld<D>>,
     meshes: Option<ResMut<Assets<Mesh>>>,

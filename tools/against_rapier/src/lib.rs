@@ -82,13 +82,13 @@ pub struct Drop {
     pub friction: f32,
     /// Number of frames of 1/60 s.
     pub frames: usize,
-    /// Whether bodies may sleep in Rapier. fuwafuwa always lets them sleep; a comparison of a body in one
-    /// piece ends when it falls asleep.
+    /// Whether bodies may sleep in Rapier. In fuwafuwa they always may. A comparison of a body in one piece
+    /// ends when that body falls asleep.
     pub sleeps: bool,
 }
 
 impl Drop {
-    /// A body of 4·10⁵ Pa that falls 1 m; its peak squash is 7 to 8 %.
+    /// Returns a body of 4·10⁵ Pa that falls 1 m; its peak squash is 7 to 8 %.
     pub fn stiff(dim: u8, n: usize) -> Self {
         Self {
             dim,
@@ -104,7 +104,7 @@ impl Drop {
         }
     }
 
-    /// A body of 5000 Pa, as soft as in the game, that falls gently; its peak squash is about 10 %.
+    /// Returns a body of 5000 Pa, as soft as in the game, that falls gently; its peak squash is about 10 %.
     pub fn soft(dim: u8, n: usize) -> Self {
         Self {
             young: 5000.0,
@@ -114,7 +114,7 @@ impl Drop {
         }
     }
 
-    /// The soft body, cut into pieces before a fast fall.
+    /// Returns a disc of 5000 Pa that falls 0.2 m, for [`compare_tear`], which cuts it into pieces first.
     pub fn diced(n: usize) -> Self {
         Self {
             height: 0.2,

@@ -7,7 +7,7 @@ use against_rapier::{Drop, Effort, Result, EngineResult, compare_drop, compare_t
 use clap::{Parser, ValueEnum};
 use serde::Serialize;
 
-/// Voxels along the edge of a piece of the torn disc; gives 390 pieces for a disc of 64 voxels.
+/// Voxels along the edge of a piece of the torn disc; gives 390 pieces for a disc 64 voxels across.
 const PITCH: usize = 3;
 /// Compare the frame times of fuwafuwa and Rapier.
 #[derive(Parser)]
@@ -55,9 +55,9 @@ struct Comparison {
     median: [f64; 2],
     /// Slowest frame time of each engine [ms].
     worst: [f64; 2],
-    /// Median of Rapier divided by median of fuwafuwa.
+    /// Median frame time of Rapier divided by that of fuwafuwa.
     ratio: f64,
-    /// Whether the peak squash of a body in one piece agrees within 2 percentage points.
+    /// Whether the peak squash in both engines agrees within 2 percentage points; `None` for the torn scene.
     equal_squash: Option<bool>,
 }
 
@@ -111,7 +111,7 @@ fn compare_in(scene: Scene, arguments: &Arguments) -> Result<Comparison> {
     };
     drop.frames = arguments.frames.map_or(drop.frames, usize::from);
     let sides = if scene == Scene::Torn {
-        // The small pieces are stiff enough with the default effort.
+        // The default effort suffices here: the small pieces are stiff enough with it.
         compare_tear(&drop, PITCH, Effort::default())?
     } else {
         compare_drop(&drop, |Effort { substeps, sweeps }| {

@@ -47,21 +47,21 @@ const TETRAHEDRA: [&[[usize; 4]]; 2] = [
 ];
 
 impl Simplices<3> {
-    /// Two triangles per voxel.
+    /// Returns two triangles per voxel.
     pub fn triangles(grid: &VoxelGrid<Dim2>) -> Self {
         Self::fill(grid, TRIANGLES)
     }
 }
 
 impl Simplices<4> {
-    /// Five tetrahedra per voxel.
+    /// Returns five tetrahedra per voxel.
     pub fn tetrahedra(grid: &VoxelGrid<Dim3>) -> Self {
         Self::fill(grid, TETRAHEDRA)
     }
 }
 
 impl<const K: usize> Simplices<K> {
-    /// Fills a grid. `splits` are the cells of voxels with an even and an odd sum of coordinates.
+    /// Fills a grid. `splits` are the simplices of a voxel with an even and with an odd sum of coordinates.
     fn fill<D: Dim>(grid: &VoxelGrid<D>, splits: [&[[usize; K]]; 2]) -> Self {
         let voxel_size = grid.voxel_size();
         let share = voxel_size.powi(D::N as i32) / D::CORNERS as f32;
@@ -105,7 +105,7 @@ impl<const K: usize> Simplices<K> {
 /// Lattice points in use, numbered in the order of first use.
 struct Nodes {
     size: Point,
-    /// Number of each lattice point, or [`u32::MAX`].
+    /// Number of each lattice point, or [`u32::MAX`] while it is unused.
     numbers: Vec<u32>,
     points: Vec<Point>,
 }
@@ -167,7 +167,7 @@ mod tests {
         );
     }
 
-    /// The triangle between two voxels must be the same on both sides.
+    /// The two triangles of a shared face must be the same in both voxels.
     #[test]
     fn neighbouring_tetrahedra_share_their_faces() {
         let pair = VoxelGrid::<Dim3>::from_fn([2, 1, 1], 1.0, |_| 1).expect("two voxels");

@@ -7,11 +7,11 @@ use fuwafuwa::{Dim, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, Worl
 use crate::world::{Falling, Span};
 use crate::{Drop, Result, WIDTH};
 
-/// Maximum of the engine's settings.
+/// Largest value that [`WorldConfig::most_substeps`] accepts.
 const MOST_SUBSTEPS: u32 = 1024;
 
-/// Builds a world with an undamped, unbreakable body above a half-space. It gets `substeps` substeps or, for
-/// `None`, the fewest that do not soften it, see [`SoftBody::stiffness_scale`].
+/// Builds a world with an undamped, unbreakable body above a half-space. The world gets `substeps` substeps
+/// or, for `None`, the fewest that do not soften the body, see [`SoftBody::stiffness_scale`].
 pub fn world<D: Dim>(scene: &Drop, substeps: Option<usize>) -> Result<World<D>> {
     let material = Material {
         elasticity: Elasticity {

@@ -1,4 +1,4 @@
-//! Measurements of each engine, with worlds that run alternately.
+//! Results of each engine, and the measurement of worlds that run alternately.
 
 use serde::Serialize;
 
@@ -14,13 +14,13 @@ pub struct EngineResult {
     pub engine: String,
     /// Substeps per frame. Rapier adds up to 4 during fast impacts.
     pub substeps: usize,
-    /// Factor by which the engine lowered Young's modulus.
+    /// Factor by which the engine lowered Young's modulus; 1 if it did not.
     pub stiffness_scale: f64,
     /// Number of pieces at the start.
     pub pieces: usize,
     /// Fraction of the pieces that sleep at the end.
     pub asleep: f64,
-    /// 1 − smallest height / initial height of all soft bodies, over all frames.
+    /// Largest squash of all frames: 1 − height / initial height, of all soft bodies together.
     pub peak_squash: f64,
     /// True if all node positions stayed finite.
     pub finite: bool,
@@ -30,7 +30,7 @@ pub struct EngineResult {
 }
 
 impl EngineResult {
-    /// Returns whether the peak squash agrees within 2 percentage points.
+    /// Returns whether the peak squash of both results agrees within 2 percentage points.
     pub fn equals(&self, other: &Self) -> bool {
         (self.peak_squash - other.peak_squash).abs() <= TOLERANCE
     }
@@ -60,11 +60,11 @@ pub fn fall<const K: usize>(worlds: [Box<dyn Falling>; K], frames: usize) -> [En
     watched.map(|watched| watched.side)
 }
 
-/// A world and its measurements.
+/// World and its measurements.
 pub struct MeasuredWorld {
     world: Box<dyn Falling>,
     height: f32,
-    /// Measurements.
+    /// Measurements so far.
     pub side: EngineResult,
 }
 
@@ -87,7 +87,7 @@ impl MeasuredWorld {
         }
     }
 
-    /// Runs a frame.
+    /// Runs a frame and measures it.
     pub fn step(&mut self) {
         self.side.milliseconds.push(self.world.timed_step());
         let span = self.world.span();

@@ -16,10 +16,10 @@ const SWEEPS: [usize; 4] = [4, 8, 2, 1];
 const MOST_SUBSTEPS: usize = 128;
 
 /// Lets a body fall in both engines, alternating frame by frame; returns the results of fuwafuwa and of
-/// Rapier. Each engine gets the fewest substeps with a peak squash at most 2 percentage points above the
-/// exact one, which is that of unsoftened fuwafuwa. Rapier gets the number of iterations that is then
-/// fastest. `trying` is called before each trial of Rapier. The run lasts at least until the deepest squash
-/// is over, even if that exceeds the frames of the scene.
+/// Rapier. The exact peak squash is that of fuwafuwa with an unsoftened body. Each engine gets the fewest
+/// substeps for which its peak squash exceeds the exact one by at most 2 percentage points. Rapier gets the
+/// number of iterations that is then fastest. `trying` is called before each trial of Rapier. The run lasts
+/// at least until the deepest squash is over, even if that exceeds the frames of the scene.
 ///
 /// # Errors
 /// [`Error`](crate::Error) if the scene is invalid.
@@ -51,7 +51,8 @@ pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[Eng
     Ok(fall([ours, theirs(scene, effort)?], frames))
 }
 
-/// Returns whether the peak squash stays within `limit`, and the median frame time [ms] until then.
+/// Runs a world until its peak squash exceeds `limit`. Returns whether that never happened, and the median
+/// frame time [ms].
 fn stiff(world: Box<dyn Falling>, frames: usize, limit: f64) -> (bool, f64) {
     let mut watched = MeasuredWorld::new(world);
     let is_stiff = (0..frames).all(|_| {
@@ -61,9 +62,9 @@ fn stiff(world: Box<dyn Falling>, frames: usize, limit: f64) -> (bool, f64) {
     (is_stiff, watched.side.median())
 }
 
-/// Returns the fewest substeps in `range` for which a body is stiff, and their median frame time [ms]. Raises
-/// the substeps by a quarter until they suffice, then bisects. Returns `None` if the result is not faster
-/// than `fastest` [ms] or no number suffices.
+/// Returns the fewest substeps in `range` for which a body is stiff enough, and their median frame time [ms].
+/// Raises the substeps by a quarter until they suffice, then bisects. Returns `None` if no number suffices,
+/// or if the result is not faster than `fastest` [ms].
 fn fewest_stiff_substeps(
     range: Range<usize>,
     fastest: f64,
@@ -89,9 +90,9 @@ fn fewest_stiff_substeps(
     Ok(found.filter(|&(_, median)| median < fastest))
 }
 
-/// Returns the frames until the first impact and its deepest squash are over: the fall, six times the time in
-/// which sound crosses the body (a bar with a free end rebounds after four), and some more for a solver
-/// softer than the material.
+/// Returns the number of frames until the first impact and its deepest squash are over. It covers the fall
+/// and six times the time in which sound crosses the body; a bar with a free end rebounds after four. A
+/// quarter of a second is added for a solver softer than the material.
 fn frames_to_peak(scene: &Drop) -> usize {
     const SOFTER: f32 = 0.25;
     let fall = (2.0 * scene.height / scene.gravity).sqrt();
@@ -127,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn enough_returns_the_fewest_stiff_substeps() {
+    fn search_returns_the_fewest_stiff_substeps() {
         let median = |substeps| substeps as f64;
         for (range, least) in [(1..129, 1), (1..129, 51), (8..31, 25), (8..31, 30)] {
             let mut tried = Vec::new();
@@ -143,12 +144,12 @@ mod tests {
             });
             assert_eq!(slow, Ok(None));
         }
-        // The first sufficient number is too slow, but the smallest one is fast enough.
+        // The first number found to suffice is too slow, but the smallest one is fast enough.
         let stiff = |substeps| Ok((substeps >= 25, median(substeps)));
         assert_eq!(fewest_stiff_substeps(8..31, 26.0, stiff), Ok(Some((25, 25.0))));
         let never = |substeps| Ok((false, median(substeps)));
         assert_eq!(fewest_stiff_substeps(8..31, f64::INFINITY, never), Ok(None));
-        // An empty range.
+        // The range is empty.
         assert_eq!(fewest_stiff_substeps(8..8, f64::INFINITY, never), Ok(None));
     }
 

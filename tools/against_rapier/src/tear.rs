@@ -7,9 +7,9 @@ use crate::side::{EngineResult, fall};
 use crate::world::{Falling, plane};
 use crate::{Drop, Effort, Error, Result, WIDTH, disc, ours};
 
-/// Cuts a disc along the vertical and then the horizontal lines of a square lattice and lets the pieces fall,
-/// alternating frame by frame. Returns the results of fuwafuwa and of Rapier. The pieces have contact with
-/// each other as with the floor. Each is `pitch` voxels wide, or less at the rim.
+/// Cuts a disc into squares along the lines of a lattice, first the vertical and then the horizontal ones,
+/// and lets the pieces fall, alternating frame by frame. Returns the results of fuwafuwa and of Rapier. Each
+/// piece is `pitch` voxels wide, or less at the rim. The pieces touch each other as they touch the floor.
 ///
 /// # Errors
 /// [`Error`] if the scene is invalid.
@@ -71,7 +71,7 @@ impl Cut for World<Dim2> {
 }
 
 impl Cut for plane::World {
-    /// Rapier cuts one piece per call.
+    /// Cuts each piece separately: a call of Rapier cuts only one piece.
     fn cut_all(&mut self, blade: [[f32; 2]; 2]) {
         let blade = blade.map(|[x, y]| Vector::new(x, y));
         let bodies = self.rapier.soft_bodies();

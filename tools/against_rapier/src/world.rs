@@ -1,4 +1,5 @@
-//! Rapier's worlds in 2D and 3D. They are two crates with equal names, hence the macro.
+//! Common interface of both engines' worlds, and Rapier's worlds in 2D and 3D. A macro builds the latter:
+//! `rapier2d` and `rapier3d` are two crates with equal names.
 
 use std::f32::consts::PI;
 
@@ -9,7 +10,8 @@ use crate::Drop;
 /// Constitutive model of a cell.
 #[derive(Clone, Copy, Debug)]
 pub enum CellModel {
-    /// Linear elasticity in the corotated frame of the cell.
+    /// Linear elasticity in the corotated frame of the cell; uses Young's modulus and Poisson's ratio of the
+    /// scene.
     Corotational,
     /// Springs along the edges of the cells, and a volume constraint per cell.
     Springs {
@@ -85,7 +87,7 @@ impl Span {
     }
 }
 
-/// World with a falling body.
+/// World with falling soft bodies, in one of the engines.
 pub trait Falling {
     /// Name and version of the engine, and the elements of its bodies.
     fn engine(&self) -> String;
@@ -99,7 +101,7 @@ pub trait Falling {
     /// Substeps per frame.
     fn substeps(&self) -> usize;
 
-    /// Factor by which the engine lowered Young's modulus.
+    /// Factor by which the engine lowered Young's modulus; 1 if it did not.
     fn stiffness_scale(&self) -> f64 {
         1.0
     }
@@ -110,8 +112,8 @@ pub trait Falling {
     /// Fraction of the pieces that sleep.
     fn asleep(&self) -> f64;
 
-    /// Runs a frame and returns its processor time [ms]. Wall-clock time would penalise the slower engine
-    /// more for other load on the machine.
+    /// Runs a frame and returns its processor time [ms]. Wall-clock time would include other load on the
+    /// machine, which penalises the slower engine more.
     fn timed_step(&mut self) -> f64 {
         let start = ThreadTime::now();
         self.step();

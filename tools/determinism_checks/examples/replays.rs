@@ -1,4 +1,4 @@
-//! Records replays for browsers, and verifies replays recorded in browsers.
+//! Records replays to be verified on other platforms, and verifies replays recorded there.
 //!
 //! `cargo run --release -p determinism_checks --example replays -- record FOLDER` plays a series of rounds and
 //! writes their replays into a folder. `… -- verify FOLDER` plays the replays of a folder; it fails if one

@@ -1,5 +1,5 @@
-//! Prints the time of each golden scene on one thread [ms], one per line; `cargo xtask wasm` compares Node
-//! with it.
+//! Prints the time of each golden scene on one thread [ms], one per line. `cargo xtask wasm` compares the
+//! times under Node with these.
 //!
 //! `times [RUNS]` takes the minimum of RUNS runs, by default five.
 

@@ -1,9 +1,9 @@
 //! Exports of the checks for a program that loads this library as a WebAssembly module. The golden scenes are
 //! in [`golden`].
 //!
-//! The interface uses plain numbers only, so that no generated glue is needed. Text goes through an input and
-//! an output buffer, in UTF-8. Fallible functions return 1 for success and 0 for failure; the output then has
-//! the result or the reason.
+//! The interface uses plain numbers only, so that no generated glue code is needed. Text goes through an
+//! input and an output buffer, in UTF-8. Functions that can fail return 1 for success and 0 for failure. The
+//! output then contains the result or the reason for the failure.
 #![allow(unsafe_code)] // only for `no_mangle`
 
 pub mod golden;
@@ -28,7 +28,7 @@ impl State {
         std::str::from_utf8(&self.input).map_err(|error| error.to_string())
     }
 
-    /// Stores the result or the reason in the output.
+    /// Stores the result, or the reason for the failure, in the output. Returns 1 for success.
     fn answer(&mut self, came: Result<String, String>) -> u32 {
         let went_well = came.is_ok();
         self.output = came.unwrap_or_else(|reason| reason);
@@ -73,7 +73,7 @@ pub extern "C" fn checks_series(number: usize) {
     STATE.with_borrow_mut(|state| state.output = series(number).join("\n"));
 }
 
-/// Plays the round named by the input and outputs its replay.
+/// Plays the round that the input names, and outputs its replay.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_record() -> u32 {
     STATE.with_borrow_mut(|state| state.answer(state.text().and_then(record)))
@@ -88,7 +88,7 @@ pub extern "C" fn checks_verify() -> u32 {
     })
 }
 
-/// Starts the round named by the input, to be played tick by tick.
+/// Starts the round that the input names. It is then played tick by tick with `checks_ask` and `checks_step`.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_begin() -> u32 {
     STATE.with_borrow_mut(|state| match state.text().and_then(Game::begin) {
@@ -100,13 +100,13 @@ pub extern "C" fn checks_begin() -> u32 {
     })
 }
 
-/// Lets the bot decide on the next tick.
+/// Computes the bot's input for the next tick.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_ask() {
     STATE.with_borrow_mut(|state| state.game.iter_mut().for_each(Game::ask));
 }
 
-/// Runs a tick. Returns 1 while the round continues.
+/// Runs a tick. Returns 1 if the round continues.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_step() -> u32 {
     STATE.with_borrow_mut(|state| state.game.as_mut().is_some_and(Game::step).into())

@@ -1,8 +1,8 @@
 //! Scenes with results that must be the same, bit by bit, on every platform.
 //!
 //! [`SCENES`] is the only table. The tests of this crate run it natively, on one thread and, with the feature
-//! `parallel`, on several; `cargo xtask wasm` runs it under Node, through the [`exports`](crate::exports). A changed hash
-//! means a changed simulation: give the reason in the commit.
+//! `parallel`, on several. `cargo xtask wasm` runs it under Node, through the [`exports`](crate::exports). A
+//! changed hash means a changed simulation: give the reason in the commit.
 use fuwafuwa::FEWEST_SUBSTEPS;
 use fuwafuwa::Law;
 use fuwafuwa::{
@@ -10,7 +10,7 @@ use fuwafuwa::{
     SoftBody, VoxelGrid, World, WorldConfig,
 };
 
-/// A simulation without input, and its expected hash.
+/// Simulation without input, and its expected hash.
 pub struct Scene {
     /// Short description, for messages.
     pub name: &'static str,
@@ -20,8 +20,8 @@ pub struct Scene {
     pub golden: u64,
 }
 
-/// All scenes. To add one, run the tests: they print the hash they found. This is a static because a constant
-/// would be compiled, engine included, into each crate that uses it.
+/// All scenes. To add one, run the tests: they print the hash they found. The table is a static, because a
+/// constant would be compiled, engine included, into each crate that uses it.
 pub static SCENES: [Scene; 6] = [
     Scene {
         name: "torn disc",
@@ -65,7 +65,8 @@ fn floor<D: Dim>(settings: WorldConfig) -> World<D> {
     world
 }
 
-/// Creates a ball above a floor, a wall, and a hand that will push the ball against the wall and through it.
+/// Creates a ball above a floor, a wall, and a hand. The caller moves the hand so that it presses the ball
+/// against the wall until the ball tears.
 fn torn_world<D: Dim>(n: usize) -> (World<D>, RigidBodyHandle) {
     let mut world = floor::<D>(WorldConfig::default());
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
@@ -95,7 +96,8 @@ fn hash_of_torn_world<D: Dim>(n: usize, ticks: u32) -> u64 {
     world.hash()
 }
 
-/// A soft ball, as in the game, that falls in pieces while a hand tears more off.
+/// Returns the hash of a soft ball, as in the game, that was cut into pieces. They fall while a hand tears
+/// more off.
 fn hash_of_heap() -> u64 {
     let settings = WorldConfig {
         most_substeps: FEWEST_SUBSTEPS,
@@ -139,7 +141,7 @@ fn hash_of_heap() -> u64 {
     world.hash()
 }
 
-/// The elastic force of the paper, without tearing.
+/// Returns the hash of a ball with the elastic force of the paper (Endo 2004), without tearing.
 fn hash_of_paper_law<D: Dim>(n: usize) -> u64 {
     let mut world = floor::<D>(WorldConfig::default());
     let ball = VoxelGrid::ball(n, 1.0).expect("the scene is valid");

@@ -1,9 +1,9 @@
-//! Checks that browsers compute correctly and fast enough, without the game: golden scenes, and rounds played
-//! by bots, recorded natively and verified in the browser (and the reverse).
+//! Rounds played by bots, without the window of the game. They are recorded natively and verified in
+//! browsers, and the reverse. They also show whether a browser computes a tick fast enough.
 //!
-//! `cargo xtask wasm` and `web --test` build it as a WebAssembly module with the profile of the game.
-//! `tools/xtask/golden.mjs` runs it under Node; `tools/xtask/web/test/bits.mjs` and `tools/xtask/web/test/speed.mjs` load it
-//! into browsers through the [`exports`](crate::exports). Natively the example `replays` does the same.
+//! `cargo xtask web --test` builds this crate as a WebAssembly module with the profile of the game.
+//! `bits.mjs` and `speed.mjs` in `tools/xtask/web/test` load it into browsers and use the
+//! [`exports`](crate::exports). The example `replays` records and verifies natively.
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{AnyRound, Bot, BotKind, InputFrame, Level, Playback, Replay};
@@ -13,8 +13,8 @@ pub const ROUNDS: usize = 20;
 /// Maximum number of ticks of a round of a series: ten seconds, enough for a body to tear.
 pub const MOST_TICKS: usize = 600;
 
-/// Returns the rounds of a series, in the format of [`Game::begin`]: every level in 2D and 3D, with other
-/// bots than in the previous and next series, and with distinct seeds.
+/// Returns the rounds of a series, in the format of [`Game::begin`]. They contain every level in 2D and 3D.
+/// The bots differ from those in the previous and next series, and all seeds differ.
 pub fn series(number: usize) -> Vec<String> {
     let levels: Vec<&str> = NAMED.iter().chain(&NAMED_3D).map(|(id, _)| *id).collect();
     let game = |round: usize| {
@@ -43,7 +43,7 @@ impl Game {
     /// Starts a round from `LEVEL BOT SEED`, such as `classic shave 1`.
     ///
     /// # Errors
-    /// Returns the expected format if `text` does not match it.
+    /// Returns the reason if the format, the level, the bot or the seed is invalid.
     pub fn begin(text: &str) -> Result<Self, String> {
         let words: Vec<&str> = text.split(' ').collect();
         let [level, bot, seed] = words[..] else {
@@ -61,7 +61,7 @@ impl Game {
         })
     }
 
-    /// Lets the bot decide on the next tick.
+    /// Computes the bot's input for the next tick.
     pub fn ask(&mut self) {
         self.frame = self.round.ask(&mut self.bot);
     }

@@ -1,4 +1,4 @@
-//! The checks run natively: they cover all rounds, and they detect errors.
+//! Native tests of the checks: they cover all rounds, and they detect errors.
 
 use determinism_checks::rounds::{Game, ROUNDS, record, series, verify};
 use std::collections::BTreeSet;
@@ -12,7 +12,7 @@ fn two_series_play_every_level_with_both_bots() {
         Some(pair)
     });
     let pairs: BTreeSet<&str> = pairs.collect();
-    // 14 levels; the two without a basket are played by only one bot.
+    // There are 14 levels. Only one bot plays the two levels without a basket.
     assert_eq!(pairs.len(), 14 + 12, "{pairs:?}");
     let all: BTreeSet<&String> = first.iter().chain(&second).collect();
     assert_eq!(all.len(), 2 * ROUNDS, "a round occurs twice");

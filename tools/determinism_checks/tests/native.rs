@@ -12,13 +12,13 @@ fn check_all(how: &str) {
 }
 
 #[test]
-fn scene_ends_in_golden_hash_for_each() {
+fn every_scene_ends_in_its_golden_hash() {
     check_all("natively");
 }
 
 #[cfg(feature = "parallel")]
 #[test]
-fn scene_ends_in_golden_hash_for_any_number_of_threads() {
+fn golden_hashes_hold_for_any_number_of_threads() {
     for threads in 1..=8 {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         let pool = pool.build().expect("threads can be started");

@@ -98,8 +98,8 @@ pub fn replay(bytes: &[u8]) -> bool {
     watch(replay)
 }
 
-/// The bytes are the letter for the kind and the payload. The checksum is added here, because it detects
-/// accidental changes only.
+/// Reads a link. `bytes` are the letter of its kind and the payload, without the checksum, which noise would
+/// never match.
 pub fn link(bytes: &[u8]) -> bool {
     let Some((&kind, sent)) = bytes.split_first() else {
         return false;
@@ -143,14 +143,15 @@ pub fn recording(bytes: &[u8]) -> bool {
     }
 }
 
-/// The bytes are the inflated content of a procedure's recording: noise would never match its checksum.
+/// Reads the recording of a procedure. `bytes` are its decompressed content, without the checksum, which
+/// noise would never match.
 pub fn procedure(bytes: &[u8]) -> bool {
     let Ok(recording) = Procedure::read_inside(bytes) else {
         return false;
     };
     let again = Procedure::read(&recording.bytes())
         .expect("a recording that was read can be written and read");
-    // Compared as bytes, because NaN is not equal to itself.
+    // Compares bytes instead of values, because NaN is not equal to itself.
     assert_eq!(again.inside(), recording.inside());
     if recording.case.grid.voxels().count() > FEW_VOXELS {
         return false;
@@ -165,8 +166,8 @@ pub fn procedure(bytes: &[u8]) -> bool {
     is_as_it_was
 }
 
-/// The bytes are the dimension and the state after the header. The checksum is added here, because it detects
-/// accidental changes only.
+/// Loads a snapshot. `bytes` are the dimension and the state, without the checksum, which noise would never
+/// match.
 pub fn snapshot(bytes: &[u8]) -> bool {
     let Some((&dim, state)) = bytes.split_first() else {
         return false;

@@ -1,9 +1,10 @@
 //! Robustness tests with untrusted input. A [`Door`] is an entry point for bytes from outside. It reads and
-//! checks them, and if they make a world, plays a tick. It must neither panic nor take long, and accepted
-//! input must survive being written and read again.
+//! checks the bytes. If they describe a world, it also plays a tick. A door must neither panic nor take long,
+//! and accepted input must survive being written and read again.
 //!
 //! Tests send some noise through each door. `cargo xtask fuzz` sends millions of inputs and looks for new
-//! paths through the program. Both start with the same seeds and with earlier failures (folder `found`).
+//! paths through the program. Both start with the same seeds. The tests also repeat earlier failures (folder
+//! `found`).
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
@@ -13,10 +14,10 @@ pub mod noise;
 mod seeds;
 mod tick;
 
-/// An entry point for untrusted bytes.
+/// Entry point for untrusted bytes.
 #[derive(Copy, Clone)]
 pub struct Door {
-    /// Name of the input.
+    /// Kind of input, such as `png`; the value of DOOR for the fuzzer.
     pub name: &'static str,
     /// Valid input to start from, small enough that thousands of variants are fast.
     pub seeds: fn() -> Vec<Vec<u8>>,
@@ -49,7 +50,7 @@ impl Door {
         Self { name, seeds, enter }
     }
 
-    /// Returns the door of this name.
+    /// Returns the door of this name, or `None`.
     pub fn named(name: &str) -> Option<&'static Self> {
         DOORS.iter().find(|door| door.name == name)
     }

@@ -3,7 +3,7 @@
 use fastrand::Rng;
 use std::collections::BTreeSet;
 
-/// Replacements for numbers.
+/// Replacements for numbers: limits of number types and other values that are often handled wrongly.
 const NUMBERS: [&str; 14] = [
     "0",
     "-1",
@@ -36,7 +36,7 @@ impl Noise {
         Self { rng, seeds, words }
     }
 
-    /// Returns bytes with one to four changes.
+    /// Returns a random seed with one to four changes.
     pub fn bytes(&mut self) -> Vec<u8> {
         let mut bytes = self.any_seed();
         for _ in 0..self.rng.usize(1..=4) {
@@ -82,7 +82,7 @@ impl Noise {
         }
     }
 
-    /// Replaces the next number.
+    /// Replaces the first number at or after the position `at`.
     fn replace_number(&mut self, bytes: &mut Vec<u8>, at: usize) {
         let is_part = |byte: &u8| byte.is_ascii_digit() || b".-".contains(byte);
         let Some(start) = bytes[at..].iter().position(u8::is_ascii_digit) else {

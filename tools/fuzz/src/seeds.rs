@@ -27,7 +27,7 @@ pub const SNAPSHOT_HEADER: [u8; 8] = {
     [b'f', b'u', b'w', b'a', a, b, c, d]
 };
 
-/// A scene with features that the built-in scenes lack.
+/// Scene with features that the built-in scenes lack.
 const RICH: &str = include_str!("rich.toml");
 
 /// Number of voxels across the small bodies.
@@ -244,7 +244,7 @@ fn text_of(scene: &Scene) -> Vec<u8> {
         .into_bytes()
 }
 
-/// Returns the snapshot of a scene after a tick, as the door takes it.
+/// Returns the snapshot of a scene after a tick, in the form that the door takes.
 fn saved<D: Dim>(scene: &Scene) -> Vec<u8> {
     let mut world = scene.build::<D>().expect("a small scene can be built");
     world.step();

@@ -1,4 +1,4 @@
-//! Every door with valid bytes, with earlier failures, and with noise.
+//! Tests of every door with valid bytes, with earlier failures, and with noise.
 
 use fuzz_targets::noise::Noise;
 use fuzz_targets::{DOORS, Door};
@@ -23,7 +23,7 @@ fn found() -> BTreeMap<String, Vec<u8>> {
     files.collect()
 }
 
-/// Passes bytes through a door. If it panics, saves them and names the file.
+/// Passes bytes through a door. If the door panics, saves the bytes and names the file.
 fn enter(door: &Door, bytes: &[u8]) -> bool {
     let entered = catch_unwind(AssertUnwindSafe(|| (door.enter)(bytes)));
     entered.unwrap_or_else(|_| {
@@ -45,7 +45,7 @@ fn every_door_accepts_its_seeds() {
     }
 }
 
-/// Each file is named after its door, for example `settings-one-bad-value-of-thousands`.
+/// Each file name begins with its door, for example `settings-one-bad-value-of-thousands`.
 #[test]
 fn earlier_failures_are_handled_quickly() {
     for (name, bytes) in found() {

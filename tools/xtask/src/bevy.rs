@@ -1,4 +1,4 @@
-//! Bevy plugin, `plugins/bevy_fuwafuwa`: a workspace of its own with its own target folder.
+//! Tasks of the Bevy plugin, `plugins/bevy_fuwafuwa`: a separate workspace with its own target folder.
 
 use crate::packages::{IfMissing, Purpose, provide};
 use crate::shell::{Failure, cargo, execute, root, target};

@@ -59,7 +59,8 @@ pub enum Wanted {
 /// Toolchain for a system.
 pub struct Compiler {
     pub system: &'static System,
-    /// Sources of Debian's standard library, unless the toolchain in use contains a built one.
+    /// Sources of Debian's standard library. `None` if the toolchain in use contains a built standard
+    /// library.
     pub sources: Option<PathBuf>,
 }
 
@@ -77,7 +78,7 @@ impl System {
             && let Err(lacks) = &found
         {
             // Package lists of fresh machines are old or missing. If the update fails, the old lists may
-            // still do.
+            // still suffice.
             apt_get(&["update", "--quiet"]);
             let names = lacks.iter().map(|lack| lack.package.as_str());
             apt_get(&install_arguments(names));
@@ -99,7 +100,7 @@ impl System {
         let runner = (wanted == Wanted::Run).then_some(self.runner);
         let mut lacks: Vec<MissingItem> = programs
             .chain(runner)
-            // An absolute path is checked as it is.
+            // An absolute path is checked as it is, not on the path of programs.
             .filter(|(program, _)| !is_on_path(program))
             .map(|(program, package)| MissingItem::new(format!("{program} not found"), package))
             .collect();
@@ -127,13 +128,14 @@ impl System {
         root().join(target()).join("other").join(self.triple)
     }
 
-    /// Returns the game's release build, if it was built.
+    /// Returns the release build of the game for Windows, if it was built.
     fn handed_out(&self) -> Option<PathBuf> {
         let game = self.folder().join("dist/tamaire.exe");
         game.is_file().then_some(game)
     }
 
-    /// Returns a command that runs a program of this system without access to the user's files.
+    /// Returns a command that runs a program of this system in its emulator. Wine gets a prefix of its own,
+    /// so that it does not touch the user's files.
     fn run(&self, program: &Path) -> Command {
         let mut command = Command::new(self.runner.0);
         command.args(self.words.split_whitespace()).arg(program);
@@ -217,7 +219,7 @@ pub fn check(system: &'static System, if_missing: IfMissing) -> Result<(), Failu
     }
 }
 
-/// Verifies the same rounds with the release build of the game, in a folder with spaces and Japanese
+/// Verifies recorded rounds with the release build of the game, in a folder with spaces and Japanese
 /// characters.
 fn watch_all(system: &System, game: &Path, replays: &Path) -> Result<(), Failure> {
     let folder = replays.join("遊び 場");

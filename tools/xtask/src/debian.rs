@@ -1,5 +1,5 @@
 //! Rust toolchains for other targets. rustup's toolchain builds for a target after `rustup target add`.
-//! Otherwise Debian's packages are used: a compiler, and the sources of its standard library, which cargo
+//! Otherwise Debian's packages are used: a compiler, and the sources of the standard library, which cargo
 //! then builds, too.
 
 use crate::packages::MissingItem;

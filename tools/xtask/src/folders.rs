@@ -5,7 +5,7 @@ use crate::shell::{root, target};
 use std::env;
 use std::path::{Path, PathBuf};
 
-/// Returns local folders with their neutral names. If several apply, the last one counts.
+/// Returns local folders with their neutral names. If a path is in several of them, the last one counts.
 pub fn names() -> Vec<(String, &'static str)> {
     let home = env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| Some(env::home_dir()?.join(".cargo")));

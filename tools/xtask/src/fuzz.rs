@@ -1,5 +1,5 @@
-//! Fuzzing of the entry points ("doors") of `tools/fuzz` with libFuzzer and a stable compiler. cargo-fuzz
-//! needs a nightly compiler only for sanitizers; the coverage passes are part of every LLVM.
+//! Fuzzing of the entry points ("doors") of `tools/fuzz` with libFuzzer. A stable compiler suffices, because
+//! the coverage passes are part of every LLVM; cargo-fuzz needs a nightly compiler only for sanitizers.
 
 use crate::packages::{IfMissing, Purpose, provide};
 use crate::shell::{Failure, cargo, execute, output_of, root, target};
@@ -8,19 +8,21 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-/// Instruments coverage counters and comparisons. With `cfg(fuzzing)` all PNG checksums count as valid.
+/// Compiler flags that add coverage counters and trace comparisons. With `cfg(fuzzing)` all PNG checksums
+/// count as valid.
 const FLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
     -Cllvm-args=-sanitizer-coverage-trace-compares";
 
-/// Limits for a single input [s, MiB].
+/// Time limit for a single input [s].
 const MOST_SECONDS: u32 = 2;
+/// Memory limit for a single input [MiB].
 const MOST_MEMORY: u32 = 1024;
 
 /// Maximum length of an input [bytes].
 const MOST_BYTES: u32 = 1 << 16;
 
-/// Default duration for all doors together [min].
+/// Default duration of a run over all doors [min].
 const MINUTES: f32 = 9.0;
 
 /// Result of fuzzing a door.
@@ -30,7 +32,7 @@ struct Outcome {
     log: String,
 }
 
-/// Fuzzes the named doors, or all, sharing the given number of minutes.
+/// Fuzzes the named doors, or all. The given number of minutes is divided among the doors.
 pub fn run(words: &[String]) -> Result<(), Failure> {
     let (minutes, doors) = parse_arguments(words).map_err(Failure::failed)?;
     provide(&[Purpose::Build, Purpose::Fuzzing], IfMissing::Install);
@@ -145,7 +147,8 @@ fn row(outcome: &Outcome) -> String {
             .trim()
             .to_string()
     };
-    // Last value in lines such as `cov: 50 ft: 60 corp: 10/1Kb`; of `10/1Kb` the first number.
+    // Returns the last value of a name in lines such as `cov: 50 ft: 60 corp: 10/1Kb`. Of `10/1Kb` only the
+    // 10 counts.
     let last = |name: &str| {
         let after = outcome
             .log

@@ -1,9 +1,9 @@
 //! Tests of force feedback against a real Linux kernel in a virtual machine. They check which commands a
 //! device driver receives, and that none follow after a process dies or hangs.
 //!
-//! The machine is QEMU without hardware acceleration, which is not reliably available. Its kernel is that of
-//! Debian or Ubuntu. Kernel and busybox, which starts the test, are unpacked in the target folder and not
-//! installed.
+//! The machine is QEMU without hardware acceleration, because acceleration is not available everywhere. Its
+//! kernel is that of Debian or Ubuntu. Kernel and busybox, which starts the test, are unpacked in the target
+//! folder and not installed.
 
 use crate::packages::{
     self, IfMissing, MissingItem, Purpose, apt_get, install_arguments, list_lacks,
@@ -39,7 +39,7 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
         && let Err(lacks) = &found
     {
         // Package lists of fresh machines are old or missing. If the update fails, the old lists may still
-        // do.
+        // suffice.
         apt_get(&["update", "--quiet"]);
         lacks.iter().for_each(|lack| provide(&folder, lack));
         found = find_guest(&folder);
@@ -58,7 +58,7 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
 /// Contents of the machine except for the test.
 struct Guest {
     kernel: PathBuf,
-    /// Empty if they are built into the kernel, as in Ubuntu's.
+    /// Kernel modules. Empty if they are built into the kernel, as in Ubuntu's.
     modules: Vec<PathBuf>,
     busybox: PathBuf,
 }

@@ -116,7 +116,8 @@ fn soak(words: &[String]) -> Result<(), Failure> {
     )
 }
 
-/// Tests draw into images and open no window; one of them starts a database server.
+/// Purposes of packages for tests: tests draw into images and open no window; one of them starts a database
+/// server.
 const FOR_TESTS: &[Purpose] = &[Purpose::Build, Purpose::Drawing, Purpose::Serving];
 
 /// Arguments of a cargo command, and advice if it fails.
@@ -141,7 +142,7 @@ const CHECK: &[Step] = &[
     ),
 ];
 
-// With all features, as in CHECK, because other features would recompile everything. CHECK covers the
+// All features are enabled, as in CHECK, because other features would recompile everything. CHECK covers the
 // examples.
 const TEST: &[Step] = &[
     (

@@ -7,9 +7,9 @@ use std::process::Command;
 /// Task for the packages.
 #[derive(Debug, PartialEq)]
 pub enum Package {
-    /// Checks that they can be packed, and their contents.
+    /// Packs all crates, and checks the contents and sizes of their packages.
     List,
-    /// Builds them from their packages with the MSRV.
+    /// Builds all crates from their packages with the minimum supported Rust version (MSRV).
     Build,
 }
 
@@ -27,8 +27,8 @@ const CRATES: [(&str, &[&str]); 9] = [
     ("devices/sticks", &["src", "examples"]),
 ];
 
-/// A separate workspace: cargo finds the crates of this one only on a registry. Until they are published,
-/// only the contents of its package can be listed.
+/// Published crate in a separate workspace, with the folders in its package. Cargo can pack it only once the
+/// crates of this workspace are on a registry. Until then, only the contents of its package are checked.
 const BEVY: (&str, &[&str]) = ("plugins/bevy_fuwafuwa", &["src"]);
 
 /// The name of the crate in a folder.
@@ -36,7 +36,7 @@ fn name_of(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
 }
 
-/// Files in a package besides those folders. Cargo writes the first four.
+/// Allowed files of a package outside of its folders. Cargo writes the first four.
 const FILES: [&str; 7] = [
     ".cargo_vcs_info.json",
     "Cargo.lock",
@@ -92,7 +92,7 @@ fn toolchain_of(version: &str) -> Option<Vec<String>> {
 fn pack(words: &[&str], toolchain: &[String]) -> Result<(), Failure> {
     let mut command = match toolchain {
         [] => cargo(),
-        // The running cargo has another version, so rustup must select one.
+        // The running cargo has another version. The `cargo` of rustup can select one.
         _ => Command::new("cargo"),
     };
     command.args(toolchain);
@@ -129,7 +129,7 @@ fn check_list(path: &str, folders: &[&str]) -> Result<(), Failure> {
     }
 }
 
-/// Lists unexpected and missing files of a package.
+/// Returns a complaint for each unexpected and each missing file of a package.
 fn complaints(list: &str, folders: &[&str]) -> Vec<String> {
     let is_meant = |file: &str| match file.split_once(['/', '\\']) {
         Some((folder, _)) => folders.contains(&folder),
@@ -169,7 +169,7 @@ fn size(file: &Path) -> Result<u64, Failure> {
     })
 }
 
-/// Value of a field of `[workspace.package]`.
+/// Returns the value of a field of `[workspace.package]` in the manifest of the workspace.
 fn field(name: &str) -> Result<String, Failure> {
     let manifest = root().join("Cargo.toml");
     let text = std::fs::read_to_string(&manifest);
@@ -205,7 +205,6 @@ mod tests {
         );
     }
 
-    /// Every crate is either packed or marked as private.
     #[test]
     fn crates_are_packed_or_private() {
         let mut seen = 0;
@@ -226,7 +225,6 @@ mod tests {
         assert!(seen > CRATES.len());
     }
 
-    /// All documents name the same MSRV.
     #[test]
     fn documents_name_the_same_msrv() {
         let oldest =

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 /// Reaction to a missing package.
 #[derive(Debug, PartialEq, Clone, Copy)]
 pub enum IfMissing {
-    /// Name it.
+    /// Print its name and continue.
     Say,
     /// Install it with apt-get, after confirmation if there is a terminal.
     Install,
@@ -19,17 +19,17 @@ pub enum IfMissing {
 pub enum Purpose {
     /// Compile the game.
     Build,
-    /// Open its window.
+    /// Open the window of the game.
     Window,
     /// Draw without a window, as tests do.
     Drawing,
     /// Compile the fuzzer.
     Fuzzing,
-    /// Play the game in browsers.
+    /// Run the game in browsers.
     Browsing,
     /// Run a database server that a stand sends to, as tests do.
     Serving,
-    /// Play at a stand on a virtual display.
+    /// Run the game as a stand on a virtual display.
     Staging,
     /// Build a Debian package.
     Packing,
@@ -44,7 +44,7 @@ pub enum Purpose {
 /// Test for an installed package.
 #[derive(Debug, PartialEq, Clone, Copy)]
 enum Seen {
-    /// Its program runs, whatever its source.
+    /// The program runs, whether or not it comes from this package.
     Program(&'static str),
     /// dpkg has installed it.
     Installed,
@@ -56,7 +56,7 @@ struct Package {
     name: &'static str,
     seen: Seen,
     purposes: &'static [Purpose],
-    /// Purpose, for messages.
+    /// Reason why the package is needed, for messages.
     why: &'static str,
 }
 
@@ -74,8 +74,8 @@ const fn package(
     }
 }
 
-/// Determined by building and running in a minimal Debian root. The C compiler is omitted: without it, this
-/// program could not have been linked.
+/// All packages, determined by building and running in a minimal Debian root. The C compiler is omitted: this
+/// program could not have been linked without it.
 #[rustfmt::skip]
 const PACKAGES: &[Package] = {
     use Purpose::{Browsing, Build, Drawing, Fuzzing, Listing, Packing, Paging, Serving, Staging, Window, Zipping};
@@ -175,7 +175,7 @@ pub fn lacking(purposes: &[Purpose]) -> Vec<&'static str> {
     }
 }
 
-/// Arguments of `apt-get` that install these packages without removing others.
+/// Returns arguments with which `apt-get` installs these packages without removing others.
 pub fn install_arguments<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let options = ["install", "--quiet", "--yes", "--no-remove"];
     let options = options.into_iter().chain(["--no-install-recommends"]);
@@ -189,7 +189,7 @@ pub fn apt_get(arguments: &[&str]) -> bool {
     } else {
         let mut sudo = Command::new("sudo");
         if !io::stdin().is_terminal() {
-            // No terminal to enter a password.
+            // Without a terminal, sudo cannot ask for a password.
             sudo.arg("--non-interactive");
         }
         sudo.arg("apt-get");
@@ -229,15 +229,15 @@ fn missing_on_debian(purposes: &[Purpose]) -> Vec<&'static Package> {
     })
 }
 
-/// Whether a package is installed according to dpkg-query's lines of name and status.
+/// Whether a package is installed. `statuses` are lines of name and status from dpkg-query.
 fn is_installed(statuses: &str, name: &str) -> bool {
     // A package of two architectures has two lines.
     let mut lines = statuses.lines().filter_map(|line| line.split_once(' '));
     lines.any(|line| line == (name, "installed"))
 }
 
-/// Lists what is needed on systems without apt. Only programs can be tested: libraries have other names
-/// there, and macOS and Windows have their own.
+/// Lists required packages on systems without apt. Only programs can be tested there. Other Linux systems
+/// name libraries differently, so all libraries are listed; macOS and Windows contain the libraries.
 fn say_elsewhere(purposes: &[Purpose]) {
     let lacks = missing(purposes, |package| match package.seen {
         Seen::Program(program) => answers(program),
@@ -273,7 +273,7 @@ fn agreed(line: &str) -> bool {
     let heard = io::stderr()
         .flush()
         .and_then(|()| io::stdin().read_line(&mut answer));
-    // No bytes, not even an end of line: the terminal was closed.
+    // Zero bytes, without even an end of line, mean that the terminal was closed.
     heard.is_ok_and(|bytes| bytes > 0) && is_yes(&answer)
 }
 
@@ -320,7 +320,7 @@ mod tests {
         );
         check(&[Purpose::Listing], &[], &["nodejs"]);
         check(&[], &[], &[]);
-        // Listed once, although it has both purposes.
+        // The package is listed once, although it has both purposes.
         let window = missing(&[Purpose::Window, Purpose::Drawing], |_| false);
         let mesa = window
             .iter()

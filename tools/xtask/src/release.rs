@@ -1,5 +1,5 @@
-//! Release files: packages for players, and data to verify them. The parts are independent: if one cannot be
-//! built on this machine, it is reported and the others continue.
+//! Release files: packages for players, and data to verify them. If a part cannot be built on this machine,
+//! it is reported and the other parts continue.
 
 mod files;
 mod kit;
@@ -133,7 +133,7 @@ fn make(part: &Part, kit: &mut ReleaseBuild) -> PartResult {
     }
 }
 
-/// Marks a failure as one of this machine if packages are missing, and names them.
+/// If packages are missing, marks a failure as caused by this machine and names the packages.
 fn for_lack(failure: Failure, lacks: &[&str]) -> Failure {
     match lacks {
         [] => failure,
@@ -145,7 +145,7 @@ fn for_lack(failure: Failure, lacks: &[&str]) -> Failure {
     }
 }
 
-/// Refuses a package above the size limit. Archives for systems without packages are exempt.
+/// Refuses a .deb or .zip above the size limit. The .tar.gz for other Linux systems is exempt.
 fn too_large(kit: &ReleaseBuild) -> Result<(), Failure> {
     let is_package = |file: &&PathBuf| {
         file.extension()

@@ -17,7 +17,7 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// Failed step.
+    /// Creates the failure of a step.
     pub fn failed(message: impl Into<String>) -> Self {
         let message = message.into();
         Self {
@@ -26,7 +26,7 @@ impl Failure {
         }
     }
 
-    /// Task that cannot run on this machine.
+    /// Creates the failure of a task that cannot run on this machine.
     pub fn cannot(message: impl Into<String>) -> Self {
         let message = message.into();
         Self {
@@ -44,7 +44,7 @@ pub fn cargo() -> Command {
 pub fn execute(command: &mut Command, hint: &str) -> Result<(), Failure> {
     let line = show(command);
     eprintln!("xtask: {line}");
-    // Never with the status of the command, which could equal `CANNOT`.
+    // The failure never has the status of the command, which could equal `CANNOT`.
     let failure = |how: String| Failure::failed(format!("`{line}` {how}\n       {hint}"));
     match command.current_dir(root()).status() {
         Ok(status) if status.success() => Ok(()),
@@ -53,7 +53,7 @@ pub fn execute(command: &mut Command, hint: &str) -> Result<(), Failure> {
     }
 }
 
-/// Converts an error about a file.
+/// Creates the failure for an error with a file.
 pub fn file_error(path: &Path, error: &dyn std::error::Error) -> Failure {
     Failure::failed(format!("{}: {error}", path.display()))
 }

@@ -46,7 +46,8 @@ tasks:
 
 `wasm`, `web`, `arm`, `windows`, `release`, `kernel`, `stand` and `bevy --pictures` accept
 --install, which installs missing packages of Debian (for `kernel` also of Ubuntu), and for
-`release` also cargo-deny from crates.io. In `release --install [PART …]`, it comes first.
+`release` also cargo-deny from crates.io. In `release --install [PART …]`, it must precede
+the parts.
 
 On Debian and Ubuntu, `play`, `test` and `check` install missing system packages as root or through
 sudo; if there is a terminal, they ask first. With --no-install they only list them.
@@ -174,7 +175,7 @@ fn parts(words: &[&str]) -> Result<Task, String> {
     }
 }
 
-/// Checks an address that file names can be appended to.
+/// Checks that a word is an address to which file names can be appended.
 fn address_of_page(word: &str) -> Result<String, String> {
     let is_whole = word.starts_with("https://") || word.starts_with("http://");
     let is_plain = !word.contains(['"', '<', '>', '&', '#', '?']);

@@ -1,4 +1,4 @@
-//! Changes the version in all files that contain it, without committing.
+//! Changes the version in all files that contain it. Does not commit.
 
 use crate::shell::{Failure, cargo, execute, output_of, root};
 use std::fmt;
@@ -81,7 +81,7 @@ fn manifests() -> Result<Vec<String>, String> {
     Ok(listed.lines().map(str::to_string).collect())
 }
 
-/// Updates the versions by which crates of this repository depend on each other.
+/// Updates the versions that crates of this repository require of each other.
 fn ask_for(version: &Version, old: &Version, manifest: &str) -> String {
     let [version, old] = [version, old].map(|version| format!("version = \"{version}\""));
     let lines = manifest.split_inclusive('\n');
@@ -162,7 +162,7 @@ fn changed(
 mod tests {
     use super::*;
 
-    /// Reads the current files, with an unreleased change added: right after a release there is none.
+    /// Reads the current files and adds an unreleased change, because right after a release there is none.
     fn read(path: &str) -> std::io::Result<String> {
         let text = fs::read_to_string(root().join(path))?;
         let news = format!("{UNRELEASED}\n### Added\n\n- Something.\n");

@@ -1,8 +1,8 @@
 //! Golden scenes on wasm32 under Node: compares their bits with the native ones, and their durations.
 //!
 //! rustup's toolchain builds for wasm32 after `rustup target add wasm32-unknown-unknown`. Otherwise Debian's
-//! packages are used: a compiler, the sources of its standard library, which cargo then builds, too, and a
-//! linker.
+//! packages are used: a compiler, a linker, and the sources of the standard library, which cargo then builds,
+//! too.
 
 use crate::debian;
 use crate::folders;
@@ -12,10 +12,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 pub const TARGET: &str = "wasm32-unknown-unknown";
-/// SIMD of 128 bits. All current browsers have it, but a module cannot choose at run time.
+/// Enables 128-bit SIMD. All current browsers have it, and a module cannot choose at run time.
 const LANES: &str = "-Ctarget-feature=+simd128";
 
-/// Builds and runs the golden scenes; fails if the bits of one differ.
+/// Builds and runs the golden scenes; fails if the bits of a result differ.
 pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
     let compiler = compiler(if_missing, "the golden scenes were NOT run on wasm32")?;
     let module = compile_checks(&compiler)?;
@@ -30,13 +30,13 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
     )
 }
 
-/// Returns the compiler, if Node is there, too. Otherwise the error begins with `undone`, the task that was
-/// not done.
+/// Returns the compiler if it and Node are installed. Otherwise the error begins with `undone`, the task that
+/// was not done.
 pub fn compiler(if_missing: IfMissing, undone: &str) -> Result<Compiler, Failure> {
     let mut found = find_compiler();
     if if_missing == IfMissing::Install && found.is_err() {
         // Package lists of fresh machines are old or missing. If the update fails, the old lists may still
-        // do.
+        // suffice.
         apt_get(&["update", "--quiet"]);
         // Twice, because the matching linker is known only once the compiler is installed.
         for _ in 0..2 {
@@ -54,7 +54,7 @@ pub fn compiler(if_missing: IfMissing, undone: &str) -> Result<Compiler, Failure
 pub enum Compiler {
     /// The toolchain in use, which has the standard library for wasm32.
     Ready,
-    /// Debian's, with this linker.
+    /// Debian's toolchain, with this linker.
     Debian { linker: String },
 }
 
@@ -79,7 +79,7 @@ fn find_compiler() -> Result<Compiler, Vec<MissingItem>> {
     }
 }
 
-/// Returns Debian's compiler, recognized by its version output, or a list of all that is missing for it.
+/// Returns Debian's compiler, recognized by its version output, or everything that is missing for it.
 fn find_debian(
     description: Option<&str>,
     exists: impl Fn(&Path) -> bool,
@@ -101,7 +101,7 @@ fn find_debian(
 
 /// Installs the packages; returns whether that succeeded.
 fn install(lacks: &[MissingItem]) -> bool {
-    // rustc-web conflicts with Debian's rustc and rustup, which must not be removed for it.
+    // The arguments forbid removal: rustc-web conflicts with Debian's rustc and rustup, which must stay.
     let names = lacks.iter().map(|lack| lack.package.as_str());
     apt_get(&install_arguments(names))
 }
@@ -121,7 +121,8 @@ pub fn compile(compiler: &Compiler, words: &[&str]) -> Result<PathBuf, Failure> 
     if let Compiler::Debian { linker } = compiler {
         command
             .arg("-Zbuild-std=std,panic_abort")
-            // No features: the crates for backtraces are among the largest, and browsers show their own.
+            // No features: the crates for backtraces are among the largest, and browsers show backtraces of
+            // their own.
             .arg("-Zbuild-std-features=")
             .envs(debian::ENVIRONMENT)
             .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);

@@ -13,9 +13,9 @@ use std::process::Command;
 /// Task for the web version.
 #[derive(Debug, PartialEq)]
 pub enum Web {
-    /// Builds it, for this address if one is given.
+    /// Builds it. If an address is given, previews of the page refer to it.
     Build(Option<String>),
-    /// Builds and serves it on this machine.
+    /// Builds it and serves it on this machine.
     Serve,
     /// Builds it and tests it in browsers.
     Test,
@@ -47,7 +47,7 @@ pub fn run(web: Web, if_missing: IfMissing) -> Result<(), Failure> {
     }
 }
 
-/// Folder of the tools, the stages and the packed files.
+/// Folder of the intermediate files (`stage`) and of the packed page (`site`).
 pub fn folder() -> PathBuf {
     root().join(target()).join("web")
 }
@@ -79,7 +79,7 @@ fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
     node("pack.mjs", &words, "the folder could not be packed")
 }
 
-/// Installs the npm packages of the lock file.
+/// Installs the npm packages of the lock file, unless they are up to date.
 fn provide_node_modules() -> Result<(), Failure> {
     let here = root().join("tools/xtask/web");
     let stamp = |path: &str| {
@@ -105,7 +105,7 @@ fn node(script: &str, words: &[&Path], hint: &str) -> Result<(), Failure> {
     execute(Command::new("node").arg(script).args(words), hint)
 }
 
-/// Provides browsers and a virtual display as far as possible.
+/// Installs browsers and a virtual display if allowed. Fails if one is missing afterwards.
 fn provide_browsers(if_missing: IfMissing) -> Result<(), Failure> {
     packages::provide(&[Purpose::Browsing], if_missing);
     let programs = ["chromium", "firefox-esr", "xvfb-run"];

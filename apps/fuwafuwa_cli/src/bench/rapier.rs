@@ -1,12 +1,13 @@
-//! Comparison with Rapier. Only this command needs Rapier, which takes minutes to build. So it is a separate
-//! program, which cargo builds on first use; it runs both engines and prints the results.
+//! Comparison with Rapier. Rapier takes minutes to build and only this command needs it. Therefore the
+//! comparison is a separate program, which cargo builds on first use. It runs both engines and prints the
+//! results.
 
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// Source folder of this crate. Release builds set another path, so that they do not depend on the build
-/// folder.
+/// Source folder of this crate. Release builds set `FUWAFUWA_SOURCES`, so that the program does not contain
+/// the path of the build folder.
 const HERE: &str = match option_env!("FUWAFUWA_SOURCES") {
     Some(path) => path,
     None => env!("CARGO_MANIFEST_DIR"),

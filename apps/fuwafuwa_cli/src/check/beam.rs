@@ -6,7 +6,8 @@
 //!   ▓└──────────────────────┘
 //! ```
 //!
-//! The load is small, so the law is linearised at rest; see [`Statics`].
+//! `w` is the tip deflection under the load `P`. The load is small, so the law is linearised at rest; see
+//! [`Statics`].
 
 use super::parallel;
 use super::statics::Statics;
@@ -23,7 +24,7 @@ use fuwafuwa::{Dim, Dim2, Dim3, VoxelGrid};
 const THICKNESS: usize = 16;
 /// Lengths of the beams [thicknesses].
 const LENGTHS: [usize; 3] = [4, 6, 8];
-/// Maximum deviation of the ratio from 1.
+/// Maximum deviation of the ratio of deflections, graded mesh to theory, from 1.
 const TOLERANCE: f64 = 0.02;
 
 /// Cantilever.
@@ -35,7 +36,7 @@ struct Beam {
     poisson: f64,
 }
 
-/// Compares tip deflections of 2D and 3D beams with theory.
+/// Compares tip deflections of 2D and 3D beams with Timoshenko's theory.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let mut beams = Vec::new();
     for dim in [2, 3] {
@@ -89,7 +90,7 @@ impl Beam {
         Ok(deflection / self.timoshenko(D::N, self.length as f64, elasticity))
     }
 
-    /// Returns the deflection at `x` under a unit load at the tip.
+    /// Returns the theoretical deflection at `x` under a unit load at the tip.
     fn timoshenko(self, dim: usize, x: f64, elasticity: Elasticity) -> f64 {
         let (t, length) = (self.thickness as f64, self.length as f64);
         let depth = if dim == 3 { t } else { 1.0 };
@@ -99,7 +100,7 @@ impl Beam {
         x * x * (3.0 * length - x) / (6.0 * modulus * inertia) + x / shear
     }
 
-    /// Returns a unit load on the end face, distributed to nodes by their share of the face.
+    /// Returns a unit load on the end face as forces on the nodes, each by its share of the face.
     fn load<D: Dim>(self, mesh: &Mesh<D>) -> Vec<f64> {
         let mut load = vec![0.0; mesh.node_capacity() * D::N];
         for (_, element) in mesh.elements() {
@@ -116,7 +117,8 @@ impl Beam {
         load.iter().map(|share| share / total).collect()
     }
 
-    /// Returns the displacement expected by theory, as an initial guess that saves most iterations.
+    /// Returns the displacements expected from theory. As an initial guess they save most iterations of the
+    /// solver.
     fn guess<D: Dim>(self, mesh: &Mesh<D>, elasticity: Elasticity) -> Vec<f64> {
         let mut moved = vec![0.0; mesh.node_capacity() * D::N];
         for (id, node) in mesh.nodes() {

@@ -10,8 +10,8 @@ use fuwafuwa::{
     WorldConfig,
 };
 
-/// Dimensions, voxels across, and speed of each hand [m/s]. At the highest speed, the sides of the hole
-/// approach each other by ten ring widths per second.
+/// Number of dimensions, voxels across, and speed of each hand [m/s]. At the highest speed, the sides of the
+/// hole approach each other by ten ring diameters per second.
 const CASES: [(usize, usize, f32); 12] = [
     (2, 24, 0.25),
     (2, 24, 2.0),
@@ -28,16 +28,17 @@ const CASES: [(usize, usize, f32); 12] = [
 ];
 /// Radius of the hands [m].
 const HAND: f32 = 0.4;
-/// Final distance between the hands [m]. Both sides of the ring together are 0.5 m thick, so the hole is shut
-/// before.
+/// Final distance between the surfaces of the hands [m]. Both sides of the ring together are 0.5 m thick, so
+/// the hole is shut before the hands get that close.
 const LEFT: f32 = 0.4;
 /// Waiting time at the final distance [s].
 const WAIT: f32 = 2.0;
-/// Half width of the middle of the ring, where one side is above the other [m].
+/// Half width of the strip in the middle of the ring in which the penetration is measured [m].
 const MIDDLE: f32 = 0.1;
 /// Maximum penetration of one side of the hole into the other [voxels].
 const DEPTH: f64 = 0.5;
-/// Maximum gap between the sides [voxels]. A larger gap means that the hole was not squeezed shut.
+/// Maximum gap between the sides at their closest approach [voxels]. A larger gap means that the hole was not
+/// squeezed shut.
 const SHUT: f64 = 2.0;
 
 /// Squeezes rings of several sizes, slowly and fast.
@@ -53,7 +54,8 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(CASES.iter().zip(depths).map(outcome).collect())
 }
 
-/// Returns the maximum penetration of the upper side of the hole into the lower one [voxels].
+/// Squeezes a ring and returns the maximum penetration of the upper side of the hole into the lower one
+/// [voxels]. A negative result is the smallest gap.
 fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
     let mut world = World::<D>::new(WorldConfig {
         gravity: [0.0; 3],
@@ -98,7 +100,7 @@ fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
     Ok(f64::from(deepest / voxel))
 }
 
-/// Returns the third coordinate of the middle of a ring [m].
+/// Returns the z coordinate of the middle of a ring [m].
 fn plane_of<D: Dim>(grid: &VoxelGrid<D>) -> f32 {
     match D::N {
         2 => 0.0,
@@ -127,8 +129,8 @@ fn places<D: Dim>(body: &SoftBody<D>, nodes: &[NodeId]) -> Vec<Vector> {
     places
 }
 
-/// Returns the maximum height of the `low` line above the `high` one around the middle. Negative if it is
-/// below everywhere.
+/// Returns the maximum height of the `low` line above the `high` line near the middle of the ring [m].
+/// Negative if the low line is below everywhere.
 fn overlap(low: &[Vector], high: &[Vector]) -> f32 {
     let is_amid = |at: &&Vector| (at[0] - 0.5).abs() < MIDDLE;
     let mut deepest = f32::NEG_INFINITY;

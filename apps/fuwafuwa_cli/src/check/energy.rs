@@ -4,8 +4,10 @@
 //! E = V (μ ‖F − R‖² + λ/2 (tr RᵀF − d)²) + k/2 Σ w_i |h_i|²
 //! ```
 //!
-//! with the names of `fuwafuwa::law`. The extra resistance of an element that is squashed flat is left out,
-//! because the bodies of the checks are never deformed that far.
+//! F is the deformation gradient, R its rotation, d the number of dimensions (a plane body counts as 3D) and
+//! V the volume. μ and λ are Lamé's parameters. h_i is the deviation of node i from the affine motion, with
+//! weight w_i and hourglass stiffness k. The extra resistance of an element that is squashed flat is left
+//! out, because the bodies of the checks are never deformed that far.
 
 use fuwafuwa::inspect::vector::{cross, dot, minus, plus, scaled};
 use fuwafuwa::inspect::{Elasticity, Matrix};
@@ -90,7 +92,7 @@ mod tests {
     use fuwafuwa::inspect::{cell_corners, closure};
     use fuwafuwa::{Dim2, Dim3};
 
-    /// The force is the negative gradient of the energy, also for elements with mid nodes.
+    /// Checks that the force is the negative gradient of the energy, also for elements with mid nodes.
     fn check_slope<D: Dim>(children: u8, slots: u32) {
         let elasticity = Elasticity::new(1000.0, 0.3).unwrap();
         let stencil = ElementClass::<D>::new(children, slots).unwrap();

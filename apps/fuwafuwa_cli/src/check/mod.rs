@@ -34,21 +34,22 @@ pub struct Arguments {
 
 #[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
 enum Which {
-    /// Under uniform strain, inner nodes of random cut shapes must stay at rest.
+    /// Under uniform strain, no force must act on inner nodes of randomly shaped and cut bodies.
     Patch,
     /// Graded cantilevers must bend according to Timoshenko's theory.
     Beam,
-    /// Graded bodies must sag under their weight like uniform ones; boxes, like a converged uniform one.
+    /// Graded bodies must sag under their weight like uniform ones; graded boxes, like one very fine uniform
+    /// box.
     Sag,
-    /// Graded bodies must ring like uniform ones and keep their energy.
+    /// Graded bodies must oscillate like uniform ones and keep their energy.
     Period,
     /// A free body must keep its angular momentum, and so must the halves of a body that was cut.
     Spin,
-    /// Releases must preserve mass and momentum.
+    /// Splits of nodes must preserve mass and momentum.
     Momentum,
-    /// Bars must break at the load given by their material's strength, at any resolution.
+    /// Bars must break at the load given by the strength of their material, at any resolution.
     Tear,
-    /// Dust must come to rest, and none may be lost.
+    /// A pile of crumbs (pieces of one voxel) must come to rest, and no crumb may be lost.
     Pile,
     /// A stack of bodies must stand still.
     Stack,

@@ -1,4 +1,4 @@
-//! Momentum: releases and remodelling must not change the momentum of a body.
+//! Momentum: releases (splits of nodes) and remodelling must not change the momentum of a body.
 
 use super::motion::{arrange, ball, length, material};
 use super::parallel;
@@ -9,13 +9,13 @@ use fuwafuwa::Grading;
 use fuwafuwa::{Dim, Point};
 use fuwafuwa::{Dim2, Dim3};
 
-/// Dimensions and voxels across of the bodies.
+/// Number of dimensions and voxels across for each body.
 const BODIES: [(usize, usize); 3] = [(2, 32), (3, 12), (3, 16)];
 /// Number of releases, each at a random point along a random axis.
 const RELEASES: usize = 1000;
-/// Number of releases per simulated substep.
+/// Number of releases between two simulated substeps.
 const BETWEEN_STEPS: usize = 10;
-/// Maximum change relative to the initial value.
+/// Maximum change of mass or momentum, relative to the initial value.
 const TOLERANCE: f64 = 1e-4;
 
 /// Measures the drift of mass, linear and angular momentum over random releases.

@@ -7,7 +7,7 @@ use fuwafuwa::Vector;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{Dim, Material, NodeId, SoftBody, VoxelGrid};
 
-/// Returns a soft material that rings without damping and does not tear.
+/// Returns a soft material without damping that does not tear.
 pub fn material() -> Material {
     Material {
         elasticity: Elasticity {

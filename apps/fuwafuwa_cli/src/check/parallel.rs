@@ -4,8 +4,8 @@ use crate::report::Progress;
 use anyhow::{Result, anyhow};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Returns the results of `work` for all cases, in their order. Starts with the last cases, which are usually
-/// the slowest.
+/// Returns the results of `work` for all cases, in the order of the cases. Starts with the last cases, which
+/// are usually the slowest.
 ///
 /// # Errors
 /// The first error of a case, or an error if a case panicked.

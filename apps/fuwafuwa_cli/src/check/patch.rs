@@ -1,4 +1,4 @@
-//! Patch test: under uniform strain, inner nodes feel no force for any shape and any cuts.
+//! Patch test: under uniform strain no force acts on inner nodes, for any shape and any cuts.
 
 use super::random::Random;
 use crate::report::{Outcome, Progress};
@@ -12,7 +12,7 @@ use fuwafuwa::inspect::{Elasticity, forces};
 use fuwafuwa::inspect::{neighbourhood, points_in};
 use fuwafuwa::{Dim, Dim2, Dim3, NodeId, Point, VoxelGrid};
 
-/// Maximum residual of the default law, relative to stress × face area of a voxel.
+/// Maximum residual force of the default law, relative to stress × face area of a voxel.
 const LIMIT: f64 = 1e-5;
 
 /// Number of random shapes in 2D and in 3D.
@@ -22,13 +22,14 @@ struct Shapes {
     space: u64,
 }
 
-/// Numbers for the command line.
+/// Numbers for `fuwafuwa check`. The unit test uses fewer.
 const FULL: Shapes = Shapes {
     plane: 1000,
     space: 400,
 };
 
-/// Returns the maximum residual of both laws over random cut shapes.
+/// Compares the residual force of the default law with the limit, over random cut shapes. The residual of the
+/// paper's law is shown for comparison.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     check_shapes(FULL, progress)
 }
@@ -137,7 +138,8 @@ fn random_shape<D: Dim>(random: &mut Random, n: i32) -> Option<VoxelGrid<D>> {
     .ok()
 }
 
-/// Releases a few single points or whole rectangles, like a crack or a knife.
+/// Splits nodes of a random plane: either a single point, as a growing crack does, or a rectangle, as a knife
+/// does.
 fn random_cut<D: Dim>(sharing: &mut Connectivity<D>, random: &mut Random, n: i32) {
     let axis = random.below(D::N as i32) as usize;
     let side = (0..D::CORNERS).fold(0u8, |mask, octant| {

@@ -1,5 +1,5 @@
-//! Period and energy: a squashed ball rings freely. Compares graded with uniform bodies and checks that the
-//! energy is kept.
+//! Period and energy: a squashed ball oscillates freely. The period of graded bodies must equal that of
+//! uniform ones, and the energy must be kept.
 
 use super::motion::{arrange, at_rest, ball, material};
 use super::{energy, parallel};
@@ -11,9 +11,9 @@ use fuwafuwa::{Dim, Dim2, Dim3, SoftBody};
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
-/// Dimensions and voxels across of the bodies.
+/// Number of dimensions and voxels across for each body.
 const BODIES: [(usize, usize); 5] = [(2, 16), (2, 64), (3, 16), (2, 128), (3, 32)];
-/// Maximum deviation from the uniform body.
+/// Maximum relative deviation of the period from that of the uniform body.
 const TOLERANCE: f64 = 0.03;
 /// Allowed range of the final energy relative to the initial one.
 const KEPT: RangeInclusive<f64> = 0.95..=1.02;
@@ -21,7 +21,7 @@ const KEPT: RangeInclusive<f64> = 0.95..=1.02;
 const SQUASH: f32 = 0.08;
 /// Simulated time [s].
 const DURATION: f64 = 5.0;
-/// Period at the end over which energies are averaged [s], because they fluctuate between substeps.
+/// Final time span over which the energy is averaged [s], because it fluctuates between substeps.
 const LAST: f64 = 0.5;
 
 /// Compares periods of graded and uniform bodies, and checks the energy of both.
@@ -50,12 +50,12 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(outcomes)
 }
 
-/// Measurements of a ringing body.
+/// Measurements of an oscillating body.
 #[derive(Copy, Clone, Debug)]
 struct Ring {
-    /// Period [s].
+    /// Oscillation period [s].
     period: f64,
-    /// Final energy relative to the initial one.
+    /// Mean energy of the final time span, relative to the initial energy.
     kept: f64,
 }
 
@@ -107,7 +107,8 @@ fn ring<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<Ring>
 }
 
 /// Takes a step of `duration` [s] and returns the energy [J] before it. Velocities are known half a step
-/// before and half a step after the positions, so the mean of both is the velocity at the positions.
+/// before and half a step after the positions. Their mean approximates the velocity at the time of the
+/// positions.
 fn advance_and_weigh<D: Dim>(body: &mut SoftBody<D>, duration: f64) -> f64 {
     let stored = energy::of_body(body);
     let velocity = |body: &SoftBody<D>, id| body.node_state(id).1.map(f64::from);
@@ -121,9 +122,9 @@ fn advance_and_weigh<D: Dim>(body: &mut SoftBody<D>, duration: f64) -> f64 {
     stored + moving.sum::<f64>()
 }
 
-/// Returns the period near `about` [s] with the largest amplitude in a signal sampled every `duration` [s].
+/// Returns the period within 10 % of `about` [s] that is strongest in a signal sampled every `duration` [s].
 ///
-/// The Hann window, which is 0 at both ends, separates other modes of the body from this one [Harris 1978].
+/// The Hann window, which is 0 at both ends, keeps other modes of the body out of the result [Harris 1978].
 fn strongest_period(signal: &[f64], duration: f64, about: f64) -> f64 {
     let count = signal.len() as f64;
     let strength = |period: f64| {
@@ -137,7 +138,7 @@ fn strongest_period(signal: &[f64], duration: f64, about: f64) -> f64 {
         real * real + imaginary * imaginary
     };
     let (mut low, mut high) = (0.9 * about, 1.1 * about);
-    // Ternary search in an interval with a single peak.
+    // Ternary search: the strength has a single peak in the interval.
     for _ in 0..40 {
         let (a, b) = ((2.0 * low + high) / 3.0, (low + 2.0 * high) / 3.0);
         if strength(a) < strength(b) {

@@ -1,4 +1,4 @@
-//! Piles: dust falls into a bin and comes to rest; no piece is lost.
+//! Piles: a block of crumbs (pieces of one voxel) falls into a bin and comes to rest; no piece is lost.
 
 use super::parallel;
 use crate::report::{Outcome, Progress};
@@ -7,7 +7,7 @@ use fuwafuwa::{Dim, Dim2, Dim3, World};
 use fuwafuwa_scenes::Scene;
 
 const SCENES: [&str; 2] = ["pile", "pile-3d"];
-/// Maximum time until a pile is at rest [s].
+/// Maximum time until a pile must be at rest [s].
 const PATIENCE: f64 = 10.0;
 /// Maximum penetration of a crumb into a wall [voxels].
 const DEPTH: f64 = 0.5;
@@ -18,11 +18,11 @@ struct Pile {
     lost: usize,
     /// Maximum penetration into a wall [voxels].
     depth: f64,
-    /// Time at which all pieces were asleep [s].
+    /// Time at which all pieces were asleep [s]; infinite if that never happened.
     asleep: f64,
 }
 
-/// Drops the dust of the scenes `pile` and `pile-3d`.
+/// Drops the crumbs of the scenes `pile` and `pile-3d`.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let piles = parallel::each(&SCENES, progress, |name| {
         let scene = Scene::open(name, &[])?;

@@ -1,4 +1,4 @@
-//! Pseudo-random numbers that are equal on every platform.
+//! Pseudo-random numbers that are the same on every platform.
 
 /// Repeatable pseudo-random number generator (xorshift64*).
 pub struct Random(u64);

@@ -1,13 +1,13 @@
-//! Sag: sinking of the top of a disc, a ball or a box under its weight, graded against uniform.
+//! Sag: under its weight, the top of a graded disc, ball or box must sink as far as that of a uniform body.
 //!
-//! The lowest layer of nodes is fixed. A graded disc is compared with a uniform one of equal voxels, because
-//! the voxel shape and its footprint depend on the resolution; so only the placing of elements differs. A box
-//! has the same face at the bottom at any resolution, so all graded boxes are compared with one nearly
-//! converged uniform box. The weight is small, so the law is linearised at rest. The reported sag is for a
-//! game's material and a gravity of 1 m/s².
+//! The lowest layer of nodes is fixed. A graded disc or ball is compared with a uniform one of the same
+//! voxels, so that only the placing of elements differs: their voxel shape, and with it the area they stand
+//! on, depends on the resolution. A box stands on the same area at any resolution, so all graded boxes are
+//! compared with one nearly converged uniform box. The weight is small, so the law is linearised at rest. The
+//! reported sag is for a game's material and a gravity of 1 m/s².
 //!
-//! The uniform body has by far the most elements, but it is symmetric. A half of the disc or a quarter of the
-//! ball, with the nodes in the symmetry planes fixed along the normal, sags like the whole.
+//! The uniform body has by far the most elements, but it is symmetric. Half of the disc or a quarter of the
+//! ball sags like the whole if the nodes in the symmetry planes are fixed perpendicular to the planes.
 
 use super::motion::material;
 use super::parallel;
@@ -24,9 +24,9 @@ use fuwafuwa::{Dim, Dim2, Dim3, VoxelGrid};
 const DISCS: [usize; 5] = [16, 32, 64, 128, 256];
 /// Voxels across the balls.
 const BALLS: [usize; 4] = [8, 16, 32, 64];
-/// Maximum deviation from the uniform body.
+/// Maximum relative deviation of the sag of discs and balls from that of the uniform body.
 const TOLERANCE: f64 = 0.02;
-/// Dimensions, voxels across, and maximum deviation of the boxes.
+/// Number of dimensions, voxels across, and maximum relative deviation of the sag, for each box.
 const BOXES: [(usize, usize, f64); 7] = [
     (2, 16, 0.05),
     (2, 32, TOLERANCE),
@@ -36,8 +36,8 @@ const BOXES: [(usize, usize, f64); 7] = [
     (3, 32, TOLERANCE),
     (3, 64, TOLERANCE),
 ];
-/// Voxels across the uniform reference box, by dimension. The convergence check compares it with a box of
-/// half the resolution; their sags may differ by at most `CONVERGED`.
+/// Number of dimensions and voxels across of each uniform reference box. The convergence check compares it
+/// with a box of half the resolution; their sags may differ by the fraction `CONVERGED`.
 const REFERENCES: [(usize, usize); 2] = [(2, 256), (3, 64)];
 const CONVERGED: f64 = 0.01;
 
@@ -110,7 +110,8 @@ fn check_round(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(bodies.iter().map(outcome).collect())
 }
 
-/// Returns the sinking of the top [m]. The body must have an even number of voxels across.
+/// Returns how far the top sinks [m]. A uniform body must have an even number of voxels across, because it is
+/// halved at its middle.
 fn sag<D: Dim>(whole: &VoxelGrid<D>, grading: Grading, progress: &Progress) -> Result<f64> {
     match grading {
         Grading::Uniform => sag_between(whole, grading, whole.size()[0] / 2, progress),
@@ -118,8 +119,8 @@ fn sag<D: Dim>(whole: &VoxelGrid<D>, grading: Grading, progress: &Progress) -> R
     }
 }
 
-/// Like [`sag`], with only the part of the body beyond `mirror` on each horizontal axis. Nodes in the
-/// symmetry planes stay in them. 0 means no symmetry planes.
+/// Like [`sag`], for the part of the body whose horizontal voxel coordinates are at least `mirror`. Nodes at
+/// the coordinate `mirror` stay in that symmetry plane. 0 stands for the whole body, without symmetry planes.
 fn sag_between<D: Dim>(
     whole: &VoxelGrid<D>,
     grading: Grading,
@@ -158,12 +159,13 @@ fn sag_between<D: Dim>(
     let moved = statics.solve(&load, still, progress)?;
     let (mut sunk, mut count) = (0.0, 0.0);
     for (id, node) in mesh.nodes().filter(|(_, node)| node.at[1] == highest) {
-        // Weighted by the number of adjacent voxels, so nodes in a symmetry plane count half.
+        // The weight is the number of adjacent voxels, so that nodes in a symmetry plane count half.
         let weight = f64::from(node.group.count_ones());
         sunk -= weight * moved[id.index() * D::N + 1];
         count += weight;
     }
-    // In voxels, the load scales with the voxel volume, and the stiffness (in 3D only) with the voxel width.
+    // The solution is for voxels 1 m wide. In D dimensions the load scales with width^D and the stiffness
+    // with width^(D−2), so the sag scales with width².
     let voxel = f64::from(grid.voxel_size());
     Ok(sunk / count * voxel * voxel)
 }

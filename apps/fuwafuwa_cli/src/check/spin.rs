@@ -11,17 +11,18 @@ use fuwafuwa::{
     Blade, Dim, Dim2, Dim3, Material, PieceId, SoftBody, SoftBodyHandle, World, WorldConfig,
 };
 
-/// Dimensions, voxels across, and damping of the bodies.
+/// Number of dimensions, voxels across, and damping, for each body.
 const BODIES: [(usize, usize, f32); 4] = [(2, 32, 0.0), (2, 32, 0.08), (3, 24, 0.0), (3, 24, 0.08)];
 /// Minimum fraction of the angular momentum that is kept.
 const KEPT: f64 = 0.999;
 /// Simulated time [s].
 const DURATION: f32 = 5.0;
-/// Bodies that are cut in two while spinning, and the time at which the halves are separated [s].
+/// Number of dimensions and voxels across of the bodies that are cut in two while they spin. [`APART`] is the
+/// time after the cut when the halves are separate and the measurement begins [s].
 const TORN: [(usize, usize); 2] = [(2, 32), (3, 16)];
 const APART: f32 = 1.0;
 
-/// Measures the angular momentum along its initial direction after some seconds at 5 rad/s.
+/// Measures how much angular momentum along its initial direction is kept by bodies that start at 5 rad/s.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let found = parallel::each(&BODIES, progress, |&(dim, n, damping)| match dim {
         2 => kept::<Dim2>(n, damping),
@@ -47,14 +48,14 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(outcomes)
 }
 
-/// Kept fractions of angular momentum and momentum of two halves; the worse half counts.
+/// Fractions of angular momentum and momentum that the halves of a cut body keep; the worse half counts.
 struct Halves {
     spin: f64,
     momentum: f64,
     both: f64,
 }
 
-/// Cuts a spinning body in two. The halves separate by themselves, each spinning like the whole.
+/// Cuts a spinning body in two. The halves then fly apart, each spinning like the whole.
 fn halves<D: Dim>(n: usize) -> Result<Halves> {
     let (mut world, id) = spinning::<D>(n, material())?;
     let whole = world.soft_bodies()[id].momentum().angular;
@@ -136,7 +137,7 @@ fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
 /// Returns a world with one freely spinning body.
 fn spinning<D: Dim>(n: usize, material: Material) -> Result<(World<D>, SoftBodyHandle)> {
     let mut body = ball::<D>(n, material, Grading::Graded)?;
-    // 5 rad/s about (0, 4, 3) / 5; in 2D about the third axis.
+    // 5 rad/s about (0, 4, 3) / 5; in 2D about z.
     let spin = if D::N == 3 {
         [0.0, 4.0, 3.0]
     } else {

@@ -1,4 +1,4 @@
-//! Stack: ten boxes on top of each other stand still.
+//! Stack: ten boxes on top of each other must stand still.
 
 use super::motion::material;
 use super::parallel;
@@ -17,10 +17,10 @@ const WIDTH: f32 = 0.1;
 /// Young's modulus [Pa], high enough that the stack does not buckle under its own weight. A column of this
 /// height needs ρ g A h³ / (7.84 I) [Greenhill 1881], which is 1.5e5 Pa here.
 const YOUNG: f64 = 2.4e5;
-/// Simulated time, and time after which the stack must be still [s].
+/// Simulated time, and time after which the stack must stand still [s].
 const DURATION: f32 = 60.0;
 const SETTLED: f32 = 5.0;
-/// Maximum sideways deviation from the initial position, and maximum motion after settling; in widths of a
+/// Maximum sideways distance from the initial position, and maximum motion after settling; in widths of a
 /// body.
 const LEANING: f64 = 0.05;
 const MOTION: f64 = 0.01;

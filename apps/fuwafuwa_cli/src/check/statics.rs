@@ -29,17 +29,17 @@ pub struct Statics {
     diagonal: Vec<f64>,
 }
 
-/// Element of the operator.
+/// Element as a part of the global stiffness operator.
 struct OperatorElement {
     class: u32,
     /// Stiffness relative to that of its class.
     scale: f64,
-    /// Indices of its coordinates.
+    /// Indices of its nodes' coordinates in the global vectors.
     places: Vec<u32>,
 }
 
 impl Statics {
-    /// Creates the operator of a mesh. `is_held` returns whether a node is fixed along an axis.
+    /// Creates the stiffness operator of a mesh. `is_held` returns whether a node is fixed along an axis.
     pub fn new<D: Dim>(
         mesh: &Mesh<D>,
         elasticity: Elasticity,
@@ -75,7 +75,7 @@ impl Statics {
                 places,
             });
         }
-        // Grouping elements by class keeps the class's matrix in the cache.
+        // Groups elements of the same class, so that the matrix of the class stays in the cache.
         elements.sort_by_key(|part| part.class);
         Self {
             classes,
@@ -143,7 +143,8 @@ impl Statics {
             let matrix = &self.classes[&part.class];
             local.clear();
             local.resize(part.places.len(), 0.0);
-            // By columns, because the matrix is symmetric and the sums are then independent of each other.
+            // Takes each row for a column, which is valid because the matrix is symmetric. The sums of the
+            // inner loop are then independent of each other and can be vectorised.
             for (column, &place) in matrix.chunks_exact(local.len()).zip(&part.places) {
                 let along = part.scale * moved[place as usize];
                 for (sum, entry) in local.iter_mut().zip(column) {
@@ -176,7 +177,8 @@ fn stiffness<D: Dim>(stencil: &ElementClass<D>, elasticity: Elasticity) -> Vec<f
         for row in 0..count {
             let (node, axis) = (row / D::N, row % D::N);
             let slope = (behind[node][axis] - ahead[node][axis]) / (2.0 * STEP);
-            // Conjugate gradients need exact symmetry; the differences contain rounding errors.
+            // Averages with the transposed entry: conjugate gradients need exact symmetry, and the
+            // differences contain rounding errors.
             matrix[row * count + column] += 0.5 * slope;
             matrix[column * count + row] += 0.5 * slope;
         }

@@ -5,7 +5,7 @@ use crate::report::{Outcome, Progress};
 use anyhow::Result;
 use fuwafuwa::{Blade, Dim, Dim2, Dim3, Material, SoftBody, VoxelGrid, World, WorldConfig};
 
-/// Dimensions, voxels across the bar, and whether it has a notch.
+/// Number of dimensions, voxels across, and whether it has a notch, for each bar.
 const BARS: [(usize, usize, bool); 10] = [
     (2, 32, false),
     (2, 64, false),
@@ -18,14 +18,14 @@ const BARS: [(usize, usize, bool); 10] = [
     (3, 16, true),
     (3, 32, true),
 ];
-/// Maximum relative deviation of loads from their reference.
+/// Maximum relative deviation of a load from its reference.
 const TOLERANCE: f64 = 0.03;
-/// Pulling speed of unnotched and notched bars [m/s], low enough that inertia and damping carry no share of
-/// the load.
+/// Pulling speed of unnotched and notched bars [m/s], low enough that inertia and damping hardly contribute
+/// to the load.
 const SPEEDS: [f32; 2] = [0.03, 0.01];
 /// Initial strain relative to strength / Young's modulus, for unnotched and notched bars. An unnotched bar is
-/// then in equilibrium. Around a notch the strain first has to concentrate and overshoots, so a notched bar
-/// starts below half of its breaking load.
+/// in equilibrium at this strain. Around a notch the strain concentrates only after the start, and
+/// overshoots. A notched bar therefore starts below half of its breaking load.
 const STARTS: [f32; 2] = [0.85, 0.08];
 
 /// Compares loads of unnotched bars with strength × area, and loads of notched bars with each other.
@@ -38,7 +38,8 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     for (&(dim, n, notched), &load) in BARS.iter().zip(&loads) {
         let what = if notched { "notched" } else { "whole" };
         let case = format!("tear {dim}D, n = {n}, {what}, load / reference");
-        // The ideal load of an unnotched bar 1 m across. For notched bars, the mean over all resolutions.
+        // The load at which an ideal unnotched bar 1 m wide breaks. For notched bars, the mean over all
+        // resolutions.
         let reference = if notched {
             let sisters = BARS
                 .iter()
@@ -57,7 +58,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(outcomes)
 }
 
-/// Pulls the ends of a bar 1 m across apart until it breaks, and returns the maximum load [N].
+/// Pulls at both ends of a bar 1 m wide until it breaks, and returns the maximum load [N].
 fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
     let length = if notched { 2 } else { 3 };
     let size = [length * n, n, D::depth(n)];
@@ -67,7 +68,7 @@ fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
         ..Material::default()
     };
     if !notched {
-        // Fixed ends cannot contract sideways. Without lateral contraction, the strain is uniform.
+        // Fixed ends cannot contract sideways. Poisson's ratio 0 keeps the strain uniform all the same.
         material.elasticity.poisson = 0.0;
     }
     let mut body = SoftBody::new(grid, &[material])?;

@@ -1,4 +1,4 @@
-//! Figures 4 and 5: conditions for generating a child, and the resulting changes.
+//! Figures 4 and 5: conditions for generating a child element, and the resulting changes.
 
 use super::square::{MIDDLE, Release, draw, draw_nodes, mark, points, views};
 use anyhow::Result;
@@ -8,7 +8,7 @@ use fuwafuwa::inspect::add;
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, PaperTransform, Role, Sample};
 
-/// Draws figure 4: the conditions for generating a child.
+/// Draws figure 4: the conditions for generating a child element.
 pub fn conditions() -> Result<Painter> {
     let mut painter = Painter::new(1120, 736);
     let voxel = Release::at(1)?;
@@ -68,7 +68,7 @@ pub fn conditions() -> Result<Painter> {
     Ok(painter)
 }
 
-/// Draws the title of a panel of figure 4, the body before a release, and the outline of a parent.
+/// Draws the title of a panel of figure 4, the body before a release, and the outline of the parent.
 fn parent_panel(
     painter: &mut Painter,
     column: usize,
@@ -91,7 +91,7 @@ fn parent_panel(
     frame
 }
 
-/// Draws figure 5: generated children and rebuilt parents, before and after a release.
+/// Draws figure 5: new children and rebuilt parents, before and after a release.
 pub fn children() -> Result<Painter> {
     let mut painter = Painter::new(1120, 1260);
     for (row, height) in [1, 2].into_iter().enumerate() {
@@ -141,7 +141,7 @@ pub fn children() -> Result<Painter> {
     Ok(painter)
 }
 
-/// Returns the frames of figures 4 and 5, which show the lower part of the square.
+/// Returns the coordinate frame of a panel of figures 4 and 5, which show the lower part of the square.
 fn frame_of(column: usize, row: usize) -> PaperTransform {
     PaperTransform {
         origin: [6.0 + 560.0 * column as f32, 612.0 + 590.0 * row as f32],

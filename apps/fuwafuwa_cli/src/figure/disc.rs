@@ -94,7 +94,7 @@ pub fn table() -> Result<Painter> {
     Ok(painter)
 }
 
-/// Draws figure 1 in 3D: a ball without its front quarter, elements by level.
+/// Draws figure 1 in 3D: a ball with the front quarter removed, elements coloured by level.
 pub fn opened_ball() -> Result<Painter> {
     let (width, height) = (900, 880);
     let body = SoftBody::<Dim3>::new(VoxelGrid::ball(BALL, 1.0)?, &[Material::default()])?;
@@ -171,7 +171,8 @@ fn draw_level(
     }
 }
 
-/// Returns the nodes in the middle of a straight side of an element.
+/// Returns the nodes in the middle of a straight side of an element. Only the finer neighbours have them as
+/// corners.
 fn hanging_nodes(mesh: &Mesh<Dim2>) -> BTreeSet<NodeId> {
     let mut hanging = BTreeSet::new();
     for (_, element) in mesh.elements() {

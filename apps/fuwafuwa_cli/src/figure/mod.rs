@@ -1,4 +1,4 @@
-//! Figures of the paper, drawn from live data.
+//! Figures of the paper, drawn from real bodies of the engine.
 
 mod children;
 mod disc;
@@ -13,7 +13,7 @@ use fuwafuwa_painter::{Painter, Pixmap, film};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Draw the figures of the paper from live data, each as SVG and PNG.
+/// Draw the figures of the paper from real bodies of the engine, each as SVG and PNG.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// Figure to draw.
@@ -30,13 +30,13 @@ enum Which {
     /// A graded disc with elements by level, and a ball cut open.
     #[value(name = "1")]
     Levels,
-    /// The levels of the look-up table.
+    /// The levels of the look-up table from cells to elements.
     #[value(name = "2")]
     Table,
     /// The phases of remodelling.
     #[value(name = "3")]
     Phases,
-    /// The conditions for generating a child.
+    /// The conditions for generating a child element.
     #[value(name = "4")]
     Conditions,
     /// Generated children and rebuilt parents, before and after a release.
@@ -55,7 +55,7 @@ impl Which {
     }
 }
 
-/// Draws into a folder and prints the names of the files.
+/// Draws the selected figures into a folder and prints the names of the files.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     for path in write(arguments.which, &arguments.out)? {
         println!("{}", path.display());
@@ -63,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Draws into a folder and returns the written files.
+/// Draws the selected figures into a folder and returns the written files.
 fn write(which: Which, folder: &Path) -> Result<Vec<PathBuf>> {
     std::fs::create_dir_all(folder)
         .with_context(|| format!("cannot create the folder {}", folder.display()))?;

@@ -1,4 +1,4 @@
-//! Figure 3: the phases of remodelling, one panel each.
+//! Figure 3: the phases of remodelling after a release, one panel each.
 
 use super::square::{ACROSS, MIDDLE, Release, draw, draw_nodes, mark, points, views};
 use anyhow::Result;
@@ -121,7 +121,8 @@ pub fn phases() -> Result<Painter> {
     Ok(painter)
 }
 
-/// Returns the lattice points and positions of all slots of an element.
+/// Returns the lattice points and positions of the slots that the children of an element touch, with or
+/// without a node.
 fn slots_of(element: &Element, view: &ElementView) -> Vec<(Point, [f32; 3])> {
     let (low, half) = (element.cell.first_voxel(), element.cell.width() / 2);
     let place = |slot: usize| (add(low, scale(slot_at(slot), half)), view.slots[slot]);

@@ -124,7 +124,7 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
     Ok((strip, skins))
 }
 
-/// Draws the elements with cells behind the middle of the body at rest.
+/// Draws the elements in the rear half of the body, according to the rest shape.
 fn draw_section(solid: &mut Scene3d, body: &SoftBody<Dim3>) {
     let middle = body.grid().size()[2] / 2;
     worlds::space_elements(solid, body, |view| {
@@ -163,7 +163,7 @@ fn write_time(painter: &mut Painter, tick: usize) {
     painter.text([16.0, 16.0], 14.0, Role::Ink, &seconds);
 }
 
-/// Selects frames, each given by its position from 0 (first) to 1 (last).
+/// Selects the frames at the given positions, 0 (first) to 1 (last).
 fn moments(frames: &[Pixmap], at: &[f32]) -> Vec<Pixmap> {
     let last = (frames.len() - 1) as f32;
     at.iter()

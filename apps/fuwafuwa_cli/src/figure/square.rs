@@ -1,4 +1,4 @@
-//! Body of figures 3 to 5: a square of 14 voxels is cut upwards along its middle, one node at a time:
+//! Body of figures 3 to 5: a square of 14 voxels that is cut upwards along its middle, one node at a time:
 //!
 //! ```text
 //!   ┌───────┬───────┐        A parent on each side loses the child beside the crack: first parents
@@ -18,25 +18,25 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Voxels across the square and its empty rim. The rim centres it in the grid like the disc of figure 1.
 pub const ACROSS: i32 = 16;
-/// Position of the crack.
+/// Position of the crack along x [voxels].
 pub const MIDDLE: i32 = 8;
-/// Octants to the right of a lattice point.
+/// Bit mask of the voxels to the right of a lattice point.
 const RIGHT: u8 = 0b1010;
-/// Opening of the crack to each side at its mouth, relative to its length.
+/// Opening of the crack at its mouth, to each side, relative to the length of the crack.
 const GAPE: f32 = 0.16;
 
-/// The square before and after one release.
+/// The square before and after the release of one node.
 pub struct Release {
     /// Body before the release.
     pub before: SoftBody<Dim2>,
     /// Body after the release.
     pub after: SoftBody<Dim2>,
-    /// Height of the released node.
+    /// Height of the released node [voxels].
     pub height: i32,
 }
 
 impl Release {
-    /// Releases the node at a height, after all nodes below it.
+    /// Creates the square with all nodes below a height released, then releases the node at that height.
     pub fn at(height: i32) -> Result<Self> {
         let solid = 1..ACROSS - 1;
         let size = [ACROSS as usize, ACROSS as usize, 1];
@@ -58,14 +58,14 @@ impl Release {
         })
     }
 
-    /// Returns the body after the release with the new crack opened.
+    /// Returns the body after the release, with the crack opened up to its new tip.
     pub fn opened(&self) -> SoftBody<Dim2> {
         let mut body = self.after.clone();
         open_crack(&mut body, self.height + 1);
         body
     }
 
-    /// Returns the cells with an element that changes or disappears in the release.
+    /// Returns the cells whose element changes or disappears in the release.
     pub fn parents(&self) -> BTreeSet<Cell> {
         let after = filled(&self.after);
         let changed =
@@ -91,7 +91,7 @@ pub fn draw(painter: &mut Painter, frame: PaperTransform, body: &SoftBody<Dim2>)
     }
 }
 
-/// Draws the nodes.
+/// Draws a dot at each node.
 pub fn draw_nodes(painter: &mut Painter, frame: PaperTransform, body: &SoftBody<Dim2>) {
     for (id, _) in body.mesh().nodes() {
         let spot = frame.spot(body.node_state(id).0);
@@ -99,7 +99,7 @@ pub fn draw_nodes(painter: &mut Painter, frame: PaperTransform, body: &SoftBody<
     }
 }
 
-/// Outlines the elements of some cells.
+/// Outlines the elements in some cells.
 pub fn mark(
     painter: &mut Painter,
     frame: PaperTransform,
@@ -112,7 +112,7 @@ pub fn mark(
     }
 }
 
-/// Returns the elements of some cells, each with its view.
+/// Returns the elements in some cells, each with its shape.
 pub fn views<'a>(
     body: &'a SoftBody<Dim2>,
     cells: &BTreeSet<Cell>,
@@ -122,7 +122,7 @@ pub fn views<'a>(
     wanted.map(|((_, element), view)| (element, view)).collect()
 }
 
-/// Returns the cells that have elements, with the children that these fill.
+/// Returns all cells that have elements, with the mask of the children that these elements fill.
 fn filled(body: &SoftBody<Dim2>) -> BTreeMap<Cell, u8> {
     let mut filled = BTreeMap::new();
     for (_, element) in body.mesh().elements() {
@@ -136,7 +136,7 @@ pub fn points(body: &SoftBody<Dim2>) -> BTreeSet<Point> {
     body.mesh().nodes().map(|(_, node)| node.at).collect()
 }
 
-/// Opens the crack below a height like a wedge, to make it visible.
+/// Opens the crack below a height like a wedge, so that it becomes visible.
 fn open_crack(body: &mut SoftBody<Dim2>, height: i32) {
     let nodes: Vec<_> = body.mesh().nodes().collect();
     for (id, node) in nodes {

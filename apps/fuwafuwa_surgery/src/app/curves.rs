@@ -18,7 +18,7 @@ struct Curve {
     name: &'static str,
     unit: &'static str,
     colour: Color32,
-    /// Minimum upper end of the axis.
+    /// Smallest value at the top of the axis. The axis grows to show larger values.
     least: f32,
     value: fn(&Sample) -> f32,
 }
@@ -40,7 +40,7 @@ const CURVES: [Curve; 2] = [
     },
 ];
 
-/// Draws the plots side by side, with numbers beside them.
+/// Draws the plots side by side, and further measurements as text at their right.
 pub fn show(ui: &mut Ui, session: &Session, theme: &Theme) {
     let rect = ui.available_rect_before_wrap();
     let wide = 0.36 * rect.width();

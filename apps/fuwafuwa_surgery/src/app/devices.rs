@@ -8,14 +8,16 @@ use force_feedback::{Ability, Settings, State, Stop};
 use fuwafuwa::Vector;
 use sticks::{Change, Control, Device, DeviceId, Direction, PadButton, Snapshot, radial_dead_zone};
 
-/// Dead zone of a stick, and the deflection that counts as full; as fractions of its range.
+/// Deflection of a stick below which it counts as centred, and above which it counts as full; fractions of
+/// its range.
 const DEAD: f32 = 0.15;
 const RIM: f32 = 0.95;
-/// Contact force shown as full force on a device [N]. A knife in soft tissue meets one to a few newtons.
+/// Contact force at which a device gives its full force [N]. A knife in soft tissue meets one to a few
+/// newtons.
 const FULL: f32 = 5.0;
-/// Time without input after which a device gets no feedback [s]. Devices with real force feedback are exempt.
+/// Time without input after which a device gets no rumble [s]. Devices with real force feedback are exempt.
 const RESTED: f32 = 1.5;
-/// Feedback strength per split node, and its maximum.
+/// Feedback strength per split node, and the maximum for a tick; 1 is the strongest feedback.
 const TEAR: f32 = 0.04;
 const TORN: f32 = 0.6;
 
@@ -57,9 +59,9 @@ impl Devices {
         }
     }
 
-    /// Reads the devices: adds their input to `wishes` and returns the pressed actions and the camera's
-    /// turning speed (right, up). The axes of a device with force feedback point at a position in the room,
-    /// from `low` to `high` [m].
+    /// Reads the devices. Adds their input to `wishes`, and returns the pressed actions and the camera's
+    /// turning speed (right, up). The deflection of a device with force feedback is a position in the room
+    /// from `low` to `high` [m]; that of other devices is a velocity.
     pub fn hear(
         &mut self,
         wishes: &mut HandInput,
@@ -107,8 +109,8 @@ impl Devices {
         (presses, look.clamp(Vec2::splat(-1.0), Vec2::splat(1.0)))
     }
 
-    /// Sends the contact force [N] to the device that moved the hand last, rotated by the camera's azimuth
-    /// `turn` [rad]. If `silence` is given, all devices are silent for that reason.
+    /// Sends the contact force [N] to the device that moved the hand last. `turn` is the camera's azimuth
+    /// [rad], by which the force is rotated. If `silence` is given, all devices are silent for that reason.
     pub fn feel(&mut self, contact: Vector, turn: f32, silence: Option<Stop>) {
         self.forces.attend(&self.said, &self.pads, |_| {
             Some(Settings {
@@ -137,7 +139,7 @@ impl Devices {
         self.forces.update();
     }
 
-    /// Sends feedback for `nodes` split nodes.
+    /// Sends the feedback of a tear to the device in use; `nodes` is the number of split nodes.
     pub fn tear(&self, nodes: u32) {
         if let (Some(device), true) = (self.used, nodes > 0) {
             self.forces.tear(device, (TEAR * nodes as f32).min(TORN));
@@ -153,7 +155,7 @@ impl Devices {
         self.forces.is_cut()
     }
 
-    /// Describes the feedback of the device in use.
+    /// Describes the feedback of the device in use, as text for the user.
     pub fn told(&self) -> String {
         let device = self.used.and_then(|id| self.said.device(id));
         let Some(device) = device else {

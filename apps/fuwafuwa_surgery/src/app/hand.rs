@@ -8,18 +8,18 @@ use fuwafuwa::inspect::vector::{plus, scaled};
 use fuwafuwa::{Rotation, Vector};
 use std::f32::consts::PI;
 
-/// Speed of the hand at full deflection of a key or stick [m/s]: in the plane, and upwards.
+/// Speed of the hand at full deflection of a key or stick [m/s]: horizontally and vertically.
 const PACE: f32 = 0.06;
 const RISE: f32 = 0.04;
-/// Turning speed [rad/s].
+/// Turning speed of the tool at full deflection [rad/s].
 const TURN: f32 = 1.5;
 
-/// Requested motion in a tick.
+/// Motion that the user requests for a frame.
 #[derive(Clone, Debug, Default)]
 pub struct HandInput {
-    /// Target position; its height is ignored [m].
+    /// Target position for the hand [m]; its height is ignored. `None` keeps the position.
     pub place: Option<Vector>,
-    /// Velocity to the right and away from the camera; length 1 is full speed.
+    /// Horizontal velocity to the right and away from the camera; length 1 is full speed.
     pub lean: Vec2,
     /// Upward speed; 1 is full speed.
     pub lift: f32,
@@ -72,7 +72,7 @@ impl Hand {
         }
     }
 
-    /// Takes up a tool, which enters at `height` [m].
+    /// Takes up a tool. If it is another one, it enters at `height` [m].
     pub fn take(&mut self, tool: Tool, height: f32) {
         if tool != self.tool {
             self.tool = tool;
@@ -80,8 +80,8 @@ impl Hand {
         }
     }
 
-    /// Moves the hand for `seconds` within a room from corner to corner [m]. `turn` is the azimuth of the
-    /// camera [rad].
+    /// Moves the hand for `seconds` within a room, given by two opposite corners [m]. `turn` is the azimuth
+    /// of the camera [rad].
     pub fn pass(&mut self, wishes: &HandInput, [low, high]: [Vector; 2], turn: f32, seconds: f32) {
         if let Some([x, _, z]) = wishes.place {
             self.goal = [x, self.goal[1], z];
@@ -94,7 +94,7 @@ impl Hand {
         }
         let by = scaled(wishes.turn, TURN * seconds);
         let [around, up, over] = plus(self.turned, by);
-        // Yaw is unlimited; pitch and roll stop upside down.
+        // Yaw is unlimited; pitch and roll stop at half a turn, upside down.
         self.turned = [wrapped(around), up.clamp(-PI, PI), over.clamp(-PI, PI)];
         self.grips = wishes.grips;
     }
@@ -141,7 +141,7 @@ mod tests {
             wheel: -1.0,
             ..HandInput::default()
         };
-        // Seen from the right side, away means to the left.
+        // Seen from the patient's right (+x), away from the camera means to the patient's left (−x).
         hand.pass(&wishes, ROOM, 0.5 * PI, 0.5);
         assert!((hand.goal[0] + 0.03).abs() < 1e-6 && hand.goal[2].abs() < 1e-6);
         assert_eq!(hand.goal[1], 0.0);

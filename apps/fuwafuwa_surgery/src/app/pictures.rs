@@ -9,15 +9,15 @@ use fuwafuwa_render::{Frame, Palette, Prop};
 
 /// Length of the force arrow per newton, as a fraction of the camera distance.
 const LONG: f32 = 0.045;
-/// Minimum force that is shown [N].
+/// Force below which no arrow is shown [N].
 const WEAK: f32 = 0.02;
 /// Colour of the tools.
 const STEEL: u32 = 0xbfc8d2;
 /// Colour of the force arrow.
 pub const RED: Color32 = Color32::from_rgb(200, 52, 52);
 
-/// Colours of flesh on a green cloth. The material colours match [`crate::phantom`] and repeat after the
-/// last.
+/// Colours of flesh on a green cloth. Material colours are in the order of the materials of
+/// [`crate::phantom`] and repeat after the last.
 pub fn palette() -> Palette {
     Palette {
         floor: [rgb(0xbfdcd4), rgb(0x8fbab2)],

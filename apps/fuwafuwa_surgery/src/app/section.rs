@@ -14,7 +14,7 @@ const PALE: Color32 = Color32::from_rgb(226, 222, 214);
 const SKIN: Color32 = Color32::from_rgb(250, 240, 226);
 const CRACK: Color32 = Color32::from_rgb(255, 70, 60);
 
-/// Margin around a slice for its labels [points].
+/// Margin on each side of a slice for its labels [points].
 const ROOM: egui::Vec2 = vec2(26.0, 28.0);
 
 /// Quantity shown by colours.
@@ -29,7 +29,7 @@ pub enum Shown {
 
 /// Three orthogonal slices.
 pub struct Slices {
-    /// Common point of all slices [m].
+    /// Point through which all slices pass [m].
     through: Vector,
     /// Whether that point follows the tool.
     pub follows: bool,
@@ -58,7 +58,7 @@ impl Slices {
         }
     }
 
-    /// Updates one of the slices.
+    /// Updates one slice, another one in each call.
     pub fn refresh(&mut self, procedure: &Procedure) {
         if self.follows {
             self.through = procedure.tool().position();
@@ -68,7 +68,8 @@ impl Slices {
         self.next = (self.next + 1) % Cut::ALL.len();
     }
 
-    /// Draws the slices below each other. Pressing into one moves the other two to that point.
+    /// Draws the slices below each other. Pressing on a slice moves the planes of the other two to that
+    /// point.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -146,7 +147,8 @@ impl Slices {
     }
 }
 
-/// Describes the position of a slice for a point of the patient in RAS+ [mm], as in `R 12 mm`.
+/// Describes the position of a slice through a point of the patient, RAS+ [mm]. For example, `R 12 mm` is 12
+/// mm to the right.
 fn place_in_words(cut: Cut, [right, front, up]: [f64; 3]) -> String {
     let (along, [less, more]) = match cut {
         Cut::Axial => (up, ["I", "S"]),
@@ -162,11 +164,11 @@ fn screen(colour: Colour) -> Color32 {
     Color32::from_rgb(red, green, blue)
 }
 
-/// Mapping of a slice to the screen.
+/// Mapping from page coordinates of a slice to the screen.
 struct Page {
     rect: Rect,
     cut: Cut,
-    /// World position at the centre [m], and scale [points/m].
+    /// Page coordinates at the centre of `rect` [m], and scale [points/m].
     middle: [f32; 2],
     scale: f32,
 }
@@ -190,7 +192,8 @@ impl Page {
         pos2(centre.x + self.scale * u, centre.y - self.scale * v)
     }
 
-    /// Sets the two coordinates of `place` within the slice from a screen position.
+    /// Sets two coordinates of `place` to those of a screen position. The coordinate perpendicular to the
+    /// slice is kept.
     fn point(&self, at: Pos2, place: &mut Vector) {
         let way = (at - self.rect.center()) / self.scale;
         let [u, v] = [self.middle[0] + way.x, self.middle[1] - way.y];

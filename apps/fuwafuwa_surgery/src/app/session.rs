@@ -9,10 +9,10 @@ use fuwafuwa::Vector;
 use fuwafuwa::inspect::vector::{minus, plus};
 use std::sync::Arc;
 
-/// Ticks between two measurements of the pieces.
+/// Ticks between two measurements of the volumes of the pieces.
 const LOOKS: usize = 20;
-/// Margins around the organ to the sides, below and above, as fractions of its size: in the main view and in
-/// slices.
+/// Regions shown around the organ, in the main view and in slices: margins to the sides, below and above, as
+/// fractions of the organ's size.
 const SEEN: [f32; 3] = [0.12, 0.0, 0.5];
 const SLICED: [f32; 3] = [0.1, 0.05, 0.25];
 
@@ -108,13 +108,13 @@ impl Session {
         }
     }
 
-    /// Returns the last sample.
+    /// Returns the last sample; zeros before the first tick.
     pub fn last(&self) -> Sample {
         let samples = self.procedure().samples();
         samples.last().copied().unwrap_or_default()
     }
 
-    /// Returns the computing time of a tick [s].
+    /// Returns the expected computing time of a tick [s].
     pub fn cost(&self) -> f64 {
         self.pace.cost()
     }
@@ -137,7 +137,8 @@ impl Session {
         Arc::new(Recording::of(self.procedure()))
     }
 
-    /// Advances the procedure by `seconds`.
+    /// Advances the procedure by `seconds`, or by less if the machine is too slow. `clock` measures the
+    /// ticks.
     pub fn pass(&mut self, clock: &Clock, seconds: f64) {
         if self.is_paused || self.is_over() {
             self.pace.forget();
@@ -157,7 +158,7 @@ impl Session {
         }
     }
 
-    /// Returns the number of nodes split since the last call.
+    /// Returns the number of nodes split since the last call of this function.
     pub fn take_torn(&mut self) -> u32 {
         std::mem::take(&mut self.torn)
     }
@@ -193,7 +194,7 @@ impl Session {
     }
 }
 
-/// Returns a box enlarged by fractions of its size: to the sides, below and above.
+/// Returns a box enlarged by fractions of its size, given for the sides, below and above.
 fn around([low, high]: [Vector; 2], [sides, below, above]: [f32; 3]) -> [Vector; 2] {
     let share = |k: [f32; 3]| [0, 1, 2].map(|axis: usize| k[axis] * (high[axis] - low[axis]));
     let least = minus(low, share([sides, below, sides]));

@@ -30,8 +30,8 @@ fn sticks() -> impl Iterator<Item = Stick> {
         })
 }
 
-/// Moves into the obstacle, knocks hard against the stick and then holds still. A steering player releases
-/// the stick after a while, since holding it would increase the force further.
+/// Moves into the obstacle, knocks hard against the stick and then holds still. If the stick gives a
+/// velocity, the player releases it after a while, since holding it would increase the force further.
 fn knock(stick: &Stick, other: &mut dyn Other, how: &Play) -> Trace {
     let full = stick.full;
     play(
@@ -203,8 +203,8 @@ fn calibration_undoes_swapped_and_inverted_motors() {
     }
 }
 
-/// Random hands and sticks with some damping of their own: a damping ratio of at least 0.25, and damping ×
-/// travel / full force of at least 8 ms.
+/// Random hands and sticks that have some damping: a damping ratio of at least 0.25, and damping × travel /
+/// full force of at least 8 ms.
 #[test]
 fn random_damped_sticks_settle() {
     let mut rng = fastrand::Rng::with_seed(4);

@@ -28,7 +28,7 @@ pub struct Stick {
     pub delay: f64,
 }
 
-/// Obstacle at the other end.
+/// Obstacle against which the simulated hand pushes.
 pub trait Other {
     /// Runs a tick in which the simulated hand is pulled towards `goal` [m]. Returns its position [m] and the
     /// contact force [N].
@@ -42,21 +42,23 @@ pub struct Play {
     pub rate: u32,
     /// Ticks per frame.
     pub frame: u32,
+    /// The stick gives a velocity, see [`StickMode::Velocity`].
     pub steers: bool,
-    /// Range of the stick [m], or its maximum speed [2 m/s].
+    /// Distance of the simulated hand from the middle when the stick is at its rim [m]. If the stick gives a
+    /// velocity: half the top speed of the simulated hand [m/s].
     pub reach: f32,
     pub seconds: f64,
 }
 
-/// Results by device update.
+/// Results, one entry per device update.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     pub force: Vec<[f32; 2]>,
-    /// Kinetic energy [J].
+    /// Kinetic energy of the stick [J].
     pub kinetic: Vec<f64>,
 }
 
-/// Runs a hand that wants the stick at `wish(time)`, with the disturbance `nudge(time)` [N].
+/// Runs a stick whose hand pulls it towards `wish(time)`, −1 to 1, with the disturbance `nudge(time)` [N].
 pub fn play(
     stick: &Stick,
     other: &mut dyn Other,

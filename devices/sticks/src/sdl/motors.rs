@@ -37,8 +37,9 @@ pub struct Motors<'sdl> {
     _sdl: PhantomData<&'sdl Sdl>,
 }
 
-/// Origins of the forces that push to the right and away from the player: x to the right, y towards the
-/// player. They are constant, since drivers restart an effect whenever its direction changes.
+/// SDL directions of the forces that push to the right and away from the player. SDL names the side that a
+/// force comes from, with x to the right and y towards the player. The directions never change, since drivers
+/// restart an effect whenever its direction changes.
 const FROM: [[i32; 3]; 2] = [[-1, 0, 0], [0, 1, 0]];
 
 impl Sdl {
@@ -51,8 +52,9 @@ impl Sdl {
         };
     }
 
-    /// Opens the motors of a device and uploads zero forces. Returns `None` if it has no two-axis force
-    /// feedback; according to SDL, pads have none. `Motors` must be dropped before the device.
+    /// Opens the motors of a device and uploads zero forces that last `length` [ms], or without limit for
+    /// `None`. Returns `None` if the device has no two-axis force feedback; according to SDL, pads have none.
+    /// `Motors` must be dropped before the device.
     pub fn motors<'sdl>(
         &'sdl self,
         open: &OpenDevice<'sdl>,
@@ -114,7 +116,7 @@ impl OpenDevice<'_> {
 }
 
 impl Motors<'_> {
-    /// Changes the forces; `anew` also restarts their duration. Returns whether it succeeded.
+    /// Changes the forces; `anew` also restarts their duration. Returns whether SDL accepted all changes.
     pub fn push(&self, levels: [i16; 2], anew: bool) -> bool {
         let haptic = self.haptic.as_ptr();
         let mut could = true;
@@ -160,7 +162,8 @@ impl Motors<'_> {
 
 impl Drop for Motors<'_> {
     fn drop(&mut self) {
-        // SAFETY: see the module; it is closed as often as it was opened, and SDL removes its effects first.
+        // SAFETY: see the module; the haptic device is closed as often as it was opened, and SDL removes its
+        // effects first.
         unsafe { SDL_CloseHaptic(self.haptic.as_ptr()) };
     }
 }

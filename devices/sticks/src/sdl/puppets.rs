@@ -83,8 +83,9 @@ impl Sdl {
         wish.Rumble = Some(take_rumble);
         wish.Cleanup = Some(clean_up);
         // SAFETY: see the module; SDL copies the description and its name, and the callbacks are functions of
-        // the program. SDL returns `userdata` when the device is removed. If SDL refuses the device, it may
-        // or may not have returned it: then a test leaks a few bytes rather than freeing them twice.
+        // the program. SDL returns `userdata` when the device is removed. If SDL refuses the device, it is
+        // unknown whether `userdata` was returned: a test then leaks a few bytes rather than freeing them
+        // twice.
         match unsafe { SDL_AttachVirtualJoystick(&wish) } {
             SDL_JoystickID(0) => Err(self.error()),
             SDL_JoystickID(id) => Ok(DeviceId(id)),

@@ -58,8 +58,8 @@ fn pad_rumble_ends_by_itself_and_on_drop() {
 fn new_sink_works_after_the_old_one_is_dropped() {
     let (sticks, pad) = open_with_pad();
     let old = sticks.haptic(pad.id());
-    // As when a line is replaced: the new sink is created first, since the old one is dropped on another
-    // thread.
+    // The new sink is created before the old one is dropped, as when the line of a `ForceThread` is replaced:
+    // its thread drops the old sink later.
     let mut new = sticks.haptic(pad.id());
     drop(old);
     until("the pad can rumble", || new.ability() == Ability::Rumble);

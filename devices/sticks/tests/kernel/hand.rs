@@ -85,7 +85,7 @@ pub fn force_at(told: &[Told], at: Instant) -> [f32; 2] {
     hand.force(at)
 }
 
-/// Returns the force right after each command.
+/// Returns the force right after each command, in order.
 pub fn forces(told: &[Told]) -> Vec<[f32; 2]> {
     let mut hand = Hand::default();
     let force = |told: &Told| {
@@ -95,14 +95,14 @@ pub fn forces(told: &[Told]) -> Vec<[f32; 2]> {
     told.iter().map(force).collect()
 }
 
-/// Returns the time since which the force is zero. `None` while it is nonzero, or if it always was zero.
+/// Returns the time since which the force is zero. `None` while it is nonzero, or if there never was a force.
 pub fn quiet_since(told: &[Told]) -> Option<Instant> {
     let last_loud = forces(told).iter().rposition(|force| *force != [0.0; 2])?;
     told.get(last_loud + 1).map(|told| told.at)
 }
 
 /// Checks the commands of one line: the centring spring is off; there are two effects of finite length with
-/// constant directions; they are restarted in time and not more often; levels keep their limits.
+/// constant directions; these are restarted in time and not more often; levels keep their limits.
 pub fn check(told: &[Told]) {
     let centred = told
         .iter()
@@ -152,7 +152,7 @@ fn check_motor(told: &[Told]) -> u16 {
         .map(|(at, effect)| (*at, f32::from(effect.level) / 32767.0))
         .collect();
     for many in levels.windows(5) {
-        // Unchanged levels are not sent: the first of these may have lasted until the next.
+        // Unchanged levels are not sent: the first of these levels may have lasted until the second was sent.
         let (from, before, (at, to)) = (many[0].1, many[1].0, many[4]);
         let most = settings.slew * (at - before + LATE).as_secs_f32();
         // A stop is exempt from the slew limit.

@@ -1,9 +1,9 @@
-//! Sticks, motors and all safety functions, tested against the force feedback of a real kernel: a virtual
-//! stick is plugged in, pushed by a simulated game, and records the commands of its driver.
+//! Sticks, motors and all safety functions, tested against the force feedback of a real kernel. A virtual
+//! stick is plugged in and pushed by a simulated game, and records the commands of its driver.
 //!
 //! `cargo xtask kernel` runs this in a virtual machine, since it needs /dev/uinput, no udev, and exclusive
 //! devices. The emulated processor is ten times as slow and is sometimes delayed. Time limits therefore apply
-//! to the quicker ones of several tries.
+//! to the lower quartile of several tries.
 
 #![cfg(target_os = "linux")]
 
@@ -117,7 +117,7 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
 /// Waits for a zero force. Returns the time since which the force is zero.
 fn until_quiet(stick: &Stick) -> Instant {
     let quiet = || quiet_since(&stick.told());
-    // The whole machine may have been delayed, which causes a short unintended pause.
+    // A delay of the whole machine also makes the force zero for a short time, which does not count.
     until("the force is zero", || {
         quiet().is_some_and(|since| since.elapsed() > 50 * MS)
     });
@@ -131,7 +131,7 @@ fn until_erased(stick: &Stick) {
     });
 }
 
-/// Prints the times and checks that the quicker tries keep the limit: the machine only adds time.
+/// Prints the times and checks that their lower quartile keeps the limit: the machine only adds time.
 fn took(what: &str, mut times: Vec<Duration>, promised: Duration) {
     times.sort();
     let [quick, middle, longest] = [1, 2, 4].map(|k| times[(times.len() - 1) * k / 4]);
@@ -191,7 +191,7 @@ fn force_has_the_direction_of_the_contact() {
 fn shaken_stick_keeps_the_limits() {
     let stick = plug_in();
     let game = Game::start();
-    // The strongest allowed force.
+    // Pushes until the force is almost the strongest allowed.
     game.is_pushed(&stick, LEFT, settings().clamp - 0.001);
     for turn in 0..30 {
         let (way, back) = (WAYS[turn % 2], WAYS[(turn + 1) % 2]);

@@ -115,7 +115,7 @@ impl Stick {
             structure(&file, UI_ABS_SETUP, &mut axis)?;
         }
         let mut setup: uinput_setup = zeroed();
-        // USB, with a vendor and product id without an owner.
+        // USB, with the vendor and product id that pid.codes reserves for tests.
         (setup.id.bustype, setup.id.vendor, setup.id.product) = (3, 0x1209, 1);
         for (to, from) in setup.name.iter_mut().zip(b"Virtual stick") {
             *to = *from as _;
@@ -267,7 +267,8 @@ fn zeroed<T: Plain>() -> T {
 
 fn bytes_of(event: &mut input_event) -> &mut [u8] {
     let length = size_of_val(event);
-    // SAFETY: it has numbers of 8, 8, 2, 2 and 4 bytes, without padding, and all bit patterns are valid.
+    // SAFETY: the event has numbers of 8, 8, 2, 2 and 4 bytes, without padding, and all bit patterns are
+    // valid.
     unsafe { std::slice::from_raw_parts_mut(std::ptr::from_mut(event).cast(), length) }
 }
 

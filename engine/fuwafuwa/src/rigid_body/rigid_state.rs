@@ -209,11 +209,6 @@ impl RigidState {
         self.rotation
     }
 
-    /// Returns the angular velocity [rad/s]; in 2D only the third component.
-    pub fn angular_velocity(&self) -> Vec3 {
-        self.angular_velocity
-    }
-
     /// Returns the target position [m].
     pub fn target_position(&self) -> Vec3 {
         self.goal

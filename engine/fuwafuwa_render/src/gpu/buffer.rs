@@ -50,8 +50,7 @@ impl GrowingBuffer {
     }
 }
 
-/// Returns the triangles (three indices each) before the first one that uses a vertex beyond the first
-/// `there`.
+/// Returns the leading triangles (three indices each) that use only the first `there` vertices.
 pub fn drawable<'a, T>(indices: &'a [u32], vertices: &[T], there: u32) -> &'a [u32] {
     if vertices.len() == there as usize {
         return indices;

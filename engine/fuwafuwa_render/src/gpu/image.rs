@@ -73,11 +73,11 @@ pub enum ImageStage<'a> {
 }
 
 /// Draws an image of a format and a size [px] with `draw`, which is called once per stage, and waits for the
-/// result. Returns red, green, blue and opacity of each pixel, row by row from the upper left corner. Callers
-/// can draw over a world or beside it.
+/// result. Returns red, green, blue and opacity of each pixel, row by row from the upper left corner. `draw`
+/// may paint more than a world, such as an overlay.
 ///
 /// # Errors
-/// As [`Renderer::render_to_image`].
+/// Same errors as [`Renderer::render_to_image`].
 pub fn image(
     device: &Device,
     queue: &Queue,
@@ -89,7 +89,7 @@ pub fn image(
         .poll(PollType::wait_indefinitely())
         .map_err(ImageError::Poll)?;
     let mapped = drawn.answer().result.take();
-    // After polling, a device has called back, except in browsers.
+    // The result is present after polling, except in browsers, which cannot wait.
     drawn.pixels(mapped.unwrap_or(Err(BufferAsyncError)))
 }
 
@@ -97,7 +97,7 @@ pub fn image(
 /// uses the device again.
 ///
 /// # Errors
-/// As [`Renderer::render_to_image`].
+/// Same errors as [`Renderer::render_to_image`].
 pub async fn image_async(
     device: &Device,
     queue: &Queue,

@@ -21,7 +21,8 @@ use wgpu::*;
 /// Standard deviation of the wide blur, which makes a body look thick, as a multiple of the radius of the
 /// largest body. Smaller values make balls look flat; larger values make all pieces look flat.
 const THICKNESS: f32 = 0.30;
-/// Standard deviation of the narrow blur, which rounds the edges of every piece, in the same unit.
+/// Standard deviation of the narrow blur, which rounds the edges of every piece, as a multiple of the same
+/// radius.
 const EDGE: f32 = 0.038;
 
 /// Draws 2D worlds.
@@ -63,8 +64,8 @@ struct Globals {
 }
 
 impl Renderer {
-    /// Creates a renderer for passes with a single colour target, without depth and multisampling. Formats
-    /// without `Srgb`, as egui uses them, are preferred.
+    /// Creates a renderer for passes with a single colour target, without depth and multisampling. Prefer
+    /// formats without the suffix `Srgb`, as egui does.
     pub fn new(device: &Device, target_format: TextureFormat) -> Self {
         let pipelines = Pipelines::new(device, target_format);
         let uniforms = new_uniforms(device, "globals", size_of::<Globals>() as u64);

@@ -10,7 +10,7 @@ use wgpu::*;
 
 /// Format of the body images: colour with coverage, and relief.
 pub const SKIN_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
-/// Format of the blurred body images. Eight bits would show as steps in the slope.
+/// Format of the blurred body images. With eight bits per channel, slopes would show steps.
 pub const SOFT_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 /// Format of the stencil that counts windings.
 pub const STENCIL_FORMAT: TextureFormat = TextureFormat::Depth24PlusStencil8;

@@ -10,7 +10,7 @@ macro_rules! wgsl {
 }
 pub(crate) use wgsl;
 
-/// Samples per pixel of bodies.
+/// Multisampling of the images that bodies are drawn into [samples per pixel].
 pub const SAMPLES: u32 = 4;
 /// Blends premultiplied colours over the target.
 pub const OVER: BlendState = BlendState::PREMULTIPLIED_ALPHA_BLENDING;
@@ -37,7 +37,7 @@ pub struct Target<'a> {
 }
 
 impl<'a> Target<'a> {
-    /// Returns a target for triangles without vertex buffers that overwrite it: no depth, no blending.
+    /// Returns a target for plain triangles: no vertex buffers, no depth, no blending, one sample per pixel.
     pub fn of(formats: &'a [TextureFormat]) -> Self {
         Self {
             buffers: &[],

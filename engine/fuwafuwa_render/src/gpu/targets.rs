@@ -6,16 +6,16 @@ use super::program::SAMPLES;
 use bytemuck::{Pod, Zeroable};
 use wgpu::*;
 
-/// Maximum number of pixels of an intermediate image. For larger windows, bodies are drawn smaller and
-/// stretched.
+/// Maximum number of pixels of an intermediate image. In larger windows, bodies are drawn at a lower
+/// resolution and enlarged.
 const MOST_PIXELS: f32 = 2.6e6;
 /// Size divisors of the images for the narrow and the wide blur.
 pub const NARROW: u32 = 4;
 const WIDE: u32 = 16;
 /// Reach of a blur [standard deviations].
 pub const REACH: f32 = 2.6;
-/// Distance between the uniforms of the blur steps, the largest offset alignment that devices require
-/// [bytes].
+/// Distance between the uniforms of two blur steps [bytes], equal to the largest offset alignment that any
+/// device requires.
 const STRIDE: u64 = 256;
 
 /// Image of colour and coverage, and image of the relief.
@@ -34,7 +34,7 @@ pub struct Targets {
     pub wide: [Pair; 2],
     /// Bind groups of the blur steps: skin → narrow, blur along x, along y, narrow → wide, along x, along y.
     pub steps: [BindGroup; 6],
-    /// Inputs of the shape step, which computes the shape of the blurred bodies.
+    /// Inputs of the shape step, which computes slopes and thickness from the blurred bodies.
     pub shape: BindGroup,
     /// Inputs of the window's pass.
     pub body: BindGroup,

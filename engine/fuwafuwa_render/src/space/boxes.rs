@@ -16,9 +16,9 @@ use glam::Vec3;
 
 /// Distance between a box and the faces of its element [voxels], so that neighbours can be told apart.
 const GAP: f32 = 0.03;
-/// Depth of an element's centre behind the cut [element widths] from which all its neighbours are kept, so
-/// that its covered faces need not be drawn. A neighbour towards the cut is at most twice as wide, so its
-/// centre is at most 1.5 widths closer.
+/// Depth of an element's centre behind the cut from which the cut removes none of its neighbours [element
+/// widths]. The faces that neighbours cover need not be drawn there. A neighbour towards the cut is at most
+/// twice as wide, so its centre is at most 1.5 widths closer.
 const DEEP: f32 = 1.51;
 
 /// Vertex of the element view.
@@ -27,8 +27,8 @@ const DEEP: f32 = 1.51;
 pub struct BoxVertex {
     /// Position [m].
     pub at: Vec3,
-    /// Distance from the four sides of the quad, 255 being the width of the quad. Also 255 for a side behind
-    /// which the element continues.
+    /// Distance from each side of the quad: 0 on the side, 255 on the opposite side. Always 255 for a side
+    /// that is no edge of the element, so that no line appears there.
     pub sides: [u8; 4],
     /// Red, green, blue; the last component is unused.
     pub colour: [u8; 4],
@@ -99,7 +99,7 @@ impl Boxes {
             let (centre, share) = (Vec3::from(view.slots[13]), GAP / width);
             let shrunk = view.slots.map(|at| Vec3::from(at).lerp(centre, share));
             for (number, face) in forms[place].2.iter().enumerate() {
-                // For level 0 these are the faces of a voxel.
+                // Only elements of level 0 have bare faces, and their face numbers are those of a voxel.
                 if is_at_cut || bare >> number & 1 == 1 {
                     self.add_quad(&shrunk, face, shown);
                 }
@@ -121,8 +121,8 @@ impl Boxes {
     }
 }
 
-/// Returns the shown fields of [`SoftBody::element_view`] for an element of level 0. Most elements have level 0;
-/// for them only the corner slots and the centre are needed, which is faster.
+/// Returns the drawn part of [`SoftBody::element_view`] for an element of level 0: corners, centre and colour
+/// data. Leaving out the other slots is faster, and most elements have level 0.
 fn small_view(
     body: &SoftBody<Dim3>,
     id: ElementId,

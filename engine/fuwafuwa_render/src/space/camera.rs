@@ -24,8 +24,8 @@ pub struct Camera {
     pub cut: Option<Cut>,
 }
 
-/// Cut through pieces, along the plane of each piece's own grid that best faces a direction. So elements stay
-/// whole, and the cut stays fixed in a body that rolls or trembles.
+/// Cut through each piece, along the plane of the piece's voxel grid that best faces `direction`. Elements
+/// therefore stay whole, and the cut moves along with a rolling or trembling body.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Cut {
     /// Unit vector towards the removed part.
@@ -34,9 +34,9 @@ pub struct Cut {
     pub share: f32,
 }
 
-/// Near clipping plane, in multiples of the viewing distance.
+/// Near clipping plane, in multiples of the camera distance.
 const NEAR: f32 = 0.1;
-/// Far clipping plane, in multiples of the viewing distance.
+/// Far clipping plane, in multiples of the camera distance.
 const FAR: f32 = 12.0;
 
 impl Camera {
@@ -45,7 +45,8 @@ impl Camera {
     pub fn fit(low: Vector, high: Vector, size: [u32; 2]) -> Self {
         let field = 0.6f32;
         let aspect = size[0].max(1) as f32 / size[1].max(1) as f32;
-        // The bounding sphere of the box must fit into the narrower of the two angles.
+        // The bounding sphere of the box must fit into the narrower of the horizontal and vertical fields of
+        // view.
         let across = (0.5 * field).tan() * aspect.min(1.0);
         let (low, high) = (Vec3::from(low), Vec3::from(high));
         let radius = 0.5 * low.distance(high);

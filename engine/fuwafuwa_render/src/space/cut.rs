@@ -5,10 +5,10 @@ use fuwafuwa::inspect::vector::three;
 use fuwafuwa::{Dim3, SoftBody};
 use glam::{Mat3, Vec3};
 
-/// Cosine by which another axis must face the cut direction better before the cut changes to it. Prevents
-/// flickering when a piece trembles.
+/// Minimum gain of the cosine between cut direction and cut axis for which the cut changes to another axis.
+/// Prevents flickering when a piece trembles.
 const BETTER: f32 = 0.15;
-/// Minimum width of a piece that is cut [voxels].
+/// Minimum width of a piece that is cut [voxels]. Thinner pieces stay whole.
 const THIN: f32 = 6.0;
 
 /// Cut plane of a piece, in the rest frame of its body [voxels].

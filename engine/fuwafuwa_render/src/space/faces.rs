@@ -1,9 +1,9 @@
-//! Bare faces of a body, the surface points at their corners and the vertices drawn there.
+//! Bare (exposed) faces of a body, the surface points at their corners and the vertices drawn there.
 //!
-//! Faces belong to elements, points to nodes. [`Faces::follow`] asks the body for the changes since the last
-//! call and updates only these; for a body that was loaded or replaced it checks everything. A point at the
-//! mouth of a crack, where the original surface meets the inside, has two vertices at the same position: one
-//! with the normal and the colour of each surface.
+//! Faces belong to elements, points to nodes. [`Faces::update`] updates only what the body reports as changed
+//! since the last call. It checks everything for a body that was loaded or replaced. A point at the mouth of
+//! a crack, where the original surface meets the inside, has two vertices at the same position. Each has the
+//! normal and the colour of one of the surfaces.
 
 use super::pool::Pool;
 use super::rest::Rest;
@@ -33,9 +33,9 @@ pub struct Faces {
     pub points: Pool<SkinPoint>,
     /// Vertices drawn at the points.
     pub vertices: Pool<VertexSource>,
-    /// Two triangles per face. Those of removed faces have no area.
+    /// Vertex indices: two triangles per face. The triangles of removed faces have no area.
     pub indices: Vec<u32>,
-    /// Elements that are crumbs. They have no points and faces.
+    /// Elements that are crumbs (pieces of a single voxel). They have no points and faces.
     pub crumbs: Vec<ElementId>,
     /// Indices of points to be updated.
     dirty: Vec<u32>,
@@ -46,11 +46,11 @@ pub struct Faces {
 /// Bare face of a voxel.
 #[derive(Copy, Clone, Debug)]
 pub struct Face {
-    /// Its points, counterclockwise seen from outside.
+    /// Indices of its points, counterclockwise seen from outside.
     pub points: [u32; 4],
-    /// Its vertices.
+    /// Indices of its vertices.
     pub vertices: [u32; 4],
-    /// For each corner: the next face corner at the same point, as 4 · face + corner, or `NONE`.
+    /// For each corner: the next corner of another face at the same point, as 4 · face + corner, or `NONE`.
     next: [u32; 4],
     element: ElementId,
     /// Number of the face within the element: 2 · axis + side.
@@ -73,7 +73,7 @@ pub struct SkinPoint {
     pub near_count: u8,
     /// Kind of surface at the point.
     pub ground: SurfaceKind,
-    /// First face corner at the point.
+    /// First face corner at the point, as 4 · face + corner.
     first: u32,
     /// Vertices on the original surface and on the torn surface.
     vertices: [u32; 2],
@@ -100,8 +100,8 @@ pub struct VertexSource {
     pub rest: Vec3,
     /// Red, green, blue of the material; the last component is 255 on torn surfaces.
     pub colour: [u8; 4],
-    /// Red, green, blue of the material beyond the nearest border; the last component is 128 on the border,
-    /// more beyond it.
+    /// Red, green, blue of the material beyond the nearest border. The last component is the position across
+    /// the border: 128 on the border, more beyond it.
     pub other: [u8; 4],
 }
 
@@ -331,7 +331,8 @@ impl Faces {
             octant = 7 - vertex;
             near[ground].add(face.points[(k + 1) % 4]);
             near[ground].add(face.points[(k + 3) % 4]);
-            // The offset is carried by the voxel that it points into, or else points out of least.
+            // Selects the voxel that carries the offset: one that the offset points into, otherwise the one
+            // it leaves least.
             let offset = rest.offset(at, octant);
             let inwards = Vec3::from(corner(vertex).map(|end| 1.0 - 2.0 * end as f32));
             let towards = (inwards * offset).min(Vec3::ZERO).element_sum();
@@ -388,7 +389,8 @@ impl Faces {
     }
 }
 
-/// Distinct neighbours of a point. More than six occur only where sheets meet; the rest is ignored.
+/// Distinct neighbours of a point, at most six. More than six occur only where thin sheets meet and are
+/// ignored.
 #[derive(Copy, Clone, Debug)]
 struct NeighbourSet {
     points: [u32; 6],

@@ -16,7 +16,7 @@ use std::ops::Range;
 
 /// Half extent of the floor, in multiples of the camera distance.
 const REACH: f32 = 3.0;
-/// Radius of a crumb [voxel widths], equal to that of a ball with the volume of a voxel.
+/// Radius of a crumb [voxel widths]. A ball of this radius has the volume of a voxel.
 const CRUMB: f32 = 0.62;
 /// Radius of the line below a hand [m], and its maximum as a multiple of the camera distance.
 const LINE: f32 = 0.004;

@@ -10,27 +10,27 @@ use fuwafuwa::{Dim, Dim3, Point, VoxelGrid};
 use glam::Vec3;
 
 /// Variance of the smoothing [voxels²], as a multiple of the square root of the number of faces of the
-/// surface. The widest terraces of a ball, where it is flat, grow by the same law.
+/// surface. The widest terraces of a voxelised ball grow by the same law.
 const REACH: f32 = 0.45;
-/// Variance that one round adds on a flat surface [voxels²]: it moves a point half-way to the mean of four
-/// neighbours, of which two are a voxel away along each axis.
+/// Variance that one smoothing round adds on a flat surface [voxels²]. A round moves each point half-way to
+/// the mean of its four neighbours, two of which are one voxel away along each axis.
 const VARIANCE: f32 = 0.25;
 /// Maximum number of rounds; bounds the loading time of the largest bodies.
 const MAX_ROUNDS: usize = 200;
 /// Maximum offset of a point [voxels] where the body is thin and where it is thick, so that a protrusion of a
 /// few voxels survives.
 const FARTHEST: [f32; 2] = [0.3, 0.8];
-/// Thresholds of thin and thick: fraction of solid voxels around a point, out to `AROUND` voxels. It is 0.5
-/// on a flat surface and 0.25 on an edge or a limb three voxels wide.
+/// Limits of thin and thick: fraction of solid voxels around a point, within `AROUND` voxels. This fraction
+/// is 0.5 on a flat surface and 0.25 on an edge or a limb three voxels wide.
 const SOLID: [f32; 2] = [0.22, 0.32];
 const AROUND: i32 = 3;
-/// Rounds of mixing material shares between neighbours. Staircases of material borders are smoothed within
-/// this reach.
+/// Rounds of mixing material shares between neighbours. More rounds smooth longer stair steps of material
+/// borders.
 const TINT_ROUNDS: usize = 12;
-/// Minimum share of its own material for a point surrounded by it; a point without it gets at most 1 −
-/// `MIN_OWN_SHARE`. So a dot of few voxels survives.
+/// Minimum share of a material at a point where all adjacent voxels have this material. At a point without
+/// such voxels, the maximum share is 1 − `MIN_OWN_SHARE`. Both limits keep dots of a few voxels visible.
 const MIN_OWN_SHARE: f32 = 0.52;
-/// Minimum share of a second material at a point beside a border.
+/// Minimum share of the second material. With a smaller share, the point counts as away from the border.
 const MIN_SECOND_SHARE: f32 = 0.1;
 /// Weights of the voxels around an inner point, along each axis.
 const AROUND_INSIDE: [f32; 4] = [1.0, 3.0, 3.0, 1.0];
@@ -289,7 +289,7 @@ fn farthest(grid: &VoxelGrid<Dim3>, at: Point) -> f32 {
     FARTHEST[0] + (FARTHEST[1] - FARTHEST[0]) * thick
 }
 
-/// Returns a constant pseudo-random value of a lattice point for each axis, 0 to 1.
+/// Returns a constant pseudo-random value of a lattice point for an axis, 0 to 1.
 fn grain(at: Point, axis: u32) -> f32 {
     let [x, y, z] = at.map(|k| k as u32);
     let mixed =
@@ -323,7 +323,8 @@ mod tests {
         }
     }
 
-    /// Position of surface points across the border of two materials, from 0 (first) to 1 (second).
+    /// Returns all surface points with their position across the border of two materials: 0 = first, 1 =
+    /// second.
     fn sides(grid: &VoxelGrid<Dim3>) -> Vec<(Point, f32)> {
         let rest = Rest::new(grid);
         let side = |point: &RestPoint| match point.tint.materials {

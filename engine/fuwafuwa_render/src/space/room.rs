@@ -43,7 +43,7 @@ pub fn plane(shape: &Shape) -> Option<[f32; 4]> {
     }
 }
 
-/// Returns the signed distance of a point outside a plane [m].
+/// Returns the signed distance of a point from a plane [m], positive outside the half-space.
 fn above(plane: &[f32; 4], at: Vec3) -> f32 {
     normal(plane).dot(at) - plane[3]
 }
@@ -52,7 +52,8 @@ fn normal(plane: &[f32; 4]) -> Vec3 {
     Vec4::from(*plane).truncate()
 }
 
-/// Returns a large square of a plane, counterclockwise seen from outside.
+/// Returns a square of a plane with half extent `reach` [m], counterclockwise seen from outside. Its centre
+/// is the projection of `middle`.
 fn sheet(plane: &[f32; 4], middle: Vec3, reach: f32) -> Vec<Vec3> {
     let normal = normal(plane);
     let foot = middle - above(plane, middle) * normal;

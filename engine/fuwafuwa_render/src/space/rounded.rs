@@ -29,11 +29,11 @@ pub struct RoundedVertex {
 pub struct RoundedInstance {
     /// Centre [m].
     pub centre: Vec3,
-    /// Radius of its edges, in lengths of its axes.
+    /// Radius of its edges [lengths of `axes`].
     pub radius: f32,
     /// Axes [m].
     pub axes: Mat3,
-    /// Half extents of the box of edge centres, in lengths of its axes.
+    /// Half extents between the centres of opposite rounded edges [lengths of `axes`].
     pub half: Vec3,
     /// Red, green, blue, opacity.
     pub colour: [f32; 4],
@@ -41,11 +41,11 @@ pub struct RoundedInstance {
     pub number: f32,
 }
 
-/// Returns vertices and triangle indices of the mesh, with 3 · `fine` × `fine` faces per octant.
+/// Returns vertices and triangle indices of the mesh, with 3 · `fine` × `fine` quads per octant.
 pub fn mesh(fine: usize) -> (Vec<RoundedVertex>, Vec<u32>) {
     let (mut vertices, mut indices) = (Vec::new(), Vec::new());
     let side = 2 * (fine + 1);
-    // Parameters from −1 to 1, with 0 twice.
+    // Parameters from −1 to 1. 0 occurs twice, because octants do not share vertices.
     let along = |k: usize| match k > fine {
         false => (k as f32 / fine as f32 - 1.0, -1.0),
         true => ((k - fine - 1) as f32 / fine as f32, 1.0),
@@ -152,7 +152,7 @@ mod tests {
     use super::*;
     use fuwafuwa::inspect::vector::length;
 
-    /// Enclosed volume of the mesh after stretching it to an instance.
+    /// Returns the volume of the mesh after stretching it to an instance.
     fn volume(instance: &RoundedInstance) -> f32 {
         let (vertices, indices) = mesh(8);
         let place = |index: u32| {

@@ -1,8 +1,8 @@
 //! Smooth surface of a 3D body, as vertices.
 //!
-//! In every call all surface points move with their voxels and are then smoothed by a few rounds, because
-//! contacts press on the voxel staircase. Both faces of a crack are smoothed alike, so that a closed crack
-//! stays closed.
+//! Each update moves all surface points with their voxels. It then smooths them by a few rounds, because
+//! contacts deform the unsmoothed voxels below. Both faces of a crack are smoothed alike, so that a closed
+//! crack stays closed.
 
 use super::faces::{Faces, NO_NODE, NONE, SkinPoint, SurfaceKind};
 use super::rest::Rest;
@@ -12,9 +12,9 @@ use fuwafuwa::IndexVec;
 use fuwafuwa::{Dim3, ElementId, NodeId, PieceId, SoftBody};
 use glam::{Vec3, Vec4};
 
-/// Fraction of the way to the mean of its neighbours that a point moves in each round: on the original
-/// surface, at the mouth of a crack, inside. The negative rounds undo the shrinking of the positive ones, so
-/// that small torn pieces keep their size [Taubin 1995].
+/// Fraction of the way that a point moves to the mean of its neighbours in each round: on the original
+/// surface, at the mouth of a crack, on torn surfaces. The negative rounds undo the shrinking of the positive
+/// ones, so that small torn pieces keep their size [Taubin 1995].
 const ROUNDS: [[f32; 3]; 4] = [
     [0.5, 0.5, 0.5],
     [0.5, 0.5, -0.5],
@@ -84,7 +84,7 @@ impl Skin {
         &self.faces.crumbs
     }
 
-    /// Returns the vertices on a piece, as of the last [`Skin::follow`].
+    /// Returns the vertices on a piece, as of the last [`Skin::update`].
     pub(super) fn vertices_of<'a>(
         &'a self,
         body: &'a SoftBody<Dim3>,
@@ -253,7 +253,7 @@ mod tests {
             triangles.map(|t| [0, 1, 2].map(|k| self.vertices[t[k] as usize]))
         }
 
-        /// Volume enclosed by the triangles [m³].
+        /// Returns the volume enclosed by the triangles [m³].
         fn volume(&self) -> f32 {
             let sixfold = |[a, b, c]: [SkinVertex; 3]| dot(a.at, cross(b.at, c.at));
             self.corners().map(sixfold).sum::<f32>() / 6.0
@@ -289,7 +289,7 @@ mod tests {
         }
         let skin = skin(&world);
         assert!((skin.volume() / whole - 1.5).abs() < 0.01);
-        // F − R is 0.5 here, half of FᵀF − 1 is 0.625.
+        // ‖F − R‖ is 0.5 here. Its first-order approximation ½ ‖FᵀF − 1‖ is 0.625.
         let strains = skin
             .vertices()
             .iter()
@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn follow_matches_a_new_skin_after_each_cut() {
+    fn update_matches_a_new_skin_after_each_cut() {
         let mut world = ball(16);
         let mut kept = skin(&world);
         // Rest positions are equal to the last bit; current positions depend on the voxel chosen at each

@@ -13,12 +13,12 @@ use crate::palette::bytes;
 use fuwafuwa::{Dim3, SoftBody, Vector};
 use glam::{Mat3, Vec2, Vec3};
 
-/// Half extent of the height field [mark units], and its number of samples per side.
+/// Half extent of the height field [mark units, see [`Mark::outline`]], and its number of samples per side.
 const REACH: f32 = 1.2;
 const SIDE: usize = 25;
 /// Radius over which a height is averaged, in mark units and in voxels; the larger one applies.
 const NEAR: [f32; 2] = [0.12, 1.1];
-/// Depth below another part of the skin from which skin counts as hidden by a fold [mark units].
+/// Depth below the highest skin at a sample from which a point counts as hidden by a fold [mark units].
 const FOLD: f32 = 0.3;
 /// Offset of marks from the skin towards the eye [mark units], so that no bump of the skin shows through.
 const CLOSER: f32 = 0.06;
@@ -109,7 +109,7 @@ impl Stickers {
 struct Heights([f32; SIDE * SIDE]);
 
 impl Heights {
-    /// Computes the height field. Returns `None` where there is no skin.
+    /// Computes the height field. Returns `None` if the piece has no skin in reach.
     fn new(sticker: &Sticker, skin: &Skin, body: &SoftBody<Dim3>) -> Option<Self> {
         let axes = sticker.axes.map(Vec3::from);
         let square = axes.map(Vec3::length_squared);

@@ -100,7 +100,7 @@ impl File {
         }
     }
 
-    /// A few voxels with a spacing of 1 mm.
+    /// Creates a file of a few voxels with a spacing of 1 mm.
     pub fn small(size: [usize; 3], values: &[f64]) -> Self {
         let mut file = Self::of(RAS, [62.0; 3], |_| 0.0);
         file.size = size;

@@ -45,8 +45,8 @@ pub fn png(
 }
 
 impl Picture {
-    /// Decodes a PNG file of any colour type; of an animated file, the image that still viewers show. `file`
-    /// is the name used in errors.
+    /// Decodes a PNG file of any colour type. From an animated file, takes the image that viewers without
+    /// animation show. `file` is the name used in errors.
     ///
     /// # Errors
     /// [`ImportError`] if the file is longer than [`super::MAX_FILE_BYTES`], is damaged or truncated, or has
@@ -69,7 +69,7 @@ impl Picture {
         Ok(Self { file, size, pixels })
     }
 
-    /// Width and height [pixels].
+    /// Returns width and height [pixels].
     pub fn size(&self) -> [usize; 2] {
         self.size
     }
@@ -81,12 +81,12 @@ impl Picture {
     ///   material is 0, or if the pixel is more than half transparent (alpha below 128).
     /// - Otherwise all solid pixels have material 1. If any pixel is more than half transparent, the picture
     ///   is a sprite: the other pixels are solid.
-    /// - If no pixel is, the picture is a drawing on white paper: pixels whose red, green or blue is below
-    ///   128 of 255, as stored, are solid.
+    /// - If no pixel is so transparent, the picture is a drawing on white paper. Pixels whose red, green or
+    ///   blue is below 128 of 255, as stored, are solid.
     ///
     /// A picture with more than `across` pixels on its longer side is scaled down to `across` voxels. A voxel
     /// is solid if at least half of its area is covered by solid pixels. It gets the material with the
-    /// largest area, the lowest number of several. A smaller picture keeps its pixels.
+    /// largest area; of equal areas, the lowest number counts. A smaller picture keeps its pixels.
     ///
     /// # Errors
     /// [`ImportError`] if `across` is not 1 to [`MAX_EXTENT`], if no voxel is solid, if `colours` names
@@ -100,14 +100,14 @@ impl Picture {
         in_file(&self.file, self.try_grid(across, voxel_size, colours))
     }
 
-    /// Returns a PNG file with one pixel per voxel, which gives the same voxels as this picture; `None` if
-    /// the picture gives none.
+    /// Returns a PNG file with one pixel per voxel, which gives the same voxels as this picture. Returns
+    /// `None` if the picture has no solid voxel.
     pub(crate) fn reduced_png(&self, across: usize, colours: &Colours) -> Option<Vec<u8>> {
         let grid = self.grid(across, 1.0, colours).ok()?;
         let [columns, rows, _] = grid.size();
         let colour_of = |material: u8| match material {
             0 => Some([u8::MAX, u8::MAX, u8::MAX, 0]),
-            // Without a transparent pixel, the file counts as a drawing, and black is solid there, too.
+            // A file without a transparent pixel counts as a drawing, in which black is solid, too.
             _ if colours.named.is_empty() => Some([0, 0, 0, u8::MAX]),
             _ => {
                 let mut named = colours.named.iter();

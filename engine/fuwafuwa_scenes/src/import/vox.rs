@@ -50,7 +50,7 @@ impl Model {
     /// Decodes the first model of a MagicaVoxel file. `file` is the name used in errors. The model's
     /// transform in the file's scene is ignored.
     ///
-    /// MagicaVoxel's z axis points up, the engine's y axis does. The model is rotated, not mirrored:
+    /// In MagicaVoxel the z axis points up, in the engine the y axis. The model is rotated, not mirrored:
     ///
     /// ```text
     ///   MagicaVoxel   z           y  engine      x ← x
@@ -63,7 +63,7 @@ impl Model {
     ///
     /// # Errors
     /// [`ImportError`] if the file is longer than [`super::MAX_FILE_BYTES`], is damaged or truncated, or has
-    /// more than [`MAX_VOXELS_ACROSS`].
+    /// more than [`MAX_VOXELS_ACROSS`] voxels on an axis.
     pub fn decode(file: &str, bytes: &[u8]) -> Result<Self, ImportError> {
         let model = check_length(bytes).and_then(|()| Self::try_decode(file, bytes));
         in_file(file, model)
@@ -73,7 +73,8 @@ impl Model {
     /// colours of the palette, index 1 first, and missing ones are black.
     ///
     /// # Errors
-    /// [`ImportError`], which names `file`, if the grid has more than [`MAX_VOXELS_ACROSS`].
+    /// [`ImportError`], which names `file`, if the grid has more than [`MAX_VOXELS_ACROSS`] voxels on an
+    /// axis.
     pub fn of(
         file: &str,
         grid: &VoxelGrid<Dim3>,
@@ -101,12 +102,12 @@ impl Model {
         })
     }
 
-    /// Number of voxels on each axis of the engine, empty layers included.
+    /// Returns the number of voxels on each axis of the engine, empty layers included.
     pub fn size(&self) -> [usize; 3] {
         self.size
     }
 
-    /// Red, green and blue by palette index, 1 first; `None` if the file has no palette.
+    /// Returns red, green and blue by palette index, 1 first; `None` if the file has no palette.
     pub fn palette(&self) -> Option<&[[u8; 3]]> {
         self.palette.as_deref()
     }
@@ -135,7 +136,7 @@ impl Model {
         let mut voxels = Vec::new();
         for (at, &index) in self.voxels.iter().enumerate() {
             let (x, y, z) = (at % width, at / width % height, at / width / height);
-            // On the axes of the file.
+            // Converts to the axes of the file.
             let [x, y, z] = [x, depth - 1 - z, y].map(|k| k as u8);
             if index != 0 {
                 voxels.extend([x, y, z, index]);
@@ -305,7 +306,7 @@ impl<'a> Bytes<'a> {
 }
 
 impl Chunk<'_> {
-    /// Requires contents of `expected` bytes; `what` names them in errors.
+    /// Checks that the contents have `expected` bytes; `what` names them in errors.
     fn check_length(&self, expected: u64, what: &str) -> Result<(), PositionedProblem> {
         let found = self.contents.bytes.len() as u64;
         let expected_text = format!("{expected} bytes for {what}");

@@ -29,7 +29,7 @@ pub struct MaterialText {
     pub toughness: Option<f32>,
     /// Yield strain, beyond which the deformation is permanent; purely elastic if missing.
     pub yield_strain: Option<f32>,
-    /// Limit of permanent deformation: the factor by which the material can be flattened for good.
+    /// Limit of permanent deformation, 1 to 4: largest factor by which a width can shrink permanently.
     pub plastic_limit: Option<f32>,
     /// Whether the material never tears: infinite strength and toughness.
     pub unbreakable: bool,
@@ -53,7 +53,8 @@ pub struct BodyText {
     ///
     /// [`Scene::of_world`]: super::Scene::of_world
     pub state: Option<String>,
-    /// Voxels across; for a silhouette the maximum; not allowed for a model.
+    /// Number of voxels across, required for a shape. For a silhouette, the maximum number on the longer
+    /// side; not allowed for a model.
     pub n: Option<usize>,
     /// Width of the grid [m]; for a file, length of its longest side. Default 1.
     pub width: f32,
@@ -81,11 +82,11 @@ pub struct BodyText {
     pub layers: Option<LayersText>,
     /// Arbitrary number of the user.
     pub user_data: Option<u64>,
-    /// Spacing of planes, on every axis, along which the body is cut [m].
+    /// Spacing of the planes on every axis along which the body is cut [m]; not cut if missing.
     pub diced: Option<f32>,
     /// Whether the body is cut into single voxels.
     pub crumbled: bool,
-    /// True for elements of single voxels everywhere, for comparison with graded elements.
+    /// Whether all elements are single voxels, for comparison with graded elements.
     pub uniform: bool,
     /// Whether the elastic force is that of the paper instead of the corotational virtual element law.
     pub paper_law: bool,

@@ -2,10 +2,11 @@
 
 use super::error::{FieldError, require};
 
-/// Remaining work for the bodies still to be built. Each step takes its share before it begins.
+/// Remaining work for the bodies still to be built. Each step of the construction takes its work from the
+/// budget before it begins.
 pub(super) struct Budget {
     most_voxels: usize,
-    /// Voxels, solid or empty, in the grids built before.
+    /// Voxels, solid or empty, in the grids built so far.
     voxels: usize,
     /// Distance evaluations: one for each part and voxel of a body.
     pub(super) distances: usize,

@@ -133,7 +133,7 @@ pub(super) fn rotation_of<D: Dim>(turned: [f32; 3]) -> Result<Rotation, FieldErr
     })
 }
 
-/// Returns planes through the whole body, `spacing` [m] apart on every axis.
+/// Returns cutting planes through the whole body, `spacing` [m] apart on every axis.
 fn grid_of_blades<D: Dim>(body: &SoftBody<D>, spacing: f32) -> Vec<Blade> {
     let size = body
         .grid()

@@ -1,6 +1,7 @@
 //! Replacement of scene values from the command line.
 
-/// Applies a change such as `material.young=9000`; a list without an entry number means all of its entries.
+/// Applies a change such as `material.young=9000`. A path that names a list without an entry number changes
+/// all entries of the list.
 pub(super) fn replace(value: &mut toml::Value, change: &str) -> Result<(), String> {
     let (path, new) = change
         .split_once('=')
@@ -15,7 +16,7 @@ pub(super) fn replace(value: &mut toml::Value, change: &str) -> Result<(), Strin
 fn put(value: &mut toml::Value, fields: &[&str], new: &toml::Value) -> Result<(), String> {
     let Some((field, rest)) = fields.split_first() else {
         *value = match (&*value, new) {
-            // An integer where the field is a float: 9000 means 9000.0.
+            // A whole number given for a float field is converted: 9000 means 9000.0.
             (toml::Value::Float(_), toml::Value::Integer(whole)) => {
                 toml::Value::Float(*whole as f64)
             }

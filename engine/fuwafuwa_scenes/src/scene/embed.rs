@@ -9,11 +9,11 @@ use crate::import::{FilePosition, ImportError, Model, Picture, Problem};
 use fuwafuwa::MAX_EXTENT;
 use std::io;
 
-/// Size up to which a file is embedded whole [bytes]. A photo is a hundred times as large, and its body needs
-/// no more than this.
+/// Size up to which a file is embedded whole [bytes]. A photo is about a hundred times as large, although the
+/// voxels of its body fit into this size.
 const SMALL: usize = 1 << 16;
 
-/// Reads a picture or a model named in a scene. The caller decides where files are searched.
+/// Function that reads a picture or a model named in a scene. It decides where files are searched.
 pub type Fetch<'a> = &'a dyn Fn(&str) -> io::Result<Vec<u8>>;
 
 impl BodyText {

@@ -67,7 +67,8 @@ impl SceneError {
         for (type_name, words) in IN_WORDS {
             message = message.replace(type_name, words);
         }
-        // A field missing from the whole text has an empty span, which names no line.
+        // If a field is missing from the top level of the text, the span of the error is empty and names no
+        // line.
         let span = error.span().filter(|span| span.end > 0);
         let line = span.map(|span| line_of(&line_starts(text), span.start));
         let reason = match line.and_then(|line| text.lines().nth(line - 1)) {
@@ -151,13 +152,13 @@ impl FieldError {
         Self { path, reason }
     }
 
-    /// Puts the field into entry `index`, counted from 0, of a list.
+    /// Prefixes the path of the field with entry `index` of a list, counted from 0.
     pub(super) fn inside(self, list: &str, index: usize) -> Self {
         let path = format!("{list}.{}.{}", index + 1, self.path);
         Self { path, ..self }
     }
 
-    /// Puts the field into a table.
+    /// Prefixes the path of the field with a table.
     pub(super) fn under(self, table: &str) -> Self {
         let path = format!("{table}.{}", self.path);
         Self { path, ..self }

@@ -12,15 +12,15 @@ use std::collections::BTreeSet;
 pub struct GameText {
     /// Name of the level.
     pub name: LocalizedText,
-    /// Region enclosed by the bars, to be filled.
+    /// Target region, which the bars enclose.
     pub basket: Option<BoxText>,
     /// Share of the bodies' mass that must rest in the basket, above 0 and up to 1; default 0.6.
     #[serde(default = "usual_share")]
     pub share: f32,
-    /// Time for which it must rest there [s], 0 to 60; default 1.
+    /// Time for which this share of the mass must rest in the basket [s], 0 to 60; default 1.
     #[serde(default = "usual_hold")]
     pub hold: f32,
-    /// Routes by which the level can be won; empty: those that its materials allow.
+    /// Routes by which the level can be won. If empty, all routes that its materials allow.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub routes: Vec<RouteText>,
     /// Aids that were active, so that results with aids can be told apart. The game writes them into a
@@ -70,11 +70,11 @@ pub struct WishText {
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RouteText {
-    /// Whole, by squeezing (押し込み).
+    /// The body is squeezed into the basket whole (押し込み).
     Squeeze,
-    /// By shaving until it fits (削り).
+    /// The body is shaved until it fits (削り).
     Shave,
-    /// By a mix of both.
+    /// A mix of squeezing and shaving.
     Mix,
 }
 

@@ -47,8 +47,7 @@ struct Voxels {
 }
 
 impl Voxels {
-    /// Returns the voxels of a grid, with the material that `material` returns for the grid's material
-    /// number.
+    /// Returns the voxels of a grid. `material` maps the material numbers of the grid to those of the scene.
     fn of<D: Dim>(grid: &VoxelGrid<D>, voxel_size: f32, material: impl Fn(u8) -> u8) -> Self {
         let materials = grid.voxels().map(|voxel| material(grid.material(voxel)));
         Self {
@@ -116,7 +115,7 @@ fn of_form<D: Dim>(text: &BodyText, form: Form, budget: &Budget) -> Result<Voxel
         false => [n; 3],
     };
     extent[D::N..].fill(1);
-    // Extents above the maximum get the error of the grid below.
+    // Extents above the maximum are rejected below, where the grid is created.
     if extent.iter().all(|&k| k <= MAX_EXTENT) {
         budget.check_voxels(extent.iter().product())?;
     }
@@ -235,7 +234,7 @@ pub(super) fn check_across(n: usize) -> Result<(), FieldError> {
     require((1..=MAX_EXTENT).contains(&n), "n", expected)
 }
 
-/// Returns the edge length of a voxel [m], so that the longest side is `text.width`.
+/// Returns the edge length of a voxel [m] for which the longest side is `text.width`.
 fn voxel_size<D: Dim>(text: &BodyText, grid: &VoxelGrid<D>) -> f32 {
     let longest = grid.size().into_iter().max().unwrap_or(1);
     text.width / longest as f32

@@ -28,7 +28,7 @@ pub struct JointText {
 pub enum JointKindText {
     /// The anchors coincide.
     Pin,
-    /// A spring pulls the anchors to its rest length.
+    /// A spring pulls or pushes the anchors towards a distance of `length`.
     Spring,
     /// The anchors are at most `length` apart.
     Rope,

@@ -196,7 +196,7 @@ impl RigidBodyText {
         };
         let made = &world.rigid_bodies()[id];
         if rigid.follows_target() {
-            // The motion of the target has no getter, so everything is compared.
+            // The motion of the target has no getter, so the whole bodies are compared.
             return made == rigid;
         }
         let both = [made, rigid];

@@ -107,7 +107,7 @@ pub(super) struct ShapeChoice<'a> {
 }
 
 impl ShapeChoice<'_> {
-    /// Returns the only shape, checked.
+    /// Checks that exactly one shape is present and valid, and returns it.
     pub(super) fn only<D: Dim>(&self) -> Result<Shape, FieldError> {
         let vector = |field: &str, vector| require_vector(D::N, field, vector);
         let (name, shape) = match (self.half_space, self.boxed, self.capsule, self.ball) {

@@ -1,11 +1,11 @@
-//! Complete states of bodies and rigid bodies: base64 snapshots of worlds with a single one.
+//! Complete states of soft and rigid bodies: base64 snapshots of worlds that contain only the one body.
 
 use super::error::FieldError;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::{Dim, RigidBody, SoftBody, World, WorldConfig, snapshot};
 
-/// Encodes a body.
+/// Encodes a soft body.
 pub(super) fn of_body<D: Dim>(body: &SoftBody<D>, settings: WorldConfig) -> Option<String> {
     let mut world = World::new(settings).ok()?;
     world.add_soft_body(body.clone());
@@ -19,7 +19,7 @@ pub(super) fn of_rigid<D: Dim>(rigid: &RigidBody) -> Option<String> {
     Some(BASE64.encode(snapshot::save(&world)))
 }
 
-/// Decodes a body.
+/// Decodes a soft body.
 pub(super) fn body<D: Dim>(text: &str) -> Result<SoftBody<D>, FieldError> {
     let mut world = world::<D>(text)?;
     let id = world

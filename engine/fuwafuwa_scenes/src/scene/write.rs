@@ -20,14 +20,14 @@ const NEAR: f32 = 1e-3;
 impl Scene {
     /// Describes the current state of a world: settings, bodies, rigid bodies, joints.
     ///
-    /// Bodies that are as they were built are described by fields: a soft body by its voxels, materials,
-    /// position and velocity, a rigid body by its shape, motion type, pose and velocity. If fields cannot
-    /// reproduce a body bit by bit (a torn or deformed body, a hand on its way), its complete state is stored
-    /// in `state`, which is not human-readable. The world built from the scene therefore has the same
-    /// [hash](World::hash), except for ticks.
+    /// Where possible, a body is described by fields: a soft body by its voxels, materials, position and
+    /// velocity, a rigid body by its shape, motion type, pose and velocity. If fields cannot reproduce a body
+    /// bit by bit (a torn or deformed body, a hand on its way), its complete state is stored in `state`,
+    /// which is not human-readable. A world that was not stepped since it was built therefore gives a scene
+    /// that rebuilds it with the same [hash](World::hash).
     ///
-    /// Not included are contacts, events, sleep timers, ticks and the paths of hands. To continue a world to
-    /// the same bits, save it with [`fuwafuwa::snapshot`].
+    /// Not included are contacts, events, sleep timers, the number of ticks and the paths of hands. To
+    /// continue a world with bit-identical results, save it with [`fuwafuwa::snapshot`].
     ///
     /// ```
     /// use fuwafuwa::{Dim2, WorldConfig, World};
@@ -43,8 +43,8 @@ impl Scene {
     ///
     /// # Errors
     /// [`SceneError::Build`] names the cause: more bodies, materials or rigid bodies than a scene may have,
-    /// or a joint whose bodies have moved since it was attached so that the fields of a scene cannot
-    /// reproduce it.
+    /// or a joint that the fields of a scene cannot reproduce, because its bodies have moved since it was
+    /// attached.
     pub fn of_world<D: Dim>(world: &World<D>) -> Result<Self, SceneError> {
         written(world).map_err(|wrong| Origin::named("world").error(wrong))
     }
@@ -155,8 +155,8 @@ fn body_text<D: Dim>(
     })
 }
 
-/// Describes a body by fields, and builds the body that they describe; `None` for bodies that fields cannot
-/// describe.
+/// Describes a body by fields and builds the body that they describe. Returns `None` for bodies that fields
+/// cannot describe.
 fn by_fields<D: Dim>(body: &SoftBody<D>) -> Option<(BodyText, SoftBody<D>)> {
     let (grid, grading) = (body.grid(), body.grading());
     if grading == Grading::Coarse || grid.left_count() < grid.solid_count() {
@@ -215,8 +215,8 @@ fn translation_between<D: Dim>(made: &SoftBody<D>, body: &SoftBody<D>) -> Option
     };
     for axis in 0..D::N {
         let fits = |by: f32| both().all(|(from, to)| from[axis] + by == to[axis]);
-        // The difference is exact except for the last bit where the sum was rounded least: at the node
-        // nearest to 0.
+        // At the node nearest to 0, the sum was rounded least. There the difference is exact up to the last
+        // bit.
         let lowest = both().min_by(|a, b| a.0[axis].abs().total_cmp(&b.0[axis].abs()));
         let (from, to) = lowest?;
         let by = to[axis] - from[axis];
@@ -257,7 +257,7 @@ fn runs(materials: impl Iterator<Item = u8>) -> String {
     runs
 }
 
-/// Describes joints by their original anchors, or else by the current ones, and checks that the scene
+/// Describes joints by their original anchors, otherwise by the current ones, and checks that the scene
 /// reproduces them.
 fn write_joints<D: Dim>(world: &World<D>, scene: &mut Scene) -> Result<(), FieldError> {
     if world.joints().is_empty() {

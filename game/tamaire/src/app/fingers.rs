@@ -6,11 +6,11 @@ use crate::input::Action;
 use egui::{Event, Pos2, TouchDeviceId, TouchId, TouchPhase};
 use std::collections::BTreeMap;
 
-/// Distance after which a finger's direction is decided [points].
+/// Distance after which it is decided whether a finger moves vertically or horizontally [points].
 const DECIDED: f32 = 10.0;
 
 /// The fingers on a touch screen. egui treats the first one as a mouse. Each further finger moves either
-/// vertically or horizontally, depending on how it begins.
+/// vertically or horizontally, depending on its first movement.
 #[derive(Debug, Default)]
 pub(super) struct Fingers {
     /// The pointing finger and its position.
@@ -49,8 +49,8 @@ pub(super) struct DragDistance {
 }
 
 impl Fingers {
-    /// Reads the touch events of a frame. Returns those of `buttons` that were pressed by a finger other than
-    /// the emulated mouse.
+    /// Reads the touch events of a frame. Returns those of `buttons` that a finger has pressed, except the
+    /// finger that egui treats as a mouse.
     pub(super) fn read_events(
         &mut self,
         events: &[Event],
@@ -59,7 +59,7 @@ impl Fingers {
         self.drawn = DragDistance::default();
         let mut pressed: Vec<ScreenButton> = Vec::new();
         for event in events {
-            // Touches that end while the window has no focus are not reported.
+            // The end of a touch is not reported while the window has no focus, so all fingers are forgotten.
             if let Event::WindowFocused(false) = event {
                 *self = Self::default();
             }
@@ -79,7 +79,7 @@ impl Fingers {
                 let button = buttons.iter().find(|button| button.rect.contains(pos));
                 match button.filter(|_| phase == TouchPhase::Start) {
                     Some(&button) => {
-                        // The emulated mouse clicks by itself when the finger is lifted.
+                        // egui itself clicks the button when the finger that it treats as a mouse is lifted.
                         if !is_mouse {
                             pressed.push(button);
                         }

@@ -6,10 +6,11 @@ use egui::{Context, PointerButton, Pos2};
 use fuwafuwa::Dim3;
 use tamaire_play::{AnyRound, Round};
 
-/// Height by which the wheel raises the hand [m/point].
+/// Height by which scrolling the wheel raises the hand [m/point].
 const WHEEL: f32 = 0.002;
-/// Fraction of a body that the wheel cuts off [1/point]; with a held key, [`CUTTING`] [1/s].
+/// Fraction of a body that scrolling the wheel cuts off in the element view [1/point].
 const CUT: f32 = 0.0012;
+/// Fraction of a body that a held key or button cuts off in the element view [1/s].
 const CUTTING: f32 = 0.4;
 /// Camera rotation by a mouse or finger drag [rad/point].
 const DRAG: f32 = 0.006;
@@ -21,8 +22,8 @@ const TURN: f32 = 1.5;
 /// Stores the position at which the mouse or the first finger points, until a tick has used it. Ignores a
 /// pointer that is on a button or that turns the camera.
 pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
-    // Applies to the mouse alone: a finger on a button never counts as pointing (see `Fingers`), and another
-    // finger may still point.
+    // Only the mouse is ignored on a button. `Fingers` handles fingers: one on a button does not point, but
+    // another one may.
     let is_on_button =
         !fingers.are_down() && ctx.interaction_snapshot(|seen| !seen.hovered.is_empty());
     let is_on = game.screen() == Screen::Play;
@@ -45,8 +46,8 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
     let round = game.bout.round();
     let position = match round {
         AnyRound::Plane(_) => view.to_world(at, 0.0),
-        // In space the pointer is projected onto the floor, at the shadow of the hand. So the hand does not
-        // jump when it has risen.
+        // In space the pointer is projected onto the floor and moves the shadow of the hand. The hand keeps
+        // its height, so it does not jump sideways after it was raised.
         AnyRound::Space(in_space) => {
             let goal = game
                 .controls
@@ -60,7 +61,8 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
     game.controls.devices.pointer = Some(position.map(in_steps));
 }
 
-/// Rounds a coordinate to steps of 1/1024 m [m]: finer than a pixel, and half as long in a link.
+/// Rounds a coordinate to a multiple of 1/1024 m [m]. This is finer than a pixel, and halves the length of
+/// the coordinate in a link.
 fn in_steps(at: f32) -> f32 {
     const STEPS: f32 = 1024.0;
     (at * STEPS).round() / STEPS
@@ -89,7 +91,8 @@ fn floor(round: &Round<Dim3>) -> f32 {
 fn mouse_at(ctx: &Context) -> Option<Pos2> {
     ctx.input(|input| {
         let pointer = &input.pointer;
-        // A window that opens under a resting mouse is told its position, which is not the player's input.
+        // A window that opens under a resting mouse receives a pointer position that is not the player's
+        // input.
         let has_moved = pointer.delta() != egui::Vec2::ZERO;
         let points = pointer.button_down(PointerButton::Primary) || has_moved;
         let turns = pointer.button_down(PointerButton::Secondary);

@@ -1,9 +1,10 @@
-//! Key events inserted into egui: keys that sticks and pads press in menus, and filtering of held keys.
+//! Input events inserted into egui: keys that sticks and pads press, and dwell clicks. Also filters key
+//! repeats.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, RawInput};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Keys without auto-repeat, so that the screen that they open is not left at once.
+/// Keys without auto-repeat. A repeated press would close the screen that the first one has just opened.
 const ONCE: [Key; 3] = [Key::Escape, Key::Enter, Key::Space];
 
 /// egui plugin that inserts and filters input events.
@@ -17,9 +18,10 @@ pub(super) struct Waiting {
     pub(super) keys: Vec<Key>,
     /// Position of a dwell click.
     pub(super) click: Option<Pos2>,
-    /// Whether this frame has keys pressed by sticks or pads.
+    /// Whether sticks or pads have pressed keys in this frame.
     pub(super) is_by_stick: bool,
-    /// Whether up and down move through the widgets in order instead of to the widget above or below.
+    /// Whether the up and down keys move the focus in the order of the widgets instead of to the widget above
+    /// or below.
     pub(super) in_order: bool,
     /// The keys of [`ONCE`] that are held.
     held: Vec<Key>,

@@ -1,4 +1,4 @@
-//! Play with one switch: the space key, Enter, or the first button of a stick or pad.
+//! Play with one switch, which is the space key, Enter, or the first button of a stick or pad.
 
 use super::presses::Presses;
 use crate::game::{Game, Screen};
@@ -22,8 +22,8 @@ impl Switch {
         matches!(control, Control::Pad(PadButton::South) | Control::Button(0))
     }
 
-    /// Advances scanning: in a round it offers the moves of the hand, in a menu it moves the focus. Does
-    /// nothing if scanning is off.
+    /// Advances scanning: in a round it offers actions such as moving the hand, in a menu it moves the focus.
+    /// Does nothing if scanning is off.
     pub(super) fn pass(&mut self, game: &mut Game, presses: &Presses, ctx: &Context, seconds: f32) {
         game.controls.devices.taken = None;
         let step = game.settings.scanning.step();
@@ -45,7 +45,8 @@ impl Switch {
         let (is_played, controls) = (game.bout.session.is_played(), &mut game.controls);
         let rests = controls.scan.pass(is_pressed, stays, steps, is_space);
         let taken = controls.scan.taken(is_space);
-        // While watching a replay, the only possible action is to leave it.
+        // While a replay is shown, every press of the switch opens the pause screen, since nothing else is
+        // possible.
         if rests || !is_played && taken.is_some() {
             game.act(Action::Pause, InputSource::Keys);
         } else {

@@ -1,5 +1,5 @@
-//! Labels on the screen, read from the accessibility tree that screen readers use, for tests and exhibits in
-//! a browser.
+//! Labels of widgets on the screen, for tests and for exhibits in a browser. They are read from the
+//! accessibility tree, as a screen reader does.
 
 use egui::{Context, FullOutput, Pos2, Rect};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

@@ -76,7 +76,7 @@ pub(super) fn play(file: &Path, mute: bool) -> ExitCode {
     };
     show(move || {
         let sound = if mute { Sound::none() } else { Sound::open() };
-        // The mounting of sticks is stored in the folder of the stand.
+        // The storage of the game is in the folder of the stand: the calibrations of sticks, and clips.
         let folder = StandFolder::of(stand.config.logbook.folder.as_deref());
         let mut game = Game::new(folder.files(), sound, Pads::open());
         let mut stand = stand;
@@ -94,7 +94,7 @@ pub(super) fn rest(file: &Path) -> ExitCode {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
         game.settings = settings;
         game.public = Some(PublicMode::default());
-        // The settings screen has no round behind it.
+        // This screen has no round behind it, so that no round runs.
         game.go(Screen::Settings);
         (game, Box::new(CrashScreen::default()))
     })
@@ -121,7 +121,8 @@ fn show(make: impl FnOnce() -> (Game, Box<dyn StandController>) + 'static) -> Ex
     }
 }
 
-/// Attendant that sends a heartbeat to the supervisor and ends when the supervisor has ended.
+/// Wrapper of a stand's controller that sends a heartbeat to the supervisor, and ends the game when the
+/// supervisor has ended.
 struct Watched {
     attendant: Box<dyn StandController>,
     pulse: Heartbeat,
@@ -155,7 +156,7 @@ impl StandController for Watched {
     }
 }
 
-/// Makes the window as large as the screen, which does not happen by itself without a window manager.
+/// Makes the window as large as the screen. Without a window manager, full screen alone does not do this.
 fn fill(ctx: &Context) {
     let (screen, window) = ctx.input(|input| {
         let viewport = input.viewport();

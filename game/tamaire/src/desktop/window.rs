@@ -8,7 +8,7 @@ use app_shell::window::{WindowOutcome, open};
 /// Application id: the name of the desktop entry to which the window belongs.
 const APP: &str = "tamaire";
 
-/// Opens a window for a game and its optional attendant. Returns when the window is closed.
+/// Opens a window for a game and, at a stand, its controller. Returns when the window is closed.
 pub(super) fn open_game(
     viewport: egui::ViewportBuilder,
     make: impl FnOnce() -> (Game, Option<Box<dyn StandController>>) + 'static,

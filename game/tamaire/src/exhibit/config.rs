@@ -81,9 +81,10 @@ pub struct ForceConfig {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TakeHome {
-    /// Address of the page that opens links to rounds. Without it, visitors are shown no code.
+    /// Address of the page that opens links to rounds. `None` (default) = visitors are shown no QR code.
     pub page: Option<PageAddress>,
-    /// Maximum number of clips of won rounds that are kept for the operator.
+    /// Number of clips of won rounds that are kept for the operator. Older clips are deleted. 0 (default)
+    /// keeps none.
     pub clips: usize,
 }
 
@@ -91,7 +92,7 @@ pub struct TakeHome {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Staff {
-    /// PIN of the staff pages. Without one they are not accessible.
+    /// PIN of the staff pages. `None` (default) = the staff pages are not accessible.
     pub pin: Option<Pin>,
 }
 
@@ -109,16 +110,16 @@ pub struct Hours {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LogbookConfig {
-    /// Folder of the logbook. `None` = the folder of the game.
+    /// Folder of the logbook, rounds and clips. `None` = `exhibit` in the data folder of the game.
     pub folder: Option<String>,
-    /// Retention of visits and rounds [days].
+    /// Number of days for which visits and rounds are kept.
     pub days: u32,
-    /// PostgreSQL server that receives a copy.
+    /// PostgreSQL server that receives a copy of the logbook. `None` = no copy.
     pub server: Option<Server>,
 }
 
-/// Defines a checked configuration value. The check runs while the file is read, so that errors include the
-/// line.
+/// Defines the type of a checked configuration value. The check runs while the file is parsed, so that its
+/// error message contains the line number.
 macro_rules! checked {
     ($(#[$doc:meta])* $name:ident($kind:ty), $read:ty, $check:expr) => {
         $(#[$doc])*
@@ -174,7 +175,7 @@ checked! {
     /// Address of a PostgreSQL server. Requires the feature `postgres`.
     Server(String), String, |address| match cfg!(feature = "postgres") {
         true => Ok(address),
-        false => Err("a server requires the feature postgres, without which this program was built".into()),
+        false => Err("a server requires the feature postgres, but this program was built without it".into()),
     }
 }
 
@@ -246,7 +247,7 @@ impl Config {
     /// Parses a configuration file.
     ///
     /// # Errors
-    /// The problem and its line.
+    /// Describes the problem and its line.
     pub fn read(text: &str) -> Result<Self, String> {
         toml::from_str(text).map_err(|error| error.to_string())
     }
@@ -282,10 +283,9 @@ impl ConfigChange {
     /// Returns `text` with this change. The rest of the file, including comments, stays as the operator wrote
     /// it.
     ///
-    /// # Errors
-    /// The problem in the file and its line, or the reason why the change is invalid.
+    /// Describes the problem in the file and its line, or the reason why the change is invalid.
     pub fn in_text(&self, text: &str) -> Result<String, String> {
-        // The file may have been edited since it was read.
+        // Checked first, because the operator may have edited the file since it was last read.
         Config::read(text)?;
         let mut file: DocumentMut = text.parse().map_err(|error| format!("{error}"))?;
         match self {

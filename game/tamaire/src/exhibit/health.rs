@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-/// Number of frames in the statistics: about one minute.
+/// Number of frames in the statistics: about one minute at 60 frames per second.
 const FRAMES: usize = 4040;
 
 /// Durations of the last frames.

@@ -12,13 +12,13 @@ use tamaire_logbook::{
 };
 use tamaire_play::Replay;
 
-/// Number of best rounds of the day shown while the stand is idle.
+/// Number of the day's best rounds that are shown while the stand is idle.
 const BEST: usize = 5;
-/// Interval between queries for the figures of the day and the best rounds [s]. Each query takes the next
-/// level, and the day may have changed.
+/// Interval between queries for the figures of the day and the best rounds while the stand is idle [s]. They
+/// are repeated because each query covers only one level, and because a new day may have begun.
 const ASKED: f32 = 60.0;
-/// Interval between checks for the answer to a query [s]. An answer contains whole rounds, so checking each
-/// frame would be wasteful.
+/// Interval between checks whether a query was answered [s]. An answer is copied with all its rounds, which
+/// would be wasteful in each frame.
 const LOOKED: f32 = 1.0;
 /// Free disk space below which no clips are made [bytes].
 const ROOM: u64 = 500 << 20;
@@ -33,14 +33,15 @@ pub struct Memory {
     stand: String,
     folder: StandFolder,
     clips: Files,
-    /// Rounds of which a clip is made when the stand is idle.
+    /// Won rounds of which a clip will be made when the stand is idle.
     waiting: VecDeque<Arc<Replay>>,
-    /// Reference for clock changes: a monotonic and a wall-clock time of the same moment.
+    /// Monotonic time and wall-clock time of the same moment. Changes of the system clock are detected from
+    /// them.
     began: (Instant, SystemTime),
     /// Last known problem of the recorder.
     trouble: Option<String>,
     best: Vec<Id>,
-    /// Number of queries for best rounds, which selects the level of the next one.
+    /// Number of queries for best rounds up to now. It selects the level of the next query.
     turn: usize,
     /// Time since the last query [s].
     asked: f32,
@@ -87,8 +88,8 @@ impl Memory {
         }));
     }
 
-    /// Logs the start of a visit, unless it is already logged. Called only after it is known that the visitor
-    /// is not staff.
+    /// Logs the start of a visit, unless it is already logged. Called at the end of a round, when it is clear
+    /// that the visitor is not staff.
     pub fn note_visit(&self, visit: &mut Visit, config: &Config) {
         if std::mem::replace(&mut visit.is_noted, true) {
             return;
@@ -150,7 +151,8 @@ impl Memory {
         Some(replays.map(Arc::new).collect())
     }
 
-    /// Advances the time [s]: checks for problems, and makes clips while the stand is idle.
+    /// Advances by a frame of `seconds` [s]: handles storage events, repeats queries, and checks the clock
+    /// and the recorder. Makes clips while the stand is idle.
     pub fn pass(&mut self, config: &Config, is_idle: bool, seconds: f32) {
         for news in self.clips.pass(seconds) {
             match news {
@@ -171,7 +173,7 @@ impl Memory {
         self.look_at_clock();
         let trouble = self.recorder.health().problem;
         if trouble != self.trouble {
-            // The recorder logs important problems itself as soon as it can write.
+            // Only printed here: the recorder itself logs important problems as soon as it can write.
             if let Some(trouble) = &trouble {
                 eprintln!("tamaire: visits are not being logged: {trouble}");
             }
@@ -202,7 +204,7 @@ impl Memory {
         }
     }
 
-    /// Figures of the day, as of the last query.
+    /// Figures of the day, as of the last answered query.
     pub fn today(&self) -> Today {
         self.recorder.today().unwrap_or_default()
     }

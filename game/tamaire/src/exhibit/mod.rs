@@ -7,6 +7,7 @@
 //! - [`home`]: QR code of a round
 //! - [`staff`]: staff access
 //! - [`health`]: frame times
+//! - `visit`: a visit and its rounds
 //! - [`memory`]: logbook, best rounds and clips
 
 pub mod config;
@@ -36,13 +37,15 @@ use tamaire_logbook::{Kind, RoundEnd};
 use tamaire_play::Level;
 use visit::Visit;
 
-/// Side of the hidden corner that opens the staff entrance when held [points].
+/// Side of the hidden square in the upper right corner of the window [points]. Holding it opens the staff
+/// entrance.
 pub const CORNER: f32 = 90.0;
-/// Time after a change of screen during which presses are ignored [s].
+/// Time in which presses are ignored after the screen has changed or the result has appeared [s].
 const SETTLED: f32 = 0.4;
-/// Delay of the QR code after the result appears [s], because the code may cover the body in the basket.
+/// Delay between the result and its QR code [s]. The code may cover the body in the basket, which is shown
+/// first.
 const BEAMING: f32 = 2.0;
-/// Minimum time without input before the countdown on staff pages [s].
+/// Minimum time without input on staff pages before the countdown begins [s].
 const STAFF: Seconds = Seconds(120.0);
 
 /// State of a stand.
@@ -68,7 +71,7 @@ pub struct Stand {
     pub config: Config,
     /// Current state.
     pub phase: Phase,
-    /// Detected attention of the visitor.
+    /// Attention of the visitor, detected from the input.
     pub attention: Attention,
     /// QR code of the last round, if it was won.
     home: Option<home::Code>,
@@ -76,7 +79,7 @@ pub struct Stand {
     pub entrance: Entrance,
     /// Frame times.
     pub frames: FrameTimes,
-    /// Message for staff: the result of the last change, or the reason why it failed.
+    /// Message for staff: the error of the last change, or the result of an export.
     pub answer: Option<String>,
     /// Whether staff ended the stand.
     pub is_ended: bool,
@@ -96,7 +99,7 @@ pub struct Stand {
     devices: Vec<(DeviceId, String)>,
     /// Time of the last frame.
     last: Option<Instant>,
-    /// Time of day in tests.
+    /// Fixed time of day for tests. `None` = the time of the system clock.
     told_time: Option<Time>,
 }
 
@@ -105,7 +108,7 @@ impl Stand {
     /// exist.
     ///
     /// # Errors
-    /// The file, the problem and its line, and the expected value.
+    /// Names the file, the problem and its line, and the expected value.
     pub fn open(file: TextFile) -> Result<Self, String> {
         let text = file.read_or(config::DEFAULT_CONFIG)?;
         let config = Config::read(&text);
@@ -155,7 +158,7 @@ impl Stand {
         self.frames
             .note(last.map_or(seconds, |last| (now - last).as_secs_f32()));
         let sticks = &game.controls.devices.sticks;
-        // Movement of a stick that the game itself moves is not a touch.
+        // A stick that the game itself moves does not count as touched.
         let is_touched = self.presence.is_touched(ctx, sticks, game.is_calling());
         self.collect(game, RoundEnd::Retried);
         self.memory
@@ -167,7 +170,7 @@ impl Stand {
         self.knock(game, ctx, seconds);
         let mut times = self.config.times;
         if matches!(self.phase, Phase::Staff(_)) {
-            // Staff reading figures gives no input.
+            // Staff may read the figures for a long time without any input.
             times.rest = times.rest.max(STAFF);
         }
         let attention = self.presence.pass(seconds, is_touched, &times);
@@ -177,7 +180,7 @@ impl Stand {
         };
         match (self.phase, self.attention) {
             (Phase::Attract, _) if !self.is_open() => {
-                // The settings screen has no round behind it.
+                // Shows a screen without a round behind it, so that no round runs while the stand is closed.
                 game.go(Screen::Settings);
                 self.phase = Phase::Closed;
             }
@@ -212,12 +215,14 @@ impl Stand {
         self.result_since > SETTLED
     }
 
-    /// QR code of the round. `None` while the body in the basket is to be visible.
+    /// QR code of the won round. `None` for the first seconds of the result, so that the code does not cover
+    /// the body in the basket.
     pub fn to_take_home(&self) -> Option<&home::Code> {
         self.home.as_ref().filter(|_| self.result_since > BEAMING)
     }
 
-    /// Whether presses are accepted. The press that opened the current screen is still ignored.
+    /// Whether presses are accepted. Just after a change of phase they are not, so that the press that caused
+    /// the change has no further effect.
     pub fn is_settled(&self) -> bool {
         self.since > SETTLED
     }
@@ -239,7 +244,7 @@ impl Stand {
         }
     }
 
-    /// Starts one of the configured levels.
+    /// Starts the configured level with this index.
     pub fn choose(&mut self, game: &mut Game, index: usize) {
         self.phase = Phase::Visit;
         self.home = None;
@@ -247,7 +252,7 @@ impl Stand {
         game.start(index);
     }
 
-    /// Starts the level again. `route` is the suggested way to win, if any.
+    /// Restarts the level. `route` is the way to win that was suggested to the visitor, if any.
     pub fn try_again(&mut self, game: &mut Game, route: Option<tamaire_play::Route>) {
         self.home = None;
         game.retry();
@@ -296,7 +301,7 @@ impl Stand {
         self.answer = None;
     }
 
-    /// Returns the visitor to the round from any other screen, and updates the state of the result.
+    /// Returns to the round if any other screen is open, and updates the time of the result.
     fn lead_back(&mut self, game: &mut Game, seconds: f32) {
         self.result_since = match game.screen() {
             Screen::Result => self.result_since + seconds,
@@ -311,7 +316,8 @@ impl Stand {
         game.notices.clear();
     }
 
-    /// Logs the rounds that ended since the last call. `end` is the reason for rounds that were not won.
+    /// Logs the rounds that ended since the last call. `end` is the reason why a round that was not won
+    /// ended.
     fn collect(&mut self, game: &mut Game, end: RoundEnd) {
         let ended = game.public.as_mut();
         let ended = ended.map(|public| std::mem::take(&mut public.ended));
@@ -355,10 +361,11 @@ impl Stand {
         self.config.hours.is_none_or(|hours| hours.is_open(now()))
     }
 
-    /// Opens the PIN page if the hidden corner or the chord has been held for long enough.
+    /// Opens the PIN page if the hidden corner or the button combination ([`staff::is_chord`]) was held for
+    /// long enough.
     fn knock(&mut self, game: &mut Game, ctx: &Context, seconds: f32) {
         let is_chord = { game.controls.devices.sticks.devices.iter() }.any(staff::is_chord);
-        // Upper right corner: visitors have nothing to press there.
+        // The upper right corner, because visitors have nothing to press there.
         let edge = ctx.content_rect().right_top() - egui::vec2(CORNER, 0.0);
         let corner = egui::Rect::from_min_size(edge, egui::Vec2::splat(CORNER));
         let is_corner = ctx.input(|input| {
@@ -371,7 +378,7 @@ impl Stand {
             game.go(Screen::Title);
             match self.since > 2.0 * staff::HELD {
                 true => self.collect(game, RoundEnd::Left),
-                // A round begun by holding the entrance does not count.
+                // The hold itself may have started a visit and a round, which do not count.
                 false => game.public.get_or_insert_default().ended.clear(),
             }
             self.presence.begin();
@@ -420,7 +427,8 @@ impl Stand {
         }
     }
 
-    /// Ends the stand, whether staff ended it or not. Pending entries are written when `self` is dropped.
+    /// Ends the current visit when the program closes, and logs the end of the stand if staff requested it.
+    /// Pending entries are written when `self` is dropped.
     pub fn close(&mut self, game: &mut Game) {
         self.end_visit(game, RoundEnd::Cut);
         if self.is_ended {

@@ -5,11 +5,12 @@ use egui::{Context, Event};
 use std::collections::BTreeMap;
 use sticks::{Change, DeviceId, Snapshot};
 
-/// Smallest change of a stick or trigger axis that counts (full deflection = 1). Worn ones tremble.
+/// Change of a stick or trigger axis that counts as input (full deflection = 1). Worn sticks tremble by less.
 const MOVED: f32 = 0.15;
-/// Smallest distance of the mouse that counts [points], even if slow. Shocks to the table move it less.
+/// Mouse travel that counts as input, however slow the mouse is [points]. A shock to the table moves it by
+/// less.
 const PUSHED: f32 = 4.0;
-/// Time without mouse movement after which its distance is reset [s].
+/// Time without mouse movement after which the measured travel restarts from zero [s].
 const KNOCKED: f32 = 1.0;
 
 /// Attention of a visitor.
@@ -31,7 +32,7 @@ pub struct Presence {
     rest: f32,
     /// Time since the last mouse movement [s].
     pointer_rest: f32,
-    /// Distance of the mouse since its movement last counted [points].
+    /// Mouse travel that has not counted as input yet [points].
     pushed: f32,
     before: Snapshot,
     /// Positions of sticks and triggers at their last movement that counted.
@@ -39,8 +40,8 @@ pub struct Presence {
 }
 
 impl Presence {
-    /// Whether there was input since the last call. If `they_stir`, the game itself moves the sticks, and
-    /// their position does not count.
+    /// Whether there was input since the last call. `they_stir` = the game itself moves the sticks, so their
+    /// positions do not count.
     pub fn is_touched(&mut self, ctx: &Context, sticks: &Snapshot, they_stir: bool) -> bool {
         let by_hand = ctx.input(|input| input.events.iter().any(is_deed));
         let way = ctx.input(|input| input.pointer.delta().length());
@@ -48,7 +49,8 @@ impl Presence {
         by_hand || self.is_pushed(way) || by_stick
     }
 
-    /// Whether the mouse has moved far enough, including its latest distance `way` [points].
+    /// Adds the latest mouse travel `way` [points] and returns whether the mouse has moved far enough to
+    /// count as input.
     fn is_pushed(&mut self, way: f32) -> bool {
         if self.pointer_rest > KNOCKED {
             self.pushed = 0.0;
@@ -91,7 +93,7 @@ impl Presence {
         is_moved
     }
 
-    /// Advances the time by `seconds` [s], in which there was input or not.
+    /// Advances by `seconds` [s], with or without input, and returns the attention of the visitor.
     pub fn pass(&mut self, seconds: f32, is_touched: bool, times: &Times) -> Attention {
         self.pointer_rest += seconds;
         self.rest = if is_touched { 0.0 } else { self.rest + seconds };
@@ -114,7 +116,7 @@ impl Presence {
     }
 }
 
-/// Whether an event is caused by a person. Key repeats do not count, because an object may lie on the key.
+/// Whether a person caused an event. Key repeats do not count, because an object may lie on the key.
 fn is_deed(event: &Event) -> bool {
     match event {
         Event::Key {

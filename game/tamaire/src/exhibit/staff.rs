@@ -5,14 +5,16 @@ use sticks::{Device, PadButton};
 
 /// Time for which the entrance must be held [s].
 pub const HELD: f32 = 3.0;
-/// Fraction of [`HELD`] after which progress is shown, so that an accidental touch reveals nothing.
+/// Fraction of [`HELD`] before which no progress is shown, so that an accidental touch does not reveal the
+/// entrance.
 const HESITATION: f32 = 0.3;
-/// Number of wrong PINs before the first pause, [`PAUSE`] [s]. Each further one doubles the pause, up to
-/// [`LONGEST`] [s].
+/// Number of wrong PINs after which the first pause begins.
 const SLIPS: u32 = 3;
+/// Length of the first pause [s]. Each further wrong PIN doubles it.
 const PAUSE: f64 = 30.0;
+/// Maximum length of a pause [s].
 const LONGEST: f64 = 3600.0;
-/// Time after the last wrong PIN after which wrong PINs are forgotten [s].
+/// Time without a wrong PIN after which earlier wrong PINs are forgotten [s].
 const FORGIVEN: f64 = 6.0 * 3600.0;
 
 /// Pad buttons that open the entrance when held together.
@@ -21,8 +23,8 @@ const CHORD: [PadButton; 3] = [
     PadButton::RightShoulder,
     PadButton::Start,
 ];
-/// Buttons of a plain stick, counted from 0, that open the entrance when held together. The first two are
-/// left out: visitors find them at once.
+/// Buttons of a stick without a pad layout, counted from 0, that open the entrance when held together.
+/// Buttons 0 and 1 are left out because visitors press them at once.
 const STICK_CHORD: [usize; 2] = [2, 3];
 
 /// Staff pages.
@@ -31,7 +33,7 @@ pub enum StaffPage {
     /// Figures of the day.
     #[default]
     Today,
-    /// Health of the stand.
+    /// Frame times and other health data of the stand.
     Health,
     /// Configuration of the stand.
     Settings,
@@ -40,7 +42,7 @@ pub enum StaffPage {
 }
 
 impl StaffPage {
-    /// Pages that link to each other.
+    /// Pages in the navigation row, in this order.
     pub const ALL: [Self; 3] = [Self::Today, Self::Health, Self::Settings];
 }
 

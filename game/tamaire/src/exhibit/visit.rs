@@ -15,7 +15,7 @@ pub struct Visit {
     pub began: Moment,
     /// Whether the visit is in the logbook.
     pub is_noted: bool,
-    /// Suggested way to win the current round, if any.
+    /// Way to win the current round that was suggested to the visitor, if any.
     pub dare: Option<Route>,
     rounds: u32,
 }
@@ -32,7 +32,7 @@ impl Visit {
         }
     }
 
-    /// Returns the logbook entry of a round. `end` is the reason if the round was not won.
+    /// Returns the logbook entry of a round. `end` is the reason why the round ended if it was not won.
     pub fn round(&mut self, config: &Config, ended: &EndedRound, end: RoundEnd) -> Round {
         self.rounds += 1;
         let (progress, won) = (&ended.progress, ended.progress.outcome);
@@ -54,7 +54,7 @@ impl Visit {
             pieces: won.map_or(progress.pieces, |won| won.pieces) as u32,
             lost: won.map_or(0, |won| won.lost) as u32,
             dare: self.dare.take(),
-            // A round that was just played can be encoded.
+            // Encoding cannot fail for a round that was just played.
             replay: ended.replay.fragment().unwrap_or_default(),
         }
     }

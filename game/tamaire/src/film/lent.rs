@@ -1,4 +1,4 @@
-//! GPU device of films in a browser, which is that of the page, because a page has only one.
+//! GPU device of films in a browser. Films use the device of the page, because a page has only one.
 
 use eframe::egui_wgpu::{RenderState, Renderer, RendererOptions};
 use egui::mutex::RwLock;

@@ -5,7 +5,7 @@ use fuwafuwa_painter::solid::{Camera, Scene3d};
 use fuwafuwa_painter::{PaintError, Painter, PaperTransform, Pixmap, worlds};
 use tamaire_play::AnyRound;
 
-/// Draws a picture of the current state of a round. The size [px] excludes the caption.
+/// Draws a picture of the current state of a round. The given width and height [px] exclude the caption.
 pub fn picture(
     round: &AnyRound,
     [width, height]: [u32; 2],

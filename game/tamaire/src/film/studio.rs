@@ -1,4 +1,4 @@
-//! Off-screen rendering of the window's pictures: egui, the stage and both renderers draw into images.
+//! Off-screen rendering of rounds: egui and the renderers of the window draw into images instead.
 
 use super::device;
 use crate::look::{DrawOptions, Effects, Hint, Stage, view_of_level};
@@ -9,11 +9,12 @@ use fuwafuwa_render::{ImageError, ImageStage};
 use tamaire_play::AnyRound;
 use wgpu::PollType;
 
-/// Height of the caption strip below a picture, and its font size [px].
+/// Height of the caption strip below a picture [px].
 const CAPTION: f32 = 34.0;
+/// Font size of the caption [px].
 const LETTERS: f32 = 17.0;
 
-/// Off-screen renderer of rounds, which look as in the window.
+/// Off-screen renderer of rounds. Its pictures look the same as in the window.
 pub struct Studio {
     state: RenderState,
     context: egui::Context,
@@ -30,7 +31,7 @@ pub struct Moment<'a> {
     pub effects: &'a Effects,
     /// Camera.
     pub camera: &'a CameraRig,
-    /// Time since the film began [s].
+    /// Time since the start of the round [s].
     pub time: f64,
     /// Caption below the picture.
     pub caption: Option<&'a str>,
@@ -125,7 +126,7 @@ impl Studio {
         drawn
     }
 
-    /// Releases the render targets until the next picture: after a photo of a plane world they take 20 MB.
+    /// Releases the render targets until the next picture. After a photo of a 2D world they take 20 MB.
     pub fn rest(&self) {
         self.stage.forget_images();
         // Polling the device frees unused resources. A failed device reports its error at the next picture.

@@ -12,9 +12,9 @@ const CHEER: f32 = 1.4;
 
 /// The current round.
 pub struct CurrentRound {
-    /// Round with its progress in time.
+    /// The round in real time, played by people or shown from a replay.
     pub session: Session,
-    /// Whether the ghost was chosen by the player.
+    /// Whether the player chose the replay that is the ghost. A retry then keeps this ghost.
     pub(super) is_ghost_chosen: bool,
     /// Particles and other effects.
     pub effects: Effects,
@@ -30,14 +30,14 @@ pub struct CurrentRound {
     pub slow: bool,
     /// Whether the round advances by single steps only.
     pub stepping: bool,
-    /// Outcome of a won round, and whether it is the best of its route.
+    /// Outcome of a won round, and whether it is the player's best for its route. `None` for replays.
     pub won: Option<(Outcome, bool)>,
     pub(super) lesson: Tutorial,
     /// Whether the round has been added to [`PublicMode::ended`](super::PublicMode::ended).
     pub(super) is_noted: bool,
     /// Whether the player was told that this machine is too slow for the round.
     pub(super) is_known_slow: bool,
-    /// Time since the round was won [s].
+    /// Time since the round was won, or on the title screen since it ended [s].
     pub(super) cheered: f32,
 }
 

@@ -15,7 +15,7 @@ pub struct ScreenButton {
 }
 
 impl ScreenButton {
-    /// Returns the seat for which the button acts.
+    /// Returns the input source for which the button acts.
     pub fn seat(&self) -> InputSource {
         match self.action {
             // The first finger has a hand already, so joining is for the second one.
@@ -31,7 +31,7 @@ pub struct Controls {
     pub pads: Pads,
     /// Current input of all devices.
     pub devices: Devices,
-    /// Players and their seats.
+    /// Players and their input sources.
     pub players: Players,
     /// Input method used last.
     pub means: InputMethod,
@@ -63,7 +63,7 @@ impl Controls {
         }
     }
 
-    /// Prepares for a new round: input that refers to positions in the last round is cleared.
+    /// Prepares for a new round: clears held keys and positions, which refer to the previous round.
     pub(super) fn begin(&mut self, is_space: bool) {
         self.players.start();
         self.latch.release();

@@ -4,7 +4,8 @@ use super::Game;
 use super::public::EndedRound;
 
 impl Game {
-    /// Adds the current round to the collection in public mode, once, if it has been played.
+    /// In public mode, adds the current round to [`PublicMode::ended`](super::PublicMode::ended). Does
+    /// nothing if it was already added, has not begun, or is a replay.
     pub(super) fn note_end(&mut self) {
         let (bout, round) = (&self.bout, self.bout.round());
         let is_begun = round.ticks() > 0 && bout.session.is_played();

@@ -9,12 +9,14 @@ use force_feedback::{Ability, Calibration, State, StickMode, Stop};
 use sticks::DeviceId;
 use tamaire_play::PLAYERS;
 
-/// Idle time after which a device gets no feedback [s].
+/// Time without movement after which a device without force feedback stops rumbling [s].
 const RESTED: f32 = 1.5;
 
-/// Movement of an idle stick that attracts visitors: duration [s], period [s], and fraction of full force.
+/// Duration of the movement of an idle stick that attracts visitors [s].
 const CALL: f64 = 1.6;
+/// Time from the start of one such movement to the next [s].
 const CALLS: f64 = 24.0;
+/// Strength of the movement, as a fraction of full force.
 const GENTLE: f32 = 0.12;
 
 impl Game {
@@ -88,8 +90,8 @@ impl Game {
         let hands = self.bout.round().hands();
         let contact = to_user(self.bout.turn(), haptics::contact(hands.get(player)?));
         let pushes_back = self.controls.devices.pushing.contains(&id);
-        // A device that was put down stops rumbling, even if the hand still presses. A force-feedback stick
-        // is excluded, since it may be held still.
+        // A pad that was put down stops rumbling, even if the hand still presses. A force-feedback stick is
+        // excluded, since a player may hold it still.
         if !pushes_back && self.controls.players.idle_time(player) > RESTED {
             return None;
         }
@@ -100,8 +102,8 @@ impl Game {
         Some(State { contact, manner })
     }
 
-    /// Movement of an idle stick that attracts visitors: one slow circle in each period. `None` in the rest
-    /// of the period.
+    /// Returns the force on an idle stick that attracts visitors: one slow circle in each period. `None` in
+    /// the rest of the period.
     fn call(&self) -> Option<State> {
         let share = self.time % CALLS / CALL;
         let (sin, cos) = (std::f64::consts::TAU * share).sin_cos();

@@ -1,4 +1,4 @@
-//! Sounds of a tick, and continuous sounds.
+//! Sounds of the game: those that a tick triggers, and continuous ones.
 
 use super::{Game, Screen};
 use app_shell::View;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use tamaire_play::{Replay, ReplayError};
 
 impl Game {
-    /// Schedules the settings to be saved once they no longer change. If writing fails, the player is told,
+    /// Schedules the settings to be saved once they no longer change. If writing fails, a message is shown,
     /// and the settings stay in effect until the game ends.
     pub fn keep_settings(&mut self) {
         self.files.keep_settings(&self.settings);
@@ -17,8 +17,8 @@ impl Game {
         self.files.save_replay(self.bout.round().replay());
     }
 
-    /// Saves a replay of a round that is being played, and writes all pending data. For the case that the GPU
-    /// is lost.
+    /// If a round is being played, saves a replay of it, writes all pending data, and returns to the title.
+    /// Called when the GPU is lost.
     pub fn rescue(&mut self) {
         if self.is_in_round() {
             self.keep_replay();
@@ -45,7 +45,7 @@ impl Game {
         Ok(())
     }
 
-    /// Removes a level that is not built in from the list. Its records stay.
+    /// Removes a level from the list and deletes its file. The level must not be built in. Its records stay.
     pub fn take_out(&mut self, index: usize) {
         let level = self.levels.remove(index);
         self.files.remove_level(&level.id);
@@ -54,7 +54,7 @@ impl Game {
         }
     }
 
-    /// Gives a saved round to the player as a file.
+    /// Gives a saved round to the player as a file, as a download in a browser. Not supported on a desktop.
     pub fn hand_out(&mut self, saved: &Entry) {
         if let Err(error) = self.files.hand_out(&saved.name) {
             self.tell(StorageEvent::Failed(error.to_string()));
@@ -79,7 +79,7 @@ impl Game {
     /// Shows the result of a file operation to the player.
     pub(super) fn tell(&mut self, news: StorageEvent) {
         match news {
-            // A level that was opened in the meantime is newer.
+            // The stored level is ignored: the player has opened a newer one with this id in the meantime.
             StorageEvent::Level(level) if self.levels.iter().any(|known| known.id == level.id) => {}
             StorageEvent::Level(level) => self.levels.push(level),
             StorageEvent::Damaged(damage) => self.tell_of(damage),

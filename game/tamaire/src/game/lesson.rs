@@ -1,11 +1,12 @@
-//! Tutorial for players who are new to space.
+//! Tutorial: hints for players who are new to levels in space.
 
 use fuwafuwa::Vector;
 
-/// Movement after which a hint counts as tried: hand along the floor [m], hand up or down [m], camera around
-/// the scene [rad].
+/// Movement of the hand along the floor after which the hint about it counts as tried [m].
 const MOVED: f32 = 0.2;
+/// Movement of the hand up or down after which the hint about it counts as tried [m].
 const RAISED: f32 = 0.12;
+/// Rotation of the camera after which the hint about it counts as tried [rad].
 const TURNED: f32 = 0.2;
 /// Time for which hints are shown in a round [s].
 const LONG: f32 = 45.0;
@@ -31,8 +32,8 @@ impl Tutorial {
         self.tried.map(|tried| !tried && self.seconds < LONG)
     }
 
-    /// Updates the progress with the offset of the hand from its start [m] and the rotation of the camera
-    /// from its start [rad].
+    /// Updates the progress after a frame of `seconds` [s]. `gone` is the offset of the player's goal from
+    /// the start of the hand [m], `turned` the rotation of the camera from its start [rad].
     pub(super) fn see(&mut self, gone: Vector, turned: f32, seconds: f32) {
         let along = (gone[0] * gone[0] + gone[2] * gone[2]).sqrt();
         let now = [along > MOVED, gone[1].abs() > RAISED, turned > TURNED];

@@ -1,5 +1,5 @@
-//! Public mode of the game at a stand: ended rounds are collected, and rounds of visitors are shown to
-//! others.
+//! Public mode of the game at a stand: collects the rounds that end, and shows the best ones while the stand
+//! is idle.
 
 use crate::session::Session;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ pub struct PublicMode {
     pub attractions: Vec<Arc<Replay>>,
     /// Whether a second player may join.
     pub takes_two: bool,
-    /// Whether the visitor seems to have left, so that force feedback is off.
+    /// Whether the visitor seems to have left. Force feedback is then off.
     pub is_left: bool,
     /// Whether a visitor asked for the other language.
     pub asks_for_language: bool,

@@ -1,4 +1,5 @@
-//! List of saved rounds with their details, which are read one round at a time because each takes a moment.
+//! List of saved rounds with their details. The details of one round are read per frame, because reading
+//! takes long.
 
 use crate::platform::{Entry, Files};
 use std::sync::Arc;
@@ -49,7 +50,8 @@ impl SavedRounds {
         self.0 = kept.collect();
     }
 
-    /// Reads the details of one round that has none. Equal levels in the list or in `levels` are shared.
+    /// Reads the details of one round whose details are unknown. Reuses an equal level from this list or from
+    /// `levels`.
     pub(super) fn load_next_details(&mut self, files: &Files, levels: &[Arc<Level>]) {
         let Some(index) = self.0.iter().position(|kept| kept.found.is_none()) else {
             return;

@@ -1,13 +1,13 @@
-//! Hints for players who are new to space.
+//! Hints for players who are new to levels in space.
 
 use super::{Game, Screen};
 use crate::input::{Action, InputMethod};
 use fuwafuwa::inspect::vector::minus;
 
 impl Game {
-    /// Returns the hints about moving, raising and turning for the input method used last, each with whether
-    /// it is still to be shown. There are none in the plane, outside of play, and for players who have won in
-    /// space. With scanning on, the only hint explains the switch.
+    /// Returns the hints about moving, raising and turning, and whether each is still to be shown. They are
+    /// worded for the input method used last. There are none in the plane, outside of play, and for players
+    /// who have won in space. With scanning on, the only hint explains the switch.
     pub fn lesson(&self) -> Vec<(String, bool)> {
         if self.settings.scanning.is_on() {
             let is_played = self.screen() == Screen::Play && self.bout.session.is_played();

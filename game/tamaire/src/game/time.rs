@@ -71,7 +71,7 @@ impl Game {
             turn: self.bout.turn(),
         };
         let still = self.settings.reduced_motion;
-        // In menus the same keys and sticks move the focus. After a win the hands stop, so that the body is
+        // In menus the same keys and sticks move the focus. After a win, input is ignored so that the body is
         // not torn any more.
         let is_won = self.bout.round().progress().outcome.is_some();
         let in_round = self.screen() == Screen::Play && !is_won;
@@ -110,7 +110,7 @@ impl Game {
                 }
                 let tick = fuwafuwa::TICK;
                 let frame = players.frame(devices, &settings.bindings, &manner, &hands, tick);
-                // A turn of the wheel counts once, however many ticks are played.
+                // Scrolling counts once, however many ticks are played in this frame.
                 devices.lift = 0.0;
                 frame
             },

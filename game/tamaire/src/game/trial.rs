@@ -4,7 +4,7 @@ use crate::settings::FULL;
 use force_feedback::{Calibration, Measured, Measurement, Settings, State, StickMode};
 use sticks::{DeviceId, Snapshot};
 
-/// Deflection beyond which a stick counts as at its rim, where it gets a tear impulse.
+/// Deflection beyond which a stick counts as at its rim, where it gives a tear impulse.
 const RIM: f32 = 0.95;
 /// Deflection below which the stick has left the rim again.
 const BACK: f32 = 0.85;
@@ -34,17 +34,17 @@ pub enum TrialStatus {
     GoesOn,
     /// The device was disconnected.
     Gone,
-    /// The measurement has ended. `None` = the mounting of the stick could not be determined.
+    /// The measurement has ended. `None` = the directions of the motors could not be determined.
     Known(Option<Calibration>),
 }
 
 impl Trial {
-    /// Creates a test in which the device acts as a spring and tears at its rim.
+    /// Creates a test in which the device pushes back like a spring and gives a tear impulse at its rim.
     pub fn spring(device: DeviceId) -> Self {
         Self::of(device, Act::Spring)
     }
 
-    /// Creates a measurement of the mounting of the device.
+    /// Creates a measurement of the motor directions of the device.
     pub fn measure(device: DeviceId) -> Self {
         Self::of(device, Act::Measure(Measurement::default()))
     }
@@ -89,17 +89,17 @@ impl Trial {
         TrialStatus::GoesOn
     }
 
-    /// Returns the feedback for a device, if it is the one under trial.
+    /// Returns the force feedback for a device. `None` if another device is under trial.
     pub fn state(&self, device: DeviceId) -> Option<State> {
         (device == self.device).then_some(self.state)
     }
 
-    /// Returns the tear impulse that has not been sent yet, once.
+    /// Returns each tear impulse once, before it is sent: the device and the size (1 = maximum).
     pub fn take_tear(&mut self) -> Option<(DeviceId, f32)> {
         Some((self.device, self.tear.take()?))
     }
 
-    /// Returns the force settings during a measurement. `None` = the usual ones.
+    /// Returns the force settings for a device during its measurement. `None` = the player's settings apply.
     pub fn settings(&self, device: DeviceId) -> Option<Settings> {
         let is_measured = device == self.device && matches!(self.act, Act::Measure(_));
         is_measured.then_some(Measurement::SETTINGS)

@@ -21,22 +21,23 @@ const COLUMNS: &str = "seconds,row,player,\
     contact_x_N,contact_y_N,contact_z_N,coupling_x_N,coupling_y_N,coupling_z_N,\
     aim_x,aim_y,felt_x_N,felt_y_N,stick_x,stick_y,pad_slow,pad_fast,silent";
 
-/// Table that grows tick by tick: the substeps of a tick, then the updates from its end to the end of the
-/// next one. The simulated sticks point at the goals of the hands, as force-feedback sticks do.
+/// Table of force feedback that grows with each tick: first the substeps of the tick, then the device updates
+/// during the next tick. The simulated sticks are at the goals of the hands, as real force-feedback sticks
+/// are.
 pub struct ForceLog {
     file: File,
     /// Rows of the current tick. They are written at once, so that a killed run leaves complete ticks in the
     /// file.
     rows: Vec<u8>,
-    /// Stick and pad of each player.
+    /// Simulated stick and pad of each player.
     feels: [[ForceController; 2]; PLAYERS],
     /// Position of each stick at the end of the previous tick.
     aims: [Option<[f32; 2]>; PLAYERS],
     /// Default force settings.
     settings: force_feedback::Settings,
-    /// Number of updates.
+    /// Number of device updates since the start, one in each [`PERIOD`].
     updates: u64,
-    /// First write error, if any.
+    /// First write error, if any. Nothing is written after it.
     written: io::Result<()>,
 }
 
@@ -56,7 +57,7 @@ impl ForceLog {
         })
     }
 
-    /// Adds the last tick of a round, and the updates from its end to the end of the next tick.
+    /// Adds the last tick of a round, and the device updates during the next tick.
     pub fn note(&mut self, round: &AnyRound) {
         if self.written.is_ok() {
             self.written = self.write(round);
@@ -112,7 +113,7 @@ impl ForceLog {
                 continue;
             }
             for (player, before) in before.iter().enumerate().take(hands.len()) {
-                // The stick moves to its new position during the whole tick.
+                // The stick moves evenly from its previous to its new position during the tick.
                 let share = ((seconds - end) / tick) as f32;
                 let now = self.aims[player].unwrap_or_default();
                 let before = before.unwrap_or(now);
@@ -122,8 +123,8 @@ impl ForceLog {
         }
     }
 
-    /// Adds an update of the devices of a player at `seconds` after the start. `end` is the time of the
-    /// game's last message.
+    /// Adds an update of the devices of a player, `seconds` after the start of the round. `end` is the end of
+    /// the last tick [s], when the devices got their last command.
     fn update(
         &mut self,
         round: &AnyRound,
@@ -176,12 +177,13 @@ fn numbers(all: &[f32]) -> String {
     rounded.map(|k| k.to_string()).collect::<Vec<_>>().join(",")
 }
 
-/// Rotation of the camera: in space it looks from the front.
+/// Rotation of the camera for the conversion of forces [rad]: 0 (from the front) in space, `None` in the
+/// plane.
 fn turn(round: &AnyRound) -> Option<f32> {
     matches!(round, AnyRound::Space(_)).then_some(0.0)
 }
 
-/// Returns the stick position for a position in the arena [m].
+/// Returns the stick position (right, up; -1 to 1) for a position in the arena [m].
 fn aim_at(position: Vector, round: &AnyRound) -> [f32; 2] {
     let [low, high] = round.level().arena();
     let share = [0, 1, 2].map(|axis: usize| {

@@ -15,7 +15,7 @@ pub struct Played {
     pub times: Vec<Duration>,
 }
 
-/// Plays a round by a bot until it wins or `most_ticks` have passed.
+/// Lets a bot play a round until it has won or `most_ticks` have passed.
 pub fn of_bot(
     level: Arc<Level>,
     mut bot: Bot,
@@ -38,7 +38,7 @@ pub fn of_bot(
     Played { round, times }
 }
 
-/// Plays a recorded round and checks it.
+/// Plays a replay to its end and checks that the world does not diverge from it.
 pub fn of_replay(replay: Arc<Replay>, log: &mut Option<ForceLog>) -> Result<Played, ReplayError> {
     let bar = progress("playing", replay.ticks() as u64);
     let mut playback = Playback::new(replay)?;

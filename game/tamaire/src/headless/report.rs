@@ -23,19 +23,20 @@ pub struct Report {
     /// Game time until the round was won or given up [s].
     seconds: f32,
     ticks: u64,
-    /// Fraction of the mass in the largest piece of each body.
+    /// Mass of the largest piece of each body, as a fraction of its mass at the start.
     kept: f32,
-    /// Fraction of the mass in the basket.
+    /// Fraction of the mass that is at rest in the basket.
     inside: f32,
-    /// Fraction of the mass that is required in the basket.
+    /// Fraction of the mass that must be at rest in the basket to win.
     needed: f32,
     pieces: usize,
-    /// Whether each wish of the level is fulfilled.
+    /// Whether each wish of the level is fulfilled. A fulfilled wish is a star.
     wishes: Vec<bool>,
     /// Hash of the final state of the world, in hexadecimal.
     hash: String,
-    /// Computing time of a tick [ms].
+    /// Median computing time of a tick [ms].
     median_tick_ms: f64,
+    /// Longest computing time of a tick [ms].
     worst_tick_ms: f64,
 }
 

@@ -16,7 +16,8 @@ pub struct Bindings {
     pub buttons: BTreeMap<Action, Vec<PadKey>>,
 }
 
-/// Button in the notation of the settings file: `south` of a pad, `3` of a plain stick, `hat up`.
+/// Button in the notation of the settings file: `south` for a pad, `3` for another stick (counted from 1), or
+/// `hat up`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct PadKey(pub String);
@@ -47,7 +48,7 @@ impl PadKey {
         }
     }
 
-    /// Whether the button is on a plain stick rather than a pad.
+    /// Whether the button is on a stick without a pad layout.
     fn is_of_stick(&self) -> bool {
         self.0.starts_with("hat ") || self.0.parse::<u8>().is_ok()
     }
@@ -94,11 +95,12 @@ impl Default for Bindings {
             (Action::Raise, vec![stick(9)]),
             (Action::Lower, vec![stick(10)]),
             (Action::Join, vec![pad(PadButton::Back), stick(11)]),
-            // Few sticks have more than twelve buttons, so actions that a round does not require come last.
+            // Few sticks have more than twelve buttons, so the actions that a round does not require are
+            // bound to the last ones.
             (Action::Step, vec![pad(PadButton::LeftShoulder), stick(12)]),
             (Action::Deeper, vec![pad(PadButton::RightStick)]),
             (Action::Shallower, vec![pad(PadButton::LeftStick)]),
-            // Not on pads: a child could press it by accident, and a pad only rumbles.
+            // Not bound on pads: a child could press it by accident, and pads have no forces, only rumble.
             (Action::CutForces, vec![stick(8)]),
         ];
         Self {
@@ -135,7 +137,8 @@ impl Bindings {
         ]
     }
 
-    /// Display names of the first key, or of the first button of a plain stick, of each action.
+    /// Display names of the first key of each action. If `on_stick`, of the first button of a stick without a
+    /// pad layout.
     pub fn first_names(&self, actions: &[Action], on_stick: bool) -> String {
         let first = |action| match on_stick {
             true => {
@@ -159,8 +162,8 @@ impl Bindings {
         bind(&mut self.keys, action, key, |_| true);
     }
 
-    /// Binds a button to an action in the same way. Buttons of pads and of plain sticks are exchanged only
-    /// among themselves.
+    /// Binds a button to an action like [`Self::bind_key`]. A pad button is exchanged only for a pad button,
+    /// and a button of another stick only for such a button.
     pub fn bind_button(&mut self, action: Action, control: Control) {
         let button = PadKey::of(control);
         let kind = button.is_of_stick();
@@ -185,7 +188,7 @@ impl Bindings {
     }
 }
 
-/// Display name of a key. The fonts of the game do not contain egui's arrow symbols.
+/// Display name of a key. Arrows are replaced because the fonts of the game lack egui's symbols for them.
 fn name_of(key: Key) -> &'static str {
     match key {
         Key::ArrowUp => "↑",
@@ -213,7 +216,8 @@ fn find<K: PartialEq>(map: &BTreeMap<Action, Vec<K>>, key: &K) -> Option<Action>
     found.map(|(&action, _)| action)
 }
 
-/// Replaces the keys of an action that are of the same kind as `key`.
+/// Binds `key` to an action, in place of its keys for which `is_alike` is true. Another action that loses its
+/// last such key gets the first of the replaced ones.
 fn bind<K: PartialEq + Clone>(
     map: &mut BTreeMap<Action, Vec<K>>,
     action: Action,

@@ -6,8 +6,9 @@ use fuwafuwa::Vector;
 use std::collections::BTreeSet;
 use sticks::{Device, DeviceId, Snapshot};
 
-/// Deflection below which a stick counts as centred; above `RIM` it counts as fully deflected.
+/// Deflection below which a stick counts as centred.
 pub(super) const DEAD: f32 = 0.15;
+/// Deflection above which a stick counts as fully deflected.
 pub(super) const RIM: f32 = 0.95;
 
 /// Input source of a player.
@@ -33,11 +34,11 @@ pub struct Devices {
     pub second: Option<Vector>,
     /// Actions of the screen buttons held by fingers.
     pub pressed: BTreeSet<Action>,
-    /// Action selected by the switch in scanning.
+    /// Action that the player has selected with one switch.
     pub taken: Option<ScanAction>,
     /// Keys that are held.
     pub keys: BTreeSet<Key>,
-    /// Lift of the hand in space by the wheel or a second finger [m].
+    /// Height by which the wheel or a second finger has raised the hand since the last tick, in space [m].
     pub lift: f32,
     /// Sticks and pads.
     pub sticks: Snapshot,
@@ -112,7 +113,7 @@ pub(super) fn opposed(held: impl Fn(Action) -> bool, more: Action, less: Action)
     f32::from(i8::from(held(more)) - i8::from(held(less)))
 }
 
-/// Sum of the directions that are held.
+/// Sum of the movement directions that are held: x to the right, y up.
 pub(super) fn direction(held: impl Fn(Action) -> bool) -> Vec2 {
     Vec2::new(
         opposed(&held, Action::Right, Action::Left),
@@ -151,7 +152,7 @@ mod tests {
             [0.0, 1.0]
         );
         assert_eq!(turn(vec![rest()], &[Key::OpenBracket]), [-1.0, 0.0]);
-        // Two equal requests are no faster than one, and an opposite request does not slow the largest one
+        // Two equal requests turn no faster than one, and an opposite request does not slow the largest one
         // down.
         let both = vec![pad(1, [1.0, 0.0], [0.0; 2]), pad(2, [1.0, 0.0], [0.0; 2])];
         assert_eq!(turn(both, &[]), [1.0, 0.0]);
@@ -169,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn triggers_lift_and_lower_and_right_stick_does_not() {
+    fn triggers_raise_and_lower_hand_but_right_stick_does_not() {
         assert_eq!(rise_of(&pad(1, [1.0, 1.0], [0.0, 0.05])), 0.0);
         assert_eq!(rise_of(&pad(1, [0.0; 2], [0.0, 1.0])), 1.0);
         assert_eq!(rise_of(&pad(1, [0.0; 2], [1.0, 0.0])), -1.0);

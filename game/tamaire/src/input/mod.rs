@@ -1,4 +1,4 @@
-//! Input: converts the state of devices to goals of hands and to actions.
+//! Input: converts the state of devices to goals of the hands and to actions.
 
 mod bindings;
 mod devices;
@@ -16,7 +16,7 @@ pub use scan::{Scan, ScanAction, Scanning};
 
 use serde::{Deserialize, Serialize};
 
-/// Input method, which hints refer to.
+/// Input method that a player last used. Hints are worded for it.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum InputMethod {
     /// Mouse.
@@ -26,9 +26,9 @@ pub enum InputMethod {
     Fingers,
     /// Keyboard only.
     Keys,
-    /// Pad.
+    /// Gamepad.
     Pad,
-    /// Plain stick.
+    /// Stick without the layout of a gamepad, such as a joystick.
     Stick,
 }
 
@@ -36,9 +36,9 @@ pub enum InputMethod {
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Action {
-    /// Moves the hand upwards.
+    /// Moves the hand upwards; in space, away from the camera.
     Up,
-    /// Moves the hand downwards.
+    /// Moves the hand downwards; in space, towards the camera.
     Down,
     /// Moves the hand to the left.
     Left,
@@ -48,13 +48,13 @@ pub enum Action {
     Retry,
     /// Pauses the round.
     Pause,
-    /// Switches between the skin and the elements.
+    /// Changes the view: skin, elements coloured by level, elements coloured by strain.
     Elements,
-    /// Switches slow motion: a fifth of the normal speed.
+    /// Turns slow motion on or off: a fifth of the normal speed.
     Slow,
     /// Advances by one tick.
     Step,
-    /// Lets a second player join or leave with this device.
+    /// Lets a second player join with this device, or leave.
     Join,
     /// In space: raises the hand off the floor.
     Raise,

@@ -10,14 +10,14 @@ use std::collections::BTreeMap;
 use sticks::DeviceId;
 use tamaire_play::{InputFrame, PLAYERS};
 
-/// Stick movement below which a stick counts as still.
+/// Change of a stick's position below which the stick counts as still (full deflection = 1).
 const NOISE: f32 = 0.01;
-/// Speed of the goal with a key or a fully deflected stick at default sensitivity [m/s].
+/// Speed of the hand's goal with a held key or a fully deflected stick at default sensitivity [m/s].
 const PACE: f32 = 2.0;
-/// Speed factor for play with one switch. A switch cannot vary the force, and at this speed a body yields
-/// without tearing.
+/// Speed factor for play with one switch. A switch cannot control the force gradually; at this speed a body
+/// gives way without tearing.
 const SWITCHED: f32 = 0.4;
-/// Speed of raising and lowering the goal in space [m/s].
+/// Speed of raising and lowering the hand's goal in space at default sensitivity [m/s].
 const RISE: f32 = 1.2;
 
 /// Players and the goals of their hands.
@@ -25,14 +25,15 @@ const RISE: f32 = 1.2;
 pub struct Players {
     /// Input source of the second player. `None` = one player. The first player has all other devices.
     second: Option<InputSource>,
-    /// Position that each player wants [m]. The hand and its goal may be far from it.
+    /// Goal that each player requests [m]. The hand and its target position may be far from this goal, for
+    /// example behind an obstacle.
     goals: [Option<Vector>; PLAYERS],
     /// Stick positions in the last tick. A stick that sets a position does so only when it moves, so that
     /// mouse and keys work while it is still.
     leans: BTreeMap<DeviceId, [f32; 2]>,
-    /// Device with which each player last moved the hand, and the time since the last movement by a stick or
-    /// pad [s].
+    /// Device with which each player last moved the hand.
     used: [Option<InputSource>; PLAYERS],
+    /// Time since each player last moved the hand with a stick or pad [s].
     rested: [f32; PLAYERS],
 }
 
@@ -41,11 +42,11 @@ pub struct Players {
 struct Asked {
     /// Requested position [m].
     position: Option<Vector>,
-    /// Requested movement to the right and away, full speed at length 1.
+    /// Requested direction: to the right, and up (in space: away from the camera). Length 1 = full speed.
     lean: Vec2,
-    /// Requested lift, full speed at 1.
+    /// Requested speed of raising the hand, from -1 to 1 (full speed).
     lift: f32,
-    /// Requested change of height by the wheel [m].
+    /// Requested change of height by the mouse wheel or a second finger [m].
     wheel: f32,
 }
 
@@ -74,12 +75,11 @@ impl Players {
         self.goals[player]
     }
 
-    /// Lets a second player join with a device, or leave if it is the same device.
+    /// Adds a second player who uses this device. If the second player already uses it, that player leaves.
     pub fn join(&mut self, seat: InputSource) {
         self.second = match self.second {
             Some(taken) if taken == seat => None,
-            // A keyboard that joins twice leaves. Joining with the keyboard leaves the mouse to the first
-            // player.
+            // If the second player joins with the keyboard, the mouse stays with the first player.
             _ => Some(seat),
         };
         self.goals[1] = None;
@@ -96,8 +96,8 @@ impl Players {
         };
     }
 
-    /// Returns the goals of the hands for the next tick, which is `seconds` long. `hands` are the current
-    /// goals of the hands, or their start positions [m].
+    /// Returns the goals of the hands for the next tick, which is `seconds` long. `hands` holds the current
+    /// target position of each hand, or the start position of a hand that has not joined yet [m].
     pub fn frame(
         &mut self,
         devices: &Devices,
@@ -146,8 +146,8 @@ impl Players {
         let asked = self.asked(player, devices, bindings, manner, wanted[1]);
         let mut goal = asked.position.or(self.goals[player]);
         if asked.lean != Vec2::ZERO {
-            // Starts from the current goal of the hand, so that pushing against an obstacle does not
-            // accumulate.
+            // Starts from the hand's current target position instead of the requested goal, so that pushing
+            // against an obstacle does not accumulate.
             let lean = asked.lean * (1.0 / asked.lean.length().max(1.0));
             let step = to_world(manner.turn, lean * PACE * manner.sensitivity * seconds);
             let mut position = manner.clamp_to_arena(plus(here, step));
@@ -218,7 +218,8 @@ impl Players {
             let rise = rises * rise;
             asked.lean += hat;
             asked.lift += rise;
-            // A force-feedback stick keeps its position after it is let go, so its deflection shows no use.
+            // A force-feedback stick keeps its position when it is let go, so its deflection does not show
+            // that it is in use.
             let leans = stick != [0.0; 2] && !pushes_back;
             if moved || leans || hat != Vec2::ZERO || rise != 0.0 {
                 self.used[player] = Some(InputSource::Stick(device.id));
@@ -245,9 +246,9 @@ impl Players {
     }
 }
 
-/// Returns the wanted height after wheel and lift input [m]; `here` is the height of the current goal. A
-/// change of direction starts from `here`, and lifting against an obstacle does not accumulate. Input upwards
-/// never lowers the hand, and vice versa.
+/// Returns the requested height after wheel and lift input [m]. `here` is the current target height of the
+/// hand. A reversal starts from `here`, and lifting against an obstacle does not accumulate. Upward input
+/// never lowers the hand, and downward input never raises it.
 fn raised(mut wanted: f32, here: f32, wheel: f32, lift: f32) -> f32 {
     let further = |by: f32| if by > 0.0 { f32::max } else { f32::min };
     if wheel != 0.0 {

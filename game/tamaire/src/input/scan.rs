@@ -1,10 +1,11 @@
-//! Scanning for play with one switch: actions are offered in turn, and a press selects the current one.
+//! Scanning for play with one switch: actions are offered in turn, and a press of the switch selects the one
+//! on offer.
 
 use egui::Vec2;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::TAU;
 
-/// Number of steps in which the direction arrow goes around once.
+/// Number of steps in which the offered direction goes around once.
 const TURN: f32 = 5.0;
 
 /// Speed of scanning.
@@ -57,15 +58,17 @@ pub enum ScanAction {
 pub struct Scan {
     /// Position in the cycle of offers [steps].
     at: f32,
-    /// Whether the switch was up. The press that started the round must not select anything in it.
+    /// Whether the switch was up at the last call. Initially false, so that the press that started the round
+    /// selects nothing.
     was_up: bool,
     is_taken: bool,
     is_known: bool,
 }
 
 impl Scan {
-    /// Advances scanning with the switch pressed or not. With `stays`, one press selects and the next one
-    /// ends the action. Returns whether a pause is requested.
+    /// Advances scanning by `steps`, with the switch pressed or not. With `stays`, one press selects and the
+    /// next one ends the action; otherwise the action lasts while the switch is pressed. Returns whether a
+    /// pause is requested.
     pub fn pass(&mut self, is_pressed: bool, stays: bool, steps: f32, is_space: bool) -> bool {
         let is_new = is_pressed && self.was_up;
         self.was_up = !is_pressed;

@@ -24,7 +24,7 @@ pub(super) fn frame<'a, D: Dim, C>(camera: C, round: &Round<D>, theme: &'a Theme
     }
 }
 
-/// Converts `view` to a camera of the plane renderer.
+/// Converts `view` to a camera of the 2D renderer.
 pub(super) fn camera(view: &View) -> Camera {
     Camera {
         centre: [view.centre[0], view.centre[1], 0.0],

@@ -8,7 +8,7 @@ use fuwafuwa::Vector;
 const COUNT: usize = 140;
 /// Terminal falling speed [m/s].
 const FALL: f32 = 0.55;
-/// Colours of confetti. Each colour has its own shape, too.
+/// Colours of confetti. Each colour is drawn with a different shape.
 const PAPER: [Color32; 5] = [
     Color32::from_rgb(240, 108, 98),
     Color32::from_rgb(255, 190, 61),
@@ -78,7 +78,7 @@ impl Confetti {
             let colour = PAPER[paper.kind].gamma_multiply(paper.left.min(1.0));
             let size = 0.022 * view.scale;
             let middle = view.to_screen(paper.at);
-            // Turns between face-on and edge-on.
+            // Paper that tumbles is seen face-on and edge-on in turn.
             let thin = 0.25 + 0.75 * (1.3 * paper.angle).cos().abs();
             let (sin, cos) = paper.angle.sin_cos();
             let point = |x: f32, y: f32| -> Pos2 {

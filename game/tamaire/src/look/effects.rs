@@ -9,22 +9,22 @@ use tamaire_play::{AnyRound, Round};
 
 /// Maximum number of particles.
 const MOST: usize = 400;
-/// Particles for each released node.
+/// Number of dust particles created when a node splits.
 const DUST: usize = 3;
-/// Number of releases in a tick for which the material is looked up; further releases use the last material
-/// found.
+/// Number of node splits in a tick for which the material is looked up. Further splits use the material found
+/// last, because a look-up searches all nodes.
 const LOOKED_UP: usize = 8;
 /// Hand force above which a body winces [N].
 const HURTS: f32 = 350.0;
-/// Distance that the hand must travel until the hint fades [m].
+/// Distance that the hand must travel until the start hint fades [m].
 const MOVED: f32 = 0.12;
 /// Air drag of particles [1/s].
 const DRAG: f32 = 1.5;
-/// Duration [s] that sets the initial upward speed of particles under gravity: gravity × duration.
+/// Upward velocity of new particles, given as a duration [s] by which gravity is multiplied.
 const THROWN: f32 = 0.35;
-/// Factors on a particle's normal and tangential velocity at a bounce off a wall. A particle with a normal
-/// speed below [`LIES`] [m/s] stays on the wall.
+/// Factors on the normal and the tangential velocity of a particle that bounces off a wall.
 const BOUNCE: [f32; 2] = [0.45, 0.7];
+/// Normal speed below which a particle stays on the wall instead of bouncing [m/s].
 const LIES: f32 = 0.25;
 
 /// Dust particle.
@@ -69,7 +69,7 @@ pub struct Effects {
     pub feelings: Vec<Feeling>,
     /// Total contact force between hands and bodies [N], smoothed over some ticks.
     pub pressure: f32,
-    /// Opacity of the hint, 0 to 1.
+    /// Opacity of the start hint, 0 to 1.
     pub hint: f32,
     /// Position of the first hand at the start [m].
     start: Option<Vector>,
@@ -77,8 +77,9 @@ pub struct Effects {
     has_won: bool,
     /// Last tick that was processed.
     tick: u64,
-    /// Gravity [m/s²]. `room` holds the corners of the arena [m].
+    /// Gravity [m/s²].
     gravity: Vector,
+    /// Lower and upper corner of the arena [m].
     room: [Vector; 2],
     /// Number of axes along which particles move: 2 or 3.
     axes: usize,
@@ -179,7 +180,7 @@ impl Effects {
         }
     }
 
-    /// Advances particles, confetti and hint by `seconds`.
+    /// Advances particles, confetti and the start hint by `seconds`.
     pub fn advance(&mut self, seconds: f32) {
         let [low, high] = self.room;
         for speck in &mut self.specks {
@@ -192,7 +193,7 @@ impl Effects {
                 let (first, last) = (low[axis] + speck.radius, high[axis] - speck.radius);
                 let (is_low, is_high) = (speck.at[axis] < first, speck.at[axis] > last);
                 if is_low || is_high {
-                    // A room may be narrower than a particle.
+                    // Not `clamp`, which panics in a room that is narrower than the particle.
                     speck.at[axis] = speck.at[axis].min(last).max(first);
                     let outward = speck.velocity[axis];
                     // A particle created at a wall may already be moving away from it.
@@ -236,7 +237,7 @@ impl Effects {
         let depth = if self.axes == 3 { any(-0.9, 0.9) } else { 0.0 };
         let thrown = scaled(self.gravity, -THROWN);
         let velocity = [any(-0.9, 0.9), any(-0.9, 0.9), depth];
-        // The cube favours small particles.
+        // The cube of `size` favours small particles.
         let size = any(0.0, 1.0);
         let speck = DustParticle {
             at,

@@ -1,5 +1,5 @@
-//! Face of a body: marks on a plane of its own. In 2D they are painted as they are, in 3D they are projected
-//! onto the skin.
+//! Face of a body, made of flat marks. In 2D the marks are painted directly, in 3D they are projected onto
+//! the skin.
 
 use app_shell::View;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, vec2};
@@ -8,8 +8,9 @@ use fuwafuwa::{PieceId, Vector};
 use fuwafuwa_render::{Mark, Sticker};
 use std::f32::consts::{PI, TAU};
 
-/// Line width in units of the face size, and its minimum on the screen [points].
+/// Line width in units of the face size.
 const LINE: f32 = 0.07;
+/// Minimum line width on the screen [points].
 const THIN: f32 = 1.5;
 /// Minimum size of a face on the screen [points]; a smaller one is not drawn.
 const LEAST: f32 = 5.0;
@@ -98,11 +99,11 @@ impl Face {
         let eye = [0.42 * side, 0.18];
         match self.mood {
             Mood::Wince => {
-                // > <
+                // Eyes squeezed shut, like > <.
                 let (outer, inner) = (0.60 * side, 0.28 * side);
                 pen.stroke(&[[outer, 0.32], [inner, 0.18], [outer, 0.04]]);
             }
-            // ^ ^
+            // Smiling eyes, like ^ ^.
             Mood::Beam => pen.arch([eye[0], 0.10], 0.28),
             Mood::Calm if self.blink > 0.6 => pen.arch([eye[0], 0.20], -0.12),
             Mood::Calm | Mood::Shock => {
@@ -195,7 +196,7 @@ impl Pen {
             let [dx, dy] = minus(pair[1], pair[0]);
             let turn = dy.atan2(dx);
             let corners = (0..16).map(|step| {
-                // Half circle around the end, then around the beginning.
+                // First half a circle around the end of the line, then half a circle around its beginning.
                 let end = pair[1 - step / 8];
                 let angle = turn - 0.5 * PI + PI * (step - step / 8) as f32 / 7.0;
                 plus(end, scaled([angle.cos(), angle.sin()], 0.5 * self.line))

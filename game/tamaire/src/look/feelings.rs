@@ -13,19 +13,21 @@ const SHOCK: f32 = 0.6;
 const CALMED: f32 = 0.5;
 /// Thresholds of the mean strain: a body above the first winces until it is below the second.
 const HURTS: [f32; 2] = [0.065, 0.045];
-/// Interval at which the strain and the seat of the face are evaluated [ticks].
+/// Interval at which the strain and the position of the face are evaluated [ticks].
 const LOOK: u64 = 5;
-/// Advantage that a new seat must have over the current one [voxels].
+/// Advantage in depth that another node must have to carry a 2D face instead of the current one [voxels].
 const LAZY: f32 = 2.0;
-/// Maximum number of distances computed to find a seat.
+/// Maximum number of distances computed in the search for a node that carries the face.
 const MOST_LOOKS: usize = 4_000_000;
 /// Maximum number of elements sampled for the mean strain.
 const MOST_ELEMENTS: usize = 1500;
 /// Minimum size of a face [m]; a smaller one is unreadable.
 const LEAST: f32 = 0.03;
-/// Rates at which a face moves to a new seat, changes its size, and turns [1/s].
+/// Rate at which a face moves to a new place [1/s].
 const GLIDE: f32 = 7.0;
+/// Rate at which a face changes its size [1/s].
 const GROW: f32 = 6.0;
+/// Rate at which a face turns [1/s].
 const TURN: f32 = 25.0;
 /// Feelings of a body, and the position of its face.
 #[derive(Clone, Debug)]
@@ -44,10 +46,10 @@ pub struct Feeling {
     pub size: f32,
     /// Piece that carries the face.
     pub piece: PieceId,
-    /// 3D: place on the skin to which the face sticks.
+    /// 3D: anchor of the face on the skin.
     perch: Option<FaceAnchor>,
     seat: Option<Seat>,
-    /// Offset from the seat to the current position of the face [m]. It decays to zero.
+    /// 2D: offset from the seat to the current position of the face [m]. It decays to zero.
     seat_offset: Vector,
     strain: f32,
     shock: f32,
@@ -55,17 +57,17 @@ pub struct Feeling {
     seconds_since_tear: f32,
 }
 
-/// Node deep inside the largest piece.
+/// Seat of a 2D face: a node deep inside the largest piece.
 #[derive(Copy, Clone, Debug, PartialEq)]
 struct Seat {
     node: NodeId,
-    /// Rest position of the node. It detects that the node's index was reused.
+    /// Rest position of the node. If it differs, another node now has the same index.
     rest: [i32; 3],
     /// Distance from the skin at rest [voxels].
     depth: f32,
 }
 
-/// Input of a tick.
+/// Input of [`Feeling::update`] for a tick.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct MoodInput {
     /// Tick number.
@@ -123,7 +125,7 @@ impl Feeling {
         self.feel(fate);
     }
 
-    /// 3D: takes position, axes and size from the perch.
+    /// 3D: copies position, axes and size of the face from its anchor on the skin.
     fn stick(&mut self) {
         if let Some(perch) = &self.perch {
             (self.at, self.axes, self.piece) = (perch.at, perch.axes, perch.piece);
@@ -157,7 +159,7 @@ impl Feeling {
         }
     }
 
-    /// Moves the face with its seat.
+    /// 2D: moves the face smoothly towards its seat.
     fn sit<D: Dim>(&mut self, body: &SoftBody<D>, seconds: f32) {
         if self.seat.is_none() {
             self.choose_seat(body);
@@ -176,7 +178,7 @@ impl Feeling {
         self.piece = body.pieces().of_node(seat.node);
         let turned = [0, 1, 2]
             .map(|k| [0, 1, 2].map(|axis| towards(self.axes[k][axis], frame.axes[k][axis], TURN)));
-        // Interpolation across half a turn degenerates.
+        // Interpolating across half a turn gives axes of almost zero length.
         self.axes = match length(turned[2]).min(length(turned[1])) > 0.1 {
             true => square(turned),
             false => frame.axes,
@@ -187,7 +189,7 @@ impl Feeling {
         self.size = towards(self.size, size, GROW);
     }
 
-    /// Searches a better seat; the face glides there from its current position.
+    /// Searches for a better seat; the face glides there from its current position.
     fn choose_seat<D: Dim>(&mut self, body: &SoftBody<D>) {
         let before = self.seat.filter(|&seat| is_there(body, seat));
         let after = best_seat(body, before.map(|seat| seat.node));
@@ -258,7 +260,7 @@ fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>) -> Option<Seat> {
     best.map(|(_, seat)| seat)
 }
 
-/// Mean strain of the largest piece, weighted by volume; of a body with many elements a sample.
+/// Mean strain of the largest piece, weighted by volume. Many elements are only sampled.
 fn strain<D: Dim>(body: &SoftBody<D>) -> f32 {
     let piece = largest_piece(body);
     let (mut sum, mut volume) = (0.0, 0.0);

@@ -1,5 +1,5 @@
-//! Progress at the basket: a line closes around it while a body must rest inside, and its bars glow after a
-//! win.
+//! Progress at the basket. While a body rests inside, a line closes around the basket; after a win the bars
+//! glow.
 
 use super::DrawOptions;
 use app_shell::View;
@@ -65,7 +65,7 @@ fn along_box(view: &View, centre: Vector, half: Vector, share: f32) -> Vec<Pos2>
     line
 }
 
-/// Draws a glow around a shape that fades with the distance.
+/// Draws a glow around a shape; the glow fades with the distance from the shape.
 fn shine(painter: &Painter, view: &View, shape: Shape, strength: f32) {
     let layers = [(0.02, 60), (0.05, 36), (0.09, 22), (0.14, 12)];
     for (reach, alpha) in layers {

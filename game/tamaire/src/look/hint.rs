@@ -7,7 +7,7 @@ use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 use fuwafuwa::{Dim, Dim2, Dim3, RigidBody, Vector};
 use tamaire_play::Round;
 
-/// Duration of the animation from the hand to the basket [s].
+/// Duration of one loop of the animation [s].
 const ROUND_TRIP: f64 = 3.2;
 
 /// Draws the hint of a 2D round.
@@ -27,14 +27,14 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &DrawOptions) {
     }
 }
 
-/// Draws the ring of a 3D round. There, texts explain the other controls.
+/// Draws the hint of a 3D round: only the ring, because texts explain the controls.
 pub(super) fn draw_ring_of_space(painter: &Painter, round: &Round<Dim3>, look: &DrawOptions) {
     if let Some(hand) = hand_to_show(round, look) {
         draw_ring(painter, hand, look);
     }
 }
 
-/// Returns the first hand, until it has moved.
+/// Returns the first hand while the hint is shown.
 fn hand_to_show<'a, D: Dim>(round: &'a Round<D>, look: &DrawOptions) -> Option<&'a RigidBody> {
     let is_shown = look.hint != Hint::None && look.effects.hint != 0.0;
     round.hands().next().filter(|_| is_shown)

@@ -12,8 +12,9 @@ use std::sync::Arc;
 use tamaire_play::{AnyRound, Level, Round};
 use wgpu::{FilterMode, TextureFormat, TextureUsages};
 
-/// Format and size of a thumbnail [px].
+/// Pixel format of a thumbnail.
 const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+/// Size of a thumbnail [px].
 const SIZE: [u32; 2] = [480, 320];
 
 /// Thumbnails of levels.

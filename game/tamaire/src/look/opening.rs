@@ -1,15 +1,15 @@
-//! Cutaway of bodies in 3D for the element view.
+//! Cutaway that shows the inside of 3D bodies in the element view.
 
 use std::f32::consts::TAU;
 
-/// Lower limit of the remaining share of a body while the cut moves by itself, and the period of that
-/// movement [s].
+/// Smallest remaining share of a body while the cut moves by itself.
 const LEAST: f32 = 0.4;
+/// Period of the automatic movement [s].
 const PERIOD: f32 = 9.0;
-/// Lower limit of the remaining share when a player moves the cut.
+/// Smallest remaining share when a player moves the cut.
 const FEWEST: f32 = 0.05;
 
-/// Cutaway of bodies in 3D for the element view.
+/// Cutaway that shows the inside of 3D bodies in the element view.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Cutaway {
     /// Start of the automatic movement [s since the start of the game].
@@ -39,7 +39,8 @@ impl Cutaway {
         self.wish.unwrap_or(by_itself)
     }
 
-    /// Moves the cut by the share `more` and stops the automatic movement.
+    /// Cuts away the share `more` in addition and stops the automatic movement. A negative value shows more
+    /// of the body.
     pub fn cut(&mut self, more: f32, time: f64, still: bool) {
         let share = self.share(time, still) - more;
         self.wish = Some(share.clamp(FEWEST, 1.0));
@@ -51,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn opening_moves_until_player_cuts() {
+    fn cutaway_moves_until_player_cuts() {
         let mut opening = Cutaway::begin(10.0);
         assert_eq!(opening.share(10.0, false), 1.0);
         assert!((opening.share(10.0 + 0.5 * f64::from(PERIOD), false) - LEAST).abs() < 1e-3);

@@ -9,47 +9,55 @@ use fuwafuwa::{Dim, PieceId, Point, SoftBody, Vector};
 use fuwafuwa_render::anchor_at;
 use std::f32::consts::PI;
 
-/// Axes to the right, up, and towards the camera.
+/// Axes of an upright face: to the right, up, and towards a camera in front.
 pub(super) const UPRIGHT: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Size of a face in radii of a ball with the volume of its piece. [`FITS`] lists smaller sizes for small
-/// areas of skin, as factors.
+/// Full size of a face, in radii of a ball with the volume of its piece.
 const LARGE: f32 = 0.55;
+/// Factors on the size, tried in this order until the face fits on the skin.
 const FITS: [f32; 4] = [1.0, 0.8, 0.6, 0.45];
-/// Radius of a face along the skin, and tolerated depth of the skin below it; both in units of its size.
+/// Radius of the skin that a face covers, in units of the face's size.
 const WIDE: f32 = 0.9;
+/// Maximum height of the skin above or below the middle of the face, in units of the face's size. Skin beyond
+/// it does not count as covered.
 const DEEP: f32 = 0.6;
-/// Share of original skin below a face: required for a new place, and below which the face leaves its place.
+/// Shares of original skin below a face. At a new place the face gets smaller until the first is reached;
+/// below the second it leaves its place.
 const COVERED: [f32; 2] = [0.82, 0.68];
-/// Mass ratio at which a face leaves its piece for a heavier one. Candidates are the first [`PIECES`] pieces
-/// that are not lighter than the heaviest by more than this ratio.
+/// Mass ratio at which a face leaves its piece for a heavier one.
 const HEAVIER: f32 = 1.6;
+/// Maximum number of pieces searched for a place; all of them are heavy according to [`HEAVIER`].
 const PIECES: usize = 4;
-/// Advantage in score that another place must have, and interval of the search [s].
+/// Advantage in score that another place must have.
 const BETTER: f32 = 0.1;
+/// Minimum interval between two searches for a place [s].
 const AGAIN: f32 = 0.5;
-/// Number of places that are scored; once more as many near the best one.
+/// Maximum number of places that are scored. A second pass scores as many near the best of them.
 const PLACES: usize = 120;
-/// Upward tilt of the ideal direction of a face, relative to the direction to the camera: bars stand low.
+/// Upward tilt of the ideal direction of a face, relative to the direction to the camera. The bars of a
+/// basket are low and would hide a face that looks down.
 const ABOVE: f32 = 0.4;
-/// Cosine below which a face counts as turned away from the camera or tilted, and the time until it moves to
-/// a visible place [s]. It does not move while its body turns faster than [`FAST`] [rad/s]. Tilt counts only
-/// if the body turns slower than [`CALM`] [rad/s].
+/// Cosine below which a face counts as turned away from the camera, or as tilted.
 const LOST: f32 = 0.6;
+/// Time that a face stays turned away or tilted before it moves to another place [s].
 const PATIENCE: f32 = 0.12;
+/// Angular speed above which a face that is turned away stays, because it may soon be visible again [rad/s].
 const FAST: f32 = 3.0;
+/// Angular speed below which a tilted face moves to another place [rad/s].
 const CALM: f32 = 0.8;
-/// Prediction time for a rolling body [s]: the best place is the one that faces the camera after it.
-/// [`NEAR_AXIS`] weights places near the axis of rotation, which stay visible for longer.
+/// Time by which the rotation of a body is predicted [s]: a face moves to the place that will face the camera
+/// then.
 const AHEAD: f32 = 0.4;
+/// Weight of the axis of rotation in the ideal direction: places near the axis stay visible for longer.
 const NEAR_AXIS: f32 = 0.4;
-/// Durations of shrinking and of reappearing [s].
+/// Duration of shrinking before a face moves [s].
 const SHRINK: f32 = 0.08;
+/// Duration of reappearing at the new place [s].
 const RISE: f32 = 0.14;
-/// Depth of the face's centre inside the body, in units of its size; it is below all skin that the face
-/// covers.
+/// Depth of the face's centre inside the body, in units of the face's size. The centre is below all skin that
+/// the face covers.
 const INSIDE: f32 = 0.8;
-/// Minimum radius of the surroundings that determine the rotation of the face [voxels].
+/// Minimum radius of the part of the body whose rotation turns the face [voxels].
 const LEAST_REACH: f32 = 3.0;
 
 /// Position of a face on the skin of a 3D body.
@@ -71,8 +79,9 @@ pub struct FaceAnchor {
     full: f32,
     /// Progress of reappearing, 0 to 1.
     up: f32,
-    /// Angular velocity [rad/s]. `lost` is the time since the face has been turned away [s].
+    /// Angular velocity of the face, smoothed [rad/s].
     spin: Vector,
+    /// Time since the face turned away from the camera or tilted [s].
     turned_away_seconds: f32,
     /// Time until the next search for another place [s].
     wait: f32,
@@ -81,17 +90,17 @@ pub struct FaceAnchor {
 /// Place on the original skin, in the rest shape of the body.
 #[derive(Copy, Clone, Debug)]
 struct SkinPlace {
-    /// Voxel with a face at this place. A voxel belongs to a piece at all times.
+    /// Voxel below this place. Its element tells which piece the place belongs to after tears.
     voxel: Point,
-    /// Centre of the voxel's face [voxels].
+    /// Rest position of the centre of the voxel's side [voxels].
     rest: Vector,
-    /// Axes of the face in the frame of its surroundings.
+    /// Axes of the face, relative to the rotation of the body around the place.
     worn: [Vector; 3],
-    /// Size factor, one of `FITS`.
+    /// Size factor, one of [`FITS`].
     fit: f32,
 }
 
-/// Face of a voxel on the original skin.
+/// Side of a voxel that is part of the original skin.
 struct SkinFace {
     voxel: Point,
     rest: Vector,
@@ -99,7 +108,7 @@ struct SkinFace {
     normal: Vector,
 }
 
-/// Original skin of a piece, where a face can stick, and the camera that sees it.
+/// Original skin of a piece as a camera sees it; a face sticks to one place of it.
 struct PieceSkin {
     spots: Vec<SkinFace>,
     piece: PieceId,
@@ -125,7 +134,8 @@ impl FaceAnchor {
         perch
     }
 
-    /// Advances by `seconds`. Searches another place only if `looks` is set, because the search takes time.
+    /// Advances by `seconds`. Searches for another place only if `looks` is set, because the search takes
+    /// time.
     pub fn follow<D: Dim>(
         &mut self,
         body: &SoftBody<D>,
@@ -181,11 +191,11 @@ impl FaceAnchor {
         self.piece = piece;
         let size = place.fit * self.full;
         self.at = minus(at, scaled(self.axes[2], INSIDE * size));
-        // Overshoots while it reappears.
+        // The size overshoots while the face reappears.
         self.size = size * self.up * (1.0 + 0.6 * self.up * (1.0 - self.up));
     }
 
-    /// Checks the current place, and searches another one if it has become bad.
+    /// Keeps the current place if it is good; otherwise searches for a better one.
     fn check_place<D: Dim>(&mut self, body: &SoftBody<D>, eye: Option<Vector>) {
         let masses = masses(body);
         let largest = largest(&masses);
@@ -281,7 +291,8 @@ impl PieceSkin {
         }
     }
 
-    /// Ideal direction of a face at `at`, with the rotation of the body predicted; unit length.
+    /// Ideal outward direction of a face at `at`, as a unit vector. Takes the predicted rotation of the body
+    /// into account.
     fn ideal_direction(&self, at: Vector) -> Vector {
         let wish = self.eye.map_or(UPRIGHT[2], |eye| ideal_direction(at, eye));
         let early = minus(wish, scaled(cross(self.spin, wish), AHEAD));
@@ -307,7 +318,8 @@ impl PieceSkin {
         (area / (PI * radius * radius)).min(1.0)
     }
 
-    /// Score of a place: large, covered, turned to the camera, and in the middle of the visible side.
+    /// Score of a place. It is high if the face is large, on original skin, turned to the camera, and in the
+    /// middle of the visible side.
     fn score(&self, at: Vector, out: Vector, fit: f32, covered: f32) -> f32 {
         let wish = self.ideal_direction(self.middle);
         let by = minus(at, self.middle);
@@ -315,7 +327,7 @@ impl PieceSkin {
         fit * covered + 0.5 * dot(out, wish) - 0.2 * LARGE * aside / self.full.max(1e-9)
     }
 
-    /// Returns the best place: its spot, score, size factor, and outward direction.
+    /// Returns the best place: voxel side, score, size factor, and outward direction.
     fn best(&self) -> Option<(&SkinFace, f32, f32, Vector)> {
         let wish = self.ideal_direction(self.middle);
         let turned = self.spots.iter();
@@ -371,7 +383,7 @@ impl PieceSkin {
     }
 }
 
-/// Ideal direction of a face at `at`, as a unit vector: towards the camera, tilted upwards.
+/// Ideal outward direction of a face at `at`, as a unit vector: towards the camera, tilted upwards.
 fn ideal_direction(at: Vector, eye: Vector) -> Vector {
     let by = minus(eye, at);
     let high = plus(by, [0.0, ABOVE * length(by), 0.0]);
@@ -380,12 +392,12 @@ fn ideal_direction(at: Vector, eye: Vector) -> Vector {
 
 /// Axes of a face with outward direction `out` that is upright for a camera in the direction `towards`.
 fn upright(out: Vector, towards: Vector) -> [Vector; 3] {
-    // On top of a body, up points away from the camera.
+    // At the top of a body, the upper edge of a face points away from the camera.
     let back = scaled(towards, 0.1 / length(towards).max(1e-9));
     square([[0.0; 3], minus(UPRIGHT[1], back), out])
 }
 
-/// Cosines of the angles to the ideal direction and to the upright orientation.
+/// Cosines of the face's angles to the ideal direction and to the upright orientation.
 fn seen(at: Vector, axes: [Vector; 3], eye: Vector) -> [f32; 2] {
     let up = upright(axes[2], minus(eye, at))[1];
     [dot(axes[2], ideal_direction(at, eye)), dot(axes[1], up)]

@@ -13,9 +13,9 @@ pub struct DrawOptions<'a> {
     pub view: View,
     /// Colours.
     pub theme: &'a Theme,
-    /// Element view instead of the skin, with this colouring.
+    /// Colouring of the element view; `None` shows the skin.
     pub elements: Option<ElementColour>,
-    /// 3D element view: share of a body that is not cut away, 0 to 1.
+    /// Element view in 3D: share of a body that is not cut away, 0 to 1.
     pub cut_share: f32,
     /// Particles, confetti and feelings.
     pub effects: &'a Effects,
@@ -36,7 +36,7 @@ pub enum Hint {
     None,
     /// Marks the player's hand.
     Hand,
-    /// Also shows how to push the body into the basket.
+    /// Marks the player's hand and shows how to push the body into the basket.
     Way,
 }
 

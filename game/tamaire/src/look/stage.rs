@@ -60,7 +60,8 @@ impl Stage {
             .sum()
     }
 
-    /// Frees the images that worlds are drawn into, while nothing is drawn.
+    /// Frees the images that worlds were drawn into. Call it only between frames; the next frame creates them
+    /// again.
     pub fn forget_images(&self) {
         let device = &self.state.device;
         lock(&self.renderer).release_images(device);
@@ -137,8 +138,8 @@ impl Stage {
         look.effects.confetti.draw(painter, view);
     }
 
-    /// Updates the ages of elements. They start again with each round, since no element has been remodelled
-    /// yet.
+    /// Updates the ages of elements for the element view. They restart with each round, since a new world has
+    /// no remodelled elements.
     fn follow_ages<D: Dim>(&mut self, round: &Round<D>, look: &DrawOptions) {
         let ticks = round.world().ticks();
         let goes_on = self
@@ -170,7 +171,7 @@ fn cut(camera: &space::Camera, share: f32) -> space::Cut {
     }
 }
 
-/// Returns the renderer's view: skin or elements.
+/// Returns what the renderer shows: the skin, or elements with the chosen colouring.
 fn shown<'a>(look: &DrawOptions, ages: &'a Ages) -> fuwafuwa_render::Look<'a> {
     match look.elements {
         None => fuwafuwa_render::Look::Skin,
@@ -186,7 +187,7 @@ fn particles(look: &DrawOptions) -> Vec<Particle> {
     let world = &look.theme.world;
     let specks = look.effects.specks.iter().map(|speck| {
         let own = world.material(speck.material);
-        // Same share of fresh colour as the renderer uses for torn surfaces.
+        // Same share of the fresh colour as on torn surfaces.
         let share = if speck.is_fresh { 0.7 } else { 0.0 };
         let [red, green, blue] = [0, 1, 2].map(|k| own[k] + share * (world.fresh[k] - own[k]));
         Particle {

@@ -5,6 +5,6 @@
 pub struct Yielder(());
 
 impl Yielder {
-    /// Returns at once.
+    /// Returns at once, since other threads run anyway.
     pub async fn yield_now(&mut self) {}
 }

@@ -1,6 +1,6 @@
 //! Clipboard of the system.
 
-/// The clipboard.
+/// Access to the system's clipboard.
 #[derive(Default)]
 pub struct Clipboard {
     is_told: bool,
@@ -13,7 +13,7 @@ impl Clipboard {
         self.is_told = true;
     }
 
-    /// Returns once whether the last copy succeeded. Desktop systems never refuse.
+    /// Returns whether the last copy succeeded, once for each copy. Desktop systems never refuse.
     pub fn took(&mut self) -> Option<bool> {
         std::mem::take(&mut self.is_told).then_some(true)
     }

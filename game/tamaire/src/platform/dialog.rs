@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 /// Whether file dialogs are supported.
 pub const IS_THERE: bool = true;
 
-/// Shortest time for which a real dialog is open. A dialog that ends sooner never appeared.
+/// Minimum time for which a dialog stays open. One that ends sooner never appeared: the system has no dialog.
 const SOON: Duration = Duration::from_millis(400);
 
 /// File dialog, which does not block the game.

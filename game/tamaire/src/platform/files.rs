@@ -17,7 +17,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use tamaire_play::{Level, Replay, ReplayError};
 
-/// Maximum number of levels read at the start, the latest ones.
+/// Maximum number of stored levels read at the start. If there are more, only the newest are read.
 const MOST_LEVELS: usize = 100;
 
 const SETTINGS: &str = "settings";
@@ -65,7 +65,7 @@ pub enum StorageEvent {
     Damaged(Damage),
     /// A replay or picture was saved at this location.
     Saved(String),
-    /// Writing failed. For settings and records this is reported once.
+    /// Writing failed. For settings, records and levels this is reported once, until a write succeeds.
     Failed(String),
     /// Writing failed because the storage is full.
     Full,
@@ -144,7 +144,8 @@ impl Files {
         self.read(RECORDS, Records::read, none.clone(), none)
     }
 
-    /// Reads a note. Returns `usual` if it does not exist, and `lost` if it cannot be read.
+    /// Reads settings or records by their name. Returns `usual` if they do not exist, and `lost` if they
+    /// cannot be read.
     fn read<T>(
         &mut self,
         name: &str,
@@ -346,7 +347,7 @@ impl Files {
         news
     }
 
-    /// Stores a won round as the one to race in its level, unless a faster one is stored.
+    /// Stores a won round as the one to race against in its level, unless a faster one is stored.
     pub fn keep_best(&mut self, level: &Level, replay: Replay) {
         let (storage, name) = (self.storage.clone(), name_of_best(level));
         self.writer.write(
@@ -388,7 +389,7 @@ impl Files {
         self.round(Kind::Replay, name)
     }
 
-    /// Reads a round of a kind.
+    /// Reads the replay stored as an entry of `kind`.
     fn round(&self, kind: Kind, name: &str) -> Result<Replay, ReplayError> {
         let unreadable = |reason: String| ReplayError::Unreadable(reason);
         let read = self.storage.read(kind, name);

@@ -11,8 +11,8 @@ use std::time::{Duration, Instant};
 /// Maximum time to wait for the lock of another program, which usually holds it for a few milliseconds.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Prefix of draft files, which replace the real file once they are complete. Names of entries never begin
-/// with a dot.
+/// Prefix of draft files. A draft replaces the real file once it is complete. Names of entries never begin
+/// with a dot, so that they cannot be mistaken for drafts.
 const DRAFT: &str = ".draft-";
 
 /// Age after which a draft counts as abandoned.

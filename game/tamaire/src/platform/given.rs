@@ -4,7 +4,7 @@ use fuwafuwa_scenes::scene::{Fetch, extension_of};
 use tamaire_play::level::LevelError;
 use tamaire_play::{Level, Replay, ReplayError};
 
-/// A level, replay or link to open, or the error of reading it. Its origin no longer matters.
+/// Level, replay or link to open, or the error of reading it.
 pub enum OpenRequest {
     /// A level, or a picture or model converted to one.
     Level(Result<Box<Level>, LevelError>),
@@ -25,8 +25,8 @@ pub enum DialogResult {
 }
 
 impl OpenRequest {
-    /// Reads a replay, level, picture or model from the bytes of a file. `name` decides the type. Files that
-    /// a level refers to are loaded by `fetch`.
+    /// Reads a replay, level, picture or model from the bytes of a file. The extension in `name` decides the
+    /// type. `fetch` loads the files that a level refers to.
     pub fn read(name: &str, bytes: &[u8], fetch: Fetch) -> Self {
         match is_replay(name) {
             true => Self::Replay(name.into(), Replay::of_bytes(bytes).map(Box::new)),
@@ -141,8 +141,8 @@ mod on_page {
         given
     }
 
-    /// Reads files that were dropped or chosen together. A level finds the files that it refers to among
-    /// them. If there is a level, pictures and models are its parts and not opened themselves.
+    /// Reads files that were dropped or chosen together. A level may refer to other files among them. If
+    /// there is a level, pictures and models count as its parts and do not become levels of their own.
     pub fn read_together(files: &Array) -> Vec<OpenRequest> {
         let files = files.iter().map(JsCast::unchecked_into::<GivenFile>);
         let files = files.map(|file| (file.name(), (file.contents(), file.length())));

@@ -92,23 +92,24 @@ pub(super) fn merge_records(
 
 /// Saves a replay and returns its location.
 pub(super) fn save_replay(storage: &dyn Storage, replay: &Replay) -> io::Result<String> {
-    // Fails if the replay cannot be encoded, since it could not be watched.
+    // Fails if the replay cannot be encoded, since such a replay could never be watched.
     let text = replay.text_to_keep().map_err(io::Error::other)?;
     save(storage, Kind::Replay, &stem_of(replay), text.as_bytes())
 }
 
-/// Returns the beginning of the names of a round's files.
+/// Returns the common beginning of the names of a round's files, which a number follows.
 pub(super) fn stem_of(replay: &Replay) -> String {
     plain(&replay.level)
 }
 
-/// Removes all characters from a name that some file system rejects.
+/// Returns `name` without the characters that some file system rejects, shortened to 60 characters.
 pub(super) fn plain(name: &str) -> String {
     let is_plain = |letter: &char| letter.is_alphanumeric() || *letter == '-';
     name.chars().filter(is_plain).take(60).collect()
 }
 
-/// Returns the name of the fastest win in a level. Each combination of assists has its own.
+/// Returns the name under which the fastest win in a level is stored. Each combination of assists has a
+/// separate entry.
 pub(super) fn name_of_best(level: &Level) -> String {
     let assists = level.game().assists.iter().map(|assist| match assist {
         Assist::WiderBasket => "-wider",
@@ -143,7 +144,7 @@ pub(super) fn save(
     let is_listed = |name: &String| names.iter().any(|entry| entry.name == *name);
     let numbered = (1..).map(|number| format!("{stem}-{number}"));
     let mut last = None;
-    // A name may be taken although it is not listed: by something that is not a file, or by another program
+    // A name may be taken although it is not listed: by something other than a file, or by another program
     // that was faster.
     for name in numbered.filter(|name| !is_listed(name)).take(TRIES) {
         let mut is_free = false;
@@ -157,5 +158,5 @@ pub(super) fn save(
             Err(error) => last = Some(error),
         }
     }
-    Err(last.unwrap_or_else(|| io::Error::other("all tried names are taken")))
+    Err(last.unwrap_or_else(|| io::Error::other("no free name was found")))
 }

@@ -1,4 +1,4 @@
-//! Machine of a stand: memory, folders, and the configuration file.
+//! Computer of a stand: memory, folders, and the configuration file.
 
 use super::files::{Files, data_folder};
 use std::fs;
@@ -6,12 +6,12 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tamaire_logbook::Moment;
 
-/// Memory of the program [bytes]. `None` if the system does not tell.
+/// Memory used by the program [bytes]. `None` if the system does not tell.
 pub fn memory() -> Option<u64> {
     memory_stats::memory_stats().map(|stats| stats.physical_mem as u64)
 }
 
-/// Data folder of a stand: the one chosen by its operator, or a subfolder of the game's data folder.
+/// Data folder of a stand: the folder chosen by the operator, or a subfolder of the game's data folder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StandFolder(pub PathBuf);
 
@@ -28,12 +28,12 @@ impl StandFolder {
         self.0.join("visits.sqlite")
     }
 
-    /// Path of a copy of the logbook made at a moment.
+    /// Path of a copy of the logbook, with the time of the copy in its name.
     pub fn copy(&self, at: Moment) -> PathBuf {
         self.0.join(format!("visits-{}.sqlite", digits(at)))
     }
 
-    /// Storage of the game in this folder: clips, and the mounting of sticks.
+    /// Storage of the game in this folder: clips, and settings with the calibrations of sticks.
     pub fn files(&self) -> Files {
         Files::in_folder(&self.0)
     }

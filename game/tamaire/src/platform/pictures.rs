@@ -6,14 +6,14 @@ use crate::film::{Film, Studio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tamaire_play::{Playback, Replay};
 
-/// Maker of photos and clips. The studio is opened for the first picture and kept, because closing a GPU
-/// device leaks memory in drivers and allocators.
+/// Maker of photos and clips. Its studio, the offscreen renderer, is opened for the first picture and kept,
+/// because closing a GPU device leaks memory in drivers and allocators.
 #[derive(Clone, Default)]
 pub struct Pictures(Arc<Mutex<Option<Studio>>>);
 
 impl Pictures {
     /// Makes a picture of a round and returns the bytes of its file. `told` is called with the finished
-    /// fraction.
+    /// share, 0 to 1.
     pub async fn shoot(
         &self,
         kind: Kind,
@@ -32,12 +32,12 @@ impl Pictures {
             breath.yield_now().await;
         }
         let share = |tick: usize, ticks: usize| told(tick as f32 / ticks.max(1) as f32);
-        // Only one picture is made at a time, so the studio can be taken out.
+        // Only one picture is made at a time, so no other job needs the studio meanwhile.
         let mut studio = self.studio().take();
         let was_open = studio.is_some();
         let mut shot = film.shoot(playback.round(), &mut studio, &share).await;
         if shot.is_err() && was_open && studio.is_none() {
-            // The device was lost since the last picture. Tries again with a new one.
+            // The GPU device was lost since the last picture. Tries again with a new one.
             shot = film.shoot(playback.round(), &mut studio, &share).await;
         }
         *self.studio() = studio;

@@ -15,7 +15,7 @@ pub fn full_screen_of_page() -> Option<bool> {
     None
 }
 
-/// Returns an empty address. A desktop program has no page, and opens links by their fragment alone.
+/// Returns an empty address, since a desktop program has no page. Links then consist of their fragment alone.
 pub fn address_of_page() -> String {
     String::new()
 }

@@ -82,12 +82,13 @@ pub trait Storage: Send + Sync {
     /// Gives an entry to the player as a file, if supported.
     ///
     /// # Errors
-    /// As [`Storage::read`].
+    /// The error of reading the entry, or `Unsupported` if the entries are files already.
     fn export(&self, _: Kind, _: &str) -> io::Result<()> {
         Err(io::ErrorKind::Unsupported.into())
     }
 
-    /// Returns once the error of an earlier change that the storage learned of only later.
+    /// Returns the error of an earlier change that failed after [`Storage::change`] had returned. Returns
+    /// each error once.
     fn take_failure(&self) -> Option<io::Error> {
         None
     }

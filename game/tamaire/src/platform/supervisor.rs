@@ -15,35 +15,40 @@ use tamaire_logbook::{Entry, Event, Id, Kind, Logbook, Moment};
 /// Exit status of a game that lost its GPU or window.
 pub const LOST_GRAPHICS: u8 = 3;
 
-/// Signals to the supervisor: heartbeat, and the announcement of a regular end.
+/// Heartbeat that the game sends to the supervisor.
 const LIVES: u8 = b'.';
+/// Announcement of a regular end, sent by the game.
 const ENDS: u8 = b'e';
 /// Maximum time for pending writes after the announcement of the end.
 const ENDING: Duration = Duration::from_secs(30);
-/// Run time below which a restart is delayed, because the cause of the crash may pass.
+/// Run time below which a crash delays the restart, because the cause may pass.
 const BRIEFLY: Duration = Duration::from_secs(5);
+/// First delay of a restart. It doubles with each further crash soon after a start.
 const SHORT_PAUSE: Duration = Duration::from_millis(250);
-/// Longest delay of a restart.
+/// Usual value of [`SupervisorConfig::pause`], the longest delay of a restart.
 pub const PAUSE: Duration = Duration::from_secs(8);
 /// Maximum number of stored crash records.
 const RECORDS: usize = 100;
 
 /// Time between two heartbeats.
 const PULSE: Duration = Duration::from_millis(500);
-/// Time without a heartbeat after which the game counts as hung, and [`START`] before the first one.
+/// Time without a heartbeat after which the game counts as hung.
 const STILL: Duration = Duration::from_millis(3500);
+/// Maximum time until the first heartbeat.
 const START: Duration = Duration::from_secs(60);
 /// Number of crashes within `WHILE` after which restarting is given up.
 pub const MAX_CRASHES: usize = 10;
+/// Period in which crashes are counted.
 const WHILE: Duration = Duration::from_secs(600);
-/// Interval between checks of the game.
+/// Interval at which the state of the game is checked.
 const LOOK: Duration = Duration::from_millis(50);
-/// Maximum time to wait for the last output of the game.
+/// Maximum time to wait for the last output of a game that has ended.
 const LAST_WORDS: Duration = Duration::from_millis(300);
 /// Number of output lines of the game that are kept for a crash record.
 const LINES: usize = 60;
 
-/// Sender of heartbeats to the supervisor, used on the drawing thread.
+/// Sender of heartbeats to the supervisor. It is used on the drawing thread, so that a hang of this thread is
+/// noticed.
 pub struct Heartbeat {
     told: Option<Instant>,
 }
@@ -90,7 +95,7 @@ pub struct SupervisorConfig {
     pub program: PathBuf,
     /// Arguments that start the game.
     pub game: Vec<OsString>,
-    /// Arguments that show a calm picture.
+    /// Arguments that start the program with a static picture instead of the game.
     pub calm: Vec<OsString>,
     /// Folder of the logbook.
     pub folder: StandFolder,
@@ -102,7 +107,7 @@ pub struct SupervisorConfig {
     pub pause: Duration,
 }
 
-/// The way in which a game ended.
+/// Way in which a run of the game ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum End {
     Meant,
@@ -112,8 +117,7 @@ enum End {
 /// Runs the game until its regular end.
 ///
 /// # Errors
-/// If the game cannot be started or crashes repeatedly. In that case the calm picture was shown before the
-/// return.
+/// If the game cannot be started or crashes repeatedly. A static picture was then shown before the return.
 pub fn supervise(plan: &SupervisorConfig) -> Result<(), String> {
     let mut failures: VecDeque<Instant> = VecDeque::new();
     let mut pause = SHORT_PAUSE;
@@ -154,7 +158,7 @@ fn join(notes: Vec<JoinHandle<()>>) {
     }
 }
 
-/// Shows the calm picture for as long as possible. Returns the reason for giving up.
+/// Shows a static picture until the program is ended. Returns the reason for giving up.
 fn give_up(plan: &SupervisorConfig) -> String {
     let reason = format!(
         "the game failed {} times within {} minutes; see {}",
@@ -165,7 +169,8 @@ fn give_up(plan: &SupervisorConfig) -> String {
     say(&format!("tamaire: {reason}"));
     join(vec![note(plan, Kind::GaveUp, reason.clone())]);
     for _ in 0..MAX_CRASHES {
-        // The calm picture needs almost no drawing. If it fails, too, no picture is shown.
+        // The static picture needs almost no drawing. If showing it fails repeatedly, too, the screen stays
+        // empty.
         if run(plan, &plan.calm).0 == End::Meant {
             break;
         }
@@ -174,7 +179,7 @@ fn give_up(plan: &SupervisorConfig) -> String {
     reason
 }
 
-/// Runs the program once. Returns how it ended, and its record.
+/// Runs the program once. Returns how it ended, and a crash record.
 fn run(plan: &SupervisorConfig, words: &[OsString]) -> (End, String) {
     let mut command = Command::new(&plan.program);
     command.args(words).stdin(Stdio::null());
@@ -272,8 +277,8 @@ fn read(child: &mut Child, lines: Arc<Mutex<VecDeque<String>>>) -> Option<JoinHa
     let mut err = BufReader::new(child.stderr.take()?);
     Some(thread::spawn(move || {
         let mut line = Vec::new();
-        // Output of drivers may be invalid UTF-8. The pipe must be read anyway, so that the game does not
-        // block on it.
+        // Output of drivers may be invalid UTF-8. It is read all the same, since a full pipe would block the
+        // game.
         while err
             .read_until(b'\n', &mut line)
             .is_ok_and(|count| count > 0)
@@ -290,7 +295,7 @@ fn read(child: &mut Child, lines: Arc<Mutex<VecDeque<String>>>) -> Option<JoinHa
     }))
 }
 
-/// Writes a crash record to a file and to the logbook, while the game restarts.
+/// Starts writing a crash record to a file and to the logbook; the game restarts in the meantime.
 fn note(plan: &SupervisorConfig, kind: Kind, record: String) -> JoinHandle<()> {
     let (folder, stand, at) = (plan.folder.clone(), plan.stand.clone(), Moment::now());
     thread::spawn(move || {

@@ -1,4 +1,4 @@
-//! Background writer.
+//! Thread that does slow work, such as writing files, in the background.
 
 use std::io;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -28,7 +28,7 @@ impl<T: Send + 'static> Writer<T> {
         }
     }
 
-    /// Adds a job. `told` converts its result.
+    /// Adds a job. `told` converts what it returns to a result of the writer.
     pub fn write<V: 'static>(
         &mut self,
         job: impl FnOnce() -> io::Result<V> + Send + 'static,

@@ -1,4 +1,4 @@
-//! Control of the game by a public stand instead of menus.
+//! Control of the game by a public stand, which replaces the menus.
 
 use crate::game::Game;
 use crate::look::Stage;
@@ -6,7 +6,8 @@ use egui::{Context, Ui};
 
 /// Controls the game at a public stand, where visitors have no menus.
 pub trait StandController {
-    /// Called in every pass of the event loop, even if nothing is drawn, to show that the program is alive.
+    /// Called in every pass of the event loop, even if nothing is drawn. It tells the supervisor that the
+    /// program is alive.
     fn live(&mut self, _: &Context) {}
 
     /// Advances by a frame of `seconds`.

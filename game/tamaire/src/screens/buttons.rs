@@ -1,5 +1,5 @@
-//! Round on-screen buttons during play: pause and restart for all players, and for touch all actions that
-//! keys and pads have.
+//! Circular on-screen buttons during play. All players get pause and restart; touch screens also get the
+//! actions that keys and pads have buttons for.
 
 use super::icons;
 use crate::game::{Game, ScreenButton};
@@ -9,14 +9,16 @@ use app_shell::widgets::note_hovered;
 use egui::{Color32, Painter, Pos2, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use tamaire_play::AnyRound;
 
-/// Draws the icon of an action at a position, with a scale and a colour.
+/// Function that draws an icon at a position, with a scale and a colour.
 type Icon = fn(&Painter, Pos2, f32, Color32);
 
-/// Height of the upper row, gap between its elements, and distance from the edge of the window [points].
+/// Height of the upper row [points].
 pub(super) const HIGH: f32 = 44.0;
+/// Gap between the elements of a row [points].
 pub(super) const GAP: f32 = 8.0;
+/// Distance of buttons from the edge of the window [points].
 pub(super) const EDGE: f32 = 15.0;
-/// Side length of a thumb button [points].
+/// Side length of a thumb button, a large button in the lower right corner [points].
 const THUMB: f32 = 68.0;
 
 /// Shows a row of buttons from `corner` to the right, and the thumb buttons in the lower right corner.
@@ -36,7 +38,7 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
             row.push((Action::Slow, name(Action::Slow), icons::slow));
         }
         match game.bout.round() {
-            // In 3D, a second finger raises the hand.
+            // Not in 3D: there, a second finger raises the first player's hand.
             AnyRound::Plane(_) if game.takes_two() => {
                 row.push((Action::Join, name(Action::Join), icons::two));
             }
@@ -80,7 +82,7 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
 /// Shows a button; returns whether the mouse is over it.
 fn one(game: &mut Game, ui: &Ui, button: ScreenButton, name: &str, icon: Icon) -> bool {
     let (theme, rect) = (game.theme(), button.rect);
-    // Not focusable: the keyboard has its own keys for these actions.
+    // Cannot get the keyboard focus, since keys for these actions exist.
     let response = ui.interact(rect, egui::Id::unique(name), Sense::CLICK);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
     note_hovered(ui, &response);

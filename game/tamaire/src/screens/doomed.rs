@@ -1,11 +1,11 @@
-//! Confirmation of a deletion by a second press.
+//! Confirmation by a second press, for example of a deletion.
 
 use egui::{Id, Ui};
 
 /// Time window in which a second press confirms [s].
 const PATIENCE: f64 = 6.0;
 
-/// Whether a press on `what` within the time window would confirm.
+/// Whether a press on `what` now would be the second one and confirm.
 pub(super) fn is_pending(ui: &Ui, what: &str) -> bool {
     let now = ui.input(|input| input.time);
     let asked: Option<(String, f64)> = ui.data(|data| data.get_temp(id()));

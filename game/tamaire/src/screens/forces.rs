@@ -13,11 +13,13 @@ use tamaire_sound::Menu;
 
 /// Radius of the circle that shows a stick's deflection [points].
 const CIRCLE: f32 = 78.0;
-/// Size of a level bar, and height of its row [points].
+/// Size of the bar that shows the value of an axis [points].
 const BAR: egui::Vec2 = vec2(150.0, 14.0);
+/// Height of the row of a bar [points].
 const ROW: f32 = 34.0;
-/// Radius of a button's indicator light, and spacing of the lights [points].
+/// Radius of a button's indicator light [points].
 const LIGHT: f32 = 6.0;
+/// Spacing of the lights [points].
 const LIGHTS: f32 = 17.0;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {

@@ -9,14 +9,14 @@ use app_shell::widgets::fitted;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use fuwafuwa_render::frame::ElementColour;
 
-/// Height of a line of the 3D instructions.
+/// Height of a line of the 3D instructions [points at scale 1].
 const LINE: f32 = 34.0;
 /// Height of the bottom edge at a public stand, which holds a button in the lower left corner [points].
 pub(super) const STAND: f32 = 92.0;
-/// Radius of the jar.
+/// Radius of the jar that shows the fill level of the basket [points at scale 1].
 const JAR: f32 = 36.0;
-/// Upper limit of the overlay's scale. The overlay needs less room than menus, so it compensates a reduced
-/// zoom up to this factor.
+/// Maximum scale of the overlay. In a small window egui's zoom is reduced, so that menus fit. The overlay
+/// needs less room, so it is enlarged again, at most by this factor.
 const MOST: f32 = 1.4;
 
 /// Shows the overlay; returns whether the mouse is over a button.
@@ -99,7 +99,7 @@ fn draw_clock(row: &mut ChipRow, theme: &Theme, game: &Game) {
     painter.text(at, Align2::CENTER_CENTER, clock, font, theme.ink);
 }
 
-/// Draws a chip for each unusual mode.
+/// Draws a chip, a label with a pale background, for each unusual mode.
 fn draw_chips(row: &mut ChipRow, theme: &Theme, game: &Game) {
     let said = game.words();
     let mut chip = |sign: &str, text: &str| {
@@ -163,7 +163,7 @@ fn draw_lesson(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
         let fill = pale(&theme).gamma_multiply(strength);
         painter.rect_filled(rect, 0.5 * size.y, fill);
         painter.galley(rect.center() - 0.5 * galley.size(), galley, ink);
-        // A line that was tried sinks away.
+        // While a line fades out, the lines above it move down.
         bottom -= strength * scale * (LINE + 0.5 * GAP);
     }
 }

@@ -21,7 +21,7 @@ const WIDE: f32 = 236.0;
 /// Height of the button below a level that the player added [points].
 const SLIM: f32 = 36.0;
 
-/// Action on a level.
+/// Action that the player has chosen for a level.
 enum LevelAction {
     Play(usize),
     TakeOut(usize),
@@ -86,7 +86,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     }
 }
 
-/// Shows the button that removes a level from the list; a second press confirms.
+/// Shows the button that removes a level from the list. A second press confirms the removal.
 fn way_out(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Response {
     let (level, said) = (&game.levels[index], game.words());
     let text = match is_pending(ui, &level.id) {

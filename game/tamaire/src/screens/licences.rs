@@ -10,10 +10,11 @@ use egui::{
 };
 use tamaire_sound::Menu;
 
-/// Line height and font size [points].
+/// Line height [points].
 const LINE: f32 = 20.0;
+/// Font size [points].
 const LETTERS: f32 = 15.0;
-/// Lines in a focusable block. Keys and pads scroll block by block.
+/// Number of lines in a focusable block. Keys and pads scroll block by block.
 const LINES: usize = 16;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
@@ -27,7 +28,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         back |= response.clicked();
         page(ui, "licences", 820.0, |ui| {
             if cfg!(target_family = "wasm") {
-                // The page comes with a file that has all licence texts.
+                // `licences.txt`, a file beside the page, has all licence texts.
                 let all = vec2(240.0, 48.0);
                 if button(ui, &theme, "licences.txt", all, ButtonStyle::Other).clicked() {
                     ui.ctx().open_url(OpenUrl::new_tab("licences.txt"));

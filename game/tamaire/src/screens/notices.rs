@@ -22,7 +22,7 @@ pub(super) fn show(game: &Game, ui: &Ui) {
     let font = FontId::proportional(18.0 * scale);
     let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("notices"));
     let painter = ui.ctx().layer_painter(layer);
-    // During a round a chip shows it, and the forces screen has a button for it.
+    // Cut forces are shown by a chip during a round, and by a button on the forces screen.
     let is_said = matches!(game.screen(), Screen::Play | Screen::Forces);
     let is_cut = game.forces.is_cut() && !is_said;
     let lasting = is_cut.then(|| (game.words().cut_now.to_string(), 1.0));

@@ -9,8 +9,9 @@ use egui::{Rect, Sense, Stroke, StrokeKind, Ui, vec2};
 use std::sync::Arc;
 use tamaire_play::{Replay, ReplayError};
 
-/// Size of the level's thumbnail, and of a button [points].
+/// Size of the level's thumbnail [points].
 const PICTURE: egui::Vec2 = vec2(300.0, 200.0);
+/// Size of a button [points].
 const BUTTON: egui::Vec2 = vec2(300.0, 54.0);
 
 pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {

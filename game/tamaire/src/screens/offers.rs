@@ -7,11 +7,13 @@ use app_shell::Theme;
 use app_shell::direction::to_world;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Ui, Vec2};
 
-/// Radius of the ring, size of an arrow, and radius of the disc behind a sign [points].
+/// Radius of the ring around the hand [points].
 const RING: f32 = 58.0;
+/// Size of an arrow [points].
 const ARROW: f32 = 21.0;
+/// Radius of the disc behind a sign [points].
 const DISC: f32 = 21.0;
-/// Distance from the hand at which a direction is projected onto the screen [m].
+/// Distance of the point whose position on the screen gives the direction of an arrow [m].
 const AHEAD: f32 = 0.1;
 
 /// Draws the offered action, highlighted while the switch is pressed.
@@ -72,7 +74,7 @@ fn arrow(painter: &Painter, middle: Pos2, way: Vec2, scale: f32, tone: Color32) 
     painter.add(Shape::closed_line(corners, edge));
 }
 
-/// Draws a sign on a disc.
+/// Draws an icon on a disc.
 fn sign(
     painter: &Painter,
     theme: &Theme,

@@ -5,7 +5,7 @@ use crate::game::{Game, Screen};
 use crate::look::{DrawOptions, Hint, Stage, view_of_level};
 use egui::Ui;
 
-/// Draws the world behind the current screen.
+/// Draws the world of the round as the background of the current screen.
 pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let screen = ui.max_rect();
     let level = game.bout.round().level().clone();
@@ -23,7 +23,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     view.centre[1] -= 0.1 * share * view.height();
     game.bout.view = Some(view);
     let theme = game.theme();
-    // The first level shows what to do until it has been won once.
+    // Until the first level has been won, it shows how to push the body into the basket.
     let is_first = game
         .levels
         .first()

@@ -10,8 +10,9 @@ use app_shell::widgets::{ButtonStyle, button, fitted};
 use egui::{Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 use tamaire_sound::Menu;
 
-/// Size of a button, and of a thumbnail [points].
+/// Size of a button [points].
 const BUTTON: Vec2 = vec2(118.0, 44.0);
+/// Size of a thumbnail [points].
 const PICTURE: Vec2 = vec2(111.0, 74.0);
 /// Number of buttons in a row.
 const COLUMNS: usize = 3;
@@ -20,7 +21,7 @@ const LEAST_TEXT: f32 = 200.0;
 /// Gap between elements of a row [points].
 const GAP: f32 = 10.0;
 
-/// Action on a replay.
+/// Action that the player has chosen for a replay.
 #[derive(Copy, Clone)]
 enum ReplayAction {
     Watch,

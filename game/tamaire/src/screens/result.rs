@@ -12,8 +12,9 @@ use tamaire_play::{Level, Outcome, Route, Wish};
 
 /// Width of the card [points].
 const WIDE: f32 = 490.0;
-/// Height of the smaller buttons, and gap between buttons [points].
+/// Height of the smaller buttons [points].
 const SMALL: f32 = 46.0;
+/// Gap between buttons [points].
 const GAP: f32 = 10.0;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
@@ -24,7 +25,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     };
     let (theme, said) = (game.theme(), game.words());
     let level = game.bout.round().level().clone();
-    // On the side away from the basket, so that the happy body stays visible.
+    // The card is on the side away from the basket, so that the happy body stays visible.
     let basket = level.game().basket.as_ref();
     let is_right = basket.is_some_and(|basket| basket.centre[0] > 0.0);
     let across = if is_right { 0.05 } else { 0.95 };
@@ -66,7 +67,7 @@ fn help_of(level: &Level, said: &Words) -> Option<String> {
     (!names.is_empty()).then(|| format!("{}: {}", said.assisted, names.join(", ")))
 }
 
-/// Returns the route to suggest after a win by `route`.
+/// Returns the route that is suggested after a win by `route`.
 pub(super) fn other(route: Route) -> Route {
     match route {
         Route::Squeeze => Route::Shave,
@@ -132,7 +133,8 @@ fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &
     }
 }
 
-/// Shows the buttons; returns the chosen action. The main one is the next level once all goals are reached.
+/// Shows the buttons; returns the chosen action. The main button leads to the next level once all goals of
+/// this one are reached.
 fn buttons(ui: &mut Ui, theme: &Theme, said: &Words, is_reached: bool) -> Option<Act> {
     let mut wanted: Option<Act> = None;
     let width = 2.0 * 200.0 + GAP;

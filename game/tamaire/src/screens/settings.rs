@@ -85,7 +85,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                     // A reset never raises the force, and it keeps measured calibrations.
                     haptics: chosen.haptics.min(usual.haptics),
                     calibrations: std::mem::take(&mut chosen.calibrations),
-                    // A player who needs these settings could not continue without them.
+                    // A player who needs scanning could not operate the game without it.
                     scanning: chosen.scanning,
                     toggle_keys: chosen.toggle_keys,
                     dwell: chosen.dwell,
@@ -112,8 +112,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     }
 }
 
-/// Shows the choice of the scanning interval. Switching it off takes a second press: a player with a single
-/// switch could not switch it on again.
+/// Shows the choice of the scanning interval. A second press confirms that scanning is switched off, because
+/// a player with a single switch could not switch it on again.
 fn scanning(ui: &mut Ui, theme: &Theme, said: &Words, chosen: &mut Scanning) {
     const OFF: &str = "scanning";
     let before = *chosen;
@@ -145,7 +145,8 @@ fn section(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut Ui
     });
 }
 
-/// Shows the keys and buttons of all actions. A click on an action waits for a press that is bound to it.
+/// Shows the keys and buttons of all actions. After a click on an action, the next key or button pressed is
+/// bound to it.
 fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
     let (theme, said) = (game.theme(), game.words());
     section(ui, &theme, said.controls, |ui| {
@@ -159,7 +160,8 @@ fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
             let weight = ButtonStyle::of(listens);
             let response = button(ui, &theme, &text, vec2(ui.available_width(), 44.0), weight);
             if listens {
-                // While waiting, arrows, Tab and Escape are ordinary keys.
+                // While the game waits for a key, arrows, Tab and Escape can be bound, too, and do not
+                // navigate.
                 response.request_focus();
                 let all = egui::EventFilter {
                     tab: true,

@@ -7,7 +7,8 @@ use app_shell::widgets::{ButtonStyle, button};
 use egui::{Color32, Rect, Sense, Ui, vec2};
 use tamaire_sound::Menu;
 
-/// Horizontal position of the menu, 0 (left) to 1 (right); left, so that the basket stays visible.
+/// Horizontal position of the menu, 0 (left) to 1 (right). The menu is on the left, so that the basket stays
+/// visible.
 const ACROSS: f32 = 0.14;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {

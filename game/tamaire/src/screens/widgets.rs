@@ -64,7 +64,7 @@ pub fn perform(game: &mut Game, ui: &Ui, wanted: Option<Act>, on_escape: Act) {
     }
 }
 
-/// Focuses a widget if nothing else has the focus, so that a pad alone can navigate from there.
+/// Focuses a widget if nothing has the focus, so that players can navigate from there with a pad alone.
 pub fn focus_first(ui: &Ui, response: &Response) {
     if ui.memory(|memory| memory.focused().is_none()) {
         response.request_focus();
@@ -178,7 +178,7 @@ pub fn choice<T: Copy + PartialEq>(
         ui.spacing_mut().item_spacing.x = 2.0 * RING;
         for &(option, text) in options {
             let is_chosen = *value == option;
-            // A dot marks the chosen option, not only its colour.
+            // A dot marks the chosen option, since colour alone would not be visible to everyone.
             let marked = match is_chosen {
                 true => mark(text),
                 false => text.to_string(),
@@ -276,8 +276,8 @@ fn header_with<R>(
     inner.inner
 }
 
-/// Makes the up and down arrow keys move the focus to the previous and next widget, at any position. Call it
-/// before the current widget is added.
+/// Makes the up and down arrow keys move the focus to the previous and the next widget, wherever these are.
+/// Call this function before the current widget is added.
 fn step_through(ui: &Ui) {
     for (key, direction) in [
         (Key::ArrowDown, FocusDirection::Next),
@@ -340,8 +340,9 @@ pub fn page(ui: &mut Ui, name: &str, width: f32, contents: impl FnOnce(&mut Ui))
 /// Margin around a column [points].
 const AROUND: f32 = 12.0;
 
-/// Shows a [`column`] that hides little of the world: at `across` from 0 (left) to 1 (right). In a portrait
-/// window the world is in the middle, and the column is above or below it.
+/// Shows a [`column`] that hides little of the world, with its horizontal position from 0 (left) to 1
+/// (right). In a portrait window the world is in the middle, and the column is above it if the flag is set,
+/// otherwise below it.
 pub fn column_beside<R>(
     ui: &mut Ui,
     width: f32,
@@ -352,7 +353,7 @@ pub fn column_beside<R>(
     if part.width() > part.height() {
         return column(ui, width, across, contents);
     }
-    // Rather covers the world than scrolls.
+    // A high column may cover more of the world, so that it need not scroll.
     let wanted = ui.data(|data| data.get_temp::<f32>(column_id(width)));
     let least = wanted.map_or(0.0, |height| height + 2.0 * AROUND);
     let share = if is_above { 0.4 } else { 0.47 };
@@ -399,7 +400,7 @@ pub fn column<R>(ui: &mut Ui, width: f32, across: f32, contents: impl FnOnce(&mu
         .inner;
     if known != Some(height) {
         ui.data_mut(|data| data.insert_temp(id, height));
-        // Repeats the frame, so that the column is never shown at a wrong position.
+        // egui repeats the frame, so that the column is never shown at a wrong position.
         ui.ctx().request_discard("the height of a column");
     }
     result

@@ -1,4 +1,4 @@
-//! English.
+//! Texts of the game in English.
 
 use super::Words;
 use crate::input::{Action, InputMethod};

@@ -1,4 +1,4 @@
-//! 日本語
+//! Texts of the game in Japanese (日本語).
 
 use super::Words;
 use crate::input::{Action, InputMethod};

@@ -20,7 +20,7 @@ pub enum Language {
     /// English.
     #[default]
     English,
-    /// 日本語
+    /// Japanese (日本語).
     Japanese,
 }
 

@@ -195,7 +195,7 @@ fn settings_are_saved_and_language_changes_at_once() {
     assert_eq!(again.settings.volume, after);
     fs::write(folder.path().join("settings.toml"), "volume = [").unwrap();
     let again = Game::new(Files::in_folder(folder.path()), Sound::none(), Pads::none());
-    // Without readable settings no force is allowed.
+    // Without readable settings the wanted strength is unknown, so force feedback is off.
     let usual = Settings {
         haptics: 0.0,
         ..Settings::default()

@@ -67,7 +67,7 @@ fn tap(window: &mut Window) {
     frames(window, 3);
 }
 
-/// Waits until such an offer is made in a round.
+/// Waits until an action that is wanted is offered in a round.
 fn wait_for(window: &mut Window, is_wanted: impl Fn(ScanAction) -> bool) {
     for _ in 0..60 * 60 {
         let game = game(window);
@@ -77,7 +77,7 @@ fn wait_for(window: &mut Window, is_wanted: impl Fn(ScanAction) -> bool) {
         }
         frames(window, 1);
     }
-    panic!("the offer is never made");
+    panic!("the action is never offered");
 }
 
 #[test]
@@ -113,7 +113,7 @@ fn single_switch_can_win_and_continue() {
         }
         frames(&mut window, 1);
     }
-    // A body at rest in the basket must not be pressed any more.
+    // The hand moves away, so that the body comes to rest in the basket.
     window.key_up(Key::Space);
     wait_for(
         &mut window,
@@ -166,7 +166,7 @@ fn single_switch_is_never_trapped() {
         assert_eq!(game.controls.rebinding, None, "{action:?}");
         assert_eq!(game.settings.bindings, before, "{action:?}");
     }
-    // Switching it off takes two presses, and a reset keeps it on.
+    // Two presses are needed to switch scanning off, and a reset of the settings keeps it on.
     let first = window.get_by_label("One-switch scanning: Off");
     first.scroll_to_me();
     frames(&mut window, 3);
@@ -175,7 +175,7 @@ fn single_switch_is_never_trapped() {
     assert!(game(&mut window).settings.scanning.is_on());
     click(&mut window, "Restore default settings");
     assert!(game(&mut window).settings.scanning.is_on());
-    // It leaves a round that is only watched.
+    // The switch also leaves a round that is only watched.
     game(&mut window).start(0);
     frames(&mut window, 5);
     let replay = game(&mut window).bout.round().replay();

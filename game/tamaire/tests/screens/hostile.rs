@@ -204,7 +204,7 @@ fn random_input_causes_no_fault() {
     let stick = Device::at_rest(DeviceId(2), DeviceInfo::default(), 2, 8, 1);
     let mut devices = vec![pad(1), stick];
     let mut seen = std::collections::BTreeSet::new();
-    // Each event takes a frame of its own: a click takes three.
+    // The test window handles one queued event in each frame, so a click takes three frames.
     for frame in 0..1000 {
         let at = pos2(960.0 * random.f32(), 600.0 * random.f32());
         match random.u32(0..12) {

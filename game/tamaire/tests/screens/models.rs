@@ -30,7 +30,7 @@ fn dropped_model_is_played_in_3d() {
             round.progress().mass > 0.0 && ticks(&window) <= 2,
             "{level}"
         );
-        // It appears once in the list, however often it is dropped.
+        // The level appears once in the list, however often the file is dropped.
         let levels = &window.state().game.levels;
         let name = &round.level().id;
         assert_eq!(levels.iter().filter(|level| &level.id == name).count(), 1);

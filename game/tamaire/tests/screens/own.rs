@@ -58,7 +58,7 @@ fn level_removal_by_keys_needs_confirmation_in_time() {
     drop_file(&mut window, cat());
     game(&mut window).go(Screen::Levels);
     frames(&mut window, 3);
-    // The level that was played has the focus.
+    // The level that was played last has the focus.
     press(&mut window, Key::ArrowDown);
     press(&mut window, Key::Enter);
     assert!(window.query_by_label("Really?: cat").is_some());

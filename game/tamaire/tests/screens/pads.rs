@@ -53,7 +53,7 @@ impl Table {
         self.pad(last).button_mut(button)
     }
 
-    /// State of the pad at this place of `devices`.
+    /// Returns the state of the pad with index `place` in `devices`.
     pub fn pad(&mut self, place: usize) -> &mut Pad {
         let pad = self.devices[place].pad.as_mut();
         pad.expect("the device is a pad")
@@ -148,7 +148,7 @@ fn pad_alone_reaches_all_screens() {
     let after = game(&mut table.window).settings.volume;
     assert!((before - after - 0.1).abs() < 1e-3, "{before} {after}");
 
-    // Down to the end of the page, where the focused button must be visible.
+    // Moves the focus down to the end of the page, where the focused button must be visible.
     table.tap_until(Down, "Restore default settings", 60);
     assert!(table.has_focus("Restore default settings"));
     let (seen, room) = (
@@ -169,7 +169,7 @@ fn pad_alone_reaches_all_screens() {
     table.tap(East);
     assert_eq!(table.screen(), Screen::Play);
     table.tap(North);
-    assert!(ticks(&table.window) < 6, "again");
+    assert!(ticks(&table.window) < 6, "the round restarts");
 }
 
 #[test]
@@ -182,7 +182,7 @@ fn plain_stick_alone_starts_round() {
         table.devices[0].buttons[button].down = false;
         table.frames(2);
     };
-    // The axis is positive towards the player.
+    // The value of the axis is positive if the stick is tilted towards the player.
     table.devices[0].axes[1] = 1.0;
     table.frames(2);
     table.devices[0].axes[1] = 0.0;

@@ -15,9 +15,10 @@ use tamaire::platform::Files;
 use tamaire::words::Language;
 use tamaire_play::{BotKind, Outcome, Route};
 
-/// Tolerance for a pixel, some ten of 256 grey levels, and number of pixels that may exceed it. Drivers
-/// differ in antialiasing and colour mixing; a moved or missing element or another language exceeds it.
+/// Tolerance for a pixel, some ten of 256 grey levels. Drivers differ in antialiasing and colour mixing.
 const STEP: f32 = 50.0;
+/// Number of pixels that may exceed [`STEP`]. More do if an element moved or is missing, or if the language
+/// is wrong.
 const PIXELS: usize = 800;
 
 /// Size of detailed pictures [points], smaller to limit the size of the files.
@@ -44,7 +45,7 @@ fn picture(window: &mut Window, name: &str) {
 fn pictures(window: &mut Window, name: &str) {
     for (language, tag) in [(Language::English, "en"), (Language::Japanese, "ja")] {
         game(window).settings.language = language;
-        // The layout takes a frame to appear and one to be measured.
+        // The layout needs one frame to appear and one to be measured.
         frames(window, 3);
         picture(window, &format!("{name}_{tag}"));
     }
@@ -57,7 +58,7 @@ fn screens_match_pictures() {
     drive(game(&mut window), BotKind::Idle, |game| game.time < 2.0);
     pictures(&mut window, "title");
     game(&mut window).go(Screen::Levels);
-    // Each thumbnail takes a frame.
+    // One thumbnail is rendered in each frame.
     let levels = game(&mut window).levels.len();
     frames(&mut window, levels);
     pictures(&mut window, "levels");
@@ -95,12 +96,12 @@ fn portrait_screens_match_pictures() {
     pictures(&mut window, "upright_result");
     let link = game(&mut window).bout.round().replay().link();
     game(&mut window).open_link(&link.expect("the round of the bot fits into a link"));
-    // Each thumbnail takes a frame.
+    // One thumbnail is rendered in each frame.
     frames(&mut window, 20);
     pictures(&mut window, "upright_offered");
 }
 
-/// A dropped level is at the end of the list.
+/// Takes pictures of the list with a dropped level at its end, whose remove button was pressed once.
 fn own_level(window: &mut Window) {
     drop_file(window, level_file("cat.png"));
     game(window).go(Screen::Levels);

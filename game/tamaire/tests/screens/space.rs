@@ -28,7 +28,7 @@ fn turned(window: &Window) -> [f32; 2] {
     window.state().game.bout.camera.orbit_angles()
 }
 
-/// Advances by ticks without drawing: in software, a 3D frame takes longer than a tick.
+/// Advances the game by ticks and draws one frame: in software, a 3D frame takes longer than a tick.
 pub fn wait(window: &mut Window, ticks: usize) {
     (0..ticks).for_each(|_| game(window).update(TICK));
     frames(window, 1);
@@ -185,7 +185,7 @@ fn triggers_raise_hand_and_right_stick_turns_camera() {
     let expected = [before[0], before[1] + 0.4, before[2]];
     assert_near(raised, expected);
     assert_eq!(turned(&table.window), [0.0; 2]);
-    // Half the deflection gives half the speed.
+    // Half the deflection beyond the dead zone gives half the speed.
     hold(&mut table, [0.0; 2], [0.55, 0.0], 20);
     assert_near(
         goal(&table.window, 0),

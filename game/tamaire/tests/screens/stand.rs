@@ -33,7 +33,7 @@ struct Shown {
     folder: TempDir,
 }
 
-/// Lets the window own a stand that the test keeps access to.
+/// Controller that the window owns; the test keeps access to the stand.
 struct Shared(Rc<RefCell<Stand>>);
 
 impl StandController for Shared {
@@ -107,7 +107,7 @@ impl Shown {
         let game = game(&mut self.window);
         for _ in 0..(seconds / TICK) as usize {
             game.update(TICK);
-            // After a frame, events may be left in the context.
+            // Events left in the context by an earlier frame would count as input.
             ctx.input_mut(|input| input.events.clear());
             stand.pass(game, &ctx, TICK);
         }
@@ -139,7 +139,7 @@ impl Shown {
     }
 }
 
-/// Returns a function that adds a row.
+/// Returns a function that adds a row to `rows`.
 fn into<T>(rows: &mut Vec<T>) -> impl FnMut(T) -> Result<(), Error> {
     |row| {
         rows.push(row);

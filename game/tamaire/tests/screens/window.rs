@@ -29,7 +29,7 @@ pub fn open(files: Files, size: egui::Vec2, pixels: f32) -> Window {
     let builder = builder.with_theme(egui::Theme::Light);
     let mut window = builder.build_eframe(|context| {
         let mut game = Game::new(files, Sound::none(), Pads::none());
-        // Independent of the load of the machine.
+        // A constant clock makes the test independent of the machine's load.
         game.clock = Clock::of(|| 0.0);
         App::new(context, game).expect("a GPU or a software adapter is available")
     });
@@ -37,7 +37,7 @@ pub fn open(files: Files, size: egui::Vec2, pixels: f32) -> Window {
     // In its first two frames, the harness does not yet know the game's zoom.
     let zoom = window.ctx.zoom_factor();
     window.set_size(size / zoom);
-    // Away from all buttons, so that no button is hovered.
+    // The mouse is away from all buttons, so that no button is hovered.
     window.hover_at(egui::Pos2::ZERO);
     frames(&mut window, 2);
     window
@@ -160,7 +160,7 @@ pub fn win(window: &mut Window) {
     assert_eq!(screen(window), Screen::Result);
 }
 
-/// Sends a touch event as eframe does: the first finger is the mouse as well.
+/// Sends a touch event as eframe does, which also reports the first finger as the mouse.
 pub fn touch(window: &mut Window, finger: u64, phase: egui::TouchPhase, pos: egui::Pos2) {
     window.event(egui::Event::Touch {
         device_id: egui::TouchDeviceId(1),

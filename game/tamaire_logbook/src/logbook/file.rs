@@ -24,18 +24,20 @@ pub struct SetAside {
 const BUSY_TIMEOUT: Duration = Duration::from_secs(2);
 /// Suffixes of the files that SQLite creates beside a database.
 const SIDECAR_SUFFIXES: [&str; 3] = ["-wal", "-shm", "-journal"];
-/// Number of versions ahead from which a version number counts as damage.
+/// A version number that is larger than [`VERSION`] by this amount or more counts as damage, not as a newer
+/// version.
 const MAX_VERSIONS_AHEAD: i64 = 1000;
 
 /// Opens a file for writing, and creates it if it does not exist.
 ///
 /// # Errors
-/// [`Error::Damaged`] if the file cannot be used; then it was not changed.
+/// [`Error::Damaged`] if the file is damaged or no logbook. The file is left unchanged.
 pub fn open(path: &Path) -> Result<Connection, Error> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(|error| unusable(path, &error))?;
     }
-    // A program that creates a logbook creates the file before its log, so a log seen here implies the file.
+    // The log is looked for before the file. A program that creates a logbook creates the file before its
+    // log, so a log without a file is always damage.
     let has_log = size(&sidecar_path(path, SIDECAR_SUFFIXES[0])) > 0;
     let is_there = path.try_exists().map_err(|error| unusable(path, &error))?;
     if !is_there && has_log {
@@ -63,7 +65,7 @@ pub fn open(path: &Path) -> Result<Connection, Error> {
     Ok(connection)
 }
 
-/// Opens a file for writing that was checked already.
+/// Opens a file for writing without the slow check of its content, which [`open`] has done already.
 #[cfg(feature = "postgres")]
 pub fn attach(path: &Path) -> Result<Connection, Error> {
     let mut connection = connect(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
@@ -81,6 +83,7 @@ pub fn read(path: &Path) -> Result<Connection, Error> {
     let connection = connect(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
     let connection = match check(path, &connection) {
         // In a folder without write permission SQLite cannot create the shared-memory file that readers need.
+        // It needs none for a file that is declared immutable, which is possible without a log.
         Err(Error::Unusable { .. }) if size(&sidecar_path(path, SIDECAR_SUFFIXES[0])) == 0 => {
             let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI;
             let connection = connect(&immutable_uri(path), flags)?;
@@ -99,7 +102,7 @@ pub fn read(path: &Path) -> Result<Connection, Error> {
         VERSION => Ok(connection),
         _ => Err(damaged(
             path,
-            "the logbook has an older version: the game updates it when it opens it",
+            "the logbook has an older version; open it in the game once to update it",
         )),
     }
 }
@@ -129,7 +132,7 @@ pub fn bytes(path: &Path) -> u64 {
     size(path) + others.iter().sum::<u64>()
 }
 
-/// Maps an error of SQLite to an [`Error`] of this file.
+/// Maps an error of SQLite to an [`Error`] about the file at `path`.
 pub fn map_error(path: &Path, error: rusqlite::Error) -> Error {
     use rusqlite::Error as Sql;
     let (path, reason) = (path.to_path_buf(), error.to_string());
@@ -185,8 +188,8 @@ fn create(path: &Path) -> Result<(), Error> {
             &new,
             OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE,
         )?;
-        // Sets the journal mode here. If the first writer had to change it while other connections wait to do
-        // so, it might wait in vain.
+        // Sets the journal mode before other programs see the file. If several connections tried to set it at
+        // once, the first writer might wait in vain.
         begin(&mut connection).map_err(|error| map_error(path, error))?;
         drop(connection);
         match fs::hard_link(&new, path) {
@@ -207,7 +210,8 @@ fn connect(path: &Path, flags: OpenFlags) -> Result<Connection, Error> {
         let flags = flags | OpenFlags::SQLITE_OPEN_NO_MUTEX;
         let connection = Connection::open_with_flags(path, flags)?;
         connection.busy_timeout(BUSY_TIMEOUT)?;
-        // Never runs triggers or functions stored in a file, and leaves an unusable file unchanged.
+        // Triggers and functions stored in a file never run. Closing does not copy the log into the database,
+        // so that an unusable file stays unchanged.
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_TRUSTED_SCHEMA, false)?;
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_ENABLE_TRIGGER, false)?;
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
@@ -313,7 +317,7 @@ fn name_aside(path: &Path, now: Moment) -> PathBuf {
     paths.find(is_free).expect("the counter is unbounded")
 }
 
-/// Returns the URI of a file with the flag that tells SQLite that no program writes the file.
+/// Returns the URI of a file with `immutable=1`, which tells SQLite that no program writes the file.
 fn immutable_uri(path: &Path) -> PathBuf {
     let mut address = String::from("file:");
     for byte in path.as_os_str().as_encoded_bytes() {

@@ -43,8 +43,8 @@ pub const EVENTS: TableReader<Event> = TableReader {
 impl<T> TableReader<T> {
     /// Returns the SQL for all rows with a time from `?1` to `?2` inclusive, ordered by `seq`.
     ///
-    /// Rows are mostly written in the order of time. Between the first and the last match lie few other rows,
-    /// so scanning that range of `seq` needs no sorting.
+    /// Rows are mostly written in the order of time, so few other rows lie between the first and the last
+    /// match. A scan of this range of `seq` is fast and needs no sorting.
     pub fn in_range(&self) -> String {
         let Self {
             columns,

@@ -13,9 +13,10 @@ const MIGRATIONS: &[&str] = &[TABLES];
 
 /// Tables of version 1.
 ///
-/// Moments are milliseconds of UTC and an offset in seconds; ids are 16 bytes. One sequence numbers the rows
-/// of all tables and the changes of visits: `seq` gives the order, `change` tells which changes the server
-/// has not received yet. Replays have their own table, so that a scan of the rounds does not read them.
+/// Moments are milliseconds of UTC and an offset in seconds; ids are 16 bytes. One counter numbers the rows
+/// of all tables and the changes of visits. `seq` is the number of a row and gives the order of writing.
+/// `change` is the number of a visit's last change; the server has received all changes up to `book.sent`.
+/// Replays have their own table, so that a scan of the rounds does not read them.
 const TABLES: &str = "
 CREATE TABLE book (
     one INTEGER PRIMARY KEY CHECK (one = 1),

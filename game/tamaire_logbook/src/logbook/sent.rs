@@ -5,7 +5,7 @@ pub use since::{ChangedRow, SyncPosition, changes, sent, set_sent, unsent};
 
 use rusqlite::{Connection, params};
 
-/// Sets the server for which unsent rows are kept. A server other than the last one starts with nothing
+/// Sets the server for which unsent rows are kept. If it differs from the last server, no row counts as
 /// received.
 pub fn await_server(connection: &Connection, server: Option<&str>) -> rusqlite::Result<()> {
     let sql = "UPDATE book SET server = ?1, sent = CASE WHEN ?1 IS NULL THEN sent ELSE 0 END WHERE server IS NOT ?1";
@@ -75,7 +75,8 @@ mod since {
         })
     }
 
-    /// Stores the server's position. Has no effect if the file or its server is another one by now.
+    /// Stores the position that `server` has reached. Has no effect if the file or its server was replaced
+    /// meanwhile.
     pub fn set_sent(
         connection: &Connection,
         server: &str,

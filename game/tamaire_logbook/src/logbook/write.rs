@@ -6,7 +6,7 @@ use rusqlite::{Connection, Transaction, TransactionBehavior, named_params, param
 use std::borrow::Cow;
 use tamaire_play::replay::MAX_BYTES;
 
-/// Number of rows deleted per transaction, so that other connections can write between two of them.
+/// Maximum number of rows deleted in one transaction. Other connections can write between the transactions.
 const CHUNK: i64 = 1000;
 
 /// Writes all entries in one transaction. Rows whose id exists already are left unchanged.
@@ -31,8 +31,8 @@ pub fn write(connection: &mut Connection, entries: &[Entry]) -> rusqlite::Result
     transaction.commit()
 }
 
-/// Inserts a visit. If a round or an end has created the visit already (its language is empty then), the
-/// beginning is filled in.
+/// Inserts a visit. If an entry for a round or the end of the visit came first, the row exists with an empty
+/// language, and the missing values are filled in. Returns whether the row changed.
 fn begin_visit(connection: &Connection, change: i64, visit: &Visit) -> rusqlite::Result<bool> {
     let sql = "
         INSERT INTO visits VALUES (:change, :change, :id, :stand, :began, :began_offset, :ended, :ended_offset, :language)
@@ -76,8 +76,8 @@ fn end_visit(
     Ok(changed > 0)
 }
 
-/// Inserts a round. If its visit is missing, because it was dropped while the disk was full, the visit is
-/// created without a language and takes a change number too.
+/// Inserts a round. If its visit is missing, because its entry was dropped while the disk was full, the visit
+/// is created without a language and takes a change number too.
 fn add_round(connection: &Connection, changes: &mut i64, round: &Round) -> rusqlite::Result<bool> {
     let sql = "INSERT INTO visits VALUES (?1, ?1, ?2, ?3, ?4, ?5, NULL, NULL, '') ON CONFLICT (id) DO NOTHING";
     let brought = connection.prepare_cached(sql)?.execute(params![
@@ -103,7 +103,7 @@ fn add_round(connection: &Connection, changes: &mut i64, round: &Round) -> rusql
         ":began_offset": round.began.offset_s,
         ":seconds": number(round.seconds),
         ":level": clean(&round.level),
-        // SQLite has no unsigned integers: the bits are stored as a signed one.
+        // SQLite has no unsigned integers: the bits are stored as a signed integer.
         ":level_hash": round.level_hash as i64,
         ":players": round.players,
         ":ending": round.end.text(),

@@ -26,8 +26,8 @@ pub struct Health {
     pub set_aside: Option<SetAside>,
 }
 
-/// Limits of the waiting entries, in number and in bytes: weeks of visits, small enough for the memory of any
-/// machine that runs the game.
+/// Limits of the waiting entries: number, and size in memory [bytes]. They allow for weeks of visits, and any
+/// machine that runs the game has enough memory for them.
 const MOST_WAITING: usize = 1 << 16;
 const MOST_BYTES: usize = 1 << 26;
 /// Maximum number of entries written in one transaction.
@@ -54,7 +54,7 @@ struct State {
     is_closed: bool,
 }
 
-/// Requests that were not answered yet.
+/// Open requests, at most one of each kind. A later request replaces an earlier one of its kind.
 #[derive(Debug, Default)]
 pub struct Requests {
     pub today: Option<Moment>,
@@ -71,7 +71,7 @@ pub struct Best {
     pub most: usize,
 }
 
-/// Last answers.
+/// Last answer to each kind of request.
 #[derive(Debug, Default)]
 pub struct Answers {
     pub today: Option<Today>,
@@ -79,7 +79,7 @@ pub struct Answers {
     pub export: Option<Result<PathBuf, String>>,
 }
 
-/// State of the file.
+/// State of the file, as last reported by the writing thread.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     pub is_recording: bool,
@@ -88,7 +88,7 @@ pub struct Report {
 }
 
 impl SharedState {
-    /// Queues an entry for writing. If a limit is reached, drops the entry and counts it.
+    /// Queues an entry for writing. Drops and counts the entry if a limit is reached or recording has ended.
     pub fn put(&self, entry: Entry) {
         let mut state = self.state();
         let size = memory_size(&entry);
@@ -160,7 +160,7 @@ impl SharedState {
         batch
     }
 
-    /// Reports that the batch is written, except `dropped` entries.
+    /// Ends a batch: its entries were written, except for `dropped` ones.
     pub fn finish_batch(&self, dropped: u64) {
         let mut state = self.state();
         state.in_progress = 0;

@@ -23,7 +23,8 @@ const REST: Duration = Duration::from_secs(3);
 const LAST_REST: Duration = Duration::from_millis(100);
 /// Interval between two searches for old rows.
 const SWEEP: Duration = Duration::from_secs(3600);
-/// Maximum number of days deleted in one search. Limits the loss if the clock is years ahead.
+/// Maximum time span of the rows deleted after one search [days]. It limits the loss if the clock is years
+/// ahead.
 const SWEPT_DAYS: i64 = 7;
 /// Length of a day [ms].
 const DAY: i64 = 86_400_000;
@@ -114,7 +115,8 @@ impl Writer {
 
     fn work(&mut self) -> Result<(), Error> {
         self.open()?;
-        // Old rows are deleted first, because that makes room. Entries are written even if it fails.
+        // Old rows are deleted first, because that frees space. Entries are written even if the deletion
+        // fails.
         let swept = self.delete_old();
         self.write()?;
         self.answer()?;
@@ -137,8 +139,8 @@ impl Writer {
         match self.options.server.as_ref().map(Server::name) {
             None => book.set_server(None)?,
             Some(Ok(name)) => book.set_server(Some(&name))?,
-            // With an unreadable address, the rows of the last server are kept, because that server may be
-            // meant.
+            // The address cannot be parsed. Rows that the last server has not received are kept, because the
+            // address may mean that server.
             Some(Err(_)) => {}
         }
         self.book = Some(book);
@@ -155,7 +157,8 @@ impl Writer {
             };
             let mut dropped = 0;
             match book.write_all(&self.batch) {
-                // One entry of the batch was rejected: the others are written one by one.
+                // SQLite rejected an entry, so none of the batch was written. Each entry is now written on
+                // its own.
                 Err(Error::Refused { .. }) => {
                     for entry in &self.batch {
                         match book.write(entry) {

@@ -15,8 +15,9 @@ const LOCK: i64 = 0x746d_6c62;
 
 /// Tables of version 1.
 ///
-/// `to_timestamp(began_ms / 1000.0)` gives a time. A round may arrive before its visit, which is sent again
-/// when it ends. `seq` orders the rows of one book, which is a file of a stand.
+/// `to_timestamp(began_ms / 1000.0)` converts a time. `book` is the id of a stand's file, and `seq` orders
+/// the rows of one book. Rounds have no foreign key to visits: a visit changes when it ends, and its rounds
+/// may then be sent before it.
 const TABLES: &str = "
 CREATE SCHEMA IF NOT EXISTS tamaire;
 CREATE TABLE tamaire.version (version INTEGER NOT NULL);

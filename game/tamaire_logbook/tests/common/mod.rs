@@ -1,4 +1,4 @@
-//! Example rows of a stand.
+//! Example rows and helpers for the tests.
 #![allow(dead_code)] // no test file uses all of these
 
 use rusqlite::Connection;
@@ -12,7 +12,7 @@ use tamaire_play::Route;
 use tempfile::TempDir;
 
 pub const STAND: &str = "hall 2";
-/// A Monday in November of 2026, in the morning.
+/// Monday, 2026-11-23, 09:00 at UTC+1.
 pub const MORNING: Moment = Moment {
     utc_ms: 1_795_420_800_000,
     offset_s: 3600,
@@ -29,7 +29,7 @@ pub fn place() -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-/// Opens a new logbook.
+/// Opens or creates a logbook, and checks that no damaged file was set aside.
 pub fn open(path: &Path) -> Logbook {
     let (book, set_aside) = Logbook::open(path, STAND).unwrap();
     assert_eq!(set_aside, None);
@@ -42,10 +42,10 @@ pub fn execute(path: &Path, sql: &str) {
     other.execute_batch(sql).unwrap();
 }
 
-/// Timeout of all waiting.
+/// Timeout of every wait in the tests.
 pub const LONG: Duration = Duration::from_secs(60);
 
-/// Waits until `is_so` holds.
+/// Waits until `is_so` holds, and returns that state. Panics with `what` after [`LONG`].
 pub fn wait_for(recorder: &Recorder, what: &str, is_so: impl Fn(&Health) -> bool) -> Health {
     let start = Instant::now();
     loop {
@@ -100,7 +100,7 @@ pub fn event(at: Moment, kind: Kind) -> Event {
     }
 }
 
-/// Returns the entries of a visit of three rounds, of which the last is won, with its end.
+/// Returns the entries of a visit: its beginning, three rounds of which the last is won, and its end.
 pub fn entries(began: Moment) -> Vec<Entry> {
     let visit = visit(began);
     let at = began.after(10 * MINUTE);
@@ -128,7 +128,7 @@ pub struct All {
     pub events: Vec<Event>,
 }
 
-/// Returns a function that adds a row.
+/// Returns a function that appends a row to `rows`.
 fn into<T>(rows: &mut Vec<T>) -> impl FnMut(T) -> Result<(), Error> {
     |row| {
         rows.push(row);

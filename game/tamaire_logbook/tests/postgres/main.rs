@@ -75,8 +75,8 @@ fn count(client: &mut Client, what: &str) -> i64 {
         .get(0)
 }
 
-/// The server is missing at first, then started, stopped, and killed several times while it receives rows.
-/// The recorder is ended and started again meanwhile.
+/// The server is missing at first, then started, and killed and restarted several times while it receives
+/// rows. The recorder is also ended and restarted meanwhile.
 #[test]
 fn rows_arrive_exactly_once_when_server_and_recorder_restart() {
     let Some(mut server) = Postgres::find() else {
@@ -143,8 +143,8 @@ fn rows_arrive_exactly_once_when_server_and_recorder_restart() {
     );
 }
 
-/// Run it for one minute instead: `AWAY=60 cargo test -p tamaire_logbook --features postgres --test postgres
-/// -- --ignored --nocapture`.
+/// To run this test for one minute instead of an hour: `AWAY=60 cargo test -p tamaire_logbook --features
+/// postgres --test postgres -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes an hour"]
 fn server_receives_all_rows_after_an_hour_offline() {
@@ -195,7 +195,7 @@ fn server_receives_all_rows_after_an_hour_offline() {
     assert_eq!(ids(&mut client, "rounds"), expected.collect());
 }
 
-/// Cases that can share one server.
+/// Runs several cases on the same server, because starting a server is slow.
 #[test]
 fn sender_transfers_rows_to_a_running_server() {
     let Some(mut server) = Postgres::find() else {

@@ -12,7 +12,8 @@ use std::time::{Duration, Instant};
 use tamaire_logbook::Server;
 use tempfile::TempDir;
 
-/// User id that runs the server if the test runs as root, which PostgreSQL refuses: the user `nobody`.
+/// User id of `nobody`. The server runs as this user if the test runs as root, because PostgreSQL refuses to
+/// run as root.
 const NOBODY: u32 = 65534;
 
 pub struct Postgres {

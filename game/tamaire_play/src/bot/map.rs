@@ -5,9 +5,10 @@ use fuwafuwa::{Dim, Vector};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Width of a cell in 2D and in 3D, where smaller cells would be too many [m].
+/// Width of a cell in 2D and in 3D [m]. In 3D, cells of 0.1 m would be too many.
 const CELL: [f32; 2] = [0.1, 0.15];
-/// Cost of a step of one cell, in integer units, because integers can be ordered in a heap.
+/// Integer cost of a step through a free cell. Costs are integers because a heap cannot order floating-point
+/// numbers.
 const UNIT: f32 = 10.0;
 
 /// Cost of a step for each cell of a room.
@@ -51,7 +52,7 @@ impl Map {
         map
     }
 
-    /// Adds to the cost of a cell and of its neighbours.
+    /// Adds `cost` to the cell at a position and to its neighbours.
     pub(super) fn add(&mut self, at: Vector, cost: f32) {
         let cell = self.cell(at);
         self.costs[cell] += cost;
@@ -69,7 +70,7 @@ impl Map {
     }
 
     /// Runs Dijkstra's algorithm from the target. With `from`, it stops at that cell, and only costs below
-    /// its own are final.
+    /// the cost of that cell are final.
     fn ways(&self, to: Vector, from: Option<usize>) -> CostField<'_> {
         let mut costs = vec![u32::MAX; self.costs.len()];
         let goal = self.cell(to);

@@ -10,8 +10,8 @@ use std::cell::LazyCell;
 const CRUMB: f32 = 0.003;
 /// Maximum number of pieces to consider, in order of mass.
 const MOST: usize = 12;
-/// Cost of a step through an obstacle (`RIGID`), and additional cost of a step through the total mass
-/// (`SOFT`).
+/// Cost of a path cell in an obstacle (`RIGID`), and additional cost of a cell with mass (`SOFT` times its
+/// share of the total mass).
 const RIGID: f32 = 1000.0;
 const SOFT: f32 = 400.0;
 
@@ -21,15 +21,16 @@ pub(super) struct Sight {
     pub axis: Vector,
     /// Unit vector along the mouth; horizontal in 3D.
     pub across: Vector,
-    /// The most important piece.
+    /// The piece to push: the heaviest one outside the basket with free space behind it, after the skipped
+    /// ones.
     pub piece: Piece,
-    /// Mass of the largest piece of each body, as a share of the mass at the start.
+    /// Mass kept in the largest pieces, [`Progress::kept`](crate::Progress::kept).
     pub kept: f32,
     /// Number of pieces.
     pub pieces: usize,
     /// Share of the mass in the basket.
     pub within: f32,
-    /// Share of the mass in the basket beyond the required one, at rest or not.
+    /// Share of the mass in the basket, at rest or moving, minus the required share.
     pub surplus: f32,
     /// Position and target of the hand [m].
     pub hand: Vector,
@@ -70,8 +71,8 @@ struct Basket {
 }
 
 impl Sight {
-    /// Looks at a round. `skips` is the number of more important pieces to pass over. A wide piece is pushed
-    /// straight in if its centre is at most `off` beside that of the mouth [m].
+    /// Returns the view of a round. `skips` is the number of more important pieces to pass over. A piece as
+    /// wide as the mouth is pushed straight in if its centre is at most `off` beside the mouth's axis [m].
     pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
         let (world, arena) = (round.world(), round.level().arena());
         let region = round.basket()?;
@@ -99,7 +100,8 @@ impl Sight {
         if pieces.is_empty() {
             pieces.push(Piece::of::<D>(largest, &basket, &ahead, off, radius));
         }
-        // The sort is stable: pieces remain ordered by mass otherwise.
+        // Pieces without space for a hand behind them come last. The sort is stable, so mass decides among
+        // the others.
         pieces.sort_by_key(|piece| clearance(piece.behind, obstacles) < 0.5 * radius);
         let piece = pieces[skips % pieces.len()];
 
@@ -131,7 +133,8 @@ impl Sight {
 }
 
 impl Piece {
-    /// `ahead` returns the next position on the path from a position to the front of the basket.
+    /// Returns the piece of a view. `ahead` returns the next position on the path from a position to the
+    /// front of the basket, `off` is the argument of [`Sight::of`], and `hand` is the radius of the hand [m].
     fn of<D: Dim>(
         view: &PieceView,
         basket: &Basket,
@@ -258,8 +261,8 @@ fn opening(mouth: Vector, axis: Vector, across: usize, obstacles: &[&Shape]) -> 
     least
 }
 
-/// Returns a direction perpendicular to an axis: the last used axis for the first one, otherwise the first
-/// axis.
+/// Returns a direction perpendicular to the coordinate direction `axis`: along the last used axis (y in 2D, z
+/// in 3D) if `axis` is along x, otherwise along x.
 fn across<D: Dim>(axis: Vector) -> Vector {
     let mut across = [-axis[1] - axis[2], 0.0, 0.0];
     across[D::N - 1] = axis[0];
@@ -272,7 +275,7 @@ fn clearance(at: Vector, obstacles: &[&Shape]) -> f32 {
     distances.fold(f32::INFINITY, f32::min)
 }
 
-/// Returns the nearest position within the room.
+/// Returns the nearest position in the room, at least `margin` away from the walls [m].
 fn clamped(place: Vector, [low, high]: [Vector; 2], margin: f32) -> Vector {
     [0, 1, 2].map(|axis| {
         let margin = margin.min(0.5 * (high[axis] - low[axis]));

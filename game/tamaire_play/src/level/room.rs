@@ -15,7 +15,7 @@ pub(super) fn check<D: Dim>(
         let reason = format!("expected hands that fit into the view, which is {room} m wide");
         return Err(("hand", reason));
     }
-    // A body may start outside if it falls in.
+    // A body may start outside the arena if gravity pulls it in.
     let fall = world.config().gravity;
     let is_out = |middle: Vector, k: usize| {
         middle[k] < low[k] && fall[k] <= 0.0 || middle[k] > high[k] && fall[k] >= 0.0

@@ -1,5 +1,6 @@
 //! Binary arithmetic coder without carries [Mahoney 2005]. A sequence of bits is coded as a number between 0
-//! and 1. Each bit narrows the interval of that number, the less the better the bit was predicted.
+//! and 1. Each bit narrows the interval that contains the number. Well predicted bits narrow it little and
+//! cost little space.
 
 /// Probability that the next bit is a one, learned from the preceding bits.
 #[derive(Copy, Clone, Debug)]
@@ -23,8 +24,8 @@ impl Default for Chance {
 }
 
 impl Chance {
-    /// After n bits, the next one changes the probability by 1/(n + 1.5) of the error: nearly their mean, and
-    /// never certain.
+    /// Moves the probability towards `bit` by 1/(n + 1.5) of the difference, where n is the number of earlier
+    /// bits. The probability stays close to the mean of the bits, but never reaches 0 or 1.
     fn learn(&mut self, bit: bool) {
         let wish = if bit { i32::from(u16::MAX) } else { 0 };
         let one = i32::from(self.one);
@@ -68,7 +69,7 @@ impl Range {
         }
     }
 
-    /// Returns the next byte, if it is certain.
+    /// Removes and returns the first byte, if it is the same at both ends.
     fn next(&mut self) -> Option<u8> {
         let [low, high] = [self.low, self.high].map(|end| end >> 24);
         (low == high).then(|| {

@@ -63,7 +63,8 @@ fn common_unit(frames: &[InputFrame]) -> u32 {
 
 /// Number of classes of recent prediction errors.
 const CLASSES: usize = 2 * 19;
-/// Number of prefixes of leading digits with a learned probability. Digits with a longer prefix share one.
+/// Number of probabilities for the next digit, one for each prefix of digits. All longer prefixes share the
+/// last one.
 const GUESSED: usize = 64;
 
 /// Adaptive model of the frames. Writer and reader learn the same probabilities.

@@ -13,8 +13,8 @@ use miniz_oxide::{deflate, inflate};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// Maximum size of a scene in a link before compression [bytes]. Any genuine scene that fits into a link is
-/// smaller.
+/// Maximum size of a scene in a link before compression [bytes]. It stops links that decompress to huge
+/// texts; any real scene that fits into a link is smaller.
 pub(super) const MAX_SCENE_BYTES: usize = 1 << 17;
 /// Compression level of deflate, 0 to 10.
 pub(super) const EFFORT: u8 = 9;
@@ -31,10 +31,10 @@ pub(super) enum Content {
     /// A built-in level with assists.
     Known {
         assists: BTreeSet<Assist>,
-        /// Lower half of its hash.
+        /// Lower half of the level's hash.
         hash: u32,
     },
-    /// A deflated [`WholeScene`].
+    /// Any other level, as a deflated [`WholeScene`].
     Whole(Vec<u8>),
 }
 

@@ -1,4 +1,4 @@
-//! Completeness of the documentation for analysts.
+//! Checks that `docs/report.md` describes every name in the output.
 
 use crate::made_up::rows;
 use crate::{all_files, logbooks, report_on};

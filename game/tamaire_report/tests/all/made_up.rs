@@ -1,4 +1,4 @@
-//! Synthetic days at stands.
+//! Synthetic rows of several days at two stands.
 
 use fastrand::Rng;
 use std::path::Path;
@@ -24,8 +24,8 @@ pub fn write(path: &Path, rows: &Rows) {
     book.write_all(&all).unwrap();
 }
 
-/// Returns the days around the end of daylight saving time 2026 in central Europe, at one stand there and one
-/// in Japan.
+/// Returns rows of four days around the end of daylight saving time 2026 in central Europe. One stand is
+/// there, the other in Japan.
 pub fn rows(seed: u64, visits: usize) -> Rows {
     let mut random = Rng::with_seed(seed);
     let mut rows = Rows::default();

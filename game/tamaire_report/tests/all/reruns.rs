@@ -18,7 +18,7 @@ const RERUN: Options = Options {
     rerun: true,
 };
 
-/// Lets a bot play a round, and returns it as a row of the visit of `of`.
+/// Lets a bot play a round, and returns its row. The id, the visit and the time are those of `of`.
 fn played(of: &Round, level: &str, kind: BotKind, ticks: usize, seed: u64) -> Round {
     let level = Arc::new(Level::open(level).unwrap());
     let mut round = AnyRound::new(level.clone());
@@ -63,7 +63,7 @@ fn honest() -> Rows {
 }
 
 #[test]
-fn matching_rounds_are_counted_and_mapped() {
+fn rounds_that_match_their_replays_are_counted_and_shown_on_maps() {
     let rows = honest();
     let folder = tempfile::tempdir().unwrap();
     let files = logbooks(folder.path(), &[rows.clone(), rows.clone()]);
@@ -109,7 +109,7 @@ fn matching_rounds_are_counted_and_mapped() {
 }
 
 #[test]
-fn mismatching_rounds_are_listed_and_not_counted() {
+fn rounds_that_differ_from_their_replays_are_listed_and_not_counted() {
     let good = honest();
     let mut rows = Rows {
         visits: good.visits.clone(),
@@ -184,7 +184,8 @@ fn mismatching_rounds_are_listed_and_not_counted() {
     }
 }
 
-/// Returns the replay with another target position in its first second and otherwise valid.
+/// Returns the round's replay with the hashes of a different course. The replay is valid but diverges when
+/// run.
 fn tampered(round: &Round) -> String {
     let replay = Replay::of_fragment(&round.replay).unwrap();
     let level = Arc::new(replay.level().unwrap());
@@ -196,7 +197,7 @@ fn tampered(round: &Round) -> String {
         };
         other.step(frame);
     }
-    // Combines the frames of the one replay with the hashes of the other.
+    // Combines the input of the original replay with the hashes of the changed one.
     let (text, other) = (replay.text(), other.replay().text());
     let line = |text: &str, start: &str| {
         let line = text.lines().find(|line| line.starts_with(start));

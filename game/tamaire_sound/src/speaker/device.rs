@@ -15,7 +15,8 @@ pub(super) const PATIENCE: Duration = Duration::from_secs(3);
 /// Pause between two attempts to open a device.
 pub(super) const PAUSE: Duration = Duration::from_secs(2);
 
-/// Keeps a device open until the speaker is dropped. Drops `opened` after the first attempt.
+/// Keeps a device open until the speaker is dropped. After the first attempt it drops `opened`, for which
+/// [`Speaker::open`](super::Speaker::open) waits.
 pub(super) fn keep_open<Stream>(
     mailbox: &Weak<Mutex<Mailbox>>,
     opened: Sender<()>,

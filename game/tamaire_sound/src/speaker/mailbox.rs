@@ -4,14 +4,14 @@ use crate::cue::Cue;
 use crate::soundscape::{Soundscape, Volumes};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Maximum number of waiting cues; a tick of heavy tearing has some hundred.
+/// Maximum number of waiting cues; a tick of heavy tearing has about a hundred.
 const MOST_CUES: usize = 256;
 
-/// Maximum number of waiting cues of the world. The rest is reserved for menus and jingles, which are few and
-/// must not be lost.
+/// Maximum number of waiting thuds, tears and crumbs. The rest is reserved for menus and jingles, which are
+/// few and must not be lost.
 pub const MOST_CUES_OF_THE_WORLD: usize = 240;
 
-/// Reason for missing sound. The game continues without.
+/// Reason why there is no sound. The game continues silently.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SoundError {
     /// No device was found.
@@ -49,7 +49,8 @@ impl Mailbox {
         }
     }
 
-    /// Adds a cue. Drops it if there is no space, or no device: it would be heard too late.
+    /// Adds a cue. Drops it if the mailbox is full, or if there is no device: the cue would be heard too
+    /// late.
     pub fn put(&mut self, cue: Cue) {
         let most = match cue {
             Cue::Thud { .. } | Cue::Tear { .. } | Cue::Crumb { .. } => MOST_CUES_OF_THE_WORLD,

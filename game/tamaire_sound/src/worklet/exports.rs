@@ -36,7 +36,7 @@ pub extern "C" fn sound_take(length: usize) {
     WORKLET.with_borrow_mut(|worklet| worklet.take(length));
 }
 
-/// Renders `frames` frames, at most [`crate::MOST_FRAMES`]. Returns the address of the interleaved left and
+/// Renders `frames` frames, at most [`super::MOST_FRAMES`]. Returns the address of the interleaved left and
 /// right samples.
 #[unsafe(no_mangle)]
 pub extern "C" fn sound_render(frames: usize) -> *const f32 {

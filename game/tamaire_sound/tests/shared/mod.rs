@@ -1,4 +1,4 @@
-//! Allocator that counts.
+//! Counts the memory allocations of each thread.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

@@ -28,11 +28,11 @@ pub trait Surface<D: Dim>: Default + Send + Sync + 'static {
     /// Returns the vertex colours, linear RGBA.
     fn colours(&self, colours: &SoftColours) -> impl Iterator<Item = [f32; 4]>;
 
-    /// Returns the triangles, three vertex indices each. Some are degenerate.
+    /// Returns the triangles, three vertex indices each. Unused triangles have three equal indices.
     fn indices(&self) -> impl Iterator<Item = u32>;
 }
 
-/// Returns the colour of a material, linear RGBA.
+/// Returns the colour of a material, linear RGBA. `is_fresh` mixes it with the colour of fresh crack faces.
 fn light_of(colours: &SoftColours, material: u8, is_fresh: bool) -> [f32; 4] {
     let count = colours.materials.len().max(1);
     let place = usize::from(material.max(1) - 1) % count;

@@ -6,10 +6,10 @@
 //!   o───o─o─o      neighbours.
 //! ```
 //!
-//! The outline is smoothed in two steps. First, `Rest` moves its points by offsets that remove the stair
-//! steps of the voxels in the rest shape; the offsets deform with the voxels. Then alternating shrinking and
-//! growing rounds smooth the deformed outline, because contacts press on the stair steps; they keep the area
-//! [Taubin 1995].
+//! The outline is smoothed in two steps. First, `Rest` moves the points of the outline by offsets that remove
+//! the stair steps of the voxels in the rest shape. These offsets deform together with the voxels. Then
+//! several rounds smooth the stair steps that contacts press into the deformed outline. The rounds
+//! alternately shrink and expand the outline, so that it keeps its area [Taubin 1995].
 
 use super::pool::Pool;
 use super::{Surface, Vertex, light_of};
@@ -23,13 +23,13 @@ use fuwafuwa::{Bookmark, Changes, Dim, Dim2, ElementId, NodeId, SoftBody};
 use fuwafuwa_render::Rest;
 
 /// Factor of each smoothing round: fraction of the way from a point of the outline to the midpoint of its
-/// neighbours.
+/// neighbours. Negative factors move the point away and expand the outline.
 const ROUNDS: [f32; 6] = [0.5, -0.5, 0.5, -0.5, 0.5, -0.5];
 /// Index of a missing vertex.
 const NONE: u32 = u32::MAX;
-/// Bare faces of a voxel without neighbours.
+/// Bit mask of the bare faces of a voxel without neighbours.
 const ALL_SIDES: u8 = 0b1111;
-/// Slots around an element, counterclockwise, beginning with the middle of an edge.
+/// Slots on the border of an element, counterclockwise, beginning with the middle of an edge.
 const AROUND: [usize; 8] = [1, 2, 5, 8, 7, 6, 3, 0];
 
 /// Triangles of a 2D body.
@@ -67,7 +67,7 @@ struct Form {
     sides: Vec<[NodeId; 2]>,
 }
 
-/// Side of the outline, seen from one of its ends.
+/// Side of the outline, as stored at the node at one of its ends.
 #[derive(Copy, Clone, Debug)]
 struct OutlineEdge {
     /// Vertex at the other end, or `NONE`.
@@ -90,7 +90,7 @@ impl Surface<Dim2> for PlaneSurface {
     fn follow(&mut self, body: &SoftBody<Dim2>, _: &SoftColours) -> bool {
         let changes = body.changes_since(&mut self.followed);
         let changes = changes.unwrap_or_else(|| {
-            // First call, or too many changes to list: rebuilds everything.
+            // First call, or more changes than the body remembers: rebuilds everything.
             let rest = std::mem::take(&mut self.rest);
             *self = Self {
                 followed: self.followed,
@@ -140,7 +140,7 @@ impl Surface<Dim2> for PlaneSurface {
 }
 
 impl PlaneSurface {
-    /// Removes the triangles of changed elements and nodes and adds the new ones.
+    /// Removes the triangles and vertices of changed elements and nodes, and adds the new ones.
     fn change(&mut self, body: &SoftBody<Dim2>, changes: &Changes) {
         let mesh = body.mesh();
         self.forms.resize(mesh.element_capacity(), Form::default());
@@ -215,7 +215,8 @@ impl PlaneSurface {
         self.forms[id] = form;
     }
 
-    /// Adds the bare sides of an element. An isolated voxel is small enough to keep its corners.
+    /// Adds the bare sides of an element to the outline. Skips an isolated voxel, which is too small to need
+    /// smoothing.
     fn add_sides(
         &mut self,
         body: &SoftBody<Dim2>,
@@ -306,8 +307,8 @@ fn squares(children: u8) -> Vec<Vec<usize>> {
     left.map(square).collect()
 }
 
-/// Returns the nodes that average to a slot without a node: the ends of its edge, or the edge midpoints
-/// around the centre.
+/// Returns the nodes whose mean is the position of a slot without a node: the ends of its edge, or, for the
+/// centre, the midpoints of the edges around it.
 fn mean_of(slot: usize, nodes: &[Option<NodeId>; 9]) -> Option<[NodeId; 8]> {
     let halves = |slot: usize, axis: usize| {
         [0, 2].map(|end| {

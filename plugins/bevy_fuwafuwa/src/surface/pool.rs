@@ -1,4 +1,4 @@
-//! Arena with reusable slots.
+//! Storage with reusable slots.
 
 /// Items with stable slots. The slot freed last is reused first.
 #[derive(Clone, Debug)]

@@ -1,11 +1,12 @@
-//! Surface of a 3D body: the smooth skin that the game also draws, followed by a small box per crumb.
+//! Surface of a 3D body: the smooth skin that the game also draws, followed by a small box for each crumb
+//! (piece of a single voxel).
 //!
 //! ```text
 //!   vertices   │ skin ············ │ crumbs: 8 each │      The slots of the skin are stable; the crumbs shift when
 //!   triangles  │ skin: 2 a face ·· │ crumbs: 12 each│      it grows, in a tick in which a node was split.
 //! ```
 //!
-//! Each bare face of the body thus has two triangles, also on crumbs.
+//! Each bare face of the body has two triangles, also on crumbs.
 
 use super::{Surface, Vertex};
 use crate::colours::SoftColours;
@@ -15,9 +16,11 @@ use fuwafuwa::{Dim3, ElementId, SoftBody};
 use fuwafuwa_render::space::Skin;
 use fuwafuwa_render::space::skin::SkinVertex;
 
-/// Size of a drawn crumb relative to its voxel. With its rounded shading it then looks like a grain.
+/// Size of a drawn crumb relative to its voxel. Together with rounded shading, the smaller box looks like a
+/// grain.
 const CRUMB: f32 = 0.85;
-/// Threshold of `SkinVertex::other` above which a vertex belongs to the other material.
+/// Threshold of the fourth component of `SkinVertex::other`, 0 to 255. Above it a vertex is drawn in the
+/// colour of the other material.
 const BORDER: u8 = 128;
 
 /// Surface of a 3D body.

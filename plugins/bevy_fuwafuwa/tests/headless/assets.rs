@@ -14,7 +14,7 @@ use bevy_mesh::{Mesh, VertexAttributeValues};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// An app with exactly these files.
+/// Returns an app whose asset folder contains exactly these files.
 fn app_with<D: Dimension>(files: &[(&str, Vec<u8>)]) -> App {
     let folder = Dir::default();
     for (name, bytes) in files {
@@ -32,7 +32,7 @@ fn app_with<D: Dimension>(files: &[(&str, Vec<u8>)]) -> App {
     app
 }
 
-/// Runs the app until a body has entered or was rejected.
+/// Runs the app until the body of an entity has entered or was rejected.
 fn settle<D: Dimension>(app: &mut App, entity: Entity) {
     let late = Instant::now() + Duration::from_secs(60);
     while world::<D>(app).body_of(entity).is_none() && app.world().get::<Rejected>(entity).is_none()
@@ -54,7 +54,7 @@ fn problem(app: &App, entity: Entity) -> String {
     }
 }
 
-/// A black stroke, six pixels long and two high, on white.
+/// Returns a PNG file with a black stroke, six pixels long and two high, on white.
 fn png() -> Vec<u8> {
     let pixels: Vec<u8> = (0..8 * 8)
         .map(|pixel| match (pixel % 8, pixel / 8) {
@@ -71,8 +71,8 @@ fn png() -> Vec<u8> {
     bytes
 }
 
-/// A model of 2 × 1 × 3 voxels (z up): one corner has palette index 2 (blue), one voxel is empty, the others
-/// have index 1 (red).
+/// Returns a `.vox` file with a model of 2 × 1 × 3 voxels (z up). One corner has palette index 2 (blue), one
+/// voxel is empty, the others have index 1 (red).
 fn vox() -> Vec<u8> {
     let chunk = |name: &[u8; 4], contents: &[u8], children: &[u8]| {
         let lengths = [contents.len() as u32, children.len() as u32].map(u32::to_le_bytes);

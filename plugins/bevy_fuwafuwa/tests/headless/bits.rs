@@ -5,7 +5,7 @@ use bevy_fuwafuwa::fuwafuwa::{RigidBody, SoftBody as Body, World, WorldConfig};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::Vec3;
 
-/// Balls of different sizes: voxels across, x and y [m].
+/// Number of voxels across each ball, and its x and y [m].
 const BALLS: [(usize, f32, f32); 3] = [(16, 0.0, 0.6), (12, 0.7, 1.6), (8, -0.4, 2.6)];
 const TICKS: usize = 90;
 
@@ -16,7 +16,8 @@ fn hand_at(tick: usize) -> Vec3 {
 fn hash_of_app() -> u64 {
     let mut app = app::<Dim2>();
     app.world_mut().spawn(RigidBody2d::floor());
-    // An additional component puts one entity into another archetype, which must not change the order.
+    // An extra component puts one entity into another archetype. This must not change the order in which
+    // bodies enter.
     for (n, (across, x, y)) in BALLS.into_iter().enumerate() {
         let mut ball = app
             .world_mut()
@@ -68,7 +69,7 @@ fn writeback_does_not_change_the_hash() {
     let ball = app.world_mut().spawn(ball).id();
     app.world_mut().spawn(RigidBody2d::floor());
     run(&mut app, 20);
-    // Writing the current value requests nothing.
+    // Writing a component without changing its value requests nothing.
     let same = super::transform(&app, ball);
     app.world_mut().entity_mut(ball).insert(same);
     run(&mut app, 20);

@@ -42,9 +42,12 @@ fn falling_box_passes_a_sensor_and_begins_one_contact_with_the_floor() {
     }
     assert_eq!((entered, left), (vec![free], vec![free]));
     assert_eq!((began.len(), ended), (1, 0), "{began:?}");
-    // In the order of the engine: the floor was added first.
+    // Bodies are in the order in which they entered: the floor was first.
     assert_eq!(began[0].both, [floor, free]);
-    assert!((5.5..6.6).contains(&began[0].speed), "from 2 m: {began:?}");
+    assert!(
+        (5.5..6.6).contains(&began[0].speed),
+        "speed after a fall of 2 m: {began:?}"
+    );
     assert!(touches > 10, "{touches}");
 }
 

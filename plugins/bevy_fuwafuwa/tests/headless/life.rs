@@ -47,7 +47,7 @@ fn body_leaves_the_world_when_despawned_or_its_component_is_removed() {
     let entity = app.world().entity(high);
     assert!(!entity.contains::<SoftBodyId>() && !entity.contains::<Mesh2d>());
 
-    // A body despawned before the tick leaves no trace; a body inserted again is replaced.
+    // A body despawned before the tick never enters. A body inserted again is replaced.
     let brief = ball(&mut app, 9.0);
     app.world_mut().despawn(brief);
     app.world_mut()
@@ -176,5 +176,9 @@ fn knife_cuts_and_engine_removals_send_messages() {
     };
     assert!(removed.len() > 1 && removed.contains(&gone), "{removed:?}");
     app.update();
-    assert_eq!(messages::<Removed>(&app), [], "sent more than once");
+    assert_eq!(
+        messages::<Removed>(&app),
+        [],
+        "the message was sent more than once"
+    );
 }

@@ -19,7 +19,7 @@ use bevy_fuwafuwa::prelude::*;
 use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
 
-/// An app in which each update runs one tick.
+/// Returns an app in which each update runs one tick.
 fn app<D: Dimension>() -> App {
     let mut app = App::new();
     app.add_plugins((TaskPoolPlugin::default(), AssetPlugin::default()));
@@ -60,7 +60,7 @@ fn mesh(app: &App, entity: Entity) -> &Mesh {
     meshes.get(handle).expect("the mesh asset exists")
 }
 
-/// All messages of a type of the last update.
+/// Returns all messages of type `M` that the last update sent.
 fn messages<M: Message + Clone>(app: &App) -> Vec<M> {
     let messages = app.world().resource::<Messages<M>>();
     messages.iter_current_update_messages().cloned().collect()

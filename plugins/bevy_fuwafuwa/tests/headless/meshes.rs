@@ -1,4 +1,4 @@
-//! Meshes follow bodies, in the same buffers.
+//! Meshes follow their bodies and keep their buffers.
 
 use super::{app, at, body, mesh, messages, run, transform, world};
 use bevy_asset::{AssetEvent, Assets};
@@ -16,7 +16,7 @@ fn positions(mesh: &Mesh) -> &[[f32; 3]] {
     }
 }
 
-/// Triangles with an area, as vertex indices.
+/// Returns the triangles that are in use, as vertex indices.
 fn triangles(mesh: &Mesh) -> Vec<[u32; 3]> {
     let Some(Indices::U32(indices)) = mesh.indices() else {
         panic!("the mesh has no indices");
@@ -65,8 +65,8 @@ fn disc_mesh_has_a_vertex_per_node_and_keeps_its_buffers() {
         .id();
     run(&mut app, 2);
     let own = body::<Dim2>(&app, ball).mesh();
-    // Elements that fill only a part of their cell have corners without a node; these get a vertex of their
-    // own.
+    // An element that fills only a part of its cell has corners without a node. Each such corner has a vertex
+    // of its own.
     let parts = own
         .elements()
         .filter(|(_, element)| element.children != Dim2::ALL_CORNERS);
@@ -84,7 +84,7 @@ fn disc_mesh_has_a_vertex_per_node_and_keeps_its_buffers() {
     let before = positions(mesh(&app, ball)).to_vec();
     run(&mut app, 30);
     assert_eq!(positions(mesh(&app, ball)).as_ptr(), buffer);
-    // The transform falls with the ball; in its frame the mesh does not change.
+    // The transform falls with the ball, so the mesh, which is relative to it, does not change.
     assert!(transform(&app, ball).translation.y < 8.5);
     let after = positions(mesh(&app, ball));
     let moved = before
@@ -122,7 +122,7 @@ fn disc_mesh_updated_after_cuts_equals_a_rebuilt_mesh() {
             followed.len(),
             anew.len()
         );
-        // Along a crack the outline is smoothed inwards by less than a voxel on both sides.
+        // The outline along a crack is smoothed inwards, which takes away less than a voxel on both sides.
         assert!(
             (area(&now) / (0.25 * std::f32::consts::PI) - 0.93).abs() < 0.06,
             "{}",
@@ -136,7 +136,7 @@ fn rounded(value: f32) -> i32 {
     (value * 1e5).round() as i32
 }
 
-/// Rotates the corners of a triangle so that the smallest comes first.
+/// Rotates the corners of a triangle so that the smallest comes first, to make triangles comparable.
 fn first_first([a, b, c]: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
     [[a, b, c], [b, c, a], [c, a, b]]
         .into_iter()
@@ -149,7 +149,7 @@ fn of_new_reader(app: &mut bevy_app::App, ball: Entity) -> Mesh {
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
     world.pause();
     let id = world.body_of(ball).expect("the body has entered");
-    // Changing a body from outside forces all readers to rebuild.
+    // Access for changes makes all readers of the body rebuild.
     assert!(world.engine_mut().soft_body_mut(id).is_ok());
     app.update();
     app.world_mut().resource_mut::<SoftWorld<Dim2>>().resume();
@@ -196,7 +196,7 @@ fn ball_mesh_has_two_triangles_per_bare_face_while_it_tears() {
     assert!(torn > 0 && parted > 0, "{torn} {parted}");
     assert!(is_even(&app) > before);
     assert_eq!(body::<Dim3>(&app, ball).pieces().list.len(), 1 + parted);
-    // The ball fell onto the floor in pieces, and the mesh followed.
+    // Pieces of the ball have fallen onto the floor, and the mesh shows them there.
     let pose = transform(&app, ball);
     let heights = corners(mesh(&app, ball))
         .flatten()
@@ -227,7 +227,7 @@ fn mesh_is_written_once_a_tick_and_never_while_asleep() {
             .all(|piece| piece.asleep)
     );
     assert_eq!(writes(&app), 0);
-    // A body moved in its sleep is drawn at its new position.
+    // A sleeping body that is moved is drawn at its new position.
     app.world_mut().entity_mut(cube).insert(at(2.0, 2.0));
     run(&mut app, 2);
     assert_eq!(writes(&app), 1);

@@ -13,7 +13,7 @@ use bevy_fuwafuwa::{Problem, Rejected};
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
 
-/// Spawns an invalid bundle beside a ball and returns the reported problem.
+/// Spawns an invalid bundle beside a valid ball and returns the reported problem.
 fn rejected(bad: impl Bundle) -> String {
     let mut app = app::<Dim2>();
     let ball = app
@@ -77,7 +77,7 @@ fn invalid_body_is_rejected_with_a_reason() {
             ball(),
             Transform::from_rotation(Quat::from_xyzw(0.0, 0.0, 0.0, 0.0)),
         )),
-        "have a rotation",
+        "non-zero rotation",
     );
     let fast = Velocity {
         linear: Vec3::splat(f32::INFINITY),
@@ -150,7 +150,7 @@ fn rigid_body_is_unchanged_after_an_invalid_request() {
     check(&mut app, free, Bad::Place(large), "keep its scale");
     let still = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
     let still = before.with_rotation(still);
-    check(&mut app, free, Bad::Place(still), "have a rotation");
+    check(&mut app, free, Bad::Place(still), "non-zero rotation");
     let velocity = Velocity {
         linear: Vec3::ZERO,
         angular: Vec3::NAN,

@@ -27,7 +27,7 @@ fn slab() -> Shape {
     Shape::Box { centre, half }
 }
 
-/// An app without gravity.
+/// Returns an app without gravity.
 fn weightless<D: Dimension>() -> App {
     let mut app = app::<D>();
     app.insert_resource(SoftSettings(WorldConfig {
@@ -48,7 +48,8 @@ fn rigid<D: Dimension>(app: &App, entity: Entity) -> &EngineBody {
     &world.engine().rigid_bodies()[id]
 }
 
-/// A tilted box falls and sleeps on the floor; its transform equals the pose in the engine.
+/// Checks that a tilted box falls and sleeps on the floor, and that its transform equals the pose in the
+/// engine.
 fn falls_and_sleeps<D: Dimension>() {
     let mut app = app::<D>();
     spawn(&mut app, RigidBody::<D>::floor());
@@ -79,7 +80,10 @@ fn falls_and_sleeps<D: Dimension>() {
     let (body, piece) = (fallen, None);
     assert!(sleeps.contains(&FellAsleep { body, piece }), "{sleeps:?}");
     let height = transform(&app, fallen).translation.y;
-    assert!((height - SIDE).abs() < 0.01, "twice as large: {height}");
+    assert!(
+        (height - SIDE).abs() < 0.01,
+        "the box of twice the size rests at height {height}"
+    );
 }
 
 #[test]
@@ -133,7 +137,7 @@ fn fixed_body_is_rotated_by_its_transform() {
         "the ball does not roll down: {down}"
     );
     let before = app.world().get::<RigidBodyId>(slope).copied();
-    // The slope becomes so steep that the ball falls; the id of the slope stays.
+    // The slope is rotated until the ball falls past it. The slope keeps its id.
     let upright = at(0.0, 0.0).with_rotation(Quat::from_rotation_z(1.5));
     app.world_mut().entity_mut(slope).insert(upright);
     run(&mut app, 60);
@@ -172,7 +176,7 @@ fn rotating_kinematic_table_carries_a_box() {
 #[test]
 fn written_transform_moves_the_body_at_once() {
     let mut app = weightless::<Dim3>();
-    // The middle of the box is 1 m from the origin about which the transform rotates it.
+    // The middle of the box is 1 m from the origin of the entity, about which the transform rotates it.
     let shape = block().translated([1.0, 0.0, 0.0]);
     let spin = Velocity {
         linear: Vec3::Y,
@@ -195,7 +199,7 @@ fn written_transform_moves_the_body_at_once() {
     let velocity = Vec3::from(rigid::<Dim3>(&app, thrown).velocity());
     assert!(velocity.distance(Vec3::Y) < 1e-3, "{velocity}");
 
-    // A coupled body is also moved at once, and then pulled back to its goal.
+    // Writing the transform also moves a coupled body at once. Then the body is pulled back to its target.
     let hand = RigidBody3d::kinematic_ball(0.1).with_motion_type(MotionType::default());
     let hand = spawn(
         &mut app,
@@ -289,7 +293,7 @@ fn box_falls_when_its_support_is_despawned() {
     assert_eq!(world::<Dim2>(&app).engine().rigid_bodies().len(), 1);
 }
 
-/// Angle of the boxes of a tower.
+/// Returns the initial angle of box `n` [rad].
 fn askew(n: usize) -> f32 {
     0.1 * n as f32
 }

@@ -37,8 +37,7 @@ pub fn compress(files: &[PathBuf]) -> Result<(), Failure> {
     run(&mut gzip, "gzip failed; Debian: gzip")
 }
 
-/// Sets times and permissions of all files below a folder: the time of the commit, and executable programs in
-/// `bin`.
+/// Sets times and permissions of all files below a folder: the time of the commit, and executable programs.
 pub fn settle(kit: &ReleaseBuild, folder: &Path) -> Result<(), Failure> {
     let script = r#"
         cd "$1" &&
@@ -58,7 +57,7 @@ pub fn settle(kit: &ReleaseBuild, folder: &Path) -> Result<(), Failure> {
     )
 }
 
-/// Packs a folder of the stage as .tar.gz.
+/// Packs the folder `name` of the stage as .tar.gz.
 pub fn tar(kit: &mut ReleaseBuild, stage: &Path, name: &str) -> Result<(), Failure> {
     settle(kit, &stage.join(name))?;
     let archive = kit.folder().join(format!("{name}.tar.gz"));
@@ -76,7 +75,7 @@ pub fn tar(kit: &mut ReleaseBuild, stage: &Path, name: &str) -> Result<(), Failu
     Ok(())
 }
 
-/// Packs a folder of the stage as .zip.
+/// Packs the folder `name` of the stage as .zip.
 pub fn zip(kit: &mut ReleaseBuild, stage: &Path, name: &str) -> Result<(), Failure> {
     if !is_on_path("zip") {
         return Err(lacking("zip", "Debian: zip"));

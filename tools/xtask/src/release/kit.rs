@@ -16,7 +16,7 @@ pub struct ReleaseBuild {
     commit: String,
     is_dirty: bool,
     folder: PathBuf,
-    /// Part that is being built, and its files.
+    /// Part that is being built; `made` are its files.
     part: &'static str,
     made: Vec<PathBuf>,
 }
@@ -53,7 +53,7 @@ impl ReleaseBuild {
         &self.folder
     }
 
-    /// Commit, with a note if there are uncommitted changes.
+    /// Hash of the commit, with a note if there are uncommitted changes.
     pub fn commit(&self) -> String {
         let dirty = if self.is_dirty { " with changes" } else { "" };
         format!("{}{dirty}", self.commit)
@@ -63,9 +63,9 @@ impl ReleaseBuild {
         self.is_dirty
     }
 
-    /// Whether this part was built from this commit and still exists.
+    /// Whether the files of this part exist and were built from this commit.
     pub fn has(&self, part: &str) -> bool {
-        // Building the sums takes less time than checking them.
+        // The sums are always built: that takes less time than checking them.
         if self.is_dirty || part == "sums" {
             return false;
         }
@@ -75,10 +75,10 @@ impl ReleaseBuild {
         })
     }
 
-    /// Begins a part.
+    /// Begins a part: forgets its earlier build.
     pub fn begin(&mut self, part: &'static str) {
         (self.part, self.made) = (part, Vec::new());
-        // An old note may be missing.
+        // The file is missing if the part was never built.
         let _removed = fs::remove_file(self.note(part));
     }
 
@@ -92,7 +92,7 @@ impl ReleaseBuild {
         &self.made
     }
 
-    /// Completes the current part.
+    /// Completes the current part: records its files with the commit.
     pub fn finish(&self) -> Result<(), Failure> {
         let mut note = format!("{}\n", self.commit);
         for file in &self.made {
@@ -114,6 +114,7 @@ impl ReleaseBuild {
         }
     }
 
+    /// Path of the file that records the commit and the files of a built part.
     fn note(&self, part: &str) -> PathBuf {
         self.folder.join("parts").join(part)
     }
@@ -121,13 +122,13 @@ impl ReleaseBuild {
     /// Creates an empty folder to assemble a package in.
     pub fn stage(&self, name: &str) -> Result<PathBuf, Failure> {
         let stage = self.folder.join("stage").join(name);
-        // It may not exist.
+        // The folder is missing at the first build.
         let _removed = fs::remove_dir_all(&stage);
         fs::create_dir_all(&stage).map_err(|error| file_error(&stage, &error))?;
         Ok(stage)
     }
 
-    /// Returns the folder that another part assembled.
+    /// Returns the folder that `part` assembled.
     pub fn staged(&self, name: &str, part: &str) -> Result<PathBuf, Failure> {
         let stage = self.folder.join("stage").join(name);
         match stage.is_dir() {

@@ -10,15 +10,15 @@ use std::process::Command;
 
 /// Newest glibc version that symbols may require: that of Ubuntu 22.04, older than Debian 12's.
 const GLIBC: [u32; 2] = [2, 35];
-/// Maintainer of the package. The project has no address.
+/// Maintainer of the package. The project has no e-mail address.
 const MAINTAINER: &str = "The tamaire developers <tamaire@localhost>";
-/// Libraries that a window loads at run time, unknown to the linker.
+/// Packages of the libraries that a window loads at run time. The linker does not know these libraries.
 const WINDOW: &str = "libx11-6, libx11-xcb1, libxcursor1, libxi6, libxkbcommon0, libxkbcommon-x11-0, libvulkan1 | libegl1";
 
 /// Sizes of the icon that exist as bitmaps.
 const ICONS: [(&str, &str); 2] = [("192x192", "icon-192.png"), ("512x512", "icon-512.png")];
 
-/// Builds the tree of the packages, as below /usr.
+/// Builds the file tree of the packages, which is installed below /usr.
 pub fn programs(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     if !cfg!(target_os = "linux") {
         return Err(Failure::cannot(
@@ -84,7 +84,7 @@ pub fn programs(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Moves manual pages and completions to the folders in which shells and `man` search.
+/// Copies manual pages and completions to the folders in which shells and `man` search.
 fn sort_papers(papers: &Path, share: &Path, program: &str) -> Result<(), Failure> {
     let pages = papers.join("man");
     let entries = fs::read_dir(&pages).map_err(|error| file_error(&pages, &error))?;

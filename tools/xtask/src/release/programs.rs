@@ -49,7 +49,7 @@ pub fn build(kit: &ReleaseBuild, compiler: Option<&Compiler>) -> Result<PathBuf,
     for language in ["CFLAGS", "CXXFLAGS"] {
         command.env(language, flags.join(" "));
     }
-    // The benchmark program is built from sources, which players do not have.
+    // A fixed path, since players do not have the sources from which `fuwafuwa bench` builds its comparison.
     command.env("FUWAFUWA_SOURCES", "/tamaire/apps/fuwafuwa_cli");
     command.env("SOURCE_DATE_EPOCH", &kit.epoch);
     command.env("CARGO_INCREMENTAL", "0");
@@ -58,7 +58,8 @@ pub fn build(kit: &ReleaseBuild, compiler: Option<&Compiler>) -> Result<PathBuf,
     Ok(folder)
 }
 
-/// Copies a program without its debug symbols, because not every linker omits them.
+/// Copies a program without its debug symbols, because not every linker omits them. `strip` is the program
+/// that removes them.
 pub fn put_stripped(
     kit: &ReleaseBuild,
     from: &Path,

@@ -54,7 +54,8 @@ pub fn deny(kit: &mut ReleaseBuild) -> Result<(), Failure> {
         &mut check,
         "see deny.toml for the permitted contents and the reasons",
     )?;
-    // The download shows whether the database is available; the check then counts.
+    // The download shows whether the database is available. If it is, a failed check of the advisories is an
+    // error.
     let mut fetch = cargo();
     fetch.args(["deny", "fetch", "db"]);
     if execute(&mut fetch, "").is_err() {

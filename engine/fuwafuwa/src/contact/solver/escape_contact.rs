@@ -30,7 +30,6 @@ impl EscapeContact {
     ) -> Option<Self> {
         let [a, b] = [captive.sphere, captive.exit];
         let both = [&spheres.list[a], &spheres.list[b]];
-        let _length = |way: Row| inner::<D>(way, way).sqrt().max(1e-9);
         let out = both[1].outward::<D>(&bodies.at(both[1].body).state.position);
         let ahead = (both[0].radius + both[1].radius) / out.length();
         let goal = spheres.centres[b] + out * ahead;

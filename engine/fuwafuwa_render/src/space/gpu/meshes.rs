@@ -13,7 +13,8 @@ pub(super) fn mesh_buffers(device: &Device, label: &'static str) -> [GrowingBuff
         .map(|usage| GrowingBuffer::new(device, label, usage))
 }
 
-/// Writes skins. Index buffers of skins that are not renewed keep their contents.
+/// Writes the buffers of each skin. `renewed` has a flag per skin; without it, the index buffer stays as it
+/// is.
 pub(super) fn write_skins(
     gpu: Gpu<'_>,
     buffers: &mut Vec<[GrowingBuffer; 2]>,
@@ -27,7 +28,8 @@ pub(super) fn write_skins(
     for (place, is_new) in renewed.iter().enumerate() {
         let (skin, [vertices, indices]) = (&skins[place], &mut buffers[place]);
         vertices.write(gpu, skin.vertices());
-        // The next body takes over the buffers of a removed body; its triangles differ.
+        // After a body was removed, the next body uses the buffers of the removed one, but has other
+        // triangles.
         if *is_new || indices.count() as usize != skin.indices().len() {
             let there = drawable(skin.indices(), skin.vertices(), vertices.count());
             indices.write(gpu, there);

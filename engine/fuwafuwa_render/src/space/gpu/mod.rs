@@ -26,14 +26,14 @@ use wgpu::*;
 const LIGHT: Vec3 = Vec3::new(-0.42, 0.80, 0.45);
 /// Direction towards the sky.
 const SKY: Vec3 = Vec3::Y;
-/// Half extent of the lit region, in multiples of the camera distance.
+/// Half extent of the region covered by the shadow maps, in multiples of the camera distance.
 const LIT: f32 = 0.55;
 /// Blur width of light and sky shadows, as fractions of their maps. Larger values make shadows softer, until
 /// single samples show as steps.
 const SOFTNESS: [f32; 2] = [0.006, 0.035];
-/// Maximum number of hands that cast shadows, given by the uniform size of small devices.
+/// Maximum number of hands that cast shadows, limited by the size of uniform buffers on small devices.
 const MOST_HANDS: usize = 4;
-/// Faces per octant side of balls that may be large, and of small balls.
+/// Faces along each side of an octant: for balls that may be large, and for small balls.
 const FINE: usize = 12;
 const COARSE: usize = 3;
 
@@ -140,12 +140,12 @@ impl Renderer {
         self.meter.draw(pass, 0..3, 0..1);
     }
 
-    /// Releases the intermediate images, as [`crate::Renderer::forget_images`].
+    /// Releases the intermediate images, like [`crate::Renderer::release_images`].
     pub fn forget_images(&mut self, device: &Device) {
         self.targets = Targets::new(device, &self.pipelines, [1, 1]);
     }
 
-    /// Returns the GPU cost since the last call, as [`crate::Renderer::take_cost`].
+    /// Returns the GPU cost since the last call, like [`crate::Renderer::take_cost`].
     pub fn take_cost(&self) -> Cost {
         self.meter.take()
     }
@@ -153,7 +153,7 @@ impl Renderer {
     /// Draws a world into an image, like the 2D renderer's [`crate::Renderer::render_to_image`].
     ///
     /// # Errors
-    /// As [`crate::Renderer::render_to_image`].
+    /// Same errors as [`crate::Renderer::render_to_image`].
     pub fn render_to_image(
         &mut self,
         device: &Device,
@@ -202,7 +202,6 @@ impl Renderer {
         }
     }
 
-    /// Writes the uniforms.
     fn write_uniforms(&self, queue: &Queue, frame: &Frame<'_, Camera>) {
         let (camera, palette, size) = (&frame.camera, frame.palette, self.targets.size);
         let half = LIT * camera.distance;
@@ -340,7 +339,7 @@ impl Renderer {
     }
 
     fn draw_skins(&self, pass: &mut RenderPass<'_>) {
-        // In the element view no skins are drawn.
+        // In the element view `renewed` is empty and no skins are drawn.
         for buffers in &self.skins[..self.geometry.renewed.len()] {
             draw_mesh(&self.meter, pass, buffers, 0..1);
         }
@@ -359,8 +358,8 @@ fn seen_by(light: Vec3, middle: Vec3, half: f32) -> Mat4 {
     let back = light.normalize();
     let right = Vec3::NEG_Z.cross(back).normalize();
     let seen = seen_from(middle, Mat3::from_cols(right, back.cross(right), back));
-    // A sixth of the scale in depth includes objects between the light and the lit region, which cast shadows
-    // too.
+    // The depth range is three times the width of the map, so that objects between the light and the lit
+    // region cast shadows too.
     let scale = Vec3::new(1.0, 1.0, -1.0 / 6.0) / half;
     Mat4::from_translation(0.5 * Vec3::Z) * Mat4::from_scale(scale) * seen
 }

@@ -10,7 +10,7 @@ use crate::space::rounded::{RoundedInstance, RoundedVertex};
 use crate::space::skin::SkinVertex;
 use wgpu::*;
 
-/// Format of the picture, as screens take it.
+/// Format of the picture. Its values are already sRGB-encoded.
 pub const PICTURE_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 /// Format of the depth seen from the camera.
 pub const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth24Plus;
@@ -135,8 +135,8 @@ impl Pipelines {
                 ..depth_state(DEPTH_FORMAT, is_written)
             })
         };
-        // A ghost is slightly behind a body in the same position and thus hidden. The bottom of a basket is
-        // in front of the floor.
+        // A ghost is drawn slightly farther away, so that a body in the same position hides it. A basket is
+        // drawn closer, so that the floor does not hide its bottom.
         let farther = |is_written| moved(16, is_written);
         let both_sides = Target {
             depth: moved(-16, false),

@@ -5,7 +5,7 @@ use crate::gpu::program::SAMPLES;
 use crate::gpu::targets::{bind, limited_size, new_image, smooth};
 use wgpu::*;
 
-/// Side lengths of the shadow map and of the sky map [px]. The sky map is blurred far more.
+/// Side lengths of the shadow map and of the sky map [px]. The sky map is smaller because it is blurred more.
 pub const SHADOW_SIDES: [u32; 2] = [1024, 128];
 
 /// Images of a picture, and the bind group for copying it into a window.

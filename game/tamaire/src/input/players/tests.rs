@@ -170,7 +170,7 @@ fn wanted_height_is_kept_when_goal_cannot_follow() {
         turn: Some(0.0),
         ..MANNER
     };
-    // The body holds the hand down, and the limited distance between hand and goal holds the goal.
+    // The body holds the hand down, and the target position may be only a limited distance from the hand.
     let here = [0.0, 0.5, 0.0];
     let mut players = Players::default();
     let mut goal = |devices: &Devices, manner: &InputMapping| {
@@ -201,8 +201,8 @@ fn wanted_height_is_kept_when_goal_cannot_follow() {
     };
     let pointing = with_sticks(vec![stick(1, [1.0, 0.0])]);
     assert_height(goal(&pointing, &places), 1.3);
-    // Lifting never lowers the wanted height. Lowering starts from the current goal, so that excess lift need
-    // not be undone first.
+    // Lifting never lowers the requested height. Lowering starts from the current target position, so that
+    // excess lift need not be undone first.
     assert_height(goal(&keys(Key::Q), &manner), 1.3);
     assert_height(goal(&keys(Key::Z), &manner), 0.5 - RISE * TICK);
     goal(&lift(9.0), &manner);

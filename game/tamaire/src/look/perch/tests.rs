@@ -57,7 +57,7 @@ fn perch_rolls_with_fast_skin() {
     let mut perch = FaceAnchor::new(world.soft_bodies().first().unwrap(), Some(EYE));
     let (first, out) = (perch.at, perch.axes[2]);
     for tick in 1..20 {
-        // Rotates at 10 rad/s and moves away.
+        // The body rotates at 10 rad/s and moves away.
         let angle = 10.0 * TICK * tick as f32;
         let (sin, cos) = angle.sin_cos();
         let turn = |[x, y, z]: Vector| [cos * x + sin * y, cos * y - sin * x, z];
@@ -84,7 +84,7 @@ fn perch_moves_seldom_while_body_rolls_and_ends_upright() {
     let mut leaps = 0;
     let (mut angle, mut least) = (0.0f32, f32::MAX);
     for tick in 1..150 {
-        // Rolls to the right at 2 rad/s for about half a turn, then stops.
+        // The body rolls to the right at 2 rad/s for about half a turn, then stops.
         angle += if tick < 100 { 2.0 * TICK } else { 0.0 };
         let (sin, cos) = angle.sin_cos();
         deform(&mut world, |_, at| {
@@ -116,7 +116,7 @@ fn perch_returns_to_camera_after_body_turned() {
             TICK,
         );
         least = least.min(perch.size);
-        // It never moves to another place while it is visible.
+        // The face never moves to another place while it is visible.
         let leap = tick > 0 && length(minus(perch.axes[2], before.axes[2])) > 0.1;
         assert!(!leap || perch.size < 0.05, "{perch:?}");
     }
@@ -163,7 +163,7 @@ fn perch_leaves_skin_that_was_cut_off() {
         covered(&perch, world.soft_bodies().first().unwrap()) > 0.7,
         "{perch:?}"
     );
-    // It stays at the new place.
+    // The face stays at the new place.
     let place = perch.place.expect("the face has a place").voxel;
     for tick in 0..120 {
         perch.follow(

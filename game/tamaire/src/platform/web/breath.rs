@@ -4,7 +4,7 @@ use super::host;
 use wasm_bindgen_futures::JsFuture;
 use web_time::{Duration, Instant};
 
-/// Longest work before the page gets a frame.
+/// Longest time of uninterrupted work, after which the page gets a frame.
 const LONGEST: Duration = Duration::from_millis(8);
 
 /// Yields to the page from time to time.
@@ -17,7 +17,7 @@ impl Default for Yielder {
 }
 
 impl Yielder {
-    /// Waits for the next frame if the last one was longer than `LONGEST` ago.
+    /// Waits for the next frame if the work has lasted longer than `LONGEST` since the last one.
     pub async fn yield_now(&mut self) {
         if self.0.elapsed() > LONGEST {
             // The promise is never rejected.

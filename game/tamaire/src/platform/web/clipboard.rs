@@ -2,12 +2,13 @@
 
 use super::host;
 
-/// The clipboard.
+/// Access to the browser's clipboard.
 #[derive(Default)]
 pub struct Clipboard;
 
 impl Clipboard {
-    /// Copies a text to the clipboard. Some browsers allow this only in the frame of a press.
+    /// Copies a text to the clipboard. Some browsers allow this only in the frame in which the player pressed
+    /// a button.
     pub fn copy(&mut self, _: &egui::Context, text: String) {
         host().copy(&text);
     }

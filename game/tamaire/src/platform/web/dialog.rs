@@ -6,7 +6,7 @@ use crate::platform::given::{DialogResult, OpenRequest, read_together};
 /// Whether file dialogs are supported.
 pub const IS_THERE: bool = true;
 
-/// File dialog. The page knows whether it is open.
+/// File dialog of the page. Holds the chosen files that were not taken yet.
 #[derive(Default)]
 pub struct Dialog(Vec<OpenRequest>);
 

@@ -19,15 +19,15 @@ extern "C" {
     /// Next stored entry that the game has not read yet.
     #[wasm_bindgen(method, js_name = takeChange)]
     pub(crate) fn take_change(this: &Host) -> Option<Changed>;
-    /// Stores and removes entries atomically, while no other tab does. The promise resolves to the reason of
-    /// a failure, if any.
+    /// Runs `job` and stores its changes atomically, while no other tab stores anything. The promise resolves
+    /// to the reason of a failure, or to `undefined`.
     #[wasm_bindgen(method)]
     pub(crate) fn alone(this: &Host, job: &js_sys::Function) -> js_sys::Promise;
     #[wasm_bindgen(method)]
     pub(crate) fn keep(this: &Host, key: &str, bytes: &[u8], written: f64);
     #[wasm_bindgen(method)]
     pub(crate) fn remove(this: &Host, key: &str);
-    /// Returns once the reason why a change outside of `alone` failed.
+    /// Returns the reason why a change outside of [`Host::alone`] failed. Returns each reason once.
     #[wasm_bindgen(method, js_name = takeFailure)]
     pub(crate) fn take_failure(this: &Host) -> Option<String>;
 
@@ -42,7 +42,7 @@ extern "C" {
     pub(crate) fn take_picked(this: &Host) -> Option<js_sys::Array>;
     #[wasm_bindgen(method, js_name = takeDropped)]
     pub(crate) fn take_dropped(this: &Host) -> Option<js_sys::Array>;
-    /// Fragment of the page's address, once.
+    /// Fragment of the page's address, if it has not been taken yet.
     #[wasm_bindgen(method, js_name = takeLink)]
     pub(crate) fn take_link(this: &Host) -> Option<String>;
     /// Address of the page without its fragment.
@@ -65,10 +65,10 @@ extern "C" {
     #[wasm_bindgen(method, setter)]
     pub(crate) fn set_spoken(this: &Host, language: &str);
 
-    /// Sound output, which stays the same when a new game starts.
+    /// Sound output. It outlives the game, so that sound continues after a restart.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn speaker(this: &Host) -> Speaker;
-    /// Resolves in the next frame, even if no frames are drawn.
+    /// Resolves in the next frame; without delay if the page is hidden and has no frames.
     #[wasm_bindgen(method)]
     pub(crate) fn breathe(this: &Host) -> js_sys::Promise;
     /// Requests the Japanese font. It arrives through [`Host::take_letters`], unless it cannot be fetched.
@@ -77,14 +77,14 @@ extern "C" {
     #[wasm_bindgen(method, js_name = takeLetters)]
     pub(crate) fn take_letters(this: &Host) -> Option<Vec<u8>>;
 
-    /// Implemented in `game/tamaire/web/sound.js`.
+    /// Sound output of the page, implemented in `game/tamaire/web/sound.js`.
     pub(crate) type Speaker;
     #[wasm_bindgen(method)]
     pub(crate) fn tell(this: &Speaker, bytes: &[u8]);
     #[wasm_bindgen(method)]
     pub(crate) fn trouble(this: &Speaker) -> Option<String>;
 
-    /// A stored entry.
+    /// Stored entry that was read or changed, see [`Host::take_change`].
     pub(crate) type Changed;
     #[wasm_bindgen(method, getter)]
     pub(crate) fn key(this: &Changed) -> String;

@@ -8,7 +8,7 @@ use std::io;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, SystemTime};
 
-/// Kinds that are stored in the browser, and their key prefixes. Photos and clips become downloads instead.
+/// Kinds that are stored in the browser, with their key prefixes. Entries of other kinds become downloads.
 const KINDS: [(Kind, &str); 4] = [
     (Kind::Note, "note"),
     (Kind::Level, "level"),

@@ -19,12 +19,12 @@ pub fn full_screen_of_page() -> Option<bool> {
     Some(host().is_full())
 }
 
-/// Returns the address of the page, which opens links.
+/// Returns the address of the page without its fragment. Links are this address with a fragment.
 pub fn address_of_page() -> String {
     host().address()
 }
 
-/// Makes the page load the font of a language, and tells it the language for screen readers.
+/// Makes the page load the font of a language, and announces the language to screen readers.
 pub fn set_language(context: &egui::Context, language: Language, has_own_levels: bool) {
     let host = host();
     let is_japanese = language == Language::Japanese;

@@ -1,5 +1,5 @@
-//! Background writer. Each job runs while no other tab writes, and is reported once the browser has stored
-//! its result.
+//! Background writer. It runs each job while no other tab writes, and reports the job once the browser has
+//! stored the changes.
 
 use super::host;
 use super::kept::refused;
@@ -35,7 +35,7 @@ impl<T: 'static> Writer<T> {
         }
     }
 
-    /// Adds a job. `told` converts its result.
+    /// Adds a job. `told` converts what it returns to a result of the writer.
     pub fn write<V: 'static>(
         &mut self,
         job: impl FnOnce() -> io::Result<V> + 'static,

@@ -28,7 +28,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, stage: &mut Stage, ui: &m
         theme.ink,
     );
     let count = game.levels.len() as f32;
-    // Side by side, or on top of each other in a portrait window.
+    // Tiles are side by side; in a portrait window one below the other.
     let is_tall = screen.width() < screen.height();
     let (across, down) = if is_tall { (1.0, count) } else { (count, 1.0) };
     let room = vec2(

@@ -77,7 +77,8 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     }
 }
 
-/// Draws a ring that closes while the secret corner or chord is held.
+/// Draws a ring that closes while staff holds the hidden corner of the screen or the chord, a combination of
+/// stick buttons.
 pub(super) fn knocked(stand: &Stand, game: &Game, ui: &Ui) {
     if let Some(share) = stand.entrance.held() {
         let middle = ui.max_rect().right_top() + vec2(-0.5, 0.5) * CORNER;

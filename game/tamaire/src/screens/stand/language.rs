@@ -7,11 +7,13 @@ use app_shell::widgets::{ButtonStyle, button};
 use egui::{Rect, Ui, vec2};
 use tamaire_sound::Menu;
 
-/// Size of the button, and its distance from the corner [points].
+/// Size of the button [points].
 const LANGUAGE: egui::Vec2 = vec2(168.0, STAND - 2.0 * EDGE);
+/// Distance of the button from the edges of the window [points].
 const EDGE: f32 = 18.0;
 
-/// Returns the screen; in a portrait window without the bottom edge that holds the language button.
+/// Returns the area for other contents: the screen, in a portrait window without the bottom edge that holds
+/// the language button.
 pub(super) fn above(screen: Rect) -> Rect {
     let is_upright = screen.width() < screen.height();
     screen.with_max_y(screen.bottom() - if is_upright { STAND } else { 0.0 })

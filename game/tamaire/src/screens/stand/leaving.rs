@@ -1,4 +1,4 @@
-//! Countdown ring that is shown when there is no input.
+//! Countdown ring that is shown before a visit without input ends.
 
 use super::super::icons;
 use crate::exhibit::{Stand, presence::Attention};

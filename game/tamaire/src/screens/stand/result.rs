@@ -11,10 +11,11 @@ use egui::{Rect, Ui, UiBuilder, Vec2, pos2, vec2};
 use tamaire_play::Route;
 use tamaire_sound::Menu;
 
-/// Width of the card, and gap between its elements [points].
+/// Width of the card [points].
 const WIDE: f32 = 470.0;
+/// Gap between the elements of the card [points].
 const GAP: f32 = 12.0;
-/// Maximum side length of a code [points].
+/// Maximum side length of the QR code [points].
 const CODE: f32 = 360.0;
 
 /// Action that a visitor has chosen.
@@ -89,7 +90,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     }
 }
 
-/// Returns the area of the code: on the right, or at the top of a portrait window.
+/// Returns the area of the QR code: on the right, or at the top of a portrait window.
 fn place_of_code(screen: Rect, side: f32) -> Rect {
     // The card adds a margin and two lines of text.
     let size = vec2(side + 40.0, side + 130.0);

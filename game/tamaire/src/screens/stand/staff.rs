@@ -18,9 +18,11 @@ use jiff::civil::Time;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_sound::Menu;
 
-/// Width of a page, line height, and gap between cards [points].
+/// Width of a page [points].
 const WIDE: f32 = 780.0;
+/// Height of a line [points].
 const LINE: f32 = 34.0;
+/// Gap between cards [points].
 const GAP: f32 = 12.0;
 /// Opening hours that are suggested when none are set.
 const USUAL_HOURS: [Time; 2] = [Time::constant(10, 0, 0, 0), Time::constant(18, 0, 0, 0)];
@@ -244,7 +246,7 @@ fn settings(stand: &Stand, game: &mut Game, ui: &mut Ui) -> Option<ConfigChange>
     for (name, value, kind) in kinds {
         let mut chosen = value;
         slider(ui, &theme, name, &mut chosen, 0.0, 1.0, 0.05);
-        // Not on every frame of a drag.
+        // A dragged value is stored when the drag ends, not in every frame.
         let rests = ui.input(|input| !input.pointer.any_down());
         let id = ui.scope_id().with(name);
         let dragged = ui.data_mut(|data| data.get_temp::<f32>(id));

@@ -1,9 +1,9 @@
 //! Soft bodies on a table, one of them with a face, a tower of wooden boxes, and a hand that presses through
-//! the face. The detached pieces hit the tower. The arrow keys move the hand, Q and Z raise and lower it;
-//! before the first key it moves by itself.
+//! the face. The detached pieces hit the tower. The arrow keys move the hand, and Q and Z raise and lower it.
+//! Before the first key press, the hand moves by itself.
 //!
-//! `cargo run -p bevy_fuwafuwa_examples --bin scene`, in `plugins/bevy_fuwafuwa`. With `-- FOLDER` at the end
-//! it writes pictures of some moments into a folder, at maximum speed, and exits.
+//! Run it with `cargo run -p bevy_fuwafuwa_examples --bin scene`, in `plugins/bevy_fuwafuwa`. With `--
+//! FOLDER` at the end it saves pictures of some moments in the folder, at maximum speed, and exits.
 
 use bevy::asset::RenderAssetUsages;
 use bevy::core_pipeline::tonemapping::Tonemapping;
@@ -16,9 +16,9 @@ use bevy_fuwafuwa::prelude::*;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Frame time when taking pictures [s].
+/// Simulated time per frame when pictures are taken [s].
 const TICK: f64 = 1.0 / 60.0;
-/// Times of the pictures [ticks].
+/// Times at which pictures are taken [ticks].
 const MOMENTS: [u32; 8] = [2, 14, 45, 85, 115, 135, 170, 280];
 /// Frames before the first tick, for compiling shaders.
 const START: u32 = 120;
@@ -34,7 +34,7 @@ const PIXELS: u32 = 128;
 #[derive(Component)]
 struct Hand;
 
-/// Output folder of the pictures, and the number of frames until now.
+/// Output folder of the pictures, and the number of frames so far.
 #[derive(Resource)]
 struct Album(PathBuf, u32);
 
@@ -149,7 +149,8 @@ fn put_bodies(
         ..default()
     };
     let tough = firm(8000.0);
-    // Children follow a soft body: this one has eyes. A parent needs `Visibility` before its mesh exists.
+    // Entities that are children of a soft body follow it, here the eyes and the mouth. The parent needs
+    // `Visibility` before its mesh exists.
     let ball = (SoftBody3d::ball(28, 1.1), SoftMaterials::from(firm(2600.0)));
     commands
         .spawn((
@@ -204,7 +205,7 @@ fn put_bodies(
     ));
 }
 
-/// A leaning tower of three boxes.
+/// Spawns a leaning tower of three boxes.
 fn stack_boxes(
     mut commands: Commands,
     mut meshes: ResMut<Assets<Mesh>>,
@@ -231,7 +232,7 @@ fn stack_boxes(
     }
 }
 
-/// Texture of a box side: boards in a frame.
+/// Returns the texture of a box side: boards in a frame.
 fn wood() -> Image {
     let pixel = |index: u32| {
         let [x, y] = [index % PIXELS, index / PIXELS].map(|k| k as f32 / PIXELS as f32);
@@ -267,7 +268,8 @@ fn wood() -> Image {
     )
 }
 
-/// Presses the hand down through the ball and lifts it again, until the first key press.
+/// Presses the hand down through the ball and lifts it again. After the first key press, the keys move the
+/// hand.
 fn move_hand(
     keys: Res<ButtonInput<KeyCode>>,
     world: Res<SoftWorld<Dim3>>,
