@@ -3,7 +3,7 @@
 //! On a slow machine the simulation slows down evenly: each frame plays one tick and is shown. Missed time is
 //! dropped, because catching up would need ever more ticks in ever longer frames.
 
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 
 /// Time limit for all ticks of a frame together [s]; the first tick is always played. Including the time to
 /// draw, a frame then takes about 1/30 s.

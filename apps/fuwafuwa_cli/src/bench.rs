@@ -25,7 +25,7 @@ pub struct Arguments {
     /// rapier: run only `stiff`, `soft` or `torn`.
     #[arg(long)]
     scene: Option<String>,
-    /// Replace a value of that scene, for example most_substeps=8 or body.1.n=64; repeatable.
+    /// Replace a value of that scene, for example max_substeps=8 or body.1.n=64; repeatable.
     #[arg(long = "set", requires = "scene", conflicts_with = "against")]
     changes: Vec<String>,
     /// Number of space dimensions, with --n or --against.
@@ -229,7 +229,7 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Ve
             }
             progress.step();
         }
-        let bodies = world.soft_bodies().iter();
+        let bodies = world.soft_bodies().map(|(_, body)| body);
         pieces = bodies.map(|body| body.pieces().list.len()).sum();
     }
     if whole == times.len() {
@@ -251,16 +251,15 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Ve
 fn pushed_ball<D: Dim>(n: usize) -> Result<Measure> {
     const TICKS: u16 = 60;
     let mut world = World::<D>::new(WorldConfig::default())?;
-    world.add_rigid_body(RigidBody::fixed(
-        Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
-        0.5,
-    ))?;
+    world.add_rigid_body(
+        RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3])).with_friction(0.5),
+    )?;
     world.add_soft_body(SoftBody::new(
         VoxelGrid::ball(n, 1.0)?,
         &[Material::default()],
     )?);
     let z = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = world.add_rigid_body(RigidBody::coupled_ball([0.5, 1.2, z], 0.2))?;
+    let hand = world.add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at([0.5, 1.2, z]))?;
     let mut times = Vec::new();
     for tick in 1..=TICKS {
         let down = 0.35 * f32::from(tick) / f32::from(TICKS);

@@ -190,7 +190,7 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
     let pieces = || {
         world
             .soft_bodies()
-            .iter()
+            .map(|(_, body)| body)
             .flat_map(|body| body.piece_views())
     };
     let summary = Summary {

@@ -1,6 +1,6 @@
 //! The organ to be operated on: its voxels, their materials, and their position in the patient.
 
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
     Dim3, Material, NodeId, RigidBody, Shape, SoftBody, SoftBodyHandle, VoxelGrid, World,
@@ -141,11 +141,11 @@ impl Case {
         let mut world = World::new(WorldConfig {
             gravity: [0.0, -9.81 * AFLOAT / inertia, 0.0],
             drag: DRAG,
-            most_substeps: substeps,
+            max_substeps: substeps,
             ..WorldConfig::default()
         })?;
         let top = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-        world.add_rigid_body(RigidBody::fixed(top, 0.6))?;
+        world.add_rigid_body(RigidBody::fixed(top).with_friction(0.6))?;
         let organ = world.add_soft_body(body);
         let (around, above) = (0.35 * longest, 0.6 * longest);
         let room = [

@@ -8,7 +8,7 @@ use crate::report;
 use crate::save::write;
 use crate::trainee::Trainee;
 use cpu_time::ThreadTime;
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
 use std::path::PathBuf;

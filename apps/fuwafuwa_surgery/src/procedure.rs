@@ -3,7 +3,7 @@
 use crate::case::{Case, CaseError, Table, bounds};
 use crate::measures::{self, Sample};
 use crate::tools::{HeldTool, Tool, clearance};
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim3, Error, Event, RigidBody, Rotation, SoftBody, StepReport, Vector, World};
 use serde::{Deserialize, Serialize};
@@ -159,7 +159,7 @@ impl Procedure {
 
     /// Returns the organ.
     pub fn organ(&self) -> &SoftBody<Dim3> {
-        &self.table.world.soft_bodies()[self.table.organ]
+        &self.table.world[self.table.organ]
     }
 
     /// Returns the tool in the hand.
@@ -281,7 +281,7 @@ impl Procedure {
 }
 
 fn entry(table: &Table) -> f32 {
-    let organ = &table.world.soft_bodies()[table.organ];
+    let organ = &table.world[table.organ];
     let [low, high] = bounds(organ);
     let above = (ENTRY * (high[1] - low[1])).max(clearance(organ));
     (high[1] + above).clamp(table.room[0][1], table.room[1][1])

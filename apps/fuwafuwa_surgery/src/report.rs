@@ -2,7 +2,7 @@
 
 use crate::measures::{PieceVolume, Sample, size};
 use crate::procedure::Procedure;
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use plotters::prelude::*;
 use std::error::Error;
 use std::fmt::Write;

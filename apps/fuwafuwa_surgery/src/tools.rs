@@ -96,8 +96,10 @@ impl HeldTool {
         at: Vector,
         rotation: Rotation,
     ) -> Result<Self, Error> {
-        let thinnest = thinnest(world.soft_bodies().get(organ)?);
-        let mut rigid = RigidBody::new(form(tool, thinnest), at, DRIVE).rotated(rotation);
+        let thinnest = thinnest(world.soft_body(organ)?);
+        let mut rigid = RigidBody::new(form(tool, thinnest), DRIVE)
+            .at(at)
+            .rotated(rotation);
         rigid.friction = FRICTION;
         // The box of a knife has no contact: the engine's `Knife` cuts with its edge and has contact at its
         // flat sides.
@@ -153,7 +155,7 @@ impl HeldTool {
 
     /// Returns the rigid body of the tool.
     pub fn rigid<'a>(&self, world: &'a World<Dim3>) -> &'a RigidBody {
-        &world.rigid_bodies()[self.holder]
+        world.rigid_body(self.holder).unwrap()
     }
 
     /// Returns whether the tool holds tissue.
@@ -188,10 +190,7 @@ impl HeldTool {
         organ: SoftBodyHandle,
         closes: bool,
     ) -> Result<(), Error> {
-        if self
-            .grip
-            .is_some_and(|grip| world.joints().get(grip).is_err())
-        {
+        if self.grip.is_some_and(|grip| world.joint(grip).is_err()) {
             // The grip slipped off. The forceps have to open before they can grip again.
             self.grip = None;
         }
@@ -203,7 +202,7 @@ impl HeldTool {
             && self.tool == Tool::Forceps
             && let Some(at) = nearest(world, organ, self.rigid(world))
         {
-            let soft = JointAnchor::Soft {
+            let soft = JointAnchor::SoftBody {
                 body: organ,
                 at,
                 radius: JAW,
@@ -227,7 +226,7 @@ impl HeldTool {
 
     /// Returns the pulling force of the grip [N].
     pub fn pull(&self, world: &World<Dim3>) -> f32 {
-        let joint = self.grip.and_then(|grip| world.joints().get(grip).ok());
+        let joint = self.grip.and_then(|grip| world.joint(grip).ok());
         joint.map_or(0.0, Joint::force)
     }
 
@@ -315,7 +314,7 @@ fn form(tool: Tool, thinnest: f32) -> Shape {
 
 /// Returns the position of the node nearest to the surface of a tip [m], if it is within [`REACH`].
 fn nearest(world: &World<Dim3>, organ: SoftBodyHandle, tip: &RigidBody) -> Option<Vector> {
-    let body = world.soft_bodies().get(organ).ok()?;
+    let body = world.soft_body(organ).ok()?;
     let places = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);
     let away = |place: &Vector| tip.shape().distance(*place).0;
     let nearest = places.min_by(|a, b| away(a).total_cmp(&away(b)))?;

@@ -3,7 +3,7 @@
 
 use crate::procedure::{Input, Procedure};
 use crate::tools::Tool;
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::inspect::vector::{minus, plus, scaled};
 use fuwafuwa::{Rotation, Vector};
 

@@ -27,7 +27,7 @@ fn place(case: &Case, table: &Table, [right, front, up]: [f64; 3]) -> [f32; 3] {
 }
 
 fn organ(table: &Table) -> &SoftBody<fuwafuwa::Dim3> {
-    &table.world.soft_bodies()[table.organ]
+    &table.world[table.organ]
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn scan_with_left_axis_shows_right_on_the_right() {
     let organ = phantom::organ(&scan(), &labels, 32);
     let case = Case::of("marked", &organ);
     let table = case.place_on_table().unwrap();
-    let body = &table.world.soft_bodies()[table.organ];
+    let body = &table.world[table.organ];
     let [mark, mirrored] = [14.0, -14.0].map(|right| place(&case, &table, [right, 0.0, 0.0]));
     for cut in [Cut::Axial, Cut::Coronal] {
         let slice = Slice::of(body, cut, mark[cut.axis()]);

@@ -31,12 +31,12 @@ fn organ() -> Material {
 fn main() -> Result<(), Box<dyn Error>> {
     let mut numbers = std::env::args().skip(1);
     let voxels: usize = numbers.next().map_or(Ok(64), |word| word.parse())?;
-    let most_substeps: u32 = numbers.next().map_or(Ok(8), |word| word.parse())?;
+    let max_substeps: u32 = numbers.next().map_or(Ok(8), |word| word.parse())?;
     // The simulation is deterministic, so the minimum of three runs is the cost of a tick; the rest is noise
     // of the machine.
-    let (mut times, told) = cut(voxels, most_substeps)?;
+    let (mut times, told) = cut(voxels, max_substeps)?;
     for _ in 1..3 {
-        let again = cut(voxels, most_substeps)?.0;
+        let again = cut(voxels, max_substeps)?.0;
         for (time, other) in times.iter_mut().zip(again) {
             *time = time.min(other);
         }
@@ -53,16 +53,16 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Returns the time of each tick [ms], and a summary of the cut.
-fn cut(voxels: usize, most_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn Error>> {
+fn cut(voxels: usize, max_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn Error>> {
     let settings = WorldConfig {
         // As in a bath, where buoyancy carries most of the organ's weight.
         gravity: [0.0, -1.0, 0.0],
-        most_substeps,
+        max_substeps,
         ..WorldConfig::default()
     };
     let mut world = World::<Dim3>::new(settings)?;
     let table = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid_body(RigidBody::fixed(table, 0.8))?;
+    world.add_rigid_body(RigidBody::fixed(table).with_friction(0.8))?;
     // 0.16 m wide, 0.1 m high.
     let size = 0.16 / voxels as f32;
     let grid = VoxelGrid::from_centres([voxels; 3], size, |at| {
@@ -73,8 +73,9 @@ fn cut(voxels: usize, most_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn 
     })?;
     let solid = grid.solid_count();
     let organ = world.add_soft_body(SoftBody::new(grid, &[organ()])?);
-    let mut holder =
-        RigidBody::coupled_ball([0.081, 0.14, 0.08], 0.01).with_motion_type(MotionType::Kinematic);
+    let mut holder = RigidBody::coupled(Shape::ball(0.01))
+        .at([0.081, 0.14, 0.08])
+        .with_motion_type(MotionType::Kinematic);
     holder.is_sensor = true;
     let holder = world.add_rigid_body(holder)?;
     let edge = [[0.0, 0.0, -0.08], [0.0, 0.0, 0.08]];
@@ -92,12 +93,12 @@ fn cut(voxels: usize, most_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn 
                 sums = [sums[0] + area, sums[1] + work];
             }
         }
-        most = most.max(world.knives().get(knife)?.force()[1]);
+        most = most.max(world.knife(knife)?.force()[1]);
     }
     let told = format!(
         "{solid} voxels, {} elements, {} pieces; cut {:.2} cm² with {:.3} J, maximum force {most:.2} N",
-        world.soft_bodies()[organ].mesh().element_count(),
-        world.soft_bodies()[organ].piece_views().len(),
+        world[organ].mesh().element_count(),
+        world[organ].piece_views().len(),
         1e4 * sums[0],
         sums[1],
     );

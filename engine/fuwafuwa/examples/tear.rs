@@ -12,10 +12,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         drag: 1.0,
         ..WorldConfig::default()
     })?;
-    world.add_rigid_body(RigidBody::fixed(
-        Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]),
-        0.2,
-    ))?;
+    world.add_rigid_body(
+        RigidBody::fixed(Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0])).with_friction(0.2),
+    )?;
     let ball = world.add_soft_body(SoftBody::new(
         VoxelGrid::ball(64, 1.0)?,
         &[Material::default()],
@@ -27,8 +26,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         damping: 0.9,
         limit: f32::INFINITY,
     };
-    let hand = world
-        .add_rigid_body(RigidBody::coupled_ball([-0.2, 0.5, 0.0], 0.1).with_motion_type(strong))?;
+    let hand = world.add_rigid_body(
+        RigidBody::coupled(Shape::ball(0.1))
+            .at([-0.2, 0.5, 0.0])
+            .with_motion_type(strong),
+    )?;
     for tick in 0..120u8 {
         world.set_target_position(hand, [-0.2 + 0.012 * f32::from(tick), 0.5, 0.0])?;
         let report = world.step();
@@ -40,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 _ => 0.0,
             })
             .sum();
-        let felt = world.rigid_bodies()[hand].reactions().last();
+        let felt = world.rigid_body(hand).unwrap().reactions().last();
         let felt = felt.map_or(0.0, |reaction| -reaction.coupling[0]);
         if report.nodes_split > 0 || tick % 20 == 0 {
             println!(
@@ -49,7 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             );
         }
     }
-    let mut pieces = world.soft_bodies()[ball].piece_views();
+    let mut pieces = world[ball].piece_views();
     pieces.sort_by(|a, b| b.mass.total_cmp(&a.mass));
     for piece in pieces.iter().take(5) {
         println!("a piece of {:.2} kg at {:.2?}", piece.mass, piece.centre);

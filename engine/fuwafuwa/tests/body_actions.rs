@@ -35,8 +35,8 @@ fn cubes<D: Dim>() -> (World<D>, [BodyHandle; 2]) {
 
 fn centre<D: Dim>(world: &World<D>, body: BodyHandle) -> Vector {
     match body {
-        BodyHandle::Soft(body) => world.soft_bodies()[body].centre_of_mass(),
-        BodyHandle::Rigid(rigid) => world.rigid_bodies()[rigid].position(),
+        BodyHandle::Soft(body) => world[body].centre_of_mass(),
+        BodyHandle::Rigid(rigid) => world.rigid_body(rigid).unwrap().position(),
     }
 }
 
@@ -125,7 +125,9 @@ fn check_pose<D: Dim>() {
         assert!(world.translate(body, [f32::NAN; 3]).is_err());
         assert!(world.rotate_about(body, quarter, [2e6; 3]).is_err());
     }
-    let lift = RigidBody::coupled_ball([0.0; 3], 0.1).with_motion_type(MotionType::Kinematic);
+    let lift = RigidBody::coupled(Shape::ball(0.1))
+        .at([0.0; 3])
+        .with_motion_type(MotionType::Kinematic);
     let lift = world.add_rigid_body(lift).unwrap();
     world.translate(lift, [5.0, 0.0, 0.0]).unwrap();
     world.step();
@@ -141,8 +143,8 @@ fn translate_and_rotate_keep_velocity_in_body_axes() {
 fn check_sleep<D: Dim>() {
     let (mut world, bodies) = cubes::<D>();
     let sleeps = |world: &World<D>, body| match body {
-        BodyHandle::Soft(body) => world.soft_bodies()[body].piece_views()[0].asleep,
-        BodyHandle::Rigid(rigid) => world.rigid_bodies()[rigid].is_asleep(),
+        BodyHandle::Soft(body) => world[body].piece_views()[0].asleep,
+        BodyHandle::Rigid(rigid) => world.rigid_body(rigid).unwrap().is_asleep(),
     };
     for body in bodies {
         world
@@ -160,13 +162,13 @@ fn check_sleep<D: Dim>() {
     let [BodyHandle::Soft(soft), BodyHandle::Rigid(rigid)] = bodies else {
         unreachable!("the handles are those of a soft and a rigid body");
     };
-    assert_eq!(world.soft_bodies()[soft].user_data(), 7);
-    assert_eq!(world.rigid_bodies()[rigid].user_data, 7);
+    assert_eq!(world[soft].user_data(), 7);
+    assert_eq!(world.rigid_body(rigid).unwrap().user_data, 7);
     world.set_motion_type(rigid, MotionType::Fixed).unwrap();
     assert!(world.put_to_sleep(rigid).is_err());
     assert_eq!(world.remove(rigid).unwrap().friction, 0.3);
     assert!((world.remove(soft).unwrap().total_mass() - 100.0).abs() < 1e-3);
-    assert!(world.soft_bodies().is_empty() && world.rigid_bodies().is_empty());
+    assert!(world.soft_bodies().next().is_none() && world.rigid_bodies().next().is_none());
 }
 
 #[test]

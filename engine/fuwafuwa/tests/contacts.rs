@@ -12,7 +12,7 @@ const UP: Vector = Vector::Y;
 
 fn floored<D: Dim>() -> (World<D>, RigidBodyHandle) {
     let mut world = World::new(WorldConfig::default()).unwrap();
-    let floor = RigidBody::fixed(Shape::half_space(UP, Vector::ZERO), 0.5);
+    let floor = RigidBody::fixed(Shape::half_space(UP, Vector::ZERO)).with_friction(0.5);
     let floor = world.add_rigid_body(floor).unwrap();
     (world, floor)
 }
@@ -86,7 +86,7 @@ fn contacts_begin_and_end<D: Dim>() {
         "each contact of the bouncing ball must end"
     );
     assert!(ended < 30, "{ended}");
-    let asleep = world.soft_bodies()[id].piece_views();
+    let asleep = world[id].piece_views();
     assert_eq!(asleep.len(), 1);
 }
 
@@ -106,7 +106,7 @@ fn sleeping_body_keeps_contact_until_removed() {
         let ended = |event: &&Event| matches!(event, Event::ContactEnded { .. });
         ends += world.events().iter().filter(ended).count();
     }
-    assert!(world.rigid_bodies()[id].is_asleep());
+    assert!(world.rigid_body(id).unwrap().is_asleep());
     assert_eq!(ends, 0);
     world.remove(id).unwrap();
     world.step();
@@ -148,7 +148,7 @@ fn sensors_tell<D: Dim>() {
         centre: Vector::new(0.5, 2.5, 0.5),
         half: Vector::new(4.0, 0.2, 2.0),
     };
-    let mut gate = RigidBody::fixed(gate, 0.5);
+    let mut gate = RigidBody::fixed(gate).with_friction(0.5);
     gate.is_sensor = true;
     let gate = world.add_rigid_body(gate).unwrap();
     let soft = ball(&mut world, 3.0);
@@ -209,7 +209,7 @@ fn sensors_agree_with_test_of_every_node<D: Dim>() {
         });
     }
     for shape in sensors {
-        let mut sensor = RigidBody::fixed(shape, 0.5);
+        let mut sensor = RigidBody::fixed(shape).with_friction(0.5);
         sensor.is_sensor = true;
         world.add_rigid_body(sensor).unwrap();
     }
@@ -243,8 +243,8 @@ fn sensors_agree_with_test_of_every_node<D: Dim>() {
             changes += 1;
         }
         let mut expected = BTreeSet::new();
-        for (sensor, rigid) in world.rigid_bodies().entries() {
-            for (body, soft) in world.soft_bodies().entries() {
+        for (sensor, rigid) in world.rigid_bodies() {
+            for (body, soft) in world.soft_bodies() {
                 for (node, _) in soft.mesh().nodes() {
                     let is_inside = rigid.shape().distance(soft.node_state(node).0).0 < 0.0;
                     if is_inside && soft.layers().meet(rigid.layers) {
@@ -281,11 +281,11 @@ fn layers_part<D: Dim>() {
         for _ in 0..90 {
             world.step();
         }
-        let [low, high] = [low, high].map(|id| world.soft_bodies()[id].centre_of_mass()[1]);
+        let [low, high] = [low, high].map(|id| world[id].centre_of_mass()[1]);
         assert_eq!(high - low > 0.5, meets, "{low} {high}");
         assert!(low > 0.3 && high > 0.3);
         // The box collides with the balls in both cases.
-        assert!(world.rigid_bodies()[crate_id].position()[1] > 0.8 || meets);
+        assert!(world.rigid_body(crate_id).unwrap().position()[1] > 0.8 || meets);
     }
 }
 
@@ -295,7 +295,7 @@ fn layers_filter_contacts() {
     layers_part::<Dim3>();
     let (mut world, floor) = floored::<Dim3>();
     let id = world.add_rigid_body(crate_of(0.5, 0.2)).unwrap();
-    let [own, other] = [floor, id].map(|id| world.rigid_bodies()[id].layers);
+    let [own, other] = [floor, id].map(|id| world.rigid_body(id).unwrap().layers);
     let (memberships, filters) = (2, 1);
     world
         .set_layers(floor, Layers { memberships, ..own })
@@ -304,7 +304,7 @@ fn layers_filter_contacts() {
     for _ in 0..60 {
         world.step();
     }
-    assert!(world.rigid_bodies()[id].position()[1] < -3.0);
+    assert!(world.rigid_body(id).unwrap().position()[1] < -3.0);
 }
 
 #[test]
@@ -314,8 +314,8 @@ fn user_data_persists_until_removal() {
     world.set_user_data(id, 7).unwrap();
     world.set_user_data(floor, 9).unwrap();
     world.step();
-    assert_eq!(world.soft_bodies()[id].user_data(), 7);
-    assert_eq!(world.rigid_bodies()[floor].user_data, 9);
+    assert_eq!(world[id].user_data(), 7);
+    assert_eq!(world.rigid_body(floor).unwrap().user_data, 9);
     world.remove(id).unwrap();
     assert!(
         world.set_user_data(id, 1).is_err() && world.set_layers(id, Layers::default()).is_err()
@@ -391,7 +391,7 @@ fn sleeping_contact_is_listed_and_survives_a_clone() {
     for _ in 0..240 {
         world.step();
     }
-    assert!(world.rigid_bodies()[id].is_asleep());
+    assert!(world.rigid_body(id).unwrap().is_asleep());
     let contact = *world.contacts_of(id).unwrap().next().unwrap();
     assert_eq!(contact.other(id), Some(ObjectRef::RigidBody(floor)));
     // In the last tick before the sleep, the floor carried 1 kg.

@@ -55,7 +55,7 @@ fn is_in_cell<D: Dim>(corners: &[Vector], at: Vector) -> bool {
 fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
     let views: Vec<_> = world
         .soft_bodies()
-        .iter()
+        .map(|(_, body)| body)
         .map(SoftBody::piece_views)
         .collect();
     let crumbs = || {
@@ -64,7 +64,7 @@ fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
         all.filter(|(_, view)| view.element_count <= SMALL)
     };
     let mut inside = Vec::new();
-    for (place, body) in world.soft_bodies().iter().enumerate() {
+    for (place, body) in world.soft_bodies().map(|(_, body)| body).enumerate() {
         let size = body.grid().voxel_size();
         let faces: Vec<(PieceId, Vector)> = body
             .facets()
@@ -149,7 +149,7 @@ fn weightless<D: Dim>() -> World<D> {
     let settings = WorldConfig {
         gravity: Vector::ZERO,
         drag: 1.0,
-        most_substeps: 64,
+        max_substeps: 64,
         ..WorldConfig::default()
     };
     World::new(settings).unwrap()
@@ -159,7 +159,9 @@ fn weightless<D: Dim>() -> World<D> {
 fn check_grinding<D: Dim>(n: usize, least: usize) {
     let mut world = weightless::<D>();
     let wall = Shape::half_space(Vector::NEG_X, Vector::new(1.05, 0.0, 0.0));
-    world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(wall).with_friction(0.2))
+        .unwrap();
     let tough = Material {
         strength: f32::INFINITY,
         ..Material::default()
@@ -171,7 +173,7 @@ fn check_grinding<D: Dim>(n: usize, least: usize) {
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     world.add_soft_body(dust.translated(Vector::new(-0.36, 0.33, depth - 0.17)));
     world
-        .add_rigid_body(RigidBody::coupled_ball(Vector::new(-0.55, 0.5, depth), 0.2))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at(Vector::new(-0.55, 0.5, depth)))
         .unwrap();
     check(world, 240, 30, least, |seconds| {
         let in_and_out = seconds.min(0.8) - (seconds - 2.2).max(0.0);
@@ -194,11 +196,13 @@ fn dust_leaves_body_after_grinding() {
 fn crumbs_stay_outside_halves_of_torn_disc() {
     let mut world = weightless::<Dim2>();
     let wall = Shape::half_space(Vector::NEG_X, Vector::new(1.15, 0.0, 0.0));
-    world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(wall).with_friction(0.2))
+        .unwrap();
     let disc = VoxelGrid::ball(64, 1.0).unwrap();
     world.add_soft_body(SoftBody::new(disc, &[Material::default()]).unwrap());
     world
-        .add_rigid_body(RigidBody::coupled_ball(Vector::new(-0.3, 0.55, 0.0), 0.08))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.08)).at(Vector::new(-0.3, 0.55, 0.0)))
         .unwrap();
     check(world, 150, 30, 20, |seconds| {
         Vector::new(-0.3 + 0.9 * seconds.min(1.5), 0.55, 0.0)
@@ -226,7 +230,7 @@ fn check_way_out<D: Dim>(n: usize) {
     assert!(5 * before.len() > 4 * count, "{} of {count}", before.len());
     for tick in 0..60 {
         world.step();
-        for crumb in world.soft_bodies().first().unwrap().piece_views() {
+        for crumb in world.soft_bodies().next().unwrap().1.piece_views() {
             let speed = crumb.velocity.length();
             assert!(speed < 1.5, "tick {tick}: {speed} m/s");
         }
@@ -234,10 +238,10 @@ fn check_way_out<D: Dim>(n: usize) {
         if tick < 10 {
             let linear = world
                 .soft_bodies()
-                .iter()
+                .map(|(_, body)| body)
                 .map(|body| body.momentum().linear);
             let linear = linear.sum::<DVec3>();
-            let most = 1e-3 * world.soft_bodies().first().unwrap().total_mass();
+            let most = 1e-3 * world.soft_bodies().next().unwrap().1.total_mass();
             assert!(linear.abs().max_element() < most, "{linear:?} kg m/s");
         }
     }
@@ -269,7 +273,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
     let settings = WorldConfig {
         gravity: Vector::ZERO,
         drag: 0.0,
-        most_substeps: substeps,
+        max_substeps: substeps,
         ..WorldConfig::default()
     };
     let mut world = World::<D>::new(settings).unwrap();
@@ -294,9 +298,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
     for _ in 0..60 {
         world.step();
     }
-    let speeds = nodes
-        .iter()
-        .map(|&node| world.soft_bodies()[soft].node_state(node).1);
+    let speeds = nodes.iter().map(|&node| world[soft].node_state(node).1);
     speeds.map(length).fold(0.0, f32::max)
 }
 
@@ -316,18 +318,20 @@ fn crumb_vibration_decays_for_any_material_and_substeps() {
 fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
     const VOXEL: f32 = 1.0 / 32.0;
     let settings = WorldConfig {
-        most_substeps: 8,
+        max_substeps: 8,
         ..WorldConfig::default()
     };
     let mut world = World::<D>::new(settings).unwrap();
     let floor = Shape::half_space(Vector::Y, Vector::ZERO);
-    world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
+        .unwrap();
     let crumb = VoxelGrid::<D>::cube(1, VOXEL).unwrap();
     world.add_soft_body(SoftBody::new(crumb, &[Material::default()]).unwrap());
     for _ in 0..90 {
         world.step();
     }
-    assert!(world.soft_bodies().first().unwrap().pieces().list[PieceId(0)].asleep);
+    assert!(world.soft_bodies().next().unwrap().1.pieces().list[PieceId(0)].asleep);
     let block = VoxelGrid::<D>::cube(size, size as f32 * VOXEL).unwrap();
     let mut heavy = Material::default();
     heavy.density *= 10.0;
@@ -337,12 +341,12 @@ fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
     let mut lowest = f32::INFINITY;
     for _ in 0..20 {
         world.step();
-        let crumb = world.soft_bodies().first().unwrap();
+        let crumb = world.soft_bodies().next().unwrap().1;
         let nodes = crumb.mesh().nodes();
         lowest = nodes.fold(lowest, |low, (id, _)| low.min(crumb.node_state(id).0[1]));
     }
     assert!(
-        !world.soft_bodies().first().unwrap().pieces().list[PieceId(0)].asleep,
+        !world.soft_bodies().next().unwrap().1.pieces().list[PieceId(0)].asleep,
         "the block must wake the crumb"
     );
     -lowest / VOXEL

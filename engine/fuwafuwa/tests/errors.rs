@@ -19,7 +19,7 @@ fn check_stale_handles<D: Dim>() {
         rigid,
         at: [0.0; 3],
     };
-    let joint = Joint::pin(anchor, JointAnchor::Position([0.0; 3]));
+    let joint = Joint::pin(anchor, JointAnchor::Point([0.0; 3]));
     let joint = world.add_joint(joint).unwrap();
     world.remove(joint).unwrap();
     world.remove(rigid).unwrap();
@@ -47,7 +47,9 @@ fn stale_handle_error_names_kind_and_slot() {
 fn parameter_error_names_field_expected_and_given() {
     let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    let floor = world.add_rigid_body(RigidBody::fixed(floor, 0.5)).unwrap();
+    let floor = world
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.5))
+        .unwrap();
     let free = world.add_rigid_body(ball()).unwrap();
     let text = |result: Result<(), Error>| result.unwrap_err().to_string();
     assert_eq!(
@@ -74,7 +76,7 @@ fn parameter_error_names_field_expected_and_given() {
         text(world.set_restitution(free, 1.5)),
         "restitution must be 0 to 1, given 1.5"
     );
-    assert_eq!(world.rigid_bodies()[free].friction, 0.5);
+    assert_eq!(world.rigid_body(free).unwrap().friction, 0.5);
 }
 
 #[test]

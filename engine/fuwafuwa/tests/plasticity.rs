@@ -35,7 +35,7 @@ fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, SoftB
             centre: Vector::ZERO,
             half: half.into(),
         };
-        let mut plate = RigidBody::new(form, Vector::new(0.5, y, 0.0), MotionType::Kinematic);
+        let mut plate = RigidBody::new(form, MotionType::Kinematic).at(Vector::new(0.5, y, 0.0));
         plate.friction = 0.0;
         plate
     };
@@ -56,9 +56,9 @@ fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, SoftB
     go(&mut world, share, share, 20);
     go(&mut world, share, 2.0, 60);
     go(&mut world, 2.0, 2.0, 120);
-    let view = world.soft_bodies()[id].piece_views()[0];
+    let view = world[id].piece_views()[0];
     let [height, width] = [1, 0].map(|axis: usize| view.high[axis] - view.low[axis]);
-    let volume = volume(&world.soft_bodies()[id]);
+    let volume = volume(&world[id]);
     ([height, width, volume], world, id)
 }
 
@@ -81,7 +81,7 @@ fn check_dent<D: Dim>() {
     assert!((0.6..0.8).contains(&height), "clay: height {height} m");
     assert!(width > 1.05, "clay: width {width} m");
     assert!((volume - 1.0).abs() < 0.05, "clay: volume {volume}");
-    let body = &world.soft_bodies()[clay];
+    let body = &world[clay];
     let dents = body
         .mesh()
         .elements()
@@ -90,7 +90,7 @@ fn check_dent<D: Dim>() {
     let ([height, width, volume], world, rubber) = pressed::<D>(rubber(), 0.65);
     assert!((height - 1.0).abs() < 0.01, "rubber: height {height} m");
     assert!((width - 1.0).abs() < 0.01 && (volume - 1.0).abs() < 0.01);
-    let body = &world.soft_bodies()[rubber];
+    let body = &world[rubber];
     assert!({ body.mesh().elements() }.all(|(id, _)| body.plastic_strain(id) == Some(0.0)));
 }
 
@@ -106,7 +106,11 @@ fn node_states<D: Dim>(world: &World<D>) -> Vec<([f32; 3], [f32; 3], f32)> {
         let nodes = body.mesh().nodes();
         nodes.map(|(id, _)| body.node_state(id)).collect()
     };
-    world.soft_bodies().iter().flat_map(states).collect()
+    world
+        .soft_bodies()
+        .map(|(_, body)| body)
+        .flat_map(states)
+        .collect()
 }
 
 /// A yield strain that is never reached gives the same bits as an infinite one.
@@ -114,7 +118,9 @@ fn check_same_bits<D: Dim>() {
     let run = |material: Material| {
         let mut world = World::<D>::new(WorldConfig::default()).unwrap();
         let floor = Shape::half_space(Vector::Y, Vector::ZERO);
-        world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
+        world
+            .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
+            .unwrap();
         let body = SoftBody::new(VoxelGrid::<D>::ball(10, 1.0).unwrap(), &[material]).unwrap();
         world.add_soft_body(body.translated(Vector::new(0.0, 0.2, 0.0)));
         (0..60).for_each(|_| _ = world.step());
@@ -235,10 +241,10 @@ fn check_kept<D: Dim>() {
         body.set_node_state(node, at, velocity.into());
     }
     let energy = |world: &World<D>| {
-        let energies = world.soft_bodies()[id].energies(Vector::ZERO);
+        let energies = world[id].energies(Vector::ZERO);
         energies.iter().map(|energy| energy.total()).sum::<f64>()
     };
-    let momentum = world.soft_bodies()[id].momentum();
+    let momentum = world[id].momentum();
     let mut before = energy(&world);
     let first = before;
     for tick in 0..90 {
@@ -249,7 +255,7 @@ fn check_kept<D: Dim>() {
             "tick {tick}: {before} to {now} J"
         );
         before = before.min(now).max(now);
-        let other = world.soft_bodies()[id].momentum();
+        let other = world[id].momentum();
         for axis in 0..3 {
             let linear = other.linear[axis] - momentum.linear[axis];
             let spin = other.angular[axis] - momentum.angular[axis];
@@ -260,7 +266,7 @@ fn check_kept<D: Dim>() {
             );
         }
     }
-    let body = &world.soft_bodies()[id];
+    let body = &world[id];
     let dents = body
         .mesh()
         .elements()
@@ -282,7 +288,7 @@ fn plastic_flow_preserves_momentum_and_dissipates_energy() {
 fn check_inherited<D: Dim>() {
     let (_, mut world, id) = pressed::<D>(Material::clay(), 0.6);
     let mean = |world: &World<D>| {
-        let body = &world.soft_bodies()[id];
+        let body = &world[id];
         let dents = body.mesh().elements().map(|(own, element)| {
             let voxels = body.mesh().voxels(element).count() as f32;
             (voxels * body.plastic_strain(own).unwrap(), voxels)
@@ -290,16 +296,16 @@ fn check_inherited<D: Dim>() {
         let (sum, voxels) = dents.fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
         sum / voxels
     };
-    let (dent, elements) = (mean(&world), world.soft_bodies()[id].mesh().element_count());
+    let (dent, elements) = (mean(&world), world[id].mesh().element_count());
     assert!(dent > 0.1);
-    let [x, y, _] = world.soft_bodies()[id].centre_of_mass().to_array();
+    let [x, y, _] = world[id].centre_of_mass().to_array();
     let blade = Blade {
         from: Vector::new(x - 0.03, y - 2.0, -3.0),
         across: Vector::new(0.05, 4.0, 0.0),
         along: Vector::new(0.0, 0.0, 6.0),
     };
     world.cut(id, &blade).unwrap();
-    let body = &world.soft_bodies()[id];
+    let body = &world[id];
     assert!(body.pieces().count() == 2 && body.mesh().element_count() >= elements);
     assert!(
         (mean(&world) - dent).abs() < 1e-4,
@@ -353,11 +359,13 @@ fn check_abuse<D: Dim>(seed: u32) {
     };
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space(Vector::Y, Vector::ZERO);
-    world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
+        .unwrap();
     let body = SoftBody::new(VoxelGrid::<D>::ball(8, 1.0).unwrap(), &[clay]).unwrap();
     let id = world.add_soft_body(body);
     let hand = world
-        .add_rigid_body(RigidBody::coupled_ball(Vector::new(0.5, 2.0, 0.5), 0.2))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at(Vector::new(0.5, 2.0, 0.5)))
         .unwrap();
     let limit = f64::from(clay.plastic_limit);
     let (mut place, mut target) = ([0.5, 2.0, 0.5], [0.5; 3]);
@@ -373,7 +381,7 @@ fn check_abuse<D: Dim>(seed: u32) {
         let report = world.step();
         assert_eq!(report.quarantined, 0, "{}D, seed {seed}, tick {tick}", D::N);
     }
-    let body = &world.soft_bodies()[id];
+    let body = &world[id];
     for (own, _) in body.mesh().elements() {
         let dent = f64::from(body.plastic_strain(own).unwrap());
         assert!(dent < limit * 1.05 + 0.05, "{dent} of {limit}");

@@ -8,8 +8,8 @@ use fuwafuwa::{
 const WEIGHTLESS: WorldConfig = WorldConfig {
     gravity: Vector::ZERO,
     drag: 0.0,
-    most_substeps: 64,
-    tick: fuwafuwa::TICK,
+    max_substeps: 64,
+    tick: fuwafuwa::DEFAULT_TICK,
 };
 
 /// A ball of two materials centred at the origin; material 2 fills a radius of 0.25 m.
@@ -31,17 +31,19 @@ fn world<D: Dim>() -> World<D> {
     let mut world = World::new(WEIGHTLESS).unwrap();
     world.add_soft_body(ball::<D>(16).rotated_about(Rotation::in_plane(0.4), [0.0; 3]));
     world
-        .add_rigid_body(RigidBody::fixed(
-            Shape::half_space(Vector::Y, Vector::new(0.0, -2.0, 0.0)),
-            0.3,
-        ))
+        .add_rigid_body(
+            RigidBody::fixed(Shape::half_space(Vector::Y, Vector::new(0.0, -2.0, 0.0)))
+                .with_friction(0.3),
+        )
         .unwrap();
     let bar = Shape::Capsule {
         from: Vector::new(3.0, -1.0, 0.0),
         to: Vector::new(3.0, 1.0, 0.0),
         radius: 0.25,
     };
-    world.add_rigid_body(RigidBody::fixed(bar, 0.3)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(bar).with_friction(0.3))
+        .unwrap();
     world
 }
 
@@ -133,7 +135,7 @@ fn check_nearest<D: Dim>() {
             let filter = QueryFilter::default().only_soft();
             let found = world.closest_point(at, 9.0, filter).unwrap();
             // No bare face may be nearer.
-            let body = world.soft_bodies().first().unwrap();
+            let body = world.soft_bodies().next().unwrap().1;
             let corners = body
                 .facets()
                 .flat_map(|facet| facet.corners.into_iter().take(D::CORNERS / 2));
@@ -243,14 +245,14 @@ fn row<D: Dim>() -> (
         centre,
         half: [0.5; 3],
     };
-    let mut gate = RigidBody::fixed(cuboid([-2.0, 0.0, 0.0]), 0.3);
+    let mut gate = RigidBody::fixed(cuboid([-2.0, 0.0, 0.0])).with_friction(0.3);
     gate.is_sensor = true;
-    let mut second = RigidBody::fixed(cuboid([2.0, 0.0, 0.0]), 0.3);
+    let mut second = RigidBody::fixed(cuboid([2.0, 0.0, 0.0])).with_friction(0.3);
     second.layers = Layers {
         memberships: 0b10,
         filters: 0b01,
     };
-    let first = RigidBody::fixed(cuboid([0.0; 3]), 0.3);
+    let first = RigidBody::fixed(cuboid([0.0; 3])).with_friction(0.3);
     let rigids = [gate, first, second].map(|rigid| world.add_rigid_body(rigid).unwrap());
     let half = [0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 }];
     let cube = SoftBody::new(VoxelGrid::cube(4, 1.0).unwrap(), &[Material::default()]).unwrap();
@@ -319,7 +321,7 @@ fn check_filters<D: Dim>() {
     // A predicate may query the world.
     let is_isolated = |object: ObjectRef| {
         let centre = match object.rigid_body() {
-            Some(rigid) => world.rigid_bodies()[rigid].position(),
+            Some(rigid) => world.rigid_body(rigid).unwrap().position(),
             None => return false,
         };
         let region = Shape::Ball {
@@ -358,7 +360,7 @@ fn filter_selects_objects_of_all_queries() {
 fn ray_prefers_the_lowest_object_among_equally_distant_ones() {
     let (mut world, [_, first, _], _) = row::<Dim3>();
     let ray = Ray::new([-5.0, 0.1, 0.0], [1.0, 0.0, 0.0]);
-    let cuboid = world.rigid_bodies()[first].clone();
+    let cuboid = world.rigid_body(first).unwrap().clone();
     let copy = world.add_rigid_body(cuboid).unwrap();
     let hit = |world: &World<Dim3>, filter| world.ray_cast(ray, 100.0, filter).unwrap().object;
     assert_eq!(
@@ -444,7 +446,12 @@ fn check_cache<D: Dim>(world: &World<D>, step: &str) {
         let loaded = fuwafuwa::snapshot::load::<D>(&bytes).unwrap();
         assert_eq!(known, answers(&loaded), "{step}");
     }
-    let facets = || world.soft_bodies().iter().flat_map(|body| body.facets());
+    let facets = || {
+        world
+            .soft_bodies()
+            .map(|(_, body)| body)
+            .flat_map(|body| body.facets())
+    };
     let mut hits = 0;
     for direction in around::<D>() {
         let origin = direction.map(|along| 4.0 * along);
@@ -470,7 +477,9 @@ fn check_cache<D: Dim>(world: &World<D>, step: &str) {
 fn check_queries_after_changes<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]);
-    world.add_rigid_body(RigidBody::fixed(floor, 0.3)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.3))
+        .unwrap();
     let free = Shape::Ball {
         centre: [1.5, 0.0, 0.0],
         radius: 0.2,
@@ -506,7 +515,7 @@ fn check_queries_after_changes<D: Dim>() {
         .set_pose(free, [0.3, 1.1, 0.0], Rotation::NONE)
         .unwrap();
     check_cache(&world, "moved rigid body");
-    let nodes = world.soft_bodies()[other].mesh().nodes();
+    let nodes = world[other].mesh().nodes();
     let nodes: Vec<_> = nodes.map(|(node, _)| node).collect();
     let changed = world.soft_body_mut(other).unwrap();
     for node in nodes {

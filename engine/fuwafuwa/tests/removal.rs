@@ -13,8 +13,8 @@ use fuwafuwa::{
 const WEIGHTLESS: WorldConfig = WorldConfig {
     gravity: Vector::ZERO,
     drag: 0.0,
-    most_substeps: 64,
-    tick: fuwafuwa::TICK,
+    max_substeps: 64,
+    tick: fuwafuwa::DEFAULT_TICK,
 };
 
 fn random(seed: &mut u32, below: usize) -> usize {
@@ -68,10 +68,12 @@ fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
     };
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space(Vector::Y, Vector::ZERO);
-    world.add_rigid_body(RigidBody::fixed(floor, 0.3)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.3))
+        .unwrap();
     let body = SoftBody::new(VoxelGrid::<D>::ball(n, 1.0).unwrap(), &[soft]).unwrap();
     let id = world.add_soft_body(body);
-    let mut bookmark = world.soft_bodies()[id].bookmark();
+    let mut bookmark = world[id].bookmark();
     let mut gone = 0;
     for round in 0..12 {
         let what = format!("{}D, seed {seed}, round {round}", D::N);
@@ -82,18 +84,18 @@ fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
                 (0..D::N).for_each(|axis| at[axis] = random(seed, n + 1) as i32);
                 let side = 1 + random(seed, (1 << D::CORNERS) - 2) as u8;
                 world.soft_body_mut(id).unwrap().release(&[(at, side)]);
-                bookmark = world.soft_bodies()[id].bookmark();
+                bookmark = world[id].bookmark();
             }
             _ => drop((0..2).map(|_| world.step()).collect::<Vec<_>>()),
         }
-        let views = world.soft_bodies()[id].piece_views();
+        let views = world[id].piece_views();
         let left = views.iter().filter(|view| !view.removed).count();
         let largest = { views.iter() }.max_by_key(|view| view.element_count);
         let largest = largest.unwrap().number;
         if left < 2 {
             continue;
         }
-        world.soft_bodies()[id].changes_since(&mut bookmark);
+        world[id].changes_since(&mut bookmark);
         let other = views
             .iter()
             .find(|view| view.number != largest && !view.removed && random(seed, 2) == 0);
@@ -103,7 +105,7 @@ fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
         };
         gone += removed.pieces.len();
         check_whole(&world, &what);
-        let body = &world.soft_bodies()[id];
+        let body = &world[id];
         let pieces: Vec<PieceId> = removed.pieces.iter().map(|&(_, piece)| piece).collect();
         // After too many changes, `changes_since` returns `None`.
         if let Some(changes) = body.changes_since(&mut bookmark) {
@@ -146,7 +148,7 @@ fn halves<D: Dim>(settings: WorldConfig) -> (World<D>, SoftBodyHandle) {
         along: Vector::new(0.0, 0.0, 3.0),
     };
     world.cut(cube, &blade).unwrap();
-    assert_eq!(world.soft_bodies()[cube].pieces().count(), 2);
+    assert_eq!(world[cube].pieces().count(), 2);
     (world, cube)
 }
 
@@ -163,16 +165,16 @@ fn check_rest_untouched<D: Dim>() {
         .unwrap();
     (0..3).for_each(|_| _ = world.step());
     let states = |world: &World<D>, piece: u32| -> Vec<_> {
-        let body = &world.soft_bodies()[cube];
+        let body = &world[cube];
         let nodes = body.mesh().nodes().map(|(id, _)| id);
         let own = nodes.filter(|&id| body.pieces().of_node(id) == PieceId(piece));
         own.map(|id| (id, body.node_state(id))).collect()
     };
-    let (before, whole) = (states(&world, 0), world.soft_bodies()[cube].total_mass());
+    let (before, whole) = (states(&world, 0), world[cube].total_mass());
     let removed = world.remove_piece(cube, PieceId(1)).unwrap();
     assert_eq!(states(&world, 0), before);
     assert_eq!(states(&world, 1), []);
-    let left = world.soft_bodies()[cube].total_mass();
+    let left = world[cube].total_mass();
     assert!((removed.mass + left - whole).abs() < 1e-9 * whole && removed.mass > 0.3 * whole);
     let events = [Event::PieceRemoved {
         body: cube,
@@ -186,9 +188,9 @@ fn check_rest_untouched<D: Dim>() {
         "piece must be the number of a piece that the body still has, given 1"
     );
     assert!(world.remove_piece(cube, PieceId(7)).is_err());
-    let momentum = world.soft_bodies()[cube].momentum().linear;
+    let momentum = world[cube].momentum().linear;
     (0..30).for_each(|_| _ = world.step());
-    let now = world.soft_bodies()[cube].momentum().linear;
+    let now = world[cube].momentum().linear;
     for axis in 0..3 {
         assert!(
             (now[axis] - momentum[axis]).abs() < 1e-3 * left,
@@ -228,7 +230,7 @@ fn remove_piece_has_no_effect_on_vibration_of_rest() {
         other.step();
     }
     let [alone, beside] = [&world, &other].map(|world| {
-        let body = &world.soft_bodies()[cube];
+        let body = &world[cube];
         let nodes = body.mesh().nodes().map(|(id, _)| id);
         let own = nodes.filter(|&id| body.pieces().of_node(id) == PieceId(0));
         own.map(|id| body.node_state(id)).collect::<Vec<_>>()
@@ -239,7 +241,9 @@ fn remove_piece_has_no_effect_on_vibration_of_rest() {
 fn check_leaning<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space(Vector::Y, Vector::ZERO);
-    world.add_rigid_body(RigidBody::fixed(floor, 0.5)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.5))
+        .unwrap();
     let cube = |n, width| {
         let strong = Material {
             strength: f32::INFINITY,
@@ -261,7 +265,7 @@ fn check_leaning<D: Dim>() {
     let all_sleep = |world: &World<D>| {
         let pieces = world
             .soft_bodies()
-            .iter()
+            .map(|(_, body)| body)
             .flat_map(|body| &body.pieces().list);
         pieces.into_iter().all(|piece| piece.asleep)
     };
@@ -277,10 +281,10 @@ fn check_leaning<D: Dim>() {
         world.events().iter().filter(ended).copied().collect()
     };
     let asleep = |world: &World<D>, id: SoftBodyHandle, piece: usize| {
-        world.soft_bodies()[id].pieces().list[PieceId(piece as u32)].asleep
+        world[id].pieces().list[PieceId(piece as u32)].asleep
     };
-    let centre = world.soft_bodies()[on_right].centre_of_mass();
-    let right = if { world.soft_bodies()[below].piece_views() }[0].centre[0] > 0.4 {
+    let centre = world[on_right].centre_of_mass();
+    let right = if { world[below].piece_views() }[0].centre[0] > 0.4 {
         0
     } else {
         1
@@ -304,7 +308,7 @@ fn check_leaning<D: Dim>() {
         |event: &Event| matches!(event, Event::ContactEnded { pair } if pair.contains(&gone));
     assert!(ended.iter().any(told), "{ended:?}");
     (0..40).for_each(|_| _ = world.step());
-    let now = world.soft_bodies()[on_right].centre_of_mass();
+    let now = world[on_right].centre_of_mass();
     assert!(now[1] < centre[1] - 0.3, "{centre:?} to {now:?}");
     assert!(asleep(&world, far, 0));
 }
@@ -322,22 +326,22 @@ fn check_ties<D: Dim>() {
         centre: Vector::new(0.5, 0.5, middle),
         radius: 3.0,
     };
-    let mut sensor = RigidBody::fixed(sensor, 0.0);
+    let mut sensor = RigidBody::fixed(sensor).with_friction(0.0);
     sensor.is_sensor = true;
     let sensor = world.add_rigid_body(sensor).unwrap();
     let [to_left, to_right] = [0.1, 0.9].map(|x| {
         let at = [x, 0.5, middle];
-        let end = JointAnchor::Soft {
+        let end = JointAnchor::SoftBody {
             body: cube,
             at: at.into(),
             radius: 0.1,
         };
         world
-            .add_joint(Joint::pin(end, JointAnchor::Position(at.into())))
+            .add_joint(Joint::pin(end, JointAnchor::Point(at.into())))
             .unwrap()
     });
     world.step();
-    let views = world.soft_bodies()[cube].piece_views();
+    let views = world[cube].piece_views();
     let right = views
         .iter()
         .find(|view| view.centre[0] > 0.5)
@@ -358,7 +362,7 @@ fn check_ties<D: Dim>() {
         events.contains(&Event::SensorExited { sensor, object }),
         "{events:?}"
     );
-    assert!(world.joints().get(to_left).is_ok() && world.joints().get(to_right).is_err());
+    assert!(world.joint(to_left).is_ok() && world.joint(to_right).is_err());
 }
 
 #[test]
@@ -375,15 +379,19 @@ fn check_last<D: Dim>() {
         (removed.pieces.len(), &removed.bodies[..]),
         (1, &[cube][..])
     );
-    assert!(world.soft_bodies().get(cube).is_err() && world.soft_bodies().is_empty());
-    assert!(world.events().contains(&Event::BodyRemoved { body: cube }));
+    assert!(world.soft_body(cube).is_err() && world.soft_bodies().next().is_none());
+    assert!(
+        world
+            .events()
+            .contains(&Event::SoftBodyRemoved { body: cube })
+    );
     assert!(world.remove_piece(cube, PieceId(1)).is_err());
     world.step();
     // The slot is free for another body.
     let ball = SoftBody::new(VoxelGrid::ball(6, 1.0).unwrap(), &[Material::default()]).unwrap();
     let ball = world.add_soft_body(ball);
     (0..30).for_each(|_| _ = world.step());
-    assert!(world.soft_bodies().get(ball).is_ok() && world.soft_bodies().get(cube).is_err());
+    assert!(world.soft_body(ball).is_ok() && world.soft_body(cube).is_err());
     check_whole(&world, "after the last piece");
 }
 
@@ -395,7 +403,7 @@ fn body_is_removed_with_its_last_piece() {
 
 fn check_sizes<D: Dim>() {
     let (mut world, cube) = halves::<D>(WEIGHTLESS);
-    let half = 0.5 * world.soft_bodies()[cube].total_mass();
+    let half = 0.5 * world[cube].total_mass();
     let none = Removed::default();
     for size in [
         PieceSize::Mass(0.9 * half),
@@ -432,7 +440,7 @@ fn remove_small_pieces_compares_mass_volume_or_voxels() {
 
 fn check_outside<D: Dim>() {
     let (mut world, cube) = halves::<D>(WEIGHTLESS);
-    let views = world.soft_bodies()[cube].piece_views();
+    let views = world[cube].piece_views();
     let right = views
         .iter()
         .find(|view| view.centre[0] > 0.5)
@@ -450,7 +458,7 @@ fn check_outside<D: Dim>() {
     let near = world.add_rigid_body(ball(-2.1)).unwrap();
     let far = world.add_rigid_body(ball(-2.3)).unwrap();
     let hand = world
-        .add_rigid_body(RigidBody::coupled_ball(Vector::new(-9.0, 0.0, 0.0), 0.1))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(-9.0, 0.0, 0.0)))
         .unwrap();
     let region = Shape::Box {
         centre: Vector::new(-0.8, 0.0, 0.0),
@@ -461,8 +469,12 @@ fn check_outside<D: Dim>() {
         (removed.pieces, removed.rigids),
         (vec![(cube, right)], vec![far])
     );
-    assert!(world.rigid_bodies().get(near).is_ok() && world.rigid_bodies().get(hand).is_ok());
-    assert!(world.events().contains(&Event::RigidRemoved { rigid: far }));
+    assert!(world.rigid_body(near).is_ok() && world.rigid_body(hand).is_ok());
+    assert!(
+        world
+            .events()
+            .contains(&Event::RigidBodyRemoved { rigid: far })
+    );
     let bad = Shape::Ball {
         centre: Vector::ZERO,
         radius: -1.0,
@@ -486,11 +498,11 @@ fn changes_since_reports_tear_and_removal_together() {
     let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
     let cube = SoftBody::new(VoxelGrid::cube(32, 1.0).unwrap(), &[Material::default()]).unwrap();
     let cube = world.add_soft_body(cube);
-    let mut bookmark: Bookmark = world.soft_bodies()[cube].bookmark();
+    let mut bookmark: Bookmark = world[cube].bookmark();
     let blade = Blade::segment([-0.1, 0.2], [0.2, -0.1]);
     world.cut(cube, &blade).unwrap();
     world.remove_piece(cube, PieceId(1)).unwrap();
-    let body = &world.soft_bodies()[cube];
+    let body = &world[cube];
     let changes = body.changes_since(&mut bookmark).unwrap();
     assert_eq!(
         (changes.detached, changes.removed),

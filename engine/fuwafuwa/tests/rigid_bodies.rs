@@ -19,7 +19,7 @@ fn world<D: Dim>(gravity: f32) -> World<D> {
 
 fn floored<D: Dim>() -> World<D> {
     let mut world = world::<D>(-9.81);
-    let floor = RigidBody::fixed(Shape::half_space(UP, Vector::ZERO), 0.5);
+    let floor = RigidBody::fixed(Shape::half_space(UP, Vector::ZERO)).with_friction(0.5);
     world.add_rigid_body(floor).unwrap();
     world
 }
@@ -74,7 +74,7 @@ fn all_come_to_rest<D: Dim>() {
         for _ in 0..300 {
             world.step();
         }
-        let rigid = &world.rigid_bodies()[id];
+        let rigid = world.rigid_body(id).unwrap();
         assert!(
             (rigid.position()[1] - height).abs() < 0.01,
             "{shape:?} {:?}",
@@ -110,7 +110,7 @@ fn a_tower_stands<D: Dim>() {
         world.step();
     }
     for (n, &id) in ids.iter().enumerate() {
-        let rigid = &world.rigid_bodies()[id];
+        let rigid = world.rigid_body(id).unwrap();
         let [x, y, z] = rigid.position().to_array();
         assert!(x.abs() < 0.03 && z.abs() < 0.03, "{n}: {x} {z}");
         assert!((y - 0.25 - 0.5 * n as f32).abs() < 0.02, "{n}: {y}");
@@ -137,7 +137,7 @@ fn one_of_two_towers_falls<D: Dim>() {
     (material.elasticity.young, material.strength) = (2e5, f32::INFINITY);
     let mut tower = |x: f32| {
         let mut add = |rigid: RigidBody| world.add_rigid_body(rigid).unwrap();
-        let foot = add(RigidBody::fixed(cube(Vector::new(x, 0.25, 0.0), 0.25), 0.5));
+        let foot = add(RigidBody::fixed(cube(Vector::new(x, 0.25, 0.0), 0.25)).with_friction(0.5));
         let boxes =
             [0.75, 1.65].map(|y| add(RigidBody::dynamic(cube(Vector::new(x, y, 0.0), 0.25), 0.5)));
         let grid = VoxelGrid::<D>::cube(4, 0.4).unwrap();
@@ -152,8 +152,8 @@ fn one_of_two_towers_falls<D: Dim>() {
     let (falling, standing) = (tower(0.0), tower(3.0));
     let sleep = |world: &World<D>,
                  &(_, boxes, soft): &(RigidBodyHandle, [RigidBodyHandle; 2], _)| {
-        let pieces = &world.soft_bodies()[soft].pieces().list;
-        let boxes = boxes.map(|id| world.rigid_bodies()[id].is_asleep());
+        let pieces = &world[soft].pieces().list;
+        let boxes = boxes.map(|id| world.rigid_body(id).unwrap().is_asleep());
         [boxes[0], pieces.iter().all(|piece| piece.asleep), boxes[1]]
     };
     for _ in 0..600 {
@@ -167,7 +167,7 @@ fn one_of_two_towers_falls<D: Dim>() {
         world.step();
         assert_eq!(sleep(&world, &standing), [true; 3]);
     }
-    let height = world.rigid_bodies()[falling.1[0]].position()[1];
+    let height = world.rigid_body(falling.1[0]).unwrap().position()[1];
     assert!((height - 0.25).abs() < 0.01, "{height}");
 }
 
@@ -182,10 +182,9 @@ fn it_rolls<D: Dim>() {
     let slope = 0.3f32;
     let normal = upright(slope);
     world
-        .add_rigid_body(RigidBody::fixed(
-            Shape::half_space(normal.into(), Vector::ZERO),
-            0.9,
-        ))
+        .add_rigid_body(
+            RigidBody::fixed(Shape::half_space(normal.into(), Vector::ZERO)).with_friction(0.9),
+        )
         .unwrap();
     let start = normal.map(|k| 0.3 * k);
     let id = world
@@ -196,7 +195,7 @@ fn it_rolls<D: Dim>() {
     }
     let share = if D::N == 2 { 2.0 / 3.0 } else { 5.0 / 7.0 };
     let expected = share * 9.81 * normal[0];
-    let rigid = &world.rigid_bodies()[id];
+    let rigid = world.rigid_body(id).unwrap();
     assert!(
         (speed(rigid) / expected - 1.0).abs() < 0.03,
         "{} {expected}",
@@ -218,21 +217,20 @@ fn friction_holds_box_only_below_friction_angle() {
         let normal = upright(angle);
         // tan 0.3 = 0.31, tan 0.6 = 0.68
         world
-            .add_rigid_body(RigidBody::fixed(
-                Shape::half_space(normal.into(), Vector::ZERO),
-                0.5,
-            ))
+            .add_rigid_body(
+                RigidBody::fixed(Shape::half_space(normal.into(), Vector::ZERO)).with_friction(0.5),
+            )
             .unwrap();
         let shape = cube(Vector::ZERO, 0.3).rotated(Rotation::in_plane(-angle));
         let shape = shape.translated(normal.map(|k| 0.3 * k).into());
         let id = world
             .add_rigid_body(RigidBody::dynamic(shape, 2.0))
             .unwrap();
-        let start = world.rigid_bodies()[id].position();
+        let start = world.rigid_body(id).unwrap().position();
         for _ in 0..120 {
             world.step();
         }
-        let rigid = &world.rigid_bodies()[id];
+        let rigid = world.rigid_body(id).unwrap();
         let way = rigid.position()[0] - start[0];
         // Sliding for 2 s: g (sin − 0.5 cos) t²/2 along the slope.
         let along = 9.81 * (normal[0] - 0.5 * normal[1]) * 2.0 * normal[1];
@@ -253,9 +251,9 @@ fn ball_bounces_to_height_given_by_restitution() {
         let id = world.add_rigid_body(rigid).unwrap();
         let (mut hit, mut highest) = (false, 0.0f32);
         for _ in 0..100 {
-            let before = world.rigid_bodies()[id].velocity()[1];
+            let before = world.rigid_body(id).unwrap().velocity()[1];
             world.step();
-            let rigid = &world.rigid_bodies()[id];
+            let rigid = world.rigid_body(id).unwrap();
             hit |= before < 0.0 && rigid.velocity()[1] >= 0.0;
             if hit {
                 highest = highest.max(rigid.position()[1] - 0.3);
@@ -272,7 +270,7 @@ fn ball_bounces_to_height_given_by_restitution() {
 /// Returns the linear momentum of dynamic boxes.
 fn momentum<D: Dim>(world: &World<D>, ids: &[RigidBodyHandle], mass: f32) -> Vector {
     ids.iter().fold(Vector::ZERO, |sum, &id| {
-        let velocity = world.rigid_bodies()[id].velocity();
+        let velocity = world.rigid_body(id).unwrap().velocity();
         [0, 1, 2].map(|k: usize| sum[k] + mass * velocity[k]).into()
     })
 }
@@ -305,8 +303,8 @@ fn collision_preserves_linear_momentum() {
             "{before:?} {after:?}"
         );
     }
-    assert!(world.rigid_bodies()[ids[1]].velocity()[0] > 2.0);
-    assert!(world.rigid_bodies()[ids[1]].angular_velocity() != Vector::ZERO);
+    assert!(world.rigid_body(ids[1]).unwrap().velocity()[0] > 2.0);
+    assert!(world.rigid_body(ids[1]).unwrap().angular_velocity() != Vector::ZERO);
 }
 
 /// A rigid box on a soft body sinks in a little and settles; neither is pushed away.
@@ -336,7 +334,7 @@ fn it_lies_on_a_soft_body<D: Dim>(mass: f32) {
     for _ in 0..480 {
         world.step();
     }
-    let rigid = &world.rigid_bodies()[id];
+    let rigid = world.rigid_body(id).unwrap();
     let [_, y, _] = rigid.position().to_array();
     assert!((0.5..1.12).contains(&y), "{mass}: {:?}", rigid.position());
     let tilt = rigid.rotation().apply(UP)[1];
@@ -369,7 +367,7 @@ fn soft_ball_pushes_and_rolls_rigid_ball() {
     for _ in 0..60 {
         world.step();
     }
-    let rigid = &world.rigid_bodies()[id];
+    let rigid = world.rigid_body(id).unwrap();
     assert!(rigid.velocity()[0] > 0.5, "{:?}", rigid.velocity());
     assert!(
         rigid.angular_velocity()[2] < -1.0,
@@ -385,7 +383,7 @@ fn kinematic_table_rotates_and_carries_box() {
         centre: Vector::ZERO,
         half: Vector::new(2.0, 0.1, 2.0),
     };
-    let table = RigidBody::new(disc, Vector::ZERO, MotionType::Kinematic);
+    let table = RigidBody::new(disc, MotionType::Kinematic).at(Vector::ZERO);
     let table = world.add_rigid_body(table).unwrap();
     let id = world
         .add_rigid_body(RigidBody::dynamic(
@@ -402,17 +400,18 @@ fn kinematic_table_rotates_and_carries_box() {
             .unwrap();
         world.step();
     }
-    let [x, _, z] = world.rigid_bodies()[id].position().to_array();
+    let [x, _, z] = world.rigid_body(id).unwrap().position().to_array();
     assert!(x.abs() < 0.05 && (z + 1.0).abs() < 0.05, "{x} {z}");
-    let turned = world.rigid_bodies()[table].rotation().apply(Vector::X);
+    let turned = world.rigid_body(table).unwrap().rotation().apply(Vector::X);
     assert!((turned[2] + 1.0).abs() < 1e-4, "{turned:?}");
 }
 
 #[test]
 fn rotated_box_collides() {
     let mut world = world::<Dim2>(-9.81);
-    let ramp =
-        RigidBody::fixed(cube(Vector::ZERO, 1.0), 0.0).rotated(Rotation::in_plane(FRAC_PI_4));
+    let ramp = RigidBody::fixed(cube(Vector::ZERO, 1.0))
+        .with_friction(0.0)
+        .rotated(Rotation::in_plane(FRAC_PI_4));
     world.add_rigid_body(ramp).unwrap();
     let id = world
         .add_rigid_body(RigidBody::dynamic(ball(Vector::new(0.3, 2.5, 0.0)), 1.0))
@@ -420,7 +419,7 @@ fn rotated_box_collides() {
     for _ in 0..60 {
         world.step();
     }
-    let [x, y, _] = world.rigid_bodies()[id].position().to_array();
+    let [x, y, _] = world.rigid_body(id).unwrap().position().to_array();
     assert!(x > 1.0 && y < 1.2, "{x} {y}");
 }
 
@@ -434,11 +433,7 @@ fn add_rigid_names_invalid_field() {
     let tiny = RigidBody::dynamic(tiny, 1e-6);
     let endless = RigidBody::dynamic(Shape::half_space(UP, Vector::ZERO), 1.0);
     let heavy = RigidBody::dynamic(cube(Vector::ZERO, 1.0), f32::NAN);
-    let off = RigidBody::new(
-        cube(UP, 1.0),
-        Vector::ZERO,
-        MotionType::Dynamic { mass: 1.0 },
-    );
+    let off = RigidBody::new(cube(UP, 1.0), MotionType::Dynamic { mass: 1.0 }).at(Vector::ZERO);
     let mut bouncy = RigidBody::dynamic(cube(Vector::ZERO, 1.0), 1.0);
     bouncy.restitution = 2.0;
     for (rigid, word) in [
@@ -466,7 +461,7 @@ fn add_rigid_names_invalid_field() {
     );
     assert!(world.set_target_position(id, [0.0; 3]).is_err());
     assert!(world.set_pose(id, [2e6, 0.0, 0.0], Rotation::NONE).is_err());
-    let floor = world.rigid_bodies().ids().next().unwrap();
+    let floor = world.rigid_bodies().map(|(id, _)| id).next().unwrap();
     assert!(
         world
             .set_velocity(floor, Velocity::linear([0.0; 3]))
@@ -497,7 +492,7 @@ fn sleepers_hold<D: Dim>() {
         .unwrap();
     for _ in 0..300 {
         world.step();
-        assert!(world.rigid_bodies()[slow].position()[0] < -0.17);
+        assert!(world.rigid_body(slow).unwrap().position()[0] < -0.17);
     }
 }
 
@@ -510,7 +505,7 @@ fn sleeping_body_stops_slow_rigid_body() {
 #[test]
 fn slow_kinematic_lift_moves_sleeping_load() {
     let mut world = world::<Dim3>(-9.81);
-    let lift = RigidBody::new(cube(Vector::ZERO, 0.5), Vector::ZERO, MotionType::Kinematic);
+    let lift = RigidBody::new(cube(Vector::ZERO, 0.5), MotionType::Kinematic).at(Vector::ZERO);
     let lift = world.add_rigid_body(lift).unwrap();
     let load = world
         .add_rigid_body(RigidBody::dynamic(
@@ -521,14 +516,14 @@ fn slow_kinematic_lift_moves_sleeping_load() {
     for _ in 0..120 {
         world.step();
     }
-    assert!(world.rigid_bodies()[load].is_asleep());
+    assert!(world.rigid_body(load).unwrap().is_asleep());
     for tick in 1..=240 {
         world
             .set_target_position(lift, Vector::new(0.0, 0.05 * tick as f32 / 60.0, 0.0))
             .unwrap();
         world.step();
     }
-    let height = world.rigid_bodies()[load].position()[1];
+    let height = world.rigid_body(load).unwrap().position()[1];
     assert!((height - 0.95).abs() < 0.01, "{height}");
 }
 
@@ -548,12 +543,12 @@ fn drive_change_stops_falling_body() {
         world.step();
     }
     for drive in [MotionType::Kinematic, MotionType::default()] {
-        let before = world.rigid_bodies()[id].position();
+        let before = world.rigid_body(id).unwrap().position();
         world.set_motion_type(id, drive).unwrap();
         for _ in 0..10 {
             world.step();
         }
-        let it = &world.rigid_bodies()[id];
+        let it = world.rigid_body(id).unwrap();
         assert!((it.position()[1] - before[1]).abs() < 0.5, "{drive:?}");
         assert_eq!(it.angular_velocity(), Vector::ZERO);
     }

@@ -11,14 +11,18 @@ use fuwafuwa::{
 fn torn_world<D: Dim>(n: usize) -> World<D> {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space(Vector::Y, Vector::ZERO);
-    world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
+        .unwrap();
     let wall = Shape::half_space(Vector::NEG_X, Vector::new(1.1, 0.0, 0.0));
-    world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(wall).with_friction(0.2))
+        .unwrap();
     let ball = VoxelGrid::ball(n, 1.0).unwrap();
     let body = SoftBody::new(ball, &[Material::default()]).unwrap();
     world.add_soft_body(body.translated(Vector::new(0.0, 0.05, 0.0)));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = RigidBody::coupled_ball(Vector::new(-0.3, 0.5, depth), 0.08);
+    let hand = RigidBody::coupled(Shape::ball(0.08)).at(Vector::new(-0.3, 0.5, depth));
     world.add_rigid_body(hand).unwrap();
     world
 }
@@ -62,7 +66,9 @@ fn tied_world<D: Dim>() -> World<D> {
         centre: Vector::new(x, y, depth),
         half: Vector::splat(0.12),
     };
-    let mut gate = RigidBody::fixed(cube(0.5, 1.3), 0.5).rotated(Rotation::in_plane(0.3));
+    let mut gate = RigidBody::fixed(cube(0.5, 1.3))
+        .with_friction(0.5)
+        .rotated(Rotation::in_plane(0.3));
     gate.is_sensor = true;
     world.add_rigid_body(gate).unwrap();
     let boxes: Vec<_> = (0..6)
@@ -76,7 +82,7 @@ fn tied_world<D: Dim>() -> World<D> {
         rigid: boxes[k],
         at: Vector::new(0.4, y, depth),
     };
-    let ball = JointAnchor::Soft {
+    let ball = JointAnchor::SoftBody {
         body: world.nth_soft_body(0).unwrap(),
         at: Vector::new(0.5, 1.0, depth),
         radius: 0.2,
@@ -86,7 +92,7 @@ fn tied_world<D: Dim>() -> World<D> {
         damping: 0.5,
         length: 0.3,
     };
-    let place = JointAnchor::Position(Vector::new(0.4, 4.0, depth));
+    let place = JointAnchor::Point(Vector::new(0.4, 4.0, depth));
     let ties = [
         (on(0, 1.4), ball, JointKind::Pin),
         (on(1, 1.7), on(2, 2.0), spring),
@@ -137,8 +143,9 @@ fn check_cut_resumes<D: Dim>() {
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let hand = world.nth_target_follower(0).unwrap();
     world.remove(hand).unwrap();
-    let mut holder =
-        RigidBody::coupled_ball([-0.2, 0.45, depth], 0.05).with_motion_type(MotionType::Kinematic);
+    let mut holder = RigidBody::coupled(Shape::ball(0.05))
+        .at([-0.2, 0.45, depth])
+        .with_motion_type(MotionType::Kinematic);
     holder.is_sensor = true;
     let holder = world.add_rigid_body(holder).unwrap();
     let edge = [[0.0, 0.0, -0.4], [0.0, 0.0, 0.4]];
@@ -180,7 +187,7 @@ fn check_crumbs_resume<D: Dim>(n: usize) {
     let crumbs = world.add_soft_body(cube.translated([-1.5, 0.0, 0.3]));
     world.soft_body_mut(crumbs).unwrap().crumble();
     let hand = world
-        .add_rigid_body(RigidBody::coupled_ball(Vector::new(-3.0, 0.1, 0.5), 0.1))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(-3.0, 0.1, 0.5)))
         .unwrap();
     let (mut mixed, mut resumed) = (0, load::<D>(&save(&world)).unwrap());
     for tick in 0..240 {
@@ -196,7 +203,7 @@ fn check_crumbs_resume<D: Dim>(n: usize) {
             }
         }
         assert_eq!(resumed.hash(), world.hash(), "tick {tick}");
-        let pieces = &world.soft_bodies()[crumbs].pieces().list;
+        let pieces = &world[crumbs].pieces().list;
         let asleep = pieces.iter().filter(|piece| piece.asleep).count();
         mixed += usize::from(asleep > 0 && asleep < pieces.len());
         if tick % 40 == 20 {
@@ -324,7 +331,7 @@ fn with_state(header: &[u8], state: Vec<u8>) -> Vec<u8> {
 fn load_rejects_node_off_plane_or_non_finite() {
     let mut world = torn_world::<Dim2>(6);
     push(&mut world, 0..3);
-    let body = world.soft_bodies().iter().next().unwrap();
+    let body = world.soft_bodies().map(|(_, body)| body).next().unwrap();
     let (id, _) = body.mesh().nodes().nth(5).unwrap();
     let (at, velocity, mass) = body.node_state(id);
     let bytes = save(&world);
@@ -371,10 +378,12 @@ fn loaded_world_continues_with_same_bits_after_changes() {
     };
     let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space(Vector::Y, Vector::ZERO);
-    world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
+        .unwrap();
     let ids = [0.0, 0.97, 1.94].map(|x| world.add_soft_body(ball(x)));
     let (down, blade) = (
-        RigidBody::coupled_ball(Vector::new(1.4, 1.2, 0.0), 0.1),
+        RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(1.4, 1.2, 0.0)),
         Blade::segment([0.5, -1.0], [0.5, 2.0]),
     );
     let hand = world.add_rigid_body(down).unwrap();
@@ -477,7 +486,7 @@ fn check_changed<D: Dim>(n: usize, variants: u32) -> u32 {
             (0..3).for_each(|_| _ = world.step());
             let again = load::<D>(&save(&world)).map(|again| again.hash());
             assert_eq!(again, Ok(world.hash()));
-            for body in world.soft_bodies().ids().collect::<Vec<_>>() {
+            for body in world.soft_bodies().map(|(id, _)| id).collect::<Vec<_>>() {
                 world.remove(body).unwrap();
             }
             1

@@ -420,7 +420,9 @@ fn world_of_everything<D: Dim>(n: usize) -> World<D> {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let depth = if D::N == 3 { 0.2 } else { 0.0 };
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
+        .unwrap();
     let soft = |n: usize, at: [f32; 3], material: Material| {
         let body = SoftBody::new(VoxelGrid::cube(n, 0.4).unwrap(), &[material]).unwrap();
         body.translated(at)
@@ -441,9 +443,9 @@ fn world_of_everything<D: Dim>(n: usize) -> World<D> {
     };
     world.set_layers(resting, ghost).unwrap();
     // A coupled body tears the cube.
-    let hand = RigidBody::coupled_ball([-0.2, 0.3, depth], 0.08);
+    let hand = RigidBody::coupled(Shape::ball(0.08)).at([-0.2, 0.3, depth]);
     let hand = world.add_rigid_body(hand).unwrap();
-    let mut holder = RigidBody::coupled_ball([0.5, 0.1, depth], 0.05);
+    let mut holder = RigidBody::coupled(Shape::ball(0.05)).at([0.5, 0.1, depth]);
     holder = holder.with_motion_type(MotionType::Kinematic);
     holder.is_sensor = true;
     let holder = world.add_rigid_body(holder).unwrap();
@@ -455,7 +457,7 @@ fn world_of_everything<D: Dim>(n: usize) -> World<D> {
         to: [0.4, 0.2, depth],
         radius: 0.1,
     };
-    let mut gate = RigidBody::fixed(gate, 0.5);
+    let mut gate = RigidBody::fixed(gate).with_friction(0.5);
     gate.is_sensor = true;
     world.add_rigid_body(gate).unwrap();
     let cuboid = |x: f32, y: f32| Shape::Box {
@@ -477,7 +479,7 @@ fn world_of_everything<D: Dim>(n: usize) -> World<D> {
         damping: 0.5,
         length: 0.3,
     };
-    let corner = JointAnchor::Soft {
+    let corner = JointAnchor::SoftBody {
         body: resting,
         at: [3.0, 0.4, 0.0],
         radius: 0.1,
@@ -490,7 +492,7 @@ fn world_of_everything<D: Dim>(n: usize) -> World<D> {
         ),
         (
             on(2, [2.0, 0.8, depth]),
-            JointAnchor::Position([2.0, 1.2, depth]),
+            JointAnchor::Point([2.0, 1.2, depth]),
             spring,
         ),
         (
@@ -548,16 +550,21 @@ fn check_everything<D: Dim>(n: usize) {
     let mut counts = BTreeMap::new();
     check_all_values(&world, &mut counts);
     let is_torn = |body: &SoftBody<D>| body.pieces().count() > 1;
-    assert!(world.soft_bodies().iter().any(is_torn));
+    assert!(world.soft_bodies().map(|(_, body)| body).any(is_torn));
     // Asleep, after some time without the coupled body.
     let hand = world.nth_target_follower(0).unwrap();
     world.remove(hand).unwrap();
     for _ in 0..300 {
         world.step();
     }
-    let mut bodies = world.soft_bodies().iter();
+    let mut bodies = world.soft_bodies().map(|(_, body)| body);
     assert!(bodies.any(|body| body.pieces().list.iter().any(|piece| piece.asleep)));
-    assert!(world.rigid_bodies().iter().any(RigidBody::is_asleep));
+    assert!(
+        world
+            .rigid_bodies()
+            .map(|(_, body)| body)
+            .any(RigidBody::is_asleep)
+    );
     check_all_values(&world, &mut counts);
     for part in COVERED {
         assert!(counts.keys().any(|path| path.starts_with(part)), "{part}");

@@ -4,15 +4,15 @@ use fuwafuwa::{
     Dim, Dim2, Dim3, Error, Event, Hooks, Material, RigidBody, Shape, SoftBody, Substep, VoxelGrid,
     World, WorldConfig,
 };
-use fuwafuwa::{LONGEST_TICK, SHORTEST_TICK, TICK};
+use fuwafuwa::{MAX_TICK, MIN_TICK, TICK};
 
 const TICKS: [f32; 6] = [
-    SHORTEST_TICK,
+    MIN_TICK,
     1.0 / 120.0,
     1.0 / 90.0,
     TICK,
     1.0 / 50.0,
-    LONGEST_TICK,
+    MAX_TICK,
 ];
 
 fn world<D: Dim>(tick: f32) -> World<D> {
@@ -22,7 +22,9 @@ fn world<D: Dim>(tick: f32) -> World<D> {
     };
     let mut world = World::new(settings).unwrap();
     let floor = Shape::half_space(Vector::Y, Vector::ZERO);
-    world.add_rigid_body(RigidBody::fixed(floor, 0.4)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
+        .unwrap();
     world
 }
 
@@ -49,10 +51,10 @@ fn check_fall<D: Dim>() {
     for tick in TICKS {
         let mut world = world::<D>(tick);
         let ball = world.add_soft_body(ball::<D>(12).translated(Vector::new(0.0, 5.0, 0.0)));
-        let start = world.soft_bodies()[ball].centre_of_mass()[1];
+        let start = world[ball].centre_of_mass()[1];
         pass(&mut world, 0.5, |_| {});
         let seconds = (0.5 / tick).round() * tick;
-        let fallen = start - world.soft_bodies()[ball].centre_of_mass()[1];
+        let fallen = start - world[ball].centre_of_mass()[1];
         let expected = 0.5 * 9.81 * seconds * seconds;
         assert!(
             (fallen / expected - 1.0).abs() < 0.01,
@@ -80,14 +82,8 @@ fn landing<D: Dim>(tick: f32) -> [f32; 3] {
         {
             touched = seconds;
         }
-        lowest = lowest.min(world.soft_bodies()[ball].centre_of_mass()[1]);
-        if slept == 0.0
-            && world.soft_bodies()[ball]
-                .pieces()
-                .list
-                .iter()
-                .all(|piece| piece.asleep)
-        {
+        lowest = lowest.min(world[ball].centre_of_mass()[1]);
+        if slept == 0.0 && world[ball].pieces().list.iter().all(|piece| piece.asleep) {
             slept = seconds;
         }
     });
@@ -131,10 +127,12 @@ fn torn<D: Dim>(tick: f32) -> u32 {
     let body = SoftBody::new(VoxelGrid::<D>::ball(12, 1.0).unwrap(), &[soft]).unwrap();
     world.add_soft_body(body);
     let wall = Shape::half_space(Vector::NEG_X, Vector::new(1.1, 0.0, 0.0));
-    world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(wall).with_friction(0.2))
+        .unwrap();
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let hand = world
-        .add_rigid_body(RigidBody::coupled_ball(Vector::new(-0.3, 0.5, depth), 0.1))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(-0.3, 0.5, depth)))
         .unwrap();
     let mut released = 0;
     for number in 1..=(1.0 / tick).round() as u32 {
@@ -182,7 +180,7 @@ fn substeps_per_second_are_independent_of_tick() {
         let mut world = world::<Dim3>(tick);
         let body = SoftBody::new(VoxelGrid::ball(8, 0.2).unwrap(), &[stiff]).unwrap();
         let id = world.add_soft_body(body);
-        world.soft_bodies()[id].stiffness_scale()
+        world[id].stiffness_scale()
     };
     let usual = scale(TICK);
     assert!(usual < 0.5);
@@ -219,7 +217,7 @@ fn set_settings_takes_effect_immediately() {
     let mut world = world::<Dim2>(TICK);
     let ball = world.add_soft_body(ball::<Dim2>(12).translated(Vector::new(0.0, 50.0, 0.0)));
     let speed = |world: &World<Dim2>| {
-        let body = &world.soft_bodies()[ball];
+        let body = &world[ball];
         body.momentum().linear[1] / body.total_mass()
     };
     let mut gain = |settings: WorldConfig| {
@@ -250,7 +248,7 @@ fn set_settings_takes_effect_immediately() {
     near(found, -9.81 * 0.5 * tick);
     assert_eq!(substeps, 8);
     let few = WorldConfig {
-        most_substeps: 8,
+        max_substeps: 8,
         ..usual
     };
     assert_eq!(gain(few).2, 8);
@@ -277,7 +275,7 @@ fn check_callback<D: Dim>(tick: f32) {
         radius: 0.1,
     };
     let from = [-0.2, 1.2, depth];
-    let hand = RigidBody::new(bar, from.into(), fuwafuwa::MotionType::default());
+    let hand = RigidBody::new(bar, fuwafuwa::MotionType::default()).at(from.into());
     let hand = world.add_rigid_body(hand).unwrap();
     let mut most = 0.0f32;
     for number in 1..=(0.5 / tick).round() as u32 {
@@ -298,7 +296,7 @@ fn check_callback<D: Dim>(tick: f32) {
         let report = world.step_with(hooks);
         assert_eq!(felt.len(), report.substeps as usize);
         assert!((time - tick).abs() < 1e-6);
-        assert_eq!(felt, world.rigid_bodies()[hand].reactions());
+        assert_eq!(felt, world.rigid_body(hand).unwrap().reactions());
         for reaction in felt {
             most = most.max(reaction.torque[2]);
             if reaction.contact[1] > 1.0 {
@@ -312,7 +310,7 @@ fn check_callback<D: Dim>(tick: f32) {
 
 #[test]
 fn substep_hook_reports_stored_reactions() {
-    for tick in [SHORTEST_TICK, TICK, LONGEST_TICK] {
+    for tick in [MIN_TICK, TICK, MAX_TICK] {
         check_callback::<Dim2>(tick);
         check_callback::<Dim3>(tick);
     }

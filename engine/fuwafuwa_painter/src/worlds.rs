@@ -21,7 +21,7 @@ const ROUND: usize = 24;
 pub fn plane(painter: &mut Painter, frame: PaperTransform, world: &World<Dim2>, draw: DrawPlane) {
     for obstacle in world
         .rigid_bodies()
-        .iter()
+        .map(|(_, body)| body)
         .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor)
     {
         rigid(painter, frame, *obstacle.shape(), Role::Obstacle);
@@ -117,7 +117,7 @@ pub fn outline(frame: PaperTransform, view: &ElementView) -> Vec<PaperPoint> {
 pub fn space(solid: &mut Scene3d, world: &World<Dim3>, draw: DrawSpace) {
     for obstacle in world
         .rigid_bodies()
-        .iter()
+        .map(|(_, body)| body)
         .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor)
     {
         match *obstacle.shape() {

@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for tick in 0..=TICKS {
         let mut is_new = false;
         let skin = best(&mut skins, |skin| {
-            is_new = skin.update(world.soft_bodies().first().unwrap(), &palette.materials);
+            is_new = skin.update(world.soft_bodies().next().unwrap().1, &palette.materials);
         });
         times[0].push((is_new, skin));
         ages.update(&world, 1.0 / 60.0);
@@ -100,7 +100,7 @@ fn best<T>(goes: &mut [T], mut act: impl FnMut(&mut T)) -> f64 {
 
 /// Returns a sticker with as many corners as a face in the game.
 fn face(world: &World<Dim3>) -> Sticker {
-    let body = world.soft_bodies().first().unwrap();
+    let body = world.soft_bodies().next().unwrap().1;
     let anchor = anchor(body);
     let mark = |k: u32| {
         let count = if k < 12 { 28 } else { 16 };

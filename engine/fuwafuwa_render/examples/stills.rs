@@ -84,7 +84,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Returns particles around the largest piece of the first body, to show how particles look.
 fn crumbs(world: &World<Dim2>) -> Vec<Particle> {
-    let Some(body) = world.soft_bodies().first() else {
+    let Some(body) = world.soft_bodies().next().map(|(_, item)| item) else {
         return Vec::new();
     };
     let anchor = anchor(body);

@@ -22,7 +22,7 @@ impl Ages {
         let known = std::mem::take(&mut self.bodies);
         let mut forms_before = std::mem::take(&mut self.forms);
         let mut ages_before = std::mem::take(&mut self.seconds);
-        for (id, body) in world.soft_bodies().entries() {
+        for (id, body) in world.soft_bodies() {
             let before = known.iter().position(|&known| known == id);
             let young = before.map_or(f32::MAX, |_| 0.0);
             let of = |before: usize| std::mem::take(&mut forms_before[before]);

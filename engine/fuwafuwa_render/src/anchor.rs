@@ -139,7 +139,7 @@ mod tests {
         let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(24, 1.0).unwrap();
         let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
-        let rest = anchor(&world.soft_bodies()[soft]);
+        let rest = anchor(&world[soft]);
         assert!(
             (rest.scale - 0.48).abs() < 0.02 && (rest.axes[0][0] - 1.0).abs() < 1e-6,
             "{rest:?}"
@@ -165,7 +165,7 @@ mod tests {
                 body.set_node_state(id, [place[0] + gone, place[1], 0.0], [0.0; 3]);
             }
         }
-        let now = anchor(&world.soft_bodies()[soft]);
+        let now = anchor(&world[soft]);
         let [right, up, _] = now.axes;
         assert!(
             (right[0] - cos).abs() < 1e-3 && (right[1] - sin).abs() < 1e-3,
@@ -188,11 +188,7 @@ mod tests {
             body.set_node_state(id, [z, x, 0.5 * y], [0.0; 3]);
         }
         let wanted = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
-        for (axis, wanted) in anchor(&world.soft_bodies()[soft])
-            .axes
-            .into_iter()
-            .zip(wanted)
-        {
+        for (axis, wanted) in anchor(&world[soft]).axes.into_iter().zip(wanted) {
             assert!(dot(axis, wanted) > 0.9999, "{axis:?}, not {wanted:?}");
         }
     }

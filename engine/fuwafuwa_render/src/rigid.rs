@@ -69,7 +69,7 @@ impl RigidShapes {
         self.dots.clear();
         for obstacle in world
             .rigid_bodies()
-            .iter()
+            .map(|(_, body)| body)
             .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor)
         {
             if let Shape::HalfSpace { normal, offset } = *obstacle.shape() {
@@ -131,19 +131,21 @@ mod tests {
         let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);
         world
-            .add_rigid_body(RigidBody::fixed(
-                Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]),
-                0.2,
-            ))
+            .add_rigid_body(
+                RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]))
+                    .with_friction(0.2),
+            )
             .unwrap();
         world
-            .add_rigid_body(RigidBody::fixed(Shape::Capsule { from, to, radius }, 0.2))
+            .add_rigid_body(
+                RigidBody::fixed(Shape::Capsule { from, to, radius }).with_friction(0.2),
+            )
             .unwrap();
         world
-            .add_rigid_body(RigidBody::coupled_ball([0.0, 3.0, 0.0], 0.2))
+            .add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at([0.0, 3.0, 0.0]))
             .unwrap();
         world
-            .add_rigid_body(RigidBody::coupled_ball([1.0, 3.0, 0.0], 0.2))
+            .add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at([1.0, 3.0, 0.0]))
             .unwrap();
         let region = Shape::Box {
             centre: [0.5; 3],

@@ -262,7 +262,7 @@ mod tests {
     use fuwafuwa::{Blade, Material, VoxelGrid, World, WorldConfig};
 
     fn rings(world: &World<Dim2>) -> Outlines {
-        let body = world.soft_bodies().first().unwrap();
+        let body = world.soft_bodies().next().unwrap().1;
         let mut rings = Outlines::default();
         rings.trace(body, &Rest::new(body.grid()));
         rings
@@ -277,7 +277,7 @@ mod tests {
 
     /// Returns the radius of the disc with the area of the world's first body [m].
     fn round(world: &World<Dim2>) -> f32 {
-        let grid = world.soft_bodies().first().unwrap().grid();
+        let grid = world.soft_bodies().next().unwrap().1.grid();
         grid.voxel_size() * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt()
     }
 

@@ -93,7 +93,7 @@ fn disc_is_warm_on_a_cool_floor_with_a_smooth_edge() {
     let floor = picture.around([0.0, 1.0]);
     assert!(floor[2] > 0.8 && !is_warm(floor), "{floor:?}");
 
-    let grid = world.soft_bodies().first().unwrap().grid();
+    let grid = world.soft_bodies().next().unwrap().1.grid();
     let voxel = grid.voxel_size();
     let round = voxel * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt();
     let warmth = |angle: f32, radius: f32| {
@@ -161,14 +161,14 @@ fn elements_have_the_colour_of_their_level() {
     let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |frame| frame.look = look) else {
         return;
     };
-    let views = world.soft_bodies().first().unwrap().element_views();
+    let views = world.soft_bodies().next().unwrap().1.element_views();
     let views: Vec<_> = views
         .filter(|view| view.level > 1 && view.children == Dim2::ALL_CORNERS)
         .collect();
     assert!(views.len() > 8, "{} large elements", views.len());
     for view in views {
         let [x, y, _] = view.child_corners::<Dim2>(0)[3];
-        let quarter = world.soft_bodies().first().unwrap().grid().voxel_size()
+        let quarter = world.soft_bodies().next().unwrap().1.grid().voxel_size()
             * 0.5
             * f32::from(1u8 << (view.level - 1));
         let seen = picture.around([x - quarter, y - quarter]);
@@ -186,17 +186,17 @@ fn bars_hands_walls_basket_and_particles_are_visible() {
     let mut world = floating();
     let (from, to, radius) = ([0.2, 0.9, 0.0], [0.8, 0.9, 0.0], 0.06);
     world
-        .add_rigid_body(RigidBody::fixed(Shape::Capsule { from, to, radius }, 0.2))
+        .add_rigid_body(RigidBody::fixed(Shape::Capsule { from, to, radius }).with_friction(0.2))
         .unwrap();
     world
-        .add_rigid_body(RigidBody::fixed(
-            Shape::half_space([0.0, 1.0, 0.0], [0.0, 0.05, 0.0]),
-            0.2,
-        ))
+        .add_rigid_body(
+            RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0, 0.05, 0.0]))
+                .with_friction(0.2),
+        )
         .unwrap();
     for x in [0.2, 0.5] {
         world
-            .add_rigid_body(RigidBody::coupled_ball([x, 0.6, 0.0], 0.1))
+            .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at([x, 0.6, 0.0]))
             .unwrap();
     }
     let region = Shape::Box {
@@ -357,7 +357,7 @@ fn vertices_beyond_the_buffer_limit_are_dropped() {
 fn paint_rigid_draws_hands_but_no_bodies() {
     let mut world = disc();
     world
-        .add_rigid_body(RigidBody::coupled_ball([0.5, 0.5, 0.0], 0.1))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at([0.5, 0.5, 0.0]))
         .unwrap();
     let camera = Camera::fit([-0.1, -0.1, 0.0], [1.1, 1.1, 0.0], SIZE);
     let half = |paint: fn(&Renderer, &mut wgpu::RenderPass<'static>)| {

@@ -68,7 +68,9 @@ fn floating() -> World<Dim3> {
     };
     let mut world = World::new(settings).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid_body(RigidBody::fixed(floor, 0.2)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.2))
+        .unwrap();
     world
 }
 
@@ -198,9 +200,9 @@ fn cut_element_view_shows_the_colour_of_levels() {
     });
     let hue = |[red, green, blue]: Colour| [red / green, blue / green, 0.0];
     let mut count = 0;
-    for view in world.soft_bodies().first().unwrap().element_views() {
-        let width =
-            world.soft_bodies().first().unwrap().grid().voxel_size() * f32::from(1u8 << view.level);
+    for view in world.soft_bodies().next().unwrap().1.element_views() {
+        let width = world.soft_bodies().next().unwrap().1.grid().voxel_size()
+            * f32::from(1u8 << view.level);
         let [x, y, z] = view.slots[13];
         // Only elements with their front face in the cut.
         if view.level < 2 || view.children != 255 || (z + 0.5 * width - 0.5).abs() > 1e-3 {
@@ -252,7 +254,9 @@ fn sticker_is_visible_from_its_side_and_not_through_a_bar() {
     assert_eq!(is_seen(&world, std::f32::consts::PI), Some(false));
     let (from, to, radius) = ([0.0, 0.5, 1.2], [1.0, 0.5, 1.2], 0.1);
     let bar = Shape::Capsule { from, to, radius };
-    world.add_rigid_body(RigidBody::fixed(bar, 0.2)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(bar).with_friction(0.2))
+        .unwrap();
     assert_eq!(is_seen(&world, 0.0), Some(false));
 }
 
@@ -282,11 +286,15 @@ fn bars_hands_walls_basket_and_particles_are_visible() {
     let mut world = floating();
     let (from, to, radius) = ([0.1, 0.1, 0.2], [0.4, 0.1, 0.2], 0.06);
     let bar = Shape::Capsule { from, to, radius };
-    world.add_rigid_body(RigidBody::fixed(bar, 0.2)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(bar).with_friction(0.2))
+        .unwrap();
     let wall = Shape::half_space([0.0, 0.0, 1.0], [0.0, 0.0, -0.6]);
-    world.add_rigid_body(RigidBody::fixed(wall, 0.2)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(wall).with_friction(0.2))
+        .unwrap();
     for x in [0.3, 0.7] {
-        let hand = RigidBody::coupled_ball([x, 0.9, -0.1], 0.1);
+        let hand = RigidBody::coupled(Shape::ball(0.1)).at([x, 0.9, -0.1]);
         world.add_rigid_body(hand).unwrap();
     }
     let region = Shape::Box {

@@ -3,7 +3,7 @@
 //! ```toml
 //! dim = 2
 //! gravity = [0.0, -9.81, 0.0]     # [m/s²]
-//! tick = 0.0166666667             # [s]; tick, drag and most_substeps default to those of WorldConfig
+//! tick = 0.0166666667             # [s]; tick, drag and max_substeps default to those of WorldConfig
 //!
 //! [[material]]                    # number 1
 //! young = 5000.0                  # [Pa]; missing fields take the values of `Material::default`
@@ -89,7 +89,7 @@ pub use shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, Obstac
 use budget::Budget;
 use error::{FieldError, Origin, require, require_vector};
 use fuwafuwa::{Dim, Material, Shape, World, WorldConfig};
-use fuwafuwa::{SHORTEST_TICK, TICK};
+use fuwafuwa::{MIN_TICK, TICK};
 use joint::JointTargets;
 use serde::{Deserialize, Serialize};
 
@@ -126,7 +126,7 @@ pub struct Scene {
     pub drag: f32,
     /// Maximum number of substeps in 1/60 s, default 64.
     #[serde(default = "usual_substeps")]
-    pub most_substeps: u32,
+    pub max_substeps: u32,
     /// Length of a tick [s], default 1/60.
     #[serde(default = "usual_tick", skip_serializing_if = "is_usual_tick")]
     pub tick: f32,
@@ -263,7 +263,7 @@ impl Scene {
         let settings = WorldConfig {
             gravity: self.gravity,
             drag: self.drag,
-            most_substeps: self.most_substeps,
+            max_substeps: self.max_substeps,
             tick: self.tick,
         };
         let world = World::new(settings);
@@ -308,9 +308,9 @@ impl Scene {
         }
         // The world was empty, so its rigid bodies are in the order of the lists: obstacles, hands, rigid
         // bodies.
-        let mut rigids = world.rigid_bodies().ids();
+        let mut rigids = world.rigid_bodies().map(|(id, _)| id);
         let known = JointTargets {
-            bodies: world.soft_bodies().ids().collect(),
+            bodies: world.soft_bodies().map(|(id, _)| id).collect(),
             obstacles: rigids.by_ref().take(self.obstacle.len()).collect(),
             hands: rigids.by_ref().take(self.hand.len()).collect(),
             rigids: rigids.collect(),
@@ -373,7 +373,7 @@ impl Scene {
         let seconds = self.seconds.clamp(0.0, MAX_SECONDS);
         match is_usual_tick(&self.tick) {
             true => (seconds * 60.0) as u64,
-            false => (seconds / self.tick.max(SHORTEST_TICK)) as u64,
+            false => (seconds / self.tick.max(MIN_TICK)) as u64,
         }
     }
 

@@ -14,7 +14,7 @@ fn bodies<D: Dim>(text: &str) -> Vec<SoftBody<D>> {
     world
         .unwrap_or_else(|error| panic!("{error}"))
         .soft_bodies()
-        .iter()
+        .map(|(_, body)| body)
         .cloned()
         .collect()
 }
@@ -109,7 +109,7 @@ fn crack_stops_at_unbreakable_core() {
         released += world.step().nodes_split;
     }
     assert!(released > 50, "{released}");
-    let views = world.soft_bodies().first().unwrap().element_views();
+    let views = world.soft_bodies().next().unwrap().1.element_views();
     let mut of_core: Vec<_> = views
         .filter(|view| view.material == 2)
         .map(|view| view.piece)
@@ -191,17 +191,14 @@ at = [0.0, 3.0, 0.0]
     let scene = open(&folder).unwrap();
     let world = scene.build::<Dim2>().unwrap();
     assert_eq!(
-        picture(world.soft_bodies().first().unwrap()),
+        picture(world.soft_bodies().next().unwrap().1),
         ["21..", "2222"]
     );
     assert_eq!(
-        world.soft_bodies().first().unwrap().grid().voxel_size(),
+        world.soft_bodies().next().unwrap().1.grid().voxel_size(),
         0.5
     );
-    assert_eq!(
-        picture(&world.soft_bodies()[world.nth_soft_body(1).unwrap()]),
-        ["33"]
-    );
+    assert_eq!(picture(&world[world.nth_soft_body(1).unwrap()]), ["33"]);
 
     // The scene can be recorded, and replayed from the text of the recording.
     let recording = Recording::of::<Dim2>(&scene, 3, |_| {}).unwrap();
@@ -234,7 +231,7 @@ fn model_in_scene_folder_becomes_body() {
         std::fs::write(folder.join("a.vox"), MODEL).unwrap();
         let world = open(&folder).unwrap().build::<Dim3>();
         world
-            .map(|world| picture(world.soft_bodies().first().unwrap()))
+            .map(|world| picture(world.soft_bodies().next().unwrap().1))
             .map_err(|error| error.to_string())
     };
     let expected = ["1", "3"].map(String::from).to_vec();

@@ -72,7 +72,7 @@ fn check<D: Dim>(file: &str, bytes: &[u8], fields: &str) -> usize {
     embedded.embed_files(&fetch).unwrap();
     let built = |scene: &Scene| {
         let world = scene.build::<D>().unwrap();
-        let grid = world.soft_bodies().first().unwrap().grid().clone();
+        let grid = world.soft_bodies().next().unwrap().1.grid().clone();
         let materials: Vec<u8> = grid.voxels().map(|voxel| grid.material(voxel)).collect();
         (grid.size(), materials)
     };

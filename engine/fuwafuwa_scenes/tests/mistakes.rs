@@ -116,8 +116,8 @@ fn error_names_file_line_field_and_expectation() {
         ),
         (
             "dim = 2",
-            "dim = 2\nmost_substeps = 4",
-            ", line 2: most_substeps: expected 8 to 1024, found 4",
+            "dim = 2\nmax_substeps = 4",
+            ", line 2: max_substeps: expected 8 to 1024, found 4",
         ),
         (
             "dim = 2",

@@ -6,8 +6,8 @@
 //! ```
 
 use app_shell::Pads;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::Dim2;
-use fuwafuwa::TICK;
 use std::time::{Duration, Instant};
 use tamaire::game::Game;
 use tamaire::platform::{Files, Sound};

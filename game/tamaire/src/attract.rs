@@ -25,7 +25,7 @@ pub fn attract(number: usize) -> Session {
 mod tests {
     use super::*;
     use app_shell::Clock;
-    use fuwafuwa::TICK;
+    use fuwafuwa::DEFAULT_TICK;
     use tamaire_play::{InputFrame, Level, Route};
 
     #[test]

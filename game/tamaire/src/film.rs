@@ -18,7 +18,7 @@ use crate::platform::Yielder;
 use app_shell::CameraRig;
 #[cfg(target_family = "wasm")]
 pub use device::lend;
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa_painter::{PaintError, Pixmap, film, png_of};
 use fuwafuwa_render::ImageError;
 use studio::Moment;

@@ -27,7 +27,7 @@ use crate::words::Words;
 use app_shell::{Clock, Forces, Pads, Theme};
 pub use bout::CurrentRound;
 pub use controls::{Controls, ScreenButton};
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 pub use notices::{Notice, Notices};
 pub use public::{EndedRound, PublicMode};
 pub use screen::{Screen, Screens};

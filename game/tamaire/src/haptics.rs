@@ -1,7 +1,7 @@
 //! Haptic feedback of the last tick, for each player: contact forces and tears.
 
 use force_feedback::Stop;
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::{Event, RigidBody, Vector};
 use tamaire_play::{AnyRound, PLAYERS};
 

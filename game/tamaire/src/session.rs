@@ -1,7 +1,7 @@
 //! Real-time control of a round that is played by people or replayed.
 
 use app_shell::{Clock, Pace};
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use std::sync::Arc;
 use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError};
 

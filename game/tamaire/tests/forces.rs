@@ -3,7 +3,7 @@
 
 use app_shell::Pads;
 use force_feedback::{Ability, Calibration, Output, Recording, Stop};
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 use sticks::{Device, DeviceId, DeviceInfo, Snapshot};

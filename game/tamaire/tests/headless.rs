@@ -42,7 +42,7 @@ const SOLID_LEVEL: &str = r#"
 dim = 3
 gravity = [0.0, -3.0, 0.0]
 drag = 0.5
-most_substeps = 8
+max_substeps = 8
 view = [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]]
 [game]
 name = { en = "Solid" }

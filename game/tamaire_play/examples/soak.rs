@@ -199,7 +199,13 @@ fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
 
 /// Returns the number of elements and of nodes.
 fn parts<D: Dim>(round: &Round<D>) -> [usize; 2] {
-    let meshes = || round.world().soft_bodies().iter().map(|body| body.mesh());
+    let meshes = || {
+        round
+            .world()
+            .soft_bodies()
+            .map(|(_, body)| body)
+            .map(|body| body.mesh())
+    };
     let elements = meshes().map(|mesh| mesh.element_count()).sum();
     [elements, meshes().map(|mesh| mesh.node_count()).sum()]
 }
@@ -214,7 +220,7 @@ fn held_each<D: Dim>(round: &Round<D>) -> f32 {
 
 /// Prints the row of a minute.
 fn tell<D: Dim>(id: &str, minute: usize, round: &Round<D>, [half, worst, deepest]: [f32; 3]) {
-    let bodies = round.world().soft_bodies().iter();
+    let bodies = round.world().soft_bodies().map(|(_, body)| body);
     let pieces = bodies.flat_map(|body| &body.pieces().list);
     say(&format!(
         "{id:12} {minute:>6} {:>6} {:>6} {:>8} {:>7.1} {:>8.0} | {half:>8.1} {worst:>8.1} | {deepest:.1} mm",

@@ -272,7 +272,7 @@ fn step_alone<D: Dim>(level: &Arc<Level>, ticks: &mut [Tick]) {
             let hand = scene
                 .nth_target_follower(player)
                 .expect("the level has this hand");
-            let joins = world.add_rigid_body(scene.rigid_bodies()[hand].clone());
+            let joins = world.add_rigid_body(scene.rigid_body(hand).unwrap().clone());
             hands.push(joins.expect("the round accepted this hand"));
         }
         for (&hand, &goal) in hands.iter().zip(&tick.goals) {

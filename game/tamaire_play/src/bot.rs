@@ -5,7 +5,7 @@ mod map;
 mod sight;
 
 use crate::{AnyRound, InputFrame, Outcome, Round};
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim, Vector};
 use sight::{Sight, split};

@@ -229,7 +229,7 @@ impl Level {
         if scene.body.is_empty() {
             return Err(missing("body", "expected at least one table [[body]]"));
         }
-        if scene.tick != fuwafuwa::TICK {
+        if scene.tick != fuwafuwa::DEFAULT_TICK {
             return Err(missing(
                 "tick",
                 "expected no tick: a tick of a level is 1/60 s",

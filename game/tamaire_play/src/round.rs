@@ -1,7 +1,7 @@
 //! Rounds of a level.
 
 use crate::{InputFrame, Level, PLAYERS, Progress};
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::{Dim, RigidBody, RigidBodyHandle, Shape, StepReport, Vector, World};
 use std::sync::Arc;
 
@@ -37,7 +37,9 @@ impl<D: Dim> Round<D> {
     pub fn new(level: Arc<Level>) -> Self {
         let (mut world, basket) = level.build::<D>();
         let hands: Vec<RigidBodyHandle> = world.target_followers().map(|(id, _)| id).collect();
-        let starts = hands.iter().map(|&id| world.rigid_bodies()[id].clone());
+        let starts = hands
+            .iter()
+            .map(|&id| world.rigid_body(id).unwrap().clone());
         let starts: Vec<RigidBody> = starts.collect();
         // The other hands are added when their players join.
         for &hand in hands.iter().skip(1) {
@@ -92,7 +94,7 @@ impl<D: Dim> Round<D> {
     pub fn hands(&self) -> impl ExactSizeIterator<Item = &RigidBody> {
         self.players
             .iter()
-            .map(|&hand| &self.world.rigid_bodies()[hand])
+            .map(|&hand| self.world.rigid_body(hand).unwrap())
     }
 
     /// Returns the region to be filled, if the level has one.
@@ -147,7 +149,7 @@ impl<D: Dim> Round<D> {
     /// Returns the position nearest to `wish` that the target of a player's hand can reach in a tick. Without
     /// a wish the target stays.
     fn reachable(&self, player: usize, wish: Option<Vector>) -> Vector {
-        let hand = &self.world.rigid_bodies()[self.players[player]];
+        let hand = self.world.rigid_body(self.players[player]).unwrap();
         let [low, high] = self.level.arena();
         let [first, last] = hand.form().bounds();
         let mut goal = wish.unwrap_or(hand.target_position());

@@ -1,7 +1,7 @@
 //! Conditions and routes of a win.
 
 use crate::{Level, Route, Wish};
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::inspect::vector::minus;
 use fuwafuwa::{Dim, ElementId, PieceView, Shape, SoftBody, World};
 use serde::{Deserialize, Serialize};
@@ -90,13 +90,13 @@ impl Progress {
             kept: 1.0,
             pieces: world
                 .soft_bodies()
-                .iter()
+                .map(|(_, body)| body)
                 .map(|body| body.pieces().list.len())
                 .sum(),
             held: 0.0,
             relaxed: false,
             outcome: None,
-            bodies: world.soft_bodies().len(),
+            bodies: world.soft_bodies().count(),
             squeezed: SQUEEZED + own_strain(world, &views),
             whole: greatest(&views),
         }
@@ -156,7 +156,7 @@ impl Progress {
 fn views_of<D: Dim>(world: &World<D>) -> Vec<Vec<PieceView>> {
     world
         .soft_bodies()
-        .iter()
+        .map(|(_, body)| body)
         .map(SoftBody::piece_views)
         .collect()
 }
@@ -184,14 +184,14 @@ fn own_strain<D: Dim>(world: &World<D>, views: &[Vec<PieceView>]) -> f32 {
         let softer = body.stiffness_scale() as f32;
         0.5 * heavy.fold(0.0, f32::max) * drops.fold(0.0, f32::max) / softer
     };
-    let bodies = world.soft_bodies().iter().zip(views);
+    let bodies = world.soft_bodies().map(|(_, body)| body).zip(views);
     bodies.map(of).fold(0.0, f32::max)
 }
 
 fn total_mass<D: Dim>(world: &World<D>) -> f32 {
     world
         .soft_bodies()
-        .iter()
+        .map(|(_, body)| body)
         .map(|body| body.total_mass() as f32)
         .sum()
 }
@@ -213,7 +213,7 @@ fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
         }
         (resting, all)
     };
-    let bodies = world.soft_bodies().iter().map(inside);
+    let bodies = world.soft_bodies().map(|(_, body)| body).map(inside);
     bodies.fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1))
 }
 
@@ -221,7 +221,7 @@ fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
 /// 50 elements with their centre in the region.
 fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Shape) -> f32 {
     let (mut sum, mut volume) = (0.0, 0.0);
-    for (body, pieces) in world.soft_bodies().iter().zip(views) {
+    for (body, pieces) in world.soft_bodies().map(|(_, body)| body).zip(views) {
         let counts = |id: ElementId| {
             let view = &pieces[body.pieces().of_element(id).index()];
             region.distance(view.centre).0 < 0.0 && view.element_count > 50

@@ -83,7 +83,7 @@ fn model_of_any_colours_becomes_the_body_of_a_level() {
     assert_eq!(level.game().name.en, "pudding");
     assert_eq!(level.scene().dim, 3);
     let level = level.scene().build::<fuwafuwa::Dim3>().unwrap();
-    assert!(level.soft_bodies().first().unwrap().grid().solid_count() > 5000);
+    assert!(level.soft_bodies().next().unwrap().1.grid().solid_count() > 5000);
 
     let refused = |bytes: &[u8]| {
         let error = Level::read("wide.VOX", bytes, &nothing).unwrap_err();

@@ -93,23 +93,26 @@ pub fn strokes(level: Level) -> Vec<Stroke> {
 fn of_world<D: Dim>(grid: Grid, world: &World<D>) -> Vec<Stroke> {
     let fixed = world
         .rigid_bodies()
-        .iter()
+        .map(|(_, body)| body)
         .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor);
     let fixed = fixed.filter_map(|rigid| of_shape(grid, rigid.shape(), ObjectKind::Obstacle));
-    let bodies = world.soft_bodies().iter().flat_map(|body| match D::N {
-        2 => body
-            .outlines()
-            .into_iter()
-            .map(|outline| flat(grid, &outline.points))
-            .collect(),
-        _ => {
-            let nodes = body.mesh().nodes().map(|(id, _)| {
-                let [x, y, z, _] = body.positions()[id];
-                [x, y, z]
-            });
-            vec![hull(flat(grid, &nodes.collect::<Vec<_>>()))]
-        }
-    });
+    let bodies = world
+        .soft_bodies()
+        .map(|(_, body)| body)
+        .flat_map(|body| match D::N {
+            2 => body
+                .outlines()
+                .into_iter()
+                .map(|outline| flat(grid, &outline.points))
+                .collect(),
+            _ => {
+                let nodes = body.mesh().nodes().map(|(id, _)| {
+                    let [x, y, z, _] = body.positions()[id];
+                    [x, y, z]
+                });
+                vec![hull(flat(grid, &nodes.collect::<Vec<_>>()))]
+            }
+        });
     let bodies = bodies.map(|points| closed(ObjectKind::Body, points));
     fixed.chain(bodies).collect()
 }

@@ -179,11 +179,8 @@ fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, P
     let form = pose.form(rigid.shape);
     let middle = middle_of(&form, rigid.motion_type);
     let at = pose.translation + pose.rotation * middle;
-    let own = fuwafuwa::RigidBody::new(
-        form.translated((-middle).into()),
-        at.into(),
-        rigid.motion_type,
-    );
+    let own = fuwafuwa::RigidBody::new(form.translated((-middle).into()), rigid.motion_type)
+        .at(at.into());
     let mut own = own.rotated(engine_rotation(transform.rotation));
     (own.friction, own.restitution) = (rigid.friction, rigid.restitution);
     (own.is_sensor, own.layers) = (rigid.is_sensor, rigid.layers);

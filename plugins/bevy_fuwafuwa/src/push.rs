@@ -52,7 +52,7 @@ pub fn push_bodies<D: Dimension>(
         else {
             continue;
         };
-        if own.0 != id || world.engine().soft_bodies().get(id).is_err() {
+        if own.0 != id || world.engine().soft_body(id).is_err() {
             continue;
         }
         let mut reject = |problem| {

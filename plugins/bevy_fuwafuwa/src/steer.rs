@@ -38,7 +38,7 @@ pub fn steer_rigids<D: Dimension>(
         else {
             continue;
         };
-        if own.0 != id || world.engine().rigid_bodies().get(id).is_err() {
+        if own.0 != id || world.engine().rigid_body(id).is_err() {
             continue;
         }
         let mut check = |outcome: Result<(), Problem>| match outcome {
@@ -62,7 +62,7 @@ pub fn steer_rigids<D: Dimension>(
         let bits = |goal: Vec3| goal.to_array().map(f32::to_bits);
         if goal.map(bits) != followed.goal.map(bits) {
             if let (Some(goal), MotionType::Coupled { .. }) =
-                (goal, engine.rigid_bodies()[id].motion_type)
+                (goal, engine.rigid_body(id).unwrap().motion_type)
             {
                 check(
                     engine
@@ -114,7 +114,7 @@ fn put<D: Dimension>(
         at.z = 0.0;
     }
     let rotation = engine_rotation(transform.rotation);
-    let rigid = &engine.rigid_bodies()[id];
+    let rigid = engine.rigid_body(id).unwrap();
     if rigid.motion_type == MotionType::Kinematic {
         engine.set_target_position(id, at.into())?;
         engine.set_target_rotation(id, rotation)?;

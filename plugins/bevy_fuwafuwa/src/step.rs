@@ -144,11 +144,11 @@ impl Writers<'_> {
                 let (body, piece) = (of_body(body)?, Some(piece));
                 self.removed.write(Removed { body, piece });
             }
-            Event::BodyRemoved { body } => {
+            Event::SoftBodyRemoved { body } => {
                 let body = of_body(body)?;
                 self.removed.write(Removed { body, piece: None });
             }
-            Event::RigidRemoved { rigid } => {
+            Event::RigidBodyRemoved { rigid } => {
                 let body = world.entity_of_rigid(rigid)?;
                 self.removed.write(Removed { body, piece: None });
             }

@@ -167,7 +167,7 @@ impl<D: Dimension> SoftWorld<D> {
     /// Returns the entities of rigid bodies that fell asleep (`true`) or woke up (`false`) since the last
     /// call.
     pub(crate) fn follow_sleep(&mut self) -> Vec<(Entity, bool)> {
-        let asleep = self.engine.rigid_bodies().entries();
+        let asleep = self.engine.rigid_bodies();
         let asleep = asleep.filter(|(_, rigid)| rigid.is_asleep());
         let asleep: BTreeSet<RigidBodyHandle> = asleep.map(|(id, _)| id).collect();
         let before = std::mem::replace(&mut self.sleepers, asleep);

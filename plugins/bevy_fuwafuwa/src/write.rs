@@ -75,7 +75,7 @@ pub fn write_bodies<D: Dimension>(
     }
     for (id, entity) in world.soft_entities() {
         let (Ok(body), Ok((own, mut transform, mut followed, velocity))) =
-            (world.engine().soft_bodies().get(id), bodies.get_mut(entity))
+            (world.engine().soft_body(id), bodies.get_mut(entity))
         else {
             continue;
         };
@@ -120,10 +120,9 @@ pub fn write_rigids<D: Dimension>(
         return;
     }
     for (id, entity) in world.rigid_entities() {
-        let (Ok(rigid), Ok((own, mut transform, mut followed, velocity))) = (
-            world.engine().rigid_bodies().get(id),
-            rigids.get_mut(entity),
-        ) else {
+        let (Ok(rigid), Ok((own, mut transform, mut followed, velocity))) =
+            (world.engine().rigid_body(id), rigids.get_mut(entity))
+        else {
             continue;
         };
         let is_settled = followed.is_settled && rigid.is_asleep();
@@ -165,7 +164,7 @@ pub fn write_meshes<D: Dimension>(
     };
     for (id, entity) in world.soft_entities() {
         let (Ok(body), Ok((own, followed, mut drawn))) =
-            (world.engine().soft_bodies().get(id), bodies.get_mut(entity))
+            (world.engine().soft_body(id), bodies.get_mut(entity))
         else {
             continue;
         };

@@ -1,13 +1,13 @@
 //! The scenes in fuwafuwa.
 
 use fuwafuwa::inspect::Elasticity;
-use fuwafuwa::{FEWEST_SUBSTEPS, TICK};
+use fuwafuwa::{MIN_SUBSTEPS, TICK};
 use fuwafuwa::{Dim, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig};
 
 use crate::world::{Falling, Span};
 use crate::{Drop, Result, WIDTH};
 
-/// Largest value that [`WorldConfig::most_substeps`] accepts.
+/// Largest value that [`WorldConfig::max_substeps`] accepts.
 const MOST_SUBSTEPS: u32 = 1024;
 
 /// Builds a world with an undamped, unbreakable body above a half-space. The world gets `substeps` substeps
@@ -30,11 +30,11 @@ pub fn world<D: Dim>(scene: &Drop, substeps: Option<usize>) -> Result<World<D>> 
     let mut world = World::<D>::new(WorldConfig {
         gravity: [0.0, -scene.gravity, 0.0],
         drag: 0.0,
-        most_substeps: most.clamp(FEWEST_SUBSTEPS, MOST_SUBSTEPS),
+        max_substeps: most.clamp(MIN_SUBSTEPS, MOST_SUBSTEPS),
         ..WorldConfig::default()
     })?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid_body(RigidBody::fixed(floor, scene.friction))?;
+    world.add_rigid_body(RigidBody::fixed(floor).with_friction(scene.friction))?;
     let lowest = span(&body).lowest;
     world.add_soft_body(body.translated([0.0, scene.height - lowest, 0.0]));
     Ok(world)
@@ -52,8 +52,7 @@ fn span<D: Dim>(body: &SoftBody<D>) -> Span {
 impl<D: Dim> Falling for World<D> {
     fn engine(&self) -> String {
         let elements = self
-            .soft_bodies()
-            .first()
+            .soft_bodies().next().map(|(_, item)| item)
             .expect("world with a body")
             .mesh()
             .element_count();
@@ -65,7 +64,7 @@ impl<D: Dim> Falling for World<D> {
     }
 
     fn span(&self) -> Span {
-        span(self.soft_bodies().first().expect("world with a body"))
+        span(self.soft_bodies().next().map(|(_, item)| item).expect("world with a body"))
     }
 
     fn substeps(&self) -> usize {
@@ -73,15 +72,13 @@ impl<D: Dim> Falling for World<D> {
     }
 
     fn stiffness_scale(&self) -> f64 {
-        self.soft_bodies()
-            .first()
+        self.soft_bodies().next().map(|(_, item)| item)
             .expect("world with a body")
             .stiffness_scale()
     }
 
     fn pieces(&self) -> usize {
-        self.soft_bodies()
-            .first()
+        self.soft_bodies().next().map(|(_, item)| item)
             .expect("world with a body")
             .pieces()
             .list
@@ -90,8 +87,7 @@ impl<D: Dim> Falling for World<D> {
 
     fn asleep(&self) -> f64 {
         let pieces = &self
-            .soft_bodies()
-            .first()
+            .soft_bodies().next().map(|(_, item)| item)
             .expect("world with a body")
             .pieces()
             .list;

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use fuwafuwa::FEWEST_SUBSTEPS;
+use fuwafuwa::MIN_SUBSTEPS;
 
 use crate::side::{EngineResult, TOLERANCE, MeasuredWorld, fall};
 use crate::world::Falling;
@@ -27,7 +27,7 @@ pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[Eng
     let frames = frames_to_peak(scene);
     let [exact] = fall([ours(scene, None)?], frames);
     let limit = exact.peak_squash + TOLERANCE;
-    let range = FEWEST_SUBSTEPS as usize..exact.substeps;
+    let range = MIN_SUBSTEPS as usize..exact.substeps;
     let softened = fewest_stiff_substeps(range, f64::INFINITY, |substeps| {
         Ok(stiff(ours(scene, Some(substeps))?, frames, limit))
     })?;

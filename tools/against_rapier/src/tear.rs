@@ -26,8 +26,7 @@ pub fn compare_tear(scene: &Drop, pitch: usize, effort: Effort) -> Result<[Engin
     cut_to_pieces(&mut theirs, scene, pitch, 0.0);
     let mut ours = ours::world::<Dim2>(scene, None)?;
     let whole = ours
-        .soft_bodies()
-        .first()
+        .soft_bodies().next().map(|(_, item)| item)
         .expect("world with a body")
         .piece_views()[0];
     let middle = 0.5 * (whole.low[0] + whole.high[0]);

@@ -3,8 +3,8 @@
 //! [`SCENES`] is the only table. The tests of this crate run it natively, on one thread and, with the feature
 //! `parallel`, on several. `cargo xtask wasm` runs it under Node, through the [`exports`](crate::exports). A
 //! changed hash means a changed simulation: give the reason in the commit.
-use fuwafuwa::FEWEST_SUBSTEPS;
 use fuwafuwa::Law;
+use fuwafuwa::MIN_SUBSTEPS;
 use fuwafuwa::{
     Blade, Contact, Dim, Dim2, Dim3, Event, Material, ObjectRef, RigidBody, RigidBodyHandle, Shape,
     SoftBody, VoxelGrid, World, WorldConfig,
@@ -60,7 +60,7 @@ fn floor<D: Dim>(settings: WorldConfig) -> World<D> {
     let mut world = World::new(settings).expect("the scene is valid");
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
     world
-        .add_rigid_body(RigidBody::fixed(floor, 0.4))
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
         .expect("the scene is valid");
     world
 }
@@ -71,13 +71,13 @@ fn torn_world<D: Dim>(n: usize) -> (World<D>, RigidBodyHandle) {
     let mut world = floor::<D>(WorldConfig::default());
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
     world
-        .add_rigid_body(RigidBody::fixed(wall, 0.2))
+        .add_rigid_body(RigidBody::fixed(wall).with_friction(0.2))
         .expect("the scene is valid");
     let ball = VoxelGrid::ball(n, 1.0).expect("the scene is valid");
     let body = SoftBody::new(ball, &[Material::default()]).expect("the scene is valid");
     world.add_soft_body(body.translated([0.0, 0.05, 0.0]));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = RigidBody::coupled_ball([-0.3, 0.5, depth], 0.08);
+    let hand = RigidBody::coupled(Shape::ball(0.08)).at([-0.3, 0.5, depth]);
     let hand = world.add_rigid_body(hand).expect("the scene is valid");
     (world, hand)
 }
@@ -100,7 +100,7 @@ fn hash_of_torn_world<D: Dim>(n: usize, ticks: u32) -> u64 {
 /// more off.
 fn hash_of_heap() -> u64 {
     let settings = WorldConfig {
-        most_substeps: FEWEST_SUBSTEPS,
+        max_substeps: MIN_SUBSTEPS,
         ..WorldConfig::default()
     };
     let mut world = floor::<Dim3>(settings);
@@ -115,7 +115,7 @@ fn hash_of_heap() -> u64 {
         };
         world.cut(ball, &blade).expect("the scene is valid");
     }
-    let hand = RigidBody::coupled_ball([0.4, 1.2, 0.5], 0.12);
+    let hand = RigidBody::coupled(Shape::ball(0.12)).at([0.4, 1.2, 0.5]);
     let hand = world.add_rigid_body(hand).expect("the scene is valid");
     let (mut released, mut touched) = (0, 0.0);
     for tick in 0..50 {
@@ -123,7 +123,7 @@ fn hash_of_heap() -> u64 {
             .set_target_position(hand, [0.4, 1.2 - tick as f32 * 0.03, 0.5])
             .expect("the scene is valid");
         let report = world.step();
-        assert_eq!(report.substeps, FEWEST_SUBSTEPS);
+        assert_eq!(report.substeps, MIN_SUBSTEPS);
         released += report.nodes_split;
         for event in world.events() {
             if let Event::ContactForce(Contact {

@@ -250,7 +250,7 @@ fn go_on<D: Dim>(bytes: &[u8]) -> bool {
     assert_eq!(again.hash(), world.hash());
     let voxels: usize = world
         .soft_bodies()
-        .iter()
+        .map(|(_, body)| body)
         .map(|body| body.grid().solid_count())
         .sum();
     if voxels <= FEW_VOXELS {

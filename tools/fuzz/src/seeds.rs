@@ -169,13 +169,15 @@ fn tied<D: Dim>() -> Vec<u8> {
         half: [0.2; 3],
     };
     let turned = Rotation::about([1.0, 2.0, 3.0], 0.4);
-    let mut gate = RigidBody::fixed(cube(-0.5), 0.5).rotated(turned);
+    let mut gate = RigidBody::fixed(cube(-0.5))
+        .with_friction(0.5)
+        .rotated(turned);
     gate.is_sensor = true;
     world.add_rigid_body(gate).expect("a valid rigid body");
     let free = RigidBody::dynamic(cube(1.3), 1.0).rotated(turned);
     let rigid = world.add_rigid_body(free).expect("a valid rigid body");
     let ends = [
-        JointAnchor::Soft {
+        JointAnchor::SoftBody {
             body,
             at: [0.5, 1.0, 0.5],
             radius: 0.3,
@@ -184,7 +186,7 @@ fn tied<D: Dim>() -> Vec<u8> {
             rigid,
             at: [0.5, 1.1, 0.5],
         },
-        JointAnchor::Position([0.5, 2.0, 0.5]),
+        JointAnchor::Point([0.5, 2.0, 0.5]),
     ];
     let spring = JointKind::Spring {
         stiffness: 100.0,
@@ -196,7 +198,7 @@ fn tied<D: Dim>() -> Vec<u8> {
         let joint = Joint::new([ends[first], ends[second]], tie);
         world.add_joint(joint).expect("both anchors exist");
     }
-    let mut holder = RigidBody::coupled_ball([0.5, 0.9, 0.5], 0.1);
+    let mut holder = RigidBody::coupled(Shape::ball(0.1)).at([0.5, 0.9, 0.5]);
     holder.is_sensor = true;
     let holder = world.add_rigid_body(holder).expect("a valid rigid body");
     let edge = [[0.0, 0.0, -0.3], [0.0, 0.0, 0.3]];

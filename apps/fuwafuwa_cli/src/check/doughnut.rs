@@ -72,10 +72,10 @@ fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
     let middle_of = |side: f32, apart: f32| [0.5, 0.5 + side * (HAND + 0.5 * apart), plane];
     let mut hands = Vec::new();
     for side in sides {
-        let hand = RigidBody::coupled_ball(middle_of(side, 1.0), HAND);
+        let hand = RigidBody::coupled(Shape::ball(HAND)).at(middle_of(side, 1.0));
         hands.push(world.add_rigid_body(hand.with_motion_type(MotionType::Kinematic))?);
     }
-    let holes = sides.map(|side| hole_side(&world.soft_bodies()[ring], side));
+    let holes = sides.map(|side| hole_side(&world[ring], side));
     let (mut apart, mut waited, mut deepest) = (1.0, 0.0, f32::NEG_INFINITY);
     while waited < WAIT {
         apart -= 2.0 * speed / 60.0;
@@ -87,9 +87,7 @@ fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
         }
         let report = world.step();
         ensure!(report.quarantined == 0, "the ring was quarantined");
-        let [low, high] = holes
-            .each_ref()
-            .map(|nodes| places(&world.soft_bodies()[ring], nodes));
+        let [low, high] = holes.each_ref().map(|nodes| places(&world[ring], nodes));
         let slips = |at: &Vector| (at[2] - plane).abs() > voxel;
         ensure!(
             !low.iter().chain(&high).any(slips),

@@ -55,7 +55,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
 fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
     let mut world = scene.build::<D>()?;
     let id = world.nth_soft_body(0).expect("the scene has a body");
-    let body = &world.soft_bodies()[id];
+    let body = &world[id];
     let (before, mass) = (body.piece_views().len(), body.total_mass());
     let mut asleep = f64::INFINITY;
     let mut depth = 0.0f64;
@@ -63,13 +63,13 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
         let report = world.step();
         anyhow::ensure!(report.quarantined == 0, "a piece was quarantined");
         depth = depth.max(deepest(&world));
-        let pieces = &world.soft_bodies()[id].pieces().list;
+        let pieces = &world[id].pieces().list;
         if pieces.iter().all(|piece| piece.asleep) {
             asleep = (tick + 1) as f64 / 60.0;
             break;
         }
     }
-    let body = &world.soft_bodies()[id];
+    let body = &world[id];
     let views = body.piece_views();
     let size = f64::from(body.grid().voxel_size());
     let outside = views.iter().filter(|view| {
@@ -91,7 +91,11 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
 
 /// Returns the maximum penetration of a node into a wall [m].
 fn deepest<D: Dim>(world: &World<D>) -> f64 {
-    let body = world.soft_bodies().first().expect("the scene has a body");
+    let body = world
+        .soft_bodies()
+        .next()
+        .map(|(_, item)| item)
+        .expect("the scene has a body");
     let mut deepest = 0.0f32;
     for (id, _) in body.mesh().nodes() {
         let at = body.node_state(id).0;

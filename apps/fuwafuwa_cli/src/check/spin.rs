@@ -4,8 +4,8 @@ use super::motion::{arrange, ball, length, material};
 use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::Grading;
-use fuwafuwa::TICK;
 use fuwafuwa::inspect::vector::{cross, plus};
 use fuwafuwa::{
     Blade, Dim, Dim2, Dim3, Material, PieceId, SoftBody, SoftBodyHandle, World, WorldConfig,
@@ -58,7 +58,7 @@ struct Halves {
 /// Cuts a spinning body in two. The halves then fly apart, each spinning like the whole.
 fn halves<D: Dim>(n: usize) -> Result<Halves> {
     let (mut world, id) = spinning::<D>(n, material())?;
-    let whole = world.soft_bodies()[id].momentum().angular;
+    let whole = world[id].momentum().angular;
     let blade = Blade {
         from: [0.0, -1.5, -1.5],
         across: [0.0, 3.0, 0.0],
@@ -71,13 +71,12 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
         }
     };
     step(&mut world, APART);
-    let pieces = world.soft_bodies()[id].pieces().list.len();
+    let pieces = world[id].pieces().list.len();
     ensure!(
         pieces == 2,
         "expected 2 pieces after cutting {cut} nodes, found {pieces}"
     );
-    let motions =
-        |world: &World<D>| [0, 1].map(|piece| motion(&world.soft_bodies()[id], PieceId(piece)));
+    let motions = |world: &World<D>| [0, 1].map(|piece| motion(&world[id], PieceId(piece)));
     let before = motions(&world);
     step(&mut world, DURATION);
     let after = motions(&world);
@@ -88,7 +87,7 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
     Ok(Halves {
         spin: worst([0, 1].map(|piece| along_first(before[piece].1, after[piece].1))),
         momentum: worst([0, 1].map(|piece| along_first(before[piece].0, after[piece].0))),
-        both: along_first(whole, world.soft_bodies()[id].momentum().angular),
+        both: along_first(whole, world[id].momentum().angular),
     })
 }
 
@@ -126,11 +125,11 @@ fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
         ..material()
     };
     let (mut world, id) = spinning::<D>(n, material)?;
-    let before = world.soft_bodies()[id].momentum().angular;
+    let before = world[id].momentum().angular;
     for _ in 0..(DURATION / TICK).round() as usize {
         world.step();
     }
-    let after = world.soft_bodies()[id].momentum().angular;
+    let after = world[id].momentum().angular;
     Ok(along_first(before, after))
 }
 
@@ -154,7 +153,7 @@ fn spinning<D: Dim>(n: usize, material: Material) -> Result<(World<D>, SoftBodyH
     let mut world = World::<D>::new(WorldConfig {
         gravity: [0.0; 3],
         drag: 0.0,
-        most_substeps: 1024,
+        max_substeps: 1024,
         ..WorldConfig::default()
     })?;
     let id = world.add_soft_body(body);

@@ -49,10 +49,9 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
 
 fn stand<D: Dim>(bodies: usize, duration: f32) -> Result<Stack> {
     let mut world = World::<D>::new(WorldConfig::default())?;
-    world.add_rigid_body(RigidBody::fixed(
-        Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
-        0.5,
-    ))?;
+    world.add_rigid_body(
+        RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3])).with_friction(0.5),
+    )?;
     let material = Material {
         elasticity: Elasticity {
             young: YOUNG,
@@ -66,7 +65,10 @@ fn stand<D: Dim>(bodies: usize, duration: f32) -> Result<Stack> {
         world.add_soft_body(body.translated([0.0, WIDTH * place as f32, 0.0]));
     }
     let centres = |world: &World<D>| -> Vec<Vector> {
-        let views = world.soft_bodies().iter().map(|body| body.piece_views());
+        let views = world
+            .soft_bodies()
+            .map(|(_, body)| body)
+            .map(|body| body.piece_views());
         views.map(|pieces| pieces[0].centre).collect()
     };
     let put = centres(&world);

@@ -100,14 +100,18 @@ fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
     let mut world = World::<D>::new(WorldConfig {
         gravity: [0.0; 3],
         drag: 0.0,
-        most_substeps: 256,
+        max_substeps: 256,
         ..WorldConfig::default()
     })?;
     world.add_soft_body(body);
     let mut peak = 0.0f64;
     for _ in 0..6000 {
         world.step();
-        let body = world.soft_bodies().first().expect("the world has a body");
+        let body = world
+            .soft_bodies()
+            .next()
+            .map(|(_, item)| item)
+            .expect("the world has a body");
         let load: f64 = held.iter().map(|&id| f64::from(body.force_on(id)[0])).sum();
         peak = peak.max(load);
         if peak > 10.0 && load < 0.3 * peak {

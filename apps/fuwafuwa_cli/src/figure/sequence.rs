@@ -3,7 +3,7 @@
 use super::legend::level_entries;
 use crate::report::Progress;
 use anyhow::Result;
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
     Blade, Dim2, Dim3, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid, World,
@@ -31,19 +31,18 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
         ..Material::default()
     };
     let mut world = World::<Dim2>::new(WorldConfig::default())?;
-    world.add_rigid_body(RigidBody::fixed(
-        Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
-        0.6,
-    ))?;
+    world.add_rigid_body(
+        RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3])).with_friction(0.6),
+    )?;
     for (x, lean) in [(-0.13, 1.0), (1.13, -1.0)] {
         let wall = Shape::Box {
             centre: [x - 0.05 * lean, 0.2, 0.0],
             half: [0.08, 0.2, 1.0],
         };
-        world.add_rigid_body(RigidBody::fixed(wall, 0.4))?;
+        world.add_rigid_body(RigidBody::fixed(wall).with_friction(0.4))?;
     }
     world.add_soft_body(SoftBody::new(VoxelGrid::ball(40, 1.0)?, &[material])?);
-    let mut hand = RigidBody::coupled_ball([0.46, 1.2, 0.0], 0.055);
+    let mut hand = RigidBody::coupled(Shape::ball(0.055)).at([0.46, 1.2, 0.0]);
     hand.motion_type = MotionType::Kinematic;
     let hand = world.add_rigid_body(hand)?;
 
@@ -83,10 +82,9 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
         ..Material::default()
     };
     let mut world = World::<Dim3>::new(WorldConfig::default())?;
-    world.add_rigid_body(RigidBody::fixed(
-        Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
-        1.0,
-    ))?;
+    world.add_rigid_body(
+        RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3])).with_friction(1.0),
+    )?;
     let low = -1.0 / ACROSS as f32;
     let body = SoftBody::new(VoxelGrid::ball(ACROSS, 1.0)?, &[material])?;
     world.add_soft_body(body.translated([0.0, low, 0.0]));

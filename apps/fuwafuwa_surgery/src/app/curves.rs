@@ -6,7 +6,7 @@ use crate::measures::Sample;
 use app_shell::Theme;
 use app_shell::widgets::fitted;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, Ui, pos2, vec2};
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::inspect::vector::length;
 
 /// Time span of the plots [s].

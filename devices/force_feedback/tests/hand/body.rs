@@ -42,11 +42,12 @@ impl Disc {
         ] {
             let wall = Shape::half_space(normal, at);
             world
-                .add_rigid_body(RigidBody::fixed(wall, 0.5))
+                .add_rigid_body(RigidBody::fixed(wall).with_friction(0.5))
                 .expect("the wall is valid");
         }
-        let hand =
-            RigidBody::coupled_ball([-0.3, 0.5, 0.0], 0.15).with_motion_type(MotionType::default());
+        let hand = RigidBody::coupled(Shape::ball(0.15))
+            .at([-0.3, 0.5, 0.0])
+            .with_motion_type(MotionType::default());
         let hand = world.add_rigid_body(hand).expect("the hand is valid");
         Self { world, hand }
     }
@@ -58,7 +59,7 @@ impl Other for Disc {
             .set_target_position(self.hand, [goal[0], 0.5 + goal[1], 0.0])
             .expect("the goal is valid");
         self.world.step();
-        let hand = &self.world.rigid_bodies()[self.hand];
+        let hand = self.world.rigid_body(self.hand).unwrap();
         let all = hand.reactions();
         let mean =
             |axis: usize| all.iter().map(|one| one.contact[axis]).sum::<f32>() / all.len() as f32;

@@ -26,7 +26,7 @@ fn sleeper() -> World<Dim2> {
     let id = world.add_soft_body(SoftBody::new(grid, &[damped]).unwrap());
     for _ in 0..900 {
         world.step();
-        if world.soft_bodies()[id].piece_views()[0].asleep {
+        if world[id].piece_views()[0].asleep {
             return world;
         }
     }
@@ -45,16 +45,16 @@ fn sleeping_body_wakes_when_changed() {
         |event: &Event| matches!(event, Event::WokeUp { body, piece: PieceId(0) } if *body == id);
     assert!(thrown.events().iter().any(woke));
     step(&mut thrown, 10);
-    assert!(thrown.soft_bodies().first().unwrap().piece_views()[0].low[1] > 0.3);
+    assert!(thrown.soft_bodies().next().unwrap().1.piece_views()[0].low[1] > 0.3);
 
     let mut crumbled = sleeper();
     crumbled
         .soft_body_mut(crumbled.nth_soft_body(0).unwrap())
         .unwrap()
         .crumble();
-    let before = crumbled.soft_bodies().first().unwrap().piece_views();
+    let before = crumbled.soft_bodies().next().unwrap().1.piece_views();
     step(&mut crumbled, 10);
-    let after = crumbled.soft_bodies().first().unwrap().piece_views();
+    let after = crumbled.soft_bodies().next().unwrap().1.piece_views();
     let frozen = before
         .iter()
         .zip(&after)
@@ -68,11 +68,11 @@ fn sleeping_body_wakes_when_changed() {
 #[test]
 fn sleeping_body_falls_when_floor_is_removed() {
     let mut world = sleeper();
-    let (floor, _) = world.rigid_bodies().entries().next().unwrap();
+    let (floor, _) = world.rigid_bodies().next().unwrap();
     world.remove(floor).unwrap();
     assert_eq!(world.fixed_rigid_bodies().count(), 0);
     step(&mut world, 30);
-    let view = world.soft_bodies().first().unwrap().piece_views()[0];
+    let view = world.soft_bodies().next().unwrap().1.piece_views()[0];
     assert!(!view.asleep && view.high[1] < 0.5, "{view:?}");
 }
 
@@ -85,7 +85,7 @@ fn sleeping_body_wakes_when_added_elsewhere() {
         .translated([0.0, 3.0, 0.0]);
     let id = world.add_soft_body(body);
     step(&mut world, 30);
-    let view = world.soft_bodies()[id].piece_views()[0];
+    let view = world[id].piece_views()[0];
     assert!(!view.asleep && view.low[1] < 2.5, "{view:?}");
 }
 
@@ -98,22 +98,22 @@ fn stiffness_scale_follows_substeps_of_world() {
         },
         ..Material::default()
     };
-    let world_of = |most_substeps| {
+    let world_of = |max_substeps| {
         let settings = WorldConfig {
-            most_substeps,
+            max_substeps,
             ..WorldConfig::default()
         };
         World::<Dim2>::new(settings).unwrap()
     };
     let (mut poor, mut rich) = (world_of(16), world_of(1024));
     poor.add_soft_body(SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), &[stiff]).unwrap());
-    let stiffness_scale = poor.soft_bodies().first().unwrap().stiffness_scale();
+    let stiffness_scale = poor.soft_bodies().next().unwrap().1.stiffness_scale();
     assert!(stiffness_scale < 0.2);
     rich.add_soft_body(poor.remove(poor.nth_soft_body(0).unwrap()).unwrap());
-    assert_eq!(rich.soft_bodies().first().unwrap().stiffness_scale(), 1.0);
+    assert_eq!(rich.soft_bodies().next().unwrap().1.stiffness_scale(), 1.0);
     poor.add_soft_body(rich.remove(rich.nth_soft_body(0).unwrap()).unwrap());
     assert_eq!(
-        poor.soft_bodies().first().unwrap().stiffness_scale(),
+        poor.soft_bodies().next().unwrap().1.stiffness_scale(),
         stiffness_scale
     );
 }
@@ -126,7 +126,7 @@ fn removal_keeps_other_handles_valid() {
         let x = 2.0 * f32::from(place);
         let body = ball(8 + 4 * usize::from(place)).translated(Vector::new(x, 0.0, 0.0));
         bodies.push(world.add_soft_body(body));
-        let hand = RigidBody::coupled_ball(Vector::new(x + 0.5, 1.1, 0.0), 0.1);
+        let hand = RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(x + 0.5, 1.1, 0.0));
         let hand = world.add_rigid_body(hand).unwrap();
         world
             .set_target_position(hand, Vector::new(x + 0.5, 0.8, 0.0))
@@ -140,7 +140,10 @@ fn removal_keeps_other_handles_valid() {
     assert!(removed.position()[0] < 1.0);
     step(&mut world, 30);
     assert_finite(&world);
-    let sizes = world.soft_bodies().iter().map(|body| body.grid().size()[0]);
+    let sizes = world
+        .soft_bodies()
+        .map(|(_, body)| body)
+        .map(|body| body.grid().size()[0]);
     assert_eq!(sizes.collect::<Vec<_>>(), [8, 16]);
     let with = |event: &Event| match *event {
         Event::ContactForce(contact) => Some((contact.pair[0].soft_body()?, contact.pair[1])),
@@ -158,9 +161,9 @@ fn stale_handle_is_rejected() {
     let mut world = world::<Dim2>();
     let ball = world.add_soft_body(ball(8));
     let hand = world
-        .add_rigid_body(RigidBody::coupled_ball(Vector::new(3.0, 1.0, 0.0), 0.1))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(3.0, 1.0, 0.0)))
         .unwrap();
-    let floor = world.rigid_bodies().ids().next().unwrap();
+    let floor = world.rigid_bodies().map(|(id, _)| id).next().unwrap();
     assert!(
         world.set_target_position(floor, Vector::ZERO).is_err(),
         "a fixed body has no target"
@@ -169,9 +172,9 @@ fn stale_handle_is_rejected() {
     world.remove(hand).unwrap();
     let heir = world.add_soft_body(body);
     world
-        .add_rigid_body(RigidBody::coupled_ball(Vector::new(3.0, 1.0, 0.0), 0.1))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(3.0, 1.0, 0.0)))
         .unwrap();
-    let error = world.soft_bodies().get(ball).unwrap_err().to_string();
+    let error = world.soft_body(ball).unwrap_err().to_string();
     assert!(
         error.starts_with("stale soft body handle: slot 0"),
         "{error}"
@@ -183,7 +186,7 @@ fn stale_handle_is_rejected() {
             .is_err()
     );
     assert!(world.set_target_position(hand, [0.0; 3]).is_err() && world.remove(hand).is_err());
-    assert!(world.soft_bodies().get(heir).is_ok());
+    assert!(world.soft_body(heir).is_ok());
     step(&mut world, 5);
 }
 
@@ -204,8 +207,7 @@ fn removal_wakes_only_bodies_in_contact() {
     };
     let places = [[0.0, 0.0], [0.0, 0.101], [0.0, 0.202], [2.0, 0.0]];
     let ids = places.map(|at| world.add_soft_body(cube(at)));
-    let sleeps =
-        |world: &World<Dim2>, n: usize| world.soft_bodies()[ids[n]].piece_views()[0].asleep;
+    let sleeps = |world: &World<Dim2>, n: usize| world[ids[n]].piece_views()[0].asleep;
     for _ in 0..1200 {
         world.step();
         if (0..4).all(|n| sleeps(&world, n)) {
@@ -219,7 +221,7 @@ fn removal_wakes_only_bodies_in_contact() {
     world.remove(ids[0]).unwrap();
     assert!(!sleeps(&world, 1) && !sleeps(&world, 2) && sleeps(&world, 3));
     step(&mut world, 60);
-    let low = |n: usize| world.soft_bodies()[ids[n]].piece_views()[0].low[1];
+    let low = |n: usize| world[ids[n]].piece_views()[0].low[1];
     assert!(low(1) < 0.01 && low(2) < 0.11, "the upper cubes must fall");
     assert!(sleeps(&world, 3));
 }
@@ -242,7 +244,7 @@ fn coupled_box_and_capsule_push_and_stop_at_floor() {
     ] {
         let mut world = world::<Dim2>();
         let id = world.add_soft_body(ball(12));
-        let plate = RigidBody::new(form, [0.5, 1.2, 0.0], MotionType::default());
+        let plate = RigidBody::new(form, MotionType::default()).at([0.5, 1.2, 0.0]);
         let plate = world.add_rigid_body(plate).unwrap();
         for tick in 0..60u8 {
             let height = 1.2 - 0.015 * f32::from(tick);
@@ -251,9 +253,9 @@ fn coupled_box_and_capsule_push_and_stop_at_floor() {
                 .unwrap();
             world.step();
         }
-        let felt = world.rigid_bodies()[plate].reactions().last().unwrap();
+        let felt = world.rigid_body(plate).unwrap().reactions().last().unwrap();
         assert!(felt.contact[1] > 5.0, "{felt:?}");
-        let high = world.soft_bodies()[id].piece_views()[0].high[1];
+        let high = world[id].piece_views()[0].high[1];
         assert!(high < 0.9, "{form:?}: the ball is {high} m high");
         // Beside the ball, the plate stops on the floor.
         for _ in 0..60 {
@@ -268,7 +270,7 @@ fn coupled_box_and_capsule_push_and_stop_at_floor() {
                 .unwrap();
             world.step();
         }
-        let low = world.rigid_bodies()[plate].position()[1] - 0.1;
+        let low = world.rigid_body(plate).unwrap().position()[1] - 0.1;
         assert!(low.abs() < 0.01, "{form:?}: {low} m above the floor");
         assert_finite(&world);
     }
@@ -281,7 +283,7 @@ fn fixed_node_falls_when_freed() {
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     nodes.iter().for_each(|&id| body.fix_node(id));
     let soft = world.add_soft_body(body);
-    let height = |world: &World<Dim2>| world.soft_bodies()[soft].piece_views()[0].centre[1];
+    let height = |world: &World<Dim2>| world[soft].piece_views()[0].centre[1];
     let start = height(&world);
     step(&mut world, 120);
     assert_eq!(height(&world), start);

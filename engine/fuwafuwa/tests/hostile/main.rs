@@ -16,7 +16,9 @@ const FLOOR: Shape = Shape::HalfSpace {
 
 fn world<D: Dim>() -> World<D> {
     let mut world = World::new(WorldConfig::default()).unwrap();
-    world.add_rigid_body(RigidBody::fixed(FLOOR, 0.5)).unwrap();
+    world
+        .add_rigid_body(RigidBody::fixed(FLOOR).with_friction(0.5))
+        .unwrap();
     world
 }
 
@@ -71,7 +73,7 @@ fn assert_they_meet(mut world: World<Dim2>) {
     step(&mut world, 40);
     let [left, right] = [0, 1].map(|n| {
         let body = world.nth_soft_body(n).unwrap();
-        world.soft_bodies()[body].piece_views()[0].centre[0]
+        world[body].piece_views()[0].centre[0]
     });
     assert!(
         left < right,
@@ -91,8 +93,9 @@ fn check_coarse<D: Dim>(blade: Blade) {
     let mut world = world::<D>();
     let id = world.add_soft_body(coarse.unwrap());
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand =
-        RigidBody::coupled_ball([0.5, 1.2, depth], 0.1).with_motion_type(MotionType::Kinematic);
+    let hand = RigidBody::coupled(Shape::ball(0.1))
+        .at([0.5, 1.2, depth])
+        .with_motion_type(MotionType::Kinematic);
     let hand = world.add_rigid_body(hand).unwrap();
     for tick in 0..60u16 {
         world
@@ -119,7 +122,7 @@ fn coarse_body_neither_tears_nor_is_cut() {
 #[test]
 fn add_rigid_rejects_out_of_range_hand() {
     let mut world = world::<Dim2>();
-    let usual = || RigidBody::coupled_ball(Vector::new(0.0, 3.0, 0.0), 0.1);
+    let usual = || RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(0.0, 3.0, 0.0));
     let MotionType::Coupled {
         mass,
         stiffness,
@@ -141,9 +144,15 @@ fn add_rigid_rejects_out_of_range_hand() {
     let mut slippery = usual();
     slippery.friction = infinite;
     let bad = [
-        (RigidBody::coupled_ball([0.0, 1e30, 0.0], 0.1), "position"),
-        (RigidBody::coupled_ball([0.0; 3], infinite), "radius"),
-        (RigidBody::coupled_ball([0.0; 3], -1.0), "radius"),
+        (
+            RigidBody::coupled(Shape::ball(0.1)).at([0.0, 1e30, 0.0]),
+            "position",
+        ),
+        (
+            RigidBody::coupled(Shape::ball(infinite)).at([0.0; 3]),
+            "radius",
+        ),
+        (RigidBody::coupled(Shape::ball(-1.0)).at([0.0; 3]), "radius"),
         (slippery, "friction"),
         (drive(infinite, stiffness, damping, limit), "mass"),
         (drive(1e-30, stiffness, damping, limit), "mass"),
@@ -157,13 +166,13 @@ fn add_rigid_rejects_out_of_range_hand() {
     }
     assert!(
         world
-            .add_rigid_body(RigidBody::fixed(FLOOR, infinite))
+            .add_rigid_body(RigidBody::fixed(FLOOR).with_friction(infinite))
             .is_err()
     );
     let nowhere = FLOOR.translated([0.0, infinite, 0.0]);
     assert!(
         world
-            .add_rigid_body(RigidBody::fixed(nowhere, 0.1))
+            .add_rigid_body(RigidBody::fixed(nowhere).with_friction(0.1))
             .is_err()
     );
     world
@@ -204,19 +213,21 @@ fn plane_world_ignores_third_coordinates() {
     ];
     for shape in shapes {
         let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
-        world.add_rigid_body(RigidBody::fixed(shape, 0.5)).unwrap();
+        world
+            .add_rigid_body(RigidBody::fixed(shape).with_friction(0.5))
+            .unwrap();
         let id = world.add_soft_body(ball(12).translated([0.0, 0.02, 0.0]));
-        let hand = RigidBody::coupled_ball([0.5, 0.9, 0.05], 0.1);
+        let hand = RigidBody::coupled(Shape::ball(0.1)).at([0.5, 0.9, 0.05]);
         world.add_rigid_body(hand).unwrap();
         step(&mut world, 30);
         assert_finite(&world);
-        let low = world.soft_bodies()[id].piece_views()[0].low[1];
+        let low = world[id].piece_views()[0].low[1];
         assert!(low > -0.03, "{shape:?}: {low}");
     }
     let edge_on = Shape::half_space(Vector::Z, Vector::ZERO);
     assert!(
         world::<Dim2>()
-            .add_rigid_body(RigidBody::fixed(edge_on, 0.5))
+            .add_rigid_body(RigidBody::fixed(edge_on).with_friction(0.5))
             .is_err()
     );
     let body = ball::<Dim2>(12);
@@ -234,7 +245,11 @@ fn node_states<D: Dim>(world: &World<D>) -> Vec<([f32; 3], [f32; 3], f32)> {
         let nodes = body.mesh().nodes();
         nodes.map(|(id, _)| body.node_state(id)).collect()
     };
-    world.soft_bodies().iter().flat_map(states).collect()
+    world
+        .soft_bodies()
+        .map(|(_, body)| body)
+        .flat_map(states)
+        .collect()
 }
 
 #[test]
@@ -251,9 +266,10 @@ fn unused_material_has_no_effect() {
         let mut world = world::<Dim2>();
         let id = world
             .add_soft_body(SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap());
-        assert_eq!(world.soft_bodies()[id].stiffness_scale(), 1.0);
-        let hand =
-            RigidBody::coupled_ball([0.5, 1.1, 0.0], 0.1).with_motion_type(MotionType::Kinematic);
+        assert_eq!(world[id].stiffness_scale(), 1.0);
+        let hand = RigidBody::coupled(Shape::ball(0.1))
+            .at([0.5, 1.1, 0.0])
+            .with_motion_type(MotionType::Kinematic);
         let hand = world.add_rigid_body(hand).unwrap();
         let mut released = 0;
         for tick in 0..40u8 {

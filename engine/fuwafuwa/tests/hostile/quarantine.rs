@@ -21,7 +21,7 @@ fn non_finite_body_is_quarantined() {
         assert_finite(&world);
         let centres = world
             .soft_bodies()
-            .iter()
+            .map(|(_, body)| body)
             .map(|body| body.piece_views()[0].centre);
         let expected = [[0.5, 0.5, 0.0], [3.5, 0.5, 0.0]];
         for (centre, expected) in centres.zip(expected) {
@@ -37,8 +37,9 @@ fn non_finite_body_is_quarantined() {
 fn quarantine_restores_positions_of_torn_piece() {
     let mut world = world::<Dim2>();
     world.add_soft_body(ball(24).translated([5.0, 0.0, 0.0]));
-    let hand =
-        RigidBody::coupled_ball([5.5, 1.1, 0.0], 0.08).with_motion_type(MotionType::Kinematic);
+    let hand = RigidBody::coupled(Shape::ball(0.08))
+        .at([5.5, 1.1, 0.0])
+        .with_motion_type(MotionType::Kinematic);
     let hand = world.add_rigid_body(hand).unwrap();
     let mut both = 0;
     for tick in 0..40u16 {
@@ -54,7 +55,7 @@ fn quarantine_restores_positions_of_torn_piece() {
         let report = doomed.step();
         both += u32::from(report.nodes_split > 0 && report.quarantined > 0);
         assert_finite(&doomed);
-        let body = doomed.soft_bodies().first().unwrap();
+        let body = doomed.soft_bodies().next().unwrap().1;
         for (_, element) in body.mesh().elements() {
             let places = || element.nodes.iter().map(|&node| body.node_state(node).0);
             let width = element.cell.width() as f32 / 24.0;
@@ -74,7 +75,7 @@ fn quarantine_leaves_neighbours_unaffected() {
     let mut world = world::<Dim2>();
     for (place, x) in [0.0, 0.97].into_iter().enumerate() {
         world.add_soft_body(ball(16).translated(Vector::new(x, 0.0, 0.0)));
-        let hand = RigidBody::coupled_ball(Vector::new(x + 0.5, 0.95, 0.0), 0.1);
+        let hand = RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(x + 0.5, 0.95, 0.0));
         let drive = [MotionType::Kinematic, MotionType::default()][place];
         world.add_rigid_body(hand.with_motion_type(drive)).unwrap();
     }
@@ -102,7 +103,7 @@ fn piece_detached_from_quarantined_one_is_quarantined() {
     world
         .cut(id, &Blade::segment([0.5, -1.0], [0.5, 2.0]))
         .unwrap();
-    let views = world.soft_bodies()[id].piece_views();
+    let views = world[id].piece_views();
     assert_eq!(views.len(), 2);
     assert!(views.iter().all(|view| view.asleep && view.quarantined));
 }
@@ -113,7 +114,7 @@ fn quarantined_body_supports_others() {
     world.add_soft_body(bar([24, 4]).translated(Vector::new(f32::INFINITY, 0.0, 0.0)));
     world.add_soft_body(bar([6, 6]).translated(Vector::new(0.27, 0.25, 0.0)));
     step(&mut world, 30);
-    let view = &world.soft_bodies()[world.nth_soft_body(1).unwrap()].piece_views()[0];
+    let view = &world[world.nth_soft_body(1).unwrap()].piece_views()[0];
     assert!(
         view.low[1] > 0.05,
         "the bar fell through the quarantined one: {view:?}"

@@ -160,15 +160,17 @@ mod tests {
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
         let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
-        let hand = RigidBody::coupled_ball([0.5, 1.3, 0.5], 0.3);
+        let hand = RigidBody::coupled(Shape::ball(0.3)).at([0.5, 1.3, 0.5]);
         let hand = world.add_rigid_body(hand).unwrap();
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-        world.add_rigid_body(RigidBody::fixed(floor, 0.2)).unwrap();
+        world
+            .add_rigid_body(RigidBody::fixed(floor).with_friction(0.2))
+            .unwrap();
         for _ in 0..40 {
             world.set_target_position(hand, [0.5, 0.8, 0.4]).unwrap();
             world.step();
         }
-        let body = &world.soft_bodies()[soft];
+        let body = &world[soft];
         let mut most = 0.0f32;
         for (id, element) in body.mesh().elements().filter(|(_, of)| of.cell.level == 0) {
             let exact = body.element_view(id).unwrap();
@@ -197,14 +199,7 @@ mod tests {
                 }),
             );
             let mut boxes = Boxes::default();
-            boxes.add(
-                0,
-                &world.soft_bodies()[soft],
-                &palette,
-                ElementColour::Level,
-                &[],
-                cut,
-            );
+            boxes.add(0, &world[soft], &palette, ElementColour::Level, &[], cut);
             let at = |k: &u32| boxes.vertices[*k as usize].at;
             let triangles = boxes.indices.chunks(3);
             let triangles = triangles.map(|t| (at(&t[0]), at(&t[1]), at(&t[2])));

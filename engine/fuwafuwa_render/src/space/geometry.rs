@@ -59,7 +59,7 @@ impl Geometry {
         let palette = frame.palette;
         let bars = world
             .rigid_bodies()
-            .iter()
+            .map(|(_, body)| body)
             .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor);
         let bars = bars.filter_map(|bar| RoundedInstance::of(*bar.shape(), palette.bar, 0.0));
         self.bars = append(&mut self.rounded, bars);
@@ -69,7 +69,7 @@ impl Geometry {
         let props = props.filter_map(|prop| RoundedInstance::of(prop.shape, prop.colour, 0.0));
         self.props = append(&mut self.rounded, props);
         self.renewed_ghosts.clear();
-        let ghosts = frame.ghost.map_or(0, |ghost| ghost.soft_bodies().len());
+        let ghosts = frame.ghost.map_or(0, |ghost| ghost.soft_bodies().count());
         self.ghosts.resize_with(ghosts, Skin::default);
         if let Some(ghost) = frame.ghost {
             let skins = self.ghosts.iter_mut().zip(ghost.soft_bodies());
@@ -82,10 +82,10 @@ impl Geometry {
             .flat_map(|ghost| balls(ghost, palette));
         self.ghost_hands = append(&mut self.rounded, of_ghost);
         self.skins
-            .resize_with(world.soft_bodies().len(), Skin::default);
+            .resize_with(world.soft_bodies().count(), Skin::default);
         self.renewed.clear();
         let first = self.rounded.len() as u32;
-        for (place, body) in world.soft_bodies().iter().enumerate() {
+        for (place, body) in world.soft_bodies().map(|(_, body)| body).enumerate() {
             match frame.look {
                 Look::Skin => {
                     let skin = &mut self.skins[place];
@@ -106,7 +106,7 @@ impl Geometry {
         if frame.look == Look::Skin {
             let eye = frame.camera.eye();
             for sticker in frame.stickers {
-                if let Some(body) = world.soft_bodies().iter().nth(sticker.body) {
+                if let Some(body) = world.soft_bodies().map(|(_, body)| body).nth(sticker.body) {
                     let skin = &self.skins[sticker.body];
                     self.stickers.add(sticker, skin, body, eye);
                 }
@@ -220,11 +220,15 @@ mod tests {
     fn gather_places_room_bars_hands_crumbs_and_lines() {
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0, -0.5, 0.0]);
-        world.add_rigid_body(RigidBody::fixed(floor, 0.2)).unwrap();
+        world
+            .add_rigid_body(RigidBody::fixed(floor).with_friction(0.2))
+            .unwrap();
         let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);
         let bar = Shape::Capsule { from, to, radius };
-        world.add_rigid_body(RigidBody::fixed(bar, 0.2)).unwrap();
-        let hand = RigidBody::coupled_ball([0.0, 3.0, 1.0], 0.2);
+        world
+            .add_rigid_body(RigidBody::fixed(bar).with_friction(0.2))
+            .unwrap();
+        let hand = RigidBody::coupled(Shape::ball(0.2)).at([0.0, 3.0, 1.0]);
         world.add_rigid_body(hand).unwrap();
         let grid = VoxelGrid::from_fn([5, 2, 2], 0.5, |[x, ..]| u8::from(x != 2)).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());

@@ -226,7 +226,7 @@ mod tests {
     fn skin(world: &World<Dim3>) -> Skin {
         let mut skin = Skin::default();
         skin.update(
-            world.soft_bodies().first().unwrap(),
+            world.soft_bodies().next().unwrap().1,
             &Palette::candy().materials,
         );
         skin
@@ -263,7 +263,7 @@ mod tests {
     #[test]
     fn skin_of_a_ball_is_a_sphere() {
         let world = ball(32);
-        let count = world.soft_bodies().first().unwrap().grid().solid_count() as f32;
+        let count = world.soft_bodies().next().unwrap().1.grid().solid_count() as f32;
         let round = (0.75 * count / std::f32::consts::PI).cbrt() / 32.0;
         for vertex in skin(&world).vertices() {
             let away = minus(vertex.at, [0.5; 3]);
@@ -332,7 +332,7 @@ mod tests {
         for x in [0.2, 0.8, 0.3, 0.55, 0.4, 0.48] {
             cut(&mut world, x);
             assert!(kept.update(
-                world.soft_bodies().first().unwrap(),
+                world.soft_bodies().next().unwrap().1,
                 &Palette::candy().materials
             ));
             let new = skin(&world);
@@ -340,18 +340,18 @@ mod tests {
             assert!((kept.volume() / new.volume() - 1.0).abs() < 1e-4);
             world.step();
             kept.update(
-                world.soft_bodies().first().unwrap(),
+                world.soft_bodies().next().unwrap().1,
                 &Palette::candy().materials,
             );
         }
         let safe = Palette::colour_safe().materials;
-        assert!(kept.update(world.soft_bodies().first().unwrap(), &safe));
-        assert!(!kept.update(world.soft_bodies().first().unwrap(), &safe));
+        assert!(kept.update(world.soft_bodies().next().unwrap().1, &safe));
+        assert!(!kept.update(world.soft_bodies().next().unwrap().1, &safe));
         // Another body with its own grid, and an untorn one with an equal grid.
         for n in [16, 20] {
             let other = ball(n);
             kept.update(
-                other.soft_bodies().first().unwrap(),
+                other.soft_bodies().next().unwrap().1,
                 &Palette::candy().materials,
             );
             assert_eq!(sorted(&kept), sorted(&skin(&other)));

@@ -209,7 +209,7 @@ mod tests {
         };
         let mut skin = Skin::default();
         let mut stuck = |world: &World<Dim3>, sticker: &Sticker| {
-            let body = &world.soft_bodies()[soft];
+            let body = &world[soft];
             skin.update(body, &Palette::candy().materials);
             let mut stickers = Stickers::default();
             stickers.add(sticker, &skin, body, [0.5, 0.5, 9.0]);
@@ -231,7 +231,7 @@ mod tests {
             along,
         };
         world.cut(soft, &blade).unwrap();
-        let body = &world.soft_bodies()[soft];
+        let body = &world[soft];
         let nodes = body.mesh().nodes();
         let inside = nodes.min_by(|a, b| {
             let away = |id| length(minus(body.node_state(id).0, [0.5; 3]));

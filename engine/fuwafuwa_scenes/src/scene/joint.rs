@@ -160,7 +160,7 @@ impl JointAnchorText {
         if let Some(number) = self.body {
             let body = nth("body", number, &known.bodies)?;
             let radius = self.radius.unwrap_or(0.0);
-            return Ok(JointAnchor::Soft { body, at, radius });
+            return Ok(JointAnchor::SoftBody { body, at, radius });
         }
         for &(field, number, list) in &is_rigid {
             if let Some(number) = number {
@@ -168,7 +168,7 @@ impl JointAnchorText {
                 return Ok(JointAnchor::RigidBody { rigid, at });
             }
         }
-        Ok(JointAnchor::Position(at))
+        Ok(JointAnchor::Point(at))
     }
 }
 

@@ -122,7 +122,7 @@ impl RigidBodyText {
             (Some(turned), None) => rotation_of::<D>(turned)?,
             (None, rotation) => rotation.unwrap_or(Rotation::NONE),
         };
-        let mut rigid = RigidBody::new(shapes.only::<D>()?, self.at, self.drive()?);
+        let mut rigid = RigidBody::new(shapes.only::<D>()?, self.drive()?).at(self.at);
         if rotation != Rotation::NONE {
             rigid = rigid.rotated(rotation);
         }
@@ -194,7 +194,7 @@ impl RigidBodyText {
         let Ok(id) = self.add_to(&mut world) else {
             return false;
         };
-        let made = &world.rigid_bodies()[id];
+        let made = world.rigid_body(id).unwrap();
         if rigid.follows_target() {
             // The motion of the target has no getter, so the whole bodies are compared.
             return made == rigid;

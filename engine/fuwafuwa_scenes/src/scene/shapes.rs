@@ -91,7 +91,8 @@ impl ObstacleText {
             capsule: self.capsule.as_ref(),
             ball: self.ball.as_ref(),
         };
-        let added = world.add_rigid_body(RigidBody::fixed(shape.only::<D>()?, self.friction));
+        let added =
+            world.add_rigid_body(RigidBody::fixed(shape.only::<D>()?).with_friction(self.friction));
         added
             .map(|_| ())
             .map_err(|error| FieldError::engine("friction", error))
@@ -173,7 +174,7 @@ impl HandText {
             true => MotionType::Kinematic,
             false => MotionType::default(),
         };
-        let hand = RigidBody::new(form, self.target(0.0), drive);
+        let hand = RigidBody::new(form, drive).at(self.target(0.0));
         let added = world.add_rigid_body(hand);
         added
             .map(|_| ())

@@ -24,7 +24,7 @@ pub(super) fn body<D: Dim>(text: &str) -> Result<SoftBody<D>, FieldError> {
     let mut world = world::<D>(text)?;
     let id = world
         .nth_soft_body(0)
-        .filter(|_| world.soft_bodies().len() == 1);
+        .filter(|_| world.soft_bodies().count() == 1);
     let body = id.and_then(|id| world.remove(id).ok());
     body.ok_or_else(|| FieldError::new("state", "expected the snapshot of a world with one body"))
 }
@@ -32,8 +32,8 @@ pub(super) fn body<D: Dim>(text: &str) -> Result<SoftBody<D>, FieldError> {
 /// Decodes a rigid body.
 pub(super) fn rigid<D: Dim>(text: &str) -> Result<RigidBody, FieldError> {
     let mut world = world::<D>(text)?;
-    let id = world.rigid_bodies().ids().next();
-    let id = id.filter(|_| world.rigid_bodies().len() == 1);
+    let id = world.rigid_bodies().map(|(id, _)| id).next();
+    let id = id.filter(|_| world.rigid_bodies().count() == 1);
     let rigid = id.and_then(|id| world.remove(id).ok());
     rigid.ok_or_else(|| {
         FieldError::new(

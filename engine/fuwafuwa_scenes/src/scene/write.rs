@@ -77,7 +77,7 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
         dim: D::N as u8,
         gravity: settings.gravity,
         drag: settings.drag,
-        most_substeps: settings.most_substeps,
+        max_substeps: settings.max_substeps,
         tick: settings.tick,
         seconds: super::usual_seconds(),
         view: view_of(world),
@@ -90,14 +90,14 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
         game: None,
         origin: Origin::default(),
     };
-    let found = world.soft_bodies().len();
+    let found = world.soft_bodies().count();
     let expected = format!("expected {MAX_BODIES} bodies at most, found {found}");
     require(found <= MAX_BODIES, "body", expected)?;
-    let found = world.rigid_bodies().len();
+    let found = world.rigid_bodies().count();
     let expected = format!("expected {MAX_RIGID} at most, found {found}");
     require(found <= MAX_RIGID, "rigid", expected)?;
     let mut materials: Vec<Material> = Vec::new();
-    for (index, body) in world.soft_bodies().iter().enumerate() {
+    for (index, body) in world.soft_bodies().map(|(_, body)| body).enumerate() {
         let text = body_text(body, settings, &mut materials);
         scene
             .body
@@ -107,7 +107,7 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
     if scene.material.is_empty() {
         scene.material = super::usual_materials();
     }
-    for (index, rigid) in world.rigid_bodies().iter().enumerate() {
+    for (index, rigid) in world.rigid_bodies().map(|(_, body)| body).enumerate() {
         let text = RigidBodyText::of::<D>(rigid);
         let wrong =
             || FieldError::new("state", "the state cannot be serialised").inside("rigid", index);
@@ -260,10 +260,10 @@ fn runs(materials: impl Iterator<Item = u8>) -> String {
 /// Describes joints by their original anchors, otherwise by the current ones, and checks that the scene
 /// reproduces them.
 fn write_joints<D: Dim>(world: &World<D>, scene: &mut Scene) -> Result<(), FieldError> {
-    if world.joints().is_empty() {
+    if world.joints().next().is_none() {
         return Ok(());
     }
-    for (index, (id, joint)) in world.joints().entries().enumerate() {
+    for (index, (id, joint)) in world.joints().enumerate() {
         let inside = |wrong: FieldError| wrong.inside("joint", index);
         let gone = || FieldError::new("ends", "expected two existing bodies, but one was removed");
         let places = world.joint_anchor_positions(id).ok().flatten();
@@ -300,7 +300,7 @@ fn reproduces_joint(scene: &Scene, text: &JointText, places: [[f32; 3]; 2], join
 
 fn only_joint<D: Dim>(world: Result<World<D>, SceneError>) -> Option<([[f32; 3]; 2], Joint)> {
     let world = world.ok()?;
-    let (id, joint) = world.joints().entries().next()?;
+    let (id, joint) = world.joints().next()?;
     Some((world.joint_anchor_positions(id).ok()??, joint.clone()))
 }
 
@@ -310,14 +310,24 @@ fn end_text<D: Dim>(
     end: &JointAnchor,
     other: Option<[f32; 3]>,
 ) -> Option<JointAnchorText> {
-    let rank_of_body = |id: SoftBodyHandle| world.soft_bodies().rank(id).map(|rank| rank + 1);
-    let rank_of_rigid = |id: RigidBodyHandle| world.rigid_bodies().rank(id).map(|rank| rank + 1);
+    let rank_of_body = |id: SoftBodyHandle| {
+        world
+            .soft_bodies()
+            .position(|(id, _)| id == id)
+            .map(|rank| rank + 1)
+    };
+    let rank_of_rigid = |id: RigidBodyHandle| {
+        world
+            .rigid_bodies()
+            .position(|(id, _)| id == id)
+            .map(|rank| rank + 1)
+    };
     let flat = |mut at: [f32; 3]| {
         at[D::N..].fill(0.0);
         at
     };
     Some(match *end {
-        JointAnchor::Position(at) => JointAnchorText {
+        JointAnchor::Point(at) => JointAnchorText {
             at: flat(other.unwrap_or(at)),
             ..JointAnchorText::default()
         },
@@ -326,7 +336,7 @@ fn end_text<D: Dim>(
             at: flat(other.unwrap_or(at)),
             ..JointAnchorText::default()
         },
-        JointAnchor::Soft { body, at, radius } => JointAnchorText {
+        JointAnchor::SoftBody { body, at, radius } => JointAnchorText {
             body: Some(rank_of_body(body)?),
             at: flat(other.unwrap_or(at)),
             radius: Some(radius),
@@ -337,13 +347,13 @@ fn end_text<D: Dim>(
 
 /// Returns a view of all nodes and dynamic rigid bodies, with a margin of 0.5 m.
 fn view_of<D: Dim>(world: &World<D>) -> [[f32; 3]; 2] {
-    let nodes = world.soft_bodies().iter().flat_map(|body| {
+    let nodes = world.soft_bodies().map(|(_, body)| body).flat_map(|body| {
         let ids = body.mesh().nodes().map(|(id, _)| id);
         ids.map(|id| body.node_state(id).0)
     });
     let free = world
         .rigid_bodies()
-        .iter()
+        .map(|(_, body)| body)
         .filter(|rigid| rigid.is_dynamic());
     let middles = free.map(|rigid| rigid.position());
     let (mut low, mut high) = ([f32::MAX; 3], [f32::MIN; 3]);

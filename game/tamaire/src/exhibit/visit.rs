@@ -2,7 +2,7 @@
 
 use super::config::Config;
 use crate::game::EndedRound;
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use tamaire_logbook::{Id, Moment, Round, RoundEnd};
 use tamaire_play::Route;
 

@@ -108,7 +108,7 @@ impl Game {
                 for (goal, hand) in hands.iter_mut().zip(round.hands()) {
                     *goal = hand.target_position();
                 }
-                let tick = fuwafuwa::TICK;
+                let tick = fuwafuwa::DEFAULT_TICK;
                 let frame = players.frame(devices, &settings.bindings, &manner, &hands, tick);
                 // Scrolling counts once, however many ticks are played in this frame.
                 devices.lift = 0.0;

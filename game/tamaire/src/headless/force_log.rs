@@ -5,7 +5,7 @@ use crate::haptics;
 use crate::settings::Settings;
 use app_shell::direction::to_user;
 use force_feedback::{Ability, Command, ForceController, Output, State, StickMode, Watchdog};
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::Vector;
 use std::fs::File;
 use std::io::{self, Write};

@@ -117,9 +117,9 @@ impl Effects {
 
     fn look_at<D: Dim>(&mut self, round: &Round<D>, camera: &mut CameraRig, still: bool) {
         let world = round.world();
-        if world.ticks() <= self.tick || self.feelings.len() != world.soft_bodies().len() {
+        if world.ticks() <= self.tick || self.feelings.len() != world.soft_bodies().count() {
             // A new round has begun.
-            let bodies = world.soft_bodies().iter();
+            let bodies = world.soft_bodies().map(|(_, body)| body);
             let eye = (D::N == 3).then(|| camera.eye(round.level().arena()));
             *self = Self {
                 feelings: bodies.map(|body| Feeling::new(body, eye)).collect(),
@@ -133,7 +133,7 @@ impl Effects {
         let mut pressed = 0.0;
         let mut material = 1;
         let mut looked_up = 0;
-        let mut torn = vec![false; world.soft_bodies().len()];
+        let mut torn = vec![false; world.soft_bodies().count()];
         for event in world.events() {
             match *event {
                 Event::NodeSplit {
@@ -141,12 +141,12 @@ impl Effects {
                     point,
                     energy,
                 } => {
-                    let rank = world.soft_bodies().rank(body);
+                    let rank = world.soft_bodies().position(|(id, _)| id == body);
                     torn[rank.expect("the event names a body of this world")] = true;
                     camera.shake(0.002 + 0.002 * energy.clamp(0.0, 2.0));
                     if looked_up < LOOKED_UP {
                         looked_up += 1;
-                        material = material_at(&world.soft_bodies()[body], point);
+                        material = material_at(&world[body], point);
                     }
                     let count = if still { 1 } else { DUST };
                     (0..count).for_each(|_| self.spawn_dust(point, material));
@@ -155,8 +155,8 @@ impl Effects {
                     pair: [ObjectRef::Piece { .. }, ObjectRef::RigidBody(rigid)],
                     impulse,
                     ..
-                }) if world.rigid_bodies()[rigid].follows_target() => {
-                    pressed += impulse / fuwafuwa::TICK;
+                }) if world.rigid_body(rigid).unwrap().follows_target() => {
+                    pressed += impulse / fuwafuwa::DEFAULT_TICK;
                 }
                 _ => {}
             }
@@ -287,7 +287,7 @@ mod tests {
             for _ in 0..ticks {
                 round.step(frame);
                 effects.process_tick(round, &mut camera, false);
-                effects.advance(fuwafuwa::TICK);
+                effects.advance(fuwafuwa::DEFAULT_TICK);
             }
         };
         let mut first = round("classic");
@@ -327,7 +327,7 @@ mod tests {
         let AnyRound::Plane(round) = round("twins") else {
             panic!("the level is 2D")
         };
-        let bodies: Vec<&SoftBody<_>> = round.world().soft_bodies().iter().collect();
+        let bodies: Vec<&SoftBody<_>> = round.world().soft_bodies().map(|(_, body)| body).collect();
         let middle = |body: &SoftBody<_>| body.piece_views()[0].centre;
         assert_eq!(material_at(bodies[0], middle(bodies[0])), 1);
         assert_eq!(material_at(bodies[1], middle(bodies[1])), 2);

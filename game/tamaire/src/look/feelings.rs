@@ -2,7 +2,7 @@
 
 use super::Mood;
 use super::perch::{FaceAnchor, UPRIGHT, largest, masses, square};
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim, NodeId, PieceId, SoftBody, Vector};
 use fuwafuwa_render::anchor;
@@ -300,7 +300,7 @@ mod tests {
             u8::from(hole([voxel[0] as f32 + 0.5, voxel[1] as f32 + 0.5]))
         });
         let world = alone(grid.expect("the grid is valid"));
-        let feeling = Feeling::new(world.soft_bodies().first().unwrap(), None);
+        let feeling = Feeling::new(world.soft_bodies().next().unwrap().1, None);
         let away = [feeling.at[0] - 0.5, feeling.at[1] - 0.5];
         let radius = length(away);
         assert!((0.25..0.45).contains(&radius), "{feeling:?}");
@@ -313,7 +313,7 @@ mod tests {
     #[test]
     fn face_glides_to_remaining_piece_and_dust_has_none() {
         let mut world = alone(VoxelGrid::ball(32, 1.0).expect("the grid is valid"));
-        let mut feeling = Feeling::new(world.soft_bodies().first().unwrap(), None);
+        let mut feeling = Feeling::new(world.soft_bodies().next().unwrap().1, None);
         let (before, size) = (feeling.at, feeling.size);
         world
             .cut(
@@ -325,16 +325,16 @@ mod tests {
             tick: LOOK,
             ..MoodInput::default()
         };
-        feeling.update(world.soft_bodies().first().unwrap(), fate);
+        feeling.update(world.soft_bodies().next().unwrap().1, fate);
         let step = feeling.at[0] - before[0];
         assert!(step.abs() < 0.03, "the face does not jump: {step}");
         for _ in 0..200 {
-            feeling.update(world.soft_bodies().first().unwrap(), MoodInput::default());
+            feeling.update(world.soft_bodies().next().unwrap().1, MoodInput::default());
         }
         assert!(feeling.at[0] > before[0] + 0.05 && feeling.size < size);
         let dust = alone(VoxelGrid::ball(4, 0.05).expect("the grid is valid"));
         assert_eq!(
-            Feeling::new(dust.soft_bodies().first().unwrap(), None).size,
+            Feeling::new(dust.soft_bodies().next().unwrap().1, None).size,
             0.0
         );
     }
@@ -346,7 +346,7 @@ mod tests {
         world.add_soft_body(
             SoftBody::new(grid, &[Material::default()]).expect("the defaults are valid"),
         );
-        let mut feeling = Feeling::new(world.soft_bodies().first().unwrap(), None);
+        let mut feeling = Feeling::new(world.soft_bodies().next().unwrap().1, None);
         assert!(feeling.axes[2][2] > 0.99, "{feeling:?}");
         // Turns the body's back to the camera.
         let body = world
@@ -362,7 +362,7 @@ mod tests {
                 eye,
                 ..MoodInput::default()
             };
-            (0..ticks).for_each(|_| feeling.update(world.soft_bodies().first().unwrap(), fate));
+            (0..ticks).for_each(|_| feeling.update(world.soft_bodies().next().unwrap().1, fate));
             feeling.axes
         };
         let [_, up, out] = see(None, 60);
@@ -374,7 +374,7 @@ mod tests {
     #[test]
     fn tear_shocks_once_then_hurts() {
         let world = alone(VoxelGrid::ball(16, 1.0).expect("the grid is valid"));
-        let body = world.soft_bodies().first().unwrap();
+        let body = world.soft_bodies().next().unwrap().1;
         let mut feeling = Feeling::new(body, None);
         let torn = MoodInput {
             tick: 1,

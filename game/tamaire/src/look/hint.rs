@@ -60,8 +60,10 @@ fn draw_ring(painter: &Painter, hand: &RigidBody, look: &DrawOptions) {
 /// Draws the pale hand and the body that it pushes.
 fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, look: &DrawOptions) {
     let (view, strength) = (&look.view, look.effects.hint);
-    let (Some(basket), Some(body)) = (basket_centre(round), round.world().soft_bodies().first())
-    else {
+    let (Some(basket), Some(body)) = (
+        basket_centre(round),
+        round.world().soft_bodies().next().map(|(_, item)| item),
+    ) else {
         return;
     };
     let Some(piece) = body.piece_views().into_iter().next() else {

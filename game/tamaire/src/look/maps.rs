@@ -129,7 +129,11 @@ impl Maps {
 }
 
 fn faces<D: Dim>(round: &Round<D>, eye: Option<Vector>) -> Vec<Face> {
-    let bodies = round.world().soft_bodies().iter().enumerate();
+    let bodies = round
+        .world()
+        .soft_bodies()
+        .map(|(_, body)| body)
+        .enumerate();
     bodies
         .map(|(number, body)| face_at_rest(number, &Feeling::new(body, eye), 1.0))
         .collect()

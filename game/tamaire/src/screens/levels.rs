@@ -183,7 +183,7 @@ fn explain(ui: &Ui, game: &Game, tile: &Response, level: &Level, record: Option<
         format!("{star} {}", (said.wish)(wish))
     });
     let time = |(&route, &ticks): (&Route, &u64)| {
-        let seconds = ticks as f32 * fuwafuwa::TICK;
+        let seconds = ticks as f32 * fuwafuwa::DEFAULT_TICK;
         format!("{} {seconds:.1} s", (said.route)(route))
     };
     let times = record.into_iter().flat_map(|record| &record.best);

@@ -4,7 +4,7 @@ use crate::pads::{Table, pad};
 use crate::told::tells;
 use crate::window::*;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, TouchPhase, pos2, vec2};
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::Vector;
 use fuwafuwa::inspect::vector::{length, minus};
 use sticks::{DeviceId, PadButton};

@@ -6,7 +6,7 @@ use app_shell::{Clock, Pads};
 use egui::{Event, Key, PointerButton, Pos2, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use jiff::civil::Time;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

@@ -87,7 +87,7 @@ impl Sight {
         });
 
         let mass = round.progress().mass;
-        let bodies = world.soft_bodies().iter();
+        let bodies = world.soft_bodies().map(|(_, body)| body);
         let mut views: Vec<PieceView> = bodies.flat_map(|body| body.piece_views()).collect();
         views.sort_by(|a, b| b.mass.total_cmp(&a.mass));
         let largest = views.first()?;
@@ -106,7 +106,7 @@ impl Sight {
         let piece = pieces[skips % pieces.len()];
 
         let mut within = 0.0;
-        for body in world.soft_bodies().iter() {
+        for body in world.soft_bodies().map(|(_, body)| body) {
             for (id, _) in body.mesh().nodes() {
                 let (at, _, share) = body.node_state(id);
                 map.add(at, SOFT * share / mass);

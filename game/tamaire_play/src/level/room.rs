@@ -21,7 +21,7 @@ pub(super) fn check<D: Dim>(
         middle[k] < low[k] && fall[k] <= 0.0 || middle[k] > high[k] && fall[k] >= 0.0
     };
     let is_within = |middle: Vector| !(0..D::N).any(|k| is_out(middle, k));
-    let mut middles = world.soft_bodies().iter().map(middle);
+    let mut middles = world.soft_bodies().map(|(_, body)| body).map(middle);
     match middles.position(|middle| !is_within(middle)) {
         None => Ok(()),
         Some(index) => {

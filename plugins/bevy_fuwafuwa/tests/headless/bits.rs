@@ -40,14 +40,14 @@ fn hash_of_app() -> u64 {
 fn app_has_the_hash_of_the_engine() -> Result<(), Box<dyn std::error::Error>> {
     let mut world = World::<Dim2>::new(WorldConfig::default())?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_rigid_body(RigidBody::fixed(floor, 0.5))?;
+    world.add_rigid_body(RigidBody::fixed(floor).with_friction(0.5))?;
     for (across, x, y) in BALLS {
         let body = Body::new(VoxelGrid::ball(across, 1.0)?, &[SoftMaterial::default()])?;
         world.add_soft_body(body.translated([-0.5, -0.5, 0.0]).translated([x, y, 0.0]));
     }
     let (centre, radius) = ([0.0; 3], 0.15);
     let form = Shape::Ball { centre, radius };
-    let hand = RigidBody::new(form, hand_at(0).into(), MotionType::Kinematic);
+    let hand = RigidBody::new(form, MotionType::Kinematic).at(hand_at(0).into());
     let hand = world.add_rigid_body(hand)?;
     let mut released = 0;
     for tick in 0..TICKS {

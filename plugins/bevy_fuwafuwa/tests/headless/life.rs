@@ -36,8 +36,8 @@ fn body_leaves_the_world_when_despawned_or_its_component_is_removed() {
     let own = world::<Dim2>(&app);
     assert_eq!(
         (
-            own.engine().soft_bodies().len(),
-            own.engine().rigid_bodies().len()
+            own.engine().soft_bodies().count(),
+            own.engine().rigid_bodies().count()
         ),
         (1, 0)
     );
@@ -55,10 +55,8 @@ fn body_leaves_the_world_when_despawned_or_its_component_is_removed() {
         .insert(SoftBody2d::ball(10, 1.0));
     app.update();
     let own = world::<Dim2>(&app);
-    assert_eq!(own.engine().soft_bodies().len(), 1);
-    let size = own
-        .body_of(top)
-        .map(|id| own.engine().soft_bodies()[id].grid().size());
+    assert_eq!(own.engine().soft_bodies().count(), 1);
+    let size = own.body_of(top).map(|id| own.engine()[id].grid().size());
     assert_eq!(size, Some([10, 10, 1]));
 }
 
@@ -138,7 +136,7 @@ fn knife_cuts_and_engine_removals_send_messages() {
     app.update();
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
     let engine = world.engine_mut();
-    let mut hand = RigidBody::coupled_ball([0.03, 1.2, 0.0], 0.05);
+    let mut hand = RigidBody::coupled(Shape::ball(0.05)).at([0.03, 1.2, 0.0]);
     hand.is_sensor = true; // only the cutting edge has contact
     let hand = engine.add_rigid_body(hand).unwrap();
     let knife = Knife::new(hand, [[0.0; 3]; 2], [0.0, -1.0, 0.0]);

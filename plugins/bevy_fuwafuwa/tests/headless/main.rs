@@ -48,7 +48,7 @@ fn world<D: Dimension>(app: &App) -> &SoftWorld<D> {
 fn body<D: Dimension>(app: &App, entity: Entity) -> &Body<D> {
     let world = world::<D>(app);
     let id = world.body_of(entity).expect("the body has entered");
-    &world.engine().soft_bodies()[id]
+    &world.engine()[id]
 }
 
 fn mesh(app: &App, entity: Entity) -> &Mesh {

@@ -233,5 +233,5 @@ fn mesh_is_written_once_a_tick_and_never_while_asleep() {
     assert_eq!(writes(&app), 1);
     assert!((transform(&app, cube).translation.x - 2.0).abs() < 1e-3);
     assert_eq!(app.world().resource::<Assets<Mesh>>().len(), 1);
-    assert_eq!(world::<Dim3>(&app).engine().soft_bodies().len(), 1);
+    assert_eq!(world::<Dim3>(&app).engine().soft_bodies().count(), 1);
 }

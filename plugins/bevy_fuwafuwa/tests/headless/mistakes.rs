@@ -39,8 +39,8 @@ fn rejected(bad: impl Bundle) -> String {
     let own = world::<Dim2>(&app);
     assert_eq!(
         (
-            own.engine().soft_bodies().len(),
-            own.engine().rigid_bodies().len()
+            own.engine().soft_bodies().count(),
+            own.engine().rigid_bodies().count()
         ),
         (1, 0)
     );

@@ -162,7 +162,10 @@ fn coupled_body_reaches_its_goal_and_fixed_body_its_transform() {
             Some(&RigidBodyId(id))
         );
         assert_eq!(world::<Dim3>(&app).entity_of_rigid(id), Some(entity));
-        let [low, high] = world::<Dim3>(&app).engine().rigid_bodies()[id]
+        let [low, high] = world::<Dim3>(app)
+            .engine()
+            .rigid_body(id)
+            .unwrap()
             .shape()
             .bounds();
         0.5 * (Vec3::from(low) + Vec3::from(high))
@@ -176,5 +179,5 @@ fn coupled_body_reaches_its_goal_and_fixed_body_its_transform() {
             < 1e-6
     );
     assert_eq!(place(table), Vec3::new(9.0, 2.0, 0.0));
-    assert_eq!(world::<Dim3>(&app).engine().rigid_bodies().len(), 3);
+    assert_eq!(world::<Dim3>(&app).engine().rigid_bodies().count(), 3);
 }

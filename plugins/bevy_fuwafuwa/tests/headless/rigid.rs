@@ -45,7 +45,7 @@ fn rigid<D: Dimension>(app: &App, entity: Entity) -> &EngineBody {
     let world = world::<D>(app);
     let id = world.rigid_of(entity).expect("the body has entered");
     assert_eq!(world.entity_of_rigid(id), Some(entity));
-    &world.engine().rigid_bodies()[id]
+    world.engine().rigid_body(id).unwrap()
 }
 
 /// Checks that a tilted box falls and sleeps on the floor, and that its transform equals the pose in the
@@ -290,7 +290,7 @@ fn box_falls_when_its_support_is_despawned() {
     app.world_mut().entity_mut(floor).remove::<RigidBody2d>();
     run(&mut app, 30);
     assert!(transform(&app, high).translation.y < 0.0);
-    assert_eq!(world::<Dim2>(&app).engine().rigid_bodies().len(), 1);
+    assert_eq!(world::<Dim2>(&app).engine().rigid_bodies().count(), 1);
 }
 
 /// Returns the initial angle of box `n` [rad].

@@ -1,6 +1,6 @@
 use super::*;
 use egui::Key;
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use sticks::{Device, DeviceInfo, Direction, Snapshot};
 
 const HANDS: [Vector; 2] = [[-1.0, 0.0, 0.0], [-1.0, 0.5, 0.0]];

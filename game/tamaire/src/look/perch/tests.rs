@@ -1,5 +1,5 @@
 use super::*;
-use fuwafuwa::TICK;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::{Blade, Dim3, Material, PieceId, VoxelGrid, World, WorldConfig};
 
 const EYE: Vector = [0.5, 0.8, 6.0];
@@ -42,19 +42,19 @@ fn covered(perch: &FaceAnchor, body: &SoftBody<Dim3>) -> f32 {
 #[test]
 fn perch_faces_camera_on_covered_skin() {
     let world = ball();
-    let perch = FaceAnchor::new(world.soft_bodies().first().unwrap(), Some(EYE));
+    let perch = FaceAnchor::new(world.soft_bodies().next().unwrap().1, Some(EYE));
     assert!(
         dot(perch.axes[2], ideal_direction([0.5; 3], EYE)) > 0.97,
         "{perch:?}"
     );
     assert!(perch.axes[0][0] > 0.97 && perch.size > 0.2, "{perch:?}");
-    assert!(covered(&perch, world.soft_bodies().first().unwrap()) > 0.9);
+    assert!(covered(&perch, world.soft_bodies().next().unwrap().1) > 0.9);
 }
 
 #[test]
 fn perch_rolls_with_fast_skin() {
     let mut world = ball();
-    let mut perch = FaceAnchor::new(world.soft_bodies().first().unwrap(), Some(EYE));
+    let mut perch = FaceAnchor::new(world.soft_bodies().next().unwrap().1, Some(EYE));
     let (first, out) = (perch.at, perch.axes[2]);
     for tick in 1..20 {
         // The body rotates at 10 rad/s and moves away.
@@ -67,7 +67,7 @@ fn perch_rolls_with_fast_skin() {
         };
         deform(&mut world, |_, at| carried(at));
         perch.follow(
-            world.soft_bodies().first().unwrap(),
+            world.soft_bodies().next().unwrap().1,
             Some(EYE),
             tick % 5 == 0,
             TICK,
@@ -80,7 +80,7 @@ fn perch_rolls_with_fast_skin() {
 #[test]
 fn perch_moves_seldom_while_body_rolls_and_ends_upright() {
     let mut world = ball();
-    let mut perch = FaceAnchor::new(world.soft_bodies().first().unwrap(), Some(EYE));
+    let mut perch = FaceAnchor::new(world.soft_bodies().next().unwrap().1, Some(EYE));
     let mut leaps = 0;
     let (mut angle, mut least) = (0.0f32, f32::MAX);
     for tick in 1..150 {
@@ -92,7 +92,7 @@ fn perch_moves_seldom_while_body_rolls_and_ends_upright() {
             plus([cos * x + sin * y, cos * y - sin * x, z], [0.5; 3])
         });
         let before = perch.axes[2];
-        let body = world.soft_bodies().first().unwrap();
+        let body = world.soft_bodies().next().unwrap().1;
         perch.follow(body, Some(EYE), tick % 5 == 0, TICK);
         leaps += u32::from(length(minus(perch.axes[2], before)) > 0.2);
         least = least.min(dot(perch.axes[2], ideal_direction([0.5; 3], EYE)));
@@ -104,13 +104,13 @@ fn perch_moves_seldom_while_body_rolls_and_ends_upright() {
 #[test]
 fn perch_returns_to_camera_after_body_turned() {
     let mut world = ball();
-    let mut perch = FaceAnchor::new(world.soft_bodies().first().unwrap(), Some(EYE));
+    let mut perch = FaceAnchor::new(world.soft_bodies().next().unwrap().1, Some(EYE));
     deform(&mut world, |_, [x, y, z]| [1.0 - x, y, 1.0 - z]);
     let mut least = f32::MAX;
     for tick in 0..60 {
         let before = perch.clone();
         perch.follow(
-            world.soft_bodies().first().unwrap(),
+            world.soft_bodies().next().unwrap().1,
             Some(EYE),
             tick % 5 == 0,
             TICK,
@@ -131,7 +131,7 @@ fn perch_returns_to_camera_after_body_turned() {
 #[test]
 fn perch_leaves_skin_that_was_cut_off() {
     let mut world = ball();
-    let mut perch = FaceAnchor::new(world.soft_bodies().first().unwrap(), Some(EYE));
+    let mut perch = FaceAnchor::new(world.soft_bodies().next().unwrap().1, Some(EYE));
     // Cuts off the part of the body that faces the camera and moves it away.
     let (from, across, along) = ([-0.5, 1.25, 0.0], [2.0, 0.0, 0.0], [0.0, -1.3, 1.3]);
     world
@@ -144,7 +144,7 @@ fn perch_leaves_skin_that_was_cut_off() {
             },
         )
         .unwrap();
-    let masses = masses(world.soft_bodies().first().unwrap());
+    let masses = masses(world.soft_bodies().next().unwrap().1);
     let is_gone = |piece: PieceId| masses[piece] < masses.iter().sum::<f32>() * 0.5;
     deform(&mut world, |piece, at| match is_gone(piece) {
         true => plus(at, [9.0, 0.0, 0.0]),
@@ -152,7 +152,7 @@ fn perch_leaves_skin_that_was_cut_off() {
     });
     for tick in 0..60 {
         perch.follow(
-            world.soft_bodies().first().unwrap(),
+            world.soft_bodies().next().unwrap().1,
             Some(EYE),
             tick % 5 == 0,
             TICK,
@@ -160,14 +160,14 @@ fn perch_leaves_skin_that_was_cut_off() {
     }
     assert!(!is_gone(perch.piece) && perch.size > 0.08, "{perch:?}");
     assert!(
-        covered(&perch, world.soft_bodies().first().unwrap()) > 0.7,
+        covered(&perch, world.soft_bodies().next().unwrap().1) > 0.7,
         "{perch:?}"
     );
     // The face stays at the new place.
     let place = perch.place.expect("the face has a place").voxel;
     for tick in 0..120 {
         perch.follow(
-            world.soft_bodies().first().unwrap(),
+            world.soft_bodies().next().unwrap().1,
             Some(EYE),
             tick % 5 == 0,
             TICK,
