@@ -168,14 +168,10 @@ mod tests {
         let first = Rotation::about(Vec3::new(1.0, 2.0, -1.0), 0.7);
         let second = Rotation::about(Vec3::new(0.0, -3.0, 1.0), -2.0);
         let both = Rotation::from_quaternion(second.after(first.quaternion()));
-        let vector = [0.3, -0.8, 2.0];
-        let (one, two) = (
-            both.apply(vector.into()),
-            second.apply(first.apply(vector.into())),
-        );
-        assert!((0..3).all(|axis| (one[axis] - two[axis]).abs() < 1e-5));
-        let three = first.then(second).apply(vector.into());
-        assert!((0..3).all(|axis| (one[axis] - three[axis]).abs() < 1e-5));
+        let vector = Vec3::new(0.3, -0.8, 2.0);
+        let one = both.apply(vector);
+        assert!(one.abs_diff_eq(second.apply(first.apply(vector)), 1e-5));
+        assert!(one.abs_diff_eq(first.then(second).apply(vector), 1e-5));
         assert_eq!(first.then(first.inverse()), Rotation::NONE);
     }
 

@@ -235,7 +235,7 @@ mod tests {
     fn scattered(count: usize) -> Vec<Bounds> {
         let places = (0..count).map(|k| {
             let at = |step: usize| (k * step % 101) as f32;
-            [at(37), at(53), at(71)]
+            Vec3::new(at(37), at(53), at(71))
         });
         places.map(|at| [at, at]).collect()
     }
@@ -259,7 +259,7 @@ mod tests {
     fn search_finds_the_nearest_box_in_few_visits() {
         let boxes = scattered(500);
         let tree = Tree::new(&boxes);
-        for goal in [[0.0; 3], [50.0, 20.0, 90.0], [-7.0, 300.0, 3.0]] {
+        for goal in [[0.0; 3], [50.0, 20.0, 90.0], [-7.0, 300.0, 3.0]].map(Vec3::from) {
             let (best, visited) = nearest(&tree, &boxes, goal);
             let all = boxes.iter().map(|bounds| distance_from(bounds, goal));
             assert_eq!(best, all.fold(f32::INFINITY, f32::min));
@@ -278,10 +278,10 @@ mod tests {
         let mut tree = Tree::new(&boxes);
         let shifted = boxes
             .iter()
-            .map(|bounds| bounds.map(|at| at.map(|k| 2.0 - k)));
+            .map(|bounds| bounds.map(|at| Vec3::splat(2.0) - at));
         let shifted: Vec<Bounds> = shifted.map(|[a, b]| around([a, a], [b, b])).collect();
         assert!(tree.refit(&shifted));
-        for goal in [[0.0; 3], [-50.0, -20.0, -90.0]] {
+        for goal in [[0.0; 3], [-50.0, -20.0, -90.0]].map(Vec3::from) {
             let (best, visited) = nearest(&tree, &shifted, goal);
             let all = shifted.iter().map(|bounds| distance_from(bounds, goal));
             assert_eq!(best, all.fold(f32::INFINITY, f32::min));
@@ -290,10 +290,10 @@ mod tests {
         // The same boxes in another order fit the tree badly, but the result stays correct.
         let shuffled: Vec<Bounds> = (0..500).map(|k| boxes[k * 7 % 500]).collect();
         assert!(!tree.refit(&shuffled));
-        let (best, _) = nearest(&tree, &shuffled, [0.0; 3]);
+        let (best, _) = nearest(&tree, &shuffled, Vec3::ZERO);
         let all = shuffled
             .iter()
-            .map(|bounds| distance_from(bounds, [0.0; 3]));
+            .map(|bounds| distance_from(bounds, Vec3::ZERO));
         assert_eq!(best, all.fold(f32::INFINITY, f32::min));
     }
 

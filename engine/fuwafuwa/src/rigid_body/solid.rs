@@ -387,7 +387,7 @@ mod tests {
         };
         let error = Error::parameter("radius", "positive and finite", -1.0);
         assert_eq!(ball.check(), Err(error));
-        let nowhere = Solid::half_space([0.0; 3], [0.0; 3]);
+        let nowhere = Solid::half_space(Vec3::ZERO, Vec3::ZERO);
         assert!(nowhere.check().is_err());
     }
 }

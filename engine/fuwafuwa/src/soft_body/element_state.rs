@@ -220,6 +220,7 @@ mod tests {
     use crate::foundation::dim::{Dim2, Dim3};
     use crate::material::Material;
     use crate::math::rotation::Rotation;
+    use glam::{Vec2, Vec3};
     use crate::soft_body::element_law::forces;
     use crate::topology::grid::VoxelGrid;
 
@@ -230,10 +231,10 @@ mod tests {
         let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in nodes {
             let (at, velocity, _) = body.node_state(id);
-            let [x, y, z] = at.to_array();
+            let [x, y, z] = at.to_vec3().to_array();
             let sway = Vec3::new(4.0 * y * y - y, 3.0 * z * x + y, 5.0 * x * y - 2.0 * z);
-            let at = at * (1.0 - amount) + sway * (amount * 0.1);
-            body.set_node_state(id, at, velocity);
+            let at = at * (1.0 - amount) + D::Vector::from_vec3(sway) * (amount * 0.1);
+            body.set_node_state(id, at, velocity).unwrap();
         }
         body
     }
@@ -245,7 +246,7 @@ mod tests {
         for (_, element) in body.mesh().elements().step_by(7) {
             let stencil = body.mesh().stencil(element);
             let size = size * f64::from(element.cell.width());
-            let at = |&node: &NodeId| body.node_state(node).0.as_dvec3();
+            let at = |&node: &NodeId| body.node_state(node).0.to_vec3().as_dvec3();
             let positions: Vec<DVec3> = element.nodes.iter().map(at).collect();
             let energy = |positions: &[DVec3]| {
                 element_state(law, elasticity, stencil, size, positions).energy
@@ -288,17 +289,18 @@ mod tests {
         let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
         let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in nodes {
-            let (at, ..) = body.node_state(id);
-            body.set_node_state(id, at.with_x(1.05 * at.x), Vec3::ZERO);
+            let (mut at, ..) = body.node_state(id);
+            at[0] *= 1.05;
+            body.set_node_state(id, at, D::Vector::ZERO).unwrap();
         }
-        let body = body.rotated_about(Rotation::in_plane(1.0), [0.0; 3]);
+        let body = body.rotated_about(Rotation::in_plane(1.0), D::Vector::ZERO);
         let Elasticity { young, poisson } = Material::default().elasticity;
         let elasticity = Elasticity { young, poisson };
         let along = (2.0 * elasticity.shear_modulus() + elasticity.lame()) * 0.05;
         let size = f64::from(body.grid().voxel_size());
         let voxel = (0..D::N).fold(1.0, |volume, _| volume * size);
         let volume = voxel * body.grid().solid_count() as f64;
-        let energy = body.energies(Vec3::ZERO)[0].elastic;
+        let energy = body.energies(D::Vector::ZERO)[0].elastic;
         assert!(
             (energy / (0.5 * along * 0.05 * volume) - 1.0).abs() < 1e-3,
             "{energy}"
@@ -333,12 +335,12 @@ mod tests {
         let grid = VoxelGrid::<Dim2>::ball(12, 1.0).unwrap();
         let mut body = SoftBody::new(grid, &[calm])
             .unwrap()
-            .with_velocity(Vec3::new(1.0, 2.0, 0.0));
-        let gravity = [0.0, -9.81, 0.0];
-        let before = body.energies(gravity.into())[0];
+            .with_velocity(Vec2::new(1.0, 2.0));
+        let gravity = Vec2::new(0.0, -9.81);
+        let before = body.energies(gravity)[0];
         let duration = 1.0 / 960.0;
-        (0..480).for_each(|_| body.advance(duration, gravity.into()));
-        let after = body.energies(gravity.into())[0];
+        (0..480).for_each(|_| body.advance(duration, gravity));
+        let after = body.energies(gravity)[0];
         assert!((after.kinetic - before.kinetic).abs() > 1.0);
         assert!(
             (after.total() / before.total() - 1.0).abs() < 0.01,

@@ -362,7 +362,7 @@ mod tests {
         body.crumble();
         let bounds = piece_bounds(&body);
         let shape = Solid::Ball {
-            centre: [0.0, 0.5, 0.5],
+            centre: Vec3::new(0.0, 0.5, 0.5),
             radius: 0.3,
         };
         let near = pieces_near::<Dim3>(&bounds, shape.bounds());

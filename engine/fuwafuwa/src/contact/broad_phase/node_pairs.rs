@@ -424,7 +424,10 @@ impl Square {
 mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
+    use crate::foundation::dim::DimVector;
     use crate::material::Material;
+    use crate::rigid_body::RigidBody;
+    use crate::rigid_body::shape::Shape;
     use crate::topology::grid::VoxelGrid;
     use glam::Vec3;
     use std::collections::BTreeSet;
@@ -437,7 +440,13 @@ mod tests {
         let size = body.topology.grid.voxel_size();
         let mut bodies = SoftBodies::default();
         let ball = bodies.insert(body).slot();
-        let wall = |normal, offset| RigidState::fixed(Solid::HalfSpace { normal, offset }, 0.0);
+        let wall = |normal: Vec3, offset| {
+            let wall = Shape::half_space(
+                D::Vector::from_vec3(normal),
+                D::Vector::from_vec3(normal * offset),
+            );
+            RigidState::from(&RigidBody::<D>::fixed(wall))
+        };
         let mut walls = RigidBodies::default();
         walls.insert(wall(Vec3::Y, 0.3));
         walls.insert(wall(Vec3::NEG_X, -0.8));
