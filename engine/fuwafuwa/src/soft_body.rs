@@ -9,6 +9,7 @@ pub mod momentum;
 pub mod plasticity;
 pub mod view;
 
+mod access;
 mod body_properties;
 mod body_state;
 mod body_topology;
@@ -18,7 +19,9 @@ mod caches;
 pub(crate) mod cooldowns;
 mod derived_caches;
 mod integration;
+mod piece_removal;
 mod placement;
+mod release;
 mod sleep_flags;
 
 use crate::error::{Error, require};
@@ -62,11 +65,11 @@ pub type SoftBodies<D> = Arena<SoftBodyHandle, SoftBody<D>>;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct SoftBody<D: Dim> {
-    // Snapshots contain `truth` and `state`.
-    pub(crate) topology: Topology<D>,
-    pub(crate) state: State<D>,
+    // Snapshots contain the topology and the state.
+    topology: Topology<D>,
+    state: State<D>,
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub(crate) cache: Cache,
+    cache: Cache,
 }
 
 hash_state! { [D: Dim] struct SoftBody<D> { topology, state } skip { cache } }

@@ -193,7 +193,7 @@ impl<D: Dim> World<D> {
             }
             let released = |failure: &Failure| Event::NodeSplit {
                 body: id,
-                point: D::Vector::from_vec3(body.state.position[failure.node].xyz()),
+                point: D::Vector::from_vec3(body.positions()[failure.node].xyz()),
                 energy: failure.energy,
             };
             self.events.extend(failures.iter().map(released));
@@ -360,7 +360,7 @@ impl<D: Dim> World<D> {
     /// Returns for each piece of each body whether it touches anything.
     fn touching(&self) -> IndexVec<BodySlot, IndexVec<PieceId, bool>> {
         let none = |body: Option<&SoftBody<D>>| {
-            let pieces = body.map_or(0, |body| body.topology.pieces.list.len());
+            let pieces = body.map_or(0, |body| body.pieces().list.len());
             vec![false; pieces].into()
         };
         let mut touching: IndexVec<_, IndexVec<_, bool>> = self.bodies.slots().map(none).collect();

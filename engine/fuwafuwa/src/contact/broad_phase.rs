@@ -114,7 +114,7 @@ impl Nearby {
         let is_gone = |&sphere: &SphereId| self.spheres.body_of(sphere) == BodySlot::NONE;
         let pairs = &mut self.pairs.list;
         pairs.retain(|pair| !pair.spheres.iter().any(is_gone));
-        let is_there = |node| body.topology.mesh.is_alive(node);
+        let is_there = |node| body.mesh().is_alive(node);
         let nodes = &mut self.nodes.list;
         nodes.retain(|pair| pair.body != slot || is_there(pair.node));
     }

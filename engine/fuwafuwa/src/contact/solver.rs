@@ -105,11 +105,11 @@ impl Contacts {
                 let rigid = rigids.at(pair.rigid);
                 let (node, moves) = (pair.node, rigid.moves());
                 // Sleeping nodes have contacts with moving rigid bodies only.
-                if body.state.inverse_mass[node] == 0.0 && !moves {
+                if body.inverse_masses()[node] == 0.0 && !moves {
                     pair.impulse.release();
                     continue;
                 }
-                let (at, velocity) = (body.state.position[node], body.state.velocity[node]);
+                let (at, velocity) = (body.positions()[node], body.velocities()[node]);
                 // Most nodes cannot reach a wall in this substep, in any direction.
                 let reachable = (pair.clear - travel).max(0.0) / (AHEAD * duration);
                 if !moves && inner::<D>(velocity, velocity) < reachable * reachable {
@@ -122,7 +122,7 @@ impl Contacts {
                     false => Row::ZERO,
                 };
                 let relative = velocity - own;
-                let size = body.topology.grid.voxel_size();
+                let size = body.grid().voxel_size();
                 let approach = inner::<D>(relative, normal);
                 if !is_close(gap, approach, size, duration) {
                     pair.impulse.release();
@@ -136,17 +136,17 @@ impl Contacts {
                 if may_wake && gap < WAKING_NODE * size {
                     let is_fast = |speed: Row| inner::<D>(speed, speed) > WAKE_SPEED * WAKE_SPEED;
                     let wakes = rigid.follows_target() || moves && is_fast(own);
-                    if wakes && body.topology.pieces.sleeps(pair.node) {
-                        let piece = body.topology.pieces.of_node(pair.node);
+                    if wakes && body.pieces().sleeps(pair.node) {
+                        let piece = body.pieces().of_node(pair.node);
                         hits.pieces.push((pair.body, piece));
                     }
                     if rigid.is_asleep() && is_fast(velocity) {
                         hits.rigids.push(pair.rigid);
                     }
                 }
-                let inverse_mass = body.state.inverse_mass[node] + rigid.yields_near(at.xyz());
+                let inverse_mass = body.inverse_masses()[node] + rigid.yields_near(at.xyz());
                 // For a dynamic rigid body, a sleeping node is a wall.
-                if body.state.inverse_mass[node] == 0.0 && !rigid.is_dynamic() {
+                if body.inverse_masses()[node] == 0.0 && !rigid.is_dynamic() {
                     continue;
                 }
                 let friction = rigid.friction;
@@ -163,7 +163,7 @@ impl Contacts {
                     contact,
                     node: self.motion.row(pair.body, pair.node),
                     mover: rigids.at(pair.rigid).moves().then(|| {
-                        let at = bodies.at(pair.body).state.position[pair.node];
+                        let at = bodies.at(pair.body).positions()[pair.node];
                         let lever = at.xyz() - rigids.at(pair.rigid).position();
                         (pair.rigid, lever)
                     }),
@@ -184,13 +184,13 @@ impl Contacts {
         let frictions: &IndexVec<BodySlot, f32> = &bodies.slots().map(friction).collect();
         let has_layers = bodies
             .iter()
-            .any(|body| body.state.layers != Layers::default());
-        let layers = |sphere: &ContactSphere| bodies.at(sphere.body).state.layers;
+            .any(|body| body.layers() != Layers::default());
+        let layers = |sphere: &ContactSphere| bodies.at(sphere.body).layers();
         let meet = |both: [&ContactSphere; 2]| layers(both[0]).meet(layers(both[1]));
         let (all, captives) = (&nearby.spheres, &nearby.captives);
         // A local slice: through the table, each pair would load the pointer again.
         let centres = all.centres.as_slice();
-        let widths = bodies.iter().map(|body| body.topology.grid.voxel_size());
+        let widths = bodies.iter().map(|body| body.grid().voxel_size());
         let widest = widths.fold(0.0, f32::max);
         let shares = threads::chunks(&mut nearby.pairs.list);
         let found = threads::map(shares, move |(first, pairs)| {
@@ -410,7 +410,7 @@ fn behind_surface<D: Dim>(
         (false, true) => (a, -1.0),
         _ => return None,
     };
-    let out = wall.outward::<D>(&bodies.at(wall.body).state.position);
+    let out = wall.outward::<D>(bodies.at(wall.body).positions());
     let length = inner::<D>(out, out).sqrt();
     let normal = out * (sign / length.max(1e-9));
     let ahead = inner::<D>(apart, normal);

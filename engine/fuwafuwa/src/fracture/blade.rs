@@ -77,7 +77,7 @@ impl<D: Dim> SoftBody<D> {
     /// Cuts along a blade.
     #[inline(never)]
     pub fn cut(&mut self, blade: &Blade<D>) -> CutReport<D> {
-        if self.topology.pyramid.grading() == Grading::Coarse {
+        if self.grading() == Grading::Coarse {
             return CutReport::default();
         }
         let (released, changes) = self.open(&self.faces_across(blade));
@@ -110,8 +110,7 @@ impl<D: Dim> SoftBody<D> {
     pub fn crumble(&mut self) -> Vec<PieceId> {
         let octants = |at: Point| (0..D::CORNERS).map(move |octant| (at, 1 << octant));
         let everything: Vec<(Point, u8)> = self
-            .topology
-            .connectivity
+            .connectivity()
             .points()
             .flat_map(octants)
             .collect();
@@ -120,26 +119,26 @@ impl<D: Dim> SoftBody<D> {
 
     /// Faces that a blade crosses, each given by the voxel before it and its axis.
     fn faces_across(&self, blade: &Blade<D>) -> BTreeSet<(Point, usize)> {
-        let mut middles = vec![None; self.topology.grid.voxels().count()];
-        for (_, element) in self.topology.mesh.elements() {
+        let mut middles = vec![None; self.grid().voxels().count()];
+        for (_, element) in self.mesh().elements() {
             let carry = self.affine_map(element);
-            for voxel in self.topology.mesh.voxels(element) {
+            for voxel in self.mesh().voxels(element) {
                 let middle = carry(voxel.map(|k| k as f32 + 0.5).into());
-                middles[self.topology.grid.index(voxel)] = Some(middle);
+                middles[self.grid().index(voxel)] = Some(middle);
             }
         }
         let mut crossed = BTreeSet::new();
-        for voxel in self.topology.grid.voxels() {
-            let Some(here) = middles[self.topology.grid.index(voxel)] else {
+        for voxel in self.grid().voxels() {
+            let Some(here) = middles[self.grid().index(voxel)] else {
                 continue;
             };
             for axis in 0..D::N {
                 let mut next = voxel;
                 next[axis] += 1;
-                if !self.topology.grid.is_present(next) {
+                if !self.grid().is_present(next) {
                     continue;
                 }
-                let there = middles[self.topology.grid.index(next)]
+                let there = middles[self.grid().index(next)]
                     .expect("every remaining voxel has an owner");
                 if blade.parts(here, there) {
                     crossed.insert((voxel, axis));
@@ -152,8 +151,8 @@ impl<D: Dim> SoftBody<D> {
     /// Present position of a lattice point [m], interpolated in one of the elements around it.
     fn position_of(&self, at: Point) -> Option<Vec3> {
         let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
-        let owner = { voxels }.find_map(|voxel| self.topology.mesh.owner(voxel))?;
-        Some(self.affine_map(self.topology.mesh.element(owner)?)(
+        let owner = { voxels }.find_map(|voxel| self.mesh().owner(voxel))?;
+        Some(self.affine_map(self.mesh().element(owner)?)(
             at.map(|k| k as f32).into(),
         ))
     }
@@ -161,7 +160,7 @@ impl<D: Dim> SoftBody<D> {
     /// Masks of the octants that must be released at a point to open the given faces, one for each side that
     /// is separated. Empty if the faces are open already.
     fn sides(&self, at: Point, opened: &BTreeSet<(Point, usize)>) -> Vec<u8> {
-        let around = self.topology.connectivity.around(at);
+        let around = self.connectivity().around(at);
         let mut groups = around.middle();
         let solid = groups.solid();
         let mut sides: Vec<u8> = (0..D::CORNERS)

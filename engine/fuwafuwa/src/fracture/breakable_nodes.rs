@@ -255,13 +255,13 @@ mod tests {
             body.release(&[(at, side)]);
         }
         let mut fresh = BreakableNodes::default();
-        let nodes: Vec<NodeId> = body.topology.mesh.nodes().map(|(id, _)| id).collect();
+        let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
         let materials = body.materials();
         fresh.update(
             &nodes,
-            &body.topology.grid,
-            &body.topology.connectivity,
-            &body.topology.mesh,
+            body.grid(),
+            body.connectivity(),
+            body.mesh(),
             materials,
         );
         let listed = |breakable: &BreakableNodes| -> Vec<_> {
@@ -272,7 +272,7 @@ mod tests {
             })
             .collect()
         };
-        assert_eq!(listed(&body.cache.breakable), listed(&fresh));
+        assert_eq!(listed(&body.breakable_nodes()), listed(&fresh));
         assert!(fresh.among(0..usize::MAX).any(|(_, node)| node.crumbs != 0));
     }
 

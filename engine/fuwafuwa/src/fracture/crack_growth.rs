@@ -57,20 +57,20 @@ const COOLDOWN_VOXELS: f64 = 4.0;
 /// Updates the damage of all breakable nodes after `duration` [s], and returns those that fail now, the worst
 /// first. No two of them are near each other, except along the front of a crack.
 pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
-    body.state.cooldowns.pass(duration);
+    body.cooldowns_mut().pass(duration);
     if !body.can_tear() {
         return Vec::new();
     }
-    let size = body.topology.grid.voxel_size();
-    let mut damage = std::mem::take(&mut body.state.damage);
+    let size = body.grid().voxel_size();
+    let mut damage = std::mem::take(body.damage_mut());
     let found = threads::map(threads::chunks(&mut damage), |(first, damage)| {
         let mut found: Vec<Failure> = Vec::new();
-        let nodes = body.cache.breakable.among(first..first + damage.len());
+        let nodes = body.breakable_nodes().among(first..first + damage.len());
         on_widest_lanes!(simd => for (id, node) in nodes {
             let damage = &mut damage[id.index() - first];
             // Undamaged nodes are examined only in every other round.
-            if body.topology.pieces.sleeps(id)
-                || *damage == 0.0 && (id.0 ^ body.state.cooldowns.rounds) & 1 == 1
+            if body.pieces().sleeps(id)
+                || *damage == 0.0 && (id.0 ^ body.cooldowns().rounds) & 1 == 1
             {
                 continue;
             }
@@ -86,19 +86,19 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
             };
             let over = (failure.excess - 1.0).min(MAX_OVERLOAD);
             *damage += duration / DAMAGE_TIME * 2.0 * over;
-            if *damage >= 1.0 && !body.state.cooldowns.covers(failure.at) {
+            if *damage >= 1.0 && !body.cooldowns().covers(failure.at) {
                 found.push(failure);
             }
         });
         found
     });
-    body.state.damage = damage;
+    *body.damage_mut() = damage;
     let mut found = found.concat();
     found.sort_by(|a, b| b.excess.total_cmp(&a.excess).then(a.node.cmp(&b.node)));
     let cooldown = (COOLDOWN_VOXELS * f64::from(size) / body.fastest_wave()) as f32;
     let chosen = without_worse_neighbour(found);
     let cooling = chosen.iter().map(|failure| failure.at);
-    body.state.cooldowns.start(cooling, cooldown);
+    body.cooldowns_mut().start(cooling, cooldown);
     chosen
 }
 
@@ -128,24 +128,24 @@ fn is_surely_intact<D: Dim, S: Simd>(
     id: NodeId,
     node: &BreakableNode,
 ) -> bool {
-    let threshold = face_area::<D>(body.topology.grid.voxel_size()) * node.threshold;
-    let squares = body.state.blocks.squares_on(simd, id);
+    let threshold = face_area::<D>(body.grid().voxel_size()) * node.threshold;
+    let squares = body.element_forces().squares_on(simd, id);
     0.2501 * node.group.count_ones() as f32 * squares <= threshold * threshold
 }
 
 /// Returns the most overloaded cut through a breakable node, if any is overloaded.
 #[inline(never)]
 fn worst_cut<D: Dim>(body: &SoftBody<D>, id: NodeId, node: &BreakableNode) -> Option<Failure> {
-    let size = body.topology.grid.voxel_size();
+    let size = body.grid().voxel_size();
     let mut forces = [Row::ZERO; 8];
-    for (octant, force) in octants(node.group).zip(body.state.blocks.parts_on(id)) {
+    for (octant, force) in octants(node.group).zip(body.element_forces().parts_on(id)) {
         forces[octant] = force;
     }
     let total = forces.into_iter().sum::<Row>();
     // Common rotation of its voxels, computed on demand.
     let mut turn: Option<[Vec3; 3]> = None;
     let mut worst: Option<(f32, f32, NodeCut)> = None;
-    for cut in body.cache.breakable.cuts(node) {
+    for cut in body.breakable_nodes().cuts(node) {
         let far = octants(cut.side).map(|octant| forces[octant]).sum::<Row>();
         let near = total - far;
         let pull = (far - near) * 0.5;
@@ -176,7 +176,7 @@ fn worst_cut<D: Dim>(body: &SoftBody<D>, id: NodeId, node: &BreakableNode) -> Op
     let volume = (0..D::N).fold(1.0, |volume, _| volume * size);
     Some(Failure {
         node: id,
-        at: body.topology.mesh.node(id).at,
+        at: body.mesh().node(id).at,
         side: cut.side,
         axis: cut.axis.into(),
         excess,
@@ -192,8 +192,8 @@ fn octants(mask: u8) -> impl Iterator<Item = usize> {
 /// Returns the sum of the rotations of all elements around a node.
 fn total_turn<D: Dim>(body: &SoftBody<D>, id: NodeId) -> [Vec3; 3] {
     let mut turn = [Vec3::ZERO; 3];
-    for owner in body.topology.mesh.carrier_ids(id) {
-        let rotation = body.state.blocks.rotation(owner);
+    for owner in body.mesh().carrier_ids(id) {
+        let rotation = body.element_forces().rotation(owner);
         for row in 0..3 {
             turn[row] += rotation[row];
         }

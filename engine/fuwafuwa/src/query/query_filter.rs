@@ -100,7 +100,7 @@ impl<'a> QueryFilter<'a> {
     pub(super) fn admits_body<D: Dim>(&self, id: SoftBodyHandle, body: &SoftBody<D>) -> bool {
         self.kinds != Kinds::Rigid
             && !self.excluded.contains(&ObjectSelector::SoftBody(id))
-            && self.meets(body.state.layers)
+            && self.meets(body.layers())
     }
 
     /// Returns whether an object counts that passed the check of its body.

@@ -338,7 +338,7 @@ impl<D: Dim> World<D> {
     pub(crate) fn set_layers_of(&mut self, body: BodyHandle, layers: Layers) -> Result<(), Error> {
         match body {
             BodyHandle::Soft(body) => {
-                self.displace(body, |body| body.state.layers = layers)?;
+                self.displace(body, |body| body.set_layers(layers))?;
                 self.nearby.nodes.look_again();
                 Ok(())
             }
@@ -355,7 +355,7 @@ impl<D: Dim> World<D> {
     /// [`Error::InvalidHandle`] if the handle is stale.
     pub fn set_user_data(&mut self, body: impl Into<BodyHandle>, data: u64) -> Result<(), Error> {
         match body.into() {
-            BodyHandle::Soft(body) => self.bodies.get_mut(body)?.state.user_data = data,
+            BodyHandle::Soft(body) => self.bodies.get_mut(body)?.set_user_data(data),
             BodyHandle::Rigid(rigid) => self.rigids.get_mut(rigid)?.user_data = data,
         }
         Ok(())
@@ -375,7 +375,7 @@ impl<D: Dim> World<D> {
         let is_valid = gravity_scale.abs() <= MAX_GRAVITY_SCALE;
         require(is_valid, "gravity_scale", "-100 to 100", gravity_scale)?;
         self.wake_soft(body)?;
-        self.bodies.get_mut(body)?.state.gravity_scale = gravity_scale;
+        self.bodies.get_mut(body)?.set_gravity_scale(gravity_scale);
         Ok(())
     }
 
@@ -427,8 +427,7 @@ impl<D: Dim> World<D> {
         };
         let sleeper = self.bodies.get_mut(body)?;
         let awake = sleeper
-            .topology
-            .pieces
+            .pieces()
             .list
             .iter()
             .map(|piece| !piece.asleep);
@@ -454,7 +453,7 @@ impl<D: Dim> World<D> {
         let mut all: Vec<Hit> = Vec::new();
         for (slot, body) in self.bodies.by_slot_mut() {
             body.scale_stiffness_for(shortest);
-            let pieces = body.topology.pieces.list.ids();
+            let pieces = body.pieces().list.ids();
             all.extend(pieces.map(|piece| (slot, piece)));
         }
         self.wake(&all);
@@ -522,7 +521,7 @@ impl<D: Dim> World<D> {
     /// Restarts the sleep timers of a body.
     fn keep_awake(&mut self, body: SoftBodyHandle) {
         if let Ok(body) = self.bodies.get_mut(body) {
-            let pieces = body.topology.pieces.list.iter_mut();
+            let pieces = body.pieces_mut().list.iter_mut();
             pieces.for_each(|piece| piece.sleep_timer = 0.0);
         }
     }

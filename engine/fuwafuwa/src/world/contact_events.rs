@@ -153,14 +153,14 @@ impl<D: Dim> World<D> {
         for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
             let id = self.bodies.id(pair.body);
             let body = &self.bodies[id];
-            let piece = body.topology.pieces.of_node(pair.node);
+            let piece = body.pieces().of_node(pair.node);
             let rigid = self.rigids.id(pair.rigid);
             let objects = [
                 ObjectRef::Piece { body: id, piece },
                 ObjectRef::RigidBody(rigid),
             ];
             sums.add(objects, pair.impulse.total, pair.impulse.speed, || {
-                let point = body.state.position[pair.node].xyz();
+                let point = body.positions()[pair.node].xyz();
                 [point, self.rigids[rigid].shape().distance(point).1]
             });
         }
@@ -236,7 +236,7 @@ impl<D: Dim> World<D> {
         match object {
             ObjectRef::RigidBody(id) => self.rigids.get(id).is_ok_and(|rigid| !rigid.moves()),
             ObjectRef::Piece { body, piece } => self.bodies.get(body).is_ok_and(|body| {
-                let piece = body.topology.pieces.list.get(piece.index());
+                let piece = body.pieces().list.get(piece.index());
                 piece.is_some_and(|piece| piece.asleep && !piece.removed)
             }),
         }
@@ -251,7 +251,7 @@ impl<D: Dim> World<D> {
             inside.extend(self.rigids_within(sensor, rigid).map(|who| (sensor, who)));
         }
         for (body, soft) in self.bodies.entries() {
-            let meets = |(_, rigid): &&(_, &RigidState)| rigid.layers.meet(soft.state.layers);
+            let meets = |(_, rigid): &&(_, &RigidState)| rigid.layers.meet(soft.layers());
             let mut met = sensors.iter().filter(meets).peekable();
             // The bounds of the pieces serve all sensors.
             let bounds = met.peek().map(|_| piece_bounds(soft));
@@ -291,11 +291,11 @@ impl<D: Dim> World<D> {
 
 /// Returns the bounding box of the nodes of each piece; that of a piece without nodes overlaps nothing.
 fn piece_bounds<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, Bounds> {
-    let pieces = &body.topology.pieces;
+    let pieces = body.pieces();
     let nothing = [Vec3::INFINITY, Vec3::NEG_INFINITY];
     let mut all: IndexVec<PieceId, Bounds> = vec![nothing; pieces.list.len()].into();
-    for (node, _) in body.topology.mesh.nodes() {
-        let at = body.state.position[node].xyz();
+    for (node, _) in body.mesh().nodes() {
+        let at = body.positions()[node].xyz();
         let [low, high] = &mut all[pieces.of_node(node)];
         for axis in 0..3 {
             low[axis] = low[axis].min(at[axis]);
@@ -312,16 +312,16 @@ fn pieces_within<D: Dim>(
     bounds: &IndexVec<PieceId, Bounds>,
     shape: &Solid,
 ) -> Vec<PieceId> {
-    let pieces = &body.topology.pieces;
+    let pieces = body.pieces();
     let mut is_open = pieces_near::<D>(bounds, shape.bounds());
     let mut open = is_open.iter().filter(|&&is_open| is_open).count();
     let mut found = Vec::new();
-    for (node, _) in body.topology.mesh.nodes() {
+    for (node, _) in body.mesh().nodes() {
         if open == 0 {
             break;
         }
         let piece = pieces.of_node(node);
-        if is_open[piece] && shape.distance(body.state.position[node].xyz()).0 < 0.0 {
+        if is_open[piece] && shape.distance(body.positions()[node].xyz()).0 < 0.0 {
             found.push(piece);
             is_open[piece] = false;
             open -= 1;

@@ -17,7 +17,6 @@ use crate::math::rotation::Rotation;
 use crate::rigid_body::solid::Bounds;
 use crate::rigid_body::{RigidBody, RigidBodyRef, RigidState};
 use crate::soft_body::SoftBody;
-use crate::topology::changes::History;
 use std::ops::Index;
 
 /// Largest tick counter accepted from a saved world; some 6·10⁸ years of ticks.
@@ -111,7 +110,7 @@ impl<D: Dim> World<D> {
         self.wake_body(body);
         let body = self.bodies.get_mut(body)?;
         // Changes from outside are not recorded in the history.
-        body.cache.history = History::default();
+        body.forget_history();
         Ok(body)
     }
 
@@ -288,7 +287,7 @@ impl<D: Dim> World<D> {
 
     /// Wakes all pieces of a body.
     pub(super) fn wake_body(&mut self, body: SoftBodyHandle) {
-        let pieces = self.bodies[body].topology.pieces.list.ids();
+        let pieces = self.bodies[body].pieces().list.ids();
         let pieces: Vec<Hit> = pieces.map(|piece| (body.slot(), piece)).collect();
         self.wake(&pieces);
     }

@@ -130,12 +130,12 @@ impl<D: Dim> World<D> {
         region.check().map_err(|error| error.of("region"))?;
         let region = region.solid();
         let mut removed = self.take_out_where(|body| {
-            let mut outside: Vec<bool> = vec![true; body.topology.pieces.list.len()];
-            for (id, _) in body.topology.mesh.nodes() {
-                let at = body.state.position[id].xyz();
+            let mut outside: Vec<bool> = vec![true; body.pieces().list.len()];
+            for (id, _) in body.mesh().nodes() {
+                let at = body.positions()[id].xyz();
                 // Comparisons with NaN are false, so a non-finite position is outside of every region.
                 let is_inside = region.distance(at).0 <= 0.0;
-                outside[body.topology.pieces.of_node(id).index()] &= !is_inside;
+                outside[body.pieces().of_node(id).index()] &= !is_inside;
             }
             outside
         });
@@ -157,7 +157,7 @@ impl<D: Dim> World<D> {
     fn take_out_where(&mut self, marks: impl Fn(&SoftBody<D>) -> Vec<bool>) -> Removed {
         let mut pieces = Vec::new();
         for (id, body) in self.bodies.entries() {
-            let marked = body.topology.pieces.list.ids().zip(marks(body));
+            let marked = body.pieces().list.ids().zip(marks(body));
             let marked = marked.filter(|&(piece, is_marked)| is_marked && body.has_piece(piece));
             pieces.extend(marked.map(|(piece, _)| (id, piece)));
         }
@@ -195,7 +195,7 @@ impl<D: Dim> World<D> {
         removed
             .pieces
             .extend(pieces.iter().map(|&piece| (id, piece)));
-        if pieces.len() == body.topology.pieces.count() {
+        if pieces.len() == body.pieces().count() {
             removed.mass += whole;
             if self.bodies.remove(id).is_ok() {
                 self.nearby.remove_body(id.slot());
@@ -213,18 +213,18 @@ impl<D: Dim> World<D> {
 
 /// Returns for each piece number whether the piece is below a size.
 fn is_below<D: Dim>(body: &SoftBody<D>, size: PieceSize) -> Vec<bool> {
-    let (mesh, pieces) = (&body.topology.mesh, &body.topology.pieces);
+    let (mesh, pieces) = (body.mesh(), body.pieces());
     let mut found = vec![0.0; pieces.list.len()];
     if let PieceSize::Mass(_) = size {
         for (id, _) in mesh.nodes() {
-            found[pieces.of_node(id).index()] += f64::from(body.state.mass[id]);
+            found[pieces.of_node(id).index()] += f64::from(body.masses()[id]);
         }
     } else {
         for (id, element) in mesh.elements() {
             found[pieces.of_element(id).index()] += mesh.voxels(element).count() as f64;
         }
     }
-    let width = f64::from(body.topology.grid.voxel_size());
+    let width = f64::from(body.grid().voxel_size());
     let voxel = (0..D::N).fold(1.0, |volume, _| volume * width);
     let least = match size {
         PieceSize::Voxels(count) => count as f64,

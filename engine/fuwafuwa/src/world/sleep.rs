@@ -30,7 +30,7 @@ pub fn fall_asleep<D: Dim>(
     duration: f32,
 ) -> Vec<Hit> {
     for (body, motions) in bodies.iter_mut().zip(motions) {
-        for (piece, motion) in body.topology.pieces.list.iter_mut().zip(motions.iter()) {
+        for (piece, motion) in body.pieces_mut().list.iter_mut().zip(motions.iter()) {
             let slow = motion.speed_squared < SLEEP_SPEED * SLEEP_SPEED && !motion.is_driven;
             piece.sleep_timer = if slow {
                 piece.sleep_timer + duration
@@ -40,7 +40,7 @@ pub fn fall_asleep<D: Dim>(
         }
     }
     for &(body, piece) in handled {
-        bodies.at_mut(body).topology.pieces.list[piece].sleep_timer = 0.0;
+        bodies.at_mut(body).pieces_mut().list[piece].sleep_timer = 0.0;
     }
     change(bodies, true, |_, _, piece| {
         !piece.asleep && piece.sleep_timer >= SLEEP_TIME
@@ -87,7 +87,7 @@ fn change<D: Dim>(
 ) -> Vec<Hit> {
     let mut changed = Vec::new();
     for (slot, body) in bodies.by_slot_mut() {
-        let pieces = body.topology.pieces.list.entries();
+        let pieces = body.pieces().list.entries();
         let marked = pieces.map(|(number, piece)| applies(slot, number, piece));
         let marked: IndexVec<PieceId, bool> = marked.collect();
         let numbers = marked.ids().filter(|&piece| marked[piece]);

@@ -57,23 +57,23 @@ pub fn mean<D: Dim, I: Id>(rows: &IndexVec<I, Row>, nodes: &[I; 8]) -> Row {
 impl ContactSphere {
     /// Returns the contact sphere of an element, if the element is at the surface.
     pub fn of<D: Dim>(slot: BodySlot, body: &SoftBody<D>, id: ElementId) -> Option<Self> {
-        let bare = *body.cache.bare.get(id.index())?;
+        let bare = body.exposed_faces(id)?;
         if bare == 0 {
             return None;
         }
-        let element = body.topology.mesh.element(id)?;
+        let element = body.mesh().element(id)?;
         let mut nodes = [NodeId(0); 8];
         nodes[..D::CORNERS].copy_from_slice(&element.nodes);
-        let piece = body.topology.pieces.of_element(id);
+        let piece = body.pieces().of_element(id);
         Some(Self {
             body: slot,
             element: id,
             piece,
-            radius: 0.5 * body.topology.grid.voxel_size(),
-            asleep: body.topology.pieces.list[piece].asleep,
+            radius: 0.5 * body.grid().voxel_size(),
+            asleep: body.pieces().list[piece].asleep,
             bare,
             voxel: element.cell.at.map(|k| k as i16),
-            bound: body.cache.bound[id],
+            bound: body.connected_voxels(id),
             nodes,
         })
     }
@@ -134,7 +134,7 @@ impl ContactSphere {
     /// Returns the inverse effective mass of the sphere [1/kg].
     #[inline]
     pub fn inverse_mass<D: Dim>(&self, bodies: &SoftBodies<D>) -> f32 {
-        let all = &bodies.at(self.body).state.inverse_mass;
+        let all = bodies.at(self.body).inverse_masses();
         let nodes = self.nodes[..D::CORNERS].iter();
         let sum: f32 = nodes.map(|&node| all[node]).sum();
         sum / (D::CORNERS * D::CORNERS) as f32

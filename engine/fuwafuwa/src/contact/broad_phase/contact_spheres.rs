@@ -102,13 +102,13 @@ impl Spheres {
         for ((id, sphere), centre) in all {
             let body = bodies.at(sphere.body);
             let was_asleep = sphere.asleep;
-            sphere.asleep = body.topology.pieces.list[sphere.piece].asleep;
+            sphere.asleep = body.pieces().list[sphere.piece].asleep;
             // Sleepers are not updated during the tick, so their centres are computed here.
             if sphere.asleep != was_asleep {
                 changed.push(id);
             }
             if sphere.asleep && !was_asleep {
-                *centre = sphere.mean::<D>(&body.state.position);
+                *centre = sphere.mean::<D>(body.positions());
             }
         }
         // Reset, so that a world read from a file behaves like the original.
@@ -147,13 +147,13 @@ impl Spheres {
             self.followed[slot] = body.bookmark();
         }
         let none = |body: Option<&SoftBody<D>>| {
-            let size = body.map_or([0; 3], |body| body.topology.grid.size());
+            let size = body.map_or([0; 3], |body| body.grid().size());
             let voxels = size.map(|extent| extent as usize);
             vec![SphereId::NONE; voxels.iter().product()]
         };
         self.by_voxel = bodies.slots().map(none).collect();
         let all = bodies.by_slot().flat_map(|(slot, body)| {
-            let ids = body.topology.mesh.elements().map(|(id, _)| id);
+            let ids = body.mesh().elements().map(|(id, _)| id);
             ids.map(move |id| (slot, id))
         });
         for (slot, id) in known.iter().copied().chain(all) {
@@ -162,7 +162,7 @@ impl Spheres {
             let Some((sphere, body)) = sphere.zip(body) else {
                 continue;
             };
-            let own = &mut self.by_voxel[slot][body.topology.grid.index(sphere.voxel())];
+            let own = &mut self.by_voxel[slot][body.grid().index(sphere.voxel())];
             if *own == SphereId::NONE {
                 *own = self.list.next_id();
                 self.list.push(sphere);
@@ -171,7 +171,7 @@ impl Spheres {
         self.keys.extend(self.list.iter().map(ContactSphere::key));
         let centre = |sphere: &ContactSphere| {
             let body = bodies.at(sphere.body);
-            sphere.mean::<D>(&body.state.position)
+            sphere.mean::<D>(body.positions())
         };
         self.centres.clear();
         self.centres.extend(self.list.iter().map(centre));
@@ -184,7 +184,7 @@ impl Spheres {
         let number = |&(slot, id): &Key| {
             let (body, by_voxel) = (bodies.find(slot)?, &self.by_voxel[slot]);
             let voxel = ContactSphere::of(slot, body, id)?.voxel();
-            Some(by_voxel[body.topology.grid.index(voxel)])
+            Some(by_voxel[body.grid().index(voxel)])
         };
         let numbers = known.iter().map(number);
         numbers.map(|own| own.unwrap_or(SphereId::NONE)).collect()
@@ -206,7 +206,7 @@ impl Spheres {
                 continue;
             };
             // A voxel at the surface stays there for good.
-            let own = &mut self.by_voxel[slot][body.topology.grid.index(sphere.voxel())];
+            let own = &mut self.by_voxel[slot][body.grid().index(sphere.voxel())];
             if *own == SphereId::NONE {
                 *own = self.list.next_id();
                 if !sphere.asleep {
@@ -214,7 +214,7 @@ impl Spheres {
                 }
                 self.keys.push(sphere.key());
                 self.list.push(sphere);
-                self.centres.push(sphere.mean::<D>(&body.state.position));
+                self.centres.push(sphere.mean::<D>(body.positions()));
             } else {
                 self.list[*own] = sphere;
             }
@@ -230,7 +230,7 @@ impl Spheres {
         self.crack_faces.retain(is_known);
         if !changes.detached.is_empty() {
             for sphere in self.list.iter_mut().filter(|sphere| sphere.body == slot) {
-                sphere.piece = body.topology.pieces.of_element(sphere.element);
+                sphere.piece = body.pieces().of_element(sphere.element);
             }
             let list = &self.list;
             let piece = |own: SphereId| (list[own].body, list[own].piece);
@@ -249,15 +249,15 @@ impl Spheres {
         applies: impl Fn(SphereId) -> bool,
     ) {
         let own = &self.list[id];
-        let (site, voxel, size) = (own.site(), own.voxel(), body.topology.grid.size());
+        let (site, voxel, size) = (own.site(), own.voxel(), body.grid().size());
         let by_voxel = &self.by_voxel[own.body];
         let near = i32::from(NEAR);
         let low = [0, 1, 2].map(|axis: usize| (voxel[axis] - near).max(0));
         let high = [0, 1, 2].map(|axis: usize| (voxel[axis] + near).min(size[axis] - 1));
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
-                let row = body.topology.grid.index([low[0], y, z])
-                    ..=body.topology.grid.index([high[0], y, z]);
+                let row = body.grid().index([low[0], y, z])
+                    ..=body.grid().index([high[0], y, z]);
                 let others = by_voxel[row].iter().copied();
                 for other in others.filter(|&other| other != SphereId::NONE && applies(other)) {
                     let sphere = &self.list[other];
@@ -325,7 +325,7 @@ impl Spheres {
     /// Returns the velocity of a sphere [m/s].
     pub fn velocity<D: Dim>(&self, id: SphereId, bodies: &SoftBodies<D>) -> Row {
         let sphere = &self.list[id];
-        sphere.mean::<D>(&bodies.at(sphere.body).state.velocity)
+        sphere.mean::<D>(bodies.at(sphere.body).velocities())
     }
 
     /// Returns whether the body itself keeps two spheres apart.
@@ -336,7 +336,7 @@ impl Spheres {
 
     fn follow<D: Dim>(&mut self, id: SphereId, bodies: &SoftBodies<D>) {
         let sphere = &self.list[id];
-        let centre = sphere.mean::<D>(&bodies.at(sphere.body).state.position);
+        let centre = sphere.mean::<D>(bodies.at(sphere.body).positions());
         if self.is_close[id] {
             let moved = centre - self.centres[id];
             self.moved[id] = moved.dot(moved);

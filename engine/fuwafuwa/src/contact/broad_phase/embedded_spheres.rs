@@ -81,8 +81,8 @@ impl Captives {
                 let captor = (outer.body, outer.piece);
                 let is_smaller = own(&pieces, sphere) < own(&pieces, pair.spheres[1 - inner]);
                 let body = bodies.at(outer.body);
-                let layers = bodies.at(spheres.list[sphere].body).state.layers;
-                let may_be = is_smaller && layers.meet(body.state.layers);
+                let layers = bodies.at(spheres.list[sphere].body).layers();
+                let may_be = is_smaller && layers.meet(body.layers());
                 if may_be && body.holds(outer.element, at.xyz()) {
                     self.captors[sphere] = Some(captor);
                 }
@@ -124,9 +124,9 @@ impl Captives {
                     let number = bins.numbers()[at as usize] as usize;
                     let (sphere, at) = (near[number], centres[number].xyz());
                     let body = bodies.at(inner.captor.0);
-                    let layers = bodies.at(spheres.list[sphere].body).state.layers;
+                    let layers = bodies.at(spheres.list[sphere].body).layers();
                     let is_smaller = own(&pieces, sphere) < inner.count;
-                    let may_be = is_smaller && layers.meet(body.state.layers);
+                    let may_be = is_smaller && layers.meet(body.layers());
                     if may_be && body.holds(inner.element, at) {
                         self.captors[sphere] = Some(inner.captor);
                     }
@@ -186,7 +186,7 @@ impl Exits {
         let exits: Vec<SphereId> = exits.map(|(id, _)| id).collect();
         let centres = exits.iter().map(|&exit| spheres.centres[exit]);
         let centres: Vec<Row> = centres.collect();
-        let reach = EXIT_REACH * bodies.at(body).topology.grid.voxel_size();
+        let reach = EXIT_REACH * bodies.at(body).grid().voxel_size();
         Self {
             bins: Bins::new::<D>(&centres, reach),
             list: exits,
@@ -229,15 +229,15 @@ struct Inner {
 fn inner_elements<D: Dim>(bodies: &SoftBodies<D>, pieces: &Extents, within: &Extent) -> Vec<Inner> {
     let mut found = Vec::new();
     for (slot, body) in bodies.by_slot() {
-        for (id, element) in body.topology.mesh.elements() {
+        for (id, element) in body.mesh().elements() {
             let level = element.cell.level;
-            let piece = body.topology.pieces.of_element(id);
+            let piece = body.pieces().of_element(id);
             let extent = &pieces[slot][piece];
-            if !extent.has_inner || level == 0 && body.cache.bare[id] != 0 {
+            if !extent.has_inner || level == 0 && body.exposed_faces(id) != Some(0) {
                 continue;
             }
             let nodes = element.nodes.iter();
-            let places = nodes.map(|&node| body.state.position[node]);
+            let places = nodes.map(|&node| body.positions()[node]);
             let sum = places.clone().sum::<Row>();
             let centre = sum * (1.0 / element.nodes.len() as f32);
             let furthest = places.map(|at| at - centre).map(|way| way.dot(way));
@@ -317,12 +317,12 @@ fn extents<D: Dim>(body: Option<&SoftBody<D>>) -> IndexVec<PieceId, Extent> {
     let Some(body) = body else {
         return IndexVec::default();
     };
-    let count = body.topology.pieces.list.len();
+    let count = body.pieces().list.len();
     let mut extents: IndexVec<PieceId, Extent> = vec![Extent::NONE; count].into();
-    for (id, element) in body.topology.mesh.elements() {
-        let extent = &mut extents[body.topology.pieces.of_element(id)];
+    for (id, element) in body.mesh().elements() {
+        let extent = &mut extents[body.pieces().of_element(id)];
         extent.count += 1;
-        extent.has_inner |= element.cell.level > 0 || body.cache.bare[id] == 0;
+        extent.has_inner |= element.cell.level > 0 || body.exposed_faces(id) == Some(0);
     }
     extents
 }
@@ -330,7 +330,7 @@ fn extents<D: Dim>(body: Option<&SoftBody<D>>) -> IndexVec<PieceId, Extent> {
 impl<D: Dim> SoftBody<D> {
     /// Returns whether a position [m] is in an element, which is treated as evenly deformed.
     fn holds(&self, id: ElementId, at: Vec3) -> bool {
-        let Some(element) = self.topology.mesh.element(id) else {
+        let Some(element) = self.mesh().element(id) else {
             return false;
         };
         let child = self.child_at(element, at);

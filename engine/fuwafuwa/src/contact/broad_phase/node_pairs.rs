@@ -135,10 +135,10 @@ impl NodePairs {
                 continue;
             }
             let woke = |node| {
-                let piece = body.topology.pieces.of_node(node);
+                let piece = body.pieces().of_node(node);
                 pieces.binary_search(&(slot, piece)).is_ok()
             };
-            let woken = body.cache.awake.iter().filter(|&&node| woke(node));
+            let woken = body.awake_nodes().iter().filter(|&&node| woke(node));
             self.changed.extend(woken.map(|&node| (slot, node)));
         }
     }
@@ -185,10 +185,10 @@ impl NodePairs {
         for ((own, rigid), leeway) in rigids.by_slot().zip(&self.leeways) {
             let is_near = |&&(slot, node): &&(BodySlot, NodeId)| {
                 let body = bodies.at(slot);
-                let reach = self.reach(slot, node, body.topology.grid.voxel_size());
-                let at = body.state.position[node].xyz();
-                rigid.meets(body.state.layers)
-                    && body.topology.mesh.is_alive(node)
+                let reach = self.reach(slot, node, body.grid().voxel_size());
+                let at = body.positions()[node].xyz();
+                rigid.meets(body.layers())
+                    && body.mesh().is_alive(node)
                     && rigid.shape().distance(at).0 <= reach + leeway.most
             };
             let near = changed.iter().filter(is_near);
@@ -206,7 +206,7 @@ impl NodePairs {
         self.changed.clear();
         self.travel = 0.0;
         self.spare = f32::INFINITY;
-        let sizes = bodies.iter().map(|body| body.topology.grid.voxel_size());
+        let sizes = bodies.iter().map(|body| body.grid().voxel_size());
         let size = sizes.fold(0.0, f32::max);
         let leeway = |rigid: &RigidState| {
             let slack = if rigid.moves() {
@@ -223,29 +223,28 @@ impl NodePairs {
             .resize(bodies.slot_count(), IndexVec::default());
         let mut squares = Vec::new();
         for (slot, body) in bodies.by_slot() {
-            for &node in &body.cache.awake {
+            for &node in body.awake_nodes() {
                 self.anchor(slot, node, bodies, left);
             }
-            let reach = |node| self.reach(slot, node, body.topology.grid.voxel_size());
+            let reach = |node| self.reach(slot, node, body.grid().voxel_size());
             squares.push((slot, body, Squares::of(body, reach)));
         }
         let mut found = Vec::new();
         let mut near: Vec<NodeId> = Vec::new();
         for ((own, rigid), leeway) in rigids.by_slot().zip(&self.leeways) {
             let met = squares.iter();
-            let met = met.filter(|(_, body, _)| rigid.meets(body.state.layers));
+            let met = met.filter(|(_, body, _)| rigid.meets(body.layers()));
             for (slot, body, squares) in met {
                 near.clear();
                 squares.within(leeway.most, rigid.shape(), &mut near);
-                if rigid.moves() && body.cache.awake.len() < body.topology.mesh.node_count() {
-                    let reach = leeway.most + MARGIN * body.topology.grid.voxel_size();
+                if rigid.moves() && body.awake_nodes().len() < body.mesh().node_count() {
+                    let reach = leeway.most + MARGIN * body.grid().voxel_size();
                     let is_near = |&node: &NodeId| {
-                        let at = body.state.position[node].xyz();
-                        body.topology.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
+                        let at = body.positions()[node].xyz();
+                        body.pieces().sleeps(node) && rigid.shape().distance(at).0 <= reach
                     };
                     near.extend(
-                        body.topology
-                            .mesh
+                        body.mesh()
                             .nodes()
                             .map(|(node, _)| node)
                             .filter(is_near),
@@ -267,12 +266,12 @@ impl NodePairs {
             let Some(anchors) = self.anchors.get(slot.index()) else {
                 continue;
             };
-            for &node in &body.cache.awake {
+            for &node in body.awake_nodes() {
                 let Some(anchor) = anchors.get(node.index()) else {
                     continue;
                 };
                 let [x, y, z, most] = anchor.to_array();
-                let come = body.state.position[node] - Row::from_array([x, y, z, 0.0]);
+                let come = body.positions()[node] - Row::from_array([x, y, z, 0.0]);
                 let come = come.dot(come);
                 if come > most * most {
                     self.changed.push((slot, node));
@@ -289,10 +288,10 @@ impl NodePairs {
     fn anchor<D: Dim>(&mut self, slot: BodySlot, node: NodeId, bodies: &SoftBodies<D>, left: f32) {
         let body = bodies.at(slot);
         let anchors = &mut self.anchors[slot];
-        anchors.resize(body.state.position.len(), Row::ZERO);
-        let [x, y, z, _] = body.state.position[node].to_array();
-        let speed = body.state.velocity[node].length();
-        let most = SLACK * body.topology.grid.voxel_size() + speed * left;
+        anchors.resize(body.positions().len(), Row::ZERO);
+        let [x, y, z, _] = body.positions()[node].to_array();
+        let speed = body.velocities()[node].length();
+        let most = SLACK * body.grid().voxel_size() + speed * left;
         anchors[node] = Row::from_array([x, y, z, most]);
         self.spare = if most < self.spare { most } else { self.spare };
     }
@@ -337,14 +336,14 @@ impl NodePair {
     /// Returns whether the pair touched in this tick. Such a pair is kept for the events even if it is far
     /// apart now.
     fn has_touched<D: Dim>(&self, bodies: &SoftBodies<D>) -> bool {
-        self.impulse.total > 0.0 && bodies.at(self.body).topology.mesh.is_alive(self.node)
+        self.impulse.total > 0.0 && bodies.at(self.body).mesh().is_alive(self.node)
     }
 
     /// Returns the piece of the node; `None` if another body is in the slot now.
     pub fn piece<D: Dim>(&self, bodies: &SoftBodies<D>) -> Option<PieceId> {
         let body = bodies.find(self.body)?;
-        let is_known = self.node.index() < body.topology.mesh.node_capacity();
-        is_known.then(|| body.topology.pieces.of_node(self.node))
+        let is_known = self.node.index() < body.mesh().node_capacity();
+        is_known.then(|| body.pieces().of_node(self.node))
     }
 }
 
@@ -367,11 +366,11 @@ struct Square {
 
 impl Squares {
     fn of<D: Dim>(body: &SoftBody<D>, reach: impl Fn(NodeId) -> f32) -> Self {
-        let nodes = body.cache.awake.iter().map(|&node| (node, reach(node)));
+        let nodes = body.awake_nodes().iter().map(|&node| (node, reach(node)));
         let nodes: Vec<(NodeId, f32)> = nodes.collect();
-        let points = nodes.iter().map(|&(node, _)| body.state.position[node]);
+        let points = nodes.iter().map(|&(node, _)| body.positions()[node]);
         let points: Vec<Row> = points.collect();
-        let bins = Bins::new::<D>(&points, SQUARE * body.topology.grid.voxel_size());
+        let bins = Bins::new::<D>(&points, SQUARE * body.grid().voxel_size());
         let squares = { bins.filled() }.map(|range| Square::around(&bins, range, &nodes));
         Self {
             list: squares.collect(),
@@ -437,7 +436,7 @@ mod tests {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("the ball has voxels");
         let body =
             SoftBody::new(grid, &[Material::default()]).expect("the default material is valid");
-        let size = body.topology.grid.voxel_size();
+        let size = body.grid().voxel_size();
         let mut bodies = SoftBodies::default();
         let ball = bodies.insert(body).slot();
         let wall = |normal: Vec3, offset| {
@@ -467,10 +466,10 @@ mod tests {
             assert!(
                 listed
                     .iter()
-                    .all(|&(.., node)| body.topology.mesh.is_alive(node))
+                    .all(|&(.., node)| body.mesh().is_alive(node))
             );
-            for (node, _) in body.topology.mesh.nodes() {
-                let at = body.state.position[node].xyz();
+            for (node, _) in body.mesh().nodes() {
+                let at = body.positions()[node].xyz();
                 for (own, wall) in walls.by_slot() {
                     let is_close = wall.shape().distance(at).0 <= MARGIN * size;
                     assert!(!is_close || listed.contains(&(own, ball, node)));
@@ -481,17 +480,17 @@ mod tests {
                 (0..D::N).for_each(|axis| at[axis] = random(n + 1) as i32);
                 (at, 1 + random((1 << D::CORNERS) - 2) as u8)
             });
-            let before = body.topology.mesh.node_count();
+            let before = body.mesh().node_count();
             let changes = body.tear(&sides.collect::<Vec<_>>());
-            let alive = |&&node: &&NodeId| body.topology.mesh.is_alive(node);
+            let alive = |&&node: &&NodeId| body.mesh().is_alive(node);
             new += changes.nodes.iter().filter(alive).count();
             gone += changes.nodes.len() - changes.nodes.iter().filter(alive).count();
-            assert!(body.topology.mesh.node_count() == before || !changes.nodes.is_empty());
+            assert!(body.mesh().node_count() == before || !changes.nodes.is_empty());
             body.refresh_awake();
             pairs.tear(ball, &changes.nodes);
             let step = 0.1 * size;
-            for &node in &body.cache.awake {
-                for along in &mut body.state.position[node][..D::N] {
+            for &node in body.awake_nodes() {
+                for along in &mut body.positions_mut()[node][..D::N] {
                     *along += step * (random(3) as f32 - 1.0);
                 }
             }

@@ -44,7 +44,7 @@ impl Neighbours {
         let mut count = 0;
         for body in bodies.slots() {
             neighbours.first.push(count);
-            count += body.map_or(0, |body| body.topology.pieces.list.len()) as u32;
+            count += body.map_or(0, |body| body.pieces().list.len()) as u32;
         }
         neighbours.awake.push(0);
         // Padding, so that eight can be read from the last index on.

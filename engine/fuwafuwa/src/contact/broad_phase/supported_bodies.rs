@@ -22,7 +22,7 @@ pub type Sleeper = (BodySlot, PieceId);
 
 /// Returns the boxes around pieces of a body, enlarged by the contact margin [m].
 pub fn bounds_of<D: Dim>(body: &SoftBody<D>, is_one: impl Fn(PieceId) -> bool) -> Vec<Bounds> {
-    let margin = Vec3::splat(MARGIN * body.topology.grid.voxel_size());
+    let margin = Vec3::splat(MARGIN * body.grid().voxel_size());
     let pieces = body.piece_views().into_iter();
     let pieces = pieces.filter(|piece| !piece.removed && is_one(piece.number));
     let bounds = pieces.map(|piece| [piece.low - margin, piece.high + margin]);
@@ -47,14 +47,14 @@ pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &RigidBodies) -> Vec<Rigid
 pub fn leaning_on_rigid<D: Dim>(rigid: &RigidState, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let mut leaning = BTreeSet::new();
     for (slot, body) in bodies.by_slot() {
-        let reach = MARGIN * body.topology.grid.voxel_size();
+        let reach = MARGIN * body.grid().voxel_size();
         let is_near = |node: NodeId| {
-            let at = body.state.position[node].xyz();
-            body.topology.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
+            let at = body.positions()[node].xyz();
+            body.pieces().sleeps(node) && rigid.shape().distance(at).0 <= reach
         };
-        let nodes = body.topology.mesh.nodes().map(|(node, _)| node);
+        let nodes = body.mesh().nodes().map(|(node, _)| node);
         let nodes = nodes.filter(|&node| is_near(node));
-        leaning.extend(nodes.map(|node| (slot, body.topology.pieces.of_node(node))));
+        leaning.extend(nodes.map(|node| (slot, body.pieces().of_node(node))));
     }
     Sleepers::of(bodies).with_those_on(leaning)
 }
@@ -64,7 +64,7 @@ pub fn leaning_on_body<D: Dim>(body: &SoftBody<D>, bodies: &SoftBodies<D>) -> Ve
     let sleepers = Sleepers::of(bodies);
     let mut leaning = BTreeSet::new();
     for sphere in spheres_of(BodySlot::NONE, body) {
-        let at = sphere.mean::<D>(&body.state.position);
+        let at = sphere.mean::<D>(body.positions());
         leaning.extend(sleepers.touching(at, sphere.radius));
     }
     sleepers.with_those_on(leaning)
@@ -82,7 +82,7 @@ pub fn leaning_on_pieces<D: Dim>(pieces: &[Sleeper], bodies: &SoftBodies<D>) -> 
         }
         let own = spheres_of(slot, body).filter(|own| is_one(&(slot, own.piece)));
         for sphere in own {
-            let at = sphere.mean::<D>(&body.state.position);
+            let at = sphere.mean::<D>(body.positions());
             leaning.extend(sleepers.touching(at, sphere.radius));
         }
     }
@@ -107,7 +107,7 @@ impl<D: Dim> Sleepers<D> {
         let (mut spheres, mut centres) = (Vec::new(), Vec::new());
         for (slot, body) in bodies.by_slot() {
             for sphere in spheres_of(slot, body).filter(|sphere| sphere.asleep) {
-                centres.push(sphere.mean::<D>(&body.state.position));
+                centres.push(sphere.mean::<D>(body.positions()));
                 spheres.push(sphere);
             }
         }
@@ -160,6 +160,6 @@ fn reach(first: f32, second: f32) -> f32 {
 }
 
 fn spheres_of<D: Dim>(slot: BodySlot, body: &SoftBody<D>) -> impl Iterator<Item = ContactSphere> {
-    let ids = body.topology.mesh.elements().map(|(id, _)| id);
+    let ids = body.mesh().elements().map(|(id, _)| id);
     ids.filter_map(move |id| ContactSphere::of(slot, body, id))
 }

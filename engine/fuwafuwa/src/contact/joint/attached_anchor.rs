@@ -117,10 +117,10 @@ impl AttachedAnchor {
                 let (mut at, mut velocity, mut gain) = (Vec3::ZERO, Vec3::ZERO, 0.0);
                 let mut is_asleep = true;
                 for node in nodes {
-                    at += body.state.position[node].xyz() * share;
-                    velocity += body.state.velocity[node].xyz() * share;
-                    gain += body.state.inverse_mass[node] * share * share;
-                    is_asleep &= body.topology.pieces.sleeps(node);
+                    at += body.positions()[node].xyz() * share;
+                    velocity += body.velocities()[node].xyz() * share;
+                    gain += body.inverse_masses()[node] * share * share;
+                    is_asleep &= body.pieces().sleeps(node);
                 }
                 let mut yields = [Vec3::ZERO; 3];
                 (0..D::N).for_each(|axis| yields[axis][axis] = gain);
@@ -156,8 +156,8 @@ impl AttachedAnchor {
                 let nodes: Vec<NodeId> = nodes(body, corners).collect();
                 let share = Row::from(impulse * (1.0 / nodes.len() as f32));
                 for node in nodes {
-                    let gain = share * body.state.inverse_mass[node];
-                    body.state.velocity[node] += gain;
+                    let gain = share * body.inverse_masses()[node];
+                    body.velocities_mut()[node] += gain;
                 }
             }
         }
@@ -172,7 +172,7 @@ impl AttachedAnchor {
                 let Ok(body) = bodies.get(*id) else {
                     return;
                 };
-                let pieces = nodes(body, corners).map(|node| body.topology.pieces.of_node(node));
+                let pieces = nodes(body, corners).map(|node| body.pieces().of_node(node));
                 woken.pieces.extend(pieces.map(|piece| (id.slot(), piece)));
             }
         }
@@ -204,7 +204,7 @@ fn nodes<'a, D: Dim>(
     corners: &'a [(Point, Point)],
 ) -> impl Iterator<Item = NodeId> + 'a {
     corners.iter().filter_map(|&(voxel, point)| {
-        let mesh = &body.topology.mesh;
+        let mesh = body.mesh();
         let element = mesh.element_at(voxel)?;
         let apart = |node: NodeId| {
             let at = mesh.node(node).at;
@@ -223,10 +223,10 @@ fn nodes<'a, D: Dim>(
 /// Returns the corners of a body within `radius` [m] of a point, or the nearest one.
 fn corners_near<D: Dim>(body: &SoftBody<D>, at: Vec3, radius: f32) -> Vec<(Point, Point)> {
     let distance = |node: NodeId| {
-        let apart = body.state.position[node].xyz() - at;
+        let apart = body.positions()[node].xyz() - at;
         apart.dot(apart)
     };
-    let mesh = &body.topology.mesh;
+    let mesh = body.mesh();
     let nodes = || mesh.nodes().map(|(node, _)| node);
     let is_near = |&node: &NodeId| distance(node) <= radius * radius;
     let mut near: Vec<NodeId> = nodes().filter(is_near).collect();

@@ -30,7 +30,7 @@ impl EscapeContact {
     ) -> Option<Self> {
         let [a, b] = [captive.sphere, captive.exit];
         let both = [&spheres.list[a], &spheres.list[b]];
-        let out = both[1].outward::<D>(&bodies.at(both[1].body).state.position);
+        let out = both[1].outward::<D>(&bodies.at(both[1].body).positions());
         let ahead = (both[0].radius + both[1].radius) / out.length();
         let goal = spheres.centres[b] + out * ahead;
         let way = goal - spheres.centres[a];

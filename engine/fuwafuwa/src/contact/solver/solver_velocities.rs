@@ -33,7 +33,7 @@ impl Motion {
         let mut count = 0;
         for body in bodies.slots() {
             self.first.push(NodeRow::of(count));
-            let nodes = body.map_or(0, |body| body.state.velocity.len());
+            let nodes = body.map_or(0, |body| body.velocities().len());
             count += nodes.next_multiple_of(STRETCH);
         }
         self.rows.resize(count, Row::ZERO);
@@ -64,8 +64,8 @@ impl Motion {
     pub fn load<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         for (slot, body) in bodies.by_slot() {
             let first = self.first[slot].index();
-            let nodes = body.state.velocity.chunks(STRETCH);
-            let nodes = nodes.zip(body.state.inverse_mass.chunks(STRETCH));
+            let nodes = body.velocities().chunks(STRETCH);
+            let nodes = nodes.zip(body.inverse_masses().chunks(STRETCH));
             let own = self.rows.as_mut_slice()[first..]
                 .chunks_mut(STRETCH)
                 .zip(nodes);
@@ -85,7 +85,7 @@ impl Motion {
         for (slot, body) in bodies.by_slot_mut() {
             let first = self.first[slot].index();
             let rows = self.rows.as_slice()[first..].chunks(STRETCH);
-            let own = rows.zip(body.state.velocity.chunks_mut(STRETCH));
+            let own = rows.zip(body.velocities_mut().chunks_mut(STRETCH));
             let touched = &self.is_touched[first / STRETCH..];
             for ((rows, velocities), _) in own.zip(touched).filter(|(_, is)| **is) {
                 for (row, velocity) in rows.iter().zip(velocities) {

@@ -114,7 +114,7 @@ impl KnifeState {
 
     /// Adjusts the number of samples to the smallest voxel of all bodies.
     fn take_samples<D: Dim>(&mut self, stance: &EdgePose, bodies: &SoftBodies<D>) {
-        let sizes = bodies.iter().map(|body| body.topology.grid.voxel_size());
+        let sizes = bodies.iter().map(|body| body.grid().voxel_size());
         let least = sizes.fold(f32::INFINITY, f32::min);
         // In local coordinates, because the length of the rotated edge fluctuates by rounding.
         let long = (self.edge[1] - self.edge[0]).length();
@@ -155,13 +155,13 @@ impl KnifeState {
             if !holder.layers.meet(body.layers()) {
                 continue;
             }
-            let size = body.topology.grid.voxel_size();
+            let size = body.grid().voxel_size();
             let margin = size + STRETCH * ahead * holder.top_speed();
-            for (_, element) in body.topology.mesh.elements() {
+            for (_, element) in body.mesh().elements() {
                 let node = element.nodes[0];
                 let diagonal = size * element.cell.width() as f32 * (D::N as f32).sqrt();
                 let reach = STRETCH * diagonal + margin;
-                let apart = body.state.position[node].xyz() - from;
+                let apart = body.positions()[node].xyz() - from;
                 let (along, span) = match D::N {
                     2 => (0.0, 0.0),
                     _ => (apart.dot(stance.along), long),
@@ -170,7 +170,7 @@ impl KnifeState {
                 if (apart - nearest).length() > reach {
                     continue;
                 }
-                let voxel = body.topology.mesh.first_voxel(element);
+                let voxel = body.mesh().first_voxel(element);
                 let first = ((along - reach) / spacing).ceil().max(0.0) as usize;
                 let last = ((along + reach) / spacing).floor().max(0.0) as usize;
                 let count = last.saturating_add(1).saturating_sub(first);
@@ -212,9 +212,9 @@ impl KnifeState {
             let Ok(body) = bodies.get(near.body) else {
                 return false;
             };
-            let node = body.state.position[near.node].xyz();
+            let node = body.positions()[near.node].xyz();
             (node - at).length() <= near.reach
-                && (body.topology.mesh.element_at(near.voxel))
+                && (body.mesh().element_at(near.voxel))
                     .is_some_and(|element| material_point::may_have(body, element, at))
         };
         let near = self.near[place].iter().filter(is_in_reach);
@@ -229,7 +229,7 @@ impl KnifeState {
         (id, body): (SoftBodyHandle, &SoftBody<D>),
         since: f32,
     ) -> Cut {
-        let size = body.topology.grid.voxel_size();
+        let size = body.grid().voxel_size();
         let rows: Vec<Option<[RestPosition; 2]>> = (0..self.samples.len())
             .map(|place| self.way_in(stance, (id, body), place, since))
             .collect();
@@ -237,7 +237,7 @@ impl KnifeState {
         let cuts = |place: usize| f64::from(u8::from(self.samples[place].cut && is_inside(place)));
         let (mut faces, mut area) = (Faces::new(), 0.0);
         let mut add = |patch: [RestPosition; 4], share: f64| {
-            swept_area::go_through::<D>(patch, body.topology.grid.size(), &mut faces);
+            swept_area::go_through::<D>(patch, body.grid().size(), &mut faces);
             area += share * swept_area::area(patch);
         };
         // In 2D a sample sweeps a line, which stands for an area across the body.
@@ -265,7 +265,7 @@ impl KnifeState {
                 add([*a, *b, *c, *d], 0.5 * (cuts(place) + cuts(place + 1)));
             }
         }
-        let grid = &body.topology.grid;
+        let grid = body.grid();
         faces.retain(|&(voxel, axis)| {
             let mut next = voxel;
             next[axis] += 1;
@@ -306,7 +306,7 @@ impl KnifeState {
         let of_neighbour = || others.find_map(|other| self.samples.get(other)?.inside_of(id));
         // A sample outside of the body is extrapolated from tissue nearby.
         let base = inside.or(passed).or_else(of_neighbour)?;
-        let size = body.topology.grid.voxel_size();
+        let size = body.grid().voxel_size();
         let at = self.place(stance, place);
         let now = inside.map_or_else(|| base.extend(body, at), |spot| Some(spot.at))?;
         // The motion of the tissue counts, too: tissue that moves against a resting edge is cut.

@@ -51,8 +51,8 @@ impl KnifeState {
                 continue;
             };
             let row = self.row(&stance, place, &bodies[id], duration);
-            let piece = bodies[id].topology.pieces.of_node(row.weights[0].0);
-            if bodies[id].topology.pieces.list[piece].asleep && holder.pushes() {
+            let piece = bodies[id].pieces().of_node(row.weights[0].0);
+            if bodies[id].pieces().list[piece].asleep && holder.pushes() {
                 woken.push((id.slot(), piece));
             }
             rows.push((place, row));
@@ -88,8 +88,8 @@ impl KnifeState {
         let inside = self.samples.iter().filter_map(|sample| sample.inside);
         let pieces = inside.filter_map(|(id, spot)| {
             let body = bodies.get(id).ok()?;
-            let owner = body.topology.mesh.owner(spot.voxel)?;
-            Some((id.slot(), body.topology.pieces.of_element(owner)))
+            let owner = body.mesh().owner(spot.voxel)?;
+            Some((id.slot(), body.pieces().of_element(owner)))
         });
         let mut pieces: Vec<(BodySlot, PieceId)> = pieces.collect();
         pieces.sort_unstable();
@@ -106,7 +106,7 @@ impl KnifeState {
         duration: f32,
     ) -> EdgeRow {
         let (id, spot) = self.samples[place].inside.expect("the sample is in a body");
-        let mesh = &body.topology.mesh;
+        let mesh = body.mesh();
         let owner = mesh
             .owner(spot.voxel)
             .expect("the sample is in a solid voxel");
@@ -122,7 +122,7 @@ impl KnifeState {
         let weights = body.weights(element, spot.at);
         let gains = weights
             .iter()
-            .map(|&(node, weight)| weight * weight * body.state.inverse_mass[node]);
+            .map(|&(node, weight)| weight * weight * body.inverse_masses()[node]);
         EdgeRow {
             body: id,
             gain: gains.sum(),
@@ -170,8 +170,8 @@ fn solve_row<D: Dim>(
         row.impulse[way] = wanted;
         let push = direction * change;
         for &(node, weight) in &row.weights {
-            let gain = Row::from(push) * (weight * body.state.inverse_mass[node]);
-            body.state.velocity[node] += gain;
+            let gain = Row::from(push) * (weight * body.inverse_masses()[node]);
+            body.velocities_mut()[node] += gain;
         }
         holder.push_at(-push, row.lever, duration);
     }

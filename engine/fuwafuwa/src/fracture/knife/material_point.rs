@@ -29,7 +29,7 @@ impl Spot {
     /// Finds a world-space point [m] in a body, starting from a voxel. Returns `None` if the point is not in
     /// the body or too far from the start.
     pub fn find<D: Dim>(body: &SoftBody<D>, at: Vec3, from: Point) -> Option<Self> {
-        let mesh = &body.topology.mesh;
+        let mesh = body.mesh();
         let mut voxel = from;
         for step in 0..STEPS {
             let owner = mesh.owner(voxel)?;
@@ -42,7 +42,7 @@ impl Spot {
                     at: rest,
                 });
             }
-            if !body.topology.grid.is_solid(next) {
+            if !body.grid().is_solid(next) {
                 return None;
             }
             if step + 1 == STEPS && distance::<D>(element, rest) <= LITTLE {
@@ -55,12 +55,12 @@ impl Spot {
 
     /// Returns the rest position of a world-space point [m], extrapolated with the deformation here.
     pub fn extend<D: Dim>(&self, body: &SoftBody<D>, at: Vec3) -> Option<Vec3> {
-        body.at_rest(body.topology.mesh.element_at(self.voxel)?, at)
+        body.at_rest(body.mesh().element_at(self.voxel)?, at)
     }
 
     /// Returns the velocity of the body here [m/s].
     pub fn velocity<D: Dim>(&self, body: &SoftBody<D>) -> Option<Vec3> {
-        let element = body.topology.mesh.element_at(self.voxel)?;
+        let element = body.mesh().element_at(self.voxel)?;
         Some(body.velocity_of(&body.weights(element, self.at)))
     }
 
@@ -70,14 +70,14 @@ impl Spot {
         body: &SoftBody<D>,
         ways: [Vec3; COUNT],
     ) -> Option<[Vec3; COUNT]> {
-        let (_, undo) = body.inverse_deformation(body.topology.mesh.element_at(self.voxel)?)?;
+        let (_, undo) = body.inverse_deformation(body.mesh().element_at(self.voxel)?)?;
         Some(ways.map(undo))
     }
 
     /// Returns whether the point is within half a voxel of a world-space point [m].
     pub fn is_near<D: Dim>(&self, body: &SoftBody<D>, at: Vec3) -> bool {
-        let element = body.topology.mesh.element_at(self.voxel);
-        let half = 0.5 * body.topology.grid.voxel_size();
+        let element = body.mesh().element_at(self.voxel);
+        let half = 0.5 * body.grid().voxel_size();
         element.is_some_and(|element| (body.affine_map(element)(self.at) - at).length() <= half)
     }
 
@@ -85,7 +85,7 @@ impl Spot {
     /// closed. `along` is the direction of the edge and `toward` the cutting direction [voxels].
     pub fn is_whole_ahead<D: Dim>(&self, body: &SoftBody<D>, along: Vec3, toward: Vec3) -> bool {
         let ahead = self.at + toward * 0.5;
-        let Some(voxel) = voxel_of::<D>(ahead).filter(|&at| body.topology.grid.is_solid(at)) else {
+        let Some(voxel) = voxel_of::<D>(ahead).filter(|&at| body.grid().is_solid(at)) else {
             return false;
         };
         let normal = along.cross(toward);
@@ -112,8 +112,7 @@ fn is_closed<D: Dim>(body: &SoftBody<D>, voxel: Point, axis: usize) -> bool {
         .filter(|&other| other != axis)
         .fold(0, |octant, other| octant | 1 << other);
     debug_assert_eq!(voxel_around::<D>(corner, octant), voxel);
-    body.topology
-        .connectivity
+    body.connectivity()
         .around(corner)
         .is_closed(octant, axis)
 }
@@ -132,9 +131,9 @@ fn voxel_of<D: Dim>(at: Vec3) -> Option<Point> {
 
 /// Returns whether an element may contain a point [m]: a test with the enlarged box around its nodes.
 pub fn may_have<D: Dim>(body: &SoftBody<D>, element: &Element, at: Vec3) -> bool {
-    let margin = LITTLE * body.topology.grid.voxel_size() * element.cell.width() as f32;
+    let margin = LITTLE * body.grid().voxel_size() * element.cell.width() as f32;
     (0..D::N).all(|axis| {
-        let apart = |&node: &NodeId| body.state.position[node][axis] - at[axis];
+        let apart = |&node: &NodeId| body.positions()[node][axis] - at[axis];
         let apart = element.nodes.iter().map(apart);
         let (low, high) = apart.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), k| {
             (low.min(k), high.max(k))

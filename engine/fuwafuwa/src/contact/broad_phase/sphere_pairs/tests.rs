@@ -32,7 +32,7 @@ fn start_tick<D: Dim>(spheres: &mut Spheres, pairs: &mut SpherePairs, bodies: &S
 fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &SoftBodies<D>, when: &str) {
     assert!(pairs.list.is_sorted_by(|a, b| a.spheres < b.spheres));
     let all = &spheres.list;
-    let centre = |sphere: &ContactSphere| sphere.mean::<D>(&bodies.at(sphere.body).state.position);
+    let centre = |sphere: &ContactSphere| sphere.mean::<D>(bodies.at(sphere.body).positions());
     for (b, second) in all.entries() {
         for (a, first) in all.entries().take(b.index()) {
             let apart = centre(first) - centre(second);
@@ -66,8 +66,8 @@ fn check<D: Dim>(n: usize) {
     let body = bodies.at_mut(BALL);
     body.crumble();
     let (size, count) = (
-        body.topology.grid.voxel_size(),
-        body.topology.pieces.list.len(),
+        body.grid().voxel_size(),
+        body.pieces().list.len(),
     );
     let mut seed = 7;
     let (mut spheres, mut pairs) = (Spheres::default(), SpherePairs::default());
@@ -95,14 +95,14 @@ fn check<D: Dim>(n: usize) {
             .collect();
         let speeds: IndexVec<PieceId, Row> = speeds.into();
         let velocity = |body: &mut SoftBody<D>, sign: &dyn Fn(PieceId) -> f32| {
-            for node in body.state.position.ids() {
-                let piece = body.topology.pieces.of_node(node);
-                let moves = if body.topology.pieces.list[piece].asleep {
+            for node in body.positions().ids() {
+                let piece = body.pieces().of_node(node);
+                let moves = if body.pieces().list[piece].asleep {
                     0.0
                 } else {
                     sign(piece)
                 };
-                body.state.velocity[node] = speeds[piece] * moves;
+                body.velocities_mut()[node] = speeds[piece] * moves;
             }
         };
         velocity(body, &|_| 1.0);
@@ -131,10 +131,10 @@ fn check<D: Dim>(n: usize) {
             spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
             let mut furthest = 0.0f32;
             let body = bodies.at_mut(BALL);
-            for node in body.state.position.ids() {
-                let step = body.state.velocity[node] * SUBSTEP;
+            for node in body.positions().ids() {
+                let step = body.velocities()[node] * SUBSTEP;
                 furthest = furthest.max(step.length());
-                body.state.position[node] += step;
+                body.positions_mut()[node] += step;
             }
             pairs.pass(SUBSTEP, furthest);
         }
@@ -216,7 +216,7 @@ fn check_tears<D: Dim>(n: usize) {
             }
         }
     }
-    assert!(bodies.at(BALL).topology.pieces.list.len() > 10);
+    assert!(bodies.at(BALL).pieces().list.len() > 10);
 }
 
 #[test]

@@ -1,0 +1,108 @@
+//! Access to bodies for contacts, fracture and the world.
+
+use super::SoftBody;
+use super::cooldowns::Cooldowns;
+use crate::foundation::dim::Dim;
+use crate::foundation::ids::{ElementId, IndexVec, NodeId};
+use crate::fracture::breakable_nodes::BreakableNodes;
+use crate::rigid_body::layers::Layers;
+use crate::soft_body::element_forces::{ElementBatches, Row};
+use crate::topology::changes::History;
+use crate::topology::pieces::Pieces;
+
+impl<D: Dim> SoftBody<D> {
+    /// Returns the velocities of all nodes [m/s].
+    #[inline(always)]
+    pub(crate) fn velocities(&self) -> &IndexVec<NodeId, Row> {
+        &self.state.velocity
+    }
+
+    #[inline(always)]
+    pub(crate) fn velocities_mut(&mut self) -> &mut IndexVec<NodeId, Row> {
+        &mut self.state.velocity
+    }
+
+    #[cfg(test)]
+    pub(crate) fn positions_mut(&mut self) -> &mut IndexVec<NodeId, Row> {
+        &mut self.state.position
+    }
+
+    /// Returns the masses of all nodes [kg].
+    #[inline(always)]
+    pub(crate) fn masses(&self) -> &IndexVec<NodeId, f32> {
+        &self.state.mass
+    }
+
+    /// Returns the inverse masses of all nodes [1/kg]; 0 while a node is fixed or sleeps.
+    #[inline(always)]
+    pub(crate) fn inverse_masses(&self) -> &IndexVec<NodeId, f32> {
+        &self.state.inverse_mass
+    }
+
+    /// Returns the nodes of awake pieces, ascending.
+    #[inline(always)]
+    pub(crate) fn awake_nodes(&self) -> &[NodeId] {
+        &self.cache.awake
+    }
+
+    #[inline(always)]
+    pub(crate) fn pieces_mut(&mut self) -> &mut Pieces {
+        &mut self.topology.pieces
+    }
+
+    /// Returns the mask of the exposed faces of an element, or `None` if the id was never used. The mask of an
+    /// element above level 0 is outdated.
+    #[inline(always)]
+    pub(crate) fn exposed_faces(&self, element: ElementId) -> Option<u8> {
+        self.cache.bare.get(element.index()).copied()
+    }
+
+    /// Returns the mask of the voxels around an exposed element that share a node with it.
+    #[inline(always)]
+    pub(crate) fn connected_voxels(&self, element: ElementId) -> u32 {
+        self.cache.bound[element]
+    }
+
+    /// Returns the rotations and forces of all elements.
+    #[inline(always)]
+    pub(crate) fn element_forces(&self) -> &ElementBatches<D> {
+        &self.state.blocks
+    }
+
+    /// Returns the nodes at which a crack can start or continue.
+    #[inline(always)]
+    pub(crate) fn breakable_nodes(&self) -> &BreakableNodes {
+        &self.cache.breakable
+    }
+
+    /// Returns the damage of all nodes.
+    pub(crate) fn damage_mut(&mut self) -> &mut IndexVec<NodeId, f32> {
+        &mut self.state.damage
+    }
+
+    #[inline(always)]
+    pub(crate) fn cooldowns(&self) -> &Cooldowns {
+        &self.state.cooldowns
+    }
+
+    pub(crate) fn cooldowns_mut(&mut self) -> &mut Cooldowns {
+        &mut self.state.cooldowns
+    }
+
+    pub(crate) fn set_layers(&mut self, layers: Layers) {
+        self.state.layers = layers;
+    }
+
+    pub(crate) fn set_user_data(&mut self, user_data: u64) {
+        self.state.user_data = user_data;
+    }
+
+    pub(crate) fn set_gravity_scale(&mut self, gravity_scale: f32) {
+        self.state.gravity_scale = gravity_scale;
+    }
+
+    /// Forgets the history of changes, so that all bookmarks become invalid.
+    pub(crate) fn forget_history(&mut self) {
+        self.cache.history = History::default();
+    }
+}
