@@ -305,9 +305,9 @@ impl<D: Dim> World<D> {
             })
             .collect();
         let pairs = self.nearby.nodes.list.iter();
-        let is_hand = |pair: &&NodePair| self.rigids.at(pair.rigid).follows_target();
+        let is_pushed = |pair: &&NodePair| self.rigids.at(pair.rigid).pushes();
         let handled = pairs
-            .filter(is_hand)
+            .filter(is_pushed)
             .filter(|pair| pair.impulse.pressed > 0.0);
         let handled = handled.filter_map(|pair| Some((pair.body, pair.piece(&self.bodies)?)));
         let captives = self.nearby.captives.list.iter();

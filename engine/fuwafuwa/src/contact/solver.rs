@@ -135,7 +135,7 @@ impl Contacts {
                 let may_wake = moves || rigid.is_asleep();
                 if may_wake && gap < WAKING_NODE * size {
                     let is_fast = |speed: Row| inner::<D>(speed, speed) > WAKE_SPEED * WAKE_SPEED;
-                    let wakes = rigid.follows_target() || moves && is_fast(own);
+                    let wakes = rigid.pushes() || moves && is_fast(own);
                     if wakes && body.pieces().sleeps(pair.node) {
                         let piece = body.pieces().of_node(pair.node);
                         hits.pieces.push((pair.body, piece));
@@ -182,9 +182,7 @@ impl Contacts {
         let waking = WAKE_SPEED * duration;
         let friction = |body: Option<&SoftBody<D>>| body.map_or(0.0, SoftBody::friction);
         let frictions: &IndexVec<BodySlot, f32> = &bodies.slots().map(friction).collect();
-        let has_layers = bodies
-            .iter()
-            .any(|body| body.layers() != Layers::default());
+        let has_layers = bodies.iter().any(|body| body.layers() != Layers::default());
         let layers = |sphere: &ContactSphere| bodies.at(sphere.body).layers();
         let meet = |both: [&ContactSphere; 2]| layers(both[0]).meet(layers(both[1]));
         let (all, captives) = (&nearby.spheres, &nearby.captives);

@@ -191,12 +191,13 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Returns the item of a handle, mutably; see [`Arena::get`].
     pub(crate) fn get_mut(&mut self, id: K) -> Result<&mut T, Error> {
-        self.revision += 1;
         let (own, generation) = id.parts();
         let slot = self.slots.get_mut(own.index());
         let slot = slot.filter(|slot| slot.generation == generation);
-        slot.and_then(|slot| slot.thing.as_mut())
-            .ok_or_else(|| stale::<K>(own))
+        let thing = slot.and_then(|slot| slot.thing.as_mut());
+        let thing = thing.ok_or_else(|| stale::<K>(own))?;
+        self.revision += 1;
+        Ok(thing)
     }
 
     /// Iterates over the items in the order of their slots.
@@ -256,9 +257,9 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Removes an item; the others keep their slots.
     pub(crate) fn remove(&mut self, id: K) -> Result<T, Error> {
-        self.revision += 1;
         let (own, _) = id.parts();
         self.get(id)?;
+        self.revision += 1;
         let slot = &mut self.slots[own];
         slot.generation = slot.generation.wrapping_add(1);
         self.free.insert(own.index());

@@ -109,11 +109,7 @@ impl<D: Dim> SoftBody<D> {
     #[inline(never)]
     pub fn crumble(&mut self) -> Vec<PieceId> {
         let octants = |at: Point| (0..D::CORNERS).map(move |octant| (at, 1 << octant));
-        let everything: Vec<(Point, u8)> = self
-            .connectivity()
-            .points()
-            .flat_map(octants)
-            .collect();
+        let everything: Vec<(Point, u8)> = self.connectivity().points().flat_map(octants).collect();
         self.release(&everything)
     }
 
@@ -138,8 +134,8 @@ impl<D: Dim> SoftBody<D> {
                 if !self.grid().is_present(next) {
                     continue;
                 }
-                let there = middles[self.grid().index(next)]
-                    .expect("every remaining voxel has an owner");
+                let there =
+                    middles[self.grid().index(next)].expect("every remaining voxel has an owner");
                 if blade.parts(here, there) {
                     crossed.insert((voxel, axis));
                 }

@@ -16,13 +16,21 @@ use crate::soft_body::view::Facet;
 use crate::topology::changes::Bookmark;
 use crate::world::World;
 use glam::Vec3;
+use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Search trees of a world, shared by the queries that run at the same time.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct QueryCache {
     trees: Mutex<Arc<QueryTrees>>,
+}
+
+/// The trees follow from the world, so they are not printed.
+impl fmt::Debug for QueryCache {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("QueryCache").finish_non_exhaustive()
+    }
 }
 
 /// A clone of a world starts without trees.
@@ -114,18 +122,9 @@ impl QueryCache {
 
 impl QueryTrees {
     fn update<D: Dim>(&mut self, world: &World<D>, revisions: [u64; 2]) {
-        self.revisions = None;
-        let mut known = std::mem::take(&mut self.bodies).into_iter().peekable();
-        for (id, body) in world.bodies.entries() {
-            while known.next_if(|trees| trees.body < id).is_some() {}
-            let trees = match known.next_if(|trees| trees.body == id) {
-                Some(mut trees) => {
-                    trees.update(body);
-                    trees
-                }
-                None => BodyTrees::new(id, body),
-            };
-            self.bodies.push(trees);
+        let known = self.revisions.take();
+        if known.is_none_or(|[soft, _]| soft != revisions[0]) {
+            self.update_bodies(world);
         }
         self.objects.clear();
         self.bounded.clear();
@@ -149,6 +148,21 @@ impl QueryTrees {
         }
         self.tree = Tree::new(&boxes);
         self.revisions = Some(revisions);
+    }
+
+    fn update_bodies<D: Dim>(&mut self, world: &World<D>) {
+        let mut known = std::mem::take(&mut self.bodies).into_iter().peekable();
+        for (id, body) in world.bodies.entries() {
+            while known.next_if(|trees| trees.body < id).is_some() {}
+            let trees = match known.next_if(|trees| trees.body == id) {
+                Some(mut trees) => {
+                    trees.update(body);
+                    trees
+                }
+                None => BodyTrees::new(id, body),
+            };
+            self.bodies.push(trees);
+        }
     }
 }
 

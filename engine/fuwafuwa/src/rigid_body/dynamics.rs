@@ -33,6 +33,14 @@ impl RigidState {
         }
     }
 
+    /// Returns whether the body is at rest for good: it sleeps, is fixed, or is kinematic and reached its target.
+    pub(crate) fn rests(&self) -> bool {
+        match self.motion_type {
+            MotionType::Kinematic => !self.pushes(),
+            _ => !self.moves(),
+        }
+    }
+
     /// Returns whether the body has contacts with soft bodies of the given layers.
     #[inline(always)]
     pub(crate) fn meets(&self, layers: Layers) -> bool {

@@ -220,9 +220,9 @@ mod tests {
     use crate::foundation::dim::{Dim2, Dim3};
     use crate::material::Material;
     use crate::math::rotation::Rotation;
-    use glam::{Vec2, Vec3};
     use crate::soft_body::element_law::forces;
     use crate::topology::grid::VoxelGrid;
+    use glam::{Vec2, Vec3};
 
     /// Displaces every node a little, each differently.
     fn crooked<D: Dim>(amount: f32) -> SoftBody<D> {

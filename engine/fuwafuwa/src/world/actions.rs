@@ -426,11 +426,7 @@ impl<D: Dim> World<D> {
             }
         };
         let sleeper = self.bodies.get_mut(body)?;
-        let awake = sleeper
-            .pieces()
-            .list
-            .iter()
-            .map(|piece| !piece.asleep);
+        let awake = sleeper.pieces().list.iter().map(|piece| !piece.asleep);
         let awake: IndexVec<PieceId, bool> = awake.collect();
         sleeper.set_asleep(&awake, true);
         sleeper.refresh_awake();

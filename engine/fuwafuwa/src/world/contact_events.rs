@@ -234,7 +234,7 @@ impl<D: Dim> World<D> {
 
     fn rests(&self, object: ObjectRef) -> bool {
         match object {
-            ObjectRef::RigidBody(id) => self.rigids.get(id).is_ok_and(|rigid| !rigid.moves()),
+            ObjectRef::RigidBody(id) => self.rigids.get(id).is_ok_and(RigidState::rests),
             ObjectRef::Piece { body, piece } => self.bodies.get(body).is_ok_and(|body| {
                 let piece = body.pieces().list.get(piece.index());
                 piece.is_some_and(|piece| piece.asleep && !piece.removed)

@@ -256,8 +256,7 @@ impl Spheres {
         let high = [0, 1, 2].map(|axis: usize| (voxel[axis] + near).min(size[axis] - 1));
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
-                let row = body.grid().index([low[0], y, z])
-                    ..=body.grid().index([high[0], y, z]);
+                let row = body.grid().index([low[0], y, z])..=body.grid().index([high[0], y, z]);
                 let others = by_voxel[row].iter().copied();
                 for other in others.filter(|&other| other != SphereId::NONE && applies(other)) {
                     let sphere = &self.list[other];

@@ -243,12 +243,7 @@ impl NodePairs {
                         let at = body.positions()[node].xyz();
                         body.pieces().sleeps(node) && rigid.shape().distance(at).0 <= reach
                     };
-                    near.extend(
-                        body.mesh()
-                            .nodes()
-                            .map(|(node, _)| node)
-                            .filter(is_near),
-                    );
+                    near.extend(body.mesh().nodes().map(|(node, _)| node).filter(is_near));
                 }
                 // Found bin by bin, so not in order.
                 near.sort_unstable();
@@ -422,8 +417,8 @@ impl Square {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::foundation::dim::{Dim2, Dim3};
     use crate::foundation::dim::DimVector;
+    use crate::foundation::dim::{Dim2, Dim3};
     use crate::material::Material;
     use crate::rigid_body::RigidBody;
     use crate::rigid_body::shape::Shape;
@@ -463,11 +458,7 @@ mod tests {
             let listed: BTreeSet<Key> = pairs.list.iter().map(NodePair::key).collect();
             assert_eq!(listed.len(), pairs.list.len());
             assert!(pairs.list.is_sorted_by_key(NodePair::key));
-            assert!(
-                listed
-                    .iter()
-                    .all(|&(.., node)| body.mesh().is_alive(node))
-            );
+            assert!(listed.iter().all(|&(.., node)| body.mesh().is_alive(node)));
             for (node, _) in body.mesh().nodes() {
                 let at = body.positions()[node].xyz();
                 for (own, wall) in walls.by_slot() {
@@ -489,7 +480,7 @@ mod tests {
             body.refresh_awake();
             pairs.tear(ball, &changes.nodes);
             let step = 0.1 * size;
-            for &node in body.awake_nodes() {
+            for node in body.awake_nodes().to_vec() {
                 for along in &mut body.positions_mut()[node][..D::N] {
                     *along += step * (random(3) as f32 - 1.0);
                 }

@@ -112,9 +112,7 @@ fn is_closed<D: Dim>(body: &SoftBody<D>, voxel: Point, axis: usize) -> bool {
         .filter(|&other| other != axis)
         .fold(0, |octant, other| octant | 1 << other);
     debug_assert_eq!(voxel_around::<D>(corner, octant), voxel);
-    body.connectivity()
-        .around(corner)
-        .is_closed(octant, axis)
+    body.connectivity().around(corner).is_closed(octant, axis)
 }
 
 /// Returns the voxel at a rest position; `None` far from any grid.

@@ -65,10 +65,7 @@ fn check<D: Dim>(n: usize) {
     let mut bodies = ball::<D>(n);
     let body = bodies.at_mut(BALL);
     body.crumble();
-    let (size, count) = (
-        body.grid().voxel_size(),
-        body.pieces().list.len(),
-    );
+    let (size, count) = (body.grid().voxel_size(), body.pieces().list.len());
     let mut seed = 7;
     let (mut spheres, mut pairs) = (Spheres::default(), SpherePairs::default());
     let (mut again, mut whole) = (0, 0);
