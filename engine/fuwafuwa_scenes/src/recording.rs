@@ -24,7 +24,8 @@ pub struct Recording {
     /// Scene that was recorded.
     pub scene: Scene,
     /// Target of each hand at each tick [m].
-    pub goals: Vec<Vec<[f32; 3]>>,
+    #[serde(alias = "goals")]
+    pub targets: Vec<Vec<[f32; 3]>>,
     /// Hash of the world after every 60th tick and after the last, in hexadecimal.
     pub hashes: Vec<String>,
 }
@@ -98,7 +99,7 @@ impl Recording {
     }
 
     fn check(&self) -> Result<(), String> {
-        let ticks = self.goals.len();
+        let ticks = self.targets.len();
         if ticks > MAX_TICKS {
             return Err(format!("expected {MAX_TICKS} ticks at most, found {ticks}"));
         }
@@ -121,12 +122,12 @@ impl Recording {
         mut watch: impl FnMut(&World<D>),
     ) -> Result<Self, SceneError> {
         let mut world = scene.build::<D>()?;
-        let (mut goals, mut hashes) = (Vec::new(), Vec::new());
+        let (mut targets, mut hashes) = (Vec::new(), Vec::new());
         for tick in 0..ticks {
-            let wanted = scene.hand_targets(tick);
-            set_hand_targets(&mut world, &wanted);
+            let now = scene.hand_targets(tick);
+            set_hand_targets(&mut world, &now);
             world.step();
-            goals.push(wanted);
+            targets.push(now);
             if is_noted(tick as usize, ticks as usize) {
                 hashes.push(format!("{:016x}", world.hash()));
             }
@@ -136,7 +137,7 @@ impl Recording {
             version: VERSION,
             engine: env!("CARGO_PKG_VERSION").into(),
             scene: scene.clone(),
-            goals,
+            targets,
             hashes,
         })
     }
@@ -152,11 +153,11 @@ impl Recording {
         let mut world = self.scene.build::<D>()?;
         let mut hashes = self.hashes.iter();
         let mut differs_at = None;
-        for (tick, goals) in self.goals.iter().enumerate() {
-            set_hand_targets(&mut world, goals);
+        for (tick, targets) in self.targets.iter().enumerate() {
+            set_hand_targets(&mut world, targets);
             world.step();
             watch(&world);
-            if is_noted(tick, self.goals.len()) {
+            if is_noted(tick, self.targets.len()) {
                 let hash = format!("{:016x}", world.hash());
                 if hashes.next() != Some(&hash) && differs_at.is_none() {
                     differs_at = Some(tick);
@@ -164,7 +165,7 @@ impl Recording {
             }
         }
         Ok(Comparison {
-            ticks: self.goals.len(),
+            ticks: self.targets.len(),
             differs_at,
         })
     }
@@ -180,7 +181,7 @@ mod tests {
     use fuwafuwa::Dim2;
 
     #[test]
-    fn replay_reproduces_hashes_unless_goals_change() {
+    fn replay_reproduces_hashes_unless_targets_change() {
         let scene = Scene::open("tear", &["body.n=16".into()]).unwrap();
         let recording = Recording::of::<Dim2>(&scene, 70, |_| {}).unwrap();
         assert_eq!(recording.hashes.len(), 2);
@@ -188,7 +189,7 @@ mod tests {
         let mut read: Recording = toml::from_str(&text).unwrap();
         assert_eq!(read, recording);
         assert_eq!(read.replay::<Dim2>(|_| {}).unwrap().differs_at, None);
-        read.goals[30][0][0] += 0.01;
+        read.targets[30][0][0] += 0.01;
         assert!(read.replay::<Dim2>(|_| {}).unwrap().differs_at.is_some());
     }
 
@@ -219,7 +220,7 @@ mod tests {
     fn check_rejects_more_than_max_ticks() {
         let scene = Scene::open("drop", &["body.n=8".into()]).unwrap();
         let mut recording = Recording::of::<Dim2>(&scene, 1, |_| {}).unwrap();
-        recording.goals = vec![Vec::new(); MAX_TICKS + 1];
+        recording.targets = vec![Vec::new(); MAX_TICKS + 1];
         for refusal in [recording.check(), recording.text().map(drop)] {
             assert!(refusal.unwrap_err().contains("ticks at most"));
         }

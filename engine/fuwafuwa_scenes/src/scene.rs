@@ -37,28 +37,34 @@
 //! radius = 0.1                    # [m]; or a box or a capsule
 //! path = [[0.0, -0.3, 0.5, 0.0], [1.0, 1.2, 0.5, 0.0]]   # time [s], then position [m]
 //!
-//! [[rigid]]                       # any rigid body; its shape is given as if it stood at the origin
+//! [[rigid_body]]                  # any rigid body; its shape is given as if it stood at the origin
 //! ball = { centre = [0.0, 0.0, 0.0], radius = 0.2 }
-//! drive = "free"                  # dynamic; or fixed, kinematic, hand (coupled by a spring)
+//! motion_type = "dynamic"         # or fixed, kinematic, coupled (by a spring)
 //! mass = 3.0                      # [kg]
 //! at = [0.5, 2.0, 0.0]            # [m]
-//! turned = [0.0, 0.0, 0.5]        # axis times angle [rad]
+//! rotation_vector = [0.0, 0.0, 0.5]   # axis times angle [rad]
 //! layers = { memberships = 1, filters = 3 }
 //!
-//! [[rigid]]
+//! [[rigid_body]]
 //! box = { centre = [0.0, 0.0, 0.0], half = [0.5, 0.5, 0.5] }
 //! sensor = true                   # no contact forces; reports bodies that enter and exit
 //!
 //! [[joint]]                       # pin, spring or rope
-//! tie = "rope"
+//! kind = "rope"
 //! length = 0.5                    # [m]
-//! ends = [{ body = 1, at = [0.5, 1.2, 0.0], radius = 0.1 }, { at = [0.5, 1.7, 0.0] }]   # or rigid, obstacle, hand
+//! anchors = [                     # a point on a body, rigid_body, obstacle or hand, or a fixed point [m]
+//!     { body = 1, point = [0.5, 1.2, 0.0], radius = 0.1 },
+//!     { point = [0.5, 1.7, 0.0] },
+//! ]
 //!
 //! [game]                          # only for levels of the game
 //! name = { en = "Over the wall", ja = "かべのむこう" }
 //! basket = { centre = [1.2, 0.3, 0.0], half = [0.4, 0.4, 0.0] }   # [m]
 //! share = 0.6                     # share of the mass that must rest in the basket
 //! ```
+//!
+//! Vectors have three components in both dimensions; in 2D the third is 0. Files of version 0.2 remain readable:
+//! every key that was renamed since is still accepted under its old name.
 //!
 //! [`Picture::grid`](crate::import::Picture::grid) and [`Model::grid`](crate::import::Model::grid) document
 //! how pictures and models become voxels.
@@ -87,9 +93,9 @@ pub(crate) use shapes::set_hand_targets;
 pub use shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText};
 
 use budget::Budget;
-use error::{FieldError, Origin, require, require_vector};
+use error::{FieldError, Origin, require, vector_of};
+use fuwafuwa::{DEFAULT_SUBSTEPS, DEFAULT_TICK, MIN_TICK};
 use fuwafuwa::{Dim, Material, Shape, World, WorldConfig};
-use fuwafuwa::{MIN_TICK, TICK};
 use joint::JointTargets;
 use serde::{Deserialize, Serialize};
 
@@ -102,7 +108,7 @@ pub const MAX_MATERIALS: usize = 255;
 /// Maximum number of bodies in a scene.
 pub const MAX_BODIES: usize = 1024;
 
-/// Maximum number of entries in each of the lists `obstacle`, `hand`, `rigid` and `joint`. It bounds the time
+/// Maximum number of entries in each of the lists `obstacle`, `hand`, `rigid_body` and `joint`. It bounds the time
 /// of a step, because moving nodes are tested against every rigid body.
 pub const MAX_RIGID: usize = 256;
 
@@ -125,7 +131,7 @@ pub struct Scene {
     #[serde(default)]
     pub drag: f32,
     /// Maximum number of substeps in 1/60 s, default 64.
-    #[serde(default = "usual_substeps")]
+    #[serde(default = "usual_substeps", alias = "most_substeps")]
     pub max_substeps: u32,
     /// Length of a tick [s], default 1/60.
     #[serde(default = "usual_tick", skip_serializing_if = "is_usual_tick")]
@@ -149,8 +155,8 @@ pub struct Scene {
     #[serde(default)]
     pub hand: Vec<HandText>,
     /// Rigid bodies of any kind.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub rigid: Vec<RigidBodyText>,
+    #[serde(default, alias = "rigid", skip_serializing_if = "Vec::is_empty")]
+    pub rigid_body: Vec<RigidBodyText>,
     /// Joints between bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joint: Vec<JointText>,
@@ -249,7 +255,7 @@ impl Scene {
         self.check_dim()?;
         let expected = format!("expected {}, found {}", D::N, self.dim);
         require(usize::from(self.dim) == D::N, "dim", expected)?;
-        require_vector(D::N, "gravity", self.gravity)?;
+        let gravity = vector_of::<D>("gravity", self.gravity)?;
         let good = (0.0..=MAX_SECONDS).contains(&self.seconds);
         let expected = format!("expected 0 to {MAX_SECONDS} s, found {}", self.seconds);
         require(good, "seconds", expected)?;
@@ -261,7 +267,7 @@ impl Scene {
         require(good, "view", expected)?;
 
         let settings = WorldConfig {
-            gravity: self.gravity,
+            gravity,
             drag: self.drag,
             max_substeps: self.max_substeps,
             tick: self.tick,
@@ -282,7 +288,7 @@ impl Scene {
         let counts = [
             ("obstacle", self.obstacle.len()),
             ("hand", self.hand.len()),
-            ("rigid", self.rigid.len()),
+            ("rigid_body", self.rigid_body.len()),
             ("joint", self.joint.len()),
         ];
         for (field, count) in counts {
@@ -302,9 +308,9 @@ impl Scene {
             let added = text.add_to(&mut world);
             added.map_err(|wrong| wrong.inside("hand", index))?;
         }
-        for (index, text) in self.rigid.iter().enumerate() {
+        for (index, text) in self.rigid_body.iter().enumerate() {
             let added = text.add_to(&mut world);
-            added.map_err(|wrong| wrong.inside("rigid", index))?;
+            added.map_err(|wrong| wrong.inside("rigid_body", index))?;
         }
         // The world was empty, so its rigid bodies are in the order of the lists: obstacles, hands, rigid
         // bodies.
@@ -313,7 +319,7 @@ impl Scene {
             bodies: world.soft_bodies().map(|(id, _)| id).collect(),
             obstacles: rigids.by_ref().take(self.obstacle.len()).collect(),
             hands: rigids.by_ref().take(self.hand.len()).collect(),
-            rigids: rigids.collect(),
+            rigid_bodies: rigids.collect(),
         };
         for (index, text) in self.joint.iter().enumerate() {
             let added = text.add_to(&mut world, &known);
@@ -326,7 +332,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`SceneError::Build`] names the field of `[game]` and what is wrong with it.
-    pub fn basket<D: Dim>(&self) -> Result<Option<Shape>, SceneError> {
+    pub fn basket<D: Dim>(&self) -> Result<Option<Shape<D>>, SceneError> {
         let Some(game) = &self.game else {
             return Ok(None);
         };
@@ -388,15 +394,15 @@ fn usual_gravity() -> [f32; 3] {
 }
 
 fn usual_substeps() -> u32 {
-    64
+    DEFAULT_SUBSTEPS
 }
 
 fn usual_tick() -> f32 {
-    TICK
+    DEFAULT_TICK
 }
 
 fn is_usual_tick(tick: &f32) -> bool {
-    *tick == TICK
+    *tick == DEFAULT_TICK
 }
 
 fn usual_seconds() -> f32 {

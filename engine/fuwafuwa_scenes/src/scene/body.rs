@@ -75,7 +75,8 @@ pub struct BodyText {
     pub velocity: [f32; 3],
     /// Rotation about the low corner, before the translation: axis times angle [rad]; in 2D only about the
     /// third axis.
-    pub turned: Option<[f32; 3]>,
+    #[serde(alias = "turned")]
+    pub rotation_vector: Option<[f32; 3]>,
     /// Factor on gravity for this body; default 1.
     pub gravity_scale: Option<f32>,
     /// Contact layers.
@@ -277,7 +278,7 @@ impl Default for BodyText {
             part: Vec::new(),
             at: [0.0; 3],
             velocity: [0.0; 3],
-            turned: None,
+            rotation_vector: None,
             gravity_scale: None,
             layers: None,
             user_data: None,

@@ -2,12 +2,16 @@
 
 use super::body::BodyText;
 use super::budget::Budget;
-use super::error::{FieldError, require, require_vector};
+use super::error::{FieldError, require, vector_of};
 use super::grid;
 use super::state;
 use fuwafuwa::Grading;
 use fuwafuwa::Law;
-use fuwafuwa::{Blade, Dim, Error, Material, Rotation, SoftBody, VoxelGrid, World};
+use fuwafuwa::{
+    Blade, Dim, Dim2, Dim3, DimVector, Error, Material, Rotation, SoftBody, Vec2, Vec3, Velocity,
+    VoxelGrid, World,
+};
+use std::any::Any;
 
 impl BodyText {
     /// Builds the body, if the budget suffices for its work.
@@ -16,8 +20,8 @@ impl BodyText {
         materials: &[Material],
         budget: &mut Budget,
     ) -> Result<SoftBody<D>, FieldError> {
-        require_vector(D::N, "at", self.at)?;
-        require_vector(D::N, "velocity", self.velocity)?;
+        let at = vector_of::<D>("at", self.at)?;
+        let velocity = vector_of::<D>("velocity", self.velocity)?;
         if let Some(state) = &self.state {
             let good = self.without_state() == Self::default();
             require(
@@ -53,14 +57,13 @@ impl BodyText {
             body.crumble();
         }
         if let Some(spacing) = self.diced {
-            for blade in grid_of_blades(&body, spacing) {
-                body.cut(&blade);
-            }
+            dice(&mut body, spacing);
         }
-        if let Some(turned) = self.turned {
-            body = body.rotated_about(rotation_of::<D>(turned)?, [0.0; 3]);
+        if let Some(vector) = self.rotation_vector {
+            body = body.rotated_about(rotation_of::<D>(vector)?, D::Vector::ZERO);
         }
-        Ok(body.translated(self.at).with_velocity(self.velocity))
+        let velocity = Velocity::linear(velocity);
+        Ok(body.translated(at).with_velocity(velocity))
     }
 
     /// Adds the body to a world.
@@ -118,46 +121,59 @@ impl BodyText {
 }
 
 /// Converts axis times angle [rad] to a rotation.
-pub(super) fn rotation_of<D: Dim>(turned: [f32; 3]) -> Result<Rotation, FieldError> {
-    let good = turned.iter().all(|k| k.is_finite());
-    let found = format!("expected axis times angle [rad], found {turned:?}");
-    require(good, "turned", found)?;
-    let flat = D::N == 3 || turned[..2] == [0.0; 2];
-    let expected = "expected 0 except on the third axis in a world with dim = 2";
-    require(flat, "turned", expected)?;
-    let squared = turned.iter().map(|&k| f64::from(k) * f64::from(k));
+pub(super) fn rotation_of<D: Dim>(vector: [f32; 3]) -> Result<Rotation, FieldError> {
+    let good = vector.iter().all(|k| k.is_finite());
+    let found = format!("expected axis times angle [rad], found {vector:?}");
+    require(good, "rotation_vector", found)?;
+    require_turning::<D>("rotation_vector", vector)?;
+    let squared = vector.iter().map(|&k| f64::from(k) * f64::from(k));
     let angle = squared.sum::<f64>().sqrt() as f32;
     Ok(match angle > 0.0 {
-        true => Rotation::about(turned, angle),
+        true => Rotation::about(Vec3::from(vector), angle),
         false => Rotation::NONE,
     })
 }
 
-/// Returns cutting planes through the whole body, `spacing` [m] apart on every axis.
-fn grid_of_blades<D: Dim>(body: &SoftBody<D>, spacing: f32) -> Vec<Blade> {
+/// Requires in 2D that a rotation or angular velocity is about the third axis.
+pub(super) fn require_turning<D: Dim>(field: &str, vector: [f32; 3]) -> Result<(), FieldError> {
+    let flat = D::N == 3 || vector[..2] == [0.0; 2];
+    let expected = "expected 0 except on the third axis in a world with dim = 2";
+    require(flat, field, expected)
+}
+
+/// Cuts the whole body along planes `spacing` [m] apart on every axis.
+fn dice<D: Dim>(body: &mut SoftBody<D>, spacing: f32) {
     let size = body
         .grid()
         .size()
         .map(|k| k as f32 * body.grid().voxel_size());
-    let long = size.map(|k| 1.2 * k + 1.0);
-    let mut blades = Vec::new();
+    let low = Vec3::splat(-0.5);
+    let long = Vec3::from(size) * 1.2 + 1.0;
+    // Blades are built for one dimension only.
+    let body: &mut dyn Any = body;
     for axis in 0..D::N {
         let (first, second) = ((axis + 1) % 3, (axis + 2) % 3);
         let mut place = spacing;
         while place < size[axis] {
-            let mut blade = Blade {
-                from: [0.0; 3],
-                across: [0.0; 3],
-                along: [0.0; 3],
+            let mut corner = low;
+            corner[axis] = place;
+            let side = |along: usize| {
+                let mut side = Vec3::ZERO;
+                side[along] = long[along];
+                side
             };
-            blade.from[axis] = place;
-            blade.from[first] = -0.5;
-            blade.from[second] = -0.5;
-            blade.across[first] = long[first];
-            blade.along[second] = long[second];
-            blades.push(blade);
+            if let Some(body) = body.downcast_mut::<SoftBody<Dim3>>() {
+                body.cut(&Blade::parallelogram(corner, side(first), side(second)));
+            } else if let Some(body) = body.downcast_mut::<SoftBody<Dim2>>() {
+                let (from, to) = (corner, corner + side(1 - axis));
+                let ends = [from, to].map(Vec2::from_vec3);
+                // The normal points along the axis, as in 3D.
+                match axis {
+                    0 => body.cut(&Blade::segment(ends[0], ends[1])),
+                    _ => body.cut(&Blade::segment(ends[1], ends[0])),
+                };
+            }
             place += spacing;
         }
     }
-    blades
 }

@@ -1,6 +1,7 @@
 //! Errors of scenes, with their position in the file.
 
 use crate::import::ImportError;
+use fuwafuwa::{Dim, DimVector, Vec3};
 use std::collections::BTreeMap;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -171,14 +172,15 @@ pub(super) fn require(good: bool, field: &str, reason: impl ToString) -> Result<
         .ok_or_else(|| FieldError::new(field, reason))
 }
 
-/// Requires finite components, and in 2D a third component of 0.
-pub(super) fn require_vector(dim: usize, field: &str, vector: [f32; 3]) -> Result<(), FieldError> {
-    let finite = vector.iter().all(|k| k.is_finite());
-    let found = format!("found {vector:?}");
+/// Converts a vector of a scene file. Requires finite components, and in 2D a third component of 0.
+pub(super) fn vector_of<D: Dim>(field: &str, numbers: [f32; 3]) -> Result<D::Vector, FieldError> {
+    let finite = numbers.iter().all(|k| k.is_finite());
+    let found = format!("found {numbers:?}");
     require(finite, field, format!("expected finite numbers, {found}"))?;
-    let flat = vector[dim..].iter().all(|&k| k == 0.0);
+    let flat = numbers[D::N..].iter().all(|&k| k == 0.0);
     let expected = "expected 0 for the third axis of a world with dim = 2";
-    require(flat, field, format!("{expected}, {found}"))
+    require(flat, field, format!("{expected}, {found}"))?;
+    Ok(D::Vector::from_vec3(Vec3::from(numbers)))
 }
 
 /// Source of a scene: its name and the lines of its values. All origins compare equal, because they are not

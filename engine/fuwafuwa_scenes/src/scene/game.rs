@@ -83,7 +83,7 @@ const MAX_WISHES: usize = 8;
 
 impl GameText {
     /// Returns the checked basket, if there is one.
-    pub(super) fn basket<D: Dim>(&self) -> Result<Option<Shape>, FieldError> {
+    pub(super) fn basket<D: Dim>(&self) -> Result<Option<Shape<D>>, FieldError> {
         let shape = |text| {
             let shapes = ShapeChoice {
                 half_space: None,

@@ -7,7 +7,7 @@ use super::shapes::ShapeChoice;
 use crate::import::{Colours, Model, Picture};
 use fuwafuwa::MAX_EXTENT;
 use fuwafuwa::inspect::points_in;
-use fuwafuwa::{Dim, Dim2, Dim3, Error, Shape, VoxelGrid};
+use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Error, Shape, VoxelGrid};
 
 /// Maximum number of colours that a body can name: the size of a palette.
 const MAX_COLOURS: usize = 255;
@@ -32,8 +32,8 @@ pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGr
     budget.take_voxels(count)?;
     budget.take_distances(text.part.len(), count)?;
     for (index, part) in text.part.iter().enumerate() {
-        let part = Part::of::<D>(part).map_err(|wrong| wrong.inside("part", index))?;
-        voxels.change::<D>(&part);
+        let part = Part::<D>::of(part).map_err(|wrong| wrong.inside("part", index))?;
+        voxels.change(&part);
     }
     let grid = VoxelGrid::from_materials(voxels.size, voxels.voxel_size, voxels.materials);
     grid.map_err(|error| FieldError::new("part", error))
@@ -57,11 +57,12 @@ impl Voxels {
         }
     }
 
-    fn change<D: Dim>(&mut self, part: &Part) {
+    fn change<D: Dim>(&mut self, part: &Part<D>) {
         let high = self.size.map(|extent| extent as i32 - 1);
         for (voxel, material) in points_in([0; 3], high).zip(&mut self.materials) {
             let is_meant = *material != 0 || part.fills;
             let centre = VoxelGrid::<D>::centre(voxel, self.voxel_size);
+            let centre = D::Vector::from_vec3(centre);
             if is_meant && part.shape.distance(centre).0 < 0.0 {
                 *material = part.material;
             }
@@ -70,14 +71,14 @@ impl Voxels {
 }
 
 /// A checked part of a body.
-struct Part {
-    shape: Shape,
+struct Part<D: Dim> {
+    shape: Shape<D>,
     material: u8,
     fills: bool,
 }
 
-impl Part {
-    fn of<D: Dim>(text: &PartText) -> Result<Self, FieldError> {
+impl<D: Dim> Part<D> {
+    fn of(text: &PartText) -> Result<Self, FieldError> {
         let (material, fills) = match (text.fill, text.paint) {
             (Some(material), None) => (material, true),
             (None, Some(material)) => (material, false),
@@ -90,7 +91,7 @@ impl Part {
             ball: text.ball.as_ref(),
         };
         Ok(Self {
-            shape: shapes.only::<D>()?,
+            shape: shapes.only()?,
             material,
             fills,
         })

@@ -1,6 +1,6 @@
 //! Joints of a scene file.
 
-use super::error::{FieldError, require, require_vector};
+use super::error::{FieldError, require, vector_of};
 use fuwafuwa::{Dim, Joint, JointAnchor, JointKind, RigidBodyHandle, SoftBodyHandle, World};
 use serde::{Deserialize, Serialize};
 
@@ -9,9 +9,11 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct JointText {
     /// Joint kind.
-    pub tie: JointKindText,
+    #[serde(alias = "tie")]
+    pub kind: JointKindText,
     /// The two anchors.
-    pub ends: Vec<JointAnchorText>,
+    #[serde(alias = "ends")]
+    pub anchors: Vec<JointAnchorText>,
     /// Spring stiffness [N/m]; required for a spring.
     pub stiffness: Option<f32>,
     /// Spring damping [N s/m]; default 0.
@@ -45,11 +47,13 @@ pub struct JointAnchorText {
     pub obstacle: Option<usize>,
     /// Number of a `[[hand]]`.
     pub hand: Option<usize>,
-    /// Number of a `[[rigid]]`.
-    pub rigid: Option<usize>,
+    /// Number of a `[[rigid_body]]`.
+    #[serde(alias = "rigid")]
+    pub rigid_body: Option<usize>,
     /// Position in the world [m].
-    pub at: [f32; 3],
-    /// Radius around `at` in which the nodes of a body are attached [m]; without nodes in it, the nearest
+    #[serde(alias = "at")]
+    pub point: [f32; 3],
+    /// Radius around `point` in which the nodes of a body are attached [m]; without nodes in it, the nearest
     /// node is attached.
     pub radius: Option<f32>,
 }
@@ -59,7 +63,7 @@ pub(super) struct JointTargets {
     pub(super) bodies: Vec<SoftBodyHandle>,
     pub(super) obstacles: Vec<RigidBodyHandle>,
     pub(super) hands: Vec<RigidBodyHandle>,
-    pub(super) rigids: Vec<RigidBodyHandle>,
+    pub(super) rigid_bodies: Vec<RigidBodyHandle>,
 }
 
 impl JointText {
@@ -68,40 +72,40 @@ impl JointText {
         world: &mut World<D>,
         known: &JointTargets,
     ) -> Result<(), FieldError> {
-        let [first, second] = &self.ends[..] else {
-            let found = self.ends.len();
+        let [first, second] = &self.anchors[..] else {
+            let found = self.anchors.len();
             return Err(FieldError::new(
-                "ends",
+                "anchors",
                 format!("expected two anchors, found {found}"),
             ));
         };
-        let end = |index: usize, text: &JointAnchorText| {
-            let end = text.end::<D>(known);
-            end.map_err(|wrong| wrong.inside("ends", index))
+        let anchor = |index: usize, text: &JointAnchorText| {
+            let anchor = text.anchor::<D>(known);
+            anchor.map_err(|wrong| wrong.inside("anchors", index))
         };
-        let ends = [end(0, first)?, end(1, second)?];
-        let mut joint = Joint::new(ends, self.tie()?);
+        let anchors = [anchor(0, first)?, anchor(1, second)?];
+        let mut joint = Joint::new(anchors, self.kind()?);
         if let Some(force) = self.breaking_force {
             joint = joint.with_breaking_force(force);
         }
         let added = world.add_joint(joint);
         added
             .map(drop)
-            .map_err(|refused| FieldError::new("tie", refused))
+            .map_err(|refused| FieldError::new("kind", refused))
     }
 
-    fn tie(&self) -> Result<JointKind, FieldError> {
+    fn kind(&self) -> Result<JointKind, FieldError> {
         let missing = |field: &'static str| move || FieldError::new(field, "expected a number");
-        let is = |tie| self.tie == tie;
+        let is = |kind| self.kind == kind;
         let good = is(JointKindText::Spring) || self.stiffness.is_none() && self.damping.is_none();
-        require(good, "stiffness", "allowed only with tie = \"spring\"")?;
+        require(good, "stiffness", "allowed only with kind = \"spring\"")?;
         let good = !is(JointKindText::Pin) || self.length.is_none();
         require(
             good,
             "length",
-            "allowed only with tie = \"spring\" or \"rope\"",
+            "allowed only with kind = \"spring\" or \"rope\"",
         )?;
-        Ok(match self.tie {
+        Ok(match self.kind {
             JointKindText::Pin => JointKind::Pin,
             JointKindText::Rope => JointKind::Rope {
                 length: self.length.ok_or_else(missing("length"))?,
@@ -115,8 +119,8 @@ impl JointText {
     }
 
     /// Returns the text of a joint with the given anchors.
-    pub(super) fn of(joint: &Joint, ends: [JointAnchorText; 2]) -> Self {
-        let (tie, stiffness, damping, length) = match joint.tie {
+    pub(super) fn of<D: Dim>(joint: &Joint<D>, anchors: [JointAnchorText; 2]) -> Self {
+        let (kind, stiffness, damping, length) = match joint.kind {
             JointKind::Pin => (JointKindText::Pin, None, None, None),
             JointKind::Rope { length } => (JointKindText::Rope, None, None, Some(length)),
             JointKind::Spring {
@@ -132,8 +136,8 @@ impl JointText {
         };
         let force = joint.breaking_force;
         Self {
-            tie,
-            ends: ends.into(),
+            kind,
+            anchors: anchors.into(),
             stiffness,
             damping,
             length,
@@ -143,32 +147,31 @@ impl JointText {
 }
 
 impl JointAnchorText {
-    fn end<D: Dim>(&self, known: &JointTargets) -> Result<JointAnchor, FieldError> {
-        require_vector(D::N, "at", self.at)?;
-        let at = self.at;
+    fn anchor<D: Dim>(&self, known: &JointTargets) -> Result<JointAnchor<D>, FieldError> {
+        let point = vector_of::<D>("point", self.point)?;
         let good = self.body.is_some() || self.radius.is_none();
         require(good, "radius", "allowed only with a body")?;
         let is_rigid = [
             ("obstacle", self.obstacle, &known.obstacles),
             ("hand", self.hand, &known.hands),
-            ("rigid", self.rigid, &known.rigids),
+            ("rigid_body", self.rigid_body, &known.rigid_bodies),
         ];
         let named = is_rigid.iter().filter(|(_, number, _)| number.is_some());
         let count = named.clone().count() + usize::from(self.body.is_some());
-        let expected = "expected at most one of body, obstacle, hand and rigid; none for a fixed point of the world";
+        let expected = "expected at most one of body, obstacle, hand and rigid_body; none for a fixed point of the world";
         require(count <= 1, "body", expected)?;
         if let Some(number) = self.body {
             let body = nth("body", number, &known.bodies)?;
             let radius = self.radius.unwrap_or(0.0);
-            return Ok(JointAnchor::SoftBody { body, at, radius });
+            return Ok(JointAnchor::on(body, point).within(radius));
         }
         for &(field, number, list) in &is_rigid {
             if let Some(number) = number {
-                let rigid = nth(field, number, list)?;
-                return Ok(JointAnchor::RigidBody { rigid, at });
+                let body = nth(field, number, list)?;
+                return Ok(JointAnchor::on(body, point));
             }
         }
-        Ok(JointAnchor::Point(at))
+        Ok(JointAnchor::Point(point))
     }
 }
 

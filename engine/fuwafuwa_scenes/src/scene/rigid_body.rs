@@ -1,14 +1,17 @@
 //! Rigid bodies of a scene file: fixed, kinematic, coupled, dynamic, and sensors.
 
 use super::body::LayersText;
-use super::build::rotation_of;
-use super::error::{FieldError, require, require_vector};
+use super::build::{require_turning, rotation_of};
+use super::error::{FieldError, require, vector_of};
 use super::shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, ShapeChoice};
 use super::state;
-use fuwafuwa::{Dim, MotionType, RigidBody, RigidBodyHandle, Rotation, Shape, Velocity, World};
+use fuwafuwa::{
+    Dim, DimAngular, DimVector, MotionType, RigidBody, RigidBodyHandle, RigidBodyRef, Rotation,
+    Shape, Vec3, Velocity, World, WorldConfig,
+};
 use serde::{Deserialize, Serialize};
 
-/// A `[[rigid]]` table: one of the four shapes, given as if it stood at the origin, and its motion type; or
+/// A `[[rigid_body]]` table: one of the four shapes, given as if it stood at the origin, and its motion type; or
 /// only a `state`, which contains everything.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -25,25 +28,34 @@ pub struct RigidBodyText {
     /// Complete state of a rigid body; see [`Scene::of_world`](super::Scene::of_world).
     pub state: Option<String>,
     /// Motion type, default fixed.
-    pub drive: MotionTypeText,
-    /// Mass [kg]; required for `drive = "free"`, allowed for `drive = "hand"`.
+    #[serde(alias = "drive")]
+    pub motion_type: MotionTypeText,
+    /// Mass [kg]; required for `motion_type = "dynamic"`, allowed for `"coupled"`.
     pub mass: Option<f32>,
-    /// Stiffness of the coupling spring [N/m]; only for `drive = "hand"`.
+    /// Stiffness of the coupling spring [N/m]; only for `motion_type = "coupled"`.
     pub stiffness: Option<f32>,
-    /// Damping ratio of the coupling spring; only for `drive = "hand"`.
+    /// Damping ratio of the coupling spring; only for `motion_type = "coupled"`.
     pub damping: Option<f32>,
-    /// Maximum force of the coupling spring [N]; only for `drive = "hand"`.
-    pub limit: Option<f32>,
+    /// Maximum force of the coupling spring [N]; only for `motion_type = "coupled"`.
+    #[serde(alias = "limit")]
+    pub max_force: Option<f32>,
     /// Translation from the origin [m].
     pub at: [f32; 3],
     /// Rotation before the translation: axis times angle [rad]; in 2D only about the third axis.
-    pub turned: Option<[f32; 3]>,
-    /// Exact rotation, in place of `turned`.
+    #[serde(alias = "turned")]
+    pub rotation_vector: Option<[f32; 3]>,
+    /// Exact rotation, in place of `rotation_vector`.
     pub rotation: Option<Rotation>,
-    /// Velocity [m/s]; only for `drive = "free"`.
+    /// Velocity [m/s]; not for `motion_type = "fixed"`.
     pub velocity: Option<[f32; 3]>,
-    /// Angular velocity [rad/s]; only for `drive = "free"`.
-    pub spin: Option<[f32; 3]>,
+    /// Angular velocity [rad/s], in 2D only about the third axis; only for `motion_type = "dynamic"` or
+    /// `"kinematic"`.
+    #[serde(alias = "spin")]
+    pub angular_velocity: Option<[f32; 3]>,
+    /// Target position [m] of a kinematic or coupled rigid body; its present position if missing.
+    pub target_position: Option<[f32; 3]>,
+    /// Target rotation of a kinematic or coupled rigid body; its present rotation if missing.
+    pub target_rotation: Option<Rotation>,
     /// Coulomb friction; default 0.5 for dynamic rigid bodies, otherwise 0.2.
     pub friction: Option<f32>,
     /// Coefficient of restitution against other rigid bodies, default 0.
@@ -66,9 +78,11 @@ pub enum MotionTypeText {
     /// Kinematic rigid body: it follows its target exactly.
     Kinematic,
     /// Coupled rigid body: a spring pulls it to its target.
-    Hand,
+    #[serde(alias = "hand")]
+    Coupled,
     /// Dynamic rigid body.
-    Free,
+    #[serde(alias = "free")]
+    Dynamic,
 }
 
 impl RigidBodyText {
@@ -83,175 +97,211 @@ impl RigidBodyText {
             };
             let expected = "expected no other field: state is the whole rigid body";
             require(*self == alone, "state", expected)?;
-            let added = world.add_rigid_body(state::rigid::<D>(state)?);
-            return added.map_err(|refused| FieldError::new("state", refused));
+            return state::add_rigid_body(state, world);
         }
-        let rigid = self.rigid::<D>()?;
-        let is_free = rigid.is_dynamic();
-        let added = world.add_rigid_body(rigid);
+        let added = world.add_rigid_body(self.rigid_body::<D>()?);
         let id = added.map_err(|error| FieldError::engine("shape", error))?;
-        let (velocity, spin) = (self.velocity, self.spin);
-        let moves = velocity.is_some() || spin.is_some();
-        require(
-            is_free || !moves,
-            "velocity",
-            "allowed only with drive = \"free\"",
-        )?;
-        if moves {
-            let [linear, angular] = [velocity, spin].map(Option::unwrap_or_default);
-            require_vector(D::N, "velocity", linear)?;
-            let set = world.set_velocity(id, Velocity { linear, angular });
-            set.map_err(|error| FieldError::new("velocity", error))?;
+        if let Some(target) = self.target_position {
+            let target = vector_of::<D>("target_position", target)?;
+            let set = world.set_target_position(id, target);
+            set.map_err(|error| FieldError::new("target_position", error))?;
+        }
+        if let Some(target) = self.target_rotation {
+            let set = world.set_target_rotation(id, target);
+            set.map_err(|error| FieldError::new("target_rotation", error))?;
         }
         Ok(id)
     }
 
-    fn rigid<D: Dim>(&self) -> Result<RigidBody, FieldError> {
-        require_vector(D::N, "at", self.at)?;
+    fn rigid_body<D: Dim>(&self) -> Result<RigidBody<D>, FieldError> {
+        let at = vector_of::<D>("at", self.at)?;
         let shapes = ShapeChoice {
             half_space: self.half_space.as_ref(),
             boxed: self.boxed.as_ref(),
             capsule: self.capsule.as_ref(),
             ball: self.ball.as_ref(),
         };
-        let rotation = match (self.turned, self.rotation) {
+        let rotation = match (self.rotation_vector, self.rotation) {
             (Some(_), Some(_)) => {
-                let expected = "expected either turned or rotation";
+                let expected = "expected either rotation_vector or rotation";
                 return Err(FieldError::new("rotation", expected));
             }
-            (Some(turned), None) => rotation_of::<D>(turned)?,
+            (Some(vector), None) => rotation_of::<D>(vector)?,
             (None, rotation) => rotation.unwrap_or(Rotation::NONE),
         };
-        let mut rigid = RigidBody::new(shapes.only::<D>()?, self.drive()?).at(self.at);
+        let mut body = RigidBody::new(shapes.only()?, self.motion_type()?).at(at);
         if rotation != Rotation::NONE {
-            rigid = rigid.rotated(rotation);
+            body = body.rotated(rotation);
         }
-        let usual = if rigid.is_dynamic() { 0.5 } else { 0.2 };
-        rigid.friction = self.friction.unwrap_or(usual);
-        rigid.restitution = self.restitution.unwrap_or(0.0);
-        rigid.is_sensor = self.sensor;
-        rigid.layers = self.layers.map(Into::into).unwrap_or_default();
-        rigid.user_data = self.user_data.unwrap_or(0);
-        Ok(rigid)
+        let is_dynamic = self.motion_type == MotionTypeText::Dynamic;
+        let usual = if is_dynamic { 0.5 } else { 0.2 };
+        Ok(RigidBody {
+            velocity: self.velocity()?,
+            friction: self.friction.unwrap_or(usual),
+            restitution: self.restitution.unwrap_or(0.0),
+            is_sensor: self.sensor,
+            layers: self.layers.map(Into::into).unwrap_or_default(),
+            user_data: self.user_data.unwrap_or(0),
+            ..body
+        })
     }
 
-    fn drive(&self) -> Result<MotionType, FieldError> {
-        let of_hands = [self.stiffness, self.damping, self.limit];
-        let is_hand = self.drive == MotionTypeText::Hand;
-        let good = is_hand || of_hands == [None; 3];
-        require(good, "stiffness", "allowed only with drive = \"hand\"")?;
-        let bears = is_hand || self.drive == MotionTypeText::Free;
-        let expected = "allowed only with drive = \"free\" or \"hand\"";
-        require(bears || self.mass.is_none(), "mass", expected)?;
-        Ok(match self.drive {
+    fn motion_type(&self) -> Result<MotionType, FieldError> {
+        let of_coupling = [self.stiffness, self.damping, self.max_force];
+        let is_coupled = self.motion_type == MotionTypeText::Coupled;
+        let good = is_coupled || of_coupling == [None; 3];
+        let expected = "allowed only with motion_type = \"coupled\"";
+        require(good, "stiffness", expected)?;
+        let has_mass = is_coupled || self.motion_type == MotionTypeText::Dynamic;
+        let expected = "allowed only with motion_type = \"dynamic\" or \"coupled\"";
+        require(has_mass || self.mass.is_none(), "mass", expected)?;
+        Ok(match self.motion_type {
             MotionTypeText::Fixed => MotionType::Fixed,
             MotionTypeText::Kinematic => MotionType::Kinematic,
-            MotionTypeText::Free => {
-                let missing =
-                    || FieldError::new("mass", "missing mass [kg], required with drive = \"free\"");
+            MotionTypeText::Dynamic => {
+                let expected = "missing mass [kg], required with motion_type = \"dynamic\"";
+                let missing = || FieldError::new("mass", expected);
                 let mass = self.mass.ok_or_else(missing)?;
                 MotionType::Dynamic { mass }
             }
-            MotionTypeText::Hand => {
-                let mut drive = MotionType::default();
+            MotionTypeText::Coupled => {
+                let mut motion_type = MotionType::default();
                 if let MotionType::Coupled {
                     mass,
                     stiffness,
                     damping,
-                    limit,
-                } = &mut drive
+                    max_force,
+                } = &mut motion_type
                 {
                     *mass = self.mass.unwrap_or(*mass);
                     *stiffness = self.stiffness.unwrap_or(*stiffness);
                     *damping = self.damping.unwrap_or(*damping);
-                    *limit = self.limit.unwrap_or(*limit);
+                    *max_force = self.max_force.unwrap_or(*max_force);
                 }
-                drive
+                motion_type
             }
         })
     }
 
+    fn velocity<D: Dim>(&self) -> Result<Velocity<D>, FieldError> {
+        let is = |motion_type| self.motion_type == motion_type;
+        let good = self.velocity.is_none() || !is(MotionTypeText::Fixed);
+        let expected = "not allowed with motion_type = \"fixed\"";
+        require(good, "velocity", expected)?;
+        let linear = vector_of::<D>("velocity", self.velocity.unwrap_or_default())?;
+        let turns = is(MotionTypeText::Dynamic) || is(MotionTypeText::Kinematic);
+        let good = self.angular_velocity.is_none() || turns;
+        let expected = "allowed only with motion_type = \"dynamic\" or \"kinematic\"";
+        require(good, "angular_velocity", expected)?;
+        let angular = self.angular_velocity.unwrap_or_default();
+        require_turning::<D>("angular_velocity", angular)?;
+        let angular = D::Angular::from_vec3(Vec3::from(angular));
+        Ok(Velocity { linear, angular })
+    }
+
     /// Returns the text of a rigid body: its fields if they reproduce it exactly, otherwise its state.
-    pub(super) fn of<D: Dim>(rigid: &RigidBody) -> Option<Self> {
-        let words = Self::by_fields::<D>(rigid);
-        let is_same = words
-            .as_ref()
-            .is_some_and(|words| words.reproduces::<D>(rigid));
-        match is_same {
+    pub(super) fn of<D: Dim>(body: RigidBodyRef<'_, D>) -> Option<Self> {
+        let words = Self::by_fields(body);
+        match words.as_ref().is_some_and(|words| words.reproduces(body)) {
             true => words,
             false => Some(Self {
-                state: Some(state::of_rigid::<D>(rigid)?),
+                state: Some(state::of_rigid_body(body)?),
                 ..Self::default()
             }),
         }
     }
 
     /// Returns whether this text reproduces a rigid body, except for its sleep timer.
-    fn reproduces<D: Dim>(&self, rigid: &RigidBody) -> bool {
-        let Ok(mut world) = World::<D>::new(fuwafuwa::WorldConfig::default()) else {
+    fn reproduces<D: Dim>(&self, body: RigidBodyRef<'_, D>) -> bool {
+        let Ok(mut world) = World::new(WorldConfig::default()) else {
             return false;
         };
-        let Ok(id) = self.add_to(&mut world) else {
-            return false;
+        let added = self.add_to(&mut world).ok();
+        let made = added.and_then(|id| world.rigid_body(id).ok());
+        let all = |body: RigidBodyRef<'_, D>| {
+            let target = (body.target_position(), body.target_rotation());
+            (body.definition(), body.follows_target().then_some(target))
         };
-        let made = world.rigid_body(id).unwrap();
-        if rigid.follows_target() {
-            // The motion of the target has no getter, so the whole bodies are compared.
-            return made == rigid;
-        }
-        let both = [made, rigid];
-        let [places, others] = both.map(|k| (k.position(), k.velocity(), k.angular_velocity()));
-        let [turns, other_turns] = both.map(RigidBody::rotation);
-        let [forms, other_forms] = both.map(|k| (*k.form(), k.motion_type, k.layers, k.is_sensor));
-        let [numbers, other_numbers] = both.map(|k| (k.friction, k.restitution, k.user_data));
-        (places, turns, forms, numbers) == (others, other_turns, other_forms, other_numbers)
+        made.is_some_and(|made| all(made) == all(body))
     }
 
-    fn by_fields<D: Dim>(rigid: &RigidBody) -> Option<Self> {
+    fn by_fields<D: Dim>(body: RigidBodyRef<'_, D>) -> Option<Self> {
+        let RigidBody {
+            motion_type,
+            shape,
+            position,
+            rotation,
+            velocity,
+            friction,
+            restitution,
+            layers,
+            is_sensor,
+            user_data,
+        } = body.definition();
+        let numbers = |vector: D::Vector| vector.to_vec3().to_array();
+        let unless_zero = |vector: Vec3| (vector != Vec3::ZERO).then_some(vector.to_array());
         let mut text = Self {
-            at: rigid.position(),
-            friction: Some(rigid.friction),
-            restitution: (rigid.restitution != 0.0).then_some(rigid.restitution),
-            sensor: rigid.is_sensor,
-            layers: LayersText::of(rigid.layers),
-            user_data: (rigid.user_data != 0).then_some(rigid.user_data),
+            at: numbers(position),
+            rotation: (rotation != Rotation::NONE).then_some(rotation),
+            velocity: unless_zero(velocity.linear.to_vec3()),
+            angular_velocity: unless_zero(velocity.angular.to_vec3()),
+            friction: Some(friction),
+            restitution: (restitution != 0.0).then_some(restitution),
+            sensor: is_sensor,
+            layers: LayersText::of(layers),
+            user_data: (user_data != 0).then_some(user_data),
             ..Self::default()
         };
-        match *rigid.form() {
+        match shape {
             Shape::HalfSpace { normal, offset } => {
-                let point = normal.map(|k| k * offset);
-                text.half_space = Some(HalfSpaceText { normal, point });
+                text.half_space = Some(HalfSpaceText {
+                    normal: numbers(normal),
+                    point: numbers(normal * offset),
+                });
             }
-            Shape::Box { centre, mut half } => {
+            Shape::Box { centre, half } => {
+                let mut half = numbers(half);
                 half[D::N..].fill(1.0);
-                text.boxed = Some(BoxText { centre, half });
+                text.boxed = Some(BoxText {
+                    centre: numbers(centre),
+                    half,
+                });
             }
             Shape::Capsule { from, to, radius } => {
-                text.capsule = Some(CapsuleText { from, to, radius });
+                text.capsule = Some(CapsuleText {
+                    from: numbers(from),
+                    to: numbers(to),
+                    radius,
+                });
             }
-            Shape::Ball { centre, radius } => text.ball = Some(BallText { centre, radius }),
+            Shape::Ball { centre, radius } => {
+                text.ball = Some(BallText {
+                    centre: numbers(centre),
+                    radius,
+                });
+            }
             Shape::OrientedBox { .. } => return None,
         }
-        let rotation = rigid.rotation();
-        text.rotation = (rotation != Rotation::NONE).then_some(rotation);
-        match rigid.motion_type {
+        if body.follows_target() {
+            let (target, turned) = (body.target_position(), body.target_rotation());
+            text.target_position = (target != position).then_some(numbers(target));
+            text.target_rotation = (turned != rotation).then_some(turned);
+        }
+        match motion_type {
             MotionType::Fixed => {}
-            MotionType::Kinematic => text.drive = MotionTypeText::Kinematic,
+            MotionType::Kinematic => text.motion_type = MotionTypeText::Kinematic,
             MotionType::Dynamic { mass } => {
-                (text.drive, text.mass) = (MotionTypeText::Free, Some(mass));
-                let said = |vector: [f32; 3]| (vector != [0.0; 3]).then_some(vector);
-                text.velocity = said(rigid.velocity());
-                text.spin = said(rigid.angular_velocity());
+                (text.motion_type, text.mass) = (MotionTypeText::Dynamic, Some(mass));
             }
             MotionType::Coupled {
                 mass,
                 stiffness,
                 damping,
-                limit,
+                max_force,
             } => {
-                (text.drive, text.mass) = (MotionTypeText::Hand, Some(mass));
+                (text.motion_type, text.mass) = (MotionTypeText::Coupled, Some(mass));
                 (text.stiffness, text.damping) = (Some(stiffness), Some(damping));
-                text.limit = (limit < f32::INFINITY).then_some(limit);
+                text.max_force = (max_force < f32::INFINITY).then_some(max_force);
             }
             _ => return None,
         }

@@ -1,7 +1,7 @@
 //! Obstacles, hands and shapes of a scene file.
 
-use super::error::{FieldError, require, require_vector};
-use fuwafuwa::{Dim, Error, MotionType, RigidBody, RigidBodyHandle, Shape, World};
+use super::error::{FieldError, require, vector_of};
+use fuwafuwa::{Dim, DimVector, Error, MotionType, RigidBody, RigidBodyHandle, Shape, Vec3, World};
 use serde::{Deserialize, Serialize};
 
 /// An `[[obstacle]]` table: a fixed rigid body. It requires exactly one shape.
@@ -91,8 +91,8 @@ impl ObstacleText {
             capsule: self.capsule.as_ref(),
             ball: self.ball.as_ref(),
         };
-        let added =
-            world.add_rigid_body(RigidBody::fixed(shape.only::<D>()?).with_friction(self.friction));
+        let obstacle = RigidBody::fixed(shape.only()?).with_friction(self.friction);
+        let added = world.add_rigid_body(obstacle);
         added
             .map(|_| ())
             .map_err(|error| FieldError::engine("friction", error))
@@ -109,33 +109,29 @@ pub(super) struct ShapeChoice<'a> {
 
 impl ShapeChoice<'_> {
     /// Checks that exactly one shape is present and valid, and returns it.
-    pub(super) fn only<D: Dim>(&self) -> Result<Shape, FieldError> {
-        let vector = |field: &str, vector| require_vector(D::N, field, vector);
+    pub(super) fn only<D: Dim>(&self) -> Result<Shape<D>, FieldError> {
         let (name, shape) = match (self.half_space, self.boxed, self.capsule, self.ball) {
             (Some(text), None, None, None) => {
-                vector("half_space.normal", text.normal)?;
-                vector("half_space.point", text.point)?;
-                let is_zero = text.normal == [0.0; 3];
+                let normal = vector_of::<D>("half_space.normal", text.normal)?;
+                let point = vector_of::<D>("half_space.point", text.point)?;
+                let is_zero = normal == D::Vector::ZERO;
                 let expected = "expected a direction, found 0 on every axis";
                 require(!is_zero, "half_space.normal", expected)?;
-                let shape = Shape::half_space(text.normal, text.point);
-                ("half_space", shape)
+                ("half_space", Shape::half_space(normal, point))
             }
             (None, Some(text), None, None) => {
-                vector("box.centre", text.centre)?;
-                let (centre, mut half) = (text.centre, text.half);
-                half[D::N..].fill(1.0);
+                let centre = vector_of::<D>("box.centre", text.centre)?;
+                let half = D::Vector::from_vec3(Vec3::from(text.half));
                 ("box", Shape::Box { centre, half })
             }
             (None, None, Some(text), None) => {
-                vector("capsule.from", text.from)?;
-                vector("capsule.to", text.to)?;
-                let (from, to, radius) = (text.from, text.to, text.radius);
-                ("capsule", Shape::Capsule { from, to, radius })
+                let from = vector_of::<D>("capsule.from", text.from)?;
+                let to = vector_of::<D>("capsule.to", text.to)?;
+                ("capsule", Shape::capsule(from, to, text.radius))
             }
             (None, None, None, Some(text)) => {
-                vector("ball.centre", text.centre)?;
-                let (centre, radius) = (text.centre, text.radius);
+                let centre = vector_of::<D>("ball.centre", text.centre)?;
+                let radius = text.radius;
                 ("ball", Shape::Ball { centre, radius })
             }
             _ => {
@@ -166,15 +162,16 @@ impl HandText {
             let field = format!("path.{}", index + 1);
             let expected = format!("expected a time of {before} s or more, found {seconds}");
             require(seconds >= before && seconds.is_finite(), &field, expected)?;
-            require_vector(D::N, &field, [x, y, z])?;
+            vector_of::<D>(&field, [x, y, z])?;
             before = seconds;
         }
-        let form = self.form::<D>()?;
-        let drive = match self.kinematic {
+        let shape = self.shape::<D>()?;
+        let motion_type = match self.kinematic {
             true => MotionType::Kinematic,
             false => MotionType::default(),
         };
-        let hand = RigidBody::new(form, drive).at(self.target(0.0));
+        let start = vector_of::<D>("path", self.target(0.0))?;
+        let hand = RigidBody::new(shape, motion_type).at(start);
         let added = world.add_rigid_body(hand);
         added
             .map(|_| ())
@@ -182,7 +179,7 @@ impl HandText {
     }
 
     /// Returns the shape relative to the target.
-    fn form<D: Dim>(&self) -> Result<Shape, FieldError> {
+    fn shape<D: Dim>(&self) -> Result<Shape<D>, FieldError> {
         let shapes = ShapeChoice {
             half_space: None,
             boxed: self.boxed.as_ref(),
@@ -194,10 +191,9 @@ impl HandText {
                 let good = radius > 0.0 && radius.is_finite();
                 let expected = format!("expected a positive number of metres, found {radius}");
                 require(good, "radius", expected)?;
-                let centre = [0.0; 3];
-                Ok(Shape::Ball { centre, radius })
+                Ok(Shape::ball(radius))
             }
-            (None, Some(_), None) | (None, None, Some(_)) => shapes.only::<D>(),
+            (None, Some(_), None) | (None, None, Some(_)) => shapes.only(),
             _ => {
                 let expected = "expected exactly one of radius, box and capsule";
                 Err(FieldError::new("radius", expected))
@@ -223,10 +219,14 @@ impl HandText {
 }
 
 /// Sets the targets of a world's hands, in order. A hand with a non-finite target keeps its old one.
-pub(crate) fn set_hand_targets<D: Dim>(world: &mut World<D>, goals: &[[f32; 3]]) {
-    let hands: Vec<RigidBodyHandle> = world.target_followers().map(|(hand, _)| hand).collect();
-    for (hand, &goal) in hands.into_iter().zip(goals) {
-        let _sent: Result<(), Error> = world.set_target_position(hand, goal);
+pub(crate) fn set_hand_targets<D: Dim>(world: &mut World<D>, targets: &[[f32; 3]]) {
+    let hands = world
+        .rigid_bodies()
+        .filter(|(_, body)| body.follows_target());
+    let hands: Vec<RigidBodyHandle> = hands.map(|(hand, _)| hand).collect();
+    for (hand, &target) in hands.into_iter().zip(targets) {
+        let target = D::Vector::from_vec3(Vec3::from(target));
+        let _sent: Result<(), Error> = world.set_target_position(hand, target);
     }
 }
 

@@ -3,19 +3,19 @@
 use super::error::FieldError;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
-use fuwafuwa::{Dim, RigidBody, SoftBody, World, WorldConfig, snapshot};
+use fuwafuwa::{Dim, Error, RigidBodyHandle, RigidBodyRef, SoftBody, World, WorldConfig, snapshot};
 
 /// Encodes a soft body.
-pub(super) fn of_body<D: Dim>(body: &SoftBody<D>, settings: WorldConfig) -> Option<String> {
+pub(super) fn of_body<D: Dim>(body: &SoftBody<D>, settings: WorldConfig<D>) -> Option<String> {
     let mut world = World::new(settings).ok()?;
     world.add_soft_body(body.clone());
     Some(BASE64.encode(snapshot::save(&world)))
 }
 
 /// Encodes a rigid body.
-pub(super) fn of_rigid<D: Dim>(rigid: &RigidBody) -> Option<String> {
-    let mut world = World::<D>::new(WorldConfig::default()).ok()?;
-    world.add_rigid_body(rigid.clone()).ok()?;
+pub(super) fn of_rigid_body<D: Dim>(body: RigidBodyRef<'_, D>) -> Option<String> {
+    let mut world = World::new(WorldConfig::default()).ok()?;
+    copy_into(&mut world, body).ok()?;
     Some(BASE64.encode(snapshot::save(&world)))
 }
 
@@ -29,18 +29,31 @@ pub(super) fn body<D: Dim>(text: &str) -> Result<SoftBody<D>, FieldError> {
     body.ok_or_else(|| FieldError::new("state", "expected the snapshot of a world with one body"))
 }
 
-/// Decodes a rigid body.
-pub(super) fn rigid<D: Dim>(text: &str) -> Result<RigidBody, FieldError> {
-    let mut world = world::<D>(text)?;
-    let id = world.rigid_bodies().map(|(id, _)| id).next();
-    let id = id.filter(|_| world.rigid_bodies().count() == 1);
-    let rigid = id.and_then(|id| world.remove(id).ok());
-    rigid.ok_or_else(|| {
-        FieldError::new(
-            "state",
-            "expected the snapshot of a world with one rigid body",
-        )
-    })
+/// Decodes a rigid body and adds it to `world`.
+pub(super) fn add_rigid_body<D: Dim>(
+    text: &str,
+    world: &mut World<D>,
+) -> Result<RigidBodyHandle, FieldError> {
+    let stored = self::world::<D>(text)?;
+    let mut bodies = stored.rigid_bodies().map(|(_, body)| body);
+    let (Some(body), None) = (bodies.next(), bodies.next()) else {
+        let expected = "expected the snapshot of a world with one rigid body";
+        return Err(FieldError::new("state", expected));
+    };
+    copy_into(world, body).map_err(|error| FieldError::new("state", error))
+}
+
+/// Adds a copy of a body of another world, with its target.
+fn copy_into<D: Dim>(
+    world: &mut World<D>,
+    body: RigidBodyRef<'_, D>,
+) -> Result<RigidBodyHandle, Error> {
+    let id = world.add_rigid_body(body.definition())?;
+    if body.follows_target() {
+        world.set_target_position(id, body.target_position())?;
+        world.set_target_rotation(id, body.target_rotation())?;
+    }
+    Ok(id)
 }
 
 fn world<D: Dim>(text: &str) -> Result<World<D>, FieldError> {

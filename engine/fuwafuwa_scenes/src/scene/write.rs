@@ -6,12 +6,10 @@ use super::joint::{JointAnchorText, JointText};
 use super::rigid_body::RigidBodyText;
 use super::state;
 use super::{MAX_BODIES, MAX_MATERIALS, MAX_RIGID, MAX_TEXT_BYTES, Scene, SceneError};
-use fuwafuwa::Law;
 use fuwafuwa::{
-    Dim, Grading, JointAnchor, Material, RigidBodyHandle, SoftBody, SoftBodyHandle, VoxelGrid,
-    World, WorldConfig,
+    Dim, DimVector, Grading, Joint, JointAnchor, Law, Material, RigidBodyHandle, SoftBody,
+    SoftBodyHandle, Vec3, Velocity, VoxelGrid, World, WorldConfig, snapshot,
 };
-use fuwafuwa::{Joint, snapshot};
 use std::fmt::Write;
 
 /// Maximum distance between a joint anchor and its counterpart in the rebuilt scene [m].
@@ -22,7 +20,7 @@ impl Scene {
     ///
     /// Where possible, a body is described by fields: a soft body by its voxels, materials, position and
     /// velocity, a rigid body by its shape, motion type, pose and velocity. If fields cannot reproduce a body
-    /// bit by bit (a torn or deformed body, a hand on its way), its complete state is stored in `state`,
+    /// bit by bit (a torn or deformed body), its complete state is stored in `state`,
     /// which is not human-readable. A world that was not stepped since it was built therefore gives a scene
     /// that rebuilds it with the same [hash](World::hash).
     ///
@@ -75,7 +73,7 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
     let settings = *world.config();
     let mut scene = Scene {
         dim: D::N as u8,
-        gravity: settings.gravity,
+        gravity: settings.gravity.to_vec3().to_array(),
         drag: settings.drag,
         max_substeps: settings.max_substeps,
         tick: settings.tick,
@@ -85,7 +83,7 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
         body: Vec::new(),
         obstacle: Vec::new(),
         hand: Vec::new(),
-        rigid: Vec::new(),
+        rigid_body: Vec::new(),
         joint: Vec::new(),
         game: None,
         origin: Origin::default(),
@@ -95,9 +93,9 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
     require(found <= MAX_BODIES, "body", expected)?;
     let found = world.rigid_bodies().count();
     let expected = format!("expected {MAX_RIGID} at most, found {found}");
-    require(found <= MAX_RIGID, "rigid", expected)?;
+    require(found <= MAX_RIGID, "rigid_body", expected)?;
     let mut materials: Vec<Material> = Vec::new();
-    for (index, body) in world.soft_bodies().map(|(_, body)| body).enumerate() {
+    for (index, (_, body)) in world.soft_bodies().enumerate() {
         let text = body_text(body, settings, &mut materials);
         scene
             .body
@@ -107,11 +105,12 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
     if scene.material.is_empty() {
         scene.material = super::usual_materials();
     }
-    for (index, rigid) in world.rigid_bodies().map(|(_, body)| body).enumerate() {
-        let text = RigidBodyText::of::<D>(rigid);
-        let wrong =
-            || FieldError::new("state", "the state cannot be serialised").inside("rigid", index);
-        scene.rigid.push(text.ok_or_else(wrong)?);
+    for (index, (_, body)) in world.rigid_bodies().enumerate() {
+        let unsaid = || FieldError::new("state", "the state cannot be serialised");
+        let text = RigidBodyText::of(body).ok_or_else(unsaid);
+        scene
+            .rigid_body
+            .push(text.map_err(|wrong| wrong.inside("rigid_body", index))?);
     }
     write_joints(world, &mut scene)?;
     Ok(scene)
@@ -120,7 +119,7 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
 /// Returns the text of a body: its fields if they reproduce it exactly, otherwise its state.
 fn body_text<D: Dim>(
     body: &SoftBody<D>,
-    settings: WorldConfig,
+    settings: WorldConfig<D>,
     materials: &mut Vec<Material>,
 ) -> Result<BodyText, FieldError> {
     let of_world = |body: SoftBody<D>| {
@@ -172,15 +171,16 @@ fn by_fields<D: Dim>(body: &SoftBody<D>) -> Option<(BodyText, SoftBody<D>)> {
     let at = translation_between(&made, body)?;
     let (first, _) = body.mesh().nodes().next()?;
     let velocity = body.node_state(first).1;
-    let made = made.translated(at).with_velocity(velocity);
+    let moving = Velocity::linear(velocity);
+    let made = made.translated(at).with_velocity(moving);
     let text = BodyText {
         voxels: Some(VoxelsText {
             size,
             voxel_size: grid.voxel_size(),
             runs: String::new(),
         }),
-        at,
-        velocity,
+        at: at.to_vec3().to_array(),
+        velocity: velocity.to_vec3().to_array(),
         gravity_scale: (body.gravity_scale() != 1.0).then_some(body.gravity_scale()),
         layers: LayersText::of(body.layers()),
         user_data: (body.user_data() != 0).then_some(body.user_data()),
@@ -203,8 +203,8 @@ fn with_properties_of<D: Dim>(made: SoftBody<D>, body: &SoftBody<D>) -> Option<S
 
 /// Returns the translation [m] from `made` to `body`, if it reproduces every node position exactly, rounding
 /// included.
-fn translation_between<D: Dim>(made: &SoftBody<D>, body: &SoftBody<D>) -> Option<[f32; 3]> {
-    let mut at = [0.0; 3];
+fn translation_between<D: Dim>(made: &SoftBody<D>, body: &SoftBody<D>) -> Option<D::Vector> {
+    let mut at = D::Vector::ZERO;
     let mut ids = made.mesh().nodes().map(|(id, _)| id);
     if !ids.all(|id| id.index() < body.positions().len()) {
         return None;
@@ -265,80 +265,89 @@ fn write_joints<D: Dim>(world: &World<D>, scene: &mut Scene) -> Result<(), Field
     }
     for (index, (id, joint)) in world.joints().enumerate() {
         let inside = |wrong: FieldError| wrong.inside("joint", index);
-        let gone = || FieldError::new("ends", "expected two existing bodies, but one was removed");
+        let gone = || {
+            FieldError::new(
+                "anchors",
+                "expected two existing bodies, but one was removed",
+            )
+        };
         let places = world.joint_anchor_positions(id).ok().flatten();
         let places = places.ok_or_else(|| inside(gone()))?;
-        let tied = joint.ends.each_ref().map(|end| end_text(world, end, None));
-        let [first, second] = &joint.ends;
+        let joint = joint.definition();
+        let original = joint.anchors.map(|anchor| anchor_text(world, anchor, None));
+        let [first, second] = joint.anchors;
         let now = [(first, places[0]), (second, places[1])];
-        let now = now.map(|(end, at)| end_text(world, end, Some(at)));
-        let fits = [tied, now].into_iter().find_map(|[first, second]| {
-            let text = JointText::of(joint, [first?, second?]);
-            reproduces_joint(scene, &text, places, joint).then_some(text)
+        let now = now.map(|(anchor, place)| anchor_text(world, anchor, Some(place)));
+        let fits = [original, now].into_iter().find_map(|[first, second]| {
+            let text = JointText::of(&joint, [first?, second?]);
+            reproduces_joint(scene, &text, places, &joint).then_some(text)
         });
         let moved = "the bodies have moved since the joint was attached, and the scene cannot reproduce it: save a snapshot instead";
-        let text = fits.ok_or_else(|| inside(FieldError::new("ends", moved)))?;
+        let text = fits.ok_or_else(|| inside(FieldError::new("anchors", moved)))?;
         scene.joint.push(text);
     }
     Ok(())
 }
 
 /// Returns whether the scene reproduces the joint: the same joint kind, with anchors at the same positions.
-fn reproduces_joint(scene: &Scene, text: &JointText, places: [[f32; 3]; 2], joint: &Joint) -> bool {
+fn reproduces_joint<D: Dim>(
+    scene: &Scene,
+    text: &JointText,
+    places: [D::Vector; 2],
+    joint: &Joint<D>,
+) -> bool {
     let mut scene = scene.clone();
     scene.joint = vec![text.clone()];
-    let found = match scene.dim {
-        2 => only_joint(scene.build::<fuwafuwa::Dim2>()),
-        _ => only_joint(scene.build::<fuwafuwa::Dim3>()),
+    let Some((made, found)) = only_joint::<D>(&scene) else {
+        return false;
     };
-    found.is_some_and(|(found, made)| {
-        let apart = |axis: usize, end: usize| (found[end][axis] - places[end][axis]).abs();
-        let is_near = (0..2).all(|end| (0..3).all(|axis| apart(axis, end) <= NEAR));
-        is_near && made.tie == joint.tie
-    })
+    let is_near = (0..2).all(|end| {
+        let apart = found[end] - places[end];
+        (0..D::N).all(|axis| apart[axis].abs() <= NEAR)
+    });
+    is_near && made.kind == joint.kind
 }
 
-fn only_joint<D: Dim>(world: Result<World<D>, SceneError>) -> Option<([[f32; 3]; 2], Joint)> {
-    let world = world.ok()?;
+/// Returns the joint of a scene with one joint, and the positions of its anchors [m].
+fn only_joint<D: Dim>(scene: &Scene) -> Option<(Joint<D>, [D::Vector; 2])> {
+    let world = scene.build::<D>().ok()?;
     let (id, joint) = world.joints().next()?;
-    Some((world.joint_anchor_positions(id).ok()??, joint.clone()))
+    let places = world.joint_anchor_positions(id).ok()??;
+    Some((joint.definition(), places))
 }
 
 /// Returns the text of a joint anchor, at its original position or at `other` [m].
-fn end_text<D: Dim>(
+fn anchor_text<D: Dim>(
     world: &World<D>,
-    end: &JointAnchor,
-    other: Option<[f32; 3]>,
+    anchor: JointAnchor<D>,
+    other: Option<D::Vector>,
 ) -> Option<JointAnchorText> {
-    let rank_of_body = |id: SoftBodyHandle| {
-        world
-            .soft_bodies()
-            .position(|(id, _)| id == id)
-            .map(|rank| rank + 1)
+    let number_of_soft = |body: SoftBodyHandle| {
+        let rank = world.soft_bodies().position(|(id, _)| id == body);
+        rank.map(|rank| rank + 1)
     };
-    let rank_of_rigid = |id: RigidBodyHandle| {
-        world
-            .rigid_bodies()
-            .position(|(id, _)| id == id)
-            .map(|rank| rank + 1)
+    let number_of_rigid = |body: RigidBodyHandle| {
+        let rank = world.rigid_bodies().position(|(id, _)| id == body);
+        rank.map(|rank| rank + 1)
     };
-    let flat = |mut at: [f32; 3]| {
-        at[D::N..].fill(0.0);
-        at
-    };
-    Some(match *end {
-        JointAnchor::Point(at) => JointAnchorText {
-            at: flat(other.unwrap_or(at)),
+    let numbers = |point: D::Vector| other.unwrap_or(point).to_vec3().to_array();
+    Some(match anchor {
+        JointAnchor::Point(point) => JointAnchorText {
+            point: numbers(point),
             ..JointAnchorText::default()
         },
-        JointAnchor::RigidBody { rigid, at } => JointAnchorText {
-            rigid: Some(rank_of_rigid(rigid)?),
-            at: flat(other.unwrap_or(at)),
+        JointAnchor::RigidBody { body, point } => JointAnchorText {
+            rigid_body: Some(number_of_rigid(body)?),
+            point: numbers(point),
             ..JointAnchorText::default()
         },
-        JointAnchor::SoftBody { body, at, radius } => JointAnchorText {
-            body: Some(rank_of_body(body)?),
-            at: flat(other.unwrap_or(at)),
+        JointAnchor::SoftBody {
+            body,
+            point,
+            radius,
+        } => JointAnchorText {
+            body: Some(number_of_soft(body)?),
+            point: numbers(point),
             radius: Some(radius),
             ..JointAnchorText::default()
         },
@@ -347,22 +356,20 @@ fn end_text<D: Dim>(
 
 /// Returns a view of all nodes and dynamic rigid bodies, with a margin of 0.5 m.
 fn view_of<D: Dim>(world: &World<D>) -> [[f32; 3]; 2] {
-    let nodes = world.soft_bodies().map(|(_, body)| body).flat_map(|body| {
+    let nodes = world.soft_bodies().flat_map(|(_, body)| {
         let ids = body.mesh().nodes().map(|(id, _)| id);
         ids.map(|id| body.node_state(id).0)
     });
-    let free = world
-        .rigid_bodies()
-        .map(|(_, body)| body)
-        .filter(|rigid| rigid.is_dynamic());
-    let middles = free.map(|rigid| rigid.position());
-    let (mut low, mut high) = ([f32::MAX; 3], [f32::MIN; 3]);
+    let bodies = world.rigid_bodies().map(|(_, body)| body);
+    let middles = bodies
+        .filter(|body| body.is_dynamic())
+        .map(|body| body.position());
+    let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
     for at in nodes.chain(middles) {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(at[axis] - 0.5);
-            high[axis] = high[axis].max(at[axis] + 0.5);
-        }
+        let (at, margin) = (at.to_vec3(), Vec3::splat(0.5));
+        (low, high) = (low.min(at - margin), high.max(at + margin));
     }
+    let [low, high] = [low, high].map(|corner| corner.to_array());
     match low.iter().chain(&high).all(|k| k.abs() < f32::MAX) {
         true => [low, high],
         false => super::usual_view(),
