@@ -24,6 +24,7 @@ mod svg;
 pub mod worlds;
 
 pub use error::PaintError;
+use fuwafuwa::DimVector;
 pub use paper::{PaperPoint, PaperTransform};
 pub use raster::png_of;
 pub use role::Role;
@@ -85,8 +86,8 @@ impl Painter {
 
     /// Creates empty paper for the view between a low and a high corner [m], and the map from the world to
     /// the paper. The paper is `width` pixels wide. Its height follows from the view, limited to 50 to 2000
-    /// px.
-    pub fn for_view([low, high]: [[f32; 3]; 2], width: u32) -> (Self, PaperTransform) {
+    /// px. Third coordinates are ignored.
+    pub fn for_view([low, high]: [impl DimVector; 2], width: u32) -> (Self, PaperTransform) {
         let unit = width as f32 / (high[0] - low[0]);
         let height = (unit * (high[1] - low[1])).round().clamp(50.0, 2000.0);
         let origin = [-low[0] * unit, height + low[1] * unit];

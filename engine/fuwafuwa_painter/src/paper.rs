@@ -1,5 +1,7 @@
 //! Coordinates on the paper.
 
+use fuwafuwa::DimVector;
+
 /// A point on the paper [px], y downwards.
 pub type PaperPoint = [f32; 2];
 
@@ -13,8 +15,8 @@ pub struct PaperTransform {
 }
 
 impl PaperTransform {
-    /// Returns the point on the paper; the third coordinate is ignored.
-    pub fn spot(self, at: [f32; 3]) -> PaperPoint {
+    /// Returns the point on the paper; a third coordinate is ignored.
+    pub fn spot(self, at: impl DimVector) -> PaperPoint {
         let [x, y] = self.origin;
         [x + at[0] * self.unit, y - at[1] * self.unit]
     }

@@ -6,9 +6,7 @@ pub use crate::canvas::{Camera, Triangle};
 use crate::canvas::{Canvas, unit};
 use crate::role::Role;
 use crate::shadow::Shadow;
-use fuwafuwa::Rotation;
-use fuwafuwa::Vector;
-use fuwafuwa::inspect::vector::{cross, minus, plus, scaled};
+use fuwafuwa::{Rotation, Vec3};
 use tiny_skia::Pixmap;
 
 /// A 3D scene to be rendered.
@@ -17,7 +15,7 @@ pub struct Scene3d {
     camera: Camera,
     triangles: Vec<Triangle>,
     /// Lines: end points [m], width [px] and role.
-    segments: Vec<([Vector; 2], f32, Role)>,
+    segments: Vec<([Vec3; 2], f32, Role)>,
     floor: Option<f32>,
 }
 
@@ -33,14 +31,14 @@ impl Scene3d {
     }
 
     /// Adds a flat face; its corners [m] run counterclockwise when seen from outside.
-    pub fn quad(&mut self, corners: [Vector; 4], role: Role) {
+    pub fn quad(&mut self, corners: [Vec3; 4], role: Role) {
         let [a, b, c, d] = corners;
-        let normal = unit(cross(minus(c, a), minus(d, b)));
+        let normal = unit((c - a).cross(d - b));
         self.smooth_quad(corners, [normal; 4], role);
     }
 
     /// Adds a face with a normal at each corner.
-    pub fn smooth_quad(&mut self, corners: [Vector; 4], normals: [Vector; 4], role: Role) {
+    pub fn smooth_quad(&mut self, corners: [Vec3; 4], normals: [Vec3; 4], role: Role) {
         for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
             self.triangles.push(Triangle {
                 corners: [corners[a], corners[b], corners[c]],
@@ -51,21 +49,21 @@ impl Scene3d {
     }
 
     /// Adds a line between two points [m], with a width [px].
-    pub fn segment(&mut self, ends: [Vector; 2], width: f32, role: Role) {
+    pub fn segment(&mut self, ends: [Vec3; 2], width: f32, role: Role) {
         self.segments.push((ends, width, role));
     }
 
     /// Adds a ball of a radius [m].
-    pub fn ball(&mut self, centre: Vector, radius: f32, role: Role) {
+    pub fn ball(&mut self, centre: Vec3, radius: f32, role: Role) {
         const ROUND: usize = 48;
         let normal = |i: usize, j: usize| {
             let turn = i as f32 / ROUND as f32 * std::f32::consts::TAU;
             let rise = (j as f32 / (ROUND / 2) as f32 - 0.5) * std::f32::consts::PI;
-            [
+            Vec3::new(
                 turn.cos() * rise.cos(),
                 rise.sin(),
                 -turn.sin() * rise.cos(),
-            ]
+            )
         };
         for j in 0..ROUND / 2 {
             for i in 0..ROUND {
@@ -75,43 +73,42 @@ impl Scene3d {
                     normal(i + 1, j + 1),
                     normal(i, j + 1),
                 ];
-                let corners = normals.map(|n| plus(centre, scaled(n, radius)));
+                let corners = normals.map(|normal| centre + normal * radius);
                 self.smooth_quad(corners, normals, role);
             }
         }
     }
 
     /// Adds a capsule between two points, with a radius [m].
-    pub fn bar(&mut self, [from, to]: [Vector; 2], radius: f32, role: Role) {
+    pub fn bar(&mut self, [from, to]: [Vec3; 2], radius: f32, role: Role) {
         const ROUND: usize = 32;
         self.ball(from, radius, role);
         self.ball(to, radius, role);
-        let along = minus(to, from);
+        let along = to - from;
         // The axis along which `along` extends least is never parallel to `along`.
         let least = (0..3).min_by(|&a, &b| along[a].abs().total_cmp(&along[b].abs()));
-        let mut aside = [0.0; 3];
-        aside[least.expect("there are three axes")] = 1.0;
-        let across = unit(cross(along, aside));
-        let up = unit(cross(across, along));
+        let aside = Vec3::AXES[least.expect("there are three axes")];
+        let across = unit(along.cross(aside));
+        let up = unit(across.cross(along));
         let normal = |step: usize| {
             let (sin, cos) = (step as f32 / ROUND as f32 * std::f32::consts::TAU).sin_cos();
-            plus(scaled(across, cos), scaled(up, sin))
+            across * cos + up * sin
         };
         for step in 0..ROUND {
             let [a, b] = [normal(step), normal(step + 1)];
-            let at = |end: Vector, normal: Vector| plus(end, scaled(normal, radius));
+            let at = |end: Vec3, normal: Vec3| end + normal * radius;
             let corners = [at(from, a), at(from, b), at(to, b), at(to, a)];
             self.smooth_quad(corners, [a, b, b, a], role);
         }
     }
 
     /// Adds a box with half extents `half` [m], rotated about its centre.
-    pub fn block(&mut self, centre: Vector, half: Vector, rotation: Rotation, role: Role) {
+    pub fn block(&mut self, centre: Vec3, half: Vec3, rotation: Rotation, role: Role) {
         for axis in 0..3 {
             for side in [-1.0, 1.0] {
                 let corners = [[-1.0, -side], [1.0, -side], [1.0, side], [-1.0, side]];
                 let corners = corners.map(|[u, v]| corner(half, axis, [side, u, v]));
-                let corners = corners.map(|corner| plus(centre, rotation.apply(corner)));
+                let corners = corners.map(|corner| centre + rotation.apply(corner));
                 self.quad(corners, role);
             }
         }
@@ -149,8 +146,8 @@ impl Scene3d {
 
 /// Returns a corner of a box relative to its centre. `sides` are −1 or 1, for `axis` and the two axes that
 /// follow.
-fn corner(half: Vector, axis: usize, sides: [f32; 3]) -> Vector {
-    let mut corner = [0.0; 3];
+fn corner(half: Vec3, axis: usize, sides: [f32; 3]) -> Vec3 {
+    let mut corner = Vec3::ZERO;
     for (step, side) in sides.into_iter().enumerate() {
         let along = (axis + step) % 3;
         corner[along] += side * half[along];
@@ -164,8 +161,8 @@ mod tests {
     use crate::role::colour;
 
     const CAMERA: Camera = Camera {
-        eye: [0.0, 1.0, 4.0],
-        target: [0.0; 3],
+        eye: Vec3::new(0.0, 1.0, 4.0),
+        target: Vec3::ZERO,
         across: 3.0,
     };
 
@@ -177,8 +174,8 @@ mod tests {
     #[test]
     fn pixels_show_nearer_ball_in_front() {
         let mut solid = Scene3d::new(CAMERA);
-        solid.ball([0.0; 3], 0.5, Role::Hand);
-        solid.ball([0.0, 0.0, -1.0], 0.5, Role::Skin);
+        solid.ball(Vec3::ZERO, 0.5, Role::Hand);
+        solid.ball(Vec3::NEG_Z, 0.5, Role::Skin);
         let pixels = solid.pixels(60, 60).unwrap();
         let [red, _, blue] = at(&pixels, 30, 30);
         assert!(blue > red, "the blue ball must be in front");
@@ -194,10 +191,13 @@ mod tests {
             [-4.0, 1.0, 0.1],
         ] {
             for is_bar in [true, false] {
+                let eye = Vec3::from(eye);
                 let mut solid = Scene3d::new(Camera { eye, ..CAMERA });
+                let end = Vec3::new(0.5, 0.0, 0.5);
+                let half = Vec3::new(0.4, 0.3, 0.5);
                 match is_bar {
-                    true => solid.bar([[-0.5, 0.0, -0.5], [0.5, 0.0, 0.5]], 0.3, Role::Hand),
-                    false => solid.block([0.0; 3], [0.4, 0.3, 0.5], Rotation::NONE, Role::Hand),
+                    true => solid.bar([-end, end], 0.3, Role::Hand),
+                    false => solid.block(Vec3::ZERO, half, Rotation::NONE, Role::Hand),
                 }
                 let [red, _, blue] = at(&solid.pixels(60, 60).unwrap(), 30, 30);
                 assert!(blue > red, "{eye:?} {is_bar}");
@@ -210,7 +210,7 @@ mod tests {
         let mut solid = Scene3d::new(CAMERA);
         solid.floor(-0.5);
         let bright = solid.pixels(60, 60).unwrap();
-        solid.ball([0.0; 3], 0.5, Role::Hand);
+        solid.ball(Vec3::ZERO, 0.5, Role::Hand);
         let dark = solid.pixels(60, 60).unwrap();
         let sum = |pixels: &Pixmap| -> u32 {
             (0..60)

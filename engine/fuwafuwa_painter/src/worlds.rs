@@ -2,11 +2,11 @@
 
 use crate::solid::Scene3d;
 use crate::{Painter, PaperPoint, PaperTransform, Role};
-use fuwafuwa::inspect::vector::{cross, minus, plus, scaled};
 use fuwafuwa::inspect::{faces, outline_slots};
-use fuwafuwa::{Dim, Dim2, Dim3, ElementId, NodeId, PieceId, Rotation, SoftBody, World};
-use fuwafuwa::{ElementView, Facet, Outline};
-use fuwafuwa::{Shape, Vector};
+use fuwafuwa::{
+    Dim, Dim2, Dim3, ElementId, ElementView, Facet, NodeId, Outline, PieceId, RigidBodyRef,
+    Rotation, Shape, SoftBody, Vec2, Vec3, World,
+};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Function that paints a 2D body.
@@ -19,23 +19,31 @@ const ROUND: usize = 24;
 
 /// Paints a 2D world; `draw` paints each body.
 pub fn plane(painter: &mut Painter, frame: PaperTransform, world: &World<Dim2>, draw: DrawPlane) {
-    for obstacle in world
-        .rigid_bodies()
-        .map(|(_, body)| body)
-        .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor)
-    {
-        rigid(painter, frame, *obstacle.shape(), Role::Obstacle);
+    for obstacle in obstacles(world) {
+        rigid(painter, frame, obstacle.shape(), Role::Obstacle);
     }
-    for body in world.soft_bodies() {
+    for (_, body) in world.soft_bodies() {
         draw(painter, frame, body);
     }
-    for (_, hand) in world.target_followers() {
-        if let Shape::Ball { centre, radius } = *hand.shape() {
+    for hand in hands(world) {
+        if let Shape::Ball { centre, radius } = hand.shape() {
             let radius = radius * frame.unit + 1.5;
             painter.dot(frame.spot(centre), radius, Role::Ink);
         }
-        rigid(painter, frame, *hand.shape(), Role::Hand);
+        rigid(painter, frame, hand.shape(), Role::Hand);
     }
+}
+
+/// Fixed and dynamic rigid bodies except sensors.
+fn obstacles<D: Dim>(world: &World<D>) -> impl Iterator<Item = RigidBodyRef<'_, D>> {
+    let bodies = world.rigid_bodies().map(|(_, body)| body);
+    bodies.filter(|body| !body.follows_target() && !body.is_sensor())
+}
+
+/// Kinematic and coupled rigid bodies.
+fn hands<D: Dim>(world: &World<D>) -> impl Iterator<Item = RigidBodyRef<'_, D>> {
+    let bodies = world.rigid_bodies().map(|(_, body)| body);
+    bodies.filter(RigidBodyRef::follows_target)
 }
 
 /// Paints the elements of a 2D body, with torn edges in another colour.
@@ -115,28 +123,24 @@ pub fn outline(frame: PaperTransform, view: &ElementView) -> Vec<PaperPoint> {
 
 /// Paints a 3D world; `draw` paints each body.
 pub fn space(solid: &mut Scene3d, world: &World<Dim3>, draw: DrawSpace) {
-    for obstacle in world
-        .rigid_bodies()
-        .map(|(_, body)| body)
-        .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor)
-    {
-        match *obstacle.shape() {
-            Shape::HalfSpace { normal, offset } if normal[1] > 0.99 => solid.floor(offset),
+    for obstacle in obstacles(world) {
+        match obstacle.shape() {
+            Shape::HalfSpace { normal, offset } if normal.y > 0.99 => solid.floor(offset),
             // Other half-spaces are not painted: they would hide the bodies.
             Shape::HalfSpace { .. } => {}
             shape => solid_shape(solid, shape, Role::Obstacle),
         }
     }
-    for body in world.soft_bodies() {
+    for (_, body) in world.soft_bodies() {
         draw(solid, body);
     }
-    for (_, hand) in world.target_followers() {
-        solid_shape(solid, *hand.shape(), Role::Hand);
+    for hand in hands(world) {
+        solid_shape(solid, hand.shape(), Role::Hand);
     }
 }
 
 /// Paints a bounded rigid shape.
-fn solid_shape(solid: &mut Scene3d, shape: Shape, role: Role) {
+fn solid_shape(solid: &mut Scene3d, shape: Shape<Dim3>, role: Role) {
     match shape {
         Shape::HalfSpace { .. } => {}
         Shape::Box { centre, half } => solid.block(centre, half, Rotation::NONE, role),
@@ -174,13 +178,12 @@ pub fn space_skin(solid: &mut Scene3d, body: &SoftBody<Dim3>) {
     let facets: Vec<Facet> = body.facets().collect();
     let places = smoothed(&facets);
     let corners = |facet: &Facet| facet.nodes.map(|node| places[&node]);
-    let mut sums: BTreeMap<(NodeId, bool), Vector> = BTreeMap::new();
+    let mut sums: BTreeMap<(NodeId, bool), Vec3> = BTreeMap::new();
     for facet in &facets {
         let [a, b, c, d] = corners(facet);
-        let normal = cross(minus(c, a), minus(d, b));
+        let normal = (c - a).cross(d - b);
         for node in facet.nodes {
-            let sum = sums.entry((node, facet.is_torn)).or_insert([0.0; 3]);
-            *sum = plus(*sum, normal);
+            *sums.entry((node, facet.is_torn)).or_default() += normal;
         }
     }
     for facet in &facets {
@@ -198,24 +201,24 @@ pub fn space_skin(solid: &mut Scene3d, body: &SoftBody<Dim3>) {
 }
 
 /// Smooths a surface: moves each node half-way to the mean of its neighbours, several times.
-fn smoothed(facets: &[Facet]) -> BTreeMap<NodeId, Vector> {
+fn smoothed(facets: &[Facet]) -> BTreeMap<NodeId, Vec3> {
     const ROUNDS: usize = 4;
     let corners = facets
         .iter()
         .flat_map(|facet| facet.nodes.into_iter().zip(facet.corners));
-    let mut places: BTreeMap<NodeId, Vector> = corners.collect();
+    let mut places: BTreeMap<NodeId, Vec3> = corners.collect();
     for _ in 0..ROUNDS {
-        let mut sums: BTreeMap<NodeId, (Vector, f32)> = BTreeMap::new();
+        let mut sums: BTreeMap<NodeId, (Vec3, f32)> = BTreeMap::new();
         for facet in facets {
             for k in 0..4 {
-                let sum = sums.entry(facet.nodes[k]).or_insert(([0.0; 3], 0.0));
-                sum.0 = plus(sum.0, places[&facet.nodes[(k + 1) % 4]]);
+                let sum = sums.entry(facet.nodes[k]).or_insert((Vec3::ZERO, 0.0));
+                sum.0 += places[&facet.nodes[(k + 1) % 4]];
                 sum.1 += 1.0;
             }
         }
         for (node, place) in &mut places {
             let (sum, count) = sums[node];
-            *place = plus(scaled(*place, 0.5), scaled(sum, 0.5 / count));
+            *place = *place * 0.5 + sum * (0.5 / count);
         }
     }
     places
@@ -247,40 +250,34 @@ fn crumbs<D: Dim>(body: &SoftBody<D>) -> BTreeSet<PieceId> {
 }
 
 /// Paints a rigid shape in 2D.
-fn rigid(painter: &mut Painter, frame: PaperTransform, shape: Shape, role: Role) {
+fn rigid(painter: &mut Painter, frame: PaperTransform, shape: Shape<Dim2>, role: Role) {
+    let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Vec2::from);
     let rim = match shape {
         Shape::Ball { centre, radius } => {
             return painter.dot(frame.spot(centre), radius * frame.unit, role);
         }
         Shape::HalfSpace { normal, offset } => {
             const FAR: f32 = 1e3;
-            let on = scaled(normal, offset);
-            let along = [-normal[1], normal[0], 0.0];
-            let deep = scaled(normal, -FAR);
-            let ends = [scaled(along, -FAR), scaled(along, FAR)].map(|by| plus(on, by));
-            vec![ends[0], ends[1], plus(ends[1], deep), plus(ends[0], deep)]
+            let deep = normal * -FAR;
+            let [from, to] = [-FAR, FAR].map(|by| normal * offset + normal.perp() * by);
+            vec![from, to, to + deep, from + deep]
         }
-        Shape::Box { centre, half } => {
-            let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-            let corner = |[x, y]: [f32; 2]| plus(centre, [x * half[0], y * half[1], 0.0]);
-            signs.map(corner).to_vec()
-        }
+        Shape::Box { centre, half } => signs.map(|sign| centre + sign * half).to_vec(),
         Shape::OrientedBox {
             centre,
             half,
             rotation,
         } => {
-            let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-            let corner = |[x, y]: [f32; 2]| rotation.apply([x * half[0], y * half[1], 0.0]);
-            signs.map(|sign| plus(centre, corner(sign))).to_vec()
+            let corner = |sign: Vec2| centre + rotation.apply(sign * half);
+            signs.map(corner).to_vec()
         }
         Shape::Capsule { from, to, radius } => {
-            let along = (to[1] - from[1]).atan2(to[0] - from[0]);
+            let along = (to - from).to_angle();
             let round = (0..=2 * ROUND).map(|k| {
                 let (end, start) = if k <= ROUND { (to, 0) } else { (from, 1) };
                 let turn = (k - start) as f32 / ROUND as f32 - 0.5;
                 let angle = along + turn * std::f32::consts::PI;
-                plus(end, [radius * angle.cos(), radius * angle.sin(), 0.0])
+                end + radius * Vec2::from_angle(angle)
             });
             round.collect()
         }
