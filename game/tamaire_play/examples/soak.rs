@@ -4,7 +4,7 @@
 //! the same arguments, plays the given levels (by default all built-in ones) for the given time (by default
 //! ten minutes), each on its own thread. It prints a row per minute and level, and fails if a check failed.
 
-use fuwafuwa::{Dim, Dim2, Dim3, Vector};
+use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Vec3};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::io::{self, Write};
@@ -170,25 +170,27 @@ fn play<D: Dim>(level: Level, minutes: usize) -> Result<(), String> {
 /// Returns the depth of the deepest node in a wall [m]. Fails if something is outside the room or not finite.
 fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
     let [low, high] = round.level().arena();
-    let beyond = |from: Vector, to: Vector| {
+    let beyond = |from: Vec3, to: Vec3| {
         let axes = (0..D::N).map(|axis| (low[axis] - from[axis]).max(to[axis] - high[axis]));
         axes.fold(f32::MIN, f32::max)
     };
     for hand in round.hands() {
-        let at = hand.position();
-        let is_in = at.iter().all(|k| k.is_finite()) && beyond(at, at) <= HAND_MARGIN;
+        let at = hand.position().to_vec3();
+        let is_in = at.is_finite() && beyond(at, at) <= HAND_MARGIN;
         if !is_in {
             return Err(format!("a hand is out of the room: {at:?}"));
         }
     }
     let mut deepest = f32::MIN;
-    for body in round.world().soft_bodies() {
+    for (_, body) in round.world().soft_bodies() {
         for piece in body.piece_views() {
             let depth = beyond(piece.low, piece.high);
             // Non-finite values appear in the centre only: the bounds ignore them.
-            let is_finite = piece.centre.iter().all(|k| k.is_finite());
             let middle = beyond(piece.centre, piece.centre);
-            if !is_finite || depth > MARGIN * body.grid().voxel_size() || middle > HAND_MARGIN {
+            if !piece.centre.is_finite()
+                || depth > MARGIN * body.grid().voxel_size()
+                || middle > HAND_MARGIN
+            {
                 return Err(format!("a piece is {depth} m out of the room: {piece:?}"));
             }
             deepest = deepest.max(depth);
@@ -199,15 +201,9 @@ fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
 
 /// Returns the number of elements and of nodes.
 fn parts<D: Dim>(round: &Round<D>) -> [usize; 2] {
-    let meshes = || {
-        round
-            .world()
-            .soft_bodies()
-            .map(|(_, body)| body)
-            .map(|body| body.mesh())
-    };
-    let elements = meshes().map(|mesh| mesh.element_count()).sum();
-    [elements, meshes().map(|mesh| mesh.node_count()).sum()]
+    let meshes = round.world().soft_bodies().map(|(_, body)| body.mesh());
+    let elements = meshes.clone().map(|mesh| mesh.element_count()).sum();
+    [elements, meshes.map(|mesh| mesh.node_count()).sum()]
 }
 
 /// Returns the memory that this thread holds per element or node [bytes], without the recorded input.
@@ -220,8 +216,8 @@ fn held_each<D: Dim>(round: &Round<D>) -> f32 {
 
 /// Prints the row of a minute.
 fn tell<D: Dim>(id: &str, minute: usize, round: &Round<D>, [half, worst, deepest]: [f32; 3]) {
-    let bodies = round.world().soft_bodies().map(|(_, body)| body);
-    let pieces = bodies.flat_map(|body| &body.pieces().list);
+    let bodies = round.world().soft_bodies();
+    let pieces = bodies.flat_map(|(_, body)| &body.pieces().list);
     say(&format!(
         "{id:12} {minute:>6} {:>6} {:>6} {:>8} {:>7.1} {:>8.0} | {half:>8.1} {worst:>8.1} | {deepest:.1} mm",
         pieces.clone().count(),

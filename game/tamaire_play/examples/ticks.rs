@@ -7,7 +7,7 @@
 //! `--json` prints one object per line instead of the rows. `--help` lists all options.
 
 use clap::Parser;
-use fuwafuwa::{Dim, Dim2, Dim3, RigidBodyHandle, StepReport, Vector};
+use fuwafuwa::{Dim, Dim2, Dim3, DimVector, RigidBodyHandle, StepReport, Vec3};
 use serde::Serialize;
 use std::error::Error;
 use std::io::{self, Write};
@@ -48,7 +48,7 @@ struct Options {
 /// A tick: its report, the targets of the hands, and its duration [ms], in total and of the engine alone.
 struct Tick {
     report: StepReport,
-    goals: Vec<Vector>,
+    goals: Vec<Vec3>,
     whole: f64,
     engine: f64,
 }
@@ -251,7 +251,7 @@ fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64, most: usize) -> (V
         let hands = round.hands();
         ticks.push(Tick {
             report,
-            goals: hands.map(|hand| hand.target_position()).collect(),
+            goals: hands.map(|hand| hand.target_position().to_vec3()).collect(),
             whole,
             engine: f64::INFINITY,
         });
@@ -264,7 +264,8 @@ fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64, most: usize) -> (V
 /// would then compete for the caches.
 fn step_alone<D: Dim>(level: &Arc<Level>, ticks: &mut [Tick]) {
     let mut world = Round::<D>::new(level.clone()).world().clone();
-    let mut hands: Vec<RigidBodyHandle> = world.target_followers().map(|(hand, _)| hand).collect();
+    let mut hands: Vec<RigidBodyHandle> = Vec::new();
+    hands.extend(world.nth_target_follower(0));
     for tick in ticks {
         for player in hands.len()..tick.goals.len() {
             let scene = level.scene().build::<D>();
@@ -272,12 +273,13 @@ fn step_alone<D: Dim>(level: &Arc<Level>, ticks: &mut [Tick]) {
             let hand = scene
                 .nth_target_follower(player)
                 .expect("the level has this hand");
-            let joins = world.add_rigid_body(scene.rigid_body(hand).unwrap().clone());
+            let hand = scene.rigid_body(hand).expect("the scene has this hand");
+            let joins = world.add_rigid_body(hand.definition());
             hands.push(joins.expect("the round accepted this hand"));
         }
         for (&hand, &goal) in hands.iter().zip(&tick.goals) {
             world
-                .set_target_position(hand, goal)
+                .set_target_position(hand, D::Vector::from_vec3(goal))
                 .expect("the hand and target were valid in the round");
         }
         let start = Instant::now();

@@ -1,7 +1,8 @@
 //! Rounds with the dimension chosen at run time, for callers that do not access the bodies.
 
+use crate::round::Hand;
 use crate::{InputFrame, Level, Progress, Round};
-use fuwafuwa::{Dim2, Dim3, Event, RigidBody, Shape, StepReport, Vector};
+use fuwafuwa::{Dim2, Dim3, DimVector, Event, StepReport, Vec3};
 use std::sync::Arc;
 
 /// A round in 2D or in 3D.
@@ -42,17 +43,17 @@ impl AnyRound {
         both!(self, round => round.level())
     }
 
-    /// See [`Round::basket`].
-    pub fn basket(&self) -> Option<&Shape> {
-        both!(self, round => round.basket())
+    /// Returns whether the level has a basket; see [`Round::basket`].
+    pub fn has_basket(&self) -> bool {
+        both!(self, round => round.basket().is_some())
     }
 
     /// See [`Round::start`].
     ///
     /// # Panics
     /// If the level has no such hand.
-    pub fn start(&self, player: usize) -> Vector {
-        both!(self, round => round.start(player))
+    pub fn start(&self, player: usize) -> Vec3 {
+        both!(self, round => round.start(player).to_vec3())
     }
 
     /// See [`Round::progress`].
@@ -70,14 +71,21 @@ impl AnyRound {
         both!(self, round => round.frames())
     }
 
-    /// See [`Round::hands`].
-    pub fn hands(&self) -> Vec<&RigidBody> {
-        both!(self, round => round.hands().collect())
+    /// Returns the hands of the players that have joined, in the order of the players.
+    pub fn hands(&self) -> Vec<Hand> {
+        both!(self, round => round.hands().map(Hand::from).collect())
     }
 
-    /// Returns the events of the last tick.
-    pub fn events(&self) -> &[Event] {
-        both!(self, round => round.world().events())
+    /// Returns the positions of the nodes that were split in the last tick [m].
+    pub fn split_points(&self) -> Vec<Vec3> {
+        both!(self, round => {
+            let events = round.world().events().iter();
+            let splits = events.filter_map(|event| match event {
+                Event::NodeSplit { point, .. } => Some(point.to_vec3()),
+                _ => None,
+            });
+            splits.collect()
+        })
     }
 
     /// Returns the number of ticks, including those after a win.

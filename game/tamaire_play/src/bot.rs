@@ -5,9 +5,7 @@ mod map;
 mod sight;
 
 use crate::{AnyRound, InputFrame, Outcome, Round};
-use fuwafuwa::DEFAULT_TICK;
-use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
-use fuwafuwa::{Dim, Vector};
+use fuwafuwa::{DEFAULT_TICK, Dim, Vec3};
 use sight::{Sight, split};
 
 /// Speed of a bot's hand on a free path (`BRISK`), and when it pushes (`GENTLE`) [m/s].
@@ -72,7 +70,7 @@ pub struct Bot {
     /// Random variations of the behaviour by seed, each from -1 to 1.
     temper: [f32; 3],
     /// Target and remaining ticks of a random bot, by player.
-    random_targets: [(Vector, u32); crate::PLAYERS],
+    random_targets: [(Vec3, u32); crate::PLAYERS],
     stroke: Stroke,
     strokes: u32,
     /// Factor on [`FIRST_OFFSET`] for the next stroke, and number of pieces before the last stroke.
@@ -97,9 +95,9 @@ pub struct Bot {
 enum Stroke {
     Rest,
     /// Moving to the start of the next stroke, relative to the piece [m], for at most this number of ticks.
-    Reach(Vector, u32),
+    Reach(Vec3, u32),
     /// Moving to the end of the stroke [m], for at most this number of ticks.
-    Cut(Vector, u32),
+    Cut(Vec3, u32),
 }
 
 impl AnyRound {
@@ -194,8 +192,8 @@ impl Bot {
         let mut frame = InputFrame::default();
         for player in 0..crate::PLAYERS {
             if self.random_targets[player].1 == 0 {
-                let place = [0, 1, 2]
-                    .map(|axis: usize| low[axis] + self.random.f32() * (high[axis] - low[axis]));
+                let shares = Vec3::from([0; 3].map(|_: i32| self.random.f32()));
+                let place = low + shares * (high - low);
                 self.random_targets[player] = (place, 1 + self.random.u32(..90));
             }
             self.random_targets[player].1 -= 1;
@@ -205,7 +203,7 @@ impl Bot {
     }
 
     /// Pushes the piece from behind towards the basket, and withdraws once enough mass is inside.
-    fn push<D: Dim>(&mut self, sight: &Sight) -> Vector {
+    fn push<D: Dim>(&mut self, sight: &Sight) -> Vec3 {
         let lets_go = self.pressed > LONG_ENOUGH;
         self.pressed = match sight.surplus > if lets_go { 0.0 } else { 0.05 } {
             true => self.pressed + 1,
@@ -217,9 +215,9 @@ impl Bot {
             return self.go(sight, sight.away, pace.min(BRISK));
         }
         let piece = sight.piece;
-        let (along, aside) = split(minus(sight.hand, piece.centre), piece.direction);
-        let is_behind = along < -0.2 * piece.reach && length(aside) < 0.5 * piece.reach;
-        if !is_behind && length(minus(sight.hand, piece.behind)) > 0.05 {
+        let (along, aside) = split(sight.hand - piece.centre, piece.direction);
+        let is_behind = along < -0.2 * piece.reach && aside.length() < 0.5 * piece.reach;
+        if !is_behind && (sight.hand - piece.behind).length() > 0.05 {
             return self.go(sight, piece.behind, BRISK);
         }
         // Torn bodies are pushed gently, and harder only without progress.
@@ -228,20 +226,20 @@ impl Bot {
             true => 0.15 + FIRMER[D::N - 2] * firm,
             false => 0.25,
         } + 0.02 * self.temper[1];
-        let goal = plus(piece.centre, scaled(piece.direction, depth - piece.reach));
+        let goal = piece.centre + piece.direction * (depth - piece.reach);
         // A piece wedged in the mouth is pushed in corner by corner.
         let side = match (firm > 0.0 && !piece.fits, self.waited / 30 % 2) {
             (false, _) => 0.0,
             (true, 0) => -0.35,
             (true, _) => 0.35,
         };
-        let goal = plus(goal, scaled(sight.across, side * piece.reach));
+        let goal = goal + sight.across * (side * piece.reach);
         straight(sight, goal, GENTLE * (1.0 + 0.1 * self.temper[2]))
     }
 
     /// Moves the hand past the centre of the largest piece, on alternate sides, until this piece is small
     /// enough. Then pushes in pieces until the basket holds the required mass.
-    fn shave<D: Dim>(&mut self, sight: &Sight) -> Vector {
+    fn shave<D: Dim>(&mut self, sight: &Sight) -> Vec3 {
         self.gathers |= sight.kept < self.aim;
         // A piece stuck in front of the mouth must become smaller. This does not apply to a piece chosen
         // after others failed, nor if so little mass is missing that the next piece may suffice.
@@ -270,21 +268,21 @@ impl Bot {
                 let side = if is_even { 1.0 } else { -1.0 };
                 self.pieces = sight.pieces;
                 let off = (FIRST_OFFSET[D::N - 2] + 0.04 * self.temper[1]) * self.off * reach;
-                let from = plus(scaled(*axis, -1.15 * reach), scaled(*across, side * off));
+                let from = *axis * (-1.15 * reach) + *across * (side * off);
                 self.stroke = Stroke::Reach(from, 90);
                 sight.hand
             }
             Stroke::Reach(from, patience) => {
-                let place = plus(piece.centre, from);
-                let there = length(minus(sight.hand, place)) < 0.1;
+                let place = piece.centre + from;
+                let there = (sight.hand - place).length() < 0.1;
                 self.stroke = match there || patience == 0 {
-                    true => Stroke::Cut(plus(place, scaled(*axis, 2.6 * reach)), 40),
+                    true => Stroke::Cut(place + *axis * (2.6 * reach), 40),
                     false => Stroke::Reach(from, patience - 1),
                 };
                 self.go(sight, place, BRISK)
             }
             Stroke::Cut(to, patience) => {
-                let is_over = length(minus(sight.hand, to)) < 0.1 || patience == 0;
+                let is_over = (sight.hand - to).length() < 0.1 || patience == 0;
                 if is_over && sight.pieces <= self.pieces {
                     self.off *= CLOSER;
                     self.gathers = self.off < CLOSEST[D::N - 2];
@@ -303,14 +301,14 @@ impl Bot {
     }
 
     /// Returns the next target on the way to a position around obstacles, at the speed `pace` [m/s].
-    fn go(&self, sight: &Sight, place: Vector, pace: f32) -> Vector {
+    fn go(&self, sight: &Sight, place: Vec3, pace: f32) -> Vec3 {
         straight(sight, sight.map.next(sight.hand, place), pace)
     }
 }
 
 /// Returns the next target on the straight line to a position, at the speed `pace` [m/s].
-fn straight(sight: &Sight, place: Vector, pace: f32) -> Vector {
-    let way = minus(place, sight.goal);
-    let step = (pace * TICK / length(way).max(1e-6)).min(1.0);
-    plus(sight.goal, scaled(way, step))
+fn straight(sight: &Sight, place: Vec3, pace: f32) -> Vec3 {
+    let way = place - sight.goal;
+    let step = (pace * DEFAULT_TICK / way.length().max(1e-6)).min(1.0);
+    sight.goal + way * step
 }

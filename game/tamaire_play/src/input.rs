@@ -1,6 +1,6 @@
 //! Input of the players in a tick, from mouse, touch, stick, keys, a program or a recording.
 
-use fuwafuwa::Vector;
+use fuwafuwa::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// Maximum number of players in a round.
@@ -23,15 +23,15 @@ pub struct InputFrame {
 
 impl InputFrame {
     /// Returns a frame with a target for the first player [m].
-    pub fn towards(place: Vector) -> Self {
-        Self::default().with(0, place)
+    pub fn towards(position: Vec3) -> Self {
+        Self::default().with(0, position)
     }
 
     /// Returns the frame with a target for a player, counted from 0 [m]. Coordinates beyond ±4 m are clamped,
     /// and NaN becomes 0.
-    pub fn with(mut self, player: usize, place: Vector) -> Self {
+    pub fn with(mut self, player: usize, position: Vec3) -> Self {
         let unit = |k: f32| ((k * UNITS_PER_METRE).round() as i16).max(-i16::MAX);
-        self.goals[player] = Some(place.map(unit));
+        self.goals[player] = Some(position.to_array().map(unit));
         self
     }
 
@@ -55,8 +55,9 @@ impl InputFrame {
     }
 
     /// Returns the target of a player [m].
-    pub fn goal(&self, player: usize) -> Option<Vector> {
-        self.goals[player].map(|goal| goal.map(|k| f32::from(k) / UNITS_PER_METRE))
+    pub fn goal(&self, player: usize) -> Option<Vec3> {
+        let units = self.goals[player]?.map(f32::from);
+        Some(Vec3::from(units) / UNITS_PER_METRE)
     }
 }
 
@@ -66,23 +67,24 @@ mod tests {
 
     #[test]
     fn target_is_rounded_to_1_8192_m_and_clamped() {
-        let frame = InputFrame::towards([1.25, -3.999, 0.0]).with(1, [f32::NAN, 1e9, -1e9]);
+        let frame = InputFrame::towards(Vec3::new(1.25, -3.999, 0.0));
+        let frame = frame.with(1, Vec3::new(f32::NAN, 1e9, -1e9));
         let goal = frame.goal(0).unwrap();
-        assert!((goal[0] - 1.25).abs() < 1e-4 && (goal[1] + 3.999).abs() < 1e-4);
+        assert!((goal.x - 1.25).abs() < 1e-4 && (goal.y + 3.999).abs() < 1e-4);
         let nonsense = frame.goal(1).unwrap();
-        assert!(nonsense.iter().all(|k| k.abs() <= 4.0), "{nonsense:?}");
+        assert!(nonsense.abs().max_element() <= 4.0, "{nonsense:?}");
         assert_eq!(InputFrame::default().goal(0), None);
     }
 
     #[test]
     fn row_round_trips_absent_hands() {
-        let far = InputFrame::towards([-1e9; 3]);
-        let second = InputFrame::default().with(1, [0.5, 0.0, 0.0]);
+        let far = InputFrame::towards(Vec3::splat(-1e9));
+        let second = InputFrame::default().with(1, Vec3::new(0.5, 0.0, 0.0));
         for (frame, length) in [
             (InputFrame::default(), 0),
             (far, 3),
             (second, 6),
-            (far.with(1, [0.0; 3]), 6),
+            (far.with(1, Vec3::ZERO), 6),
         ] {
             let row = frame.row();
             assert_eq!(row.len(), length);

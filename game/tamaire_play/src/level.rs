@@ -4,9 +4,10 @@ mod room;
 
 use crate::Route;
 use fuwafuwa::inspect::Hash;
-use fuwafuwa::{Dim, Dim2, Dim3, Shape, World};
+use fuwafuwa::{Dim, Dim2, Dim3, Shape, Vec3, World};
 use fuwafuwa_scenes::scene::{
-    BodyText, Fetch, GameText, MAX_TEXT_BYTES, MotionTypeText, Scene, SceneError, extension_of,
+    BodyText, Fetch, GameText, MAX_TEXT_BYTES, MotionTypeText, RigidBodyText, Scene, SceneError,
+    extension_of,
 };
 use std::any::Any;
 use std::io;
@@ -25,7 +26,7 @@ pub struct Level {
 }
 
 /// World at the start, and basket.
-type Start<D> = (World<D>, Option<Shape>);
+type Start<D> = (World<D>, Option<Shape<D>>);
 
 impl PartialEq for Level {
     fn eq(&self, other: &Self) -> bool {
@@ -235,9 +236,13 @@ impl Level {
                 "expected no tick: a tick of a level is 1/60 s",
             ));
         }
-        let falls = |drive| matches!(drive, MotionTypeText::Fixed | MotionTypeText::Free);
-        if !{ scene.rigid.iter() }.all(|rigid| falls(rigid.drive) && rigid.state.is_none()) {
-            return Err(missing("rigid", "expected drive = \"fixed\" or \"free\""));
+        let is_playable = |body: &RigidBodyText| {
+            let known = [MotionTypeText::Fixed, MotionTypeText::Dynamic];
+            known.contains(&body.motion_type) && body.state.is_none()
+        };
+        if !scene.rigid_body.iter().all(is_playable) {
+            let reason = "expected motion_type = \"fixed\" or \"dynamic\"";
+            return Err(missing("rigid_body", reason));
         }
         let [low, high] = scene.view;
         if low.iter().chain(&high).any(|k| k.abs() > 3.9) {
@@ -295,8 +300,8 @@ impl Level {
     }
 
     /// Returns the low and the high corner of the room in which hands can move [m].
-    pub fn arena(&self) -> [[f32; 3]; 2] {
-        self.scene.view
+    pub fn arena(&self) -> [Vec3; 2] {
+        self.scene.view.map(Vec3::from)
     }
 
     /// Returns a hash of the level, assists included. Equal hashes mean equal levels.

@@ -17,6 +17,7 @@
 //! [`AnyRound`] has the dimension of its level:
 //!
 //! ```
+//! use fuwafuwa::Vec3;
 //! use std::sync::Arc;
 //! use tamaire_play::{AnyRound, Bot, BotKind, InputFrame, Level};
 //!
@@ -24,7 +25,7 @@
 //! assert_eq!(level.scene().dim, 3);
 //! let mut round = AnyRound::new(level);
 //! // x to the right, y up, z towards the player [m].
-//! round.step(InputFrame::towards([-1.0, 1.2, 0.0]));
+//! round.step(InputFrame::towards(Vec3::new(-1.0, 1.2, 0.0)));
 //! let mut bot = Bot::new(BotKind::Squeeze, 1);
 //! for _ in 0..5 {
 //!     let frame = round.ask(&mut bot);
@@ -58,5 +59,5 @@ pub use input::{InputFrame, PLAYERS};
 pub use level::Level;
 pub use link::{Link, LinkError};
 pub use replay::{Playback, Replay, ReplayError};
-pub use round::Round;
+pub use round::{Hand, Round};
 pub use rules::{Outcome, Progress};

@@ -2,13 +2,14 @@
 //! round can be shared without a server that stores it.
 //!
 //! ```
+//! use fuwafuwa::Vec3;
 //! use std::sync::Arc;
 //! use tamaire_play::link::{Link, address};
 //! use tamaire_play::{AnyRound, InputFrame, Level, Playback};
 //!
 //! let mut round = AnyRound::new(Arc::new(Level::open("classic")?));
 //! for _ in 0..30 {
-//!     round.step(InputFrame::towards([0.5, 0.2, 0.0]));
+//!     round.step(InputFrame::towards(Vec3::new(0.5, 0.2, 0.0)));
 //! }
 //! let sent = address("https://example.org/play/", &round.replay().link()?);
 //! assert!(sent.starts_with("https://example.org/play/#r1") && sent.len() < 200);

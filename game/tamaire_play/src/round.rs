@@ -1,8 +1,10 @@
 //! Rounds of a level.
 
 use crate::{InputFrame, Level, PLAYERS, Progress};
-use fuwafuwa::DEFAULT_TICK;
-use fuwafuwa::{Dim, RigidBody, RigidBodyHandle, Shape, StepReport, Vector, World};
+use fuwafuwa::{
+    DEFAULT_TICK, Dim, Dim3, DimAngular, DimVector, Reaction, RigidBody, RigidBodyHandle,
+    RigidBodyRef, Shape, StepReport, Vec3, World,
+};
 use std::sync::Arc;
 
 /// Maximum speed of a hand's target [m/s]. A hand much faster than a wave in the body would throw the body
@@ -15,14 +17,44 @@ pub const LEASH: f32 = 0.4;
 /// Maximum number of recorded ticks: an hour. A round may last longer.
 pub const MAX_TICKS: usize = 60 * 60 * 60;
 
+/// Hand of a player, with three coordinates in 2D and in 3D.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hand {
+    /// Position [m].
+    pub position: Vec3,
+    /// Target position [m].
+    pub target: Vec3,
+    /// Velocity [m/s].
+    pub velocity: Vec3,
+    /// Forces on the hand in each substep of the last tick.
+    pub reactions: Vec<Reaction<Dim3>>,
+}
+
+impl<D: Dim> From<RigidBodyRef<'_, D>> for Hand {
+    fn from(hand: RigidBodyRef<'_, D>) -> Self {
+        let in_3d = |reaction: Reaction<D>| Reaction {
+            contact: reaction.contact.to_vec3(),
+            torque: reaction.torque.to_vec3(),
+            coupling: reaction.coupling.to_vec3(),
+        };
+        Self {
+            position: hand.position().to_vec3(),
+            target: hand.target_position().to_vec3(),
+            velocity: hand.velocity().linear.to_vec3(),
+            reactions: hand.reactions().map(in_3d).collect(),
+        }
+    }
+}
+
 /// A round of a level.
 #[derive(Clone, Debug)]
 pub struct Round<D: Dim> {
     level: Arc<Level>,
     world: World<D>,
-    basket: Option<Shape>,
+    basket: Option<Shape<D>>,
     progress: Progress,
-    starts: Vec<RigidBody>,
+    /// Hands of all players at the start.
+    starts: Vec<RigidBody<D>>,
     /// Hands of the players that have joined.
     players: Vec<RigidBodyHandle>,
     frames: Vec<InputFrame>,
@@ -36,11 +68,10 @@ impl<D: Dim> Round<D> {
     /// If the level has another dimension.
     pub fn new(level: Arc<Level>) -> Self {
         let (mut world, basket) = level.build::<D>();
-        let hands: Vec<RigidBodyHandle> = world.target_followers().map(|(id, _)| id).collect();
-        let starts = hands
-            .iter()
-            .map(|&id| world.rigid_body(id).unwrap().clone());
-        let starts: Vec<RigidBody> = starts.collect();
+        let bodies = world.rigid_bodies();
+        let hands = bodies.filter(|(_, body)| body.follows_target());
+        let (hands, starts): (Vec<RigidBodyHandle>, Vec<RigidBody<D>>) =
+            hands.map(|(hand, body)| (hand, body.definition())).unzip();
         // The other hands are added when their players join.
         for &hand in hands.iter().skip(1) {
             world.remove(hand).expect("the world has this hand");
@@ -61,8 +92,9 @@ impl<D: Dim> Round<D> {
     pub fn step(&mut self, frame: InputFrame) -> StepReport {
         self.let_players_in(&frame);
         for player in 0..self.players.len() {
-            let goal = self.reachable(player, frame.goal(player));
-            let sent = self.world.set_target_position(self.players[player], goal);
+            let goal = D::Vector::from_vec3(self.reachable(player, frame.goal(player)));
+            let hand = self.players[player];
+            let sent = self.world.set_target_position(hand, goal);
             sent.expect("the hand is in the world, and its target in the arena");
         }
         let report = self.world.step();
@@ -91,14 +123,17 @@ impl<D: Dim> Round<D> {
     }
 
     /// Returns the hands of the players that have joined, in the order of the players.
-    pub fn hands(&self) -> impl ExactSizeIterator<Item = &RigidBody> {
-        self.players
-            .iter()
-            .map(|&hand| self.world.rigid_body(hand).unwrap())
+    pub fn hands(&self) -> impl ExactSizeIterator<Item = RigidBodyRef<'_, D>> {
+        self.players.iter().map(|&hand| self.hand(hand))
+    }
+
+    fn hand(&self, hand: RigidBodyHandle) -> RigidBodyRef<'_, D> {
+        let hand = self.world.rigid_body(hand);
+        hand.expect("hands of players stay in the world")
     }
 
     /// Returns the region to be filled, if the level has one.
-    pub fn basket(&self) -> Option<&Shape> {
+    pub fn basket(&self) -> Option<&Shape<D>> {
         self.basket.as_ref()
     }
 
@@ -106,8 +141,8 @@ impl<D: Dim> Round<D> {
     ///
     /// # Panics
     /// If the level has no such hand.
-    pub fn start(&self, player: usize) -> Vector {
-        self.starts[player].position()
+    pub fn start(&self, player: usize) -> D::Vector {
+        self.starts[player].position
     }
 
     /// Returns the current progress.
@@ -139,8 +174,7 @@ impl<D: Dim> Round<D> {
             if frame.goals[player].is_none() {
                 break;
             }
-            let hand = self.starts[player].clone();
-            let added = self.world.add_rigid_body(hand);
+            let added = self.world.add_rigid_body(self.starts[player]);
             let added = added.expect("the world accepted this hand when the level was checked");
             self.players.push(added);
         }
@@ -148,31 +182,32 @@ impl<D: Dim> Round<D> {
 
     /// Returns the position nearest to `wish` that the target of a player's hand can reach in a tick. Without
     /// a wish the target stays.
-    fn reachable(&self, player: usize, wish: Option<Vector>) -> Vector {
-        let hand = self.world.rigid_body(self.players[player]).unwrap();
+    fn reachable(&self, player: usize, wish: Option<Vec3>) -> Vec3 {
+        let hand = self.hand(self.players[player]);
+        let target = hand.target_position().to_vec3();
         let [low, high] = self.level.arena();
-        let [first, last] = hand.form().bounds();
-        let mut goal = wish.unwrap_or(hand.target_position());
+        let [first, last] = hand.local_shape().bounds();
+        let mut goal = wish.unwrap_or(target);
         for axis in 0..D::N {
             let half = 0.5 * (high[axis] - low[axis]);
             let [below, above] = [-first[axis], last[axis]].map(|k| k.min(half));
             goal[axis] = goal[axis].clamp(low[axis] + below, high[axis] - above);
         }
-        let goal = near(hand.target_position(), goal, TOP_SPEED * TICK);
-        near(hand.position(), goal, LEASH)
+        let goal = near(target, goal, TOP_SPEED * DEFAULT_TICK);
+        near(hand.position().to_vec3(), goal, LEASH)
     }
 }
 
 /// Returns the position nearest to `wish` within the distance `most` of `from`.
-fn near(from: Vector, wish: Vector, most: f32) -> Vector {
-    let way = [0, 1, 2].map(|axis| wish[axis] - from[axis]);
-    let distance = way.iter().map(|k| k * k).sum::<f32>().sqrt();
+fn near(from: Vec3, wish: Vec3, most: f32) -> Vec3 {
+    let way = wish - from;
+    let distance = way.length();
     let share = if distance > most {
         most / distance
     } else {
         1.0
     };
-    [0, 1, 2].map(|axis| from[axis] + share * way[axis])
+    from + way * share
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! Conditions and routes of a win.
 
 use crate::{Level, Route, Wish};
-use fuwafuwa::DEFAULT_TICK;
-use fuwafuwa::inspect::vector::minus;
-use fuwafuwa::{Dim, ElementId, PieceView, Shape, SoftBody, World};
+use fuwafuwa::inspect::Row;
+use fuwafuwa::{DEFAULT_TICK, Dim, DimVector, ElementId, PieceView, Shape, SoftBody, World};
 use serde::{Deserialize, Serialize};
 
 /// Speed below which a node counts as resting in the basket [m/s].
@@ -68,7 +67,7 @@ pub struct Outcome {
 impl Outcome {
     /// Returns the duration of the round [s].
     pub fn seconds(&self) -> f32 {
-        self.ticks as f32 * TICK
+        self.ticks as f32 * DEFAULT_TICK
     }
 
     /// Returns whether the outcome meets a wish of the level.
@@ -88,15 +87,11 @@ impl Progress {
             inside: 0.0,
             within: 0.0,
             kept: 1.0,
-            pieces: world
-                .soft_bodies()
-                .map(|(_, body)| body)
-                .map(|body| body.pieces().list.len())
-                .sum(),
+            pieces: views.iter().map(Vec::len).sum(),
             held: 0.0,
             relaxed: false,
             outcome: None,
-            bodies: world.soft_bodies().count(),
+            bodies: views.len(),
             squeezed: SQUEEZED + own_strain(world, &views),
             whole: greatest(&views),
         }
@@ -106,7 +101,7 @@ impl Progress {
     pub(crate) fn watch<D: Dim>(
         &mut self,
         level: &Level,
-        basket: Option<&Shape>,
+        basket: Option<&Shape<D>>,
         world: &World<D>,
     ) {
         let views = views_of(world);
@@ -119,9 +114,13 @@ impl Progress {
         self.inside = resting / self.mass;
         self.within = all / self.mass;
         let enough = self.inside >= level.game().share;
-        self.held = if enough { self.held + TICK } else { 0.0 };
+        self.held = if enough {
+            self.held + DEFAULT_TICK
+        } else {
+            0.0
+        };
         self.relaxed &= enough;
-        let looks = self.held == TICK || world.ticks().is_multiple_of(LOOK);
+        let looks = self.held == DEFAULT_TICK || world.ticks().is_multiple_of(LOOK);
         if enough && looks && !self.relaxed {
             self.relaxed = strain_inside(world, &views, basket) <= self.squeezed;
         }
@@ -129,7 +128,7 @@ impl Progress {
             let all = views.iter().flatten();
             let lost = all
                 .filter(|view| view.mass > CRUMB * self.mass)
-                .filter(|view| basket.distance(view.centre).0 > 0.0)
+                .filter(|view| basket.distance(D::Vector::from_vec3(view.centre)).0 > 0.0)
                 .count();
             self.outcome = Some(Outcome {
                 ticks: world.ticks(),
@@ -154,11 +153,8 @@ impl Progress {
 }
 
 fn views_of<D: Dim>(world: &World<D>) -> Vec<Vec<PieceView>> {
-    world
-        .soft_bodies()
-        .map(|(_, body)| body)
-        .map(SoftBody::piece_views)
-        .collect()
+    let bodies = world.soft_bodies();
+    bodies.map(|(_, body)| body.piece_views()).collect()
 }
 
 /// Returns the sum of the masses of each body's largest piece [kg].
@@ -173,31 +169,28 @@ fn greatest(views: &[Vec<PieceView>]) -> f32 {
 /// the body, of the body's material with the largest ratio of density to stiffness. The stress is ρ g h at
 /// the foot of the column and zero at the top.
 fn own_strain<D: Dim>(world: &World<D>, views: &[Vec<PieceView>]) -> f32 {
-    let gravity = world.config().gravity;
-    let of = |(body, pieces): (&SoftBody<D>, &Vec<PieceView>)| {
+    let gravity = world.config().gravity.to_vec3();
+    let of = |body: &SoftBody<D>, pieces: &[PieceView]| {
         let materials = body.materials().iter();
         let heavy = materials.map(|m| m.density / m.elasticity.young as f32);
         let drops = pieces.iter().map(|piece| {
-            let sides = minus(piece.high, piece.low);
-            (0..3).map(|axis| (gravity[axis] * sides[axis]).abs()).sum()
+            let sides = piece.high - piece.low;
+            (gravity * sides).abs().element_sum()
         });
         let softer = body.stiffness_scale() as f32;
         0.5 * heavy.fold(0.0, f32::max) * drops.fold(0.0, f32::max) / softer
     };
-    let bodies = world.soft_bodies().map(|(_, body)| body).zip(views);
-    bodies.map(of).fold(0.0, f32::max)
+    let strains = { world.soft_bodies().zip(views) }.map(|((_, body), pieces)| of(body, pieces));
+    strains.fold(0.0, f32::max)
 }
 
 fn total_mass<D: Dim>(world: &World<D>) -> f32 {
-    world
-        .soft_bodies()
-        .map(|(_, body)| body)
-        .map(|body| body.total_mass() as f32)
-        .sum()
+    let bodies = world.soft_bodies();
+    bodies.map(|(_, body)| body.total_mass() as f32).sum()
 }
 
 /// Returns the mass of the nodes in a region [kg]: of those at rest, and of all.
-fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
+fn masses_inside<D: Dim>(world: &World<D>, region: &Shape<D>) -> (f32, f32) {
     let inside = |body: &SoftBody<D>| {
         let (mut resting, mut all) = (0.0, 0.0);
         for (id, _) in body.mesh().nodes() {
@@ -206,25 +199,25 @@ fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
             }
             let (_, velocity, mass) = body.node_state(id);
             all += mass;
-            let square: f32 = velocity.iter().map(|k| k * k).sum();
-            if square < RESTING * RESTING {
+            if velocity.dot(velocity) < RESTING * RESTING {
                 resting += mass;
             }
         }
         (resting, all)
     };
-    let bodies = world.soft_bodies().map(|(_, body)| body).map(inside);
+    let bodies = world.soft_bodies().map(|(_, body)| inside(body));
     bodies.fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1))
 }
 
 /// Returns the mean strain of the elements in a region, weighted by volume. Counts only pieces of more than
 /// 50 elements with their centre in the region.
-fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Shape) -> f32 {
+fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Shape<D>) -> f32 {
     let (mut sum, mut volume) = (0.0, 0.0);
-    for (body, pieces) in world.soft_bodies().map(|(_, body)| body).zip(views) {
+    for ((_, body), pieces) in world.soft_bodies().zip(views) {
         let counts = |id: ElementId| {
             let view = &pieces[body.pieces().of_element(id).index()];
-            region.distance(view.centre).0 < 0.0 && view.element_count > 50
+            let centre = D::Vector::from_vec3(view.centre);
+            region.distance(centre).0 < 0.0 && view.element_count > 50
         };
         for (id, element) in body.mesh().elements().filter(|(id, _)| counts(*id)) {
             let children = match element.cell.level {
@@ -241,13 +234,12 @@ fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Sh
 }
 
 /// Returns whether a position is in a region. For a box, the shape of all baskets, this needs no square root.
-fn is_inside(region: &Shape, [x, y, z, _]: [f32; 4]) -> bool {
+fn is_inside<D: Dim>(region: &Shape<D>, position: Row) -> bool {
     match *region {
         Shape::Box { centre, half } => {
-            let at = minus([x, y, z], centre);
-            (0..3).all(|axis| at[axis].abs() < half[axis])
+            (0..D::N).all(|axis| (position[axis] - centre[axis]).abs() < half[axis])
         }
-        _ => region.distance([x, y, z]).0 < 0.0,
+        _ => region.distance(D::Vector::from_vec3(position.xyz())).0 < 0.0,
     }
 }
 
@@ -255,18 +247,19 @@ fn is_inside(region: &Shape, [x, y, z, _]: [f32; 4]) -> bool {
 mod tests {
     use super::{SQUEEZED, is_inside, strain_inside, views_of};
     use crate::{Bot, BotKind, InputFrame, Level, Round};
-    use fuwafuwa::{Dim2, Dim3, Shape};
+    use fuwafuwa::{Dim2, Dim3, Shape, Vec3};
     use std::sync::Arc;
 
     #[test]
     fn is_inside_agrees_with_the_distance() {
-        let (centre, half) = ([1.05, 0.3, 0.0], [0.43, 0.3, 0.425]);
-        let basket = Shape::Box { centre, half };
+        let (centre, half) = (Vec3::new(1.05, 0.3, 0.0), Vec3::new(0.43, 0.3, 0.425));
+        let basket = Shape::<Dim3>::Box { centre, half };
         let mut count = 0;
         for place in 0..11_usize.pow(3) {
             let steps = [place % 11, place / 11 % 11, place / 121];
-            let at = [0, 1, 2].map(|k| centre[k] + (0.25 * steps[k] as f32 - 1.25) * half[k]);
-            let inside = is_inside(&basket, [at[0], at[1], at[2], 0.0]);
+            let shares = Vec3::from(steps.map(|step| 0.25 * step as f32 - 1.25));
+            let at = centre + shares * half;
+            let inside = is_inside(&basket, at.into());
             assert_eq!(inside, basket.distance(at).0 < 0.0, "{at:?}");
             count += usize::from(inside);
         }
@@ -295,10 +288,7 @@ mod tests {
             round.step(InputFrame::default());
         }
         let (world, [low, high]) = (round.world(), round.level().arena());
-        let room = Shape::Box {
-            centre: [0, 1, 2].map(|k| 0.5 * (low[k] + high[k])),
-            half: [0, 1, 2].map(|k| 0.5 * (high[k] - low[k])),
-        };
+        let room = Shape::cuboid(0.5 * (high - low)).translated(0.5 * (low + high));
         let strain = strain_inside(world, &views_of(world), &room);
         let limit = round.progress().squeezed;
         assert!(SQUEEZED < strain && strain < limit, "{strain}, {limit}");

@@ -1,6 +1,6 @@
 //! Tests of every built-in level, and of invalid levels and replays.
 
-use fuwafuwa::{Dim, Dim2, Dim3};
+use fuwafuwa::{Dim, Dim2, Dim3, DimVector, MotionType, Shape, Vec3};
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::replay::VERSION;
@@ -32,17 +32,19 @@ fn is_closed<D: Dim>(id: &str) {
     let level = Arc::new(Level::open(id).unwrap());
     let [low, high] = level.arena();
     let round = Round::<D>::new(level);
-    let is_rigid = |at: [f32; 3]| {
-        let mut all = round.world().fixed_rigid_bodies();
-        all.any(|obstacle| obstacle.shape().distance(at).0 < 0.0)
+    let bodies = round.world().rigid_bodies().map(|(_, body)| body);
+    let walls = bodies.filter(|body| body.motion_type() == MotionType::Fixed);
+    let walls: Vec<Shape<D>> = walls.map(|wall| wall.shape()).collect();
+    let is_rigid = |at: Vec3| {
+        let at = D::Vector::from_vec3(at);
+        walls.iter().any(|wall| wall.distance(at).0 < 0.0)
     };
-    let place =
-        |axis: usize, step: i32| low[axis] + (high[axis] - low[axis]) * step as f32 / STEPS as f32;
     let deep = if D::N == 3 { 0..=STEPS } else { 0..=0 };
     for (x, y, z) in
         deep.flat_map(|z| (0..=STEPS).flat_map(move |x| (0..=STEPS).map(move |y| (x, y, z))))
     {
-        let at = [place(0, x), place(1, y), place(2, z)];
+        let steps = Vec3::from([x, y, z].map(|step| step as f32));
+        let at = low + (high - low) * steps / STEPS as f32;
         for axis in 0..D::N {
             for (side, sign) in [(low, -1.0), (high, 1.0)] {
                 let mut out = at;
@@ -66,7 +68,7 @@ fn stays_whole_and_in_the_room<D: Dim>(id: &str, ticks: usize) {
     }
     assert!(still.progress().outcome.is_none(), "{id}");
     let [low, high] = level.arena();
-    for body in wild.world().soft_bodies() {
+    for (_, body) in wild.world().soft_bodies() {
         for piece in body.piece_views() {
             let mut inside = (0..D::N)
                 .map(|axis| piece.centre[axis] > low[axis] && piece.centre[axis] < high[axis]);

@@ -1,6 +1,7 @@
 //! Rounds and levels as links. `--nocapture` prints their lengths.
 
 use fastrand::Rng;
+use fuwafuwa::Vec3;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
@@ -140,7 +141,7 @@ fn hand(seed: u64, seconds: usize, rate: f32, grain: f32) -> Vec<InputFrame> {
         let read = (tick as f32 / 60.0 * rate).floor() / rate;
         let [x, y] = way[(read * STEPS as f32) as usize];
         let rounded = |k: f32| (k * 8192.0 / grain).round() * grain / 8192.0;
-        InputFrame::towards([rounded(x), rounded(y), 0.0])
+        InputFrame::towards(Vec3::new(rounded(x), rounded(y), 0.0))
     };
     (0..60 * seconds).map(frame).collect()
 }
@@ -186,12 +187,12 @@ fn link_reproduces_two_hands_that_come_and_go() {
         let mut random = Rng::with_seed(7);
         for tick in 0..90 {
             let mut frame = InputFrame::default();
-            let place = [0; 3].map(|_: i32| 100.0 * random.f32() - 50.0);
+            let place = Vec3::from([0; 3].map(|_: i32| 100.0 * random.f32() - 50.0));
             if tick > 3 && tick % 7 < 5 {
                 frame = frame.with(0, place);
             }
             if tick > 20 && tick % 5 < 4 {
-                frame = frame.with(1, place.map(|k| -k));
+                frame = frame.with(1, -place);
             }
             round.step(frame);
         }
@@ -427,7 +428,7 @@ fn round_too_long_for_a_link_can_be_stored_as_fragment() {
     let mut random = fastrand::Rng::with_seed(1);
     for _ in 0..3000 {
         let places = [0, 1].map(|_| 4.0 * random.f32() - 2.0);
-        round.step(InputFrame::towards([places[0], places[1], 0.0]));
+        round.step(InputFrame::towards(Vec3::new(places[0], places[1], 0.0)));
     }
     let replay = round.replay();
     let long = replay.fragment().unwrap();
@@ -452,7 +453,7 @@ fn round_too_long_for_a_link_can_be_stored_as_fragment() {
 fn code_in_digits_restores_the_same_round_as_the_link() {
     let mut round = AnyRound::new(Arc::new(Level::open("classic").unwrap()));
     for tick in 0..120 {
-        round.step(InputFrame::towards([0.01 * tick as f32, 0.2, 0.0]));
+        round.step(InputFrame::towards(Vec3::new(0.01 * tick as f32, 0.2, 0.0)));
     }
     let replay = round.replay();
     let code = replay.code().unwrap();

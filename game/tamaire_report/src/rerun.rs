@@ -94,9 +94,7 @@ fn run(replay: Replay) -> Rerun {
             return Rerun::Astray(error.to_string());
         }
         for hand in playback.round().hands() {
-            *cells
-                .entry(grid.cell_at(hand.position()) as u16)
-                .or_default() += 1;
+            *cells.entry(grid.cell_at(hand.position) as u16).or_default() += 1;
         }
     }
     let progress = playback.round().progress();

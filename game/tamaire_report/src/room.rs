@@ -1,8 +1,7 @@
 //! Map of a level's room: its cells and the objects in it.
 
-use fuwafuwa::inspect::vector::plus;
-use fuwafuwa::{Dim, Shape, Vector, World};
-use tamaire_play::{AnyRound, Level};
+use fuwafuwa::{Dim, DimVector, Shape, Vec3};
+use tamaire_play::{AnyRound, Level, Round};
 
 /// Number of cells along the longer side of a room.
 const CELLS: f32 = 64.0;
@@ -65,9 +64,9 @@ impl Grid {
     }
 
     /// Returns the index of the cell that contains a position, or of the nearest one.
-    pub fn cell_at(&self, place: Vector) -> usize {
+    pub fn cell_at(&self, position: Vec3) -> usize {
         let [column, row] = [0, 1].map(|k| {
-            let cells = (place[self.axes[k]] - self.low[k]) / self.cell;
+            let cells = (position[self.axes[k]] - self.low[k]) / self.cell;
             (cells.max(0.0) as usize).min(self.counts[k] - 1)
         });
         row * self.counts[0] + column
@@ -77,51 +76,39 @@ impl Grid {
 /// Returns the objects in the room of a level at the start of a round.
 pub fn strokes(level: Level) -> Vec<Stroke> {
     let grid = Grid::of(&level);
-    let round = AnyRound::new(level.into());
-    let mut strokes = match &round {
-        AnyRound::Plane(round) => of_world(grid, round.world()),
-        AnyRound::Space(round) => of_world(grid, round.world()),
-    };
-    strokes.extend(
-        round
-            .basket()
-            .and_then(|basket| of_shape(grid, basket, ObjectKind::Basket)),
-    );
-    strokes
+    match AnyRound::new(level.into()) {
+        AnyRound::Plane(round) => of_round(grid, &round),
+        AnyRound::Space(round) => of_round(grid, &round),
+    }
 }
 
-fn of_world<D: Dim>(grid: Grid, world: &World<D>) -> Vec<Stroke> {
-    let fixed = world
-        .rigid_bodies()
-        .map(|(_, body)| body)
-        .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor);
-    let fixed = fixed.filter_map(|rigid| of_shape(grid, rigid.shape(), ObjectKind::Obstacle));
-    let bodies = world
-        .soft_bodies()
-        .map(|(_, body)| body)
-        .flat_map(|body| match D::N {
-            2 => body
-                .outlines()
-                .into_iter()
-                .map(|outline| flat(grid, &outline.points))
-                .collect(),
-            _ => {
-                let nodes = body.mesh().nodes().map(|(id, _)| {
-                    let [x, y, z, _] = body.positions()[id];
-                    [x, y, z]
-                });
-                vec![hull(flat(grid, &nodes.collect::<Vec<_>>()))]
-            }
-        });
+fn of_round<D: Dim>(grid: Grid, round: &Round<D>) -> Vec<Stroke> {
+    let world = round.world();
+    let rigid = world.rigid_bodies().map(|(_, body)| body);
+    let obstacles = rigid.filter(|body| !body.follows_target() && !body.is_sensor());
+    let obstacles = obstacles.filter_map(|body| of_shape(grid, body.shape(), ObjectKind::Obstacle));
+    let bodies = world.soft_bodies().flat_map(|(_, body)| match D::N {
+        2 => {
+            let outlines = body.outlines().into_iter();
+            outlines.map(|outline| flat(grid, outline.points)).collect()
+        }
+        _ => {
+            let nodes = body.mesh().nodes();
+            let positions = nodes.map(|(id, _)| body.positions()[id].xyz());
+            vec![hull(flat(grid, positions))]
+        }
+    });
     let bodies = bodies.map(|points| closed(ObjectKind::Body, points));
-    fixed.chain(bodies).collect()
+    let basket = round.basket();
+    let basket = basket.and_then(|&basket| of_shape(grid, basket, ObjectKind::Basket));
+    obstacles.chain(bodies).chain(basket).collect()
 }
 
 /// Returns the outline of a shape. Half-spaces are left out, because walls and floors coincide with the
 /// border of the map.
-fn of_shape(grid: Grid, shape: &Shape, of: ObjectKind) -> Option<Stroke> {
-    let on_map = |at: Vector| grid.axes.map(|axis| at[axis]);
-    match *shape {
+fn of_shape<D: Dim>(grid: Grid, shape: Shape<D>, of: ObjectKind) -> Option<Stroke> {
+    let on_map = |at: D::Vector| grid.axes.map(|axis| at[axis]);
+    match shape {
         Shape::HalfSpace { .. } => None,
         Shape::Box { centre, half } => {
             let ([x, y], [width, height]) = (on_map(centre), on_map(half));
@@ -136,12 +123,11 @@ fn of_shape(grid: Grid, shape: &Shape, of: ObjectKind) -> Option<Stroke> {
         } => {
             let corner = |number: usize| {
                 let sign = |axis: usize| if number >> axis & 1 == 1 { 1.0 } else { -1.0 };
-                let own = [0, 1, 2].map(|axis: usize| sign(axis) * half[axis].min(1e6));
-                plus(centre, rotation.apply(own))
+                let own = Vec3::from([0, 1, 2].map(sign)) * half.to_vec3();
+                centre.to_vec3() + rotation.apply(own)
             };
-            // In 2D the third axis is projected away.
-            let corners: Vec<Vector> = (0..8).map(corner).collect();
-            Some(closed(of, hull(flat(grid, &corners))))
+            let corners = (0..1 << D::N).map(corner);
+            Some(closed(of, hull(flat(grid, corners))))
         }
         Shape::Capsule { from, to, radius } => Some(Stroke {
             of,
@@ -156,8 +142,8 @@ fn of_shape(grid: Grid, shape: &Shape, of: ObjectKind) -> Option<Stroke> {
     }
 }
 
-fn flat(grid: Grid, points: &[Vector]) -> Vec<[f32; 2]> {
-    let points = points.iter();
+fn flat(grid: Grid, points: impl IntoIterator<Item = Vec3>) -> Vec<[f32; 2]> {
+    let points = points.into_iter();
     points.map(|at| grid.axes.map(|axis| at[axis])).collect()
 }
 
@@ -206,8 +192,11 @@ mod tests {
             let grid = Grid::of(&level);
             let [low, high] = level.arena();
             let last = grid.counts[0] * grid.counts[1] - 1;
-            assert_eq!((grid.cell_at(low), grid.cell_at([9.0; 3])), (0, last));
-            assert_eq!(grid.cell_at([f32::NAN; 3]), 0);
+            assert_eq!(
+                (grid.cell_at(low), grid.cell_at(Vec3::splat(9.0))),
+                (0, last)
+            );
+            assert_eq!(grid.cell_at(Vec3::NAN), 0);
             assert!(grid.cell_at(high) <= last && last < usize::from(u16::MAX));
             let strokes = strokes(level);
             for thing in [ObjectKind::Obstacle, ObjectKind::Basket, ObjectKind::Body] {

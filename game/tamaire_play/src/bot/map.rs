@@ -1,7 +1,6 @@
 //! Path finding in a room, around obstacles and pieces.
 
-use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
-use fuwafuwa::{Dim, Vector};
+use fuwafuwa::{Dim, Vec3};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -13,7 +12,7 @@ const UNIT: f32 = 10.0;
 
 /// Cost of a step for each cell of a room.
 pub(super) struct Map {
-    low: Vector,
+    low: Vec3,
     /// Width of a cell [m].
     cell: f32,
     /// Number of cells on each axis; 1 on an unused axis.
@@ -25,20 +24,22 @@ pub(super) struct Map {
 /// Minimum cost of reaching a position from each cell.
 pub(super) struct CostField<'a> {
     map: &'a Map,
-    to: Vector,
+    to: Vec3,
     costs: Vec<u32>,
 }
 
 impl Map {
     /// Builds the map of a room from its low to its high corner [m]. `cost` is evaluated at the centre of
     /// each cell.
-    pub(super) fn new<D: Dim>([mut low, high]: [Vector; 2], cost: impl Fn(Vector) -> f32) -> Self {
+    pub(super) fn new<D: Dim>([mut low, high]: [Vec3; 2], cost: impl Fn(Vec3) -> f32) -> Self {
         let cell = CELL[D::N - 2];
-        let mut size =
-            [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / cell).ceil().max(1.0) as usize);
+        let cells = ((high - low) / cell).ceil().max(Vec3::ONE);
+        let mut size = cells.to_array().map(|cells| cells as usize);
         // On an unused axis the centre of the only cell is at 0.
         size[D::N..].fill(1);
-        low[D::N..].fill(-0.5 * cell);
+        if D::N == 2 {
+            low.z = -0.5 * cell;
+        }
         let costs = Vec::new();
         let mut map = Self {
             low,
@@ -53,25 +54,25 @@ impl Map {
     }
 
     /// Adds `cost` to the cell at a position and to its neighbours.
-    pub(super) fn add(&mut self, at: Vector, cost: f32) {
+    pub(super) fn add(&mut self, at: Vec3, cost: f32) {
         let cell = self.cell(at);
         self.costs[cell] += cost;
         around(self.size, cell, |next, _| self.costs[next] += cost);
     }
 
     /// Returns the minimum costs of reaching a position from all cells.
-    pub(super) fn ways_to(&self, to: Vector) -> CostField<'_> {
+    pub(super) fn ways_to(&self, to: Vec3) -> CostField<'_> {
         self.ways(to, None)
     }
 
     /// Returns the next target on the cheapest path from one position to another.
-    pub(super) fn next(&self, from: Vector, to: Vector) -> Vector {
+    pub(super) fn next(&self, from: Vec3, to: Vec3) -> Vec3 {
         self.ways(to, Some(self.cell(from))).next(from)
     }
 
     /// Runs Dijkstra's algorithm from the target. With `from`, it stops at that cell, and only costs below
     /// the cost of that cell are final.
-    fn ways(&self, to: Vector, from: Option<usize>) -> CostField<'_> {
+    fn ways(&self, to: Vec3, from: Option<usize>) -> CostField<'_> {
         let mut costs = vec![u32::MAX; self.costs.len()];
         let goal = self.cell(to);
         costs[goal] = 0;
@@ -96,33 +97,31 @@ impl Map {
         CostField { map, to, costs }
     }
 
-    fn cell(&self, at: Vector) -> usize {
-        let place = |axis: usize| {
-            let steps = ((at[axis] - self.low[axis]) / self.cell).max(0.0) as usize;
-            steps.min(self.size[axis] - 1)
-        };
+    fn cell(&self, at: Vec3) -> usize {
+        let steps = ((at - self.low) / self.cell).max(Vec3::ZERO);
+        let place = |axis: usize| (steps[axis] as usize).min(self.size[axis] - 1);
         number(self.size, [0, 1, 2].map(place))
     }
 
-    fn middle(&self, cell: usize) -> Vector {
-        let steps = steps(self.size, cell);
-        [0, 1, 2].map(|axis| self.low[axis] + (steps[axis] as f32 + 0.5) * self.cell)
+    fn middle(&self, cell: usize) -> Vec3 {
+        let steps = Vec3::from(steps(self.size, cell).map(|step| step as f32));
+        self.low + (steps + 0.5) * self.cell
     }
 
     /// Returns the cost of the straight line.
-    fn straight(&self, from: Vector, to: Vector) -> f32 {
-        let way = minus(to, from);
-        let steps = (length(way) / self.cell).ceil();
-        let place = |step: usize| plus(from, scaled(way, (step as f32 + 0.5) / steps.max(1.0)));
+    fn straight(&self, from: Vec3, to: Vec3) -> f32 {
+        let way = to - from;
+        let steps = (way.length() / self.cell).ceil();
+        let place = |step: usize| from + way * ((step as f32 + 0.5) / steps.max(1.0));
         let cost = |step| self.costs[self.cell(place(step))];
         let sum: f32 = (0..steps as usize).map(cost).sum();
-        UNIT * sum * length(way) / (self.cell * steps.max(1.0))
+        UNIT * sum * way.length() / (self.cell * steps.max(1.0))
     }
 }
 
 impl CostField<'_> {
     /// Returns the furthest position on the path from `from` that can be reached on a straight line.
-    pub(super) fn next(&self, from: Vector) -> Vector {
+    pub(super) fn next(&self, from: Vec3) -> Vec3 {
         let start = self.map.cell(from);
         let straight = self.map.straight(from, self.to);
         if straight <= self.costs[start] as f32 * 1.1 + UNIT {
@@ -189,36 +188,37 @@ mod tests {
 
     #[test]
     fn path_leads_around_a_wall_and_straight_through_free_space() {
-        let arena = [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]];
+        let arena = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, 1.0, 0.0)];
         // A wall across the centre with a gap at the top.
-        let wall = |at: Vector| at[0].abs() < 0.1 && at[1] < 0.7;
+        let wall = |at: Vec3| at.x.abs() < 0.1 && at.y < 0.7;
         let map = Map::new::<Dim2>(arena, |at| if wall(at) { 1000.0 } else { 1.0 });
-        let ways = map.ways_to([0.8, 0.0, 0.0]);
-        assert_eq!(ways.next([0.3, -0.8, 0.0]), [0.8, 0.0, 0.0]);
-        let mut at = [-0.8, 0.0, 0.0];
-        let mut highest = at[1];
+        let to = Vec3::new(0.8, 0.0, 0.0);
+        let ways = map.ways_to(to);
+        assert_eq!(ways.next(Vec3::new(0.3, -0.8, 0.0)), to);
+        let mut at = Vec3::new(-0.8, 0.0, 0.0);
+        let mut highest = at.y;
         for _ in 0..5 {
             at = ways.next(at);
             assert!(!wall(at), "{at:?}");
-            highest = at[1].max(highest);
+            highest = at.y.max(highest);
         }
-        assert_eq!(at, [0.8, 0.0, 0.0]);
+        assert_eq!(at, to);
         assert!(highest > 0.7);
     }
 
     #[test]
     fn path_in_3d_leads_over_a_wall() {
-        let arena = [[-1.0, 0.0, -1.0], [1.0, 1.5, 1.0]];
-        let wall = |at: Vector| at[0].abs() < 0.15 && at[1] < 0.8;
+        let arena = [Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 1.5, 1.0)];
+        let wall = |at: Vec3| at.x.abs() < 0.15 && at.y < 0.8;
         let map = Map::new::<Dim3>(arena, |at| if wall(at) { 1000.0 } else { 1.0 });
-        let to = [0.8, 0.2, 0.0];
+        let to = Vec3::new(0.8, 0.2, 0.0);
         let ways = map.ways_to(to);
-        let mut at = [-0.8, 0.2, 0.3];
-        let mut highest = at[1];
+        let mut at = Vec3::new(-0.8, 0.2, 0.3);
+        let mut highest = at.y;
         for _ in 0..6 {
             at = ways.next(at);
             assert!(!wall(at), "{at:?}");
-            highest = at[1].max(highest);
+            highest = at.y.max(highest);
         }
         assert_eq!(at, to);
         assert!(highest > 0.8);

@@ -2,8 +2,7 @@
 
 use super::map::Map;
 use crate::Round;
-use fuwafuwa::inspect::vector::{dot, length, minus, plus, scaled};
-use fuwafuwa::{Dim, PieceView, RigidBody, Shape, Vector};
+use fuwafuwa::{Dim, DimVector, MotionType, PieceView, Shape, Vec3};
 use std::cell::LazyCell;
 
 /// Share of the total mass below which a piece is ignored.
@@ -18,9 +17,9 @@ const SOFT: f32 = 400.0;
 /// A bot's view of a round.
 pub(super) struct Sight {
     /// Unit vector into the basket.
-    pub axis: Vector,
+    pub axis: Vec3,
     /// Unit vector along the mouth; horizontal in 3D.
-    pub across: Vector,
+    pub across: Vec3,
     /// The piece to push: the heaviest one outside the basket with free space behind it, after the skipped
     /// ones.
     pub piece: Piece,
@@ -33,10 +32,10 @@ pub(super) struct Sight {
     /// Share of the mass in the basket, at rest or moving, minus the required share.
     pub surplus: f32,
     /// Position and target of the hand [m].
-    pub hand: Vector,
-    pub goal: Vector,
+    pub hand: Vec3,
+    pub goal: Vec3,
     /// Waiting position of the hand: in front of the basket, as far away as possible [m].
-    pub away: Vector,
+    pub away: Vec3,
     /// Costs for the path of a hand.
     pub map: Map,
 }
@@ -45,13 +44,13 @@ pub(super) struct Sight {
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Piece {
     /// Centre [m].
-    pub centre: Vector,
+    pub centre: Vec3,
     /// Unit vector in the direction to push.
-    pub direction: Vector,
+    pub direction: Vec3,
     /// Distance between its centre and that of a hand that touches it from behind [m].
     pub reach: f32,
     /// Position from which a hand starts to push [m].
-    pub behind: Vector,
+    pub behind: Vec3,
     /// Distance between its centre and that of the mouth [m].
     pub far: f32,
     /// Whether the piece is narrower than the mouth.
@@ -61,13 +60,13 @@ pub(super) struct Piece {
 /// A bot's view of the basket.
 struct Basket {
     /// Unit vector into the basket.
-    axis: Vector,
+    axis: Vec3,
     /// Centre of the mouth [m].
-    mouth: Vector,
+    mouth: Vec3,
     /// Half width on each used axis across the mouth [m]; infinite on other axes.
-    half: Vector,
+    half: Vec3,
     /// Half width of the opening between the bars of the mouth, on the same axes [m].
-    opening: Vector,
+    opening: Vec3,
 }
 
 impl Sight {
@@ -76,9 +75,11 @@ impl Sight {
     pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
         let (world, arena) = (round.world(), round.level().arena());
         let region = round.basket()?;
-        let obstacles: Vec<&Shape> = world.fixed_rigid_bodies().map(RigidBody::shape).collect();
+        let fixed = world.rigid_bodies().map(|(_, body)| body);
+        let fixed = fixed.filter(|body| body.motion_type() == MotionType::Fixed);
+        let obstacles: Vec<Shape<D>> = fixed.map(|body| body.shape()).collect();
         let obstacles = obstacles.as_slice();
-        let basket = Basket::of::<D>(region, obstacles)?;
+        let basket = Basket::of(region, obstacles)?;
         let hand = round.hands().next()?;
         let radius = hand.shape().inradius();
         let mut map = Map::new::<D>(arena, |at| match clearance(at, obstacles) < 0.9 * radius {
@@ -87,13 +88,14 @@ impl Sight {
         });
 
         let mass = round.progress().mass;
-        let bodies = world.soft_bodies().map(|(_, body)| body);
-        let mut views: Vec<PieceView> = bodies.flat_map(|body| body.piece_views()).collect();
+        let bodies = world.soft_bodies();
+        let views = bodies.clone().flat_map(|(_, body)| body.piece_views());
+        let mut views: Vec<PieceView> = views.collect();
         views.sort_by(|a, b| b.mass.total_cmp(&a.mass));
         let largest = views.first()?;
         let is_out = |view: &&PieceView| view.mass > CRUMB * mass && !basket.holds(view);
         let ways = LazyCell::new(|| map.ways_to(basket.front()));
-        let ahead = |from: Vector| ways.next(from);
+        let ahead = |from: Vec3| ways.next(from);
         let mut pieces: Vec<Piece> = (views.iter().filter(is_out).take(MOST))
             .map(|view| Piece::of::<D>(view, &basket, &ahead, off, radius))
             .collect();
@@ -106,16 +108,16 @@ impl Sight {
         let piece = pieces[skips % pieces.len()];
 
         let mut within = 0.0;
-        for body in world.soft_bodies().map(|(_, body)| body) {
+        for (_, body) in bodies {
             for (id, _) in body.mesh().nodes() {
                 let (at, _, share) = body.node_state(id);
-                map.add(at, SOFT * share / mass);
+                map.add(at.to_vec3(), SOFT * share / mass);
                 if region.distance(at).0 < 0.0 {
                     within += share / mass;
                 }
             }
         }
-        let out = minus(basket.mouth, scaled(basket.axis, 4.0));
+        let out = basket.mouth - basket.axis * 4.0;
         Some(Self {
             axis: basket.axis,
             across: across::<D>(basket.axis),
@@ -124,8 +126,8 @@ impl Sight {
             pieces: views.len(),
             within,
             surplus: within - round.level().game().share,
-            hand: hand.position(),
-            goal: hand.target_position(),
+            hand: hand.position().to_vec3(),
+            goal: hand.target_position().to_vec3(),
             away: clamped(out, arena, radius),
             map,
         })
@@ -138,24 +140,24 @@ impl Piece {
     fn of<D: Dim>(
         view: &PieceView,
         basket: &Basket,
-        ahead: impl Fn(Vector) -> Vector,
+        ahead: impl Fn(Vec3) -> Vec3,
         off: f32,
         hand: f32,
     ) -> Self {
         let centre = view.centre;
-        let half = scaled(minus(view.high, view.low), 0.5);
-        let (along, aside) = split(minus(centre, basket.mouth), basket.axis);
+        let half = (view.high - view.low) * 0.5;
+        let (along, aside) = split(centre - basket.mouth, basket.axis);
         let spare = basket.spare(half);
         // In 3D, a piece that fits on one of the two axes across the mouth is moved on the other one only. So
         // a piece on a floor is not lifted.
         let fits =
             |axis: usize| D::N == 3 && spare[axis].is_finite() && aside[axis].abs() < spare[axis];
-        let off_mouth = length([0, 1, 2].map(|axis| if fits(axis) { 0.0 } else { aside[axis] }));
-        let narrowest = spare.into_iter().fold(f32::INFINITY, f32::min);
+        let off_mouth = [0, 1, 2].map(|axis| if fits(axis) { 0.0 } else { aside[axis] });
+        let off_mouth = Vec3::from(off_mouth).length();
         // Straight in, or first to a position in front of the mouth.
-        let target = match off_mouth > narrowest.max(off) {
+        let target = match off_mouth > spare.min_element().max(off) {
             true => ahead(centre),
-            false => plus(basket.mouth, scaled(basket.axis, along + 0.6)),
+            false => basket.mouth + basket.axis * (along + 0.6),
         };
         let target = [0, 1, 2].map(|axis| {
             if fits(axis) {
@@ -164,26 +166,27 @@ impl Piece {
                 target[axis]
             }
         });
-        let way = unit(minus(target, centre));
-        let reach = length([0, 1, 2].map(|k| way[k] * half[k])) + hand;
+        let way = unit(Vec3::from(target) - centre);
+        let reach = (way * half).length() + hand;
         Self {
             centre,
             direction: way,
             reach,
-            behind: minus(centre, scaled(way, 1.1 * reach)),
-            far: length(minus(centre, basket.mouth)),
-            fits: (0..3).all(|k| half[k] < basket.opening[k]),
+            behind: centre - way * (1.1 * reach),
+            far: (centre - basket.mouth).length(),
+            fits: half.cmplt(basket.opening).all(),
         }
     }
 }
 
 impl Basket {
-    fn of<D: Dim>(region: &Shape, obstacles: &[&Shape]) -> Option<Self> {
+    fn of<D: Dim>(region: &Shape<D>, obstacles: &[Shape<D>]) -> Option<Self> {
         let Shape::Box { centre, half } = *region else {
             return None;
         };
-        let axis = inwards::<D>(centre, half, obstacles);
-        let mouth = minus(centre, scaled(axis, dot(half, axis).abs()));
+        let (centre, half) = (centre.to_vec3(), half.to_vec3());
+        let axis = inwards(centre, half, obstacles);
+        let mouth = centre - axis * half.dot(axis).abs();
         let is_across = |k: usize| k < D::N && axis[k] == 0.0;
         let half = [0, 1, 2].map(|k| if is_across(k) { half[k] } else { f32::INFINITY });
         let opening = [0, 1, 2].map(|k| match half[k].is_finite() {
@@ -193,46 +196,45 @@ impl Basket {
         Some(Self {
             axis,
             mouth,
-            half,
-            opening,
+            half: half.into(),
+            opening: opening.into(),
         })
     }
 
     /// Returns the half width of the basket minus `half` on each axis [m]; negative where the basket is
     /// narrower.
-    fn spare(&self, half: Vector) -> Vector {
-        minus(self.half, half)
+    fn spare(&self, half: Vec3) -> Vec3 {
+        self.half - half
     }
 
     /// Returns a position in front of the mouth [m].
-    fn front(&self) -> Vector {
-        minus(self.mouth, scaled(self.axis, 0.5))
+    fn front(&self) -> Vec3 {
+        self.mouth - self.axis * 0.5
     }
 
     /// Returns whether the whole piece is in the basket.
     fn holds(&self, piece: &PieceView) -> bool {
-        let half = scaled(minus(piece.high, piece.low), 0.5);
-        let middle = scaled(plus(piece.high, piece.low), 0.5);
-        let (along, aside) = split(minus(middle, self.mouth), self.axis);
-        along > dot(half, self.axis).abs()
-            && self.spare(aside.map(f32::abs)).iter().all(|&k| k > 0.0)
+        let half = (piece.high - piece.low) * 0.5;
+        let middle = (piece.high + piece.low) * 0.5;
+        let (along, aside) = split(middle - self.mouth, self.axis);
+        along > half.dot(self.axis).abs() && self.spare(aside.abs()).min_element() > 0.0
     }
 }
 
 /// Returns the direction into a basket: opposite to the direction with the longest line of sight out of it.
-fn inwards<D: Dim>(centre: Vector, half: Vector, obstacles: &[&Shape]) -> Vector {
-    const WAYS: [Vector; 6] = [
-        [1.0, 0.0, 0.0],
-        [0.0, -1.0, 0.0],
-        [-1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [0.0, 0.0, 1.0],
-        [0.0, 0.0, -1.0],
+fn inwards<D: Dim>(centre: Vec3, half: Vec3, obstacles: &[Shape<D>]) -> Vec3 {
+    const WAYS: [Vec3; 6] = [
+        Vec3::X,
+        Vec3::NEG_Y,
+        Vec3::NEG_X,
+        Vec3::Y,
+        Vec3::Z,
+        Vec3::NEG_Z,
     ];
-    let sees = |way: &Vector| {
-        let place = |step: usize| minus(centre, scaled(*way, 0.05 * step as f32));
+    let sees = |way: &Vec3| {
+        let place = |step: usize| centre - *way * (0.05 * step as f32);
         let free = (0..100).take_while(|&step| clearance(place(step), obstacles) > 0.0);
-        free.count() as f32 * 0.05 - dot(half, *way).abs()
+        free.count() as f32 * 0.05 - half.dot(*way).abs()
     };
     let ways = WAYS.into_iter().take(2 * D::N);
     ways.max_by(|a, b| sees(a).total_cmp(&sees(b)))
@@ -241,21 +243,19 @@ fn inwards<D: Dim>(centre: Vector, half: Vector, obstacles: &[&Shape]) -> Vector
 
 /// Returns the half width of the opening on an axis across the mouth [m]: the shortest line of sight to an
 /// obstacle from points near the mouth's centre.
-fn opening(mouth: Vector, axis: Vector, across: usize, obstacles: &[&Shape]) -> f32 {
-    let sees = |from: Vector, way: Vector| {
+fn opening<D: Dim>(mouth: Vec3, axis: Vec3, across: usize, obstacles: &[Shape<D>]) -> f32 {
+    let sees = |from: Vec3, way: Vec3| {
         let mut far = 0.0;
         for _ in 0..20 {
-            far += clearance(plus(from, scaled(way, far)), obstacles).max(0.0);
+            far += clearance(from + way * far, obstacles).max(0.0);
         }
         far
     };
     let mut least = f32::INFINITY;
     for step in -4..=4 {
-        let from = plus(mouth, scaled(axis, 0.05 * step as f32));
+        let from = mouth + axis * (0.05 * step as f32);
         for side in [-1.0, 1.0] {
-            let mut way = [0.0; 3];
-            way[across] = side;
-            least = least.min(sees(from, way));
+            least = least.min(sees(from, Vec3::AXES[across] * side));
         }
     }
     least
@@ -263,33 +263,32 @@ fn opening(mouth: Vector, axis: Vector, across: usize, obstacles: &[&Shape]) -> 
 
 /// Returns a direction perpendicular to the coordinate direction `axis`: along the last used axis (y in 2D, z
 /// in 3D) if `axis` is along x, otherwise along x.
-fn across<D: Dim>(axis: Vector) -> Vector {
-    let mut across = [-axis[1] - axis[2], 0.0, 0.0];
-    across[D::N - 1] = axis[0];
+fn across<D: Dim>(axis: Vec3) -> Vec3 {
+    let mut across = Vec3::new(-axis.y - axis.z, 0.0, 0.0);
+    across[D::N - 1] = axis.x;
     across
 }
 
 /// Returns the distance to the nearest obstacle [m]; negative inside one.
-fn clearance(at: Vector, obstacles: &[&Shape]) -> f32 {
+fn clearance<D: Dim>(at: Vec3, obstacles: &[Shape<D>]) -> f32 {
+    let at = D::Vector::from_vec3(at);
     let distances = obstacles.iter().map(|shape| shape.distance(at).0);
     distances.fold(f32::INFINITY, f32::min)
 }
 
 /// Returns the nearest position in the room, at least `margin` away from the walls [m].
-fn clamped(place: Vector, [low, high]: [Vector; 2], margin: f32) -> Vector {
-    [0, 1, 2].map(|axis| {
-        let margin = margin.min(0.5 * (high[axis] - low[axis]));
-        place[axis].clamp(low[axis] + margin, high[axis] - margin)
-    })
+fn clamped(place: Vec3, [low, high]: [Vec3; 2], margin: f32) -> Vec3 {
+    let margin = Vec3::splat(margin).min((high - low) * 0.5);
+    place.clamp(low + margin, high - margin)
 }
 
 /// Splits a vector into its component along a unit vector and the remainder.
-pub(super) fn split(v: Vector, axis: Vector) -> (f32, Vector) {
-    let along = dot(v, axis);
-    (along, minus(v, scaled(axis, along)))
+pub(super) fn split(v: Vec3, axis: Vec3) -> (f32, Vec3) {
+    let along = v.dot(axis);
+    (along, v - axis * along)
 }
 
 /// Returns the vector normalized to length 1.
-pub(super) fn unit(v: Vector) -> Vector {
-    scaled(v, 1.0 / length(v).max(1e-6))
+pub(super) fn unit(v: Vec3) -> Vec3 {
+    v * (1.0 / v.length().max(1e-6))
 }

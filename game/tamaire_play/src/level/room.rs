@@ -1,13 +1,12 @@
 //! Checks whether the start of a level can be played.
 
-use fuwafuwa::inspect::vector::{plus, scaled};
-use fuwafuwa::{Dim, SoftBody, Vector, World};
+use fuwafuwa::{Dim, DimVector, SoftBody, Vec3, World};
 
 /// Checks that hands can move in the arena and that bodies can be reached. Returns the invalid field and the
 /// expected value otherwise.
 pub(super) fn check<D: Dim>(
     world: &World<D>,
-    [low, high]: [Vector; 2],
+    [low, high]: [Vec3; 2],
 ) -> Result<(), (&'static str, String)> {
     let room = (0..D::N).map(|axis| high[axis] - low[axis]);
     let room = room.fold(f32::INFINITY, f32::min);
@@ -17,11 +16,11 @@ pub(super) fn check<D: Dim>(
     }
     // A body may start outside the arena if gravity pulls it in.
     let fall = world.config().gravity;
-    let is_out = |middle: Vector, k: usize| {
+    let is_out = |middle: D::Vector, k: usize| {
         middle[k] < low[k] && fall[k] <= 0.0 || middle[k] > high[k] && fall[k] >= 0.0
     };
-    let is_within = |middle: Vector| !(0..D::N).any(|k| is_out(middle, k));
-    let mut middles = world.soft_bodies().map(|(_, body)| body).map(middle);
+    let is_within = |middle: D::Vector| !(0..D::N).any(|k| is_out(middle, k));
+    let mut middles = world.soft_bodies().map(|(_, body)| middle(body));
     match middles.position(|middle| !is_within(middle)) {
         None => Ok(()),
         Some(index) => {
@@ -35,18 +34,20 @@ pub(super) fn check<D: Dim>(
 }
 
 /// Returns the mean position of the nodes of a body [m].
-fn middle<D: Dim>(body: &SoftBody<D>) -> Vector {
+fn middle<D: Dim>(body: &SoftBody<D>) -> D::Vector {
     let positions = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);
-    let (sum, count) = positions.fold(([0.0; 3], 0.0), |(sum, count), at| {
-        (plus(sum, at), count + 1.0)
+    let (sum, count) = positions.fold((D::Vector::ZERO, 0.0), |(sum, count), at| {
+        (sum + at, count + 1.0)
     });
-    scaled(sum, 1.0 / count)
+    sum * (1.0 / count)
 }
 
 /// Returns the width of the widest hand on any axis [m].
 fn widest_hand<D: Dim>(world: &World<D>) -> f32 {
-    let widths = world.target_followers().flat_map(|(_, hand)| {
-        let [low, high] = hand.form().bounds();
+    let bodies = world.rigid_bodies();
+    let hands = bodies.filter(|(_, body)| body.follows_target());
+    let widths = hands.flat_map(|(_, hand)| {
+        let [low, high] = hand.local_shape().bounds();
         (0..D::N).map(move |axis| high[axis] - low[axis])
     });
     widths.fold(0.0, f32::max)

@@ -2,6 +2,7 @@
 
 use crate::made_up::{Rows, rows};
 use crate::{logbooks, report_on};
+use fuwafuwa::Vec3;
 use std::fs;
 use std::sync::Arc;
 use tamaire_logbook::{Id, Round, RoundEnd};
@@ -192,7 +193,7 @@ fn tampered(round: &Round) -> String {
     let mut other = AnyRound::new(level);
     for tick in 0..replay.ticks() {
         let frame = match tick {
-            0..60 => InputFrame::towards([0.0; 3]),
+            0..60 => InputFrame::towards(Vec3::ZERO),
             _ => replay.frame(tick),
         };
         other.step(frame);
