@@ -4,7 +4,7 @@ use crate::foundation::arena::{JointHandle, KnifeHandle, RigidBodyHandle, SoftBo
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::PieceId;
-use crate::object_ref::ObjectRef;
+use crate::object_ref::{ObjectRef, ObjectSelector};
 
 /// Event of the last tick, for sounds, scores and effects.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -165,14 +165,15 @@ pub struct Contact<D: Dim> {
 hash_state! { [D: Dim] struct Contact<D> { pair, point, normal, speed, impulse } }
 
 impl<D: Dim> Contact<D> {
-    /// Returns the object that touches `object`, or `None` if `object` is not in the pair.
-    pub fn other(&self, object: impl Into<ObjectRef>) -> Option<ObjectRef> {
-        let object = object.into();
+    /// Returns the object that touches a selected one, or `None` if neither object of the pair is selected. If both
+    /// are, returns the second one.
+    pub fn other(&self, object: impl Into<ObjectSelector>) -> Option<ObjectRef> {
+        let selector = object.into();
         let [first, second] = self.pair;
-        match object {
-            _ if object == first => Some(second),
-            _ if object == second => Some(first),
-            _ => None,
+        match () {
+            () if selector.contains(first) => Some(second),
+            () if selector.contains(second) => Some(first),
+            () => None,
         }
     }
 }

@@ -85,7 +85,7 @@ pub use rigid_body::layers::Layers;
 pub use rigid_body::shape::Shape;
 pub use rigid_body::{MotionType, Reaction, RigidBody, RigidBodyRef};
 pub use soft_body::SoftBody;
-pub use soft_body::element_law::Law;
+pub use soft_body::element_law::{Elasticity, Law};
 pub use soft_body::element_state::{ElementState, Energy};
 pub use soft_body::momentum::Momentum;
 pub use soft_body::view::{ElementView, Facet, Outline, PieceView};

@@ -58,6 +58,16 @@ impl From<RigidBodyHandle> for ObjectRef {
     }
 }
 
+/// The body of a piece, or the rigid body.
+impl From<ObjectRef> for BodyHandle {
+    fn from(object: ObjectRef) -> Self {
+        match object {
+            ObjectRef::Piece { body, .. } => Self::Soft(body),
+            ObjectRef::RigidBody(rigid) => Self::Rigid(rigid),
+        }
+    }
+}
+
 /// Selection of objects: a rigid body, one piece of a soft body, or all pieces of a soft body. Handles and
 /// [`ObjectRef`] convert into it.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]

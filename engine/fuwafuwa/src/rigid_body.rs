@@ -69,6 +69,11 @@ hash_state! {
 }
 
 impl MotionType {
+    /// Returns whether the body follows a target: it is kinematic or coupled.
+    pub fn follows_target(self) -> bool {
+        matches!(self, Self::Kinematic | Self::Coupled { .. })
+    }
+
     /// Returns the moments of inertia of a dynamic body of the shape in a world of `D`.
     fn inertia<D: Dim>(self, shape: &Solid) -> Option<Inertia> {
         match self {

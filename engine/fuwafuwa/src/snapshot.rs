@@ -7,10 +7,10 @@
 use crate::error::Error;
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::Hash;
-use crate::world::World;
+use crate::world::{StoredWorld, World};
 
 /// Version of the format. It changes when an older snapshot would be misread or would continue differently.
-pub const VERSION: u32 = 19;
+pub const VERSION: u32 = 20;
 
 const MAGIC: [u8; 4] = *b"fuwa";
 const HEADER: usize = 17;
@@ -64,16 +64,6 @@ pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, Error> {
     if header[9..] != Hash::of(state).to_le_bytes() {
         return Err(Error::DamagedSnapshot);
     }
-    let mut world: World<D> = postcard::from_bytes(state).map_err(|_| Error::DamagedSnapshot)?;
-    let invalid = |reason: String| Error::InvalidSnapshot { reason };
-    if let Some(reason) = world.defect() {
-        return Err(invalid(reason.to_owned()));
-    }
-    for (id, body) in world.soft_bodies() {
-        let slot = id.slot().index();
-        let checked = body.check();
-        checked.map_err(|violation| invalid(format!("soft body {slot}: {violation}")))?;
-    }
-    world.rebuild();
-    Ok(world)
+    let stored: StoredWorld<D> = postcard::from_bytes(state).map_err(|_| Error::DamagedSnapshot)?;
+    World::try_from(stored)
 }

@@ -9,6 +9,8 @@ mod cuts;
 mod hooks;
 mod removal;
 mod sleep;
+#[cfg(feature = "serde")]
+mod stored_world;
 mod world_joints;
 
 use crate::contact::broad_phase::{Nearby, NodePair};
@@ -32,6 +34,8 @@ pub use body_handle::{BodyHandle, Removable};
 pub use config::{DEFAULT_SUBSTEPS, DEFAULT_TICK, MAX_TICK, MIN_SUBSTEPS, MIN_TICK, WorldConfig};
 pub use hooks::{Hooks, Substep, field_around};
 pub use removal::{PieceSize, Removed};
+#[cfg(feature = "serde")]
+pub(crate) use stored_world::StoredWorld;
 
 /// Decay rate of the angular velocity of a one-voxel piece that touches something [1/s], because it does not
 /// roll. In 0.1 s it falls to an eighth. A higher rate would stop the rotation in the air between two
@@ -50,7 +54,7 @@ const TOP_SPEED: f32 = 1000.0;
 /// Soft bodies, rigid bodies, joints and knives, and their simulation.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound = ""))]
+#[cfg_attr(feature = "serde", serde(bound = "", try_from = "StoredWorld<D>"))]
 pub struct World<D: Dim> {
     config: WorldConfig<D>,
     pub(crate) bodies: SoftBodies<D>,

@@ -137,16 +137,16 @@ pub enum JointKind {
     Pin,
     /// Spring with a rest length.
     Spring {
-        /// Stiffness [N/m], positive.
+        /// Stiffness [N/m], 1e-6 to 1e12.
         stiffness: f32,
-        /// Damping [N s/m], 0 or more.
+        /// Damping [N s/m], 0 to 1e12.
         damping: f32,
-        /// Rest length [m], 0 or more.
+        /// Rest length [m], 0 to 1e6.
         length: f32,
     },
     /// Rope: limits the distance of the anchors.
     Rope {
-        /// Maximum distance [m], positive.
+        /// Maximum distance [m], positive, at most 1e6.
         length: f32,
     },
 }

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, RigidBodyHandle};
-use crate::foundation::dim::{Dim, DimVector, turning};
+use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::hash::hash_state;
 use crate::math::rotation::Rotation;
 use crate::math::twist::Twist;
@@ -12,7 +12,7 @@ use crate::rigid_body::layers::Layers;
 use crate::rigid_body::reach::is_within_reach;
 use crate::rigid_body::rigid_state_check::check_motion_type;
 use crate::rigid_body::shape::Shape;
-use crate::rigid_body::solid::{Solid, flat};
+use crate::rigid_body::solid::Solid;
 use crate::rigid_body::{MotionType, RigidBody};
 use glam::Vec3;
 use std::mem::discriminant;
@@ -137,28 +137,8 @@ impl RigidState {
         }
     }
 
-    /// Returns the body for a world of `D`, as it would be after loading: in 2D third coordinates are 0.
-    #[cfg(feature = "serde")]
-    pub fn seen_in<D: Dim>(mut self) -> Self {
-        self.form = self.form.seen_in::<D>();
-        let positions = [&mut self.position, &mut self.goal, &mut self.goal_before];
-        let others = [&mut self.position_before, &mut self.velocity];
-        for vector in positions.into_iter().chain(others) {
-            *vector = flat::<D>(*vector);
-        }
-        let rotations = [&mut self.rotation_before, &mut self.rotation_goal];
-        for rotation in rotations.into_iter().chain([&mut self.rotation]) {
-            *rotation = rotation.seen_in::<D>();
-        }
-        self.angular_velocity = turning::<D>(self.angular_velocity);
-        self.clear_unused_motion();
-        self.inertia = self.motion_type.inertia::<D>(&self.form);
-        self.stand_at(self.position, self.rotation);
-        self
-    }
-
     /// Sets the velocities to 0 that a body of this motion type cannot have.
-    fn clear_unused_motion(&mut self) {
+    pub(super) fn clear_unused_motion(&mut self) {
         if self.motion_type == MotionType::Fixed {
             // The body may have been kinematic or coupled before.
             (self.velocity, self.goal_velocity) = (Vec3::ZERO, Vec3::ZERO);
@@ -236,10 +216,7 @@ impl RigidState {
 
     /// Returns whether the body follows a target: it is kinematic or coupled.
     pub fn follows_target(&self) -> bool {
-        matches!(
-            self.motion_type,
-            MotionType::Kinematic | MotionType::Coupled { .. }
-        )
+        self.motion_type.follows_target()
     }
 
     /// Returns an error unless the body follows a target.

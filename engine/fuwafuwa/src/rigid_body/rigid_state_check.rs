@@ -4,7 +4,13 @@ use super::inertia::Inertia;
 use super::reach::is_within_reach;
 use super::{MotionType, RigidState};
 use crate::error::{Error, require};
+#[cfg(feature = "serde")]
+use crate::foundation::dim::{Dim, turning};
+#[cfg(feature = "serde")]
+use crate::rigid_body::shape::Shape;
 use crate::rigid_body::solid::Solid;
+#[cfg(feature = "serde")]
+use crate::rigid_body::solid::flat;
 
 impl RigidState {
     /// Checks every field.
@@ -47,6 +53,32 @@ impl RigidState {
         check_friction(self.friction)?;
         check_restitution(self.restitution)?;
         check_motion_type(self.motion_type, &self.form, self.inertia.as_ref())
+    }
+
+    /// Returns whether a body that was read from a file is valid in a world of `D`.
+    #[cfg(feature = "serde")]
+    pub(crate) fn is_sound<D: Dim>(&self) -> bool {
+        self.check().is_ok() && self.clone().seen_in::<D>() == *self
+    }
+
+    /// Returns the body as a world of `D` would have it: in 2D third coordinates are 0.
+    #[cfg(feature = "serde")]
+    fn seen_in<D: Dim>(mut self) -> Self {
+        self.form = Shape::<D>::of(&self.form).solid();
+        let positions = [&mut self.position, &mut self.goal, &mut self.goal_before];
+        let others = [&mut self.position_before, &mut self.velocity];
+        for vector in positions.into_iter().chain(others) {
+            *vector = flat::<D>(*vector);
+        }
+        let rotations = [&mut self.rotation_before, &mut self.rotation_goal];
+        for rotation in rotations.into_iter().chain([&mut self.rotation]) {
+            *rotation = rotation.seen_in::<D>();
+        }
+        self.angular_velocity = turning::<D>(self.angular_velocity);
+        self.clear_unused_motion();
+        self.inertia = self.motion_type.inertia::<D>(&self.form);
+        self.stand_at(self.position, self.rotation);
+        self
     }
 }
 

@@ -188,48 +188,6 @@ impl Solid {
         }
     }
 
-    /// Returns the shape for a world of `D`. In 2D third coordinates are removed, so that no contact pushes
-    /// out of the plane.
-    pub(crate) fn seen_in<D: Dim>(self) -> Self {
-        // The code below flattens shapes, for 2D only.
-        if D::N == 3 {
-            return self;
-        }
-        let flat = flat::<D>;
-        match self {
-            Self::HalfSpace { normal, .. } if normal[2] == 0.0 => self,
-            Self::HalfSpace { normal, offset } => {
-                let steepness = flat(normal).length();
-                Self::HalfSpace {
-                    normal: flat(normal) * (1.0 / steepness),
-                    offset: offset / steepness,
-                }
-            }
-            Self::Box { centre, half } => Self::Box {
-                centre: flat(centre),
-                half: Vec3::new(half[0], half[1], f32::MAX),
-            },
-            Self::OrientedBox {
-                centre,
-                half,
-                rotation,
-            } => Self::OrientedBox {
-                centre: flat(centre),
-                half: Vec3::new(half[0], half[1], f32::MAX),
-                rotation: rotation.seen_in::<D>(),
-            },
-            Self::Capsule { from, to, radius } => Self::Capsule {
-                from: flat(from),
-                to: flat(to),
-                radius,
-            },
-            Self::Ball { centre, radius } => Self::Ball {
-                centre: flat(centre),
-                radius,
-            },
-        }
-    }
-
     /// Returns the shape translated `by` [m].
     pub fn translated(self, by: Vec3) -> Self {
         match self {

@@ -274,12 +274,17 @@ impl<D: Dim> World<D> {
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, a parameter of the motion type is out of range, or the shape does not suit it.
+    /// Also if the body holds a knife and would no longer be kinematic or coupled.
     #[inline(never)]
     pub fn set_motion_type(
         &mut self,
         rigid: RigidBodyHandle,
         motion_type: MotionType,
     ) -> Result<(), Error> {
+        let holds_knife = self.knives.iter().any(|knife| knife.holder == rigid);
+        let expected = "kinematic or coupled, because the body holds a knife";
+        let is_allowed = !holds_knife || motion_type.follows_target();
+        require(is_allowed, "motion_type", expected, motion_type)?;
         self.change_rigid(rigid, |body| body.set_motion_type::<D>(motion_type))
     }
 

@@ -2,8 +2,6 @@
 
 use super::{World, WorldConfig};
 use crate::contact::broad_phase::{bounds_of, leaning_on_body, leaning_on_rigid, sleeping_in};
-#[cfg(feature = "serde")]
-use crate::contact::joint::JointState;
 use crate::contact::solver::Hit;
 use crate::error::Error;
 use crate::event::Event;
@@ -11,17 +9,11 @@ use crate::foundation::arena::{RigidBodyHandle, RigidSlot, SoftBodyHandle};
 use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::hash::{Hash, HashState};
 use crate::fracture::blade::{Blade, CutReport};
-#[cfg(feature = "serde")]
-use crate::fracture::knife::KnifeState;
 use crate::math::rotation::Rotation;
 use crate::rigid_body::solid::Bounds;
 use crate::rigid_body::{RigidBody, RigidBodyRef, RigidState};
 use crate::soft_body::SoftBody;
 use std::ops::Index;
-
-/// Largest tick counter accepted from a saved world; some 6·10⁸ years of ticks.
-#[cfg(feature = "serde")]
-const MOST_TICKS: u64 = 1 << 60;
 
 impl<D: Dim> World<D> {
     /// Adds a body. A body too stiff for the maximum number of substeps is softened, see
@@ -203,48 +195,6 @@ impl<D: Dim> World<D> {
         let mut hash = Hash::NONE;
         self.hash_state(&mut hash);
         hash.number()
-    }
-
-    /// Returns a description of an invalid part of a world that was read from a file.
-    #[cfg(feature = "serde")]
-    pub(crate) fn defect(&self) -> Option<&'static str> {
-        let is_sound =
-            |rigid: &RigidState| rigid.check().is_ok() && rigid.clone().seen_in::<D>() == *rigid;
-        let checks = [
-            (
-                "its configuration is out of range",
-                Self::new(self.config).is_ok(),
-            ),
-            (
-                "a rigid body in it is invalid",
-                self.rigids.iter().all(is_sound),
-            ),
-            (
-                "a joint in it is invalid",
-                self.joints.iter().all(JointState::is_sound::<D>),
-            ),
-            (
-                "a knife in it is invalid",
-                self.knives.iter().all(KnifeState::is_sound::<D>),
-            ),
-            (
-                "its tick counter is above the limit",
-                self.ticks <= MOST_TICKS,
-            ),
-        ];
-        let wrong = checks.into_iter().find(|(_, is_good)| !is_good);
-        wrong.map(|(defect, _)| defect)
-    }
-
-    /// Rebuilds everything that is not saved.
-    #[cfg(feature = "serde")]
-    pub(crate) fn rebuild(&mut self) {
-        self.bodies.iter_mut().for_each(SoftBody::restore);
-        self.nearby.keep_known(&self.bodies, &self.rigids);
-        self.touching.sort_by_key(|contact| contact.pair);
-        self.touching.dedup_by_key(|contact| contact.pair);
-        self.inside.sort_unstable();
-        self.inside.dedup();
     }
 
     /// Wakes `leaning` pieces, given in ascending order, and the dynamic rigid bodies in the boxes `was`.

@@ -170,13 +170,13 @@ impl JointState {
         }
         let force = self.breaking_force;
         require(force > 0.0, "breaking_force", "positive", force)?;
-        let is_within = |k: f32, least: f32| (least..=f32::MAX).contains(&k);
+        let is_within = |k: f32, min: f32, max: f32| (min..=max).contains(&k);
         match self.tie {
             JointKind::Pin => Ok(()),
             JointKind::Rope { length } => require(
-                is_within(length, f32::MIN_POSITIVE),
+                is_within(length, f32::MIN_POSITIVE, FARTHEST),
                 "length",
-                "positive and finite",
+                "positive, at most 1e6 m",
                 length,
             ),
             JointKind::Spring {
@@ -184,12 +184,13 @@ impl JointState {
                 damping,
                 length,
             } => {
-                let is_stiff = is_within(stiffness, f32::MIN_POSITIVE);
-                let expected = "positive and finite";
+                let is_stiff = is_within(stiffness, 1e-6, 1e12);
+                let expected = "1e-6 to 1e12 N/m";
                 require(is_stiff, "stiffness", expected, stiffness)?;
-                let expected = "0 or more, and finite";
-                require(is_within(damping, 0.0), "damping", expected, damping)?;
-                require(is_within(length, 0.0), "length", expected, length)
+                let is_damped = is_within(damping, 0.0, 1e12);
+                require(is_damped, "damping", "0 to 1e12 N s/m", damping)?;
+                let is_long = is_within(length, 0.0, FARTHEST);
+                require(is_long, "length", "0 to 1e6 m", length)
             }
         }
     }

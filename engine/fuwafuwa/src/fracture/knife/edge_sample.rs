@@ -5,7 +5,6 @@ use crate::foundation::arena::SoftBodyHandle;
 use crate::foundation::dim::Point;
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
-#[cfg(feature = "serde")]
 use glam::Vec3;
 
 /// Maximum number of intervals between samples. It suffices for 256 voxels, a quarter of the largest grid.
