@@ -1,25 +1,33 @@
 //! Actions on bodies from outside: rotation, translation, impulses, sleep, settings, fields.
 
 use fuwafuwa::{
-    Bookmark, Dim, Dim2, Dim3, Error, Event, Hooks, Impulse, Material, MotionType, NodeId,
-    RigidBody, Rotation, Shape, SoftBody, SoftBodyHandle, Substep, Velocity, VoxelGrid, World,
-    WorldConfig, field_around,
+    Bookmark, Dim, Dim2, Dim3, DimAngular, DimVector, Error, Event, Hooks, Impulse, Material,
+    MotionType, NodeId, RigidBody, Rotation, Shape, SoftBody, SoftBodyHandle, Substep, Vec2, Vec3,
+    Velocity, VoxelGrid, World, WorldConfig, field_around,
 };
 use std::f32::consts::{FRAC_PI_2, PI};
 
-const WEIGHTLESS: WorldConfig = WorldConfig {
-    gravity: Vector::ZERO,
-    drag: 0.0,
-    max_substeps: 64,
-    tick: fuwafuwa::DEFAULT_TICK,
-};
-const SOMEWHERE: Vector = Vector::new(3.0, -2.0, 0.0);
+fn weightless<D: Dim>() -> WorldConfig<D> {
+    WorldConfig {
+        gravity: D::Vector::ZERO,
+        ..WorldConfig::default()
+    }
+}
+
+/// Returns a vector of any dimension; in 2D without its third coordinate.
+fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
+    V::from_vec3(Vec3::new(x, y, z))
+}
+
+fn somewhere<V: DimVector>() -> V {
+    vector(3.0, -2.0, 0.0)
+}
 
 fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     SoftBody::new(VoxelGrid::ball(n, 1.0).unwrap(), &[Material::default()]).unwrap()
 }
 
-fn with<D: Dim>(settings: WorldConfig, body: SoftBody<D>) -> (World<D>, SoftBodyHandle) {
+fn with<D: Dim>(settings: WorldConfig<D>, body: SoftBody<D>) -> (World<D>, SoftBodyHandle) {
     let mut world = World::new(settings).unwrap();
     let id = world.add_soft_body(body);
     (world, id)
@@ -29,7 +37,7 @@ fn nodes<D: Dim>(body: &SoftBody<D>) -> Vec<NodeId> {
     body.mesh().nodes().map(|(id, _)| id).collect()
 }
 
-fn places<D: Dim>(body: &SoftBody<D>) -> Vec<Vector> {
+fn places<D: Dim>(body: &SoftBody<D>) -> Vec<D::Vector> {
     let all = nodes(body).into_iter();
     all.map(|id| body.node_state(id).0).collect()
 }
@@ -37,15 +45,12 @@ fn places<D: Dim>(body: &SoftBody<D>) -> Vec<Vector> {
 /// Maximum distance between corresponding nodes of two bodies [m].
 fn apart<D: Dim>(a: &SoftBody<D>, b: &SoftBody<D>) -> f32 {
     let both = places(a).into_iter().zip(places(b));
-    let gaps = both.map(|(a, b)| {
-        let squared = (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k]));
-        squared.sum::<f32>().sqrt()
-    });
+    let gaps = both.map(|(a, b)| (a - b).length());
     gaps.fold(0.0, f32::max)
 }
 
-fn floor() -> RigidBody {
-    RigidBody::fixed(Shape::half_space(Vector::Y, Vector::ZERO)).with_friction(0.3)
+fn floor<D: Dim>() -> RigidBody<D> {
+    RigidBody::fixed(Shape::half_space(D::Vector::Y, D::Vector::ZERO)).with_friction(0.3)
 }
 
 fn check_turned<D: Dim>(rotation: Rotation) {
@@ -53,7 +58,7 @@ fn check_turned<D: Dim>(rotation: Rotation) {
     let centre = body.centre_of_mass();
     let turned = body.clone().rotated_about(rotation, centre);
     assert!((turned.total_mass() - body.total_mass()).abs() < 1e-9);
-    let (mut world, id) = with(WEIGHTLESS, turned.clone().translated(SOMEWHERE.into()));
+    let (mut world, id) = with(weightless(), turned.clone().translated(somewhere()));
     for _ in 0..120 {
         let report = world.step();
         assert_eq!(
@@ -68,7 +73,7 @@ fn check_turned<D: Dim>(rotation: Rotation) {
         "{rotation:?}: {} J",
         after.kinetic_energy()
     );
-    let gap = apart(after, &turned.translated(SOMEWHERE.into()));
+    let gap = apart(after, &turned.translated(somewhere()));
     assert!(gap < 1e-4, "{rotation:?}: {gap} m");
 }
 
@@ -76,8 +81,8 @@ fn check_turned<D: Dim>(rotation: Rotation) {
 fn rotated_body_stays_at_rest() {
     for angle in [0.1, 1.0, FRAC_PI_2, 2.5, PI, -FRAC_PI_2] {
         check_turned::<Dim2>(Rotation::in_plane(angle));
-        for axis in [[1.0, 0.0, 0.0], [0.0, 0.0, -2.0], [1.0, -1.0, 0.5]] {
-            check_turned::<Dim3>(Rotation::about(axis.into(), angle));
+        for axis in [Vec3::X, Vec3::Z * -2.0, Vec3::new(1.0, -1.0, 0.5)] {
+            check_turned::<Dim3>(Rotation::about(axis, angle));
         }
     }
 }
@@ -85,14 +90,13 @@ fn rotated_body_stays_at_rest() {
 /// A world rotated in the middle of tearing moves like the original, rotated.
 fn check_turned_in_motion<D: Dim>() {
     let rotation = Rotation::in_plane(PI);
-    let (mut world, id) = with(WEIGHTLESS, ball::<D>(16));
-    let [_, y, z] = world[id].centre_of_mass().to_array();
-    world
-        .apply_impulse(id, Impulse::at([0.0, y, z], [40.0, 0.0, 0.0]).within(0.3))
-        .unwrap();
+    let (mut world, id) = with(weightless(), ball::<D>(16));
+    let Vec3 { y, z, .. } = world[id].centre_of_mass().to_vec3();
+    let impulse = Impulse::at(vector(0.0, y, z), vector(40.0, 0.0, 0.0));
+    world.apply_impulse(id, impulse.within(0.3)).unwrap();
     (0..3).for_each(|_| _ = world.step());
     let mut turned = world.clone();
-    turned.rotate_about(id, rotation, [0.0; 3]).unwrap();
+    turned.rotate_about(id, rotation, D::Vector::ZERO).unwrap();
     for _ in 0..20 {
         world.step();
         turned.step();
@@ -101,7 +105,7 @@ fn check_turned_in_motion<D: Dim>() {
     let [momentum, other] = [&world, &turned].map(|world| world[id].momentum().linear);
     let energies = [&world, &turned].map(|world| world[id].kinetic_energy());
     assert!(
-        (momentum[0] + other[0]).abs() < 1e-3 * momentum[0].abs(),
+        (momentum.x + other.x).abs() < 1e-3 * momentum.x.abs(),
         "{momentum:?} {other:?}"
     );
     assert!(
@@ -134,13 +138,13 @@ fn scaled_grid_scales_mass_and_rejects_invalid_factors() {
 }
 
 fn check_moved<D: Dim>() {
-    let (mut world, id) = with(WEIGHTLESS, ball::<D>(8));
+    let (mut world, id) = with(weightless(), ball::<D>(8));
     let before = world[id].clone();
     let mut bookmark = world[id].bookmark();
-    world.translate(id, SOMEWHERE).unwrap();
+    world.translate(id, somewhere()).unwrap();
     world.step();
     let body = &world[id];
-    assert!(apart(body, &before.translated(SOMEWHERE.into())) < 1e-5);
+    assert!(apart(body, &before.translated(somewhere())) < 1e-5);
     assert_eq!(body.changes_since(&mut bookmark), Some(Default::default()));
     assert_eq!(body.changes_since(&mut Bookmark::default()), None);
 }
@@ -161,7 +165,7 @@ fn check_pulled_away<D: Dim>() {
     let above = world.add_soft_body(
         SoftBody::new(VoxelGrid::cube(8, 1.0).unwrap(), &[Material::default()])
             .unwrap()
-            .translated(Vector::new(0.0, 1.001, 0.0)),
+            .translated(vector(0.0, 1.001, 0.0)),
     );
     let sleeps = |world: &World<D>| {
         let is_still = |id: SoftBodyHandle| {
@@ -175,7 +179,7 @@ fn check_pulled_away<D: Dim>() {
     }
     (0..10).for_each(|_| _ = world.step());
     assert_eq!(sleeps(&world), [true; 2]);
-    world.translate(below, [5.0, 0.0, 0.0]).unwrap();
+    world.translate(below, vector(5.0, 0.0, 0.0)).unwrap();
     assert_eq!(sleeps(&world), [false; 2]);
     (0..120).for_each(|_| _ = world.step());
     let height = world[above].centre_of_mass()[1];
@@ -189,33 +193,33 @@ fn move_body_wakes_bodies_in_contact_with_it() {
 }
 
 fn check_pushed<D: Dim>() {
-    let (mut world, id) = with(WEIGHTLESS, ball::<D>(16));
-    let impulse = [3.0, -1.0, 0.0];
+    let (mut world, id) = with(weightless(), ball::<D>(16));
+    let impulse: D::Vector = vector(3.0, -1.0, 0.0);
     for radius in [0.0, 0.1, 10.0] {
         let before = world[id].momentum();
-        world
-            .apply_impulse(id, Impulse::at([0.5, 1.0, 0.0], impulse).within(radius))
-            .unwrap();
+        let impulse = Impulse::at(vector(0.5, 1.0, 0.0), impulse).within(radius);
+        world.apply_impulse(id, impulse).unwrap();
         let gained = world[id].momentum().less(before);
-        assert!((0..2).all(|k| (gained.linear[k] - f64::from(impulse[k])).abs() < 1e-3));
+        assert!((0..2).all(|k| (gained.linear[k] - f64::from(impulse.impulse[k])).abs() < 1e-3));
     }
     let mass = world[id].total_mass();
-    let mut gained = |angular| {
+    let mut gained = |angular: Vec3| {
         let before = world[id].momentum();
-        let linear = [0.0, 2.0, 0.0];
-        world
-            .add_velocity(id, Velocity { linear, angular })
-            .unwrap();
+        let velocity = Velocity {
+            linear: vector(0.0, 2.0, 0.0),
+            angular: D::Angular::from_vec3(angular),
+        };
+        world.add_velocity(id, velocity).unwrap();
         world[id].momentum().less(before)
     };
-    let straight = gained(Vector::ZERO);
-    assert!((straight.linear[1] / mass - 2.0).abs() < 1e-3);
-    let turning = gained(Vector::new(0.0, 0.0, 3.0));
-    assert!((turning.linear[1] / mass - 2.0).abs() < 1e-3);
+    let straight = gained(Vec3::ZERO);
+    assert!((straight.linear.y / mass - 2.0).abs() < 1e-3);
+    let turning = gained(Vec3::Z * 3.0);
+    assert!((turning.linear.y / mass - 2.0).abs() < 1e-3);
     // Moment of inertia about the centre: m r²/2 for a disc, 2/5 m r² for a ball.
     let share = if D::N == 2 { 0.5 } else { 0.4 };
     let inertia = share * mass * 0.25;
-    let spin = turning.less(straight).angular[2] / inertia;
+    let spin = turning.less(straight).angular.z / inertia;
     assert!((spin - 3.0).abs() < 0.6, "{spin}");
 }
 
@@ -223,13 +227,11 @@ fn check_pushed<D: Dim>() {
 /// threshold at first.
 #[test]
 fn gravity_change_resets_sleep_timer() {
-    let gravity = [0.0, -1.0, 0.0];
     let pulls: [fn(&mut World<Dim2>, SoftBodyHandle); 3] = [
         |world, _| {
-            let gravity = [0.0, -1.0, 0.0];
             let settings = WorldConfig {
-                gravity: gravity.into(),
-                ..WEIGHTLESS
+                gravity: Vec2::NEG_Y,
+                ..weightless()
             };
             world.set_config(settings).unwrap();
         },
@@ -237,14 +239,15 @@ fn gravity_change_resets_sleep_timer() {
         |world, body| world.set_gravity_scale(body, -0.1).unwrap(),
     ];
     for (index, pull) in pulls.into_iter().enumerate() {
-        let gravity = [0.0, if index == 0 { 0.0 } else { 10.0 * gravity[1] }, 0.0];
-        let (mut world, body) = with(
-            WorldConfig {
-                gravity: gravity.into(),
-                ..WEIGHTLESS
-            },
-            ball(8),
-        );
+        let gravity = match index {
+            0 => Vec2::ZERO,
+            _ => Vec2::new(0.0, -10.0),
+        };
+        let settings = WorldConfig {
+            gravity,
+            ..weightless()
+        };
+        let (mut world, body) = with(settings, ball(8));
         world.set_gravity_scale(body, 0.0).unwrap();
         (0..29).for_each(|_| _ = world.step());
         if index == 0 {
@@ -253,7 +256,7 @@ fn gravity_change_resets_sleep_timer() {
         }
         pull(&mut world, body);
         (0..60).for_each(|_| _ = world.step());
-        let speed = world[body].momentum().linear[1] / world[body].total_mass();
+        let speed = world[body].momentum().linear.y / world[body].total_mass();
         assert!(speed.abs() > 0.9, "{index}: {speed}");
     }
 }
@@ -268,9 +271,7 @@ fn check_pull<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let scales = [1.0, 0.5, 0.0, -2.0];
     let bodies: Vec<SoftBodyHandle> = (0..4)
-        .map(|k| {
-            world.add_soft_body(ball::<D>(8).translated(Vector::new(3.0 * k as f32, 0.0, 0.0)))
-        })
+        .map(|k| world.add_soft_body(ball::<D>(8).translated(vector(3.0 * k as f32, 0.0, 0.0))))
         .collect();
     for (&body, scale) in bodies.iter().zip(scales) {
         world.set_gravity_scale(body, scale).unwrap();
@@ -278,7 +279,7 @@ fn check_pull<D: Dim>() {
     (0..12).for_each(|_| _ = world.step());
     for (&body, scale) in bodies.iter().zip(scales) {
         let body = &world[body];
-        let speed = body.momentum().linear[1] / body.total_mass();
+        let speed = body.momentum().linear.y / body.total_mass();
         assert!(
             (speed + 9.81 * 0.2 * f64::from(scale)).abs() < 1e-3,
             "{scale}: {speed}"
@@ -299,7 +300,7 @@ fn check_sleep<D: Dim>() {
     (0..60).for_each(|_| _ = world.step());
     assert_eq!(apart(&world[sleeper], &before), 0.0);
     // A body that falls on the sleeping one wakes it.
-    world.add_soft_body(ball::<D>(8).translated(Vector::new(0.0, 1.5, 0.0)));
+    world.add_soft_body(ball::<D>(8).translated(vector(0.0, 1.5, 0.0)));
     let woke = |world: &World<D>| {
         let events = world.events().iter();
         { events }.any(|event| matches!(event, Event::WokeUp { body, .. } if *body == sleeper))
@@ -325,12 +326,12 @@ fn put_to_sleep_lasts_until_impact_or_wake_up() {
 fn set_settings_applies_to_running_world() {
     let (mut world, id) = with(WorldConfig::default(), ball::<Dim2>(8));
     let upwards = WorldConfig {
-        gravity: Vector::new(0.0, 9.81, 0.0),
+        gravity: Vec2::new(0.0, 9.81),
         ..WorldConfig::default()
     };
     world.set_config(upwards).unwrap();
     (0..12).for_each(|_| _ = world.step());
-    assert!(world[id].momentum().linear[1] > 0.0);
+    assert!(world[id].momentum().linear.y > 0.0);
     let few = WorldConfig {
         max_substeps: 8,
         ..upwards
@@ -346,7 +347,7 @@ fn set_settings_applies_to_running_world() {
     let hard = world.add_soft_body(
         SoftBody::new(grid, &[hard])
             .unwrap()
-            .translated(Vector::new(5.0, 0.0, 0.0)),
+            .translated(Vec2::new(5.0, 0.0)),
     );
     let soft = world[hard].stiffness_scale();
     world.set_config(few).unwrap();
@@ -361,12 +362,12 @@ fn set_settings_applies_to_running_world() {
 }
 
 fn check_field<D: Dim>() {
-    let mut world = World::<D>::new(WEIGHTLESS).unwrap();
+    let mut world = World::<D>::new(weightless()).unwrap();
     let sides =
-        [-3.0, 3.0].map(|x| world.add_soft_body(ball::<D>(8).translated(Vector::new(x, 0.0, 0.0))));
-    let planet = field_around(Vector::new(0.5, 0.5, 0.0), 5.0, 1.0);
-    let nowhere = |_| Vector::NAN;
-    let fields: [&dyn Fn(Vector) -> Vector; 2] = [&planet, &nowhere];
+        [-3.0, 3.0].map(|x| world.add_soft_body(ball::<D>(8).translated(vector(x, 0.0, 0.0))));
+    let planet = field_around::<D::Vector>(vector(0.5, 0.5, 0.0), 5.0, 1.0);
+    let nowhere = |_| D::Vector::splat(f32::NAN);
+    let fields: [&dyn Fn(D::Vector) -> D::Vector; 2] = [&planet, &nowhere];
     for field in fields {
         for _ in 0..6 {
             let field = Some(field);
@@ -377,7 +378,7 @@ fn check_field<D: Dim>() {
         }
         let speeds = sides.map(|id| {
             let body = &world[id];
-            body.momentum().linear[0] / body.total_mass()
+            body.momentum().linear.x / body.total_mass()
         });
         // At three times the radius, the field has a ninth of its strength; it acts for a tenth of a second.
         assert!((speeds[0] - 5.0 / 9.0 * 0.1).abs() < 0.01, "{speeds:?}");
@@ -393,23 +394,19 @@ fn field_accelerates_towards_centre() {
 
 /// Pressing a bar on a body one metre to the right of its centre gives a counterclockwise torque.
 fn check_torque<D: Dim>() {
-    let (mut world, _) = with(WEIGHTLESS, ball::<D>(16));
-    let bar = Shape::Capsule {
-        from: Vector::NEG_X,
-        to: Vector::new(3.0, 0.0, 0.0),
-        radius: 0.1,
-    };
+    let (mut world, _) = with(weightless(), ball::<D>(16));
+    let bar = Shape::capsule(-D::Vector::X, vector(3.0, 0.0, 0.0), 0.1);
     let depth = if D::N == 2 { 0.0 } else { 0.5 };
-    let bar = RigidBody::new(bar, MotionType::default()).at(Vector::new(-0.5, 1.12, depth));
+    let bar = RigidBody::new(bar, MotionType::default()).at(vector(-0.5, 1.12, depth));
     let bar = world.add_rigid_body(bar).unwrap();
     world
-        .set_target_position(bar, Vector::new(-0.5, 1.0, depth))
+        .set_target_position(bar, vector(-0.5, 1.0, depth))
         .unwrap();
-    let (mut torque, mut force) = ([0.0; 3], 0.0);
+    let (mut torque, mut force) = (Vec3::ZERO, 0.0);
     for _ in 0..10 {
-        let mut feel = |substep: &Substep| {
+        let mut feel = |substep: &Substep<D>| {
             let felt = substep.reaction(bar).unwrap();
-            (0..3).for_each(|axis| torque[axis] += felt.torque[axis] * substep.duration);
+            torque += felt.torque.to_vec3() * substep.duration;
             force += felt.contact[1] * substep.duration;
         };
         world.step_with(&mut Hooks {
@@ -419,8 +416,8 @@ fn check_torque<D: Dim>() {
     }
     assert!(force > 0.1, "{force}");
     // The top of the ball is one metre to the right of the bar's centre.
-    assert!((torque[2] / force - 1.0).abs() < 0.1, "{torque:?} {force}");
-    assert!(torque[0].abs() + torque[1].abs() < 0.1 * torque[2]);
+    assert!((torque.z / force - 1.0).abs() < 0.1, "{torque:?} {force}");
+    assert!(torque.x.abs() + torque.y.abs() < 0.1 * torque.z);
 }
 
 #[test]
@@ -438,15 +435,16 @@ fn act<D: Dim>(
     body: SoftBodyHandle,
     k: f32,
 ) -> Result<(), Error> {
-    let vector = [k, -0.5 * k, k];
+    let vector = Vec3::new(k, -0.5 * k, k);
+    let (vector, angular) = (D::Vector::from_vec3(vector), D::Angular::from_vec3(vector));
     match which {
         0 => world.translate(body, vector),
-        1 => world.rotate_about(body, Rotation::about([1.0, k, 2.0], k), vector),
+        1 => world.rotate_about(body, Rotation::about(Vec3::new(1.0, k, 2.0), k), vector),
         2 => world.add_velocity(
             body,
             Velocity {
                 linear: vector,
-                angular: vector,
+                angular,
             },
         ),
         3 => world.apply_impulse(body, Impulse::at(vector, vector).within(k)),
@@ -454,7 +452,7 @@ fn act<D: Dim>(
         5 => world.wake_up(body),
         6 => world.put_to_sleep(body),
         _ => world.set_config(WorldConfig {
-            gravity: vector.into(),
+            gravity: vector,
             drag: k,
             max_substeps: 16,
             ..WorldConfig::default()
@@ -491,11 +489,10 @@ fn check_any<D: Dim>(seeds: std::ops::Range<u64>) {
         for _ in 0..30 {
             let body = bodies[random(bodies.len())];
             match random(12) {
-                0 => bodies.push(world.add_soft_body(ball::<D>(4).translated(Vector::new(
-                    random(5) as f32,
-                    1.0,
-                    0.0,
-                )))),
+                0 => {
+                    let by = vector(random(5) as f32, 1.0, 0.0);
+                    bodies.push(world.add_soft_body(ball::<D>(4).translated(by)));
+                }
                 1 => _ = world.remove(body),
                 2..5 => _ = world.step(),
                 _ => {
@@ -509,7 +506,7 @@ fn check_any<D: Dim>(seeds: std::ops::Range<u64>) {
             }
         }
         world.step();
-        for body in world.soft_bodies() {
+        for (_, body) in world.soft_bodies() {
             body.mesh()
                 .validate(body.grid(), body.connectivity())
                 .unwrap();

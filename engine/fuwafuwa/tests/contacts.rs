@@ -2,17 +2,21 @@
 
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Contact, Dim, Dim2, Dim3, Event, Layers, Material, ObjectRef, PieceId, RigidBody,
-    RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, Velocity, VoxelGrid, World,
+    Contact, Dim, Dim2, Dim3, DimVector, Event, Layers, Material, ObjectRef, PieceId, RigidBody,
+    RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, Vec3, Velocity, VoxelGrid, World,
     WorldConfig,
 };
 use std::collections::BTreeSet;
 
-const UP: Vector = Vector::Y;
+/// Returns a vector of any dimension; in 2D without its third coordinate.
+fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
+    V::from_vec3(Vec3::new(x, y, z))
+}
 
 fn floored<D: Dim>() -> (World<D>, RigidBodyHandle) {
     let mut world = World::new(WorldConfig::default()).unwrap();
-    let floor = RigidBody::fixed(Shape::half_space(UP, Vector::ZERO)).with_friction(0.5);
+    let floor =
+        RigidBody::fixed(Shape::half_space(D::Vector::Y, D::Vector::ZERO)).with_friction(0.5);
     let floor = world.add_rigid_body(floor).unwrap();
     (world, floor)
 }
@@ -30,15 +34,12 @@ fn ball<D: Dim>(world: &mut World<D>, height: f32) -> SoftBodyHandle {
     };
     let grid = VoxelGrid::<D>::ball(10, 1.0).unwrap();
     let body = SoftBody::new(grid, &[rubber]).unwrap();
-    world.add_soft_body(body.translated(Vector::new(0.0, height, 0.0)))
+    world.add_soft_body(body.translated(vector(0.0, height, 0.0)))
 }
 
-fn crate_of(height: f32, half: f32) -> RigidBody {
-    let shape = Shape::Box {
-        centre: Vector::new(0.5, height, 0.5),
-        half: Vector::splat(half),
-    };
-    RigidBody::dynamic(shape, 1.0)
+fn crate_of<D: Dim>(height: f32, half: f32) -> RigidBody<D> {
+    let shape = Shape::cuboid(D::Vector::splat(half));
+    RigidBody::dynamic(shape.translated(vector(0.5, height, 0.5)), 1.0)
 }
 
 fn of_body(party: ObjectRef, body: SoftBodyHandle) -> bool {
@@ -53,7 +54,7 @@ fn contacts_begin_and_end<D: Dim>() {
     let (mut began, mut ended) = (Vec::new(), 0);
     for tick in 0..500 {
         if tick == 450 {
-            world.translate(id, [0.0, 2.0, 0.0]).unwrap();
+            world.translate(id, vector(0.0, 2.0, 0.0)).unwrap();
         }
         world.step();
         for event in world.events() {
@@ -61,7 +62,7 @@ fn contacts_begin_and_end<D: Dim>() {
                 Event::ContactStarted(contact) => {
                     let pair = contact.pair;
                     assert!(of_body(pair[0], id) && pair[1] == ObjectRef::RigidBody(floor));
-                    assert_eq!(contact.normal, UP);
+                    assert_eq!(contact.normal, D::Vector::Y);
                     assert!(contact.point[1] < 0.1);
                     assert!(world.events().contains(&Event::ContactForce(contact)));
                     began.push((tick, contact.speed));
@@ -103,7 +104,7 @@ fn sleeping_body_keeps_contact_until_removed() {
     let mut ends = 0;
     for _ in 0..240 {
         world.step();
-        let ended = |event: &&Event| matches!(event, Event::ContactEnded { .. });
+        let ended = |event: &&Event<Dim3>| matches!(event, Event::ContactEnded { .. });
         ends += world.events().iter().filter(ended).count();
     }
     assert!(world.rigid_body(id).unwrap().is_asleep());
@@ -128,7 +129,7 @@ fn rigid_contact_event_reports_impulse_and_speed() {
                 Event::ContactForce(contact) => {
                     // The floor has the lower handle, so that the normal points towards it.
                     assert_eq!(contact.pair, [floor, id].map(ObjectRef::RigidBody));
-                    assert_eq!(contact.normal, [0.0, -1.0, 0.0]);
+                    assert_eq!(contact.normal, Vec3::NEG_Y);
                     impulse += contact.impulse;
                 }
                 Event::ContactStarted(contact) => speed = speed.max(contact.speed),
@@ -144,18 +145,14 @@ fn rigid_contact_event_reports_impulse_and_speed() {
 /// A body that falls through a sensor enters and exits it without contact.
 fn sensors_tell<D: Dim>() {
     let (mut world, _) = floored::<D>();
-    let gate = Shape::Box {
-        centre: Vector::new(0.5, 2.5, 0.5),
-        half: Vector::new(4.0, 0.2, 2.0),
-    };
-    let mut gate = RigidBody::fixed(gate).with_friction(0.5);
-    gate.is_sensor = true;
+    let gate = Shape::cuboid(vector(4.0, 0.2, 2.0)).translated(vector(0.5, 2.5, 0.5));
+    let gate = RigidBody::fixed(gate).with_friction(0.5).with_sensor(true);
     let gate = world.add_rigid_body(gate).unwrap();
     let soft = ball(&mut world, 3.0);
     let free = world.add_rigid_body(crate_of(5.5, 0.2)).unwrap();
     // Beside the ball, so that it does not bounce back.
     world
-        .set_pose(free, [3.0, 5.5, 0.5], Rotation::NONE)
+        .set_pose(free, vector(3.0, 5.5, 0.5), Rotation::NONE)
         .unwrap();
     let (mut entered, mut left) = (Vec::new(), Vec::new());
     for _ in 0..60 {
@@ -190,17 +187,19 @@ fn sensors_agree_with_test_of_every_node<D: Dim>() {
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         low + (high - low) * (seed >> 8) as f32 / (1u32 << 24) as f32
     };
-    let mut point = || [random(0.0, 4.0), random(0.0, 4.0), random(0.0, 1.0)];
-    let mut sensors = vec![Shape::half_space([0.6, 0.8, 0.0], [1.0, 0.5, 0.0])];
+    let mut point =
+        || -> D::Vector { vector(random(0.0, 4.0), random(0.0, 4.0), random(0.0, 1.0)) };
+    let plane = Shape::half_space(vector(0.6, 0.8, 0.0), vector(1.0, 0.5, 0.0));
+    let mut sensors = vec![plane];
     for _ in 0..3 {
-        let (radius, half) = (0.3, [0.5, 0.1, 0.4]);
+        let (radius, half) = (0.3, vector(0.5, 0.1, 0.4));
         let centre = point();
         sensors.push(Shape::Ball { centre, radius });
         let centre = point();
         sensors.push(Shape::Box { centre, half });
         let (from, to) = (point(), point());
         sensors.push(Shape::Capsule { from, to, radius });
-        let rotation = Rotation::about([0.0, 0.0, 1.0], 0.7);
+        let rotation = Rotation::in_plane(0.7);
         let centre = point();
         sensors.push(Shape::OrientedBox {
             centre,
@@ -209,9 +208,8 @@ fn sensors_agree_with_test_of_every_node<D: Dim>() {
         });
     }
     for shape in sensors {
-        let mut sensor = RigidBody::fixed(shape).with_friction(0.5);
-        sensor.is_sensor = true;
-        world.add_rigid_body(sensor).unwrap();
+        let sensor = RigidBody::fixed(shape).with_friction(0.5);
+        world.add_rigid_body(sensor.with_sensor(true)).unwrap();
     }
     for k in 0..4 {
         let grid = VoxelGrid::<D>::ball(6, 1.0).unwrap();
@@ -220,8 +218,7 @@ fn sensors_agree_with_test_of_every_node<D: Dim>() {
             body.crumble();
         }
         let body = world.add_soft_body(body.translated(point()));
-        let [x, y, z] = point();
-        let velocity = [2.0 - x, 4.0 - y, 0.5 - z];
+        let velocity = vector::<D::Vector>(2.0, 4.0, 0.5) - point();
         world
             .add_velocity(body, Velocity::linear(velocity))
             .unwrap();
@@ -247,7 +244,7 @@ fn sensors_agree_with_test_of_every_node<D: Dim>() {
             for (body, soft) in world.soft_bodies() {
                 for (node, _) in soft.mesh().nodes() {
                     let is_inside = rigid.shape().distance(soft.node_state(node).0).0 < 0.0;
-                    if is_inside && soft.layers().meet(rigid.layers) {
+                    if is_inside && soft.layers().meet(rigid.layers()) {
                         let piece = soft.pieces().of_node(node);
                         expected.insert((sensor, ObjectRef::Piece { body, piece }));
                     }
@@ -295,7 +292,7 @@ fn layers_filter_contacts() {
     layers_part::<Dim3>();
     let (mut world, floor) = floored::<Dim3>();
     let id = world.add_rigid_body(crate_of(0.5, 0.2)).unwrap();
-    let [own, other] = [floor, id].map(|id| world.rigid_body(id).unwrap().layers);
+    let [own, other] = [floor, id].map(|id| world.rigid_body(id).unwrap().layers());
     let (memberships, filters) = (2, 1);
     world
         .set_layers(floor, Layers { memberships, ..own })
@@ -315,7 +312,7 @@ fn user_data_persists_until_removal() {
     world.set_user_data(floor, 9).unwrap();
     world.step();
     assert_eq!(world[id].user_data(), 7);
-    assert_eq!(world.rigid_body(floor).unwrap().user_data, 9);
+    assert_eq!(world.rigid_body(floor).unwrap().user_data(), 9);
     world.remove(id).unwrap();
     assert!(
         world.set_user_data(id, 1).is_err() && world.set_layers(id, Layers::default()).is_err()
@@ -335,7 +332,7 @@ fn contacts_of_stack<D: Dim>() {
     let (mut world, floor) = floored::<D>();
     let body = ball(&mut world, 0.0);
     let beside = ball(&mut world, 0.0);
-    world.translate(beside, [3.0, 0.0, 0.0]).unwrap();
+    world.translate(beside, vector(3.0, 0.0, 0.0)).unwrap();
     let load = world.add_rigid_body(crate_of(1.3, 0.25)).unwrap();
     assert_eq!(world.contacts_of(body).unwrap().count(), 0, "no tick yet");
     let piece = PieceId(0);
@@ -400,13 +397,13 @@ fn sleeping_contact_is_listed_and_survives_a_clone() {
         "{contact:?}"
     );
     world.step();
-    let is_force = |event: &Event| matches!(event, Event::ContactForce(_));
+    let is_force = |event: &Event<Dim3>| matches!(event, Event::ContactForce(_));
     assert!(
         !world.events().iter().any(is_force),
         "a sleeper sends no force"
     );
     let contacts = |world: &World<Dim3>| world.contacts_of(id).unwrap().copied().collect();
-    let known: Vec<Contact> = contacts(&world);
+    let known: Vec<Contact<Dim3>> = contacts(&world);
     assert_eq!(known, [contact]);
     assert_eq!(known, contacts(&world.clone()));
 }
@@ -433,7 +430,7 @@ fn pieces_press<D: Dim>() {
             }
             _ => None,
         });
-        let forces: Vec<&Contact> = forces.collect();
+        let forces: Vec<&Contact<D>> = forces.collect();
         assert!(forces.len() <= 1, "{forces:?}");
         for contact in forces {
             // From the upper ball towards the lower one.

@@ -2,8 +2,8 @@
 
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Material, PieceId, RigidBody, Shape, SoftBody, Vector, VoxelGrid, World,
-    WorldConfig,
+    Dim, Dim2, Dim3, DimVector, Material, PieceId, RigidBody, Shape, SoftBody, Vec2, Vec3,
+    Velocity, VoxelGrid, World, WorldConfig,
 };
 use glam::DVec3;
 
@@ -13,17 +13,22 @@ const DEPTH: f32 = 0.6;
 /// Maximum number of elements in a crumb of these tests.
 const SMALL: u32 = 16;
 
+/// Returns a vector of any dimension; in 2D without its third coordinate.
+fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
+    V::from_vec3(Vec3::new(x, y, z))
+}
+
 /// Returns twice the area of a triangle, or six times the volume of a tetrahedron.
-fn volume<D: Dim>(points: &[Vector]) -> f32 {
+fn volume<D: Dim>(points: &[Vec3]) -> f32 {
     let [a, b] = [1, 2].map(|k| points[k] - points[0]);
     match D::N {
-        2 => a[0] * b[1] - a[1] * b[0],
+        2 => a.x * b.y - a.y * b.x,
         _ => a.cross(b).dot(points[3] - points[0]),
     }
 }
 
 /// Returns whether a point is in a simplex: replacing any corner by the point keeps the sign of the volume.
-fn is_in_simplex<D: Dim>(points: &[Vector], at: Vector) -> bool {
+fn is_in_simplex<D: Dim>(points: &[Vec3], at: Vec3) -> bool {
     let whole = volume::<D>(points);
     (0..=D::N).all(|corner| {
         let mut others = points.to_vec();
@@ -33,7 +38,7 @@ fn is_in_simplex<D: Dim>(points: &[Vector], at: Vector) -> bool {
 }
 
 /// Returns whether a point is in a cell, split into simplices between its first and its last corner.
-fn is_in_cell<D: Dim>(corners: &[Vector], at: Vector) -> bool {
+fn is_in_cell<D: Dim>(corners: &[Vec3], at: Vec3) -> bool {
     let simplices: &[[usize; 4]] = match D::N {
         2 => &[[0, 3, 1, 0], [0, 3, 2, 0]],
         _ => &[
@@ -55,8 +60,7 @@ fn is_in_cell<D: Dim>(corners: &[Vector], at: Vector) -> bool {
 fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
     let views: Vec<_> = world
         .soft_bodies()
-        .map(|(_, body)| body)
-        .map(SoftBody::piece_views)
+        .map(|(_, body)| body.piece_views())
         .collect();
     let crumbs = || {
         let all = views.iter().enumerate();
@@ -64,13 +68,13 @@ fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
         all.filter(|(_, view)| view.element_count <= SMALL)
     };
     let mut inside = Vec::new();
-    for (place, body) in world.soft_bodies().map(|(_, body)| body).enumerate() {
+    for (place, (_, body)) in world.soft_bodies().enumerate() {
         let size = body.grid().voxel_size();
-        let faces: Vec<(PieceId, Vector)> = body
+        let faces: Vec<(PieceId, Vec3)> = body
             .facets()
             .map(|facet| {
                 let corners = &facet.corners[..2 * (D::N - 1)];
-                let sum = corners.iter().sum::<Vector>();
+                let sum = corners.iter().sum::<Vec3>();
                 (facet.piece, sum * (1.0 / corners.len() as f32))
             })
             .collect();
@@ -111,7 +115,7 @@ fn check<D: Dim>(
     ticks: u16,
     patience: u32,
     least: usize,
-    goal: impl Fn(f32) -> Vector,
+    goal: impl Fn(f32) -> D::Vector,
 ) {
     let mut stays = std::collections::BTreeMap::new();
     for tick in 0..ticks {
@@ -147,7 +151,7 @@ fn check<D: Dim>(
 
 fn weightless<D: Dim>() -> World<D> {
     let settings = WorldConfig {
-        gravity: Vector::ZERO,
+        gravity: D::Vector::ZERO,
         drag: 1.0,
         max_substeps: 64,
         ..WorldConfig::default()
@@ -158,7 +162,7 @@ fn weightless<D: Dim>() -> World<D> {
 /// A hand presses dust into a body against a wall, grinds to and fro, and retreats.
 fn check_grinding<D: Dim>(n: usize, least: usize) {
     let mut world = weightless::<D>();
-    let wall = Shape::half_space(Vector::NEG_X, Vector::new(1.05, 0.0, 0.0));
+    let wall = Shape::half_space(-D::Vector::X, vector(1.05, 0.0, 0.0));
     world
         .add_rigid_body(RigidBody::fixed(wall).with_friction(0.2))
         .unwrap();
@@ -171,16 +175,16 @@ fn check_grinding<D: Dim>(n: usize, least: usize) {
     let mut dust = ball(n / 3, 0.33);
     dust.crumble();
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    world.add_soft_body(dust.translated(Vector::new(-0.36, 0.33, depth - 0.17)));
+    world.add_soft_body(dust.translated(vector(-0.36, 0.33, depth - 0.17)));
     world
-        .add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at(Vector::new(-0.55, 0.5, depth)))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at(vector(-0.55, 0.5, depth)))
         .unwrap();
     check(world, 240, 30, least, |seconds| {
         let in_and_out = seconds.min(0.8) - (seconds - 2.2).max(0.0);
         let turn = 2.0 * (seconds - 0.8).clamp(0.0, 1.4);
         // To and fro twice a second.
         let to_and_fro = 0.3 * ((turn - turn.floor() - 0.5).abs() - 0.5);
-        Vector::new(-0.55 + 1.25 * in_and_out, 0.5 + to_and_fro, depth)
+        vector(-0.55 + 1.25 * in_and_out, 0.5 + to_and_fro, depth)
     });
 }
 
@@ -195,24 +199,24 @@ fn dust_leaves_body_after_grinding() {
 #[test]
 fn crumbs_stay_outside_halves_of_torn_disc() {
     let mut world = weightless::<Dim2>();
-    let wall = Shape::half_space(Vector::NEG_X, Vector::new(1.15, 0.0, 0.0));
+    let wall = Shape::half_space(Vec2::NEG_X, Vec2::new(1.15, 0.0));
     world
         .add_rigid_body(RigidBody::fixed(wall).with_friction(0.2))
         .unwrap();
     let disc = VoxelGrid::ball(64, 1.0).unwrap();
     world.add_soft_body(SoftBody::new(disc, &[Material::default()]).unwrap());
     world
-        .add_rigid_body(RigidBody::coupled(Shape::ball(0.08)).at(Vector::new(-0.3, 0.55, 0.0)))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.08)).at(Vec2::new(-0.3, 0.55)))
         .unwrap();
     check(world, 150, 30, 20, |seconds| {
-        Vector::new(-0.3 + 0.9 * seconds.min(1.5), 0.55, 0.0)
+        Vec2::new(-0.3 + 0.9 * seconds.min(1.5), 0.55)
     });
 }
 
 /// Dust that starts inside a body drifts out slowly, and momentum is preserved.
 fn check_way_out<D: Dim>(n: usize) {
     let mut world = World::<D>::new(WorldConfig {
-        gravity: Vector::ZERO,
+        gravity: D::Vector::ZERO,
         ..WorldConfig::default()
     })
     .unwrap();
@@ -224,24 +228,22 @@ fn check_way_out<D: Dim>(n: usize) {
     let mut dust = SoftBody::new(ball(n / 4, 0.25), &[tough]).unwrap();
     dust.crumble();
     let depth = if D::N == 3 { 0.37 } else { 0.0 };
-    world.add_soft_body(dust.translated(Vector::new(0.1, 0.37, depth)));
+    let dust = world.add_soft_body(dust.translated(vector(0.1, 0.37, depth)));
     world.add_soft_body(SoftBody::new(ball(n, 1.0), &[tough]).unwrap());
     let (before, count) = crumbs_inside(&world);
     assert!(5 * before.len() > 4 * count, "{} of {count}", before.len());
     for tick in 0..60 {
         world.step();
-        for crumb in world.soft_bodies().next().unwrap().1.piece_views() {
+        for crumb in world[dust].piece_views() {
             let speed = crumb.velocity.length();
             assert!(speed < 1.5, "tick {tick}: {speed} m/s");
         }
         // Later, the body touches crumbs outside, and slow contacts are damped.
         if tick < 10 {
-            let linear = world
-                .soft_bodies()
-                .map(|(_, body)| body)
-                .map(|body| body.momentum().linear);
+            let bodies = world.soft_bodies();
+            let linear = bodies.map(|(_, body)| body.momentum().linear);
             let linear = linear.sum::<DVec3>();
-            let most = 1e-3 * world.soft_bodies().next().unwrap().1.total_mass();
+            let most = 1e-3 * world[dust].total_mass();
             assert!(linear.abs().max_element() < most, "{linear:?} kg m/s");
         }
     }
@@ -271,7 +273,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
         ..Material::default()
     };
     let settings = WorldConfig {
-        gravity: Vector::ZERO,
+        gravity: D::Vector::ZERO,
         drag: 0.0,
         max_substeps: substeps,
         ..WorldConfig::default()
@@ -293,13 +295,14 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
         .collect();
     for &node in &nodes {
         let (at, _, _) = body.node_state(node);
-        body.set_node_state(node, at, (at - crumb.centre) * 0.1);
+        let away = at - D::Vector::from_vec3(crumb.centre);
+        body.set_node_state(node, at, away * 0.1).unwrap();
     }
     for _ in 0..60 {
         world.step();
     }
     let speeds = nodes.iter().map(|&node| world[soft].node_state(node).1);
-    speeds.map(length).fold(0.0, f32::max)
+    speeds.map(D::Vector::length).fold(0.0, f32::max)
 }
 
 #[test]
@@ -322,33 +325,31 @@ fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
         ..WorldConfig::default()
     };
     let mut world = World::<D>::new(settings).unwrap();
-    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
+    let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
         .unwrap();
     let crumb = VoxelGrid::<D>::cube(1, VOXEL).unwrap();
-    world.add_soft_body(SoftBody::new(crumb, &[Material::default()]).unwrap());
+    let crumb = world.add_soft_body(SoftBody::new(crumb, &[Material::default()]).unwrap());
+    let sleeps = |world: &World<D>| world[crumb].pieces().list[PieceId(0)].asleep;
     for _ in 0..90 {
         world.step();
     }
-    assert!(world.soft_bodies().next().unwrap().1.pieces().list[PieceId(0)].asleep);
+    assert!(sleeps(&world));
     let block = VoxelGrid::<D>::cube(size, size as f32 * VOXEL).unwrap();
     let mut heavy = Material::default();
     heavy.density *= 10.0;
     let block = SoftBody::new(block, &[heavy]).unwrap();
-    let thrown = block.with_velocity(Vector::new(0.0, -speed, 0.0));
-    world.add_soft_body(thrown.translated(Vector::new(-0.3 * VOXEL, 4.0 * VOXEL, -0.2 * VOXEL)));
+    let thrown = block.with_velocity(Velocity::linear(vector(0.0, -speed, 0.0)));
+    world.add_soft_body(thrown.translated(vector(-0.3 * VOXEL, 4.0 * VOXEL, -0.2 * VOXEL)));
     let mut lowest = f32::INFINITY;
     for _ in 0..20 {
         world.step();
-        let crumb = world.soft_bodies().next().unwrap().1;
-        let nodes = crumb.mesh().nodes();
-        lowest = nodes.fold(lowest, |low, (id, _)| low.min(crumb.node_state(id).0[1]));
+        let body = &world[crumb];
+        let nodes = body.mesh().nodes();
+        lowest = nodes.fold(lowest, |low, (id, _)| low.min(body.node_state(id).0[1]));
     }
-    assert!(
-        !world.soft_bodies().next().unwrap().1.pieces().list[PieceId(0)].asleep,
-        "the block must wake the crumb"
-    );
+    assert!(!sleeps(&world), "the block must wake the crumb");
     -lowest / VOXEL
 }
 

@@ -1,15 +1,19 @@
 //! Regression tests: each comment describes the former fault.
 
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Event, Material, MotionType, RigidBody, Shape, SoftBody, Vector,
-    VoxelGrid, World, WorldConfig,
+    Blade, Dim, Dim2, Dim3, DimVector, Event, Material, RigidBody, Shape, SoftBody, Vec2, Vec3,
+    Velocity, VoxelGrid, World, WorldConfig,
 };
 use std::time::Duration;
 
+/// Returns a vector of any dimension; in 2D without its third coordinate.
+fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
+    V::from_vec3(Vec3::new(x, y, z))
+}
+
 fn weightless<D: Dim>() -> World<D> {
-    let gravity = [0.0; 3];
     let settings = WorldConfig {
-        gravity: gravity.into(),
+        gravity: D::Vector::ZERO,
         ..WorldConfig::default()
     };
     World::new(settings).expect("the settings are valid")
@@ -22,30 +26,20 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
 
 /// A second cut along the same blade released nothing, but reported the released nodes of the first cut
 /// again, with events.
-fn check_cut_twice<D: Dim>(n: usize) {
+fn check_cut_twice<D: Dim>(n: usize, [blade, across]: [Blade<D>; 2]) {
     let mut world = weightless::<D>();
     let id = world.add_soft_body(ball(n));
-    let blade = Blade {
-        from: Vector::new(0.5, -1.0, -1.0),
-        across: Vector::new(0.0, 3.0, 0.0),
-        along: Vector::new(0.0, 0.0, 3.0),
-    };
     let first = world.cut(id, &blade).unwrap();
     let points = (n - 1) * (D::N - 1);
     assert!(first >= points && first < n * n, "{first}");
     let told = |world: &World<D>| {
-        let is_release = |event: &&Event| matches!(event, Event::NodeSplit { .. });
+        let is_release = |event: &&Event<D>| matches!(event, Event::NodeSplit { .. });
         world.events().iter().filter(is_release).count()
     };
     assert_eq!(told(&world), first);
     assert_eq!(world[id].pieces().list.len(), 2);
     assert_eq!((world.cut(id, &blade).unwrap(), told(&world)), (0, first));
     // A crossing blade releases only new nodes.
-    let across = Blade {
-        from: Vector::new(-1.0, 0.5, -1.0),
-        across: Vector::new(3.0, 0.0, 0.0),
-        along: Vector::new(0.0, 0.0, 3.0),
-    };
     assert!(world.cut(id, &across).unwrap() >= points);
     assert_eq!(world.cut(id, &across).unwrap(), 0);
     assert_eq!(world[id].pieces().list.len(), 4);
@@ -53,36 +47,39 @@ fn check_cut_twice<D: Dim>(n: usize) {
 
 #[test]
 fn cut_releases_nothing_along_same_blade() {
-    check_cut_twice::<Dim2>(16);
-    check_cut_twice::<Dim3>(8);
+    let upright = Blade::segment(Vec2::new(0.5, -1.0), Vec2::new(0.5, 2.0));
+    let level = Blade::segment(Vec2::new(-1.0, 0.5), Vec2::new(2.0, 0.5));
+    check_cut_twice::<Dim2>(16, [upright, level]);
+    let [x, y, z] = Vec3::AXES.map(|axis| axis * 3.0);
+    let upright = Blade::parallelogram(Vec3::new(0.5, -1.0, -1.0), y, z);
+    let level = Blade::parallelogram(Vec3::new(-1.0, 0.5, -1.0), x, z);
+    check_cut_twice::<Dim3>(8, [upright, level]);
 }
 
 /// Moves every node of a body.
-fn place<D: Dim>(body: &mut SoftBody<D>, to: impl Fn([f32; 3]) -> [f32; 3]) {
+fn place(body: &mut SoftBody<Dim3>, to: impl Fn(Vec3) -> Vec3) {
     let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in ids {
-        let at = to(body.node_state(id).0.to_array());
-        assert!(body.set_node_state(id, at.into(), Vector::ZERO));
+        let at = to(body.node_state(id).0);
+        body.set_node_state(id, at, Vec3::ZERO).unwrap();
     }
 }
 
 /// Half turns about an axis of the grid and about a diagonal, and a rotation of nearly half a turn.
-fn turns() -> [fn([f32; 3]) -> [f32; 3]; 5] {
+fn turns() -> [fn(Vec3) -> Vec3; 5] {
     [
-        |[x, y, z]| [x, 1.0 - y, 1.0 - z],
-        |[x, y, z]| [1.0 - x, y, 1.0 - z],
-        |[x, y, z]| [1.0 - x, 1.0 - y, z],
-        |[x, y, z]| [y, x, 1.0 - z],
+        |Vec3 { x, y, z }| Vec3::new(x, 1.0 - y, 1.0 - z),
+        |Vec3 { x, y, z }| Vec3::new(1.0 - x, y, 1.0 - z),
+        |Vec3 { x, y, z }| Vec3::new(1.0 - x, 1.0 - y, z),
+        |Vec3 { x, y, z }| Vec3::new(y, x, 1.0 - z),
         // Rotation by the angle with cosine −0.8.
-        |[x, y, z]| [-0.8 * x - 0.6 * y, 0.6 * x - 0.8 * y, z],
+        |Vec3 { x, y, z }| Vec3::new(-0.8 * x - 0.6 * y, 0.6 * x - 0.8 * y, z),
     ]
 }
 
 fn fastest<D: Dim>(body: &SoftBody<D>) -> f32 {
-    let speeds = body.mesh().nodes().map(|(id, _)| {
-        let speed = body.node_state(id).1;
-        speed.length()
-    });
+    let nodes = body.mesh().nodes();
+    let speeds = nodes.map(|(id, _)| body.node_state(id).1.length());
     speeds.fold(0.0, f32::max)
 }
 
@@ -112,20 +109,8 @@ fn cut_keeps_turned_body_at_rest() {
         let from = body.piece_views()[0].centre;
         let id = world.add_soft_body(body);
         world.step();
-        let (across, along) = ([0.3, 1.0, 0.0], [0.0, 0.0, 1.0]);
-        assert!(
-            world
-                .cut(
-                    id,
-                    &Blade {
-                        from,
-                        across: across.into(),
-                        along: along.into()
-                    }
-                )
-                .unwrap()
-                > 20
-        );
+        let blade = Blade::parallelogram(from, Vec3::new(0.3, 1.0, 0.0), Vec3::Z);
+        assert!(world.cut(id, &blade).unwrap() > 20);
         for _ in 0..5 {
             assert_eq!(world.step().nodes_split, 0);
         }
@@ -159,42 +144,14 @@ fn crumble_detaches_every_voxel() {
     );
 }
 
-/// A hand that had moved in 3D and was added to a 2D world kept moving along the third axis.
-#[test]
-fn coupled_body_from_3d_stays_in_plane() {
-    let mut space = weightless::<Dim3>();
-    let hand = RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(0.0, 0.0, 0.5));
-    space.add_rigid_body(hand).expect("the hand is valid");
-    space
-        .set_target_position(space.nth_target_follower(0).unwrap(), Vector::Z)
-        .unwrap();
-    space.step();
-    let hand = space.remove(space.nth_target_follower(0).unwrap()).unwrap();
-    assert!(hand.velocity()[2] > 0.1);
-    let mut plane = weightless::<Dim2>();
-    plane.add_rigid_body(hand).expect("the hand is valid");
-    for _ in 0..3 {
-        plane.step();
-        let (_, hand) = plane.target_followers().next().unwrap();
-        assert_eq!((hand.position()[2], hand.velocity()[2]), (0.0, 0.0));
-    }
+/// Positions, velocities and masses of all nodes of a body.
+fn node_states<D: Dim>(body: &SoftBody<D>) -> Vec<(D::Vector, D::Vector, f32)> {
+    let nodes = body.mesh().nodes();
+    nodes.map(|(id, _)| body.node_state(id)).collect()
 }
 
 /// A body with infinite strength tears nowhere, independent of unused materials in its list. With a weaker
 /// unused material, its cracks used to grow.
-/// Positions and velocities of all nodes, for worlds that differ in other respects.
-fn node_states<D: Dim>(world: &World<D>) -> Vec<([f32; 3], [f32; 3], f32)> {
-    let states = |body: &SoftBody<D>| -> Vec<_> {
-        let nodes = body.mesh().nodes();
-        nodes.map(|(id, _)| body.node_state(id)).collect()
-    };
-    world
-        .soft_bodies()
-        .map(|(_, body)| body)
-        .flat_map(states)
-        .collect()
-}
-
 #[test]
 fn unused_weaker_material_has_no_effect_on_cracks() {
     let strong = Material {
@@ -207,24 +164,17 @@ fn unused_weaker_material_has_no_effect_on_cracks() {
         let grid = VoxelGrid::ball(16, 1.0).expect("a ball is not empty");
         let id =
             world.add_soft_body(SoftBody::new(grid, materials).expect("the materials are valid"));
-        assert!(
-            world
-                .cut(id, &Blade::segment([0.5, 0.4], [0.5, 2.0]))
-                .unwrap()
-                > 0
-        );
-        let hand = RigidBody::coupled(Shape::ball(0.1))
-            .at([0.5, 1.1, 0.0])
-            .with_motion_type(MotionType::Kinematic);
+        let blade = Blade::segment(Vec2::new(0.5, 0.4), Vec2::new(0.5, 2.0));
+        assert!(world.cut(id, &blade).unwrap() > 0);
+        let hand = RigidBody::kinematic(Shape::ball(0.1)).at(Vec2::new(0.5, 1.1));
         let hand = world.add_rigid_body(hand).expect("the hand is valid");
         let mut released = 0;
         for tick in 0..40u8 {
-            world
-                .set_target_position(hand, [0.5, 1.1 - 0.02 * f32::from(tick), 0.0])
-                .unwrap();
+            let goal = Vec2::new(0.5, 1.1 - 0.02 * f32::from(tick));
+            world.set_target_position(hand, goal).unwrap();
             released += world.step().nodes_split;
         }
-        (released, node_states(&world))
+        (released, node_states(&world[id]))
     };
     let (released, states) = run(&[strong]);
     assert_eq!(released, 0);
@@ -236,24 +186,21 @@ fn unused_weaker_material_has_no_effect_on_cracks() {
 fn quarantine_spares_ball_around_non_finite_crumb() {
     for nowhere in [f32::NAN, f32::INFINITY, 1e30] {
         let mut world = weightless::<Dim2>();
-        world.add_soft_body(ball(16));
+        let around = world.add_soft_body(ball(16));
         let grid = VoxelGrid::cube(1, 1.0 / 16.0).expect("a cube is not empty");
         let crumb = SoftBody::new(grid, &[Material::default()]).expect("the material is valid");
-        let crumb = world.add_soft_body(crumb.translated(Vector::new(0.45, 0.45, 0.0)));
+        let crumb = world.add_soft_body(crumb.translated(Vec2::new(0.45, 0.45)));
         for _ in 0..3 {
             world.step();
         }
         let crumb = world.soft_body_mut(crumb).unwrap();
-        *crumb = crumb.clone().with_velocity(Vector::new(0.0, nowhere, 0.0));
+        *crumb = crumb.clone().with_velocity(Vec2::new(0.0, nowhere));
         let mut quarantined = 0;
         for _ in 0..10 {
             quarantined += world.step().quarantined;
         }
-        let ball = world.soft_bodies().next().unwrap().1;
-        assert!(
-            ball.pieces().list.iter().all(|piece| !piece.quarantined),
-            "{nowhere}"
-        );
+        let pieces = &world[around].pieces().list;
+        assert!(pieces.iter().all(|piece| !piece.quarantined), "{nowhere}");
         assert!(quarantined <= 1);
     }
 }
@@ -263,7 +210,7 @@ fn quarantine_spares_ball_around_non_finite_crumb() {
 fn check_zeros<D: Dim>(n: usize) {
     let run = |zero: f32| {
         let settings = WorldConfig {
-            gravity: Vector::new(zero, -9.81, zero),
+            gravity: vector(zero, -9.81, zero),
             drag: zero,
             ..WorldConfig::default()
         };
@@ -277,35 +224,27 @@ fn check_zeros<D: Dim>(n: usize) {
         };
         let grid = VoxelGrid::ball(n, 1.0).expect("a ball is not empty");
         let body = SoftBody::new(grid, &[material]).expect("the material is valid");
-        let middle = body.clone().translated(Vector::new(-0.5, zero, zero));
-        world.add_soft_body(middle.with_velocity(Vector::splat(zero)));
-        let normal = [zero, 1.0, zero];
+        let middle = body.clone().translated(vector(-0.5, zero, zero));
+        let velocity = Velocity::linear(D::Vector::splat(zero));
+        let id = world.add_soft_body(middle.with_velocity(velocity));
         let floor = Shape::HalfSpace {
-            normal: normal.into(),
+            normal: vector(zero, 1.0, zero),
             offset: zero,
         };
         world
             .add_rigid_body(RigidBody::fixed(floor).with_friction(zero))
             .expect("the floor is valid");
-        let hand = RigidBody::coupled(Shape::ball(0.1))
-            .at(Vector::new(zero, 1.2, 0.5))
-            .with_motion_type(MotionType::Kinematic);
+        let hand = RigidBody::kinematic(Shape::ball(0.1)).at(vector(zero, 1.2, 0.5));
         let hand = world.add_rigid_body(hand).expect("the hand is valid");
         let mut released = 0;
         for tick in 0..40u8 {
-            let goal = [zero, 1.2 - 0.02 * f32::from(tick), 0.5];
+            let goal = vector(zero, 1.2 - 0.02 * f32::from(tick), 0.5);
             world
-                .set_target_position(hand, goal.into())
+                .set_target_position(hand, goal)
                 .expect("the target is valid");
             released += world.step().nodes_split;
         }
-        let body = world
-            .soft_bodies()
-            .next()
-            .map(|(_, item)| item)
-            .expect("the world has one body");
-        let states = body.mesh().nodes().map(|(id, _)| body.node_state(id));
-        (released, states.collect::<Vec<_>>())
+        (released, node_states(&world[id]))
     };
     let plain = run(0.0);
     assert!(plain.0 > 0, "nothing tore");

@@ -1,18 +1,23 @@
 //! Knives: cuts, cutting force and work.
 
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Error, Event, Knife, KnifeHandle, Material, MotionType, RigidBody,
-    RigidBodyHandle, Rotation, SoftBody, SoftBodyHandle, Vector, Velocity, VoxelGrid, World,
-    WorldConfig,
+    Dim, Dim2, Dim3, DimAngular, DimVector, Error, Event, Knife, KnifeHandle, Material, MotionType,
+    RigidBody, RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, Vec2, Vec3, VoxelGrid,
+    World, WorldConfig,
 };
 
-const NO_GRAVITY: WorldConfig = WorldConfig {
-    gravity: Vector::ZERO,
-    drag: 0.0,
-    max_substeps: 64,
-    tick: 1.0 / 60.0,
-};
-const DOWN: Vector = Vector::NEG_Y;
+/// Returns a vector of any dimension; in 2D without its third coordinate.
+fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
+    V::from_vec3(Vec3::new(x, y, z))
+}
+
+fn weightless<D: Dim>() -> World<D> {
+    let settings = WorldConfig {
+        gravity: D::Vector::ZERO,
+        ..WorldConfig::default()
+    };
+    World::new(settings).unwrap()
+}
 
 /// A block centred above the origin, fixed at its bottom. The cutting edge lies along the third axis.
 fn block<D: Dim>(
@@ -25,7 +30,7 @@ fn block<D: Dim>(
     let [x, _, z] = size.map(|k| k as f32 * voxel);
     let depth = if D::N == 3 { -0.5 * z } else { 0.0 };
     let body = SoftBody::new(grid, &[material]).unwrap();
-    let mut body = body.translated(Vector::new(-0.5 * x, 0.0, depth));
+    let mut body = body.translated(vector(-0.5 * x, 0.0, depth));
     let bottom: Vec<_> = body
         .mesh()
         .nodes()
@@ -47,37 +52,38 @@ fn rubber() -> Material {
 /// A kinematic hand that holds a knife.
 fn knife<D: Dim>(
     world: &mut World<D>,
-    at: Vector,
+    at: D::Vector,
     half: f32,
     radius: f32,
 ) -> (RigidBodyHandle, KnifeHandle) {
-    let mut holder = RigidBody::coupled(Shape::ball(0.01))
-        .at(at)
-        .with_motion_type(MotionType::Kinematic);
-    holder.is_sensor = true;
-    let holder = world.add_rigid_body(holder).unwrap();
-    let edge = [[0.0, 0.0, -half], [0.0, 0.0, half]];
-    let mut knife = Knife::new(holder, edge.map(Vector::from), DOWN);
+    let holder = RigidBody::kinematic(Shape::ball(0.01)).at(at);
+    let holder = world.add_rigid_body(holder.with_sensor(true)).unwrap();
+    let edge = [-half, half].map(|z| vector(0.0, 0.0, z));
+    let mut knife = Knife::new(holder, edge, -D::Vector::Y);
     knife.radius = radius;
     (holder, world.add_knife(knife).unwrap())
+}
+
+fn height<D: Dim>(world: &World<D>, body: RigidBodyHandle) -> f32 {
+    world.rigid_body(body).unwrap().position()[1]
 }
 
 /// Moves the knife to a position at a speed [m/s], and calls `each` after every tick.
 fn go<D: Dim>(
     world: &mut World<D>,
     holder: RigidBodyHandle,
-    to: Vector,
+    to: D::Vector,
     speed: f32,
     mut each: impl FnMut(&World<D>),
 ) {
     let from = world.rigid_body(holder).unwrap().position();
-    let way: Vec<f32> = (0..3).map(|k| to[k] - from[k]).collect();
-    let long = way.iter().map(|k| k * k).sum::<f32>().sqrt();
-    let ticks = (60.0 * long / speed).ceil() as usize;
+    let way = to - from;
+    let ticks = (60.0 * way.length() / speed).ceil() as usize;
     for tick in 1..=ticks {
         let share = tick as f32 / ticks as f32;
-        let goal = [0, 1, 2].map(|k: usize| from[k] + share * way[k]);
-        world.set_target_position(holder, goal.into()).unwrap();
+        world
+            .set_target_position(holder, from + way * share)
+            .unwrap();
         world.step();
         each(world);
     }
@@ -107,31 +113,31 @@ fn force_in_slab<D: Dim>(
     radius: f32,
     turned: f32,
 ) -> (f32, [f32; 2]) {
-    let mut world = World::<D>::new(NO_GRAVITY).unwrap();
+    let mut world = weightless::<D>();
     let body = block(&mut world, size, voxel, Material::default());
     let top = size[1] as f32 * voxel;
     // Not in a plane of the voxel lattice.
     let (holder, id) = knife(
         &mut world,
-        Vector::new(0.13 * voxel, top + 0.01, 0.0),
+        vector(0.13 * voxel, top + 0.01, 0.0),
         0.2,
         radius,
     );
-    let turned = Rotation::about(Vector::Y, turned);
+    let turned = Rotation::about(Vec3::Y, turned);
     world.set_target_rotation(holder, turned).unwrap();
     world.step();
     let (mut forces, mut sums) = (Vec::new(), [0.0; 2]);
     go(
         &mut world,
         holder,
-        Vector::new(0.13 * voxel, 0.3 * top, 0.0),
+        vector(0.13 * voxel, 0.3 * top, 0.0),
         0.1,
         |world| {
-            let at = world.rigid_body(holder).unwrap().position()[1];
+            let at = height(world, holder);
             if at < 0.8 * top {
-                forces.push(world.knife(id).unwrap().force()[1]);
-                let torque = world.knife(id).unwrap().torque();
-                assert!(torque.is_finite());
+                let knife = world.knife(id).unwrap();
+                forces.push(knife.force()[1]);
+                assert!(knife.torque().to_vec3().is_finite());
             }
             let [area, work] = cut(world);
             sums = [sums[0] + area, sums[1] + work];
@@ -173,12 +179,12 @@ fn knife_force_is_fracture_energy_times_thickness() {
 /// Returns the depth to which a knife presses before it cuts [m].
 fn pressed_before<D: Dim>(size: [usize; 3], radius: f32) -> f32 {
     let voxel = 0.02;
-    let mut world = World::<D>::new(NO_GRAVITY).unwrap();
+    let mut world = weightless::<D>();
     block(&mut world, size, voxel, Material::default());
     let top = size[1] as f32 * voxel;
     let (holder, _) = knife(
         &mut world,
-        Vector::new(0.13 * voxel, top + 0.005, 0.0),
+        vector(0.13 * voxel, top + 0.005, 0.0),
         0.15,
         radius,
     );
@@ -186,11 +192,11 @@ fn pressed_before<D: Dim>(size: [usize; 3], radius: f32) -> f32 {
     go(
         &mut world,
         holder,
-        Vector::new(0.13 * voxel, 0.5 * top, 0.0),
+        vector(0.13 * voxel, 0.5 * top, 0.0),
         0.1,
         |world| {
             if first.is_none() && cut(world) != [0.0; 2] {
-                first = Some(top - world.rigid_body(holder).unwrap().position()[1]);
+                first = Some(top - height(world, holder));
             }
         },
     );
@@ -213,19 +219,18 @@ fn dull_edge_presses_deeper_before_cut() {
 
 fn goes_through<D: Dim>(size: [usize; 3], slant: f32) {
     let voxel = 0.02;
-    let mut world = World::<D>::new(NO_GRAVITY).unwrap();
+    let mut world = weightless::<D>();
     let body = block(&mut world, size, voxel, Material::default());
     let top = size[1] as f32 * voxel;
-    let start = [0.13 * voxel - 0.5 * slant, top + 0.02, 0.0];
-    let (holder, id) = knife(&mut world, start.into(), 0.15, 0.0);
+    let left = 0.13 * voxel - 0.5 * slant;
+    let start = vector(left, top + 0.02, 0.0);
+    let (holder, id) = knife(&mut world, start, 0.15, 0.0);
     let (mut area, mut most) = (0.0, 0.0f32);
-    let end = [start[0] + slant, -0.02, 0.0];
+    let end = vector(left + slant, -0.02, 0.0);
     // The blade points in the direction of motion.
     let turned = Rotation::in_plane(libm::atanf(slant / (top + 0.04)));
     world.set_target_rotation(holder, turned).unwrap();
-    go(&mut world, holder, end.into(), 0.5, |world| {
-        area += cut(world)[0]
-    });
+    go(&mut world, holder, end, 0.5, |world| area += cut(world)[0]);
     validated(&world, body);
     let large = |world: &World<D>| {
         let pieces = world[body].piece_views();
@@ -249,10 +254,10 @@ fn goes_through<D: Dim>(size: [usize; 3], slant: f32) {
     );
     // The same way back and forth again: nothing is left to cut.
     let mut again = 0.0;
-    go(&mut world, holder, start.into(), 0.5, |world| {
+    go(&mut world, holder, start, 0.5, |world| {
         again += cut(world)[0]
     });
-    go(&mut world, holder, end.into(), 0.5, |world| {
+    go(&mut world, holder, end, 0.5, |world| {
         again += cut(world)[0];
         most = most.max(world.knife(id).unwrap().force()[1]);
     });
@@ -272,34 +277,33 @@ fn knife_cuts_block_in_two_only_once() {
 fn coupled_knife_cuts_only_with_enough_force() {
     // 8 N/m over 0.16 m: 1.28 N.
     for (pull, cuts) in [(0.8, false), (2.0, true)] {
-        let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
+        let mut world = weightless::<Dim3>();
         let body = block(&mut world, [16, 12, 8], 0.02, Material::default());
-        let drive = MotionType::Coupled {
+        let coupling = MotionType::Coupled {
             mass: 0.2,
             stiffness: 300.0,
             damping: 1.0,
-            limit: pull,
+            max_force: pull,
         };
-        let mut holder = RigidBody::coupled(Shape::ball(0.01))
-            .at(Vector::new(0.003, 0.25, 0.0))
-            .with_motion_type(drive);
-        holder.is_sensor = true;
+        let holder = RigidBody::new(Shape::ball(0.01), coupling)
+            .at(Vec3::new(0.003, 0.25, 0.0))
+            .with_sensor(true);
         let holder = world.add_rigid_body(holder).unwrap();
-        let edge = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]];
+        let edge = [Vec3::new(0.0, 0.0, -0.1), Vec3::new(0.0, 0.0, 0.1)];
         world
-            .add_knife(Knife::new(holder, edge.map(Vector::from), DOWN))
+            .add_knife(Knife::new(holder, edge, Vec3::NEG_Y))
             .unwrap();
         let mut area = 0.0;
         for tick in 0..240 {
             let deep = 0.1f32.max(0.25 - 0.001 * tick as f32);
             world
-                .set_target_position(holder, Vector::new(0.003, deep, 0.0))
+                .set_target_position(holder, Vec3::new(0.003, deep, 0.0))
                 .unwrap();
             world.step();
             area += cut(&world)[0];
         }
         validated(&world, body);
-        let at = world.rigid_body(holder).unwrap().position()[1];
+        let at = height(&world, holder);
         assert_eq!(area > 0.01, cuts, "{area} m² with {pull} N, at {at} m");
         assert_eq!(at < 0.12, cuts, "at {at} m with {pull} N");
     }
@@ -307,40 +311,34 @@ fn coupled_knife_cuts_only_with_enough_force() {
 
 #[test]
 fn blade_face_pushes_sideways() {
-    let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
+    let mut world = weightless::<Dim3>();
     let body = block(&mut world, [16, 12, 8], 0.02, Material::default());
-    let (holder, id) = knife(&mut world, Vector::new(0.003, 0.26, 0.0), 0.1, 0.0);
+    let (holder, id) = knife(&mut world, Vec3::new(0.003, 0.26, 0.0), 0.1, 0.0);
+    go(&mut world, holder, Vec3::new(0.003, 0.12, 0.0), 0.2, |_| {});
+    let before = world[body].centre_of_mass().x;
     go(
         &mut world,
         holder,
-        Vector::new(0.003, 0.12, 0.0),
-        0.2,
-        |_| {},
-    );
-    let before = world[body].centre_of_mass()[0];
-    go(
-        &mut world,
-        holder,
-        Vector::new(0.013, 0.12, 0.0),
+        Vec3::new(0.013, 0.12, 0.0),
         0.05,
         |_| {},
     );
-    let force = world.knife(id).unwrap().force()[0];
-    let moved = world[body].centre_of_mass()[0] - before;
+    let force = world.knife(id).unwrap().force().x;
+    let moved = world[body].centre_of_mass().x - before;
     assert!(force < -0.5, "{force} N");
     assert!(moved > 0.001, "{moved} m");
 }
 
 #[test]
 fn knife_presses_unbreakable_block_and_wakes_it() {
-    let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
+    let mut world = weightless::<Dim3>();
     let body = block(&mut world, [12, 10, 6], 0.02, rubber());
     world.put_to_sleep(body).unwrap();
-    let (holder, _) = knife(&mut world, Vector::new(0.003, 0.22, 0.0), 0.1, 0.0);
+    let (holder, _) = knife(&mut world, Vec3::new(0.003, 0.22, 0.0), 0.1, 0.0);
     go(
         &mut world,
         holder,
-        Vector::new(0.003, 0.17, 0.0),
+        Vec3::new(0.003, 0.17, 0.0),
         0.2,
         |world| assert_eq!(cut(world), [0.0; 2]),
     );
@@ -348,28 +346,26 @@ fn knife_presses_unbreakable_block_and_wakes_it() {
     assert!(!world[body].piece_views()[0].asleep);
     let body = &world[body];
     let nodes = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);
-    let under = nodes.filter(|at| at[0].abs() < 0.015);
-    let top = under.fold(0.0, |top: f32, at| top.max(at[1]));
+    let under = nodes.filter(|at| at.x.abs() < 0.015);
+    let top = under.fold(0.0, |top: f32, at| top.max(at.y));
     assert!(top < 0.19, "pressed from 0.2 to {top}");
 }
 
 #[test]
 fn fixed_edge_cuts_moving_body_at_any_speed() {
     for speed in [0.5, 3.0, 8.0] {
-        let mut world = World::<Dim2>::new(NO_GRAVITY).unwrap();
+        let mut world = weightless::<Dim2>();
         let soft = Material {
             toughness: 100.0,
             ..Material::default()
         };
         let grid = VoxelGrid::cube(24, 0.24).unwrap();
         let body = SoftBody::new(grid, &[soft]).unwrap();
-        let body = world.add_soft_body(body.translated(Vector::new(-0.12, 0.02, 0.0)));
-        world
-            .add_velocity(body, Velocity::linear([0.0, -speed, 0.0]))
-            .unwrap();
-        let (_, id) = knife(&mut world, [0.003, 0.0, 0.0], 0.1, 0.0);
+        let body = world.add_soft_body(body.translated(Vec2::new(-0.12, 0.02)));
+        world.add_velocity(body, Vec2::new(0.0, -speed)).unwrap();
+        let (_, id) = knife(&mut world, Vec2::new(0.003, 0.0), 0.1, 0.0);
         let mut up = world.remove(id).unwrap();
-        up.toward = [0.0, 1.0, 0.0];
+        up.toward = Vec2::Y;
         world.add_knife(up).unwrap();
         let mut area = 0.0;
         for _ in 0..(60.0 * 0.4 / speed) as usize + 20 {
@@ -384,41 +380,36 @@ fn fixed_edge_cuts_moving_body_at_any_speed() {
 
 #[test]
 fn knife_without_height_has_finite_force_in_unbreakable_block() {
-    let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
+    let mut world = weightless::<Dim3>();
     block(&mut world, [6, 6, 6], 0.02, rubber());
-    let (holder, id) = knife(&mut world, [0.003, 0.14, 0.0], 0.1, 0.0);
+    let (holder, id) = knife(&mut world, Vec3::new(0.003, 0.14, 0.0), 0.1, 0.0);
     let mut thin = world.remove(id).unwrap();
     thin.height = 0.0;
     let id = world.add_knife(thin).unwrap();
-    go(&mut world, holder, [0.003, 0.1, 0.0], 0.2, |world| {
+    let end = Vec3::new(0.003, 0.1, 0.0);
+    go(&mut world, holder, end, 0.2, |world| {
         let force = world.knife(id).unwrap().force();
-        assert!(force.iter().all(|k| k.is_finite()), "{force:?}");
+        assert!(force.is_finite(), "{force:?}");
     });
     world.remove(holder).unwrap();
     world.step();
-    assert_eq!(world.knife(id).unwrap().force(), Vector::ZERO);
+    assert_eq!(world.knife(id).unwrap().force(), Vec3::ZERO);
 }
 
 #[test]
 fn knife_cuts_body_with_all_nodes_fixed() {
-    let mut world = World::<Dim2>::new(NO_GRAVITY).unwrap();
+    let mut world = weightless::<Dim2>();
     let grid = VoxelGrid::cube(8, 0.16).unwrap();
     let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     nodes.iter().for_each(|&id| body.fix_node(id));
     let body = world.add_soft_body(body);
-    let (holder, id) = knife(&mut world, Vector::new(0.083, 0.2, 0.0), 0.1, 0.0);
+    let (holder, id) = knife(&mut world, Vec2::new(0.083, 0.2), 0.1, 0.0);
     let (mut area, mut most) = (0.0, 0.0f32);
-    go(
-        &mut world,
-        holder,
-        Vector::new(0.083, -0.05, 0.0),
-        0.2,
-        |world| {
-            area += cut(world)[0];
-            most = most.max(world.knife(id).unwrap().force()[1]);
-        },
-    );
+    go(&mut world, holder, Vec2::new(0.083, -0.05), 0.2, |world| {
+        area += cut(world)[0];
+        most = most.max(world.knife(id).unwrap().force().y);
+    });
     assert_eq!(world[body].piece_views().len(), 2);
     assert!(
         (area - 0.16).abs() < 0.02 && most > 0.0,
@@ -428,27 +419,25 @@ fn knife_cuts_body_with_all_nodes_fixed() {
 
 #[test]
 fn add_knife_names_invalid_field() {
-    let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
-    let (holder, id) = knife(&mut world, Vector::ZERO, 0.1, 0.0);
-    let good = world.knife(id).unwrap().clone();
-    let wall = RigidBody::coupled(Shape::ball(0.1))
-        .at(Vector::ZERO)
-        .with_motion_type(MotionType::Fixed);
+    let mut world = weightless::<Dim3>();
+    let (holder, id) = knife(&mut world, Vec3::ZERO, 0.1, 0.0);
+    let good = world.knife(id).unwrap().definition();
+    let wall = RigidBody::fixed(Shape::ball(0.1));
     let wall = world.add_rigid_body(wall).unwrap();
-    let change = |change: &dyn Fn(&mut Knife)| {
-        let mut knife = good.clone();
+    let change = |change: &dyn Fn(&mut Knife<Dim3>)| {
+        let mut knife = good;
         change(&mut knife);
         knife
     };
     let bad = [
-        (change(&|knife| knife.edge = [Vector::ZERO; 2]), "edge"),
-        (change(&|knife| knife.edge[0][1] = f32::NAN), "edge"),
-        (change(&|knife| knife.toward = Vector::ZERO), "toward"),
+        (change(&|knife| knife.edge = [Vec3::ZERO; 2]), "edge"),
+        (change(&|knife| knife.edge[0].y = f32::NAN), "edge"),
+        (change(&|knife| knife.toward = Vec3::ZERO), "toward"),
         (
-            change(&|knife| knife.toward = Vector::new(0.0, f32::NAN, 0.0)),
+            change(&|knife| knife.toward = Vec3::new(0.0, f32::NAN, 0.0)),
             "toward",
         ),
-        (change(&|knife| knife.toward = Vector::Z), "toward"),
+        (change(&|knife| knife.toward = Vec3::Z), "toward"),
         (change(&|knife| knife.radius = -1.0), "radius"),
         (change(&|knife| knife.height = f32::INFINITY), "height"),
         (change(&|knife| knife.holder = wall), "holder"),

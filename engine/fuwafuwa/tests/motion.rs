@@ -1,10 +1,12 @@
 //! Moving bodies: forces compared with the reference law, momentum, angular momentum and energy.
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
-use fuwafuwa::Grading;
-use fuwafuwa::Law;
 use fuwafuwa::inspect::forces;
-use fuwafuwa::{Dim, Dim2, Dim3, Error, Material, NodeId, SoftBody, VoxelGrid};
+use fuwafuwa::{
+    Dim, Dim2, Dim3, DimVector, Error, Grading, Law, Material, NodeId, SoftBody, Vec2, Vec3,
+    VoxelGrid,
+};
+use glam::DVec3;
 
 fn ball<D: Dim>(n: usize, law: Law) -> SoftBody<D> {
     let grid = VoxelGrid::ball(n, 1.0).unwrap();
@@ -12,19 +14,17 @@ fn ball<D: Dim>(n: usize, law: Law) -> SoftBody<D> {
 }
 
 /// Sets the state of every node from its rest position [m], relative to the centre of a body 1 m wide.
-fn arrange<D: Dim>(body: &mut SoftBody<D>, state: impl Fn([f32; 3]) -> ([f32; 3], [f32; 3])) {
+fn arrange<D: Dim>(body: &mut SoftBody<D>, state: impl Fn(Vec3) -> (Vec3, Vec3)) {
     let nodes: Vec<_> = body.mesh().nodes().collect();
     let size = body.grid().voxel_size();
     for (id, node) in nodes {
-        let rest = [0, 1, 2].map(|k| {
-            if k < D::N {
-                node.at[k] as f32 * size - 0.5
-            } else {
-                0.0
-            }
-        });
-        let (position, velocity) = state(rest);
-        assert!(body.set_node_state(id, position.into(), velocity.into()));
+        let mut rest = D::Vector::ZERO;
+        for axis in 0..D::N {
+            rest[axis] = node.at[axis] as f32 * size - 0.5;
+        }
+        let (position, velocity) = state(rest.to_vec3());
+        let [position, velocity] = [position, velocity].map(D::Vector::from_vec3);
+        body.set_node_state(id, position, velocity).unwrap();
     }
 }
 
@@ -33,7 +33,8 @@ fn momentum<D: Dim>(body: &SoftBody<D>) -> (DVec3, DVec3) {
     let (mut linear, mut angular) = (DVec3::ZERO, DVec3::ZERO);
     for (id, _) in body.mesh().nodes() {
         let (x, v, mass) = body.node_state(id);
-        let (x, v, mass) = (x.as_dvec3(), v.as_dvec3(), f64::from(mass));
+        let [x, v] = [x, v].map(|vector| vector.to_vec3().as_dvec3());
+        let mass = f64::from(mass);
         linear += mass * v;
         angular += mass * x.cross(v);
     }
@@ -44,25 +45,25 @@ fn momentum<D: Dim>(body: &SoftBody<D>) -> (DVec3, DVec3) {
 /// body.
 fn check_forces_against_the_law<D: Dim>(law: Law) {
     let mut body = ball::<D>(16, law);
-    arrange(&mut body, |[x, y, z]| {
-        let bent = [x * 1.1 + 0.2 * y * y, y * 0.8 + 0.1 * x, z + 0.2 * x * y];
-        let turned = [
-            0.8 * bent[0] - 0.6 * bent[1],
-            0.6 * bent[0] + 0.8 * bent[1],
-            bent[2],
-        ];
-        (turned, [0.0; 3])
+    arrange(&mut body, |Vec3 { x, y, z }| {
+        let bent = Vec3::new(x * 1.1 + 0.2 * y * y, y * 0.8 + 0.1 * x, z + 0.2 * x * y);
+        let turned = Vec3::new(
+            0.8 * bent.x - 0.6 * bent.y,
+            0.6 * bent.x + 0.8 * bent.y,
+            bent.z,
+        );
+        (turned, Vec3::ZERO)
     });
     // A step of zero length evaluates the forces; several let the rotations converge.
     for _ in 0..8 {
-        body.advance(0.0, Vector::ZERO);
+        body.advance(0.0, D::Vector::ZERO);
     }
     let mut expected = vec![DVec3::ZERO; body.mesh().node_capacity()];
     for (_, element) in body.mesh().elements() {
         let positions: Vec<DVec3> = element
             .nodes
             .iter()
-            .map(|&node| body.node_state(node).0.as_dvec3())
+            .map(|&node| body.node_state(node).0.to_vec3().as_dvec3())
             .collect();
         let size = f64::from(element.cell.width()) / 16.0;
         let all = forces(
@@ -81,7 +82,7 @@ fn check_forces_against_the_law<D: Dim>(law: Law) {
         .map(|force| force.length())
         .fold(0.0, f64::max);
     for (id, node) in body.mesh().nodes() {
-        let found = body.force_on(id).as_dvec3();
+        let found = body.force_on(id).to_vec3().as_dvec3();
         let want = expected[id.index()];
         let error = (found - want).length();
         assert!(
@@ -104,12 +105,12 @@ fn element_batches_match_reference_law() {
 #[test]
 fn spinning_ball_preserves_angular_momentum() {
     let mut body = ball::<Dim3>(12, Law::CorotationalVem);
-    arrange(&mut body, |[x, y, z]| {
-        ([x, y, z], [4.0 * z - 3.0 * y, 3.0 * x, -4.0 * x])
+    arrange(&mut body, |at @ Vec3 { x, y, z }| {
+        (at, Vec3::new(4.0 * z - 3.0 * y, 3.0 * x, -4.0 * x))
     });
     let (_, before) = momentum(&body);
     for _ in 0..5 * 960 {
-        body.advance(1.0 / 960.0, Vector::ZERO);
+        body.advance(1.0 / 960.0, Vec3::ZERO);
     }
     let (_, after) = momentum(&body);
     let kept = before.dot(after) / before.length_squared();
@@ -119,13 +120,9 @@ fn spinning_ball_preserves_angular_momentum() {
 /// Cuts a moving body repeatedly: mass and momentum are preserved.
 fn check_releases_keep_momentum<D: Dim>(n: i32) {
     let mut body = ball::<D>(n as usize, Law::CorotationalVem);
-    arrange(&mut body, |[x, y, z]| {
-        let velocity = [
-            1.0 + 2.0 * y,
-            0.5 - x + z,
-            if D::N == 3 { 0.3 * x } else { 0.0 },
-        ];
-        ([x * 1.05, y * 0.95, z], velocity)
+    arrange(&mut body, |Vec3 { x, y, z }| {
+        let velocity = Vec3::new(1.0 + 2.0 * y, 0.5 - x + z, 0.3 * x);
+        (Vec3::new(x * 1.05, y * 0.95, z), velocity)
     });
     let mass = |body: &SoftBody<D>| -> f64 {
         body.mesh()
@@ -143,7 +140,7 @@ fn check_releases_keep_momentum<D: Dim>(n: i32) {
         let side = [0b1010_1010, 0b1100_1100, 0b1111_0000][step as usize % D::N];
         body.release(&[(at, side)]);
         if step % 10 == 0 {
-            body.advance(1.0 / 960.0, Vector::ZERO);
+            body.advance(1.0 / 960.0, D::Vector::ZERO);
         }
     }
     body.mesh()
@@ -185,5 +182,6 @@ fn body_rejects_invalid_material_and_node_state() {
         "material 1: density must be positive and finite, given 0.0"
     );
     let mut body = SoftBody::new(grid(), &[Material::default()]).unwrap();
-    assert!(!body.set_node_state(NodeId(0), Vector::new(f32::NAN, 0.0, 0.0), Vector::ZERO));
+    let nowhere = body.set_node_state(NodeId(0), Vec2::new(f32::NAN, 0.0), Vec2::ZERO);
+    assert!(nowhere.is_err());
 }

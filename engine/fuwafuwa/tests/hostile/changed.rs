@@ -1,7 +1,6 @@
 //! Changes, additions and removals between two ticks.
 
 use super::*;
-use fuwafuwa::Vector;
 
 #[test]
 fn replaced_body_may_have_fewer_nodes_and_pieces() {
@@ -36,25 +35,23 @@ fn sleeper() -> World<Dim2> {
 #[test]
 fn sleeping_body_wakes_when_changed() {
     let mut thrown = sleeper();
-    let body = thrown
-        .soft_body_mut(thrown.nth_soft_body(0).unwrap())
-        .unwrap();
-    *body = body.clone().with_velocity(Vector::new(0.0, 5.0, 0.0));
     let id = thrown.nth_soft_body(0).unwrap();
-    let woke =
-        |event: &Event| matches!(event, Event::WokeUp { body, piece: PieceId(0) } if *body == id);
-    assert!(thrown.events().iter().any(woke));
+    let body = thrown.soft_body_mut(id).unwrap();
+    *body = body.clone().with_velocity(Vec2::new(0.0, 5.0));
+    let woke = Event::WokeUp {
+        body: id,
+        piece: PieceId(0),
+    };
+    assert!(thrown.events().contains(&woke));
     step(&mut thrown, 10);
-    assert!(thrown.soft_bodies().next().unwrap().1.piece_views()[0].low[1] > 0.3);
+    assert!(thrown[id].piece_views()[0].low.y > 0.3);
 
     let mut crumbled = sleeper();
-    crumbled
-        .soft_body_mut(crumbled.nth_soft_body(0).unwrap())
-        .unwrap()
-        .crumble();
-    let before = crumbled.soft_bodies().next().unwrap().1.piece_views();
+    let id = crumbled.nth_soft_body(0).unwrap();
+    crumbled.soft_body_mut(id).unwrap().crumble();
+    let before = crumbled[id].piece_views();
     step(&mut crumbled, 10);
-    let after = crumbled.soft_bodies().next().unwrap().1.piece_views();
+    let after = crumbled[id].piece_views();
     let frozen = before
         .iter()
         .zip(&after)
@@ -70,23 +67,22 @@ fn sleeping_body_falls_when_floor_is_removed() {
     let mut world = sleeper();
     let (floor, _) = world.rigid_bodies().next().unwrap();
     world.remove(floor).unwrap();
-    assert_eq!(world.fixed_rigid_bodies().count(), 0);
+    assert_eq!(world.rigid_bodies().count(), 0);
     step(&mut world, 30);
-    let view = world.soft_bodies().next().unwrap().1.piece_views()[0];
-    assert!(!view.asleep && view.high[1] < 0.5, "{view:?}");
+    let body = world.nth_soft_body(0).unwrap();
+    let view = world[body].piece_views()[0];
+    assert!(!view.asleep && view.high.y < 0.5, "{view:?}");
 }
 
 #[test]
 fn sleeping_body_wakes_when_added_elsewhere() {
     let mut world = sleeper();
-    let body = world
-        .remove(world.nth_soft_body(0).unwrap())
-        .unwrap()
-        .translated([0.0, 3.0, 0.0]);
-    let id = world.add_soft_body(body);
+    let id = world.nth_soft_body(0).unwrap();
+    let body = world.remove(id).unwrap();
+    let id = world.add_soft_body(body.translated(Vec2::new(0.0, 3.0)));
     step(&mut world, 30);
     let view = world[id].piece_views()[0];
-    assert!(!view.asleep && view.low[1] < 2.5, "{view:?}");
+    assert!(!view.asleep && view.low.y < 2.5, "{view:?}");
 }
 
 #[test]
@@ -106,16 +102,14 @@ fn stiffness_scale_follows_substeps_of_world() {
         World::<Dim2>::new(settings).unwrap()
     };
     let (mut poor, mut rich) = (world_of(16), world_of(1024));
-    poor.add_soft_body(SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), &[stiff]).unwrap());
-    let stiffness_scale = poor.soft_bodies().next().unwrap().1.stiffness_scale();
+    let body = SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), &[stiff]).unwrap();
+    let id = poor.add_soft_body(body);
+    let stiffness_scale = poor[id].stiffness_scale();
     assert!(stiffness_scale < 0.2);
-    rich.add_soft_body(poor.remove(poor.nth_soft_body(0).unwrap()).unwrap());
-    assert_eq!(rich.soft_bodies().next().unwrap().1.stiffness_scale(), 1.0);
-    poor.add_soft_body(rich.remove(rich.nth_soft_body(0).unwrap()).unwrap());
-    assert_eq!(
-        poor.soft_bodies().next().unwrap().1.stiffness_scale(),
-        stiffness_scale
-    );
+    let id = rich.add_soft_body(poor.remove(id).unwrap());
+    assert_eq!(rich[id].stiffness_scale(), 1.0);
+    let id = poor.add_soft_body(rich.remove(id).unwrap());
+    assert_eq!(poor[id].stiffness_scale(), stiffness_scale);
 }
 
 #[test]
@@ -124,12 +118,12 @@ fn removal_keeps_other_handles_valid() {
     let (mut bodies, mut hands) = (Vec::new(), Vec::new());
     for place in 0..3u8 {
         let x = 2.0 * f32::from(place);
-        let body = ball(8 + 4 * usize::from(place)).translated(Vector::new(x, 0.0, 0.0));
+        let body = ball(8 + 4 * usize::from(place)).translated(Vec2::new(x, 0.0));
         bodies.push(world.add_soft_body(body));
-        let hand = RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(x + 0.5, 1.1, 0.0));
+        let hand = RigidBody::coupled(Shape::ball(0.1)).at(Vec2::new(x + 0.5, 1.1));
         let hand = world.add_rigid_body(hand).unwrap();
         world
-            .set_target_position(hand, Vector::new(x + 0.5, 0.8, 0.0))
+            .set_target_position(hand, Vec2::new(x + 0.5, 0.8))
             .unwrap();
         hands.push(hand);
     }
@@ -137,15 +131,13 @@ fn removal_keeps_other_handles_valid() {
     let removed = world.remove(bodies[1]).unwrap();
     assert_eq!(removed.grid().size()[0], 12);
     let removed = world.remove(hands[0]).unwrap();
-    assert!(removed.position()[0] < 1.0);
+    assert!(removed.position.x < 1.0);
     step(&mut world, 30);
     assert_finite(&world);
-    let sizes = world
-        .soft_bodies()
-        .map(|(_, body)| body)
-        .map(|body| body.grid().size()[0]);
+    let kept = world.soft_bodies();
+    let sizes = kept.map(|(_, body)| body.grid().size()[0]);
     assert_eq!(sizes.collect::<Vec<_>>(), [8, 16]);
-    let with = |event: &Event| match *event {
+    let with = |event: &Event<Dim2>| match *event {
         Event::ContactForce(contact) => Some((contact.pair[0].soft_body()?, contact.pair[1])),
         _ => None,
     };
@@ -161,18 +153,18 @@ fn stale_handle_is_rejected() {
     let mut world = world::<Dim2>();
     let ball = world.add_soft_body(ball(8));
     let hand = world
-        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(3.0, 1.0, 0.0)))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vec2::new(3.0, 1.0)))
         .unwrap();
     let floor = world.rigid_bodies().map(|(id, _)| id).next().unwrap();
     assert!(
-        world.set_target_position(floor, Vector::ZERO).is_err(),
+        world.set_target_position(floor, Vec2::ZERO).is_err(),
         "a fixed body has no target"
     );
     let body = world.remove(ball).unwrap();
     world.remove(hand).unwrap();
     let heir = world.add_soft_body(body);
     world
-        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(3.0, 1.0, 0.0)))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vec2::new(3.0, 1.0)))
         .unwrap();
     let error = world.soft_body(ball).unwrap_err().to_string();
     assert!(
@@ -180,12 +172,10 @@ fn stale_handle_is_rejected() {
         "{error}"
     );
     assert!(world.soft_body_mut(ball).is_err() && world.remove(ball).is_err());
-    assert!(
-        world
-            .cut(ball, &Blade::segment([0.0; 2], [1.0; 2]))
-            .is_err()
-    );
-    assert!(world.set_target_position(hand, [0.0; 3]).is_err() && world.remove(hand).is_err());
+    let blade = Blade::segment(Vec2::ZERO, Vec2::ONE);
+    assert!(world.cut(ball, &blade).is_err());
+    assert!(world.set_target_position(hand, Vec2::ZERO).is_err());
+    assert!(world.remove(hand).is_err());
     assert!(world.soft_body(heir).is_ok());
     step(&mut world, 5);
 }
@@ -200,13 +190,13 @@ fn removal_wakes_only_bodies_in_contact() {
         damping: 0.5,
         ..Material::default()
     };
-    let cube = |at: [f32; 2]| {
+    let cube = |at: Vec2| {
         let grid = VoxelGrid::cube(8, 0.1).unwrap();
         let body = SoftBody::new(grid, &[damped]).unwrap();
-        body.translated(Vector::new(at[0], at[1], 0.0))
+        body.translated(at)
     };
-    let places = [[0.0, 0.0], [0.0, 0.101], [0.0, 0.202], [2.0, 0.0]];
-    let ids = places.map(|at| world.add_soft_body(cube(at)));
+    let places = [(0.0, 0.0), (0.0, 0.101), (0.0, 0.202), (2.0, 0.0)];
+    let ids = places.map(|at| world.add_soft_body(cube(at.into())));
     let sleeps = |world: &World<Dim2>, n: usize| world[ids[n]].piece_views()[0].asleep;
     for _ in 0..1200 {
         world.step();
@@ -221,7 +211,7 @@ fn removal_wakes_only_bodies_in_contact() {
     world.remove(ids[0]).unwrap();
     assert!(!sleeps(&world, 1) && !sleeps(&world, 2) && sleeps(&world, 3));
     step(&mut world, 60);
-    let low = |n: usize| world[ids[n]].piece_views()[0].low[1];
+    let low = |n: usize| world[ids[n]].piece_views()[0].low.y;
     assert!(low(1) < 0.01 && low(2) < 0.11, "the upper cubes must fall");
     assert!(sleeps(&world, 3));
 }
@@ -229,49 +219,40 @@ fn removal_wakes_only_bodies_in_contact() {
 /// A plate presses on a ball and then on the floor.
 #[test]
 fn coupled_box_and_capsule_push_and_stop_at_floor() {
-    let centre = [0.0; 3];
-    let half = [0.5, 0.1, 0.5];
-    for form in [
-        Shape::Box {
-            centre: centre.into(),
-            half: half.into(),
-        },
-        Shape::Capsule {
-            from: Vector::new(-0.4, 0.0, 0.0),
-            to: Vector::new(0.4, 0.0, 0.0),
-            radius: 0.1,
-        },
+    for shape in [
+        Shape::cuboid(Vec2::new(0.5, 0.1)),
+        Shape::capsule(Vec2::new(-0.4, 0.0), Vec2::new(0.4, 0.0), 0.1),
     ] {
         let mut world = world::<Dim2>();
         let id = world.add_soft_body(ball(12));
-        let plate = RigidBody::new(form, MotionType::default()).at([0.5, 1.2, 0.0]);
+        let plate = RigidBody::coupled(shape).at(Vec2::new(0.5, 1.2));
         let plate = world.add_rigid_body(plate).unwrap();
         for tick in 0..60u8 {
             let height = 1.2 - 0.015 * f32::from(tick);
             world
-                .set_target_position(plate, Vector::new(0.5, height, 0.0))
+                .set_target_position(plate, Vec2::new(0.5, height))
                 .unwrap();
             world.step();
         }
         let felt = world.rigid_body(plate).unwrap().reactions().last().unwrap();
-        assert!(felt.contact[1] > 5.0, "{felt:?}");
-        let high = world[id].piece_views()[0].high[1];
-        assert!(high < 0.9, "{form:?}: the ball is {high} m high");
+        assert!(felt.contact.y > 5.0, "{felt:?}");
+        let high = world[id].piece_views()[0].high.y;
+        assert!(high < 0.9, "{shape:?}: the ball is {high} m high");
         // Beside the ball, the plate stops on the floor.
         for _ in 0..60 {
             world
-                .set_target_position(plate, Vector::new(3.0, 0.4, 0.0))
+                .set_target_position(plate, Vec2::new(3.0, 0.4))
                 .unwrap();
             world.step();
         }
         for _ in 0..60 {
             world
-                .set_target_position(plate, Vector::new(3.0, -0.4, 0.0))
+                .set_target_position(plate, Vec2::new(3.0, -0.4))
                 .unwrap();
             world.step();
         }
-        let low = world.rigid_body(plate).unwrap().position()[1] - 0.1;
-        assert!(low.abs() < 0.01, "{form:?}: {low} m above the floor");
+        let low = world.rigid_body(plate).unwrap().position().y - 0.1;
+        assert!(low.abs() < 0.01, "{shape:?}: {low} m above the floor");
         assert_finite(&world);
     }
 }
@@ -283,7 +264,7 @@ fn fixed_node_falls_when_freed() {
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     nodes.iter().for_each(|&id| body.fix_node(id));
     let soft = world.add_soft_body(body);
-    let height = |world: &World<Dim2>| world[soft].piece_views()[0].centre[1];
+    let height = |world: &World<Dim2>| world[soft].piece_views()[0].centre.y;
     let start = height(&world);
     step(&mut world, 120);
     assert_eq!(height(&world), start);
@@ -298,11 +279,11 @@ fn replaced_body_has_no_contacts_with_itself() {
     let mut world = world::<Dim2>();
     let id = world.add_soft_body(bar([2, 7]));
     world.step();
-    *world.soft_body_mut(id).unwrap() = bar([2, 8]).with_velocity([0.0, -4.0, 0.0]);
+    *world.soft_body_mut(id).unwrap() = bar([2, 8]).with_velocity(Vec2::new(0.0, -4.0));
     let mut touches = 0;
     for _ in 0..30 {
         world.step();
-        let is_own = |event: &&Event| {
+        let is_own = |event: &&Event<Dim2>| {
             let own = ObjectRef::Piece {
                 body: id,
                 piece: PieceId(0),
@@ -323,6 +304,6 @@ fn small_voxels_collide_after_large_ones_are_added() {
     world.step();
     let grid = VoxelGrid::from_fn([2, 2, 1], 1.0, |_| 1).unwrap();
     let large = SoftBody::new(grid, &[Material::default()]).unwrap();
-    world.add_soft_body(large.translated(Vector::new(0.0, -9.0, 0.0)));
+    world.add_soft_body(large.translated(Vec2::new(0.0, -9.0)));
     assert_they_meet(world);
 }

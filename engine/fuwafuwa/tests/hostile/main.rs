@@ -5,19 +5,18 @@ mod changed;
 mod quarantine;
 
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Event, Grading, Law, Material, MotionType, ObjectRef, PieceId,
-    RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
+    Blade, Dim, Dim2, Dim3, DimVector, Event, Grading, Law, Material, MotionType, ObjectRef,
+    PieceId, RigidBody, Rotation, Shape, SoftBody, Vec2, Vec3, VoxelGrid, World, WorldConfig,
 };
 
-const FLOOR: Shape = Shape::HalfSpace {
-    normal: Vector::Y,
-    offset: 0.0,
-};
+fn floor<D: Dim>() -> Shape<D> {
+    Shape::half_space(D::Vector::Y, D::Vector::ZERO)
+}
 
 fn world<D: Dim>() -> World<D> {
     let mut world = World::new(WorldConfig::default()).unwrap();
     world
-        .add_rigid_body(RigidBody::fixed(FLOOR).with_friction(0.5))
+        .add_rigid_body(RigidBody::fixed(floor()).with_friction(0.5))
         .unwrap();
     world
 }
@@ -33,7 +32,7 @@ fn step<D: Dim>(world: &mut World<D>, ticks: usize) {
 }
 
 fn assert_finite<D: Dim>(world: &World<D>) {
-    for body in world.soft_bodies() {
+    for (_, body) in world.soft_bodies() {
         body.mesh()
             .validate(body.grid(), body.connectivity())
             .unwrap();
@@ -41,11 +40,16 @@ fn assert_finite<D: Dim>(world: &World<D>) {
             let (at, velocity, mass) = body.node_state(id);
             let is_finite = at.is_finite() && velocity.is_finite() && mass.is_finite();
             assert!(is_finite, "{at:?} {velocity:?} {mass}");
-            assert!(D::N == 3 || (at[2] == 0.0 && velocity[2] == 0.0), "{at:?}");
+            let place = body.positions()[id];
+            assert!(D::N == 3 || place[2] == 0.0, "{place:?}");
+        }
+        for view in body.piece_views() {
+            assert!(D::N == 3 || view.velocity.z == 0.0, "{view:?}");
         }
     }
-    for (_, hand) in world.target_followers() {
-        let (at, velocity) = (hand.position(), hand.velocity());
+    let bodies = world.rigid_bodies().map(|(_, body)| body);
+    for hand in bodies.filter(|body| body.follows_target()) {
+        let (at, velocity) = (hand.position(), hand.velocity().linear);
         let is_finite = at.is_finite() && velocity.is_finite();
         assert!(is_finite, "{at:?} {velocity:?}");
     }
@@ -59,13 +63,13 @@ fn bar(size: [usize; 2]) -> SoftBody<Dim2> {
 /// A weightless world with only two bars that fly towards each other.
 fn about_to_meet() -> World<Dim2> {
     let settings = WorldConfig {
-        gravity: Vector::ZERO,
+        gravity: Vec2::ZERO,
         ..WorldConfig::default()
     };
     let mut world = World::new(settings).unwrap();
-    world.add_soft_body(bar([6, 6]).with_velocity(Vector::X));
-    let other = bar([6, 6]).translated(Vector::new(0.4, 0.0, 0.0));
-    world.add_soft_body(other.with_velocity(Vector::NEG_X));
+    world.add_soft_body(bar([6, 6]).with_velocity(Vec2::X));
+    let other = bar([6, 6]).translated(Vec2::new(0.4, 0.0));
+    world.add_soft_body(other.with_velocity(Vec2::NEG_X));
     world
 }
 
@@ -73,7 +77,7 @@ fn assert_they_meet(mut world: World<Dim2>) {
     step(&mut world, 40);
     let [left, right] = [0, 1].map(|n| {
         let body = world.nth_soft_body(n).unwrap();
-        world[body].piece_views()[0].centre[0]
+        world[body].piece_views()[0].centre.x
     });
     assert!(
         left < right,
@@ -82,7 +86,7 @@ fn assert_they_meet(mut world: World<Dim2>) {
 }
 
 /// `Grading::Coarse` is meant for counting: its surface elements cannot be split.
-fn check_coarse<D: Dim>(blade: Blade) {
+fn check_coarse<D: Dim>(blade: Blade<D>) {
     let grid = VoxelGrid::<D>::ball(12, 1.0).unwrap();
     let coarse = SoftBody::with_options(
         grid,
@@ -92,15 +96,12 @@ fn check_coarse<D: Dim>(blade: Blade) {
     );
     let mut world = world::<D>();
     let id = world.add_soft_body(coarse.unwrap());
-    let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = RigidBody::coupled(Shape::ball(0.1))
-        .at([0.5, 1.2, depth])
-        .with_motion_type(MotionType::Kinematic);
+    let above = |height: f32| D::Vector::from_vec3(Vec3::new(0.5, height, 0.5));
+    let hand = RigidBody::kinematic(Shape::ball(0.1)).at(above(1.2));
     let hand = world.add_rigid_body(hand).unwrap();
     for tick in 0..60u16 {
-        world
-            .set_target_position(hand, [0.5, 1.2 - 0.02 * f32::from(tick), depth])
-            .unwrap();
+        let goal = above(1.2 - 0.02 * f32::from(tick));
+        world.set_target_position(hand, goal).unwrap();
         assert_eq!(world.step().nodes_split, 0);
     }
     assert_eq!(world.cut(id, &blade).unwrap(), 0);
@@ -111,72 +112,56 @@ fn check_coarse<D: Dim>(blade: Blade) {
 
 #[test]
 fn coarse_body_neither_tears_nor_is_cut() {
-    check_coarse::<Dim2>(Blade::segment([0.5, -0.1], [0.5, 1.1]));
-    check_coarse::<Dim3>(Blade {
-        from: Vector::new(0.5, -0.1, -0.1),
-        across: Vector::new(0.0, 1.2, 0.0),
-        along: Vector::new(0.0, 0.0, 1.2),
-    });
+    let blade = Blade::segment(Vec2::new(0.5, -0.1), Vec2::new(0.5, 1.1));
+    check_coarse::<Dim2>(blade);
+    let corner = Vec3::new(0.5, -0.1, -0.1);
+    let blade = Blade::parallelogram(corner, Vec3::Y * 1.2, Vec3::Z * 1.2);
+    check_coarse::<Dim3>(blade);
 }
 
 #[test]
 fn add_rigid_rejects_out_of_range_hand() {
     let mut world = world::<Dim2>();
-    let usual = || RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(0.0, 3.0, 0.0));
+    let usual = || RigidBody::coupled(Shape::ball(0.1)).at(Vec2::new(0.0, 3.0));
     let MotionType::Coupled {
         mass,
         stiffness,
         damping,
-        limit,
+        max_force,
     } = MotionType::default()
     else {
-        panic!("the default drive is coupled");
+        panic!("the default motion type is coupled");
     };
-    let drive = |mass, stiffness, damping, limit| {
+    let coupled = |mass, stiffness, damping, max_force| {
         usual().with_motion_type(MotionType::Coupled {
             mass,
             stiffness,
             damping,
-            limit,
+            max_force,
         })
     };
     let infinite = f32::INFINITY;
-    let mut slippery = usual();
-    slippery.friction = infinite;
     let bad = [
-        (
-            RigidBody::coupled(Shape::ball(0.1)).at([0.0, 1e30, 0.0]),
-            "position",
-        ),
-        (
-            RigidBody::coupled(Shape::ball(infinite)).at([0.0; 3]),
-            "radius",
-        ),
-        (RigidBody::coupled(Shape::ball(-1.0)).at([0.0; 3]), "radius"),
-        (slippery, "friction"),
-        (drive(infinite, stiffness, damping, limit), "mass"),
-        (drive(1e-30, stiffness, damping, limit), "mass"),
-        (drive(mass, infinite, damping, limit), "stiffness"),
-        (drive(mass, stiffness, infinite, limit), "damping"),
-        (drive(mass, stiffness, damping, f32::NAN), "limit"),
+        (usual().at(Vec2::new(0.0, 1e30)), "position"),
+        (RigidBody::coupled(Shape::ball(infinite)), "radius"),
+        (RigidBody::coupled(Shape::ball(-1.0)), "radius"),
+        (usual().with_friction(infinite), "friction"),
+        (coupled(infinite, stiffness, damping, max_force), "mass"),
+        (coupled(1e-30, stiffness, damping, max_force), "mass"),
+        (coupled(mass, infinite, damping, max_force), "stiffness"),
+        (coupled(mass, stiffness, infinite, max_force), "damping"),
+        (coupled(mass, stiffness, damping, f32::NAN), "max_force"),
     ];
     for (hand, field) in bad {
         let message = world.add_rigid_body(hand).unwrap_err().to_string();
         assert!(message.contains(field), "{message}");
     }
-    assert!(
-        world
-            .add_rigid_body(RigidBody::fixed(FLOOR).with_friction(infinite))
-            .is_err()
-    );
-    let nowhere = FLOOR.translated([0.0, infinite, 0.0]);
-    assert!(
-        world
-            .add_rigid_body(RigidBody::fixed(nowhere).with_friction(0.1))
-            .is_err()
-    );
+    let slippery = RigidBody::fixed(floor()).with_friction(infinite);
+    assert!(world.add_rigid_body(slippery).is_err());
+    let nowhere = floor().translated(Vec2::new(0.0, infinite));
+    assert!(world.add_rigid_body(RigidBody::fixed(nowhere)).is_err());
     world
-        .add_rigid_body(drive(mass, stiffness, damping, infinite))
+        .add_rigid_body(coupled(mass, stiffness, damping, infinite))
         .unwrap();
     world
         .add_rigid_body(usual().with_motion_type(MotionType::Kinematic))
@@ -184,72 +169,65 @@ fn add_rigid_rejects_out_of_range_hand() {
     for hand in 0..2 {
         let hand = world.nth_target_follower(hand).unwrap();
         for nowhere in [1e38, f32::NAN] {
-            assert!(
-                world
-                    .set_target_position(hand, [nowhere, 0.0, 0.0])
-                    .is_err()
-            );
+            let nowhere = Vec2::new(nowhere, 0.0);
+            assert!(world.set_target_position(hand, nowhere).is_err());
         }
-        assert!(world.set_target_position(hand, [1e6, -1e6, 0.0]).is_ok());
+        let far = Vec2::new(1e6, -1e6);
+        assert!(world.set_target_position(hand, far).is_ok());
     }
     world.step();
     assert_finite(&world);
 }
 
-/// In 2D, third coordinates are ignored, and no contact moves a body out of the plane.
-#[test]
-fn plane_world_ignores_third_coordinates() {
-    let shapes = [
-        Shape::half_space(Vector::new(0.0, 1.0, 1.0), Vector::ZERO),
-        Shape::Box {
-            centre: Vector::new(0.5, -0.5, 7.0),
-            half: Vector::new(2.0, 0.5, 0.0),
-        },
-        Shape::Capsule {
-            from: Vector::new(-1.0, -0.5, 0.2),
-            to: Vector::new(2.0, -0.5, -0.1),
-            radius: 0.5,
-        },
-    ];
-    for shape in shapes {
-        let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
-        world
-            .add_rigid_body(RigidBody::fixed(shape).with_friction(0.5))
-            .unwrap();
-        let id = world.add_soft_body(ball(12).translated([0.0, 0.02, 0.0]));
-        let hand = RigidBody::coupled(Shape::ball(0.1)).at([0.5, 0.9, 0.05]);
-        world.add_rigid_body(hand).unwrap();
-        step(&mut world, 30);
-        assert_finite(&world);
-        let low = world[id].piece_views()[0].low[1];
-        assert!(low > -0.03, "{shape:?}: {low}");
+/// Runs a world in which everything is tilted, and returns its hash.
+fn hash_of_tilted(shape: Shape<Dim2>, tilt: Rotation) -> u64 {
+    let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
+    let below = RigidBody::fixed(shape).with_friction(0.5);
+    world.add_rigid_body(below.rotated(tilt)).unwrap();
+    let body = ball(12).translated(Vec2::new(0.0, 0.02));
+    let id = world.add_soft_body(body.rotated(tilt));
+    let hand = RigidBody::coupled(Shape::ball(0.1)).at(Vec2::new(0.5, 0.9));
+    let hand = world.add_rigid_body(hand.rotated(tilt)).unwrap();
+    for _ in 0..30 {
+        world.set_target_rotation(hand, tilt).unwrap();
+        world.step();
     }
-    let edge_on = Shape::half_space(Vector::Z, Vector::ZERO);
-    assert!(
-        world::<Dim2>()
-            .add_rigid_body(RigidBody::fixed(edge_on).with_friction(0.5))
-            .is_err()
-    );
-    let body = ball::<Dim2>(12);
-    let region = Shape::Box {
-        centre: Vector::new(0.5, 0.5, 3.0),
-        half: Vector::new(1.0, 1.0, 0.0),
-    };
-    let share = f64::from(body.mass_inside(&region)) / body.total_mass();
-    assert!((share - 1.0).abs() < 1e-5, "{share}");
+    assert_finite(&world);
+    let low = world[id].piece_views()[0].low.y;
+    assert!(low > -0.03, "{shape:?}: {low}");
+    world.hash()
 }
 
-/// Positions and velocities of all nodes, for worlds that differ in other respects.
-fn node_states<D: Dim>(world: &World<D>) -> Vec<([f32; 3], [f32; 3], f32)> {
-    let states = |body: &SoftBody<D>| -> Vec<_> {
-        let nodes = body.mesh().nodes();
-        nodes.map(|(id, _)| body.node_state(id)).collect()
-    };
-    world
-        .soft_bodies()
-        .map(|(_, body)| body)
-        .flat_map(states)
-        .collect()
+/// In 2D, rotations out of the plane are ignored, and no contact moves a body out of the plane.
+#[test]
+fn plane_world_ignores_rotations_out_of_plane() {
+    let tilt = Rotation::about(Vec3::new(1.0, 0.5, 0.0), 0.7);
+    let slab = Shape::cuboid(Vec2::new(2.0, 0.5)).translated(Vec2::new(0.5, -0.5));
+    let shapes = [
+        floor(),
+        slab,
+        slab.rotated(tilt),
+        Shape::capsule(Vec2::new(-1.0, -0.5), Vec2::new(2.0, -0.5), 0.5),
+    ];
+    for shape in shapes {
+        let upright = hash_of_tilted(shape, Rotation::NONE);
+        assert_eq!(hash_of_tilted(shape, tilt), upright, "{shape:?}");
+    }
+    let nowhere = Shape::half_space(Vec2::ZERO, Vec2::ZERO);
+    let nowhere = RigidBody::fixed(nowhere).with_friction(0.5);
+    assert!(world::<Dim2>().add_rigid_body(nowhere).is_err());
+    let body = ball::<Dim2>(12);
+    let region = Shape::cuboid(Vec2::ONE).translated(Vec2::splat(0.5));
+    for region in [region, region.rotated(tilt)] {
+        let share = f64::from(body.mass_inside(&region)) / body.total_mass();
+        assert!((share - 1.0).abs() < 1e-5, "{share}");
+    }
+}
+
+/// Positions, velocities and masses of all nodes of a body.
+fn node_states<D: Dim>(body: &SoftBody<D>) -> Vec<(D::Vector, D::Vector, f32)> {
+    let nodes = body.mesh().nodes();
+    nodes.map(|(id, _)| body.node_state(id)).collect()
 }
 
 #[test]
@@ -267,18 +245,16 @@ fn unused_material_has_no_effect() {
         let id = world
             .add_soft_body(SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap());
         assert_eq!(world[id].stiffness_scale(), 1.0);
-        let hand = RigidBody::coupled(Shape::ball(0.1))
-            .at([0.5, 1.1, 0.0])
-            .with_motion_type(MotionType::Kinematic);
+        let hand = RigidBody::kinematic(Shape::ball(0.1)).at(Vec2::new(0.5, 1.1));
         let hand = world.add_rigid_body(hand).unwrap();
         let mut released = 0;
         for tick in 0..40u8 {
-            let goal = [0.5, 1.1 - 0.03 * f32::from(tick), 0.0];
-            world.set_target_position(hand, goal.into()).unwrap();
+            let goal = Vec2::new(0.5, 1.1 - 0.03 * f32::from(tick));
+            world.set_target_position(hand, goal).unwrap();
             released += world.step().nodes_split;
         }
         assert!(released > 10, "the body must tear");
-        node_states(&world)
+        node_states(&world[id])
     };
     let usual = Material::default();
     assert_eq!(states_with(&[usual, stiff]), states_with(&[usual]));
@@ -288,15 +264,14 @@ fn unused_material_has_no_effect() {
 #[test]
 fn cut_reports_positions_of_released_nodes() {
     let mut world = world::<Dim2>();
-    let id = world.add_soft_body(ball(16).translated([3.0, 0.0, 0.0]));
-    let count = world
-        .cut(id, &Blade::segment([3.5, -0.1], [3.5, 1.1]))
-        .unwrap();
+    let id = world.add_soft_body(ball(16).translated(Vec2::new(3.0, 0.0)));
+    let blade = Blade::segment(Vec2::new(3.5, -0.1), Vec2::new(3.5, 1.1));
+    let count = world.cut(id, &blade).unwrap();
     let mut places = 0;
     for event in world.events() {
         if let Event::NodeSplit { point, energy, .. } = event {
             assert!(
-                (point[0] - 3.5).abs() < 0.07 && (0.0..=1.0).contains(&point[1]),
+                (point.x - 3.5).abs() < 0.07 && (0.0..=1.0).contains(&point.y),
                 "{point:?}"
             );
             assert_eq!(*energy, 0.0);
@@ -304,6 +279,6 @@ fn cut_reports_positions_of_released_nodes() {
         }
     }
     assert_eq!(places, count);
-    let parted = |event: &&Event| matches!(event, Event::PieceDetached { .. });
+    let parted = |event: &&Event<Dim2>| matches!(event, Event::PieceDetached { .. });
     assert_eq!(world.events().iter().filter(parted).count(), 1);
 }
