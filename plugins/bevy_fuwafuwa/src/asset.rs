@@ -6,7 +6,7 @@
 //! # use bevy_fuwafuwa::{SoftBody2d, SoftBody3d};
 //! # let assets: &AssetServer = unimplemented!();
 //! let dice = SoftBody3d::asset(assets.load("dice.vox"));
-//! With a voxel size other than the default:
+//! // With a voxel size other than the default:
 //! let small = |settings: &mut VoxelsSettings| settings.voxel_size = 0.01;
 //! let cat = SoftBody2d::asset(assets.load_builder().with_settings(small).load("cat.png"));
 //! ```
@@ -42,14 +42,14 @@ pub struct VoxelsSettings {
     pub voxel_size: f32,
     /// Maximum number of voxels along the longer side of a picture, default 64. Larger pictures are scaled
     /// down. Doubling it makes simulation about four times as slow. Models are not scaled.
-    pub most_across: usize,
+    pub max_across: usize,
 }
 
 impl Default for VoxelsSettings {
     fn default() -> Self {
         Self {
             voxel_size: 1.0 / 32.0,
-            most_across: 64,
+            max_across: 64,
         }
     }
 }
@@ -109,7 +109,7 @@ impl AssetLoader for SilhouetteLoader {
     ) -> Result<Voxels<Dim2>, VoxelsError> {
         let bytes = bytes_of(reader).await?;
         let file = context.path().to_string();
-        let grid = png(&file, &bytes, settings.most_across, settings.voxel_size)?;
+        let grid = png(&file, &bytes, settings.max_across, settings.voxel_size)?;
         let colours = Vec::new();
         Ok(Voxels { grid, colours })
     }

@@ -11,9 +11,9 @@ use bevy_ecs::world::DeferredWorld;
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
 use fuwafuwa::{
-    Error, Layers, Material, MotionType, RigidBodyHandle, Shape, SoftBodyHandle, VoxelGrid,
+    DimVector, Error, Layers, Material, MotionType, RigidBodyHandle, Shape, SoftBodyHandle,
+    VoxelGrid,
 };
-use std::marker::PhantomData;
 
 /// Soft body, made from voxels. It enters the world at the beginning of the next tick, at the pose of its
 /// `Transform`, and gets [`SoftBodyId`] and a mesh. Inserting the component again replaces the body. Removing
@@ -55,7 +55,7 @@ pub struct ExternalImpulse {
     /// Impulse [N s].
     pub impulse: Vec3,
     /// Point of application, world space [m].
-    pub at: Vec3,
+    pub point: Vec3,
     /// Radius within which the nodes of a soft body share the impulse [m]. If no node is within it, the
     /// nearest node gets the whole impulse, which tears most bodies.
     pub radius: f32,
@@ -69,7 +69,7 @@ pub struct GravityScale(pub f32);
 #[derive(Component, Copy, Clone, Debug, Default)]
 pub struct WithoutMesh;
 
-/// Engine id of the soft body of an entity. See also [`crate::SoftWorld::entity_of_body`].
+/// Handle in the engine of the soft body of an entity. See also [`crate::SoftWorld::entity_of_soft_body`].
 #[derive(Component, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct SoftBodyId(pub SoftBodyHandle);
 
@@ -92,7 +92,7 @@ pub struct SoftBodyId(pub SoftBodyHandle);
 #[require(Transform)]
 pub struct RigidBody<D: Dimension> {
     /// Shape in the frame of the entity.
-    pub shape: Shape,
+    pub shape: Shape<D>,
     /// Coefficient of Coulomb friction, usually 0.2 to 0.8.
     pub friction: f32,
     /// Coefficient of restitution, 0 to 1, in contacts between two rigid bodies of which at least one is
@@ -105,14 +105,13 @@ pub struct RigidBody<D: Dimension> {
     pub layers: Layers,
     /// Type of motion.
     pub motion_type: MotionType,
-    dim: PhantomData<D>,
 }
 
 /// Target position of a [`MotionType::Coupled`] rigid body, world space [m].
 #[derive(Component, Copy, Clone, Debug, PartialEq)]
 pub struct TargetPosition(pub Vec3);
 
-/// Engine id of the rigid body of an entity. See also [`crate::SoftWorld::entity_of_rigid`].
+/// Handle in the engine of the rigid body of an entity. See also [`crate::SoftWorld::entity_of_rigid_body`].
 #[derive(Component, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct RigidBodyId(pub RigidBodyHandle);
 
@@ -164,7 +163,7 @@ impl From<Material> for SoftMaterials {
 
 impl<D: Dimension> RigidBody<D> {
     /// Fixed rigid body with friction 0.2.
-    pub fn fixed(shape: Shape) -> Self {
+    pub fn fixed(shape: Shape<D>) -> Self {
         Self {
             shape,
             friction: 0.2,
@@ -172,26 +171,24 @@ impl<D: Dimension> RigidBody<D> {
             is_sensor: false,
             layers: Layers::default(),
             motion_type: MotionType::Fixed,
-            dim: PhantomData,
         }
     }
 
     /// Fixed half-space below y = 0 with friction 0.5.
     pub fn floor() -> Self {
-        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
         Self::fixed(floor).with_friction(0.5)
     }
 
     /// Kinematic disc (2D) or ball (3D) of a radius [m], moved by its `Transform`.
     pub fn kinematic_ball(radius: f32) -> Self {
-        let centre = [0.0; 3];
-        Self::fixed(Shape::Ball { centre, radius }).with_motion_type(MotionType::Kinematic)
+        Self::fixed(Shape::ball(radius)).with_motion_type(MotionType::Kinematic)
     }
 
     /// Dynamic rigid body with friction 0.5. The shape must be a ball, box or capsule; the mass [kg] is
     /// spread evenly over it. The body rotates about the middle of its shape, even if the origin of the
     /// entity is elsewhere.
-    pub fn dynamic(shape: Shape, mass: f32) -> Self {
+    pub fn dynamic(shape: Shape<D>, mass: f32) -> Self {
         let motion_type = MotionType::Dynamic { mass };
         Self::fixed(shape)
             .with_friction(0.5)
@@ -211,12 +208,9 @@ impl<D: Dimension> RigidBody<D> {
         Self { friction, ..self }
     }
 
-    /// Makes the body a sensor.
-    pub fn as_sensor(self) -> Self {
-        Self {
-            is_sensor: true,
-            ..self
-        }
+    /// Sets whether the body is a sensor.
+    pub fn with_sensor(self, is_sensor: bool) -> Self {
+        Self { is_sensor, ..self }
     }
 
     /// Sets the collision layers.

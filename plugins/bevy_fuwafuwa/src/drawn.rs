@@ -66,7 +66,8 @@ impl<D: Dimension> BodyMesh<D> {
     fn write_places(&self, mesh: &mut Mesh, pose: &Pose) {
         // Unused vertices are placed at the origin, inside the body, so that they do not enlarge the bounding
         // box.
-        let local = |vertex: Option<Vertex>| vertex.map_or(Vec3::ZERO, |own| pose.local(own.at));
+        let local =
+            |vertex: Option<Vertex>| vertex.map_or(Vec3::ZERO, |own| pose.local(own.position));
         let back = pose.rotation.inverse();
         let normal = |vertex: Option<Vertex>| vertex.map_or(Vec3::Z, |own| back * own.normal);
         let places = self.surface.vertices().map(|own| local(own).into());

@@ -5,10 +5,11 @@ use crate::component::{
     GravityScale, RigidBody, RigidBodyId, SoftBody, SoftBodyId, SoftColours, SoftMaterials, Source,
     Velocity, WithoutMesh,
 };
+use crate::convert::{bevy_vector, engine_rotation, engine_vector, engine_velocity};
 use crate::dimension::Dimension;
 use crate::drawn::{BodyMesh, empty_mesh};
 use crate::message::Rejection;
-use crate::pose::{Pose, engine_rotation, engine_velocity};
+use crate::pose::Pose;
 use crate::problem::{Problem, Rejected};
 use crate::queue::{Queue, Request};
 use crate::world::SoftWorld;
@@ -17,10 +18,9 @@ use bevy_asset::{AssetServer, Assets, Handle, LoadState};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::hierarchy::ChildOf;
 use bevy_ecs::world::World;
-use bevy_math::Vec3;
 use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
-use fuwafuwa::{Material, MotionType, Shape, VoxelGrid};
+use fuwafuwa::{DimVector, Material, MotionType, Shape, VoxelGrid};
 
 /// Outcome of a request to enter the world.
 enum Entry {
@@ -94,8 +94,8 @@ fn add_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Pr
     let id = soft_world.add_body(entity, body);
     let engine = soft_world.engine_mut();
     let mut outcome = Ok(());
-    if let Some(Velocity { linear, angular }) = velocity {
-        outcome = engine.add_velocity(id, engine_velocity(linear, angular));
+    if let Some(velocity) = velocity {
+        outcome = engine.add_velocity(id, engine_velocity(velocity));
     }
     if let Some(GravityScale(scale)) = gravity {
         outcome = outcome.and_then(|()| engine.set_gravity_scale(id, scale));
@@ -176,22 +176,26 @@ fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, P
     let transform = transform_of(world, entity)?;
     let pose = Pose::of(&transform)?;
     let velocity = world.get::<Velocity>(entity).copied();
-    let form = pose.form(rigid.shape);
-    let middle = middle_of(&form, rigid.motion_type);
-    let at = pose.translation + pose.rotation * middle;
-    let own = fuwafuwa::RigidBody::new(form.translated((-middle).into()), rigid.motion_type)
-        .at(at.into());
-    let mut own = own.rotated(engine_rotation(transform.rotation));
-    (own.friction, own.restitution) = (rigid.friction, rigid.restitution);
-    (own.is_sensor, own.layers) = (rigid.is_sensor, rigid.layers);
+    let shape = pose.scaled(rigid.shape);
+    let middle = middle_of(&shape, rigid.motion_type);
+    let shape = shape.translated(-middle);
+    let middle = bevy_vector(middle);
+    let position = pose.translation + pose.rotation * middle;
+    let own = fuwafuwa::RigidBody::new(shape, rigid.motion_type)
+        .at(engine_vector(position))
+        .rotated(engine_rotation(transform.rotation))
+        .with_friction(rigid.friction)
+        .with_restitution(rigid.restitution)
+        .with_sensor(rigid.is_sensor)
+        .with_layers(rigid.layers);
 
     let mut soft_world = world.resource_mut::<SoftWorld<D>>();
     let id = soft_world.add_rigid(entity, own)?;
-    if let Some(Velocity { linear, angular }) = velocity
-        && velocity != Some(Velocity::default())
+    if let Some(velocity) = velocity
+        && velocity != Velocity::default()
         && let Err(refused) = soft_world
             .engine_mut()
-            .set_velocity(id, engine_velocity(linear, angular))
+            .set_velocity(id, engine_velocity(velocity))
     {
         soft_world.remove_rigid(entity);
         return Err(refused.into());
@@ -208,13 +212,13 @@ fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, P
 
 /// Returns the point of the shape that becomes the origin of the body in the engine. For a dynamic body this
 /// is the middle of the shape, about which it rotates; for others it is the origin of the entity.
-fn middle_of(form: &Shape, motion_type: MotionType) -> Vec3 {
-    let [low, high] = form.bounds().map(Vec3::from);
-    let middle = 0.5 * (low + high);
+fn middle_of<D: Dimension>(shape: &Shape<D>, motion_type: MotionType) -> D::Vector {
+    let [low, high] = shape.bounds();
+    let middle = (low + high) * 0.5;
     match motion_type {
         // An unbounded shape has no middle; the engine rejects it.
         MotionType::Dynamic { .. } if middle.is_finite() => middle,
-        _ => Vec3::ZERO,
+        _ => D::Vector::ZERO,
     }
 }
 
@@ -244,10 +248,12 @@ fn remove_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry
 /// a body, or has a parent.
 fn transform_of(world: &World, entity: Entity) -> Result<Transform, Problem> {
     if world.get::<SoftBodyId>(entity).is_some() || world.get::<RigidBodyId>(entity).is_some() {
-        return Err(Problem::Twice);
+        return Err(Problem::DuplicateBody);
     }
     if world.get::<ChildOf>(entity).is_some() {
-        return Err(Problem::Pose("belong to an entity without a parent"));
+        return Err(Problem::InvalidTransform(
+            "belong to an entity without a parent",
+        ));
     }
     Ok(world.get::<Transform>(entity).copied().unwrap_or_default())
 }

@@ -24,6 +24,7 @@
 //! - [`message`]: events of a tick.
 //! - [`SoftQueries`]: ray casts, nearest points, overlaps.
 //! - [`asset`]: shapes from files.
+//! - [`convert`]: vectors of Bevy and of the engine.
 //!
 //! Internal modules, in the order of a tick: `queue` collects requests to enter and leave the world, `enter`
 //! handles them, `push` and `steer` apply changed components, `step` runs the tick, `write` updates the
@@ -70,6 +71,7 @@
 pub mod asset;
 mod colours;
 pub mod component;
+pub mod convert;
 mod dimension;
 mod drawn;
 mod enter;
@@ -91,7 +93,7 @@ pub use dimension::Dimension;
 pub use plugin::{FuwafuwaPlugin, FuwafuwaSystems};
 pub use problem::{Problem, Rejected};
 pub use query::{QueryHit, SoftQueries};
-pub use world::{SoftSettings, SoftWorld};
+pub use world::{SoftWorld, SoftWorldConfig};
 
 pub use fuwafuwa;
 
@@ -117,12 +119,12 @@ pub mod prelude {
         TargetPosition, Velocity,
     };
     pub use crate::message::{
-        ContactBegan, ContactEnded, Cut, FellAsleep, JointBroke, NodeSplit, PieceDetached,
-        Rejection, Removed, SensorEntered, SensorExited, Touched, Woke,
+        ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, JointBroke, NodeSplit,
+        PieceDetached, Rejection, Removed, SensorEntered, SensorExited, WokeUp,
     };
     pub use crate::{
         FuwafuwaPlugin, FuwafuwaPlugin2d, FuwafuwaPlugin3d, FuwafuwaSystems, Rejected, RigidBody2d,
-        RigidBody3d, SoftBody2d, SoftBody3d, SoftQueries, SoftSettings, SoftWorld,
+        RigidBody3d, SoftBody2d, SoftBody3d, SoftQueries, SoftWorld, SoftWorldConfig,
     };
     pub use fuwafuwa::inspect::Elasticity;
     pub use fuwafuwa::{

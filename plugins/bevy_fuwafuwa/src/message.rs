@@ -15,7 +15,7 @@ pub struct NodeSplit {
     /// The soft body.
     pub body: Entity,
     /// Position, world space [m].
-    pub at: Vec3,
+    pub point: Vec3,
     /// Released elastic energy [J]; 0 if the split was an explicit cut.
     pub energy: f32,
 }
@@ -32,32 +32,32 @@ pub struct PieceDetached {
 /// Two bodies pressed on each other during the tick. Soft bodies come before rigid ones, as in
 /// [`Contact::pair`](fuwafuwa::Contact::pair) of the engine.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
-pub struct Touched {
+pub struct ContactForce {
     /// The first body, or the second one if the first has no entity.
     pub body: Entity,
     /// Piece of `body`; `None` for a rigid body.
     pub piece: Option<PieceId>,
     /// The other body: rigid, soft, or `body` itself if it touches itself. `None` if it has no entity.
-    pub with: Option<Entity>,
-    /// Piece of `with` if it is a soft body.
-    pub with_piece: Option<PieceId>,
+    pub other: Option<Entity>,
+    /// Piece of `other` if it is a soft body.
+    pub other_piece: Option<PieceId>,
     /// Position of the strongest contact, world space [m].
-    pub at: Vec3,
-    /// Unit normal at the strongest contact; points away from `with`.
+    pub point: Vec3,
+    /// Unit normal at the strongest contact; points away from `other`.
     pub normal: Vec3,
     /// Normal impulse, summed over the tick [N s].
     pub impulse: f32,
 }
 
-/// Two bodies came into contact.
+/// Two bodies began to touch.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
-pub struct ContactBegan {
+pub struct ContactStarted {
     /// The two bodies.
-    pub both: [Entity; 2],
+    pub pair: [Entity; 2],
     /// Their pieces; `None` for a rigid body.
     pub pieces: [Option<PieceId>; 2],
     /// Position of the strongest contact, world space [m].
-    pub at: Vec3,
+    pub point: Vec3,
     /// Unit normal at the strongest contact; points from the second body to the first.
     pub normal: Vec3,
     /// Approach speed [m/s].
@@ -69,7 +69,7 @@ pub struct ContactBegan {
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct ContactEnded {
     /// The two bodies.
-    pub both: [Entity; 2],
+    pub pair: [Entity; 2],
     /// Their pieces; `None` for a rigid body.
     pub pieces: [Option<PieceId>; 2],
 }
@@ -80,7 +80,7 @@ pub struct SensorEntered {
     /// The sensor.
     pub sensor: Entity,
     /// The body that entered.
-    pub who: Entity,
+    pub entity: Entity,
     /// Its piece; `None` for a rigid body.
     pub piece: Option<PieceId>,
 }
@@ -91,7 +91,7 @@ pub struct SensorExited {
     /// The sensor.
     pub sensor: Entity,
     /// The body that left.
-    pub who: Entity,
+    pub entity: Entity,
     /// Its piece; `None` for a rigid body.
     pub piece: Option<PieceId>,
 }
@@ -111,7 +111,7 @@ pub struct Cut {
     /// The soft body.
     pub body: Entity,
     /// Position, world space [m].
-    pub at: Vec3,
+    pub point: Vec3,
     /// Area cut since the previous message of this knife, summed over all bodies [m²].
     pub area: f32,
     /// Work done since the previous message of this knife, summed over all bodies [J].
@@ -139,7 +139,7 @@ pub struct FellAsleep {
 
 /// A sleeping piece or dynamic rigid body woke up.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Woke {
+pub struct WokeUp {
     /// The soft or rigid body.
     pub body: Entity,
     /// The piece; `None` for a rigid body.
@@ -158,7 +158,7 @@ pub struct Quarantined {
 /// A request could not be carried out and was ignored.
 #[derive(Message, Clone, Debug, PartialEq)]
 pub struct Rejection {
-    /// Entity that made the request; `None` for changed settings.
+    /// Entity that made the request; `None` for a changed configuration.
     pub entity: Option<Entity>,
     /// Reason.
     pub problem: Problem,

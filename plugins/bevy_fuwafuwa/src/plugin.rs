@@ -2,17 +2,18 @@
 
 use crate::asset::Voxels;
 use crate::component::SoftBody;
+use crate::convert::engine_vector;
 use crate::dimension::Dimension;
 use crate::enter::enter_and_leave;
 use crate::message::{
-    ContactBegan, ContactEnded, Cut, FellAsleep, JointBroke, NodeSplit, PieceDetached, Quarantined,
-    Rejection, Removed, SensorEntered, SensorExited, Touched, Woke,
+    ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, JointBroke, NodeSplit,
+    PieceDetached, Quarantined, Rejection, Removed, SensorEntered, SensorExited, WokeUp,
 };
-use crate::push::{change_settings, push_bodies};
+use crate::push::{change_config, push_bodies};
 use crate::queue::Queue;
 use crate::steer::steer_rigids;
 use crate::step::step;
-use crate::world::{SoftSettings, SoftWorld};
+use crate::world::{SoftWorld, SoftWorldConfig};
 use crate::write::{write_bodies, write_meshes, write_rigids};
 use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_asset::{AssetApp, AssetServer, Assets};
@@ -21,15 +22,13 @@ use bevy_ecs::schedule::{IntoScheduleConfigs, ScheduleLabel, SystemSet};
 use bevy_math::Vec3;
 use bevy_mesh::Mesh;
 use fuwafuwa::WorldConfig;
-use std::marker::PhantomData;
 
 /// Plugin for soft bodies in 2D or 3D. Add it after `DefaultPlugins`. If no `AssetPlugin` was added before,
 /// there are no meshes and no shapes from files, which suits servers and tests.
 #[derive(Debug)]
 pub struct FuwafuwaPlugin<D: Dimension> {
     schedule: Interned<dyn ScheduleLabel>,
-    settings: WorldConfig,
-    dim: PhantomData<D>,
+    config: WorldConfig<D>,
 }
 
 /// System sets of the plugin. They run in this order, once per run of the schedule.
@@ -44,12 +43,11 @@ pub enum FuwafuwaSystems {
 }
 
 impl<D: Dimension> Default for FuwafuwaPlugin<D> {
-    /// Runs in `FixedPostUpdate`, with the default settings of the engine.
+    /// Runs in `FixedPostUpdate`, with the default configuration of the engine.
     fn default() -> Self {
         Self {
             schedule: FixedPostUpdate.intern(),
-            settings: WorldConfig::default(),
-            dim: PhantomData,
+            config: WorldConfig::default(),
         }
     }
 }
@@ -62,30 +60,30 @@ impl<D: Dimension> FuwafuwaPlugin<D> {
         Self { schedule, ..self }
     }
 
-    /// Sets the initial settings. To change settings later, write to [`SoftSettings`].
-    pub fn with_settings(self, settings: WorldConfig) -> Self {
-        Self { settings, ..self }
+    /// Sets the initial configuration. To change it later, write to [`SoftWorldConfig`].
+    pub fn with_config(self, config: WorldConfig<D>) -> Self {
+        Self { config, ..self }
     }
 
     /// Sets gravity [m/s²].
     pub fn with_gravity(self, gravity: Vec3) -> Self {
-        let settings = WorldConfig {
-            gravity: gravity.into(),
-            ..self.settings
+        let config = WorldConfig {
+            gravity: engine_vector(gravity),
+            ..self.config
         };
-        Self { settings, ..self }
+        Self { config, ..self }
     }
 }
 
 impl<D: Dimension> Plugin for FuwafuwaPlugin<D> {
     fn build(&self, app: &mut App) {
-        app.insert_resource(SoftSettings(self.settings))
+        app.insert_resource(SoftWorldConfig(self.config))
             .init_resource::<SoftWorld<D>>()
             .init_resource::<Queue<D>>()
             .add_message::<NodeSplit>()
             .add_message::<PieceDetached>()
-            .add_message::<Touched>()
-            .add_message::<ContactBegan>()
+            .add_message::<ContactForce>()
+            .add_message::<ContactStarted>()
             .add_message::<ContactEnded>()
             .add_message::<SensorEntered>()
             .add_message::<SensorExited>()
@@ -93,7 +91,7 @@ impl<D: Dimension> Plugin for FuwafuwaPlugin<D> {
             .add_message::<Cut>()
             .add_message::<Removed>()
             .add_message::<FellAsleep>()
-            .add_message::<Woke>()
+            .add_message::<WokeUp>()
             .add_message::<Quarantined>()
             .add_message::<Rejection>();
         if app.world().contains_resource::<AssetServer>() {
@@ -110,7 +108,7 @@ impl<D: Dimension> Plugin for FuwafuwaPlugin<D> {
         );
         app.configure_sets(self.schedule, sets.chain());
         let prepare = (
-            change_settings::<D>,
+            change_config::<D>,
             enter_and_leave::<D>,
             push_bodies::<D>,
             steer_rigids::<D>,

@@ -1,9 +1,11 @@
 //! Position, rotation and velocity of a body as a whole, as a `Transform` expresses them.
 
+use crate::component::Velocity;
+use crate::convert::{bevy_vector, engine_rotation, engine_vector};
 use crate::problem::Problem;
 use bevy_math::{Mat3, Quat, Vec3};
 use bevy_transform::components::Transform;
-use fuwafuwa::{Dim, NodeId, Rotation, Shape, SoftBody, VoxelGrid};
+use fuwafuwa::{Dim, DimVector, NodeId, Shape, SoftBody, VoxelGrid};
 
 /// Maximum number of iterations for the rotation. If it changed little since the last tick, one or two
 /// suffice.
@@ -24,10 +26,7 @@ pub struct Pose {
 #[derive(Copy, Clone, Debug)]
 pub struct Motion {
     pub pose: Pose,
-    /// Velocity of the centre of mass [m/s].
-    pub linear: Vec3,
-    /// Angular velocity about the centre of mass [rad/s].
-    pub angular: Vec3,
+    pub velocity: Velocity,
 }
 
 impl Pose {
@@ -39,14 +38,16 @@ impl Pose {
             scale,
         } = *transform;
         if !translation.is_finite() {
-            return Err(Problem::Pose("have a finite translation"));
+            return Err(Problem::InvalidTransform("have a finite translation"));
         }
         if !rotation.is_finite() || rotation.length_squared() < 1e-6 {
-            return Err(Problem::Pose("have a finite, non-zero rotation"));
+            return Err(Problem::InvalidTransform(
+                "have a finite, non-zero rotation",
+            ));
         }
         let is_even = scale == Vec3::splat(scale.x);
         if !is_even || !scale.x.is_finite() || scale.x <= 0.0 {
-            return Err(Problem::Pose(
+            return Err(Problem::InvalidTransform(
                 "scale by the same factor on all axes, positive and finite",
             ));
         }
@@ -74,55 +75,42 @@ impl Pose {
     /// already be scaled.
     pub fn place<D: Dim>(&self, body: SoftBody<D>) -> SoftBody<D> {
         let middle = middle(body.grid());
-        body.translated((-middle).into())
-            .rotated_about(engine_rotation(self.rotation), [0.0; 3])
-            .translated(self.translation.into())
+        body.translated(engine_vector(-middle))
+            .rotated_about(engine_rotation(self.rotation), D::Vector::ZERO)
+            .translated(engine_vector(self.translation))
     }
 
-    /// Scales a shape, without rotation or translation.
-    pub fn form(&self, shape: Shape) -> Shape {
-        let scaled = |vector: [f32; 3]| vector.map(|k| k * self.scale);
+    /// Scales a shape by the scale of the pose, without rotation or translation.
+    pub fn scaled<D: Dim>(&self, shape: Shape<D>) -> Shape<D> {
+        let scale = self.scale;
         match shape {
             Shape::HalfSpace { normal, offset } => Shape::HalfSpace {
                 normal,
-                offset: offset * self.scale,
+                offset: offset * scale,
             },
             Shape::Ball { centre, radius } => Shape::Ball {
-                centre: scaled(centre),
-                radius: radius * self.scale,
+                centre: centre * scale,
+                radius: radius * scale,
             },
             Shape::Capsule { from, to, radius } => Shape::Capsule {
-                from: scaled(from),
-                to: scaled(to),
-                radius: radius * self.scale,
+                from: from * scale,
+                to: to * scale,
+                radius: radius * scale,
             },
             Shape::Box { centre, half } => Shape::Box {
-                centre: scaled(centre),
-                half: scaled(half),
+                centre: centre * scale,
+                half: half * scale,
             },
             Shape::OrientedBox {
                 centre,
                 half,
                 rotation,
             } => Shape::OrientedBox {
-                centre: scaled(centre),
-                half: scaled(half),
+                centre: centre * scale,
+                half: half * scale,
                 rotation,
             },
         }
-    }
-}
-
-/// Converts a rotation to the type of the engine.
-pub fn engine_rotation(rotation: Quat) -> Rotation {
-    Rotation::from_quaternion(rotation.to_array())
-}
-
-/// Converts a velocity to the type of the engine.
-pub fn engine_velocity(linear: Vec3, angular: Vec3) -> fuwafuwa::Velocity {
-    fuwafuwa::Velocity {
-        linear: linear.into(),
-        angular: angular.into(),
     }
 }
 
@@ -144,7 +132,7 @@ pub fn motion_of<D: Dim>(body: &SoftBody<D>, before: Pose) -> Motion {
     let own = || nodes().filter(|(id, _)| pieces.of_node(*id).index() == largest);
     let state = |id: NodeId| {
         let (at, _, mass) = body.node_state(id);
-        (Vec3::from(at), mass)
+        (bevy_vector(at), mass)
     };
     let rest = |at: [i32; 3]| Vec3::from(at.map(|k| k as f32 * size)) - middle;
     let (mut centre, mut rest_centre) = (Vec3::ZERO, Vec3::ZERO);
@@ -160,15 +148,13 @@ pub fn motion_of<D: Dim>(body: &SoftBody<D>, before: Pose) -> Motion {
         moment += Mat3::from_cols(lever * arm.x, lever * arm.y, lever * arm.z) * mass;
     }
     let rotation = nearest_rotation(moment, before.rotation);
-    let (linear, angular) = velocity_of(body);
     Motion {
         pose: Pose {
             translation: centre - rotation * rest_centre,
             rotation,
             scale: before.scale,
         },
-        linear,
-        angular,
+        velocity: velocity_of(body),
     }
 }
 
@@ -205,14 +191,14 @@ fn nearest_rotation(moment: Mat3, before: Quat) -> Quat {
     rotation
 }
 
-/// Returns the velocity and angular velocity of a whole body; zero where the result is not finite.
-fn velocity_of<D: Dim>(body: &SoftBody<D>) -> (Vec3, Vec3) {
-    let centre = Vec3::from(body.centre_of_mass());
+/// Returns the velocity of a whole body; zero where the result is not finite.
+fn velocity_of<D: Dim>(body: &SoftBody<D>) -> Velocity {
+    let centre = bevy_vector(body.centre_of_mass());
     let (mut mass, mut linear, mut spin) = (0.0, Vec3::ZERO, Vec3::ZERO);
     let mut inertia = Mat3::ZERO;
     for (id, _) in body.mesh().nodes() {
         let (at, velocity, own) = body.node_state(id);
-        let (lever, velocity) = (Vec3::from(at) - centre, Vec3::from(velocity));
+        let (lever, velocity) = (bevy_vector(at) - centre, bevy_vector(velocity));
         mass += own;
         linear += own * velocity;
         spin += own * lever.cross(velocity);
@@ -230,5 +216,8 @@ fn velocity_of<D: Dim>(body: &SoftBody<D>) -> (Vec3, Vec3) {
             Vec3::ZERO
         }
     };
-    (known(linear / mass), known(angular))
+    Velocity {
+        linear: known(linear / mass),
+        angular: known(angular),
+    }
 }

@@ -12,9 +12,9 @@ pub enum Problem {
     /// The asset of the shape could not be loaded or was removed.
     Asset(String),
     /// The `Transform` is invalid. The text completes the sentence "the transform must …".
-    Pose(&'static str),
+    InvalidTransform(&'static str),
     /// The entity already has a soft or rigid body.
-    Twice,
+    DuplicateBody,
 }
 
 /// Marks an entity that did not enter the world, with the reason. Insert the body component again after
@@ -27,8 +27,8 @@ impl fmt::Display for Problem {
         match self {
             Self::Engine(error) => error.fmt(f),
             Self::Asset(error) => write!(f, "cannot load the shape: {error}"),
-            Self::Pose(error) => write!(f, "invalid transform: it must {error}"),
-            Self::Twice => write!(f, "the entity already has a soft or rigid body"),
+            Self::InvalidTransform(error) => write!(f, "invalid transform: it must {error}"),
+            Self::DuplicateBody => write!(f, "the entity already has a soft or rigid body"),
         }
     }
 }

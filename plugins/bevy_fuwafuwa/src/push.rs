@@ -1,28 +1,29 @@
 //! Applies changed components to soft bodies: pose, velocity, impulse, gravity.
 
 use crate::component::{ExternalImpulse, GravityScale, SoftBodyId, Velocity};
+use crate::convert::{engine_rotation, engine_vector, engine_velocity};
 use crate::dimension::Dimension;
 use crate::message::Rejection;
-use crate::pose::{Pose, engine_rotation, engine_velocity};
+use crate::pose::Pose;
 use crate::problem::Problem;
-use crate::world::{SoftSettings, SoftWorld};
+use crate::world::{SoftWorld, SoftWorldConfig};
 use crate::write::LastWritten;
 use bevy_ecs::change_detection::{DetectChanges, Res, ResMut};
 use bevy_ecs::message::MessageWriter;
 use bevy_ecs::system::{Commands, Query};
-use bevy_math::{Quat, Vec3};
+use bevy_math::Quat;
 use bevy_transform::components::Transform;
-use fuwafuwa::SoftBodyHandle;
+use fuwafuwa::{DimVector, Impulse, SoftBodyHandle};
 
-/// Passes changed settings to the engine.
-pub fn change_settings<D: Dimension>(
-    settings: Res<SoftSettings>,
+/// Passes a changed configuration to the engine.
+pub fn change_config<D: Dimension>(
+    config: Res<SoftWorldConfig<D>>,
     mut world: ResMut<SoftWorld<D>>,
     mut rejections: MessageWriter<Rejection>,
 ) {
-    if settings.is_changed()
-        && settings.0 != *world.engine().config()
-        && let Err(refused) = world.engine_mut().set_config(settings.0)
+    if config.is_changed()
+        && config.0 != *world.engine().config()
+        && let Err(refused) = world.engine_mut().set_config(config.0)
     {
         let (entity, problem) = (None, refused.into());
         rejections.write(Rejection { entity, problem });
@@ -76,10 +77,11 @@ pub fn push_bodies<D: Dimension>(
         }
         let wanted = velocity.as_deref().copied().unwrap_or(followed.velocity);
         if wanted != before {
-            let linear = wanted.linear - before.linear;
-            let angular = wanted.angular - before.angular;
-            let engine = world.engine_mut();
-            if let Err(refused) = engine.add_velocity(id, engine_velocity(linear, angular)) {
+            let gain = engine_velocity(Velocity {
+                linear: wanted.linear - before.linear,
+                angular: wanted.angular - before.angular,
+            });
+            if let Err(refused) = world.engine_mut().add_velocity(id, gain) {
                 reject(refused.into());
                 if let Some(mut velocity) = velocity {
                     *velocity = followed.velocity;
@@ -95,17 +97,11 @@ pub fn push_bodies<D: Dimension>(
             }
             followed.gravity = scale;
         }
-        if let Some(ExternalImpulse {
-            impulse,
-            at,
-            radius,
-        }) = impulse.copied()
-        {
-            let engine = world.engine_mut();
-            let outcome = engine.apply_impulse(
-                id,
-                fuwafuwa::Impulse::at(at.into(), impulse.into()).within(radius),
-            );
+        if let Some(push) = impulse {
+            let impulse = Impulse::at(engine_vector(push.point), engine_vector(push.impulse));
+            let outcome = world
+                .engine_mut()
+                .apply_impulse(id, impulse.within(push.radius));
             if let Err(refused) = outcome {
                 reject(refused.into());
             }
@@ -123,17 +119,14 @@ fn displace<D: Dimension>(
 ) -> Result<Quat, Problem> {
     let (from, mut to) = (followed.pose, Pose::of(transform)?);
     if transform.scale != followed.transform.scale {
-        return Err(Problem::Pose(
+        return Err(Problem::InvalidTransform(
             "keep its scale: the size of a soft body is fixed once it has entered",
         ));
     }
     let engine = world.engine_mut();
-    let mut by = to.translation - from.translation;
-    if D::N == 2 {
-        by.z = 0.0;
-    }
-    if by != Vec3::ZERO {
-        engine.translate(id, by.into())?;
+    let by: D::Vector = engine_vector(to.translation - from.translation);
+    if by != D::Vector::ZERO {
+        engine.translate(id, by)?;
     }
     // The body is only rotated if the user changed the rotation; otherwise rounding errors would accumulate.
     let mut turn = Quat::IDENTITY;
@@ -141,7 +134,8 @@ fn displace<D: Dimension>(
         to.rotation = from.rotation;
     } else {
         turn = to.rotation * from.rotation.inverse();
-        engine.rotate_about(id, engine_rotation(turn), to.translation.into())?;
+        let centre = engine_vector(to.translation);
+        engine.rotate_about(id, engine_rotation(turn), centre)?;
     }
     followed.pose = to;
     followed.transform = *transform;

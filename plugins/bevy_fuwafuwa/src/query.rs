@@ -1,12 +1,13 @@
 //! Spatial queries that return entities.
 
+use crate::convert::{bevy_vector, engine_vector};
 use crate::dimension::Dimension;
 use crate::world::SoftWorld;
 use bevy_ecs::change_detection::Res;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::system::SystemParam;
 use bevy_math::Vec3;
-use fuwafuwa::{ObjectRef, PieceId, QueryFilter, Ray, Shape};
+use fuwafuwa::{Error, ObjectRef, PieceId, QueryFilter, Ray, Shape};
 
 /// Spatial queries on the current state. After a change, the first query visits the exposed faces of the
 /// bodies that moved; further queries are cheap.
@@ -40,7 +41,7 @@ impl<D: Dimension> SoftQueries<'_, D> {
         max_distance: f32,
         filter: QueryFilter<'_>,
     ) -> Option<QueryHit> {
-        let ray = Ray::new(origin.into(), direction.into());
+        let ray = Ray::new(engine_vector(origin), engine_vector(direction));
         let hit = self.world.engine().ray_cast(ray, max_distance, filter)?;
         Some(self.hit(hit))
     }
@@ -54,34 +55,41 @@ impl<D: Dimension> SoftQueries<'_, D> {
         filter: QueryFilter<'_>,
     ) -> Option<QueryHit> {
         let engine = self.world.engine();
-        let hit = engine.closest_point(point.into(), max_distance, filter)?;
+        let hit = engine.closest_point(engine_vector(point), max_distance, filter)?;
         Some(self.hit(hit))
     }
 
     /// Returns the entities with a body that overlaps a shape, each once, sorted.
-    pub fn overlaps(&self, shape: &Shape, filter: QueryFilter<'_>) -> Vec<Entity> {
-        let found = self.world.engine().overlaps(shape, filter).into_iter();
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] if the shape is not [valid](Shape::check).
+    pub fn overlaps(
+        &self,
+        shape: &Shape<D>,
+        filter: QueryFilter<'_>,
+    ) -> Result<Vec<Entity>, Error> {
+        let found = self.world.engine().overlaps(shape, filter)?.into_iter();
         let entities = found.filter_map(|found| self.entity(found.object));
         let mut entities: Vec<Entity> = entities.collect();
         entities.sort();
         entities.dedup();
-        entities
+        Ok(entities)
     }
 
     /// Returns the entity of an object of the engine; `None` if it has none.
     pub fn entity(&self, object: ObjectRef) -> Option<Entity> {
         match object {
-            ObjectRef::RigidBody(rigid) => self.world.entity_of_rigid(rigid),
-            ObjectRef::Piece { body, .. } => self.world.entity_of_body(body),
+            ObjectRef::RigidBody(rigid) => self.world.entity_of_rigid_body(rigid),
+            ObjectRef::Piece { body, .. } => self.world.entity_of_soft_body(body),
         }
     }
 
-    fn hit(&self, hit: fuwafuwa::QueryHit) -> QueryHit {
+    fn hit(&self, hit: fuwafuwa::QueryHit<D>) -> QueryHit {
         QueryHit {
             entity: self.entity(hit.object),
             piece: hit.object.piece(),
-            point: hit.point.into(),
-            normal: hit.normal.into(),
+            point: bevy_vector(hit.point),
+            normal: bevy_vector(hit.normal),
             distance: hit.distance,
         }
     }

@@ -1,9 +1,10 @@
 //! Applies changed components to rigid bodies: target, pose, velocity, impulse.
 
 use crate::component::{ExternalImpulse, RigidBodyId, SoftBodyId, TargetPosition, Velocity};
+use crate::convert::{engine_rotation, engine_vector, engine_velocity};
 use crate::dimension::Dimension;
 use crate::message::Rejection;
-use crate::pose::{Pose, engine_rotation, engine_velocity};
+use crate::pose::Pose;
 use crate::problem::Problem;
 use crate::world::SoftWorld;
 use crate::write::LastWritten;
@@ -13,7 +14,7 @@ use bevy_ecs::query::Without;
 use bevy_ecs::system::{Commands, Query};
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
-use fuwafuwa::{MotionType, RigidBodyHandle};
+use fuwafuwa::{Impulse, MotionType, RigidBodyHandle};
 
 /// Components of a rigid body that can request a change.
 type RigidChanges<'a> = (
@@ -33,14 +34,15 @@ pub fn steer_rigids<D: Dimension>(
     mut rejections: MessageWriter<Rejection>,
 ) {
     for (id, entity) in world.rigid_entities() {
-        let Ok((own, mut transform, mut followed, velocity, impulse, goal)) =
+        let Ok((own, mut transform, mut followed, velocity, impulse, target)) =
             rigids.get_mut(entity)
         else {
             continue;
         };
-        if own.0 != id || world.engine().rigid_body(id).is_err() {
-            continue;
-        }
+        let motion_type = match world.engine().rigid_body(id) {
+            Ok(rigid) if own.0 == id => rigid.motion_type(),
+            _ => continue,
+        };
         let mut check = |outcome: Result<(), Problem>| match outcome {
             Ok(()) => true,
             Err(problem) => {
@@ -52,32 +54,26 @@ pub fn steer_rigids<D: Dimension>(
         if !followed.is_at(&transform) {
             if check(put(&mut world, id, &transform, &followed)) {
                 // Forgets the target position, so that it is sent to the engine again after the move.
-                (followed.transform, followed.goal) = (*transform, None);
+                (followed.transform, followed.target) = (*transform, None);
             } else {
                 *transform = followed.transform;
             }
         }
         let engine = world.engine_mut();
-        let goal = goal.map(|goal| goal.0);
-        let bits = |goal: Vec3| goal.to_array().map(f32::to_bits);
-        if goal.map(bits) != followed.goal.map(bits) {
-            if let (Some(goal), MotionType::Coupled { .. }) =
-                (goal, engine.rigid_body(id).unwrap().motion_type)
-            {
-                check(
-                    engine
-                        .set_target_position(id, goal.into())
-                        .map_err(Problem::from),
-                );
+        let target = target.map(|target| target.0);
+        let bits = |target: Vec3| target.to_array().map(f32::to_bits);
+        if target.map(bits) != followed.target.map(bits) {
+            if let (Some(target), MotionType::Coupled { .. }) = (target, motion_type) {
+                let outcome = engine.set_target_position(id, engine_vector(target));
+                check(outcome.map_err(Problem::from));
             }
             // Also set on failure, so that the error is reported only once.
-            followed.goal = goal;
+            followed.target = target;
         }
         if let Some(mut velocity) = velocity
             && *velocity != followed.velocity
         {
-            let Velocity { linear, angular } = *velocity;
-            let outcome = engine.set_velocity(id, engine_velocity(linear, angular));
+            let outcome = engine.set_velocity(id, engine_velocity(*velocity));
             if check(outcome.map_err(Problem::from)) {
                 followed.velocity = *velocity;
             } else {
@@ -85,10 +81,8 @@ pub fn steer_rigids<D: Dimension>(
             }
         }
         if let Some(push) = impulse {
-            let outcome = engine.apply_impulse(
-                id,
-                fuwafuwa::Impulse::at(push.at.into(), push.impulse.into()),
-            );
+            let impulse = Impulse::at(engine_vector(push.point), engine_vector(push.impulse));
+            let outcome = engine.apply_impulse(id, impulse);
             check(outcome.map_err(Problem::from));
             commands.entity(entity).try_remove::<ExternalImpulse>();
         }
@@ -104,19 +98,16 @@ fn put<D: Dimension>(
 ) -> Result<(), Problem> {
     let pose = Pose::of(transform)?;
     if transform.scale != followed.transform.scale {
-        return Err(Problem::Pose(
+        return Err(Problem::InvalidTransform(
             "keep its scale: the size of a rigid body is fixed once it has entered",
         ));
     }
     let engine = world.engine_mut();
-    let mut at = pose.translation + pose.rotation * followed.middle;
-    if D::N == 2 {
-        at.z = 0.0;
-    }
+    let position = engine_vector(pose.translation + pose.rotation * followed.middle);
     let rotation = engine_rotation(transform.rotation);
-    let rigid = engine.rigid_body(id).unwrap();
-    if rigid.motion_type == MotionType::Kinematic {
-        engine.set_target_position(id, at.into())?;
+    let rigid = engine.rigid_body(id)?;
+    if rigid.motion_type() == MotionType::Kinematic {
+        engine.set_target_position(id, position)?;
         engine.set_target_rotation(id, rotation)?;
         return Ok(());
     }
@@ -127,8 +118,8 @@ fn put<D: Dimension>(
     } else {
         rigid.rotation()
     };
-    if is_turned || at != Vec3::from(rigid.position()) {
-        engine.set_pose(id, at.into(), rotation)?;
+    if is_turned || position != rigid.position() {
+        engine.set_pose(id, position, rotation)?;
     }
     Ok(())
 }

@@ -1,30 +1,30 @@
 //! Runs a tick and sends its events as messages.
 
+use crate::convert::bevy_vector;
 use crate::dimension::Dimension;
 use crate::message::{
-    ContactBegan, ContactEnded, Cut, FellAsleep, JointBroke, NodeSplit, PieceDetached, Quarantined,
-    Removed, SensorEntered, SensorExited, Touched, Woke,
+    ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, JointBroke, NodeSplit,
+    PieceDetached, Quarantined, Removed, SensorEntered, SensorExited, WokeUp,
 };
 use crate::world::SoftWorld;
 use bevy_ecs::change_detection::ResMut;
 use bevy_ecs::message::MessageWriter;
 use bevy_ecs::system::SystemParam;
-use bevy_math::Vec3;
 use fuwafuwa::{Event, ObjectRef};
 
 /// Writers of all messages.
 #[derive(SystemParam)]
 pub struct Writers<'w> {
-    torn: MessageWriter<'w, NodeSplit>,
-    parted: MessageWriter<'w, PieceDetached>,
-    touched: MessageWriter<'w, Touched>,
+    node_split: MessageWriter<'w, NodeSplit>,
+    piece_detached: MessageWriter<'w, PieceDetached>,
+    contact_force: MessageWriter<'w, ContactForce>,
     fell_asleep: MessageWriter<'w, FellAsleep>,
-    woke: MessageWriter<'w, Woke>,
+    woke_up: MessageWriter<'w, WokeUp>,
     quarantined: MessageWriter<'w, Quarantined>,
-    contact_began: MessageWriter<'w, ContactBegan>,
+    contact_started: MessageWriter<'w, ContactStarted>,
     contact_ended: MessageWriter<'w, ContactEnded>,
-    entered: MessageWriter<'w, SensorEntered>,
-    left: MessageWriter<'w, SensorExited>,
+    sensor_entered: MessageWriter<'w, SensorEntered>,
+    sensor_exited: MessageWriter<'w, SensorExited>,
     joint_broke: MessageWriter<'w, JointBroke>,
     cut: MessageWriter<'w, Cut>,
     removed: MessageWriter<'w, Removed>,
@@ -35,83 +35,93 @@ pub fn step<D: Dimension>(mut world: ResMut<SoftWorld<D>>, mut writers: Writers<
     let before = world.unsent_events();
     if world.tick() {
         for event in before.iter().chain(world.engine().events()) {
-            writers.tell(&world, *event);
+            writers.send(&world, *event);
         }
         for (body, is_asleep) in world.follow_sleep() {
             if is_asleep {
                 writers.fell_asleep.write(FellAsleep { body, piece: None });
             } else {
-                writers.woke.write(Woke { body, piece: None });
+                writers.woke_up.write(WokeUp { body, piece: None });
             }
         }
     }
 }
 
 impl Writers<'_> {
-    /// Sends an event as a message. Sends nothing if a body in the event has no entity; only `Touched` allows
+    /// Sends an event as a message. Sends nothing if a body in the event has no entity; only `ContactForce` allows
     /// one such body.
-    fn tell<D: Dimension>(&mut self, world: &SoftWorld<D>, event: Event) -> Option<()> {
-        let of_body = |body| world.entity_of_body(body);
+    fn send<D: Dimension>(&mut self, world: &SoftWorld<D>, event: Event<D>) -> Option<()> {
+        let of_body = |body| world.entity_of_soft_body(body);
         let of = |object: ObjectRef| match object {
             ObjectRef::Piece { body, piece } => Some((of_body(body)?, Some(piece))),
-            ObjectRef::RigidBody(rigid) => Some((world.entity_of_rigid(rigid)?, None)),
+            ObjectRef::RigidBody(rigid) => Some((world.entity_of_rigid_body(rigid)?, None)),
         };
+        let both = |[first, second]: [ObjectRef; 2]| Some([of(first)?, of(second)?]);
         match event {
             Event::NodeSplit {
                 body,
                 point,
                 energy,
             } => {
-                let (body, at) = (of_body(body)?, point.into());
-                self.torn.write(NodeSplit { body, at, energy });
+                let (body, point) = (of_body(body)?, bevy_vector(point));
+                self.node_split.write(NodeSplit {
+                    body,
+                    point,
+                    energy,
+                });
             }
             Event::PieceDetached { body, piece } => {
                 let body = of_body(body)?;
-                self.parted.write(PieceDetached { body, piece });
+                self.piece_detached.write(PieceDetached { body, piece });
             }
             Event::ContactForce(contact) => {
                 // If the first body has no entity, the second one takes its place as `body`.
                 let [first, second] = contact.pair.map(of);
-                let normal = Vec3::from(contact.normal);
-                let ((body, piece), with, normal) = match first {
+                let normal = bevy_vector(contact.normal);
+                let ((body, piece), other, normal) = match first {
                     Some(first) => (first, second, normal),
                     None => (second?, None, -normal),
                 };
-                self.touched.write(Touched {
+                self.contact_force.write(ContactForce {
                     body,
                     piece,
-                    with: with.map(|(with, _)| with),
-                    with_piece: with.and_then(|(_, piece)| piece),
-                    at: contact.point.into(),
+                    other: other.map(|(other, _)| other),
+                    other_piece: other.and_then(|(_, piece)| piece),
+                    point: bevy_vector(contact.point),
                     normal,
                     impulse: contact.impulse,
                 });
             }
             Event::ContactStarted(contact) => {
-                let [first, second] = contact.pair;
-                let ((first, own), (second, other)) = (of(first)?, of(second)?);
-                self.contact_began.write(ContactBegan {
-                    both: [first, second],
+                let [(first, own), (second, other)] = both(contact.pair)?;
+                self.contact_started.write(ContactStarted {
+                    pair: [first, second],
                     pieces: [own, other],
-                    at: contact.point.into(),
-                    normal: contact.normal.into(),
+                    point: bevy_vector(contact.point),
+                    normal: bevy_vector(contact.normal),
                     speed: contact.speed,
                 });
             }
-            Event::ContactEnded {
-                pair: [first, second],
-            } => {
-                let ((first, own), (second, other)) = (of(first)?, of(second)?);
-                let (both, pieces) = ([first, second], [own, other]);
-                self.contact_ended.write(ContactEnded { both, pieces });
+            Event::ContactEnded { pair } => {
+                let [(first, own), (second, other)] = both(pair)?;
+                let (pair, pieces) = ([first, second], [own, other]);
+                self.contact_ended.write(ContactEnded { pair, pieces });
             }
             Event::SensorEntered { sensor, object } => {
-                let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(object)?);
-                self.entered.write(SensorEntered { sensor, who, piece });
+                let (sensor, (entity, piece)) = (world.entity_of_rigid_body(sensor)?, of(object)?);
+                self.sensor_entered.write(SensorEntered {
+                    sensor,
+                    entity,
+                    piece,
+                });
             }
             Event::SensorExited { sensor, object } => {
-                let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(object)?);
-                self.left.write(SensorExited { sensor, who, piece });
+                let (sensor, (entity, piece)) = (world.entity_of_rigid_body(sensor)?, of(object)?);
+                self.sensor_exited.write(SensorExited {
+                    sensor,
+                    entity,
+                    piece,
+                });
             }
             Event::Cut {
                 knife,
@@ -120,11 +130,11 @@ impl Writers<'_> {
                 area,
                 work,
             } => {
-                let (body, at) = (of_body(body)?, point.into());
+                let (body, point) = (of_body(body)?, bevy_vector(point));
                 self.cut.write(Cut {
                     knife,
                     body,
-                    at,
+                    point,
                     area,
                     work,
                 });
@@ -138,7 +148,7 @@ impl Writers<'_> {
             }
             Event::WokeUp { body, piece } => {
                 let (body, piece) = (of_body(body)?, Some(piece));
-                self.woke.write(Woke { body, piece });
+                self.woke_up.write(WokeUp { body, piece });
             }
             Event::PieceRemoved { body, piece } => {
                 let (body, piece) = (of_body(body)?, Some(piece));
@@ -148,8 +158,8 @@ impl Writers<'_> {
                 let body = of_body(body)?;
                 self.removed.write(Removed { body, piece: None });
             }
-            Event::RigidBodyRemoved { rigid } => {
-                let body = world.entity_of_rigid(rigid)?;
+            Event::RigidBodyRemoved { body } => {
+                let body = world.entity_of_rigid_body(body)?;
                 self.removed.write(Removed { body, piece: None });
             }
             Event::Quarantined { body, piece } => {

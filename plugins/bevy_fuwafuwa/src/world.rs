@@ -8,10 +8,10 @@ use fuwafuwa::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Settings of all worlds of an app, such as gravity, drag and substeps. They can be changed at any time.
-/// Settings that the engine refuses are reported by [`crate::message::Rejection`] and have no effect.
+/// Configuration of the world: gravity, drag, substeps and tick length. It can be changed at any time. A value
+/// out of range has no effect and is reported by [`crate::message::Rejection`].
 #[derive(Resource, Copy, Clone, Debug, Default, PartialEq)]
-pub struct SoftSettings(pub WorldConfig);
+pub struct SoftWorldConfig<D: Dimension>(pub WorldConfig<D>);
 
 /// The engine's world, and the mapping between entities and bodies.
 ///
@@ -29,7 +29,7 @@ pub struct SoftWorld<D: Dimension> {
     single_ticks: u32,
     has_ticked: bool,
     /// Number of events of the last tick already sent as messages.
-    told: usize,
+    sent: usize,
     report: StepReport,
 }
 
@@ -67,14 +67,14 @@ impl<Id: Copy + Ord> Pairs<Id> {
 impl<D: Dimension> Default for SoftWorld<D> {
     fn default() -> Self {
         Self {
-            engine: World::new(WorldConfig::default()).expect("the default settings are valid"),
+            engine: World::new(WorldConfig::default()).expect("the default configuration is valid"),
             bodies: Pairs::default(),
             rigids: Pairs::default(),
             sleepers: BTreeSet::new(),
             is_paused: false,
             single_ticks: 0,
             has_ticked: false,
-            told: 0,
+            sent: 0,
             report: StepReport::default(),
         }
     }
@@ -93,22 +93,22 @@ impl<D: Dimension> SoftWorld<D> {
     }
 
     /// Returns the soft body of an entity. `None` before it has entered the world.
-    pub fn body_of(&self, entity: Entity) -> Option<SoftBodyHandle> {
+    pub fn soft_body_of(&self, entity: Entity) -> Option<SoftBodyHandle> {
         self.bodies.ids.get(&entity).copied()
     }
 
     /// Returns the entity of a soft body.
-    pub fn entity_of_body(&self, body: SoftBodyHandle) -> Option<Entity> {
+    pub fn entity_of_soft_body(&self, body: SoftBodyHandle) -> Option<Entity> {
         self.bodies.entities.get(&body).copied()
     }
 
     /// Returns the rigid body of an entity. `None` before it has entered the world.
-    pub fn rigid_of(&self, entity: Entity) -> Option<RigidBodyHandle> {
+    pub fn rigid_body_of(&self, entity: Entity) -> Option<RigidBodyHandle> {
         self.rigids.ids.get(&entity).copied()
     }
 
     /// Returns the entity of a rigid body.
-    pub fn entity_of_rigid(&self, rigid: RigidBodyHandle) -> Option<Entity> {
+    pub fn entity_of_rigid_body(&self, rigid: RigidBodyHandle) -> Option<Entity> {
         self.rigids.entities.get(&rigid).copied()
     }
 
@@ -144,17 +144,17 @@ impl<D: Dimension> SoftWorld<D> {
         if self.has_ticked {
             self.single_ticks = self.single_ticks.saturating_sub(1);
             self.report = self.engine.step();
-            self.told = self.engine.events().len();
+            self.sent = self.engine.events().len();
         }
         self.has_ticked
     }
 
     /// Returns the events of direct calls of the engine since the last tick. They were not sent as messages
     /// yet.
-    pub(crate) fn unsent_events(&self) -> Vec<Event> {
+    pub(crate) fn unsent_events(&self) -> Vec<Event<D>> {
         self.engine
             .events()
-            .get(self.told..)
+            .get(self.sent..)
             .unwrap_or_default()
             .to_vec()
     }
@@ -172,9 +172,11 @@ impl<D: Dimension> SoftWorld<D> {
         let asleep: BTreeSet<RigidBodyHandle> = asleep.map(|(id, _)| id).collect();
         let before = std::mem::replace(&mut self.sleepers, asleep);
         let changed = before.symmetric_difference(&self.sleepers);
-        let told = changed
-            .filter_map(|&id| Some((self.entity_of_rigid(id)?, self.sleepers.contains(&id))));
-        told.collect()
+        let entities = changed.filter_map(|&id| {
+            let entity = self.entity_of_rigid_body(id)?;
+            Some((entity, self.sleepers.contains(&id)))
+        });
+        entities.collect()
     }
 
     /// Returns soft bodies and their entities, in the order of ids.
@@ -202,7 +204,7 @@ impl<D: Dimension> SoftWorld<D> {
     pub(crate) fn add_rigid(
         &mut self,
         entity: Entity,
-        rigid: RigidBody,
+        rigid: RigidBody<D>,
     ) -> Result<RigidBodyHandle, Error> {
         let id = self.engine.add_rigid_body(rigid)?;
         self.rigids.add(entity, id);

@@ -1,6 +1,7 @@
 //! Writes the results of a tick to components.
 
 use crate::component::{GravityScale, RigidBodyId, SoftBodyId, Velocity};
+use crate::convert::{bevy_rotation, bevy_vector, bevy_velocity};
 use crate::dimension::Dimension;
 use crate::drawn::BodyMesh;
 use crate::pose::{Pose, motion_of};
@@ -10,7 +11,7 @@ use bevy_ecs::change_detection::{Res, ResMut};
 use bevy_ecs::component::Component;
 use bevy_ecs::query::Without;
 use bevy_ecs::system::Query;
-use bevy_math::{Quat, Vec3};
+use bevy_math::Vec3;
 use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
 use fuwafuwa::MotionType;
@@ -25,7 +26,7 @@ pub struct LastWritten {
     /// Position of the engine's origin of a rigid body in the frame of the entity [m].
     pub middle: Vec3,
     /// Target last sent to the engine, world space [m].
-    pub goal: Option<Vec3>,
+    pub target: Option<Vec3>,
     /// Whether the whole body slept at the last write.
     pub is_settled: bool,
 }
@@ -43,7 +44,7 @@ impl LastWritten {
             velocity: velocity.unwrap_or_default(),
             gravity: gravity.map_or(1.0, |own| own.0),
             middle: Vec3::ZERO,
-            goal: None,
+            target: None,
             is_settled: false,
         }
     }
@@ -90,14 +91,10 @@ pub fn write_bodies<D: Dimension>(
         followed.pose = motion.pose;
         followed.transform = motion.pose.transform();
         *transform = followed.transform;
-        let now = Velocity {
-            linear: motion.linear,
-            angular: motion.angular,
-        };
-        followed.velocity = now;
+        followed.velocity = motion.velocity;
         followed.is_settled = is_asleep;
         if let Some(mut velocity) = velocity {
-            *velocity = now;
+            *velocity = motion.velocity;
         }
     }
 }
@@ -126,25 +123,23 @@ pub fn write_rigids<D: Dimension>(
             continue;
         };
         let is_settled = followed.is_settled && rigid.is_asleep();
-        if own.0 != id || rigid.motion_type == MotionType::Fixed || is_settled {
+        let motion_type = rigid.motion_type();
+        if own.0 != id || motion_type == MotionType::Fixed || is_settled {
             continue;
         }
-        if rigid.motion_type != MotionType::Kinematic {
+        if motion_type != MotionType::Kinematic {
             if rigid.is_dynamic() {
-                transform.rotation = Quat::from_array(rigid.rotation().quaternion());
+                transform.rotation = bevy_rotation(rigid.rotation());
             }
             let middle = transform.rotation * followed.middle;
             let z = transform.translation.z;
-            transform.translation = Vec3::from(rigid.position()) - middle;
+            transform.translation = bevy_vector(rigid.position()) - middle;
             if D::N == 2 {
                 transform.translation.z = z;
             }
             followed.transform = *transform;
         }
-        let now = Velocity {
-            linear: rigid.velocity().into(),
-            angular: rigid.angular_velocity().into(),
-        };
+        let now = bevy_velocity(rigid.velocity());
         followed.velocity = now;
         followed.is_settled = rigid.is_asleep();
         if let Some(mut velocity) = velocity {

@@ -54,7 +54,7 @@ pub use tear::compare_tear;
 
 use mesh::Simplices;
 pub use world::Effort;
-use world::{Falling, CellModel, plane, space};
+use world::{CellModel, Falling, plane, space};
 
 /// Width of the body [m], including empty voxels at the rim.
 const WIDTH: f32 = 1.0;

@@ -3,7 +3,7 @@
 
 use std::process::ExitCode;
 
-use against_rapier::{Drop, Effort, Result, EngineResult, compare_drop, compare_tear};
+use against_rapier::{Drop, Effort, EngineResult, Result, compare_drop, compare_tear};
 use clap::{Parser, ValueEnum};
 use serde::Serialize;
 
@@ -143,7 +143,7 @@ fn print(comparison: &Comparison) {
         "{:<64}{:>9}{:>10}{:>8}{:>8}{:>11}{:>11}",
         "  alternating frames of 1/60 s, one thread",
         "substeps",
-        "stiffness_scale",
+        "stiffness",
         "squash",
         "asleep",
         "median ms",

@@ -1,14 +1,16 @@
 //! The scenes in fuwafuwa.
 
 use fuwafuwa::inspect::Elasticity;
-use fuwafuwa::{MIN_SUBSTEPS, TICK};
-use fuwafuwa::{Dim, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig};
+use fuwafuwa::{
+    DEFAULT_TICK, Dim, DimVector, MIN_SUBSTEPS, Material, RigidBody, Shape, SoftBody, VoxelGrid,
+    World, WorldConfig,
+};
 
 use crate::world::{Falling, Span};
 use crate::{Drop, Result, WIDTH};
 
 /// Largest value that [`WorldConfig::max_substeps`] accepts.
-const MOST_SUBSTEPS: u32 = 1024;
+const MAX_SUBSTEPS: u32 = 1024;
 
 /// Builds a world with an undamped, unbreakable body above a half-space. The world gets `substeps` substeps
 /// or, for `None`, the fewest that do not soften the body, see [`SoftBody::stiffness_scale`].
@@ -25,37 +27,35 @@ pub fn world<D: Dim>(scene: &Drop, substeps: Option<usize>) -> Result<World<D>> 
         ..Material::default()
     };
     let body = SoftBody::new(VoxelGrid::<D>::ball(scene.n, WIDTH)?, &[material])?;
-    let asked = (f64::from(TICK) / body.longest_substep()).ceil() as u32;
-    let most = substeps.map_or(asked, |substeps| substeps as u32);
+    let required = (f64::from(DEFAULT_TICK) / body.longest_substep()).ceil() as u32;
+    let max_substeps = substeps.map_or(required, |substeps| substeps as u32);
     let mut world = World::<D>::new(WorldConfig {
-        gravity: [0.0, -scene.gravity, 0.0],
+        gravity: D::Vector::Y * -scene.gravity,
         drag: 0.0,
-        max_substeps: most.clamp(MIN_SUBSTEPS, MOST_SUBSTEPS),
+        max_substeps: max_substeps.clamp(MIN_SUBSTEPS, MAX_SUBSTEPS),
         ..WorldConfig::default()
     })?;
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor).with_friction(scene.friction))?;
     let lowest = span(&body).lowest;
-    world.add_soft_body(body.translated([0.0, scene.height - lowest, 0.0]));
+    world.add_soft_body(body.translated(D::Vector::Y * (scene.height - lowest)));
     Ok(world)
+}
+
+/// Returns the body of a world built by [`world`].
+pub fn body<D: Dim>(world: &World<D>) -> &SoftBody<D> {
+    let (_, body) = world.soft_bodies().next().expect("world with a body");
+    body
 }
 
 fn span<D: Dim>(body: &SoftBody<D>) -> Span {
     let pieces = body.piece_views();
-    Span::of(
-        pieces
-            .iter()
-            .flat_map(|piece| [piece.low[1], piece.high[1]]),
-    )
+    Span::of(pieces.iter().flat_map(|piece| [piece.low.y, piece.high.y]))
 }
 
 impl<D: Dim> Falling for World<D> {
     fn engine(&self) -> String {
-        let elements = self
-            .soft_bodies().next().map(|(_, item)| item)
-            .expect("world with a body")
-            .mesh()
-            .element_count();
+        let elements = body(self).mesh().element_count();
         format!("fuwafuwa, {elements} elements")
     }
 
@@ -64,7 +64,7 @@ impl<D: Dim> Falling for World<D> {
     }
 
     fn span(&self) -> Span {
-        span(self.soft_bodies().next().map(|(_, item)| item).expect("world with a body"))
+        span(body(self))
     }
 
     fn substeps(&self) -> usize {
@@ -72,25 +72,15 @@ impl<D: Dim> Falling for World<D> {
     }
 
     fn stiffness_scale(&self) -> f64 {
-        self.soft_bodies().next().map(|(_, item)| item)
-            .expect("world with a body")
-            .stiffness_scale()
+        body(self).stiffness_scale()
     }
 
     fn pieces(&self) -> usize {
-        self.soft_bodies().next().map(|(_, item)| item)
-            .expect("world with a body")
-            .pieces()
-            .list
-            .len()
+        body(self).pieces().list.len()
     }
 
     fn asleep(&self) -> f64 {
-        let pieces = &self
-            .soft_bodies().next().map(|(_, item)| item)
-            .expect("world with a body")
-            .pieces()
-            .list;
+        let pieces = &body(self).pieces().list;
         let asleep = pieces.iter().filter(|piece| piece.asleep).count();
         asleep as f64 / pieces.len() as f64
     }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use fuwafuwa::MIN_SUBSTEPS;
 
-use crate::side::{EngineResult, TOLERANCE, MeasuredWorld, fall};
+use crate::side::{EngineResult, MeasuredWorld, TOLERANCE, fall};
 use crate::world::Falling;
 use crate::{Drop, Effort, FRAME, Result, WIDTH, ours, theirs};
 
@@ -13,7 +13,7 @@ use crate::{Drop, Effort, FRAME, Result, WIDTH, ours, theirs};
 /// best.
 const SWEEPS: [usize; 4] = [4, 8, 2, 1];
 /// Maximum number of substeps tried.
-const MOST_SUBSTEPS: usize = 128;
+const MAX_SUBSTEPS: usize = 128;
 
 /// Lets a body fall in both engines, alternating frame by frame; returns the results of fuwafuwa and of
 /// Rapier. The exact peak squash is that of fuwafuwa with an unsoftened body. Each engine gets the fewest
@@ -33,11 +33,11 @@ pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[Eng
     })?;
     let mut fastest = f64::INFINITY;
     let mut effort = Effort {
-        substeps: MOST_SUBSTEPS,
+        substeps: MAX_SUBSTEPS,
         sweeps: SWEEPS[0],
     };
     for sweeps in SWEEPS {
-        let found = fewest_stiff_substeps(1..MOST_SUBSTEPS + 1, fastest, |substeps| {
+        let found = fewest_stiff_substeps(1..MAX_SUBSTEPS + 1, fastest, |substeps| {
             let effort = Effort { substeps, sweeps };
             trying(effort);
             Ok(stiff(theirs(scene, effort)?, frames, limit))
@@ -146,7 +146,10 @@ mod tests {
         }
         // The first number found to suffice is too slow, but the smallest one is fast enough.
         let stiff = |substeps| Ok((substeps >= 25, median(substeps)));
-        assert_eq!(fewest_stiff_substeps(8..31, 26.0, stiff), Ok(Some((25, 25.0))));
+        assert_eq!(
+            fewest_stiff_substeps(8..31, 26.0, stiff),
+            Ok(Some((25, 25.0)))
+        );
         let never = |substeps| Ok((false, median(substeps)));
         assert_eq!(fewest_stiff_substeps(8..31, f64::INFINITY, never), Ok(None));
         // The range is empty.

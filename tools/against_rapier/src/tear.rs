@@ -1,6 +1,6 @@
 //! A disc cut into many pieces in contact.
 
-use fuwafuwa::{Blade, Dim2, World};
+use fuwafuwa::{Blade, Dim2, Vec2, World};
 use rapier2d::prelude::{SoftBodyHandle, Vector};
 
 use crate::side::{EngineResult, fall};
@@ -25,11 +25,8 @@ pub fn compare_tear(scene: &Drop, pitch: usize, effort: Effort) -> Result<[Engin
     let mut theirs = disc(scene, effort)?;
     cut_to_pieces(&mut theirs, scene, pitch, 0.0);
     let mut ours = ours::world::<Dim2>(scene, None)?;
-    let whole = ours
-        .soft_bodies().next().map(|(_, item)| item)
-        .expect("world with a body")
-        .piece_views()[0];
-    let middle = 0.5 * (whole.low[0] + whole.high[0]);
+    let whole = ours::body(&ours).piece_views()[0];
+    let middle = 0.5 * (whole.low.x + whole.high.x);
     cut_to_pieces(&mut ours, scene, pitch, middle);
     Ok(fall([Box::new(ours), Box::new(theirs)], scene.frames))
 }
@@ -46,33 +43,31 @@ fn cut_to_pieces(world: &mut impl Cut, scene: &Drop, pitch: usize, middle: f32) 
             .map(|k| k as f32 * voxel)
     };
     for x in lines().map(|x| middle - 0.5 * WIDTH + x) {
-        world.cut_all([[x, -far], [x, far]]);
+        world.cut_all([Vec2::new(x, -far), Vec2::new(x, far)]);
     }
     for y in lines().map(|y| lowest + y) {
-        world.cut_all([[middle - far, y], [middle + far, y]]);
+        world.cut_all([Vec2::new(middle - far, y), Vec2::new(middle + far, y)]);
     }
 }
 
 /// World with soft bodies that can be cut.
 trait Cut: Falling {
     /// Cuts all soft bodies along a segment.
-    fn cut_all(&mut self, blade: [[f32; 2]; 2]);
+    fn cut_all(&mut self, blade: [Vec2; 2]);
 }
 
 impl Cut for World<Dim2> {
-    fn cut_all(&mut self, [from, to]: [[f32; 2]; 2]) {
-        self.cut(
-            self.nth_soft_body(0).expect("world with a body"),
-            &Blade::segment(from, to),
-        )
-        .unwrap();
+    fn cut_all(&mut self, [from, to]: [Vec2; 2]) {
+        let body = self.nth_soft_body(0).expect("world with a body");
+        self.cut(body, &Blade::segment(from, to))
+            .expect("the handle is valid");
     }
 }
 
 impl Cut for plane::World {
     /// Cuts each piece separately: a call of Rapier cuts only one piece.
-    fn cut_all(&mut self, blade: [[f32; 2]; 2]) {
-        let blade = blade.map(|[x, y]| Vector::new(x, y));
+    fn cut_all(&mut self, blade: [Vec2; 2]) {
+        let blade = blade.map(|point| Vector::new(point.x, point.y));
         let bodies = self.rapier.soft_bodies();
         let pieces: Vec<SoftBodyHandle> = bodies.map(|(handle, _)| handle).collect();
         for piece in pieces {

@@ -128,7 +128,7 @@ macro_rules! world {
     ($rapier:ident, $corners:literal, $vector:expr, $cells:literal) => {
         use crate::Drop;
         use crate::mesh::Simplices;
-        use crate::world::{Effort, Falling, CellModel, SKIN, Span};
+        use crate::world::{CellModel, Effort, Falling, SKIN, Span};
         use $rapier::na::Unit;
         use $rapier::prelude::*;
 
@@ -141,7 +141,12 @@ macro_rules! world {
 
         impl World {
             /// Builds a world with the body of `mesh` at rest, at the initial height of the scene.
-            pub fn new(mesh: &Simplices<$corners>, scene: &Drop, effort: Effort, law: CellModel) -> Self {
+            pub fn new(
+                mesh: &Simplices<$corners>,
+                scene: &Drop,
+                effort: Effort,
+                law: CellModel,
+            ) -> Self {
                 let mut rapier = PhysicsWorld::new();
                 rapier.gravity = Vector::Y * -scene.gravity;
                 rapier.integration_parameters.dt = crate::FRAME;

@@ -12,7 +12,7 @@ use fuwafuwa::{Dim, SoftBody};
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Vertex {
     /// Position [m].
-    pub at: Vec3,
+    pub position: Vec3,
     /// Outward unit normal.
     pub normal: Vec3,
 }

@@ -117,7 +117,7 @@ impl Surface<Dim2> for PlaneSurface {
         let places = self.vertices.all.iter().zip(&self.places);
         places.map(|(place, at)| {
             place.map(|_| Vertex {
-                at: at.extend(0.0),
+                position: at.extend(0.0),
                 normal: Vec3::Z,
             })
         })

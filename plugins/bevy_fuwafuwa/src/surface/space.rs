@@ -10,6 +10,7 @@
 
 use super::{Surface, Vertex};
 use crate::colours::SoftColours;
+use crate::convert::bevy_vector;
 use bevy_math::Vec3;
 use fuwafuwa::inspect::face_corners;
 use fuwafuwa::{Dim3, ElementId, SoftBody};
@@ -50,8 +51,8 @@ impl Surface<Dim3> for SpaceSurface {
         let skin = self.skin.vertices().iter().map(|corner| {
             let [x, y, z, _] = corner.normal;
             let normal = Vec3::new(x.into(), y.into(), z.into()) / 32767.0;
-            let at = Vec3::from(corner.at);
-            is_used(corner).then_some(Vertex { at, normal })
+            let position = Vec3::from(corner.at);
+            is_used(corner).then_some(Vertex { position, normal })
         });
         let crumbs = self.crumbs.iter().flat_map(|crumb| crumb.corners);
         skin.chain(crumbs.map(Some))
@@ -92,11 +93,11 @@ impl Surface<Dim3> for SpaceSurface {
 impl Crumb {
     fn of(body: &SoftBody<Dim3>, id: ElementId) -> Option<Self> {
         let element = body.mesh().element(id)?;
-        let place = |corner: usize| Vec3::from(body.node_state(element.nodes[corner]).0);
+        let place = |corner: usize| bevy_vector(body.node_state(element.nodes[corner]).0);
         let places: [Vec3; 8] = std::array::from_fn(place);
         let middle = places.iter().sum::<Vec3>() / 8.0;
         let corners = places.map(|at| Vertex {
-            at: middle.lerp(at, CRUMB),
+            position: middle.lerp(at, CRUMB),
             normal: (at - middle).normalize_or(Vec3::Y),
         });
         let material = body.grid().material(element.cell.at);

@@ -35,7 +35,8 @@ fn app_with<D: Dimension>(files: &[(&str, Vec<u8>)]) -> App {
 /// Runs the app until the body of an entity has entered or was rejected.
 fn settle<D: Dimension>(app: &mut App, entity: Entity) {
     let late = Instant::now() + Duration::from_secs(60);
-    while world::<D>(app).body_of(entity).is_none() && app.world().get::<Rejected>(entity).is_none()
+    while world::<D>(app).soft_body_of(entity).is_none()
+        && app.world().get::<Rejected>(entity).is_none()
     {
         assert!(Instant::now() < late, "the asset neither loads nor fails");
         std::thread::sleep(Duration::from_millis(1));
@@ -113,7 +114,7 @@ fn png_asset_becomes_a_body_with_default_and_custom_settings() {
     assert_eq!((grid.solid_count(), grid.voxel_size()), (12, 1.0 / 32.0));
 
     let small = |settings: &mut VoxelsSettings| {
-        (settings.voxel_size, settings.most_across) = (0.5, 4);
+        (settings.voxel_size, settings.max_across) = (0.5, 4);
     };
     let mut app = app_with::<Dim2>(&[("stroke.png", png())]);
     let server = app.world().resource::<AssetServer>().clone();

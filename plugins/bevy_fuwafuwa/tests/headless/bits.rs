@@ -1,7 +1,8 @@
 //! Determinism: the app and the engine give the same hash.
 
 use super::{app, at, run, world};
-use bevy_fuwafuwa::fuwafuwa::{RigidBody, SoftBody as Body, World, WorldConfig};
+use bevy_fuwafuwa::convert::engine_vector;
+use bevy_fuwafuwa::fuwafuwa::{RigidBody, SoftBody as Body, Vec2, World, WorldConfig};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::Vec3;
 
@@ -39,19 +40,20 @@ fn hash_of_app() -> u64 {
 #[test]
 fn app_has_the_hash_of_the_engine() -> Result<(), Box<dyn std::error::Error>> {
     let mut world = World::<Dim2>::new(WorldConfig::default())?;
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(Vec2::Y, Vec2::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor).with_friction(0.5))?;
     for (across, x, y) in BALLS {
         let body = Body::new(VoxelGrid::ball(across, 1.0)?, &[SoftMaterial::default()])?;
-        world.add_soft_body(body.translated([-0.5, -0.5, 0.0]).translated([x, y, 0.0]));
+        world.add_soft_body(
+            body.translated(Vec2::splat(-0.5))
+                .translated(Vec2::new(x, y)),
+        );
     }
-    let (centre, radius) = ([0.0; 3], 0.15);
-    let form = Shape::Ball { centre, radius };
-    let hand = RigidBody::new(form, MotionType::Kinematic).at(hand_at(0).into());
+    let hand = RigidBody::kinematic(Shape::ball(0.15)).at(engine_vector(hand_at(0)));
     let hand = world.add_rigid_body(hand)?;
     let mut released = 0;
     for tick in 0..TICKS {
-        world.set_target_position(hand, hand_at(tick).into())?;
+        world.set_target_position(hand, engine_vector(hand_at(tick)))?;
         released += world.step().nodes_split;
     }
     assert!(

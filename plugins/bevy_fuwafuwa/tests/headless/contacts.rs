@@ -4,49 +4,43 @@ use super::{app, at, messages};
 use bevy_ecs::entity::Entity;
 use bevy_fuwafuwa::prelude::*;
 
-fn block() -> Shape {
-    Shape::Box {
-        centre: [0.0; 3],
-        half: [0.2; 3],
-    }
+fn block() -> Shape<Dim3> {
+    Shape::cuboid([0.2; 3].into())
 }
 
 #[test]
-fn falling_box_passes_a_sensor_and_begins_one_contact_with_the_floor() {
+fn falling_box_passes_a_sensor_and_starts_one_contact_with_the_floor() {
     let mut app = app::<Dim3>();
     let floor = app.world_mut().spawn(RigidBody3d::floor()).id();
-    let gate = RigidBody3d::fixed(block()).as_sensor();
+    let gate = RigidBody3d::fixed(block()).with_sensor(true);
     let gate = app.world_mut().spawn((gate, at(0.0, 1.2))).id();
     let free = RigidBody3d::dynamic(block(), 1.0);
     let free = app.world_mut().spawn((free, at(0.0, 2.2))).id();
-    let (mut began, mut ended) = (Vec::new(), 0);
-    let (mut entered, mut left): (Vec<Entity>, Vec<Entity>) = (Vec::new(), Vec::new());
+    let (mut started, mut ended) = (Vec::new(), 0);
+    let (mut entered, mut exited): (Vec<Entity>, Vec<Entity>) = (Vec::new(), Vec::new());
     let mut touches = 0;
     for _ in 0..120 {
         app.update();
-        began.extend(messages::<ContactBegan>(&app));
+        started.extend(messages::<ContactStarted>(&app));
         ended += messages::<ContactEnded>(&app).len();
-        let through = messages::<SensorEntered>(&app).into_iter();
-        entered.extend(
-            through
-                .filter(|told| told.sensor == gate)
-                .map(|told| told.who),
-        );
-        let out = messages::<SensorExited>(&app).into_iter();
-        left.extend(out.filter(|told| told.sensor == gate).map(|told| told.who));
-        let pressed = messages::<Touched>(&app);
-        touches += pressed
+        let into_gate = messages::<SensorEntered>(&app).into_iter();
+        let into_gate = into_gate.filter(|message| message.sensor == gate);
+        entered.extend(into_gate.map(|message| message.entity));
+        let out_of_gate = messages::<SensorExited>(&app).into_iter();
+        let out_of_gate = out_of_gate.filter(|message| message.sensor == gate);
+        exited.extend(out_of_gate.map(|message| message.entity));
+        touches += messages::<ContactForce>(&app)
             .iter()
-            .filter(|told| told.body == floor && told.with == Some(free))
+            .filter(|contact| (contact.body, contact.other) == (floor, Some(free)))
             .count();
     }
-    assert_eq!((entered, left), (vec![free], vec![free]));
-    assert_eq!((began.len(), ended), (1, 0), "{began:?}");
+    assert_eq!((entered, exited), (vec![free], vec![free]));
+    assert_eq!((started.len(), ended), (1, 0), "{started:?}");
     // Bodies are in the order in which they entered: the floor was first.
-    assert_eq!(began[0].both, [floor, free]);
+    assert_eq!(started[0].pair, [floor, free]);
     assert!(
-        (5.5..6.6).contains(&began[0].speed),
-        "speed after a fall of 2 m: {began:?}"
+        (5.5..6.6).contains(&started[0].speed),
+        "speed after a fall of 2 m: {started:?}"
     );
     assert!(touches > 10, "{touches}");
 }

@@ -7,7 +7,7 @@ use bevy_ecs::resource::Resource;
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::system::ResMut;
 use bevy_fuwafuwa::component::SoftBodyId;
-use bevy_fuwafuwa::fuwafuwa::{Blade, Knife, PieceSize, QueryFilter, RigidBody};
+use bevy_fuwafuwa::fuwafuwa::{Blade, Knife, PieceSize, QueryFilter, RigidBody, Vec2};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::Vec3;
 use bevy_mesh::Mesh2d;
@@ -24,9 +24,9 @@ fn body_leaves_the_world_when_despawned_or_its_component_is_removed() {
     let [low, high, top] = [1.0, 3.0, 5.0].map(|height| ball(&mut app, height));
     app.update();
     let id = world::<Dim2>(&app)
-        .body_of(high)
+        .soft_body_of(high)
         .expect("the body has entered");
-    assert_eq!(world::<Dim2>(&app).entity_of_body(id), Some(high));
+    assert_eq!(world::<Dim2>(&app).entity_of_soft_body(id), Some(high));
     assert_eq!(app.world().get::<SoftBodyId>(high), Some(&SoftBodyId(id)));
 
     app.world_mut().despawn(low);
@@ -41,9 +41,12 @@ fn body_leaves_the_world_when_despawned_or_its_component_is_removed() {
         ),
         (1, 0)
     );
-    assert_eq!((own.body_of(low), own.body_of(high)), (None, None));
-    assert_eq!(own.entity_of_body(id), None);
-    assert!(own.body_of(top).is_some());
+    assert_eq!(
+        (own.soft_body_of(low), own.soft_body_of(high)),
+        (None, None)
+    );
+    assert_eq!(own.entity_of_soft_body(id), None);
+    assert!(own.soft_body_of(top).is_some());
     let entity = app.world().entity(high);
     assert!(!entity.contains::<SoftBodyId>() && !entity.contains::<Mesh2d>());
 
@@ -56,7 +59,9 @@ fn body_leaves_the_world_when_despawned_or_its_component_is_removed() {
     app.update();
     let own = world::<Dim2>(&app);
     assert_eq!(own.engine().soft_bodies().count(), 1);
-    let size = own.body_of(top).map(|id| own.engine()[id].grid().size());
+    let size = own
+        .soft_body_of(top)
+        .map(|id| own.engine()[id].grid().size());
     assert_eq!(size, Some([10, 10, 1]));
 }
 
@@ -102,13 +107,11 @@ fn queries_return_entities() {
         let beside = queries.closest_point(Vec3::new(4.0, 0.5, 0.0), 1.0, QueryFilter::default());
         seen.0
             .push(beside.and_then(|hit| Some((hit.entity?, hit.distance))));
-        let centre = [0.0, 3.0, 0.0];
-        let probe = Shape::Ball {
-            centre,
-            radius: 0.1,
-        };
-        let inside = queries.overlaps(&probe, QueryFilter::default());
+        let probe = Shape::ball(0.1).translated(Vec2::new(0.0, 3.0));
+        let inside = queries.overlaps(&probe, QueryFilter::default()).unwrap();
         seen.0.push(inside.first().map(|&entity| (entity, 0.0)));
+        let invalid = queries.overlaps(&Shape::ball(-0.1), QueryFilter::default());
+        assert!(invalid.is_err());
     };
     app.add_systems(Update, look.after(FuwafuwaSystems::Writeback));
     let floor = app.world_mut().spawn(RigidBody2d::floor()).id();
@@ -136,16 +139,19 @@ fn knife_cuts_and_engine_removals_send_messages() {
     app.update();
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
     let engine = world.engine_mut();
-    let mut hand = RigidBody::coupled(Shape::ball(0.05)).at([0.03, 1.2, 0.0]);
-    hand.is_sensor = true; // only the cutting edge has contact
+    // As a sensor the hand passes through the body; only the edge touches it.
+    let hand = RigidBody::coupled(Shape::ball(0.05))
+        .at(Vec2::new(0.03, 1.2))
+        .with_sensor(true);
     let hand = engine.add_rigid_body(hand).unwrap();
-    let knife = Knife::new(hand, [[0.0; 3]; 2], [0.0, -1.0, 0.0]);
+    let knife = Knife::new(hand, [Vec2::ZERO; 2], Vec2::NEG_Y);
     let knife = engine.add_knife(knife).unwrap();
     let mut cuts: Vec<Cut> = Vec::new();
     for tick in 0..120 {
         let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
-        let goal = [0.03, 1.2 - 0.01 * tick as f32, 0.0];
-        world.engine_mut().set_target_position(hand, goal).unwrap();
+        let target = Vec2::new(0.03, 1.2 - 0.01 * tick as f32);
+        let engine = world.engine_mut();
+        engine.set_target_position(hand, target).unwrap();
         app.update();
         cuts.extend(messages::<Cut>(&app));
     }
@@ -157,8 +163,8 @@ fn knife_cuts_and_engine_removals_send_messages() {
 
     // Events of direct engine calls between two ticks are sent in the next tick.
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
-    let body = world.body_of(cube).unwrap();
-    let across = Blade::segment([-2.0, 0.3], [2.0, 0.3]);
+    let body = world.soft_body_of(cube).unwrap();
+    let across = Blade::segment(Vec2::new(-2.0, 0.3), Vec2::new(2.0, 0.3));
     world.engine_mut().cut(body, &across).unwrap();
     app.update();
     assert!(!messages::<PieceDetached>(&app).is_empty());

@@ -47,7 +47,7 @@ fn world<D: Dimension>(app: &App) -> &SoftWorld<D> {
 
 fn body<D: Dimension>(app: &App, entity: Entity) -> &Body<D> {
     let world = world::<D>(app);
-    let id = world.body_of(entity).expect("the body has entered");
+    let id = world.soft_body_of(entity).expect("the body has entered");
     &world.engine()[id]
 }
 

@@ -3,6 +3,7 @@
 use super::{app, at, body, mesh, messages, run, transform, world};
 use bevy_asset::{AssetEvent, Assets};
 use bevy_ecs::entity::Entity;
+use bevy_fuwafuwa::Dimension;
 use bevy_fuwafuwa::fuwafuwa::inspect::closure;
 use bevy_fuwafuwa::fuwafuwa::{Blade, Dim};
 use bevy_fuwafuwa::prelude::*;
@@ -45,9 +46,9 @@ fn volume(mesh: &Mesh) -> f32 {
     corners(mesh).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
 }
 
-fn cut<D: bevy_fuwafuwa::Dimension>(app: &mut bevy_app::App, ball: Entity, blade: &Blade) {
+fn cut<D: Dimension>(app: &mut bevy_app::App, ball: Entity, blade: &Blade<D>) {
     let mut world = app.world_mut().resource_mut::<SoftWorld<D>>();
-    let id = world.body_of(ball).expect("the body has entered");
+    let id = world.soft_body_of(ball).expect("the body has entered");
     assert!(
         world
             .engine_mut()
@@ -107,7 +108,7 @@ fn disc_mesh_updated_after_cuts_equals_a_rebuilt_mesh() {
         ([0.13, -0.9], [0.1, 0.9]),
         ([-0.9, -0.6], [0.9, 0.5]),
     ] {
-        cut::<Dim2>(&mut app, ball, &Blade::segment(from, to));
+        cut::<Dim2>(&mut app, ball, &Blade::segment(from.into(), to.into()));
         run(&mut app, 3);
         let now = mesh(&app, ball).clone();
         let [followed, anew] = [now.clone(), of_new_reader(&mut app, ball)].map(|mesh| {
@@ -148,7 +149,7 @@ fn first_first([a, b, c]: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
 fn of_new_reader(app: &mut bevy_app::App, ball: Entity) -> Mesh {
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
     world.pause();
-    let id = world.body_of(ball).expect("the body has entered");
+    let id = world.soft_body_of(ball).expect("the body has entered");
     // Access for changes makes all readers of the body rebuild.
     assert!(world.engine_mut().soft_body_mut(id).is_ok());
     app.update();

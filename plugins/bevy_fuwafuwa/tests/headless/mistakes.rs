@@ -7,7 +7,7 @@ use bevy_ecs::bundle::Bundle;
 use bevy_ecs::entity::Entity;
 use bevy_fuwafuwa::asset::Voxels;
 use bevy_fuwafuwa::component::WithoutMesh;
-use bevy_fuwafuwa::fuwafuwa::{Error, WorldConfig};
+use bevy_fuwafuwa::fuwafuwa::{Error, Vec2, WorldConfig, glam};
 use bevy_fuwafuwa::prelude::*;
 use bevy_fuwafuwa::{Problem, Rejected};
 use bevy_math::{Quat, Vec3};
@@ -25,10 +25,10 @@ fn rejected(bad: impl Bundle) -> String {
     let Some(Rejected(problem)) = app.world().get::<Rejected>(bad).cloned() else {
         panic!("the invalid body was accepted");
     };
-    let told = messages::<Rejection>(&app);
+    let rejections = messages::<Rejection>(&app);
     let texts = |own: &Rejection| (own.entity, own.problem.to_string());
     assert_eq!(
-        told.iter().map(texts).collect::<Vec<_>>(),
+        rejections.iter().map(texts).collect::<Vec<_>>(),
         [(Some(bad), problem.to_string())]
     );
     run(&mut app, 10);
@@ -88,8 +88,7 @@ fn invalid_body_is_rejected_with_a_reason() {
     let nowhere = Handle::<Voxels<Dim2>>::default();
     check(rejected(SoftBody2d::asset(nowhere)), "asset is not loading");
     check(rejected(RigidBody2d::kinematic_ball(-1.0)), "radius");
-    let (centre, half) = ([0.0; 3], [1.0; 3]);
-    let free = |mass| RigidBody2d::dynamic(Shape::Box { centre, half }, mass);
+    let free = |mass| RigidBody2d::dynamic(Shape::cuboid(Vec2::ONE), mass);
     check(rejected(free(f32::NAN)), "mass");
     check(rejected(free(0.0)), "mass");
     check(
@@ -118,15 +117,14 @@ fn invalid_body_is_rejected_with_a_reason() {
 #[test]
 fn rigid_body_is_unchanged_after_an_invalid_request() {
     let mut app = app::<Dim2>();
-    app.insert_resource(SoftSettings(WorldConfig {
-        gravity: [0.0; 3],
+    app.insert_resource(SoftWorldConfig::<Dim2>(WorldConfig {
+        gravity: Vec2::ZERO,
         ..WorldConfig::default()
     }));
-    let (centre, radius) = ([0.0; 3], 0.2);
-    let free = RigidBody2d::dynamic(Shape::Ball { centre, radius }, 1.0);
+    let free = RigidBody2d::dynamic(Shape::ball(0.2), 1.0);
     let free = (free, at(1.0, 2.0), Velocity::default());
     let free = app.world_mut().spawn(free).id();
-    let wall = RigidBody2d::fixed(Shape::Ball { centre, radius });
+    let wall = RigidBody2d::fixed(Shape::ball(0.2));
     let wall = app.world_mut().spawn((wall, at(9.0, 0.0))).id();
     app.update();
     let before = transform(&app, free);
@@ -137,8 +135,11 @@ fn rigid_body_is_unchanged_after_an_invalid_request() {
             Bad::Push(push) => app.world_mut().entity_mut(entity).insert(push),
         };
         app.update();
-        let told = messages::<Rejection>(app);
-        let texts: Vec<String> = told.iter().map(|own| own.problem.to_string()).collect();
+        let rejections = messages::<Rejection>(app);
+        let texts: Vec<String> = rejections
+            .iter()
+            .map(|own| own.problem.to_string())
+            .collect();
         assert!(texts.len() == 1 && texts[0].contains(expect), "{texts:?}");
         assert_eq!(transform(app, free), before);
         app.update();
@@ -158,12 +159,12 @@ fn rigid_body_is_unchanged_after_an_invalid_request() {
     check(&mut app, free, Bad::Velocity(velocity), "angular");
     let push = ExternalImpulse {
         impulse: Vec3::X,
-        at: Vec3::INFINITY,
+        point: Vec3::INFINITY,
         radius: 0.0,
     };
     check(&mut app, free, Bad::Push(push), "point");
     let push = ExternalImpulse {
-        at: Vec3::ZERO,
+        point: Vec3::ZERO,
         ..push
     };
     check(&mut app, wall, Bad::Push(push), "dynamic");
@@ -182,8 +183,8 @@ enum Bad {
 #[test]
 fn soft_body_is_unchanged_after_an_invalid_request() {
     let mut app = app::<Dim3>();
-    app.insert_resource(SoftSettings(WorldConfig {
-        gravity: [0.0; 3],
+    app.insert_resource(SoftWorldConfig::<Dim3>(WorldConfig {
+        gravity: glam::Vec3::ZERO,
         ..WorldConfig::default()
     }));
     let ball = (SoftBody3d::ball(8, 1.0), at(0.0, 2.0), Velocity::default());
@@ -193,8 +194,11 @@ fn soft_body_is_unchanged_after_an_invalid_request() {
     let hash_without = world::<Dim3>(&app).engine().hash();
     let check = |app: &mut App, expect: &str| {
         app.update();
-        let told = messages::<Rejection>(app);
-        let texts: Vec<String> = told.iter().map(|own| own.problem.to_string()).collect();
+        let rejections = messages::<Rejection>(app);
+        let texts: Vec<String> = rejections
+            .iter()
+            .map(|own| own.problem.to_string())
+            .collect();
         assert!(texts.len() == 1 && texts[0].contains(expect), "{texts:?}");
         assert_eq!(transform(app, ball), before);
     };
@@ -213,7 +217,7 @@ fn soft_body_is_unchanged_after_an_invalid_request() {
     check(&mut app, "linear");
     let push = ExternalImpulse {
         impulse: Vec3::NAN,
-        at: Vec3::ZERO,
+        point: Vec3::ZERO,
         radius: 1.0,
     };
     app.world_mut().entity_mut(ball).insert(push);
@@ -222,7 +226,10 @@ fn soft_body_is_unchanged_after_an_invalid_request() {
         .entity_mut(ball)
         .insert(GravityScale(f32::NAN));
     check(&mut app, "gravity_scale");
-    app.world_mut().resource_mut::<SoftSettings>().0.drag = -1.0;
+    app.world_mut()
+        .resource_mut::<SoftWorldConfig<Dim3>>()
+        .0
+        .drag = -1.0;
     check(&mut app, "drag");
     app.update();
     assert_eq!(
@@ -244,9 +251,9 @@ fn entity_with_soft_and_rigid_body_is_rejected() {
     let both = app.world_mut().spawn(both).id();
     app.update();
     let own = world::<Dim2>(&app);
-    assert!(own.body_of(both).is_some() && own.rigid_of(both).is_none());
+    assert!(own.soft_body_of(both).is_some() && own.rigid_body_of(both).is_none());
     let twice = app.world().get::<Rejected>(both);
-    assert_eq!(twice, Some(&Rejected(Problem::Twice)));
+    assert_eq!(twice, Some(&Rejected(Problem::DuplicateBody)));
 }
 
 #[test]
@@ -261,7 +268,7 @@ fn rejected_body_enters_after_correction() {
         .insert(SoftBody2d::ball(4, 1.0));
     app.update();
     assert_eq!(app.world().get::<Rejected>(ball), None);
-    assert!(world::<Dim2>(&app).body_of(ball).is_some());
+    assert!(world::<Dim2>(&app).soft_body_of(ball).is_some());
 }
 
 #[test]
@@ -270,7 +277,7 @@ fn bodies_have_no_mesh_without_assets_or_with_without_mesh() {
     app.add_plugins(FuwafuwaPlugin2d::default().in_schedule(Update));
     let ball = app.world_mut().spawn(SoftBody2d::ball(8, 1.0)).id();
     app.update();
-    assert!(world::<Dim2>(&app).body_of(ball).is_some());
+    assert!(world::<Dim2>(&app).soft_body_of(ball).is_some());
     assert!(!app.world().entity(ball).contains::<bevy_mesh::Mesh2d>());
 
     let mut app = super::app::<Dim2>();
@@ -279,6 +286,6 @@ fn bodies_have_no_mesh_without_assets_or_with_without_mesh() {
         .spawn((SoftBody2d::ball(8, 1.0), WithoutMesh))
         .id();
     app.update();
-    assert!(world::<Dim2>(&app).body_of(ball).is_some());
+    assert!(world::<Dim2>(&app).soft_body_of(ball).is_some());
     assert!(!app.world().entity(ball).contains::<bevy_mesh::Mesh2d>());
 }

@@ -2,6 +2,8 @@
 
 use super::{app, at, body, messages, run, transform, world};
 use bevy_fuwafuwa::component::RigidBodyId;
+use bevy_fuwafuwa::convert::{bevy_vector, engine_vector};
+use bevy_fuwafuwa::fuwafuwa::WorldConfig;
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
@@ -22,10 +24,10 @@ fn ball_falls_touches_the_floor_and_sleeps() {
     let (mut has_touched, mut has_slept) = (false, false);
     for _ in 0..600 {
         app.update();
-        let touches = messages::<Touched>(&app);
+        let touches = messages::<ContactForce>(&app);
         has_touched |= touches
             .iter()
-            .any(|touch| (touch.body, touch.with) == (ball, Some(floor)));
+            .any(|touch| (touch.body, touch.other) == (ball, Some(floor)));
         has_slept |= messages::<FellAsleep>(&app)
             .iter()
             .any(|own| own.body == ball);
@@ -41,9 +43,9 @@ fn ball_falls_touches_the_floor_and_sleeps() {
 #[test]
 fn transform_places_a_new_body_and_then_follows_it() {
     let mut app = app::<Dim3>();
-    app.insert_resource(SoftSettings(bevy_fuwafuwa::fuwafuwa::WorldConfig {
-        gravity: [0.0; 3],
-        ..Default::default()
+    app.insert_resource(SoftWorldConfig::<Dim3>(WorldConfig {
+        gravity: engine_vector(Vec3::ZERO),
+        ..WorldConfig::default()
     }));
     let grid = VoxelGrid::<Dim3>::from_fn([8, 4, 4], 0.25, |_| 1);
     let pose = Transform {
@@ -99,7 +101,7 @@ fn transform_places_a_new_body_and_then_follows_it() {
         "{now:?}"
     );
     assert!(now.rotation.angle_between(there.rotation) < 0.05, "{now:?}");
-    let centre = Vec3::from(body::<Dim3>(&app, stick).centre_of_mass());
+    let centre = bevy_vector(body::<Dim3>(&app, stick).centre_of_mass());
     assert!(centre.distance(there.translation) < 0.02, "{centre}");
 }
 
@@ -108,7 +110,7 @@ fn impulse_is_applied_once_and_negative_gravity_scale_lifts() {
     let mut app = app::<Dim2>();
     let push = ExternalImpulse {
         impulse: Vec3::new(20.0, 0.0, 0.0),
-        at: Vec3::ZERO,
+        point: Vec3::ZERO,
         radius: 2.0,
     };
     let soft = (
@@ -130,7 +132,7 @@ fn impulse_is_applied_once_and_negative_gravity_scale_lifts() {
 }
 
 #[test]
-fn coupled_body_reaches_its_goal_and_fixed_body_its_transform() {
+fn coupled_body_reaches_its_target_and_fixed_body_its_transform() {
     let mut app = app::<Dim3>();
     let hand = app
         .world_mut()
@@ -143,32 +145,22 @@ fn coupled_body_reaches_its_goal_and_fixed_body_its_transform() {
         TargetPosition(Vec3::new(3.0, 6.0, 0.0)),
     );
     let coupled = app.world_mut().spawn(coupled).id();
-    let half = [0.5; 3];
-    let table = RigidBody3d::fixed(Shape::Box {
-        centre: [0.0; 3],
-        half,
-    });
+    let table = RigidBody3d::fixed(Shape::cuboid([0.5; 3].into()));
     let table = app.world_mut().spawn((table, at(9.0, 0.0))).id();
     app.update();
     app.world_mut().entity_mut(hand).insert(at(0.5, 5.0));
     app.world_mut().entity_mut(table).insert(at(9.0, 2.0));
     run(&mut app, 60);
     let place = |entity| {
-        let id = world::<Dim3>(&app)
-            .rigid_of(entity)
-            .expect("the body has entered");
+        let world = world::<Dim3>(&app);
+        let id = world.rigid_body_of(entity).expect("the body has entered");
         assert_eq!(
             app.world().get::<RigidBodyId>(entity),
             Some(&RigidBodyId(id))
         );
-        assert_eq!(world::<Dim3>(&app).entity_of_rigid(id), Some(entity));
-        let [low, high] = world::<Dim3>(app)
-            .engine()
-            .rigid_body(id)
-            .unwrap()
-            .shape()
-            .bounds();
-        0.5 * (Vec3::from(low) + Vec3::from(high))
+        assert_eq!(world.entity_of_rigid_body(id), Some(entity));
+        let [low, high] = world.engine().rigid_body(id).unwrap().shape().bounds();
+        0.5 * bevy_vector(low + high)
     };
     assert!(place(hand).distance(Vec3::new(0.5, 5.0, 0.0)) < 1e-4);
     assert!(place(coupled).distance(Vec3::new(3.0, 6.0, 0.0)) < 1e-2);

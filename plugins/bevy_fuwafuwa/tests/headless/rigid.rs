@@ -6,8 +6,11 @@ use bevy_ecs::bundle::Bundle;
 use bevy_ecs::entity::Entity;
 use bevy_fuwafuwa::Dimension;
 use bevy_fuwafuwa::component::RigidBodyId;
+use bevy_fuwafuwa::convert::{
+    bevy_rotation, bevy_vector, bevy_velocity, engine_rotation, engine_vector,
+};
 use bevy_fuwafuwa::fuwafuwa::{
-    RigidBody as EngineBody, Rotation, SoftBody as Body, World, WorldConfig,
+    DimVector, RigidBody as EngineBody, RigidBodyRef, SoftBody as Body, World, WorldConfig, glam,
 };
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::{Quat, Vec3};
@@ -15,23 +18,19 @@ use bevy_transform::components::Transform;
 
 const SIDE: f32 = 0.4;
 
-fn block() -> Shape {
-    let half = [0.5 * SIDE; 3];
-    let centre = [0.0; 3];
-    Shape::Box { centre, half }
+fn block<D: Dimension>() -> Shape<D> {
+    Shape::cuboid(D::Vector::splat(0.5 * SIDE))
 }
 
-fn slab() -> Shape {
-    let half = [2.0, 0.1, 2.0];
-    let centre = [0.0; 3];
-    Shape::Box { centre, half }
+fn slab<D: Dimension>() -> Shape<D> {
+    Shape::cuboid(engine_vector(Vec3::new(2.0, 0.1, 2.0)))
 }
 
 /// Returns an app without gravity.
 fn weightless<D: Dimension>() -> App {
     let mut app = app::<D>();
-    app.insert_resource(SoftSettings(WorldConfig {
-        gravity: [0.0; 3],
+    app.insert_resource(SoftWorldConfig::<D>(WorldConfig {
+        gravity: D::Vector::ZERO,
         ..WorldConfig::default()
     }));
     app
@@ -41,10 +40,10 @@ fn spawn(app: &mut App, bundle: impl Bundle) -> Entity {
     app.world_mut().spawn(bundle).id()
 }
 
-fn rigid<D: Dimension>(app: &App, entity: Entity) -> &EngineBody {
+fn rigid<D: Dimension>(app: &App, entity: Entity) -> RigidBodyRef<'_, D> {
     let world = world::<D>(app);
-    let id = world.rigid_of(entity).expect("the body has entered");
-    assert_eq!(world.entity_of_rigid(id), Some(entity));
+    let id = world.rigid_body_of(entity).expect("the body has entered");
+    assert_eq!(world.entity_of_rigid_body(id), Some(entity));
     world.engine().rigid_body(id).unwrap()
 }
 
@@ -68,12 +67,11 @@ fn falls_and_sleeps<D: Dimension>() {
         ticks += 1;
         let own = rigid::<D>(&app, fallen);
         let now = transform(&app, fallen);
-        assert_eq!(now.translation, Vec3::from(own.position()));
-        assert_eq!(now.rotation.to_array(), own.rotation().quaternion());
+        assert_eq!(now.translation, bevy_vector(own.position()));
+        assert_eq!(now.rotation, bevy_rotation(own.rotation()));
         assert_eq!(now.scale, Vec3::splat(2.0));
         let velocity = app.world().get::<Velocity>(fallen).copied();
-        let [linear, angular] = [own.velocity(), own.angular_velocity()].map(Vec3::from);
-        assert_eq!(velocity, Some(Velocity { linear, angular }));
+        assert_eq!(velocity, Some(bevy_velocity(own.velocity())));
         sleeps.extend(messages::<FellAsleep>(&app));
     }
     assert!(rigid::<D>(&app, fallen).is_asleep());
@@ -107,11 +105,11 @@ fn soft_ball_contact_names_the_entity_of_the_box() {
     for _ in 0..60 {
         app.update();
         heights.push(transform(&app, on_top).translation.y);
-        let told = messages::<Touched>(&app);
-        let of_both = told
+        touches += messages::<ContactForce>(&app)
             .iter()
-            .filter(|own| (own.body, own.with) == (ball, Some(on_top)));
-        touches += of_both.filter(|own| own.impulse > 0.0).count();
+            .filter(|contact| (contact.body, contact.other) == (ball, Some(on_top)))
+            .filter(|contact| contact.impulse > 0.0)
+            .count();
     }
     assert!(touches > 5, "{touches}");
     assert!(
@@ -125,11 +123,8 @@ fn fixed_body_is_rotated_by_its_transform() {
     let mut app = app::<Dim3>();
     let slope = at(0.0, 0.0).with_rotation(Quat::from_rotation_z(-0.5));
     let slope = spawn(&mut app, (RigidBody3d::fixed(slab()), slope));
-    let ball = Shape::Ball {
-        centre: [0.0; 3],
-        radius: 0.2,
-    };
-    let ball = spawn(&mut app, (RigidBody3d::dynamic(ball, 1.0), at(0.0, 0.4)));
+    let ball = RigidBody3d::dynamic(Shape::ball(0.2), 1.0);
+    let ball = spawn(&mut app, (ball, at(0.0, 0.4)));
     run(&mut app, 30);
     let down = transform(&app, ball).translation;
     assert!(
@@ -165,7 +160,7 @@ fn rotating_kinematic_table_carries_a_box() {
         app.update();
     }
     let expect = Quat::from_rotation_y(0.6);
-    let own = Quat::from_array(rigid::<Dim3>(&app, table).rotation().quaternion());
+    let own = bevy_rotation(rigid::<Dim3>(&app, table).rotation());
     assert!(own.angle_between(expect) < 1e-4, "{own}");
     let now = transform(&app, rider);
     assert!(now.rotation.angle_between(expect) < 0.05, "{now:?}");
@@ -177,7 +172,7 @@ fn rotating_kinematic_table_carries_a_box() {
 fn written_transform_moves_the_body_at_once() {
     let mut app = weightless::<Dim3>();
     // The middle of the box is 1 m from the origin of the entity, about which the transform rotates it.
-    let shape = block().translated([1.0, 0.0, 0.0]);
+    let shape = block().translated(glam::Vec3::X);
     let spin = Velocity {
         linear: Vec3::Y,
         angular: Vec3::Z,
@@ -185,7 +180,7 @@ fn written_transform_moves_the_body_at_once() {
     let thrown = (RigidBody3d::dynamic(shape, 1.0), at(0.0, 0.0), spin);
     let thrown = spawn(&mut app, thrown);
     run(&mut app, 60);
-    let middle = |app: &App| Vec3::from(rigid::<Dim3>(app, thrown).position());
+    let middle = |app: &App| bevy_vector(rigid::<Dim3>(app, thrown).position());
     assert!(middle(&app).distance(Vec3::new(1.0, 1.0, 0.0)) < 0.01);
     let now = transform(&app, thrown);
     assert!(now.rotation.angle_between(Quat::from_rotation_z(1.0)) < 0.01);
@@ -196,7 +191,7 @@ fn written_transform_moves_the_body_at_once() {
     app.update();
     let expect = Vec3::new(-5.0, 1.0 + 1.0 / 60.0, 0.0);
     assert!(middle(&app).distance(expect) < 1e-3, "{}", middle(&app));
-    let velocity = Vec3::from(rigid::<Dim3>(&app, thrown).velocity());
+    let velocity = bevy_vector(rigid::<Dim3>(&app, thrown).velocity().linear);
     assert!(velocity.distance(Vec3::Y) < 1e-3, "{velocity}");
 
     // Writing the transform also moves a coupled body at once. Then the body is pulled back to its target.
@@ -251,14 +246,14 @@ fn sleeping_box_accepts_impulse_and_velocity() {
     assert!(rigid::<Dim3>(&app, resting).is_asleep());
     let push = ExternalImpulse {
         impulse: Vec3::new(2.0, 0.0, 0.0),
-        at: Vec3::new(0.0, 0.1, 0.0),
+        point: Vec3::new(0.0, 0.1, 0.0),
         radius: 0.0,
     };
     app.world_mut().entity_mut(resting).insert(push);
     app.update();
     assert!(app.world().get::<ExternalImpulse>(resting).is_none());
     let (body, piece) = (resting, None);
-    assert_eq!(messages::<Woke>(&app), [Woke { body, piece }]);
+    assert_eq!(messages::<WokeUp>(&app), [WokeUp { body, piece }]);
     let velocity = app.world().get::<Velocity>(resting).copied();
     let Velocity { linear, angular } = velocity.unwrap_or_default();
     assert!(linear.distance(Vec3::X) < 1e-3 && angular.z < -0.5);
@@ -268,7 +263,7 @@ fn sleeping_box_accepts_impulse_and_velocity() {
     };
     app.world_mut().entity_mut(resting).insert(thrown);
     app.update();
-    let linear = Vec3::from(rigid::<Dim3>(&app, resting).velocity());
+    let linear = bevy_vector(rigid::<Dim3>(&app, resting).velocity().linear);
     assert!(linear.distance(Vec3::NEG_Y) < 1e-3, "{linear}");
 }
 
@@ -284,7 +279,7 @@ fn box_falls_when_its_support_is_despawned() {
     assert!(rigid::<Dim2>(&app, high).is_asleep());
     app.world_mut().despawn(low);
     run(&mut app, 60);
-    assert_eq!(world::<Dim2>(&app).rigid_of(low), None);
+    assert_eq!(world::<Dim2>(&app).rigid_body_of(low), None);
     let height = transform(&app, high).translation.y;
     assert!((height - 0.5 * SIDE).abs() < 0.01, "{height}");
     app.world_mut().entity_mut(floor).remove::<RigidBody2d>();
@@ -325,24 +320,20 @@ fn hash_of_app<D: Dimension>() -> u64 {
 }
 
 fn hash_of_engine<D: Dimension>() -> Result<u64, Box<dyn std::error::Error>> {
-    let rotation = |own: Quat| Rotation::from_quaternion(own.to_array());
     let mut world = World::<D>::new(WorldConfig::default())?;
-    let table = world.add_rigid_body(EngineBody::new(slab(), [0.0; 3], MotionType::Kinematic))?;
+    let table = world.add_rigid_body(EngineBody::kinematic(slab()))?;
     for n in 0..4 {
-        let shape = block().translated([0.0, 0.5 + n as f32, 0.0]);
-        let turned = rotation(Quat::from_rotation_z(askew(n)));
-        let mut own = EngineBody::dynamic(shape, 2.0).rotated(turned);
-        own.restitution = 0.3;
+        let own = EngineBody::dynamic(block(), 2.0)
+            .at(D::Vector::Y * (0.5 + n as f32))
+            .rotated(engine_rotation(Quat::from_rotation_z(askew(n))))
+            .with_restitution(0.3);
         world.add_rigid_body(own)?;
     }
     let body = Body::new(VoxelGrid::ball(8, 1.0)?, &[SoftMaterial::default()])?;
-    let middle = if D::N == 2 { 0.0 } else { -0.5 };
-    world.add_soft_body(
-        body.translated([-0.5, -0.5, middle])
-            .translated([1.0, 0.7, 0.0]),
-    );
+    let body = body.translated(D::Vector::splat(-0.5));
+    world.add_soft_body(body.translated(engine_vector(Vec3::new(1.0, 0.7, 0.0))));
     for tick in 0..TICKS {
-        world.set_target_rotation(table, rotation(table_at(tick)))?;
+        world.set_target_rotation(table, engine_rotation(table_at(tick)))?;
         world.step();
     }
     Ok(world.hash())

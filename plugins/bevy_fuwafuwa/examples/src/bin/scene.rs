@@ -12,6 +12,7 @@ use bevy::prelude::*;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
 use bevy::render::view::screenshot::{Screenshot, save_to_disk};
 use bevy::time::TimeUpdateStrategy;
+use bevy_fuwafuwa::convert::engine_vector;
 use bevy_fuwafuwa::prelude::*;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -108,10 +109,11 @@ fn furnish(
     };
     let table = Mesh3d(meshes.add(Plane3d::default().mesh().size(40.0, 40.0)));
     commands.spawn((RigidBody3d::floor(), table, matt([0xea, 0xe5, 0xda])));
-    let (from, to, radius) = ([0.0, -0.45, 0.0], [0.0, 0.45, 0.0], 0.12);
+    let (half, radius) = (0.45 * Vec3::Y, 0.12);
+    let log = Shape::capsule(engine_vector(-half), engine_vector(half), radius);
     let lying = Quat::from_rotation_y(0.9) * Quat::from_rotation_z(std::f32::consts::FRAC_PI_2);
     commands.spawn((
-        RigidBody3d::fixed(Shape::Capsule { from, to, radius }),
+        RigidBody3d::fixed(log),
         Mesh3d(meshes.add(Capsule3d::new(radius, 0.9))),
         matt([0xe6, 0xb8, 0x77]),
         Transform::from_xyz(1.0, 0.12, 0.75).with_rotation(lying),
@@ -218,13 +220,13 @@ fn stack_boxes(
         ..default()
     }));
     let cuboid = Mesh3d(meshes.add(Cuboid::from_length(BOX)));
-    let (centre, half) = ([0.0; 3], [0.5 * BOX; 3]);
+    let shape = Shape::cuboid(engine_vector(Vec3::splat(0.5 * BOX)));
     for n in 0..3 {
         let n = n as f32;
         let place = TOWER + Vec3::new(0.05 * n, (n + 0.5) * BOX, 0.0);
         let turned = Quat::from_rotation_y(0.3 + 0.25 * n);
         commands.spawn((
-            RigidBody3d::dynamic(Shape::Box { centre, half }, 0.6),
+            RigidBody3d::dynamic(shape, 0.6),
             cuboid.clone(),
             wood.clone(),
             Transform::from_translation(place).with_rotation(turned),
@@ -296,8 +298,8 @@ fn move_hand(
     hand.translation = HAND - Vec3::Y * (HAND.y - HAND_RADIUS - 0.02) * down;
 }
 
-fn report(mut parted: MessageReader<PieceDetached>, mut rejections: MessageReader<Rejection>) {
-    let count = parted.read().count();
+fn report(mut detached: MessageReader<PieceDetached>, mut rejections: MessageReader<Rejection>) {
+    let count = detached.read().count();
     if count > 0 {
         info!("{count} pieces came off");
     }
