@@ -3,6 +3,7 @@
 use crate::error::{Error, require};
 use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::hash::hash_state;
+use glam::Vec3;
 
 /// Default tick length [s]; see [`WorldConfig::tick`].
 pub const DEFAULT_TICK: f32 = 1.0 / 60.0;
@@ -46,7 +47,7 @@ hash_state! { [D: Dim] struct WorldConfig<D> { gravity, drag, max_substeps, tick
 impl<D: Dim> Default for WorldConfig<D> {
     fn default() -> Self {
         Self {
-            gravity: D::Vector::Y * -9.81,
+            gravity: D::Vector::from_vec3(Vec3::new(0.0, -9.81, 0.0)),
             drag: 0.0,
             max_substeps: 64,
             tick: DEFAULT_TICK,
