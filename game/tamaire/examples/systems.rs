@@ -6,8 +6,7 @@
 //! ```
 
 use app_shell::Pads;
-use fuwafuwa::DEFAULT_TICK;
-use fuwafuwa::Dim2;
+use fuwafuwa::{DEFAULT_TICK, Dim2};
 use std::time::{Duration, Instant};
 use tamaire::game::Game;
 use tamaire::platform::{Files, Sound};
@@ -41,7 +40,7 @@ fn round() -> Vec<Duration> {
     let mut rest = Vec::new();
     while game.bout.won.is_none() && rest.len() < 40 * 60 {
         game.controls.devices.pointer = game.bout.round().ask(&mut bot).goal(0);
-        let whole = time(|| game.update(TICK));
+        let whole = time(|| game.update(DEFAULT_TICK));
         // The same tick without the game.
         let played = game.bout.round().frames();
         let Some(&frame) = played.get(beside.frames().len()) else {

@@ -35,7 +35,7 @@ mod tests {
             let (mut session, clock) = (attract(number), Clock::of_machine());
             assert_eq!(session.round().level().hash(), classic.hash());
             while !session.is_over() {
-                session.advance(TICK, &clock, |_| InputFrame::default(), |_| {});
+                session.advance(DEFAULT_TICK, &clock, |_| InputFrame::default(), |_| {});
                 assert!(session.take_complaint().is_none(), "{route:?}");
             }
             let outcome = session.round().progress().outcome.unwrap();

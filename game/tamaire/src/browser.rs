@@ -8,6 +8,7 @@ use crate::game::Game;
 use crate::platform::{Files, Host, Sound, set_host};
 use app_shell::Pads;
 use eframe::{WebOptions, WebRunner};
+use fuwafuwa::Vec3;
 use labels::Labels;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -61,11 +62,7 @@ impl Running {
             None => [[f32::NAN; 2]; 3],
             Some(view) => {
                 let at = |place| <[f32; 2]>::from(view.to_screen(place) * app.zoom);
-                [
-                    at(round.hands()[0].position()),
-                    at([0.0; 3]),
-                    at([1.0, 0.0, 0.0]),
-                ]
+                [at(round.hands()[0].position), at(Vec3::ZERO), at(Vec3::X)]
             }
         };
         Some(Report {

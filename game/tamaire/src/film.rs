@@ -179,9 +179,9 @@ async fn pass(
             let frame = played.frames().get(tick - 1).copied();
             round.step(frame.unwrap_or_default());
             effects.process_tick(&round, &mut camera, false);
-            effects.advance(TICK);
-            let hand = round.hands()[0].position();
-            camera.follow(hand, round.level().arena(), TICK, false);
+            effects.advance(DEFAULT_TICK);
+            let hand = round.hands()[0].position;
+            camera.follow(hand, round.level().arena(), DEFAULT_TICK, false);
         }
         if !is_shown(tick) {
             continue;
@@ -194,7 +194,7 @@ async fn pass(
                     round: &round,
                     effects: &effects,
                     camera: &camera,
-                    time: tick as f64 * f64::from(TICK),
+                    time: tick as f64 * f64::from(DEFAULT_TICK),
                     caption,
                 };
                 let drawn = opened.shoot(&moment, print.size).await;
@@ -228,7 +228,7 @@ fn pixels_of(drawn: &[u8], [width, height]: [u32; 2]) -> Result<Pixmap, PaintErr
 /// Returns the caption of a picture: time and progress of the round.
 fn caption(round: &AnyRound, is_last: bool) -> String {
     let progress = round.progress();
-    let seconds = round.frames().len() as f32 * TICK;
+    let seconds = round.frames().len() as f32 * DEFAULT_TICK;
     match (progress.outcome, progress.pieces) {
         (Some(outcome), _) => {
             format!("{} in {:.1} s!", by_route(outcome.route), outcome.seconds())

@@ -430,8 +430,8 @@ impl Game {
             (Screen::Play, Action::Step) => {
                 self.bout.stepping = true;
                 self.bout.session.forget_time();
-                self.pass_ticks(TICK);
-                self.bout.effects.advance(TICK);
+                self.pass_ticks(DEFAULT_TICK);
+                self.bout.effects.advance(DEFAULT_TICK);
             }
             (Screen::Play, Action::Join) if self.takes_two() => self.controls.players.join(seat),
             _ => {}

@@ -1,8 +1,8 @@
 //! Haptic feedback of the last tick, for each player: contact forces and tears.
 
 use force_feedback::Stop;
-use fuwafuwa::DEFAULT_TICK;
-use fuwafuwa::{Event, RigidBody, Vector};
+use fuwafuwa::{DEFAULT_TICK, Vec3};
+use tamaire_play::round::Hand;
 use tamaire_play::{AnyRound, PLAYERS};
 
 /// Time without feedback at the start of a round [s], because a restart moves the hands abruptly.
@@ -13,30 +13,22 @@ const TEAR: f32 = 0.2;
 const MORE: f32 = 0.05;
 
 /// Contact force on a hand, averaged over the substeps of the last tick [N].
-pub fn contact(hand: &RigidBody) -> Vector {
-    let all = hand.reactions();
-    let mean = |axis: usize| {
-        let sum: f32 = all.iter().map(|reaction| reaction.contact[axis]).sum();
-        sum / all.len().max(1) as f32
-    };
-    [0, 1, 2].map(mean)
+pub fn contact(hand: &Hand) -> Vec3 {
+    let contacts = hand.reactions.iter().map(|reaction| reaction.contact);
+    contacts.sum::<Vec3>() / hand.reactions.len().max(1) as f32
 }
 
 /// Strength of the feedback of tears in the last tick for each player, 0 to 1. Each tear counts for the
 /// nearest hand that touches a body.
 pub fn tears(round: &AnyRound) -> [f32; PLAYERS] {
     let mut counts = [0u32; PLAYERS];
-    for event in round.events() {
-        let Event::NodeSplit { point, .. } = *event else {
-            continue;
-        };
-        let away = |hand: &RigidBody| {
-            let square = |axis: usize| (hand.position()[axis] - point[axis]).powi(2);
-            square(0) + square(1) + square(2)
-        };
-        let hands = round.hands().into_iter().take(PLAYERS).enumerate();
-        let hands = hands.filter(|(_, hand)| contact(hand) != [0.0; 3]);
-        let nearest = hands.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)));
+    let mut hands = round.hands();
+    hands.truncate(PLAYERS);
+    for point in round.split_points() {
+        let away = |hand: &Hand| hand.position.distance_squared(point);
+        let touching = hands.iter().enumerate();
+        let touching = touching.filter(|(_, hand)| contact(hand) != Vec3::ZERO);
+        let nearest = touching.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)));
         if let Some((player, _)) = nearest {
             counts[player] += 1;
         }
@@ -52,5 +44,5 @@ pub fn silence(round: &AnyRound) -> Option<Stop> {
     if round.progress().outcome.is_some() {
         return Some(Stop::Won);
     }
-    ((round.ticks() as f32) < BEGUN / TICK).then_some(Stop::Reset)
+    ((round.ticks() as f32) < BEGUN / DEFAULT_TICK).then_some(Stop::Reset)
 }

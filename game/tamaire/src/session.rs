@@ -95,7 +95,7 @@ impl Session {
     /// Estimated speed that this machine can reach, as a share of real time, at most 1. The value is 1 if
     /// computing a tick takes no longer than the tick lasts.
     pub fn bearable(&self) -> f64 {
-        (f64::from(TICK) / self.pace.cost()).min(1.0)
+        (f64::from(DEFAULT_TICK) / self.pace.cost()).min(1.0)
     }
 
     /// Discards elapsed time that was not simulated yet, so that the round does not catch up.

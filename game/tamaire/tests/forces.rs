@@ -3,7 +3,7 @@
 
 use app_shell::Pads;
 use force_feedback::{Ability, Calibration, Output, Recording, Stop};
-use fuwafuwa::DEFAULT_TICK;
+use fuwafuwa::{DEFAULT_TICK, Vec3};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 use sticks::{Device, DeviceId, DeviceInfo, Snapshot};
@@ -55,7 +55,7 @@ impl Table {
     fn frame(&mut self) {
         std::thread::sleep(Duration::from_millis(4));
         self.game.hear_sticks();
-        self.game.update(TICK);
+        self.game.update(DEFAULT_TICK);
     }
 
     /// Runs frames until a condition holds.
@@ -251,10 +251,8 @@ fn force_ends_on_win() {
         let round = table.game.bout.round();
         let [low, high] = round.level().arena();
         let goal = round.ask(&mut bot).goal(0).expect("the bot has a target");
-        let [x, y] = [0, 1].map(|axis| {
-            let middle = 0.5 * (low[axis] + high[axis]);
-            (goal[axis] - middle) / (0.5 * (high[axis] - low[axis]))
-        });
+        let middle = 0.5 * (low + high);
+        let Vec3 { x, y, .. } = (goal - middle) / (0.5 * (high - low));
         // Compensates the dead zone.
         let lean = x.hypot(y).max(1e-3);
         let share = (0.15 + 0.8 * lean) / lean;
@@ -380,7 +378,7 @@ fn unused_pad_stops_rumbling_while_hand_presses() {
     table.until("left alone", |table| table.silent(0) == Some(Stop::Idle));
     table.until_at_rest();
     let hand = &table.game.bout.round().hands()[0];
-    let [x, y, _] = tamaire::haptics::contact(hand);
+    let Vec3 { x, y, .. } = tamaire::haptics::contact(hand);
     assert!(x.hypot(y) > 10.0, "{x} {y}");
     table.hears_nothing(0);
 }
@@ -474,7 +472,7 @@ fn virtual_pad_plays_rumbles_and_unplugs() {
                     game.act(action, InputSource::Stick(device));
                 }
             }
-            game.update(TICK);
+            game.update(DEFAULT_TICK);
         }
     };
     assert!(pad.axis(0, 1.0));

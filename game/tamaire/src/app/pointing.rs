@@ -3,7 +3,7 @@
 use super::fingers::Fingers;
 use crate::game::{Game, Screen};
 use egui::{Context, PointerButton, Pos2};
-use fuwafuwa::Dim3;
+use fuwafuwa::{Dim3, MotionType, Vec3};
 use tamaire_play::{AnyRound, Round};
 
 /// Height by which scrolling the wheel raises the hand [m/point].
@@ -53,17 +53,16 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
                 .controls
                 .players
                 .wanted(0)
-                .unwrap_or(round.hands()[0].target_position());
-            let [x, _, z] = view.to_world(at, floor(in_space));
-            [x, goal[1], z]
+                .unwrap_or(round.hands()[0].target);
+            view.to_world(at, floor(in_space)).with_y(goal.y)
         }
     };
-    game.controls.devices.pointer = Some(position.map(in_steps));
+    game.controls.devices.pointer = Some(in_steps(position));
 }
 
-/// Rounds a coordinate to a multiple of 1/1024 m [m]. This is finer than a pixel, and halves the length of
-/// the coordinate in a link.
-fn in_steps(at: f32) -> f32 {
+/// Rounds coordinates to multiples of 1/1024 m [m]. This is finer than a pixel, and halves the length of the
+/// coordinates in a link.
+fn in_steps(at: Vec3) -> Vec3 {
     const STEPS: f32 = 1024.0;
     (at * STEPS).round() / STEPS
 }
@@ -71,17 +70,18 @@ fn in_steps(at: f32) -> f32 {
 /// Height of the surface below the start of the first hand [m]: the floor or a shelf. Does not change when
 /// the hand passes an edge, so that nothing jumps there.
 fn floor(round: &Round<Dim3>) -> f32 {
-    let lowest = round.level().arena()[0][1];
+    let lowest = round.level().arena()[0].y;
+    let bodies = round.world().rigid_bodies();
+    let fixed = bodies.filter(|(_, body)| body.motion_type() == MotionType::Fixed);
     let mut at = round.start(0);
-    while at[1] > lowest {
+    while at.y > lowest {
         // Nothing is closer than `free`, so stepping down by it is safe (sphere tracing).
-        let obstacles = round.world().fixed_rigid_bodies();
-        let free = obstacles.map(|obstacle| obstacle.shape().distance(at).0);
+        let free = fixed.clone().map(|(_, body)| body.shape().distance(at).0);
         let free = free.fold(f32::MAX, f32::min);
         if free < NEAR {
-            return at[1];
+            return at.y;
         }
-        at[1] -= free;
+        at.y -= free;
     }
     lowest
 }

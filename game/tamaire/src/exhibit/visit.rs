@@ -36,7 +36,7 @@ impl Visit {
     pub fn round(&mut self, config: &Config, ended: &EndedRound, end: RoundEnd) -> Round {
         self.rounds += 1;
         let (progress, won) = (&ended.progress, ended.progress.outcome);
-        let seconds = ended.replay.ticks() as f32 * TICK;
+        let seconds = ended.replay.ticks() as f32 * DEFAULT_TICK;
         Round {
             id: Id::random(),
             visit: self.id,

@@ -1,6 +1,6 @@
 //! Pictures of a round without a GPU: draws the elements of its bodies, as the engine's command line does.
 
-use fuwafuwa::inspect::vector::{plus, scaled};
+use fuwafuwa::Vec3;
 use fuwafuwa_painter::solid::{Camera, Scene3d};
 use fuwafuwa_painter::{PaintError, Painter, PaperTransform, Pixmap, worlds};
 use tamaire_play::AnyRound;
@@ -13,24 +13,24 @@ pub fn picture(
 ) -> Result<Pixmap, PaintError> {
     let mut painter = Painter::new(width, height);
     let [low, high] = round.level().arena();
-    let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
-    let [across, up] = [0, 1].map(|axis| high[axis] - low[axis]);
+    let middle = (low + high) * 0.5;
+    let room = high - low;
     match round {
         AnyRound::Plane(round) => {
             let size = [width, height].map(|side| side as f32);
-            let unit = (size[0] / across).min(size[1] / up);
+            let unit = (size[0] / room.x).min(size[1] / room.y);
             let origin = [
-                0.5 * size[0] - unit * middle[0],
-                0.5 * size[1] + unit * middle[1],
+                0.5 * size[0] - unit * middle.x,
+                0.5 * size[1] + unit * middle.y,
             ];
             let frame = PaperTransform { origin, unit };
             worlds::plane(&mut painter, frame, round.world(), worlds::plane_elements);
         }
         AnyRound::Space(round) => {
             let mut solid = Scene3d::new(Camera {
-                eye: plus(middle, scaled([0.0, 1.1, 1.5], across)),
+                eye: middle + Vec3::new(0.0, 1.1, 1.5) * room.x,
                 target: middle,
-                across: 1.1 * across,
+                across: 1.1 * room.x,
             });
             worlds::space(&mut solid, round.world(), |solid, body| {
                 worlds::space_elements(solid, body, |_| true);

@@ -2,7 +2,9 @@
 
 use super::{Game, Screen};
 use app_shell::View;
-use fuwafuwa::{Contact, Dim, Event, MotionType, ObjectRef, PieceId, SoftBodyHandle, Vector};
+use fuwafuwa::{
+    Contact, Dim, DimVector, Event, MotionType, ObjectRef, PieceId, SoftBodyHandle, Vec3,
+};
 use std::collections::BTreeMap;
 use tamaire_play::rules::CRUMB;
 use tamaire_play::{AnyRound, Round};
@@ -17,13 +19,13 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
     let hold = round.level().game().hold.max(0.1);
     let mut presses = [Press::default(); 2];
     for (press, hand) in presses.iter_mut().zip(round.hands()) {
-        let all = hand.reactions().iter();
-        let force = all.map(|reaction| length(reaction.contact));
-        let count = hand.reactions().len().max(1) as f32;
+        let all = hand.reactions.iter();
+        let force = all.map(|reaction| reaction.contact.length());
+        let count = hand.reactions.len().max(1) as f32;
         *press = Press {
             force: force.sum::<f32>() / count,
-            slip: length(hand.velocity()),
-            x: across(game.bout.view, hand.position()),
+            slip: hand.velocity.length(),
+            x: across(game.bout.view, hand.position),
         };
     }
     Soundscape {
@@ -49,23 +51,26 @@ pub(super) fn cues(round: &AnyRound, view: Option<View>) -> Vec<Cue> {
 }
 
 fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
-    let bodies = round.world().soft_bodies();
-    let rigids = round.world().rigid_bodies();
+    let world = round.world();
     // Masses of the pieces of each body [kg], computed when first used.
     let mut masses: BTreeMap<SoftBodyHandle, Vec<f32>> = BTreeMap::new();
     let mut mass_of = |body: SoftBodyHandle, piece: PieceId| {
-        let views = || bodies[body].piece_views().into_iter();
+        let views = || world[body].piece_views().into_iter();
         let masses = masses.entry(body);
         let masses = masses.or_insert_with(|| views().map(|view| view.mass).collect());
         masses[piece.index()]
     };
+    let is_fixed = |rigid| {
+        let rigid = world.rigid_body(rigid);
+        rigid.is_ok_and(|rigid| rigid.motion_type() == MotionType::Fixed)
+    };
     let mut cues = Vec::new();
     let (mut torn, mut at) = (0.0, 0.0);
-    for event in round.world().events() {
+    for event in world.events() {
         match *event {
             Event::NodeSplit { point, energy, .. } => {
                 torn += energy.max(0.01);
-                at = across(view, point);
+                at = across(view, point.to_vec3());
             }
             Event::ContactForce(Contact {
                 pair:
@@ -76,8 +81,8 @@ fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
                 point,
                 impulse,
                 ..
-            }) if rigids[rigid].motion_type == MotionType::Fixed => {
-                let x = across(view, point);
+            }) if is_fixed(rigid) => {
+                let x = across(view, point.to_vec3());
                 let mass = mass_of(body, piece);
                 let speed = impulse / mass;
                 if mass > CRUMB * round.progress().mass {
@@ -99,12 +104,8 @@ fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
 }
 
 /// Horizontal position on the screen, from -1 (left) to 1 (right). 0 before the first frame.
-fn across(view: Option<View>, at: Vector) -> f32 {
+fn across(view: Option<View>, at: Vec3) -> f32 {
     view.map_or(0.0, |view| view.across(at))
-}
-
-fn length(v: Vector) -> f32 {
-    v.iter().map(|k| k * k).sum::<f32>().sqrt()
 }
 
 #[cfg(test)]

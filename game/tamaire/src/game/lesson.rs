@@ -1,6 +1,6 @@
 //! Tutorial: hints for players who are new to levels in space.
 
-use fuwafuwa::Vector;
+use fuwafuwa::Vec3;
 
 /// Movement of the hand along the floor after which the hint about it counts as tried [m].
 const MOVED: f32 = 0.2;
@@ -34,9 +34,9 @@ impl Tutorial {
 
     /// Updates the progress after a frame of `seconds` [s]. `gone` is the offset of the player's goal from
     /// the start of the hand [m], `turned` the rotation of the camera from its start [rad].
-    pub(super) fn see(&mut self, gone: Vector, turned: f32, seconds: f32) {
-        let along = (gone[0] * gone[0] + gone[2] * gone[2]).sqrt();
-        let now = [along > MOVED, gone[1].abs() > RAISED, turned > TURNED];
+    pub(super) fn see(&mut self, gone: Vec3, turned: f32, seconds: f32) {
+        let along = gone.with_y(0.0).length();
+        let now = [along > MOVED, gone.y.abs() > RAISED, turned > TURNED];
         for (tried, now) in self.tried.iter_mut().zip(now) {
             *tried |= now;
         }
@@ -51,15 +51,15 @@ mod tests {
     #[test]
     fn hint_disappears_when_tried_or_after_its_time() {
         let mut lesson = Tutorial::default();
-        lesson.see([0.1, 0.05, 0.1], 0.1, 1.0);
+        lesson.see(Vec3::new(0.1, 0.05, 0.1), 0.1, 1.0);
         assert_eq!(lesson.missing(), [true; 3]);
-        lesson.see([0.0, -0.2, 0.0], 0.0, 1.0);
+        lesson.see(Vec3::new(0.0, -0.2, 0.0), 0.0, 1.0);
         assert_eq!(lesson.missing(), [true, false, true]);
-        lesson.see([0.2, 0.0, 0.2], 0.0, LONG);
+        lesson.see(Vec3::new(0.2, 0.0, 0.2), 0.0, LONG);
         assert_eq!(lesson.missing(), [false; 3], "the hint time is over");
         lesson.begin();
         assert_eq!(lesson.missing(), [false, false, true]);
-        lesson.see([0.0; 3], 0.3, 1.0);
+        lesson.see(Vec3::ZERO, 0.3, 1.0);
         assert_eq!(lesson.missing(), [false; 3]);
     }
 }

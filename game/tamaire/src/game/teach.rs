@@ -2,7 +2,7 @@
 
 use super::{Game, Screen};
 use crate::input::{Action, InputMethod};
-use fuwafuwa::inspect::vector::minus;
+use fuwafuwa::Vec3;
 
 impl Game {
     /// Returns the hints about moving, raising and turning, and whether each is still to be shown. They are
@@ -37,8 +37,8 @@ impl Game {
         }
         let round = self.bout.round();
         let gone = match self.controls.players.wanted(0) {
-            Some(wanted) => minus(wanted, round.start(0)),
-            None => [0.0; 3],
+            Some(wanted) => wanted - round.start(0),
+            None => Vec3::ZERO,
         };
         let [right, up] = self.bout.camera.orbit_angles();
         self.bout

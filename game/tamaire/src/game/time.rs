@@ -3,6 +3,7 @@
 use super::{Controls, CurrentRound, Game, Screen, heard};
 use crate::haptics;
 use crate::input::InputMapping;
+use fuwafuwa::{DEFAULT_TICK, Vec3};
 use tamaire_play::{InputFrame, PLAYERS};
 use tamaire_sound::Cue;
 
@@ -55,7 +56,7 @@ impl Game {
             }
         }
         let arena = self.bout.round().level().arena();
-        let hand = self.bout.round().hands()[0].position();
+        let hand = self.bout.round().hands()[0].position;
         self.bout
             .camera
             .follow(hand, arena, seconds, self.settings.reduced_motion);
@@ -104,12 +105,13 @@ impl Game {
                     return InputFrame::default();
                 }
                 // A player who joins now begins at the start position of the level.
-                let mut hands = round.level().scene().hand_targets(0);
-                for (goal, hand) in hands.iter_mut().zip(round.hands()) {
-                    *goal = hand.target_position();
+                let targets = round.level().scene().hand_targets(0);
+                let mut targets: Vec<Vec3> = targets.into_iter().map(Vec3::from).collect();
+                for (target, hand) in targets.iter_mut().zip(round.hands()) {
+                    *target = hand.target;
                 }
-                let tick = fuwafuwa::DEFAULT_TICK;
-                let frame = players.frame(devices, &settings.bindings, &manner, &hands, tick);
+                let bindings = &settings.bindings;
+                let frame = players.frame(devices, bindings, &manner, &targets, DEFAULT_TICK);
                 // Scrolling counts once, however many ticks are played in this frame.
                 devices.lift = 0.0;
                 frame

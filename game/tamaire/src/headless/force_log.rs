@@ -5,8 +5,7 @@ use crate::haptics;
 use crate::settings::Settings;
 use app_shell::direction::to_user;
 use force_feedback::{Ability, Command, ForceController, Output, State, StickMode, Watchdog};
-use fuwafuwa::DEFAULT_TICK;
-use fuwafuwa::Vector;
+use fuwafuwa::{DEFAULT_TICK, Vec3};
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
@@ -77,18 +76,18 @@ impl ForceLog {
 
     fn collect(&mut self, round: &AnyRound) -> io::Result<()> {
         let hands = round.hands();
-        let tick = f64::from(TICK);
+        let tick = f64::from(DEFAULT_TICK);
         let end = round.ticks() as f64 * tick;
-        let count = hands.iter().map(|hand| hand.reactions().len()).max();
+        let count = hands.iter().map(|hand| hand.reactions.len()).max();
         let count = count.unwrap_or(0);
         for substep in 0..count {
             let seconds = end - tick * (1.0 - (substep + 1) as f64 / count as f64);
             for (player, hand) in hands.iter().enumerate() {
-                let Some(reaction) = hand.reactions().get(substep) else {
+                let Some(reaction) = hand.reactions.get(substep) else {
                     continue;
                 };
-                let contact = numbers(&reaction.contact);
-                let coupling = numbers(&reaction.coupling);
+                let contact = numbers(reaction.contact.as_ref());
+                let coupling = numbers(reaction.coupling.as_ref());
                 writeln!(
                     self.rows,
                     "{seconds:.6},substep,{player},{contact},{coupling},,,,,,,,,"
@@ -101,7 +100,7 @@ impl ForceLog {
         }
         let before = self.aims;
         for (aim, hand) in self.aims.iter_mut().zip(&hands) {
-            *aim = Some(aim_at(hand.target_position(), round));
+            *aim = Some(aim_at(hand.target, round));
         }
         loop {
             let seconds = self.updates as f64 * PERIOD;
@@ -158,7 +157,7 @@ impl ForceLog {
             Output::Force(both) => both,
             Output::Rumble { low, high } => [low, high],
         };
-        let (contact, aim) = (numbers(&contact), numbers(&aim));
+        let (contact, aim) = (numbers(contact.as_ref()), numbers(&aim));
         let felt = numbers(&stick.newtons);
         let (pushed, shaken) = (numbers(&both(stick.output)), numbers(&both(pad.output)));
         let silent = stick.silent.map_or(String::new(), |why| why.to_string());
@@ -184,13 +183,11 @@ fn turn(round: &AnyRound) -> Option<f32> {
 }
 
 /// Returns the stick position (right, up; -1 to 1) for a position in the arena [m].
-fn aim_at(position: Vector, round: &AnyRound) -> [f32; 2] {
+fn aim_at(position: Vec3, round: &AnyRound) -> [f32; 2] {
     let [low, high] = round.level().arena();
-    let share = [0, 1, 2].map(|axis: usize| {
-        let middle = 0.5 * (low[axis] + high[axis]);
-        let half = 0.5 * (high[axis] - low[axis]);
-        (position[axis] - middle) / half.max(1e-3)
-    });
+    let middle = 0.5 * (low + high);
+    let half = 0.5 * (high - low);
+    let share = (position - middle) / half.max(Vec3::splat(1e-3));
     to_user(turn(round), share)
 }
 
@@ -211,7 +208,10 @@ mod tests {
             log.note(&round);
             // Read before `finish`, as if the run were killed now.
             let table = std::fs::read_to_string(&path).unwrap();
-            let last = format!("\n{:.6},substep,0,", f64::from(tick) * f64::from(TICK));
+            let last = format!(
+                "\n{:.6},substep,0,",
+                f64::from(tick) * f64::from(DEFAULT_TICK)
+            );
             assert!(table.contains(&last), "tick {tick}: {table}");
             let commas = COLUMNS.matches(',').count();
             let is_whole = |line: &str| line.matches(',').count() == commas;

@@ -2,7 +2,7 @@
 
 use super::{Action, Bindings, ScanAction};
 use egui::{Key, Vec2};
-use fuwafuwa::Vector;
+use fuwafuwa::Vec3;
 use std::collections::BTreeSet;
 use sticks::{Device, DeviceId, Snapshot};
 
@@ -28,10 +28,10 @@ pub enum InputSource {
 #[derive(Clone, Debug, Default)]
 pub struct Devices {
     /// Position of the mouse or finger in the world [m], if it moved or is down.
-    pub pointer: Option<Vector>,
+    pub pointer: Option<Vec3>,
     /// Position of the second finger in the world [m]. It moves the hand of a second player who joined by
     /// touch.
-    pub second: Option<Vector>,
+    pub second: Option<Vec3>,
     /// Actions of the screen buttons held by fingers.
     pub pressed: BTreeSet<Action>,
     /// Action that the player has selected with one switch.

@@ -2,7 +2,7 @@
 
 use app_shell::direction::to_world;
 use egui::Vec2;
-use fuwafuwa::Vector;
+use fuwafuwa::Vec3;
 
 /// Interpretation of a player's input.
 #[derive(Copy, Clone, Debug)]
@@ -12,7 +12,7 @@ pub struct InputMapping {
     /// Whether the position of a stick sets the position of the hand, instead of its speed.
     pub stick_sets_position: bool,
     /// Low and high corner of the box to which goals are limited [m].
-    pub arena: [Vector; 2],
+    pub arena: [Vec3; 2],
     /// In space: rotation of the camera to the right [rad]. "Away from the player" then means along the
     /// floor, away from the camera. `None` in the plane.
     pub turn: Option<f32>,
@@ -20,25 +20,24 @@ pub struct InputMapping {
 
 impl InputMapping {
     /// Clamps a position to the arena. In the plane the third axis is ignored.
-    pub(super) fn clamp_to_arena(&self, mut position: Vector) -> Vector {
+    pub(super) fn clamp_to_arena(&self, mut position: Vec3) -> Vec3 {
         let [low, high] = self.arena;
         let axes = if self.turn.is_some() { 3 } else { 2 };
         for axis in 0..axes {
+            // Not `Vec3::clamp`, which turns NaN into a position.
             position[axis] = position[axis].clamp(low[axis], high[axis]);
         }
         position
     }
 
     /// Converts a stick position to a position in the arena [m]. In space the height is `height` [m].
-    pub(super) fn position_of(&self, stick: [f32; 2], height: f32) -> Vector {
+    pub(super) fn position_of(&self, stick: [f32; 2], height: f32) -> Vec3 {
         let [low, high] = self.arena;
         let way = to_world(self.turn, Vec2::from(stick));
-        let mut position = [0, 1, 2].map(|axis: usize| {
-            0.5 * (low[axis] + high[axis]) + 0.5 * way[axis] * (high[axis] - low[axis])
-        });
-        if self.turn.is_some() {
-            position[1] = height;
+        let position = 0.5 * (low + high) + 0.5 * way * (high - low);
+        match self.turn {
+            Some(_) => position.with_y(height),
+            None => position,
         }
-        position
     }
 }

@@ -4,8 +4,7 @@ use super::devices::{DEAD, RIM, direction, held_on, opposed, rise_of};
 use super::{Action, Bindings, Devices, InputMapping, InputSource, ScanAction};
 use app_shell::direction::to_world;
 use egui::Vec2;
-use fuwafuwa::Vector;
-use fuwafuwa::inspect::vector::plus;
+use fuwafuwa::Vec3;
 use std::collections::BTreeMap;
 use sticks::DeviceId;
 use tamaire_play::{InputFrame, PLAYERS};
@@ -27,7 +26,7 @@ pub struct Players {
     second: Option<InputSource>,
     /// Goal that each player requests [m]. The hand and its target position may be far from this goal, for
     /// example behind an obstacle.
-    goals: [Option<Vector>; PLAYERS],
+    goals: [Option<Vec3>; PLAYERS],
     /// Stick positions in the last tick. A stick that sets a position does so only when it moves, so that
     /// mouse and keys work while it is still.
     leans: BTreeMap<DeviceId, [f32; 2]>,
@@ -41,7 +40,7 @@ pub struct Players {
 #[derive(Default)]
 struct Asked {
     /// Requested position [m].
-    position: Option<Vector>,
+    position: Option<Vec3>,
     /// Requested direction: to the right, and up (in space: away from the camera). Length 1 = full speed.
     lean: Vec2,
     /// Requested speed of raising the hand, from -1 to 1 (full speed).
@@ -71,7 +70,7 @@ impl Players {
     }
 
     /// Position that a player wants [m]. `None` before the first input.
-    pub fn wanted(&self, player: usize) -> Option<Vector> {
+    pub fn wanted(&self, player: usize) -> Option<Vec3> {
         self.goals[player]
     }
 
@@ -103,7 +102,7 @@ impl Players {
         devices: &Devices,
         bindings: &Bindings,
         manner: &InputMapping,
-        hands: &[Vector],
+        hands: &[Vec3],
         seconds: f32,
     ) -> InputFrame {
         if let Some(InputSource::Stick(id)) = self.second
@@ -138,28 +137,28 @@ impl Players {
         devices: &Devices,
         bindings: &Bindings,
         manner: &InputMapping,
-        here: Vector,
+        here: Vec3,
         seconds: f32,
     ) {
         self.rested[player] += seconds;
         let wanted = self.goals[player].unwrap_or(here);
-        let asked = self.asked(player, devices, bindings, manner, wanted[1]);
+        let asked = self.asked(player, devices, bindings, manner, wanted.y);
         let mut goal = asked.position.or(self.goals[player]);
         if asked.lean != Vec2::ZERO {
             // Starts from the hand's current target position instead of the requested goal, so that pushing
             // against an obstacle does not accumulate.
             let lean = asked.lean * (1.0 / asked.lean.length().max(1.0));
             let step = to_world(manner.turn, lean * PACE * manner.sensitivity * seconds);
-            let mut position = manner.clamp_to_arena(plus(here, step));
+            let mut position = manner.clamp_to_arena(here + step);
             if manner.turn.is_some() {
-                position[1] = wanted[1];
+                position.y = wanted.y;
             }
             goal = Some(position);
         }
         let lift = asked.lift.clamp(-1.0, 1.0) * RISE * manner.sensitivity * seconds;
         if lift != 0.0 || asked.wheel != 0.0 {
             let mut position = goal.unwrap_or(here);
-            position[1] = raised(position[1], here[1], asked.wheel, lift);
+            position.y = raised(position.y, here.y, asked.wheel, lift);
             goal = Some(manner.clamp_to_arena(position));
         }
         self.goals[player] = goal;

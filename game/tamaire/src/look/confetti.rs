@@ -2,7 +2,7 @@
 
 use app_shell::View;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
-use fuwafuwa::Vector;
+use fuwafuwa::Vec3;
 
 /// Number of confetti pieces.
 const COUNT: usize = 140;
@@ -26,7 +26,7 @@ pub struct Confetti {
 /// One piece of confetti.
 #[derive(Copy, Clone, Debug)]
 struct ConfettiPiece {
-    at: Vector,
+    at: Vec3,
     velocity: Vec2,
     /// Rotation and angular velocity [rad, rad/s].
     angle: f32,
@@ -37,16 +37,16 @@ struct ConfettiPiece {
 
 impl Confetti {
     /// Throws confetti up from the two lower corners of `room` [m].
-    pub fn rain(&mut self, room: [Vector; 2], random: &mut fastrand::Rng) {
+    pub fn rain(&mut self, room: [Vec3; 2], random: &mut fastrand::Rng) {
         let mut any = |low: f32, high: f32| low + (high - low) * random.f32();
         let [low, high] = room;
-        let height = high[1] - low[1];
+        let height = high.y - low.y;
         self.pieces = (0..COUNT)
             .map(|index| {
                 let side = if index % 2 == 0 { 1.0 } else { -1.0 };
-                let from = if side > 0.0 { low[0] } else { high[0] };
+                let from = if side > 0.0 { low.x } else { high.x };
                 ConfettiPiece {
-                    at: [from, low[1] + 0.2 * height, 0.0],
+                    at: Vec3::new(from, low.y + 0.2 * height, 0.0),
                     velocity: vec2(side * any(0.6, 6.4), any(1.6, 4.6)) * 0.5 * height,
                     angle: any(0.0, 6.0),
                     angular_velocity: any(-9.0, 9.0),
@@ -64,8 +64,8 @@ impl Confetti {
             paper.velocity = (paper.velocity + vec2(0.0, FALL)) * slower - vec2(0.0, FALL);
             // Sideways sway of falling paper.
             let sway = 0.25 * (1.5 * paper.angle).sin();
-            paper.at[0] += (paper.velocity.x + sway) * seconds;
-            paper.at[1] += paper.velocity.y * seconds;
+            paper.at.x += (paper.velocity.x + sway) * seconds;
+            paper.at.y += paper.velocity.y * seconds;
             paper.angle += paper.angular_velocity * seconds;
             paper.left -= seconds;
         }
@@ -124,10 +124,10 @@ mod tests {
     #[test]
     fn confetti_rises_falls_and_disappears() {
         let mut confetti = Confetti::default();
-        let room = [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]];
+        let room = [Vec3::new(-1.6, -1.0, 0.0), Vec3::new(1.6, 1.0, 0.0)];
         confetti.rain(room, &mut fastrand::Rng::with_seed(1));
         let height = |confetti: &Confetti| {
-            let sum: f32 = confetti.pieces.iter().map(|paper| paper.at[1]).sum();
+            let sum: f32 = confetti.pieces.iter().map(|paper| paper.at.y).sum();
             sum / confetti.pieces.len() as f32
         };
         let start = height(&confetti);

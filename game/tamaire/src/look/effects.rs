@@ -3,8 +3,7 @@
 use super::confetti::Confetti;
 use super::feelings::{Feeling, MoodInput};
 use app_shell::CameraRig;
-use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
-use fuwafuwa::{Contact, Dim, Event, NodeId, ObjectRef, RigidBody, SoftBody, Vector};
+use fuwafuwa::{Contact, Dim, DimVector, Event, NodeId, ObjectRef, Shape, SoftBody, Vec3};
 use tamaire_play::{AnyRound, Round};
 
 /// Maximum number of particles.
@@ -31,9 +30,9 @@ const LIES: f32 = 0.25;
 #[derive(Copy, Clone, Debug)]
 pub struct DustParticle {
     /// Position [m].
-    pub at: Vector,
+    pub at: Vec3,
     /// Velocity [m/s].
-    velocity: Vector,
+    velocity: Vec3,
     /// Remaining lifetime [s].
     left: f32,
     /// Radius [m].
@@ -48,7 +47,7 @@ impl DustParticle {
     /// Bounces off a wall whose normal is along `axis`.
     fn bounce(&mut self, axis: usize) {
         let across = -BOUNCE[0] * self.velocity[axis];
-        self.velocity = scaled(self.velocity, BOUNCE[1]);
+        self.velocity *= BOUNCE[1];
         self.velocity[axis] = if across.abs() < LIES { 0.0 } else { across };
     }
 
@@ -72,15 +71,15 @@ pub struct Effects {
     /// Opacity of the start hint, 0 to 1.
     pub hint: f32,
     /// Position of the first hand at the start [m].
-    start: Option<Vector>,
+    start: Option<Vec3>,
     has_moved: bool,
     has_won: bool,
     /// Last tick that was processed.
     tick: u64,
     /// Gravity [m/s²].
-    gravity: Vector,
+    gravity: Vec3,
     /// Lower and upper corner of the arena [m].
-    room: [Vector; 2],
+    room: [Vec3; 2],
     /// Number of axes along which particles move: 2 or 3.
     axes: usize,
     random: fastrand::Rng,
@@ -98,8 +97,8 @@ impl Default for Effects {
             has_moved: false,
             has_won: false,
             tick: 0,
-            gravity: [0.0; 3],
-            room: [[-1.0e9; 3], [1.0e9; 3]],
+            gravity: Vec3::ZERO,
+            room: [Vec3::splat(-1.0e9), Vec3::splat(1.0e9)],
             axes: 2,
             random: fastrand::Rng::with_seed(1),
         }
@@ -117,13 +116,13 @@ impl Effects {
 
     fn look_at<D: Dim>(&mut self, round: &Round<D>, camera: &mut CameraRig, still: bool) {
         let world = round.world();
-        if world.ticks() <= self.tick || self.feelings.len() != world.soft_bodies().count() {
+        let bodies = world.soft_bodies();
+        if world.ticks() <= self.tick || self.feelings.len() != bodies.clone().count() {
             // A new round has begun.
-            let bodies = world.soft_bodies().map(|(_, body)| body);
             let eye = (D::N == 3).then(|| camera.eye(round.level().arena()));
             *self = Self {
-                feelings: bodies.map(|body| Feeling::new(body, eye)).collect(),
-                gravity: round.level().scene().gravity,
+                feelings: bodies.map(|(_, body)| Feeling::new(body, eye)).collect(),
+                gravity: Vec3::from(round.level().scene().gravity),
                 room: round.level().arena(),
                 axes: D::N,
                 ..Self::default()
@@ -133,7 +132,11 @@ impl Effects {
         let mut pressed = 0.0;
         let mut material = 1;
         let mut looked_up = 0;
-        let mut torn = vec![false; world.soft_bodies().count()];
+        let follows_target = |rigid| {
+            let rigid = world.rigid_body(rigid);
+            rigid.is_ok_and(|rigid| rigid.follows_target())
+        };
+        let mut torn = vec![false; self.feelings.len()];
         for event in world.events() {
             match *event {
                 Event::NodeSplit {
@@ -149,13 +152,13 @@ impl Effects {
                         material = material_at(&world[body], point);
                     }
                     let count = if still { 1 } else { DUST };
-                    (0..count).for_each(|_| self.spawn_dust(point, material));
+                    (0..count).for_each(|_| self.spawn_dust(point.to_vec3(), material));
                 }
                 Event::ContactForce(Contact {
                     pair: [ObjectRef::Piece { .. }, ObjectRef::RigidBody(rigid)],
                     impulse,
                     ..
-                }) if world.rigid_body(rigid).unwrap().follows_target() => {
+                }) if follows_target(rigid) => {
                     pressed += impulse / fuwafuwa::DEFAULT_TICK;
                 }
                 _ => {}
@@ -167,8 +170,9 @@ impl Effects {
         let progress = round.progress();
         let is_in = progress.outcome.is_some() || progress.held > 0.2;
         let bodies = self.feelings.iter_mut().zip(world.soft_bodies()).zip(torn);
-        for ((feeling, body), torn) in bodies {
-            let in_basket = |region: &fuwafuwa::Shape| region.distance(feeling.middle).0 < 0.0;
+        for ((feeling, (_, body)), torn) in bodies {
+            let middle = D::Vector::from_vec3(feeling.middle);
+            let in_basket = |region: &Shape<D>| region.distance(middle).0 < 0.0;
             let fate = MoodInput {
                 eye: (D::N == 3).then(|| camera.eye(self.room)),
                 tick: world.ticks(),
@@ -212,11 +216,12 @@ impl Effects {
     }
 
     fn watch_hand<D: Dim>(&mut self, round: &Round<D>) {
-        let Some(hand) = round.hands().next().map(RigidBody::position) else {
+        let Some(hand) = round.hands().next() else {
             return;
         };
+        let hand = hand.position().to_vec3();
         let start = *self.start.get_or_insert(hand);
-        self.has_moved |= length(minus(hand, start)) > MOVED;
+        self.has_moved |= (hand - start).length() > MOVED;
     }
 
     fn celebrate<D: Dim>(&mut self, round: &Round<D>, still: bool) {
@@ -229,19 +234,19 @@ impl Effects {
         }
     }
 
-    fn spawn_dust(&mut self, at: Vector, material: u8) {
+    fn spawn_dust(&mut self, at: Vec3, material: u8) {
         if self.specks.len() >= MOST {
             self.specks.swap_remove(0);
         }
         let mut any = |low: f32, high: f32| low + (high - low) * self.random.f32();
         let depth = if self.axes == 3 { any(-0.9, 0.9) } else { 0.0 };
-        let thrown = scaled(self.gravity, -THROWN);
-        let velocity = [any(-0.9, 0.9), any(-0.9, 0.9), depth];
+        let thrown = self.gravity * -THROWN;
+        let velocity = Vec3::new(any(-0.9, 0.9), any(-0.9, 0.9), depth);
         // The cube of `size` favours small particles.
         let size = any(0.0, 1.0);
         let speck = DustParticle {
             at,
-            velocity: plus(velocity, thrown),
+            velocity: velocity + thrown,
             left: any(1.5, 5.0),
             radius: 0.004 + 0.016 * size * size * size,
             material,
@@ -252,7 +257,7 @@ impl Effects {
 }
 
 /// Returns the material of `body` at its node nearest to `at` [m].
-fn material_at<D: Dim>(body: &SoftBody<D>, at: Vector) -> u8 {
+fn material_at<D: Dim>(body: &SoftBody<D>, at: D::Vector) -> u8 {
     let mesh = body.mesh();
     let square = |id: NodeId| {
         let position = body.node_state(id).0;
@@ -293,7 +298,7 @@ mod tests {
         let mut first = round("classic");
         play(&mut first, &mut effects, InputFrame::default(), 60);
         assert_eq!(effects.hint, 1.0);
-        let away = InputFrame::towards([-1.4, 0.6, 0.0]);
+        let away = InputFrame::towards(Vec3::new(-1.4, 0.6, 0.0));
         play(&mut first, &mut effects, away, 60);
         assert_eq!(effects.hint, 0.0);
         play(
@@ -308,11 +313,11 @@ mod tests {
     #[test]
     fn dust_falls_to_the_floor_and_stays() {
         let mut effects = Effects {
-            gravity: [0.0, -5.0, 0.0],
-            room: [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]],
+            gravity: Vec3::new(0.0, -5.0, 0.0),
+            room: [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, 1.0, 0.0)],
             ..Effects::default()
         };
-        effects.spawn_dust([0.0; 3], 2);
+        effects.spawn_dust(Vec3::ZERO, 2);
         effects.specks[0].left = 9.0;
         (0..300).for_each(|_| effects.advance(0.02));
         let speck = effects.specks[0];
@@ -327,9 +332,10 @@ mod tests {
         let AnyRound::Plane(round) = round("twins") else {
             panic!("the level is 2D")
         };
-        let bodies: Vec<&SoftBody<_>> = round.world().soft_bodies().map(|(_, body)| body).collect();
-        let middle = |body: &SoftBody<_>| body.piece_views()[0].centre;
-        assert_eq!(material_at(bodies[0], middle(bodies[0])), 1);
-        assert_eq!(material_at(bodies[1], middle(bodies[1])), 2);
+        let materials = round.world().soft_bodies().map(|(_, body)| {
+            let middle = body.piece_views()[0].centre;
+            material_at(body, middle.truncate())
+        });
+        assert_eq!(materials.collect::<Vec<_>>(), [1, 2]);
     }
 }

@@ -2,9 +2,9 @@
 //! the skin.
 
 use app_shell::View;
-use egui::{Color32, Painter, Pos2, Shape, Stroke, vec2};
-use fuwafuwa::inspect::vector::{dot, length, minus, plus, scaled};
-use fuwafuwa::{PieceId, Vector};
+use egui::{Color32, Painter, Pos2, Shape, Stroke};
+use fuwafuwa::glam::vec2;
+use fuwafuwa::{PieceId, Vec2, Vec3};
 use fuwafuwa_render::{Mark, Sticker};
 use std::f32::consts::{PI, TAU};
 
@@ -36,21 +36,23 @@ pub struct Face {
     /// Piece that carries the face.
     pub piece: PieceId,
     /// Centre [m]; in 3D inside the body.
-    pub at: Vector,
+    pub at: Vec3,
     /// Axes to the right (as seen), up, and outwards. Their length is the size of the face [m].
-    pub axes: [Vector; 3],
+    pub axes: [Vec3; 3],
     /// Expression.
     pub mood: Mood,
     /// Eyelids, from 0 (open) to 1 (shut).
     pub blink: f32,
     /// Point that the eyes look at [m].
-    pub look_at: Vector,
+    pub look_at: Vec3,
 }
 
 impl Face {
     /// Paints the face in a 2D view.
     pub fn paint(&self, painter: &Painter, view: &View) {
-        let [right, up, _] = self.axes.map(|axis| view.scale * vec2(axis[0], -axis[1]));
+        let [right, up, _] = self
+            .axes
+            .map(|axis| view.scale * egui::vec2(axis.x, -axis.y));
         let unit = right.length();
         if unit < LEAST {
             return;
@@ -86,7 +88,11 @@ impl Face {
             self.draw_eye(&mut pen, side);
             let rosy = if self.mood == Mood::Beam { 0.43 } else { 0.27 };
             let blush = with_alpha(rgb(240, 90, 90), rosy);
-            pen.area(ellipse([0.68 * side, -0.12], [0.14, 0.09]), blush, 0.0);
+            pen.area(
+                ellipse(vec2(0.68 * side, -0.12), vec2(0.14, 0.09)),
+                blush,
+                0.0,
+            );
         }
         self.draw_mouth(&mut pen);
         if self.mood == Mood::Wince {
@@ -96,16 +102,16 @@ impl Face {
     }
 
     fn draw_eye(&self, pen: &mut Pen, side: f32) {
-        let eye = [0.42 * side, 0.18];
+        let eye = vec2(0.42 * side, 0.18);
         match self.mood {
             Mood::Wince => {
                 // Eyes squeezed shut, like > <.
                 let (outer, inner) = (0.60 * side, 0.28 * side);
-                pen.stroke(&[[outer, 0.32], [inner, 0.18], [outer, 0.04]]);
+                pen.stroke(&[vec2(outer, 0.32), vec2(inner, 0.18), vec2(outer, 0.04)]);
             }
             // Smiling eyes, like ^ ^.
-            Mood::Beam => pen.arch([eye[0], 0.10], 0.28),
-            Mood::Calm if self.blink > 0.6 => pen.arch([eye[0], 0.20], -0.12),
+            Mood::Beam => pen.arch(eye.with_y(0.10), 0.28),
+            Mood::Calm if self.blink > 0.6 => pen.arch(eye.with_y(0.20), -0.12),
             Mood::Calm | Mood::Shock => {
                 let is_shocked = self.mood == Mood::Shock;
                 let (size, pupil) = if is_shocked {
@@ -114,45 +120,47 @@ impl Face {
                     (0.20, 0.125)
                 };
                 let open = if is_shocked { 1.0 } else { 1.0 - self.blink };
-                let oval = |by: f32| ellipse(eye, [size + by, 1.15 * size * open + by]);
+                let oval = |by: f32| ellipse(eye, vec2(size + by, 1.15 * size * open + by));
                 pen.area(oval(0.5 * pen.line), INK, 0.04);
                 pen.area(oval(-0.5 * pen.line), WHITE, EYEBALL);
                 let gaze = self.gaze(eye);
                 let reach = size - pupil;
-                let at = plus(eye, [reach * gaze[0], reach * gaze[1] * open]);
+                let at = eye + vec2(reach * gaze.x, reach * gaze.y * open);
                 let pupil = pupil * open.max(0.6);
-                pen.on_eyeball(ellipse(at, [pupil; 2]), INK);
-                let glint = plus(at, [-0.35 * pupil, 0.4 * pupil]);
-                pen.on_eyeball(ellipse(glint, [0.35 * pupil; 2]), WHITE);
+                pen.on_eyeball(ellipse(at, Vec2::splat(pupil)), INK);
+                let glint = at + vec2(-0.35 * pupil, 0.4 * pupil);
+                pen.on_eyeball(ellipse(glint, Vec2::splat(0.35 * pupil)), WHITE);
             }
         }
     }
 
     /// Gaze direction of an eye, from −1 to 1 to the right and up.
-    fn gaze(&self, eye: [f32; 2]) -> [f32; 2] {
-        let by = minus(self.look_at, self.at);
+    fn gaze(&self, eye: Vec2) -> Vec2 {
+        let by = self.look_at - self.at;
         let way = self
             .axes
-            .map(|axis| dot(by, axis) / dot(axis, axis).max(1e-12));
-        let way = minus(way, [eye[0], eye[1], 0.0]);
-        let share = 1.0 / (length(way) + 0.8);
-        [share * way[0], share * way[1]]
+            .map(|axis| by.dot(axis) / axis.dot(axis).max(1e-12));
+        let way = Vec3::from(way) - eye.extend(0.0);
+        let share = 1.0 / (way.length() + 0.8);
+        way.truncate() * share
     }
 
     fn draw_mouth(&self, pen: &mut Pen) {
         match self.mood {
-            Mood::Calm => pen.curve([[-0.14, -0.16], [-0.08, -0.28], [0.08, -0.28], [0.14, -0.16]]),
+            Mood::Calm => {
+                pen.curve([[-0.14, -0.16], [-0.08, -0.28], [0.08, -0.28], [0.14, -0.16]]);
+            }
             Mood::Wince => {
                 pen.curve([[-0.20, -0.22], [-0.08, -0.08], [0.08, -0.38], [0.20, -0.22]]);
             }
-            Mood::Shock => pen.area(ellipse([0.0, -0.28], [0.11, 0.16]), INK, 0.0),
+            Mood::Shock => pen.area(ellipse(vec2(0.0, -0.28), vec2(0.11, 0.16)), INK, 0.0),
             Mood::Beam => {
                 let corners = (0..=12).map(|step| {
                     let (sin, cos) = (PI * step as f32 / 12.0).sin_cos();
                     [-0.26 * cos, -0.10 - 0.30 * sin]
                 });
                 pen.area(corners.collect(), INK, 0.0);
-                let tongue = ellipse([0.0, -0.31], [0.12, 0.07]);
+                let tongue = ellipse(vec2(0.0, -0.31), vec2(0.12, 0.07));
                 pen.area(tongue, rgb(240, 110, 110), 0.03);
             }
         }
@@ -191,35 +199,36 @@ impl Pen {
     }
 
     /// Draws a polyline with round ends.
-    fn stroke(&mut self, points: &[[f32; 2]]) {
+    fn stroke(&mut self, points: &[Vec2]) {
         for pair in points.windows(2) {
-            let [dx, dy] = minus(pair[1], pair[0]);
-            let turn = dy.atan2(dx);
+            let along = pair[1] - pair[0];
+            let turn = along.y.atan2(along.x);
             let corners = (0..16).map(|step| {
                 // First half a circle around the end of the line, then half a circle around its beginning.
                 let end = pair[1 - step / 8];
                 let angle = turn - 0.5 * PI + PI * (step - step / 8) as f32 / 7.0;
-                plus(end, scaled([angle.cos(), angle.sin()], 0.5 * self.line))
+                (end + vec2(angle.cos(), angle.sin()) * (0.5 * self.line)).to_array()
             });
             self.area(corners.collect(), INK, 0.0);
         }
     }
 
     /// Draws a cubic Bézier curve.
-    fn curve(&mut self, [a, b, c, d]: [[f32; 2]; 4]) {
+    fn curve(&mut self, points: [[f32; 2]; 4]) {
+        let [a, b, c, d] = points.map(Vec2::from);
         let points = (0..=10).map(|step| {
             let (t, s) = (step as f32 / 10.0, 1.0 - step as f32 / 10.0);
-            let ends = plus(scaled(a, s * s * s), scaled(d, t * t * t));
-            let between = plus(scaled(b, 3.0 * s * s * t), scaled(c, 3.0 * s * t * t));
-            plus(ends, between)
+            let ends = a * (s * s * s) + d * (t * t * t);
+            let between = b * (3.0 * s * s * t) + c * (3.0 * s * t * t);
+            ends + between
         });
         self.stroke(&points.collect::<Vec<_>>());
     }
 
     /// Draws an arch at `at`, for example a shut eye; negative `rise` bends it downwards.
-    fn arch(&mut self, at: [f32; 2], rise: f32) {
+    fn arch(&mut self, at: Vec2, rise: f32) {
         let points = [[-0.17, 0.0], [-0.12, rise], [0.12, rise], [0.17, 0.0]];
-        self.curve(points.map(|by| plus(at, by)));
+        self.curve(points.map(|by| (at + Vec2::from(by)).into()));
     }
 }
 
@@ -235,17 +244,17 @@ fn draw_sweat(pen: &mut Pen) {
             [0.08, 0.02],
         ];
         outline
-            .map(|by| plus([0.80, 0.42], scaled(by, size)))
+            .map(|by| (vec2(0.80, 0.42) + Vec2::from(by) * size).to_array())
             .to_vec()
     };
     pen.area(drop(1.2), rgb(74, 120, 160), 0.02);
     pen.area(drop(1.0), rgb(150, 210, 240), 0.05);
 }
 
-fn ellipse(at: [f32; 2], size: [f32; 2]) -> Vec<[f32; 2]> {
+fn ellipse(at: Vec2, size: Vec2) -> Vec<[f32; 2]> {
     let corners = (0..28).map(|step| {
         let (sin, cos) = (TAU * step as f32 / 28.0).sin_cos();
-        plus(at, [size[0] * cos, size[1] * sin])
+        (at + size * vec2(cos, sin)).to_array()
     });
     corners.collect()
 }

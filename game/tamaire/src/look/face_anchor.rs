@@ -3,14 +3,12 @@
 //! The face sticks to the skin and rolls with it. It shrinks and reappears at a better place if too much of
 //! the skin below it is torn or if it is turned away from the camera.
 
-use fuwafuwa::IndexVec;
-use fuwafuwa::inspect::vector::{cross, dot, length, minus, plus, scaled};
-use fuwafuwa::{Dim, PieceId, Point, SoftBody, Vector};
+use fuwafuwa::{Dim, DimVector, IndexVec, PieceId, Point, SoftBody, Vec3};
 use fuwafuwa_render::anchor_at;
 use std::f32::consts::PI;
 
 /// Axes of an upright face: to the right, up, and towards a camera in front.
-pub(super) const UPRIGHT: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub(super) const UPRIGHT: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
 
 /// Full size of a face, in radii of a ball with the volume of its piece.
 const LARGE: f32 = 0.55;
@@ -64,15 +62,15 @@ const LEAST_REACH: f32 = 3.0;
 #[derive(Clone, Debug, Default)]
 pub struct FaceAnchor {
     /// Centre, inside the body [m].
-    pub at: Vector,
+    pub at: Vec3,
     /// Unit axes: to the right, up, and outwards.
-    pub axes: [Vector; 3],
+    pub axes: [Vec3; 3],
     /// Size [m]; 0 if there is no skin left for it.
     pub size: f32,
     /// Piece that carries the face.
     pub piece: PieceId,
     /// Approximate centre of the piece [m].
-    pub middle: Vector,
+    pub middle: Vec3,
     place: Option<SkinPlace>,
     next: Option<SkinPlace>,
     /// Full size of a face on the piece [m].
@@ -80,7 +78,7 @@ pub struct FaceAnchor {
     /// Progress of reappearing, 0 to 1.
     up: f32,
     /// Angular velocity of the face, smoothed [rad/s].
-    spin: Vector,
+    spin: Vec3,
     /// Time since the face turned away from the camera or tilted [s].
     turned_away_seconds: f32,
     /// Time until the next search for another place [s].
@@ -93,9 +91,9 @@ struct SkinPlace {
     /// Voxel below this place. Its element tells which piece the place belongs to after tears.
     voxel: Point,
     /// Rest position of the centre of the voxel's side [voxels].
-    rest: Vector,
+    rest: Vec3,
     /// Axes of the face, relative to the rotation of the body around the place.
-    worn: [Vector; 3],
+    worn: [Vec3; 3],
     /// Size factor, one of [`FITS`].
     fit: f32,
 }
@@ -103,35 +101,35 @@ struct SkinPlace {
 /// Side of a voxel that is part of the original skin.
 struct SkinFace {
     voxel: Point,
-    rest: Vector,
-    at: Vector,
-    normal: Vector,
+    rest: Vec3,
+    at: Vec3,
+    normal: Vec3,
 }
 
 /// Original skin of a piece as a camera sees it; a face sticks to one place of it.
 struct PieceSkin {
     spots: Vec<SkinFace>,
     piece: PieceId,
-    middle: Vector,
+    middle: Vec3,
     /// Full size of a face on the piece [m].
     full: f32,
     voxel: f32,
-    eye: Option<Vector>,
+    eye: Option<Vec3>,
     /// Angular velocity of the skin [rad/s].
-    spin: Vector,
+    spin: Vec3,
 }
 
 impl FaceAnchor {
     /// Chooses the place that the camera at `eye` sees best.
-    pub fn new<D: Dim>(body: &SoftBody<D>, eye: Option<Vector>) -> Self {
-        let mut perch = Self {
+    pub fn new<D: Dim>(body: &SoftBody<D>, eye: Option<Vec3>) -> Self {
+        let mut anchor = Self {
             axes: UPRIGHT,
             up: 1.0,
             ..Self::default()
         };
-        perch.check_place(body, eye);
-        perch.update_position(body);
-        perch
+        anchor.check_place(body, eye);
+        anchor.update_position(body);
+        anchor
     }
 
     /// Advances by `seconds`. Searches for another place only if `looks` is set, because the search takes
@@ -139,7 +137,7 @@ impl FaceAnchor {
     pub fn follow<D: Dim>(
         &mut self,
         body: &SoftBody<D>,
-        eye: Option<Vector>,
+        eye: Option<Vec3>,
         looks: bool,
         seconds: f32,
     ) {
@@ -160,11 +158,11 @@ impl FaceAnchor {
         }
         let before = self.axes;
         self.update_position(body);
-        let turned = [0, 1, 2].map(|k| cross(before[k], self.axes[k]));
-        let spin = scaled(turned.into_iter().fold([0.0; 3], plus), 0.5 / seconds);
-        self.spin = plus(self.spin, scaled(minus(spin, self.spin), 0.2));
+        let turned = [0, 1, 2].map(|k| before[k].cross(self.axes[k]));
+        let spin = turned.into_iter().sum::<Vec3>() * (0.5 / seconds);
+        self.spin += (spin - self.spin) * 0.2;
         let [facing, upright] = eye.map_or([1.0; 2], |eye| seen(self.at, self.axes, eye));
-        let spin = length(self.spin);
+        let spin = self.spin.length();
         let is_lost = facing < LOST || upright < LOST && spin < CALM;
         self.turned_away_seconds = match is_lost && spin < FAST {
             true => self.turned_away_seconds + seconds,
@@ -187,16 +185,16 @@ impl FaceAnchor {
         };
         self.axes = place
             .worn
-            .map(|axis| (0..3).fold([0.0; 3], |sum, k| plus(sum, scaled(turn[k], axis[k]))));
+            .map(|axis| (0..3).map(|k| turn[k] * axis[k]).sum());
         self.piece = piece;
         let size = place.fit * self.full;
-        self.at = minus(at, scaled(self.axes[2], INSIDE * size));
+        self.at = at - self.axes[2] * (INSIDE * size);
         // The size overshoots while the face reappears.
         self.size = size * self.up * (1.0 + 0.6 * self.up * (1.0 - self.up));
     }
 
     /// Keeps the current place if it is good; otherwise searches for a better one.
-    fn check_place<D: Dim>(&mut self, body: &SoftBody<D>, eye: Option<Vector>) {
+    fn check_place<D: Dim>(&mut self, body: &SoftBody<D>, eye: Option<Vec3>) {
         let masses = masses(body);
         let largest = largest(&masses);
         let own = self.place.and_then(|place| body.mesh().owner(place.voxel));
@@ -212,7 +210,7 @@ impl FaceAnchor {
             let skin = on(own);
             is_small = HEAVIER * masses[own] < masses[largest];
             let inside = INSIDE * place.fit * self.full;
-            let at = plus(self.at, scaled(self.axes[2], inside));
+            let at = self.at + self.axes[2] * inside;
             let size = place.fit * skin.full;
             (self.full, self.middle) = (skin.full, skin.middle);
             let covered = skin.cover(at, self.axes[2], size);
@@ -251,16 +249,16 @@ impl PieceSkin {
         body: &SoftBody<D>,
         piece: PieceId,
         masses: &IndexVec<PieceId, f32>,
-        eye: Option<Vector>,
+        eye: Option<Vec3>,
     ) -> Self {
         let facets = body
             .facets()
             .filter(|facet| facet.piece == piece && !facet.is_torn);
         let spots = facets.filter_map(|facet| {
-            let mean = |of: [Vector; 4]| scaled(of.into_iter().fold([0.0; 3], plus), 0.25);
+            let mean = |of: [Vec3; 4]| of.into_iter().sum::<Vec3>() * 0.25;
             let rest = facet
                 .nodes
-                .map(|id| body.mesh().node(id).at.map(|k| k as f32));
+                .map(|id| Vec3::from(body.mesh().node(id).at.map(|k| k as f32)));
             Some(SkinFace {
                 voxel: body.mesh().element(facet.element)?.cell.at,
                 rest: mean(rest),
@@ -276,41 +274,41 @@ impl PieceSkin {
         );
         let nodes = body.mesh().nodes();
         let nodes = nodes.filter(|&(id, _)| body.pieces().of_node(id) == piece);
-        let middle = nodes.fold([0.0; 3], |sum, (id, _)| {
+        let weighted = nodes.map(|(id, _)| {
             let (at, _, mass) = body.node_state(id);
-            plus(sum, scaled(at, mass / own))
+            at.to_vec3() * (mass / own)
         });
         Self {
             spots: spots.collect(),
             piece,
-            middle,
+            middle: weighted.sum(),
             full: LARGE * voxel * (0.75 * voxels / PI).cbrt(),
             voxel,
             eye,
-            spin: [0.0; 3],
+            spin: Vec3::ZERO,
         }
     }
 
     /// Ideal outward direction of a face at `at`, as a unit vector. Takes the predicted rotation of the body
     /// into account.
-    fn ideal_direction(&self, at: Vector) -> Vector {
+    fn ideal_direction(&self, at: Vec3) -> Vec3 {
         let wish = self.eye.map_or(UPRIGHT[2], |eye| ideal_direction(at, eye));
-        let early = minus(wish, scaled(cross(self.spin, wish), AHEAD));
-        let along = dot(self.spin, wish) / length(self.spin).max(1e-9);
-        let early = plus(early, scaled(self.spin, NEAR_AXIS * along));
-        scaled(early, 1.0 / length(early))
+        let early = wish - self.spin.cross(wish) * AHEAD;
+        let along = self.spin.dot(wish) / self.spin.length().max(1e-9);
+        let early = early + self.spin * (NEAR_AXIS * along);
+        early * (1.0 / early.length())
     }
 
     /// Share of a face of this size that lies on original skin, 0 to 1.
-    fn cover(&self, at: Vector, out: Vector, size: f32) -> f32 {
+    fn cover(&self, at: Vec3, out: Vec3, size: f32) -> f32 {
         let radius = WIDE * size;
         let mut area = 0.0;
         for spot in &self.spots {
-            let by = minus(spot.at, at);
-            let (depth, facing) = (dot(by, out), dot(spot.normal, out));
+            let by = spot.at - at;
+            let (depth, facing) = (by.dot(out), spot.normal.dot(out));
             if facing > 0.0
                 && depth.abs() < DEEP * size
-                && dot(by, by) - depth * depth < radius * radius
+                && by.dot(by) - depth * depth < radius * radius
             {
                 area += facing * self.voxel * self.voxel;
             }
@@ -320,36 +318,36 @@ impl PieceSkin {
 
     /// Score of a place. It is high if the face is large, on original skin, turned to the camera, and in the
     /// middle of the visible side.
-    fn score(&self, at: Vector, out: Vector, fit: f32, covered: f32) -> f32 {
+    fn score(&self, at: Vec3, out: Vec3, fit: f32, covered: f32) -> f32 {
         let wish = self.ideal_direction(self.middle);
-        let by = minus(at, self.middle);
-        let aside = length(minus(by, scaled(wish, dot(by, wish))));
-        fit * covered + 0.5 * dot(out, wish) - 0.2 * LARGE * aside / self.full.max(1e-9)
+        let by = at - self.middle;
+        let aside = (by - wish * by.dot(wish)).length();
+        fit * covered + 0.5 * out.dot(wish) - 0.2 * LARGE * aside / self.full.max(1e-9)
     }
 
     /// Returns the best place: voxel side, score, size factor, and outward direction.
-    fn best(&self) -> Option<(&SkinFace, f32, f32, Vector)> {
+    fn best(&self) -> Option<(&SkinFace, f32, f32, Vec3)> {
         let wish = self.ideal_direction(self.middle);
         let turned = self.spots.iter();
-        let turned: Vec<&SkinFace> = turned.filter(|spot| dot(spot.normal, wish) > 0.0).collect();
+        let turned: Vec<&SkinFace> = turned.filter(|spot| spot.normal.dot(wish) > 0.0).collect();
         let first = self.best_of(&turned)?;
-        let near = |spot: &&&SkinFace| length(minus(spot.at, first.0.at)) < 0.5 * self.full;
+        let near = |spot: &&&SkinFace| (spot.at - first.0.at).length() < 0.5 * self.full;
         let near: Vec<&SkinFace> = turned.iter().filter(near).copied().collect();
         self.best_of(&near)
             .filter(|second| second.1 > first.1)
             .or(Some(first))
     }
 
-    fn best_of<'a>(&self, spots: &[&'a SkinFace]) -> Option<(&'a SkinFace, f32, f32, Vector)> {
+    fn best_of<'a>(&self, spots: &[&'a SkinFace]) -> Option<(&'a SkinFace, f32, f32, Vec3)> {
         let judged = spots.iter().step_by(1 + spots.len() / PLACES).map(|spot| {
             // Single voxel faces point along the axes; the average over the surroundings gives the direction
             // of the skin.
             let near = self.spots.iter().filter(|other| {
-                let by = minus(other.at, spot.at);
-                dot(by, by) < (0.6 * self.full).powi(2) && dot(other.normal, spot.normal) > -0.5
+                let by = other.at - spot.at;
+                by.dot(by) < (0.6 * self.full).powi(2) && other.normal.dot(spot.normal) > -0.5
             });
-            let out = near.fold([0.0; 3], |sum, other| plus(sum, other.normal));
-            let out = scaled(out, 1.0 / length(out).max(1e-9));
+            let out: Vec3 = near.map(|other| other.normal).sum();
+            let out = out * (1.0 / out.length().max(1e-9));
             let (mut fit, mut covered) = (0.0, 0.0);
             for smaller in FITS {
                 (fit, covered) = (smaller, self.cover(spot.at, out, smaller * self.full));
@@ -368,47 +366,47 @@ impl PieceSkin {
         &self,
         body: &SoftBody<D>,
         spot: &SkinFace,
-        out: Vector,
+        out: Vec3,
         fit: f32,
     ) -> Option<SkinPlace> {
         let reach = (fit * self.full / self.voxel).max(LEAST_REACH);
         let (_, turn) = anchor_at(body, self.piece, spot.rest, reach)?;
-        let axes = upright(out, self.eye.map_or(UPRIGHT[2], |eye| minus(eye, spot.at)));
+        let axes = upright(out, self.eye.map_or(UPRIGHT[2], |eye| eye - spot.at));
         Some(SkinPlace {
             voxel: spot.voxel,
             rest: spot.rest,
-            worn: axes.map(|axis| turn.map(|own| dot(own, axis))),
+            worn: axes.map(|axis| turn.map(|own| own.dot(axis)).into()),
             fit,
         })
     }
 }
 
 /// Ideal outward direction of a face at `at`, as a unit vector: towards the camera, tilted upwards.
-fn ideal_direction(at: Vector, eye: Vector) -> Vector {
-    let by = minus(eye, at);
-    let high = plus(by, [0.0, ABOVE * length(by), 0.0]);
-    scaled(high, 1.0 / length(high).max(1e-9))
+fn ideal_direction(at: Vec3, eye: Vec3) -> Vec3 {
+    let by = eye - at;
+    let high = by + Vec3::Y * (ABOVE * by.length());
+    high * (1.0 / high.length().max(1e-9))
 }
 
 /// Axes of a face with outward direction `out` that is upright for a camera in the direction `towards`.
-fn upright(out: Vector, towards: Vector) -> [Vector; 3] {
+fn upright(out: Vec3, towards: Vec3) -> [Vec3; 3] {
     // At the top of a body, the upper edge of a face points away from the camera.
-    let back = scaled(towards, 0.1 / length(towards).max(1e-9));
-    square([[0.0; 3], minus(UPRIGHT[1], back), out])
+    let back = towards * (0.1 / towards.length().max(1e-9));
+    square([Vec3::ZERO, UPRIGHT[1] - back, out])
 }
 
 /// Cosines of the face's angles to the ideal direction and to the upright orientation.
-fn seen(at: Vector, axes: [Vector; 3], eye: Vector) -> [f32; 2] {
-    let up = upright(axes[2], minus(eye, at))[1];
-    [dot(axes[2], ideal_direction(at, eye)), dot(axes[1], up)]
+fn seen(at: Vec3, axes: [Vec3; 3], eye: Vec3) -> [f32; 2] {
+    let up = upright(axes[2], eye - at)[1];
+    [axes[2].dot(ideal_direction(at, eye)), axes[1].dot(up)]
 }
 
 /// Orthonormal axes: the third keeps its direction, the second is kept as far as possible, the first follows.
-pub(super) fn square([_, up, out]: [Vector; 3]) -> [Vector; 3] {
-    let unit = |of: Vector| scaled(of, 1.0 / length(of).max(1e-9));
+pub(super) fn square([_, up, out]: [Vec3; 3]) -> [Vec3; 3] {
+    let unit = |of: Vec3| of * (1.0 / of.length().max(1e-9));
     let out = unit(out);
-    let right = unit(cross(up, out));
-    [right, cross(out, right), out]
+    let right = unit(up.cross(out));
+    [right, out.cross(right), out]
 }
 
 /// Returns the piece with the largest mass; of equal ones the first.

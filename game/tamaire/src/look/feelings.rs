@@ -1,10 +1,8 @@
 //! Feelings of a body, and the position of its face.
 
 use super::Mood;
-use super::perch::{FaceAnchor, UPRIGHT, largest, masses, square};
-use fuwafuwa::DEFAULT_TICK;
-use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
-use fuwafuwa::{Dim, NodeId, PieceId, SoftBody, Vector};
+use super::face_anchor::{FaceAnchor, UPRIGHT, largest, masses, square};
+use fuwafuwa::{DEFAULT_TICK, Dim, DimVector, NodeId, PieceId, SoftBody, Vec3};
 use fuwafuwa_render::anchor;
 
 /// Duration of the shock after a tear [s]; a body that is still being torn afterwards winces.
@@ -29,6 +27,7 @@ const GLIDE: f32 = 7.0;
 const GROW: f32 = 6.0;
 /// Rate at which a face turns [1/s].
 const TURN: f32 = 25.0;
+
 /// Feelings of a body, and the position of its face.
 #[derive(Clone, Debug)]
 pub struct Feeling {
@@ -37,20 +36,20 @@ pub struct Feeling {
     /// Time since the expression last changed [s].
     pub age: f32,
     /// Centre of the face [m]; in 3D inside the body.
-    pub at: Vector,
+    pub at: Vec3,
     /// Approximate centre of the piece [m].
-    pub middle: Vector,
+    pub middle: Vec3,
     /// Unit axes of the face: to the right (as seen), up, and outwards.
-    pub axes: [Vector; 3],
+    pub axes: [Vec3; 3],
     /// About half the width of the face [m]; 0 if the body has crumbled to dust.
     pub size: f32,
     /// Piece that carries the face.
     pub piece: PieceId,
     /// 3D: anchor of the face on the skin.
-    perch: Option<FaceAnchor>,
+    anchor: Option<FaceAnchor>,
     seat: Option<Seat>,
     /// 2D: offset from the seat to the current position of the face [m]. It decays to zero.
-    seat_offset: Vector,
+    seat_offset: Vec3,
     strain: f32,
     shock: f32,
     /// Time since the last tear [s].
@@ -79,28 +78,28 @@ pub struct MoodInput {
     /// Whether the body is in the basket.
     pub is_in_basket: bool,
     /// 3D: camera position [m].
-    pub eye: Option<Vector>,
+    pub eye: Option<Vec3>,
 }
 
 impl Feeling {
     /// Creates the feeling of an undisturbed body. In 3D the face is turned towards `eye` [m], if given.
-    pub fn new<D: Dim>(body: &SoftBody<D>, eye: Option<Vector>) -> Self {
+    pub fn new<D: Dim>(body: &SoftBody<D>, eye: Option<Vec3>) -> Self {
         let mut feeling = Self {
             mood: Mood::Calm,
             age: 9.0,
-            at: [0.0; 3],
+            at: Vec3::ZERO,
             axes: UPRIGHT,
             size: 0.0,
             piece: PieceId(0),
-            middle: [0.0; 3],
-            perch: (D::N == 3).then(|| FaceAnchor::new(body, eye)),
+            middle: Vec3::ZERO,
+            anchor: (D::N == 3).then(|| FaceAnchor::new(body, eye)),
             seat: None,
-            seat_offset: [0.0; 3],
+            seat_offset: Vec3::ZERO,
             strain: 0.0,
             shock: 0.0,
             seconds_since_tear: CALMED,
         };
-        match feeling.perch.is_some() {
+        match feeling.anchor.is_some() {
             true => feeling.stick(),
             false => feeling.sit(body, 1.0e9),
         }
@@ -113,37 +112,41 @@ impl Feeling {
             self.strain = strain(body);
         }
         let looks = fate.tick.is_multiple_of(LOOK);
-        if let Some(perch) = &mut self.perch {
-            perch.follow(body, fate.eye, looks, TICK);
+        if let Some(anchor) = &mut self.anchor {
+            anchor.follow(body, fate.eye, looks, DEFAULT_TICK);
             self.stick();
         } else {
             if looks || !self.seat.is_some_and(|seat| is_there(body, seat)) {
                 self.choose_seat(body);
             }
-            self.sit(body, TICK);
+            self.sit(body, DEFAULT_TICK);
         }
         self.feel(fate);
     }
 
     /// 3D: copies position, axes and size of the face from its anchor on the skin.
     fn stick(&mut self) {
-        if let Some(perch) = &self.perch {
-            (self.at, self.axes, self.piece) = (perch.at, perch.axes, perch.piece);
-            self.middle = perch.middle;
-            self.size = if perch.size < LEAST { 0.0 } else { perch.size };
+        if let Some(anchor) = &self.anchor {
+            (self.at, self.axes, self.piece) = (anchor.at, anchor.axes, anchor.piece);
+            self.middle = anchor.middle;
+            self.size = if anchor.size < LEAST {
+                0.0
+            } else {
+                anchor.size
+            };
         }
     }
 
     fn feel(&mut self, fate: MoodInput) {
-        self.age += TICK;
-        self.shock = (self.shock - TICK).max(0.0);
+        self.age += DEFAULT_TICK;
+        self.shock = (self.shock - DEFAULT_TICK).max(0.0);
         if fate.torn {
             if self.seconds_since_tear >= CALMED {
                 self.shock = SHOCK;
             }
             self.seconds_since_tear = 0.0;
         }
-        self.seconds_since_tear += TICK;
+        self.seconds_since_tear += DEFAULT_TICK;
         let limit = HURTS[usize::from(self.mood == Mood::Wince)];
         let hurts = fate.pressed || self.strain > limit || self.seconds_since_tear < CALMED;
         let mood = match () {
@@ -165,28 +168,26 @@ impl Feeling {
             self.choose_seat(body);
         }
         let frame = anchor(body);
-        let towards =
-            |from: f32, to: f32, pace: f32| from + (to - from) * (pace * seconds).min(1.0);
+        let share = |pace: f32| (pace * seconds).min(1.0);
         let Some(seat) = self.seat else {
-            self.size = towards(self.size, 0.0, GROW);
+            self.size -= self.size * share(GROW);
             return;
         };
-        let at = body.node_state(seat.node).0;
-        self.seat_offset = self.seat_offset.map(|k| towards(k, 0.0, GLIDE));
-        self.at = plus(at, self.seat_offset);
+        let at = body.node_state(seat.node).0.to_vec3();
+        self.seat_offset -= self.seat_offset * share(GLIDE);
+        self.at = at + self.seat_offset;
         self.middle = self.at;
         self.piece = body.pieces().of_node(seat.node);
-        let turned = [0, 1, 2]
-            .map(|k| [0, 1, 2].map(|axis| towards(self.axes[k][axis], frame.axes[k][axis], TURN)));
+        let turned = [0, 1, 2].map(|k| self.axes[k] + (frame.axes[k] - self.axes[k]) * share(TURN));
         // Interpolating across half a turn gives axes of almost zero length.
-        self.axes = match length(turned[2]).min(length(turned[1])) > 0.1 {
+        self.axes = match turned[2].length().min(turned[1].length()) > 0.1 {
             true => square(turned),
             false => frame.axes,
         };
         let room = 1.1 * seat.depth * body.grid().voxel_size();
         let size = (0.55 * frame.scale).min(room);
         let size = if size < LEAST { 0.0 } else { size };
-        self.size = towards(self.size, size, GROW);
+        self.size += (size - self.size) * share(GROW);
     }
 
     /// Searches for a better seat; the face glides there from its current position.
@@ -196,8 +197,8 @@ impl Feeling {
         if let (Some(old), Some(new)) = (self.seat, after)
             && old.node != new.node
         {
-            let at = body.node_state(new.node).0;
-            self.seat_offset = minus(self.at, at);
+            let at = body.node_state(new.node).0.to_vec3();
+            self.seat_offset = self.at - at;
         }
         self.seat = after;
     }
@@ -226,28 +227,29 @@ fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>) -> Option<Seat> {
         .filter(|facet| facet.piece == piece)
         .map(|facet| mesh.node(facet.nodes[0]).at)
         .collect();
-    let (mut sum, mut count) = ([0.0f32; 3], 0.0f32);
+    let (mut sum, mut count) = (Vec3::ZERO, 0.0f32);
     for (id, node) in own() {
         let mass = body.node_state(id).2;
-        sum = plus(sum, scaled(node.at.map(|k| k as f32), mass));
+        sum += Vec3::from(node.at.map(|k| k as f32)) * mass;
         count += mass;
     }
-    let middle = sum.map(|k| k / count.max(1e-9));
+    let middle = sum / count.max(1e-9);
     let mut best: Option<(f32, Seat)> = None;
     // Stride that limits the number of distances in large bodies.
     let stride = 1 + own().count() * skin.len() / MOST_LOOKS;
     let seated = now.and_then(|now| own().find(|(id, _)| *id == now));
     for (id, node) in seated.into_iter().chain(own().step_by(stride)) {
         let rest = node.at;
-        let away = minus(rest.map(|k| k as f32), middle);
+        let away = Vec3::from(rest.map(|k| k as f32)) - middle;
         let lazy = if now == Some(id) { LAZY } else { 0.0 };
         // Prefers nodes above the centre: a ring has its face at the top.
-        let bonus = lazy - 0.3 * length(away) + 0.05 * away[1];
+        let bonus = lazy - 0.3 * away.length() + 0.05 * away.y;
         // Stops early once this node cannot win any more, because the search runs often.
         let enough = best.map_or(0.0, |(score, _)| (score - bonus).max(0.0));
         let mut depth = f32::MAX;
         for at in &skin {
-            depth = depth.min(length([0, 1, 2].map(|axis| (at[axis] - rest[axis]) as f32)));
+            let apart = [0, 1, 2].map(|axis| (at[axis] - rest[axis]) as f32);
+            depth = depth.min(Vec3::from(apart).length());
             if depth < enough {
                 break;
             }
@@ -280,29 +282,26 @@ fn strain<D: Dim>(body: &SoftBody<D>) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Blade, Dim2, Dim3, Material, VoxelGrid, World, WorldConfig};
+    use fuwafuwa::{
+        Blade, Dim2, Dim3, Material, SoftBodyHandle, Vec2, VoxelGrid, World, WorldConfig,
+    };
 
-    fn alone(grid: VoxelGrid<Dim2>) -> World<Dim2> {
+    fn alone<D: Dim>(grid: VoxelGrid<D>) -> (World<D>, SoftBodyHandle) {
         let mut world = World::new(WorldConfig::default()).expect("the defaults are valid");
-        world.add_soft_body(
-            SoftBody::new(grid, &[Material::default()]).expect("the defaults are valid"),
-        );
-        world
+        let body = SoftBody::new(grid, &[Material::default()]).expect("the defaults are valid");
+        let body = world.add_soft_body(body);
+        (world, body)
     }
 
     #[test]
     fn face_of_ring_lies_on_ring() {
-        let hole = |at: [f32; 2]| {
-            let radius = length([at[0] - 24.0, at[1] - 24.0]);
-            (10.0..24.0).contains(&radius)
-        };
-        let grid = VoxelGrid::from_fn([48, 48, 1], 1.0 / 48.0, |voxel| {
-            u8::from(hole([voxel[0] as f32 + 0.5, voxel[1] as f32 + 0.5]))
+        let grid = VoxelGrid::<Dim2>::from_fn([48, 48, 1], 1.0 / 48.0, |[x, y, _]| {
+            let from_middle = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - Vec2::splat(24.0);
+            u8::from((10.0..24.0).contains(&from_middle.length()))
         });
-        let world = alone(grid.expect("the grid is valid"));
-        let feeling = Feeling::new(world.soft_bodies().next().unwrap().1, None);
-        let away = [feeling.at[0] - 0.5, feeling.at[1] - 0.5];
-        let radius = length(away);
+        let (world, body) = alone(grid.expect("the grid is valid"));
+        let feeling = Feeling::new(&world[body], None);
+        let radius = (feeling.at.truncate() - Vec2::splat(0.5)).length();
         assert!((0.25..0.45).contains(&radius), "{feeling:?}");
         assert!(
             feeling.at[1] > 0.7 && (0.1..0.2).contains(&feeling.size),
@@ -312,69 +311,61 @@ mod tests {
 
     #[test]
     fn face_glides_to_remaining_piece_and_dust_has_none() {
-        let mut world = alone(VoxelGrid::ball(32, 1.0).expect("the grid is valid"));
-        let mut feeling = Feeling::new(world.soft_bodies().next().unwrap().1, None);
+        let grid = VoxelGrid::<Dim2>::ball(32, 1.0);
+        let (mut world, body) = alone(grid.expect("the grid is valid"));
+        let mut feeling = Feeling::new(&world[body], None);
         let (before, size) = (feeling.at, feeling.size);
-        world
-            .cut(
-                world.nth_soft_body(0).unwrap(),
-                &Blade::segment([0.375, -1.0], [0.375, 2.0]),
-            )
-            .unwrap();
+        let blade = Blade::segment(Vec2::new(0.375, -1.0), Vec2::new(0.375, 2.0));
+        world.cut(body, &blade).unwrap();
         let fate = MoodInput {
             tick: LOOK,
             ..MoodInput::default()
         };
-        feeling.update(world.soft_bodies().next().unwrap().1, fate);
+        feeling.update(&world[body], fate);
         let step = feeling.at[0] - before[0];
         assert!(step.abs() < 0.03, "the face does not jump: {step}");
         for _ in 0..200 {
-            feeling.update(world.soft_bodies().next().unwrap().1, MoodInput::default());
+            feeling.update(&world[body], MoodInput::default());
         }
         assert!(feeling.at[0] > before[0] + 0.05 && feeling.size < size);
-        let dust = alone(VoxelGrid::ball(4, 0.05).expect("the grid is valid"));
-        assert_eq!(
-            Feeling::new(dust.soft_bodies().next().unwrap().1, None).size,
-            0.0
-        );
+        let grid = VoxelGrid::<Dim2>::ball(4, 0.05);
+        let (dust, body) = alone(grid.expect("the grid is valid"));
+        assert_eq!(Feeling::new(&dust[body], None).size, 0.0);
     }
 
     #[test]
     fn face_3d_turns_with_body_and_returns_to_camera() {
-        let mut world = World::<Dim3>::new(WorldConfig::default()).expect("the defaults are valid");
-        let grid = VoxelGrid::ball(12, 1.0).expect("the grid is valid");
-        world.add_soft_body(
-            SoftBody::new(grid, &[Material::default()]).expect("the defaults are valid"),
-        );
-        let mut feeling = Feeling::new(world.soft_bodies().next().unwrap().1, None);
+        let grid = VoxelGrid::<Dim3>::ball(12, 1.0);
+        let (mut world, soft) = alone(grid.expect("the grid is valid"));
+        let mut feeling = Feeling::new(&world[soft], None);
         assert!(feeling.axes[2][2] > 0.99, "{feeling:?}");
         // Turns the body's back to the camera.
-        let body = world
-            .soft_body_mut(world.nth_soft_body(0).unwrap())
-            .unwrap();
+        let body = world.soft_body_mut(soft).unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
-            let [x, y, z] = body.node_state(id).0;
-            body.set_node_state(id, [1.0 - x, y, 1.0 - z], [0.0; 3]);
+            let Vec3 { x, y, z } = body.node_state(id).0;
+            let turned = Vec3::new(1.0 - x, y, 1.0 - z);
+            body.set_node_state(id, turned, Vec3::ZERO).unwrap();
         }
         let mut see = |eye, ticks: usize| {
             let fate = MoodInput {
                 eye,
                 ..MoodInput::default()
             };
-            (0..ticks).for_each(|_| feeling.update(world.soft_bodies().next().unwrap().1, fate));
+            (0..ticks).for_each(|_| feeling.update(&world[soft], fate));
             feeling.axes
         };
         let [_, up, out] = see(None, 60);
         assert!(out[2] < -0.99 && up[1] > 0.99, "{out:?}");
-        let [_, up, out] = see(Some([0.5, 0.0, 9.0]), 90);
+        let [_, up, out] = see(Some(Vec3::new(0.5, 0.0, 9.0)), 90);
         assert!(out[2] > 0.9 && up[1] > 0.9, "{out:?}");
     }
 
     #[test]
     fn tear_shocks_once_then_hurts() {
-        let world = alone(VoxelGrid::ball(16, 1.0).expect("the grid is valid"));
-        let body = world.soft_bodies().next().unwrap().1;
+        let grid = VoxelGrid::<Dim2>::ball(16, 1.0);
+        let (world, body) = alone(grid.expect("the grid is valid"));
+        let body = &world[body];
         let mut feeling = Feeling::new(body, None);
         let torn = MoodInput {
             tick: 1,

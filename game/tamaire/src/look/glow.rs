@@ -4,8 +4,7 @@
 use super::DrawOptions;
 use app_shell::View;
 use egui::{Color32, Painter, Pos2, Rect, Shape as Drawn, Stroke, pos2, vec2};
-use fuwafuwa::inspect::vector::plus;
-use fuwafuwa::{Dim2, Shape, Vector};
+use fuwafuwa::{Dim2, MotionType, Shape, Vec2};
 use tamaire_play::Round;
 
 /// Colour of the glow.
@@ -24,8 +23,10 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &DrawOptions) {
         } else {
             0.5 + 0.5 * (5.0 * look.time).sin() as f32
         };
-        for obstacle in round.world().fixed_rigid_bodies() {
-            shine(painter, view, *obstacle.shape(), 0.55 + 0.45 * breath);
+        for (_, obstacle) in round.world().rigid_bodies() {
+            if obstacle.motion_type() == MotionType::Fixed {
+                shine(painter, view, obstacle.shape(), 0.55 + 0.45 * breath);
+            }
         }
     }
     if let Some(&Shape::Box { centre, half }) = round.basket() {
@@ -40,9 +41,9 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &DrawOptions) {
 }
 
 /// Returns the first `share` of the outline of a box, clockwise from the middle of its top.
-fn along_box(view: &View, centre: Vector, half: Vector, share: f32) -> Vec<Pos2> {
-    let size = 2.0 * view.scale * vec2(half[0], half[1]);
-    let rect = Rect::from_center_size(view.to_screen(centre), size);
+fn along_box(view: &View, centre: Vec2, half: Vec2, share: f32) -> Vec<Pos2> {
+    let size = 2.0 * view.scale * vec2(half.x, half.y);
+    let rect = Rect::from_center_size(view.to_screen(centre.extend(0.0)), size);
     let corners = [
         rect.center_top(),
         rect.right_top(),
@@ -66,7 +67,8 @@ fn along_box(view: &View, centre: Vector, half: Vector, share: f32) -> Vec<Pos2>
 }
 
 /// Draws a glow around a shape; the glow fades with the distance from the shape.
-fn shine(painter: &Painter, view: &View, shape: Shape, strength: f32) {
+fn shine(painter: &Painter, view: &View, shape: Shape<Dim2>, strength: f32) {
+    let on_screen = |at: Vec2| view.to_screen(at.extend(0.0));
     let layers = [(0.02, 60), (0.05, 36), (0.09, 22), (0.14, 12)];
     for (reach, alpha) in layers {
         let [red, green, blue, _] = GOLD.to_array();
@@ -75,7 +77,7 @@ fn shine(painter: &Painter, view: &View, shape: Shape, strength: f32) {
         match shape {
             Shape::HalfSpace { .. } => {}
             Shape::Capsule { from, to, radius } => {
-                let (from, to) = (view.to_screen(from), view.to_screen(to));
+                let (from, to) = (on_screen(from), on_screen(to));
                 let radius = (radius + reach) * view.scale;
                 painter.add(Drawn::convex_polygon(
                     bar(from, to, radius),
@@ -84,8 +86,8 @@ fn shine(painter: &Painter, view: &View, shape: Shape, strength: f32) {
                 ));
             }
             Shape::Box { centre, half } => {
-                let half = view.scale * (vec2(half[0], half[1]) + vec2(reach, reach));
-                let rect = Rect::from_center_size(view.to_screen(centre), 2.0 * half);
+                let half = view.scale * (vec2(half.x, half.y) + vec2(reach, reach));
+                let rect = Rect::from_center_size(on_screen(centre), 2.0 * half);
                 painter.rect_filled(rect, reach * view.scale, light);
             }
             Shape::OrientedBox {
@@ -95,14 +97,14 @@ fn shine(painter: &Painter, view: &View, shape: Shape, strength: f32) {
             } => {
                 let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
                 let corners = corners.map(|[x, y]| {
-                    let own = [x * (half[0] + reach), y * (half[1] + reach), 0.0];
-                    view.to_screen(plus(centre, rotation.apply(own)))
+                    let own = Vec2::new(x * (half.x + reach), y * (half.y + reach));
+                    on_screen(centre + rotation.apply(own))
                 });
                 painter.add(Drawn::convex_polygon(corners.into(), light, Stroke::NONE));
             }
             Shape::Ball { centre, radius } => {
                 let radius = (radius + reach) * view.scale;
-                painter.circle_filled(view.to_screen(centre), radius, light);
+                painter.circle_filled(on_screen(centre), radius, light);
             }
         }
     }
@@ -139,7 +141,7 @@ mod tests {
             scale: 50.0,
             space: None,
         };
-        let line = |share| along_box(&view, [0.0; 3], [1.0, 0.5, 0.0], share);
+        let line = |share| along_box(&view, Vec2::ZERO, Vec2::new(1.0, 0.5), share);
         assert_eq!(line(1.0).first(), line(1.0).last());
         assert_eq!(line(0.5).last(), Some(&pos2(100.0, 75.0)));
     }

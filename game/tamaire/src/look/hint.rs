@@ -4,7 +4,7 @@
 use super::{DrawOptions, Hint};
 use app_shell::View;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
-use fuwafuwa::{Dim, Dim2, Dim3, RigidBody, Vector};
+use fuwafuwa::{Dim, Dim2, Dim3, DimVector, RigidBodyRef, SoftBody, Vec3};
 use tamaire_play::Round;
 
 /// Duration of one loop of the animation [s].
@@ -17,13 +17,7 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &DrawOptions) {
     };
     draw_ring(painter, hand, look);
     if look.hint == Hint::Way {
-        draw_way(
-            painter,
-            round,
-            hand.position(),
-            hand.shape().inradius(),
-            look,
-        );
+        draw_way(painter, round, hand, look);
     }
 }
 
@@ -35,15 +29,19 @@ pub(super) fn draw_ring_of_space(painter: &Painter, round: &Round<Dim3>, look: &
 }
 
 /// Returns the first hand while the hint is shown.
-fn hand_to_show<'a, D: Dim>(round: &'a Round<D>, look: &DrawOptions) -> Option<&'a RigidBody> {
+fn hand_to_show<'a, D: Dim>(
+    round: &'a Round<D>,
+    look: &DrawOptions,
+) -> Option<RigidBodyRef<'a, D>> {
     let is_shown = look.hint != Hint::None && look.effects.hint != 0.0;
     round.hands().next().filter(|_| is_shown)
 }
 
 /// Draws rings that spread from the hand.
-fn draw_ring(painter: &Painter, hand: &RigidBody, look: &DrawOptions) {
-    let at = look.view.to_screen(hand.position());
-    let radius = hand.shape().inradius() * look.view.scale_at(hand.position());
+fn draw_ring<D: Dim>(painter: &Painter, hand: RigidBodyRef<'_, D>, look: &DrawOptions) {
+    let position = hand.position().to_vec3();
+    let at = look.view.to_screen(position);
+    let radius = hand.shape().inradius() * look.view.scale_at(position);
     let tone = look.theme.hand(0).gamma_multiply(look.effects.hint);
     let wave = if look.reduced_motion {
         0.4
@@ -58,20 +56,24 @@ fn draw_ring(painter: &Painter, hand: &RigidBody, look: &DrawOptions) {
 }
 
 /// Draws the pale hand and the body that it pushes.
-fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, look: &DrawOptions) {
+fn draw_way(
+    painter: &Painter,
+    round: &Round<Dim2>,
+    hand: RigidBodyRef<'_, Dim2>,
+    look: &DrawOptions,
+) {
     let (view, strength) = (&look.view, look.effects.hint);
-    let (Some(basket), Some(body)) = (
-        basket_centre(round),
-        round.world().soft_bodies().next().map(|(_, item)| item),
-    ) else {
+    let (Some(goal), Some((_, body))) = (basket_centre(round), round.world().soft_bodies().next())
+    else {
         return;
     };
     let Some(piece) = body.piece_views().into_iter().next() else {
         return;
     };
-    let width = 0.5 * (piece.high[0] - piece.low[0]);
-    let flat = |at: Vector| vec2(at[0], at[1]);
-    let (body_at, goal) = (flat(piece.centre), flat(basket));
+    let width = 0.5 * (piece.high.x - piece.low.x);
+    let body_at = vec2(piece.centre.x, piece.centre.y);
+    let from = vec2(hand.position().x, hand.position().y);
+    let hand = hand.shape().inradius();
     let way = (goal - body_at).normalized();
     let touch = body_at - (width + hand) * way;
     let end = goal - (width + hand) * way;
@@ -84,7 +86,7 @@ fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, loo
     let reach = part(0.06, 0.34);
     let push = part(0.38, 0.84);
     let pale = strength * part(0.0, 0.06) * (1.0 - part(0.90, 1.0));
-    let hand_at = flat(from) + reach * (touch - flat(from)) + push * (end - touch);
+    let hand_at = from + reach * (touch - from) + push * (end - touch);
     if push > 0.0 {
         let by = push * (goal - body_at);
         let edge = Color32::from_rgb(120, 60, 60).gamma_multiply(0.6 * pale);
@@ -99,7 +101,7 @@ fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, loo
         strength,
         look,
     );
-    let screen = view.to_screen([hand_at.x, hand_at.y, 0.0]);
+    let screen = view.to_screen(Vec3::new(hand_at.x, hand_at.y, 0.0));
     let radius = hand * view.scale;
     let tone = look.theme.hand(0).gamma_multiply(0.55 * pale);
     painter.circle_filled(screen, radius, tone);
@@ -111,7 +113,7 @@ fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, loo
 fn draw_pale_body(
     painter: &Painter,
     view: &View,
-    body: &fuwafuwa::SoftBody<Dim2>,
+    body: &SoftBody<Dim2>,
     by: Vec2,
     edge: Color32,
     fill: Color32,
@@ -119,7 +121,7 @@ fn draw_pale_body(
     for outline in body.outlines() {
         let points = outline.points.iter();
         let points: Vec<Pos2> = points
-            .map(|at| view.to_screen([at[0] + by.x, at[1] + by.y, 0.0]))
+            .map(|&at| view.to_screen(at + Vec3::new(by.x, by.y, 0.0)))
             .collect();
         let mut points = smoothed(points);
         points.extend(points.first().copied());
@@ -161,7 +163,7 @@ fn draw_arrows(
     strength: f32,
     look: &DrawOptions,
 ) {
-    let on_screen = |at: Vec2| view.to_screen([at.x, at.y, 0.0]);
+    let on_screen = |at: Vec2| view.to_screen(Vec3::new(at.x, at.y, 0.0));
     let (from, to) = (on_screen(from), on_screen(to));
     let way = (to - from).normalized();
     let side = way.rot90();
@@ -188,9 +190,9 @@ fn draw_arrows(
     }
 }
 
-fn basket_centre(round: &Round<Dim2>) -> Option<Vector> {
+fn basket_centre(round: &Round<Dim2>) -> Option<Vec2> {
     match *round.basket()? {
-        fuwafuwa::Shape::Box { centre, .. } => Some(centre),
+        fuwafuwa::Shape::Box { centre, .. } => Some(vec2(centre.x, centre.y)),
         _ => None,
     }
 }

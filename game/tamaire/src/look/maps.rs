@@ -1,12 +1,12 @@
 //! Thumbnails of levels at their start, drawn by the renderers of rounds.
 
-use super::calm::{camera, face_at_rest, frame};
 use super::feelings::Feeling;
+use super::rest_frame::{camera, face_at_rest, frame};
 use super::{Face, view_of_level};
 use app_shell::{CameraRig, Theme, View};
 use eframe::egui_wgpu::RenderState;
 use egui::{Color32, Painter, Rect, TextureId, pos2};
-use fuwafuwa::{Dim, Vector};
+use fuwafuwa::{Dim, Vec3};
 use fuwafuwa_render::{Cost, Frame, Renderer, Sticker, new_image, pass_into, space};
 use std::sync::Arc;
 use tamaire_play::{AnyRound, Level, Round};
@@ -128,14 +128,10 @@ impl Maps {
     }
 }
 
-fn faces<D: Dim>(round: &Round<D>, eye: Option<Vector>) -> Vec<Face> {
-    let bodies = round
-        .world()
-        .soft_bodies()
-        .map(|(_, body)| body)
-        .enumerate();
+fn faces<D: Dim>(round: &Round<D>, eye: Option<Vec3>) -> Vec<Face> {
+    let bodies = round.world().soft_bodies().enumerate();
     bodies
-        .map(|(number, body)| face_at_rest(number, &Feeling::new(body, eye), 1.0))
+        .map(|(number, (_, body))| face_at_rest(number, &Feeling::new(body, eye), 1.0))
         .collect()
 }
 

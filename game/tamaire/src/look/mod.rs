@@ -1,24 +1,24 @@
 //! Appearance of a round: faces, effects, and thumbnails of levels.
 
-mod calm;
 mod confetti;
+mod draw_options;
 mod effects;
 mod face;
+mod face_anchor;
 mod feelings;
 mod glow;
 mod hint;
 mod maps;
 mod opening;
-mod perch;
-mod showing;
+mod rest_frame;
 mod stage;
 
 pub use confetti::Confetti;
+pub(crate) use draw_options::view_of_level;
+pub use draw_options::{DrawOptions, Hint};
 pub use effects::Effects;
 pub use face::{Face, Mood};
 pub use feelings::Feeling;
 pub use maps::Maps;
 pub use opening::Cutaway;
-pub(crate) use showing::view_of_level;
-pub use showing::{DrawOptions, Hint};
 pub use stage::Stage;

@@ -3,13 +3,16 @@
 use super::Face;
 use super::feelings::Feeling;
 use app_shell::{Theme, View};
-use fuwafuwa::Dim;
-use fuwafuwa::inspect::vector::{plus, scaled};
-use fuwafuwa_render::{Basket, Camera, Frame};
+use fuwafuwa::Vec2;
+use fuwafuwa_render::{Basket, Camera, DimCamera, Frame};
 use tamaire_play::Round;
 
 /// Returns the render frame of a round without effects, stickers or ghost.
-pub(super) fn frame<'a, D: Dim, C>(camera: C, round: &Round<D>, theme: &'a Theme) -> Frame<'a, C> {
+pub(super) fn frame<'a, C: DimCamera>(
+    camera: C,
+    round: &Round<C::Dim>,
+    theme: &'a Theme,
+) -> Frame<'a, C> {
     let fill = (round.progress().inside / round.level().game().share).clamp(0.0, 1.0);
     Frame {
         camera,
@@ -27,10 +30,10 @@ pub(super) fn frame<'a, D: Dim, C>(camera: C, round: &Round<D>, theme: &'a Theme
 /// Converts `view` to a camera of the 2D renderer.
 pub(super) fn camera(view: &View) -> Camera {
     Camera {
-        centre: [view.centre[0], view.centre[1], 0.0],
+        centre: Vec2::from(view.centre),
         height: view.height(),
         tilt: 0.0,
-        shake: [0.0; 3],
+        shake: Vec2::ZERO,
     }
 }
 
@@ -40,9 +43,9 @@ pub(super) fn face_at_rest(body: usize, feeling: &Feeling, size: f32) -> Face {
         body,
         piece: feeling.piece,
         at: feeling.at,
-        axes: feeling.axes.map(|axis| scaled(axis, size * feeling.size)),
+        axes: feeling.axes.map(|axis| axis * (size * feeling.size)),
         mood: feeling.mood,
         blink: 0.0,
-        look_at: plus(feeling.at, feeling.axes[2]),
+        look_at: feeling.at + feeling.axes[2],
     }
 }

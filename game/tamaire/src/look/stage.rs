@@ -1,14 +1,13 @@
 //! Drawing of a round: world, particles and faces.
 
-use super::calm::{camera, face_at_rest, frame};
 use super::feelings::Feeling;
+use super::rest_frame::{camera, face_at_rest, frame};
 use super::{DrawOptions, Face, Maps, Mood, glow, hint};
 use app_shell::pass::{PaintCallback, lock, pixels};
 use app_shell::{SpaceStage, Theme, View};
 use eframe::egui_wgpu::{Callback, RenderState};
 use egui::{Color32, Painter, Pos2, Stroke, Ui};
-use fuwafuwa::inspect::vector::{length, minus};
-use fuwafuwa::{Dim, Dim2, Dim3, Vector};
+use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Vec3};
 use fuwafuwa_render::{Ages, Cost, Frame, Particle, Renderer, Sticker, space};
 use std::sync::{Arc, Mutex};
 use tamaire_play::{AnyRound, Level, Round};
@@ -159,16 +158,13 @@ impl Stage {
 /// Returns the cut through bodies for the element view: towards the camera, or from above if the camera looks
 /// down.
 fn cut(camera: &space::Camera, share: f32) -> space::Cut {
-    let [x, y, z] = camera.axes()[2];
-    let long = length([x, z]);
-    let towards = match y > DOWN {
-        true => [0.0, 1.0, 0.0],
-        false => [x / long, 0.0, z / long],
+    let towards = camera.axes()[2];
+    let level = towards.with_y(0.0);
+    let direction = match towards.y > DOWN {
+        true => Vec3::Y,
+        false => level / level.length(),
     };
-    space::Cut {
-        direction: towards,
-        share,
-    }
+    space::Cut { direction, share }
 }
 
 /// Returns what the renderer shows: the skin, or elements with the chosen colouring.
@@ -204,22 +200,22 @@ fn faces<D: Dim>(round: &Round<D>, look: &DrawOptions) -> Vec<Face> {
     if look.elements.is_some() {
         return Vec::new();
     }
-    let bodies = round.world().soft_bodies();
+    let bodies = round.world().soft_bodies().map(|(_, body)| body);
     // Before the first tick there are no feelings yet.
     let fresh: Vec<Feeling>;
-    let feelings = match look.effects.feelings.len() == bodies.len() {
+    let feelings = match look.effects.feelings.len() == bodies.clone().count() {
         true => &look.effects.feelings,
         false => {
             let eye = look.view.space.map(|camera| camera.eye());
-            fresh = bodies.iter().map(|body| Feeling::new(body, eye)).collect();
+            fresh = bodies.map(|body| Feeling::new(body, eye)).collect();
             &fresh
         }
     };
     let face = |(number, feeling): (usize, &Feeling)| {
         // Blinks every 3.7 s, each body at a different time.
         let phase = (look.time + 1.3 * number as f64).rem_euclid(3.7) as f32;
-        let hands = round.hands().map(|hand| hand.position());
-        let away = |hand: &Vector| length(minus(*hand, feeling.at));
+        let hands = round.hands().map(|hand| hand.position().to_vec3());
+        let away = |hand: &Vec3| (*hand - feeling.at).length();
         let nearest = hands.min_by(|a, b| away(a).total_cmp(&away(b)));
         let start = match look.reduced_motion || feeling.mood == Mood::Calm {
             true => 0.0,
@@ -237,7 +233,7 @@ fn faces<D: Dim>(round: &Round<D>, look: &DrawOptions) -> Vec<Face> {
 /// Draws the outlines of an earlier round.
 fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
     let stroke = Stroke::new(2.5, GHOST);
-    for body in round.world().soft_bodies() {
+    for (_, body) in round.world().soft_bodies() {
         for outline in body.outlines() {
             let points = outline.points.iter().map(|&at| view.to_screen(at));
             let points: Vec<Pos2> = points.collect();
@@ -250,7 +246,7 @@ fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
     }
     for hand in round.hands() {
         painter.circle_stroke(
-            view.to_screen(hand.position()),
+            view.to_screen(hand.position().extend(0.0)),
             view.scale * hand.shape().inradius(),
             stroke,
         );

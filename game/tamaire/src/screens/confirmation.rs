@@ -24,5 +24,5 @@ pub(super) fn set_pending(ui: &Ui, what: Option<&str>) {
 }
 
 fn id() -> Id {
-    Id::unique("doomed")
+    Id::unique("confirmation")
 }

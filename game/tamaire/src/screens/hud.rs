@@ -30,7 +30,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     at.x = end;
     let round = game.bout.round();
     let mut right = screen.right();
-    if round.basket().is_some() {
+    if round.has_basket() {
         let radius = scale * (JAR + 4.0);
         let middle = screen.right_top() + vec2(-radius, radius);
         draw_jar(ui, middle, scale, game);

@@ -1,6 +1,6 @@
 //! Screen for choosing a level.
 
-use super::doomed::{is_pending, set_pending};
+use super::confirmation::{is_pending, set_pending};
 use super::icons;
 use super::widgets::{dim_background, header_to_open, page, page_rect, words};
 use crate::game::Game;

@@ -2,7 +2,7 @@
 
 mod attendant;
 mod buttons;
-mod doomed;
+mod confirmation;
 mod forces;
 mod hud;
 mod icons;

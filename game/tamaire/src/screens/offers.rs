@@ -27,7 +27,7 @@ pub(super) fn show(game: &Game, ui: &Ui) {
         return;
     }
     let (theme, scale) = (game.theme(), hud::scale(game, ui));
-    let (here, turn) = (round.hands()[0].position(), game.bout.turn());
+    let (here, turn) = (round.hands()[0].position, game.bout.turn());
     let middle = view.to_screen(here);
     let is_taken = game.controls.devices.taken.is_some();
     let painter = ui.painter();
@@ -37,7 +37,7 @@ pub(super) fn show(game: &Game, ui: &Ui) {
     match game.controls.scan.offer(turn.is_some()) {
         ScanAction::Move(way) => {
             let ahead = to_world(turn, AHEAD * way);
-            let there = view.to_screen([0, 1, 2].map(|axis| here[axis] + ahead[axis]));
+            let there = view.to_screen(here + ahead);
             arrow(
                 painter,
                 middle,

@@ -1,6 +1,6 @@
 //! List of saved rounds.
 
-use super::doomed::{is_pending, set_pending};
+use super::confirmation::{is_pending, set_pending};
 use super::icons;
 use super::widgets::{card, dim_background, header_to_open, page, page_rect};
 use crate::game::{Game, RoundDetails, SavedRound};

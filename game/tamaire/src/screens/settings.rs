@@ -1,6 +1,6 @@
 //! Settings of the player.
 
-use super::doomed::{is_pending, set_pending};
+use super::confirmation::{is_pending, set_pending};
 use super::widgets::{card, choice, dim_background, header, page, page_rect, slider};
 use crate::game::{Game, Screen};
 use crate::input::{Action, Scanning};

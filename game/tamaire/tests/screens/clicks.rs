@@ -306,10 +306,10 @@ fn mouse_and_keys_move_two_hands() {
     window.hover_at(egui::pos2(480.0, 100.0));
     frames(&mut window, 20);
     let after = hand_targets(&window);
-    assert!(after[0][1] > before[0][1] + 0.3, "{before:?} {after:?}");
-    assert!(after[1][0] > before[1][0] + 0.3, "{before:?} {after:?}");
+    assert!(after[0].y > before[0].y + 0.3, "{before:?} {after:?}");
+    assert!(after[1].x > before[1].x + 0.3, "{before:?} {after:?}");
     assert!(
-        (after[1][1] - before[1][1]).abs() < 1e-3,
+        (after[1].y - before[1].y).abs() < 1e-3,
         "{before:?} {after:?}"
     );
     window.key_up(Key::D);
@@ -417,7 +417,7 @@ fn sticky_keys_hold_until_pressed_again() {
     game(&mut window).settings.toggle_keys = true;
     let x = |window: &Window| {
         let players = &window.state().game.controls.players;
-        players.wanted(0).map_or(-1.4, |wanted| wanted[0])
+        players.wanted(0).map_or(-1.4, |wanted| wanted.x)
     };
     press(&mut window, Key::ArrowRight);
     frames(&mut window, 30);

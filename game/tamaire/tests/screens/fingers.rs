@@ -3,13 +3,14 @@
 use crate::window::*;
 use egui::TouchPhase::{End, Move, Start};
 use egui::{Pos2, Rect, vec2};
+use fuwafuwa::Vec3;
 use tamaire::input::{Action, InputMethod, InputSource};
 use tamaire::platform::Files;
 
-fn goal(window: &Window, player: usize) -> [f32; 3] {
+fn goal(window: &Window, player: usize) -> Vec3 {
     let game = &window.state().game;
     let wanted = game.controls.players.wanted(player);
-    wanted.unwrap_or_else(|| game.bout.round().hands()[player].target_position())
+    wanted.unwrap_or_else(|| game.bout.round().hands()[player].target)
 }
 
 /// Position of the touch button for an action.
@@ -20,7 +21,7 @@ fn place(window: &Window, action: Action) -> Option<Rect> {
 }
 
 /// Starts a round in which a finger holds the hand at a world position [m].
-fn held(level: &str, at: [f32; 3]) -> Window {
+fn held(level: &str, at: Vec3) -> Window {
     let mut window = window(Files::nowhere());
     start(&mut window, level);
     let on_screen = on_screen(&window, at);
@@ -31,7 +32,7 @@ fn held(level: &str, at: [f32; 3]) -> Window {
     window
 }
 
-fn on_screen(window: &Window, at: [f32; 3]) -> Pos2 {
+fn on_screen(window: &Window, at: Vec3) -> Pos2 {
     let view = window.state().game.bout.view;
     view.expect("the world is visible").to_screen(at)
 }
@@ -45,7 +46,7 @@ fn tap(window: &mut Window, action: Action) {
 
 #[test]
 fn second_finger_presses_touch_buttons() {
-    let mut window = held("twins", [-0.9, 0.3, 0.0]);
+    let mut window = held("twins", Vec3::new(-0.9, 0.3, 0.0));
     let game = |window: &Window| {
         let bout = &window.state().game.bout;
         (bout.slow, bout.elements.is_some())
@@ -67,35 +68,35 @@ fn second_finger_presses_touch_buttons() {
 
 #[test]
 fn two_fingers_move_two_hands() {
-    let mut window = held("twins", [-0.9, 0.3, 0.0]);
+    let mut window = held("twins", Vec3::new(-0.9, 0.3, 0.0));
     tap(&mut window, Action::Join);
     let second = window.state().game.controls.players.second();
     assert_eq!(second, Some(InputSource::Finger));
     let first = goal(&window, 0);
     for step in 0..60 {
-        let at = on_screen(&window, [0.2 + 0.005 * step as f32, -0.6, 0.0]);
+        let at = on_screen(&window, Vec3::new(0.2 + 0.005 * step as f32, -0.6, 0.0));
         touch(&mut window, 1, if step == 0 { Start } else { Move }, at);
     }
-    let [x, y, _] = goal(&window, 1);
+    let Vec3 { x, y, .. } = goal(&window, 1);
     assert!((x - 0.5).abs() < 0.05 && (y + 0.6).abs() < 0.05, "{x} {y}");
     let still = goal(&window, 0);
-    assert!((still[0] - first[0]).abs() < 0.05, "{first:?} {still:?}");
+    assert!((still.x - first.x).abs() < 0.05, "{first:?} {still:?}");
 }
 
 #[test]
 fn thumb_buttons_3d_raise_hand_and_look_deeper() {
-    let mut window = held("classic-3d", [-0.9, 0.0, 0.6]);
-    let before = goal(&window, 0)[1];
+    let mut window = held("classic-3d", Vec3::new(-0.9, 0.0, 0.6));
+    let before = goal(&window, 0).y;
     let up = place(&window, Action::Raise)
         .expect("the button is shown")
         .center();
     touch(&mut window, 1, Start, up);
     frames(&mut window, 20);
-    let high = goal(&window, 0)[1];
+    let high = goal(&window, 0).y;
     assert!(high > before + 0.2, "{before} {high}");
     touch(&mut window, 1, End, up);
     frames(&mut window, 20);
-    assert!((goal(&window, 0)[1] - high).abs() < 0.05);
+    assert!((goal(&window, 0).y - high).abs() < 0.05);
     tap(&mut window, Action::Elements);
     assert!(place(&window, Action::Raise).is_none());
     let share = |window: &Window| {

@@ -90,10 +90,7 @@ fn single_switch_can_win_and_continue() {
     assert_eq!(screen(&window), Screen::Play);
     // The press that chose the level has not moved the hand.
     let start = game(&mut window).bout.round().start(0);
-    assert_eq!(
-        game(&mut window).bout.round().hands()[0].target_position(),
-        start
-    );
+    assert_eq!(game(&mut window).bout.round().hands()[0].target, start);
 
     wait_for(&mut window, |offer| offer == ScanAction::Pause);
     tap(&mut window);
@@ -136,7 +133,7 @@ fn single_switch_3d_raises_and_lowers_hand() {
     game(&mut window).settings.toggle_keys = true;
     start(&mut window, "classic-3d");
     frames(&mut window, 2);
-    let height = |window: &mut Window| game(window).bout.round().hands()[0].target_position()[1];
+    let height = |window: &mut Window| game(window).bout.round().hands()[0].target.y;
     let before = height(&mut window);
     wait_for(&mut window, |offer| offer == ScanAction::Raise);
     // One press starts the action, the next one stops it.

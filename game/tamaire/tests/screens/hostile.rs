@@ -258,7 +258,7 @@ fn check(game: &Game, frame: usize) {
     let round = game.bout.round();
     let [low, high] = round.level().arena();
     for hand in round.hands() {
-        let at = hand.position();
+        let at = hand.position;
         let is_in = |axis: usize| low[axis] <= at[axis] && at[axis] <= high[axis];
         assert!(is_in(0) && is_in(1), "frame {frame}: a hand at {at:?}");
     }

@@ -36,7 +36,7 @@ fn dropped_model_is_played_in_3d() {
         assert_eq!(levels.iter().filter(|level| &level.id == name).count(), 1);
         point_at(&mut window, -1.0, 0.7);
         assert!(
-            (goal(&window, 0)[2] - 0.7).abs() < 0.05,
+            (goal(&window, 0).z - 0.7).abs() < 0.05,
             "{level}: the hand follows the mouse"
         );
     }

@@ -115,7 +115,7 @@ fn pad_alone_reaches_all_screens() {
     table.button(Right).down = false;
     let after = hand(&table);
     assert!(
-        after[0] > before[0] + 0.2 && after[1] > before[1] + 0.2,
+        after.x > before.x + 0.2 && after.y > before.y + 0.2,
         "{before:?} {after:?}"
     );
 
@@ -212,7 +212,7 @@ fn second_player_joins_leaves_and_is_unplugged() {
     table.pad(1).left = [1.0, 0.0];
     table.frames(10);
     let after = hand_targets(&table.window);
-    assert!(after[1][0] > before[1][0] + 0.2, "{before:?} {after:?}");
+    assert!(after[1].x > before[1].x + 0.2, "{before:?} {after:?}");
     assert_eq!(after[0], before[0]);
     table.pad(1).left = [0.0; 2];
     table.tap(PadButton::Back);

@@ -4,9 +4,7 @@ use crate::pads::{Table, pad};
 use crate::told::tells;
 use crate::window::*;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, TouchPhase, pos2, vec2};
-use fuwafuwa::DEFAULT_TICK;
-use fuwafuwa::Vector;
-use fuwafuwa::inspect::vector::{length, minus};
+use fuwafuwa::{DEFAULT_TICK, Vec2, Vec3};
 use sticks::{DeviceId, PadButton};
 use tamaire::game::{Game, Screen};
 use tamaire::input::{InputMethod, InputSource};
@@ -20,7 +18,7 @@ pub fn in_space() -> Window {
 }
 
 /// Target position of a player's hand [m].
-pub fn goal(window: &Window, player: usize) -> Vector {
+pub fn goal(window: &Window, player: usize) -> Vec3 {
     hand_targets(window)[player]
 }
 
@@ -30,14 +28,14 @@ fn turned(window: &Window) -> [f32; 2] {
 
 /// Advances the game by ticks and draws one frame: in software, a 3D frame takes longer than a tick.
 pub fn wait(window: &mut Window, ticks: usize) {
-    (0..ticks).for_each(|_| game(window).update(TICK));
+    (0..ticks).for_each(|_| game(window).update(DEFAULT_TICK));
     frames(window, 1);
 }
 
 /// Points with the mouse at a point of the floor, and waits until the hand is above it.
 pub fn point_at(window: &mut Window, x: f32, z: f32) {
     let view = window.state().game.bout.view.expect("the world is visible");
-    window.hover_at(view.to_screen([x, 0.0, z]));
+    window.hover_at(view.to_screen(Vec3::new(x, 0.0, z)));
     frames(window, 1);
     wait(window, 60);
 }
@@ -55,15 +53,16 @@ fn wheel(window: &mut Window, points: f32) {
     wait(window, 30);
 }
 
-pub fn assert_near(found: Vector, expected: Vector) {
-    let away = length(minus(found, expected));
+pub fn assert_near(found: Vec3, expected: impl Into<Vec3>) {
+    let expected = expected.into();
+    let away = (found - expected).length();
     assert!(away < 0.03, "{found:?}, expected {expected:?}");
 }
 
 #[test]
 fn mouse_sets_floor_position_and_wheel_raises_hand() {
     let mut window = in_space();
-    let height = goal(&window, 0)[1];
+    let height = goal(&window, 0).y;
     for [x, z] in [[-1.2, 0.7], [0.2, 0.6], [0.0, -0.6]] {
         point_at(&mut window, x, z);
         assert_near(goal(&window, 0), [x, height, z]);
@@ -88,11 +87,11 @@ fn mouse_sets_floor_position_and_wheel_raises_hand() {
 fn mouse_sets_position_on_shelf() {
     let mut window = window(Files::nowhere());
     start(&mut window, "hoop");
-    let height = goal(&window, 0)[1];
+    let height = goal(&window, 0).y;
     // On the shelf, over the hole in it, and on the shelf behind the hole.
     for [x, z] in [[-1.3, 0.3], [0.7, 0.1], [0.7, -0.7]] {
         let view = window.state().game.bout.view.expect("the world is visible");
-        window.hover_at(view.to_screen([x, 0.55, z]));
+        window.hover_at(view.to_screen(Vec3::new(x, 0.55, z)));
         frames(&mut window, 1);
         wait(&mut window, 90);
         assert_near(goal(&window, 0), [x, height, z]);
@@ -106,7 +105,7 @@ fn right_mouse_button_turns_only_the_camera() {
     let before = goal(&window, 0);
     let button = |pressed, pos| pointer_button(pos, PointerButton::Secondary, pressed);
     let view = window.state().game.bout.view.expect("the world is visible");
-    let at = view.to_screen([-1.2, 0.0, 0.6]);
+    let at = view.to_screen(Vec3::new(-1.2, 0.0, 0.6));
     window.event(button(true, at));
     frames(&mut window, 1);
     for step in 1..=10 {
@@ -127,7 +126,11 @@ fn right_mouse_button_turns_only_the_camera() {
         frames(&mut window, 1);
     }
     frames(&mut window, 60);
-    assert!(length(turned(&window)) < 0.01, "{:?}", turned(&window));
+    assert!(
+        Vec2::from(turned(&window)).length() < 0.01,
+        "{:?}",
+        turned(&window)
+    );
 }
 
 #[test]
@@ -144,26 +147,26 @@ fn keys_move_hand_relative_to_camera() {
         }
         window.key_up(key);
         frames(window, 1);
-        minus(goal(window, 0), before)
+        goal(window, 0) - before
     };
-    let [x, y, z] = hold(&mut window, Key::Q, 20);
+    let Vec3 { x, y, z } = hold(&mut window, Key::Q, 20);
     assert!(x.abs() < 0.01 && y > 0.3 && z.abs() < 0.01, "{x} {y} {z}");
-    let [x, y, z] = hold(&mut window, Key::S, 10);
+    let Vec3 { x, y, z } = hold(&mut window, Key::S, 10);
     assert!(x.abs() < 0.01 && y.abs() < 0.01 && z > 0.2, "{x} {y} {z}");
-    let [x, y, z] = hold(&mut window, Key::Z, 20);
+    let Vec3 { x, y, z } = hold(&mut window, Key::Z, 20);
     assert!(x.abs() < 0.01 && y < -0.3 && z.abs() < 0.01, "{x} {y} {z}");
     hold(&mut window, Key::CloseBracket, 63);
     let [right, up] = turned(&window);
     assert!((1.4..1.8).contains(&right) && up == 0.0, "{right} {up}");
     // The camera is on the right and looks to the left, along the first axis.
-    let [x, y, z] = hold(&mut window, Key::D, 10);
+    let Vec3 { x, y, z } = hold(&mut window, Key::D, 10);
     assert!(x.abs() < 0.08 && y.abs() < 0.01 && z < -0.2, "{x} {y} {z}");
-    let [x, y, z] = hold(&mut window, Key::S, 10);
+    let Vec3 { x, y, z } = hold(&mut window, Key::S, 10);
     assert!(x > 0.2 && y.abs() < 0.01 && z.abs() < 0.08, "{x} {y} {z}");
     // In 2D the same keys have no effect.
     start(&mut window, "classic");
     let still = hold(&mut window, Key::Q, 10);
-    assert_near(still, [0.0; 3]);
+    assert_near(still, Vec3::ZERO);
 }
 
 #[test]
@@ -182,15 +185,11 @@ fn triggers_raise_hand_and_right_stick_turns_camera() {
     };
     hold(&mut table, [0.0; 2], [0.0, 1.0], 20);
     let raised = goal(&table.window, 0);
-    let expected = [before[0], before[1] + 0.4, before[2]];
-    assert_near(raised, expected);
+    assert_near(raised, before + Vec3::Y * 0.4);
     assert_eq!(turned(&table.window), [0.0; 2]);
     // Half the deflection beyond the dead zone gives half the speed.
     hold(&mut table, [0.0; 2], [0.55, 0.0], 20);
-    assert_near(
-        goal(&table.window, 0),
-        [before[0], before[1] + 0.2, before[2]],
-    );
+    assert_near(goal(&table.window, 0), before + Vec3::Y * 0.2);
     let low = goal(&table.window, 0);
     hold(&mut table, [1.0, 0.0], [0.0; 2], 20);
     let [right, up] = turned(&table.window);
@@ -228,7 +227,7 @@ fn two_players_3d_share_one_camera() {
     );
     let after = [0, 1].map(|player| goal(&table.window, player));
     assert_near(after[0], before[0]);
-    assert_near(after[1], [before[1][0], before[1][1] + 0.3, before[1][2]]);
+    assert_near(after[1], before[1] + Vec3::Y * 0.3);
     // Two players who turn the camera do not turn it faster than one.
     let [right, _] = turned(&table.window);
     assert!(right < 0.5 * 1.5 * 16.0 / 60.0, "{right}");
@@ -238,26 +237,26 @@ fn two_players_3d_share_one_camera() {
         10,
     );
     let moved = [0, 1].map(|player| goal(&table.window, player));
-    assert!(moved[0][2] > after[0][2] + 0.2, "{after:?} {moved:?}");
+    assert!(moved[0].z > after[0].z + 0.2, "{after:?} {moved:?}");
     assert_near(moved[1], after[1]);
 }
 
 #[test]
 fn first_finger_moves_hand_and_second_raises_it_or_turns_camera() {
     let mut window = in_space();
-    let height = goal(&window, 0)[1];
+    let height = goal(&window, 0).y;
     let view = window.state().game.bout.view.expect("the world is visible");
     touch(
         &mut window,
         0,
         TouchPhase::Start,
-        view.to_screen([-1.2, 0.0, 0.5]),
+        view.to_screen(Vec3::new(-1.2, 0.0, 0.5)),
     );
     touch(
         &mut window,
         0,
         TouchPhase::Move,
-        view.to_screen([-0.9, 0.0, 0.6]),
+        view.to_screen(Vec3::new(-0.9, 0.0, 0.6)),
     );
     wait(&mut window, 40);
     assert_near(goal(&window, 0), [-0.9, height, 0.6]);
@@ -272,12 +271,12 @@ fn first_finger_moves_hand_and_second_raises_it_or_turns_camera() {
     };
     drag(&mut window, vec2(20.0, -0.4 * view.scale));
     let raised = goal(&window, 0);
-    assert!((raised[1] - height - 0.4).abs() < 0.03, "{raised:?}");
+    assert!((raised.y - height - 0.4).abs() < 0.03, "{raised:?}");
     assert_eq!(turned(&window), [0.0; 2]);
     drag(&mut window, vec2(-100.0, 20.0));
     let [right, up] = turned(&window);
     assert!((right - 0.6).abs() < 0.05 && up == 0.0, "{right} {up}");
-    assert!((goal(&window, 0)[1] - raised[1]).abs() < 0.01);
+    assert!((goal(&window, 0).y - raised.y).abs() < 0.01);
     assert_eq!(window.state().game.controls.means, InputMethod::Fingers);
 }
 
@@ -285,7 +284,7 @@ fn first_finger_moves_hand_and_second_raises_it_or_turns_camera() {
 fn second_finger_does_not_move_hand_after_first_lifts() {
     let mut window = in_space();
     let view = window.state().game.bout.view.expect("the world is visible");
-    let [here, there] = [-0.9, 0.3].map(|x| view.to_screen([x, 0.0, 0.6]));
+    let [here, there] = [-0.9, 0.3].map(|x| view.to_screen(Vec3::new(x, 0.0, 0.6)));
     touch(&mut window, 0, TouchPhase::Start, here);
     touch(&mut window, 1, TouchPhase::Start, there);
     wait(&mut window, 60);
@@ -324,7 +323,7 @@ fn keys_and_pad_move_element_cut_and_hint_names_them() {
     assert!(tells(&table.window, "X: look deeper, C: back"));
     hold(&mut table, Key::C);
     assert!((share(&mut table) - before).abs() < 0.02);
-    let height = goal(&table.window, 0)[1];
+    let height = goal(&table.window, 0).y;
     table.tap(PadButton::RightStick);
     assert!(share(&mut table) < before);
     assert!(tells(&table.window, "Press the right stick: look deeper"));
@@ -333,7 +332,7 @@ fn keys_and_pad_move_element_cut_and_hint_names_them() {
         share(&mut table) < before - 0.05,
         "scrolling up looks deeper"
     );
-    assert!((goal(&table.window, 0)[1] - height).abs() < 1e-3);
+    assert!((goal(&table.window, 0).y - height).abs() < 1e-3);
 }
 
 #[test]
@@ -357,12 +356,12 @@ fn round_3d_is_won_saved_watched_and_raced() {
         let ghost = window.state().game.bout.session.ghost();
         let ghost = ghost.expect("the session has a ghost");
         assert!(is_space(ghost));
-        (ghost.frames().len(), ghost.hands()[0].position())
+        (ghost.frames().len(), ghost.hands()[0].position)
     };
     let (ticks, at) = ghost(&window);
-    let mine = window.state().game.bout.round().hands()[0].position();
+    let mine = window.state().game.bout.round().hands()[0].position;
     assert!(
-        ticks >= 28 && length(minus(at, mine)) > 0.1,
+        ticks >= 28 && (at - mine).length() > 0.1,
         "{ticks} {at:?} {mine:?}"
     );
 
@@ -382,5 +381,5 @@ fn round_3d_is_won_saved_watched_and_raced() {
     let game = game(&mut window);
     assert_eq!(game.bout.round().progress().outcome, Some(outcome));
     assert!(game.notices.iter().next().is_none(), "{:?}", game.notices);
-    assert!(length(minus(goal(&window, 0), before)) > 0.1);
+    assert!((goal(&window, 0) - before).length() > 0.1);
 }

@@ -74,7 +74,7 @@ fn shown(size: Vec2, changes: &[(&str, &str)]) -> Shown {
         .with_size(size)
         .wgpu()
         .with_pixels_per_point(1.0);
-    let builder = builder.with_step_dt(TICK).with_render_cursor(false);
+    let builder = builder.with_step_dt(DEFAULT_TICK).with_render_cursor(false);
     let builder = builder.with_theme(egui::Theme::Light);
     let mut window = builder.build_eframe(|context| {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
@@ -105,11 +105,11 @@ impl Shown {
         let ctx = self.window.ctx.clone();
         let mut stand = self.stand.borrow_mut();
         let game = game(&mut self.window);
-        for _ in 0..(seconds / TICK) as usize {
-            game.update(TICK);
+        for _ in 0..(seconds / DEFAULT_TICK) as usize {
+            game.update(DEFAULT_TICK);
             // Events left in the context by an earlier frame would count as input.
             ctx.input_mut(|input| input.events.clear());
-            stand.pass(game, &ctx, TICK);
+            stand.pass(game, &ctx, DEFAULT_TICK);
         }
     }
 

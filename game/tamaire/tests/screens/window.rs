@@ -5,7 +5,7 @@ use egui::accesskit::Role;
 use egui::{Event, PointerButton, Pos2};
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, Node};
-use fuwafuwa::{TICK, Vector};
+use fuwafuwa::{DEFAULT_TICK, Vec3};
 use std::path::{Path, PathBuf};
 use tamaire::app::App;
 use tamaire::game::{Game, Screen};
@@ -24,7 +24,7 @@ pub fn window(files: Files) -> Window {
 pub fn open(files: Files, size: egui::Vec2, pixels: f32) -> Window {
     let builder = Harness::builder().with_size(size).wgpu();
     let builder = builder.with_pixels_per_point(pixels);
-    let builder = builder.with_step_dt(TICK).with_render_cursor(false);
+    let builder = builder.with_step_dt(DEFAULT_TICK).with_render_cursor(false);
     // Theme of the game; the harness would use dark colours.
     let builder = builder.with_theme(egui::Theme::Light);
     let mut window = builder.build_eframe(|context| {
@@ -67,9 +67,9 @@ pub fn pointer_button(pos: Pos2, button: PointerButton, pressed: bool) -> Event 
 }
 
 /// Targets of all hands [m].
-pub fn hand_targets(window: &Window) -> Vec<Vector> {
+pub fn hand_targets(window: &Window) -> Vec<Vec3> {
     let hands = window.state().game.bout.round().hands();
-    hands.iter().map(|hand| hand.target_position()).collect()
+    hands.iter().map(|hand| hand.target).collect()
 }
 
 /// Path of a file among the levels of the game.
@@ -145,7 +145,7 @@ pub fn drive(game: &mut Game, kind: BotKind, goes_on: impl Fn(&Game) -> bool) {
             "the round takes longer than a minute"
         );
         game.controls.devices.pointer = game.bout.round().ask(&mut bot).goal(0);
-        game.update(TICK);
+        game.update(DEFAULT_TICK);
     }
     game.controls.devices.pointer = None;
 }

@@ -3,11 +3,11 @@ use egui::Key;
 use fuwafuwa::DEFAULT_TICK;
 use sticks::{Device, DeviceInfo, Direction, Snapshot};
 
-const HANDS: [Vector; 2] = [[-1.0, 0.0, 0.0], [-1.0, 0.5, 0.0]];
+const HANDS: [Vec3; 2] = [Vec3::new(-1.0, 0.0, 0.0), Vec3::new(-1.0, 0.5, 0.0)];
 const MANNER: InputMapping = InputMapping {
     sensitivity: 1.0,
     stick_sets_position: false,
-    arena: [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]],
+    arena: [Vec3::new(-1.6, -1.0, 0.0), Vec3::new(1.6, 1.0, 0.0)],
     turn: None,
 };
 const PLACES: InputMapping = InputMapping {
@@ -16,12 +16,12 @@ const PLACES: InputMapping = InputMapping {
 };
 
 /// Returns the goal of the first player in the next tick.
-fn goal(players: &mut Players, devices: &Devices, manner: &InputMapping) -> Option<Vector> {
+fn goal(players: &mut Players, devices: &Devices, manner: &InputMapping) -> Option<Vec3> {
     goals(players, devices, manner)[0]
 }
 
-fn goals(players: &mut Players, devices: &Devices, manner: &InputMapping) -> [Option<Vector>; 2] {
-    let frame = players.frame(devices, &Bindings::default(), manner, &HANDS, TICK);
+fn goals(players: &mut Players, devices: &Devices, manner: &InputMapping) -> [Option<Vec3>; 2] {
+    let frame = players.frame(devices, &Bindings::default(), manner, &HANDS, DEFAULT_TICK);
     [frame.goal(0), frame.goal(1)]
 }
 
@@ -40,7 +40,7 @@ fn with_sticks(devices: Vec<Device>) -> Devices {
     }
 }
 
-fn assert_near(found: Option<Vector>, expected: [f32; 2]) {
+fn assert_near(found: Option<Vec3>, expected: [f32; 2]) {
     let found = found.expect("a goal");
     let is_near = (0..2).all(|axis| (found[axis] - expected[axis]).abs() < 1e-3);
     assert!(is_near, "{found:?}, expected {expected:?}");
@@ -51,7 +51,7 @@ fn mouse_position_is_kept_until_next_round() {
     let mut players = Players::default();
     let mut devices = Devices::default();
     assert_eq!(goal(&mut players, &devices, &MANNER), None);
-    devices.pointer = Some([0.7, -0.3, 0.0]);
+    devices.pointer = Some(Vec3::new(0.7, -0.3, 0.0));
     assert_near(goal(&mut players, &devices, &MANNER), [0.7, -0.3]);
     devices.pointer = None;
     assert_near(goal(&mut players, &devices, &MANNER), [0.7, -0.3]);
@@ -61,7 +61,7 @@ fn mouse_position_is_kept_until_next_round() {
 
 #[test]
 fn keys_set_speed_and_diagonals_are_no_faster() {
-    let step = PACE * TICK;
+    let step = PACE * DEFAULT_TICK;
     let held = |keys: &[Key]| Devices {
         keys: keys.iter().copied().collect(),
         ..Devices::default()
@@ -80,7 +80,7 @@ fn keys_set_speed_and_diagonals_are_no_faster() {
     assert_near(of(&[Key::S], &slowly), [-1.0, -0.5 * step]);
     // The goal is clamped to the arena.
     let narrow = InputMapping {
-        arena: [[-1.0, -1.0, 0.0], [1.0, 0.0, 0.0]],
+        arena: [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, 0.0, 0.0)],
         ..MANNER
     };
     assert_near(of(&[Key::W, Key::A], &narrow), [-1.0, 0.0]);
@@ -97,13 +97,13 @@ fn stick_has_dead_zone_and_speed_grows_with_deflection() {
     };
     assert_eq!(of([0.1, -0.1]), None);
     assert_eq!(of([f32::NAN, 1.0]), None);
-    assert_near(of([1.0, 0.0]), [-1.0 + PACE * TICK, 0.0]);
+    assert_near(of([1.0, 0.0]), [-1.0 + PACE * DEFAULT_TICK, 0.0]);
     let half = DEAD + 0.5 * (RIM - DEAD);
-    assert_near(of([0.0, half]), [-1.0, 0.5 * PACE * TICK]);
+    assert_near(of([0.0, half]), [-1.0, 0.5 * PACE * DEFAULT_TICK]);
     let mut hat = stick(1, [0.0; 2]);
     hat.hats[0].button_mut(Direction::Down).press();
     let found = goal(&mut Players::default(), &with_sticks(vec![hat]), &MANNER);
-    assert_near(found, [-1.0, -PACE * TICK]);
+    assert_near(found, [-1.0, -PACE * DEFAULT_TICK]);
 }
 
 #[test]
@@ -113,7 +113,7 @@ fn still_position_stick_leaves_goal_to_other_devices() {
     assert_eq!(goal(&mut players, &devices, &PLACES), None, "at rest");
     devices.sticks.devices[1] = stick(2, [1.0, 0.0]);
     assert_near(goal(&mut players, &devices, &PLACES), [1.6, 0.0]);
-    devices.pointer = Some([0.5, 0.5, 0.0]);
+    devices.pointer = Some(Vec3::new(0.5, 0.5, 0.0));
     assert_near(goal(&mut players, &devices, &PLACES), [0.5, 0.5]);
     devices.pointer = None;
     assert_near(goal(&mut players, &devices, &PLACES), [0.5, 0.5]);
@@ -126,21 +126,21 @@ fn still_position_stick_leaves_goal_to_other_devices() {
 #[test]
 fn away_in_space_is_away_from_camera_and_lift_raises_hand() {
     let manner = InputMapping {
-        arena: [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]],
+        arena: [Vec3::new(-1.6, 0.0, -1.0), Vec3::new(1.6, 1.6, 1.0)],
         turn: Some(std::f32::consts::FRAC_PI_2),
         ..MANNER
     };
-    let hands = [[0.0, 0.5, 0.0]];
+    let hands = [Vec3::new(0.0, 0.5, 0.0)];
     let goal = |devices: &Devices| {
         let bindings = Bindings::default();
-        let frame = Players::default().frame(devices, &bindings, &manner, &hands, TICK);
+        let frame = Players::default().frame(devices, &bindings, &manner, &hands, DEFAULT_TICK);
         frame.goal(0).expect("a goal")
     };
-    let check = |found: Vector, expected: Vector| {
-        let is_near = (0..3).all(|axis| (found[axis] - expected[axis]).abs() < 1e-3);
+    let check = |found: Vec3, expected: [f32; 3]| {
+        let is_near = found.abs_diff_eq(expected.into(), 1e-3);
         assert!(is_near, "{found:?}, expected {expected:?}");
     };
-    let step = PACE * TICK;
+    let step = PACE * DEFAULT_TICK;
     // The camera is rotated by 90° to the right, so it looks to the left.
     check(
         goal(&with_sticks(vec![stick(1, [0.0, 1.0])])),
@@ -154,9 +154,9 @@ fn away_in_space_is_away_from_camera_and_lift_raises_hand() {
         keys: [Key::Q].into(),
         ..Devices::default()
     };
-    check(goal(&keys), [0.0, 0.5 + RISE * TICK, 0.0]);
+    check(goal(&keys), [0.0, 0.5 + RISE * DEFAULT_TICK, 0.0]);
     let wheel = Devices {
-        pointer: Some([0.3, 0.5, -0.2]),
+        pointer: Some(Vec3::new(0.3, 0.5, -0.2)),
         lift: 5.0,
         ..Devices::default()
     };
@@ -166,15 +166,15 @@ fn away_in_space_is_away_from_camera_and_lift_raises_hand() {
 #[test]
 fn wanted_height_is_kept_when_goal_cannot_follow() {
     let manner = InputMapping {
-        arena: [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]],
+        arena: [Vec3::new(-1.6, 0.0, -1.0), Vec3::new(1.6, 1.6, 1.0)],
         turn: Some(0.0),
         ..MANNER
     };
     // The body holds the hand down, and the target position may be only a limited distance from the hand.
-    let here = [0.0, 0.5, 0.0];
+    let here = Vec3::new(0.0, 0.5, 0.0);
     let mut players = Players::default();
     let mut goal = |devices: &Devices, manner: &InputMapping| {
-        let frame = players.frame(devices, &Bindings::default(), manner, &[here], TICK);
+        let frame = players.frame(devices, &Bindings::default(), manner, &[here], DEFAULT_TICK);
         frame.goal(0).expect("a goal")
     };
     let lift = |lift| Devices {
@@ -185,9 +185,9 @@ fn wanted_height_is_kept_when_goal_cannot_follow() {
         keys: [key].into(),
         ..Devices::default()
     };
-    let assert_height = |found: Vector, height: f32| {
+    let assert_height = |found: Vec3, height: f32| {
         assert!(
-            (found[1] - height).abs() < 1e-3,
+            (found.y - height).abs() < 1e-3,
             "{found:?}, expected {height}"
         );
     };
@@ -204,11 +204,11 @@ fn wanted_height_is_kept_when_goal_cannot_follow() {
     // Lifting never lowers the requested height. Lowering starts from the current target position, so that
     // excess lift need not be undone first.
     assert_height(goal(&keys(Key::Q), &manner), 1.3);
-    assert_height(goal(&keys(Key::Z), &manner), 0.5 - RISE * TICK);
+    assert_height(goal(&keys(Key::Z), &manner), 0.5 - RISE * DEFAULT_TICK);
     goal(&lift(9.0), &manner);
     assert_height(goal(&lift(-0.1), &manner), 0.4);
     assert_eq!(
-        players.wanted(0).map(|goal| goal[0] > 1.5),
+        players.wanted(0).map(|goal| goal.x > 1.5),
         Some(true),
         "the position of the stick"
     );
@@ -233,8 +233,8 @@ fn each_device_belongs_to_one_player() {
     assert_eq!(goals(&mut players, &devices, &MANNER)[1], None);
     players.join(InputSource::Stick(DeviceId(1)));
     let [first, second] = goals(&mut players, &devices, &MANNER);
-    assert_near(first, [-1.0 + PACE * TICK, 0.0]);
-    assert_near(second, [-1.0 + PACE * TICK, 0.5]);
+    assert_near(first, [-1.0 + PACE * DEFAULT_TICK, 0.0]);
+    assert_near(second, [-1.0 + PACE * DEFAULT_TICK, 0.5]);
     // A player who joins and gives no input stays at the start position of the level.
     players.join(InputSource::Keys);
     assert_near(goals(&mut players, &devices, &MANNER)[1], [-1.0, 0.5]);
@@ -247,7 +247,7 @@ fn each_device_belongs_to_one_player() {
     // The level may have only one hand.
     players.join(InputSource::Keys);
     let bindings = Bindings::default();
-    let frame = players.frame(&devices, &bindings, &MANNER, &HANDS[..1], TICK);
+    let frame = players.frame(&devices, &bindings, &MANNER, &HANDS[..1], DEFAULT_TICK);
     assert_eq!(frame.goal(1), None);
 }
 
@@ -264,6 +264,6 @@ fn screen_buttons_belong_to_player_with_pointer() {
         ..Devices::default()
     };
     let [first, second] = goals(&mut players, &devices, &manner);
-    assert!(first.expect("it rises")[1] > HANDS[0][1]);
+    assert!(first.expect("it rises").y > HANDS[0].y);
     assert!(second.is_none_or(|stays| stays == HANDS[1]), "{second:?}");
 }

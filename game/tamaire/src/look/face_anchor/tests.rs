@@ -1,177 +1,142 @@
 use super::*;
-use fuwafuwa::DEFAULT_TICK;
-use fuwafuwa::{Blade, Dim3, Material, PieceId, VoxelGrid, World, WorldConfig};
+use fuwafuwa::{
+    Blade, DEFAULT_TICK, Dim3, Material, PieceId, SoftBodyHandle, VoxelGrid, World, WorldConfig,
+};
 
-const EYE: Vector = [0.5, 0.8, 6.0];
+const EYE: Vec3 = Vec3::new(0.5, 0.8, 6.0);
+/// Centre of the ball [m].
+const CENTRE: Vec3 = Vec3::splat(0.5);
 
-fn alone(grid: VoxelGrid<Dim3>) -> World<Dim3> {
+fn ball() -> (World<Dim3>, SoftBodyHandle) {
     let mut world = World::new(WorldConfig::default()).expect("the defaults are valid");
-    world.add_soft_body(
-        SoftBody::new(grid, &[Material::default()]).expect("the defaults are valid"),
-    );
-    world
-}
-
-fn ball() -> World<Dim3> {
-    alone(VoxelGrid::ball(20, 1.0).expect("the grid is valid"))
+    let grid = VoxelGrid::ball(20, 1.0).expect("the grid is valid");
+    let body = SoftBody::new(grid, &[Material::default()]).expect("the defaults are valid");
+    let body = world.add_soft_body(body);
+    (world, body)
 }
 
 /// Moves all nodes from their rest positions.
-fn deform(world: &mut World<Dim3>, to: impl Fn(PieceId, Vector) -> Vector) {
-    let body = world
-        .soft_body_mut(world.nth_soft_body(0).unwrap())
-        .unwrap();
+fn deform(world: &mut World<Dim3>, body: SoftBodyHandle, to: impl Fn(PieceId, Vec3) -> Vec3) {
+    let body = world.soft_body_mut(body).unwrap();
     let voxel = body.grid().voxel_size();
     let nodes = body.mesh().nodes();
     let nodes: Vec<_> = nodes.map(|(id, node)| (id, node.at)).collect();
     for (id, at) in nodes {
         let piece = body.pieces().of_node(id);
-        let at = at.map(|k| k as f32 * voxel);
-        body.set_node_state(id, to(piece, at), [0.0; 3]);
+        let at = Vec3::from(at.map(|k| k as f32 * voxel));
+        body.set_node_state(id, to(piece, at), Vec3::ZERO).unwrap();
     }
 }
 
 /// Returns the share of the face that lies on original skin.
-fn covered(perch: &FaceAnchor, body: &SoftBody<Dim3>) -> f32 {
-    let skin = PieceSkin::of(body, perch.piece, &masses(body), Some(EYE));
-    let size = perch.size;
-    let at = plus(perch.at, scaled(perch.axes[2], INSIDE * size));
-    skin.cover(at, perch.axes[2], size)
+fn covered(anchor: &FaceAnchor, body: &SoftBody<Dim3>) -> f32 {
+    let skin = PieceSkin::of(body, anchor.piece, &masses(body), Some(EYE));
+    let size = anchor.size;
+    let at = anchor.at + anchor.axes[2] * (INSIDE * size);
+    skin.cover(at, anchor.axes[2], size)
 }
 
 #[test]
-fn perch_faces_camera_on_covered_skin() {
-    let world = ball();
-    let perch = FaceAnchor::new(world.soft_bodies().next().unwrap().1, Some(EYE));
+fn anchor_faces_camera_on_covered_skin() {
+    let (world, body) = ball();
+    let anchor = FaceAnchor::new(&world[body], Some(EYE));
     assert!(
-        dot(perch.axes[2], ideal_direction([0.5; 3], EYE)) > 0.97,
-        "{perch:?}"
+        anchor.axes[2].dot(ideal_direction(CENTRE, EYE)) > 0.97,
+        "{anchor:?}"
     );
-    assert!(perch.axes[0][0] > 0.97 && perch.size > 0.2, "{perch:?}");
-    assert!(covered(&perch, world.soft_bodies().next().unwrap().1) > 0.9);
+    assert!(anchor.axes[0][0] > 0.97 && anchor.size > 0.2, "{anchor:?}");
+    assert!(covered(&anchor, &world[body]) > 0.9);
 }
 
 #[test]
-fn perch_rolls_with_fast_skin() {
-    let mut world = ball();
-    let mut perch = FaceAnchor::new(world.soft_bodies().next().unwrap().1, Some(EYE));
-    let (first, out) = (perch.at, perch.axes[2]);
+fn anchor_rolls_with_fast_skin() {
+    let (mut world, body) = ball();
+    let mut anchor = FaceAnchor::new(&world[body], Some(EYE));
+    let (first, out) = (anchor.at, anchor.axes[2]);
     for tick in 1..20 {
         // The body rotates at 10 rad/s and moves away.
-        let angle = 10.0 * TICK * tick as f32;
+        let angle = 10.0 * DEFAULT_TICK * tick as f32;
         let (sin, cos) = angle.sin_cos();
-        let turn = |[x, y, z]: Vector| [cos * x + sin * y, cos * y - sin * x, z];
-        let carried = |at: Vector| {
-            let at = turn(minus(at, [0.5; 3]));
-            plus(at, [0.5 + 0.1 * tick as f32, 0.5, 0.5])
-        };
-        deform(&mut world, |_, at| carried(at));
-        perch.follow(
-            world.soft_bodies().next().unwrap().1,
-            Some(EYE),
-            tick % 5 == 0,
-            TICK,
-        );
-        assert!(dot(perch.axes[2], turn(out)) > 0.999, "at {tick}");
-        assert!(length(minus(perch.at, carried(first))) < 0.01, "at {tick}");
+        let turn = |v: Vec3| Vec3::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x, v.z);
+        let carried = |at| turn(at - CENTRE) + CENTRE + Vec3::X * (0.1 * tick as f32);
+        deform(&mut world, body, |_, at| carried(at));
+        anchor.follow(&world[body], Some(EYE), tick % 5 == 0, DEFAULT_TICK);
+        assert!(anchor.axes[2].dot(turn(out)) > 0.999, "at {tick}");
+        assert!((anchor.at - carried(first)).length() < 0.01, "at {tick}");
     }
 }
 
 #[test]
-fn perch_moves_seldom_while_body_rolls_and_ends_upright() {
-    let mut world = ball();
-    let mut perch = FaceAnchor::new(world.soft_bodies().next().unwrap().1, Some(EYE));
+fn anchor_moves_seldom_while_body_rolls_and_ends_upright() {
+    let (mut world, body) = ball();
+    let mut anchor = FaceAnchor::new(&world[body], Some(EYE));
     let mut leaps = 0;
     let (mut angle, mut least) = (0.0f32, f32::MAX);
     for tick in 1..150 {
         // The body rolls to the right at 2 rad/s for about half a turn, then stops.
-        angle += if tick < 100 { 2.0 * TICK } else { 0.0 };
+        angle += if tick < 100 { 2.0 * DEFAULT_TICK } else { 0.0 };
         let (sin, cos) = angle.sin_cos();
-        deform(&mut world, |_, at| {
-            let [x, y, z] = minus(at, [0.5; 3]);
-            plus([cos * x + sin * y, cos * y - sin * x, z], [0.5; 3])
+        deform(&mut world, body, |_, at| {
+            let v = at - CENTRE;
+            Vec3::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x, v.z) + CENTRE
         });
-        let before = perch.axes[2];
-        let body = world.soft_bodies().next().unwrap().1;
-        perch.follow(body, Some(EYE), tick % 5 == 0, TICK);
-        leaps += u32::from(length(minus(perch.axes[2], before)) > 0.2);
-        least = least.min(dot(perch.axes[2], ideal_direction([0.5; 3], EYE)));
+        let before = anchor.axes[2];
+        anchor.follow(&world[body], Some(EYE), tick % 5 == 0, DEFAULT_TICK);
+        leaps += u32::from((anchor.axes[2] - before).length() > 0.2);
+        least = least.min(anchor.axes[2].dot(ideal_direction(CENTRE, EYE)));
     }
     assert!(leaps <= 2 && least > 0.3, "{leaps} leaps, {least}");
-    assert!(dot(perch.axes[1], UPRIGHT[1]) > 0.8, "{perch:?}");
+    assert!(anchor.axes[1].dot(UPRIGHT[1]) > 0.8, "{anchor:?}");
 }
 
 #[test]
-fn perch_returns_to_camera_after_body_turned() {
-    let mut world = ball();
-    let mut perch = FaceAnchor::new(world.soft_bodies().next().unwrap().1, Some(EYE));
-    deform(&mut world, |_, [x, y, z]| [1.0 - x, y, 1.0 - z]);
+fn anchor_returns_to_camera_after_body_turned() {
+    let (mut world, body) = ball();
+    let mut anchor = FaceAnchor::new(&world[body], Some(EYE));
+    deform(&mut world, body, |_, at| {
+        Vec3::new(1.0 - at.x, at.y, 1.0 - at.z)
+    });
     let mut least = f32::MAX;
     for tick in 0..60 {
-        let before = perch.clone();
-        perch.follow(
-            world.soft_bodies().next().unwrap().1,
-            Some(EYE),
-            tick % 5 == 0,
-            TICK,
-        );
-        least = least.min(perch.size);
+        let before = anchor.clone();
+        anchor.follow(&world[body], Some(EYE), tick % 5 == 0, DEFAULT_TICK);
+        least = least.min(anchor.size);
         // The face never moves to another place while it is visible.
-        let leap = tick > 0 && length(minus(perch.axes[2], before.axes[2])) > 0.1;
-        assert!(!leap || perch.size < 0.05, "{perch:?}");
+        let leap = tick > 0 && (anchor.axes[2] - before.axes[2]).length() > 0.1;
+        assert!(!leap || anchor.size < 0.05, "{anchor:?}");
     }
     assert!(least < 0.05, "{least}");
     assert!(
-        dot(perch.axes[2], ideal_direction([0.5; 3], EYE)) > 0.95,
-        "{perch:?}"
+        anchor.axes[2].dot(ideal_direction(CENTRE, EYE)) > 0.95,
+        "{anchor:?}"
     );
-    assert!(perch.size > 0.2, "{perch:?}");
+    assert!(anchor.size > 0.2, "{anchor:?}");
 }
 
 #[test]
-fn perch_leaves_skin_that_was_cut_off() {
-    let mut world = ball();
-    let mut perch = FaceAnchor::new(world.soft_bodies().next().unwrap().1, Some(EYE));
+fn anchor_leaves_skin_that_was_cut_off() {
+    let (mut world, body) = ball();
+    let mut anchor = FaceAnchor::new(&world[body], Some(EYE));
     // Cuts off the part of the body that faces the camera and moves it away.
-    let (from, across, along) = ([-0.5, 1.25, 0.0], [2.0, 0.0, 0.0], [0.0, -1.3, 1.3]);
-    world
-        .cut(
-            world.nth_soft_body(0).unwrap(),
-            &Blade {
-                from,
-                across,
-                along,
-            },
-        )
-        .unwrap();
-    let masses = masses(world.soft_bodies().next().unwrap().1);
+    let across = Vec3::new(2.0, 0.0, 0.0);
+    let along = Vec3::new(0.0, -1.3, 1.3);
+    let blade = Blade::parallelogram(Vec3::new(-0.5, 1.25, 0.0), across, along);
+    world.cut(body, &blade).unwrap();
+    let masses = masses(&world[body]);
     let is_gone = |piece: PieceId| masses[piece] < masses.iter().sum::<f32>() * 0.5;
-    deform(&mut world, |piece, at| match is_gone(piece) {
-        true => plus(at, [9.0, 0.0, 0.0]),
+    deform(&mut world, body, |piece, at| match is_gone(piece) {
+        true => at + Vec3::X * 9.0,
         false => at,
     });
     for tick in 0..60 {
-        perch.follow(
-            world.soft_bodies().next().unwrap().1,
-            Some(EYE),
-            tick % 5 == 0,
-            TICK,
-        );
+        anchor.follow(&world[body], Some(EYE), tick % 5 == 0, DEFAULT_TICK);
     }
-    assert!(!is_gone(perch.piece) && perch.size > 0.08, "{perch:?}");
-    assert!(
-        covered(&perch, world.soft_bodies().next().unwrap().1) > 0.7,
-        "{perch:?}"
-    );
+    assert!(!is_gone(anchor.piece) && anchor.size > 0.08, "{anchor:?}");
+    assert!(covered(&anchor, &world[body]) > 0.7, "{anchor:?}");
     // The face stays at the new place.
-    let place = perch.place.expect("the face has a place").voxel;
+    let place = anchor.place.expect("the face has a place").voxel;
     for tick in 0..120 {
-        perch.follow(
-            world.soft_bodies().next().unwrap().1,
-            Some(EYE),
-            tick % 5 == 0,
-            TICK,
-        );
-        assert_eq!(perch.place.expect("the face has a place").voxel, place);
+        anchor.follow(&world[body], Some(EYE), tick % 5 == 0, DEFAULT_TICK);
+        assert_eq!(anchor.place.expect("the face has a place").voxel, place);
     }
 }
