@@ -1,18 +1,25 @@
 //! Actions that mean the same for soft and rigid bodies, in 2D and 3D.
 
 use fuwafuwa::{
-    BodyHandle, Dim, Dim2, Dim3, Impulse, Layers, Material, MotionType, RigidBody, Rotation, Shape,
-    SoftBody, Vector, Velocity, VoxelGrid, World, WorldConfig,
+    BodyHandle, Dim, Dim2, Dim3, DimAngular, DimVector, Impulse, Layers, Material, MotionType,
+    RigidBody, Rotation, Shape, SoftBody, Vec3, Velocity, VoxelGrid, World, WorldConfig,
 };
 use std::f32::consts::FRAC_PI_2;
 
-const SPIN: Vector = [0.0, 0.0, 0.5];
+/// Vector of the dimension; in 2D the third coordinate is dropped.
+fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
+    V::from_vec3(Vec3::new(x, y, z))
+}
+
+/// Angular velocity in the plane [rad/s].
+fn spin<D: Dim>(speed: f32) -> D::Angular {
+    D::Angular::from_vec3(Vec3::Z * speed)
+}
 
 /// A soft and a rigid cube of 1 m, both centred on the origin, in layers that do not collide.
 fn cubes<D: Dim>() -> (World<D>, [BodyHandle; 2]) {
-    let gravity = [0.0; 3];
     let config = WorldConfig {
-        gravity,
+        gravity: D::Vector::ZERO,
         ..WorldConfig::default()
     };
     let mut world = World::<D>::new(config).unwrap();
@@ -22,18 +29,15 @@ fn cubes<D: Dim>() -> (World<D>, [BodyHandle; 2]) {
     };
     let grid = VoxelGrid::<D>::cube(4, 1.0).unwrap();
     let soft = SoftBody::new(grid, &[Material::default()]).unwrap();
-    let middle = soft.centre_of_mass().map(|k| -k);
+    let middle = -soft.centre_of_mass();
     let soft = world.add_soft_body(soft.translated(middle).with_layers(apart));
-    let cube = Shape::Box {
-        centre: [0.0; 3],
-        half: [0.5; 3],
-    };
+    let cube = Shape::cuboid(D::Vector::splat(0.5));
     let rigid = RigidBody::dynamic(cube, 100.0).with_friction(0.3);
     let rigid = world.add_rigid_body(rigid).unwrap();
     (world, [soft.into(), rigid.into()])
 }
 
-fn centre<D: Dim>(world: &World<D>, body: BodyHandle) -> Vector {
+fn centre<D: Dim>(world: &World<D>, body: BodyHandle) -> D::Vector {
     match body {
         BodyHandle::Soft(body) => world[body].centre_of_mass(),
         BodyHandle::Rigid(rigid) => world.rigid_body(rigid).unwrap().position(),
@@ -41,37 +45,38 @@ fn centre<D: Dim>(world: &World<D>, body: BodyHandle) -> Vector {
 }
 
 #[track_caller]
-fn assert_near(found: Vector, expected: Vector, tolerance: f32) {
-    let is_near = (0..3).all(|axis| (found[axis] - expected[axis]).abs() <= tolerance);
+fn assert_near<V: DimVector>(found: V, expected: V, tolerance: f32) {
+    let apart = (found - expected).to_vec3();
+    let is_near = (0..3).all(|axis| apart[axis].abs() <= tolerance);
     assert!(is_near, "{found:?}, expected {expected:?}");
 }
 
 fn check_velocity<D: Dim>() {
     let (mut world, bodies) = cubes::<D>();
-    let linear = [1.0, -2.0, 0.0];
-    let angular = SPIN;
+    let linear = vector(1.0, -2.0, 0.0);
+    let angular = spin::<D>(0.5);
     for body in bodies {
         world
-            .add_velocity(body, Velocity::linear([9.0, 9.0, 0.0]))
+            .add_velocity(body, Velocity::linear(vector(9.0, 9.0, 0.0)))
             .unwrap();
         world
             .set_velocity(body, Velocity { linear, angular })
             .unwrap();
         let found = world.velocity(body).unwrap();
         assert_near(found.linear, linear, 1e-4);
-        assert_near(found.angular, angular, 1e-4);
+        assert_near(found.angular.to_vec3(), Vec3::Z * 0.5, 1e-4);
         world
             .add_velocity(body, Velocity::angular(angular))
             .unwrap();
         let found = world.velocity(body).unwrap();
         assert_near(found.linear, linear, 1e-4);
-        assert_near(found.angular, [0.0, 0.0, 1.0], 1e-4);
+        assert_near(found.angular.to_vec3(), Vec3::Z, 1e-4);
     }
     for _ in 0..30 {
         world.step();
     }
     for body in bodies {
-        assert_near(centre(&world, body), [0.5, -1.0, 0.0], 1e-3);
+        assert_near(centre(&world, body), vector(0.5, -1.0, 0.0), 1e-3);
     }
 }
 
@@ -85,22 +90,27 @@ fn check_impulse<D: Dim>() {
     let (mut world, bodies) = cubes::<D>();
     for body in bodies {
         // The mass is 100 kg in 2D and 3D. The moment of inertia of a cube is m/6 about its centre.
-        let impulse = Impulse::at([0.0; 3], [50.0, 0.0, 0.0]).within(2.0);
+        let impulse = Impulse::at(D::Vector::ZERO, vector(50.0, 0.0, 0.0)).within(2.0);
         world.apply_impulse(body, impulse).unwrap();
-        assert_near(world.velocity(body).unwrap().linear, [0.5, 0.0, 0.0], 1e-4);
+        assert_near(
+            world.velocity(body).unwrap().linear,
+            vector(0.5, 0.0, 0.0),
+            1e-4,
+        );
     }
     let [soft, rigid] = bodies;
     world.set_velocity(rigid, Velocity::default()).unwrap();
-    let impulse = Impulse::at([0.5, 0.0, 0.0], [0.0, 10.0, 0.0]);
+    let impulse = Impulse::at(vector(0.5, 0.0, 0.0), vector(0.0, 10.0, 0.0));
     world.apply_impulse(rigid, impulse).unwrap();
     let found = world.velocity(rigid).unwrap();
-    assert_near(found.linear, [0.0, 0.1, 0.0], 1e-5);
-    assert_near(found.angular, [0.0, 0.0, 0.3], 1e-5);
+    assert_near(found.linear, vector(0.0, 0.1, 0.0), 1e-5);
+    assert_near(found.angular.to_vec3(), Vec3::Z * 0.3, 1e-5);
     let before = world.velocity(soft).unwrap();
     world.apply_impulse(soft, impulse).unwrap();
     let gained = world.velocity(soft).unwrap();
-    assert_near(gained.linear, [0.5, 0.1, 0.0], 1e-4);
-    assert!(gained.angular[2] > before.angular[2] + 0.1, "{gained:?}");
+    assert_near(gained.linear, vector(0.5, 0.1, 0.0), 1e-4);
+    let [before, after] = [before, gained].map(|velocity| velocity.angular.to_vec3().z);
+    assert!(after > before + 0.1, "{gained:?}");
 }
 
 #[test]
@@ -114,24 +124,28 @@ fn check_pose<D: Dim>() {
     let quarter = Rotation::in_plane(FRAC_PI_2);
     for body in bodies {
         world
-            .set_velocity(body, Velocity::linear([1.0, 0.0, 0.0]))
+            .set_velocity(body, Velocity::linear(D::Vector::X))
             .unwrap();
-        world.translate(body, [2.0, 1.0, 0.0]).unwrap();
-        assert_near(centre(&world, body), [2.0, 1.0, 0.0], 1e-5);
-        assert_near(world.velocity(body).unwrap().linear, [1.0, 0.0, 0.0], 1e-4);
-        world.rotate_about(body, quarter, [1.0, 1.0, 0.0]).unwrap();
-        assert_near(centre(&world, body), [1.0, 2.0, 0.0], 1e-5);
-        assert_near(world.velocity(body).unwrap().linear, [0.0, 1.0, 0.0], 1e-4);
-        assert!(world.translate(body, [f32::NAN; 3]).is_err());
-        assert!(world.rotate_about(body, quarter, [2e6; 3]).is_err());
+        world.translate(body, vector(2.0, 1.0, 0.0)).unwrap();
+        assert_near(centre(&world, body), vector(2.0, 1.0, 0.0), 1e-5);
+        assert_near(world.velocity(body).unwrap().linear, D::Vector::X, 1e-4);
+        world
+            .rotate_about(body, quarter, vector(1.0, 1.0, 0.0))
+            .unwrap();
+        assert_near(centre(&world, body), vector(1.0, 2.0, 0.0), 1e-5);
+        assert_near(world.velocity(body).unwrap().linear, D::Vector::Y, 1e-4);
+        assert!(world.translate(body, D::Vector::splat(f32::NAN)).is_err());
+        assert!(
+            world
+                .rotate_about(body, quarter, D::Vector::splat(2e6))
+                .is_err()
+        );
     }
-    let lift = RigidBody::coupled(Shape::ball(0.1))
-        .at([0.0; 3])
-        .with_motion_type(MotionType::Kinematic);
+    let lift = RigidBody::kinematic(Shape::ball(0.1));
     let lift = world.add_rigid_body(lift).unwrap();
-    world.translate(lift, [5.0, 0.0, 0.0]).unwrap();
+    world.translate(lift, vector(5.0, 0.0, 0.0)).unwrap();
     world.step();
-    assert_near(centre(&world, lift.into()), [5.0, 0.0, 0.0], 1e-5);
+    assert_near(centre(&world, lift.into()), vector(5.0, 0.0, 0.0), 1e-5);
 }
 
 #[test]
@@ -148,11 +162,11 @@ fn check_sleep<D: Dim>() {
     };
     for body in bodies {
         world
-            .set_velocity(body, Velocity::linear([1.0, 0.0, 0.0]))
+            .set_velocity(body, Velocity::linear(D::Vector::X))
             .unwrap();
         world.put_to_sleep(body).unwrap();
         assert!(sleeps(&world, body));
-        assert_eq!(world.velocity(body).unwrap().linear, [0.0; 3]);
+        assert_eq!(world.velocity(body).unwrap().linear, D::Vector::ZERO);
         world.step();
         assert!(sleeps(&world, body));
         world.wake_up(body).unwrap();
@@ -163,7 +177,7 @@ fn check_sleep<D: Dim>() {
         unreachable!("the handles are those of a soft and a rigid body");
     };
     assert_eq!(world[soft].user_data(), 7);
-    assert_eq!(world.rigid_body(rigid).unwrap().user_data, 7);
+    assert_eq!(world.rigid_body(rigid).unwrap().user_data(), 7);
     world.set_motion_type(rigid, MotionType::Fixed).unwrap();
     assert!(world.put_to_sleep(rigid).is_err());
     assert_eq!(world.remove(rigid).unwrap().friction, 0.3);
@@ -185,19 +199,19 @@ fn check_builders<D: Dim>() {
     let BodyHandle::Rigid(rigid) = rigid else {
         unreachable!("the second handle is that of a rigid body")
     };
-    let (linear, angular) = ([1.0, 2.0, 0.0], SPIN);
+    let (linear, angular) = (vector(1.0, 2.0, 0.0), spin::<D>(0.5));
     let velocity = Velocity { linear, angular };
     let quarter = Rotation::in_plane(FRAC_PI_2);
     let body = world.remove(soft).unwrap();
-    let body = body.translated([1.0, 0.0, 0.0]).rotated(quarter);
+    let body = body.translated(D::Vector::X).rotated(quarter);
     let body = body
-        .rotated_about(quarter, [0.0; 3])
+        .rotated_about(quarter, D::Vector::ZERO)
         .with_velocity(velocity);
     let soft = world.add_soft_body(body.with_user_data(3)).into();
     let body = world.remove(rigid).unwrap();
-    let body = body.translated([1.0, 0.0, 0.0]).rotated(quarter);
+    let body = body.translated(D::Vector::X).rotated(quarter);
     let body = body
-        .rotated_about(quarter, [0.0; 3])
+        .rotated_about(quarter, D::Vector::ZERO)
         .with_velocity(velocity);
     let body = body
         .with_restitution(0.5)
@@ -205,10 +219,10 @@ fn check_builders<D: Dim>() {
         .with_user_data(3);
     let rigid = world.add_rigid_body(body).unwrap().into();
     for body in [soft, rigid] {
-        assert_near(centre(&world, body), [0.0, 1.0, 0.0], 1e-5);
+        assert_near(centre(&world, body), D::Vector::Y, 1e-5);
         let found = world.velocity(body).unwrap();
         assert_near(found.linear, linear, 1e-4);
-        assert_near(found.angular, angular, 1e-4);
+        assert_near(found.angular.to_vec3(), Vec3::Z * 0.5, 1e-4);
     }
 }
 

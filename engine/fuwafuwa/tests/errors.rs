@@ -1,25 +1,21 @@
 //! Errors: each names its cause, what was expected, and what was given.
 
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Error, Grading, Joint, JointAnchor, Law, Material, MotionType,
-    RigidBody, Shape, SoftBody, Velocity, VoxelGrid, World, WorldConfig,
+    Blade, Dim, Dim2, Dim3, DimVector, Error, Grading, Joint, JointAnchor, Law, Material,
+    MotionType, RigidBody, Shape, SoftBody, Vec2, Vec3, Velocity, VoxelGrid, World, WorldConfig,
 };
 
-fn ball() -> RigidBody {
-    let (centre, radius) = ([0.0; 3], 0.1);
-    RigidBody::dynamic(Shape::Ball { centre, radius }, 1.0)
+fn ball<D: Dim>() -> RigidBody<D> {
+    RigidBody::dynamic(Shape::ball(0.1), 1.0)
 }
 
-fn check_stale_handles<D: Dim>() {
+fn check_stale_handles<D: Dim>(blade: Blade<D>) {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let grid = VoxelGrid::<D>::cube(2, 1.0).unwrap();
     let body = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
     let rigid = world.add_rigid_body(ball()).unwrap();
-    let anchor = JointAnchor::RigidBody {
-        rigid,
-        at: [0.0; 3],
-    };
-    let joint = Joint::pin(anchor, JointAnchor::Point([0.0; 3]));
+    let anchor = JointAnchor::on(rigid, D::Vector::ZERO);
+    let joint = Joint::pin(anchor, JointAnchor::Point(D::Vector::ZERO));
     let joint = world.add_joint(joint).unwrap();
     world.remove(joint).unwrap();
     world.remove(rigid).unwrap();
@@ -29,7 +25,6 @@ fn check_stale_handles<D: Dim>() {
     assert_eq!(world.remove(joint).map(|_| ()), stale("joint"));
     assert_eq!(world.wake_up(rigid), stale("rigid body"));
     assert_eq!(world.wake_up(body), stale("soft body"));
-    let blade = Blade::segment([0.0; 2], [1.0; 2]);
     assert_eq!(world.cut(body, &blade).map(|_| ()), stale("soft body"));
     assert_eq!(
         world.remove(rigid).unwrap_err().to_string(),
@@ -39,14 +34,14 @@ fn check_stale_handles<D: Dim>() {
 
 #[test]
 fn stale_handle_error_names_kind_and_slot() {
-    check_stale_handles::<Dim2>();
-    check_stale_handles::<Dim3>();
+    check_stale_handles::<Dim2>(Blade::segment(Vec2::ZERO, Vec2::ONE));
+    check_stale_handles::<Dim3>(Blade::parallelogram(Vec3::ZERO, Vec3::X, Vec3::Y));
 }
 
 #[test]
 fn parameter_error_names_field_expected_and_given() {
     let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(Vec3::Y, Vec3::ZERO);
     let floor = world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.5))
         .unwrap();
@@ -57,12 +52,12 @@ fn parameter_error_names_field_expected_and_given() {
         "motion_type must be dynamic, given Fixed"
     );
     assert_eq!(
-        text(world.set_target_position(free, [0.0; 3])),
+        text(world.set_target_position(free, Vec3::ZERO)),
         "motion_type must be kinematic or coupled, given Dynamic { mass: 1.0 }"
     );
     assert_eq!(
-        text(world.set_velocity(free, Velocity::linear([f32::NAN, 0.0, 0.0]))),
-        "linear must be at most 1e6 m/s on each axis, given [NaN, 0.0, 0.0]"
+        text(world.set_velocity(free, Velocity::linear(Vec3::new(f32::NAN, 0.0, 0.0)))),
+        "linear must be at most 1e6 m/s on each axis, given Vec3(NaN, 0.0, 0.0)"
     );
     assert_eq!(
         text(world.set_motion_type(free, MotionType::Dynamic { mass: 0.0 })),
@@ -76,7 +71,7 @@ fn parameter_error_names_field_expected_and_given() {
         text(world.set_restitution(free, 1.5)),
         "restitution must be 0 to 1, given 1.5"
     );
-    assert_eq!(world.rigid_body(free).unwrap().friction, 0.5);
+    assert_eq!(world.rigid_body(free).unwrap().friction(), 0.5);
 }
 
 #[test]

@@ -5,7 +5,7 @@
 
 use fuwafuwa::Dim;
 use fuwafuwa::inspect::Element;
-use fuwafuwa::{Blade, Dim2, Material, SoftBody, VoxelGrid};
+use fuwafuwa::{Blade, Dim2, Material, SoftBody, Vec2, VoxelGrid};
 
 fn body_of(picture: &[&str]) -> SoftBody<Dim2> {
     let size = [picture[0].len(), picture.len(), 1];
@@ -39,7 +39,7 @@ fn check(voxels: &[&str], graded: &[&str], cuts: &[([f32; 2], [f32; 2])], remode
     let found = picture_of(&body);
     assert_eq!(found, graded, "graded:\n{}", found.join("\n"));
     for &(from, to) in cuts {
-        body.cut(&Blade::segment(from, to));
+        body.cut(&Blade::segment(Vec2::from(from), Vec2::from(to)));
         body.mesh()
             .validate(body.grid(), body.connectivity())
             .unwrap();

@@ -4,10 +4,18 @@ use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::inspect::Plasticity;
 use fuwafuwa::inspect::{elastic_part, flow, forces_after};
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Material, MotionType, RigidBody, Shape, SoftBody, SoftBodyHandle,
-    Vector, VoxelGrid, World, WorldConfig,
+    Dim, Dim2, Dim3, DimVector, Material, RigidBody, Shape, SoftBody, SoftBodyHandle, Vec3,
+    VoxelGrid, World, WorldConfig,
 };
 use glam::DVec3;
+
+mod blades;
+use blades::Blades;
+
+/// Vector of the dimension; in 2D the third coordinate is dropped.
+fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
+    V::from_vec3(Vec3::new(x, y, z))
+}
 
 fn rubber() -> Material {
     Material {
@@ -16,9 +24,9 @@ fn rubber() -> Material {
     }
 }
 
-fn weightless() -> WorldConfig {
+fn weightless<D: Dim>() -> WorldConfig<D> {
     WorldConfig {
-        gravity: Vector::ZERO,
+        gravity: D::Vector::ZERO,
         ..WorldConfig::default()
     }
 }
@@ -30,23 +38,16 @@ fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, SoftB
     let body = SoftBody::new(VoxelGrid::<D>::cube(8, 1.0).unwrap(), &[material]).unwrap();
     let id = world.add_soft_body(body);
     let plate = |y: f32| {
-        let half = [3.0, 0.25, 3.0];
-        let form = Shape::Box {
-            centre: Vector::ZERO,
-            half: half.into(),
-        };
-        let mut plate = RigidBody::new(form, MotionType::Kinematic).at(Vector::new(0.5, y, 0.0));
-        plate.friction = 0.0;
-        plate
+        let plate = RigidBody::kinematic(Shape::cuboid(vector(3.0, 0.25, 3.0)));
+        plate.at(vector(0.5, y, 0.0)).with_friction(0.0)
     };
-    let low = world.add_rigid_body(plate(-0.25)).unwrap();
+    world.add_rigid_body(plate(-0.25)).unwrap();
     let high = world.add_rigid_body(plate(1.25)).unwrap();
-    let _ = low;
     let go = |world: &mut World<D>, from: f32, to: f32, ticks: u32| {
         for tick in 1..=ticks {
             let y = from + (to - from) * tick as f32 / ticks as f32;
             world
-                .set_target_position(high, Vector::new(0.5, 0.25 + y, 0.0))
+                .set_target_position(high, vector(0.5, 0.25 + y, 0.0))
                 .unwrap();
             let report = world.step();
             assert_eq!(report.quarantined, 0);
@@ -57,7 +58,7 @@ fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, SoftB
     go(&mut world, share, 2.0, 60);
     go(&mut world, 2.0, 2.0, 120);
     let view = world[id].piece_views()[0];
-    let [height, width] = [1, 0].map(|axis: usize| view.high[axis] - view.low[axis]);
+    let [width, height, _] = (view.high - view.low).to_array();
     let volume = volume(&world[id]);
     ([height, width, volume], world, id)
 }
@@ -101,28 +102,25 @@ fn pressed_clay_stays_deformed_and_rubber_recovers() {
 }
 
 /// Positions and velocities of all nodes, for worlds that differ in other respects.
-fn node_states<D: Dim>(world: &World<D>) -> Vec<([f32; 3], [f32; 3], f32)> {
+fn node_states<D: Dim>(world: &World<D>) -> Vec<(D::Vector, D::Vector, f32)> {
     let states = |body: &SoftBody<D>| -> Vec<_> {
         let nodes = body.mesh().nodes();
         nodes.map(|(id, _)| body.node_state(id)).collect()
     };
-    world
-        .soft_bodies()
-        .map(|(_, body)| body)
-        .flat_map(states)
-        .collect()
+    let bodies = world.soft_bodies();
+    bodies.flat_map(|(_, body)| states(body)).collect()
 }
 
 /// A yield strain that is never reached gives the same bits as an infinite one.
 fn check_same_bits<D: Dim>() {
     let run = |material: Material| {
         let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-        let floor = Shape::half_space(Vector::Y, Vector::ZERO);
+        let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
         world
             .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
             .unwrap();
         let body = SoftBody::new(VoxelGrid::<D>::ball(10, 1.0).unwrap(), &[material]).unwrap();
-        world.add_soft_body(body.translated(Vector::new(0.0, 0.2, 0.0)));
+        world.add_soft_body(body.translated(vector(0.0, 0.2, 0.0)));
         (0..60).for_each(|_| _ = world.step());
         node_states(&world)
     };
@@ -174,20 +172,18 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
     for _ in 0..30 {
         for &node in &element.nodes {
             let rest = body.mesh().node(node).at.map(|k| k as f32);
-            let mut at = Vector::from(rest.map(|k| k + 0.35 * random()));
-            if D::N == 2 {
-                at.z = 0.0;
-            }
-            assert!(body.set_node_state(node, at, Vector::ZERO));
+            let [x, y, z] = rest.map(|k| k + 0.35 * random());
+            body.set_node_state(node, vector(x, y, z), D::Vector::ZERO)
+                .unwrap();
         }
-        let place = |&node: &_| body.node_state(node).0.as_dvec3();
+        let place = |&node: &_| body.node_state(node).0.to_vec3().as_dvec3();
         let positions: Vec<DVec3> = element.nodes.iter().map(place).collect();
         let expected = forces_after(elasticity, &undone, &stencil, 1.0, &positions);
         let deformation = body.element_state(id).unwrap().deformation;
         let before = body.element_state(id).unwrap().energy;
         undone = flow::<D>(plasticity, elasticity, &deformation, &undone);
         // A substep of zero length moves no node.
-        body.advance(0.0, Vector::ZERO);
+        body.advance(0.0, D::Vector::ZERO);
         let after = body.element_state(id).unwrap().energy;
         assert!(after <= before * (1.0 + 1e-5), "energy {before} to {after}");
         for (&node, expected) in element.nodes.iter().zip(&expected) {
@@ -235,13 +231,12 @@ fn check_kept<D: Dim>() {
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for node in nodes {
         let (at, _, _) = body.node_state(node);
-        let [x, y, _] = [0, 1, 2].map(|k: usize| at[k] - 0.5);
-        let mut velocity = [2.5 * x - 3.0 * y, -2.0 * y + 1.0 * x, 1.5 * x];
-        velocity[D::N..].fill(0.0);
-        body.set_node_state(node, at, velocity.into());
+        let [x, y] = [at[0] - 0.5, at[1] - 0.5];
+        let velocity = vector(2.5 * x - 3.0 * y, -2.0 * y + 1.0 * x, 1.5 * x);
+        body.set_node_state(node, at, velocity).unwrap();
     }
     let energy = |world: &World<D>| {
-        let energies = world[id].energies(Vector::ZERO);
+        let energies = world[id].energies(D::Vector::ZERO);
         energies.iter().map(|energy| energy.total()).sum::<f64>()
     };
     let momentum = world[id].momentum();
@@ -285,7 +280,7 @@ fn plastic_flow_preserves_momentum_and_dissipates_energy() {
 }
 
 /// A deformed body is cut: new elements inherit the plastic strain of the old ones, and so does a snapshot.
-fn check_inherited<D: Dim>() {
+fn check_inherited<D: Blades>() {
     let (_, mut world, id) = pressed::<D>(Material::clay(), 0.6);
     let mean = |world: &World<D>| {
         let body = &world[id];
@@ -298,12 +293,9 @@ fn check_inherited<D: Dim>() {
     };
     let (dent, elements) = (mean(&world), world[id].mesh().element_count());
     assert!(dent > 0.1);
-    let [x, y, _] = world[id].centre_of_mass().to_array();
-    let blade = Blade {
-        from: Vector::new(x - 0.03, y - 2.0, -3.0),
-        across: Vector::new(0.05, 4.0, 0.0),
-        along: Vector::new(0.0, 0.0, 6.0),
-    };
+    let centre = world[id].centre_of_mass();
+    let corner = Vec3::new(centre[0] - 0.03, centre[1] - 2.0, -3.0);
+    let blade = D::blade(corner, Vec3::new(0.05, 4.0, 0.0), Vec3::Z * 6.0);
     world.cut(id, &blade).unwrap();
     let body = &world[id];
     assert!(body.pieces().count() == 2 && body.mesh().element_count() >= elements);
@@ -358,26 +350,26 @@ fn check_abuse<D: Dim>(seed: u32) {
         ..Material::clay()
     };
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
+    let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
         .unwrap();
     let body = SoftBody::new(VoxelGrid::<D>::ball(8, 1.0).unwrap(), &[clay]).unwrap();
     let id = world.add_soft_body(body);
     let hand = world
-        .add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at(Vector::new(0.5, 2.0, 0.5)))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at(vector(0.5, 2.0, 0.5)))
         .unwrap();
     let limit = f64::from(clay.plastic_limit);
-    let (mut place, mut target) = ([0.5, 2.0, 0.5], [0.5; 3]);
+    let (mut goal, mut target) = (Vec3::new(0.5, 2.0, 0.5), Vec3::splat(0.5));
     for tick in 0..120 {
         if tick % 8 == 0 {
-            target = [random() * 2.0 - 0.5, random() * 1.2, random()];
+            target = Vec3::new(random() * 2.0 - 0.5, random() * 1.2, random());
         }
         // Limits the speed of the hand to some metres per second. A faster one would hurl away any body, even an
         // elastic one.
-        let goal = [0, 1, 2].map(|k: usize| place[k] + (target[k] - place[k]).clamp(-0.08, 0.08));
-        place = goal;
-        world.set_target_position(hand, goal.into()).unwrap();
+        goal += (target - goal).clamp(Vec3::splat(-0.08), Vec3::splat(0.08));
+        let position = D::Vector::from_vec3(goal);
+        world.set_target_position(hand, position).unwrap();
         let report = world.step();
         assert_eq!(report.quarantined, 0, "{}D, seed {seed}, tick {tick}", D::N);
     }

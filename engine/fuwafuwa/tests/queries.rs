@@ -1,21 +1,31 @@
 //! Queries on a world: rays, nearest surfaces, points, overlaps.
 
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Layers, Material, ObjectRef, PieceId, QueryFilter, QueryHit,
-    QueryOverlap, Ray, RigidBody, Rotation, Shape, SoftBody, VoxelGrid, World, WorldConfig,
+    Dim, Dim2, Dim3, DimVector, Layers, Material, ObjectRef, PieceId, QueryFilter, QueryHit,
+    QueryOverlap, Ray, RigidBody, RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, Vec3,
+    VoxelGrid, World, WorldConfig,
 };
+use glam::DVec3;
 
-const WEIGHTLESS: WorldConfig = WorldConfig {
-    gravity: Vector::ZERO,
-    drag: 0.0,
-    max_substeps: 64,
-    tick: fuwafuwa::DEFAULT_TICK,
-};
+mod blades;
+use blades::Blades;
+
+/// Vector of the dimension; in 2D the third coordinate is dropped.
+fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
+    V::from_vec3(Vec3::new(x, y, z))
+}
+
+fn weightless<D: Dim>() -> WorldConfig<D> {
+    WorldConfig {
+        gravity: D::Vector::ZERO,
+        ..WorldConfig::default()
+    }
+}
 
 /// A ball of two materials centred at the origin; material 2 fills a radius of 0.25 m.
 fn ball<D: Dim>(n: usize) -> SoftBody<D> {
-    let half = Vector::new(0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 });
-    let apart = |at: Vector| (at - half).length();
+    let half = Vec3::new(0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 });
+    let apart = |at: Vec3| (at - half).length();
     let size = [n, n, D::depth(n)];
     let grid = VoxelGrid::from_centres(size, 1.0 / n as f32, |at| match apart(at) {
         distance if distance < 0.25 => 2,
@@ -23,24 +33,18 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
         _ => 0,
     });
     let body = SoftBody::new(grid.unwrap(), &[Material::default(); 2]).unwrap();
-    body.translated(half.map(|k| -k).into())
+    body.translated(D::Vector::from_vec3(-half))
 }
 
 /// The ball is rotated, so that no element is aligned with an axis.
 fn world<D: Dim>() -> World<D> {
-    let mut world = World::new(WEIGHTLESS).unwrap();
-    world.add_soft_body(ball::<D>(16).rotated_about(Rotation::in_plane(0.4), [0.0; 3]));
+    let mut world = World::new(weightless()).unwrap();
+    world.add_soft_body(ball::<D>(16).rotated_about(Rotation::in_plane(0.4), D::Vector::ZERO));
+    let floor = Shape::half_space(D::Vector::Y, vector(0.0, -2.0, 0.0));
     world
-        .add_rigid_body(
-            RigidBody::fixed(Shape::half_space(Vector::Y, Vector::new(0.0, -2.0, 0.0)))
-                .with_friction(0.3),
-        )
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.3))
         .unwrap();
-    let bar = Shape::Capsule {
-        from: Vector::new(3.0, -1.0, 0.0),
-        to: Vector::new(3.0, 1.0, 0.0),
-        radius: 0.25,
-    };
+    let bar = Shape::capsule(vector(3.0, -1.0, 0.0), vector(3.0, 1.0, 0.0), 0.25);
     world
         .add_rigid_body(RigidBody::fixed(bar).with_friction(0.3))
         .unwrap();
@@ -48,13 +52,13 @@ fn world<D: Dim>() -> World<D> {
 }
 
 /// Directions all around.
-fn around<D: Dim>() -> Vec<Vector> {
+fn around<D: Dim>() -> Vec<D::Vector> {
     let turned = |k: usize| {
         let axis = match D::N {
-            2 => Vector::Z,
-            _ => Vector::new(0.3, 0.8, 1.0),
+            2 => Vec3::Z,
+            _ => Vec3::new(0.3, 0.8, 1.0),
         };
-        Rotation::about(axis, 0.37 * k as f32).apply(Vector::X)
+        Rotation::about(axis, 0.37 * k as f32).apply(D::Vector::X)
     };
     (0..40).map(turned).collect()
 }
@@ -71,8 +75,8 @@ fn check_rays<D: Dim>() {
         world.ray_cast(Ray::new(origin, direction), 20.0, QueryFilter::default())
     };
     for direction in around::<D>() {
-        let from = direction.map(|k| 5.0 * k);
-        let inwards = direction.map(|k| -k);
+        let from = direction * 5.0;
+        let inwards = -direction;
         let found = soft_hit(from, inwards, 10.0).unwrap();
         // The surface consists of voxels, with corners up to two voxel widths from the sphere.
         assert!(
@@ -82,39 +86,41 @@ fn check_rays<D: Dim>() {
         let piece = PieceId(0);
         assert_eq!(found.object, ObjectRef::Piece { body, piece });
         assert_eq!(found.element.map(|element| element.material), Some(1));
-        let facing: f32 = (0..3).map(|k| found.normal[k] * direction[k]).sum();
-        assert!(facing > 0.0, "{found:?}");
+        assert!(found.normal.dot(direction) > 0.0, "{found:?}");
         // A ray from inside hits the surface on its way out.
-        let out = soft_hit([0.0; 3], direction, 10.0).unwrap();
+        let out = soft_hit(D::Vector::ZERO, direction, 10.0).unwrap();
         assert!((out.distance - 0.5).abs() < 2.0 * voxel, "{out:?}");
         assert!((out.distance + found.distance - 5.0).abs() < 1e-4);
         assert!(soft_hit(from, direction, 10.0).is_none());
         assert!(soft_hit(from, inwards, found.distance - 0.01).is_none());
         assert!(soft_hit(from, inwards, found.distance).is_some());
         assert_eq!(
-            soft_hit(from, inwards.map(|k| 7.0 * k), 10.0).map(|hit| hit.object),
+            soft_hit(from, inwards * 7.0, 10.0).map(|hit| hit.object),
             Some(found.object)
         );
     }
     // Without a filter, the ray hits the first object.
-    let first = |from| hit(from, [-1.0, 0.0, 0.0]).unwrap();
-    let bar = first([9.0, 0.0, 0.0]);
+    let first = |from| hit(from, vector(-1.0, 0.0, 0.0)).unwrap();
+    let bar = first(vector(9.0, 0.0, 0.0));
     assert!(bar.object.rigid_body().is_some() && bar.element.is_none());
     assert!(
         (bar.distance - 5.75).abs() < 1e-3 && (bar.normal[0] - 1.0).abs() < 1e-3,
         "{bar:?}"
     );
-    assert!(first([2.0, 0.0, 0.0]).object.soft_body().is_some());
-    let floor = hit([9.0, 0.0, 0.0], [0.1, -1.0, 0.0]).unwrap();
+    assert!(first(vector(2.0, 0.0, 0.0)).object.soft_body().is_some());
+    let floor = hit(vector(9.0, 0.0, 0.0), vector(0.1, -1.0, 0.0)).unwrap();
     assert!((floor.point[1] + 2.0).abs() < 1e-3, "{floor:?}");
-    let ray = Ray::new([9.0, 0.0, 0.0], [-1.0, 0.0, 0.0]);
+    let ray = Ray::new(vector(9.0, 0.0, 0.0), vector(-1.0, 0.0, 0.0));
     for max_distance in [-1.0, f32::NAN] {
         assert_eq!(
             world.ray_cast(ray, max_distance, QueryFilter::default()),
             None
         );
     }
-    for (from, direction) in [([f32::NAN; 3], [1.0, 0.0, 0.0]), ([0.0; 3], [0.0; 3])] {
+    for (from, direction) in [
+        (D::Vector::splat(f32::NAN), D::Vector::X),
+        (D::Vector::ZERO, D::Vector::ZERO),
+    ] {
         assert!(hit(from, direction).is_none());
     }
 }
@@ -131,29 +137,29 @@ fn check_nearest<D: Dim>() {
         |point, max_distance| world.closest_point(point, max_distance, QueryFilter::default());
     for direction in around::<D>() {
         for far in [0.2, 0.8, 1.4] {
-            let at = direction.map(|k| far * k);
+            let at = direction * far;
             let filter = QueryFilter::default().only_soft();
             let found = world.closest_point(at, 9.0, filter).unwrap();
             // No bare face may be nearer.
-            let body = world.soft_bodies().next().unwrap().1;
+            let (_, body) = world.soft_bodies().next().unwrap();
             let corners = body
                 .facets()
                 .flat_map(|facet| facet.corners.into_iter().take(D::CORNERS / 2));
-            let apart = |corner: Vector| (corner - at).length();
+            let apart = |corner: Vec3| (corner - at.to_vec3()).length();
             let corner = corners.map(apart).fold(f32::INFINITY, f32::min);
             assert!(found.distance <= corner + 1e-5, "{found:?} {corner}");
             assert!(corner - found.distance < 1.0 / 16.0, "{found:?} {corner}");
-            assert!((apart(found.point) - found.distance).abs() < 1e-5);
+            assert!((apart(found.point.to_vec3()) - found.distance).abs() < 1e-5);
         }
     }
-    let floor = closest([0.0, -1.9, 0.0], 9.0).unwrap();
+    let floor = closest(vector(0.0, -1.9, 0.0), 9.0).unwrap();
     assert!(floor.object.rigid_body().is_some());
     assert!(
         (floor.point[1] + 2.0).abs() < 1e-5 && (floor.distance - 0.1).abs() < 1e-5,
         "{floor:?}"
     );
-    assert!(closest([0.0, 9.0, 0.0], 1.0).is_none());
-    assert!(closest([f32::NAN; 3], 1.0).is_none());
+    assert!(closest(vector(0.0, 9.0, 0.0), 1.0).is_none());
+    assert!(closest(D::Vector::splat(f32::NAN), 1.0).is_none());
 }
 
 #[test]
@@ -165,7 +171,7 @@ fn closest_point_is_on_the_nearest_surface() {
 fn check_places<D: Dim>() {
     let world = world::<D>();
     let objects_at = |point| world.objects_at(point, QueryFilter::default());
-    let material = |at: Vector| match objects_at(at)[..] {
+    let material = |at: D::Vector| match objects_at(at)[..] {
         [] => 0,
         [QueryOverlap { element, .. }] => element.unwrap().material,
         ref other => panic!("{other:?}"),
@@ -182,11 +188,11 @@ fn check_places<D: Dim>() {
             assert_eq!(material(at), expect, "{at:?}");
         }
     }
-    for point in [[3.0, 0.0, 0.0], [7.0, -3.0, 0.0]] {
+    for point in [vector(3.0, 0.0, 0.0), vector(7.0, -3.0, 0.0)] {
         let found = objects_at(point);
         assert!(found.len() == 1 && found[0].object.rigid_body().is_some());
     }
-    assert!(objects_at([f32::NAN; 3]).is_empty());
+    assert!(objects_at(D::Vector::splat(f32::NAN)).is_empty());
 }
 
 #[test]
@@ -195,35 +201,24 @@ fn objects_at_returns_objects_and_materials() {
     check_places::<Dim3>();
 }
 
-fn check_overlaps<D: Dim>() {
+fn check_overlaps<D: Blades>() {
     let mut world = world::<D>();
     let body = world.nth_soft_body(0).unwrap();
-    let count = |world: &World<D>, shape: Shape| {
-        let found = world.overlaps(&shape, QueryFilter::default());
+    let count = |world: &World<D>, shape: Shape<D>| {
+        let found = world.overlaps(&shape, QueryFilter::default()).unwrap();
         let soft = found.iter().filter(|found| found.element.is_some()).count();
         [found.len() - soft, soft]
     };
-    let probe = |x: f32, radius: f32| Shape::Ball {
-        centre: Vector::new(x, 0.0, 0.0),
-        radius,
-    };
+    let probe = |x: f32, radius: f32| Shape::ball(radius).translated(vector(x, 0.0, 0.0));
     assert_eq!(count(&world, probe(0.0, 0.05)), [0, 1], "inside");
     assert_eq!(count(&world, probe(0.9, 0.45)), [0, 1], "over its edge");
     assert_eq!(count(&world, probe(1.1, 0.3)), [0, 0], "beside it");
     assert_eq!(count(&world, probe(0.0, 2.5)), [1, 1], "around it");
     assert_eq!(count(&world, probe(0.0, 2.9)), [2, 1], "as far as the bar");
-    let needle = Shape::Capsule {
-        from: Vector::new(-3.0, 0.013, 0.0),
-        to: Vector::new(2.0, 0.013, 0.0),
-        radius: 0.001,
-    };
+    let needle = Shape::capsule(vector(-3.0, 0.013, 0.0), vector(2.0, 0.013, 0.0), 0.001);
     assert_eq!(count(&world, needle), [0, 1], "through it");
     // Cut in two, the body counts as two pieces.
-    let blade = Blade {
-        from: Vector::new(0.0, -1.0, -1.0),
-        across: Vector::new(0.0, 2.0, 0.0),
-        along: Vector::new(0.0, 0.0, 2.0),
-    };
+    let blade = D::blade(Vec3::new(0.0, -1.0, -1.0), Vec3::Y * 2.0, Vec3::Z * 2.0);
     world.cut(body, &blade).unwrap();
     assert_eq!(count(&world, probe(0.0, 0.3)), [0, 2], "across the cut");
 }
@@ -235,47 +230,37 @@ fn overlaps_returns_pieces_and_rigid_bodies() {
 }
 
 /// Two equal boxes side by side, a sensor in front of both, and a soft cube behind the first one.
-fn row<D: Dim>() -> (
-    World<D>,
-    [fuwafuwa::RigidBodyHandle; 3],
-    fuwafuwa::SoftBodyHandle,
-) {
-    let mut world = World::new(WEIGHTLESS).unwrap();
-    let cuboid = |centre| Shape::Box {
-        centre,
-        half: [0.5; 3],
-    };
-    let mut gate = RigidBody::fixed(cuboid([-2.0, 0.0, 0.0])).with_friction(0.3);
-    gate.is_sensor = true;
-    let mut second = RigidBody::fixed(cuboid([2.0, 0.0, 0.0])).with_friction(0.3);
-    second.layers = Layers {
+fn row<D: Dim>() -> (World<D>, [RigidBodyHandle; 3], SoftBodyHandle) {
+    let mut world = World::new(weightless()).unwrap();
+    let cuboid = |x| Shape::cuboid(D::Vector::splat(0.5)).translated(vector(x, 0.0, 0.0));
+    let wall = |x| RigidBody::fixed(cuboid(x)).with_friction(0.3);
+    let gate = wall(-2.0).with_sensor(true);
+    let first = wall(0.0);
+    let second = wall(2.0).with_layers(Layers {
         memberships: 0b10,
         filters: 0b01,
-    };
-    let first = RigidBody::fixed(cuboid([0.0; 3])).with_friction(0.3);
+    });
     let rigids = [gate, first, second].map(|rigid| world.add_rigid_body(rigid).unwrap());
-    let half = [0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 }];
+    let half = Vec3::new(0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 });
     let cube = SoftBody::new(VoxelGrid::cube(4, 1.0).unwrap(), &[Material::default()]).unwrap();
-    let cube = cube.translated([4.0 - half[0], -half[1], -half[2]]);
+    let cube = cube.translated(vector(4.0 - half.x, -half.y, -half.z));
     let cube = world.add_soft_body(cube);
     (world, rigids, cube)
 }
 
-fn check_filters<D: Dim>() {
+fn check_filters<D: Blades>() {
     let (mut world, [gate, first, second], cube) = row::<D>();
-    let ray = Ray::new([-5.0, 0.1, 0.0], [1.0, 0.0, 0.0]);
+    let ray = Ray::new(vector(-5.0, 0.1, 0.0), D::Vector::X);
     let hit = |world: &World<D>, filter: QueryFilter<'_>| {
         let hit = world.ray_cast(ray, 100.0, filter.clone());
         // All queries respect the filter.
         if let Some(hit) = hit {
-            let behind = [hit.point[0] + 0.1, 0.1, 0.0];
-            let probe = Shape::Ball {
-                centre: behind,
-                radius: 0.05,
-            };
+            let behind = vector(hit.point[0] + 0.1, 0.1, 0.0);
+            let probe = Shape::ball(0.05).translated(behind);
             let inside = world.objects_at(behind, filter.clone());
             assert_eq!(inside[0].object, hit.object);
-            assert_eq!(world.overlaps(&probe, filter.clone())[0].object, hit.object);
+            let near = world.overlaps(&probe, filter.clone()).unwrap();
+            assert_eq!(near[0].object, hit.object);
             let closest = world.closest_point(hit.point, 1.0, filter).unwrap();
             assert_eq!(closest.object, hit.object);
         }
@@ -324,22 +309,16 @@ fn check_filters<D: Dim>() {
             Some(rigid) => world.rigid_body(rigid).unwrap().position(),
             None => return false,
         };
-        let region = Shape::Ball {
-            centre,
-            radius: 1.8,
-        };
-        world.overlaps(&region, QueryFilter::default()).len() == 2
+        let region = Shape::ball(1.8).translated(centre);
+        let near = world.overlaps(&region, QueryFilter::default());
+        near.unwrap().len() == 2
     };
     assert_eq!(
         hit(&world, all.clone().with_predicate(&is_isolated)),
         rigid(first)
     );
     // One piece can be excluded, and the other one stays.
-    let blade = Blade {
-        from: [4.0, -1.0, -1.0],
-        across: [0.0, 2.0, 0.0],
-        along: [0.0, 0.0, 2.0],
-    };
+    let blade = D::blade(Vec3::new(4.0, -1.0, -1.0), Vec3::Y * 2.0, Vec3::Z * 2.0);
     world.cut(cube, &blade).unwrap();
     let near = hit(&world, all.clone().only_soft()).unwrap();
     let far = hit(&world, all.only_soft().excluding(near)).unwrap();
@@ -359,8 +338,8 @@ fn filter_selects_objects_of_all_queries() {
 #[test]
 fn ray_prefers_the_lowest_object_among_equally_distant_ones() {
     let (mut world, [_, first, _], _) = row::<Dim3>();
-    let ray = Ray::new([-5.0, 0.1, 0.0], [1.0, 0.0, 0.0]);
-    let cuboid = world.rigid_body(first).unwrap().clone();
+    let ray = Ray::new(Vec3::new(-5.0, 0.1, 0.0), Vec3::X);
+    let cuboid = world.rigid_body(first).unwrap().definition();
     let copy = world.add_rigid_body(cuboid).unwrap();
     let hit = |world: &World<Dim3>, filter| world.ray_cast(ray, 100.0, filter).unwrap().object;
     assert_eq!(
@@ -378,30 +357,23 @@ fn ray_prefers_the_lowest_object_among_equally_distant_ones() {
 
 /// Returns the distance along a ray with a unit direction to an exposed face, by a formula in double
 /// precision that shares nothing with the engine.
-fn distance_to<D: Dim>(corners: [Vector; 4], origin: Vector, direction: Vector) -> Option<f64> {
-    let [origin, direction] = [origin, direction].map(|v| v.map(f64::from));
-    let corners = corners.map(|v| v.map(f64::from));
-    let minus = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k: usize| a[k] - b[k]);
-    let volume = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-            + a[1] * (b[2] * c[0] - b[0] * c[2])
-            + a[2] * (b[0] * c[1] - b[1] * c[0])
-    };
+fn distance_to<D: Dim>(corners: [Vec3; 4], origin: Vec3, direction: Vec3) -> Option<f64> {
+    let (origin, direction) = (origin.as_dvec3(), direction.as_dvec3());
+    let volume = |a: DVec3, b: DVec3, c: DVec3| a.dot(b.cross(c));
     // Solves origin + t · direction = a + u · (b − a) + v · (c − a) by Cramer's rule.
-    let triangle = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
-        let (along, beside, reach) = (minus(b, a), minus(c, a), minus(origin, a));
-        let back = direction.map(|k| -k);
+    let triangle = |a: DVec3, b: DVec3, c: DVec3| {
+        let (along, beside, reach) = (b - a, c - a, origin - a);
+        let back = -direction;
         let all = volume(along, beside, back);
         let u = volume(reach, beside, back) / all;
         let v = volume(along, reach, back) / all;
         let t = volume(along, beside, reach) / all;
         (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0).then_some(t)
     };
-    let [a, b, c, d] = corners;
+    let [a, b, c, d] = corners.map(Vec3::as_dvec3);
     if D::N == 2 {
         // A strip along the third axis, wide enough for every ray in the plane.
-        let up = |[x, y, _]: [f64; 3]| [x, y, 9.0];
-        let down = |[x, y, _]: [f64; 3]| [x, y, -9.0];
+        let (up, down) = (|at: DVec3| at.with_z(9.0), |at: DVec3| at.with_z(-9.0));
         let halves = [
             triangle(down(a), down(b), up(b)),
             triangle(down(a), up(b), up(a)),
@@ -413,23 +385,20 @@ fn distance_to<D: Dim>(corners: [Vector; 4], origin: Vector, direction: Vector) 
 }
 
 /// All queries on a grid of points and rays.
-type Answers = (Vec<Option<QueryHit>>, Vec<Vec<QueryOverlap>>);
+type Answers<D> = (Vec<Option<QueryHit<D>>>, Vec<Vec<QueryOverlap>>);
 
-fn answers<D: Dim>(world: &World<D>) -> Answers {
+fn answers<D: Dim>(world: &World<D>) -> Answers<D> {
     let (mut hits, mut overlaps) = (Vec::new(), Vec::new());
     for (k, direction) in around::<D>().into_iter().enumerate() {
-        let origin = direction.map(|along| 4.0 * along);
-        let target = [0.03 * k as f32 - 0.6, 0.6 - 0.03 * k as f32, 0.0];
-        let inwards = [0, 1, 2].map(|axis: usize| target[axis] - origin[axis]);
+        let origin = direction * 4.0;
+        let target: D::Vector = vector(0.03 * k as f32 - 0.6, 0.6 - 0.03 * k as f32, 0.0);
+        let inwards = target - origin;
         for filter in [QueryFilter::default(), QueryFilter::default().only_soft()] {
             hits.push(world.ray_cast(Ray::new(origin, inwards), 20.0, filter.clone()));
             hits.push(world.closest_point(target, 20.0, filter.clone()));
             overlaps.push(world.objects_at(target, filter.clone()));
-            let probe = Shape::Ball {
-                centre: direction.map(|along| 0.6 * along),
-                radius: 0.02 * k as f32 + 0.01,
-            };
-            overlaps.push(world.overlaps(&probe, filter));
+            let probe = Shape::ball(0.02 * k as f32 + 0.01).translated(direction * 0.6);
+            overlaps.push(world.overlaps(&probe, filter).unwrap());
         }
     }
     (hits, overlaps)
@@ -446,18 +415,13 @@ fn check_cache<D: Dim>(world: &World<D>, step: &str) {
         let loaded = fuwafuwa::snapshot::load::<D>(&bytes).unwrap();
         assert_eq!(known, answers(&loaded), "{step}");
     }
-    let facets = || {
-        world
-            .soft_bodies()
-            .map(|(_, body)| body)
-            .flat_map(|body| body.facets())
-    };
+    let facets = || world.soft_bodies().flat_map(|(_, body)| body.facets());
     let mut hits = 0;
     for direction in around::<D>() {
-        let origin = direction.map(|along| 4.0 * along);
-        let inwards = direction.map(|along| -along);
-        let expected =
-            facets().filter_map(|facet| distance_to::<D>(facet.corners, origin, inwards));
+        let origin = direction * 4.0;
+        let inwards = -direction;
+        let distance = |corners| distance_to::<D>(corners, origin.to_vec3(), inwards.to_vec3());
+        let expected = facets().filter_map(|facet| distance(facet.corners));
         let expected = expected.reduce(f64::min);
         let filter = QueryFilter::default().only_soft();
         let found = world.ray_cast(Ray::new(origin, inwards), 20.0, filter);
@@ -474,30 +438,23 @@ fn check_cache<D: Dim>(world: &World<D>, step: &str) {
     assert!(hits > 5, "{step}: {hits} rays hit");
 }
 
-fn check_queries_after_changes<D: Dim>() {
+fn check_queries_after_changes<D: Blades>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]);
+    let floor = Shape::half_space(D::Vector::Y, vector(0.0, -1.0, 0.0));
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.3))
         .unwrap();
-    let free = Shape::Ball {
-        centre: [1.5, 0.0, 0.0],
-        radius: 0.2,
-    };
+    let free = Shape::ball(0.2).translated(vector(1.5, 0.0, 0.0));
     let free = world.add_rigid_body(RigidBody::dynamic(free, 1.0)).unwrap();
     let body = world.add_soft_body(ball::<D>(12));
-    let other = world.add_soft_body(ball::<D>(8).translated([0.0, 1.2, 0.0]));
+    let other = world.add_soft_body(ball::<D>(8).translated(vector(0.0, 1.2, 0.0)));
     check_cache(&world, "start");
     for _ in 0..20 {
         world.step();
         assert_eq!(answers(&world), answers(&world.clone()));
     }
     check_cache(&world, "ticks");
-    let blade = Blade {
-        from: [0.02, -2.0, -2.0],
-        across: [0.0, 4.0, 0.0],
-        along: [0.0, 0.0, 4.0],
-    };
+    let blade = D::blade(Vec3::new(0.02, -2.0, -2.0), Vec3::Y * 4.0, Vec3::Z * 4.0);
     world.cut(body, &blade).unwrap();
     check_cache(&world, "cut");
     for _ in 0..10 {
@@ -506,13 +463,13 @@ fn check_queries_after_changes<D: Dim>() {
     check_cache(&world, "ticks after the cut");
     world.remove_piece(body, PieceId(1)).unwrap();
     check_cache(&world, "removed piece");
-    world.translate(body, [0.1, 0.2, 0.0]).unwrap();
+    world.translate(body, vector(0.1, 0.2, 0.0)).unwrap();
     world
-        .rotate_about(other, Rotation::in_plane(0.7), [0.0; 3])
+        .rotate_about(other, Rotation::in_plane(0.7), D::Vector::ZERO)
         .unwrap();
     check_cache(&world, "moves");
     world
-        .set_pose(free, [0.3, 1.1, 0.0], Rotation::NONE)
+        .set_pose(free, vector(0.3, 1.1, 0.0), Rotation::NONE)
         .unwrap();
     check_cache(&world, "moved rigid body");
     let nodes = world[other].mesh().nodes();
@@ -520,7 +477,9 @@ fn check_queries_after_changes<D: Dim>() {
     let changed = world.soft_body_mut(other).unwrap();
     for node in nodes {
         let (at, velocity, _) = changed.node_state(node);
-        changed.set_node_state(node, [1.2 * at[0], 0.9 * at[1], at[2]], velocity);
+        let at = at.to_vec3() * Vec3::new(1.2, 0.9, 1.0);
+        let at = D::Vector::from_vec3(at);
+        changed.set_node_state(node, at, velocity).unwrap();
     }
     check_cache(&world, "moved nodes");
     *world.soft_body_mut(other).unwrap() = ball::<D>(9);
@@ -528,7 +487,7 @@ fn check_queries_after_changes<D: Dim>() {
     world.remove(body).unwrap();
     world.remove(free).unwrap();
     check_cache(&world, "removed bodies");
-    let again = world.add_soft_body(ball::<D>(10).translated([0.3, 0.0, 0.0]));
+    let again = world.add_soft_body(ball::<D>(10).translated(vector(0.3, 0.0, 0.0)));
     check_cache(&world, "added body in the slot of another");
     world.soft_body_mut(again).unwrap().crumble();
     for _ in 0..20 {

@@ -5,17 +5,25 @@ use fuwafuwa::inspect::CellHierarchy;
 use fuwafuwa::inspect::Mesh;
 use fuwafuwa::snapshot::{load, save};
 use fuwafuwa::{
-    Blade, Bookmark, Dim, Dim2, Dim3, Event, Grading, Joint, JointAnchor, Material, ObjectRef,
-    PieceId, PieceSize, Removed, RigidBody, Shape, SoftBody, SoftBodyHandle, Velocity, VoxelGrid,
-    World, WorldConfig,
+    Blade, Bookmark, Dim, Dim2, Dim3, DimAngular, DimVector, Event, Grading, Joint, JointAnchor,
+    Material, ObjectRef, PieceId, PieceSize, Removed, RigidBody, Shape, SoftBody, SoftBodyHandle,
+    Vec2, Vec3, Velocity, VoxelGrid, World, WorldConfig,
 };
 
-const WEIGHTLESS: WorldConfig = WorldConfig {
-    gravity: Vector::ZERO,
-    drag: 0.0,
-    max_substeps: 64,
-    tick: fuwafuwa::DEFAULT_TICK,
-};
+mod blades;
+use blades::Blades;
+
+/// Vector of the dimension; in 2D the third coordinate is dropped.
+fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
+    V::from_vec3(Vec3::new(x, y, z))
+}
+
+fn weightless<D: Dim>() -> WorldConfig<D> {
+    WorldConfig {
+        gravity: D::Vector::ZERO,
+        ..WorldConfig::default()
+    }
+}
 
 fn random(seed: &mut u32, below: usize) -> usize {
     *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -24,7 +32,7 @@ fn random(seed: &mut u32, below: usize) -> usize {
 
 /// Compares the mesh of each body with one graded from scratch, and the world with its snapshot.
 fn check_whole<D: Dim>(world: &World<D>, what: &str) {
-    for body in world.soft_bodies() {
+    for (_, body) in world.soft_bodies() {
         let (grid, sharing) = (body.grid(), body.connectivity());
         let fresh = CellHierarchy::new(grid, sharing, Grading::Graded);
         let mesh = Mesh::grade(grid, sharing, &fresh).unwrap();
@@ -46,19 +54,15 @@ fn check_whole<D: Dim>(world: &World<D>, what: &str) {
     assert_eq!(loaded.hash(), world.hash(), "{what}");
 }
 
-fn blade(seed: &mut u32) -> Blade {
+fn random_blade<D: Blades>(seed: &mut u32) -> Blade<D> {
     let mut number = || random(seed, 1000) as f32 / 1000.0;
-    let from = [0.1 + 0.8 * number(), -1.0 - number(), -2.0];
-    let along = [number() - 0.5, 4.0, number() - 0.5];
-    Blade {
-        from: from.into(),
-        across: along.into(),
-        along: Vector::new(0.0, 0.0, 5.0),
-    }
+    let corner = Vec3::new(0.1 + 0.8 * number(), -1.0 - number(), -2.0);
+    let first = Vec3::new(number() - 0.5, 4.0, number() - 0.5);
+    D::blade(corner, first, Vec3::Z * 5.0)
 }
 
 /// Cuts, tears, ticks and removals in random order.
-fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
+fn check_history<D: Blades>(seed: u32, n: usize) -> usize {
     let mut seed_of = seed.wrapping_mul(2_654_435_761).wrapping_add(17);
     let seed = &mut seed_of;
     let soft = Material {
@@ -67,7 +71,7 @@ fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
         ..Material::default()
     };
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
+    let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.3))
         .unwrap();
@@ -78,7 +82,7 @@ fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
     for round in 0..12 {
         let what = format!("{}D, seed {seed}, round {round}", D::N);
         match random(seed, 3) {
-            0 => drop(world.cut(id, &blade(seed)).unwrap()),
+            0 => drop(world.cut(id, &random_blade(seed)).unwrap()),
             1 => {
                 let mut at = [0; 3];
                 (0..D::N).for_each(|axis| at[axis] = random(seed, n + 1) as i32);
@@ -137,29 +141,25 @@ fn removal_leaves_mesh_as_graded_from_scratch() {
 }
 
 /// A cube cut into two halves side by side.
-fn halves<D: Dim>(settings: WorldConfig) -> (World<D>, SoftBodyHandle) {
+fn halves<D: Blades>(settings: WorldConfig<D>) -> (World<D>, SoftBodyHandle) {
     let mut world = World::new(settings).unwrap();
     let cube = VoxelGrid::cube(8, 1.0).unwrap();
     let cube = SoftBody::new(cube, &[Material::default()]).unwrap();
     let cube = world.add_soft_body(cube);
-    let blade = Blade {
-        from: Vector::new(0.5, -1.0, -1.0),
-        across: Vector::new(0.0, 3.0, 0.0),
-        along: Vector::new(0.0, 0.0, 3.0),
-    };
+    let blade = D::blade(Vec3::new(0.5, -1.0, -1.0), Vec3::Y * 3.0, Vec3::Z * 3.0);
     world.cut(cube, &blade).unwrap();
     assert_eq!(world[cube].pieces().count(), 2);
     (world, cube)
 }
 
-fn check_rest_untouched<D: Dim>() {
-    let (mut world, cube) = halves::<D>(WEIGHTLESS);
+fn check_rest_untouched<D: Blades>() {
+    let (mut world, cube) = halves::<D>(weightless());
     world
         .add_velocity(
             cube,
             Velocity {
-                linear: [0.3, 0.1, 0.0],
-                angular: [0.0, 0.0, 0.5],
+                linear: vector(0.3, 0.1, 0.0),
+                angular: D::Angular::from_vec3(Vec3::Z * 0.5),
             },
         )
         .unwrap();
@@ -208,8 +208,8 @@ fn remove_piece_preserves_state_of_other_pieces() {
 /// The removal of one half changes neither the forces, nor the damping, nor the strength of the other half.
 #[test]
 fn remove_piece_has_no_effect_on_vibration_of_rest() {
-    let (mut world, cube) = halves::<Dim2>(WEIGHTLESS);
-    let (mut other, _) = halves::<Dim2>(WEIGHTLESS);
+    let (mut world, cube) = halves::<Dim2>(weightless());
+    let (mut other, _) = halves::<Dim2>(weightless());
     world.remove_piece(cube, PieceId(1)).unwrap();
     let far = |world: &mut World<Dim2>| {
         let body = world.soft_body_mut(cube).unwrap();
@@ -220,7 +220,7 @@ fn remove_piece_has_no_effect_on_vibration_of_rest() {
                 PieceId(0) => at[1] *= 1.2,
                 _ => at[0] += 50.0,
             }
-            body.set_node_state(id, at, Vector::ZERO);
+            body.set_node_state(id, at, Vec2::ZERO).unwrap();
         }
     };
     far(&mut world);
@@ -238,9 +238,9 @@ fn remove_piece_has_no_effect_on_vibration_of_rest() {
     assert_eq!(alone, beside);
 }
 
-fn check_leaning<D: Dim>() {
+fn check_leaning<D: Blades>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
+    let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.5))
         .unwrap();
@@ -251,23 +251,16 @@ fn check_leaning<D: Dim>() {
         };
         SoftBody::new(VoxelGrid::<D>::cube(n, width).unwrap(), &[strong]).unwrap()
     };
-    let below = world.add_soft_body(cube(8, 0.8).translated(Vector::new(0.0, 0.0, 0.0)));
-    let blade = Blade {
-        from: Vector::new(0.4, -1.0, -1.0),
-        across: Vector::new(0.0, 3.0, 0.0),
-        along: Vector::new(0.0, 0.0, 3.0),
-    };
+    let below = world.add_soft_body(cube(8, 0.8).translated(D::Vector::ZERO));
+    let blade = D::blade(Vec3::new(0.4, -1.0, -1.0), Vec3::Y * 3.0, Vec3::Z * 3.0);
     world.cut(below, &blade).unwrap();
     // One cube on each half, one elsewhere.
-    let on_left = world.add_soft_body(cube(3, 0.3).translated(Vector::new(0.05, 0.82, 0.2)));
-    let on_right = world.add_soft_body(cube(3, 0.3).translated(Vector::new(0.45, 0.82, 0.2)));
-    let far = world.add_soft_body(cube(3, 0.3).translated(Vector::new(5.0, 0.01, 0.0)));
+    let on_left = world.add_soft_body(cube(3, 0.3).translated(vector(0.05, 0.82, 0.2)));
+    let on_right = world.add_soft_body(cube(3, 0.3).translated(vector(0.45, 0.82, 0.2)));
+    let far = world.add_soft_body(cube(3, 0.3).translated(vector(5.0, 0.01, 0.0)));
     let all_sleep = |world: &World<D>| {
-        let pieces = world
-            .soft_bodies()
-            .map(|(_, body)| body)
-            .flat_map(|body| &body.pieces().list);
-        pieces.into_iter().all(|piece| piece.asleep)
+        let mut bodies = world.soft_bodies();
+        bodies.all(|(_, body)| body.pieces().list.iter().all(|piece| piece.asleep))
     };
     // The halves may stay in contact for long; only their support matters here.
     (0..40).for_each(|_| _ = world.step());
@@ -276,8 +269,8 @@ fn check_leaning<D: Dim>() {
     }
     (0..10).for_each(|_| _ = world.step());
     assert!(all_sleep(&world), "all pieces must be asleep");
-    let touching = |world: &World<D>| -> Vec<Event> {
-        let ended = |event: &&Event| matches!(event, Event::ContactEnded { .. });
+    let touching = |world: &World<D>| -> Vec<Event<D>> {
+        let ended = |event: &&Event<D>| matches!(event, Event::ContactEnded { .. });
         world.events().iter().filter(ended).copied().collect()
     };
     let asleep = |world: &World<D>, id: SoftBodyHandle, piece: usize| {
@@ -296,7 +289,7 @@ fn check_leaning<D: Dim>() {
     );
     // The other half touched the removed one, so it wakes as well, and with it the cube on top.
     assert!(!asleep(&world, on_left, 0) && asleep(&world, far, 0));
-    let woken = |event: &Event| matches!(event, Event::WokeUp { body, .. } if *body == on_right);
+    let woken = |event: &Event<D>| matches!(event, Event::WokeUp { body, .. } if *body == on_right);
     assert!(world.events().iter().any(woken));
     world.step();
     let gone = ObjectRef::Piece {
@@ -305,7 +298,7 @@ fn check_leaning<D: Dim>() {
     };
     let ended = touching(&world);
     let told =
-        |event: &Event| matches!(event, Event::ContactEnded { pair } if pair.contains(&gone));
+        |event: &Event<D>| matches!(event, Event::ContactEnded { pair } if pair.contains(&gone));
     assert!(ended.iter().any(told), "{ended:?}");
     (0..40).for_each(|_| _ = world.step());
     let now = world[on_right].centre_of_mass();
@@ -319,25 +312,19 @@ fn remove_piece_wakes_only_bodies_in_contact() {
     check_leaning::<Dim3>();
 }
 
-fn check_ties<D: Dim>() {
-    let (mut world, cube) = halves::<D>(WEIGHTLESS);
+fn check_ties<D: Blades>() {
+    let (mut world, cube) = halves::<D>(weightless());
     let middle = if D::N == 3 { 0.5 } else { 0.0 };
-    let sensor = Shape::Ball {
-        centre: Vector::new(0.5, 0.5, middle),
-        radius: 3.0,
-    };
-    let mut sensor = RigidBody::fixed(sensor).with_friction(0.0);
-    sensor.is_sensor = true;
+    let sensor = Shape::ball(3.0).translated(vector(0.5, 0.5, middle));
+    let sensor = RigidBody::fixed(sensor)
+        .with_friction(0.0)
+        .with_sensor(true);
     let sensor = world.add_rigid_body(sensor).unwrap();
     let [to_left, to_right] = [0.1, 0.9].map(|x| {
-        let at = [x, 0.5, middle];
-        let end = JointAnchor::SoftBody {
-            body: cube,
-            at: at.into(),
-            radius: 0.1,
-        };
+        let at = vector(x, 0.5, middle);
+        let end = JointAnchor::on(cube, at).within(0.1);
         world
-            .add_joint(Joint::pin(end, JointAnchor::Point(at.into())))
+            .add_joint(Joint::pin(end, JointAnchor::Point(at)))
             .unwrap()
     });
     world.step();
@@ -371,12 +358,12 @@ fn remove_piece_breaks_joints_and_exits_sensors() {
     check_ties::<Dim3>();
 }
 
-fn check_last<D: Dim>() {
+fn check_last<D: Blades>() {
     let (mut world, cube) = halves::<D>(WorldConfig::default());
     world.remove_piece(cube, PieceId(0)).unwrap();
     let removed = world.remove_piece(cube, PieceId(1)).unwrap();
     assert_eq!(
-        (removed.pieces.len(), &removed.bodies[..]),
+        (removed.pieces.len(), &removed.soft_bodies[..]),
         (1, &[cube][..])
     );
     assert!(world.soft_body(cube).is_err() && world.soft_bodies().next().is_none());
@@ -401,8 +388,8 @@ fn body_is_removed_with_its_last_piece() {
     check_last::<Dim3>();
 }
 
-fn check_sizes<D: Dim>() {
-    let (mut world, cube) = halves::<D>(WEIGHTLESS);
+fn check_sizes<D: Blades>() {
+    let (mut world, cube) = halves::<D>(weightless());
     let half = 0.5 * world[cube].total_mass();
     let none = Removed::default();
     for size in [
@@ -438,8 +425,8 @@ fn remove_small_pieces_compares_mass_volume_or_voxels() {
     check_sizes::<Dim3>();
 }
 
-fn check_outside<D: Dim>() {
-    let (mut world, cube) = halves::<D>(WEIGHTLESS);
+fn check_outside<D: Blades>() {
+    let (mut world, cube) = halves::<D>(weightless());
     let views = world[cube].piece_views();
     let right = views
         .iter()
@@ -447,39 +434,27 @@ fn check_outside<D: Dim>() {
         .unwrap()
         .number;
     let ball = |x| {
-        RigidBody::dynamic(
-            Shape::Ball {
-                centre: Vector::new(x, 0.0, 0.0),
-                radius: 0.2,
-            },
-            1.0,
-        )
+        let shape = Shape::ball(0.2).translated(vector(x, 0.0, 0.0));
+        RigidBody::dynamic(shape, 1.0)
     };
     let near = world.add_rigid_body(ball(-2.1)).unwrap();
     let far = world.add_rigid_body(ball(-2.3)).unwrap();
     let hand = world
-        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(-9.0, 0.0, 0.0)))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(vector(-9.0, 0.0, 0.0)))
         .unwrap();
-    let region = Shape::Box {
-        centre: Vector::new(-0.8, 0.0, 0.0),
-        half: Vector::new(1.2, 3.0, 3.0),
-    };
+    let region = Shape::cuboid(vector(1.2, 3.0, 3.0)).translated(vector(-0.8, 0.0, 0.0));
     let removed = world.remove_outside(&region).unwrap();
     assert_eq!(
-        (removed.pieces, removed.rigids),
+        (removed.pieces, removed.rigid_bodies),
         (vec![(cube, right)], vec![far])
     );
     assert!(world.rigid_body(near).is_ok() && world.rigid_body(hand).is_ok());
     assert!(
         world
             .events()
-            .contains(&Event::RigidBodyRemoved { rigid: far })
+            .contains(&Event::RigidBodyRemoved { body: far })
     );
-    let bad = Shape::Ball {
-        centre: Vector::ZERO,
-        radius: -1.0,
-    };
-    let error = world.remove_outside(&bad).unwrap_err();
+    let error = world.remove_outside(&Shape::ball(-1.0)).unwrap_err();
     assert_eq!(
         error.to_string(),
         "region: radius must be positive and finite, given -1.0"
@@ -495,11 +470,11 @@ fn remove_outside_removes_pieces_and_dynamic_bodies() {
 /// A reader of changes gets a tear and a removal together.
 #[test]
 fn changes_since_reports_tear_and_removal_together() {
-    let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
+    let mut world = World::<Dim2>::new(weightless()).unwrap();
     let cube = SoftBody::new(VoxelGrid::cube(32, 1.0).unwrap(), &[Material::default()]).unwrap();
     let cube = world.add_soft_body(cube);
     let mut bookmark: Bookmark = world[cube].bookmark();
-    let blade = Blade::segment([-0.1, 0.2], [0.2, -0.1]);
+    let blade = Blade::segment(Vec2::new(-0.1, 0.2), Vec2::new(0.2, -0.1));
     world.cut(cube, &blade).unwrap();
     world.remove_piece(cube, PieceId(1)).unwrap();
     let body = &world[cube];

@@ -2,16 +2,20 @@
 
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Impulse, Material, MotionType, RigidBody, RigidBodyHandle, Rotation, Shape,
-    SoftBody, Velocity, VoxelGrid, World, WorldConfig,
+    Dim, Dim2, Dim3, DimAngular, DimVector, Impulse, Material, MotionType, RigidBody,
+    RigidBodyHandle, RigidBodyRef, Rotation, Shape, SoftBody, Vec2, Vec3, Velocity, VoxelGrid,
+    World, WorldConfig,
 };
 use std::f32::consts::{FRAC_PI_4, PI};
 
-const UP: Vector = Vector::Y;
+/// Vector of the dimension; in 2D the third coordinate is dropped.
+fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
+    V::from_vec3(Vec3::new(x, y, z))
+}
 
 fn world<D: Dim>(gravity: f32) -> World<D> {
     let settings = WorldConfig {
-        gravity: Vector::new(0.0, gravity, 0.0),
+        gravity: vector(0.0, gravity, 0.0),
         ..WorldConfig::default()
     };
     World::new(settings).unwrap()
@@ -19,53 +23,45 @@ fn world<D: Dim>(gravity: f32) -> World<D> {
 
 fn floored<D: Dim>() -> World<D> {
     let mut world = world::<D>(-9.81);
-    let floor = RigidBody::fixed(Shape::half_space(UP, Vector::ZERO)).with_friction(0.5);
-    world.add_rigid_body(floor).unwrap();
+    let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
+    world
+        .add_rigid_body(RigidBody::fixed(floor).with_friction(0.5))
+        .unwrap();
     world
 }
 
-fn cube(centre: Vector, half: f32) -> Shape {
-    Shape::Box {
-        centre: centre.into(),
-        half: Vector::splat(half),
-    }
+fn cube<D: Dim>(centre: D::Vector, half: f32) -> Shape<D> {
+    Shape::cuboid(D::Vector::splat(half)).translated(centre)
 }
 
-fn bar(centre: Vector) -> Shape {
-    Shape::Capsule {
-        from: Vector::new(-0.4, 0.0, 0.0),
-        to: Vector::new(0.4, 0.0, 0.0),
-        radius: 0.2,
-    }
-    .translated(centre.into())
+fn bar<D: Dim>(centre: D::Vector) -> Shape<D> {
+    let ends = [-0.4, 0.4].map(|x| vector(x, 0.0, 0.0));
+    Shape::capsule(ends[0], ends[1], 0.2).translated(centre)
 }
 
-fn ball(centre: Vector) -> Shape {
-    Shape::Ball {
-        centre: centre.into(),
-        radius: 0.3,
-    }
+fn ball<D: Dim>(centre: D::Vector) -> Shape<D> {
+    Shape::ball(0.3).translated(centre)
 }
 
 /// Returns the normal of a slope that falls to the right at an angle [rad].
-fn upright(angle: f32) -> Vector {
-    Rotation::in_plane(-angle).apply(UP)
+fn upright<V: DimVector>(angle: f32) -> V {
+    Rotation::in_plane(-angle).apply(V::Y)
 }
 
-fn speed(rigid: &RigidBody) -> f32 {
-    rigid.velocity().length()
+fn speed<D: Dim>(rigid: RigidBodyRef<'_, D>) -> f32 {
+    rigid.velocity().linear.length()
 }
 
 /// Each shape falls tilted and settles on the floor in its lowest position.
 fn all_come_to_rest<D: Dim>() {
     let turned = match D::N {
         2 => Rotation::in_plane(0.5),
-        _ => Rotation::about(Vector::new(1.0, 0.3, 0.7), 0.6),
+        _ => Rotation::about(Vec3::new(1.0, 0.3, 0.7), 0.6),
     };
     for (shape, height) in [
-        (cube(Vector::new(0.0, 1.0, 0.0), 0.3), 0.3),
-        (bar(Vector::new(0.0, 1.0, 0.0)), 0.2),
-        (ball(UP), 0.3),
+        (cube(D::Vector::Y, 0.3), 0.3),
+        (bar(D::Vector::Y), 0.2),
+        (ball(D::Vector::Y), 0.3),
     ] {
         let mut world = floored::<D>();
         let id = world
@@ -97,10 +93,8 @@ fn a_tower_stands<D: Dim>() {
     let mut world = floored::<D>();
     let ids: Vec<RigidBodyHandle> = (0..10)
         .map(|n| {
-            let shape = cube(
-                Vector::new(0.01 * (n % 3) as f32, 0.25 + 0.5 * n as f32, 0.0),
-                0.25,
-            );
+            let (x, y) = (0.01 * (n % 3) as f32, 0.25 + 0.5 * n as f32);
+            let shape = cube(vector(x, y, 0.0), 0.25);
             world
                 .add_rigid_body(RigidBody::dynamic(shape, 2.0))
                 .unwrap()
@@ -111,15 +105,10 @@ fn a_tower_stands<D: Dim>() {
     }
     for (n, &id) in ids.iter().enumerate() {
         let rigid = world.rigid_body(id).unwrap();
-        let [x, y, z] = rigid.position().to_array();
+        let [x, y, z] = rigid.position().to_vec3().to_array();
         assert!(x.abs() < 0.03 && z.abs() < 0.03, "{n}: {x} {z}");
         assert!((y - 0.25 - 0.5 * n as f32).abs() < 0.02, "{n}: {y}");
-        assert!(
-            rigid.is_asleep(),
-            "{n} {:?} {:?}",
-            rigid.velocity(),
-            rigid.angular_velocity()
-        );
+        assert!(rigid.is_asleep(), "{n} {:?}", rigid.velocity());
     }
 }
 
@@ -136,17 +125,17 @@ fn one_of_two_towers_falls<D: Dim>() {
     let mut material = Material::default();
     (material.elasticity.young, material.strength) = (2e5, f32::INFINITY);
     let mut tower = |x: f32| {
-        let mut add = |rigid: RigidBody| world.add_rigid_body(rigid).unwrap();
-        let foot = add(RigidBody::fixed(cube(Vector::new(x, 0.25, 0.0), 0.25)).with_friction(0.5));
+        let mut add = |rigid: RigidBody<D>| world.add_rigid_body(rigid).unwrap();
+        let foot = add(RigidBody::fixed(cube(vector(x, 0.25, 0.0), 0.25)).with_friction(0.5));
         let boxes =
-            [0.75, 1.65].map(|y| add(RigidBody::dynamic(cube(Vector::new(x, y, 0.0), 0.25), 0.5)));
+            [0.75, 1.65].map(|y| add(RigidBody::dynamic(cube(vector(x, y, 0.0), 0.25), 0.5)));
         let grid = VoxelGrid::<D>::cube(4, 0.4).unwrap();
         let soft = SoftBody::new(grid, std::slice::from_ref(&material)).unwrap();
         let z = if D::N == 2 { 0.0 } else { -0.2 };
         (
             foot,
             boxes,
-            world.add_soft_body(soft.translated(Vector::new(x - 0.2, 1.0, z))),
+            world.add_soft_body(soft.translated(vector(x - 0.2, 1.0, z))),
         )
     };
     let (falling, standing) = (tower(0.0), tower(3.0));
@@ -179,14 +168,12 @@ fn removal_of_foot_wakes_only_its_tower() {
 
 fn it_rolls<D: Dim>() {
     let mut world = world::<D>(-9.81);
-    let slope = 0.3f32;
-    let normal = upright(slope);
+    let normal: D::Vector = upright(0.3);
+    let slope = Shape::half_space(normal, D::Vector::ZERO);
     world
-        .add_rigid_body(
-            RigidBody::fixed(Shape::half_space(normal.into(), Vector::ZERO)).with_friction(0.9),
-        )
+        .add_rigid_body(RigidBody::fixed(slope).with_friction(0.9))
         .unwrap();
-    let start = normal.map(|k| 0.3 * k);
+    let start = normal * 0.3;
     let id = world
         .add_rigid_body(RigidBody::dynamic(ball(start), 2.0))
         .unwrap();
@@ -201,7 +188,8 @@ fn it_rolls<D: Dim>() {
         "{} {expected}",
         speed(rigid)
     );
-    assert!((rigid.angular_velocity()[2] * 0.3 + speed(rigid)).abs() < 0.05);
+    let spin = rigid.velocity().angular.to_vec3().z;
+    assert!((spin * 0.3 + speed(rigid)).abs() < 0.05);
 }
 
 #[test]
@@ -214,15 +202,14 @@ fn ball_rolls_down_slope_with_expected_acceleration() {
 fn friction_holds_box_only_below_friction_angle() {
     for (angle, holds) in [(0.3f32, true), (0.6, false)] {
         let mut world = world::<Dim3>(-9.81);
-        let normal = upright(angle);
+        let normal: Vec3 = upright(angle);
         // tan 0.3 = 0.31, tan 0.6 = 0.68
+        let slope = Shape::half_space(normal, Vec3::ZERO);
         world
-            .add_rigid_body(
-                RigidBody::fixed(Shape::half_space(normal.into(), Vector::ZERO)).with_friction(0.5),
-            )
+            .add_rigid_body(RigidBody::fixed(slope).with_friction(0.5))
             .unwrap();
-        let shape = cube(Vector::ZERO, 0.3).rotated(Rotation::in_plane(-angle));
-        let shape = shape.translated(normal.map(|k| 0.3 * k).into());
+        let shape = cube(Vec3::ZERO, 0.3).rotated(Rotation::in_plane(-angle));
+        let shape = shape.translated(normal * 0.3);
         let id = world
             .add_rigid_body(RigidBody::dynamic(shape, 2.0))
             .unwrap();
@@ -246,15 +233,15 @@ fn friction_holds_box_only_below_friction_angle() {
 fn ball_bounces_to_height_given_by_restitution() {
     for restitution in [0.0f32, 0.5, 0.8] {
         let mut world = floored::<Dim3>();
-        let mut rigid = RigidBody::dynamic(ball(Vector::new(0.0, 2.3, 0.0)), 1.0);
-        rigid.restitution = restitution;
+        let rigid = RigidBody::dynamic(ball(Vec3::new(0.0, 2.3, 0.0)), 1.0);
+        let rigid = rigid.with_restitution(restitution);
         let id = world.add_rigid_body(rigid).unwrap();
         let (mut hit, mut highest) = (false, 0.0f32);
         for _ in 0..100 {
-            let before = world.rigid_body(id).unwrap().velocity()[1];
+            let before = world.rigid_body(id).unwrap().velocity().linear.y;
             world.step();
             let rigid = world.rigid_body(id).unwrap();
-            hit |= before < 0.0 && rigid.velocity()[1] >= 0.0;
+            hit |= before < 0.0 && rigid.velocity().linear.y >= 0.0;
             if hit {
                 highest = highest.max(rigid.position()[1] - 0.3);
             }
@@ -268,27 +255,26 @@ fn ball_bounces_to_height_given_by_restitution() {
 }
 
 /// Returns the linear momentum of dynamic boxes.
-fn momentum<D: Dim>(world: &World<D>, ids: &[RigidBodyHandle], mass: f32) -> Vector {
-    ids.iter().fold(Vector::ZERO, |sum, &id| {
-        let velocity = world.rigid_body(id).unwrap().velocity();
-        [0, 1, 2].map(|k: usize| sum[k] + mass * velocity[k]).into()
+fn momentum<D: Dim>(world: &World<D>, ids: &[RigidBodyHandle], mass: f32) -> D::Vector {
+    ids.iter().fold(D::Vector::ZERO, |sum, &id| {
+        sum + world.rigid_body(id).unwrap().velocity().linear * mass
     })
 }
 
 #[test]
 fn collision_preserves_linear_momentum() {
     let mut world = world::<Dim3>(0.0);
-    let ids = [[0.0, 0.0, 0.0], [2.0, 0.2, 0.1]].map(|at| {
+    let ids = [Vec3::ZERO, Vec3::new(2.0, 0.2, 0.1)].map(|at| {
         world
-            .add_rigid_body(RigidBody::dynamic(cube(at.into(), 0.3), 2.0))
+            .add_rigid_body(RigidBody::dynamic(cube(at, 0.3), 2.0))
             .unwrap()
     });
     world
         .set_velocity(
             ids[0],
             Velocity {
-                linear: [5.0, 0.0, 0.0],
-                angular: [0.0, 1.0, 2.0],
+                linear: Vec3::new(5.0, 0.0, 0.0),
+                angular: Vec3::new(0.0, 1.0, 2.0),
             },
         )
         .unwrap();
@@ -303,8 +289,8 @@ fn collision_preserves_linear_momentum() {
             "{before:?} {after:?}"
         );
     }
-    assert!(world.rigid_body(ids[1]).unwrap().velocity()[0] > 2.0);
-    assert!(world.rigid_body(ids[1]).unwrap().angular_velocity() != Vector::ZERO);
+    assert!(world.rigid_body(ids[1]).unwrap().velocity().linear.x > 2.0);
+    assert!(world.rigid_body(ids[1]).unwrap().velocity().angular != Vec3::ZERO);
 }
 
 /// A rigid box on a soft body sinks in a little and settles; neither is pushed away.
@@ -325,8 +311,8 @@ fn it_lies_on_a_soft_body<D: Dim>(mass: f32) {
         world.step();
     }
     let shape = Shape::Box {
-        centre: Vector::new(0.5, 1.11, if D::N == 2 { 0.0 } else { 0.5 }),
-        half: Vector::new(0.4, 0.1, 0.4),
+        centre: vector(0.5, 1.11, if D::N == 2 { 0.0 } else { 0.5 }),
+        half: vector(0.4, 0.1, 0.4),
     };
     let id = world
         .add_rigid_body(RigidBody::dynamic(shape, mass))
@@ -335,9 +321,9 @@ fn it_lies_on_a_soft_body<D: Dim>(mass: f32) {
         world.step();
     }
     let rigid = world.rigid_body(id).unwrap();
-    let [_, y, _] = rigid.position().to_array();
+    let y = rigid.position()[1];
     assert!((0.5..1.12).contains(&y), "{mass}: {:?}", rigid.position());
-    let tilt = rigid.rotation().apply(UP)[1];
+    let tilt = rigid.rotation().apply(D::Vector::Y)[1];
     assert!(tilt > 0.97, "{mass}: tilted, {tilt}");
     assert!(speed(rigid) < 0.1, "{mass}: {:?}", rigid.velocity());
 }
@@ -354,7 +340,7 @@ fn box_rests_on_soft_body_at_any_mass() {
 fn soft_ball_pushes_and_rolls_rigid_ball() {
     let mut world = floored::<Dim3>();
     let id = world
-        .add_rigid_body(RigidBody::dynamic(ball(Vector::new(1.6, 0.3, 0.5)), 1.0))
+        .add_rigid_body(RigidBody::dynamic(ball(Vec3::new(1.6, 0.3, 0.5)), 1.0))
         .unwrap();
     let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
     let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
@@ -362,32 +348,26 @@ fn soft_ball_pushes_and_rolls_rigid_ball() {
         world.step();
     }
     world
-        .add_velocity(soft, Velocity::linear([3.0, 0.0, 0.0]))
+        .add_velocity(soft, Velocity::linear(Vec3::new(3.0, 0.0, 0.0)))
         .unwrap();
     for _ in 0..60 {
         world.step();
     }
     let rigid = world.rigid_body(id).unwrap();
-    assert!(rigid.velocity()[0] > 0.5, "{:?}", rigid.velocity());
-    assert!(
-        rigid.angular_velocity()[2] < -1.0,
-        "{:?}",
-        rigid.angular_velocity()
-    );
+    assert!(rigid.velocity().linear.x > 0.5, "{:?}", rigid.velocity());
+    let angular = rigid.velocity().angular;
+    assert!(angular.z < -1.0, "{angular:?}");
 }
 
 #[test]
 fn kinematic_table_rotates_and_carries_box() {
     let mut world = world::<Dim3>(-9.81);
-    let disc = Shape::Box {
-        centre: Vector::ZERO,
-        half: Vector::new(2.0, 0.1, 2.0),
-    };
-    let table = RigidBody::new(disc, MotionType::Kinematic).at(Vector::ZERO);
+    let disc = Shape::cuboid(Vec3::new(2.0, 0.1, 2.0));
+    let table = RigidBody::kinematic(disc);
     let table = world.add_rigid_body(table).unwrap();
     let id = world
         .add_rigid_body(RigidBody::dynamic(
-            cube(Vector::new(1.0, 0.31, 0.0), 0.2),
+            cube(Vec3::new(1.0, 0.31, 0.0), 0.2),
             1.0,
         ))
         .unwrap();
@@ -396,46 +376,41 @@ fn kinematic_table_rotates_and_carries_box() {
         let share = tick as f32 / 120.0;
         let angle = 0.5 * PI * share * share * (3.0 - 2.0 * share);
         world
-            .set_target_rotation(table, Rotation::about(UP, angle))
+            .set_target_rotation(table, Rotation::about(Vec3::Y, angle))
             .unwrap();
         world.step();
     }
     let [x, _, z] = world.rigid_body(id).unwrap().position().to_array();
     assert!(x.abs() < 0.05 && (z + 1.0).abs() < 0.05, "{x} {z}");
-    let turned = world.rigid_body(table).unwrap().rotation().apply(Vector::X);
+    let turned = world.rigid_body(table).unwrap().rotation().apply(Vec3::X);
     assert!((turned[2] + 1.0).abs() < 1e-4, "{turned:?}");
 }
 
 #[test]
 fn rotated_box_collides() {
     let mut world = world::<Dim2>(-9.81);
-    let ramp = RigidBody::fixed(cube(Vector::ZERO, 1.0))
+    let ramp = RigidBody::fixed(cube(Vec2::ZERO, 1.0))
         .with_friction(0.0)
         .rotated(Rotation::in_plane(FRAC_PI_4));
     world.add_rigid_body(ramp).unwrap();
     let id = world
-        .add_rigid_body(RigidBody::dynamic(ball(Vector::new(0.3, 2.5, 0.0)), 1.0))
+        .add_rigid_body(RigidBody::dynamic(ball(Vec2::new(0.3, 2.5)), 1.0))
         .unwrap();
     for _ in 0..60 {
         world.step();
     }
-    let [x, y, _] = world.rigid_body(id).unwrap().position().to_array();
+    let [x, y] = world.rigid_body(id).unwrap().position().to_array();
     assert!(x > 1.0 && y < 1.2, "{x} {y}");
 }
 
 #[test]
 fn add_rigid_names_invalid_field() {
     let mut world = floored::<Dim3>();
-    let tiny = Shape::Ball {
-        centre: Vector::ZERO,
-        radius: 1e-20,
-    };
-    let tiny = RigidBody::dynamic(tiny, 1e-6);
-    let endless = RigidBody::dynamic(Shape::half_space(UP, Vector::ZERO), 1.0);
-    let heavy = RigidBody::dynamic(cube(Vector::ZERO, 1.0), f32::NAN);
-    let off = RigidBody::new(cube(UP, 1.0), MotionType::Dynamic { mass: 1.0 }).at(Vector::ZERO);
-    let mut bouncy = RigidBody::dynamic(cube(Vector::ZERO, 1.0), 1.0);
-    bouncy.restitution = 2.0;
+    let tiny = RigidBody::dynamic(Shape::ball(1e-20), 1e-6);
+    let endless = RigidBody::dynamic(Shape::half_space(Vec3::Y, Vec3::ZERO), 1.0);
+    let heavy = RigidBody::dynamic(cube(Vec3::ZERO, 1.0), f32::NAN);
+    let off = RigidBody::new(cube(Vec3::Y, 1.0), MotionType::Dynamic { mass: 1.0 });
+    let bouncy = RigidBody::dynamic(cube(Vec3::ZERO, 1.0), 1.0).with_restitution(2.0);
     for (rigid, word) in [
         (endless, "shape"),
         (heavy, "mass"),
@@ -447,28 +422,36 @@ fn add_rigid_names_invalid_field() {
         assert!(error.starts_with(&format!("{word} must be")), "{error}");
     }
     let id = world
-        .add_rigid_body(RigidBody::dynamic(cube(Vector::ZERO, 1.0), 1.0))
+        .add_rigid_body(RigidBody::dynamic(cube(Vec3::ZERO, 1.0), 1.0))
         .unwrap();
     assert!(
         world
-            .set_velocity(id, Velocity::linear([f32::NAN; 3]))
+            .set_velocity(id, Velocity::linear(Vec3::splat(f32::NAN)))
             .is_err()
     );
     assert!(
         world
-            .apply_impulse(id, Impulse::at([0.0; 3], [f32::INFINITY; 3]))
+            .apply_impulse(id, Impulse::at(Vec3::ZERO, Vec3::splat(f32::INFINITY)))
             .is_err()
     );
-    assert!(world.set_target_position(id, [0.0; 3]).is_err());
-    assert!(world.set_pose(id, [2e6, 0.0, 0.0], Rotation::NONE).is_err());
-    let floor = world.rigid_bodies().map(|(id, _)| id).next().unwrap();
+    assert!(world.set_target_position(id, Vec3::ZERO).is_err());
     assert!(
         world
-            .set_velocity(floor, Velocity::linear([0.0; 3]))
+            .set_pose(id, Vec3::new(2e6, 0.0, 0.0), Rotation::NONE)
+            .is_err()
+    );
+    let (floor, _) = world.rigid_bodies().next().unwrap();
+    assert!(
+        world
+            .set_velocity(floor, Velocity::linear(Vec3::ZERO))
             .is_err()
     );
     world.remove(id).unwrap();
-    assert!(world.set_velocity(id, Velocity::linear([0.0; 3])).is_err());
+    assert!(
+        world
+            .set_velocity(id, Velocity::linear(Vec3::ZERO))
+            .is_err()
+    );
 }
 
 /// A sleeping body stops a rigid one, however slowly it approaches.
@@ -479,16 +462,10 @@ fn sleepers_hold<D: Dim>() {
     world.put_to_sleep(soft).unwrap();
     let depth = if D::N == 2 { 0.0 } else { 0.5 };
     let slow = world
-        .add_rigid_body(RigidBody::dynamic(
-            cube(Vector::new(-0.4, 0.5, depth), 0.2),
-            1.0,
-        ))
+        .add_rigid_body(RigidBody::dynamic(cube(vector(-0.4, 0.5, depth), 0.2), 1.0))
         .unwrap();
     world
-        .set_velocity(slow, Vector::new(0.1, 0.0, 0.0), Vector::ZERO)
-        .unwrap();
-    world
-        .set_velocity(slow, Velocity::linear([0.1, 0.0, 0.0]))
+        .set_velocity(slow, Velocity::linear(vector(0.1, 0.0, 0.0)))
         .unwrap();
     for _ in 0..300 {
         world.step();
@@ -505,11 +482,11 @@ fn sleeping_body_stops_slow_rigid_body() {
 #[test]
 fn slow_kinematic_lift_moves_sleeping_load() {
     let mut world = world::<Dim3>(-9.81);
-    let lift = RigidBody::new(cube(Vector::ZERO, 0.5), MotionType::Kinematic).at(Vector::ZERO);
+    let lift = RigidBody::kinematic(cube(Vec3::ZERO, 0.5));
     let lift = world.add_rigid_body(lift).unwrap();
     let load = world
         .add_rigid_body(RigidBody::dynamic(
-            cube(Vector::new(0.0, 0.75, 0.0), 0.25),
+            cube(Vec3::new(0.0, 0.75, 0.0), 0.25),
             1.0,
         ))
         .unwrap();
@@ -519,7 +496,7 @@ fn slow_kinematic_lift_moves_sleeping_load() {
     assert!(world.rigid_body(load).unwrap().is_asleep());
     for tick in 1..=240 {
         world
-            .set_target_position(lift, Vector::new(0.0, 0.05 * tick as f32 / 60.0, 0.0))
+            .set_target_position(lift, Vec3::new(0.0, 0.05 * tick as f32 / 60.0, 0.0))
             .unwrap();
         world.step();
     }
@@ -531,13 +508,10 @@ fn slow_kinematic_lift_moves_sleeping_load() {
 fn drive_change_stops_falling_body() {
     let mut world = world::<Dim3>(-9.81);
     let id = world
-        .add_rigid_body(RigidBody::dynamic(cube(Vector::ZERO, 0.2), 1.0))
+        .add_rigid_body(RigidBody::dynamic(cube(Vec3::ZERO, 0.2), 1.0))
         .unwrap();
     world
-        .set_velocity(id, Vector::ZERO, Vector::new(0.0, 3.0, 0.0))
-        .unwrap();
-    world
-        .set_velocity(id, Velocity::angular([0.0, 3.0, 0.0]))
+        .set_velocity(id, Velocity::angular(Vec3::new(0.0, 3.0, 0.0)))
         .unwrap();
     for _ in 0..60 {
         world.step();
@@ -550,6 +524,6 @@ fn drive_change_stops_falling_body() {
         }
         let it = world.rigid_body(id).unwrap();
         assert!((it.position()[1] - before[1]).abs() < 0.5, "{drive:?}");
-        assert_eq!(it.angular_velocity(), Vector::ZERO);
+        assert_eq!(it.velocity().angular, Vec3::ZERO);
     }
 }

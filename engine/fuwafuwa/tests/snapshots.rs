@@ -2,27 +2,37 @@
 #![cfg(feature = "serde")]
 
 use fuwafuwa::inspect::Hash;
+use fuwafuwa::snapshot::{VERSION, load, save};
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Error, Event, Joint, JointAnchor, JointKind, Knife, Material,
-    MotionType, RigidBody, Rotation, Shape, SoftBody, VoxelGrid, World, WorldConfig, snapshot,
+    Blade, Dim, Dim2, Dim3, DimVector, Error, Event, Joint, JointAnchor, JointKind, Knife,
+    Material, RigidBody, Rotation, Shape, SoftBody, Vec2, Vec3, Velocity, VoxelGrid, World,
+    WorldConfig, snapshot,
 };
+
+mod blades;
+use blades::Blades;
+
+/// Vector of the dimension; in 2D the third coordinate is dropped.
+fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
+    V::from_vec3(Vec3::new(x, y, z))
+}
 
 /// A ball that falls on a floor while a hand pushes it against a wall and through.
 fn torn_world<D: Dim>(n: usize) -> World<D> {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
+    let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
         .unwrap();
-    let wall = Shape::half_space(Vector::NEG_X, Vector::new(1.1, 0.0, 0.0));
+    let wall = Shape::half_space(vector(-1.0, 0.0, 0.0), vector(1.1, 0.0, 0.0));
     world
         .add_rigid_body(RigidBody::fixed(wall).with_friction(0.2))
         .unwrap();
     let ball = VoxelGrid::ball(n, 1.0).unwrap();
     let body = SoftBody::new(ball, &[Material::default()]).unwrap();
-    world.add_soft_body(body.translated(Vector::new(0.0, 0.05, 0.0)));
+    world.add_soft_body(body.translated(vector(0.0, 0.05, 0.0)));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = RigidBody::coupled(Shape::ball(0.08)).at(Vector::new(-0.3, 0.5, depth));
+    let hand = RigidBody::coupled(Shape::ball(0.08)).at(vector(-0.3, 0.5, depth));
     world.add_rigid_body(hand).unwrap();
     world
 }
@@ -33,14 +43,12 @@ fn push<D: Dim>(world: &mut World<D>, ticks: std::ops::Range<u32>) {
         world
             .set_target_position(
                 world.nth_target_follower(0).unwrap(),
-                Vector::new(-0.3 + tick as f32 * 0.03, 0.5, depth),
+                vector(-0.3 + tick as f32 * 0.03, 0.5, depth),
             )
             .unwrap();
         world.step();
     }
 }
-
-use fuwafuwa::snapshot::{VERSION, load, save};
 
 fn check_resumes<D: Dim>(n: usize) {
     let mut world = torn_world::<D>(n);
@@ -62,14 +70,9 @@ fn loaded_world_continues_with_same_bits() {
 fn tied_world<D: Dim>() -> World<D> {
     let mut world = torn_world::<D>(10);
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let cube = |x: f32, y: f32| Shape::Box {
-        centre: Vector::new(x, y, depth),
-        half: Vector::splat(0.12),
-    };
-    let mut gate = RigidBody::fixed(cube(0.5, 1.3))
-        .with_friction(0.5)
-        .rotated(Rotation::in_plane(0.3));
-    gate.is_sensor = true;
+    let cube = |x, y| Shape::cuboid(D::Vector::splat(0.12)).translated(vector(x, y, depth));
+    let gate = RigidBody::fixed(cube(0.5, 1.3)).with_friction(0.5);
+    let gate = gate.rotated(Rotation::in_plane(0.3)).with_sensor(true);
     world.add_rigid_body(gate).unwrap();
     let boxes: Vec<_> = (0..6)
         .map(|k| {
@@ -78,21 +81,15 @@ fn tied_world<D: Dim>() -> World<D> {
             world.add_rigid_body(turned).unwrap()
         })
         .collect();
-    let on = |k: usize, y: f32| JointAnchor::RigidBody {
-        rigid: boxes[k],
-        at: Vector::new(0.4, y, depth),
-    };
-    let ball = JointAnchor::SoftBody {
-        body: world.nth_soft_body(0).unwrap(),
-        at: Vector::new(0.5, 1.0, depth),
-        radius: 0.2,
-    };
+    let on = |k: usize, y| JointAnchor::on(boxes[k], vector(0.4, y, depth));
+    let ball = world.nth_soft_body(0).unwrap();
+    let ball = JointAnchor::on(ball, vector(0.5, 1.0, depth)).within(0.2);
     let spring = JointKind::Spring {
         stiffness: 50.0,
         damping: 0.5,
         length: 0.3,
     };
-    let place = JointAnchor::Point(Vector::new(0.4, 4.0, depth));
+    let place = JointAnchor::Point(vector(0.4, 4.0, depth));
     let ties = [
         (on(0, 1.4), ball, JointKind::Pin),
         (on(1, 1.7), on(2, 2.0), spring),
@@ -113,7 +110,7 @@ fn check_tied_resumes<D: Dim>() {
         push(&mut resumed, tick.min(60)..tick.min(60) + 1);
         assert_eq!(resumed.hash(), world.hash(), "{tick}");
         assert_eq!(resumed.events(), world.events(), "{tick}");
-        let is_change = |event: &&Event| {
+        let is_change = |event: &&Event<D>| {
             matches!(
                 event,
                 Event::ContactStarted(_)
@@ -143,20 +140,18 @@ fn check_cut_resumes<D: Dim>() {
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let hand = world.nth_target_follower(0).unwrap();
     world.remove(hand).unwrap();
-    let mut holder = RigidBody::coupled(Shape::ball(0.05))
-        .at([-0.2, 0.45, depth])
-        .with_motion_type(MotionType::Kinematic);
-    holder.is_sensor = true;
+    let holder = RigidBody::kinematic(Shape::ball(0.05)).at(vector(-0.2, 0.45, depth));
+    let holder = holder.with_sensor(true);
     let holder = world.add_rigid_body(holder).unwrap();
-    let edge = [[0.0, 0.0, -0.4], [0.0, 0.0, 0.4]];
+    let edge = [-0.4, 0.4].map(|z| vector(0.0, 0.0, z));
     world
-        .add_knife(Knife::new(holder, edge.map(Vector::from), Vector::X))
+        .add_knife(Knife::new(holder, edge, D::Vector::X))
         .unwrap();
     let (mut resumed, mut cuts) = (load::<D>(&save(&world)).unwrap(), 0);
     for tick in 0..90 {
         for world in [&mut world, &mut resumed] {
-            let at = [-0.2 + 0.015 * tick as f32, 0.45, depth];
-            world.set_target_position(holder, at.into()).unwrap();
+            let at = vector(-0.2 + 0.015 * tick as f32, 0.45, depth);
+            world.set_target_position(holder, at).unwrap();
             world
                 .set_target_rotation(holder, Rotation::in_plane(0.002 * tick as f32))
                 .unwrap();
@@ -164,7 +159,7 @@ fn check_cut_resumes<D: Dim>() {
         }
         assert_eq!(resumed.hash(), world.hash(), "{tick}");
         assert_eq!(resumed.events(), world.events(), "{tick}");
-        let is_cut = |event: &&Event| matches!(event, Event::Cut { .. });
+        let is_cut = |event: &&Event<D>| matches!(event, Event::Cut { .. });
         cuts += world.events().iter().filter(is_cut).count();
         if tick % 7 == 3 {
             resumed = load::<D>(&save(&world)).unwrap();
@@ -180,25 +175,26 @@ fn loaded_world_continues_with_same_bits_during_cut() {
 }
 
 /// Crumbs of one body, some asleep and some awake, while a hand moves through them; and a body that is cut.
-fn check_crumbs_resume<D: Dim>(n: usize) {
+fn check_crumbs_resume<D: Blades>(n: usize) {
     let mut world = torn_world::<D>(2 * n);
     let ball = world.nth_soft_body(0).unwrap();
     let cube = SoftBody::new(VoxelGrid::cube(n, 0.5).unwrap(), &[Material::default()]).unwrap();
-    let crumbs = world.add_soft_body(cube.translated([-1.5, 0.0, 0.3]));
+    let crumbs = world.add_soft_body(cube.translated(vector(-1.5, 0.0, 0.3)));
     world.soft_body_mut(crumbs).unwrap().crumble();
     let hand = world
-        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(-3.0, 0.1, 0.5)))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(vector(-3.0, 0.1, 0.5)))
         .unwrap();
     let (mut mixed, mut resumed) = (0, load::<D>(&save(&world)).unwrap());
     for tick in 0..240 {
         let along = (tick as f32 - 100.0).max(0.0) * 0.02 - 3.0;
         for world in [&mut world, &mut resumed] {
             world
-                .set_target_position(hand, Vector::new(along, 0.1, 0.5))
+                .set_target_position(hand, vector(along, 0.1, 0.5))
                 .unwrap();
             push(world, tick.min(50)..tick.min(50) + 1);
             if tick == 45 {
-                let blade = Blade::segment([0.5, -2.0], [0.6, 2.0]);
+                let corner = Vec3::new(0.5, -2.0, -0.5);
+                let blade = D::blade(corner, Vec3::new(0.1, 4.0, 0.0), Vec3::Z);
                 assert!(world.cut(ball, &blade).unwrap() > 0);
             }
         }
@@ -226,8 +222,8 @@ fn check_any_state<D: Dim>(n: usize) {
     let nowhere = SoftBody::new(nowhere, &[Material::default()]).unwrap();
     let other = world.add_soft_body(
         nowhere
-            .with_velocity(Vector::splat(f32::NAN))
-            .translated(Vector::new(5.0, 3.0, 0.0)),
+            .with_velocity(Velocity::linear(D::Vector::splat(f32::NAN)))
+            .translated(vector(5.0, 3.0, 0.0)),
     );
     let ball = world.nth_soft_body(0).unwrap();
     for tick in 0..60 {
@@ -238,7 +234,8 @@ fn check_any_state<D: Dim>(n: usize) {
                 let held: Vec<_> = body.mesh().nodes().map(|(id, _)| id).take(9).collect();
                 for id in held {
                     body.fix_node(id);
-                    assert!(body.set_node_state(id, Vector::new(0.1, 0.2, 0.3), Vector::ONE));
+                    let at = vector(0.1, 0.2, 0.3);
+                    body.set_node_state(id, at, D::Vector::splat(1.0)).unwrap();
                 }
             }
             40 => drop(world.soft_body_mut(other).unwrap().crumble()),
@@ -331,14 +328,14 @@ fn with_state(header: &[u8], state: Vec<u8>) -> Vec<u8> {
 fn load_rejects_node_off_plane_or_non_finite() {
     let mut world = torn_world::<Dim2>(6);
     push(&mut world, 0..3);
-    let body = world.soft_bodies().map(|(_, body)| body).next().unwrap();
+    let (_, body) = world.soft_bodies().next().unwrap();
     let (id, _) = body.mesh().nodes().nth(5).unwrap();
     let (at, velocity, mass) = body.node_state(id);
     let bytes = save(&world);
     let (header, state) = bytes.split_at(17);
-    let written = |vector: [f32; 3]| -> Vec<u8> {
-        let row = vector.into_iter().chain([0.0]);
-        row.flat_map(f32::to_le_bytes).collect()
+    let written = |vector: Vec2| -> Vec<u8> {
+        let row = [vector.x, vector.y, 0.0, 0.0];
+        row.into_iter().flat_map(f32::to_le_bytes).collect()
     };
     let mut refused = 0;
     let mut check = |row: Vec<u8>, change: &dyn Fn(&mut [u8])| {
@@ -359,8 +356,8 @@ fn load_rejects_node_off_plane_or_non_finite() {
             }
             let change =
                 |row: &mut [u8]| row[4 * axis..][..4].copy_from_slice(&wrong.to_le_bytes());
-            check(written(at.to_array()), &change);
-            check(written(velocity.to_array()), &change);
+            check(written(at), &change);
+            check(written(velocity), &change);
         }
     }
     let lighter = |row: &mut [u8]| row.copy_from_slice(&(0.5 * mass).to_le_bytes());
@@ -374,21 +371,21 @@ fn loaded_world_continues_with_same_bits_after_changes() {
     let ball = |x: f32| {
         let grid = VoxelGrid::<Dim2>::ball(16, 1.0).unwrap();
         let body = SoftBody::new(grid, &[Material::default()]).unwrap();
-        body.translated(Vector::new(x, 0.02, 0.0))
+        body.translated(Vec2::new(x, 0.02))
     };
     let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
+    let floor = Shape::half_space(Vec2::Y, Vec2::ZERO);
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
         .unwrap();
     let ids = [0.0, 0.97, 1.94].map(|x| world.add_soft_body(ball(x)));
     let (down, blade) = (
-        RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(1.4, 1.2, 0.0)),
-        Blade::segment([0.5, -1.0], [0.5, 2.0]),
+        RigidBody::coupled(Shape::ball(0.1)).at(Vec2::new(1.4, 1.2)),
+        Blade::segment(Vec2::new(0.5, -1.0), Vec2::new(0.5, 2.0)),
     );
     let hand = world.add_rigid_body(down).unwrap();
     world
-        .set_target_position(hand, Vector::new(1.4, 0.7, 0.0))
+        .set_target_position(hand, Vec2::new(1.4, 0.7))
         .unwrap();
     (0..30).for_each(|_| {
         world.step();
@@ -403,7 +400,7 @@ fn loaded_world_continues_with_same_bits_after_changes() {
                 world.nth_soft_body(1).unwrap()
             )
         },
-        &|world| drop(world.remove(hand).unwrap()),
+        &|world| _ = world.remove(hand).unwrap(),
     ];
     for change in changes {
         let mut loaded = snapshot::load::<Dim2>(&snapshot::save(&world)).unwrap();
@@ -427,16 +424,18 @@ fn loaded_world_continues_with_same_bits_after_changes() {
 /// A world with a tearing body, bodies in contact, a sleeping body, a quarantined one and a free slot.
 fn full_of_all<D: Dim>(n: usize) -> World<D> {
     let mut world = torn_world::<D>(n);
-    let small = |at: [f32; 3]| {
+    let small = |at: D::Vector| {
         let grid = VoxelGrid::ball(2, 0.2).unwrap();
         let body = SoftBody::new(grid, &[Material::default()]).unwrap();
-        body.translated(at.into())
+        body.translated(at)
     };
-    world.add_soft_body(small([0.4, 1.05, 0.4]));
-    world.add_soft_body(small([-3.0, 0.0, 0.0]));
-    world.add_soft_body(small([-2.9, 0.2, 0.0]));
-    world.add_soft_body(small([5.0, 3.0, 0.0]).with_velocity(Vector::splat(f32::NAN)));
-    let gone = world.add_soft_body(small([-5.0, 1.0, 0.0]));
+    world.add_soft_body(small(vector(0.4, 1.05, 0.4)));
+    world.add_soft_body(small(vector(-3.0, 0.0, 0.0)));
+    world.add_soft_body(small(vector(-2.9, 0.2, 0.0)));
+    world.add_soft_body(
+        small(vector(5.0, 3.0, 0.0)).with_velocity(Velocity::linear(D::Vector::splat(f32::NAN))),
+    );
+    let gone = world.add_soft_body(small(vector(-5.0, 1.0, 0.0)));
     push(&mut world, 0..40);
     world.remove(gone).unwrap();
     world

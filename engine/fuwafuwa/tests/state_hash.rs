@@ -7,13 +7,21 @@
 use fuwafuwa::inspect::Hash;
 use fuwafuwa::snapshot::{load, save};
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Joint, JointAnchor, JointKind, Knife, Layers, Material, MotionType,
-    RigidBody, Rotation, Shape, SoftBody, VoxelGrid, World, WorldConfig,
+    Dim, Dim2, Dim3, DimVector, Joint, JointAnchor, JointKind, Knife, Layers, Material, RigidBody,
+    Rotation, Shape, SoftBody, Vec3, VoxelGrid, World, WorldConfig,
 };
 use serde::de::value::Error;
 use serde::{Serialize, Serializer, ser};
 use std::collections::BTreeMap;
 use std::ops::Range;
+
+mod blades;
+use blades::Blades;
+
+/// Vector of the dimension; in 2D the third coordinate is dropped.
+fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
+    V::from_vec3(Vec3::new(x, y, z))
+}
 
 /// Stored values that do not change the hash, by the end of their path, with the reason.
 const WITHOUT_EFFECT: [(&str, &str); 2] = [
@@ -416,14 +424,14 @@ fn check_all_values<D: Dim>(world: &World<D>, counts: &mut BTreeMap<String, u32>
 
 /// Soft and rigid bodies of all kinds with joints, a knife, a sensor, a tearing and plastic body, a body asleep, a
 /// fixed node, layers and free slots.
-fn world_of_everything<D: Dim>(n: usize) -> World<D> {
+fn world_of_everything<D: Blades>(n: usize) -> World<D> {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let depth = if D::N == 3 { 0.2 } else { 0.0 };
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
         .unwrap();
-    let soft = |n: usize, at: [f32; 3], material: Material| {
+    let soft = |n: usize, at: D::Vector, material: Material| {
         let body = SoftBody::new(VoxelGrid::cube(n, 0.4).unwrap(), &[material]).unwrap();
         body.translated(at)
     };
@@ -433,73 +441,46 @@ fn world_of_everything<D: Dim>(n: usize) -> World<D> {
         toughness: 30.0,
         ..Material::default()
     };
-    let cube = world.add_soft_body(soft(n, [0.0, 0.02, 0.0], plastic));
-    let resting = world.add_soft_body(soft(1, [3.0, 0.0, 0.0], Material::default()));
-    let lying = world.add_soft_body(soft(1, [0.1, 0.45, 0.0], Material::default()));
-    let gone = world.add_soft_body(soft(1, [9.0, 0.0, 0.0], Material::default()));
+    let cube = world.add_soft_body(soft(n, vector(0.0, 0.02, 0.0), plastic));
+    let resting = world.add_soft_body(soft(1, vector(3.0, 0.0, 0.0), Material::default()));
+    let lying = world.add_soft_body(soft(1, vector(0.1, 0.45, 0.0), Material::default()));
+    let gone = world.add_soft_body(soft(1, vector(9.0, 0.0, 0.0), Material::default()));
     let ghost = Layers {
         memberships: 1,
         filters: 3,
     };
     world.set_layers(resting, ghost).unwrap();
     // A coupled body tears the cube.
-    let hand = RigidBody::coupled(Shape::ball(0.08)).at([-0.2, 0.3, depth]);
+    let hand = RigidBody::coupled(Shape::ball(0.08)).at(vector(-0.2, 0.3, depth));
     let hand = world.add_rigid_body(hand).unwrap();
-    let mut holder = RigidBody::coupled(Shape::ball(0.05)).at([0.5, 0.1, depth]);
-    holder = holder.with_motion_type(MotionType::Kinematic);
-    holder.is_sensor = true;
+    let holder = RigidBody::kinematic(Shape::ball(0.05)).at(vector(0.5, 0.1, depth));
+    let holder = holder.with_sensor(true);
     let holder = world.add_rigid_body(holder).unwrap();
-    let edge = [[0.0, 0.0, -0.3], [0.0, 0.0, 0.3]];
-    let knife = Knife::new(holder, edge, [-1.0, 0.0, 0.0]);
+    let edge = [-0.3, 0.3].map(|z| vector(0.0, 0.0, z));
+    let knife = Knife::new(holder, edge, vector(-1.0, 0.0, 0.0));
     world.add_knife(knife).unwrap();
-    let gate = Shape::Capsule {
-        from: [0.0, 0.2, depth],
-        to: [0.4, 0.2, depth],
-        radius: 0.1,
-    };
-    let mut gate = RigidBody::fixed(gate).with_friction(0.5);
-    gate.is_sensor = true;
+    let gate = Shape::capsule(vector(0.0, 0.2, depth), vector(0.4, 0.2, depth), 0.1);
+    let gate = RigidBody::fixed(gate).with_friction(0.5).with_sensor(true);
     world.add_rigid_body(gate).unwrap();
-    let cuboid = |x: f32, y: f32| Shape::Box {
-        centre: [x, y, depth],
-        half: [0.1; 3],
-    };
+    let cuboid = |x, y| Shape::cuboid(D::Vector::splat(0.1)).translated(vector(x, y, depth));
     let boxes = [(2.0, 0.1), (2.0, 0.31), (2.0, 0.8), (2.4, 0.8)].map(|(x, y)| {
         let free = RigidBody::dynamic(cuboid(x, y), 0.5);
         world
             .add_rigid_body(free.rotated(Rotation::in_plane(0.02)))
             .unwrap()
     });
-    let on = |k: usize, at: [f32; 3]| JointAnchor::RigidBody {
-        rigid: boxes[k],
-        at,
-    };
+    let on = |k: usize, x| JointAnchor::on(boxes[k], vector(x, 0.8, depth));
     let spring = JointKind::Spring {
         stiffness: 50.0,
         damping: 0.5,
         length: 0.3,
     };
-    let corner = JointAnchor::SoftBody {
-        body: resting,
-        at: [3.0, 0.4, 0.0],
-        radius: 0.1,
-    };
+    let corner = JointAnchor::on(resting, vector(3.0, 0.4, 0.0)).within(0.1);
+    let ceiling = JointAnchor::Point(vector(2.0, 1.2, depth));
     let joints = [
-        (
-            on(2, [2.2, 0.8, depth]),
-            on(3, [2.2, 0.8, depth]),
-            JointKind::Pin,
-        ),
-        (
-            on(2, [2.0, 0.8, depth]),
-            JointAnchor::Point([2.0, 1.2, depth]),
-            spring,
-        ),
-        (
-            on(3, [2.4, 0.8, depth]),
-            corner,
-            JointKind::Rope { length: 0.7 },
-        ),
+        (on(2, 2.2), on(3, 2.2), JointKind::Pin),
+        (on(2, 2.0), ceiling, spring),
+        (on(3, 2.4), corner, JointKind::Rope { length: 0.7 }),
     ];
     for (first, second, tie) in joints {
         let joint = Joint::new([first, second], tie).with_breaking_force(1e3);
@@ -510,12 +491,13 @@ fn world_of_everything<D: Dim>(n: usize) -> World<D> {
     let (node, _) = body.mesh().nodes().next().unwrap();
     body.fix_node(node);
     for tick in 0..60 {
-        let at = [-0.2 + 0.03 * tick as f32, 0.3, depth];
+        let at = vector(-0.2 + 0.03 * tick as f32, 0.3, depth);
         world.set_target_position(hand, at).unwrap();
-        let at = [0.5 - 0.012 * tick as f32, 0.1, depth];
+        let at = vector(0.5 - 0.012 * tick as f32, 0.1, depth);
         world.set_target_position(holder, at).unwrap();
         if tick == 11 {
-            let blade = Blade::segment([0.3, -1.0], [0.3, 1.0]);
+            let corner = Vec3::new(0.3, -1.0, -0.5);
+            let blade = D::blade(corner, Vec3::Y * 2.0, Vec3::Z);
             assert!(world.cut(cube, &blade).unwrap() > 0);
         }
         world.step();
@@ -545,26 +527,21 @@ const COVERED: [&str; 14] = [
     "inside",
 ];
 
-fn check_everything<D: Dim>(n: usize) {
+fn check_everything<D: Blades>(n: usize) {
     let mut world = world_of_everything::<D>(n);
     let mut counts = BTreeMap::new();
     check_all_values(&world, &mut counts);
     let is_torn = |body: &SoftBody<D>| body.pieces().count() > 1;
-    assert!(world.soft_bodies().map(|(_, body)| body).any(is_torn));
+    assert!(world.soft_bodies().any(|(_, body)| is_torn(body)));
     // Asleep, after some time without the coupled body.
     let hand = world.nth_target_follower(0).unwrap();
     world.remove(hand).unwrap();
     for _ in 0..300 {
         world.step();
     }
-    let mut bodies = world.soft_bodies().map(|(_, body)| body);
-    assert!(bodies.any(|body| body.pieces().list.iter().any(|piece| piece.asleep)));
-    assert!(
-        world
-            .rigid_bodies()
-            .map(|(_, body)| body)
-            .any(RigidBody::is_asleep)
-    );
+    let mut bodies = world.soft_bodies();
+    assert!(bodies.any(|(_, body)| body.pieces().list.iter().any(|piece| piece.asleep)));
+    assert!(world.rigid_bodies().any(|(_, body)| body.is_asleep()));
     check_all_values(&world, &mut counts);
     for part in COVERED {
         assert!(counts.keys().any(|path| path.starts_with(part)), "{part}");

@@ -1,16 +1,20 @@
 //! Tick lengths: durations in seconds do not depend on the tick.
 
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Error, Event, Hooks, Material, RigidBody, Shape, SoftBody, Substep, VoxelGrid,
-    World, WorldConfig,
+    DEFAULT_TICK, Dim, Dim2, Dim3, DimAngular, DimVector, Error, Event, Hooks, MAX_TICK, MIN_TICK,
+    Material, RigidBody, Shape, SoftBody, Substep, Vec2, Vec3, VoxelGrid, World, WorldConfig,
 };
-use fuwafuwa::{MAX_TICK, MIN_TICK, TICK};
+
+/// Vector of the dimension; in 2D the third coordinate is dropped.
+fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
+    V::from_vec3(Vec3::new(x, y, z))
+}
 
 const TICKS: [f32; 6] = [
     MIN_TICK,
     1.0 / 120.0,
     1.0 / 90.0,
-    TICK,
+    DEFAULT_TICK,
     1.0 / 50.0,
     MAX_TICK,
 ];
@@ -21,7 +25,7 @@ fn world<D: Dim>(tick: f32) -> World<D> {
         ..WorldConfig::default()
     };
     let mut world = World::new(settings).unwrap();
-    let floor = Shape::half_space(Vector::Y, Vector::ZERO);
+    let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
         .unwrap();
@@ -50,7 +54,7 @@ fn check_fall<D: Dim>() {
     // In half a second a body falls 1.226 m, at any tick.
     for tick in TICKS {
         let mut world = world::<D>(tick);
-        let ball = world.add_soft_body(ball::<D>(12).translated(Vector::new(0.0, 5.0, 0.0)));
+        let ball = world.add_soft_body(ball::<D>(12).translated(vector(0.0, 5.0, 0.0)));
         let start = world[ball].centre_of_mass()[1];
         pass(&mut world, 0.5, |_| {});
         let seconds = (0.5 / tick).round() * tick;
@@ -73,7 +77,7 @@ fn fall_distance_is_independent_of_tick() {
 /// time when it falls asleep.
 fn landing<D: Dim>(tick: f32) -> [f32; 3] {
     let mut world = world::<D>(tick);
-    let ball = world.add_soft_body(ball::<D>(12).translated(Vector::new(0.0, 0.5, 0.0)));
+    let ball = world.add_soft_body(ball::<D>(12).translated(vector(0.0, 0.5, 0.0)));
     let (mut lowest, mut touched, mut slept) = (f32::MAX, 0.0, 0.0);
     pass(&mut world, 12.0, |world| {
         let seconds = world.ticks() as f32 * tick;
@@ -91,12 +95,12 @@ fn landing<D: Dim>(tick: f32) -> [f32; 3] {
 }
 
 fn check_landing<D: Dim>() {
-    let [touched, lowest, slept] = landing::<D>(TICK);
+    let [touched, lowest, slept] = landing::<D>(DEFAULT_TICK);
     assert!(slept > 0.0, "the ball must fall asleep");
     for tick in TICKS {
         let [other, squashed, resting] = landing::<D>(tick);
         assert!(
-            (other - touched).abs() <= tick + TICK,
+            (other - touched).abs() <= tick + DEFAULT_TICK,
             "{tick}: {other} for {touched} s"
         );
         assert!(
@@ -126,19 +130,19 @@ fn torn<D: Dim>(tick: f32) -> u32 {
     };
     let body = SoftBody::new(VoxelGrid::<D>::ball(12, 1.0).unwrap(), &[soft]).unwrap();
     world.add_soft_body(body);
-    let wall = Shape::half_space(Vector::NEG_X, Vector::new(1.1, 0.0, 0.0));
+    let wall = Shape::half_space(vector(-1.0, 0.0, 0.0), vector(1.1, 0.0, 0.0));
     world
         .add_rigid_body(RigidBody::fixed(wall).with_friction(0.2))
         .unwrap();
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let hand = world
-        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vector::new(-0.3, 0.5, depth)))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(vector(-0.3, 0.5, depth)))
         .unwrap();
     let mut released = 0;
     for number in 1..=(1.0 / tick).round() as u32 {
         let along = -0.3 + 1.5 * number as f32 * tick;
         world
-            .set_target_position(hand, Vector::new(along, 0.5, depth))
+            .set_target_position(hand, vector(along, 0.5, depth))
             .unwrap();
         released += world.step().nodes_split;
     }
@@ -148,7 +152,7 @@ fn torn<D: Dim>(tick: f32) -> u32 {
 #[test]
 fn tearing_is_similar_at_any_tick() {
     for tear in [torn::<Dim2>, torn::<Dim3>] {
-        let usual = tear(TICK);
+        let usual = tear(DEFAULT_TICK);
         assert!(usual > 10);
         for tick in TICKS {
             let other = f64::from(tear(tick)) / f64::from(usual);
@@ -182,7 +186,7 @@ fn substeps_per_second_are_independent_of_tick() {
         let id = world.add_soft_body(body);
         world[id].stiffness_scale()
     };
-    let usual = scale(TICK);
+    let usual = scale(DEFAULT_TICK);
     assert!(usual < 0.5);
     for tick in TICKS {
         assert!((scale(tick) / usual - 1.0).abs() < 0.05, "tick {tick}");
@@ -191,7 +195,14 @@ fn substeps_per_second_are_independent_of_tick() {
 
 #[test]
 fn settings_reject_tick_out_of_range() {
-    for tick in [0.0, -TICK, f32::NAN, f32::INFINITY, 1.0 / 29.0, 1.0 / 250.0] {
+    for tick in [
+        0.0,
+        -DEFAULT_TICK,
+        f32::NAN,
+        f32::INFINITY,
+        1.0 / 29.0,
+        1.0 / 250.0,
+    ] {
         let settings = WorldConfig {
             tick,
             ..WorldConfig::default()
@@ -201,12 +212,12 @@ fn settings_reject_tick_out_of_range() {
             refused.to_string(),
             format!("tick must be 1/240 to 1/30 s, given {tick:?}")
         );
-        let mut world = world::<Dim2>(TICK);
+        let mut world = world::<Dim2>(DEFAULT_TICK);
         assert!(matches!(
             world.set_config(settings),
             Err(Error::InvalidParameter { field, .. }) if field == "tick"
         ));
-        assert_eq!(world.config().tick, TICK);
+        assert_eq!(world.config().tick, DEFAULT_TICK);
     }
 }
 
@@ -214,13 +225,13 @@ fn settings_reject_tick_out_of_range() {
 #[test]
 fn set_settings_takes_effect_immediately() {
     let usual = WorldConfig::default();
-    let mut world = world::<Dim2>(TICK);
-    let ball = world.add_soft_body(ball::<Dim2>(12).translated(Vector::new(0.0, 50.0, 0.0)));
+    let mut world = world::<Dim2>(DEFAULT_TICK);
+    let ball = world.add_soft_body(ball::<Dim2>(12).translated(Vec2::new(0.0, 50.0)));
     let speed = |world: &World<Dim2>| {
         let body = &world[ball];
         body.momentum().linear[1] / body.total_mass()
     };
-    let mut gain = |settings: WorldConfig| {
+    let mut gain = |settings: WorldConfig<Dim2>| {
         world.set_config(settings).unwrap();
         let before = speed(&world);
         let substeps = world.step().substeps;
@@ -229,19 +240,12 @@ fn set_settings_takes_effect_immediately() {
     let near = |found: f64, expected: f64| {
         assert!((found - expected).abs() < 1e-3, "{found} for {expected}");
     };
-    let tick = f64::from(TICK);
+    let tick = f64::from(DEFAULT_TICK);
     near(gain(usual).0, -9.81 * tick);
-    let gravity = [0.0, 3.0, 0.0];
-    near(
-        gain(WorldConfig {
-            gravity: gravity.into(),
-            ..usual
-        })
-        .0,
-        3.0 * tick,
-    );
+    let gravity = Vec2::new(0.0, 3.0);
+    near(gain(WorldConfig { gravity, ..usual }).0, 3.0 * tick);
     let halved = WorldConfig {
-        tick: 0.5 * TICK,
+        tick: 0.5 * DEFAULT_TICK,
         ..usual
     };
     let (found, _, substeps) = gain(halved);
@@ -254,7 +258,7 @@ fn set_settings_takes_effect_immediately() {
     assert_eq!(gain(few).2, 8);
     let braked = WorldConfig {
         drag: 10.0,
-        gravity: Vector::ZERO,
+        gravity: Vec2::ZERO,
         ..usual
     };
     let (found, before, _) = gain(braked);
@@ -266,26 +270,21 @@ fn set_settings_takes_effect_immediately() {
 /// tick.
 fn check_callback<D: Dim>(tick: f32) {
     let mut world = world::<D>(tick);
-    world.add_soft_body(ball::<D>(12).translated(Vector::new(0.0, 0.0, 0.0)));
+    world.add_soft_body(ball::<D>(12));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     // A bar that meets the ball with one end, so that it is pushed and rotated.
-    let bar = Shape::Capsule {
-        from: Vector::NEG_X,
-        to: Vector::new(0.3, 0.0, 0.0),
-        radius: 0.1,
-    };
-    let from = [-0.2, 1.2, depth];
-    let hand = RigidBody::new(bar, fuwafuwa::MotionType::default()).at(from.into());
+    let bar = Shape::capsule(vector(-1.0, 0.0, 0.0), vector(0.3, 0.0, 0.0), 0.1);
+    let hand = RigidBody::coupled(bar).at(vector(-0.2, 1.2, depth));
     let hand = world.add_rigid_body(hand).unwrap();
     let mut most = 0.0f32;
     for number in 1..=(0.5 / tick).round() as u32 {
         let down = (1.2 * number as f32 * tick).min(0.4);
         world
-            .set_target_position(hand, Vector::new(-0.2, 1.2 - down, depth))
+            .set_target_position(hand, vector(-0.2, 1.2 - down, depth))
             .unwrap();
         let mut felt = Vec::new();
         let mut time = 0.0;
-        let mut note = |substep: &Substep| {
+        let mut note = |substep: &Substep<D>| {
             felt.push(substep.reaction(hand).unwrap());
             time += substep.duration;
         };
@@ -296,12 +295,14 @@ fn check_callback<D: Dim>(tick: f32) {
         let report = world.step_with(hooks);
         assert_eq!(felt.len(), report.substeps as usize);
         assert!((time - tick).abs() < 1e-6);
-        assert_eq!(felt, world.rigid_body(hand).unwrap().reactions());
+        let stored = world.rigid_body(hand).unwrap().reactions();
+        assert_eq!(felt, stored.collect::<Vec<_>>());
         for reaction in felt {
-            most = most.max(reaction.torque[2]);
+            let torque = reaction.torque.to_vec3().z;
+            most = most.max(torque);
             if reaction.contact[1] > 1.0 {
                 // The contact is to the right of the hand and pushes up.
-                assert!(reaction.torque[2] > 0.0, "{reaction:?}");
+                assert!(torque > 0.0, "{reaction:?}");
             }
         }
     }
@@ -310,7 +311,7 @@ fn check_callback<D: Dim>(tick: f32) {
 
 #[test]
 fn substep_hook_reports_stored_reactions() {
-    for tick in [MIN_TICK, TICK, MAX_TICK] {
+    for tick in [MIN_TICK, DEFAULT_TICK, MAX_TICK] {
         check_callback::<Dim2>(tick);
         check_callback::<Dim3>(tick);
     }

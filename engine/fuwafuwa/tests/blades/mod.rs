@@ -1,0 +1,22 @@
+//! Blades in both dimensions, for tests that run in 2D and in 3D.
+
+use fuwafuwa::{Blade, Dim, Dim2, Dim3, Vec3};
+
+/// Dimension with a blade.
+pub trait Blades: Dim {
+    /// Returns the parallelogram with a corner [m] and the edges [m] that begin there. In 2D it is the segment along
+    /// the first edge.
+    fn blade(corner: Vec3, first: Vec3, second: Vec3) -> Blade<Self>;
+}
+
+impl Blades for Dim2 {
+    fn blade(corner: Vec3, first: Vec3, _: Vec3) -> Blade<Self> {
+        Blade::segment(corner.truncate(), (corner + first).truncate())
+    }
+}
+
+impl Blades for Dim3 {
+    fn blade(corner: Vec3, first: Vec3, second: Vec3) -> Blade<Self> {
+        Blade::parallelogram(corner, first, second)
+    }
+}
