@@ -7,8 +7,7 @@
 use cpu_time::ThreadTime;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim3, Event, Knife, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid, World,
-    WorldConfig,
+    Dim3, Event, Knife, Material, RigidBody, Shape, SoftBody, Vec3, VoxelGrid, World, WorldConfig,
 };
 use std::error::Error;
 
@@ -56,35 +55,31 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn cut(voxels: usize, max_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn Error>> {
     let settings = WorldConfig {
         // As in a bath, where buoyancy carries most of the organ's weight.
-        gravity: [0.0, -1.0, 0.0],
+        gravity: Vec3::NEG_Y,
         max_substeps,
         ..WorldConfig::default()
     };
     let mut world = World::<Dim3>::new(settings)?;
-    let table = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let table = Shape::half_space(Vec3::Y, Vec3::ZERO);
     world.add_rigid_body(RigidBody::fixed(table).with_friction(0.8))?;
     // 0.16 m wide, 0.1 m high.
     let size = 0.16 / voxels as f32;
     let grid = VoxelGrid::from_centres([voxels; 3], size, |at| {
-        let scale = [1.0 / 0.08, 1.0 / 0.05, 1.0 / 0.06];
-        let middle = [0.08, 0.05, 0.08];
-        let apart = [0, 1, 2].map(|k: usize| (at[k] - middle[k]) * scale[k]);
-        u8::from(apart.iter().map(|k| k * k).sum::<f32>() < 1.0)
+        let scale = Vec3::new(1.0 / 0.08, 1.0 / 0.05, 1.0 / 0.06);
+        let middle = Vec3::new(0.08, 0.05, 0.08);
+        u8::from(((at - middle) * scale).length_squared() < 1.0)
     })?;
     let solid = grid.solid_count();
     let organ = world.add_soft_body(SoftBody::new(grid, &[organ()])?);
-    let mut holder = RigidBody::coupled(Shape::ball(0.01))
-        .at([0.081, 0.14, 0.08])
-        .with_motion_type(MotionType::Kinematic);
-    holder.is_sensor = true;
-    let holder = world.add_rigid_body(holder)?;
-    let edge = [[0.0, 0.0, -0.08], [0.0, 0.0, 0.08]];
-    let knife = world.add_knife(Knife::new(holder, edge, [0.0, -1.0, 0.0]))?;
+    let holder = RigidBody::kinematic(Shape::ball(0.01)).at(Vec3::new(0.081, 0.14, 0.08));
+    let holder = world.add_rigid_body(holder.with_sensor(true))?;
+    let edge = [-0.08, 0.08].map(|z| Vec3::new(0.0, 0.0, z));
+    let knife = world.add_knife(Knife::new(holder, edge, Vec3::NEG_Y))?;
     let (mut times, mut sums, mut most) = (Vec::new(), [0.0; 2], 0.0f32);
     for tick in 0..180 {
         // The knife waits for half a second and then moves down for a bit over two seconds.
         let deep = 0.001 * (tick as f32 - 30.0).clamp(0.0, 135.0);
-        world.set_target_position(holder, [0.081, 0.14 - deep, 0.08])?;
+        world.set_target_position(holder, Vec3::new(0.081, 0.14 - deep, 0.08))?;
         let began = ThreadTime::now();
         world.step();
         times.push(1000.0 * began.elapsed().as_secs_f64());
@@ -93,7 +88,7 @@ fn cut(voxels: usize, max_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn E
                 sums = [sums[0] + area, sums[1] + work];
             }
         }
-        most = most.max(world.knife(knife)?.force()[1]);
+        most = most.max(world.knife(knife)?.force().y);
     }
     let told = format!(
         "{solid} voxels, {} elements, {} pieces; cut {:.2} cm² with {:.3} J, maximum force {most:.2} N",

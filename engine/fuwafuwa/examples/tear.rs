@@ -3,18 +3,18 @@
 //! `cargo run --release -p fuwafuwa --example tear`
 
 use fuwafuwa::{
-    Dim2, Event, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
+    Dim2, Event, Material, MotionType, RigidBody, Shape, SoftBody, Vec2, VoxelGrid, World,
+    WorldConfig,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut world = World::<Dim2>::new(WorldConfig {
-        gravity: [0.0; 3],
+        gravity: Vec2::ZERO,
         drag: 1.0,
         ..WorldConfig::default()
     })?;
-    world.add_rigid_body(
-        RigidBody::fixed(Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0])).with_friction(0.2),
-    )?;
+    let wall = Shape::half_space(Vec2::NEG_X, Vec2::new(1.1, 0.0));
+    world.add_rigid_body(RigidBody::fixed(wall))?;
     let ball = world.add_soft_body(SoftBody::new(
         VoxelGrid::ball(64, 1.0)?,
         &[Material::default()],
@@ -24,15 +24,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         mass: 2.0,
         stiffness: 10_000.0,
         damping: 0.9,
-        limit: f32::INFINITY,
+        max_force: f32::INFINITY,
     };
-    let hand = world.add_rigid_body(
-        RigidBody::coupled(Shape::ball(0.1))
-            .at([-0.2, 0.5, 0.0])
-            .with_motion_type(strong),
-    )?;
+    let hand = RigidBody::new(Shape::ball(0.1), strong).at(Vec2::new(-0.2, 0.5));
+    let hand = world.add_rigid_body(hand)?;
     for tick in 0..120u8 {
-        world.set_target_position(hand, [-0.2 + 0.012 * f32::from(tick), 0.5, 0.0])?;
+        world.set_target_position(hand, Vec2::new(-0.2 + 0.012 * f32::from(tick), 0.5))?;
         let report = world.step();
         let energy: f32 = world
             .events()
@@ -42,8 +39,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 _ => 0.0,
             })
             .sum();
-        let felt = world.rigid_body(hand).unwrap().reactions().last();
-        let felt = felt.map_or(0.0, |reaction| -reaction.coupling[0]);
+        let felt = world.rigid_body(hand)?.reactions().last();
+        let felt = felt.map_or(0.0, |reaction| -reaction.coupling.x);
         if report.nodes_split > 0 || tick % 20 == 0 {
             println!(
                 "tick {tick:3}: the hand pushes with {felt:5.0} N; {:2} nodes released ({energy:.2} J), {} pieces detached",
@@ -54,7 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut pieces = world[ball].piece_views();
     pieces.sort_by(|a, b| b.mass.total_cmp(&a.mass));
     for piece in pieces.iter().take(5) {
-        println!("a piece of {:.2} kg at {:.2?}", piece.mass, piece.centre);
+        println!("a piece of {:.2} kg at {:.2}", piece.mass, piece.centre);
     }
     Ok(())
 }

@@ -101,18 +101,19 @@ impl Material {
     /// Soft clay for a game: keeps the shape into which it is pressed.
     ///
     /// ```
-    /// use fuwafuwa::{SoftBody, Dim2, Material, RigidBody, WorldConfig, Shape, VoxelGrid, World};
+    /// use fuwafuwa::{Dim2, Material, RigidBody, Shape, SoftBody, Vec2, VoxelGrid, World, WorldConfig};
     ///
     /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
-    /// world.add_rigid_body(RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
+    /// world.add_rigid_body(RigidBody::fixed(Shape::half_space(Vec2::Y, Vec2::ZERO)))?;
     /// let block = SoftBody::new(VoxelGrid::cube(12, 1.0)?, &[Material::clay()])?;
     /// let block = world.add_soft_body(block);
-    /// let hand = world.add_rigid_body(RigidBody::coupled_ball([0.5, 1.2, 0.0], 0.2))?;
+    /// let hand = RigidBody::coupled(Shape::ball(0.2)).at(Vec2::new(0.5, 1.2));
+    /// let hand = world.add_rigid_body(hand)?;
     /// for height in [0.6, 1.6] {
-    ///     world.set_target_position(hand, [0.5, height, 0.0])?;
+    ///     world.set_target_position(hand, Vec2::new(0.5, height))?;
     ///     (0..60).for_each(|_| _ = world.step());
     /// }
-    /// let body = &world.soft_bodies()[block];
+    /// let body = &world[block];
     /// let most = body.mesh().elements().filter_map(|(id, _)| body.plastic_strain(id));
     /// assert!(most.fold(0.0, f32::max) > 0.1);
     /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -178,7 +178,7 @@ impl<D: Dim> SoftBody<D> {
     /// Returns the energy of each piece, by number, under `gravity` [m/s²]; 0 for removed pieces.
     ///
     /// ```
-    /// use fuwafuwa::{SoftBody, Dim2, Material, VoxelGrid};
+    /// use fuwafuwa::{Dim2, Material, SoftBody, Vec2, VoxelGrid};
     ///
     /// let body = SoftBody::new(VoxelGrid::<Dim2>::ball(8, 1.0)?, &[Material::default()])?;
     /// let mass = body.total_mass();

@@ -75,9 +75,9 @@ impl<D: Dim> VoxelGrid<D> {
     /// into voxels:
     ///
     /// ```
-    /// use fuwafuwa::{Dim3, Shape, VoxelGrid};
+    /// use fuwafuwa::{Dim3, Shape, Vec3, VoxelGrid};
     ///
-    /// let ball = |radius| Shape::Ball { centre: [0.5; 3], radius };
+    /// let ball = |radius| Shape::<Dim3>::ball(radius).translated(Vec3::splat(0.5));
     /// let (shell, core) = (ball(0.45), ball(0.2));
     /// let grid = VoxelGrid::<Dim3>::from_centres([32; 3], 1.0 / 32.0, |at| {
     ///     match (shell.distance(at).0 < 0.0, core.distance(at).0 < 0.0) {

@@ -73,8 +73,7 @@ impl<D: Dim> World<D> {
     /// which cost time and carry nothing.
     ///
     /// ```
-    /// use fuwafuwa::PieceSize;
-    /// use fuwafuwa::{SoftBody, Dim3, Material, WorldConfig, VoxelGrid, World};
+    /// use fuwafuwa::{Dim3, Material, PieceSize, SoftBody, VoxelGrid, World, WorldConfig};
     ///
     /// let mut world = World::<Dim3>::new(WorldConfig::default())?;
     /// let ball = SoftBody::new(VoxelGrid::ball(8, 0.4)?, &[Material::default()])?;
@@ -82,7 +81,7 @@ impl<D: Dim> World<D> {
     /// world.soft_body_mut(ball)?.crumble();
     /// assert_eq!(world.remove_small_pieces(PieceSize::Voxels(1))?.pieces, []);
     /// let removed = world.remove_small_pieces(PieceSize::Voxels(2))?;
-    /// assert_eq!(removed.bodies, [ball]);
+    /// assert_eq!(removed.soft_bodies, [ball]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
