@@ -1,7 +1,7 @@
 //! Measures for one image: the CPU time for its vertices and the total time (best of several runs) [ms], the
 //! draw calls and the bytes written to the GPU.
 
-use fuwafuwa::Dim2;
+use fuwafuwa::{Dim2, Vec2};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::{Camera, Frame, Geometry, Look, Palette, Renderer};
 use fuwafuwa_scenes::Scene;
@@ -32,7 +32,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             nodes: false,
         };
         for (look_name, look) in [("skin", Look::Skin), ("elements", elements)] {
-            let camera = Camera::fit(scene.view[0], scene.view[1], SIZE);
+            let [low, high] = scene.view.map(|[x, y, _]| Vec2::new(x, y));
+            let camera = Camera::fit(low, high, SIZE);
             let frame = Frame {
                 look,
                 ..Frame::new(camera, &palette)

@@ -1,8 +1,7 @@
 //! Measures the CPU time of each part of a 3D picture while a hand tears a ball: `cargo run --release -p
 //! fuwafuwa_render --example skin3d -- [body.n=64 …]`.
 
-use fuwafuwa::inspect::vector::scaled;
-use fuwafuwa::{Dim3, PieceId, World};
+use fuwafuwa::{Dim3, PieceId, SoftBody, Vec3, World};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::space::{Camera, Cut, Geometry, Skin};
 use fuwafuwa_render::{Ages, Frame, Look, Mark, Palette, Sticker, anchor};
@@ -33,24 +32,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     for tick in 0..=TICKS {
         let mut is_new = false;
         let skin = best(&mut skins, |skin| {
-            is_new = skin.update(world.soft_bodies().next().unwrap().1, &palette.materials);
+            is_new = skin.update(first_body(&world), &palette.materials);
         });
         times[0].push((is_new, skin));
         ages.update(&world, 1.0 / 60.0);
         let stickers = [face(&world)];
         for (part, geometries) in geometries.iter_mut().enumerate() {
             let share = 0.7 + 0.3 * (tick as f32 / 20.0).sin();
-            let camera = Camera::fit(scene.view[0], scene.view[1], [1, 1]);
+            let [low, high] = scene.view.map(Vec3::from);
+            let camera = Camera::fit(low, high, [1, 1]);
             let mut frame = Frame::new(camera, &palette);
             match part {
                 0 => {}
                 1 => frame.stickers = &stickers,
                 2 => {
-                    let towards = [0.0, 0.0, 1.0];
-                    frame.camera.cut = Some(Cut {
-                        direction: towards,
-                        share,
-                    });
+                    let direction = Vec3::Z;
+                    frame.camera.cut = Some(Cut { direction, share });
                     frame.look = Look::Elements {
                         colour: ElementColour::Strain,
                         ages: &ages.seconds,
@@ -98,9 +95,14 @@ fn best<T>(goes: &mut [T], mut act: impl FnMut(&mut T)) -> f64 {
     times.fold(f64::INFINITY, f64::min)
 }
 
+fn first_body(world: &World<Dim3>) -> &SoftBody<Dim3> {
+    let first = world.soft_bodies().next();
+    first.expect("the scene has a body").1
+}
+
 /// Returns a sticker with as many corners as a face in the game.
 fn face(world: &World<Dim3>) -> Sticker {
-    let body = world.soft_bodies().next().unwrap().1;
+    let body = first_body(world);
     let anchor = anchor(body);
     let mark = |k: u32| {
         let count = if k < 12 { 28 } else { 16 };
@@ -121,7 +123,7 @@ fn face(world: &World<Dim3>) -> Sticker {
         body: 0,
         piece: largest.map_or(PieceId(0), |piece| piece.number),
         origin: anchor.position,
-        axes: anchor.axes.map(|axis| scaled(axis, 0.55 * anchor.scale)),
+        axes: anchor.axes.map(|axis| axis * (0.55 * anchor.scale)),
         marks: (0..22).map(mark).collect(),
     }
 }

@@ -3,7 +3,7 @@
 
 mod shared;
 
-use fuwafuwa::{Dim2, Shape, World};
+use fuwafuwa::{Dim2, Shape, Vec2, Vec3, World};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::{Ages, Basket, Camera, Frame, Look, Palette, Particle, Renderer, anchor};
 use fuwafuwa_scenes::Scene;
@@ -37,7 +37,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let scene = Scene::open(name, &[])?;
         let mut world = scene.build::<Dim2>()?;
         let mut ages = Ages::default();
-        let camera = Camera::fit(scene.view[0], scene.view[1], SIZE);
+        let [low, high] = scene.view.map(|[x, y, _]| Vec2::new(x, y));
+        let camera = Camera::fit(low, high, SIZE);
         for tick in 0..=moments.iter().copied().max().unwrap_or(0) {
             scene.set_hand_targets(&mut world, tick);
             world.step();
@@ -61,10 +62,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let frame = Frame {
                     look,
                     basket: (name == "squeeze").then_some(Basket {
-                        region: Shape::Box {
-                            centre: [1.75, 0.5, 0.0],
-                            half: [0.45, 0.425, 0.0],
-                        },
+                        region: Shape::cuboid(Vec2::new(0.45, 0.425))
+                            .translated(Vec2::new(1.75, 0.5)),
                         fill: 0.0,
                     }),
                     particles: &particles,
@@ -84,16 +83,15 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Returns particles around the largest piece of the first body, to show how particles look.
 fn crumbs(world: &World<Dim2>) -> Vec<Particle> {
-    let Some(body) = world.soft_bodies().next().map(|(_, item)| item) else {
+    let Some((_, body)) = world.soft_bodies().next() else {
         return Vec::new();
     };
     let anchor = anchor(body);
     let around = (0..12).map(|k| {
         let angle = k as f32 * 2.4;
         let reach = anchor.scale * (1.15 + 0.02 * k as f32);
-        let [x, y, _] = anchor.position;
         Particle {
-            at: [x + reach * angle.cos(), y + reach * angle.sin(), 0.0],
+            at: anchor.position + reach * Vec3::new(angle.cos(), angle.sin(), 0.0),
             radius: 0.006 + 0.001 * k as f32,
             colour: [1.0, 0.62, 0.55, 1.0 - 0.06 * k as f32],
         }

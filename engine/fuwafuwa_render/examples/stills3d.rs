@@ -4,7 +4,7 @@
 
 mod shared;
 
-use fuwafuwa::{Dim3, World};
+use fuwafuwa::{Dim3, Vec3, World};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::space::{Camera, Cut, Renderer};
 use fuwafuwa_render::{Ages, Basket, Frame, Look, Palette, Particle};
@@ -188,7 +188,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 nodes: false,
             };
             let cut = Some(Cut {
-                direction: [0.0, 0.0, 1.0],
+                direction: Vec3::Z,
                 share: 0.5,
             });
             let looks = [
@@ -203,9 +203,9 @@ fn main() -> Result<(), Box<dyn Error>> {
                     continue;
                 }
                 let [low, high] = if take == "tear-3d" {
-                    [[0.0; 3], [1.0; 3]]
+                    [Vec3::ZERO, Vec3::ONE]
                 } else {
-                    scene.view
+                    scene.view.map(Vec3::from)
                 };
                 let camera = Camera {
                     cut,
@@ -232,19 +232,16 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Returns particles beside the first hand, to show how particles look.
 fn dust(world: &World<Dim3>) -> Vec<Particle> {
-    let Some((_, hand)) = world.target_followers().next() else {
+    let mut bodies = world.rigid_bodies().map(|(_, body)| body);
+    let Some(hand) = bodies.find(|body| body.follows_target()) else {
         return Vec::new();
     };
-    let [x, y, z] = hand.position();
     let around = (0..12).map(|k| {
         let (angle, reach) = (k as f32 * 2.4, 1.3 + 0.08 * k as f32);
         let reach = reach * hand.shape().inradius();
+        let by = Vec3::new(reach * angle.cos(), 0.02 * k as f32, reach * angle.sin());
         Particle {
-            at: [
-                x + reach * angle.cos(),
-                y + 0.02 * k as f32,
-                z + reach * angle.sin(),
-            ],
+            at: hand.position() + by,
             radius: 0.006 + 0.001 * k as f32,
             colour: [1.0, 0.72, 0.66, 1.0 - 0.06 * k as f32],
         }

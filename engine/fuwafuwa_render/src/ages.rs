@@ -55,7 +55,7 @@ fn form(element: &Element) -> Form {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Blade, Dim2, Material, SoftBody, VoxelGrid, WorldConfig};
+    use fuwafuwa::{Blade, Dim2, Material, SoftBody, Vec2, VoxelGrid, WorldConfig};
 
     #[test]
     fn age_restarts_for_elements_remodelled_by_a_cut() {
@@ -66,9 +66,8 @@ mod tests {
         ages.update(&world, 0.0);
         let young = |ages: &Ages| ages.seconds[0].iter().filter(|&&age| age < 0.2).count();
         assert_eq!(young(&ages), 0);
-        world
-            .cut(id, &Blade::segment([0.5, 0.5], [0.5, 2.0]))
-            .unwrap();
+        let blade = Blade::segment(Vec2::splat(0.5), Vec2::new(0.5, 2.0));
+        world.cut(id, &blade).unwrap();
         ages.update(&world, 0.1);
         let remodelled = young(&ages);
         assert!(

@@ -1,6 +1,6 @@
 //! A coordinate frame that follows a body, for example to paint a face in it.
 
-use fuwafuwa::{Dim, PieceId, SoftBody, Vector};
+use fuwafuwa::{Dim, DimVector, PieceId, SoftBody};
 use glam::{Mat3, Vec3};
 
 /// Iterations of the polar decomposition. Each one doubles the number of correct digits near convergence.
@@ -13,9 +13,9 @@ const FLAT: f32 = 1.0e-7;
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Anchor {
     /// Centre of mass of the piece [m].
-    pub position: Vector,
+    pub position: Vec3,
     /// Current directions of the body's rest axes. Orthonormal.
-    pub axes: [Vector; 3],
+    pub axes: [Vec3; 3],
     /// Radius of a disc (2D) with the piece's rest area or of a ball (3D) with its rest volume [m].
     pub scale: f32,
 }
@@ -39,15 +39,15 @@ pub fn anchor<D: Dim>(body: &SoftBody<D>) -> Anchor {
             .filter(|&(id, _)| pieces.of_node(id).index() == largest);
         own.map(|(id, node)| {
             let (at, _, mass) = body.node_state(id);
-            (at.into(), node.at.map(|k| k as f32).into(), mass)
+            (at.to_vec3(), Vec3::from(node.at.map(|k| k as f32)), mass)
         })
     };
     let (position, _, turn) = frame::<D, _>(states);
     let whole: f32 = masses.iter().sum();
     let voxels = body.grid().left_count() as f32 * masses[largest] / whole;
     Anchor {
-        position: position.into(),
-        axes: turn.unwrap_or_default().to_cols_array_2d(),
+        position,
+        axes: columns(turn.unwrap_or_default()),
         scale: body.grid().voxel_size()
             * match D::N {
                 2 => (voxels / std::f32::consts::PI).sqrt(),
@@ -62,10 +62,9 @@ pub fn anchor<D: Dim>(body: &SoftBody<D>) -> Anchor {
 pub fn anchor_at<D: Dim>(
     body: &SoftBody<D>,
     piece: PieceId,
-    place: Vector,
+    place: Vec3,
     reach: f32,
-) -> Option<(Vector, [Vector; 3])> {
-    let place = Vec3::from(place);
+) -> Option<(Vec3, [Vec3; 3])> {
     let states = || {
         let near = body.mesh().nodes().filter_map(move |(id, node)| {
             let rest = Vec3::from(node.at.map(|k| k as f32));
@@ -74,13 +73,13 @@ pub fn anchor_at<D: Dim>(
         });
         near.map(|(id, rest)| {
             let (at, _, mass) = body.node_state(id);
-            (at.into(), rest, mass)
+            (at.to_vec3(), rest, mass)
         })
     };
     let (position, origin, turn) = frame::<D, _>(states);
     let turn = turn?;
     let moved = position + turn * ((place - origin) * body.grid().voxel_size());
-    Some((moved.into(), turn.to_cols_array_2d()))
+    Some((moved, columns(turn)))
 }
 
 /// Returns the mean current position, the mean rest position and the rotation of nodes. Each state is
@@ -103,12 +102,17 @@ fn frame<D: Dim, I: Iterator<Item = (Vec3, Vec3, f32)>>(
     (position, origin, turn_of::<D>(sums))
 }
 
+/// Returns the columns of a matrix.
+pub(crate) fn columns(of: Mat3) -> [Vec3; 3] {
+    [of.x_axis, of.y_axis, of.z_axis]
+}
+
 /// Returns the rotation part of a matrix, by repeated averaging with its inverse transpose [Higham 1986].
 /// Returns `None` for flat or inverted matrices.
 fn turn_of<D: Dim>(mut turn: Mat3) -> Option<Mat3> {
     let size = |of: Mat3| {
-        let columns = [of.x_axis, of.y_axis, of.z_axis];
-        columns.map(Vec3::length_squared).iter().sum::<f32>().sqrt()
+        let squares = columns(of).map(Vec3::length_squared);
+        squares.iter().sum::<f32>().sqrt()
     };
     if D::N == 2 {
         // All 2D nodes lie in a plane. A third axis makes the matrix invertible and keeps the rotation in the
@@ -131,8 +135,7 @@ fn turn_of<D: Dim>(mut turn: Mat3) -> Option<Mat3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::inspect::vector::dot;
-    use fuwafuwa::{Blade, Dim2, Dim3, Material, NodeId, VoxelGrid, World, WorldConfig};
+    use fuwafuwa::{Blade, Dim2, Dim3, Material, NodeId, Vec2, VoxelGrid, World, WorldConfig};
 
     #[test]
     fn anchor_rotates_with_largest_piece_and_ignores_squash() {
@@ -141,38 +144,34 @@ mod tests {
         let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let rest = anchor(&world[soft]);
         assert!(
-            (rest.scale - 0.48).abs() < 0.02 && (rest.axes[0][0] - 1.0).abs() < 1e-6,
+            (rest.scale - 0.48).abs() < 0.02 && (rest.axes[0].x - 1.0).abs() < 1e-6,
             "{rest:?}"
         );
 
-        world
-            .cut(soft, &Blade::segment([0.25, -1.0], [0.25, 2.0]))
-            .unwrap();
+        let blade = Blade::segment(Vec2::new(0.25, -1.0), Vec2::new(0.25, 2.0));
+        world.cut(soft, &blade).unwrap();
         let body = world.soft_body_mut(soft).unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         let (sin, cos) = 2.5f32.sin_cos();
         for id in ids {
-            let [x, y, _] = body.node_state(id).0;
+            let at = body.node_state(id).0;
             // Squashed, rotated and translated; the part that was cut off is moved far away.
-            let [x, y] = [x, 0.6 * y];
-            let gone = if x < 0.25 { 100.0 } else { 0.0 };
-            let place = [cos * x - sin * y + 3.0 + gone, sin * x + cos * y - 7.0, 0.0];
-            if x != 0.25 {
-                body.set_node_state(id, place, [0.0; 3]);
-            } else {
-                let largest = body.pieces().of_node(id) == body.pieces().of_node(middle(body));
-                let gone = if largest { 0.0 } else { 100.0 };
-                body.set_node_state(id, [place[0] + gone, place[1], 0.0], [0.0; 3]);
-            }
+            let squashed = at * Vec2::new(1.0, 0.6);
+            let place = Vec2::new(cos, sin).rotate(squashed) + Vec2::new(3.0, -7.0);
+            let largest = body.pieces().of_node(id) == body.pieces().of_node(middle(body));
+            let is_cut_off = at.x < 0.25 || at.x == 0.25 && !largest;
+            let gone = if is_cut_off { 100.0 } else { 0.0 };
+            body.set_node_state(id, place + gone * Vec2::X, Vec2::ZERO)
+                .unwrap();
         }
         let now = anchor(&world[soft]);
         let [right, up, _] = now.axes;
         assert!(
-            (right[0] - cos).abs() < 1e-3 && (right[1] - sin).abs() < 1e-3,
+            (right.x - cos).abs() < 1e-3 && (right.y - sin).abs() < 1e-3,
             "{now:?}"
         );
-        assert!((up[0] + right[1]).abs() < 1e-5 && (up[1] - right[0]).abs() < 1e-5);
-        assert!(now.position[0].abs() < 10.0 && now.scale < rest.scale);
+        assert!((up.x + right.y).abs() < 1e-5 && (up.y - right.x).abs() < 1e-5);
+        assert!(now.position.x.abs() < 10.0 && now.scale < rest.scale);
     }
 
     #[test]
@@ -184,12 +183,13 @@ mod tests {
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             // Half as high, then rotated so that x maps to y, y to z and z to x.
-            let [x, y, z] = body.node_state(id).0;
-            body.set_node_state(id, [z, x, 0.5 * y], [0.0; 3]);
+            let [x, y, z] = body.node_state(id).0.to_array();
+            let place = Vec3::new(z, x, 0.5 * y);
+            body.set_node_state(id, place, Vec3::ZERO).unwrap();
         }
-        let wanted = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
+        let wanted = [Vec3::Y, Vec3::Z, Vec3::X];
         for (axis, wanted) in anchor(&world[soft]).axes.into_iter().zip(wanted) {
-            assert!(dot(axis, wanted) > 0.9999, "{axis:?}, not {wanted:?}");
+            assert!(axis.dot(wanted) > 0.9999, "{axis:?}, not {wanted:?}");
         }
     }
 

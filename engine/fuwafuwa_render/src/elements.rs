@@ -2,7 +2,6 @@
 
 use crate::frame::ElementColour;
 use crate::palette::{Colour, Palette, bytes, mix};
-use crate::plane::flat;
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::inspect::slot_index;
 use fuwafuwa::inspect::{ElementFace, blocks, faces};
@@ -83,7 +82,7 @@ impl ElementMesh {
         if nodes {
             let ink = bytes(palette.ink, 1.0);
             for (id, _) in body.mesh().nodes() {
-                let at = flat(body.node_state(id).0);
+                let at = body.node_state(id).0;
                 self.add_line(at, at, 1.8, ink);
             }
         }
@@ -107,7 +106,8 @@ impl ElementMesh {
         let count = self.faces_of(view).len();
         for k in 0..count {
             let [from, to, ..] = self.faces_of(view)[k].slots;
-            self.add_line(flat(view.slots[from]), flat(view.slots[to]), half, colour);
+            let [from, to] = [from, to].map(|slot| view.slots[slot].truncate());
+            self.add_line(from, to, half, colour);
         }
     }
 
@@ -161,7 +161,7 @@ pub fn fills(view: &ElementView) -> impl Iterator<Item = [Vec2; 4]> + '_ {
     blocks::<Dim2>(view.level, view.children).map(|(low, width)| {
         [0, 1, 3, 2].map(|vertex| {
             let at = add(low, scale(corner(vertex), width));
-            flat(view.slots[slot_index(at)])
+            view.slots[slot_index(at)].truncate()
         })
     })
 }

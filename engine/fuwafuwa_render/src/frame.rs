@@ -1,13 +1,13 @@
 //! The description of a picture as plain data: camera, colours, look and extras.
 
 use crate::palette::{Colour, Palette};
-use crate::plane::flat;
-use fuwafuwa::{Dim3, PieceId, Shape, Vector, World};
-use glam::Vec2;
+use crate::space;
+use fuwafuwa::{Dim, Dim2, Dim3, PieceId, Shape, World};
+use glam::{Vec2, Vec3};
 
-/// Everything besides the world that determines a picture. For a 3D picture, `C` is [`crate::space::Camera`].
+/// Everything besides the world that determines a picture. For a 3D picture, `C` is [`space::Camera`].
 #[derive(Clone, Debug)]
-pub struct Frame<'a, C = Camera> {
+pub struct Frame<'a, C: DimCamera = Camera> {
     /// Camera.
     pub camera: C,
     /// Colours.
@@ -15,7 +15,7 @@ pub struct Frame<'a, C = Camera> {
     /// View of the bodies: their skin or their elements.
     pub look: Look<'a>,
     /// Target region of the game, if any.
-    pub basket: Option<Basket>,
+    pub basket: Option<Basket<C::Dim>>,
     /// Particles such as crumbs, dust and sparks.
     pub particles: &'a [Particle],
     /// Marks on the skins of 3D bodies. In 2D, the caller paints marks after
@@ -35,7 +35,7 @@ pub struct Frame<'a, C = Camera> {
 /// stays accurate in the single precision of shaders.
 const CYCLE: f64 = 16.0;
 
-impl<'a, C> Frame<'a, C> {
+impl<'a, C: DimCamera> Frame<'a, C> {
     /// Returns the clock modulo its period [s], for the shaders.
     pub(crate) fn phase(&self) -> f32 {
         self.seconds.rem_euclid(CYCLE) as f32
@@ -57,11 +57,25 @@ impl<'a, C> Frame<'a, C> {
     }
 }
 
+/// Camera of a dimension: [`Camera`] or [`space::Camera`].
+pub trait DimCamera {
+    /// Dimension of the worlds that the camera shows.
+    type Dim: Dim;
+}
+
+impl DimCamera for Camera {
+    type Dim = Dim2;
+}
+
+impl DimCamera for space::Camera {
+    type Dim = Dim3;
+}
+
 /// A bounded shape with a colour.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Prop {
     /// Shape and position.
-    pub shape: Shape,
+    pub shape: Shape<Dim3>,
     /// Colour.
     pub colour: Colour,
 }
@@ -69,14 +83,14 @@ pub struct Prop {
 /// 2D camera. The picture fills a target of any size.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// Point in the middle of the picture [m]. The third coordinate is ignored.
-    pub centre: Vector,
+    /// Point in the middle of the picture [m].
+    pub centre: Vec2,
     /// Height of the visible region [m].
     pub height: f32,
     /// Counterclockwise roll of the camera [rad].
     pub tilt: f32,
     /// Shake offset of the centre [m].
-    pub shake: Vector,
+    pub shake: Vec2,
 }
 
 /// View of the bodies.
@@ -107,9 +121,9 @@ pub enum ElementColour {
 
 /// Target region of the game.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Basket {
+pub struct Basket<D: Dim> {
     /// Shape of the region: a box, a capsule or a ball.
-    pub region: Shape,
+    pub region: Shape<D>,
     /// Fill level, 0 to 1. A fuller basket glows more.
     pub fill: f32,
 }
@@ -117,8 +131,8 @@ pub struct Basket {
 /// Round soft dot.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Particle {
-    /// Centre [m].
-    pub at: Vector,
+    /// Centre [m]; in 2D the third coordinate is ignored.
+    pub at: Vec3,
     /// Radius [m].
     pub radius: f32,
     /// Red, green, blue (sRGB), opacity; 0 to 1.
@@ -148,31 +162,31 @@ pub struct Sticker {
     pub piece: PieceId,
     /// Point inside the piece [m]. The sticker lies on the skin in front of this point, in the direction of
     /// the third axis.
-    pub origin: Vector,
+    pub origin: Vec3,
     /// Axes to the right, up and out of the skin. The length of each axis [m] is one mark unit in its
     /// direction.
-    pub axes: [Vector; 3],
+    pub axes: [Vec3; 3],
     /// Marks, bottom first.
     pub marks: Vec<Mark>,
 }
 
 impl Camera {
     /// Returns the camera that shows the region between two corners [m] in a target of `size` pixels.
-    pub fn fit(low: Vector, high: Vector, size: [u32; 2]) -> Self {
+    pub fn fit(low: Vec2, high: Vec2, size: [u32; 2]) -> Self {
         let aspect = size[0].max(1) as f32 / size[1].max(1) as f32;
-        let span = flat(high) - flat(low);
+        let span = high - low;
         Self {
-            centre: [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis])),
+            centre: low.midpoint(high),
             height: span.y.max(span.x / aspect),
             tilt: 0.0,
-            shake: [0.0; 3],
+            shake: Vec2::ZERO,
         }
     }
 
-    /// Returns the pixel of a 2D point [m] in a target of `size` pixels, measured from its upper left corner.
-    pub fn to_pixel(&self, at: Vector, size: [u32; 2]) -> [f32; 2] {
+    /// Returns the pixel of a point [m] in a target of `size` pixels, measured from its upper left corner.
+    pub fn to_pixel(&self, at: Vec2, size: [u32; 2]) -> [f32; 2] {
         let [right, up] = self.axes();
-        let by = flat(at) - self.middle();
+        let by = at - self.middle();
         let scale = size[1] as f32 / self.height;
         [
             0.5 * size[0] as f32 + by.dot(right) * scale,
@@ -180,20 +194,18 @@ impl Camera {
         ]
     }
 
-    /// Returns the 2D point [m] at a pixel of a target of `size` pixels.
-    pub fn to_world(&self, pixel: [f32; 2], size: [u32; 2]) -> Vector {
+    /// Returns the point [m] at a pixel of a target of `size` pixels.
+    pub fn to_world(&self, pixel: [f32; 2], size: [u32; 2]) -> Vec2 {
         let [right, up] = self.axes();
         let scale = self.height / size[1].max(1) as f32;
         let along = right * (pixel[0] - 0.5 * size[0] as f32);
         let across = up * (0.5 * size[1] as f32 - pixel[1]);
-        (self.middle() + scale * (along + across))
-            .extend(0.0)
-            .into()
+        self.middle() + scale * (along + across)
     }
 
     /// Returns the point in the middle of the picture, shake included [m].
     pub(crate) fn middle(&self) -> Vec2 {
-        flat(self.centre) + flat(self.shake)
+        self.centre + self.shake
     }
 
     /// Returns the directions to the right and up.
@@ -210,16 +222,13 @@ mod tests {
     #[test]
     fn to_world_inverts_to_pixel() {
         let size = [640, 480];
-        let mut camera = Camera::fit([-1.0, 0.0, 0.0], [3.0, 1.0, 0.0], size);
+        let mut camera = Camera::fit(Vec2::new(-1.0, 0.0), Vec2::new(3.0, 1.0), size);
         assert_eq!(camera.height, 3.0);
-        assert_eq!(camera.to_pixel([-1.0, 0.5, 0.0], size), [0.0, 240.0]);
+        assert_eq!(camera.to_pixel(Vec2::new(-1.0, 0.5), size), [0.0, 240.0]);
         camera.tilt = 0.3;
-        camera.shake = [0.1, -0.2, 0.0];
-        let place = [0.7, 0.9, 0.0];
+        camera.shake = Vec2::new(0.1, -0.2);
+        let place = Vec2::new(0.7, 0.9);
         let back = camera.to_world(camera.to_pixel(place, size), size);
-        assert!(
-            (0..3).all(|k| (back[k] - place[k]).abs() < 1e-5),
-            "{back:?}"
-        );
+        assert!((back - place).abs().max_element() < 1e-5, "{back:?}");
     }
 }

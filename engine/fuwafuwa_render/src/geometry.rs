@@ -44,15 +44,12 @@ impl Geometry {
         let basket = frame.basket.as_ref();
         self.rigid
             .gather(world, frame.palette, basket, frame.particles);
-        self.radius = world
-            .soft_bodies()
-            .map(|(_, body)| body)
-            .map(radius)
-            .fold(0.0, f32::max);
+        let radii = world.soft_bodies().map(|(_, body)| radius(body));
+        self.radius = radii.fold(0.0, f32::max);
         self.bounds = NOWHERE;
         self.rests
             .resize_with(world.soft_bodies().count(), Rest::default);
-        for (place, body) in world.soft_bodies().map(|(_, body)| body).enumerate() {
+        for (place, (_, body)) in world.soft_bodies().enumerate() {
             match frame.look {
                 Look::Skin => self.add_skin(place, body, frame),
                 Look::Elements {

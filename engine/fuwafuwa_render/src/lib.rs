@@ -36,7 +36,6 @@ pub mod geometry;
 #[cfg(feature = "gpu")]
 mod gpu;
 pub mod palette;
-mod plane;
 mod rest;
 mod rigid;
 mod rings;
@@ -46,7 +45,7 @@ mod stairs;
 
 pub use ages::Ages;
 pub use anchor::{Anchor, anchor, anchor_at};
-pub use frame::{Basket, Camera, Frame, Look, Mark, Particle, Prop, Sticker};
+pub use frame::{Basket, Camera, DimCamera, Frame, Look, Mark, Particle, Prop, Sticker};
 pub use geometry::Geometry;
 #[cfg(feature = "gpu")]
 pub use gpu::Renderer;

@@ -2,9 +2,8 @@
 
 use crate::frame::{Basket, Particle};
 use crate::palette::{Colour, Palette};
-use crate::plane::flat;
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::{Dim2, Shape, World};
+use fuwafuwa::{Dim, Dim2, RigidBodyRef, Shape, World};
 use glam::Vec2;
 
 /// Maximum number of half-spaces drawn, limited by the size of uniform buffers on small devices.
@@ -61,27 +60,23 @@ impl RigidShapes {
         &mut self,
         world: &World<Dim2>,
         palette: &Palette,
-        basket: Option<&Basket>,
+        basket: Option<&Basket<Dim2>>,
         particles: &[Particle],
     ) {
         self.walls.clear();
         self.shapes.clear();
         self.dots.clear();
-        for obstacle in world
-            .rigid_bodies()
-            .map(|(_, body)| body)
-            .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor)
-        {
-            if let Shape::HalfSpace { normal, offset } = *obstacle.shape() {
-                self.walls.push([normal[0], normal[1], offset, 0.0]);
+        for obstacle in obstacles(world) {
+            let shape = obstacle.shape();
+            if let Shape::HalfSpace { normal, offset } = shape {
+                self.walls.push([normal.x, normal.y, offset, 0.0]);
             }
-            let bar = instance(*obstacle.shape(), palette.bar, 0.0);
-            self.shapes.extend(bar);
+            self.shapes.extend(instance(shape, palette.bar, 0.0));
         }
         self.walls.truncate(MAX_WALLS);
         self.bar_count = self.shapes.len() as u32;
-        for (player, (_, hand)) in world.target_followers().enumerate() {
-            let hand = instance(*hand.shape(), palette.hand(player), player as f32);
+        for (player, hand) in hands(world).enumerate() {
+            let hand = instance(hand.shape(), palette.hand(player), player as f32);
             self.shapes.extend(hand);
         }
         self.hand_count = self.shapes.len() as u32 - self.bar_count;
@@ -91,15 +86,27 @@ impl RigidShapes {
         }
         self.dots
             .extend(particles.iter().map(|particle| DotInstance {
-                at: flat(particle.at),
+                at: particle.at.truncate(),
                 radius: particle.radius,
                 colour: particle.colour,
             }));
     }
 }
 
+/// Returns the fixed and dynamic rigid bodies of a world, except sensors.
+pub fn obstacles<D: Dim>(world: &World<D>) -> impl Iterator<Item = RigidBodyRef<'_, D>> {
+    let bodies = world.rigid_bodies().map(|(_, body)| body);
+    bodies.filter(|body| !body.follows_target() && !body.is_sensor())
+}
+
+/// Returns the kinematic and coupled rigid bodies of a world, by player.
+pub fn hands<D: Dim>(world: &World<D>) -> impl Iterator<Item = RigidBodyRef<'_, D>> {
+    let bodies = world.rigid_bodies().map(|(_, body)| body);
+    bodies.filter(RigidBodyRef::follows_target)
+}
+
 /// Returns the rectangle instance of a bounded shape, or `None` for a half-space.
-fn instance(shape: Shape, colour: Colour, number: f32) -> Option<RigidInstance> {
+fn instance(shape: Shape<Dim2>, colour: Colour, number: f32) -> Option<RigidInstance> {
     let (from, to, radius, form) = match shape {
         Shape::HalfSpace { .. } => return None,
         Shape::Capsule { from, to, radius } => (from, to, radius, 0.0),
@@ -108,12 +115,12 @@ fn instance(shape: Shape, colour: Colour, number: f32) -> Option<RigidInstance> 
             centre,
             half,
             rotation,
-        } => (centre, half, rotation.scaled_axis()[2], 1.0),
+        } => (centre, half, rotation.scaled_axis().z, 1.0),
         Shape::Ball { centre, radius } => (centre, centre, radius, 2.0),
     };
     Some(RigidInstance {
-        from: flat(from),
-        to: flat(to),
+        from,
+        to,
         radius,
         form,
         number,
@@ -125,42 +132,28 @@ fn instance(shape: Shape, colour: Colour, number: f32) -> Option<RigidInstance> 
 mod tests {
     use super::*;
     use fuwafuwa::{RigidBody, Rotation, WorldConfig};
+    use glam::Vec3;
 
     #[test]
     fn gather_sorts_walls_bars_hands_and_basket() {
         let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
-        let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);
-        world
-            .add_rigid_body(
-                RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]))
-                    .with_friction(0.2),
-            )
-            .unwrap();
-        world
-            .add_rigid_body(
-                RigidBody::fixed(Shape::Capsule { from, to, radius }).with_friction(0.2),
-            )
-            .unwrap();
-        world
-            .add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at([0.0, 3.0, 0.0]))
-            .unwrap();
-        world
-            .add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at([1.0, 3.0, 0.0]))
-            .unwrap();
-        let region = Shape::Box {
-            centre: [0.5; 3],
-            half: [0.25; 3],
-        };
+        let floor = Shape::half_space(Vec2::Y, Vec2::new(0.0, -2.0));
+        let bar = Shape::capsule(Vec2::ZERO, Vec2::X, 0.1);
+        let hand = RigidBody::coupled(Shape::ball(0.2));
+        let fallen = RigidBody::dynamic(Shape::cuboid(Vec2::new(0.3, 0.2)), 1.0);
+        for body in [
+            RigidBody::fixed(floor),
+            RigidBody::fixed(bar),
+            hand.at(Vec2::new(0.0, 3.0)),
+            hand.at(Vec2::new(1.0, 3.0)),
+            fallen.rotated(Rotation::in_plane(0.5)),
+        ] {
+            world.add_rigid_body(body).unwrap();
+        }
+        let region = Shape::cuboid(Vec2::splat(0.25)).translated(Vec2::splat(0.5));
         let basket = Basket { region, fill: 0.5 };
-        let crate_shape = Shape::Box {
-            centre: [0.0; 3],
-            half: [0.3, 0.2, 1.0],
-        };
-        let turned = Rotation::in_plane(0.5);
-        let fallen = RigidBody::dynamic(crate_shape, 1.0).rotated(turned);
-        world.add_rigid_body(fallen).unwrap();
         let dot = Particle {
-            at: [1.0, 2.0, 0.0],
+            at: Vec3::new(1.0, 2.0, 0.0),
             radius: 0.01,
             colour: [1.0; 4],
         };

@@ -10,7 +10,6 @@
 //!
 //! Both faces of a crack are smoothed alike, so that a closed crack stays closed.
 
-use crate::plane::flat;
 use crate::rest::{Rest, SMALL};
 use fuwafuwa::IndexVec;
 use fuwafuwa::{Dim2, NodeId, SoftBody};
@@ -109,7 +108,7 @@ impl Outlines {
             let Some(element) = mesh.element(facet.element) else {
                 continue;
             };
-            let corner = |index: usize| flat(body.node_state(element.nodes[index]).0);
+            let corner = |index: usize| body.node_state(element.nodes[index]).0;
             let (right, up) = sides([0, 1, 2, 3].map(corner));
             let [from, to] = [0, 1].map(|end| mesh.node(facet.nodes[end]).at);
             let offsets = match facet.is_torn {
@@ -120,7 +119,7 @@ impl Outlines {
             self.sides.push(Side {
                 to: facet.nodes[1],
                 next: NONE,
-                start: flat(facet.corners[0]),
+                start: facet.corners[0].truncate(),
                 moved: offsets.map(|by| by.x * right + by.y * up),
                 is_fresh: facet.is_torn,
                 strain: strain(right, up, grid.voxel_size()),
@@ -262,7 +261,7 @@ mod tests {
     use fuwafuwa::{Blade, Material, VoxelGrid, World, WorldConfig};
 
     fn rings(world: &World<Dim2>) -> Outlines {
-        let body = world.soft_bodies().next().unwrap().1;
+        let (_, body) = world.soft_bodies().next().unwrap();
         let mut rings = Outlines::default();
         rings.trace(body, &Rest::new(body.grid()));
         rings
@@ -304,13 +303,12 @@ mod tests {
     fn outline_of_a_stretched_disc_is_an_ellipse() {
         let mut world = disc(64);
         let round = round(&world);
-        let body = world
-            .soft_body_mut(world.nth_soft_body(0).unwrap())
-            .unwrap();
+        let soft = world.nth_soft_body(0).unwrap();
+        let body = world.soft_body_mut(soft).unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
-            let [x, y, _] = body.node_state(id).0;
-            body.set_node_state(id, [2.0 * x, 0.5 * y, 0.0], [0.0; 3]);
+            let at = body.node_state(id).0 * Vec2::new(2.0, 0.5);
+            body.set_node_state(id, at, Vec2::ZERO).unwrap();
         }
         for point in rings(&world).points {
             let [x, y] = (point.at - Vec2::new(1.0, 0.25)).to_array();
@@ -324,12 +322,8 @@ mod tests {
     fn crack_faces_coincide_in_a_closed_cut() {
         let mut world = disc(32);
         let whole = total_area(&rings(&world));
-        world
-            .cut(
-                world.nth_soft_body(0).unwrap(),
-                &Blade::segment([0.5, -1.0], [0.5, 2.0]),
-            )
-            .unwrap();
+        let blade = Blade::segment(Vec2::new(0.5, -1.0), Vec2::new(0.5, 2.0));
+        world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap();
         let halves = rings(&world);
         assert_eq!(halves.spans.len(), 2);
         let gap = (total_area(&halves) - whole).abs() / whole;

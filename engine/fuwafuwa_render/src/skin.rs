@@ -1,7 +1,6 @@
 //! Triangles that fill the outlines of pieces, and bands along them.
 
 use crate::elements::fills;
-use crate::plane::flat;
 use crate::rings::{Outlines, sides, strain};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::inspect::slot_index;
@@ -115,7 +114,7 @@ impl SkinMesh {
             let corners = [0, 1, 2, 3].map(|index| {
                 let slot = slot_index(scale(corner(index), 2)) as u8;
                 let place = slots.iter().position(|&known| known == slot)?;
-                Some(flat(body.node_state(element.nodes[place]).0))
+                Some(body.node_state(element.nodes[place]).0)
             });
             let [Some(a), Some(b), Some(c), Some(d)] = corners else {
                 continue;

@@ -4,8 +4,8 @@
 mod shared;
 
 use fuwafuwa::{
-    Blade, Dim, Dim2, Grading, Law, Material, PieceId, RigidBody, Shape, SoftBody, VoxelGrid,
-    World, WorldConfig,
+    Blade, Dim, Dim2, Grading, Law, Material, PieceId, RigidBody, Shape, SoftBody, Vec2, Vec3,
+    VoxelGrid, World, WorldConfig,
 };
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::{
@@ -28,15 +28,15 @@ fn take<'a>(
     world: &World<Dim2>,
     format: TextureFormat,
     change: impl Fn(&mut Frame<'a>),
-) -> Option<Picture> {
-    let (device, queue) = device()?;
-    let camera = Camera::fit([-0.1, -0.1, 0.0], [1.1, 1.1, 0.0], SIZE);
+) -> Picture {
+    let (device, queue) = device();
+    let camera = Camera::fit(Vec2::splat(-0.1), Vec2::splat(1.1), SIZE);
     let mut frame = Frame::new(camera, &PALETTE);
     change(&mut frame);
     let mut renderer = Renderer::new(&device, format);
     let pixels = renderer.render_to_image(&device, &queue, world, &frame, SIZE);
     let pixels = pixels.expect("rendering an image");
-    Some(Picture { camera, pixels })
+    Picture { camera, pixels }
 }
 
 impl Picture {
@@ -56,7 +56,7 @@ impl Picture {
 
     /// Returns the mean colour around a point [m].
     fn around(&self, at: [f32; 2]) -> Colour {
-        let [x, y] = self.camera.to_pixel([at[0], at[1], 0.0], SIZE);
+        let [x, y] = self.camera.to_pixel(at.into(), SIZE);
         let mut sum = [0.0; 3];
         for k in 0..25 {
             let by = [(k % 5) as f32 - 2.0, (k / 5) as f32 - 2.0];
@@ -68,12 +68,17 @@ impl Picture {
 }
 
 fn floating() -> World<Dim2> {
-    let gravity = [0.0; 3];
+    let gravity = Vec2::ZERO;
     let settings = WorldConfig {
         gravity,
         ..WorldConfig::default()
     };
     World::new(settings).unwrap()
+}
+
+/// Returns the first soft body of a world.
+fn body_of(world: &World<Dim2>) -> &SoftBody<Dim2> {
+    world.soft_bodies().next().unwrap().1
 }
 
 fn disc() -> World<Dim2> {
@@ -84,20 +89,19 @@ fn disc() -> World<Dim2> {
 }
 
 #[test]
+#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn disc_is_warm_on_a_cool_floor_with_a_smooth_edge() {
     let world = disc();
-    let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |_| ()) else {
-        return;
-    };
+    let picture = take(&world, TextureFormat::Rgba8Unorm, |_| ());
     assert!(is_warm(picture.around([0.5, 0.5])));
     let floor = picture.around([0.0, 1.0]);
     assert!(floor[2] > 0.8 && !is_warm(floor), "{floor:?}");
 
-    let grid = world.soft_bodies().next().unwrap().1.grid();
+    let grid = body_of(&world).grid();
     let voxel = grid.voxel_size();
     let round = voxel * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt();
     let warmth = |angle: f32, radius: f32| {
-        let at = [0.5 + radius * angle.cos(), 0.5 + radius * angle.sin(), 0.0];
+        let at = Vec2::splat(0.5) + radius * Vec2::from_angle(angle);
         let [red, _, blue] = picture.at_pixel(picture.camera.to_pixel(at, SIZE));
         red - blue
     };
@@ -116,27 +120,22 @@ fn disc_is_warm_on_a_cool_floor_with_a_smooth_edge() {
 }
 
 #[test]
+#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn torn_face_is_paler_than_inside() {
     let mut world = disc();
-    world
-        .cut(
-            world.nth_soft_body(0).unwrap(),
-            &Blade::segment([0.5, -1.0], [0.5, 2.0]),
-        )
-        .unwrap();
-    let body = world
-        .soft_body_mut(world.nth_soft_body(0).unwrap())
-        .unwrap();
+    let soft = world.nth_soft_body(0).unwrap();
+    let blade = Blade::segment(Vec2::new(0.5, -1.0), Vec2::new(0.5, 2.0));
+    world.cut(soft, &blade).unwrap();
+    let body = world.soft_body_mut(soft).unwrap();
     let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     let pieces: Vec<_> = ids.iter().map(|&id| body.pieces().of_node(id)).collect();
     for (id, piece) in ids.into_iter().zip(pieces) {
-        let [x, y, _] = body.node_state(id).0;
+        let at = body.node_state(id).0;
         let apart = if piece == PieceId(0) { 0.05 } else { -0.05 };
-        body.set_node_state(id, [x + apart, y, 0.0], [0.0; 3]);
+        body.set_node_state(id, at + apart * Vec2::X, Vec2::ZERO)
+            .unwrap();
     }
-    let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |_| ()) else {
-        return;
-    };
+    let picture = take(&world, TextureFormat::Rgba8Unorm, |_| ());
     let gap = picture.around([0.5, 0.4]);
     assert!(!is_warm(gap), "{gap:?}");
     let paleness = |[red, green, blue]: Colour| (green + blue) / red;
@@ -151,6 +150,7 @@ fn torn_face_is_paler_than_inside() {
 }
 
 #[test]
+#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn elements_have_the_colour_of_their_level() {
     let world = disc();
     let look = Look::Elements {
@@ -158,20 +158,17 @@ fn elements_have_the_colour_of_their_level() {
         ages: &[],
         nodes: true,
     };
-    let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |frame| frame.look = look) else {
-        return;
-    };
-    let views = world.soft_bodies().next().unwrap().1.element_views();
-    let views: Vec<_> = views
+    let picture = take(&world, TextureFormat::Rgba8Unorm, |frame| frame.look = look);
+    let body = body_of(&world);
+    let views: Vec<_> = body
+        .element_views()
         .filter(|view| view.level > 1 && view.children == Dim2::ALL_CORNERS)
         .collect();
     assert!(views.len() > 8, "{} large elements", views.len());
     for view in views {
-        let [x, y, _] = view.child_corners::<Dim2>(0)[3];
-        let quarter = world.soft_bodies().next().unwrap().1.grid().voxel_size()
-            * 0.5
-            * f32::from(1u8 << (view.level - 1));
-        let seen = picture.around([x - quarter, y - quarter]);
+        let corner = view.child_corners::<Dim2>(0)[3].truncate();
+        let quarter = body.grid().voxel_size() * 0.5 * f32::from(1u8 << (view.level - 1));
+        let seen = picture.around((corner - quarter).into());
         let wanted = PALETTE.level(view.level);
         assert!(
             difference(seen, wanted) < 0.12,
@@ -182,29 +179,23 @@ fn elements_have_the_colour_of_their_level() {
 }
 
 #[test]
+#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn bars_hands_walls_basket_and_particles_are_visible() {
     let mut world = floating();
-    let (from, to, radius) = ([0.2, 0.9, 0.0], [0.8, 0.9, 0.0], 0.06);
-    world
-        .add_rigid_body(RigidBody::fixed(Shape::Capsule { from, to, radius }).with_friction(0.2))
-        .unwrap();
-    world
-        .add_rigid_body(
-            RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0, 0.05, 0.0]))
-                .with_friction(0.2),
-        )
-        .unwrap();
-    for x in [0.2, 0.5] {
-        world
-            .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at([x, 0.6, 0.0]))
-            .unwrap();
+    let bar = Shape::capsule(Vec2::new(0.2, 0.9), Vec2::new(0.8, 0.9), 0.06);
+    let wall = Shape::half_space(Vec2::Y, Vec2::new(0.0, 0.05));
+    let hand = RigidBody::coupled(Shape::ball(0.1));
+    for body in [
+        RigidBody::fixed(bar),
+        RigidBody::fixed(wall),
+        hand.at(Vec2::new(0.2, 0.6)),
+        hand.at(Vec2::new(0.5, 0.6)),
+    ] {
+        world.add_rigid_body(body).unwrap();
     }
-    let region = Shape::Box {
-        centre: [0.85, 0.4, 0.0],
-        half: [0.12, 0.12, 0.0],
-    };
+    let region = Shape::cuboid(Vec2::splat(0.12)).translated(Vec2::new(0.85, 0.4));
     let particle = Particle {
-        at: [0.3, 0.25, 0.0],
+        at: Vec3::new(0.3, 0.25, 0.0),
         radius: 0.05,
         colour: [0.8, 0.1, 0.1, 1.0],
     };
@@ -238,6 +229,7 @@ fn bars_hands_walls_basket_and_particles_are_visible() {
 }
 
 #[test]
+#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn picture_is_equal_in_every_format() {
     let world = disc();
     let formats = [
@@ -245,10 +237,7 @@ fn picture_is_equal_in_every_format() {
         TextureFormat::Bgra8Unorm,
         TextureFormat::Rgba8UnormSrgb,
     ];
-    let pictures: Vec<Picture> = formats
-        .into_iter()
-        .filter_map(|format| take(&world, format, |_| ()))
-        .collect();
+    let pictures = formats.map(|format| take(&world, format, |_| ()));
     for picture in &pictures {
         for at in [[0.5, 0.5], [0.0, 0.0], [0.3, 0.7], [0.5, 0.1]] {
             let (seen, wanted) = (picture.around(at), pictures[0].around(at));
@@ -258,12 +247,11 @@ fn picture_is_equal_in_every_format() {
 }
 
 #[test]
+#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn empty_worlds_and_skinless_bodies_render_in_every_size() {
-    let Some((device, queue)) = device() else {
-        return;
-    };
+    let (device, queue) = device();
     let palette = Palette::colour_safe();
-    let camera = Camera::fit([0.0; 3], [1.0; 3], [7, 5]);
+    let camera = Camera::fit(Vec2::ZERO, Vec2::ONE, [7, 5]);
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let mut coarse = floating();
     let grid = VoxelGrid::ball(32, 1.0).unwrap();
@@ -301,14 +289,13 @@ fn empty_worlds_and_skinless_bodies_render_in_every_size() {
 }
 
 #[test]
+#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn window_larger_than_the_texture_limit_is_drawn_smaller() {
-    let Some((device, queue)) = device() else {
-        return;
-    };
+    let (device, queue) = device();
     assert_eq!(device.limits().max_texture_dimension_2d, 2048);
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let size = [2560, 800];
-    let frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], size), &PALETTE);
+    let frame = Frame::new(Camera::fit(Vec2::ZERO, Vec2::ONE, size), &PALETTE);
     let mut encoder = device.create_command_encoder(&Default::default());
     renderer.prepare(&device, &queue, &mut encoder, &disc(), &frame, size);
     queue.submit([encoder.finish()]);
@@ -322,14 +309,13 @@ fn window_larger_than_the_texture_limit_is_drawn_smaller() {
 }
 
 #[test]
+#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn vertices_beyond_the_buffer_limit_are_dropped() {
     let limits = wgpu::Limits {
         max_buffer_size: 50_000,
         ..wgpu::Limits::downlevel_webgl2_defaults()
     };
-    let Some((device, queue)) = device_with(limits) else {
-        return;
-    };
+    let (device, queue) = device_with(limits);
     let mut world = floating();
     let grid = VoxelGrid::ball(40, 1.0).unwrap();
     let body = SoftBody::with_options(
@@ -341,7 +327,7 @@ fn vertices_beyond_the_buffer_limit_are_dropped() {
     world.add_soft_body(body.unwrap());
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let size = [96, 96];
-    let mut frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], size), &PALETTE);
+    let mut frame = Frame::new(Camera::fit(Vec2::ZERO, Vec2::ONE, size), &PALETTE);
     for colour in [None, Some(ElementColour::Level)] {
         frame.look = colour.map_or(Look::Skin, |colour| Look::Elements {
             colour,
@@ -354,14 +340,14 @@ fn vertices_beyond_the_buffer_limit_are_dropped() {
 }
 
 #[test]
+#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn paint_rigid_draws_hands_but_no_bodies() {
     let mut world = disc();
-    world
-        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at([0.5, 0.5, 0.0]))
-        .unwrap();
-    let camera = Camera::fit([-0.1, -0.1, 0.0], [1.1, 1.1, 0.0], SIZE);
+    let hand = RigidBody::coupled(Shape::ball(0.1)).at(Vec2::splat(0.5));
+    world.add_rigid_body(hand).unwrap();
+    let camera = Camera::fit(Vec2::splat(-0.1), Vec2::splat(1.1), SIZE);
     let half = |paint: fn(&Renderer, &mut wgpu::RenderPass<'static>)| {
-        let (device, queue) = device()?;
+        let (device, queue) = device();
         let format = TextureFormat::Rgba8Unorm;
         let frame = Frame::new(camera, &PALETTE);
         let mut renderer = Renderer::new(&device, format);
@@ -373,26 +359,22 @@ fn paint_rigid_draws_hands_but_no_bodies() {
         });
         let pixels = pixels.expect("rendering an image");
         let picture = Picture { camera, pixels };
-        let at = |x| picture.at_pixel(camera.to_pixel([x, 0.5, 0.0], SIZE));
-        Some([at(0.52), at(0.8)])
+        let at = |x| picture.at_pixel(camera.to_pixel(Vec2::new(x, 0.5), SIZE));
+        [at(0.52), at(0.8)]
     };
-    let (Some([under, body]), Some([hand, beside])) =
-        (half(Renderer::paint_bodies), half(Renderer::paint_rigid))
-    else {
-        return;
-    };
+    let [under, body] = half(Renderer::paint_bodies);
+    let [hand, beside] = half(Renderer::paint_rigid);
     assert!(is_warm(under) && is_warm(body), "{under:?} {body:?}");
     assert!(hand[2] > hand[0] + 0.2, "{hand:?}");
     assert!(!is_warm(beside), "bodies are not painted again: {beside:?}");
 }
 
 #[test]
+#[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
 fn cost_is_equal_for_equal_pictures() {
-    let Some((device, queue)) = device() else {
-        return;
-    };
+    let (device, queue) = device();
     let world = disc();
-    let camera = Camera::fit([0.0; 3], [1.0; 3], SIZE);
+    let camera = Camera::fit(Vec2::ZERO, Vec2::ONE, SIZE);
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let mut cost = |particles: &[Particle]| {
         let frame = Frame {
@@ -407,7 +389,7 @@ fn cost_is_equal_for_equal_pictures() {
     assert!(bare.draws > 10 && bare.bytes > 1000, "{bare:?}");
     assert_eq!(cost(&[]), bare);
     let speck = Particle {
-        at: [0.5; 3],
+        at: Vec3::splat(0.5),
         radius: 0.01,
         colour: [1.0; 4],
     };

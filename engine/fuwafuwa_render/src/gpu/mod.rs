@@ -13,6 +13,7 @@ use buffer::{GrowingBuffer, drawable};
 use bytemuck::{Pod, Zeroable};
 use cost::{Cost, Gpu, Meter};
 use fuwafuwa::{Dim2, World};
+use glam::Vec2;
 use pipelines::Pipelines;
 use std::ops::Range;
 use targets::{NARROW, REACH, Targets, bind, clear, new_uniforms};
@@ -181,12 +182,12 @@ impl Renderer {
             return None;
         }
         let corners = [
-            [low.x, low.y],
-            [high.x, low.y],
-            [high.x, high.y],
-            [low.x, high.y],
+            low,
+            Vec2::new(high.x, low.y),
+            high,
+            Vec2::new(low.x, high.y),
         ];
-        let pixels = corners.map(|[x, y]| camera.to_pixel([x, y, 0.0], target_size));
+        let pixels = corners.map(|at| camera.to_pixel(at, target_size));
         let reach = REACH * THICKNESS * self.geometry.radius / camera.height;
         let share = |axis: usize| {
             let side = target_size[axis].max(1) as f32;

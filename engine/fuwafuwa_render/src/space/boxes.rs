@@ -8,10 +8,9 @@ use crate::palette::{Palette, bytes};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::inspect::Element;
 use fuwafuwa::inspect::slot_index;
-use fuwafuwa::inspect::vector::three;
 use fuwafuwa::inspect::{ElementFace, faces};
 use fuwafuwa::inspect::{corner, scale};
-use fuwafuwa::{Dim3, ElementId, ElementView, SoftBody, Vector};
+use fuwafuwa::{Dim3, ElementId, ElementView, SoftBody};
 use glam::Vec3;
 
 /// Distance between a box and the faces of its element [voxels], so that neighbours can be told apart.
@@ -96,8 +95,8 @@ impl Boxes {
                 forms.len() - 1
             });
             let shown = bytes(colour_of(&view, palette, colour, ages), 1.0);
-            let (centre, share) = (Vec3::from(view.slots[13]), GAP / width);
-            let shrunk = view.slots.map(|at| Vec3::from(at).lerp(centre, share));
+            let (centre, share) = (view.slots[13], GAP / width);
+            let shrunk = view.slots.map(|at| at.lerp(centre, share));
             for (number, face) in forms[place].2.iter().enumerate() {
                 // Only elements of level 0 have bare faces, and their face numbers are those of a voxel.
                 if is_at_cut || bare >> number & 1 == 1 {
@@ -129,12 +128,12 @@ fn small_view(
     element: &Element,
     colour: ElementColour,
 ) -> ElementView {
-    let mut slots = [[0.0; 3]; 27];
-    let corners: [Vector; 8] = std::array::from_fn(|k| three(body.positions()[element.nodes[k]]));
+    let mut slots = [Vec3::ZERO; 27];
+    let corners: [Vec3; 8] = std::array::from_fn(|k| body.positions()[element.nodes[k]].xyz());
     for (k, &at) in corners.iter().enumerate() {
         slots[slot_index(scale(corner(k), 2))] = at;
     }
-    slots[13] = (corners.map(Vec3::from).iter().sum::<Vec3>() / 8.0).into();
+    slots[13] = corners.iter().sum::<Vec3>() / 8.0;
     ElementView {
         id,
         level: 0,
@@ -152,7 +151,6 @@ fn small_view(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::inspect::vector::{length, minus};
     use fuwafuwa::{Material, RigidBody, Shape, VoxelGrid, World, WorldConfig};
 
     #[test]
@@ -160,14 +158,13 @@ mod tests {
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
         let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
-        let hand = RigidBody::coupled(Shape::ball(0.3)).at([0.5, 1.3, 0.5]);
+        let hand = RigidBody::coupled(Shape::ball(0.3)).at(Vec3::new(0.5, 1.3, 0.5));
         let hand = world.add_rigid_body(hand).unwrap();
-        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-        world
-            .add_rigid_body(RigidBody::fixed(floor).with_friction(0.2))
-            .unwrap();
+        let floor = Shape::half_space(Vec3::Y, Vec3::ZERO);
+        world.add_rigid_body(RigidBody::fixed(floor)).unwrap();
         for _ in 0..40 {
-            world.set_target_position(hand, [0.5, 0.8, 0.4]).unwrap();
+            let target = Vec3::new(0.5, 0.8, 0.4);
+            world.set_target_position(hand, target).unwrap();
             world.step();
         }
         let body = &world[soft];
@@ -176,7 +173,7 @@ mod tests {
             let exact = body.element_view(id).unwrap();
             let small = small_view(body, id, element, ElementColour::Strain);
             for slot in (0..8).map(|k| slot_index(scale(corner(k), 2))).chain([13]) {
-                assert!(length(minus(small.slots[slot], exact.slots[slot])) < 1e-5);
+                assert!(small.slots[slot].distance(exact.slots[slot]) < 1e-5);
             }
             assert_eq!(small.strain, exact.strain);
             most = most.max(exact.strain);
@@ -190,14 +187,8 @@ mod tests {
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let volume = |world: &World<Dim3>, share: f32| {
-            let towards = [0.6, 0.0, 0.8];
-            let (palette, cut) = (
-                Palette::candy(),
-                Some(Cut {
-                    direction: towards,
-                    share,
-                }),
-            );
+            let direction = Vec3::new(0.6, 0.0, 0.8);
+            let (palette, cut) = (Palette::candy(), Some(Cut { direction, share }));
             let mut boxes = Boxes::default();
             boxes.add(0, &world[soft], &palette, ElementColour::Level, &[], cut);
             let at = |k: &u32| boxes.vertices[*k as usize].at;
@@ -207,10 +198,8 @@ mod tests {
                 .map(|(a, b, c): (Vec3, Vec3, Vec3)| a.dot(b.cross(c)))
                 .sum::<f32>()
                 / 6.0;
-            let front = boxes
-                .vertices
-                .iter()
-                .map(|vertex| vertex.at.dot(towards.into()));
+            let vertices = boxes.vertices.iter();
+            let front = vertices.map(|vertex| vertex.at.dot(direction));
             (volume, front.fold(f32::MIN, f32::max))
         };
         // Gaps make boxes smaller.
@@ -225,8 +214,9 @@ mod tests {
         let body = world.soft_body_mut(soft).unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
-            let [x, y, z] = body.node_state(id).0;
-            body.set_node_state(id, [1.0 - y + 5.0, z, 1.0 - x], [0.0; 3]);
+            let [x, y, z] = body.node_state(id).0.to_array();
+            let place = Vec3::new(1.0 - y + 5.0, z, 1.0 - x);
+            body.set_node_state(id, place, Vec3::ZERO).unwrap();
         }
         let (half, front) = volume(&world, 0.5);
         assert!(

@@ -1,7 +1,7 @@
 //! Cut planes of the pieces of a body for the element view.
 
 use super::camera::Cut;
-use fuwafuwa::inspect::vector::three;
+use crate::anchor::columns;
 use fuwafuwa::{Dim3, SoftBody};
 use glam::{Mat3, Vec3};
 
@@ -33,10 +33,9 @@ impl Plane {
 pub fn planes(body: &SoftBody<Dim3>, cut: Cut, before: &[(usize, f32)]) -> Vec<Plane> {
     let nodes = || {
         body.mesh().nodes().map(|(id, node)| {
-            let at = Vec3::from(three(body.positions()[id]));
             (
                 body.pieces().of_node(id).index(),
-                at,
+                body.positions()[id].xyz(),
                 Vec3::from(node.at.map(|k| k as f32)),
             )
         })
@@ -55,10 +54,8 @@ pub fn planes(body: &SoftBody<Dim3>, cut: Cut, before: &[(usize, f32)]) -> Vec<P
         let (by, along) = (at - sum / count, rest - low.midpoint(high));
         axes[piece] += Mat3::from_cols(by * along.x, by * along.y, by * along.z);
     }
-    let towards = Vec3::from(cut.direction);
     let plane = |(piece, (low, high, ..), axes): (usize, (Vec3, Vec3, _, _), Mat3)| {
-        let facing = [axes.x_axis, axes.y_axis, axes.z_axis];
-        let facing = facing.map(|axis| axis.normalize_or_zero().dot(towards));
+        let facing = columns(axes).map(|axis| axis.normalize_or_zero().dot(cut.direction));
         let more = |a: &usize, b: &usize| facing[*a].abs().total_cmp(&facing[*b].abs());
         let best = (0..3).max_by(more).unwrap_or(0);
         let kept = before.get(piece).copied();
@@ -91,15 +88,11 @@ mod tests {
         let mut before = Vec::new();
         let mut axis = |degrees: f32| {
             let (sin, cos) = degrees.to_radians().sin_cos();
-            let (towards, share) = ([sin, 0.0, cos], 0.5);
-            let plane = planes(
-                &body,
-                Cut {
-                    direction: towards,
-                    share,
-                },
-                &before,
-            )[0];
+            let cut = Cut {
+                direction: Vec3::new(sin, 0.0, cos),
+                share: 0.5,
+            };
+            let plane = planes(&body, cut, &before)[0];
             before = vec![(plane.axis, plane.side)];
             before[0]
         };

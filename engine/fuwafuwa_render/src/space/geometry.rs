@@ -8,9 +8,8 @@ use super::skin::Skin;
 use super::stickers::Stickers;
 use crate::frame::{Frame, Look};
 use crate::palette::Palette;
-use crate::rigid::MAX_WALLS;
-use fuwafuwa::inspect::vector::three;
-use fuwafuwa::{Dim3, ElementId, RigidBody, Shape, SoftBody, Vector, World};
+use crate::rigid::{MAX_WALLS, hands, obstacles};
+use fuwafuwa::{Dim3, ElementId, MotionType, Shape, SoftBody, World};
 use glam::{Mat3, Vec3};
 use std::ops::Range;
 
@@ -57,13 +56,9 @@ impl Geometry {
         self.boxes.clear();
         self.stickers.clear();
         let palette = frame.palette;
-        let bars = world
-            .rigid_bodies()
-            .map(|(_, body)| body)
-            .filter(|rigid| !rigid.follows_target() && !rigid.is_sensor);
-        let bars = bars.filter_map(|bar| RoundedInstance::of(*bar.shape(), palette.bar, 0.0));
+        let bars = obstacles(world);
+        let bars = bars.filter_map(|bar| RoundedInstance::of(bar.shape(), palette.bar, 0.0));
         self.bars = append(&mut self.rounded, bars);
-        let hands = || world.target_followers().enumerate();
         self.hands = append(&mut self.rounded, balls(world, palette));
         let props = frame.props.iter();
         let props = props.filter_map(|prop| RoundedInstance::of(prop.shape, prop.colour, 0.0));
@@ -73,7 +68,7 @@ impl Geometry {
         self.ghosts.resize_with(ghosts, Skin::default);
         if let Some(ghost) = frame.ghost {
             let skins = self.ghosts.iter_mut().zip(ghost.soft_bodies());
-            let renewed = skins.map(|(skin, body)| skin.update(body, &palette.materials));
+            let renewed = skins.map(|(skin, (_, body))| skin.update(body, &palette.materials));
             self.renewed_ghosts.extend(renewed);
         }
         let of_ghost = frame
@@ -85,7 +80,7 @@ impl Geometry {
             .resize_with(world.soft_bodies().count(), Skin::default);
         self.renewed.clear();
         let first = self.rounded.len() as u32;
-        for (place, body) in world.soft_bodies().map(|(_, body)| body).enumerate() {
+        for (place, (_, body)) in world.soft_bodies().enumerate() {
             match frame.look {
                 Look::Skin => {
                     let skin = &mut self.skins[place];
@@ -106,7 +101,7 @@ impl Geometry {
         if frame.look == Look::Skin {
             let eye = frame.camera.eye();
             for sticker in frame.stickers {
-                if let Some(body) = world.soft_bodies().map(|(_, body)| body).nth(sticker.body) {
+                if let Some((_, body)) = world.soft_bodies().nth(sticker.body) {
                     let skin = &self.skins[sticker.body];
                     self.stickers.add(sticker, skin, body, eye);
                 }
@@ -118,11 +113,10 @@ impl Geometry {
             ..ball(particle.at, particle.radius, place as f32)
         });
         self.dust = append(&mut self.rounded, dust);
-        let lines = hands().filter_map(|(player, (_, hand))| {
+        let lines = hands(world).enumerate().filter_map(|(player, hand)| {
             let below = self.ground_below(hand.position())?;
             let radius = LINE.min(LINE_SHARE * frame.camera.distance);
-            let (from, to) = (hand.position(), below);
-            let line = Shape::Capsule { from, to, radius };
+            let line = Shape::capsule(hand.position(), below, radius);
             RoundedInstance::of(line, palette.hand(player), player as f32)
         });
         let lines: Vec<RoundedInstance> = lines.collect();
@@ -141,27 +135,28 @@ impl Geometry {
 
     fn gather_room(&mut self, world: &World<Dim3>, camera: &Camera) {
         self.walls.clear();
-        let shapes = world.fixed_rigid_bodies().map(RigidBody::shape);
-        self.walls.extend(shapes.filter_map(plane).take(MAX_WALLS));
+        let fixed = world.rigid_bodies().map(|(_, body)| body);
+        let fixed = fixed.filter(|body| body.motion_type() == MotionType::Fixed);
+        let planes = fixed.filter_map(|body| plane(&body.shape()));
+        self.walls.extend(planes.take(MAX_WALLS));
         self.room.clear();
         let reach = REACH * camera.distance;
         add_planes(&mut self.room, &self.walls, camera.target, reach);
     }
 
     /// Returns the point of the floor straight below a point [m], or `None` without a floor below it.
-    fn ground_below(&self, at: Vector) -> Option<Vector> {
+    fn ground_below(&self, at: Vec3) -> Option<Vec3> {
         let floors = self.walls.iter().filter(|wall| wall[1] > 0.5);
-        let heights = floors.map(|[x, y, z, offset]| (offset - x * at[0] - z * at[2]) / y);
+        let heights = floors.map(|[x, y, z, offset]| (offset - x * at.x - z * at.z) / y);
         let height = heights.fold(f32::MIN, f32::max);
-        (f32::MIN < height && height < at[1]).then_some([at[0], height, at[2]])
+        (f32::MIN < height && height < at.y).then_some(at.with_y(height))
     }
 }
 
 /// Returns the instances of a world's hands.
 fn balls(world: &World<Dim3>, palette: &Palette) -> impl Iterator<Item = RoundedInstance> {
-    let hands = world.target_followers().enumerate();
-    hands.filter_map(|(player, (_, hand))| {
-        RoundedInstance::of(*hand.shape(), palette.hand(player), player as f32)
+    hands(world).enumerate().filter_map(|(player, hand)| {
+        RoundedInstance::of(hand.shape(), palette.hand(player), player as f32)
     })
 }
 
@@ -175,9 +170,9 @@ fn append(
     first..all.len() as u32
 }
 
-fn ball(centre: Vector, radius: f32, number: f32) -> RoundedInstance {
+fn ball(centre: Vec3, radius: f32, number: f32) -> RoundedInstance {
     RoundedInstance {
-        centre: centre.into(),
+        centre,
         radius,
         number,
         ..RoundedInstance::default()
@@ -191,7 +186,7 @@ fn crumb(
     frame: &Frame<'_, Camera>,
 ) -> Option<RoundedInstance> {
     let element = body.mesh().element(id)?;
-    let place = |k: usize| Vec3::from(three(body.positions()[element.nodes[k]]));
+    let place = |k: usize| body.positions()[element.nodes[k]].xyz();
     let sum = |side: [usize; 4]| side.map(place).iter().sum::<Vec3>();
     let (low, high) = (sum([0, 1, 2, 3]), sum([4, 5, 6, 7]));
     let along = |low: [usize; 4], high: [usize; 4]| 0.25 * (sum(high) - sum(low));
@@ -214,32 +209,28 @@ fn crumb(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Material, VoxelGrid, WorldConfig};
+    use fuwafuwa::{Material, RigidBody, VoxelGrid, WorldConfig};
 
     #[test]
     fn gather_places_room_bars_hands_crumbs_and_lines() {
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
-        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0, -0.5, 0.0]);
-        world
-            .add_rigid_body(RigidBody::fixed(floor).with_friction(0.2))
-            .unwrap();
-        let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);
-        let bar = Shape::Capsule { from, to, radius };
-        world
-            .add_rigid_body(RigidBody::fixed(bar).with_friction(0.2))
-            .unwrap();
-        let hand = RigidBody::coupled(Shape::ball(0.2)).at([0.0, 3.0, 1.0]);
-        world.add_rigid_body(hand).unwrap();
+        let floor = Shape::half_space(Vec3::Y, Vec3::new(0.0, -0.5, 0.0));
+        let bar = Shape::capsule(Vec3::ZERO, Vec3::X, 0.1);
+        let hand = RigidBody::coupled(Shape::ball(0.2));
+        for body in [
+            RigidBody::fixed(floor),
+            RigidBody::fixed(bar),
+            hand.at(Vec3::new(0.0, 3.0, 1.0)),
+        ] {
+            world.add_rigid_body(body).unwrap();
+        }
         let grid = VoxelGrid::from_fn([5, 2, 2], 0.5, |[x, ..]| u8::from(x != 2)).unwrap();
         world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
         let grid = VoxelGrid::from_fn([1, 1, 1], 0.5, |_| 1).unwrap();
-        world.add_soft_body(
-            SoftBody::new(grid, &[Material::default()])
-                .unwrap()
-                .translated([0.0, 2.0, 0.0]),
-        );
+        let crumb = SoftBody::new(grid, &[Material::default()]).unwrap();
+        world.add_soft_body(crumb.translated(2.0 * Vec3::Y));
         let palette = Palette::candy();
-        let mut frame = Frame::new(Camera::fit([-1.0; 3], [1.0; 3], [1, 1]), &palette);
+        let mut frame = Frame::new(Camera::fit(Vec3::NEG_ONE, Vec3::ONE, [1, 1]), &palette);
         let mut geometry = Geometry::default();
         for is_first in [true, false] {
             geometry.gather(&world, &frame);

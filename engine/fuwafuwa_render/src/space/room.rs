@@ -1,7 +1,7 @@
 //! The room: boundary planes of half-spaces as polygons of floor and walls.
 
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::{Shape, Vector};
+use fuwafuwa::{Dim3, Shape};
 use glam::{Vec3, Vec4};
 
 /// Vertex of the room.
@@ -16,14 +16,9 @@ pub struct RoomVertex {
 
 /// Adds the triangles of all planes, each given by its outward normal and offset [m]. Each plane is clipped
 /// by the other half-spaces and limited to a square around `middle` with half extent `reach` [m].
-pub fn add_planes(
-    triangles: &mut Vec<RoomVertex>,
-    planes: &[[f32; 4]],
-    middle: Vector,
-    reach: f32,
-) {
+pub fn add_planes(triangles: &mut Vec<RoomVertex>, planes: &[[f32; 4]], middle: Vec3, reach: f32) {
     for (own, plane) in planes.iter().enumerate() {
-        let mut polygon = sheet(plane, middle.into(), reach);
+        let mut polygon = sheet(plane, middle, reach);
         for (_, other) in planes.iter().enumerate().filter(|&(k, _)| k != own) {
             polygon = clipped(&polygon, other);
         }
@@ -36,9 +31,9 @@ pub fn add_planes(
 }
 
 /// Returns the outward normal and offset of a half-space, or `None` for bounded shapes.
-pub fn plane(shape: &Shape) -> Option<[f32; 4]> {
+pub fn plane(shape: &Shape<Dim3>) -> Option<[f32; 4]> {
     match *shape {
-        Shape::HalfSpace { normal, offset } => Some([normal[0], normal[1], normal[2], offset]),
+        Shape::HalfSpace { normal, offset } => Some(normal.extend(offset).to_array()),
         _ => None,
     }
 }
@@ -103,7 +98,7 @@ mod tests {
             [0.0, 0.0, -1.0, -2.0],
         ];
         let mut triangles = Vec::new();
-        add_planes(&mut triangles, &planes, [0.0, 0.5, 0.0], 3.0);
+        add_planes(&mut triangles, &planes, 0.5 * Vec3::Y, 3.0);
         let mut floor = 0.0;
         for corners in triangles.chunks(3) {
             let [a, b, c] = [corners[0].at, corners[1].at, corners[2].at];

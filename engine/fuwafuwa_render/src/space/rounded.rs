@@ -7,7 +7,7 @@
 //! ```
 
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::Shape;
+use fuwafuwa::{Dim3, Shape};
 use glam::{Mat3, Vec3};
 
 /// Edge radius of boxes [m], at most the smallest half extent.
@@ -88,7 +88,7 @@ fn bent(k: f32) -> f32 {
 
 impl RoundedInstance {
     /// Returns the instance of a bounded shape, or `None` for a half-space.
-    pub fn of(shape: Shape, [red, green, blue]: crate::Colour, number: f32) -> Option<Self> {
+    pub fn of(shape: Shape<Dim3>, [red, green, blue]: crate::Colour, number: f32) -> Option<Self> {
         let plain = Self {
             colour: [red, green, blue, 1.0],
             number,
@@ -97,16 +97,16 @@ impl RoundedInstance {
         match shape {
             Shape::HalfSpace { .. } => None,
             Shape::Ball { centre, radius } => Some(Self {
-                centre: centre.into(),
+                centre,
                 radius,
                 ..plain
             }),
             Shape::Box { centre, half } => {
-                let radius = half.into_iter().fold(EDGE, f32::min);
+                let radius = half.min_element().min(EDGE);
                 Some(Self {
-                    centre: centre.into(),
+                    centre,
                     radius,
-                    half: Vec3::from(half) - radius,
+                    half: half - radius,
                     ..plain
                 })
             }
@@ -115,22 +115,19 @@ impl RoundedInstance {
                 half,
                 rotation,
             } => Self::of(Shape::Box { centre, half }, [red, green, blue], number).map(|upright| {
-                let [x, y, z] = rotation.axes().map(Vec3::from);
+                let [x, y, z] = rotation.axes();
                 Self {
                     axes: Mat3::from_cols(x, y, z),
                     ..upright
                 }
             }),
-            Shape::Capsule { from, to, radius } => {
-                let (from, to) = (Vec3::from(from), Vec3::from(to));
-                Some(Self {
-                    centre: from.midpoint(to),
-                    radius,
-                    axes: frame_along(to - from),
-                    half: Vec3::X * 0.5 * from.distance(to),
-                    ..plain
-                })
-            }
+            Shape::Capsule { from, to, radius } => Some(Self {
+                centre: from.midpoint(to),
+                radius,
+                axes: frame_along(to - from),
+                half: Vec3::X * 0.5 * from.distance(to),
+                ..plain
+            }),
         }
     }
 }
@@ -150,7 +147,7 @@ fn frame_along(direction: Vec3) -> Mat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::inspect::vector::length;
+    use fuwafuwa::Rotation;
 
     /// Returns the volume of the mesh after stretching it to an instance.
     fn volume(instance: &RoundedInstance) -> f32 {
@@ -172,28 +169,25 @@ mod tests {
     #[test]
     fn mesh_has_the_volume_of_each_shape() {
         let pi = std::f32::consts::PI;
-        let (centre, radius) = ([1.0, 2.0, -1.0], 0.5);
-        let ball = Shape::Ball { centre, radius };
-        let capsule = Shape::Capsule {
-            from: [0.0; 3],
-            to: [0.6, 1.0, 0.3],
-            radius,
-        };
-        let long = length([0.6, 1.0, 0.3]);
-        let half = [0.5, 1.0, 0.25];
+        let centre = Vec3::new(1.0, 2.0, -1.0);
+        let along = Vec3::new(0.6, 1.0, 0.3);
         let round = 4.0 / 3.0 * pi * 0.125;
-        let turned = fuwafuwa::Rotation::about([1.0, 2.0, 3.0], 0.7);
+        let upright = Shape::cuboid(Vec3::new(0.5, 1.0, 0.25)).translated(centre);
+        let turned = Rotation::about(Vec3::new(1.0, 2.0, 3.0), 0.7);
         for (shape, expected) in [
-            (ball, round),
-            (capsule, round + pi * 0.25 * long),
-            (Shape::Box { centre, half }, 1.0),
-            (Shape::Box { centre, half }.rotated(turned), 1.0),
+            (Shape::ball(0.5).translated(centre), round),
+            (
+                Shape::capsule(Vec3::ZERO, along, 0.5),
+                round + pi * 0.25 * along.length(),
+            ),
+            (upright, 1.0),
+            (upright.rotated(turned), 1.0),
         ] {
             let instance = RoundedInstance::of(shape, [1.0; 3], 0.0).unwrap();
             let found = volume(&instance);
             assert!((found / expected - 1.0).abs() < 0.015, "{shape:?}: {found}");
         }
-        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        let floor = Shape::half_space(Vec3::Y, Vec3::ZERO);
         assert_eq!(RoundedInstance::of(floor, [1.0; 3], 0.0), None);
     }
 }

@@ -8,8 +8,8 @@ use super::faces::{Faces, NO_NODE, NONE, SkinPoint, SurfaceKind};
 use super::rest::Rest;
 use crate::palette::Colour;
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::IndexVec;
-use fuwafuwa::{Dim3, ElementId, NodeId, PieceId, SoftBody};
+use fuwafuwa::inspect::Row;
+use fuwafuwa::{Dim3, ElementId, IndexVec, NodeId, PieceId, SoftBody};
 use glam::{Vec3, Vec4};
 
 /// Fraction of the way that a point moves to the mean of its neighbours in each round: on the original
@@ -107,7 +107,7 @@ impl Skin {
         self.places
             .extend(self.faces.points.all.iter().map(|point| match point.node {
                 NO_NODE => Vec4::ZERO,
-                node => carried(point, positions[node].into(), positions, size),
+                node => carried(point, positions[node].to_array().into(), positions, size),
             }));
     }
 
@@ -179,12 +179,7 @@ impl Skin {
 /// Returns the position of a point: its node plus the offset, transformed by the mean deformation of its
 /// voxel. The last component is ‖F − R‖ to first order.
 #[inline]
-fn carried(
-    point: &SkinPoint,
-    node: Vec4,
-    positions: &IndexVec<NodeId, [f32; 4]>,
-    size: f32,
-) -> Vec4 {
+fn carried(point: &SkinPoint, node: Vec4, positions: &IndexVec<NodeId, Row>, size: f32) -> Vec4 {
     let [x, y, z] = edges(&point.voxel, positions);
     let by = point.offset;
     let mut place = node + by.x * x + by.y * y + by.z * z;
@@ -198,8 +193,8 @@ fn carried(
 
 /// Returns the mean edges of a voxel along its axes [m].
 #[inline]
-fn edges(voxel: &[NodeId; 8], positions: &IndexVec<NodeId, [f32; 4]>) -> [Vec4; 3] {
-    let corners = voxel.map(|id| Vec4::from(positions[id]));
+fn edges(voxel: &[NodeId; 8], positions: &IndexVec<NodeId, Row>) -> [Vec4; 3] {
+    let corners = voxel.map(|id| Vec4::from(positions[id].to_array()));
     [1, 2, 4].map(|side| {
         let low = [0, 1, 2, 3].map(|k| (k & (side - 1)) | (k & !(side - 1)) << 1);
         0.25 * low
@@ -213,7 +208,6 @@ fn edges(voxel: &[NodeId; 8], positions: &IndexVec<NodeId, [f32; 4]>) -> [Vec4; 
 mod tests {
     use super::*;
     use crate::palette::Palette;
-    use fuwafuwa::inspect::vector::{cross, dot, length, minus};
     use fuwafuwa::{Blade, Material, VoxelGrid, World, WorldConfig};
 
     fn ball(n: usize) -> World<Dim3> {
@@ -225,26 +219,18 @@ mod tests {
 
     fn skin(world: &World<Dim3>) -> Skin {
         let mut skin = Skin::default();
-        skin.update(
-            world.soft_bodies().next().unwrap().1,
-            &Palette::candy().materials,
-        );
+        skin.update(first_body(world), &Palette::candy().materials);
         skin
     }
 
+    fn first_body(world: &World<Dim3>) -> &SoftBody<Dim3> {
+        world.soft_bodies().next().unwrap().1
+    }
+
     fn cut(world: &mut World<Dim3>, x: f32) {
-        let (across, along) = ([0.0, 1.4, 0.1], [0.0, -0.1, 1.4]);
-        let from = [x, -0.2, -0.2];
-        world
-            .cut(
-                world.nth_soft_body(0).unwrap(),
-                &Blade {
-                    from,
-                    across,
-                    along,
-                },
-            )
-            .unwrap();
+        let edges = [Vec3::new(0.0, 1.4, 0.1), Vec3::new(0.0, -0.1, 1.4)];
+        let blade = Blade::parallelogram(Vec3::new(x, -0.2, -0.2), edges[0], edges[1]);
+        world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap();
     }
 
     impl Skin {
@@ -255,7 +241,10 @@ mod tests {
 
         /// Returns the volume enclosed by the triangles [m³].
         fn volume(&self) -> f32 {
-            let sixfold = |[a, b, c]: [SkinVertex; 3]| dot(a.at, cross(b.at, c.at));
+            let sixfold = |corners: [SkinVertex; 3]| {
+                let [a, b, c] = corners.map(|corner| Vec3::from(corner.at));
+                a.dot(b.cross(c))
+            };
             self.corners().map(sixfold).sum::<f32>() / 6.0
         }
     }
@@ -263,14 +252,14 @@ mod tests {
     #[test]
     fn skin_of_a_ball_is_a_sphere() {
         let world = ball(32);
-        let count = world.soft_bodies().next().unwrap().1.grid().solid_count() as f32;
+        let count = first_body(&world).grid().solid_count() as f32;
         let round = (0.75 * count / std::f32::consts::PI).cbrt() / 32.0;
         for vertex in skin(&world).vertices() {
-            let away = minus(vertex.at, [0.5; 3]);
-            let radius = length(away);
+            let away = Vec3::from(vertex.at) - 0.5;
+            let radius = away.length();
             assert!((radius - round).abs() < 0.3 / 32.0, "{radius}, not {round}");
-            let normal = [0, 1, 2].map(|k| f32::from(vertex.normal[k]) / 32767.0);
-            assert!(dot(normal, away) / radius > 0.995, "{normal:?} at {away:?}");
+            let normal = Vec4::from(vertex.normal.map(f32::from)).truncate() / 32767.0;
+            assert!(normal.dot(away) / radius > 0.995, "{normal:?} at {away:?}");
             assert_eq!((vertex.colour[3], vertex.normal[3] < 30), (0, true));
         }
     }
@@ -279,13 +268,12 @@ mod tests {
     fn skin_of_a_stretched_ball_is_an_ellipsoid_with_strain() {
         let mut world = ball(32);
         let whole = skin(&world).volume();
-        let body = world
-            .soft_body_mut(world.nth_soft_body(0).unwrap())
-            .unwrap();
+        let soft = world.nth_soft_body(0).unwrap();
+        let body = world.soft_body_mut(soft).unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
-            let [x, y, z] = body.node_state(id).0;
-            body.set_node_state(id, [1.5 * x, y, z], [0.0; 3]);
+            let at = body.node_state(id).0 * Vec3::new(1.5, 1.0, 1.0);
+            body.set_node_state(id, at, Vec3::ZERO).unwrap();
         }
         let skin = skin(&world);
         assert!((skin.volume() / whole - 1.5).abs() < 0.01);
@@ -321,6 +309,7 @@ mod tests {
     fn update_matches_a_new_skin_after_each_cut() {
         let mut world = ball(16);
         let mut kept = skin(&world);
+        let candy = Palette::candy().materials;
         // Rest positions are equal to the last bit; current positions depend on the voxel chosen at each
         // point.
         let sorted = |skin: &Skin| {
@@ -331,29 +320,20 @@ mod tests {
         };
         for x in [0.2, 0.8, 0.3, 0.55, 0.4, 0.48] {
             cut(&mut world, x);
-            assert!(kept.update(
-                world.soft_bodies().next().unwrap().1,
-                &Palette::candy().materials
-            ));
+            assert!(kept.update(first_body(&world), &candy));
             let new = skin(&world);
             assert_eq!(sorted(&kept), sorted(&new));
             assert!((kept.volume() / new.volume() - 1.0).abs() < 1e-4);
             world.step();
-            kept.update(
-                world.soft_bodies().next().unwrap().1,
-                &Palette::candy().materials,
-            );
+            kept.update(first_body(&world), &candy);
         }
         let safe = Palette::colour_safe().materials;
-        assert!(kept.update(world.soft_bodies().next().unwrap().1, &safe));
-        assert!(!kept.update(world.soft_bodies().next().unwrap().1, &safe));
+        assert!(kept.update(first_body(&world), &safe));
+        assert!(!kept.update(first_body(&world), &safe));
         // Another body with its own grid, and an untorn one with an equal grid.
         for n in [16, 20] {
             let other = ball(n);
-            kept.update(
-                other.soft_bodies().next().unwrap().1,
-                &Palette::candy().materials,
-            );
+            kept.update(first_body(&other), &candy);
             assert_eq!(sorted(&kept), sorted(&skin(&other)));
         }
     }

@@ -10,8 +10,8 @@
 use super::skin::{Skin, SkinVertex};
 use crate::frame::{Mark, Sticker};
 use crate::palette::bytes;
-use fuwafuwa::{Dim3, SoftBody, Vector};
-use glam::{Mat3, Vec2, Vec3};
+use fuwafuwa::{Dim3, SoftBody};
+use glam::{Mat3, Vec2, Vec3, Vec4};
 
 /// Half extent of the height field [mark units, see [`Mark::outline`]], and its number of samples per side.
 const REACH: f32 = 1.2;
@@ -42,12 +42,12 @@ impl Stickers {
     }
 
     /// Adds a sticker, seen from the point `eye` [m].
-    pub fn add(&mut self, sticker: &Sticker, skin: &Skin, body: &SoftBody<Dim3>, eye: Vector) {
+    pub fn add(&mut self, sticker: &Sticker, skin: &Skin, body: &SoftBody<Dim3>, eye: Vec3) {
         let Some(heights) = Heights::new(sticker, skin, body) else {
             return;
         };
         for mark in &sticker.marks {
-            self.add_mark(mark, &heights, sticker, eye.into());
+            self.add_mark(mark, &heights, sticker, eye);
         }
     }
 
@@ -55,10 +55,10 @@ impl Stickers {
         let outline: Vec<Vec2> = mark.outline.iter().map(|&at| at.into()).collect();
         let count = outline.len();
         let middle = outline.iter().sum::<Vec2>() / count as f32;
-        let axes = Mat3::from_cols_array_2d(&sticker.axes);
-        let place = |at: Vec2, height: f32| {
-            Vec3::from(sticker.origin) + axes * at.extend(heights.at(at) + height)
-        };
+        let [right, up, out] = sticker.axes;
+        let axes = Mat3::from_cols(right, up, out);
+        let place =
+            |at: Vec2, height: f32| sticker.origin + axes * at.extend(heights.at(at) + height);
         let mut places: Vec<Vec3> = Vec::new();
         for ring in RINGS {
             let height = mark.lift + mark.bulge * (1.0 - ring * ring).sqrt();
@@ -111,18 +111,18 @@ struct Heights([f32; SIDE * SIDE]);
 impl Heights {
     /// Computes the height field. Returns `None` if the piece has no skin in reach.
     fn new(sticker: &Sticker, skin: &Skin, body: &SoftBody<Dim3>) -> Option<Self> {
-        let axes = sticker.axes.map(Vec3::from);
-        let square = axes.map(Vec3::length_squared);
-        if square.contains(&0.0) {
+        let axes = sticker.axes;
+        let square = Vec3::from(axes.map(Vec3::length_squared));
+        if square.min_element() == 0.0 {
             return None;
         }
-        let voxel = body.grid().voxel_size() / square[2].sqrt();
+        let voxel = body.grid().voxel_size() / square.z.sqrt();
         let near = NEAR[0].max(NEAR[1] * voxel);
         let mut seen: Vec<Vec3> = Vec::new();
         for vertex in skin.vertices_of(body, sticker.piece) {
-            let by = Vec3::from(vertex.at) - Vec3::from(sticker.origin);
-            let at = Vec3::from(axes.map(|axis| by.dot(axis))) / Vec3::from(square);
-            let normal = Vec3::from([0, 1, 2].map(|k| f32::from(vertex.normal[k])));
+            let by = Vec3::from(vertex.at) - sticker.origin;
+            let at = Vec3::from(axes.map(|axis| by.dot(axis))) / square;
+            let normal = Vec4::from(vertex.normal.map(f32::from)).truncate();
             let is_in_reach = at.x.abs().max(at.y.abs()) < REACH + 2.0 * near;
             if is_in_reach && at.z > 0.0 && normal.dot(axes[2]) > 0.0 {
                 seen.push(at);
@@ -185,7 +185,6 @@ fn around(place: Vec3, reach: f32, mut act: impl FnMut(usize, f32)) {
 mod tests {
     use super::*;
     use crate::Palette;
-    use fuwafuwa::inspect::vector::{length, minus};
     use fuwafuwa::{Blade, Material, PieceId, VoxelGrid, World, WorldConfig};
 
     #[test]
@@ -203,8 +202,8 @@ mod tests {
         let mut sticker = Sticker {
             body: 0,
             piece: PieceId(0),
-            origin: [0.5; 3],
-            axes: [[0.25, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 0.25]],
+            origin: Vec3::splat(0.5),
+            axes: Vec3::AXES.map(|axis| 0.25 * axis),
             marks: vec![mark],
         };
         let mut skin = Skin::default();
@@ -212,29 +211,25 @@ mod tests {
             let body = &world[soft];
             skin.update(body, &Palette::candy().materials);
             let mut stickers = Stickers::default();
-            stickers.add(sticker, &skin, body, [0.5, 0.5, 9.0]);
+            stickers.add(sticker, &skin, body, Vec3::new(0.5, 0.5, 9.0));
             stickers
         };
         let whole = stuck(&world, &sticker);
         assert_eq!(whole.vertices.len(), 21);
         for vertex in &whole.vertices {
-            let away = length(minus(vertex.at, [0.5; 3]));
+            let away = Vec3::from(vertex.at).distance(Vec3::splat(0.5));
             // On the skin, offset towards the eye by at most `CLOSER`.
             assert!((0.485..0.53).contains(&away), "{away}");
             assert!(vertex.normal[2] > 20000, "{vertex:?}");
         }
         // After a slice was cut off, the sticker lies on the torn face of the rest.
-        let (from, across, along) = ([-0.2, -0.2, 0.75], [1.4, 0.0, 0.0], [0.0, 1.4, 0.0]);
-        let blade = Blade {
-            from,
-            across,
-            along,
-        };
+        let corner = Vec3::new(-0.2, -0.2, 0.75);
+        let blade = Blade::parallelogram(corner, 1.4 * Vec3::X, 1.4 * Vec3::Y);
         world.cut(soft, &blade).unwrap();
         let body = &world[soft];
         let nodes = body.mesh().nodes();
         let inside = nodes.min_by(|a, b| {
-            let away = |id| length(minus(body.node_state(id).0, [0.5; 3]));
+            let away = |id| body.node_state(id).0.distance(Vec3::splat(0.5));
             away(a.0).total_cmp(&away(b.0))
         });
         sticker.piece = body.pieces().of_node(inside.unwrap().0);

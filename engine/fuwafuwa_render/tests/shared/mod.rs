@@ -2,12 +2,12 @@
 
 use fuwafuwa_render::Colour;
 
-/// Device with exactly the limits of WebGL2; `None` without a graphics adapter.
-pub fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
+/// Creates a device with exactly the limits of WebGL2.
+pub fn device() -> (wgpu::Device, wgpu::Queue) {
     device_with(wgpu::Limits::downlevel_webgl2_defaults())
 }
 
-pub fn device_with(required_limits: wgpu::Limits) -> Option<(wgpu::Device, wgpu::Queue)> {
+pub fn device_with(required_limits: wgpu::Limits) -> (wgpu::Device, wgpu::Queue) {
     let instance = wgpu::Instance::default();
     let adapter = pollster::block_on(instance.request_adapter(&Default::default())).expect(
         "these tests need a graphics adapter; install one, for example mesa-vulkan-drivers",
@@ -16,7 +16,7 @@ pub fn device_with(required_limits: wgpu::Limits) -> Option<(wgpu::Device, wgpu:
         required_limits,
         ..Default::default()
     };
-    Some(pollster::block_on(adapter.request_device(&descriptor)).expect("requested device"))
+    pollster::block_on(adapter.request_device(&descriptor)).expect("requested device")
 }
 
 pub fn is_warm([red, green, blue]: Colour) -> bool {

@@ -12,6 +12,7 @@ use crate::gpu::buffer::GrowingBuffer;
 use crate::gpu::cost::{Cost, Gpu, Meter};
 use crate::gpu::image::{ImageError, ImageStage, image};
 use crate::gpu::targets::{bind, clear, new_uniforms};
+use crate::palette::Colour;
 use crate::rigid::MAX_WALLS;
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::{Dim3, World};
@@ -205,10 +206,9 @@ impl Renderer {
     fn write_uniforms(&self, queue: &Queue, frame: &Frame<'_, Camera>) {
         let (camera, palette, size) = (&frame.camera, frame.palette, self.targets.size);
         let half = LIT * camera.distance;
-        let [to_light, to_sky] =
-            [LIGHT, SKY].map(|light| seen_by(light, camera.target.into(), half));
+        let [to_light, to_sky] = [LIGHT, SKY].map(|light| seen_by(light, camera.target, half));
         let texels = SHADOW_SIDES.map(|side| 2.0 * half / side as f32);
-        let four = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
+        let four = |[red, green, blue]: Colour, last: f32| [red, green, blue, last];
         let mut walls = [[0.0; 4]; MAX_WALLS];
         walls[..self.geometry.walls.len()].copy_from_slice(&self.geometry.walls);
         let (mut hands, mut hand_colours) = ([[0.0; 4]; MOST_HANDS], [[0.0; 4]; MOST_HANDS]);
@@ -223,8 +223,8 @@ impl Renderer {
             to_clip: camera.to_clip(size),
             to_light,
             to_sky,
-            eye: four(camera.eye(), 0.0),
-            look: four(camera.target, camera.distance),
+            eye: camera.eye().extend(0.0).into(),
+            look: camera.target.extend(camera.distance).into(),
             tune: [
                 frame.phase(),
                 self.geometry.walls.len() as f32,
