@@ -5,15 +5,16 @@
 //! default.
 //!
 //! 1. [`first_body`]: five minutes to a falling ball
-//! 2. [`materials`]: stiffness, density and strength; real values, and values for games
-//! 3. [`acting`]: impulses, velocities, fields, hands, cuts
-//! 4. [`asking`]: events, sensors, layers, rays, overlap tests, strain and energy
-//! 5. [`rigids`]: rigid bodies and joints
-//! 6. [`saving`]: snapshots, and rolling back
-//! 7. [`costs`]: measured costs
-//! 8. [`determinism`]: guarantees, and ways to break them
-//! 9. [`how`]: the method, with figures
-//! 10. [`neighbours`]: comparison with other engines
+//! 2. [`tasks`]: ten common tasks in 2D and in 3D
+//! 3. [`materials`]: stiffness, density and strength; real values, and values for games
+//! 4. [`acting`]: impulses, velocities, fields, hands, cuts
+//! 5. [`asking`]: events, sensors, layers, rays, overlap tests, strain and energy
+//! 6. [`rigids`]: rigid bodies and joints
+//! 7. [`saving`]: snapshots, and rolling back
+//! 8. [`costs`]: measured costs
+//! 9. [`determinism`]: guarantees, and ways to break them
+//! 10. [`how`]: the method, with figures
+//! 11. [`neighbours`]: comparison with other engines
 //!
 //! # Crates
 //!
@@ -32,6 +33,10 @@
 
 #[doc = include_str!("../guide/first_body.md")]
 pub mod first_body {}
+
+#[cfg(feature = "serde")]
+#[doc = include_str!("../guide/tasks.md")]
+pub mod tasks {}
 
 #[doc = include_str!("../guide/materials.md")]
 pub mod materials {}

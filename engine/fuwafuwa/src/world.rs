@@ -19,7 +19,7 @@ use crate::contact::solver::{Contacts, Hit, Hits};
 use crate::error::Error;
 use crate::event::{Contact, Event, StepReport};
 use crate::foundation::arena::{BodySlot, RigidBodyHandle, RigidSlot};
-use crate::foundation::dim::{Dim, DimVector};
+use crate::foundation::dim::{Dim, Dim2, Dim3, DimVector};
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::fracture::crack_growth::{Failure, failures};
@@ -72,6 +72,12 @@ pub struct World<D: Dim> {
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) query_cache: QueryCache,
 }
+
+/// World in 2D.
+pub type World2 = World<Dim2>;
+
+/// World in 3D.
+pub type World3 = World<Dim3>;
 
 hash_state! {
     [D: Dim] struct World<D> {

@@ -110,7 +110,7 @@ impl<'a, D: Dim> RigidBodyRef<'a, D> {
     /// Returns the reactions, one for each substep of the last tick; none for a fixed body.
     pub fn reactions(
         &self,
-    ) -> impl ExactSizeIterator<Item = Reaction<D>> + DoubleEndedIterator + 'a {
+    ) -> impl ExactSizeIterator<Item = Reaction<D>> + DoubleEndedIterator + use<'a, D> {
         self.state.reactions().iter().map(Reaction::from)
     }
 }

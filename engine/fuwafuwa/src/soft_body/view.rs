@@ -206,6 +206,13 @@ impl<D: Dim> SoftBody<D> {
         views
     }
 
+    /// Iterates over the nodes inside a region or on its surface.
+    pub fn nodes_in(&self, region: &Shape<D>) -> impl Iterator<Item = NodeId> + '_ {
+        let region = region.solid();
+        let nodes = self.topology.mesh.nodes().map(|(id, _)| id);
+        nodes.filter(move |&id| region.distance(self.state.position[id].xyz()).0 <= 0.0)
+    }
+
     /// Mass of all nodes inside a region [kg].
     #[inline(never)]
     pub fn mass_inside(&self, region: &Shape<D>) -> f32 {
