@@ -4,6 +4,7 @@ use crate::placement::Placement;
 use crate::region::{fill_holes, keep_largest, solid_box};
 use crate::scan::Scan;
 use crate::segmentation::Segmentation;
+use fuwafuwa::glam::DVec3;
 use fuwafuwa::{Dim3, Error, Point, VoxelGrid};
 use std::ops::RangeInclusive;
 
@@ -179,34 +180,32 @@ fn check(found: usize, segmentation: &Segmentation) -> Result<(), OrganError> {
 
 /// Box in patient coordinates, RAS+ [mm].
 struct Region {
-    low: [f64; 3],
-    high: [f64; 3],
+    low: DVec3,
+    high: DVec3,
 }
 
 impl Region {
     /// Returns the bounding box of scans.
     fn of(scans: &[&Scan]) -> Self {
         let mut region = Self {
-            low: [f64::INFINITY; 3],
-            high: [f64::NEG_INFINITY; 3],
+            low: DVec3::INFINITY,
+            high: DVec3::NEG_INFINITY,
         };
         for scan in scans {
             for corner in corners(scan.size(), scan.placement()) {
-                for axis in 0..3 {
-                    region.low[axis] = region.low[axis].min(corner[axis]);
-                    region.high[axis] = region.high[axis].max(corner[axis]);
-                }
+                region.low = region.low.min(corner);
+                region.high = region.high.max(corner);
             }
         }
         region
     }
 
-    fn extent(&self) -> [f64; 3] {
-        [0, 1, 2].map(|axis: usize| self.high[axis] - self.low[axis])
+    fn extent(&self) -> DVec3 {
+        self.high - self.low
     }
 
     fn longest(&self) -> f64 {
-        self.extent().into_iter().fold(0.0, f64::max)
+        self.extent().max_element()
     }
 }
 
@@ -217,13 +216,13 @@ fn finest(scans: &[&Scan]) -> f64 {
 }
 
 /// Returns the corners of a scan, RAS+ [mm], half a voxel outside the centres of its corner voxels.
-fn corners(size: [usize; 3], placement: &Placement) -> [[f64; 3]; 8] {
+fn corners(size: [usize; 3], placement: &Placement) -> [DVec3; 8] {
     [0, 1, 2, 3, 4, 5, 6, 7].map(|corner: usize| {
         let voxel = [0, 1, 2].map(|axis: usize| match corner >> axis & 1 {
             0 => -0.5,
             _ => size[axis] as f64 - 0.5,
         });
-        placement.patient_at(voxel)
+        placement.patient_at(voxel).into()
     })
 }
 
@@ -240,19 +239,14 @@ struct Lattice {
 impl Lattice {
     /// Creates the grid over a box, with `across` cubes along the longest side.
     fn over(region: &Region, across: usize) -> Self {
-        let Region { low, high } = region;
         let voxel = region.longest() / across as f64;
         // The longest side is a whole number of voxels, up to rounding.
         let count = |length: f64| ((length / voxel - 1e-6).ceil().max(1.0) as usize).min(across);
-        let [right, front, up] = region.extent();
+        let [right, front, up] = region.extent().to_array();
         let size = [right, up, front].map(count);
         let half = size.map(|extent| 0.5 * extent as f64 * voxel);
-        let middle = [0, 1, 2].map(|axis: usize| 0.5 * (low[axis] + high[axis]));
-        let corner = [
-            middle[0] - half[0],
-            middle[1] + half[2],
-            middle[2] - half[1],
-        ];
+        let middle = 0.5 * (region.low + region.high);
+        let corner = [middle.x - half[0], middle.y + half[2], middle.z - half[1]];
         Self {
             size,
             voxel,
@@ -262,11 +256,12 @@ impl Lattice {
 
     /// Returns the region of a range of cubes, extended by one cube on each side.
     fn around(&self, [low, high]: [[usize; 3]; 2]) -> Region {
-        let low = self.patient_at(low.map(|k| (k as f64 - 1.0) * self.voxel));
-        let high = self.patient_at(high.map(|k| (k as f64 + 2.0) * self.voxel));
+        let low = low.map(|k| (k as f64 - 1.0) * self.voxel);
+        let high = high.map(|k| (k as f64 + 2.0) * self.voxel);
+        let [a, b] = [low, high].map(|corner| DVec3::from(self.patient_at(corner)));
         Region {
-            low: [low[0], high[1], low[2]],
-            high: [high[0], low[1], high[2]],
+            low: a.min(b),
+            high: a.max(b),
         }
     }
 
