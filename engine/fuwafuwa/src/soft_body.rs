@@ -107,9 +107,9 @@ impl<D: Dim> SoftBody<D> {
             let of_material = |error: Error| error.of(format_args!("material {}", index + 1));
             material.check().map_err(of_material)?;
         }
-        let sharing = Connectivity::new(&grid);
-        let pyramid = CellHierarchy::new(&grid, &sharing, grading);
-        let mesh = Mesh::grade(&grid, &sharing, &pyramid).expect(
+        let connectivity = Connectivity::new(&grid);
+        let hierarchy = CellHierarchy::new(&grid, &connectivity, grading);
+        let mesh = Mesh::grade(&grid, &connectivity, &hierarchy).expect(
             "a cell hierarchy matches the grid and the connectivity from which it was made",
         );
         let mut blocks = ElementBatches::new(law, &elasticities(materials, 1.0), grid.voxel_size());
@@ -120,8 +120,8 @@ impl<D: Dim> SoftBody<D> {
                 materials: materials.to_vec(),
                 stiffness_scale: 1.0,
                 grid,
-                connectivity: sharing,
-                pyramid,
+                connectivity: connectivity,
+                hierarchy,
                 mesh,
             },
             state: State::new(blocks),
@@ -161,7 +161,7 @@ impl<D: Dim> SoftBody<D> {
         self.make_room();
         let voxels: Vec<Point> = self.topology.grid.voxels().collect();
         self.expose(&voxels);
-        if self.topology.pyramid.grading() != Grading::Coarse {
+        if self.topology.hierarchy.grading() != Grading::Coarse {
             let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
             self.find_breakable(&nodes);
         }
@@ -226,7 +226,7 @@ impl<D: Dim> SoftBody<D> {
 
     /// Grading of the elements.
     pub fn grading(&self) -> Grading {
-        self.topology.pyramid.grading()
+        self.topology.hierarchy.grading()
     }
 
     /// Pieces of the body.

@@ -179,7 +179,7 @@ fn assert_uniform_strain_leaves_inner_nodes_at_rest<D: Dim>(
         let all = forces(
             Law::CorotationalVem,
             elasticity,
-            mesh.stencil(element),
+            mesh.element_class(element),
             size,
             &positions,
         );

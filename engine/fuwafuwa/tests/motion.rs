@@ -69,7 +69,7 @@ fn check_forces_against_the_law<D: Dim>(law: Law) {
         let all = forces(
             law,
             Material::default().elasticity,
-            body.mesh().stencil(element),
+            body.mesh().element_class(element),
             size,
             &positions,
         );

@@ -162,7 +162,7 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
     let mut body = SoftBody::new(grid, &[clay]).unwrap();
     let (id, element) = body.mesh().elements().next().unwrap();
     let element = element.clone();
-    let stencil = body.mesh().stencil(&element).clone();
+    let stencil = body.mesh().element_class(&element).clone();
     let mut undone = DVec3::AXES;
     let plasticity = Plasticity {
         yield_strain: f64::from(clay.yield_strain),

@@ -145,7 +145,7 @@ struct StoredArena<K: Handle, T> {
 impl<K: Handle, T> From<StoredArena<K, T>> for Arena<K, T> {
     fn from(StoredArena { slots }: StoredArena<K, T>) -> Self {
         let free = slots.iter().enumerate();
-        let free = free.filter(|(_, slot)| slot.thing.is_none());
+        let free = free.filter(|(_, slot)| slot.item.is_none());
         let free = free.map(|(index, _)| index).collect();
         Self {
             slots,
@@ -160,11 +160,11 @@ impl<K: Handle, T> From<StoredArena<K, T>> for Arena<K, T> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Slot<T> {
     generation: u32,
-    thing: Option<T>,
+    item: Option<T>,
 }
 
 hash_state! { [K: Handle, T: HashState] struct Arena<K, T> { slots } skip { revision, free } }
-hash_state! { [T: HashState] struct Slot<T> { generation, thing } }
+hash_state! { [T: HashState] struct Slot<T> { generation, item } }
 
 impl<K: Handle, T> Default for Arena<K, T> {
     fn default() -> Self {
@@ -185,7 +185,7 @@ impl<K: Handle, T> Arena<K, T> {
         let (own, generation) = id.parts();
         let slot = self.slots.get(own.index());
         let slot = slot.filter(|slot| slot.generation == generation);
-        slot.and_then(|slot| slot.thing.as_ref())
+        slot.and_then(|slot| slot.item.as_ref())
             .ok_or_else(|| stale::<K>(own))
     }
 
@@ -194,20 +194,20 @@ impl<K: Handle, T> Arena<K, T> {
         let (own, generation) = id.parts();
         let slot = self.slots.get_mut(own.index());
         let slot = slot.filter(|slot| slot.generation == generation);
-        let thing = slot.and_then(|slot| slot.thing.as_mut());
-        let thing = thing.ok_or_else(|| stale::<K>(own))?;
+        let item = slot.and_then(|slot| slot.item.as_mut());
+        let item = item.ok_or_else(|| stale::<K>(own))?;
         self.revision += 1;
-        Ok(thing)
+        Ok(item)
     }
 
     /// Iterates over the items in the order of their slots.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &T> + Clone {
-        self.slots.iter().filter_map(|slot| slot.thing.as_ref())
+        self.slots.iter().filter_map(|slot| slot.item.as_ref())
     }
 
     /// Iterates over handles and items in the order of their slots.
     pub fn entries(&self) -> impl DoubleEndedIterator<Item = (K, &T)> + Clone {
-        self.by_slot().map(|(slot, thing)| (self.id(slot), thing))
+        self.by_slot().map(|(slot, item)| (self.id(slot), item))
     }
 
     /// Iterates over the handles in the order of their slots.
@@ -236,19 +236,19 @@ impl<K: Handle, T> Arena<K, T> {
     }
 
     /// Inserts an item into the lowest free slot.
-    pub(crate) fn insert(&mut self, thing: T) -> K {
+    pub(crate) fn insert(&mut self, item: T) -> K {
         self.revision += 1;
-        let thing = Some(thing);
+        let item = Some(item);
         let own = match self.free.pop_first() {
             Some(index) => {
                 let own = K::Slot::of(index);
-                self.slots[own].thing = thing;
+                self.slots[own].item = item;
                 own
             }
             None => {
                 let own = self.slots.next_id();
                 let generation = 0;
-                self.slots.push(Slot { generation, thing });
+                self.slots.push(Slot { generation, item });
                 own
             }
         };
@@ -263,7 +263,7 @@ impl<K: Handle, T> Arena<K, T> {
         let slot = &mut self.slots[own];
         slot.generation = slot.generation.wrapping_add(1);
         self.free.insert(own.index());
-        slot.thing.take().ok_or_else(|| stale::<K>(own))
+        slot.item.take().ok_or_else(|| stale::<K>(own))
     }
 
     /// Returns a number that increases with each mutable access to the arena or to an item. While it is the
@@ -279,20 +279,20 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Iterates over all slots; free ones give `None`.
     pub(crate) fn slots(&self) -> impl Iterator<Item = Option<&T>> {
-        self.slots.iter().map(|slot| slot.thing.as_ref())
+        self.slots.iter().map(|slot| slot.item.as_ref())
     }
 
     /// Iterates over occupied slots and their items.
     pub(crate) fn by_slot(&self) -> impl DoubleEndedIterator<Item = (K::Slot, &T)> + Clone {
         let slots = self.slots.entries();
-        slots.filter_map(|(own, slot)| Some((own, slot.thing.as_ref()?)))
+        slots.filter_map(|(own, slot)| Some((own, slot.item.as_ref()?)))
     }
 
     /// Iterates over occupied slots and their items, mutably.
     pub(crate) fn by_slot_mut(&mut self) -> impl Iterator<Item = (K::Slot, &mut T)> {
         self.revision += 1;
         let slots = self.slots.entries_mut();
-        slots.filter_map(|(own, slot)| Some((own, slot.thing.as_mut()?)))
+        slots.filter_map(|(own, slot)| Some((own, slot.item.as_mut()?)))
     }
 
     /// Iterates over handles and items, mutably.
@@ -301,34 +301,34 @@ impl<K: Handle, T> Arena<K, T> {
         let slots = self.slots.entries_mut();
         slots.filter_map(|(own, slot)| {
             let id = K::new(own, slot.generation);
-            Some((id, slot.thing.as_mut()?))
+            Some((id, slot.item.as_mut()?))
         })
     }
 
     /// Iterates over the items, mutably.
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.revision += 1;
-        self.slots.iter_mut().filter_map(|slot| slot.thing.as_mut())
+        self.slots.iter_mut().filter_map(|slot| slot.item.as_mut())
     }
 
     /// Returns the item in a slot, or `None` if the slot is free.
     pub(crate) fn find(&self, slot: K::Slot) -> Option<&T> {
-        self.slots.get(slot.index())?.thing.as_ref()
+        self.slots.get(slot.index())?.item.as_ref()
     }
 
     /// Returns the item in an occupied slot.
     #[inline(always)]
     pub(crate) fn at(&self, slot: K::Slot) -> &T {
-        let thing = self.slots[slot].thing.as_ref();
-        thing.expect("internal slot lists contain occupied slots only")
+        let item = self.slots[slot].item.as_ref();
+        item.expect("internal slot lists contain occupied slots only")
     }
 
     /// Returns the item in an occupied slot, mutably.
     #[inline(always)]
     pub(crate) fn at_mut(&mut self, slot: K::Slot) -> &mut T {
         self.revision += 1;
-        let thing = self.slots[slot].thing.as_mut();
-        thing.expect("internal slot lists contain occupied slots only")
+        let item = self.slots[slot].item.as_mut();
+        item.expect("internal slot lists contain occupied slots only")
     }
 
     /// Returns the handle of the item in a slot.

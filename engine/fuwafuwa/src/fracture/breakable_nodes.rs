@@ -82,7 +82,7 @@ impl BreakableNodes {
         &mut self,
         nodes: &[NodeId],
         grid: &VoxelGrid<D>,
-        sharing: &Connectivity<D>,
+        connectivity: &Connectivity<D>,
         mesh: &Mesh<D>,
         materials: &[Material],
     ) {
@@ -92,7 +92,7 @@ impl BreakableNodes {
             let several = node.group & node.group.wrapping_sub(1) != 0;
             self.of_node[id] = None;
             if several && mesh.is_alive(id) {
-                let around = sharing.around(node.at);
+                let around = connectivity.around(node.at);
                 if around.is_open() {
                     let judged = self.judge(node, grid, &around, materials);
                     self.of_node[id] = Some(judged);

@@ -88,15 +88,15 @@ impl RigidState {
 
     /// Returns the largest distance of the shape from its local origin [m].
     pub(crate) fn extent(&self) -> f32 {
-        let [low, high] = self.form.bounds();
+        let [low, high] = self.local_shape.bounds();
         let furthest = [0, 1, 2].map(|axis: usize| low[axis].abs().max(high[axis].abs()));
         Vec3::from(furthest).length()
     }
 
     /// Sets the target rotation.
-    pub(crate) fn turn_to<D: Dim>(&mut self, rotation: Rotation) -> Result<(), Error> {
+    pub(crate) fn set_target_rotation<D: Dim>(&mut self, rotation: Rotation) -> Result<(), Error> {
         self.require_target()?;
-        self.rotation_goal = rotation.seen_in::<D>();
+        self.target_rotation = rotation.seen_in::<D>();
         Ok(())
     }
 
@@ -109,7 +109,7 @@ impl RigidState {
         let expected = "within 1e6 m of the origin";
         require(is_within_reach(position), "position", expected, position)?;
         let (position, rotation) = (flat::<D>(position), rotation.seen_in::<D>());
-        self.stand_at(position, rotation);
+        self.move_to(position, rotation);
         (self.position_before, self.rotation_before) = (position, rotation);
         self.stay();
         self.wake();
@@ -118,8 +118,8 @@ impl RigidState {
 
     /// Sets the target pose to the present pose.
     pub(crate) fn stay(&mut self) {
-        (self.goal, self.goal_before) = (self.position, self.position);
-        self.rotation_goal = self.rotation;
+        (self.target, self.target_before) = (self.position, self.position);
+        self.target_rotation = self.rotation;
     }
 
     /// Wakes the body and restarts its sleep timer.
@@ -154,7 +154,7 @@ impl RigidState {
         }
         let position = self.position + self.velocity * duration;
         if self.angular_velocity == Vec3::ZERO {
-            return self.stand_at(position, self.rotation);
+            return self.move_to(position, self.rotation);
         }
         let way = Rotation::about(
             self.angular_velocity,
@@ -166,7 +166,7 @@ impl RigidState {
             self.angular_velocity =
                 inertia.spin_kept(self.angular_velocity, self.rotation, rotation);
         }
-        self.stand_at(position, rotation);
+        self.move_to(position, rotation);
     }
 
     /// Applies an impulse [N s] at a lever arm from the position [m].

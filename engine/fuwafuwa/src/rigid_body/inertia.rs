@@ -26,8 +26,8 @@ hash_state! { struct Inertia { axes, moments, inverse } }
 
 impl Inertia {
     /// Returns the inertia of a shape centred on the origin, for a mass [kg].
-    pub fn of<D: Dim>(form: &Solid, mass: f32) -> Self {
-        let (axes, shares) = match *form {
+    pub fn of<D: Dim>(local_shape: &Solid, mass: f32) -> Self {
+        let (axes, shares) = match *local_shape {
             Solid::HalfSpace { .. } => (Rotation::NONE.axes(), Vec3::ZERO),
             Solid::Ball { radius, .. } => (Rotation::NONE.axes(), ball::<D>(radius)),
             Solid::Box { half, .. } => (Rotation::NONE.axes(), cuboid(half)),
@@ -148,8 +148,8 @@ mod tests {
     use crate::rigid_body::solid::flat;
 
     /// Compares the moments with a sum over small cells.
-    fn check<D: Dim>(form: Solid) {
-        let [low, high] = form.bounds();
+    fn check<D: Dim>(local_shape: Solid) {
+        let [low, high] = local_shape.bounds();
         let count = if D::N == 2 { 200 } else { 60 };
         let (mut mass, mut sums) = (0.0f64, [0.0f64; 3]);
         let depth = if D::N == 2 { 1 } else { count };
@@ -157,7 +157,7 @@ mod tests {
             let cell = [cell % count, cell / count % count, cell / count / count];
             let share = cell.map(|k| (k as f32 + 0.5) / count as f32);
             let at = flat::<D>(low + Vec3::from(share) * (high - low));
-            if form.distance(at).0 > 0.0 {
+            if local_shape.distance(at).0 > 0.0 {
                 continue;
             }
             mass += 1.0;
@@ -166,14 +166,14 @@ mod tests {
                 *sum += others.map(|k| f64::from(at[k] * at[k])).sum::<f64>();
             }
         }
-        let inertia = Inertia::of::<D>(&form, 3.0);
+        let inertia = Inertia::of::<D>(&local_shape, 3.0);
         let inverse = inertia.inverse(Rotation::NONE);
         for axis in if D::N == 2 { 2..3 } else { 0..3 } {
             let expected = 3.0 * sums[axis] / mass;
             let found = 1.0 / f64::from(inverse[axis][axis]);
             assert!(
                 (found / expected - 1.0).abs() < 0.01,
-                "{form:?} {found} {expected}"
+                "{local_shape:?} {found} {expected}"
             );
         }
     }
@@ -204,11 +204,11 @@ mod tests {
 
     #[test]
     fn tumbling_preserves_angular_momentum() {
-        let form = Solid::Box {
+        let local_shape = Solid::Box {
             centre: Vec3::ZERO,
             half: Vec3::new(0.3, 0.5, 0.9),
         };
-        let inertia = Inertia::of::<Dim3>(&form, 3.0);
+        let inertia = Inertia::of::<Dim3>(&local_shape, 3.0);
         let momentum = |spin: Vec3, rotation: Rotation| {
             let axes = rotation.axes().into_iter().zip(inertia.moments.to_array());
             axes.fold(Vec3::ZERO, |sum, (axis, moment)| {

@@ -79,7 +79,7 @@ impl<'a, D: Dim> RigidBodyRef<'a, D> {
 
     /// Returns the shape in local coordinates.
     pub fn local_shape(&self) -> Shape<D> {
-        Shape::of(self.state.form())
+        Shape::of(self.state.local_shape())
     }
 
     /// Returns the [friction](RigidBody::friction) coefficient.

@@ -31,7 +31,7 @@ pub struct RigidState {
     pub is_sensor: bool,
     pub user_data: u64,
     /// Shape in local coordinates, and in the world.
-    pub(super) form: Solid,
+    pub(super) local_shape: Solid,
     pub(super) shape: Solid,
     /// Position of the local origin [m].
     pub(crate) position: Vec3,
@@ -51,20 +51,20 @@ pub struct RigidState {
     pub(super) inertia: Option<Inertia>,
     pub(super) inverse_inertia: Matrix,
     /// Target position [m] and target rotation.
-    pub(super) goal: Vec3,
-    pub(super) rotation_goal: Rotation,
+    pub(super) target: Vec3,
+    pub(super) target_rotation: Rotation,
     /// Interpolated target position [m] and its velocity in this tick [m/s].
-    pub(super) goal_before: Vec3,
-    pub(super) goal_velocity: Vec3,
+    pub(super) target_before: Vec3,
+    pub(super) target_velocity: Vec3,
     /// Reaction of each substep of the last tick.
     pub(crate) reactions: Vec<ReactionSum>,
 }
 
 hash_state! {
     struct RigidState {
-        friction, restitution, motion_type, layers, is_sensor, user_data, form, shape, position, velocity,
+        friction, restitution, motion_type, layers, is_sensor, user_data, local_shape, shape, position, velocity,
         rotation, angular_velocity, asleep, sleep_timer, position_before, rotation_before, inertia,
-        inverse_inertia, goal, rotation_goal, goal_before, goal_velocity, reactions,
+        inverse_inertia, target, target_rotation, target_before, target_velocity, reactions,
     }
 }
 
@@ -88,7 +88,7 @@ impl<D: Dim> From<&RigidBody<D>> for RigidState {
         let position = body.position.to_vec3();
         let rotation = body.rotation.seen_in::<D>();
         let Twist { linear, angular } = body.velocity.twist();
-        let form = body.shape.solid();
+        let local_shape = body.shape.solid();
         let mut state = Self {
             friction: body.friction,
             restitution: body.restitution,
@@ -96,8 +96,8 @@ impl<D: Dim> From<&RigidBody<D>> for RigidState {
             layers: body.layers,
             is_sensor: body.is_sensor,
             user_data: body.user_data,
-            form,
-            shape: form,
+            local_shape,
+            shape: local_shape,
             position,
             velocity: linear,
             rotation,
@@ -106,16 +106,16 @@ impl<D: Dim> From<&RigidBody<D>> for RigidState {
             sleep_timer: 0.0,
             position_before: position,
             rotation_before: rotation,
-            inertia: body.motion_type.inertia::<D>(&form),
+            inertia: body.motion_type.inertia::<D>(&local_shape),
             inverse_inertia: [Vec3::ZERO; 3],
-            goal: position,
-            rotation_goal: rotation,
-            goal_before: position,
-            goal_velocity: Vec3::ZERO,
+            target: position,
+            target_rotation: rotation,
+            target_before: position,
+            target_velocity: Vec3::ZERO,
             reactions: Vec::new(),
         };
         state.clear_unused_motion();
-        state.stand_at(position, rotation);
+        state.move_to(position, rotation);
         state
     }
 }
@@ -125,7 +125,7 @@ impl RigidState {
     pub fn definition<D: Dim>(&self) -> RigidBody<D> {
         RigidBody {
             motion_type: self.motion_type,
-            shape: Shape::of(&self.form),
+            shape: Shape::of(&self.local_shape),
             position: D::Vector::from_vec3(self.position),
             rotation: self.rotation,
             velocity: Velocity::from(self.twist()),
@@ -141,7 +141,7 @@ impl RigidState {
     pub(super) fn clear_unused_motion(&mut self) {
         if self.motion_type == MotionType::Fixed {
             // The body may have been kinematic or coupled before.
-            (self.velocity, self.goal_velocity) = (Vec3::ZERO, Vec3::ZERO);
+            (self.velocity, self.target_velocity) = (Vec3::ZERO, Vec3::ZERO);
             self.stay();
         }
         if matches!(
@@ -155,14 +155,14 @@ impl RigidState {
     /// Sets the motion type in a world of `D`. If the type differs from the present one, the present
     /// pose becomes the target; other parameters of the same type keep the target.
     pub(crate) fn set_motion_type<D: Dim>(&mut self, motion_type: MotionType) -> Result<(), Error> {
-        let inertia = motion_type.inertia::<D>(&self.form);
-        check_motion_type(motion_type, &self.form, inertia.as_ref())?;
+        let inertia = motion_type.inertia::<D>(&self.local_shape);
+        check_motion_type(motion_type, &self.local_shape, inertia.as_ref())?;
         if discriminant(&motion_type) != discriminant(&self.motion_type) {
             self.stay();
         }
         (self.motion_type, self.inertia) = (motion_type, inertia);
         self.clear_unused_motion();
-        self.stand_at(self.position, self.rotation);
+        self.move_to(self.position, self.rotation);
         Ok(())
     }
 
@@ -191,12 +191,12 @@ impl RigidState {
 
     /// Returns the target position [m].
     pub fn target_position(&self) -> Vec3 {
-        self.goal
+        self.target
     }
 
     /// Returns the target rotation.
     pub fn target_rotation(&self) -> Rotation {
-        self.rotation_goal
+        self.target_rotation
     }
 
     /// Returns the reactions, one for each substep of the last tick.
@@ -205,8 +205,8 @@ impl RigidState {
     }
 
     /// Returns the shape in local coordinates.
-    pub fn form(&self) -> &Solid {
-        &self.form
+    pub fn local_shape(&self) -> &Solid {
+        &self.local_shape
     }
 
     /// Returns the shape in world coordinates.
@@ -231,11 +231,11 @@ impl RigidState {
     }
 
     /// Sets the target position [m]; .
-    pub(crate) fn send(&mut self, goal: Vec3) -> Result<(), Error> {
+    pub(crate) fn set_target_position(&mut self, target: Vec3) -> Result<(), Error> {
         self.require_target()?;
         let expected = "within 1e6 m of the origin";
-        require(is_within_reach(goal), "position", expected, goal)?;
-        self.goal = goal;
+        require(is_within_reach(target), "position", expected, target)?;
+        self.target = target;
         Ok(())
     }
 
@@ -252,11 +252,11 @@ impl RigidState {
     /// Starts a tick of `duration` [s], in which the target moves at a constant velocity.
     pub(crate) fn start_tick(&mut self, duration: f32) {
         (self.position_before, self.rotation_before) = (self.position, self.rotation);
-        self.goal_velocity = (self.goal - self.goal_before) * (1.0 / duration);
-        if self.follows_target() && self.rotation != self.rotation_goal
+        self.target_velocity = (self.target - self.target_before) * (1.0 / duration);
+        if self.follows_target() && self.rotation != self.target_rotation
             || self.motion_type == MotionType::Kinematic
         {
-            let way = self.rotation.inverse().then(self.rotation_goal);
+            let way = self.rotation.inverse().then(self.target_rotation);
             self.angular_velocity = way.scaled_axis() * (1.0 / duration);
         }
         self.reactions.clear();
@@ -265,16 +265,16 @@ impl RigidState {
     /// Ends a tick: the target stops, and the rotation is set to its target. A body that is non-finite or out
     /// of range is reset to its pose at the start of the tick, at rest.
     pub(crate) fn end_tick(&mut self) {
-        self.goal_before = self.goal;
-        if self.follows_target() && self.rotation != self.rotation_goal {
-            self.stand_at(self.position, self.rotation_goal);
+        self.target_before = self.target;
+        if self.follows_target() && self.rotation != self.target_rotation {
+            self.move_to(self.position, self.target_rotation);
         }
         if matches!(self.motion_type, MotionType::Coupled { .. }) {
             self.angular_velocity = Vec3::ZERO;
         }
         let is_finite = self.velocity.is_finite() && self.angular_velocity.is_finite();
         if !is_finite || !is_within_reach(self.position) {
-            self.stand_at(self.position_before, self.rotation_before);
+            self.move_to(self.position_before, self.rotation_before);
             (self.velocity, self.angular_velocity) = (Vec3::ZERO, Vec3::ZERO);
             self.reactions.fill(ReactionSum::default());
         }
@@ -282,13 +282,13 @@ impl RigidState {
 
     /// Applies the virtual coupling, or the velocity of a kinematic body, for `duration` [s].
     pub(crate) fn pull(&mut self, duration: f32) {
-        self.goal_before += self.goal_velocity * duration;
+        self.target_before += self.target_velocity * duration;
         let mut reaction = ReactionSum::default();
         match self.motion_type {
             MotionType::Fixed => return,
             MotionType::Dynamic { .. } => {}
             MotionType::Kinematic => {
-                self.velocity = (self.goal_before - self.position) * (1.0 / duration);
+                self.velocity = (self.target_before - self.position) * (1.0 / duration);
             }
             MotionType::Coupled {
                 mass,
@@ -299,8 +299,8 @@ impl RigidState {
                 // Limits the stiffness to the stability limit of this substep.
                 let stiffness = stiffness.min(0.25 * mass / (duration * duration));
                 let damper = 2.0 * damping * (stiffness * mass).sqrt();
-                let stretch = self.goal_before - self.position;
-                let slip = self.goal_velocity - self.velocity;
+                let stretch = self.target_before - self.position;
+                let slip = self.target_velocity - self.velocity;
                 let wish = stretch * stiffness + slip * damper;
                 let strength = wish.length();
                 let force = if strength > max_force {
@@ -336,9 +336,9 @@ impl RigidState {
         }
     }
 
-    pub(super) fn stand_at(&mut self, position: Vec3, rotation: Rotation) {
+    pub(super) fn move_to(&mut self, position: Vec3, rotation: Rotation) {
         (self.position, self.rotation) = (position, rotation);
-        self.shape = self.form.rotated(rotation).translated(position);
+        self.shape = self.local_shape.rotated(rotation).translated(position);
         if let Some(inertia) = &self.inertia {
             self.inverse_inertia = inertia.inverse(rotation);
         }

@@ -20,8 +20,8 @@ impl RigidState {
     pub fn check(&self) -> Result<(), Error> {
         let positions = [
             ("position", self.position),
-            ("target_position", self.goal),
-            ("target_position", self.goal_before),
+            ("target_position", self.target),
+            ("target_position", self.target_before),
             ("position", self.position_before),
         ];
         for (field, position) in positions {
@@ -38,7 +38,7 @@ impl RigidState {
         let rotations = [
             ("rotation", self.rotation),
             ("rotation", self.rotation_before),
-            ("target_rotation", self.rotation_goal),
+            ("target_rotation", self.target_rotation),
         ];
         for (field, rotation) in rotations {
             let quaternion = rotation.quaternion();
@@ -46,13 +46,17 @@ impl RigidState {
         }
         let timer = self.sleep_timer;
         require(timer >= 0.0, "sleep_timer", "0 or more", timer)?;
-        self.form.check()?;
-        let is_moved = self.shape == self.form.rotated(self.rotation).translated(self.position);
+        self.local_shape.check()?;
+        let is_moved = self.shape
+            == self
+                .local_shape
+                .rotated(self.rotation)
+                .translated(self.position);
         let expected = "the local shape, rotated and translated to the pose";
         require(is_moved, "shape", expected, self.shape)?;
         check_friction(self.friction)?;
         check_restitution(self.restitution)?;
-        check_motion_type(self.motion_type, &self.form, self.inertia.as_ref())
+        check_motion_type(self.motion_type, &self.local_shape, self.inertia.as_ref())
     }
 
     /// Returns whether a body that was read from a file is valid in a world of `D`.
@@ -64,20 +68,24 @@ impl RigidState {
     /// Returns the body as a world of `D` would have it: in 2D third coordinates are 0.
     #[cfg(feature = "serde")]
     fn seen_in<D: Dim>(mut self) -> Self {
-        self.form = Shape::<D>::of(&self.form).solid();
-        let positions = [&mut self.position, &mut self.goal, &mut self.goal_before];
+        self.local_shape = Shape::<D>::of(&self.local_shape).solid();
+        let positions = [
+            &mut self.position,
+            &mut self.target,
+            &mut self.target_before,
+        ];
         let others = [&mut self.position_before, &mut self.velocity];
         for vector in positions.into_iter().chain(others) {
             *vector = flat::<D>(*vector);
         }
-        let rotations = [&mut self.rotation_before, &mut self.rotation_goal];
+        let rotations = [&mut self.rotation_before, &mut self.target_rotation];
         for rotation in rotations.into_iter().chain([&mut self.rotation]) {
             *rotation = rotation.seen_in::<D>();
         }
         self.angular_velocity = turning::<D>(self.angular_velocity);
         self.clear_unused_motion();
-        self.inertia = self.motion_type.inertia::<D>(&self.form);
-        self.stand_at(self.position, self.rotation);
+        self.inertia = self.motion_type.inertia::<D>(&self.local_shape);
+        self.move_to(self.position, self.rotation);
         self
     }
 }
@@ -90,29 +98,34 @@ pub(crate) fn check_restitution(restitution: f32) -> Result<(), Error> {
     within("restitution", restitution, 0.0, 1.0, "0 to 1")
 }
 
-/// Checks a motion type for a body of the shape `form` in local coordinates, with the moments of inertia of that
+/// Checks a motion type for a body of the shape `local_shape` in local coordinates, with the moments of inertia of that
 /// shape if the body is dynamic.
 pub(super) fn check_motion_type(
     motion_type: MotionType,
-    form: &Solid,
+    local_shape: &Solid,
     inertia: Option<&Inertia>,
 ) -> Result<(), Error> {
     let (tiny, huge) = (f32::MIN_POSITIVE, f32::MAX);
     if motion_type != MotionType::Fixed {
-        let is_bounded = form.bounds().into_iter().all(is_within_reach);
+        let is_bounded = local_shape.bounds().into_iter().all(is_within_reach);
         let expected = "bounded, within 1e6 m of its position";
-        require(is_bounded, "shape", expected, form)?;
+        require(is_bounded, "shape", expected, local_shape)?;
     }
     match motion_type {
         MotionType::Fixed | MotionType::Kinematic => Ok(()),
         MotionType::Dynamic { mass } => {
             within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
-            let [low, high] = form.bounds();
+            let [low, high] = local_shape.bounds();
             let is_centred = (low + high).length() <= 1e-3 * (high - low).length();
-            require(is_centred, "shape", "centred on its local origin", form)?;
+            require(
+                is_centred,
+                "shape",
+                "centred on its local origin",
+                local_shape,
+            )?;
             let is_sound = inertia.is_none_or(|inertia| inertia.is_sound());
             let expected = "of a size at which the moments of inertia are finite and positive";
-            require(is_sound, "shape", expected, form)
+            require(is_sound, "shape", expected, local_shape)
         }
         MotionType::Coupled {
             mass,

@@ -15,15 +15,15 @@ const FLAT: f32 = 0.01;
 impl<D: Dim> SoftBody<D> {
     /// Returns the centre of an element [m], and its deformation gradient F by rows.
     pub(crate) fn deformation(&self, element: &Element) -> (Vec3, [Vec3; 3]) {
-        let stencil = self.topology.mesh.stencil(element);
+        let element_class = self.topology.mesh.element_class(element);
         let half = 0.5 * self.topology.grid.voxel_size() * element.cell.width() as f32;
-        let scale = 1.0 / (stencil.volume as f32 * half);
+        let scale = 1.0 / (element_class.volume as f32 * half);
         let (mut centre, mut gradient) = (Vec3::ZERO, [Vec3::ZERO; 3]);
         for (place, &node) in element.nodes.iter().enumerate() {
             let at = self.state.position[node].xyz();
-            let share = (stencil.volumes[place] / stencil.volume) as f32;
+            let share = (element_class.volumes[place] / element_class.volume) as f32;
             centre += at * share;
-            let b = stencil.gradients[place].as_vec3();
+            let b = element_class.gradients[place].as_vec3();
             for i in 0..D::N {
                 gradient[i] += b * (at[i] * scale);
             }
@@ -50,12 +50,12 @@ impl<D: Dim> SoftBody<D> {
     /// position [m].
     pub(crate) fn affine_map(&self, element: &Element) -> impl Fn(Vec3) -> Vec3 + use<D> {
         let (centre, gradient) = self.deformation(element);
-        let stencil = self.topology.mesh.stencil(element);
+        let element_class = self.topology.mesh.element_class(element);
         let size = self.topology.grid.voxel_size();
         let half = 0.5 * size * element.cell.width() as f32;
         // Slot in the low corner of the cell, relative to the volume centroid at rest.
-        let steps = Vec3::from(slot_at(stencil.slots[0] as usize).map(|k| k as f32)) * half;
-        let origin = stencil.offsets[0].as_vec3() * half - steps;
+        let steps = Vec3::from(slot_at(element_class.slots[0] as usize).map(|k| k as f32)) * half;
+        let origin = element_class.offsets[0].as_vec3() * half - steps;
         let low = element.cell.first_voxel().map(|k| k as f32);
         move |point| {
             let mut rest = origin;
@@ -73,14 +73,14 @@ impl<D: Dim> SoftBody<D> {
     /// Maps a position [m] back to the undeformed body, in voxels, by the motion of an element: the inverse
     /// of [`SoftBody::affine_map`]. `None` if the element is flat.
     pub(crate) fn at_rest(&self, element: &Element, at: Vec3) -> Option<Vec3> {
-        let stencil = self.topology.mesh.stencil(element);
+        let element_class = self.topology.mesh.element_class(element);
         let size = self.topology.grid.voxel_size();
         let half = 0.5 * size * element.cell.width() as f32;
         let from_centroid = self.offset_at_rest(element, at)?;
-        let corner = slot_at(stencil.slots[0] as usize);
+        let corner = slot_at(element_class.slots[0] as usize);
         let mut place = Vec3::from(element.cell.first_voxel().map(|k| k as f32));
         for axis in 0..D::N {
-            let from_corner = from_centroid[axis] / half - stencil.offsets[0][axis] as f32;
+            let from_corner = from_centroid[axis] / half - element_class.offsets[0][axis] as f32;
             place[axis] += (from_corner + corner[axis] as f32) * half / size;
         }
         Some(place)
@@ -90,19 +90,19 @@ impl<D: Dim> SoftBody<D> {
     /// functions are interpolated exactly, so an impulse that is distributed with these weights keeps its
     /// torque.
     pub(crate) fn weights(&self, element: &Element, at: Vec3) -> Vec<(NodeId, f32)> {
-        let stencil = self.topology.mesh.stencil(element);
+        let element_class = self.topology.mesh.element_class(element);
         let half = 0.5 * element.cell.width() as f32;
-        let corner = slot_at(stencil.slots[0] as usize);
+        let corner = slot_at(element_class.slots[0] as usize);
         let low = element.cell.first_voxel();
         let mut rest = Vec3::ZERO;
         for axis in 0..D::N {
             let from_corner = (at[axis] - low[axis] as f32) / half - corner[axis] as f32;
-            rest[axis] = from_corner + stencil.offsets[0][axis] as f32;
+            rest[axis] = from_corner + element_class.offsets[0][axis] as f32;
         }
-        let scale = 1.0 / stencil.volume as f32;
+        let scale = 1.0 / element_class.volume as f32;
         let weight = |place: usize| {
-            let share = (stencil.volumes[place] / stencil.volume) as f32;
-            share + scale * stencil.gradients[place].as_vec3().dot(rest)
+            let share = (element_class.volumes[place] / element_class.volume) as f32;
+            share + scale * element_class.gradients[place].as_vec3().dot(rest)
         };
         let nodes = element.nodes.iter().enumerate();
         nodes.map(|(place, &node)| (node, weight(place))).collect()
@@ -145,11 +145,12 @@ impl<D: Dim> SoftBody<D> {
     pub(crate) fn child_at(&self, element: &Element, at: Vec3) -> Option<usize> {
         let from_centroid = self.offset_at_rest(element, at)?;
         let child_width = 0.5 * self.topology.grid.voxel_size() * element.cell.width() as f32;
-        let stencil = self.topology.mesh.stencil(element);
-        let corner = slot_at(stencil.slots[0] as usize);
+        let element_class = self.topology.mesh.element_class(element);
+        let corner = slot_at(element_class.slots[0] as usize);
         let mut child = 0;
         for axis in 0..D::N {
-            let from_corner = from_centroid[axis] / child_width - stencil.offsets[0][axis] as f32;
+            let from_corner =
+                from_centroid[axis] / child_width - element_class.offsets[0][axis] as f32;
             let along = from_corner + corner[axis] as f32;
             if !(0.0..=2.0).contains(&along) {
                 return None;

@@ -19,7 +19,7 @@ use crate::topology::pieces::Pieces;
 pub struct Topology<D: Dim> {
     pub grid: VoxelGrid<D>,
     pub connectivity: Connectivity<D>,
-    pub pyramid: CellHierarchy<D>,
+    pub hierarchy: CellHierarchy<D>,
     pub mesh: Mesh<D>,
     pub pieces: Pieces,
     /// Materials, number 1 first.
@@ -30,6 +30,6 @@ pub struct Topology<D: Dim> {
 
 hash_state! {
     [D: Dim] struct Topology<D> {
-        grid, connectivity, pyramid, mesh, pieces, materials, stiffness_scale,
+        grid, connectivity, hierarchy, mesh, pieces, materials, stiffness_scale,
     }
 }

@@ -90,9 +90,9 @@ impl<D: Dim> Topology<D> {
             && self.stiffness_scale <= 1.0;
         ensure(number <= self.materials.len() && are_good, "materials")?;
         ensure(self.connectivity.is_valid(&self.grid), "groups")?;
-        let grading = self.pyramid.grading();
+        let grading = self.hierarchy.grading();
         let cells = CellHierarchy::new(&self.grid, &self.connectivity, grading);
-        ensure(self.pyramid == cells, "cells")?;
+        ensure(self.hierarchy == cells, "cells")?;
         let fresh = Mesh::grade(&self.grid, &self.connectivity, &cells)?;
         self.mesh.check_against(&fresh, &self.connectivity)?;
         self.mesh.validate(&self.grid, &self.connectivity)?;

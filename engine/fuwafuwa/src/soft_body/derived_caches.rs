@@ -39,7 +39,7 @@ impl<D: Dim> SoftBody<D> {
             let density = f64::from(self.material(element).density);
             let child = half * f64::from(element.cell.width());
             let volume = (0..D::N).fold(1.0, |volume, _| volume * child);
-            mass += density * volume * self.topology.mesh.stencil(element).volumes[place];
+            mass += density * volume * self.topology.mesh.element_class(element).volumes[place];
         }
         mass as f32
     }
@@ -86,12 +86,12 @@ impl<D: Dim> SoftBody<D> {
     pub(crate) fn find_breakable(&mut self, nodes: &[NodeId]) {
         let Topology {
             grid,
-            connectivity: sharing,
+            connectivity: connectivity,
             mesh,
             materials,
             ..
         } = &self.topology;
         let breakable = &mut self.cache.breakable;
-        breakable.update(nodes, grid, sharing, mesh, materials);
+        breakable.update(nodes, grid, connectivity, mesh, materials);
     }
 }

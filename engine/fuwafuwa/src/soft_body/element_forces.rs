@@ -58,7 +58,7 @@ pub struct ElementBatches<D: Dim> {
     /// Blocks without elements, by number of nodes and by whether their lanes have different classes.
     empty: BTreeMap<(u32, bool), Vec<u32>>,
     /// Start of the stencil in `numbers`, for each class that has blocks of its own.
-    stencils: BTreeMap<u32, u32>,
+    element_classes: BTreeMap<u32, u32>,
     numbers: Vec<f32>,
     /// Stencils of pooled lanes.
     pooled: Vec<Eight>,
@@ -113,7 +113,7 @@ impl<D: Dim> ElementBatches<D> {
             blocks: Vec::new(),
             open: BTreeMap::new(),
             empty: BTreeMap::new(),
-            stencils: BTreeMap::new(),
+            element_classes: BTreeMap::new(),
             numbers: Vec::new(),
             pooled: Vec::new(),
             assigned: IndexVec::default(),
@@ -378,9 +378,9 @@ mod tests {
     /// Compares the widest lanes with others, on a body with every kind of block.
     fn check_same_bits<D: Dim, S: Simd>(law: Law, simd: S) {
         let grid = VoxelGrid::<D>::ball(24, 1.0).unwrap();
-        let sharing = Connectivity::new(&grid);
-        let pyramid = CellHierarchy::new(&grid, &sharing, Grading::Graded);
-        let mesh = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
+        let connectivity = Connectivity::new(&grid);
+        let hierarchy = CellHierarchy::new(&grid, &connectivity, Grading::Graded);
+        let mesh = Mesh::grade(&grid, &connectivity, &hierarchy).unwrap();
         let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
         let mut wide = ElementBatches::new(law, &[elasticity], grid.voxel_size());
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
@@ -436,9 +436,9 @@ mod tests {
     /// in its lane.
     fn check_sleepers<D: Dim>() {
         let grid = VoxelGrid::<D>::ball(16, 1.0).unwrap();
-        let sharing = Connectivity::new(&grid);
-        let pyramid = CellHierarchy::new(&grid, &sharing, Grading::Graded);
-        let mesh = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
+        let connectivity = Connectivity::new(&grid);
+        let hierarchy = CellHierarchy::new(&grid, &connectivity, Grading::Graded);
+        let mesh = Mesh::grade(&grid, &connectivity, &hierarchy).unwrap();
         let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
         let mut blocks =
             ElementBatches::<D>::new(Law::CorotationalVem, &[elasticity], grid.voxel_size());

@@ -89,41 +89,41 @@ pub(crate) const IDENTITY: Matrix = DVec3::AXES;
 pub fn forces<D: Dim>(
     law: Law,
     elasticity: Elasticity,
-    stencil: &ElementClass<D>,
+    element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
 ) -> Vec<DVec3> {
     assert_eq!(
         positions.len(),
-        stencil.slots.len(),
-        "the number of positions must match the nodes of the stencil"
+        element_class.slots.len(),
+        "the number of positions must match the nodes of the element_class"
     );
     match law {
-        Law::Endo2004 => endo(elasticity, stencil, size, positions),
-        Law::CorotationalVem => patch_exact(elasticity, stencil, size, positions),
+        Law::Endo2004 => endo(elasticity, element_class, size, positions),
+        Law::CorotationalVem => patch_exact(elasticity, element_class, size, positions),
     }
 }
 
 /// Returns f_i = (Y V d / Σ|R0|²) (M R0_i − r_i), with offsets from the mean of the nodes.
 fn endo<D: Dim>(
     elasticity: Elasticity,
-    stencil: &ElementClass<D>,
+    element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
 ) -> Vec<DVec3> {
-    let (stiffness, apart) = shape_matching_offsets(elasticity, stencil, size, positions);
+    let (stiffness, apart) = shape_matching_offsets(elasticity, element_class, size, positions);
     apart.into_iter().map(|d| d * stiffness).collect()
 }
 
 /// Returns Y V d / Σ|R0|², and M R0_i − r_i of each node.
 pub(crate) fn shape_matching_offsets<D: Dim>(
     elasticity: Elasticity,
-    stencil: &ElementClass<D>,
+    element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
 ) -> (f64, Vec<DVec3>) {
     let half = 0.5 * size;
-    let rest: Vec<DVec3> = stencil.offsets.iter().map(|&r| r * half).collect();
+    let rest: Vec<DVec3> = element_class.offsets.iter().map(|&r| r * half).collect();
     let count = positions.len() as f64;
     let mean = |all: &[DVec3]| all.iter().map(|&x| x * (1.0 / count)).sum::<DVec3>();
     let (rest_mean, now_mean) = (mean(&rest), mean(positions));
@@ -138,38 +138,44 @@ pub(crate) fn shape_matching_offsets<D: Dim>(
     // In 2D the rotation axis is the third one.
     (D::N..3).for_each(|axis| moment[axis][axis] = spread);
     let rotation = rotation_of(&moment);
-    let stiffness = elasticity.young * volume_of(stencil, half) * D::N as f64 / spread;
+    let stiffness = elasticity.young * volume_of(element_class, half) * D::N as f64 / spread;
     let apart = |(r, x): (&DVec3, &DVec3)| apply(&rotation, *r) - *x;
     (stiffness, rest.iter().zip(&now).map(apart).collect())
 }
 
 fn patch_exact<D: Dim>(
     elasticity: Elasticity,
-    stencil: &ElementClass<D>,
+    element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
 ) -> Vec<DVec3> {
-    let (deformation, _) = deformation_of(stencil, size, positions);
+    let (deformation, _) = deformation_of(element_class, size, positions);
     let stress = stress(elasticity, &deformation);
-    forces_of_stress(elasticity, &stress, stencil, size, positions)
+    forces_of_stress(elasticity, &stress, element_class, size, positions)
 }
 
 /// Returns the forces of a stress [Pa], plus the stabilisation of the hourglass modes.
 pub(crate) fn forces_of_stress<D: Dim>(
     elasticity: Elasticity,
     stress: &Matrix,
-    stencil: &ElementClass<D>,
+    element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
 ) -> Vec<DVec3> {
-    let volume = volume_of(stencil, 0.5 * size);
-    let gradient = |k: usize| gradient_of(stencil, size, k);
-    let (deformation, centre) = deformation_of(stencil, size, positions);
-    let (stiffness, hourglass) =
-        hourglass(elasticity, stencil, size, positions, &deformation, centre);
+    let volume = volume_of(element_class, 0.5 * size);
+    let gradient = |k: usize| gradient_of(element_class, size, k);
+    let (deformation, centre) = deformation_of(element_class, size, positions);
+    let (stiffness, hourglass) = hourglass(
+        elasticity,
+        element_class,
+        size,
+        positions,
+        &deformation,
+        centre,
+    );
     let mut skew = [DVec3::ZERO; 3];
     for (k, &h) in hourglass.iter().enumerate() {
-        add_outer(&mut skew, h, stencil.offsets[k] * (0.5 * size));
+        add_outer(&mut skew, h, element_class.offsets[k] * (0.5 * size));
     }
     (0..positions.len())
         .map(|k| {
@@ -181,24 +187,24 @@ pub(crate) fn forces_of_stress<D: Dim>(
 }
 
 /// Returns b of a node: x bᵀ is its contribution to V F.
-fn gradient_of<D: Dim>(stencil: &ElementClass<D>, size: f64, node: usize) -> DVec3 {
+fn gradient_of<D: Dim>(element_class: &ElementClass<D>, size: f64, node: usize) -> DVec3 {
     let half = 0.5 * size;
-    stencil.gradients[node] * (volume_scale::<D>(half) / half)
+    element_class.gradients[node] * (volume_scale::<D>(half) / half)
 }
 
 /// Returns the deformation gradient and the volume centroid.
 pub(crate) fn deformation_of<D: Dim>(
-    stencil: &ElementClass<D>,
+    element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
 ) -> (Matrix, DVec3) {
-    let volume = volume_of(stencil, 0.5 * size);
+    let volume = volume_of(element_class, 0.5 * size);
     let mut deformation = [DVec3::ZERO; 3];
     let mut centre = DVec3::ZERO;
     for (k, &x) in positions.iter().enumerate() {
-        let gradient = gradient_of(stencil, size, k);
+        let gradient = gradient_of(element_class, size, k);
         add_outer(&mut deformation, x * (1.0 / volume), gradient);
-        centre += x * (stencil.volumes[k] / stencil.volume);
+        centre += x * (element_class.volumes[k] / element_class.volume);
     }
     deformation[D::N..].copy_from_slice(&IDENTITY[D::N..]);
     (deformation, centre)
@@ -207,18 +213,18 @@ pub(crate) fn deformation_of<D: Dim>(
 /// Returns the stiffness of the hourglass modes, and w h of each node.
 pub(crate) fn hourglass<D: Dim>(
     elasticity: Elasticity,
-    stencil: &ElementClass<D>,
+    element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
     deformation: &Matrix,
     centre: DVec3,
 ) -> (f64, Vec<DVec3>) {
-    let offset = |k: usize| stencil.offsets[k] * (0.5 * size);
+    let offset = |k: usize| element_class.offsets[k] * (0.5 * size);
     let motion = (0..positions.len()).map(|k| {
         let affine = centre + apply(deformation, offset(k));
-        (positions[k] - affine) * stencil.volumes[k]
+        (positions[k] - affine) * element_class.volumes[k]
     });
-    let modulus = D::HOURGLASS * stencil.hourglass * elasticity.young;
+    let modulus = D::HOURGLASS * element_class.hourglass * elasticity.young;
     let stiffness = (2..D::N).fold(modulus, |stiffness, _| stiffness * size);
     (stiffness, motion.collect())
 }
@@ -376,8 +382,8 @@ fn volume_scale<D: Dim>(half: f64) -> f64 {
     (0..D::N).fold(1.0, |scale, _| scale * half)
 }
 
-pub(crate) fn volume_of<D: Dim>(stencil: &ElementClass<D>, half: f64) -> f64 {
-    stencil.volume * volume_scale::<D>(half)
+pub(crate) fn volume_of<D: Dim>(element_class: &ElementClass<D>, half: f64) -> f64 {
+    element_class.volume * volume_scale::<D>(half)
 }
 
 fn apply(m: &Matrix, v: DVec3) -> DVec3 {

@@ -34,11 +34,11 @@ pub struct ElementState {
 pub fn element_state<D: Dim>(
     law: Law,
     elasticity: Elasticity,
-    stencil: &ElementClass<D>,
+    element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
 ) -> ElementState {
-    element_state_plastic(law, elasticity, &IDENTITY, stencil, size, positions)
+    element_state_plastic(law, elasticity, &IDENTITY, element_class, size, positions)
 }
 
 /// Returns the state of an element with plastic deformation. `undone` is G of [`crate::soft_body::plasticity`]; the
@@ -51,16 +51,16 @@ pub fn element_state_plastic<D: Dim>(
     law: Law,
     elasticity: Elasticity,
     undone: &Matrix,
-    stencil: &ElementClass<D>,
+    element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
 ) -> ElementState {
     assert_eq!(
         positions.len(),
-        stencil.slots.len(),
-        "the number of positions must match the nodes of the stencil"
+        element_class.slots.len(),
+        "the number of positions must match the nodes of the element_class"
     );
-    let (whole, centre) = deformation_of(stencil, size, positions);
+    let (whole, centre) = deformation_of(element_class, size, positions);
     let deformation = elastic_part(&whole, undone);
     let rotation = rotation_of(&deformation);
     let column = |m: &Matrix, k: usize| DVec3::new(m[0][k], m[1][k], m[2][k]);
@@ -77,7 +77,7 @@ pub fn element_state_plastic<D: Dim>(
         }
     }
     if law == Law::Endo2004 {
-        let (stiffness, apart) = shape_matching_offsets(elasticity, stencil, size, positions);
+        let (stiffness, apart) = shape_matching_offsets(elasticity, element_class, size, positions);
         let energy = apart.iter().map(|&d| 0.5 * stiffness * d.dot(d)).sum();
         return ElementState {
             deformation: whole,
@@ -101,11 +101,12 @@ pub fn element_state_plastic<D: Dim>(
         + 0.5 * elasticity.lame() * spread * spread
         + 0.5 * elasticity.young * below * below;
     let half = 0.5 * size;
-    let (stiffness, hourglass) = hourglass(elasticity, stencil, size, positions, &whole, centre);
-    let weights = stencil.volumes.iter().zip(&hourglass);
+    let (stiffness, hourglass) =
+        hourglass(elasticity, element_class, size, positions, &whole, centre);
+    let weights = element_class.volumes.iter().zip(&hourglass);
     let swings = weights.map(|(&weight, &h)| h.dot(h) / weight);
     let density = plastic_stiffness_factor::<D>(undone) * density;
-    let energy = density * volume_of(stencil, half) + 0.5 * stiffness * swings.sum::<f64>();
+    let energy = density * volume_of(element_class, half) + 0.5 * stiffness * swings.sum::<f64>();
     ElementState {
         deformation: whole,
         strain,
@@ -144,11 +145,16 @@ impl<D: Dim> SoftBody<D> {
         let mut elasticity = self.material(element).elasticity;
         elasticity.young *= self.topology.stiffness_scale;
         let size = f64::from(self.topology.grid.voxel_size()) * f64::from(element.cell.width());
-        let stencil = self.topology.mesh.stencil(element);
+        let element_class = self.topology.mesh.element_class(element);
         let law = self.state.blocks.law();
         let undone = self.undone(id);
         Some(element_state_plastic(
-            law, elasticity, &undone, stencil, size, &positions,
+            law,
+            elasticity,
+            &undone,
+            element_class,
+            size,
+            &positions,
         ))
     }
 
@@ -244,14 +250,14 @@ mod tests {
         let elasticity = Material::default().elasticity;
         let size = f64::from(body.grid().voxel_size());
         for (_, element) in body.mesh().elements().step_by(7) {
-            let stencil = body.mesh().stencil(element);
+            let element_class = body.mesh().element_class(element);
             let size = size * f64::from(element.cell.width());
             let at = |&node: &NodeId| body.node_state(node).0.to_vec3().as_dvec3();
             let positions: Vec<DVec3> = element.nodes.iter().map(at).collect();
             let energy = |positions: &[DVec3]| {
-                element_state(law, elasticity, stencil, size, positions).energy
+                element_state(law, elasticity, element_class, size, positions).energy
             };
-            let forces = forces(law, elasticity, stencil, size, &positions);
+            let forces = forces(law, elasticity, element_class, size, &positions);
             let most = forces
                 .iter()
                 .flat_map(|force| force.to_array())

@@ -29,7 +29,7 @@ impl<D: Dim> SoftBody<D> {
         truth.grid.remove_voxels(&voxels);
         truth.connectivity.take_out(&voxels);
         truth
-            .pyramid
+            .hierarchy
             .take_out(&truth.grid, &truth.connectivity, &voxels);
         let nodes = truth.mesh.take_out(&truth.connectivity, &elements);
         for &piece in pieces {

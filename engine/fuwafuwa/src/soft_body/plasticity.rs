@@ -92,18 +92,18 @@ pub fn stress_after<D: Dim>(
 pub fn forces_after<D: Dim>(
     elasticity: Elasticity,
     undone: &Matrix,
-    stencil: &ElementClass<D>,
+    element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
 ) -> Vec<DVec3> {
     assert_eq!(
         positions.len(),
-        stencil.slots.len(),
-        "the number of positions must match the nodes of the stencil"
+        element_class.slots.len(),
+        "the number of positions must match the nodes of the element_class"
     );
-    let (deformation, _) = deformation_of(stencil, size, positions);
+    let (deformation, _) = deformation_of(element_class, size, positions);
     let stress = stress_after::<D>(elasticity, &deformation, undone);
-    forces_of_stress(elasticity, &stress, stencil, size, positions)
+    forces_of_stress(elasticity, &stress, element_class, size, positions)
 }
 
 /// Returns G after plastic flow, which occurs if the deformation exceeds the yield strain.

@@ -24,7 +24,7 @@ impl<D: Dim> SoftBody<D> {
 
     /// Does the work of [`SoftBody::release`], and returns all changes.
     pub(crate) fn tear(&mut self, at: &[(Point, u8)]) -> Changes {
-        if self.topology.pyramid.grading() == Grading::Coarse {
+        if self.topology.hierarchy.grading() == Grading::Coarse {
             return Changes::default();
         }
         let mut changed: Vec<Point> = Vec::new();
@@ -45,7 +45,7 @@ impl<D: Dim> SoftBody<D> {
         let near = self.topology.connectivity.all_around(&changed).into_iter();
         let born =
             self.topology
-                .pyramid
+                .hierarchy
                 .refine(&self.topology.grid, &self.topology.connectivity, near);
         let remodelled = self
             .topology
@@ -53,7 +53,7 @@ impl<D: Dim> SoftBody<D> {
             .remodel(
                 &self.topology.grid,
                 &self.topology.connectivity,
-                &self.topology.pyramid,
+                &self.topology.hierarchy,
                 &changed,
                 &born,
             )

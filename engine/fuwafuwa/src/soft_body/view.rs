@@ -64,7 +64,7 @@ pub struct Outline {
     /// Outward unit normals at the points.
     pub normals: Vec<Vec3>,
     /// Whether a crack exposed the segment from each point to the next.
-    pub is_fresh: Vec<bool>,
+    pub is_torn: Vec<bool>,
 }
 
 /// Drawable view of an element.
@@ -295,7 +295,7 @@ impl<D: Dim> SoftBody<D> {
                     nodes: ring.iter().map(|facet| facet.nodes[0]).collect(),
                     points: ring.iter().map(|facet| facet.corners[0]).collect(),
                     normals: normals.collect(),
-                    is_fresh: ring.iter().map(|facet| facet.is_torn).collect(),
+                    is_torn: ring.iter().map(|facet| facet.is_torn).collect(),
                 });
             }
         }
@@ -357,7 +357,7 @@ impl<D: Dim> SoftBody<D> {
     fn slot_positions(&self, element: &Element) -> [Vec3; 27] {
         let centre = self.deformation(element).0;
         let mut positions: [Option<Vec3>; 27] = [None; 27];
-        let slots = &self.topology.mesh.stencil(element).slots;
+        let slots = &self.topology.mesh.element_class(element).slots;
         for (&slot, &node) in slots.iter().zip(&element.nodes) {
             positions[slot as usize] = Some(self.state.position[node].xyz());
         }

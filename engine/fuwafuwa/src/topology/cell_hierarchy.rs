@@ -189,21 +189,21 @@ hash_state! { [D: Dim] struct CellHierarchy<D> { places, grading, exists } skip 
 impl<D: Dim> CellHierarchy<D> {
     /// Builds the cells of a body from scratch.
     #[inline(never)]
-    pub fn new(grid: &VoxelGrid<D>, sharing: &Connectivity<D>, grading: Grading) -> Self {
+    pub fn new(grid: &VoxelGrid<D>, connectivity: &Connectivity<D>, grading: Grading) -> Self {
         let places = CellIndexing::new(grid.size());
         let mut exists = vec![false; places.count()];
         // The topmost cells always exist, so that every voxel has an owner.
         if let [_, .., (_, first)] = places.levels[..] {
             exists[first..].fill(true);
         }
-        let mut pyramid = Self {
+        let mut hierarchy = Self {
             places,
             grading,
             exists,
             dim: PhantomData,
         };
-        pyramid.refine(grid, sharing, sharing.points());
-        pyramid
+        hierarchy.refine(grid, connectivity, connectivity.points());
+        hierarchy
     }
 
     /// Grading of the cells.
@@ -283,14 +283,14 @@ impl<D: Dim> CellHierarchy<D> {
     pub fn refine(
         &mut self,
         grid: &VoxelGrid<D>,
-        sharing: &Connectivity<D>,
+        connectivity: &Connectivity<D>,
         changed: impl Iterator<Item = Point>,
     ) -> Vec<Cell> {
         let mut born = Vec::new();
         let mut layer: Vec<Cell> = Vec::new();
         let everywhere = self.grading == Grading::Uniform;
         let is_coarse = self.grading == Grading::Coarse && self.level_count() > 1;
-        for at in changed.filter(|&at| everywhere || is_fine(grid, sharing, at)) {
+        for at in changed.filter(|&at| everywhere || is_fine(grid, connectivity, at)) {
             for voxel in (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant)) {
                 let finest = Cell {
                     level: 0,
@@ -329,12 +329,12 @@ impl<D: Dim> CellHierarchy<D> {
     pub(crate) fn take_out(
         &mut self,
         grid: &VoxelGrid<D>,
-        sharing: &Connectivity<D>,
+        connectivity: &Connectivity<D>,
         voxels: &[Point],
     ) {
         if self.grading == Grading::Coarse {
             // With this grading, cells of level 0 never exist.
-            *self = Self::new(grid, sharing, self.grading);
+            *self = Self::new(grid, connectivity, self.grading);
             return;
         }
         let mut gone: Vec<Cell> = voxels.iter().map(|&voxel| Cell::of(voxel)).collect();
@@ -379,8 +379,8 @@ impl<D: Dim> CellHierarchy<D> {
 
 /// Whether the voxels around a point must be cells of level 0: the point is open, or different materials meet
 /// there.
-fn is_fine<D: Dim>(grid: &VoxelGrid<D>, sharing: &Connectivity<D>, at: Point) -> bool {
-    if sharing.is_open(at) {
+fn is_fine<D: Dim>(grid: &VoxelGrid<D>, connectivity: &Connectivity<D>, at: Point) -> bool {
+    if connectivity.is_open(at) {
         return true;
     }
     let first = grid.material(voxel_around::<D>(at, 0));

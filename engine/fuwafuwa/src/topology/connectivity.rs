@@ -177,12 +177,12 @@ impl<D: Dim> Connectivity<D> {
             })
             .collect();
         let dim = PhantomData;
-        let mut sharing = Self { size, groups, dim };
+        let mut connectivity = Self { size, groups, dim };
         // Faces around a full point are closed until a neighbour changes.
-        let is_partial = |&at: &Point| sharing.groups(at) != Groups::joined(D::ALL_CORNERS);
-        let partial = sharing.points().filter(is_partial).collect();
-        sharing.normalise(partial);
-        sharing
+        let is_partial = |&at: &Point| connectivity.groups(at) != Groups::joined(D::ALL_CORNERS);
+        let partial = connectivity.points().filter(is_partial).collect();
+        connectivity.normalise(partial);
+        connectivity
     }
 
     /// Number of lattice points on each axis.
@@ -469,43 +469,46 @@ mod tests {
     fn sharing_separates_voxels_that_meet_only_at_corner() {
         let diagonal = |at: Point| u8::from(at[0] == at[1]);
         let grid = VoxelGrid::<Dim2>::from_fn([2, 2, 1], 1.0, diagonal).unwrap();
-        let sharing = Connectivity::new(&grid);
-        assert_eq!(sharing.groups([1, 1, 0]).iter().collect::<Vec<_>>(), [1, 8]);
+        let connectivity = Connectivity::new(&grid);
+        assert_eq!(
+            connectivity.groups([1, 1, 0]).iter().collect::<Vec<_>>(),
+            [1, 8]
+        );
     }
 
     #[test]
     fn normalise_removes_hinge_when_crack_reaches_far_side() {
         // Release the middle column of a 4 × 2 block point by point: the last release separates it.
         let grid = VoxelGrid::<Dim2>::from_fn([4, 2, 1], 1.0, |_| 1).unwrap();
-        let mut sharing = Connectivity::new(&grid);
-        assert!(sharing.release([2, 0, 0], 0b1010));
-        sharing.normalise(vec![[2, 0, 0]]);
+        let mut connectivity = Connectivity::new(&grid);
+        assert!(connectivity.release([2, 0, 0], 0b1010));
+        connectivity.normalise(vec![[2, 0, 0]]);
         assert_eq!(
-            sharing.groups([2, 1, 0]),
+            connectivity.groups([2, 1, 0]),
             Groups::joined(15),
             "the crack ends at its tip"
         );
-        assert!(sharing.release([2, 1, 0], 0b1010));
-        let changed = sharing.normalise(neighbourhood::<Dim2>([2, 1, 0], 1).collect());
+        assert!(connectivity.release([2, 1, 0], 0b1010));
+        let changed = connectivity.normalise(neighbourhood::<Dim2>([2, 1, 0], 1).collect());
         assert_eq!(changed, [[2, 2, 0]], "`normalise` splits the last node");
-        assert_eq!(sharing.groups([2, 2, 0]).iter().count(), 2);
+        assert_eq!(connectivity.groups([2, 2, 0]).iter().count(), 2);
     }
 
     #[test]
     fn is_open_includes_far_corners_of_open_face() {
         let grid = VoxelGrid::<Dim3>::cube(6, 1.0).unwrap();
-        let mut sharing = Connectivity::new(&grid);
-        assert!(!sharing.is_open([3, 3, 3]));
-        sharing.release([3, 3, 3], 0b1010_1010);
-        sharing.normalise(neighbourhood::<Dim3>([3, 3, 3], 1).collect());
-        assert_eq!(sharing.groups([3, 3, 3]).iter().count(), 2);
+        let mut connectivity = Connectivity::new(&grid);
+        assert!(!connectivity.is_open([3, 3, 3]));
+        connectivity.release([3, 3, 3], 0b1010_1010);
+        connectivity.normalise(neighbourhood::<Dim3>([3, 3, 3], 1).collect());
+        assert_eq!(connectivity.groups([3, 3, 3]).iter().count(), 2);
         // The four faces across x are open, so the points in that plane are the front of the crack.
-        assert!(sharing.is_open([3, 4, 4]) && sharing.is_open([3, 2, 3]));
+        assert!(connectivity.is_open([3, 4, 4]) && connectivity.is_open([3, 2, 3]));
         assert_eq!(
-            sharing.groups([3, 4, 4]),
+            connectivity.groups([3, 4, 4]),
             Groups::joined(255),
             "one group at the front of the crack"
         );
-        assert!(!sharing.is_open([4, 3, 3]));
+        assert!(!connectivity.is_open([4, 3, 3]));
     }
 }

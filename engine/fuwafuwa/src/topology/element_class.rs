@@ -143,7 +143,7 @@ impl<D: Dim> ElementClass<D> {
         for &slot in &slots {
             centroid += at(slot) * volumes[slot as usize][0] / volume;
         }
-        let mut stencil = Self {
+        let mut element_class = Self {
             children,
             mask: slots.iter().fold(0, |mask, slot| mask | 1 << slot),
             offsets: slots.iter().map(|&slot| at(slot) - centroid).collect(),
@@ -160,8 +160,8 @@ impl<D: Dim> ElementClass<D> {
             hourglass: 1.0,
             dim: PhantomData,
         };
-        stencil.hourglass = stencil.least_bending();
-        Ok(stencil)
+        element_class.hourglass = element_class.least_bending();
+        Ok(element_class)
     }
 
     /// Index of the node of a slot, if the slot has one.
@@ -269,13 +269,13 @@ mod tests {
 
     /// Checks Σ x bᵀ = V·I of a class that carries at least the corners of the outline of its children.
     fn check_gradient_is_exact<D: Dim>(children: u8, slots: u32) {
-        let stencil = ElementClass::<D>::new(children, slots).unwrap();
+        let element_class = ElementClass::<D>::new(children, slots).unwrap();
         for i in 0..D::N {
             for j in 0..D::N {
-                let sum: f64 = (0..stencil.slots.len())
-                    .map(|k| stencil.offsets[k][i] * stencil.gradients[k][j])
+                let sum: f64 = (0..element_class.slots.len())
+                    .map(|k| element_class.offsets[k][i] * element_class.gradients[k][j])
                     .sum();
-                let expected = if i == j { stencil.volume } else { 0.0 };
+                let expected = if i == j { element_class.volume } else { 0.0 };
                 assert!(
                     (sum - expected).abs() < 1e-12,
                     "{children:b} {slots:b}: {sum}"
@@ -303,8 +303,11 @@ mod tests {
     #[test]
     fn hourglass_stiffness_matches_bending_energy() {
         fn check<D: Dim>(children: u8, slots: u32, expected: f64) {
-            let stencil = ElementClass::<D>::new(children, slots).unwrap();
-            assert!((stencil.hourglass - expected).abs() < 1e-12, "{stencil:?}");
+            let element_class = ElementClass::<D>::new(children, slots).unwrap();
+            assert!(
+                (element_class.hourglass - expected).abs() < 1e-12,
+                "{element_class:?}"
+            );
         }
         let (square, cube) = (cell_corners::<Dim2>(), cell_corners::<Dim3>());
         check::<Dim2>(15, square, 1.0);

@@ -35,13 +35,13 @@ pub struct Element {
     pub cell: Cell,
     /// Mask of the children of the cell that the element fills; all bits are set at level 0.
     pub children: u8,
-    /// Index of its class, see [`Mesh::stencil`].
-    pub stencil: u32,
+    /// Index of its class, see [`Mesh::element_class`].
+    pub element_class: u32,
     /// Nodes, in the order of the slots of the stencil.
     pub nodes: Vec<NodeId>,
 }
 
-hash_state! { struct Element { cell, children, stencil, nodes } }
+hash_state! { struct Element { cell, children, element_class, nodes } }
 
 /// Mass point: a lattice point, and the octants of the voxel group that shares it.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -62,7 +62,7 @@ hash_state! { struct Node { at, group } }
 pub struct Mesh<D: Dim> {
     elements: IndexVec<ElementId, Option<Element>>,
     nodes: IndexVec<NodeId, Node>,
-    stencils: Vec<ElementClass<D>>,
+    element_classes: Vec<ElementClass<D>>,
     /// Whether every lattice point of the surface is a node, regardless of the size of its elements.
     dense_surface: bool,
     places: CellIndexing,
@@ -82,7 +82,7 @@ pub struct Mesh<D: Dim> {
 
 hash_state! {
     [D: Dim] struct Mesh<D> {
-        elements, nodes, stencils, dense_surface, places, by_cell, owners, by_point, classes, carriers,
+        elements, nodes, element_classes, dense_surface, places, by_cell, owners, by_point, classes, carriers,
         free_elements, free_nodes,
     }
 }
@@ -120,32 +120,32 @@ impl<D: Dim> Mesh<D> {
     #[inline(never)]
     pub fn grade(
         grid: &VoxelGrid<D>,
-        sharing: &Connectivity<D>,
-        pyramid: &CellHierarchy<D>,
+        connectivity: &Connectivity<D>,
+        hierarchy: &CellHierarchy<D>,
     ) -> Result<Self, InvariantViolation> {
         let mut mesh = Self {
             elements: IndexVec::default(),
             nodes: IndexVec::default(),
-            stencils: Vec::new(),
-            dense_surface: pyramid.grading() == Grading::Coarse,
-            places: pyramid.places().clone(),
-            by_cell: IdLists::new(pyramid.places().count()),
-            owners: vec![0; pyramid.places().count_of(0)],
-            by_point: IdLists::new(sharing.point_count()),
+            element_classes: Vec::new(),
+            dense_surface: hierarchy.grading() == Grading::Coarse,
+            places: hierarchy.places().clone(),
+            by_cell: IdLists::new(hierarchy.places().count()),
+            owners: vec![0; hierarchy.places().count_of(0)],
+            by_point: IdLists::new(connectivity.point_count()),
             classes: BTreeMap::new(),
             carriers: IndexVec::default(),
             free_elements: Vec::new(),
             free_nodes: Vec::new(),
         };
-        for level in 0..pyramid.level_count() as u8 {
-            for cell in pyramid.cells(level) {
-                for children in parts::<D>(pyramid.filled(grid, cell)) {
+        for level in 0..hierarchy.level_count() as u8 {
+            for cell in hierarchy.cells(level) {
+                for children in parts::<D>(hierarchy.filled(grid, cell)) {
                     mesh.place(cell, children);
                 }
             }
         }
         for id in mesh.elements.ids() {
-            mesh.seat(id, sharing, None)?;
+            mesh.seat(id, connectivity, None)?;
         }
         Ok(mesh)
     }
@@ -246,9 +246,9 @@ impl<D: Dim> Mesh<D> {
             .sum()
     }
 
-    /// Stencil (element class) of an element.
-    pub fn stencil(&self, element: &Element) -> &ElementClass<D> {
-        &self.stencils[element.stencil as usize]
+    /// Returns the class of an element.
+    pub fn element_class(&self, element: &Element) -> &ElementClass<D> {
+        &self.element_classes[element.element_class as usize]
     }
 
     /// Returns the element that owns a solid voxel; `None` for an empty one.
@@ -345,7 +345,7 @@ impl<D: Dim> Mesh<D> {
         let element = Element {
             cell,
             children,
-            stencil: u32::MAX,
+            element_class: u32::MAX,
             nodes: Vec::new(),
         };
         let next = self.elements.next_id();

@@ -49,7 +49,9 @@ impl<D: Dim> World<D> {
         rigid: RigidBodyHandle,
         position: D::Vector,
     ) -> Result<(), Error> {
-        self.rigids.get_mut(rigid)?.send(position.to_vec3())
+        self.rigids
+            .get_mut(rigid)?
+            .set_target_position(position.to_vec3())
     }
 
     /// Sets the target rotation that a kinematic or coupled rigid body turns to until the end of the next
@@ -62,7 +64,9 @@ impl<D: Dim> World<D> {
         rigid: RigidBodyHandle,
         rotation: Rotation,
     ) -> Result<(), Error> {
-        self.rigids.get_mut(rigid)?.turn_to::<D>(rotation)
+        self.rigids
+            .get_mut(rigid)?
+            .set_target_rotation::<D>(rotation)
     }
 
     /// Cuts a body along a blade at once, at any strength of the material, and returns the number of split

@@ -69,7 +69,7 @@ impl<D: Dim> World<D> {
     }
 
     fn wake_ends(&mut self, joint: &JointState) {
-        for end in &joint.ends {
+        for end in &joint.anchors {
             match *end {
                 JointEnd::Position(_) => {}
                 JointEnd::RigidBody { rigid, .. } => {

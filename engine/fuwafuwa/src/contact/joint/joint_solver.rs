@@ -37,10 +37,10 @@ impl JointState {
         let is_strained = self.is_strained((first.at - second.at).length());
         for (own, other, anchor) in [(first, second, 0), (second, first, 1)] {
             if own.is_asleep && (is_strained || other.velocity.length() > WAKE_SPEED) {
-                self.anchors[anchor].wake(bodies, woken);
+                self.attached[anchor].wake(bodies, woken);
             }
         }
-        self.impulse = match self.tie {
+        self.impulse = match self.kind {
             JointKind::Pin => self.impulse * WARM_START,
             JointKind::Spring { .. } => direction(first.at - second.at)
                 .map_or(Vec3::ZERO, |(_, way)| {
@@ -54,7 +54,7 @@ impl JointState {
 
     /// Returns whether the joint is out of balance at a distance of its anchors [m].
     fn is_strained(&self, distance: f32) -> bool {
-        match self.tie {
+        match self.kind {
             JointKind::Pin => distance > WAKE_STRETCH,
             JointKind::Rope { length } => distance > length + WAKE_STRETCH,
             JointKind::Spring {
@@ -80,7 +80,7 @@ impl JointState {
         let apart = first.at - second.at;
         let relative = first.velocity - second.velocity;
         let yields = [0, 1, 2].map(|row: usize| first.yields[row] + second.yields[row]);
-        let impulse = match self.tie {
+        let impulse = match self.kind {
             JointKind::Pin => {
                 let draw = if draws {
                     drawn(apart, duration)
@@ -171,14 +171,14 @@ impl JointState {
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
     ) -> [Option<AnchorState>; 2] {
-        self.anchors
+        self.attached
             .each_ref()
             .map(|anchor| anchor.grip(bodies, rigids))
     }
 
     fn push<D: Dim>(&self, bodies: &mut SoftBodies<D>, rigids: &mut RigidBodies, impulse: Vec3) {
-        self.anchors[0].push(bodies, rigids, impulse);
-        self.anchors[1].push(bodies, rigids, -impulse);
+        self.attached[0].push(bodies, rigids, impulse);
+        self.attached[1].push(bodies, rigids, -impulse);
     }
 }
 

@@ -25,19 +25,19 @@ pub type Joints = Arena<JointHandle, JointState>;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct JointState {
     /// Attachment points of both anchors.
-    pub ends: [JointEnd; 2],
+    pub anchors: [JointEnd; 2],
     /// Joint kind.
-    pub tie: JointKind,
+    pub kind: JointKind,
     /// Force above which the joint breaks [N], in tension or compression; infinite (default) = never.
     pub breaking_force: f32,
-    pub(super) anchors: [AttachedAnchor; 2],
+    pub(super) attached: [AttachedAnchor; 2],
     /// Impulse on the first anchor in the last substep [N s].
     pub(super) impulse: Vec3,
     /// Magnitude of the joint force in the last substep [N].
     pub(super) force: f32,
 }
 
-hash_state! { struct JointState { ends, tie, breaking_force, anchors, impulse, force } }
+hash_state! { struct JointState { anchors, kind, breaking_force, attached, impulse, force } }
 
 impl<D: Dim> From<&Joint<D>> for JointState {
     fn from(joint: &Joint<D>) -> Self {
@@ -58,10 +58,10 @@ impl<D: Dim> From<&Joint<D>> for JointState {
             },
         };
         Self {
-            ends: joint.anchors.map(end),
-            tie: joint.kind,
+            anchors: joint.anchors.map(end),
+            kind: joint.kind,
             breaking_force: joint.breaking_force,
-            anchors: [
+            attached: [
                 AttachedAnchor::Position(Vec3::ZERO),
                 AttachedAnchor::Position(Vec3::ZERO),
             ],
@@ -87,8 +87,8 @@ impl JointState {
             },
         };
         Joint {
-            anchors: self.ends.map(anchor),
-            kind: self.tie,
+            anchors: self.anchors.map(anchor),
+            kind: self.kind,
             breaking_force: self.breaking_force,
         }
     }
@@ -104,10 +104,10 @@ impl JointState {
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
     ) -> Result<(), Error> {
-        for (anchor, end) in self.anchors.iter_mut().zip(&self.ends) {
+        for (anchor, end) in self.attached.iter_mut().zip(&self.anchors) {
             *anchor = AttachedAnchor::of(end, bodies, rigids)?;
         }
-        if self.tie == JointKind::Pin {
+        if self.kind == JointKind::Pin {
             self.meet_soft_ends(bodies, rigids);
         }
         (self.impulse, self.force) = (Vec3::ZERO, 0.0);
@@ -117,12 +117,12 @@ impl JointState {
     /// For a pin between a soft anchor and another one, moves the other to the soft anchor, so that nothing
     /// jumps at the first step.
     fn meet_soft_ends<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
-        let is_soft = self.anchors.each_ref().map(AttachedAnchor::is_soft);
+        let is_soft = self.attached.each_ref().map(AttachedAnchor::is_soft);
         for (own, other) in [(0, 1), (1, 0)] {
             if is_soft[own] && !is_soft[other] {
-                let at = self.anchors[own].grip(bodies, rigids).map(|grip| grip.at);
+                let at = self.attached[own].grip(bodies, rigids).map(|grip| grip.at);
                 at.into_iter()
-                    .for_each(|at| self.anchors[other].stand_at(at, rigids));
+                    .for_each(|at| self.attached[other].stand_at(at, rigids));
             }
         }
     }
@@ -133,14 +133,14 @@ impl JointState {
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
     ) -> Option<[Vec3; 2]> {
-        let [first, second] = &self.anchors;
+        let [first, second] = &self.attached;
         let at = |anchor: &AttachedAnchor| Some(anchor.grip(bodies, rigids)?.at);
         Some([at(first)?, at(second)?])
     }
 
     /// Checks that all parameters are in range.
     pub(crate) fn check(&self) -> Result<(), Error> {
-        for (number, end) in (1..).zip(&self.ends) {
+        for (number, end) in (1..).zip(&self.anchors) {
             let (at, radius) = match *end {
                 JointEnd::Position(at) | JointEnd::RigidBody { at, .. } => (at, 0.0),
                 JointEnd::Soft { at, radius, .. } => (at, radius),
@@ -152,7 +152,7 @@ impl JointState {
             let is_valid = (0.0..=FARTHEST).contains(&radius);
             require(is_valid, "radius", "0 to 1e6 m", radius).map_err(of_anchor)?;
         }
-        let wrong = match self.ends {
+        let wrong = match self.anchors {
             [JointEnd::Position(_), JointEnd::Position(_)] => Some("two points of the world"),
             [
                 JointEnd::RigidBody { rigid, .. },
@@ -163,7 +163,7 @@ impl JointState {
         if let Some(given) = wrong {
             let expected = "on two different objects, at least one of them a body";
             return Err(Error::parameter(
-                "joint anchors",
+                "joint attached",
                 expected,
                 format_args!("{given}"),
             ));
@@ -171,7 +171,7 @@ impl JointState {
         let force = self.breaking_force;
         require(force > 0.0, "breaking_force", "positive", force)?;
         let is_within = |k: f32, min: f32, max: f32| (min..=max).contains(&k);
-        match self.tie {
+        match self.kind {
             JointKind::Pin => Ok(()),
             JointKind::Rope { length } => require(
                 is_within(length, f32::MIN_POSITIVE, FARTHEST),
@@ -200,7 +200,7 @@ impl JointState {
     pub(crate) fn is_sound<D: Dim>(&self) -> bool {
         let is_finite = self.impulse.is_finite() && self.force >= 0.0;
         let is_flat = self.impulse.to_array()[D::N..].iter().all(|k| *k == 0.0);
-        let mut both = self.anchors.iter().zip(&self.ends);
+        let mut both = self.attached.iter().zip(&self.anchors);
         self.check().is_ok()
             && is_finite
             && is_flat

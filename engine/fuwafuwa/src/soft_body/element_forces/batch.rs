@@ -37,7 +37,7 @@ pub struct Batch {
     /// Index of its first nodes and forces.
     pub first: u32,
     /// Start of its stencil in `numbers` or in `pooled`, and its length.
-    pub stencil: u32,
+    pub element_class: u32,
     pub numbers: u32,
 }
 
@@ -107,8 +107,8 @@ impl Batch {
 
     /// Its stencil: one for all lanes, or one for each.
     #[inline(always)]
-    fn stencil<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
-        let places = self.stencil as usize..(self.stencil + self.numbers) as usize;
+    fn element_class<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
+        let places = self.element_class as usize..(self.element_class + self.numbers) as usize;
         match self.home.kind {
             BatchKind::Plain => (&[], &[]),
             BatchKind::Class(_) => (&shared.numbers[places], &[]),
@@ -155,9 +155,9 @@ pub fn evaluate_group<D: Dim, S: Simd>(
         if block.is_idle() {
             continue;
         }
-        let (home, stencil) = (block.home, block.stencil(&shared));
+        let (home, element_class) = (block.home, block.element_class(&shared));
         let view = block.view::<D>(&shared, all, first);
-        match (home.kind, stencil) {
+        match (home.kind, element_class) {
             (BatchKind::Plain, _) => plain_gradient::<D, S>(simd, position, &view, scratch),
             (_, (one, [])) => gradient::<D, S>(simd, &Uniform(one), position, &view, scratch),
             (_, (_, each)) => gradient::<D, S>(simd, &PerLane(each), position, &view, scratch),
@@ -188,10 +188,10 @@ pub fn evaluate_group<D: Dim, S: Simd>(
         if block.is_idle() {
             continue;
         }
-        let (home, stencil) = (block.home, block.stencil(&shared));
+        let (home, element_class) = (block.home, block.element_class(&shared));
         let moduli = &shared.moduli[home.material as usize - 1];
         let view = &mut block.view::<D>(&shared, all, first);
-        match (home.kind, stencil) {
+        match (home.kind, element_class) {
             (BatchKind::Plain, _) => plain_forces::<D, S>(simd, moduli, view, scratch),
             (_, (one, [])) => {
                 forces::<D, S>(simd, law, moduli, &Uniform(one), view, scratch);

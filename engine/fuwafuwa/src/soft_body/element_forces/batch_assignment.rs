@@ -142,12 +142,12 @@ impl<D: Dim> ElementBatches<D> {
                 ..
             } = newcomer;
             let class = classes
-                .entry((asleep, material, element.stencil))
+                .entry((asleep, material, element.element_class))
                 .or_default();
             class.push(newcomer);
         }
         for newcomers in classes.values() {
-            self.insert_class(mesh.stencil(newcomers[0].element), newcomers);
+            self.insert_class(mesh.element_class(newcomers[0].element), newcomers);
         }
         self.slots.resize(mesh.node_capacity(), [0; 8]);
         for node in nodes {
@@ -202,15 +202,15 @@ impl<D: Dim> ElementBatches<D> {
 
     /// Adds elements of one class and material that are all asleep or all awake. They go to vacant lanes of
     /// the class, then eight at a time to new blocks of the class, and the rest to the pool.
-    fn insert_class(&mut self, stencil: &ElementClass<D>, mut newcomers: &[PendingElement]) {
+    fn insert_class(&mut self, element_class: &ElementClass<D>, mut newcomers: &[PendingElement]) {
         let PendingElement {
             element,
             material,
             asleep,
             ..
         } = newcomers[0];
-        let class = element.stencil;
-        let is_plain = stencil.is_plain() && self.law == Law::CorotationalVem;
+        let class = element.element_class;
+        let is_plain = element_class.is_plain() && self.law == Law::CorotationalVem;
         let home = |kind: BatchKind| BatchKey {
             kind,
             material,
@@ -220,15 +220,15 @@ impl<D: Dim> ElementBatches<D> {
             true => BatchKind::Plain,
             false => BatchKind::Class(class),
         });
-        let count = stencil.slots.len() as u32;
-        let numbers = numbers_of(self.law, stencil);
+        let count = element_class.slots.len() as u32;
+        let numbers = numbers_of(self.law, element_class);
         while let Some((newcomer, others)) = newcomers.split_first() {
             let open = self.open.get(&own).and_then(|open| open.first().copied());
             let index = match open {
                 Some(index) => index,
                 None if is_plain || newcomers.len() >= LANES => {
                     let index = self.empty_block(own, count);
-                    self.blocks[index as usize].stencil = self.stencil_of(class, &numbers);
+                    self.blocks[index as usize].element_class = self.stencil_of(class, &numbers);
                     index
                 }
                 None => {
@@ -252,7 +252,7 @@ impl<D: Dim> ElementBatches<D> {
             return index;
         }
         let first = self.nodes.len() as u32;
-        let stencil = self.pooled.len() as u32;
+        let element_class = self.pooled.len() as u32;
         let rows = self.nodes.len() + count as usize * LANES;
         self.nodes.resize(rows, VACANT);
         self.forces.resize(rows * D::N + PAD, 0.0);
@@ -271,7 +271,7 @@ impl<D: Dim> ElementBatches<D> {
             rotation: [[0.0; LANES]; 4],
             node_count: count,
             first,
-            stencil,
+            element_class,
             numbers: numbers::<D>(count as usize) as u32,
         });
         self.blocks.len() as u32 - 1
@@ -286,7 +286,7 @@ impl<D: Dim> ElementBatches<D> {
     /// Returns the start of the stencil of a class in `numbers`; adds the stencil if necessary.
     fn stencil_of(&mut self, class: u32, numbers: &[f32]) -> u32 {
         let all = &mut self.numbers;
-        *self.stencils.entry(class).or_insert_with(|| {
+        *self.element_classes.entry(class).or_insert_with(|| {
             all.extend_from_slice(numbers);
             (all.len() - numbers.len()) as u32
         })
@@ -317,7 +317,7 @@ impl<D: Dim> ElementBatches<D> {
                 self.nodes[first + place * LANES + lane] = node.0;
             }
             if block.home.is_pool() {
-                let pooled = &mut self.pooled[block.stencil as usize..];
+                let pooled = &mut self.pooled[block.element_class as usize..];
                 for (all, &number) in pooled.iter_mut().zip(numbers) {
                     all[lane] = number;
                 }
@@ -355,10 +355,10 @@ struct PendingElement<'a> {
 }
 
 /// Returns a stencil in single precision, in the layout of the kernel.
-fn numbers_of<D: Dim>(law: Law, stencil: &ElementClass<D>) -> Vec<f32> {
-    let count = stencil.slots.len();
+fn numbers_of<D: Dim>(law: Law, element_class: &ElementClass<D>) -> Vec<f32> {
+    let count = element_class.slots.len();
     let mut mean = [0.0; 3];
-    for offset in &stencil.offsets {
+    for offset in &element_class.offsets {
         for axis in 0..3 {
             mean[axis] += offset[axis] / count as f64;
         }
@@ -367,14 +367,14 @@ fn numbers_of<D: Dim>(law: Law, stencil: &ElementClass<D>) -> Vec<f32> {
     let mut total = 0.0;
     for k in 0..count {
         let node = &mut all[numbers_a_node::<D>() * k..][..numbers_a_node::<D>()];
-        let w = stencil.volumes[k];
+        let w = element_class.volumes[k];
         for axis in 0..D::N {
-            let centred = stencil.offsets[k][axis] - mean[axis];
+            let centred = element_class.offsets[k][axis] - mean[axis];
             total += centred * centred;
             match law {
                 Law::CorotationalVem => {
-                    node[axis] = stencil.gradients[k][axis] as f32;
-                    node[D::N + axis] = (w * stencil.offsets[k][axis]) as f32;
+                    node[axis] = element_class.gradients[k][axis] as f32;
+                    node[D::N + axis] = (w * element_class.offsets[k][axis]) as f32;
                 }
                 Law::Endo2004 => node[axis] = centred as f32,
             }
@@ -387,21 +387,22 @@ fn numbers_of<D: Dim>(law: Law, stencil: &ElementClass<D>) -> Vec<f32> {
     }
     for i in 0..D::N {
         for j in i..D::N {
-            let term =
-                |k: usize| stencil.volumes[k] * stencil.offsets[k][i] * stencil.offsets[k][j];
+            let term = |k: usize| {
+                element_class.volumes[k] * element_class.offsets[k][i] * element_class.offsets[k][j]
+            };
             let spread: f64 = (0..count).map(term).sum();
             all[numbers_a_node::<D>() * count + symmetric::<D>(i, j)] = spread as f32;
         }
     }
     let volume = match law {
-        Law::CorotationalVem => stencil.volume,
+        Law::CorotationalVem => element_class.volume,
         Law::Endo2004 => count as f64,
     };
     let last = all.len() - 1;
     all[last - 1] = (1.0 / volume) as f32;
     let stiffness = match law {
-        Law::CorotationalVem => stencil.hourglass,
-        Law::Endo2004 => stencil.volume * D::N as f64 / total,
+        Law::CorotationalVem => element_class.hourglass,
+        Law::Endo2004 => element_class.volume * D::N as f64 / total,
     };
     all[last] = stiffness as f32;
     all

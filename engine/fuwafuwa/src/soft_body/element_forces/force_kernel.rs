@@ -159,7 +159,7 @@ pub fn plain_gradient<D: Dim, S: Simd>(
 #[inline(always)]
 pub fn gradient<D: Dim, S: Simd>(
     simd: S,
-    stencils: &impl Stencils,
+    element_classes: &impl Stencils,
     position: &[Row],
     view: &BlockView,
     scratch: &mut Scratch,
@@ -176,7 +176,7 @@ pub fn gradient<D: Dim, S: Simd>(
     let mut centre = [zero; 3];
     for node in 1..count {
         let at = gather(simd, position, places(view.nodes, node));
-        let w = stencils.get(simd, a_node * node + 2 * D::N);
+        let w = element_classes.get(simd, a_node * node + 2 * D::N);
         let mut x = [zero; 3];
         for i in 0..D::N {
             x[i] = at[i] - origin[i];
@@ -184,15 +184,15 @@ pub fn gradient<D: Dim, S: Simd>(
             centre[i] += x[i] * w;
         }
         for j in 0..D::N {
-            let b = stencils.get(simd, a_node * node + j);
-            let wr = stencils.get(simd, a_node * node + D::N + j);
+            let b = element_classes.get(simd, a_node * node + j);
+            let wr = element_classes.get(simd, a_node * node + D::N + j);
             for i in 0..D::N {
                 f[i][j] += x[i] * b;
                 moment[i][j] += x[i] * wr;
             }
         }
     }
-    let inverse_volume = stencils.get(simd, numbers::<D>(count) - 2);
+    let inverse_volume = element_classes.get(simd, numbers::<D>(count) - 2);
     let scale = inverse_volume / load(simd, view.half_size);
     for i in 0..D::N {
         for j in 0..D::N {
@@ -285,7 +285,7 @@ pub fn forces<D: Dim, S: Simd>(
     simd: S,
     law: Law,
     moduli: &Moduli,
-    stencils: &impl Stencils,
+    element_classes: &impl Stencils,
     view: &mut BlockView,
     scratch: &Scratch,
 ) {
@@ -295,18 +295,18 @@ pub fn forces<D: Dim, S: Simd>(
     let half = load(simd, view.half_size);
     let (mut pull, mut shear) = ([[zero; 3]; 3], [[zero; 3]; 3]);
     let stiffness;
-    let own_stiffness = stencils.get(simd, numbers::<D>(count) - 1);
+    let own_stiffness = element_classes.get(simd, numbers::<D>(count) - 1);
     if law == Law::CorotationalVem {
         let (plain_spring, area) = scales::<D, S>(simd, moduli, half);
         let spring = plain_spring * own_stiffness;
-        let inverse_volume = stencils.get(simd, numbers::<D>(count) - 2);
+        let inverse_volume = element_classes.get(simd, numbers::<D>(count) - 2);
         let (bend, skew) = (spring * half, spring * inverse_volume);
         stiffness = spring;
         for i in 0..D::N {
             for j in 0..D::N {
                 let mut bent = zero;
                 for k in 0..D::N {
-                    let spread = stencils.get(simd, a_node * count + symmetric::<D>(k, j));
+                    let spread = element_classes.get(simd, a_node * count + symmetric::<D>(k, j));
                     bent += load(simd, &scratch.f[i][k]) * spread;
                 }
                 let moment = load(simd, &scratch.moment[i][j]);
@@ -326,7 +326,7 @@ pub fn forces<D: Dim, S: Simd>(
         }
     }
     for node in 0..count {
-        let spring = stiffness * stencils.get(simd, a_node * node + 2 * D::N);
+        let spring = stiffness * element_classes.get(simd, a_node * node + 2 * D::N);
         let mut force = [zero; 3];
         for i in 0..D::N {
             let centre = load(simd, &scratch.centre[i]);
@@ -334,8 +334,8 @@ pub fn forces<D: Dim, S: Simd>(
             force[i] = spring * (centre - x);
         }
         for j in 0..D::N {
-            let b = stencils.get(simd, a_node * node + j);
-            let wr = stencils.get(simd, a_node * node + D::N + j);
+            let b = element_classes.get(simd, a_node * node + j);
+            let wr = element_classes.get(simd, a_node * node + D::N + j);
             for i in 0..D::N {
                 force[i] += pull[i][j] * b + shear[i][j] * wr;
             }

@@ -20,7 +20,7 @@ impl<D: Dim> HashState for ElementBatches<D> {
             voxel_size: _,
             open: _,
             empty: _,
-            stencils: _,
+            element_classes: _,
             numbers: _,
             pooled: _,
             slots: _,
@@ -45,7 +45,7 @@ impl<D: Dim> HashState for ElementBatches<D> {
                 vacant: _,
                 half_size: _,
                 first: _,
-                stencil: _,
+                element_class: _,
                 numbers: _,
             } = &blocks[index as usize];
             for part in &rotation[..parts::<D>()] {

@@ -14,7 +14,7 @@ impl<D: Dim> Mesh<D> {
     pub(super) fn seat(
         &mut self,
         id: ElementId,
-        sharing: &Connectivity<D>,
+        connectivity: &Connectivity<D>,
         mut past: Option<&mut Past>,
     ) -> Result<bool, InvariantViolation> {
         let (cell, children) = (self.alive(id).cell, self.alive(id).children);
@@ -30,13 +30,13 @@ impl<D: Dim> Mesh<D> {
             };
             let node = Node {
                 at,
-                group: sharing.groups(at).group_of(octant),
+                group: connectivity.groups(at).group_of(octant),
             };
             let on_surface = self.dense_surface && node.group != D::ALL_CORNERS;
             if !is_corner && !on_surface && !self.is_node_beside(id, node) {
                 continue;
             }
-            let (node, is_new) = self.node_id(node, sharing.index(at));
+            let (node, is_new) = self.node_id(node, connectivity.index(at));
             if let (true, Some(past)) = (is_new, &mut past) {
                 past.inherit(self, node, voxel_around::<D>(at, octant), at)?;
             }
@@ -49,11 +49,11 @@ impl<D: Dim> Mesh<D> {
         if self.alive(id).nodes == seated {
             return Ok(false);
         }
-        let stencil = self.class(children, slots)?;
+        let element_class = self.class(children, slots)?;
         let element = Element {
             cell,
             children,
-            stencil,
+            element_class,
             nodes: seated.to_vec(),
         };
         let old = self.elements[id].replace(element);
@@ -104,8 +104,9 @@ impl<D: Dim> Mesh<D> {
         if let Some(&class) = self.classes.get(&(children, slots)) {
             return Ok(class);
         }
-        let class = self.stencils.len() as u32;
-        self.stencils.push(ElementClass::new(children, slots)?);
+        let class = self.element_classes.len() as u32;
+        self.element_classes
+            .push(ElementClass::new(children, slots)?);
         self.classes.insert((children, slots), class);
         Ok(class)
     }

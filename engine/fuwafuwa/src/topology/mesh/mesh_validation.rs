@@ -27,13 +27,13 @@ impl<D: Dim> Mesh<D> {
     pub fn validate(
         &self,
         grid: &VoxelGrid<D>,
-        sharing: &Connectivity<D>,
+        connectivity: &Connectivity<D>,
     ) -> Result<(), InvariantViolation> {
         let levels = self.check_ownership(grid)?;
         check_grading(grid, &levels)?;
-        self.check_split_points(sharing)?;
+        self.check_split_points(connectivity)?;
         self.check_carriers()?;
-        self.check_gradients(sharing)
+        self.check_gradients(connectivity)
     }
 
     /// Checks the owners, and returns the level that owns each voxel; `u8::MAX` for empty voxels.
@@ -81,7 +81,7 @@ impl<D: Dim> Mesh<D> {
     pub(crate) fn check_against(
         &self,
         fresh: &Self,
-        sharing: &Connectivity<D>,
+        connectivity: &Connectivity<D>,
     ) -> Result<(), InvariantViolation> {
         let ensure = |good: bool, what: &str| match good {
             true => Ok(()),
@@ -94,18 +94,20 @@ impl<D: Dim> Mesh<D> {
         ensure(tables, "tables of the mesh")?;
         let is_class = |(&(children, slots), &class): (&(u8, u32), &u32)| {
             let known = children != 0 && children <= D::ALL_CORNERS && slots >> D::SLOTS == 0;
-            let stencil = known
+            let element_class = known
                 .then(|| ElementClass::<D>::new(children, slots).ok())
                 .flatten();
-            stencil.is_some() && self.stencils.get(class as usize) == stencil.as_ref()
+            element_class.is_some()
+                && self.element_classes.get(class as usize) == element_class.as_ref()
         };
-        let classes = self.classes.len() == self.stencils.len();
+        let classes = self.classes.len() == self.element_classes.len();
         ensure(classes && self.classes.iter().all(is_class), "classes")?;
         let is_whole = |(_, element): (ElementId, &Element)| {
-            let stencil = self.stencils.get(element.stencil as usize);
+            let element_class = self.element_classes.get(element.element_class as usize);
             let nodes = element.nodes.iter();
-            stencil.is_some_and(|stencil| stencil.slots.len() == element.nodes.len()) && { nodes }
-                .all(|&node| node.index() < self.nodes.len())
+            element_class
+                .is_some_and(|element_class| element_class.slots.len() == element.nodes.len())
+                && { nodes }.all(|&node| node.index() < self.nodes.len())
         };
         ensure(self.elements().all(is_whole), "elements")?;
         let shapes = self.by_shape();
@@ -130,7 +132,7 @@ impl<D: Dim> Mesh<D> {
             .is_valid(self.places.count(), self.elements.len())
             && self
                 .by_point
-                .is_valid(sharing.point_count(), self.nodes.len());
+                .is_valid(connectivity.point_count(), self.nodes.len());
         ensure(ends, "lists of ids")?;
         let at = |cell| self.places.index(cell).into_iter();
         let listed = |cell| at(cell).flat_map(|place| self.by_cell.at(place));
@@ -141,11 +143,11 @@ impl<D: Dim> Mesh<D> {
             found && count.count() == self.element_count(),
             "lists of elements",
         )?;
-        let beside = |node: Node| self.by_point.at(sharing.index(node.at));
-        let found = self
-            .nodes()
-            .all(|(id, node)| sharing.contains(node.at) && beside(node).any(|other| other == id));
-        let count = (0..sharing.point_count()).flat_map(|place| self.by_point.at(place));
+        let beside = |node: Node| self.by_point.at(connectivity.index(node.at));
+        let found = self.nodes().all(|(id, node)| {
+            connectivity.contains(node.at) && beside(node).any(|other| other == id)
+        });
+        let count = (0..connectivity.point_count()).flat_map(|place| self.by_point.at(place));
         ensure(
             found && count.count() == self.node_count(),
             "lists of nodes",
@@ -162,9 +164,9 @@ impl<D: Dim> Mesh<D> {
         let mut shapes = BTreeMap::new();
         for (_, element) in self.elements() {
             let nodes = element.nodes.iter().map(|&id| self.node(id)).collect();
-            let stencil = self.stencil(element);
-            let is_class = self.classes.get(&(element.children, stencil.mask));
-            if is_class != Some(&element.stencil) {
+            let element_class = self.element_class(element);
+            let is_class = self.classes.get(&(element.children, element_class.mask));
+            if is_class != Some(&element.element_class) {
                 return None;
             }
             if shapes
@@ -177,14 +179,14 @@ impl<D: Dim> Mesh<D> {
         Some(shapes)
     }
 
-    fn check_split_points(&self, sharing: &Connectivity<D>) -> Result<(), InvariantViolation> {
+    fn check_split_points(&self, connectivity: &Connectivity<D>) -> Result<(), InvariantViolation> {
         for (_, element) in self
             .elements()
             .filter(|(_, element)| element.cell.level > 0)
         {
             for &node in &element.nodes {
                 let at = self.node(node).at;
-                if sharing.groups(at).iter().count() > 1 {
+                if connectivity.groups(at).iter().count() > 1 {
                     let cell = element.cell;
                     return Err(InvariantViolation(format!(
                         "{cell:?} has a node at the split point {at:?}"
@@ -212,19 +214,23 @@ impl<D: Dim> Mesh<D> {
         }
     }
 
-    fn check_gradients(&self, sharing: &Connectivity<D>) -> Result<(), InvariantViolation> {
+    fn check_gradients(&self, connectivity: &Connectivity<D>) -> Result<(), InvariantViolation> {
         let mut sums: IndexVec<NodeId, _> = vec![[0.0; 3]; self.nodes.len()].into();
         for (_, element) in self.elements() {
             let half = element.cell.width() as f64 * 0.5;
             let scale = (1..D::N).fold(1.0, |scale, _| scale * half);
-            for (&node, gradient) in element.nodes.iter().zip(&self.stencil(element).gradients) {
+            for (&node, gradient) in element
+                .nodes
+                .iter()
+                .zip(&self.element_class(element).gradients)
+            {
                 for axis in 0..3 {
                     sums[node][axis] += gradient[axis] * scale;
                 }
             }
         }
         for (id, node) in self.nodes() {
-            let inner = node.group == D::ALL_CORNERS && !sharing.is_open(node.at);
+            let inner = node.group == D::ALL_CORNERS && !connectivity.is_open(node.at);
             let sum = sums[id];
             if inner && sum.iter().any(|&component: &f64| component.abs() > 1e-9) {
                 let at = node.at;

@@ -69,8 +69,8 @@ impl<D: Dim> Mesh<D> {
     pub fn remodel(
         &mut self,
         grid: &VoxelGrid<D>,
-        sharing: &Connectivity<D>,
-        pyramid: &CellHierarchy<D>,
+        connectivity: &Connectivity<D>,
+        hierarchy: &CellHierarchy<D>,
         changed: &[Point],
         born: &[Cell],
     ) -> Result<Remodelled, InvariantViolation> {
@@ -81,7 +81,7 @@ impl<D: Dim> Mesh<D> {
         let mut past = Past::default();
         let mut removed = Vec::new();
         for &cell in &refitted {
-            self.refit(cell, pyramid.filled(grid, cell), &mut past, &mut removed);
+            self.refit(cell, hierarchy.filled(grid, cell), &mut past, &mut removed);
         }
         let filled = { past.removed.iter() }.map(|element| (element.cell, element.children));
         let gone = filled.zip(&removed);
@@ -91,14 +91,14 @@ impl<D: Dim> Mesh<D> {
         gone.sort_unstable();
         past.removed.sort_unstable_by_key(|element| element.cell);
         let mut seated = Vec::new();
-        for id in self.elements_touched(sharing, changed, born, &refitted) {
-            if self.seat(id, sharing, Some(&mut past))? {
+        for id in self.elements_touched(connectivity, changed, born, &refitted) {
+            if self.seat(id, connectivity, Some(&mut past))? {
                 seated.push(id);
             }
         }
         let abandoned = past.abandoned(&self.carriers);
         for &id in &abandoned {
-            let point = sharing.index(self.node(id).at);
+            let point = connectivity.index(self.node(id).at);
             self.by_point.remove(point, id);
         }
         self.free_nodes.extend(&abandoned);
@@ -117,7 +117,7 @@ impl<D: Dim> Mesh<D> {
     /// The caller updates grid, connectivity and pyramid.
     pub(crate) fn take_out(
         &mut self,
-        sharing: &Connectivity<D>,
+        connectivity: &Connectivity<D>,
         elements: &[ElementId],
     ) -> Vec<NodeId> {
         let mut nodes = Vec::new();
@@ -142,7 +142,7 @@ impl<D: Dim> Mesh<D> {
         nodes.retain(|&node| self.carriers[node] == 0);
         let gone = ascending(nodes.into_iter(), self.carriers.len());
         for &id in &gone {
-            let point = sharing.index(self.node(id).at);
+            let point = connectivity.index(self.node(id).at);
             self.by_point.remove(point, id);
         }
         self.free_nodes.extend(&gone);
@@ -153,7 +153,7 @@ impl<D: Dim> Mesh<D> {
     /// `changed` points, and those around the corners of `born` cells. New nodes appear only at these places.
     fn elements_touched(
         &self,
-        sharing: &Connectivity<D>,
+        connectivity: &Connectivity<D>,
         changed: &[Point],
         born: &[Cell],
         refitted: &[Cell],
@@ -164,7 +164,7 @@ impl<D: Dim> Mesh<D> {
         };
         let corners = born.iter().flat_map(corners);
         // Neighbouring cells share corners.
-        let points = sharing.each_once(changed.iter().copied().chain(corners));
+        let points = connectivity.each_once(changed.iter().copied().chain(corners));
         let around = |at| self.owners_around(at, D::ALL_CORNERS);
         let places = refitted.iter().filter_map(|&cell| self.places.index(cell));
         let inside = places.flat_map(|place| self.by_cell.at(place));
@@ -249,7 +249,7 @@ impl Past {
             };
             if weight != 0.0 {
                 let own = (first, &mut shares);
-                collect_shares(mesh.stencil(owner), &owner.nodes, slot, weight, own);
+                collect_shares(mesh.element_class(owner), &owner.nodes, slot, weight, own);
             }
         }
         let from = first..shares.len();
@@ -301,13 +301,13 @@ impl Past {
 /// Distributes `weight` of a slot to the nodes that represent it: its own node, or recursively those of the
 /// adjacent slots. The shares of the current new node start at index `first`.
 fn collect_shares<D: Dim>(
-    stencil: &ElementClass<D>,
+    element_class: &ElementClass<D>,
     nodes: &[NodeId],
     slot: Point,
     weight: f64,
     (first, shares): (usize, &mut Vec<(NodeId, f64)>),
 ) {
-    if let Some(place) = stencil.node_at(slot_index(slot)) {
+    if let Some(place) = element_class.node_at(slot_index(slot)) {
         let mut own = shares[first..].iter_mut();
         match own.find(|share| share.0 == nodes[place]) {
             Some(share) => share.1 += weight,
@@ -321,7 +321,7 @@ fn collect_shares<D: Dim>(
             let mut next = slot;
             next[axis] = end;
             let weight = weight / (2 * order) as f64;
-            collect_shares(stencil, nodes, next, weight, (first, &mut *shares));
+            collect_shares(element_class, nodes, next, weight, (first, &mut *shares));
         }
     }
 }
