@@ -452,8 +452,8 @@ impl SpherePairs {
                     true => other.sphere > sphere,
                     false => true,
                 };
-                // Where the sphere would have been when the bins were built, if it moved with the frame.
-                // Relative to the frame, the binned spheres hardly move.
+                // Shifted back by the motion of the frame since the bins were built. Relative to the frame,
+                // the binned spheres hardly move.
                 let shift = this.frame * (span.middle - this.binned_at);
                 let at = own.path.at(span.middle) - shift;
                 let reach = this.reach + this.short + own.sweep;

@@ -67,8 +67,8 @@ fn go_along(triangle: [RestPosition; 3], axis: usize, size: Point, faces: &mut F
     }
 }
 
-/// Returns a number whose sign tells on which side of the line from `a` to `b` a point is. Swapping `a` and
-/// `b` changes only the sign, so neighbouring triangles agree.
+/// Returns a number with a sign that tells on which side of the line from `a` to `b` a point is. Swapping `a`
+/// and `b` changes only the sign, so neighbouring triangles agree.
 fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     let is_forward = a <= b;
     let (low, high) = if is_forward { (a, b) } else { (b, a) };
@@ -76,8 +76,8 @@ fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     if is_forward { turn } else { -turn }
 }
 
-/// Returns the voxels along an axis, of `count` in all, whose centres lie between the smallest and the
-/// largest of the coordinates.
+/// Returns the voxels along an axis, of `count` in all, with centres between the smallest and the largest of
+/// the coordinates.
 fn middles(along: [f64; 3], count: i32) -> std::ops::RangeInclusive<i32> {
     let low = along.into_iter().fold(f64::INFINITY, f64::min);
     let high = along.into_iter().fold(f64::NEG_INFINITY, f64::max);
