@@ -16,7 +16,7 @@ fn weightless<D: Dim>() -> World<D> {
         gravity: D::Vector::ZERO,
         ..WorldConfig::default()
     };
-    World::new(settings).expect("the settings are valid")
+    World::new(settings).expect("the configuration is valid")
 }
 
 fn ball<D: Dim>(n: usize) -> SoftBody<D> {
@@ -215,7 +215,7 @@ fn check_zeros<D: Dim>(n: usize) {
             drag: zero,
             ..WorldConfig::default()
         };
-        let mut world = World::<D>::new(settings).expect("the settings are valid");
+        let mut world = World::<D>::new(settings).expect("the configuration is valid");
         let material = Material {
             damping: zero,
             friction: zero,
