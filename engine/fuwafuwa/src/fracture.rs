@@ -1,4 +1,4 @@
-//! Crack growth, cuts, and removal of pieces.
+//! Crack growth, cuts and knives.
 
 pub mod blade;
 pub mod breakable_nodes;

@@ -1,4 +1,4 @@
-//! Actions on bodies from outside: rotation, translation, impulses, sleep, settings, fields.
+//! Actions on bodies from outside: rotation, translation, impulses, sleep, configuration, fields.
 
 use fuwafuwa::{
     Bookmark, Dim, Dim2, Dim3, DimAngular, DimVector, Error, Event, Hooks, Impulse, Material,
@@ -42,7 +42,7 @@ fn places<D: Dim>(body: &SoftBody<D>) -> Vec<D::Vector> {
     all.map(|id| body.node_state(id).0).collect()
 }
 
-/// Maximum distance between corresponding nodes of two bodies [m].
+/// Returns the maximum distance between corresponding nodes of two bodies [m].
 fn apart<D: Dim>(a: &SoftBody<D>, b: &SoftBody<D>) -> f32 {
     let both = places(a).into_iter().zip(places(b));
     let gaps = both.map(|(a, b)| (a - b).length());
@@ -87,7 +87,7 @@ fn rotated_body_stays_at_rest() {
     }
 }
 
-/// A world rotated in the middle of tearing moves like the original, rotated.
+/// Checks that a world, rotated while its body tears, moves like the original.
 fn check_turned_in_motion<D: Dim>() {
     let rotation = Rotation::in_plane(PI);
     let (mut world, id) = with(weightless(), ball::<D>(16));
@@ -155,7 +155,7 @@ fn move_body_keeps_bookmarks_valid() {
     check_moved::<Dim3>();
 }
 
-/// A body rests on another one, which is moved away.
+/// Checks that a sleeping body wakes and falls when the body under it is moved away.
 fn check_pulled_away<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     world.add_rigid_body(floor()).unwrap();
@@ -323,7 +323,7 @@ fn put_to_sleep_lasts_until_impact_or_wake_up() {
 }
 
 #[test]
-fn set_settings_applies_to_running_world() {
+fn set_config_applies_to_running_world() {
     let (mut world, id) = with(WorldConfig::default(), ball::<Dim2>(8));
     let upwards = WorldConfig {
         gravity: Vec2::new(0.0, 9.81),
@@ -392,7 +392,8 @@ fn field_accelerates_towards_centre() {
     check_field::<Dim3>();
 }
 
-/// Pressing a bar on a body one metre to the right of its centre gives a counterclockwise torque.
+/// Checks that pressing a bar on a body one metre to the right of the bar's centre gives a counterclockwise
+/// torque.
 fn check_torque<D: Dim>() {
     let (mut world, _) = with(weightless(), ball::<D>(16));
     let bar = Shape::capsule(-D::Vector::X, vector(3.0, 0.0, 0.0), 0.1);
@@ -460,7 +461,7 @@ fn act<D: Dim>(
     }
 }
 
-/// Calls random actions in random order, with non-finite numbers and removed bodies.
+/// Calls random actions in random order, with non-finite numbers and on removed bodies.
 fn check_any<D: Dim>(seeds: std::ops::Range<u64>) {
     let numbers = [
         0.0,

@@ -6,17 +6,18 @@ use fuwafuwa::{
 };
 use std::f32::consts::FRAC_PI_2;
 
-/// Vector of the dimension; in 2D the third coordinate is dropped.
+/// Returns a vector of the dimension; in 2D the third coordinate is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
 
-/// Angular velocity in the plane [rad/s].
+/// Returns an angular velocity in the plane [rad/s].
 fn spin<D: Dim>(speed: f32) -> D::Angular {
     D::Angular::from_vec3(Vec3::Z * speed)
 }
 
-/// A soft and a rigid cube of 1 m, both centred on the origin, in layers that do not collide.
+/// Returns a world with a soft and a rigid cube of 1 m, both centred on the origin, in layers that do not
+/// collide.
 fn cubes<D: Dim>() -> (World<D>, [BodyHandle; 2]) {
     let config = WorldConfig {
         gravity: D::Vector::ZERO,

@@ -21,7 +21,7 @@ fn floored<D: Dim>() -> (World<D>, RigidBodyHandle) {
     (world, floor)
 }
 
-/// A ball 1 m wide that does not tear, with its low corner at a height [m].
+/// Adds a ball 1 m wide that does not tear, with its low corner at a height [m].
 fn ball<D: Dim>(world: &mut World<D>, height: f32) -> SoftBodyHandle {
     let rubber = Material {
         elasticity: Elasticity {
@@ -46,8 +46,8 @@ fn of_body(party: ObjectRef, body: SoftBodyHandle) -> bool {
     matches!(party, ObjectRef::Piece { body: found, .. } if found == body)
 }
 
-/// A ball falls for 0.45 s, rests, and is lifted again: each contact begins once, the first with the speed of
-/// the fall, and ends once.
+/// A ball falls for 0.45 s, bounces, comes to rest, and is lifted. Every contact that begins also ends, and
+/// the first one begins at the speed of the fall.
 fn contacts_begin_and_end<D: Dim>() {
     let (mut world, floor) = floored::<D>();
     let id = ball(&mut world, 1.0);
@@ -142,7 +142,7 @@ fn rigid_contact_event_reports_impulse_and_speed() {
     assert!((speed - 4.43).abs() < 0.3, "{speed}");
 }
 
-/// A body that falls through a sensor enters and exits it without contact.
+/// A body that falls through a sensor enters and exits the sensor without contact.
 fn sensors_tell<D: Dim>() {
     let (mut world, _) = floored::<D>();
     let gate = Shape::cuboid(vector(4.0, 0.2, 2.0)).translated(vector(0.5, 2.5, 0.5));
@@ -150,7 +150,7 @@ fn sensors_tell<D: Dim>() {
     let gate = world.add_rigid_body(gate).unwrap();
     let soft = ball(&mut world, 3.0);
     let free = world.add_rigid_body(crate_of(5.5, 0.2)).unwrap();
-    // Beside the ball, so that it does not bounce back.
+    // Beside the soft ball, so that the rigid one does not bounce off it.
     world
         .set_pose(free, vector(3.0, 5.5, 0.5), Rotation::NONE)
         .unwrap();
@@ -327,7 +327,7 @@ fn partners<D: Dim>(world: &World<D>, object: ObjectRef) -> Vec<ObjectRef> {
         .collect()
 }
 
-/// A soft ball on the floor carries a box, and another one lies beside it.
+/// A soft ball on the floor carries a box; another ball lies beside it.
 fn contacts_of_stack<D: Dim>() {
     let (mut world, floor) = floored::<D>();
     let body = ball(&mut world, 0.0);

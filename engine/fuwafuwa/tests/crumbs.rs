@@ -108,8 +108,8 @@ fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
     (inside, crumbs().count())
 }
 
-/// Runs a world. No crumb may stay embedded for more than `patience` ticks, none may be embedded at the end,
-/// and there must be at least `least` crumbs.
+/// Runs a world and checks its crumbs. None may stay embedded for more than `patience` ticks or be embedded
+/// at the end, and there must be at least `least` crumbs.
 fn check<D: Dim>(
     mut world: World<D>,
     ticks: u16,
@@ -159,7 +159,7 @@ fn weightless<D: Dim>() -> World<D> {
     World::new(settings).unwrap()
 }
 
-/// A hand presses dust into a body against a wall, grinds to and fro, and retreats.
+/// A hand presses dust into a body against a wall, grinds back and forth, and retreats.
 fn check_grinding<D: Dim>(n: usize, least: usize) {
     let mut world = weightless::<D>();
     let wall = Shape::half_space(-D::Vector::X, vector(1.05, 0.0, 0.0));
@@ -182,7 +182,7 @@ fn check_grinding<D: Dim>(n: usize, least: usize) {
     check(world, 240, 30, least, |seconds| {
         let in_and_out = seconds.min(0.8) - (seconds - 2.2).max(0.0);
         let turn = 2.0 * (seconds - 0.8).clamp(0.0, 1.4);
-        // To and fro twice a second.
+        // Back and forth twice a second.
         let to_and_fro = 0.3 * ((turn - turn.floor() - 0.5).abs() - 0.5);
         vector(-0.55 + 1.25 * in_and_out, 0.5 + to_and_fro, depth)
     });
@@ -279,7 +279,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
         ..WorldConfig::default()
     };
     let mut world = World::<D>::new(settings).unwrap();
-    // The voxel is damped like the large body it came off.
+    // A large body and a single voxel that came off it. The voxel keeps the damping of the large body.
     let mut size = [WIDE; 3];
     size[D::N..].fill(1);
     let grid = VoxelGrid::from_fn(size, 1.0 / WIDE as f32, |at| {

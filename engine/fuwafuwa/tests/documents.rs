@@ -1,4 +1,4 @@
-//! What the documents say about the code.
+//! Checks of the documents in the repository against its files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The source files of a folder and of those in it, but for what was built there.
+/// Returns the Rust files in a folder and its subfolders, except build output.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -23,7 +23,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
-fn what_the_documents_name_is_there() {
+fn documents_name_existing_paths() {
     for document in [
         "ARCHITECTURE.md",
         "README.md",
@@ -44,16 +44,16 @@ fn what_the_documents_name_is_there() {
         for path in paths {
             assert!(
                 root().join(path).exists(),
-                "{document} names `{path}`, which is not there"
+                "{document} names `{path}`, but the path does not exist"
             );
         }
     }
 }
 
-/// A browser has neither paths nor files: what the game keeps and opens goes through `platform`, by kind and name, and
-/// what the libraries below it read are bytes.
+/// A browser has no files and no paths. Therefore the game opens and saves data through the module
+/// `platform`, by kind and name, and the libraries below the game read bytes.
 #[test]
-fn files_are_opened_in_the_platform_and_for_the_command_line_alone() {
+fn files_are_used_only_in_platform_and_command_line_modules() {
     let edges = [
         (
             "game/tamaire/src",
@@ -80,8 +80,8 @@ fn files_are_opened_in_the_platform_and_for_the_command_line_alone() {
         let tests = text.find("#[cfg(test)]").unwrap_or(text.len());
         for word in ["std::fs", "std::path", "PathBuf", "Path::", "File::"] {
             let is_named = text[..tests].contains(word);
-            assert!(!is_named, "{} names {word}", path.display());
+            assert!(!is_named, "{} uses {word}", path.display());
         }
     }
-    assert!(seen > 60, "only {seen} files were seen");
+    assert!(seen > 60, "expected more than 60 files, found {seen}");
 }

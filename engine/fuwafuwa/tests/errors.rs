@@ -1,4 +1,4 @@
-//! Errors: each names its cause, what was expected, and what was given.
+//! Errors: each names its subject, what was expected, and what was given.
 
 use fuwafuwa::{
     Blade, Dim, Dim2, Dim3, DimVector, Error, Grading, Joint, JointAnchor, Law, Material,

@@ -16,7 +16,7 @@ fn weightless<D: Dim>() -> World<D> {
         gravity: D::Vector::ZERO,
         ..WorldConfig::default()
     };
-    World::new(settings).expect("the settings are valid")
+    World::new(settings).expect("the configuration is valid")
 }
 
 fn ball<D: Dim>(n: usize) -> SoftBody<D> {
@@ -56,7 +56,7 @@ fn cut_releases_nothing_along_same_blade() {
     check_cut_twice::<Dim3>(8, [upright, level]);
 }
 
-/// Moves every node of a body.
+/// Moves every node of a body to the image of its position.
 fn place(body: &mut SoftBody<Dim3>, to: impl Fn(Vec3) -> Vec3) {
     let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in ids {
@@ -65,7 +65,7 @@ fn place(body: &mut SoftBody<Dim3>, to: impl Fn(Vec3) -> Vec3) {
     }
 }
 
-/// Half turns about an axis of the grid and about a diagonal, and a rotation of nearly half a turn.
+/// Returns half turns about axes of the grid and about a diagonal, and a rotation of nearly half a turn.
 fn turns() -> [fn(Vec3) -> Vec3; 5] {
     [
         |Vec3 { x, y, z }| Vec3::new(x, 1.0 - y, 1.0 - z),
@@ -83,7 +83,7 @@ fn fastest<D: Dim>(body: &SoftBody<D>) -> f32 {
     speeds.fold(0.0, f32::max)
 }
 
-/// The iteration for the rotation of an element starts at the identity and got stuck at half a turn: an
+/// The iteration for the rotation of an element started at the identity and got stuck at half a turn: an
 /// upside-down ball tore itself into 42 pieces.
 #[test]
 fn body_stays_whole_when_turned_by_half_turn() {
@@ -99,7 +99,8 @@ fn body_stays_whole_when_turned_by_half_turn() {
     }
 }
 
-/// New elements in a rotated body had the same fault: a cut through an upside-down body hurled it about.
+/// For new elements in a rotated body, the iteration got stuck in the same way: a cut through an upside-down
+/// body hurled it about.
 #[test]
 fn cut_keeps_turned_body_at_rest() {
     for turn in turns() {
@@ -118,8 +119,8 @@ fn cut_keeps_turned_body_at_rest() {
     }
 }
 
-/// Each detached voxel was removed from the front of a list of all voxels: n = 48 took five times as long as
-/// n = 32, with three times as many voxels, and n = 64 took a minute.
+/// A list of all voxels lost each detached voxel from its front, in quadratic time. n = 48 took five times as
+/// long as n = 32, with three times as many voxels, and n = 64 took a minute.
 #[test]
 #[allow(clippy::disallowed_types)] // the test measures time
 fn crumble_takes_linear_time() {
@@ -144,14 +145,14 @@ fn crumble_detaches_every_voxel() {
     );
 }
 
-/// Positions, velocities and masses of all nodes of a body.
+/// Returns the positions, velocities and masses of all nodes of a body.
 fn node_states<D: Dim>(body: &SoftBody<D>) -> Vec<(D::Vector, D::Vector, f32)> {
     let nodes = body.mesh().nodes();
     nodes.map(|(id, _)| body.node_state(id)).collect()
 }
 
-/// A body with infinite strength tears nowhere, independent of unused materials in its list. With a weaker
-/// unused material, its cracks used to grow.
+/// The strength of an unused material in the list counted, so that cracks grew in a body of infinite
+/// strength.
 #[test]
 fn unused_weaker_material_has_no_effect_on_cracks() {
     let strong = Material {
@@ -181,7 +182,7 @@ fn unused_weaker_material_has_no_effect_on_cracks() {
     assert_eq!(run(&[strong, Material::default()]), (0, states));
 }
 
-/// A non-finite crumb inside another body is quarantined alone.
+/// A non-finite crumb inside another body quarantined that body, too.
 #[test]
 fn quarantine_spares_ball_around_non_finite_crumb() {
     for nowhere in [f32::NAN, f32::INFINITY, 1e30] {
@@ -205,7 +206,7 @@ fn quarantine_spares_ball_around_non_finite_crumb() {
     }
 }
 
-/// `f32::max` and `f32::min` of 0 and −0 return either zero, depending on the machine. The result must not
+/// `f32::max` and `f32::min` of 0 and −0 return either zero, depending on the machine. So the result must not
 /// depend on the signs of zeros in the input.
 fn check_zeros<D: Dim>(n: usize) {
     let run = |zero: f32| {
@@ -214,7 +215,7 @@ fn check_zeros<D: Dim>(n: usize) {
             drag: zero,
             ..WorldConfig::default()
         };
-        let mut world = World::<D>::new(settings).expect("the settings are valid");
+        let mut world = World::<D>::new(settings).expect("the configuration is valid");
         let material = Material {
             damping: zero,
             friction: zero,

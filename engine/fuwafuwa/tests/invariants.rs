@@ -12,7 +12,7 @@ use fuwafuwa::inspect::{neighbourhood, points_in};
 use fuwafuwa::{Dim, Dim2, Dim3, Point, VoxelGrid};
 use glam::DVec3;
 
-/// A small reproducible random generator (xorshift64*).
+/// Small reproducible random number generator (xorshift64*).
 struct Random(u64);
 
 impl Random {
@@ -28,7 +28,7 @@ impl Random {
     }
 }
 
-/// A union of balls and boxes minus one ball, of one or two materials.
+/// Returns a union of balls and boxes minus one ball, of one or two materials; `None` if no voxel is solid.
 fn random_shape<D: Dim>(random: &mut Random, n: i32) -> Option<VoxelGrid<D>> {
     let parts: Vec<([i32; 3], i32, bool)> = (0..4)
         .map(|_| {
@@ -81,7 +81,7 @@ fn random_cut<D: Dim>(sharing: &mut Connectivity<D>, random: &mut Random, n: i32
     touched
 }
 
-/// Checks seeds `0..sequences` on several threads; n cycles through `sizes`.
+/// Checks the seeds `0..sequences` on several threads. The size of the body cycles through `sizes`.
 fn check_remodelling<D: Dim>(sequences: u64, sizes: std::ops::Range<i32>) {
     let threads = 4;
     let sizes = &sizes;
@@ -131,7 +131,7 @@ fn check_one_sequence<D: Dim>(seed: u64, n: i32) {
     assert_uniform_strain_leaves_inner_nodes_at_rest(&mesh, &sharing, seed);
 }
 
-/// A new node that inherits positions of an affine motion lies at the image of its rest position.
+/// Checks that a new node that inherits positions of an affine motion lies at the image of its rest position.
 fn assert_affine_motion_is_inherited<D: Dim>(
     before: &Mesh<D>,
     after: &Mesh<D>,
@@ -153,7 +153,8 @@ fn assert_affine_motion_is_inherited<D: Dim>(
     }
 }
 
-/// Patch test: residual of the default law on inner nodes, relative to stress × voxel face.
+/// Patch test: under uniform strain, the default law must leave inner nodes without force. The residual is
+/// relative to stress × voxel face.
 fn assert_uniform_strain_leaves_inner_nodes_at_rest<D: Dim>(
     mesh: &Mesh<D>,
     sharing: &Connectivity<D>,

@@ -34,7 +34,7 @@ fn rubber(damping: f32) -> Material {
     }
 }
 
-/// A ball 1 m wide with its centre at `middle`.
+/// Adds a ball 1 m wide with its centre at `middle`.
 fn soft<D: Dim>(world: &mut World<D>, middle: D::Vector) -> SoftBodyHandle {
     let grid = VoxelGrid::<D>::ball(10, 1.0).unwrap();
     let body = SoftBody::new(grid, &[rubber(0.08)]).unwrap();
@@ -150,7 +150,7 @@ fn it_follows<D: Dim>() {
         world.step();
         let [held, place] = world.joint_anchor_positions(pin).unwrap().unwrap();
         assert!((held - place).length() < 0.02, "{tick}: {held:?} {place:?}");
-        // The pin stays at the initial centre of the nodes.
+        // On the arm, the pin stays where the centre of the nodes was at first.
         let away = place - way.apply(first);
         assert!(away.length() < 1e-3, "{tick}: {place:?}");
     }
@@ -176,7 +176,7 @@ fn pin_keeps_two_soft_bodies_together() {
     }
     let [held, place] = world.joint_anchor_positions(pin).unwrap().unwrap();
     assert!((held - place).length() < 0.02);
-    // Momentum is shared.
+    // Both bodies now share the momentum.
     let mass = world[a].total_mass();
     let [a, b] = [a, b].map(|id| world[id].momentum().linear.x);
     assert!(
@@ -221,8 +221,8 @@ fn spring_oscillates_at_natural_frequency() {
 }
 
 /// A mass of 1 kg hangs at rest from parallel springs, all of them from one point to its centre. The springs
-/// stretch by m g / Σk, and each bears its share k / Σk of the weight. h² k / m is up to 0.4 per spring, so that
-/// one pass over the springs would be far from the solution.
+/// stretch by m g / Σk, and each carries its share k / Σk of the weight. h² k / m is up to 0.4 per spring, so
+/// that one pass over the springs would be far from the solution.
 fn parallel_springs_hold_a_mass<D: Dim>() {
     let mut world = world::<D>(-9.81);
     let bob = ball(&mut world, D::Vector::ZERO, 1.0);
@@ -304,7 +304,7 @@ fn mass_between_springs_oscillates_at_natural_frequency() {
     mass_between_springs_oscillates::<Dim3>();
 }
 
-/// Two equal stiff springs bear half of a weight of 39.2 N each.
+/// Two equal stiff springs carry half of a weight of 39.2 N each, 19.6 N.
 #[test]
 fn parallel_springs_break_above_their_share_of_the_load() {
     for (limit, holds) in [(22.0, true), (18.0, false)] {

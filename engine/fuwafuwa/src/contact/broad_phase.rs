@@ -1,9 +1,9 @@
 //! Broad phase: finds pairs that may touch, ahead of time, with a margin for their motion.
 //!
-//! All nodes can touch rigid shapes (`nodes`). Soft bodies touch each other through *contact spheres*
-//! (`sphere`, `spheres`): every surface element is of level 0, so one ball of a voxel's width at its centre
-//! is enough. `pairs` finds the spheres that may meet soon. `captives` finds embedded spheres, which were
-//! forced into another piece. Objects that exceed their margin are searched again.
+//! All nodes can touch rigid shapes (`node_pairs`). Soft bodies touch each other through *contact spheres*
+//! (`contact_spheres`). Every surface element is of level 0, so one ball of a voxel's width at its centre is
+//! enough. `sphere_pairs` finds the spheres that may meet soon. `embedded_spheres` finds spheres that were
+//! forced into another piece. Objects that move farther than their margin are searched again.
 
 mod bins;
 mod contact_sphere;
@@ -38,13 +38,14 @@ pub use supported_bodies::{
     bounds_of, leaning_on_body, leaning_on_pieces, leaning_on_rigid, sleeping_in,
 };
 
-/// Speed of a touching object above which a sleeper wakes [m/s]. The actual motion counts, because deep in a
-/// heap the forces of a substep alone would give a resting body as much speed. It is five times the sleep
-/// speed threshold; with less, a heap would keep itself awake.
+/// Speed of a touching object above which a sleeper wakes [m/s]: five times the sleep speed threshold. With
+/// less, a heap would keep itself awake. Between spheres, the distance moved in the last substep counts
+/// instead of the velocity. The velocity does not yet contain the contacts, and deep in a heap it can be as
+/// high for a resting body.
 pub const WAKE_SPEED: f32 = 0.15;
 
-/// Nearby objects of the broad phase. Between ticks only the impulses, the `met_in_front` flags and the order
-/// of the spheres matter.
+/// Objects that may touch. A new tick needs only the impulses, the `met_in_front` flags and the order of the
+/// spheres from the last one; it rebuilds everything else.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Nearby {
@@ -103,7 +104,7 @@ impl Nearby {
         self.spheres.remove_body(slot);
     }
 
-    /// Removes elements of a body, in ascending order, and their nodes.
+    /// Removes `elements` of a body, given in ascending order, and their nodes.
     pub fn remove_elements<D: Dim>(
         &mut self,
         slot: BodySlot,
@@ -119,8 +120,8 @@ impl Nearby {
         nodes.retain(|pair| pair.body != slot || is_there(pair.node));
     }
 
-    /// Discards data that was read from a file and refers to nothing in the world. Other lists may stay,
-    /// because a new tick rebuilds them; only impulses matter.
+    /// Discards pairs from a file that refer to nothing in the world. All other data may stay as read,
+    /// because a new tick rebuilds it.
     #[cfg(feature = "serde")]
     pub fn keep_known<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
         self.nodes.keep_known(bodies, rigids);
@@ -150,7 +151,7 @@ impl Nearby {
         self.spheres.wake(pieces, &mut self.pairs.changed);
     }
 
-    /// Accounts for a substep [s] in which no node moved farther than `distance` [m].
+    /// Accounts for a substep of `duration` [s] in which no node moved farther than `distance` [m].
     pub fn pass(&mut self, duration: f32, distance: f32) {
         self.left -= duration;
         self.nodes.pass(distance);

@@ -38,9 +38,9 @@ pub(crate) use joint_state::{JointState, Joints, relax, solve};
 /// ```
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Joint<D: Dim> {
-    /// Attachment points.
+    /// Attachment points, on two different objects, at least one of them a body.
     pub anchors: [JointAnchor<D>; 2],
-    /// Kind.
+    /// Behaviour: pin, spring or rope.
     pub kind: JointKind,
     /// Force above which the joint breaks [N], in tension or compression; infinite (default) = never.
     pub breaking_force: f32,
@@ -95,8 +95,8 @@ pub enum JointAnchor<D: Dim> {
         body: SoftBodyHandle,
         /// Position [m].
         point: D::Vector,
-        /// Radius within which nodes are attached [m], or the nearest node if it contains none. With more
-        /// nodes a pull tears off less.
+        /// Radius within which nodes are attached [m], default 0. If it contains no node, the nearest node is
+        /// attached. More nodes share the load, so that the body tears less easily.
         radius: f32,
     },
 }
@@ -114,7 +114,8 @@ impl<D: Dim> JointAnchor<D> {
         }
     }
 
-    /// Returns the anchor with all nodes of its soft body within a radius [m]; other anchors stay as they are.
+    /// Returns the anchor with all nodes of its soft body within a radius [m]. Anchors that are not on a soft
+    /// body stay as they are.
     #[must_use]
     pub fn within(self, radius: f32) -> Self {
         match self {
@@ -132,8 +133,9 @@ impl<D: Dim> JointAnchor<D> {
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointKind {
-    /// Pin: keeps the anchors together and lets them rotate. A soft anchor that is pinned to a rigid body or
-    /// a point is held where it is; other anchors that are apart are drawn together.
+    /// Pin: keeps the anchors together and lets them rotate. When a soft anchor is pinned to a rigid body or
+    /// to a point of the world, the other anchor moves to it, so that nothing jumps. In all other cases,
+    /// anchors that are apart are drawn together.
     Pin,
     /// Spring with a rest length.
     Spring {

@@ -28,12 +28,13 @@ use rigid_contact_rows::{find_free, find_hands};
 use solver_velocities::Motion;
 use std::collections::BTreeSet;
 
-/// Cosine limit beyond which a crumb is behind a contact sphere of a surface. A smaller value would include
-/// crumbs that lie on the body. Beside a corner of a 3D block, in the hollow between four spheres, the cosine
-/// is 0.17; pressed in by a sixth of a voxel it is 0.3.
+/// A crumb is behind a contact sphere of a surface if the cosine of its direction from the sphere, measured
+/// against the inward normal, exceeds this limit. A smaller value would include crumbs that lie on the body.
+/// In the hollow between four spheres, beside a corner of a 3D body, the cosine is 0.17; pressed in by a
+/// sixth of a voxel it is 0.3.
 const BEHIND: f32 = 0.3;
-/// Minimum length of a sphere's outward vector, as a share of its radius, for its direction to be used. At a
-/// flat face it is as long as the radius, so the limit is an element pressed to a fifth.
+/// Minimum length of a sphere's outward vector, as a share of its radius, for its direction to be used. At an
+/// undeformed flat face the vector is as long as the radius, so elements pressed to a fifth are excluded.
 const SHORTEST_WAY_OUT: f32 = 0.2;
 /// Gaps below which a sleeper wakes: between a node and a rigid body, in voxels, and between two spheres, in
 /// sums of their radii.
@@ -145,7 +146,7 @@ impl Contacts {
                     }
                 }
                 let inverse_mass = body.inverse_masses()[node] + rigid.yields_near(at.xyz());
-                // For a dynamic rigid body, a sleeping node is a wall.
+                // A sleeping node is a wall for dynamic rigid bodies; all others have no contact with it.
                 if body.inverse_masses()[node] == 0.0 && !rigid.is_dynamic() {
                     continue;
                 }
@@ -186,7 +187,7 @@ impl Contacts {
         let layers = |sphere: &ContactSphere| bodies.at(sphere.body).layers();
         let meet = |both: [&ContactSphere; 2]| layers(both[0]).meet(layers(both[1]));
         let (all, captives) = (&nearby.spheres, &nearby.captives);
-        // A local slice: through the table, each pair would load the pointer again.
+        // A local slice, because access through the table would load its pointer again for each pair.
         let centres = all.centres.as_slice();
         let widths = bodies.iter().map(|body| body.grid().voxel_size());
         let widest = widths.fold(0.0, f32::max);
@@ -215,7 +216,7 @@ impl Contacts {
                 }
                 let touching = both[0].radius + both[1].radius;
                 if captives.is_inside(pair.spheres, both) {
-                    // So that an escaped sphere is not pulled in again.
+                    // Counts as a meeting from outside, so that a sphere that escapes is not pulled in again.
                     pair.met_in_front = true;
                     pair.impulse.release();
                     continue;
@@ -296,7 +297,8 @@ impl Contacts {
         for row in &self.free {
             row.start(rigids, duration);
         }
-        // Solved once only: a sphere that is stuck inside must not pull its way out.
+        // Solved only once, before the other contacts: a sphere that is stuck inside must not force its way
+        // out.
         for exit in &self.exits {
             exit.solve::<D>(motion);
         }
@@ -396,8 +398,8 @@ impl Hits {
     }
 }
 
-/// If a crumb is behind a sphere of a surface, returns the outward normal, as it pushes the
-/// first sphere, and the negative distance of the crumb along it [m].
+/// If a crumb is behind a sphere of a surface, returns the outward normal of the surface, with the sign that
+/// pushes the first sphere, and the negative distance of the crumb along it [m].
 fn behind_surface<D: Dim>(
     bodies: &SoftBodies<D>,
     [a, b]: [&ContactSphere; 2],

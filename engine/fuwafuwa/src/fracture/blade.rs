@@ -16,7 +16,7 @@ use std::marker::PhantomData;
 /// Cutting segment in 2D, or cutting parallelogram in 3D.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Blade<D: Dim> {
-    /// Corner [m], and both edges [m]. All points `corner` + a `across` + b `along` cut, with a and b between 0 and 1.
+    /// Corner [m], and the two edges that begin there [m]. In 2D the second edge is the third axis.
     corner: Vec3,
     across: Vec3,
     along: Vec3,
@@ -48,7 +48,7 @@ impl Blade<Dim3> {
 }
 
 impl<D: Dim> Blade<D> {
-    /// Whether the line between two points crosses the blade.
+    /// Returns whether the line between two points crosses the blade.
     fn parts(&self, a: Vec3, b: Vec3) -> bool {
         let normal = self.across.cross(self.along);
         let (over, under) = (normal.dot(a - self.corner), normal.dot(b - self.corner));
@@ -74,7 +74,7 @@ pub struct CutReport<D: Dim> {
 }
 
 impl<D: Dim> SoftBody<D> {
-    /// Cuts along a blade.
+    /// Cuts along a blade. A body with coarse grading stays whole.
     #[inline(never)]
     pub fn cut(&mut self, blade: &Blade<D>) -> CutReport<D> {
         if self.grading() == Grading::Coarse {
@@ -87,8 +87,8 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Opens faces, each given by the voxel before it and its axis. Returns the positions at which nodes were
-    /// released [m], and the changes.
+    /// Opens faces, each given by the voxel on its low side and its axis. Returns the positions at which
+    /// nodes were released [m], and the changes.
     pub(crate) fn open(&mut self, opened: &BTreeSet<(Point, usize)>) -> (Vec<Vec3>, Changes) {
         let mut points: BTreeSet<Point> = BTreeSet::new();
         for &(voxel, axis) in opened {
@@ -113,7 +113,7 @@ impl<D: Dim> SoftBody<D> {
         self.release(&everything)
     }
 
-    /// Faces that a blade crosses, each given by the voxel before it and its axis.
+    /// Returns the faces that a blade crosses, each given by the voxel on its low side and its axis.
     fn faces_across(&self, blade: &Blade<D>) -> BTreeSet<(Point, usize)> {
         let mut middles = vec![None; self.grid().voxels().count()];
         for (_, element) in self.mesh().elements() {
@@ -144,7 +144,7 @@ impl<D: Dim> SoftBody<D> {
         crossed
     }
 
-    /// Present position of a lattice point [m], interpolated in one of the elements around it.
+    /// Returns the present position of a lattice point [m], interpolated in one of the elements around it.
     fn position_of(&self, at: Point) -> Option<Vec3> {
         let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
         let owner = { voxels }.find_map(|voxel| self.mesh().owner(voxel))?;
@@ -153,8 +153,8 @@ impl<D: Dim> SoftBody<D> {
         ))
     }
 
-    /// Masks of the octants that must be released at a point to open the given faces, one for each side that
-    /// is separated. Empty if the faces are open already.
+    /// Returns masks of the octants to release at a point so that the given faces open: one mask for each
+    /// side that separates, none if the faces are open already.
     fn sides(&self, at: Point, opened: &BTreeSet<(Point, usize)>) -> Vec<u8> {
         let around = self.connectivity().around(at);
         let mut groups = around.middle();

@@ -19,8 +19,8 @@ use crate::topology::mesh::{Mesh, Node};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Largest random addition to the strength of a smooth surface. The scatter keeps a row of equally loaded
-/// nodes from failing all at once. Crack tips have none, because a tip is a single node.
+/// Largest random increase of the strength of a smooth surface, as a share of it. The scatter keeps a row of
+/// equally loaded nodes from failing all at once. A crack tip is a single node and needs no scatter.
 const SCATTER: f32 = 0.4;
 
 /// Node at which a crack can start or continue.
@@ -47,7 +47,7 @@ pub struct NodeCut {
     pub side: u8,
     /// Number of opened faces.
     pub faces: u8,
-    /// Octants that are the only voxel on their side.
+    /// Octants with a voxel that would be alone on its side of the cut.
     pub single_voxel_octants: u8,
 }
 
@@ -181,7 +181,8 @@ fn cuts<D: Dim>(closed: Closed, group: u8) -> impl Iterator<Item = NodeCut> {
     })
 }
 
-/// Returns the octants with given positions on the axes other than `axis`: digit 0 = all, 1 = near, 2 = far.
+/// Returns the octants that the ternary digits of `choice` select, one digit for each axis other than `axis`:
+/// 0 = both sides, 1 = near side, 2 = far side.
 fn part_of<D: Dim>(axis: usize, mut choice: usize) -> u8 {
     let mut part = D::ALL_CORNERS;
     for other in (0..D::N).filter(|&other| other != axis) {
@@ -195,7 +196,8 @@ fn part_of<D: Dim>(axis: usize, mut choice: usize) -> u8 {
     part
 }
 
-/// Returns the octants connected to the far sides of the opened faces, unless they reach a near side.
+/// Returns the octants that stay connected to the far sides of the opened faces; `None` if a near side is
+/// among them, because the cut then divides nothing.
 fn side_of<D: Dim>(mut closed: Closed, axis: usize, opened: u8) -> Option<u8> {
     closed[axis] &= !opened;
     let near = opened;
@@ -216,8 +218,8 @@ fn side_of<D: Dim>(mut closed: Closed, axis: usize, opened: u8) -> Option<u8> {
     }
 }
 
-/// Whether the voxel of an octant would become a crumb or hang by one face: at most one of its faces away
-/// from the point is closed.
+/// Returns whether the voxel of an octant would become a crumb or hang by one face: at most one of its faces
+/// away from the point is closed.
 fn would_crumble<D: Dim>(around: &PointNeighbourhood<D>, octant: usize) -> bool {
     let is_held = |axis: &usize| around.is_far_face_closed(octant, *axis);
     (0..D::N).filter(is_held).count() <= 1

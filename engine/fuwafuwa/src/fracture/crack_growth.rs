@@ -40,8 +40,8 @@ pub struct Failure {
     pub energy: f32,
 }
 
-/// Time until a node fails that is overloaded by half [s]. If shorter, impacts shatter the surface; if
-/// longer, fast rigid bodies push through without cutting.
+/// Time until a node fails under 1.5 times its threshold tension [s]. If shorter, impacts shatter the
+/// surface; if longer, fast rigid bodies push through without cutting.
 const DAMAGE_TIME: f32 = 0.004;
 /// Time in which a damaged node heals once it is no longer overloaded [s]. Longer than the time to failure,
 /// so that oscillating loads can break nodes too.
@@ -51,7 +51,8 @@ const HEALING_TIME: f32 = 4.0 * DAMAGE_TIME;
 const MAX_OVERLOAD: f32 = 3.0;
 /// Factor on the threshold of cuts that separate a single voxel. Without it, cracks leave a trail of crumbs.
 const CRUMB_FACTOR: f32 = 1.3;
-/// Cooldown after a release, as the number of voxels that a wave travels: across the surroundings and back.
+/// Duration of the cooldown after a release, as the number of voxels that a wave travels in it: across the
+/// surroundings and back.
 const COOLDOWN_VOXELS: f64 = 4.0;
 
 /// Updates the damage of all breakable nodes after `duration` [s], and returns those that fail now, the worst
@@ -119,8 +120,8 @@ fn without_worse_neighbour(found: Vec<Failure>) -> Vec<Failure> {
     chosen
 }
 
-/// Whether no cut through a breakable node can be overloaded. No pull is larger than half the sum of all
-/// forces, with (Σ|f|)² ≤ n Σ|f|² and a margin for rounding; every cut opens at least one face.
+/// Returns whether no cut through a breakable node can be overloaded. No pull is larger than half the sum of
+/// all forces, with (Σ|f|)² ≤ n Σ|f|² and a margin for rounding; every cut opens at least one face.
 #[inline(always)]
 fn is_surely_intact<D: Dim, S: Simd>(
     simd: S,
@@ -142,7 +143,7 @@ fn worst_cut<D: Dim>(body: &SoftBody<D>, id: NodeId, node: &BreakableNode) -> Op
         forces[octant] = force;
     }
     let total = forces.into_iter().sum::<Row>();
-    // Common rotation of its voxels, computed on demand.
+    // Sum of the rotations of the elements around the node, computed on demand.
     let mut turn: Option<[Vec3; 3]> = None;
     let mut worst: Option<(f32, f32, NodeCut)> = None;
     for cut in body.breakable_nodes().cuts(node) {
@@ -153,7 +154,7 @@ fn worst_cut<D: Dim>(body: &SoftBody<D>, id: NodeId, node: &BreakableNode) -> Op
         let is_crumb = cut.single_voxel_octants & node.crumbs != 0;
         let threshold = node.threshold * if is_crumb { CRUMB_FACTOR } else { 1.0 };
         let least = area * threshold * worst.map_or(1.0, |(excess, ..)| excess);
-        // The tension is never larger than the pull.
+        // The tension is never larger than the pull, so cuts with a small pull are skipped.
         if pull.dot(pull) <= least * least {
             continue;
         }
@@ -201,13 +202,13 @@ fn total_turn<D: Dim>(body: &SoftBody<D>, id: NodeId) -> [Vec3; 3] {
     turn
 }
 
-/// Part of a face that belongs to one of its corners [m or m²]: half an edge in 2D, a quarter of a square in
-/// 3D.
+/// Returns the part of a face that belongs to one of its corners [m or m²]: half an edge in 2D, a quarter of
+/// a square in 3D.
 fn face_area<D: Dim>(size: f32) -> f32 {
     (1..D::N).fold(1.0, |area, _| area * 0.5 * size)
 }
 
-/// Tension of a pull across a plane [N]: the opening part counts in full, the shear part by half.
+/// Returns the tension of a pull across a plane [N]: the opening part counts in full, the shear part by half.
 fn tension(pull: Row, normal: Row) -> f32 {
     let opening = pull.dot(normal);
     let shear = (pull.dot(pull) - opening * opening).max(0.0);
@@ -219,7 +220,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn undisturbed_keeps_front_of_crack_together() {
+    fn without_worse_neighbour_keeps_front_of_crack_together() {
         let failure = |at: Point, axis| Failure {
             node: NodeId(0),
             at,

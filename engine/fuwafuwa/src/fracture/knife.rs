@@ -11,8 +11,9 @@
 //! ```
 //!
 //! G is the fracture energy per square metre of crack, and r the radius of the edge. In front of a dull edge
-//! a strip of its width fails at the strength σ, too [Atkins 2009, ch. 9]. Sideways the flat of the blade is
-//! limited by the strength over its height. Material that was cut before does not resist the edge.
+//! a strip of its width fails at the strength σ, too [Atkins 2009, ch. 9]. Sideways, the flat of the blade
+//! resists with at most σ times its height, per metre of edge. Material that was cut before does not resist
+//! the edge.
 
 mod cutting_edge;
 mod edge_row;
@@ -63,7 +64,8 @@ pub struct Knife<D: Dim> {
     /// Ends of the edge in local coordinates of the holder [m]. In 2D only their
     /// midpoint counts, and the body is a sheet 1 m deep.
     pub edge: [D::Vector; 2],
-    /// Cutting direction in local coordinates of the holder, across the edge.
+    /// Cutting direction in local coordinates of the holder, within 30° of a right angle to the edge. Its
+    /// length does not matter, but must be 0.01 to 100.
     pub toward: D::Vector,
     /// Radius of the edge [m], 0 to 1, default 0 (sharp); 1e-4 is dull.
     pub radius: f32,

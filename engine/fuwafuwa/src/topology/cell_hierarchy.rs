@@ -6,9 +6,9 @@
 //! cells. Every face-connected part of them is one element. All cells of the topmost level exist: this limits
 //! the size of elements to an eighth of the grid.
 //!
-//! Cracks only grow, so cells are only added. A release is followed upwards from the voxels at the released
-//! point, and the update ends at the first level without new cells. The cost of a cut is proportional to the
-//! affected cells, not to the body.
+//! Cracks only grow, so cells are only added. An update after a release starts at the voxels around the
+//! released point, goes up level by level, and ends at the first level without new cells. The cost of a cut
+//! is proportional to the affected cells, not to the body.
 
 use crate::foundation::dim::{
     Dim, Point, add, corner, neighbourhood, points_in, scale, voxel_around,
@@ -31,7 +31,7 @@ pub struct Cell {
 hash_state! { struct Cell { level, at } }
 
 impl Cell {
-    /// Width in voxels.
+    /// Returns the width in voxels.
     #[inline]
     pub fn width(self) -> i32 {
         1 << self.level
@@ -46,7 +46,7 @@ impl Cell {
         }
     }
 
-    /// Index of this cell among the children of its parent.
+    /// Returns the index of this cell among the children of its parent.
     #[inline]
     pub fn child_index<D: Dim>(self) -> usize {
         (0..D::N).fold(0, |index, axis| {
@@ -75,7 +75,7 @@ impl Cell {
         }
     }
 
-    /// Voxel in the low corner.
+    /// Returns the voxel in the low corner.
     #[inline]
     pub fn first_voxel(self) -> Point {
         scale(self.at, self.width())
@@ -93,11 +93,11 @@ pub struct CellIndexing {
 
 hash_state! { struct CellIndexing { levels, count } }
 
-/// Inverse of the largest width of a cell relative to the longest axis of its grid; small levels are exempt.
+/// Limits the width of a cell to 1 / `WIDEST` of the longest axis of its grid; small levels are exempt.
 ///
 /// The mass of an element of width H lies in its nodes, so its second moment ∫ x² dm is too large by H²/6 per
-/// mass. However fine the voxels, a disc of diameter D with cells up to H = D/4 vibrates 3 % too slowly. With
-/// D/8 it is 1 %, for a dozen elements more.
+/// unit of mass. However fine the voxels, a disc of diameter D with cells up to H = D/4 vibrates 3 % too
+/// slowly. With H = D/8 it is 1 %, for a dozen elements more.
 const WIDEST: i32 = 8;
 /// Levels up to this one are exempt from [`WIDEST`]. Otherwise small bodies would not be graded at all: level
 /// 1 would need a grid of 16 voxels across, and level 2 one of 32.
@@ -122,18 +122,18 @@ impl CellIndexing {
         }
     }
 
-    /// Number of possible cells.
+    /// Returns the number of possible cells.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Number of possible cells of a level; those of level 0 have the first indices.
+    /// Returns the number of possible cells of a level; those of level 0 have the first indices.
     pub fn count_of(&self, level: usize) -> usize {
         let (size, _) = self.levels[level];
         size.iter().map(|&extent| extent as usize).product()
     }
 
-    /// Index of a cell; `None` outside the grid.
+    /// Returns the index of a cell; `None` outside the grid.
     #[inline]
     pub fn index(&self, cell: Cell) -> Option<usize> {
         let &(size, first) = self.levels.get(cell.level as usize)?;
@@ -142,7 +142,8 @@ impl CellIndexing {
         inside.then(|| first + (z * size[1] as usize + y) * size[0] as usize + x)
     }
 
-    /// Indices of the voxels around a lattice point, by octant; `None` unless all are in the grid.
+    /// Returns the indices of the voxels around a lattice point, by octant; `None` unless all are in the
+    /// grid.
     #[inline]
     pub fn voxels_around<D: Dim>(&self, at: Point) -> Option<[usize; 8]> {
         let (size, _) = self.levels[0];
@@ -206,31 +207,31 @@ impl<D: Dim> CellHierarchy<D> {
         hierarchy
     }
 
-    /// Grading of the cells.
+    /// Returns the grading of the cells.
     pub fn grading(&self) -> Grading {
         self.grading
     }
 
-    /// Number of levels, including the topmost one.
+    /// Returns the number of levels, including the topmost one.
     pub fn level_count(&self) -> usize {
         self.places.levels.len()
     }
 
-    /// Numbering of the cells.
+    /// Returns the numbering of the cells.
     pub fn places(&self) -> &CellIndexing {
         &self.places
     }
 
-    /// Whether a cell exists. An existing cell may own elements, or may have only children that exist as
-    /// cells.
+    /// Returns whether a cell exists. An existing cell may own elements, or may have only children that exist
+    /// as cells.
     #[inline]
     pub fn exists(&self, cell: Cell) -> bool {
         let number = self.places.index(cell);
         number.is_some_and(|number| self.exists[number])
     }
 
-    /// Mask of the children that a cell fills itself: solid, and not existing as cells. At level 0 every bit
-    /// is set.
+    /// Returns the mask of the children that a cell fills itself: solid, and not existing as cells. At level
+    /// 0 every bit is set.
     pub fn filled(&self, grid: &VoxelGrid<D>, cell: Cell) -> u8 {
         if !self.exists(cell) {
             return 0;
@@ -324,8 +325,8 @@ impl<D: Dim> CellHierarchy<D> {
     }
 
     /// Removes the cells of removed voxels, and the cells that existed only because of them. The result
-    /// equals a hierarchy built from scratch. Where a part of a cell remains, it touched the removed voxels
-    /// at an open point, so it exists for that reason.
+    /// equals a hierarchy built from scratch. A cell that keeps some of its voxels stays: they touched the
+    /// removed ones at open points, so they have finer cells of their own, which require it.
     pub(crate) fn take_out(
         &mut self,
         grid: &VoxelGrid<D>,
@@ -333,7 +334,7 @@ impl<D: Dim> CellHierarchy<D> {
         voxels: &[Point],
     ) {
         if self.grading == Grading::Coarse {
-            // With this grading, cells of level 0 never exist.
+            // Bodies with this grading have no cells of level 0, from which the update below starts.
             *self = Self::new(grid, connectivity, self.grading);
             return;
         }
@@ -377,8 +378,8 @@ impl<D: Dim> CellHierarchy<D> {
     }
 }
 
-/// Whether the voxels around a point must be cells of level 0: the point is open, or different materials meet
-/// there.
+/// Returns whether the voxels around a point must be cells of level 0, because the point is open or different
+/// materials meet there.
 fn is_fine<D: Dim>(grid: &VoxelGrid<D>, connectivity: &Connectivity<D>, at: Point) -> bool {
     if connectivity.is_open(at) {
         return true;
@@ -395,7 +396,8 @@ pub fn parts<D: Dim>(mask: u8) -> impl Iterator<Item = u8> {
             return None;
         }
         let mut part = left & left.wrapping_neg();
-        // A child found late may connect others before it: a path has at most this many steps.
+        // Repeated, because a child found late may connect children tested before it. A path has at most as
+        // many steps as there are children.
         for _ in 0..D::CORNERS {
             let known = part;
             for child in (0..D::CORNERS).filter(|child| known >> child & 1 == 1) {

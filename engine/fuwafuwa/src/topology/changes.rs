@@ -17,7 +17,8 @@ pub struct Changes {
     pub removed: Vec<PieceId>,
 }
 
-/// Point in the history of a body up to which a reader knows the changes. The default lies in no history.
+/// Position in the history of a body up to which a reader knows the changes. The default belongs to no
+/// history: a reader that starts with it must read the whole body once.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bookmark {
     /// [`History::number`]; 0 = no history.
@@ -39,7 +40,7 @@ pub(crate) struct History {
 }
 
 impl Changes {
-    /// Number of ids.
+    /// Returns the number of ids.
     fn size(&self) -> usize {
         self.nodes.len() + self.elements.len() + self.detached.len() + self.removed.len()
     }

@@ -18,7 +18,7 @@ use crate::foundation::id_lists::ascending;
 use crate::foundation::ids::id;
 use crate::topology::grid::VoxelGrid;
 use std::marker::PhantomData;
-/// Label of an octant without a voxel.
+/// Name of an octant without a voxel.
 const EMPTY: u32 = 15;
 
 /// Partition of the voxels around one lattice point; a group is named by its lowest octant.
@@ -62,13 +62,13 @@ impl Groups {
         groups
     }
 
-    /// Mask of the octants with a voxel.
+    /// Returns the mask of the octants with a voxel.
     #[inline]
     pub fn solid(self) -> u8 {
         !self.named(EMPTY)
     }
 
-    /// Mask of the octants that share a node with `octant`; 0 if there is no voxel.
+    /// Returns the mask of the octants that share a node with `octant`; 0 if there is no voxel.
     #[inline]
     pub fn group_of(self, octant: usize) -> u8 {
         match self.name(octant) {
@@ -77,7 +77,7 @@ impl Groups {
         }
     }
 
-    /// Whether two octants contain voxels that share a node.
+    /// Returns whether two octants contain voxels that share a node.
     #[inline]
     pub fn shares(self, a: usize, b: usize) -> bool {
         self.name(a) != EMPTY && self.name(a) == self.name(b)
@@ -119,10 +119,11 @@ impl Groups {
         }
     }
 
-    /// Mask of the octants with a name.
+    /// Returns the mask of the octants that have a name.
     #[inline]
     fn named(self, name: u32) -> u8 {
-        // Four bits that are all 0 where the name matches; then one bit per octant, then adjacent bits.
+        // Four bits per octant, all 0 where the name matches. They are reduced to one bit per octant, and
+        // these bits are made adjacent.
         let mut other = self.0 ^ (name * 0x1111_1111);
         other |= other >> 2;
         other |= other >> 1;
@@ -162,7 +163,8 @@ pub struct Connectivity<D: Dim> {
 hash_state! { [D: Dim] struct Connectivity<D> { size, groups } skip { dim } }
 
 impl<D: Dim> Connectivity<D> {
-    /// Connectivity of the uncut body: voxels at a point are together if closed faces around it connect them.
+    /// Returns the connectivity of the uncut body: voxels at a point are in one group if closed faces around
+    /// the point connect them.
     #[inline(never)]
     pub fn new(grid: &VoxelGrid<D>) -> Self {
         let mut size = grid.size();
@@ -178,14 +180,14 @@ impl<D: Dim> Connectivity<D> {
             .collect();
         let dim = PhantomData;
         let mut connectivity = Self { size, groups, dim };
-        // Faces around a full point are closed until a neighbour changes.
+        // A point with all octants solid needs no regrouping unless a neighbour changes.
         let is_partial = |&at: &Point| connectivity.groups(at) != Groups::joined(D::ALL_CORNERS);
         let partial = connectivity.points().filter(is_partial).collect();
         connectivity.normalise(partial);
         connectivity
     }
 
-    /// Number of lattice points on each axis.
+    /// Returns the number of lattice points on each axis.
     pub fn size(&self) -> Point {
         self.size
     }
@@ -195,24 +197,24 @@ impl<D: Dim> Connectivity<D> {
         points_in([0; 3], self.size.map(|extent| extent - 1))
     }
 
-    /// Number of lattice points.
+    /// Returns the number of lattice points.
     pub fn point_count(&self) -> usize {
         self.groups.len()
     }
 
-    /// Whether a point belongs to the lattice.
+    /// Returns whether a point belongs to the lattice.
     #[inline]
     pub fn contains(&self, at: Point) -> bool {
         (0..3).all(|axis| at[axis] >= 0 && at[axis] < self.size[axis])
     }
 
-    /// Index of a lattice point in memory order.
+    /// Returns the index of a lattice point in memory order.
     #[inline]
     pub fn index(&self, at: Point) -> usize {
         ((at[2] * self.size[1] + at[1]) * self.size[0] + at[0]) as usize
     }
 
-    /// Grouping at a point; [`Groups::NONE`] outside the lattice.
+    /// Returns the grouping at a point; [`Groups::NONE`] outside the lattice.
     #[inline]
     pub fn groups(&self, at: Point) -> Groups {
         if self.contains(at) {
@@ -222,12 +224,12 @@ impl<D: Dim> Connectivity<D> {
         }
     }
 
-    /// Mask of the voxels around a solid voxel that share a node with it, including itself: bit x + 3 y + 9
-    /// z, each from 0 to 2.
+    /// Returns the mask of the voxels around a solid voxel that share a node with it, including itself. Bit x
+    /// + 3 y + 9 z stands for the offset (x, y, z) − 1.
     pub fn connected_voxels(&self, voxel: Point) -> u32 {
         let mut bound = 0;
         for octant in 0..D::CORNERS {
-            // Lattice point that sees the voxel in this octant.
+            // Lattice point around which the voxel is in this octant.
             let mut at = voxel;
             (0..D::N).for_each(|axis| at[axis] += 1 - (octant >> axis & 1) as i32);
             let group = self.groups(at).group_of(octant);
@@ -240,7 +242,7 @@ impl<D: Dim> Connectivity<D> {
         bound
     }
 
-    /// Groupings at a point and its neighbours.
+    /// Returns the groupings at a point and its neighbours.
     pub fn around(&self, at: Point) -> PointNeighbourhood<D> {
         let mut groups = [Groups::NONE; 27];
         let is_inner = (0..D::N).all(|axis| at[axis] > 0 && at[axis] + 1 < self.size[axis]);
@@ -281,8 +283,8 @@ impl<D: Dim> Connectivity<D> {
         [place % x, place / x % y, place / x / y]
     }
 
-    /// Whether a crack can start or continue at a point: an octant is empty, the point has more than one
-    /// group, or one of the faces around it is open.
+    /// Returns whether a crack can start or continue at a point: an octant is empty, the point has more than
+    /// one group, or one of the faces around it is open.
     pub fn is_open(&self, at: Point) -> bool {
         self.around(at).is_open()
     }
@@ -297,7 +299,7 @@ impl<D: Dim> Connectivity<D> {
         self.groups[index].release(side)
     }
 
-    /// Whether connectivity read from a file groups the voxels of `grid`, by closed faces only.
+    /// Returns whether connectivity read from a file groups the voxels of `grid`, by closed faces only.
     #[cfg(feature = "serde")]
     pub(crate) fn is_valid(&self, grid: &VoxelGrid<D>) -> bool {
         let whole = Self::new(grid);
@@ -340,11 +342,11 @@ impl<D: Dim> Connectivity<D> {
     }
 }
 
-/// Voxel groups at a lattice point and its neighbours. They determine which voxels around the point exist, and
-/// which faces between these are closed.
+/// Voxel groups at a lattice point and at its neighbours. They determine which voxels around the point exist,
+/// and which faces between these voxels are closed.
 #[derive(Copy, Clone, Debug)]
 pub struct PointNeighbourhood<D: Dim> {
-    /// The first axis fastest, the point itself in the middle.
+    /// Groupings of the 9 or 27 points, the first axis fastest; the point itself is in the middle.
     groups: [Groups; 27],
     dim: PhantomData<D>,
 }
@@ -353,26 +355,27 @@ impl<D: Dim> PointNeighbourhood<D> {
     /// Distance in `groups` between neighbours along each axis.
     const STEPS: [usize; 3] = [1, 3, 9];
 
-    /// Grouping at the point itself.
+    /// Returns the grouping at the point itself.
     pub fn middle(&self) -> Groups {
         self.groups[D::SLOTS / 2]
     }
 
-    /// Whether the face between `octant` and its neighbour across `axis`, seen from the point, is closed:
-    /// both voxels exist and share a node at all of its corners.
+    /// Returns whether the face between `octant` and its neighbour across `axis`, seen from the point, is
+    /// closed: both voxels exist and share a node at all of its corners.
     #[inline]
     pub fn is_closed(&self, octant: usize, axis: usize) -> bool {
         self.is_closed_from(D::SLOTS / 2, octant, axis)
     }
 
-    /// Whether the face across `axis` of the voxel in `octant` is closed, on the side away from the point.
+    /// Returns whether the face across `axis` of the voxel in `octant` is closed, on the side away from the
+    /// point.
     #[inline]
     pub fn is_far_face_closed(&self, octant: usize, axis: usize) -> bool {
         let from = Self::towards(D::SLOTS / 2, octant, axis);
         self.is_closed_from(from, octant ^ 1 << axis, axis)
     }
 
-    /// For each axis, the octants on its near side with a closed face across the axis.
+    /// Returns, for each axis, the octants on its near side with a closed face across the axis.
     pub fn closed_faces(&self) -> [u8; 3] {
         let mut closed = [0; 3];
         for axis in 0..D::N {
@@ -385,7 +388,7 @@ impl<D: Dim> PointNeighbourhood<D> {
         closed
     }
 
-    /// Whether a crack can start or continue at the point: see [`Connectivity::is_open`].
+    /// Returns whether a crack can start or continue at the point: see [`Connectivity::is_open`].
     pub fn is_open(&self) -> bool {
         let groups = self.middle();
         if groups != Groups::joined(D::ALL_CORNERS) {
@@ -417,7 +420,7 @@ impl<D: Dim> PointNeighbourhood<D> {
         groups
     }
 
-    /// Whether every point around is full and forms one group.
+    /// Returns whether every point around is full and forms one group.
     fn is_whole(&self) -> bool {
         let full = Groups::joined(D::ALL_CORNERS);
         self.groups[..D::SLOTS].iter().all(|&groups| groups == full)
@@ -440,7 +443,7 @@ impl<D: Dim> PointNeighbourhood<D> {
         })
     }
 
-    /// Index one step along an axis, towards the side of an octant.
+    /// Returns the index of the next point along an axis, on the side of an octant.
     #[inline]
     fn towards(place: usize, octant: usize, axis: usize) -> usize {
         if octant >> axis & 1 == 1 {
@@ -466,7 +469,7 @@ mod tests {
     use crate::foundation::dim::{Dim2, Dim3};
 
     #[test]
-    fn sharing_separates_voxels_that_meet_only_at_corner() {
+    fn connectivity_separates_voxels_that_meet_only_at_corner() {
         let diagonal = |at: Point| u8::from(at[0] == at[1]);
         let grid = VoxelGrid::<Dim2>::from_fn([2, 2, 1], 1.0, diagonal).unwrap();
         let connectivity = Connectivity::new(&grid);
@@ -478,7 +481,7 @@ mod tests {
 
     #[test]
     fn normalise_removes_hinge_when_crack_reaches_far_side() {
-        // Release the middle column of a 4 × 2 block point by point: the last release separates it.
+        // Release the middle column of a 4 × 2 grid point by point: the last release separates it.
         let grid = VoxelGrid::<Dim2>::from_fn([4, 2, 1], 1.0, |_| 1).unwrap();
         let mut connectivity = Connectivity::new(&grid);
         assert!(connectivity.release([2, 0, 0], 0b1010));

@@ -20,12 +20,12 @@ pub fn slot_at(slot: usize) -> Point {
     ]
 }
 
-/// Slot at the given coordinates.
+/// Returns the slot at the given coordinates.
 pub fn slot_index(at: Point) -> usize {
     (at[0] + 3 * at[1] + 9 * at[2]) as usize
 }
 
-/// Mask of the slots in the closure of a mask of children: the corners of all children.
+/// Returns the mask of the slots in the closure of a mask of children: the corners of all of them.
 pub fn closure<D: Dim>(children: u8) -> u32 {
     let mut slots = 0;
     for child in (0..D::CORNERS).filter(|child| children >> child & 1 == 1) {
@@ -36,14 +36,14 @@ pub fn closure<D: Dim>(children: u8) -> u32 {
     slots
 }
 
-/// Mask of the slots in the corners of the whole cell.
+/// Returns the mask of the slots at the corners of the whole cell.
 pub fn cell_corners<D: Dim>() -> u32 {
     (0..D::CORNERS).fold(0, |slots, vertex| {
         slots | 1 << slot_index(corner(vertex).map(|k| 2 * k))
     })
 }
 
-/// Error of a class in which a corner with a share of the volume or area has no node.
+/// Error: an element class has no node at a corner that carries a share of the volume or area.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MissingCorner {
     /// Slot without a node.
@@ -98,9 +98,9 @@ impl<D: Dim> ElementClass<D> {
     ///
     /// Each exposed face of a child distributes its area vector in equal parts to its corners, and each child
     /// its volume. A slot without a node passes its share in equal parts to its neighbours of lower order:
-    /// the centre to the face centres, a face centre to its edge middles, an edge middle to its ends. The
-    /// rule depends only on the pattern of the face itself, so both sides of a shared face agree. This makes
-    /// a graded mesh pass the patch test.
+    /// the centre to the face centres, a face centre to its edge middles, an edge middle to its ends. Only
+    /// the pattern of the face itself matters, so both sides of a shared face agree. This makes a graded mesh
+    /// pass the patch test.
     ///
     /// The stiffness of the hourglass modes follows from pure bending: the softest bending mode determines
     /// it.
@@ -164,16 +164,16 @@ impl<D: Dim> ElementClass<D> {
         Ok(element_class)
     }
 
-    /// Index of the node of a slot, if the slot has one.
+    /// Returns the index of the node of a slot, if the slot has one.
     #[inline(always)]
     pub fn node_at(&self, slot: usize) -> Option<usize> {
         let before = self.mask & ((1 << slot) - 1);
         (self.mask >> slot & 1 == 1).then_some(before.count_ones() as usize)
     }
 
-    /// Returns the stiffness of the hourglass modes, relative to a plain cell, with which they store the
-    /// energy of pure bending. This is the minimum over all bending modes, so that the element is too stiff
-    /// for none of them.
+    /// Returns the stiffness of the hourglass modes, relative to a plain cell, that gives them the energy of
+    /// pure bending. It is the minimum over all bending modes, so that the element is too stiff in none of
+    /// them.
     ///
     /// Bending along axis a towards axis b is u = x_a x_b e_a − ½ x_a² e_b. Without lateral contraction its
     /// energy is Y/2 ∫ x_b² dV, and the hourglass term of [`crate::soft_body::element_law`] stores k/2 Σ V_i |h_i|². A plain
@@ -229,13 +229,13 @@ impl<D: Dim> ElementClass<D> {
         sum
     }
 
-    /// Whether the class is a whole cell with nodes only in its corners.
+    /// Returns whether the class is a whole cell with nodes only in its corners.
     pub fn is_plain(&self) -> bool {
         self.children == D::ALL_CORNERS && self.slots.len() == D::CORNERS
     }
 }
 
-/// Passes the shares of slots without a node to the slots between which they lie.
+/// Passes the shares of each slot without a node, in equal parts, to the adjacent slots of lower order.
 fn distribute_shares<D: Dim, const K: usize>(
     shares: &mut [[f64; K]; 27],
     nodes: u32,
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn stencil_gradient_is_exact_with_hanging_nodes() {
+    fn element_class_gradient_is_exact_with_hanging_nodes() {
         let square = cell_corners::<Dim2>();
         check_gradient_is_exact::<Dim2>(15, square);
         check_gradient_is_exact::<Dim2>(15, square | 1 << slot_index([1, 0, 0]));
@@ -312,11 +312,10 @@ mod tests {
         let (square, cube) = (cell_corners::<Dim2>(), cell_corners::<Dim3>());
         check::<Dim2>(15, square, 1.0);
         check::<Dim3>(255, cube, 1.0);
-        // A single child is a plain cell of half the width: h scales with the square of the width, x does
-        // not.
+        // A single child is a plain cell of half the width: |h|² is 16 times smaller, x² only 4 times.
         check::<Dim2>(1, closure::<Dim2>(1), 4.0);
         check::<Dim3>(1, closure::<Dim3>(1), 4.0);
-        // With all edge middles, corners keep a quarter of the volume, and x² contributes 15/256.
+        // With all edge middles, corners keep a quarter of the volume, and the term ½ x_a² adds 15/256.
         let middles = [[1, 0, 0], [0, 1, 0], [2, 1, 0], [1, 2, 0]];
         let all = middles
             .iter()
@@ -325,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn stencil_new_fails_for_corner_without_node() {
+    fn element_class_new_fails_for_corner_without_node() {
         let slots = cell_corners::<Dim2>() & !1;
         assert_eq!(
             ElementClass::<Dim2>::new(15, slots),

@@ -111,8 +111,8 @@ impl<D: Dim> VoxelGrid<D> {
         Self::checked(self.size, self.voxel_size, self.materials)
     }
 
-    /// Centre of a voxel [m], measured from the low corner of a grid with this voxel size; the third
-    /// coordinate is 0 in 2D.
+    /// Returns the centre of a voxel [m], measured from the low corner of a grid with this voxel size; the
+    /// third coordinate is 0 in 2D.
     pub fn centre(voxel: Point, voxel_size: f32) -> Vec3 {
         let mut centre = Vec3::ZERO;
         for axis in 0..D::N {
@@ -121,23 +121,23 @@ impl<D: Dim> VoxelGrid<D> {
         centre
     }
 
-    /// Number of voxels on each axis; 1 on the third axis in 2D.
+    /// Returns the number of voxels on each axis; 1 on the third axis in 2D.
     pub fn size(&self) -> Point {
         self.size
     }
 
-    /// Edge length of a voxel [m].
+    /// Returns the edge length of a voxel [m].
     pub fn voxel_size(&self) -> f32 {
         self.voxel_size
     }
 
-    /// Number of solid voxels.
+    /// Returns the number of solid voxels.
     #[inline(never)]
     pub fn solid_count(&self) -> usize {
         self.materials.iter().filter(|&&m| m != 0).count()
     }
 
-    /// Material of a voxel: 0 if it is empty or outside the grid.
+    /// Returns the material of a voxel: 0 if it is empty or outside the grid.
     #[inline]
     pub fn material(&self, voxel: Point) -> u8 {
         let inside = (0..3).all(|axis| voxel[axis] >= 0 && voxel[axis] < self.size[axis]);
@@ -148,20 +148,20 @@ impl<D: Dim> VoxelGrid<D> {
         }
     }
 
-    /// Whether a voxel is solid; voxels outside the grid are not.
+    /// Returns whether a voxel is solid; voxels outside the grid are not.
     #[inline]
     pub fn is_solid(&self, voxel: Point) -> bool {
         self.material(voxel) != 0
     }
 
-    /// Whether a voxel is solid and was not removed with its [piece](crate::World::remove_piece).
+    /// Returns whether a voxel is solid and was not removed with its [piece](crate::World::remove_piece).
     /// [`VoxelGrid::is_solid`] stays true for removed voxels.
     #[inline]
     pub fn is_present(&self, voxel: Point) -> bool {
         self.is_solid(voxel) && (self.taken_out.is_empty() || !self.taken_out[self.index(voxel)])
     }
 
-    /// Number of solid voxels that were not removed.
+    /// Returns the number of solid voxels that were not removed.
     #[inline(never)]
     pub fn left_count(&self) -> usize {
         let gone = self.taken_out.iter().filter(|&&gone| gone).count();
@@ -177,19 +177,19 @@ impl<D: Dim> VoxelGrid<D> {
         }
     }
 
-    /// All voxels of the box, solid or not.
+    /// Returns all voxels of the box, solid or not.
     pub fn voxels(&self) -> impl Iterator<Item = Point> + use<D> {
         let size = self.size;
         points_in([0; 3], [size[0] - 1, size[1] - 1, size[2] - 1])
     }
 
-    /// Index of a voxel inside the box, in memory order.
+    /// Returns the index of a voxel inside the box, in memory order.
     #[inline]
     pub fn index(&self, voxel: Point) -> usize {
         ((voxel[2] * self.size[1] + voxel[1]) * self.size[0] + voxel[0]) as usize
     }
 
-    /// Whether a grid read from a file is valid.
+    /// Returns whether a grid read from a file is valid.
     #[cfg(feature = "serde")]
     pub(crate) fn is_valid(&self) -> bool {
         let size = self.size.map(|extent| usize::try_from(extent).unwrap_or(0));

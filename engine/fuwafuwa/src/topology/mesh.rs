@@ -35,9 +35,9 @@ pub struct Element {
     pub cell: Cell,
     /// Mask of the children of the cell that the element fills; all bits are set at level 0.
     pub children: u8,
-    /// Index of its class, see [`Mesh::element_class`].
+    /// Index of the element class, see [`Mesh::element_class`].
     pub element_class: u32,
-    /// Nodes, in the order of the slots of the stencil.
+    /// Nodes, in the order of the slots of the class.
     pub nodes: Vec<NodeId>,
 }
 
@@ -116,7 +116,7 @@ impl<D: Dim> Mesh<D> {
     /// Builds the elements of a body from scratch.
     ///
     /// # Errors
-    /// An [`InvariantViolation`] if the pyramid does not match this grid and connectivity.
+    /// An [`InvariantViolation`] if the cell hierarchy does not match this grid and connectivity.
     #[inline(never)]
     pub fn grade(
         grid: &VoxelGrid<D>,
@@ -156,7 +156,7 @@ impl<D: Dim> Mesh<D> {
         alive.filter_map(|(id, element)| Some((id, element.as_ref()?)))
     }
 
-    /// Number of elements.
+    /// Returns the number of elements.
     pub fn element_count(&self) -> usize {
         self.elements.iter().flatten().count()
     }
@@ -167,22 +167,22 @@ impl<D: Dim> Mesh<D> {
         alive.filter_map(|((id, &node), &carriers)| (carriers > 0).then_some((id, node)))
     }
 
-    /// Number of nodes.
+    /// Returns the number of nodes.
     pub fn node_count(&self) -> usize {
         self.nodes.len() - self.free_nodes.len()
     }
 
-    /// Highest node id ever used plus one: the length of an array indexed by node.
+    /// Returns the highest node id ever used plus one: the length of an array indexed by node.
     pub fn node_capacity(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Highest element id ever used plus one: the length of an array indexed by element.
+    /// Returns the highest element id ever used plus one: the length of an array indexed by element.
     pub fn element_capacity(&self) -> usize {
         self.elements.len()
     }
 
-    /// Whether an element carries the node with this id.
+    /// Returns whether an element carries the node with this id.
     pub fn is_alive(&self, id: NodeId) -> bool {
         self.carriers[id] > 0
     }
@@ -226,7 +226,7 @@ impl<D: Dim> Mesh<D> {
         carriers.into_iter().take(count)
     }
 
-    /// Number of elements on each level, finest first.
+    /// Returns the number of elements on each level, finest first.
     #[inline(never)]
     pub fn elements_per_level(&self) -> Vec<usize> {
         let mut counts = Vec::new();
@@ -238,7 +238,7 @@ impl<D: Dim> Mesh<D> {
         counts
     }
 
-    /// Number of vertices if every element counts its own, as in [Endo 2004, §3.1].
+    /// Returns the number of vertices if every element counts its own, as in [Endo 2004, §3.1].
     #[inline(never)]
     pub fn independent_vertex_count(&self) -> usize {
         self.elements()
@@ -251,12 +251,12 @@ impl<D: Dim> Mesh<D> {
         &self.element_classes[element.element_class as usize]
     }
 
-    /// Returns the element that owns a solid voxel; `None` for an empty one.
+    /// Returns the id of the element that owns a solid voxel; `None` for an empty voxel.
     pub fn owner(&self, voxel: Point) -> Option<ElementId> {
         owner(self.owners[self.places.index(Cell::of(voxel))?])
     }
 
-    /// Returns the element that owns a solid voxel; `None` for an empty one.
+    /// Returns the element that owns a solid voxel; `None` for an empty voxel.
     pub(crate) fn element_at(&self, voxel: Point) -> Option<&Element> {
         self.element(self.owner(voxel)?)
     }
@@ -315,7 +315,7 @@ impl<D: Dim> Mesh<D> {
         })
     }
 
-    /// Whether two meshes are equal except for the numbering of elements and nodes.
+    /// Returns whether two meshes are equal except for the numbering of elements and nodes.
     #[inline(never)]
     pub fn is_same_as(&self, other: &Self) -> bool {
         self.canonical() == other.canonical()
@@ -327,7 +327,7 @@ impl<D: Dim> Mesh<D> {
             .expect("a cell lists live elements only")
     }
 
-    /// Every element as its cell, children and nodes, sorted.
+    /// Returns every element as its cell, children and nodes, sorted.
     fn canonical(&self) -> Vec<(Cell, u8, Vec<Node>)> {
         let mut all: Vec<_> = self
             .elements()
@@ -340,7 +340,7 @@ impl<D: Dim> Mesh<D> {
         all
     }
 
-    /// Adds an element without nodes.
+    /// Adds an element without nodes and registers it as the owner of its voxels.
     fn place(&mut self, cell: Cell, children: u8) {
         let element = Element {
             cell,

@@ -1,9 +1,9 @@
 //! Pieces of a body: connected sets of elements.
 //!
 //! Elements that share a node belong to one piece. A release can divide a piece only at the points that it
-//! changed. So both sides are searched from there at the same pace until they meet or until one is exhausted:
-//! that one is the new piece. The cost is proportional to the smaller side. If many points were released at
-//! once, a search that meets an earlier one continues from there.
+//! changed. So both sides are searched from there at the same pace, until they meet or one of them is
+//! exhausted: the exhausted side is the new piece. The cost is proportional to the smaller side. If many
+//! points were released at once, a search that meets an earlier one continues from there.
 
 use crate::foundation::dim::Dim;
 use crate::foundation::disjoint_sets::DisjointSets;
@@ -60,11 +60,11 @@ struct Search {
 
 /// State of the search along the sides of all simultaneous releases.
 struct Sides {
-    /// Number in [`Pieces::seen`] that marks the elements of side 0; side k has this number plus k.
+    /// Mark in [`Pieces::seen`] of the elements of side 0; side k has this mark plus k.
     first: u32,
     /// Connected sides.
     joined: DisjointSets,
-    /// Searches that are running, and searches that ended as soon as their sides had met.
+    /// Searches that are running, and searches that stopped because no other side was left to meet.
     running: VecDeque<Search>,
     resting: Vec<Search>,
     /// Detached pieces.
@@ -102,12 +102,12 @@ impl Pieces {
         pieces
     }
 
-    /// Number of pieces that were not removed.
+    /// Returns the number of pieces that were not removed.
     pub fn count(&self) -> usize {
         self.list.iter().filter(|piece| !piece.removed).count()
     }
 
-    /// Piece of an element.
+    /// Returns the piece of an element.
     ///
     /// # Panics
     /// If the id was never used.
@@ -116,7 +116,7 @@ impl Pieces {
         self.of_element[id]
     }
 
-    /// Piece of a node.
+    /// Returns the piece of a node.
     ///
     /// # Panics
     /// If the id was never used.
@@ -125,7 +125,7 @@ impl Pieces {
         self.of_node[id]
     }
 
-    /// Whether the piece of a node sleeps.
+    /// Returns whether the piece of a node sleeps.
     #[inline]
     pub fn sleeps(&self, node: NodeId) -> bool {
         self.list[self.of_node[node]].asleep
@@ -139,7 +139,8 @@ impl Pieces {
         self.node_seen.resize(mesh.node_capacity(), 0);
     }
 
-    /// Whether every element and node id, alive or not, has an existing piece. Checks lists read from a file.
+    /// Returns whether every element and node id, alive or not, has an existing piece. Checks lists read from
+    /// a file.
     #[cfg(feature = "serde")]
     pub(crate) fn has_room<D: Dim>(&self, mesh: &Mesh<D>) -> bool {
         let is_there = |piece: &PieceId| piece.index() < self.list.len();
@@ -181,8 +182,8 @@ impl Pieces {
         for around in places {
             self.part_at(mesh, around, &mut sides);
         }
-        // Sides that were connected only through a detached piece share no place with each other, but each
-        // shares one with that piece.
+        // A detached piece may have been the only connection between two sides that share no place. Each of
+        // them shares a place with that piece, so these places are searched again, together.
         let is_off = |&id: &ElementId| self.of_element(id) >= first_born;
         let beside_off = places.iter().filter(|around| around.iter().any(is_off));
         let around: Vec<ElementId> = beside_off.flatten().copied().collect();
@@ -237,7 +238,7 @@ impl Pieces {
         while sides.running.len() > 1 {
             turn %= sides.running.len();
             let Some(id) = sides.running[turn].next.pop_front() else {
-                // Small pieces are removed from the front, which costs the other searches nothing.
+                // Small pieces are exhausted first, near the front of the queue, where removal is cheap.
                 let alone = sides
                     .running
                     .remove(turn)
@@ -297,8 +298,8 @@ impl Pieces {
 }
 
 impl Sides {
-    /// Handles the search at index `turn` that found something with the mark of another search: merges the
-    /// other search into it if they are different sides. Returns the new index of the search.
+    /// Handles a search, at index `turn`, that found something with the `mark` of a search. If that is the
+    /// search of another side, merges it into the one at `turn`. Returns the new index of that one.
     fn meet(&mut self, turn: usize, mark: u32) -> usize {
         let own = self.joined.lowest(self.running[turn].place);
         let other = self.joined.lowest((mark - self.first) as usize);
@@ -315,7 +316,7 @@ impl Sides {
             (_, Some(place)) => Some(self.resting.swap_remove(place)),
             _ => None,
         };
-        // The other side was detached before, and this side with it.
+        // The other side is a detached piece already, and this side belongs to it.
         let Some(met) = met else {
             return turn;
         };
@@ -342,7 +343,7 @@ fn sides_of<D: Dim>(mesh: &Mesh<D>, around: &[ElementId]) -> Vec<Vec<ElementId>>
     joined.sort(around)
 }
 
-/// Returns the elements that share a node with an element, including itself; some occur more than once.
+/// Returns the elements that share a node with an element, including that element; some occur more than once.
 fn neighbours<D: Dim>(mesh: &Mesh<D>, id: ElementId) -> impl Iterator<Item = ElementId> + '_ {
     let element = mesh.element(id).expect("neighbours of a live element");
     element

@@ -14,7 +14,7 @@ fn replaced_body_may_have_fewer_nodes_and_pieces() {
     assert_finite(&world);
 }
 
-/// A world with a body asleep on a floor.
+/// Returns a world with a body asleep on a floor.
 fn sleeper() -> World<Dim2> {
     let mut world = world::<Dim2>();
     let damped = Material {
@@ -180,9 +180,9 @@ fn stale_handle_is_rejected() {
     step(&mut world, 5);
 }
 
-/// Three cubes sleep on each other and a fourth beside them. Without the lowest, only the fourth sleeps on.
-/// The topmost must wake as well: its support moves too slowly at first to wake it, so it would hang in the
-/// air.
+/// Three cubes sleep on each other and a fourth beside them. When the lowest is removed, only the fourth
+/// sleeps on. The topmost must wake, too: its support is slow at first and would not wake it, so it would
+/// hang in the air.
 #[test]
 fn removal_wakes_only_bodies_in_contact() {
     let mut world = world::<Dim2>();
@@ -216,7 +216,7 @@ fn removal_wakes_only_bodies_in_contact() {
     assert!(sleeps(&world, 3));
 }
 
-/// A plate presses on a ball and then on the floor.
+/// A plate presses on a ball and later stops at the floor.
 #[test]
 fn coupled_box_and_capsule_push_and_stop_at_floor() {
     for shape in [

@@ -1,5 +1,5 @@
-//! Invalid arguments and invalid states: nothing panics, all state stays finite, and the caller gets an
-//! error.
+//! Invalid arguments and invalid states: nothing panics, all state stays finite, and calls with invalid
+//! arguments return an error.
 
 mod changed;
 mod quarantine;
@@ -60,7 +60,7 @@ fn bar(size: [usize; 2]) -> SoftBody<Dim2> {
     SoftBody::new(grid, &[Material::default()]).unwrap()
 }
 
-/// A weightless world with only two bars that fly towards each other.
+/// Returns a weightless world with only two bars that fly towards each other.
 fn about_to_meet() -> World<Dim2> {
     let settings = WorldConfig {
         gravity: Vec2::ZERO,
@@ -85,7 +85,7 @@ fn assert_they_meet(mut world: World<Dim2>) {
     );
 }
 
-/// `Grading::Coarse` is meant for counting: its surface elements cannot be split.
+/// Checks that a body with `Grading::Coarse`, whose surface elements cannot be split, stays whole.
 fn check_coarse<D: Dim>(blade: Blade<D>) {
     let grid = VoxelGrid::<D>::ball(12, 1.0).unwrap();
     let coarse = SoftBody::with_options(
@@ -224,7 +224,7 @@ fn plane_world_ignores_rotations_out_of_plane() {
     }
 }
 
-/// Positions, velocities and masses of all nodes of a body.
+/// Returns the positions, velocities and masses of all nodes of a body.
 fn node_states<D: Dim>(body: &SoftBody<D>) -> Vec<(D::Vector, D::Vector, f32)> {
     let nodes = body.mesh().nodes();
     nodes.map(|(id, _)| body.node_state(id)).collect()

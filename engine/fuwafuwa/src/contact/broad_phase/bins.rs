@@ -7,16 +7,17 @@ use crate::math::row::Row;
 use fearless_simd::prelude::*;
 use std::ops::Range;
 
-/// 1.5 · 2²³: at this magnitude, up to a difference of 2²², single-precision numbers are integers.
+/// 1.5 · 2²³. Single-precision numbers within 2²² of this value are integers, so adding it rounds to an
+/// integer.
 const LARGE: f32 = 12_582_912.0;
 
 /// Points in the bins of a periodic grid. Points that are a multiple of the grid's extent apart share a bin,
-/// so bodies may be up to two million bins away.
+/// so a few bins serve bodies that are up to two million bins away.
 #[derive(Clone, Debug)]
 pub struct Bins {
     /// Inverse width of a bin [1/m].
     inverse: f32,
-    /// log₂ of the number of bins on each axis, and that number − 1.
+    /// log₂ of the number of bins on each axis, and the bit mask of that number: the number minus 1.
     bits: usize,
     mask: i32,
     /// The points at `start[b]..start[b + 1]` are in bin b, ascending by number.
@@ -29,7 +30,8 @@ pub struct Bins {
 impl Bins {
     /// Sorts points [m] into bins of a `width` [m].
     pub fn new<D: Dim>(points: &[Row], width: f32) -> Self {
-        // About one bin per point, and at least four on an axis, so that three neighbours differ.
+        // About one bin per point, and at least four on an axis, so that a bin and its two neighbours are
+        // three different bins.
         let wanted = points.len().max(1).ilog2() as usize;
         let bits = wanted.div_ceil(D::N).max(2);
         let places = || vec![0.0; points.len() + LANES];
@@ -80,17 +82,19 @@ impl Bins {
         Row::from_array([x, y, z, 0.0])
     }
 
-    /// Iterates over shares of the bins.
+    /// Divides the bins into ranges that threads can search independently.
     pub fn shares(&self) -> impl Iterator<Item = Range<usize>> + use<> {
         let bins = self.start.len() - 1;
         let firsts = (0..bins).step_by(CHUNK_SIZE);
         firsts.map(move |first| first..bins.min(first + CHUNK_SIZE))
     }
 
-    /// Calls `visit` once for each pair of points within `reach` [m] of which one is in `bins`. It receives
-    /// their indices in bin order. `reach` may be at most the width of a bin. All shares together give all
-    /// pairs. For a point and the eight from a second index on, `is_out` returns a mask of those to skip. Two
-    /// ranges for which `is_idle` is true are not compared.
+    /// Finds the pairs of points within `reach` [m] of each other, and calls `visit` with their indices in
+    /// bin order. `reach` may be at most the width of a bin. Only pairs that the search of `bins` finds are
+    /// visited: all ranges of [`Bins::shares`] together give each pair once.
+    ///
+    /// `is_out` receives the index of a point and the first of eight further indices. It returns a mask of
+    /// those among the eight to skip. Two ranges of points for which `is_idle` is true are not compared.
     #[inline(always)]
     pub fn pairs<D: Dim, S: Simd>(
         &self,
@@ -148,8 +152,8 @@ impl Bins {
         }
     }
 
-    /// Finds the indices of the points within `reach` [m] of `at`. For eight points from an index on,
-    /// `is_out` returns a mask of those to skip.
+    /// Finds the indices of the points within `reach` [m] of `at`. `is_out` receives the first of eight
+    /// indices and returns a mask of those to skip.
     #[inline(always)]
     pub fn near<D: Dim, S: Simd>(
         &self,
@@ -166,7 +170,7 @@ impl Bins {
         let low = self.square(&(at - aside));
         let high = self.square(&(at + aside));
         let count = |axis: usize| high[axis].wrapping_sub(low[axis]).wrapping_add(1);
-        // The box covers the whole periodic grid.
+        // Whether the search box covers the whole periodic grid along an axis.
         let is_far = |axis: usize| !(1..=self.mask).contains(&count(axis));
         if reach.is_nan() || (0..D::N).any(is_far) {
             self.look(simd, 0..self.numbers.len(), at, reach, is_out, near);
@@ -241,7 +245,8 @@ impl Bins {
     /// Returns the coordinates of the bin, before they wrap around the grid.
     #[inline(always)]
     fn square(&self, at: &Row) -> Point {
-        // The lowest bits of such a large number are its integer part; faster than a checked conversion.
+        // Adding `LARGE` leaves the rounded number in the lowest bits. This is faster than a checked
+        // conversion.
         let whole = |along: f32| (along * self.inverse + LARGE).to_bits() as i32;
         [whole(at[0]), whole(at[1]), whole(at[2])]
     }
@@ -300,7 +305,7 @@ mod tests {
         let expected: Vec<_> = all.filter(|&(a, b)| is_near(a, b)).collect();
         assert_eq!(found, expected);
         let mut total = 0;
-        // One bin, several, and enough to wrap around the grid.
+        // Search radii that reach one bin, several bins, and around the whole grid.
         let reaches = [0.5, 1.0, 2.7, 40.0].into_iter().cycle();
         for ((place, &at), steps) in points.iter().enumerate().zip(reaches) {
             let reach = steps * reach;

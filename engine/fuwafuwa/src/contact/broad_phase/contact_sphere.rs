@@ -7,8 +7,8 @@ use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
 
 /// Maximum distance of neighbours in a piece on each axis at rest [voxels]. It covers the search distance of
-/// paths at rest, 1 + MARGIN + 2 STRAY voxels. With less, adjacent surface elements would be listed as pairs
-/// all the time.
+/// resting spheres, 1 + MARGIN + 2 SLACK = 2 voxels. With less, adjacent surface elements would be listed as
+/// pairs all the time.
 pub const NEAR: u16 = 2;
 
 id! {
@@ -103,22 +103,24 @@ impl ContactSphere {
         mean::<D, _>(rows, &self.nodes)
     }
 
-    /// Returns whether the sphere is a crumb, a piece of its own.
+    /// Returns whether the voxel of the sphere is a crumb: a piece of its own.
     pub fn is_crumb<D: Dim>(&self) -> bool {
         self.bare.count_ones() as usize == 2 * D::N
     }
 
-    /// Returns whether one of its bare faces has no bare face opposite.
+    /// Returns whether a bare face has no bare face opposite, so that the sphere has an outward direction.
     pub fn leads_out(&self) -> bool {
         (self.bare ^ self.bare >> 1) & 0b1_0101 != 0
     }
 
-    /// Returns the vector from the centre out of the body through the bare faces; 0 for a crumb or a sheet.
+    /// Returns the vector from the centre out of the body through the bare faces [m]; 0 for a crumb or a
+    /// sheet.
     pub fn outward<D: Dim>(&self, position: &IndexVec<NodeId, Row>) -> Row {
         let mut sum = Row::ZERO;
         for corner in 0..D::CORNERS {
             let is_bare = |axis: usize, side: usize| f32::from(self.bare >> (2 * axis + side) & 1);
-            // Centre of a face minus the centre of the element: half a step across.
+            // Each bare face adds the vector from the centre of the element to the centre of the face, which
+            // is half the vector between opposite faces.
             let weight: f32 = (0..D::N)
                 .map(|axis| {
                     let out = is_bare(axis, 1) - is_bare(axis, 0);
@@ -177,10 +179,10 @@ impl Site {
     }
 }
 
-/// For each offset of up to two voxels per axis, indexed x + 5 y + 25 z from −2: a mask and a rotation. The
-/// mask holds the voxels around the first sphere that can connect both, which are also around the second. The
-/// rotation aligns the bits of the second sphere with those of the first. For direct neighbours the mask is
-/// the second voxel itself, which each has in its own mask.
+/// Table for [`Site::is_held_to`]: a mask and a rotation for each offset of up to two voxels per axis,
+/// indexed x + 5 y + 25 z from −2. The mask holds the voxels that are around both spheres and can connect
+/// them, seen from the first. For direct neighbours it holds only the second voxel, because each sphere's own
+/// bits include its voxel. The rotation aligns the bits of the second sphere with those of the first.
 const COMMON: [(u32, u32); 125] = common();
 
 const fn common() -> [(u32, u32); 125] {

@@ -76,7 +76,7 @@ impl Spheres {
         self.followed.clear();
     }
 
-    /// Removes elements of a body, in ascending order; their ids may be reused.
+    /// Removes `elements` of a body, given in ascending order; their ids may be reused.
     pub fn remove_elements(&mut self, slot: BodySlot, elements: &[ElementId]) {
         for key in self.keys.iter_mut().filter(|(body, _)| *body == slot) {
             if elements.binary_search(&key.1).is_ok() {
@@ -87,8 +87,8 @@ impl Spheres {
     }
 
     /// Starts a tick: applies the tears since the last one and adds newly sleeping spheres to `changed`. If a
-    /// body may have changed in another way, rebuilds the list and returns the new number of each old sphere,
-    /// or [`SphereId::NONE`].
+    /// body may have changed in another way, rebuilds the list and returns the new number of each old sphere:
+    /// [`SphereId::NONE`] if the sphere is gone.
     pub fn start_tick<D: Dim>(
         &mut self,
         bodies: &SoftBodies<D>,
@@ -103,15 +103,16 @@ impl Spheres {
             let body = bodies.at(sphere.body);
             let was_asleep = sphere.asleep;
             sphere.asleep = body.pieces().list[sphere.piece].asleep;
-            // Sleepers are not updated during the tick, so their centres are computed here.
+            // The list contains no pairs of two sleepers, so the pairs of this sphere are searched again.
             if sphere.asleep != was_asleep {
                 changed.push(id);
             }
+            // Sleepers are not updated during the tick, so their centres are computed here.
             if sphere.asleep && !was_asleep {
                 *centre = sphere.mean::<D>(body.positions());
             }
         }
-        // Reset, so that a world read from a file behaves like the original.
+        // A world read from a file starts with these values, and must behave like the original.
         self.close.clear();
         self.is_close.fill(false);
         self.velocities.fill(Row::ZERO);
@@ -205,7 +206,7 @@ impl Spheres {
             let Some(sphere) = ContactSphere::of(slot, body, id) else {
                 continue;
             };
-            // A voxel at the surface stays there for good.
+            // A voxel never leaves the surface, so its sphere keeps its number.
             let own = &mut self.by_voxel[slot][body.grid().index(sphere.voxel())];
             if *own == SphereId::NONE {
                 *own = self.list.next_id();

@@ -2,8 +2,9 @@
 //!
 //! Inside a piece there are no contact spheres that could push anything out, so a crumb forced through a
 //! stretched surface would stay there. Therefore, once per tick, the elements of the larger pieces are tested
-//! for sphere centres inside them. Such a sphere is *embedded* (a captive). It has no contacts with its host
-//! piece, except for the *escape contact* with the nearest surface sphere, its exit.
+//! for sphere centres inside them. Such a sphere is *embedded* (`captive` in the code), and the piece around
+//! it is its *host piece* (`captor`). The sphere has no contacts with its host piece, except for the *escape
+//! contact* with the nearest surface sphere of that piece, the *exit*.
 
 use super::bins::Bins;
 use super::contact_sphere::{ContactSphere, SphereId};
@@ -37,7 +38,7 @@ type HostPiece = (BodySlot, PieceId);
 pub struct Captives {
     /// Embedded spheres, ascending.
     pub list: Vec<EmbeddedSphere>,
-    /// Host piece of each sphere.
+    /// Host piece of each sphere; `None` if the sphere is not embedded.
     captors: IndexVec<SphereId, Option<HostPiece>>,
 }
 
@@ -68,7 +69,8 @@ impl Captives {
         if small.is_empty() {
             return;
         }
-        // Surface elements contain only spheres that are close to their own.
+        // A sphere inside a surface element is close to the sphere of that element, so testing the pairs is
+        // enough.
         for pair in pairs {
             let [a, b] = pair.both(&spheres.list);
             let [at, other] = pair.spheres.map(|sphere| spheres.centres[sphere]);
@@ -88,7 +90,8 @@ impl Captives {
                 }
             }
         }
-        // Inner elements contain the deeper spheres; few pieces have any sphere in their box.
+        // All deeper spheres are inside inner elements. Most pieces are skipped, because no smaller sphere is
+        // in their bounding box.
         for (sphere, &centre) in spheres.list.iter().zip(&spheres.centres) {
             pieces[sphere.body][sphere.piece].extend(&centre);
         }
@@ -147,8 +150,8 @@ impl Captives {
         }
     }
 
-    /// Updates the host pieces after a tear. An embedded sphere follows the piece of its exit; the other
-    /// fragments count as foreign until the next tick.
+    /// Updates the host pieces after a tear. The piece of its exit becomes the host piece of an embedded
+    /// sphere. Until the next tick, the sphere has ordinary contacts with the other fragments.
     pub fn tear(&mut self, spheres: &Spheres) {
         for captive in &self.list {
             let exit = &spheres.list[captive.exit];
@@ -218,14 +221,15 @@ impl Exits {
 struct Inner {
     level: u8,
     element: ElementId,
-    /// Its piece, and the number of elements of that piece.
+    /// Piece of the element, and the number of elements in that piece.
     captor: HostPiece,
     count: u32,
     centre: Row,
     radius: f32,
 }
 
-/// Returns the elements without a bare face that reach into a box, by level, for pieces with `has_inner`.
+/// Returns the elements without a bare face that reach into a box, in pieces with `has_inner`, ascending by
+/// level.
 fn inner_elements<D: Dim>(bodies: &SoftBodies<D>, pieces: &Extents, within: &Extent) -> Vec<Inner> {
     let mut found = Vec::new();
     for (slot, body) in bodies.by_slot() {
@@ -273,7 +277,8 @@ type Extents = IndexVec<BodySlot, IndexVec<PieceId, Extent>>;
 struct Extent {
     /// Number of elements.
     count: u32,
-    /// Whether the piece has elements without a bare face.
+    /// Whether the piece has elements without a bare face. A search clears the flag if no smaller sphere is
+    /// in the box.
     has_inner: bool,
     /// Box around the centres of its contact spheres [m].
     low: Row,
@@ -328,7 +333,8 @@ fn extents<D: Dim>(body: Option<&SoftBody<D>>) -> IndexVec<PieceId, Extent> {
 }
 
 impl<D: Dim> SoftBody<D> {
-    /// Returns whether a position [m] is in an element, which is treated as evenly deformed.
+    /// Returns whether a position [m] is in an element, under the assumption that the element is evenly
+    /// deformed.
     fn holds(&self, id: ElementId, at: Vec3) -> bool {
         let Some(element) = self.mesh().element(id) else {
             return false;
@@ -379,8 +385,8 @@ mod tests {
         assert!(near > 100 && far > 100, "{near} near, {far} far");
     }
 
-    /// Regression test: bins as wide as the widest element made every element scan all crumbs when one was
-    /// stretched.
+    /// Regression test: bins as wide as the widest element made every element test all crumbs if one element
+    /// was stretched.
     #[test]
     fn usual_radius_ignores_stretched_elements() {
         let inner = |radius| Inner {

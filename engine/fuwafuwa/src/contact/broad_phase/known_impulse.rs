@@ -5,8 +5,8 @@ use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::soft_body::element_forces::Row;
 
-/// Impulses of a contact, in the last substep and over the tick [N s]. The sums over the tick are cleared at the
-/// start of the next one, so they are no state.
+/// Impulses of a contact in the last substep [N s], and sums over the tick. The sums are cleared at the start
+/// of the next tick, so they are no state.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Impulse {
@@ -25,7 +25,7 @@ pub struct Impulse {
 hash_state! { struct Impulse { pressed, dragged } skip { total, speed } }
 
 impl Impulse {
-    /// Whether the contact had an impulse in the last substep.
+    /// Returns whether the contact had an impulse in the last substep.
     pub fn is_known(&self) -> bool {
         self.pressed != 0.0 || self.dragged != Row::ZERO
     }
@@ -33,7 +33,7 @@ impl Impulse {
 
 #[cfg(feature = "serde")]
 impl Impulse {
-    /// Clears the components beyond the dimension.
+    /// Clears the components of the friction impulse that do not exist in this dimension.
     pub fn flatten<D: Dim>(&mut self) {
         let aside = self.dragged[D::N..].iter_mut();
         aside

@@ -13,14 +13,14 @@ use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
 use std::ops::Range;
 
-/// Distances [voxels] that a node and a moving rigid body may move beyond the prediction from their velocity
-/// before they are searched again. Larger values mean longer lists, smaller ones more searches. Rigid bodies
-/// have more, because the coupling force accelerates them strongly.
+/// Distances [voxels] that a node (`SLACK`) and a moving rigid body (`HAND_SLACK`) may move beyond the
+/// prediction from their velocity before they are searched again. Larger values mean longer lists, smaller
+/// ones more searches. Rigid bodies have more, because the coupling force accelerates them strongly.
 const SLACK: f32 = 0.4;
 const HAND_SLACK: f32 = 1.0;
 
-/// Width of a bin [voxels]. Its nodes are tested against a rigid shape together, before each one is tested
-/// alone.
+/// Width of a bin [voxels]. All nodes of a bin are tested against a rigid shape together, and one by one only
+/// if the shape is near the bin.
 const SQUARE: f32 = 4.0;
 
 /// Node that may touch a rigid shape.
@@ -51,7 +51,7 @@ pub struct NodePairs {
     /// are listed depends on the last search, so they are no state.
     #[cfg_attr(feature = "serde", serde(serialize_with = "serialize_known"))]
     pub list: Vec<NodePair>,
-    /// Distance that the fastest nodes have moved since the last full search [m].
+    /// Upper bound of the distance that any node has moved since the last full search [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub travel: f32,
     /// Position of each node at its last search, and as the fourth component its allowed distance from there
@@ -89,7 +89,7 @@ fn serialize_known<S: serde::Serializer>(list: &[NodePair], to: S) -> Result<S::
     serde::Serialize::serialize(&known.collect::<Vec<_>>(), to)
 }
 
-/// Allowed and actual movement of a rigid body [m].
+/// Allowed (`most`) and actual (`come`) movement of a rigid body since the last full search [m].
 #[derive(Copy, Clone, Debug)]
 struct Leeway {
     most: f32,
@@ -342,9 +342,10 @@ impl NodePair {
     }
 }
 
-/// Awake nodes of a body, grouped in bins. Most bins are out of reach as a whole, however the body is torn.
+/// Awake nodes of a body, grouped in bins. Most bins as a whole are out of reach of a rigid shape, even in a
+/// body torn into many pieces.
 struct Squares {
-    /// Nodes by their numbers in the bins, and the distance within which each is listed [m].
+    /// Nodes by their numbers in the bins, each with the distance from a shape within which it is listed [m].
     nodes: Vec<(NodeId, f32)>,
     bins: Bins,
     list: Vec<Square>,
@@ -374,7 +375,7 @@ impl Squares {
         }
     }
 
-    /// Adds the nodes within their reach plus `range` of a shape [m].
+    /// Adds the nodes that are no farther from a shape than their own reach plus `range` [m].
     fn within(&self, range: f32, shape: &Solid, near: &mut Vec<NodeId>) {
         let is_near = |at: Row, reach: f32| shape.distance(at.xyz()).0 <= reach;
         for square in &self.list {

@@ -1,6 +1,6 @@
-//! Spheres of the same piece so close at rest that the search for all pairs can skip them. Either the piece
-//! itself keeps them apart, or they are on opposite crack faces, which are listed separately. Also finds
-//! ranges in which all spheres sleep.
+//! Neighbours: spheres of the same piece that are close at rest. The search for all pairs skips them, because
+//! either the piece itself keeps them apart, or they are on opposite crack faces, which are listed
+//! separately. The module also finds ranges in which all spheres sleep.
 
 use super::contact_sphere::{NEAR, SphereId};
 use super::contact_spheres::Spheres;
@@ -80,8 +80,8 @@ impl Neighbours {
         }
     }
 
-    /// Returns whether all spheres in a range sleep. In a sleeping heap, only spheres near awake ones are
-    /// compared.
+    /// Returns whether all spheres in a range sleep. Such ranges are not compared with each other, so in a
+    /// sleeping heap only spheres near awake ones are.
     #[inline(always)]
     pub fn are_asleep(&self, places: &Range<usize>) -> bool {
         self.awake[places.start] == self.awake[places.end]
@@ -96,7 +96,7 @@ impl Neighbours {
         if same == 0 {
             return 0;
         }
-        // Offset from the lower limit; smaller coordinates wrap around.
+        // Coordinates below the lower limit wrap around to large values.
         let along = |axis: usize| {
             let column = u16x8::from_slice(simd, &self.voxels[axis][eight.clone()]);
             column - u16x8::splat(simd, own.voxel[axis].wrapping_sub(NEAR))

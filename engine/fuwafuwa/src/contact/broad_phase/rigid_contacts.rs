@@ -1,4 +1,5 @@
-//! Contact points between rigid bodies, at least one of them dynamic, kept between substeps by feature key.
+//! Contact points between rigid bodies, at least one of them dynamic. The key of the touching corner or edge
+//! identifies a point from substep to substep.
 
 use super::known_impulse::Impulse;
 use crate::foundation::arena::RigidSlot;
@@ -15,7 +16,7 @@ use glam::Vec3;
 pub struct RigidTouch {
     /// The dynamic body and the other one.
     pub both: [RigidSlot; 2],
-    /// Key of the corner or edge.
+    /// Key of the touching corner or edge crossing: identifies the point in the next substep.
     pub key: u32,
     /// Impulses of the point.
     pub impulse: Impulse,

@@ -6,9 +6,9 @@ use crate::foundation::hash::hash_state;
 use crate::foundation::ids::IndexVec;
 use crate::foundation::threads::{self, CHUNK_SIZE};
 
-/// Search margin of contacts [voxels]. Contacts that close by up to a sixth of a voxel in a substep, (0.3 −
-/// CLOSE) / AHEAD, are known in advance. That is a quarter of the wave speed; faster ones overlap and are
-/// pushed out.
+/// Search margin of contacts [voxels]. Contacts with a gap that shrinks by up to a sixth of a voxel in a
+/// substep, (0.3 − CLOSE) / AHEAD, are known in advance. This speed is a quarter of the wave speed. Faster
+/// spheres overlap first and are then pushed out.
 pub const MARGIN: f32 = 0.3;
 
 /// Pair of spheres that may touch.
@@ -19,7 +19,8 @@ pub struct SpherePair {
     pub spheres: [SphereId; 2],
     /// Impulses of the contact.
     pub impulse: Impulse,
-    /// Whether the spheres have met face to face. If one is behind the other now, it was forced there.
+    /// Whether the spheres have met from outside. If one is now behind the surface of the other, it was
+    /// forced there.
     pub met_in_front: bool,
 }
 
@@ -74,7 +75,7 @@ pub fn renumber(list: &mut Vec<SpherePair>, numbers: &IndexVec<SphereId, SphereI
     list.sort_unstable_by_key(|pair| pair.spheres);
 }
 
-/// Splits both lists of pairs, ascending by their first spheres, at the same spheres.
+/// Splits two lists of pairs, both ascending by their first spheres, at the same spheres.
 fn shares<'a>(
     mut found: &'a mut [[SphereId; 2]],
     mut old: &'a [SpherePair],
@@ -107,7 +108,7 @@ impl SpherePair {
         }
     }
 
-    /// Whether the pair differs from one that is found anew.
+    /// Returns whether the pair has something to remember: an impulse, or a meeting from outside.
     pub fn is_known(&self) -> bool {
         self.impulse.is_known() || self.met_in_front
     }

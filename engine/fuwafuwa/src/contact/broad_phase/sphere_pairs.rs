@@ -25,19 +25,20 @@ use crate::math::lanes::on_widest_lanes;
 use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
 
-/// Share of the spheres that may have long paths, and half the length of the longest short path as a share of
-/// the reach. If speeds are higher, the paths end sooner. Short paths are searched bin by bin; each long path
-/// searches its own surroundings.
+/// At most 1 / `LONG_SHARE` of the spheres may have long paths. `LONGEST_SHORT` is half the length of the
+/// longest short path, as a share of the search distance. If speeds are higher, the paths end sooner. Short
+/// paths are searched bin by bin; each long path searches its own surroundings.
 const LONG_SHARE: usize = 32;
 const LONGEST_SHORT: f32 = 0.125;
-/// Maximum duration of the paths [s]. A falling sphere exceeds its prediction by 5 cm in this time.
+/// Maximum duration of the paths [s]. In this time, gravity takes a falling sphere 5 cm off its path.
 const LONGEST_TIME: f32 = 0.1;
 /// A full search is faster than separate searches for more than 1 / `MANY` of the awake spheres. Sorting a
 /// sphere into bins takes as long as `COMPARED` comparisons.
 const MANY: usize = 4;
 const COMPARED: usize = 12;
 
-/// Marks a sphere that is found through the bins, in place of its index among the loose ones.
+/// Marks a sphere that is found through the bins. It stands in place of the sphere's index among the loose
+/// ones.
 const BINNED: u32 = u32::MAX;
 
 /// Number of spheres that a thread searches at a time; below `CHUNK_SIZE`, because each search visits several
@@ -48,7 +49,8 @@ const LOOKS: usize = CHUNK_SIZE / 8;
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpherePairs {
-    /// Pairs, ascending. Which pairs without memory are listed depends on the last search, so they are no state.
+    /// Pairs, ascending. Pairs with nothing to remember are no state, because the last search determines
+    /// which of them are listed.
     #[cfg_attr(feature = "serde", serde(serialize_with = "serialize_known"))]
     pub list: Vec<SpherePair>,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -59,7 +61,7 @@ pub struct SpherePairs {
     /// Bins of the midpoints of all paths; `None` if a full search is due.
     #[cfg_attr(feature = "serde", serde(skip))]
     bins: Option<Bins>,
-    /// Time of the midpoints [s].
+    /// Time of these midpoints, counted from the last full search [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     binned_at: f32,
     /// Swept spheres in bin order.
@@ -83,7 +85,7 @@ pub struct SpherePairs {
     /// Spheres to search again, in addition to those that exceed their slack.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub changed: Vec<SphereId>,
-    /// Time since the last full search [s], and the duration of the paths from then on [s].
+    /// Time since the last full search [s], and the duration of the paths, counted from that search [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     elapsed: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -371,7 +373,7 @@ impl SpherePairs {
         let middles = self.loose.iter().map(|long| long.path.at(span.middle));
         let middles: Vec<Row> = middles.collect();
         let long = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
-        // Of two long paths the longer one searches the other.
+        // Of two long paths, only the longer one searches the other, so that each pair is found once.
         let rank = |long: &SweptSphere| (long.sweep, long.sphere);
         threads::map(self.loose.chunks(LOOKS), |share| {
             let (mut found, mut near) = (Vec::new(), Vec::new());
@@ -425,7 +427,8 @@ impl SpherePairs {
         }
         if changed.len() * (self.loose.len() + changed.len()) > COMPARED * count {
             self.bins = Some(self.bin::<D>(spheres));
-            // With too many fast spheres the paths must end sooner.
+            // If there are still too many loose spheres, they are fast, and a full search must shorten the
+            // paths.
             if changed.len() * self.loose.len() > COMPARED * count {
                 self.find_all(spheres, bodies);
                 return;
@@ -449,7 +452,8 @@ impl SpherePairs {
                     true => other.sphere > sphere,
                     false => true,
                 };
-                // Moved back along the frame, in which the binned spheres hardly move.
+                // Shifted back by the motion of the frame since the bins were built. Relative to the frame,
+                // the binned spheres hardly move.
                 let shift = this.frame * (span.middle - this.binned_at);
                 let at = own.path.at(span.middle) - shift;
                 let reach = this.reach + this.short + own.sweep;
@@ -475,7 +479,7 @@ impl SpherePairs {
         self.spare = self.spare.min(self.least_stray);
     }
 
-    /// Takes a sphere with a new path out of the bins.
+    /// Moves a sphere with a new path from the bins to the loose spheres.
     fn loosen(&mut self, sphere: SphereId, spheres: &Spheres) {
         let traveller = self.traveller(sphere, spheres);
         let at = &mut self.loose_at[sphere];
@@ -502,7 +506,7 @@ impl SpherePairs {
         Span { middle: half, half }
     }
 
-    /// Sets the frame to the mean velocity; 0 if any sphere sleeps.
+    /// Sets the frame to the mean velocity; 0 if any sphere sleeps, because sleepers rest in the world.
     fn set_frame(&mut self, spheres: &Spheres) {
         self.frame = Row::ZERO;
         if spheres.awake.len() < spheres.list.len() {
@@ -510,7 +514,7 @@ impl SpherePairs {
         }
         let sum = self.paths.iter().map(|path| path.velocity).sum::<Row>();
         let mean = sum * (1.0 / self.paths.len() as f32);
-        // Non-finite velocities are quarantined after the tick.
+        // A piece with a non-finite velocity is quarantined after the tick; until then the frame is at rest.
         if mean.is_finite() {
             self.frame = mean;
         }

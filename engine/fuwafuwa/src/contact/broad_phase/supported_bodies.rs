@@ -1,6 +1,6 @@
-//! Sleepers in contact with something that is removed or moved, directly or through other sleepers; they must
-//! wake. A sleeper wakes by itself only if something it touches moves quickly, which a body that loses its
-//! support does not do at first.
+//! Sleepers that must wake because something that they touch is removed or moved. They touch it directly or
+//! through other sleepers. A sleeper wakes by itself only if something that it touches moves quickly, and a
+//! body that loses its support is slow at first.
 
 use super::bins::Bins;
 use super::contact_sphere::ContactSphere;
@@ -43,7 +43,8 @@ pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &RigidBodies) -> Vec<Rigid
     sleepers.map(|(slot, _)| slot).collect()
 }
 
-/// Returns the sleepers in contact with a rigid body, ascending by body and number.
+/// Returns the sleepers in contact with a rigid body, directly or through others, ascending by body and
+/// number.
 pub fn leaning_on_rigid<D: Dim>(rigid: &RigidState, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let mut leaning = BTreeSet::new();
     for (slot, body) in bodies.by_slot() {
@@ -59,7 +60,8 @@ pub fn leaning_on_rigid<D: Dim>(rigid: &RigidState, bodies: &SoftBodies<D>) -> V
     Sleepers::of(bodies).with_those_on(leaning)
 }
 
-/// Returns the sleepers in contact with a body that is not in `bodies`, ascending by body and number.
+/// Returns the sleepers in contact with a body that is not in `bodies`, directly or through others, ascending
+/// by body and number.
 pub fn leaning_on_body<D: Dim>(body: &SoftBody<D>, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let sleepers = Sleepers::of(bodies);
     let mut leaning = BTreeSet::new();
@@ -70,8 +72,8 @@ pub fn leaning_on_body<D: Dim>(body: &SoftBody<D>, bodies: &SoftBodies<D>) -> Ve
     sleepers.with_those_on(leaning)
 }
 
-/// Returns the sleepers in contact with some pieces, given in ascending order, without these pieces;
-/// ascending.
+/// Returns the sleepers in contact with some pieces, directly or through others, without these pieces.
+/// Argument and result are in ascending order.
 pub fn leaning_on_pieces<D: Dim>(pieces: &[Sleeper], bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let sleepers = Sleepers::of(bodies);
     let is_one = |piece: &Sleeper| pieces.binary_search(piece).is_ok();
@@ -154,7 +156,7 @@ impl<D: Dim> Sleepers<D> {
     }
 }
 
-/// Returns the distance of the centres of two spheres in contact [m].
+/// Returns the distance within which the centres of two spheres with these radii count as in contact [m].
 fn reach(first: f32, second: f32) -> f32 {
     (1.0 + MARGIN) * (first + second)
 }

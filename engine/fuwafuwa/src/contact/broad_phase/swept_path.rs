@@ -8,8 +8,8 @@ use crate::soft_body::element_forces::Row;
 /// more searches.
 pub const SLACK: f32 = 0.35;
 
-/// Weight of the mean velocity since the start of the last path in the prediction; the remainder is the
-/// present velocity. Vibrating spheres return, so their mean velocity predicts them better.
+/// Share of the predicted velocity that is the sphere's mean velocity along its last path; the remainder is
+/// its present velocity. Vibrating spheres return, so their mean velocity predicts them better.
 const AS_BEFORE: f32 = 0.8;
 
 /// Straight path of a sphere while its pairs hold.
@@ -44,8 +44,8 @@ impl Start {
         time: f32::NAN,
     };
 
-    /// Returns the predicted velocity [m/s] of a sphere from its position now [m], its velocity [m/s] and
-    /// this start of its last path.
+    /// Returns the predicted velocity of a sphere [m/s] from this start of its last path, its position `here`
+    /// [m] at the time `now` [s], and its present velocity [m/s].
     pub fn expected(&self, here: Row, now: f32, velocity: Row) -> Row {
         let passed = now - self.time;
         if passed > 0.0 {
@@ -68,7 +68,7 @@ pub struct Span {
 #[derive(Copy, Clone, Debug)]
 pub struct SweptSphere {
     pub path: Path,
-    /// Upper bound of half its swept length relative to the frame [m].
+    /// Upper bound of half the length of its path, relative to the common frame of all spheres [m].
     pub sweep: f32,
     pub radius: f32,
     pub sphere: SphereId,

@@ -22,8 +22,8 @@ pub enum AttachedAnchor {
     Position(Vec3),
     /// Point of a rigid body in local coordinates [m].
     RigidBody(RigidBodyHandle, Vec3),
-    /// Corners of a soft body, each a voxel and the lattice point of its node. A voxel keeps its corner when
-    /// the body tears around it.
+    /// Corners of voxels of a soft body: each a voxel, and the lattice point of its corner node. When the
+    /// body tears there, the anchor follows the voxel.
     Soft(SoftBodyHandle, Vec<(Point, Point)>),
 }
 
@@ -42,7 +42,7 @@ pub struct AnchorState {
 }
 
 impl AttachedAnchor {
-    /// Returns the anchor at an attachment point.
+    /// Attaches an anchor at its attachment point.
     pub fn of<D: Dim>(
         end: &JointEnd,
         bodies: &SoftBodies<D>,
@@ -198,7 +198,8 @@ impl AttachedAnchor {
     }
 }
 
-/// Returns the nodes at some corners; removed voxels are skipped.
+/// Returns the node of each corner: in the element of the voxel, the node nearest to the lattice point. Skips
+/// removed voxels.
 fn nodes<'a, D: Dim>(
     body: &'a SoftBody<D>,
     corners: &'a [(Point, Point)],
@@ -208,7 +209,7 @@ fn nodes<'a, D: Dim>(
         let element = mesh.element_at(voxel)?;
         let apart = |node: NodeId| {
             let at = mesh.node(node).at;
-            // In 64 bits, because a file from elsewhere may contain any lattice point.
+            // In 64 bits, so that the difference cannot overflow: a file may contain any lattice point.
             let along = |axis: usize| i64::from(at[axis]) - i64::from(point[axis]);
             (0..D::N).map(|axis| along(axis).abs()).sum::<i64>()
         };
@@ -220,7 +221,7 @@ fn nodes<'a, D: Dim>(
     })
 }
 
-/// Returns the corners of a body within `radius` [m] of a point, or the nearest one.
+/// Returns the corners of a body within `radius` [m] of a point, or the nearest corner if there is none.
 fn corners_near<D: Dim>(body: &SoftBody<D>, at: Vec3, radius: f32) -> Vec<(Point, Point)> {
     let distance = |node: NodeId| {
         let apart = body.positions()[node].xyz() - at;

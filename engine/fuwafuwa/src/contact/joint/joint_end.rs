@@ -1,11 +1,11 @@
-//! Attachment points of joints in three coordinates.
+//! Attachment points of joints, with vectors of three coordinates in 2D and in 3D.
 
 use crate::foundation::arena::{BodySlot, RigidBodyHandle, RigidSlot, SoftBodyHandle};
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::PieceId;
 use glam::Vec3;
 
-/// [`JointAnchor`](super::JointAnchor) in three coordinates.
+/// Internal counterpart of [`JointAnchor`](super::JointAnchor); the third coordinate is 0 in 2D.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointEnd {
@@ -23,7 +23,7 @@ pub enum JointEnd {
 
 hash_state! { enum JointEnd { Position(at), RigidBody { rigid, at }, Soft { body, at, radius } } }
 
-/// Sleepers to wake because the other anchor of their joint moves.
+/// Sleeping pieces and rigid bodies to wake, because their joint is strained or its other anchor moves.
 #[derive(Debug, Default)]
 pub(crate) struct Woken {
     pub(crate) pieces: Vec<(BodySlot, PieceId)>,

@@ -13,18 +13,19 @@ use glam::Vec3;
 /// Warm-starting factor of pins and springs, the same as for contacts. Chains of pins with a heavy end swing
 /// more with other values.
 const WARM_START: f32 = 0.9;
-/// Share of the position error of pins and ropes that is corrected per substep, the same as for overlaps, and
-/// the maximum correction speed [m/s]. Twice the share is unstable.
+/// Share of the position error of pins and ropes that is corrected per substep, the same as for overlaps of
+/// contacts, and the maximum correction speed [m/s]. Twice the share is unstable.
 const DRAW: f32 = 0.2;
 const DRAW_SPEED: f32 = 2.0;
-/// A sleeper wakes if a pin or a rope is stretched by `WAKE_STRETCH` [m], or if a spring force differs by the
-/// share `WAKE_SHARE` from that at sleep. Smaller changes are not visible. It also wakes if the other anchor
-/// moves faster than `WAKE_SPEED`.
+/// A sleeper wakes if its pin or rope is stretched by `WAKE_STRETCH` [m]. It also wakes if the force of its
+/// spring changes by more than the share `WAKE_SHARE`, plus the force of a stretch by `WAKE_STRETCH`. Smaller
+/// changes are not visible. A sleeper wakes in any case if the other anchor moves faster than `WAKE_SPEED`.
 const WAKE_STRETCH: f32 = 0.002;
 const WAKE_SHARE: f32 = 0.02;
 
 impl JointState {
-    /// Begins a substep with a warm start. Returns whether both anchors exist.
+    /// Begins a substep: lists sleepers to wake and applies the warm-start impulse. Returns false if an
+    /// anchor no longer exists.
     pub(super) fn start<D: Dim>(
         &mut self,
         bodies: &mut SoftBodies<D>,
@@ -52,7 +53,7 @@ impl JointState {
         true
     }
 
-    /// Returns whether the joint is out of balance at a distance of its anchors [m].
+    /// Returns whether the joint must wake its sleepers when its anchors are at a `distance` [m].
     fn is_strained(&self, distance: f32) -> bool {
         match self.kind {
             JointKind::Pin => distance > WAKE_STRETCH,
@@ -89,7 +90,7 @@ impl JointState {
                 };
                 solved::<D>(&yields, -(relative + draw))
             }
-            // The spring force is not a position correction, so it stays in the velocity.
+            // Only position corrections are removed from the velocity, and a spring makes none.
             JointKind::Spring { .. } if !draws => Vec3::ZERO,
             JointKind::Spring {
                 stiffness,
@@ -206,7 +207,7 @@ fn along(yields: &[Vec3; 3], way: Vec3) -> f32 {
 /// Returns the impulse for a change of velocity; 0 if nothing can move.
 fn solved<D: Dim>(yields: &[Vec3; 3], velocity: Vec3) -> Vec3 {
     let [x, y, mut z] = *yields;
-    // In 2D the third row and the third velocity are 0.
+    // In 2D the third row of the matrix is 0; a unit row makes the matrix invertible.
     if D::N == 2 {
         z = Vec3::Z;
     }

@@ -7,13 +7,13 @@ use crate::soft_body::element_forces::Row;
 /// Warm-starting factor, applied to the impulses of the last substep. 1 is unstable, and with 0 piles never
 /// settle.
 const WARM_START: f32 = 0.9;
-/// Share of an overlap that is resolved per substep, and the maximum speed of it [m/s] [Catto 2023]. Larger
-/// values throw overlapping bodies apart; smaller ones let heaps sink into each other.
+/// Share of an overlap that is resolved per substep, and the maximum speed at which it is resolved [m/s]
+/// [Catto 2023]. Larger values throw overlapping bodies apart; smaller ones let heaps sink into each other.
 const PUSH_OUT: f32 = 0.2;
 pub const PUSH_OUT_SPEED: f32 = 0.5;
 
-/// Gap [voxels] that a contact must be able to reach within `AHEAD` substeps in order to be active. The extra
-/// half substep allows for other contacts that make the gap close faster.
+/// A contact is active if its gap is below `CLOSE` [voxels] now or within `AHEAD` substeps at the present
+/// speed. The extra half substep allows for other contacts that make the gap close faster.
 pub const CLOSE: f32 = 0.05;
 pub const AHEAD: f32 = 1.5;
 
@@ -30,7 +30,7 @@ pub struct Contact {
     pub friction: f32,
     pub normal_impulse: f32,
     pub friction_impulse: Row,
-    /// Index of its pair in the list.
+    /// Index of the pair of this contact in its list in the broad phase.
     pub pair: u32,
 }
 
@@ -139,7 +139,7 @@ impl Impulse {
 }
 
 /// Returns whether a contact is active in this substep: the sides overlap or may do so within `AHEAD`
-/// substeps. Non-finite approach speeds are inactive, so that they cannot spread.
+/// substeps. A contact with a non-finite approach speed is inactive, so that the value cannot spread.
 pub fn is_close(gap: f32, approach: f32, size: f32, duration: f32) -> bool {
     approach.is_finite() && gap + AHEAD * duration * approach.min(0.0) < CLOSE * size
 }

@@ -6,7 +6,7 @@ use crate::foundation::ids::id;
 use glam::Vec3;
 
 id! {
-    /// Row of a node among those of all bodies.
+    /// Index of a node among the velocity rows of all bodies.
     pub NodeRow
 }
 
@@ -44,7 +44,7 @@ pub struct FreeContact {
     pub speed: f32,
     /// Separation speed of a bounce [m/s].
     pub bounce: f32,
-    /// Key of the corner or edge.
+    /// Key of the touching corner or edge crossing.
     pub key: u32,
 }
 

@@ -1,4 +1,5 @@
-//! Escape contacts: they guide a sphere embedded in another piece to the nearest way out.
+//! Escape contacts: they guide a sphere embedded in another piece to its exit, the nearest surface sphere of
+//! that piece.
 
 use super::contact_row::PUSH_OUT_SPEED;
 use super::contact_sides::SphereNodeRows;
@@ -8,19 +9,19 @@ use crate::foundation::dim::{Dim, inner};
 use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
 
-/// Embedded sphere and its escape sphere in one substep.
+/// Embedded sphere and its exit in one substep.
 #[derive(Copy, Clone, Debug)]
 pub struct EscapeContact {
     grips: [SphereNodeRows; 2],
     /// Effective mass [kg].
     inertia: f32,
-    /// Target velocity of the embedded sphere relative to its escape sphere [m/s].
+    /// Target velocity of the embedded sphere relative to its exit [m/s].
     velocity: Row,
 }
 
 impl EscapeContact {
-    /// Returns the escape contact that moves an embedded sphere to the front of its escape sphere; `None` if
-    /// neither can move.
+    /// Returns the escape contact that moves an embedded sphere to the front of its exit; `None` if neither
+    /// can move, or if a position or velocity is invalid.
     pub fn new<D: Dim>(
         captive: &EmbeddedSphere,
         bodies: &SoftBodies<D>,
@@ -37,7 +38,7 @@ impl EscapeContact {
         let speed = PUSH_OUT_SPEED.min(way.length() / duration);
         let [first, second] = both.map(|sphere| sphere.inverse_mass(bodies));
         let inverse_mass = first + second;
-        // An embedded sphere that is too fast must not accelerate the other piece. The comparisons are false
+        // An embedded sphere that is too fast must not accelerate its host piece. The comparisons are false
         // for NaN.
         let relative = spheres.velocities[a] - spheres.velocities[b];
         let most = (both[0].radius + both[1].radius) / duration;

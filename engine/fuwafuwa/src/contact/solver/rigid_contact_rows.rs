@@ -32,7 +32,7 @@ pub fn find_hands(rigids: &RigidBodies, duration: f32, found: &mut Vec<HandConta
                 continue;
             }
             let (gap, normal) = hand.shape().gap(rigid.shape());
-            // A gap that is not finite gives no contact.
+            // A non-finite gap gives no contact.
             if gap.is_nan() || gap >= hand.shape().inradius() {
                 continue;
             }
@@ -94,7 +94,7 @@ pub fn find_free<D: Dim>(
     hits
 }
 
-/// Returns the distance at which a contact may matter within a substep [m].
+/// Returns the distance at which a contact of a body may matter within a substep [m].
 fn margin(rigid: &RigidState, duration: f32) -> f32 {
     CLOSE * rigid.shape().inradius().min(1.0) + margin_of_other(rigid, duration)
 }
@@ -185,7 +185,7 @@ impl FreeContact {
         }
     }
 
-    /// Returns the contact's part of the events, if it pressed in this substep.
+    /// Returns the contact for the events of the tick; `None` if it did not press in this substep.
     pub fn passed(&self) -> Option<Passed> {
         let passed = Passed {
             both: self.both,

@@ -10,8 +10,8 @@ use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
 use glam::Vec3;
 
-/// Number of nodes copied together: a larger block copies more unused nodes, a smaller one is tested more
-/// often.
+/// Number of nodes in a chunk, which is copied as a whole. Larger chunks copy more unused nodes, smaller ones
+/// cost more tests.
 const STRETCH: usize = 16;
 
 /// Velocities of the nodes in contact [m/s], with the inverse mass [1/kg] as the fourth component, so that an
@@ -20,9 +20,9 @@ const STRETCH: usize = 16;
 pub struct Motion {
     /// Rows; unspecified where no contact uses them.
     rows: IndexVec<NodeRow, Row>,
-    /// Row of the first node of each body, at the start of a block.
+    /// Row of the first node of each body, always at the start of a chunk.
     first: IndexVec<BodySlot, NodeRow>,
-    /// Whether any node of a block is in contact; in a large body few are.
+    /// Whether any node of a chunk is in contact; in a large body few are.
     is_touched: Vec<bool>,
 }
 
@@ -146,7 +146,7 @@ fn velocity((mover, lever): (RigidSlot, Vec3), rigids: &RigidBodies) -> Row {
     Row::from(rigids.at(mover).velocity_at(lever))
 }
 
-/// Applies an impulse to a rigid body at a lever arm.
+/// Applies an impulse to a rigid body at a lever arm [m]. Not inlined, because it is rare.
 #[inline(never)]
 fn push((mover, lever): (RigidSlot, Vec3), rigids: &mut RigidBodies, impulse: Row, duration: f32) {
     rigids.at_mut(mover).push_at(impulse.xyz(), lever, duration);

@@ -13,11 +13,11 @@ use glam::Vec3;
 /// Edge samples per width of the smallest voxel, so that no voxel slips between two samples, even at an
 /// oblique edge. With one sample for two voxels, area and work of a cut are wrong by more than 10 %.
 const SAMPLES_PER_VOXEL: f32 = 2.0;
-/// Maximum stretch of an element that is still found.
+/// Stretched elements are found up to this ratio of their length to that at rest.
 const STRETCH: f32 = 1.5;
 /// Maximum movement of a sample in rest coordinates between two sweeps: `MOST_STRETCH` times its movement in
 /// the world, plus `MOST_JUMP` voxels. A larger jump means that the sample entered other tissue. The values
-/// are twice [`STRETCH`] and a play of two voxels.
+/// are twice [`STRETCH`] and a tolerance of two voxels.
 const MOST_STRETCH: f64 = 3.0;
 const MOST_JUMP: f64 = 2.0;
 
@@ -198,7 +198,8 @@ impl KnifeState {
         if let Some((id, spot)) = self.samples[place].inside
             && let Ok(body) = bodies.get(id)
         {
-            // In an element that is pressed flat nothing can be found, but the sample stays in it.
+            // In an element that is pressed flat, the search finds no point. The sample then keeps its last
+            // position.
             let found = Spot::find(body, at, spot.voxel);
             if let Some(spot) = found.or(Some(spot).filter(|spot| spot.is_near(body, at))) {
                 return Some((id, spot));
@@ -240,7 +241,7 @@ impl KnifeState {
             swept_area::go_through::<D>(patch, body.grid().size(), &mut faces);
             area += share * swept_area::area(patch);
         };
-        // In 2D a sample sweeps a line, which stands for an area across the body.
+        // In 2D a sample sweeps a line, which stands for an area through the 1 m thick body.
         if D::N == 2 {
             if let Some([from, to]) = rows[0] {
                 let deep = |place: RestPosition, z: f64| place.with_z(z);

@@ -14,7 +14,7 @@ use glam::Vec3;
 /// cut does not separate the parts.
 const ROUNDS: usize = 8;
 
-/// Share of its limit above which a row counts as sliding; the remainder is rounding.
+/// Share of the limit from which on the impulse of a row counts as at the limit; allows for rounding.
 const AT_LIMIT: f32 = 0.98;
 
 /// Solver row of one sample.

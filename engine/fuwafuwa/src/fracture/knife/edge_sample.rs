@@ -26,8 +26,8 @@ pub struct Near {
 pub struct Sample {
     /// Body and rest position that the sample is in.
     pub inside: Option<(SoftBodyHandle, Spot)>,
-    /// Body and rest position where the area swept so far ends. A sweep leaves it unchanged while tissue holds
-    /// the sample.
+    /// Body and rest position up to which the swept area was counted. A sweep leaves the value unchanged
+    /// while tissue holds the sample.
     pub passed: Option<(SoftBodyHandle, Spot)>,
     /// World-space position at the last sweep [m].
     pub before: Vec3,

@@ -9,11 +9,11 @@ use glam::Vec3;
 
 /// Maximum number of elements visited from the starting voxel.
 const STEPS: usize = 6;
-/// Tolerance outside of a cell [voxels] at which a point still counts as inside: neighbouring elements deform
-/// differently, so a point can be outside of both.
+/// Distance outside of a cell [voxels] up to which a point counts as inside. Neighbouring elements deform
+/// differently, so without this tolerance a point could be outside of both.
 const LITTLE: f32 = 0.25;
 
-/// Point in a body.
+/// Point that moves with the material of a body.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spot {
@@ -53,18 +53,20 @@ impl Spot {
         None
     }
 
-    /// Returns the rest position of a world-space point [m], extrapolated with the deformation here.
+    /// Returns the rest position of a world-space point [m], extrapolated with the deformation of the element
+    /// at this point.
     pub fn extend<D: Dim>(&self, body: &SoftBody<D>, at: Vec3) -> Option<Vec3> {
         body.at_rest(body.mesh().element_at(self.voxel)?, at)
     }
 
-    /// Returns the velocity of the body here [m/s].
+    /// Returns the velocity of the body at this point [m/s].
     pub fn velocity<D: Dim>(&self, body: &SoftBody<D>) -> Option<Vec3> {
         let element = body.mesh().element_at(self.voxel)?;
         Some(body.velocity_of(&body.weights(element, self.at)))
     }
 
-    /// Returns world-space directions in rest coordinates, scaled to the width of a voxel [voxels].
+    /// Maps world-space directions to directions at rest. In an undeformed element, a unit direction becomes
+    /// one voxel long.
     pub fn directions<D: Dim, const COUNT: usize>(
         &self,
         body: &SoftBody<D>,
@@ -102,12 +104,12 @@ impl Spot {
     }
 }
 
-/// Returns whether the face behind a voxel across an axis connects it to its neighbour.
+/// Returns whether the face on the high side of a voxel along an axis is closed.
 fn is_closed<D: Dim>(body: &SoftBody<D>, voxel: Point, axis: usize) -> bool {
     let mut corner = voxel;
     corner[axis] += 1;
-    // Relative to the voxel's upper corner along the axis, the voxel is in the octant that is low along this
-    // axis only.
+    // Seen from this corner, the voxel is on the low side along `axis` and on the high side along all other
+    // axes.
     let octant = (0..D::N)
         .filter(|&other| other != axis)
         .fold(0, |octant, other| octant | 1 << other);

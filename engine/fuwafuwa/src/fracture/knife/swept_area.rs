@@ -11,11 +11,11 @@ use std::collections::BTreeSet;
 /// Rest position in the lattice of a body [voxels].
 pub type RestPosition = DVec3;
 
-/// Faces, each given by the voxel before it and its axis.
+/// Faces, each given by the voxel on its low side and its axis.
 pub type Faces = BTreeSet<(Point, usize)>;
 
-/// Adds the faces of a grid of `size` [voxels] that a patch crosses. The corners are in the order of its
-/// outline.
+/// Adds the faces of a grid of `size` [voxels] that a quadrilateral patch crosses. Its corners are given in
+/// order around the outline.
 pub fn go_through<D: Dim>([a, b, c, d]: [RestPosition; 4], size: Point, faces: &mut Faces) {
     for triangle in [[a, b, c], [a, c, d]] {
         for axis in 0..D::N {
@@ -67,8 +67,8 @@ fn go_along(triangle: [RestPosition; 3], axis: usize, size: Point, faces: &mut F
     }
 }
 
-/// Returns on which side of the line from `a` to `b` a point is. The result does not depend on the direction
-/// of the line except for its sign, so that neighbouring triangles agree.
+/// Returns a number with a sign that tells on which side of the line from `a` to `b` a point is. Swapping `a`
+/// and `b` changes only the sign, so neighbouring triangles agree.
 fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     let is_forward = a <= b;
     let (low, high) = if is_forward { (a, b) } else { (b, a) };
@@ -76,8 +76,8 @@ fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     if is_forward { turn } else { -turn }
 }
 
-/// Returns the voxels, of `count` along an axis, with a centre between the smallest and the largest
-/// coordinate.
+/// Returns the voxels along an axis, of `count` in all, with centres between the smallest and the largest of
+/// the coordinates.
 fn middles(along: [f64; 3], count: i32) -> std::ops::RangeInclusive<i32> {
     let low = along.into_iter().fold(f64::INFINITY, f64::min);
     let high = along.into_iter().fold(f64::NEG_INFINITY, f64::max);

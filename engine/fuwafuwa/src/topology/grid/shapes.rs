@@ -103,7 +103,8 @@ impl<D: Dim> VoxelGrid<D> {
         [n, n, D::depth(n)]
     }
 
-    /// Centre of a voxel relative to the middle of a grid of `size`, in half voxels: whole numbers.
+    /// Returns the centre of a voxel relative to the middle of a grid of `size`, in half voxels: whole
+    /// numbers.
     fn from_middle(voxel: Point, size: [usize; 3]) -> Vec3 {
         [0, 1, 2]
             .map(|axis| (2 * voxel[axis] + 1 - size[axis] as i32) as f32)

@@ -1,4 +1,4 @@
-//! Seating of elements: determines their nodes, and so their class, from the surroundings.
+//! Seating of elements: an element gets the nodes, and so the class, that follow from its surroundings.
 
 use super::remodel::Past;
 use super::{Element, InvariantViolation, Mesh, Node};
@@ -70,8 +70,8 @@ impl<D: Dim> Mesh<D> {
         Ok(true)
     }
 
-    /// Whether an element other than `id` has this (point, group) as a corner of its cell; it must not be a
-    /// corner of the cell of `id`.
+    /// Returns whether an element other than `id` has `node` as a corner of its cell. The node must not be a
+    /// corner of the cell of `id` itself.
     fn is_node_beside(&self, id: ElementId, node: Node) -> bool {
         // Only cells up to this level can have a corner at this point.
         let [x, y, z] = node.at;
@@ -113,7 +113,7 @@ impl<D: Dim> Mesh<D> {
 }
 
 /// Returns the lattice point of a slot, and an octant there that belongs to the element. `None` if the slot
-/// is no corner of any of its children.
+/// is not a corner of any child of the element.
 fn seat_of<D: Dim>(cell: Cell, children: u8, slot: usize) -> Option<(Point, usize)> {
     let steps = slot_at(slot);
     let touching = children & TOUCHING[slot];

@@ -18,8 +18,8 @@ use std::collections::BTreeMap;
 
 impl<D: Dim> Mesh<D> {
     /// Checks the mesh: every solid voxel has one owner, neighbours differ by at most one level, no coarse
-    /// element has a node at a split point, every node has the number of carriers that it counts, and
-    /// gradients balance at inner nodes.
+    /// element has a node at a split point, every node counts its carriers correctly, and gradients balance
+    /// at inner nodes.
     ///
     /// # Errors
     /// The first [`InvariantViolation`] found.
@@ -72,8 +72,8 @@ impl<D: Dim> Mesh<D> {
         }
     }
 
-    /// Checks a mesh read from a file: equal to `fresh`, which was graded from scratch, except for the
-    /// numbers of elements and nodes; and its lookup tables are consistent.
+    /// Checks a mesh read from a file. Its lookup tables must be consistent. Except for the numbers of
+    /// elements and nodes, it must equal `fresh`, which was graded from scratch.
     ///
     /// # Errors
     /// The first [`InvariantViolation`] found.
@@ -243,7 +243,7 @@ impl<D: Dim> Mesh<D> {
     }
 }
 
-/// Whether ids, in any order, are exactly the expected ones, which ascend.
+/// Returns whether `ids`, in any order, are exactly the `expected` ones, which ascend.
 #[cfg(feature = "serde")]
 fn are_just<I: Id + Ord>(ids: &[I], expected: impl Iterator<Item = I>) -> bool {
     let mut ids = ids.to_vec();

@@ -59,12 +59,13 @@ impl Remodelled {
 
 impl<D: Dim> Mesh<D> {
     /// Updates the mesh after the groups at the `changed` points have changed and the cells `born` have been
-    /// created [Endo 2004, §3.2, Fig. 3]: generates children, rebuilds parents around the rest, and splits,
-    /// creates or drops nodes. The cost is proportional to the affected elements.
+    /// created [Endo 2004, §3.2, Fig. 3]. Generates the elements of new cells, rebuilds those of their
+    /// parents from the remaining children, and splits, creates or drops nodes. The cost is proportional to
+    /// the affected elements.
     ///
     /// # Errors
-    /// An [`InvariantViolation`] if the connectivity and the pyramid do not match; the mesh must then be graded from
-    /// scratch.
+    /// An [`InvariantViolation`] if connectivity and cell hierarchy do not match; the mesh must then be
+    /// graded from scratch.
     #[inline(never)]
     pub fn remodel(
         &mut self,
@@ -113,8 +114,8 @@ impl<D: Dim> Mesh<D> {
         })
     }
 
-    /// Removes elements, and returns the nodes that no other element carries; both are removed from the mesh.
-    /// The caller updates grid, connectivity and pyramid.
+    /// Removes elements, and the nodes that no other element carries; returns these nodes. The caller updates
+    /// grid, connectivity and cell hierarchy.
     pub(crate) fn take_out(
         &mut self,
         connectivity: &Connectivity<D>,
@@ -163,7 +164,7 @@ impl<D: Dim> Mesh<D> {
             (0..D::CORNERS).map(corner_of)
         };
         let corners = born.iter().flat_map(corners);
-        // Neighbouring cells share corners.
+        // Without duplicates, because neighbouring cells share corners.
         let points = connectivity.each_once(changed.iter().copied().chain(corners));
         let around = |at| self.owners_around(at, D::ALL_CORNERS);
         let places = refitted.iter().filter_map(|&cell| self.places.index(cell));
@@ -215,8 +216,9 @@ pub struct Past {
 
 impl Past {
     /// Adds a new node at `at` next to `voxel`, and computes the old nodes and weights from which it
-    /// inherits. They follow from the slots of the old owner of the voxel: slots without a node are
-    /// interpolated, and the child that contains the voxel is interpolated linearly.
+    /// inherits. Their source is that child of the old owner which contains the voxel: the slots at its
+    /// corners are interpolated linearly to `at`. A slot without a node is itself interpolated from its
+    /// neighbours.
     pub fn inherit<D: Dim>(
         &mut self,
         mesh: &Mesh<D>,
@@ -289,7 +291,7 @@ impl Past {
         (!element.nodes.is_empty()).then_some(element)
     }
 
-    /// Old nodes that no element carries any more, ascending.
+    /// Returns the old nodes that no element carries any more, ascending.
     fn abandoned(&self, carriers: &IndexVec<NodeId, u8>) -> Vec<NodeId> {
         let replaced = self.replaced.iter().map(|(_, element)| element);
         let old = self.removed.iter().chain(replaced);
@@ -298,8 +300,8 @@ impl Past {
     }
 }
 
-/// Distributes `weight` of a slot to the nodes that represent it: its own node, or recursively those of the
-/// adjacent slots. The shares of the current new node start at index `first`.
+/// Distributes `weight` of a slot to the node of the slot. Without a node, adjacent slots share the weight,
+/// recursively. The shares of the current new node start at index `first`.
 fn collect_shares<D: Dim>(
     element_class: &ElementClass<D>,
     nodes: &[NodeId],

@@ -77,7 +77,7 @@ fn check<D: Dim>(n: usize) {
         let body = bodies.at_mut(BALL);
         body.set_asleep(&vec![true; count].into(), false);
         body.set_asleep(&sleepers, tick % 3 == 1);
-        // Up to 30 voxels per tick, most of them hardly one.
+        // Most crumbs move hardly one voxel per tick, some up to 30.
         let speeds: Vec<_> = (0..count)
             .map(|_| {
                 let fast = if random(&mut seed) > 0.45 {
