@@ -32,8 +32,8 @@ pub enum Event<D: Dim> {
     /// impulses act; a sleeping pair sends none. For a piece that folds onto itself, both objects of the pair
     /// are the same.
     ContactForce(Contact<D>),
-    /// Two objects began to touch. The tick also has a [`Event::ContactForce`] with the same contact. Not sent
-    /// for a piece that folds onto itself.
+    /// Two objects began to touch. The tick also has an [`Event::ContactForce`] with the same contact. Not
+    /// sent for a piece that folds onto itself.
     ContactStarted(Contact<D>),
     /// Two objects stopped touching, or one of them was removed. Objects at rest side by side still touch.
     ContactEnded {
@@ -67,7 +67,7 @@ pub enum Event<D: Dim> {
         /// Work done since the last such event of this knife, in all bodies [J].
         work: f32,
     },
-    /// A joint broke or lost one of its anchors, and was removed.
+    /// A joint exceeded its breaking force, or one of its bodies was removed. The joint was removed, too.
     JointBroke {
         /// Handle of the removed joint.
         joint: JointHandle,
@@ -147,8 +147,8 @@ impl<D: Dim> Event<D> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Contact<D: Dim> {
-    /// The objects, in ascending order of [`ObjectRef`]: a piece stands before a rigid body, and two objects
-    /// of one kind are ordered by handle and piece number. The order of a pair therefore never changes.
+    /// The objects, in ascending order of [`ObjectRef`]: pieces precede rigid bodies, and two objects of one
+    /// kind are ordered by handle and piece number. The order of a pair therefore never changes.
     pub pair: [ObjectRef; 2],
     /// Position of the contact point with the largest normal impulse in a substep [m].
     pub point: D::Vector,

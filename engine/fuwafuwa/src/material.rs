@@ -38,8 +38,8 @@ pub struct Material {
     /// 0.01 a body flows under its own weight. Ignored under [`Law::Endo2004`](crate::Law::Endo2004).
     pub yield_strain: f32,
     /// Limit of plastic compression, 1 to 4: the largest factor by which a width can shrink permanently;
-    /// beyond it the material is elastic. Usually about 2; higher values allow thin sheets, whose elements
-    /// are just as flat.
+    /// beyond it the material is elastic. Usually about 2. Higher values allow thinner sheets, but also
+    /// flatter elements.
     pub plastic_limit: f32,
 }
 
@@ -51,7 +51,7 @@ hash_state! {
 
 impl Default for Material {
     /// Soft body for a game: Y = 5000 Pa, ν = 0.3, 100 kg/m³. A thin rigid body that pushes with some 1000 N
-    /// tears a body 1 m across. In space, a fall of a few decimetres cracks it. Raise the strength for higher
+    /// tears a body 1 m across. In 3D, a fall of a few decimetres cracks it. Raise the strength for higher
     /// loads.
     fn default() -> Self {
         Self {
@@ -149,11 +149,11 @@ impl Material {
         (stiffness / f64::from(self.density)).sqrt()
     }
 
-    /// Frequency of the breathing mode of a single free voxel, times its width [m/s].
+    /// Angular frequency Ω of the breathing mode of a single free voxel, times its width s [m/s].
     ///
-    /// Let all nodes be (1 + ε) times as far from the middle, in N dimensions. The elastic energy per volume
-    /// is ½ N² (λ + 2µ/N) ε². The kinetic energy is ½ ρ N s²/4 ε'², because the mass sits in the corners. So
-    /// Ω² = 4 N (λ + 2µ/N) / ρs².
+    /// In the breathing mode, all nodes are (1 + ε) times as far from the middle. In N dimensions, the
+    /// elastic energy per volume is ½ N² (λ + 2µ/N) ε². The kinetic energy is ½ ρ N s²/4 ε'², because the
+    /// mass sits in the corners. So Ω² = 4 N (λ + 2µ/N) / ρs².
     pub(crate) fn voxel_swing(&self, dimensions: usize) -> f64 {
         let axes = dimensions as f64;
         let stiffness = axes * self.elasticity.lame() + 2.0 * self.elasticity.shear_modulus();

@@ -7,9 +7,9 @@ use crate::world::BodyHandle;
 
 /// Object that takes part in contacts, sensor overlaps and queries: a piece of a soft body, or a rigid body.
 ///
-/// References are ordered: pieces by body handle and number, then rigid bodies by handle. A
-/// [`MotionType`](crate::MotionType) is not part of the reference;
-/// `world.rigid_bodies()[handle].motion_type` returns it.
+/// References are ordered: pieces by body handle and number, then rigid bodies by handle. The reference of a
+/// rigid body does not contain its [`MotionType`](crate::MotionType);
+/// `world.rigid_body(handle)?.motion_type()` returns it.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ObjectRef {

@@ -78,13 +78,13 @@ pub struct HitElement {
     pub material: u8,
 }
 
-/// Queries on the present state. The world keeps search trees between queries and updates them by the first
-/// query after a change, which visits each exposed face of the bodies that moved; further queries are cheap,
-/// also from several threads. Of equally distant objects, the first one in the order of [`ObjectRef`] counts.
+/// Queries on the present state. The world keeps search trees between queries. The first query after a change
+/// updates them, which visits each exposed face of the bodies that moved. Further queries are cheap, also
+/// from several threads. Of equally distant objects, the first one in the order of [`ObjectRef`] counts.
 impl<D: Dim> World<D> {
     /// Casts a ray. Returns the first hit on the surface of an object, from outside or inside, within
-    /// `max_distance` [m], which may be infinite. Returns `None` if the direction has length 0, another
-    /// coordinate is not finite, or `max_distance` is negative or NaN.
+    /// `max_distance` [m], which may be infinite. Returns `None` if the direction has length 0, a coordinate
+    /// is not finite, or `max_distance` is negative or NaN.
     ///
     /// ```
     /// use fuwafuwa::{Dim3, Material, QueryFilter, Ray, SoftBody, Vec3, VoxelGrid, World, WorldConfig};
@@ -296,7 +296,7 @@ impl<'a, D: Dim> Query<'a, D> {
         }
     }
 
-    /// Visits the objects that may have a cost of at most the smallest one found before, see
+    /// Visits the objects with a cost that may be at most the smallest one found before, see
     /// [`Tree::search`](bounding_tree::Tree::search). Objects are given by their rank in the order of
     /// [`ObjectRef`].
     fn search(
@@ -315,7 +315,7 @@ impl<'a, D: Dim> Query<'a, D> {
         });
     }
 
-    /// Returns an object that the filter may admit.
+    /// Returns the object of a rank, or [`Found::Filtered`] if the filter rejects its body.
     fn object(&self, rank: usize) -> Found<'_> {
         match self.trees.objects[rank] {
             TreeObject::Rigid(id) => {
@@ -474,7 +474,8 @@ fn each_once(mut found: Vec<QueryOverlap>) -> Vec<QueryOverlap> {
     found
 }
 
-/// Returns the cost of a box that is visited if a condition holds.
+/// Returns the cost of a box for a yes-or-no query: 0 if the condition holds and the box is to be visited,
+/// otherwise infinity.
 fn zero_if(condition: bool) -> f32 {
     if condition { 0.0 } else { f32::INFINITY }
 }

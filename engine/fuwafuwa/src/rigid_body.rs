@@ -1,9 +1,9 @@
 //! Rigid bodies: fixed, kinematic, coupled and dynamic.
 //!
 //! A coupled rigid body follows its target through a spring and a damper, the *virtual coupling* [Colgate
-//! 1995]. Because the body has inertia, the coupling force is smooth, and it is the force that a
-//! force-feedback device should play. The raw contact force jumps. Contacts turn only dynamic rigid bodies;
-//! kinematic and coupled ones turn to their target rotation.
+//! 1995]. Because the body has inertia, the coupling force is smooth, so a force-feedback device should play
+//! it; the raw contact force jumps. Contacts turn only dynamic rigid bodies. Kinematic and coupled ones turn
+//! to their target rotation.
 
 mod dynamics;
 mod inertia;
@@ -43,7 +43,8 @@ pub enum MotionType {
     Coupled {
         /// Mass [kg], 1e-6 to 1e6, default 2. A lighter body follows faster and feels rougher.
         mass: f32,
-        /// Spring stiffness [N/m], default 3000. Values above a quarter of mass / substep² are limited to it.
+        /// Spring stiffness [N/m], default 3000. Values above a quarter of mass / substep² are reduced to it,
+        /// so that the spring stays stable.
         stiffness: f32,
         /// Damping ratio, above 0 and up to 10, default 0.9. Below 0.5 the body oscillates around its target.
         damping: f32,
@@ -74,7 +75,8 @@ impl MotionType {
         matches!(self, Self::Kinematic | Self::Coupled { .. })
     }
 
-    /// Returns the moments of inertia of a dynamic body of the shape in a world of `D`.
+    /// Returns the moments of inertia of a body with this motion type and shape in a world of `D`; `None`
+    /// unless the type is dynamic.
     fn inertia<D: Dim>(self, shape: &Solid) -> Option<Inertia> {
         match self {
             Self::Dynamic { mass } => Some(Inertia::of::<D>(shape, mass)),
@@ -124,7 +126,8 @@ pub struct RigidBody<D: Dim> {
     pub position: D::Vector,
     /// Rotation from local to world axes. In 2D only the rotation about the third axis counts.
     pub rotation: Rotation,
-    /// Velocity, default 0. Only dynamic bodies keep it.
+    /// Velocity, default 0. It matters for dynamic bodies only: kinematic and coupled bodies get theirs from
+    /// their target.
     pub velocity: Velocity<D>,
     /// Coulomb friction coefficient, default 0.2; 0.5 for dynamic bodies. Contacts with soft bodies use this value
     /// alone, not that of the material. Contacts between two rigid bodies use the mean of both, except against a
@@ -145,7 +148,7 @@ pub struct RigidBody<D: Dim> {
 /// Force and torque on a rigid body in one substep.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Reaction<D: Dim> {
-    /// Contact force [N]; jumps when something tears.
+    /// Contact force [N]. It jumps when something tears.
     pub contact: D::Vector,
     /// Torque of the contacts and knives about the [position](RigidBodyRef::position) [N m]; in 2D positive is
     /// counterclockwise.

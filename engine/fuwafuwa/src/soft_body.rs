@@ -47,17 +47,19 @@ use caches::Cache;
 use glam::DVec3;
 use glam::Vec3;
 
-/// Courant number of a substep: the largest fraction of a voxel that the fastest pressure wave may travel.
+/// Courant number of a substep: the largest fraction of a voxel that the fastest pressure wave may travel in
+/// it.
 ///
-/// The fastest oscillator at rest is a free voxel. It is stable up to 2c / Ωs = 0.73 in space and 0.84 in the
-/// plane (Poisson's ratio 0.3). Squashed elements oscillate faster: with 0.6, a ball that is squashed to 40 %
-/// and hit at its wave speed stays stable.
+/// At rest, the fastest oscillator is a single free voxel. With width s, angular frequency Ω and wave speed
+/// c, it is stable up to a Courant number of 2c / Ωs: 0.73 in 3D and 0.84 in 2D, at a Poisson's ratio of 0.3.
+/// Squashed elements oscillate faster. With 0.6, a ball that is squashed to 40 % and hit at its wave speed
+/// stays stable.
 const COURANT: f64 = 0.6;
-/// Fraction used of the largest stable lead of a free voxel; about the margin that [`COURANT`] keeps of the
-/// squared substep.
+/// Fraction used of the largest stable lead, see [`SoftBody::damping`]. [`COURANT`] keeps about the same
+/// margin for the square of the substep.
 const LEAD_USED: f64 = 0.7;
 
-/// Arena of the bodies of a world.
+/// Arena of the soft bodies of a world.
 pub type SoftBodies<D> = Arena<SoftBodyHandle, SoftBody<D>>;
 
 /// Soft body, whole or in pieces.
@@ -65,7 +67,7 @@ pub type SoftBodies<D> = Arena<SoftBodyHandle, SoftBody<D>>;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct SoftBody<D: Dim> {
-    // Snapshots contain the topology and the state.
+    // Snapshots contain the topology and the state, from which the cache is rebuilt.
     topology: Topology<D>,
     state: State<D>,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -85,8 +87,8 @@ impl<D: Dim> SoftBody<D> {
         Self::with_options(grid, materials, Law::default(), Grading::default())
     }
 
-    /// Creates a body like [`SoftBody::new`], with a chosen law and grading. [`Grading::Coarse`] can be neither
-    /// torn nor cut.
+    /// Creates a body like [`SoftBody::new`], with a chosen law and grading. A body of [`Grading::Coarse`]
+    /// can be neither torn nor cut.
     ///
     /// # Errors
     /// See [`SoftBody::new`].
@@ -147,7 +149,7 @@ impl<D: Dim> SoftBody<D> {
         Ok(body)
     }
 
-    /// Recomputes the cache and the element stiffness from `truth` and `state`.
+    /// Recomputes the cache and the element stiffness from the topology and the state.
     pub(crate) fn rebuild(&mut self) {
         let Topology {
             grid,
@@ -184,7 +186,7 @@ impl<D: Dim> SoftBody<D> {
         self.cache.history.end()
     }
 
-    /// Fixes a node: it keeps its velocity, and forces no longer change it.
+    /// Fixes a node: forces no longer change its velocity. A node at rest therefore stays in place.
     ///
     /// # Panics
     /// If the id was never used.
@@ -282,7 +284,7 @@ impl<D: Dim> SoftBody<D> {
         Ok(())
     }
 
-    /// Elastic force [N] on a node at the start of the last step.
+    /// Elastic force [N] on a node in the last substep.
     ///
     /// # Panics
     /// If the id was never used.
@@ -313,7 +315,7 @@ impl<D: Dim> SoftBody<D> {
         self.state.blocks.inverted_count()
     }
 
-    /// Mass [kg].
+    /// Mass of the whole body [kg].
     #[inline(never)]
     pub fn total_mass(&self) -> f64 {
         let ids = self.topology.mesh.nodes();
@@ -321,7 +323,8 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Returns the damping for substeps of `duration` [s]: the lead of the elastic forces [s], and the rate
-    /// [1/s] at which each piece relaxes towards its rigid motion.
+    /// [1/s] at which each piece relaxes towards its rigid motion. Forces are evaluated at positions
+    /// extrapolated by the lead.
     ///
     /// A lead τ damps the slowest mode ω with a ratio of τω/2. The fastest mode Ω, that of a single voxel, is
     /// stable if Ω²h (h + 2τ) < 4, that is τ < (4/Ω² − h²) / 2h; [`LEAD_USED`] keeps a margin.
@@ -341,7 +344,7 @@ impl<D: Dim> SoftBody<D> {
         self.cache.blend.friction
     }
 
-    /// Whether any material has a finite strength; otherwise the body cannot tear.
+    /// Returns whether any material in use has a finite strength; otherwise the body cannot tear.
     pub(crate) fn can_tear(&self) -> bool {
         self.cache.blend.least_strength < f32::INFINITY
     }
@@ -357,7 +360,7 @@ impl<D: Dim> SoftBody<D> {
         self.topology.stiffness_scale
     }
 
-    /// Lowers the stiffness by as little as makes a substep of `duration` [s] stable.
+    /// Lowers the stiffness just enough for a substep of `duration` [s] to be stable.
     pub(crate) fn scale_stiffness_for(&mut self, duration: f64) {
         let size = f64::from(self.topology.grid.voxel_size());
         let ratio = COURANT * size / self.cache.blend.fastest_wave / duration;

@@ -37,21 +37,20 @@ pub use removal::{PieceSize, Removed};
 #[cfg(feature = "serde")]
 pub(crate) use stored_world::StoredWorld;
 
-/// Decay rate of the angular velocity of a one-voxel piece that touches something [1/s], because it does not
-/// roll. In 0.1 s it falls to an eighth. A higher rate would stop the rotation in the air between two
-/// bounces.
+/// Decay rate [1/s] of the angular velocity of a one-voxel piece that touches something. The decay imitates a
+/// cube, which does not roll. At this rate, the rotation falls to an eighth in 0.1 s. A higher rate would
+/// stop the rotation in the air between two bounces.
 const CRUMB_SPIN_LOSS: f32 = 20.0;
-/// Extra drag [1/s] of pieces that touch something and move slower than `SETTLING_SPEED`: without it heaps
-/// creep for long before they fall asleep. The speed [m/s] is that of a fall by 0.5 mm; above it the braking
-/// of sliding pieces would be visible.
+/// Extra drag [1/s] of pieces that touch something and move slower than `SETTLING_SPEED` [m/s]. Without it,
+/// heaps creep for a long time before they fall asleep. A falling body exceeds the speed after 0.5 mm. With a
+/// higher speed, the braking of sliding pieces would be visible.
 const SETTLING: f32 = 2.0;
 const SETTLING_SPEED: f64 = 0.1;
-/// Node speed above which a piece is quarantined [m/s]. It corresponds to a voxel of 1 m in each of the usual
-/// 960 substeps a second. Smaller voxels cannot reach it, because no node moves by more than a voxel in a
-/// substep.
+/// Node speed above which a piece is quarantined [m/s]. No node moves by more than a voxel in a substep. At
+/// the usual 960 substeps a second, only voxels wider than 1 m can therefore reach this speed.
 const TOP_SPEED: f32 = 1000.0;
 
-/// Soft bodies, rigid bodies, joints and knives, and their simulation.
+/// Simulated world: soft bodies, rigid bodies, joints and knives. [`World::step`] advances its time.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = "", try_from = "StoredWorld<D>"))]
@@ -64,7 +63,7 @@ pub struct World<D: Dim> {
     ticks: u64,
     nearby: Nearby,
     events: Vec<Event<D>>,
-    /// Contacts of the last tick, and objects inside each sensor; both ascending.
+    /// Contacts of the last tick, ascending by pair; below, each sensor with an object inside it, ascending.
     touching: Vec<Contact<D>>,
     inside: Vec<(RigidBodyHandle, ObjectRef)>,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -89,7 +88,7 @@ impl<D: Dim> World<D> {
     /// Returns an empty world.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] if a parameter is out of range.
+    /// [`Error::InvalidParameter`] if a field of `config` is out of range.
     #[inline(never)]
     pub fn new(config: WorldConfig<D>) -> Result<Self, Error> {
         config.check()?;
@@ -166,8 +165,9 @@ impl<D: Dim> World<D> {
         report
     }
 
-    /// Returns the number of substeps per tick that the stiffest body requires. At least 16 in 1/60 s, at
-    /// most the limit of the settings.
+    /// Returns the number of substeps of a tick, as many as the stiffest body requires. In 1/60 s there are
+    /// at least [`DEFAULT_SUBSTEPS`] and at most [`WorldConfig::max_substeps`]; if the two contradict each
+    /// other, the maximum counts.
     pub fn substeps(&self) -> u32 {
         let longest = self.bodies.iter().map(SoftBody::longest_substep);
         let longest = longest.fold(f64::INFINITY, f64::min);
@@ -258,8 +258,9 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Solves joints, knives and contacts on the velocities. Returns the sleepers that were hit; until the
-    /// end of this substep they still act as walls.
+    /// Solves joints, knives and contacts: applies their impulses to the velocities. Returns the sleeping
+    /// pieces and bodies that were hit. They wake at the end of this substep, and until then act as immovable
+    /// walls.
     fn touch(&mut self, duration: f32) -> Hits {
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let nearby = &mut self.nearby;
@@ -293,7 +294,8 @@ impl<D: Dim> World<D> {
         self.part_joints(broken);
     }
 
-    /// Stops pieces that are non-finite or too fast, for good, at their positions before the tick.
+    /// Quarantines pieces that are non-finite or too fast: resets them to their positions before the tick,
+    /// and keeps them there for good.
     fn quarantine(&mut self, report: &mut StepReport) {
         for (id, body) in self.bodies.entries_mut() {
             body.refresh_awake();
@@ -384,7 +386,8 @@ impl<D: Dim> World<D> {
     }
 }
 
-/// Returns whether one of `rounds` rounds, spread evenly over the substeps of a tick, is due in this substep.
+/// Returns whether a fracture and damping round is due in this substep. The `rounds` of a tick are spread
+/// evenly over its substeps.
 fn is_due(substep: u32, substeps: u32, rounds: u32) -> bool {
     substep * rounds % substeps < rounds
 }

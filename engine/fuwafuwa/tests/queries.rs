@@ -384,7 +384,7 @@ fn distance_to<D: Dim>(corners: [Vec3; 4], origin: Vec3, direction: Vec3) -> Opt
     halves.into_iter().flatten().reduce(f64::min)
 }
 
-/// All queries on a grid of points and rays.
+/// Answers to all queries, on a grid of points and rays.
 type Answers<D> = (Vec<Option<QueryHit<D>>>, Vec<Vec<QueryOverlap>>);
 
 fn answers<D: Dim>(world: &World<D>) -> Answers<D> {
@@ -404,8 +404,8 @@ fn answers<D: Dim>(world: &World<D>) -> Answers<D> {
     (hits, overlaps)
 }
 
-/// Compares rays with brute force over all exposed faces, and all queries with those of a world without
-/// search trees.
+/// Compares ray casts with brute force over all exposed faces, and all queries with those of a world that has
+/// no search trees yet.
 fn check_cache<D: Dim>(world: &World<D>, step: &str) {
     let known = answers(world);
     assert_eq!(known, answers(&world.clone()), "{step}");

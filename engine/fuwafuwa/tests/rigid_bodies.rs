@@ -404,7 +404,7 @@ fn rotated_box_collides() {
 }
 
 #[test]
-fn add_rigid_names_invalid_field() {
+fn add_rigid_body_names_invalid_field() {
     let mut world = floored::<Dim3>();
     let tiny = RigidBody::dynamic(Shape::ball(1e-20), 1e-6);
     let endless = RigidBody::dynamic(Shape::half_space(Vec3::Y, Vec3::ZERO), 1.0);
@@ -505,7 +505,7 @@ fn slow_kinematic_lift_moves_sleeping_load() {
 }
 
 #[test]
-fn drive_change_stops_falling_body() {
+fn set_motion_type_stops_falling_body() {
     let mut world = world::<Dim3>(-9.81);
     let id = world
         .add_rigid_body(RigidBody::dynamic(cube(Vec3::ZERO, 0.2), 1.0))

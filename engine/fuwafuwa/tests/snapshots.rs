@@ -17,7 +17,7 @@ fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
 
-/// A ball that falls on a floor while a hand pushes it against a wall and through.
+/// A ball that falls on a floor, while a hand presses it against a wall and through it.
 fn torn_world<D: Dim>(n: usize) -> World<D> {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);

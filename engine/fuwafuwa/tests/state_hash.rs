@@ -1,7 +1,8 @@
 //! The hash of a world covers every number that a snapshot contains.
 //!
-//! A serialiser writes the world as snapshots do and notes where each number, flag, variant, option and list is.
-//! Each of them is then changed alone. The changed snapshot must be refused, or give a world with another hash.
+//! A serialiser writes the world as snapshots do, and records the position of each number, flag, variant,
+//! option and list. Then each of them is changed alone. The changed snapshot must be refused, or give a world
+//! with another hash.
 #![cfg(feature = "serde")]
 
 use fuwafuwa::inspect::Hash;
@@ -35,17 +36,17 @@ const WITHOUT_EFFECT: [(&str, &str); 2] = [
     ),
 ];
 
-/// Names of the items of tuples and arrays.
+/// Path components of the items of tuples and arrays.
 const INDICES: [&str; 9] = ["0", "1", "2", "3", "4", "5", "6", "7", "8"];
 
-/// Place of a stored value, and the bytes of another value.
+/// Path and position of a stored value, and the bytes of a different value.
 struct Site {
     path: String,
     place: Range<usize>,
     other: Vec<u8>,
 }
 
-/// Writes postcard's format and notes the sites.
+/// Serialiser for postcard's format that records the sites.
 #[derive(Default)]
 struct Sites {
     bytes: Vec<u8>,
@@ -68,7 +69,7 @@ fn zigzag(number: i64) -> Vec<u8> {
 }
 
 impl Sites {
-    /// Writes a value and notes it with another one.
+    /// Writes a value and records its site; `other` is a different value.
     fn leaf(&mut self, own: &[u8], other: Vec<u8>) -> Result<(), Error> {
         let first = self.bytes.len();
         self.bytes.extend(own);
@@ -76,7 +77,7 @@ impl Sites {
         Ok(())
     }
 
-    /// Notes everything written since `first` with another value.
+    /// Records everything written since `first` as a site; `other` is a different value.
     fn note(&mut self, first: usize, other: Vec<u8>) {
         self.all.push(Site {
             path: self.path.join("."),
@@ -99,7 +100,7 @@ impl Sites {
     }
 }
 
-/// List that is being written. A list without its last item counts as another value of the list.
+/// List that is being written. The list without its last item serves as the different value.
 struct List<'a> {
     sites: &'a mut Sites,
     /// Start of the length, of the items and of the last item.
@@ -341,7 +342,7 @@ impl ser::SerializeTuple for Tuple<'_> {
     }
 }
 
-/// Implements tuples, whose fields have no names, and structs.
+/// Implements serialisation of structs, and of tuple variants, whose fields have no names.
 macro_rules! fields {
     ($($tuple:ident $element:ident),*; $($structure:ident),*) => {
         $(impl ser::$tuple for &mut Sites {
@@ -533,7 +534,7 @@ fn check_everything<D: Blades>(n: usize) {
     check_all_values(&world, &mut counts);
     let is_torn = |body: &SoftBody<D>| body.pieces().count() > 1;
     assert!(world.soft_bodies().any(|(_, body)| is_torn(body)));
-    // Asleep, after some time without the coupled body.
+    // Checks the world again when bodies sleep, some time after the coupled body was removed.
     let hand = world.nth_target_follower(0).unwrap();
     world.remove(hand).unwrap();
     for _ in 0..300 {

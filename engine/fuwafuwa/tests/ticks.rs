@@ -194,7 +194,7 @@ fn substeps_per_second_are_independent_of_tick() {
 }
 
 #[test]
-fn settings_reject_tick_out_of_range() {
+fn config_rejects_tick_out_of_range() {
     for tick in [
         0.0,
         -DEFAULT_TICK,
@@ -221,9 +221,9 @@ fn settings_reject_tick_out_of_range() {
     }
 }
 
-/// Each setting takes effect on a running world.
+/// Each field of the configuration takes effect on a running world.
 #[test]
-fn set_settings_takes_effect_immediately() {
+fn set_config_takes_effect_immediately() {
     let usual = WorldConfig::default();
     let mut world = world::<Dim2>(DEFAULT_TICK);
     let ball = world.add_soft_body(ball::<Dim2>(12).translated(Vec2::new(0.0, 50.0)));
@@ -266,7 +266,7 @@ fn set_settings_takes_effect_immediately() {
     near(found / before, kept * kept * kept * kept - 1.0);
 }
 
-/// The reactions passed to the hook in each substep, force and torque, are those stored at the end of the
+/// The hook in each substep receives the same force and torque as the reactions stored at the end of the
 /// tick.
 fn check_callback<D: Dim>(tick: f32) {
     let mut world = world::<D>(tick);

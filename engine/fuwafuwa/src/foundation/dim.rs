@@ -60,7 +60,7 @@ mod sealed {
     impl Sealed for glam::Vec3 {}
     impl Sealed for f32 {}
 
-    /// With the feature `serde`, values that can be stored; otherwise any.
+    /// Types that can be stored with the feature `serde`; without the feature, all types.
     #[cfg(feature = "serde")]
     pub trait Stored: serde::Serialize + serde::de::DeserializeOwned {}
     #[cfg(feature = "serde")]
@@ -121,7 +121,7 @@ pub trait DimVector:
     fn is_finite(self) -> bool;
 }
 
-/// Implements [`DimVector`] by the methods of the vector itself.
+/// Implements [`DimVector`] by the methods of a `glam` vector.
 macro_rules! dim_vector {
     ($vector:ident, $to:expr, $from:expr) => {
         impl DimVector for $vector {
@@ -255,7 +255,7 @@ pub fn scale(a: Point, k: i32) -> Point {
     [a[0] * k, a[1] * k, a[2] * k]
 }
 
-/// Dot product over the components of the dimension; the others are 0.
+/// Dot product over the components of the dimension. In 2D the third ones are ignored.
 #[inline(always)]
 pub(crate) fn inner<D: Dim>(a: Row, b: Row) -> f32 {
     let mut sum = a[0] * b[0];
@@ -265,7 +265,7 @@ pub(crate) fn inner<D: Dim>(a: Row, b: Row) -> f32 {
     sum
 }
 
-/// Keeps the components of a rotation that the dimension allows: in 2D only the third.
+/// Restricts an angular velocity or torque to the dimension: in 2D only the third component remains.
 pub(crate) fn turning<D: Dim>(mut about: Vec3) -> Vec3 {
     if D::N == 2 {
         (about.x, about.y) = (0.0, 0.0);

@@ -42,9 +42,9 @@ pub trait HashState {
     fn hash_state(&self, hash: &mut Hash);
 }
 
-/// Implements [`HashState`] for a struct or an enum from the list of its fields or variants. A field or variant
-/// that is not listed does not compile. Fields under `skip` are not stored in snapshots: they follow from the
-/// state or are rebuilt in each tick.
+/// Implements [`HashState`] for a struct or an enum from the list of its fields or variants. A missing field
+/// or variant is a compile error. Fields under `skip` are not stored in snapshots: they follow from the state
+/// or are rebuilt in each tick.
 macro_rules! hash_state {
     (
         $([$($generics:tt)*])? struct $type:ty { $($field:ident),* $(,)? }
@@ -112,8 +112,8 @@ short_numbers! {
     f32 => f32::to_bits,
 }
 
-/// A multiplication moves a difference upwards only, so that two changes of the highest bits of two words would
-/// cancel. So long numbers are added in two halves. Otherwise the quaternions q and −q would have the same hash.
+/// Adds long numbers in two halves. A multiplication moves a difference upwards only, so changes of the
+/// highest bits of two words could cancel. The quaternions q and −q would then have the same hash.
 impl HashState for u64 {
     #[inline]
     fn hash_state(&self, hash: &mut Hash) {

@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     #[cfg(feature = "serde")]
-    fn is_sound_detects_endless_list() {
+    fn is_valid_detects_endless_list() {
         let mut chains = IdLists::new(2);
         for id in 0..3 {
             chains.append(1, NodeId(id));
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn chains_preserve_order_after_remove_and_append() {
+    fn lists_preserve_order_after_remove_and_append() {
         let mut chains = IdLists::new(2);
         for id in [4, 0, 2].map(NodeId) {
             chains.append(1, id);

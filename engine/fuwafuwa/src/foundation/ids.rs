@@ -187,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn table_is_indexed_by_ids() {
+    fn index_vec_is_indexed_by_ids() {
         let mut table: IndexVec<NodeId, char> = vec!['a', 'b'].into();
         assert_eq!(table.next_id(), NodeId(2));
         table.push('c');

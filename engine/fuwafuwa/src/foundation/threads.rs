@@ -1,11 +1,11 @@
-//! Work distribution over threads, with the feature `parallel` and the thread pool of the caller. Chunks do
-//! not write what another chunk reads or writes, and their results are returned in order. So the result is
+//! Work distribution over threads, with the feature `parallel` and the thread pool of the caller. No chunk
+//! writes data that another chunk reads or writes, and results are returned in order. The result is therefore
 //! bitwise identical for any number of threads.
 
 use crate::foundation::ids::NodeId;
 
-/// Number of items in a chunk. With fewer, the handover takes longer than the work. Unit tests use small
-/// bodies, and should still cover several chunks.
+/// Number of items in a chunk. With fewer items, the handover to a thread takes longer than the work. Unit
+/// tests use small bodies, and should still cover several chunks.
 pub const CHUNK_SIZE: usize = if cfg!(test) { 32 } else { 2048 };
 
 /// Smallest number of chunks that are processed on several threads. If other programs use the machine, each
@@ -37,7 +37,7 @@ pub fn chunks<T>(list: &mut [T]) -> impl Iterator<Item = (usize, &mut [T])> {
     firsts.zip(list.chunks_mut(CHUNK_SIZE))
 }
 
-/// Some nodes, and their rows in several lists indexed by node id.
+/// Chunk of nodes, and their rows in several lists indexed by node id.
 pub struct RowChunk<'a, T, const N: usize> {
     /// Nodes, ascending.
     pub nodes: &'a [NodeId],

@@ -1,4 +1,4 @@
-//! Eight numbers side by side, one for each element of a block.
+//! Eight numbers side by side, one for each element of a batch.
 //!
 //! The code is written once on the vectors of `fearless_simd`, and compiled for each kind of machine. Every
 //! operation works within a lane and rounds once, so that all machines give the same bits. Only + − × ÷ √,
@@ -7,10 +7,10 @@
 use super::row::Row;
 use fearless_simd::{f32x4, f32x8, prelude::*};
 
-/// Number of elements in a block.
+/// Number of elements in a batch.
 pub const LANES: usize = 8;
 
-/// One number for each element of a block.
+/// One number for each element of a batch.
 pub type Lanes<S> = f32x8<S>;
 
 /// One number for each lane, in memory.
@@ -61,7 +61,7 @@ pub fn load<S: Simd>(simd: S, values: &Eight) -> Lanes<S> {
     Lanes::load_array_ref(simd, values)
 }
 
-/// Maximum of two numbers per lane; the second one if they do not compare.
+/// Maximum of two numbers per lane; the second one if a number is NaN.
 #[inline(always)]
 pub fn at_least<S: Simd>(value: Lanes<S>, least: Lanes<S>) -> Lanes<S> {
     value.simd_gt(least).select(value, least)

@@ -19,7 +19,7 @@ const WORN: f32 = 2.0;
 /// Box without content.
 const EMPTY: Bounds = [Vec3::INFINITY, Vec3::NEG_INFINITY];
 
-/// Bounding-volume hierarchy over boxes, which are known by their index in a list.
+/// Bounding-volume hierarchy over a list of boxes, which are identified by their index in the list.
 ///
 /// Results of a search do not depend on the shape of the tree: the cost of a box never decreases from a box to
 /// the boxes within, not even by rounding, and every item is checked against its own box.
@@ -133,9 +133,9 @@ impl Tree {
         self.nodes.iter().map(widths).sum()
     }
 
-    /// Visits the items with a finite cost that is at most the smallest cost found before. That limit begins
-    /// at `limit`. `cost` must not be larger for a box than for a box within. `visit` receives the index of an
-    /// item and the cost of its box, and returns the cost of its content.
+    /// Visits the items with a finite cost of at most the smallest cost found before, which begins with
+    /// `limit`. `cost` must not be larger for a box than for a box inside it. `visit` receives the index of
+    /// an item and the cost of its box, and returns the cost of its content.
     pub fn search(
         &self,
         mut limit: f32,
@@ -162,7 +162,7 @@ impl Tree {
             if leaf.is_empty() {
                 let [a, b] =
                     children.map(|child| (child, cost(&self.nodes[child as usize].bounds)));
-                // The last one on the stack is visited first.
+                // The last entry on the stack is visited first.
                 let ordered = if b.1 < a.1 { [a, b] } else { [b, a] };
                 stack.extend(ordered.into_iter().filter(|child| counts(child.1, limit)));
             }

@@ -1,12 +1,12 @@
 //! Geometric primitives of queries: intersections, nearest points and containment for segments, triangles and
-//! blocks.
+//! deformed cells.
 
 use crate::foundation::dim::{Dim, corner};
 use crate::rigid_body::solid::flat;
 use glam::Vec3;
 
-/// Newton iterations to locate a point in a block. 6 are sufficient for blocks with corners displaced at
-/// random by up to 0.6 of their width; 12 leave a factor of 2.
+/// Newton iterations to locate a point in a deformed cell. 6 are sufficient for cells with corners displaced
+/// at random by up to 0.6 of their width; 12 leave a factor of 2.
 const ROUNDS: usize = 12;
 /// Relative tolerance at the ends of primitives, so that rounding leaves no gap between neighbours. It is the
 /// single-precision resolution of a voxel of 1 cm at 16 m from the origin.
@@ -18,7 +18,7 @@ pub fn ray_meets_segment(from: Vec3, direction: Vec3, [a, b]: [Vec3; 2]) -> Opti
     let (along, reach) = (b - a, a - from);
     let across = flat(direction, along);
     let (far, share) = (flat(reach, along) / across, flat(reach, direction) / across);
-    // For parallel lines both are infinite or NaN.
+    // For parallel lines, both numbers are infinite or NaN.
     let is_in = (-LITTLE..=1.0 + LITTLE).contains(&share);
     (is_in && far >= 0.0 && far.is_finite()).then_some(far)
 }
@@ -67,8 +67,8 @@ pub fn nearest_on_triangle(at: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     others.into_iter().fold(first, nearer)
 }
 
-/// Returns whether a point is in a block, given by its corners in the order of [`corner`]: whether local
-/// coordinates from 0 to 1 map to the point.
+/// Returns whether a point is in a deformed cell, given by its corners in the order of [`corner`]: whether
+/// local coordinates from 0 to 1 map to the point.
 pub fn is_in_block<D: Dim>(at: Vec3, corners: &[Vec3]) -> bool {
     // Relative to the point, which may be far from the origin.
     let corners: Vec<Vec3> = corners.iter().map(|&corner| corner - at).collect();
@@ -92,7 +92,7 @@ pub fn is_in_block<D: Dim>(at: Vec3, corners: &[Vec3]) -> bool {
             .all(|share| (-LITTLE..=1.0 + LITTLE).contains(share))
 }
 
-/// Returns the point at local coordinates of a block, and its derivatives by each of them.
+/// Returns the point at local coordinates of a deformed cell, and its derivatives by each of them.
 fn in_block<D: Dim>(shares: Vec3, corners: &[Vec3]) -> (Vec3, [Vec3; 3]) {
     let mut place = Vec3::ZERO;
     let mut slopes = Vec3::AXES;
@@ -103,7 +103,7 @@ fn in_block<D: Dim>(shares: Vec3, corners: &[Vec3]) -> (Vec3, [Vec3; 3]) {
             0 => 1.0 - shares[axis],
             _ => shares[axis],
         };
-        // In 2D corners differ along two axes only.
+        // In 2D, corners differ along two axes only.
         let weights = [0, 1, 2].map(|axis| if axis < D::N { weight(axis) } else { 1.0 });
         place += at * weights.iter().product::<f32>();
         for axis in 0..D::N {

@@ -89,21 +89,24 @@ impl<'a> QueryFilter<'a> {
         self
     }
 
-    /// Returns whether a rigid body may count; [`QueryFilter::admits`] decides.
+    /// Returns whether a rigid body passes the tests of kind, sensor and layers; [`QueryFilter::admits`]
+    /// makes the other tests.
     pub(super) fn admits_rigid(&self, rigid: &RigidState) -> bool {
         self.kinds != Kinds::Soft
             && (self.includes_sensors || !rigid.is_sensor)
             && self.meets(rigid.layers)
     }
 
-    /// Returns whether pieces of a soft body may count; [`QueryFilter::admits`] decides.
+    /// Returns whether a soft body passes the tests of kind, exclusion and layers; [`QueryFilter::admits`]
+    /// tests its pieces.
     pub(super) fn admits_body<D: Dim>(&self, id: SoftBodyHandle, body: &SoftBody<D>) -> bool {
         self.kinds != Kinds::Rigid
             && !self.excluded.contains(&ObjectSelector::SoftBody(id))
             && self.meets(body.layers())
     }
 
-    /// Returns whether an object counts that passed the check of its body.
+    /// Returns whether an object is neither excluded nor rejected by the predicate. Its body must have passed
+    /// the tests above.
     pub(super) fn admits(&self, object: ObjectRef) -> bool {
         !self.excluded.iter().any(|own| own.contains(object))
             && self.predicate.is_none_or(|predicate| predicate(object))

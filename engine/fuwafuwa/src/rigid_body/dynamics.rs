@@ -33,7 +33,7 @@ impl RigidState {
         }
     }
 
-    /// Returns whether the body is at rest for good: it sleeps, is fixed, or is kinematic and reached its target.
+    /// Returns whether the body is at rest: it sleeps, is fixed, or is kinematic and has reached its target.
     pub(crate) fn rests(&self) -> bool {
         match self.motion_type {
             MotionType::Kinematic => !self.pushes(),
@@ -41,13 +41,13 @@ impl RigidState {
         }
     }
 
-    /// Returns whether the body has contacts with soft bodies of the given layers.
+    /// Returns whether the body collides with soft bodies of the given layers. Sensors do not collide.
     #[inline(always)]
     pub(crate) fn meets(&self, layers: Layers) -> bool {
         !self.is_sensor && self.layers.meet(layers)
     }
 
-    /// Returns whether the body has contacts with another rigid body.
+    /// Returns whether the body collides with another rigid body. Sensors do not collide.
     #[inline(always)]
     pub(crate) fn meets_rigid(&self, other: &Self) -> bool {
         !self.is_sensor && other.meets(self.layers)
@@ -59,7 +59,7 @@ impl RigidState {
         !matches!(self.motion_type, MotionType::Fixed) && !self.asleep
     }
 
-    /// Returns the velocity [m/s] of a body point, given relative to [`position`](RigidBody::position) [m].
+    /// Returns the velocity [m/s] of a body point, given relative to the position of the body [m].
     #[inline(always)]
     pub(crate) fn velocity_at(&self, lever: Vec3) -> Vec3 {
         match self.turns() {
@@ -175,8 +175,8 @@ impl RigidState {
         self.twirl(impulse, lever);
     }
 
-    /// Applies an impulse [N s] of a contact at a lever arm from the position [m], within a substep of
-    /// `duration` [s].
+    /// Applies a contact impulse [N s] at a lever arm from the position [m], and adds it to the reaction of a
+    /// substep of `duration` [s].
     #[inline(always)]
     pub(crate) fn push_at(&mut self, impulse: Vec3, lever: Vec3, duration: f32) {
         self.push(impulse, duration);
@@ -202,8 +202,8 @@ impl RigidState {
         gain
     }
 
-    /// Returns the velocity that an impulse of 1 N s along a unit direction gives the point at a lever arm
-    /// [1/kg].
+    /// Returns the velocity change of the point at a lever arm [m] for an impulse of 1 N s along a unit
+    /// direction [1/kg].
     pub(crate) fn gain(&self, lever: Vec3, way: Vec3) -> Vec3 {
         let gain = way * self.inverse_mass();
         match self.can_be_turned() {

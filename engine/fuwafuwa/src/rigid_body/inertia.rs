@@ -18,7 +18,7 @@ pub struct Inertia {
     axes: [Vec3; 3],
     /// Principal moments [kg m²]; in 2D only the third is not 0.
     moments: Vec3,
-    /// Inverse moments [1/(kg m²)]; 0 about axes that the body cannot turn about.
+    /// Inverse moments [1/(kg m²)]; 0 for axes about which the body cannot rotate.
     inverse: Vec3,
 }
 
@@ -39,7 +39,7 @@ impl Inertia {
         };
         let moments = turning::<D>(shares * mass);
         let inverse = moments.map(|moment| if moment > 0.0 { 1.0 / moment } else { 0.0 });
-        // In 2D the only axis of rotation is the third one, for capsules of any direction.
+        // In 2D all bodies rotate about the third axis, whatever the direction of a capsule.
         let axes = if D::N == 2 {
             Rotation::NONE.axes()
         } else {
@@ -52,7 +52,7 @@ impl Inertia {
         }
     }
 
-    /// Returns whether the inertia is finite and the body can turn.
+    /// Returns whether the inertia is finite and the body can rotate.
     pub fn is_sound(&self) -> bool {
         self.moments.is_finite() && self.inverse.is_finite() && self.inverse[2] > 0.0
     }
@@ -69,7 +69,8 @@ impl Inertia {
         matrix
     }
 
-    /// Returns the angular velocity [rad/s] after a rotation, so that the angular momentum is preserved.
+    /// Returns the angular velocity [rad/s] that preserves the angular momentum while the body rotates from
+    /// `before` to `after`.
     pub fn spin_kept(&self, spin: Vec3, before: Rotation, after: Rotation) -> Vec3 {
         let axes = self.axes.into_iter().zip(self.moments.to_array());
         let momentum = axes.fold(Vec3::ZERO, |sum, (axis, moment)| {

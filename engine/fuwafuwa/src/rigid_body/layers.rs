@@ -2,9 +2,9 @@
 
 use crate::foundation::hash::hash_state;
 
-/// Collision layers of a body: the layers of which it is a member, and the layers that it collides with, bit
-/// by bit. Two bodies collide if each is a member of a layer that the other one collides with. The pieces of
-/// a body use its layers, also among each other.
+/// Collision layers of a body, as two bit masks: the layers that the body belongs to, and the layers that it
+/// collides with. Two bodies collide if each belongs to a layer that the other one collides with. The same
+/// test decides whether two pieces of one soft body collide.
 ///
 /// ```
 /// use fuwafuwa::Layers;
@@ -33,7 +33,7 @@ impl Default for Layers {
 }
 
 impl Layers {
-    /// Whether bodies with these layers collide.
+    /// Returns whether bodies with these layers collide.
     #[inline(always)]
     pub fn meet(self, other: Self) -> bool {
         self.memberships & other.filters != 0 && other.memberships & self.filters != 0

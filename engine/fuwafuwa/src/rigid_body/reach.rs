@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-/// Largest absolute coordinate of rigid bodies and targets [m]; larger and non-finite ones are rejected.
-/// Beyond it, single precision cannot resolve millimetres or the corresponding velocities.
+/// Largest absolute coordinate of rigid bodies and targets [m]; larger and non-finite ones are rejected. At
+/// this distance, single precision resolves only 6 cm.
 pub const FARTHEST: f32 = 1e6;
 
 /// Returns whether a position is allowed for rigid bodies and targets.

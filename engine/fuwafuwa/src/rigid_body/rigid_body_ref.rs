@@ -22,7 +22,7 @@ impl<'a, D: Dim> RigidBodyRef<'a, D> {
         Self { state, dim }
     }
 
-    /// Returns the body as one to add, with its present pose and velocity.
+    /// Returns a definition of the body with its present pose and velocity, for example to add a copy.
     pub fn definition(&self) -> RigidBody<D> {
         self.state.definition()
     }
@@ -107,7 +107,8 @@ impl<'a, D: Dim> RigidBodyRef<'a, D> {
         self.state.user_data
     }
 
-    /// Returns the reactions, one for each substep of the last tick; none for a fixed body.
+    /// Returns the forces and torques on the body, one [`Reaction`] for each substep of the last tick; none
+    /// for a fixed body.
     pub fn reactions(
         &self,
     ) -> impl ExactSizeIterator<Item = Reaction<D>> + DoubleEndedIterator + use<'a, D> {

@@ -20,7 +20,8 @@ use std::mem::discriminant;
 /// Rigid bodies of a world.
 pub type RigidBodies = Arena<RigidBodyHandle, RigidState>;
 
-/// State of a rigid body in the simulation, in three coordinates. The first fields are those of [`RigidBody`].
+/// State of a rigid body in the simulation: the fields of [`RigidBody`], then derived and running values.
+/// Vectors have three coordinates in both dimensions.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidState {
@@ -30,7 +31,7 @@ pub struct RigidState {
     pub layers: Layers,
     pub is_sensor: bool,
     pub user_data: u64,
-    /// Shape in local coordinates, and in the world.
+    /// Shape in local coordinates; below, the same shape in world coordinates.
     pub(super) local_shape: Solid,
     pub(super) shape: Solid,
     /// Position of the local origin [m].
@@ -47,7 +48,7 @@ pub struct RigidState {
     /// Position [m] and rotation at the start of the tick.
     pub(super) position_before: Vec3,
     pub(super) rotation_before: Rotation,
-    /// Moments of inertia, for dynamic bodies only, and the inverse inertia matrix about the world axes.
+    /// Moments of inertia, for dynamic bodies only; below, the inverse inertia matrix about the world axes.
     pub(super) inertia: Option<Inertia>,
     pub(super) inverse_inertia: Matrix,
     /// Target position [m] and target rotation.
@@ -230,7 +231,7 @@ impl RigidState {
         )
     }
 
-    /// Sets the target position [m]; .
+    /// Sets the target position [m] for the end of the next tick.
     pub(crate) fn set_target_position(&mut self, target: Vec3) -> Result<(), Error> {
         self.require_target()?;
         let expected = "within 1e6 m of the origin";
@@ -280,7 +281,9 @@ impl RigidState {
         }
     }
 
-    /// Applies the virtual coupling, or the velocity of a kinematic body, for `duration` [s].
+    /// Moves the target by its velocity over `duration` [s], and begins the reaction of this substep.
+    /// Accelerates a coupled body towards the target, and sets the velocity with which a kinematic body
+    /// reaches it.
     pub(crate) fn pull(&mut self, duration: f32) {
         self.target_before += self.target_velocity * duration;
         let mut reaction = ReactionSum::default();
@@ -296,7 +299,7 @@ impl RigidState {
                 damping,
                 max_force,
             } => {
-                // Limits the stiffness to the stability limit of this substep.
+                // Reduces the stiffness to the stability limit of this substep.
                 let stiffness = stiffness.min(0.25 * mass / (duration * duration));
                 let damper = 2.0 * damping * (stiffness * mass).sqrt();
                 let stretch = self.target_before - self.position;
@@ -315,7 +318,7 @@ impl RigidState {
         self.reactions.push(reaction);
     }
 
-    /// Applies an impulse [N s] of a contact, within a substep of `duration` [s].
+    /// Applies a contact impulse [N s], and adds it to the reaction of a substep of `duration` [s].
     #[inline(always)]
     pub(crate) fn push(&mut self, impulse: Vec3, duration: f32) {
         let inverse_mass = self.inverse_mass();

@@ -65,7 +65,8 @@ impl RigidState {
         self.check().is_ok() && self.clone().seen_in::<D>() == *self
     }
 
-    /// Returns the body as a world of `D` would have it: in 2D third coordinates are 0.
+    /// Returns the body restricted to `D`, with derived fields computed anew: in 2D, third coordinates are 0
+    /// and rotations are about the third axis.
     #[cfg(feature = "serde")]
     fn seen_in<D: Dim>(mut self) -> Self {
         self.local_shape = Shape::<D>::of(&self.local_shape).solid();

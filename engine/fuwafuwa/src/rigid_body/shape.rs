@@ -12,7 +12,7 @@ use glam::Vec3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub enum Shape<D: Dim> {
-    /// Half-space below a plane.
+    /// Half-space bounded by a plane. The solid side is opposite to the normal.
     HalfSpace {
         /// Outward unit normal.
         normal: D::Vector,
@@ -114,8 +114,8 @@ impl<D: Dim> Shape<D> {
         Self::of(&self.solid().rotated(by.seen_in::<D>()))
     }
 
-    /// Returns the shape in three coordinates. In 2D, boxes are unbounded along the third axis, so that no contact
-    /// pushes out of the plane.
+    /// Returns the shape with three coordinates. In 2D, boxes become unbounded along the third axis, so that
+    /// no contact pushes out of the plane.
     pub(crate) fn solid(&self) -> Solid {
         let half_extents = |half: D::Vector| match D::N {
             2 => half.to_vec3().with_z(f32::MAX),
@@ -151,7 +151,7 @@ impl<D: Dim> Shape<D> {
         }
     }
 
-    /// Returns the shape of a solid.
+    /// Returns a solid as a shape of the dimension: the inverse of [`Shape::solid`].
     pub(crate) fn of(solid: &Solid) -> Self {
         let flat = |vector: Vec3| D::Vector::from_vec3(vector);
         match *solid {

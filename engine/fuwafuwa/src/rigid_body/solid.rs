@@ -1,4 +1,4 @@
-//! Shapes as the engine computes with them, with signed distances.
+//! Internal form of shapes, with signed distances.
 //!
 //! The same solids serve 2D and 3D. In 2D all third coordinates are 0, and boxes are unbounded along the third axis.
 
@@ -16,11 +16,11 @@ use glam::Vec3;
 /// Lower and upper corner of an axis-aligned box [m].
 pub type Bounds = [Vec3; 2];
 
-/// [`Shape`](super::shape::Shape) in three coordinates.
+/// [`Shape`](super::shape::Shape) with three coordinates in both dimensions.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Solid {
-    /// Half-space below a plane (2D: a line).
+    /// Half-space bounded by a plane (in 2D a line). The solid side is opposite to the normal.
     HalfSpace {
         /// Outward unit normal.
         normal: Vec3,
@@ -31,14 +31,14 @@ pub enum Solid {
     Box {
         /// Centre [m].
         centre: Vec3,
-        /// Half extents [m]; in 2D the third one is ignored.
+        /// Half extents [m]; in 2D the third one is `f32::MAX`, for unbounded.
         half: Vec3,
     },
     /// Oriented box.
     OrientedBox {
         /// Centre [m].
         centre: Vec3,
-        /// Half extents along the local axes [m]; in 2D the third one is ignored.
+        /// Half extents along the local axes [m]; in 2D the third one is `f32::MAX`, for unbounded.
         half: Vec3,
         /// Rotation from local to world axes.
         rotation: Rotation,
@@ -146,7 +146,8 @@ impl Solid {
         }
     }
 
-    /// Returns the axis-aligned bounding box [m]; that of a half-space is infinite. Ignored axes are 0.
+    /// Returns the axis-aligned bounding box [m]; that of a half-space is infinite. A 2D box has no extent
+    /// along the third axis here.
     pub fn bounds(&self) -> Bounds {
         let around = |from: Vec3, to: Vec3, half: Vec3| {
             let low = [0, 1, 2].map(|axis: usize| from[axis].min(to[axis]) - half[axis]);
@@ -269,7 +270,8 @@ fn distance_from_turned(point: Vec3, half: Vec3, rotation: Rotation) -> (f32, Ve
     (distance, rotation.apply(normal))
 }
 
-/// Returns the extent of a half width along a world axis; 0 for the unbounded third axis of a 2D box.
+/// Returns how far a half extent reaches along a world axis, with the cosine between both directions; 0 for
+/// the unbounded third axis of a 2D box.
 fn reach_of(cosine: f32, half: f32) -> f32 {
     match half == f32::MAX {
         true => 0.0,
@@ -277,7 +279,7 @@ fn reach_of(cosine: f32, half: f32) -> f32 {
     }
 }
 
-/// Returns a vector for a world of `D`: in 2D with the third coordinate 0.
+/// Restricts a vector to the dimension: in 2D its third coordinate becomes 0.
 pub(crate) fn flat<D: Dim>(mut vector: Vec3) -> Vec3 {
     if D::N == 2 {
         vector.z = 0.0;
@@ -296,8 +298,8 @@ fn away(v: Vec3) -> (f32, Vec3) {
     }
 }
 
-/// Returns the signed distance from a box around the origin and the normal. Inside it is that of the nearest
-/// face, outside that of the nearest point.
+/// Returns the signed distance of a point from a box around the origin [m], and the outward normal. Inside,
+/// both refer to the nearest face; outside, to the nearest point of the box.
 #[inline]
 fn distance_from_box(at: Vec3, half: Vec3) -> (f32, Vec3) {
     let beyond = [0, 1, 2].map(|k: usize| at[k].abs() - half[k]);

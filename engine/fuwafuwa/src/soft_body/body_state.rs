@@ -36,8 +36,9 @@ pub struct State<D: Dim> {
     pub user_data: u64,
     /// Whether nodes were placed from outside since forces were last computed.
     pub placed: bool,
-    /// Rotation of each element, and the forces of the last substep. Both are state: rotations are followed
-    /// iteratively, and the next crack follows the last forces. Snapshots contain only these.
+    /// Rotation of each element, and the forces of the last substep. Both are state: each substep continues
+    /// from the last rotations, and the last forces decide where the next crack runs. Of the batches,
+    /// snapshots contain only these.
     pub blocks: ElementBatches<D>,
 }
 

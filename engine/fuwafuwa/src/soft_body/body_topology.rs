@@ -11,8 +11,8 @@ use crate::topology::pieces::Pieces;
 
 /// Topology of a body: voxels, connectivity, and the mesh that follows from them.
 ///
-/// Grid and sharing determine everything else except the numbers of cells, elements, nodes and pieces, which
-/// depend on the history. So they are stored, and saved.
+/// Grid and connectivity determine everything else except the numbers of cells, elements, nodes and pieces,
+/// which depend on the history. Snapshots therefore contain the numbered objects, too.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]

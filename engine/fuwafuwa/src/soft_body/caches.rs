@@ -1,4 +1,4 @@
-//! Data derived from the truth and the state of a body.
+//! Data derived from the topology and the state of a body.
 
 use super::body_properties::BodyProperties;
 use crate::foundation::dim::Point;
@@ -8,8 +8,8 @@ use crate::soft_body::element_forces::Row;
 use crate::soft_body::momentum::RigidMotionF32;
 use crate::topology::changes::History;
 
-/// Data derived from the truth and the state of a body. Not part of snapshots: `SoftBody::rebuild` recomputes it,
-/// and each tick begins by recording `before`.
+/// Data derived from the topology and the state of a body. Snapshots do not contain it: `SoftBody::rebuild`
+/// recomputes it, and each tick begins by recording `before`.
 #[derive(Clone, Debug, Default)]
 pub struct Cache {
     /// Properties of the body, combined from its materials.

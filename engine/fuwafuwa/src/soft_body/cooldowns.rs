@@ -3,7 +3,8 @@
 use crate::foundation::dim::Point;
 use crate::foundation::hash::hash_state;
 
-/// Lattice steps around a release that cool down: half the distance that a wave travels during the cooldown.
+/// Distance from a release within which nodes cool down, in lattice steps: half the distance that a wave
+/// travels during the cooldown.
 const REACH: i32 = 2;
 
 /// Recent releases, around which nodes cool down.
@@ -33,13 +34,13 @@ impl Cooldowns {
         self.points.extend(points.map(|at| (at, duration)));
     }
 
-    /// Returns the points that cool down.
+    /// Returns the points with a running cooldown.
     #[cfg(feature = "serde")]
     pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
         self.points.iter().map(|&(at, _)| at)
     }
 
-    /// Whether a point lies within a cooldown.
+    /// Whether a point is near a point with a running cooldown.
     pub fn covers(&self, at: Point) -> bool {
         self.points.iter().any(|&(point, _)| is_near(at, point))
     }

@@ -1,9 +1,9 @@
 //! Damping of the internal vibration of pieces towards their rigid motion.
 //!
-//! Two dampers are combined. The elastic forces are evaluated at extrapolated positions (Kelvin–Voigt), which
-//! damps fast modes. Within the stability limit of the substep, it hardly damps the slow modes of a body. For
-//! these, the velocities of each piece relax towards its rigid motion, at the rate 2 ζ ω of a damped
-//! oscillator. Linear and angular momentum are not affected.
+//! Two dampers are combined. The elastic forces are evaluated at extrapolated positions (Kelvin–Voigt). This
+//! damps fast modes, but within the stability limit of the substep hardly the slow modes of a body. For the
+//! slow modes, the velocities of each piece relax towards its rigid motion, at the rate 2 ζ ω of a damped
+//! oscillator. Neither damper changes linear or angular momentum.
 
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{IndexVec, PieceId};
@@ -85,7 +85,7 @@ impl PieceMotion {
     }
 }
 
-/// Returns the motion of every piece, by number; sleeping pieces have no mass here.
+/// Returns the motion of every piece, by number; 0 for sleeping pieces.
 pub fn motions<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, PieceMotion> {
     let count = body.topology.pieces.list.len();
     let mut motions: IndexVec<PieceId, _> = vec![PieceMotion::default(); count].into();
@@ -119,9 +119,9 @@ pub fn motions<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, PieceMotion> {
 pub struct PieceDamping {
     /// Damping of the motion within the piece.
     pub swing: f32,
-    /// Damping of the spin.
+    /// Damping of the angular velocity.
     pub spin: f32,
-    /// Damping of all motion: drag of air, and of contacts.
+    /// Damping of all motion: air drag, and drag by contacts.
     pub drag: f32,
 }
 
@@ -137,7 +137,7 @@ impl PieceDamping {
     }
 }
 
-/// Damps the pieces of a body, each by its own `slowing`, and stores their rigid motions.
+/// Damps the pieces of a body, each with its own `slowing`, and stores their rigid motions.
 pub fn slow_down<D: Dim>(
     body: &mut SoftBody<D>,
     motions: &[PieceMotion],
@@ -154,8 +154,8 @@ pub fn slow_down<D: Dim>(
     {
         return;
     }
-    // The velocity of the centre keeps 1 − drag. The spin keeps (1 − drag)(1 − spin), and the internal motion
-    // (1 − drag)(1 − swing): v ← kept v + pace(x).
+    // The velocity of the centre keeps the share 1 − drag. The angular velocity keeps (1 − drag)(1 − spin),
+    // and the internal motion (1 − drag)(1 − swing): v ← kept v + pace(x).
     let paces: Vec<_> = rigid
         .iter()
         .zip(slowing)

@@ -1,12 +1,14 @@
 //! Forces of all elements, evaluated eight at a time.
 //!
-//! Elements occupy the lanes of a block. Each lane performs the operations of the scalar formula in the
-//! scalar order, and nothing is summed across lanes, so the vector width of the machine does not change the
-//! result. Tests compare the forces with [`crate::soft_body::element_law`]. An element writes to its own slots, and a node sums
-//! its slots in the order of the octants around it. So neither threads nor numbering change the result.
+//! Eight elements form a batch, one in each lane. Each lane performs the operations of the scalar formula in
+//! the scalar order, and nothing is summed across lanes, so the vector width of the machine does not change
+//! the result. Tests compare the forces with [`crate::soft_body::element_law`]. An element writes to its own
+//! slots, and a node sums its slots in the order of the octants around it. So neither threads nor numbering
+//! change the result.
 //!
-//! All lanes of a block have one class, if the class has enough elements. The rest, a fifth of a body in
-//! about a hundred classes, is pooled by number of nodes, with one stencil per lane.
+//! If a class has enough elements, its batches contain no other class. The remaining elements, a fifth of a
+//! body in about a hundred classes, are pooled by their number of nodes; in a pooled batch, each lane has
+//! class data of its own.
 
 mod batch;
 mod batch_assignment;
@@ -36,43 +38,43 @@ use plastic_kernel::PlasticFlowLimits;
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
-/// Smallest number of blocks that are evaluated on several threads; about as many as fill enough chunks in
-/// [`threads`].
+/// Smallest number of batches that are evaluated on several threads. Bodies of this size have about as many
+/// nodes as [`threads`] requires.
 #[cfg(feature = "parallel")]
 const LEAST_PARALLEL: usize = 1024;
 
 /// Padding after the last force, so that four numbers can be read from its start.
 const PAD: usize = 4;
 
-/// All elements of a body in blocks, with their nodal forces.
+/// All elements of a body in batches, with their nodal forces.
 #[derive(Clone, Debug)]
 pub struct ElementBatches<D: Dim> {
     law: Law,
     moduli: Vec<Moduli>,
-    /// Plastic flow of each material; `None` for elastic materials.
+    /// Flow limits of each material; `None` for elastic materials.
     flows: Vec<Option<PlasticFlowLimits>>,
     voxel_size: f32,
     blocks: Vec<Batch>,
-    /// Blocks with vacant lanes.
+    /// Batches with vacant lanes.
     open: BTreeMap<BatchKey, BTreeSet<u32>>,
-    /// Blocks without elements, by number of nodes and by whether their lanes have different classes.
+    /// Batches without elements, by number of nodes and by whether their lanes have different classes.
     empty: BTreeMap<(u32, bool), Vec<u32>>,
-    /// Start of the stencil in `numbers`, for each class that has blocks of its own.
+    /// Start of the class data in `numbers`, for each class that has batches of its own.
     element_classes: BTreeMap<u32, u32>,
     numbers: Vec<f32>,
-    /// Stencils of pooled lanes.
+    /// Class data of pooled lanes.
     pooled: Vec<Eight>,
-    /// Block and lane of each element, by id; the block is [`VACANT`] if the element has none.
+    /// Batch and lane of each element, by id; the batch is [`VACANT`] if the element has none.
     assigned: IndexVec<ElementId, (u32, u8)>,
     /// Indices in `forces` of the forces on each node, by id: one per element, in the order of the octants.
     /// Unused entries are 0, where a zero force is stored.
     slots: IndexVec<NodeId, [u32; 8]>,
-    /// Nodes of all blocks: node k of lane l at k · LANES + l after the first of the block.
+    /// Nodes of all batches: node k of lane l at k · LANES + l after the first of the batch.
     nodes: Vec<u32>,
-    /// Forces on these nodes with D::N components each. Padding to four would make up a quarter (3D) or half
-    /// (2D) of the memory traffic of a substep.
+    /// Forces on these nodes, with D::N components each. Padding to four components would make up a quarter
+    /// (3D) or half (2D) of the memory traffic of a substep.
     forces: Vec<f32>,
-    /// Reused by the next evaluation, so that it need not be cleared.
+    /// Scratch memory that the next evaluation reuses without clearing.
     scratch: Option<Box<[Scratch; GROUP]>>,
     /// State read from a file, until [`ElementBatches::restore`] distributes it.
     #[cfg(feature = "serde")]
@@ -83,7 +85,7 @@ pub struct ElementBatches<D: Dim> {
 /// Parameters of the velocity update in a substep.
 #[derive(Copy, Clone, Debug)]
 pub struct VelocityUpdate<'a> {
-    /// Nodes to be moved, ascending.
+    /// Nodes to update, ascending.
     pub nodes: &'a [NodeId],
     /// Inverse mass of each node [1/kg], by id; 0 if the node is fixed.
     pub inverse_mass: &'a [f32],
@@ -102,8 +104,8 @@ const fn parts<D: Dim>() -> usize {
 }
 
 impl<D: Dim> ElementBatches<D> {
-    /// Creates blocks without elements. `elasticities[number - 1]` belongs to material `number`; `voxel_size`
-    /// is in metres.
+    /// Creates the forces of a body without elements. `elasticities[number - 1]` belongs to material
+    /// `number`; `voxel_size` is in metres.
     pub fn new(law: Law, elasticities: &[Elasticity], voxel_size: f32) -> Self {
         Self {
             law,
@@ -147,8 +149,8 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Returns the plastic state G of an element ([`crate::soft_body::plasticity`]) by rows; `None` if its material is
-    /// elastic.
+    /// Returns the plastic inverse G of an element ([`crate::soft_body::plasticity`]) by rows; `None` if its
+    /// material is elastic.
     pub fn plastic_inverse(&self, id: ElementId) -> Option<[Vec3; 3]> {
         let &(block, lane) = self.assigned.get(id.index())?;
         let block = self.blocks.get(block as usize)?;
@@ -156,7 +158,7 @@ impl<D: Dim> ElementBatches<D> {
         Some(undone.get(lane as usize))
     }
 
-    /// Sets the plastic state of an element.
+    /// Sets the plastic inverse of an element.
     pub fn set_plastic_inverse(&mut self, id: ElementId, undone: [Vec3; 3]) {
         let (block, lane) = self.assigned[id];
         if let Some(own) = &mut self.blocks[block as usize].undone {
@@ -190,7 +192,7 @@ impl<D: Dim> ElementBatches<D> {
         self.scratch = kept;
     }
 
-    /// Splits the blocks into groups that write disjoint data, so that the result is bitwise identical for
+    /// Splits the batches into groups that write disjoint data, so that the result is bitwise identical for
     /// any number of threads.
     fn groups(&mut self) -> impl Iterator<Item = Group<'_>> {
         let Self {
@@ -213,7 +215,7 @@ impl<D: Dim> ElementBatches<D> {
         let mut forces = &mut self.forces[LANES * D::N..];
         let mut first = LANES;
         self.blocks.chunks_mut(GROUP).map(move |blocks| {
-            // Blocks are in the order of their forces.
+            // Batches are in the order of their forces.
             let end = blocks.last().map_or(first, Batch::end);
             let (own, others) = std::mem::take(&mut forces).split_at_mut((end - first) * D::N);
             let group = Group {
@@ -278,7 +280,7 @@ impl<D: Dim> ElementBatches<D> {
         })
     }
 
-    /// Whether an element is in a block.
+    /// Whether an element is in a batch.
     pub fn has(&self, id: ElementId) -> bool {
         let assigned = self.assigned.get(id.index());
         assigned.is_some_and(|&(block, _)| block != VACANT)
@@ -375,7 +377,7 @@ mod tests {
     use crate::topology::grid::VoxelGrid;
     use crate::topology::mesh::Mesh;
 
-    /// Compares the widest lanes with others, on a body with every kind of block.
+    /// Compares the widest lanes with others, on a body with every kind of batch.
     fn check_same_bits<D: Dim, S: Simd>(law: Law, simd: S) {
         let grid = VoxelGrid::<D>::ball(24, 1.0).unwrap();
         let connectivity = Connectivity::new(&grid);
@@ -431,9 +433,9 @@ mod tests {
         assert_eq!(by_best, by_other);
     }
 
-    /// Regression: sleeping elements in a block with awake ones were evaluated again, so waking depended on
-    /// the distribution over blocks. An element that entered a block also kept the forces of the previous one
-    /// in its lane.
+    /// Regression: sleeping elements in a batch with awake ones were evaluated again, so waking depended on
+    /// the distribution over batches. An element that entered a batch also kept the forces of the previous
+    /// one in its lane.
     fn check_sleepers<D: Dim>() {
         let grid = VoxelGrid::<D>::ball(16, 1.0).unwrap();
         let connectivity = Connectivity::new(&grid);
@@ -469,14 +471,14 @@ mod tests {
             awake.count()
         };
         let (when_awake, before) = (evaluated(&blocks), states(&blocks));
-        // One by one, like crumbs.
+        // Elements fall asleep one by one, like crumbs.
         let sleepers: Vec<ElementId> = all.iter().copied().filter(sleeps).collect();
         for &id in &sleepers {
             blocks.set_asleep(&mesh, &[id], true);
         }
         assert!(
             2 * evaluated(&blocks) < when_awake,
-            "a quarter of the elements is awake, so most blocks must be idle"
+            "a quarter of the elements is awake, so most batches must be idle"
         );
         assert_eq!(states(&blocks), before);
         evaluate(&mut blocks, 0.2);

@@ -1,8 +1,8 @@
 //! Forces of one element in double precision: the reference for the vectorised implementation.
 //!
 //! Two laws are available. [`Law::Endo2004`] is that of the paper: the rest shape, rotated so that its
-//! moments balance [Endo 2004, Eq. 1], pulls each node back in proportion to its offset. It is simple and
-//! robust, but fails the patch test as soon as an element has hanging nodes. [`Law::CorotationalVem`], the
+//! moments balance [Endo 2004, Eq. 1], pulls each node back in proportion to its offset. This law is simple
+//! and robust, but fails the patch test as soon as an element has mid nodes. [`Law::CorotationalVem`], the
 //! default, is a corotational virtual element [Beirao da Veiga 2013]:
 //!
 //! ```text
@@ -48,8 +48,8 @@ pub struct Elasticity {
 hash_state! { struct Elasticity { young, poisson } }
 
 /// Volume ratio J below which an element resists further compression, regardless of its material. A higher
-/// limit would stiffen soft contacts; with a lower one, strong contacts invert elements before the resistance
-/// sets in.
+/// ratio would stiffen soft contacts. With a lower one, strong contacts would invert elements before the
+/// resistance sets in.
 pub const MIN_VOLUME_RATIO: f64 = 0.4;
 
 impl Elasticity {
@@ -84,7 +84,7 @@ pub(crate) const IDENTITY: Matrix = DVec3::AXES;
 /// Returns the force [N] of an element of width `size` [m] on each of its nodes, at `positions` [m].
 ///
 /// # Panics
-/// If the number of positions is not the number of nodes of the stencil.
+/// If the number of positions is not the number of nodes of the element class.
 #[inline(never)]
 pub fn forces<D: Dim>(
     law: Law,
@@ -96,7 +96,7 @@ pub fn forces<D: Dim>(
     assert_eq!(
         positions.len(),
         element_class.slots.len(),
-        "the number of positions must match the nodes of the element_class"
+        "the number of positions must match the nodes of the element class"
     );
     match law {
         Law::Endo2004 => endo(elasticity, element_class, size, positions),
@@ -104,7 +104,8 @@ pub fn forces<D: Dim>(
     }
 }
 
-/// Returns f_i = (Y V d / Σ|R0|²) (M R0_i − r_i), with offsets from the mean of the nodes.
+/// Returns the forces of [`Law::Endo2004`]: f_i = (Y V d / Σ|R0|²) (M R0_i − r_i), with offsets from the mean
+/// of the nodes.
 fn endo<D: Dim>(
     elasticity: Elasticity,
     element_class: &ElementClass<D>,
@@ -115,7 +116,7 @@ fn endo<D: Dim>(
     apart.into_iter().map(|d| d * stiffness).collect()
 }
 
-/// Returns Y V d / Σ|R0|², and M R0_i − r_i of each node.
+/// Returns the stiffness Y V d / Σ|R0|², and the vector M R0_i − r_i from each node to its goal position.
 pub(crate) fn shape_matching_offsets<D: Dim>(
     elasticity: Elasticity,
     element_class: &ElementClass<D>,
@@ -186,7 +187,7 @@ pub(crate) fn forces_of_stress<D: Dim>(
         .collect()
 }
 
-/// Returns b of a node: x bᵀ is its contribution to V F.
+/// Returns the vector b of a node, which contributes x bᵀ to V F.
 fn gradient_of<D: Dim>(element_class: &ElementClass<D>, size: f64, node: usize) -> DVec3 {
     let half = 0.5 * size;
     element_class.gradients[node] * (volume_scale::<D>(half) / half)
@@ -210,7 +211,7 @@ pub(crate) fn deformation_of<D: Dim>(
     (deformation, centre)
 }
 
-/// Returns the stiffness of the hourglass modes, and w h of each node.
+/// Returns the stiffness k of the hourglass modes, and the product w h of each node.
 pub(crate) fn hourglass<D: Dim>(
     elasticity: Elasticity,
     element_class: &ElementClass<D>,
@@ -255,21 +256,23 @@ pub(crate) fn stress(elasticity: Elasticity, deformation: &Matrix) -> Matrix {
 /// |tr S| [Mueller 2016], the step does not lag behind a spinning body. The iteration ends if the turn is
 /// below rounding.
 ///
-/// Moments also balance half a turn off, about any axis, but tr Rᵀ F is not maximal there. In that case the
-/// iteration restarts half a turn about each axis away: one of these starts is at most 120° off.
+/// Moments also balance if R is half a turn off, about any axis, but tr RᵀF is then not maximal. In that case
+/// the iteration restarts from R turned by half a turn about each axis. One of these starts is at most 120°
+/// off.
 pub fn rotation_of(deformation: &Matrix) -> Matrix {
     from_quaternion(rotation_quaternion(deformation))
 }
 
-/// Returns the rotation of a deformation as a quaternion if `near` is a quarter turn off or more: too far for
-/// a few iterations from there.
+/// Returns the rotation of a deformation as a quaternion if `near` is off by about a quarter turn or more,
+/// which is too far for a few iterations.
 pub fn rotation_if_far_from(near: &Matrix, deformation: &Matrix) -> Option<[f64; 4]> {
     if is_greatest(near, deformation) {
         return None;
     }
     let turned = rotation_quaternion(deformation);
     let gain = trace(&from_quaternion(turned), deformation) - trace(near, deformation);
-    // A rotation that is off by the angle a has a trace smaller by 2 − 2 cos a, and ‖F‖ = √3.
+    // If `near` is off by the angle a, tr RᵀF is smaller by 2 − 2 cos a in an element without strain, where
+    // ‖F‖ = √3.
     (gain > norm(deformation)).then_some(turned)
 }
 
@@ -361,7 +364,7 @@ fn from_quaternion([x, y, z, w]: [f64; 4]) -> Matrix {
     ]
 }
 
-/// Returns normalise((ω/2, 1) q), with ω in world axes.
+/// Turns a quaternion q by the small rotation vector ω [rad] in world axes: normalise((ω/2, 1) q).
 fn turn_quaternion([x, y, z, w]: [f64; 4], turn: DVec3) -> [f64; 4] {
     let [a, b, c] = (turn * 0.5).to_array();
     let next = [

@@ -29,7 +29,7 @@ pub struct ElementState {
 /// [`crate::soft_body::element_law::forces`] are the negative gradient of its energy.
 ///
 /// # Panics
-/// If the number of positions is not the number of nodes of the stencil.
+/// If the number of positions is not the number of nodes of the element class.
 #[inline(never)]
 pub fn element_state<D: Dim>(
     law: Law,
@@ -41,11 +41,11 @@ pub fn element_state<D: Dim>(
     element_state_plastic(law, elasticity, &IDENTITY, element_class, size, positions)
 }
 
-/// Returns the state of an element with plastic deformation. `undone` is G of [`crate::soft_body::plasticity`]; the
-/// strain is the elastic part.
+/// Returns the state of an element with plastic deformation. `undone` is the plastic inverse G of
+/// [`crate::soft_body::plasticity`]; the strain is the elastic part.
 ///
 /// # Panics
-/// If the number of positions is not the number of nodes of the stencil.
+/// If the number of positions is not the number of nodes of the element class.
 #[inline(never)]
 pub fn element_state_plastic<D: Dim>(
     law: Law,
@@ -58,7 +58,7 @@ pub fn element_state_plastic<D: Dim>(
     assert_eq!(
         positions.len(),
         element_class.slots.len(),
-        "the number of positions must match the nodes of the element_class"
+        "the number of positions must match the nodes of the element class"
     );
     let (whole, centre) = deformation_of(element_class, size, positions);
     let deformation = elastic_part(&whole, undone);
@@ -158,7 +158,7 @@ impl<D: Dim> SoftBody<D> {
         ))
     }
 
-    /// Inverse G of the plastic deformation of an element.
+    /// Plastic inverse G of an element.
     fn undone(&self, id: ElementId) -> Matrix {
         let undone = self.state.blocks.plastic_inverse(id);
         undone.map_or(IDENTITY, |undone| undone.map(|row| row.as_dvec3()))
@@ -314,8 +314,8 @@ mod tests {
         for (id, _) in body.mesh().elements() {
             let ElementState { strain, stress, .. } = body.element_state(id).unwrap();
             assert!((strain[0][0] - 0.05).abs() < 1e-4 && strain[1][1].abs() < 1e-4);
-            // Along the axis after its rotation by one radian. The stretch does not change the other axes, so
-            // areas are unchanged.
+            // Direction of the stretched axis after its rotation by one radian. The other axes keep their
+            // length, so areas perpendicular to it are unchanged.
             let direction = DVec3::new(libm::cos(1.0), libm::sin(1.0), 0.0);
             let pulled = DVec3::from(stress.map(|row| row.dot(direction)));
             assert!(
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn strained_measures_uniform_stretch() {
+    fn element_state_measures_uniform_stretch() {
         check_stretch::<Dim2>();
         check_stretch::<Dim3>();
     }

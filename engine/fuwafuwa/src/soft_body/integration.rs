@@ -50,9 +50,9 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Recomputes the rotation of elements that are far from their nodes' orientation, because they are new
-    /// or their nodes were placed. The iteration of `solve` only follows small turns, and does not move half
-    /// a turn off. In 2D it finds the rotation directly.
+    /// Recomputes the rotation of elements that may be far from the orientation of their nodes, because the
+    /// elements are new or the nodes were placed. The iteration in the force evaluation follows only small
+    /// turns, and cannot leave a rotation that is half a turn off. In 2D it finds the rotation directly.
     pub(crate) fn settle(&mut self, elements: &[ElementId]) {
         if D::N == 2 {
             return;
@@ -76,8 +76,8 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Moves every awake node by its velocity. Also extrapolates positions by `lead` [s] for the next forces,
-    /// relative to the rigid motion of the piece, so that pure rotation is not damped.
+    /// Moves every awake node by its velocity. Also extrapolates positions by `lead` [s] for the next forces.
+    /// The extrapolation is relative to the rigid motion of the piece, so that pure rotation is not damped.
     ///
     /// No node moves by more than a voxel per substep. Faster nodes would invert elements, and the forces
     /// would grow from substep to substep. Returns the distance that the fastest node has moved [m].

@@ -36,7 +36,7 @@ impl Momentum {
     }
 }
 
-/// Rigid velocity field: v(x) = `velocity` + `spin` × (x − `centre`).
+/// Rigid velocity field with the angular velocity `spin`: v(x) = `velocity` + `spin` × (x − `centre`).
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct RigidMotion {
     velocity: DVec3,
@@ -49,7 +49,7 @@ pub struct RigidMotion {
 pub(crate) struct RigidMotionF32 {
     velocity: Row,
     centre: Row,
-    /// Columns of the matrix of spin ×.
+    /// Columns of the matrix of the cross product with the angular velocity.
     spin: [Row; 3],
 }
 
@@ -67,8 +67,8 @@ impl RigidMotionF32 {
 }
 
 impl RigidMotion {
-    /// Returns the motion that gives the points the momentum `wanted`. `centre` must be their centre of mass;
-    /// `wanted` is relative to it.
+    /// Returns the rigid motion with which the points have the momentum `wanted`, relative to `centre`, their
+    /// centre of mass.
     pub fn with_momentum(
         points: impl Iterator<Item = (Row, f32)>,
         centre: DVec3,
@@ -87,15 +87,15 @@ impl RigidMotion {
         Self::of_spin(velocity, centre, &wanted.angular, &inertia)
     }
 
-    /// Returns the motion with a given velocity of the centre, and the spin that follows from the angular
-    /// momentum and the inertia about it.
+    /// Returns the motion with a given velocity of the centre. The angular velocity follows from the angular
+    /// momentum and the inertia about the centre.
     pub(crate) fn of_spin(
         velocity: DVec3,
         centre: DVec3,
         angular: &DVec3,
         inertia: &[DVec3; 3],
     ) -> Self {
-        // Collinear points have no inertia about their line; the small addition keeps the matrix invertible.
+        // Collinear points have no inertia about their line. The small addition keeps the matrix invertible.
         let mut inertia = *inertia;
         let little = 1e-9 * (inertia[0][0] + inertia[1][1] + inertia[2][2]) + f64::MIN_POSITIVE;
         (0..3).for_each(|k| inertia[k][k] += little);
@@ -106,7 +106,7 @@ impl RigidMotion {
         }
     }
 
-    /// Scales the velocity and the spin by one factor each.
+    /// Multiplies the velocity by one factor, and the angular velocity by another one.
     pub(crate) fn times(&self, velocity: f64, spin: f64) -> Self {
         Self {
             velocity: self.velocity * velocity,
@@ -123,7 +123,7 @@ impl RigidMotion {
         }
     }
 
-    /// Converts to single precision.
+    /// Converts the motion to single precision.
     pub(crate) fn roughly(&self) -> RigidMotionF32 {
         let row = |vector: DVec3| Row::from(vector.as_vec3());
         let [x, y, z] = self.angular_velocity.to_array();

@@ -1,4 +1,4 @@
-//! Position, orientation, velocity and user settings of a whole body.
+//! Position, orientation, velocity and user-defined properties of a whole body.
 
 use super::SoftBody;
 use super::body_state::State;
@@ -24,7 +24,8 @@ impl<D: Dim> SoftBody<D> {
         self.state.user_data
     }
 
-    /// Factor on gravity for this body: see [`World::set_gravity_scale`](crate::World::set_gravity_scale).
+    /// Factor on gravity for this body, default 1: see
+    /// [`World::set_gravity_scale`](crate::World::set_gravity_scale).
     pub fn gravity_scale(&self) -> f32 {
         self.state.gravity_scale
     }

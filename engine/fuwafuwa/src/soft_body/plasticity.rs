@@ -1,18 +1,19 @@
-//! Plasticity of an element in double precision: the reference for `solve`.
+//! Plasticity of an element in double precision: the reference for `plastic_kernel`.
 //!
-//! The deformation has two parts, F = Fₑ Fₚ: plastic and elastic [Bargteil 2007]. The state is G = Fₚ⁻¹ with
-//! determinant 1, because plastic flow preserves volume. Let R be the rotation of Fₑ, S = sym RᵀFₑ, d its
-//! deviator and y the yield strain. Then
+//! The deformation is the product F = Fₑ Fₚ of an elastic and a plastic part [Bargteil 2007]. The state is
+//! the plastic inverse G = Fₚ⁻¹, with determinant 1, because plastic flow preserves volume. Let R be the
+//! rotation of Fₑ, S = sym RᵀFₑ, d the deviator of S (in the exponent: the number of dimensions), y the yield
+//! strain and f the largest flow per evaluation. Then
 //!
 //! ```text
 //! Fₑ = F G       P = s Pₑ(Fₑ) Gᵀ        s = 1 / λ_max(GᵀG)
 //! |d| > y:       G ← G Q / (det G Q)^(1/d),   Q = 1 − min(|d| − y, f) d/|d|
 //! ```
 //!
-//! Q commutes with S, so the flow reduces the elastic strain by exactly that amount and leaves R unchanged:
-//! no decomposition is needed. This is the return mapping of von Mises' law to first order. P Fᵀ is symmetric
-//! like Pₑ Fₑᵀ, so angular momentum is conserved; the additive strain of [Mueller 2004] loses it if an
-//! element is dented in one direction and strained in another.
+//! Q commutes with S. The flow therefore reduces the elastic strain by exactly min(|d| − y, f) and leaves R
+//! unchanged, so that no decomposition is needed. This is the return mapping of von Mises' law to first
+//! order. P Fᵀ is symmetric like Pₑ Fₑᵀ, so angular momentum is conserved. The additive strain of [Mueller
+//! 2004] does not conserve it if the plastic and the elastic strain of an element have different directions.
 //!
 //! The factor s prevents flattened elements from becoming too stiff for the substep: relative to its rest
 //! shape, a sheet of half the thickness is four times as stiff across. Beyond the plastic limit of the
@@ -26,8 +27,8 @@ use crate::soft_body::element_law::{
 use crate::topology::element_class::ElementClass;
 use glam::DVec3;
 
-/// Largest plastic strain per evaluation. It keeps violently torn elements from jumping. Q is correct to
-/// first order, so its error is half the square, 2 %.
+/// Largest plastic strain per evaluation, so that violently torn elements do not jump. Q is correct to first
+/// order; its error is half the square, 2 %.
 pub(crate) const MAX_FLOW: f64 = 0.2;
 /// Volume ratio below which an element does not flow, because its deformation is not meaningful; a quarter of
 /// [`MIN_VOLUME_RATIO`].
@@ -43,14 +44,14 @@ pub struct Plasticity {
 }
 
 impl Plasticity {
-    /// Norm |d| of the deviator at which the material yields: ε √(d / (d − 1)) for a volume-preserving
-    /// stretch by ε in d dimensions.
+    /// Norm of the deviator at which the material yields: ε √(n / (n − 1)) for a volume-preserving stretch by
+    /// ε in n dimensions.
     pub(crate) fn max_deviator<D: Dim>(self) -> f64 {
         let axes = D::N as f64;
         self.yield_strain * (axes / (axes - 1.0)).sqrt()
     }
 
-    /// |G|² after compression to the limit along one axis and even expansion along the others.
+    /// |G|² after compression to the plastic limit along one axis, with the same expansion along each other axis.
     pub(crate) fn max_plastic_norm_squared<D: Dim>(self) -> f64 {
         let squared = self.limit * self.limit;
         // There is one other axis in 2D, and two in 3D.
@@ -66,7 +67,7 @@ pub fn elastic_part(deformation: &Matrix, undone: &Matrix) -> Matrix {
     product(deformation, undone)
 }
 
-/// Returns the first Piola–Kirchhoff stress [Pa] of a deformation with plastic state G.
+/// Returns the first Piola–Kirchhoff stress [Pa] of a deformation with plastic inverse G.
 pub fn stress_after<D: Dim>(
     elasticity: Elasticity,
     deformation: &Matrix,
@@ -84,10 +85,10 @@ pub fn stress_after<D: Dim>(
 }
 
 /// Returns the force [N] of an element of width `size` [m] on each of its nodes, at `positions` [m], with
-/// plastic state G.
+/// plastic inverse G.
 ///
 /// # Panics
-/// If the number of positions is not the number of nodes of the stencil.
+/// If the number of positions is not the number of nodes of the element class.
 #[inline(never)]
 pub fn forces_after<D: Dim>(
     elasticity: Elasticity,
@@ -99,7 +100,7 @@ pub fn forces_after<D: Dim>(
     assert_eq!(
         positions.len(),
         element_class.slots.len(),
-        "the number of positions must match the nodes of the element_class"
+        "the number of positions must match the nodes of the element class"
     );
     let (deformation, _) = deformation_of(element_class, size, positions);
     let stress = stress_after::<D>(elasticity, &deformation, undone);
@@ -160,8 +161,8 @@ pub fn flow<D: Dim>(
         }
     }
     let inner = |m: &Matrix| squared(m) - (3 - D::N) as f64;
-    // Flow back towards the original shape makes the element stiffer; it must not store more energy than
-    // before.
+    // Flow back towards the original shape makes the element stiffer. Flow that would increase the stored
+    // energy is rejected.
     let eased = product(&stretch, &step);
     let eased = [0, 1, 2].map(|i: usize| {
         DVec3::from([0, 1, 2].map(|j: usize| {
@@ -269,7 +270,7 @@ mod tests {
         let pressed = 1.0 / flat[0][0];
         assert!((pressed - 0.5).abs() < 0.02, "{pressed}");
         assert!((plastic_stiffness_factor::<D>(&flat) - 0.25).abs() < 0.03);
-        // In one large step it would flow by more than necessary, because a step is correct to first order.
+        // Many small steps: a step is correct only to first order, so one large step would flow too far.
         for step in 0..400 {
             let by = 0.3 + 0.7 * f64::from(step.min(300)) / 300.0;
             flat = flow::<D>(CLAY, soft(), &drawn(by), &flat);
@@ -283,7 +284,7 @@ mod tests {
         check_flow::<Dim3>();
     }
 
-    /// Regression: with the additive strain, a dent across the load direction produced a torque.
+    /// Regression: with the additive strain, plastic strain across the load direction produced a torque.
     #[test]
     fn stress_after_flow_preserves_angular_momentum() {
         let mut undone = IDENTITY;

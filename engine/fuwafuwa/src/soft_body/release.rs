@@ -14,22 +14,23 @@ use glam::DVec3;
 use glam::Vec3;
 
 impl<D: Dim> SoftBody<D> {
-    /// Releases shared nodes at lattice points, each between the octants of its mask and the rest, and
-    /// remodels around them [Endo 2004, §3.2]. Positions and velocities are transferred; linear and angular
-    /// momentum are preserved. Returns the detached pieces. Has no effect on a body of [`Grading::Coarse`].
+    /// Splits shared nodes at lattice points: at each point, the octants of its mask no longer share nodes
+    /// with the others. Then remodels the elements around the points [Endo 2004, §3.2]. Positions and
+    /// velocities are transferred; linear and angular momentum are preserved. Returns the detached pieces.
+    /// Has no effect on a body of [`Grading::Coarse`].
     #[inline(never)]
     pub fn release(&mut self, at: &[(Point, u8)]) -> Vec<PieceId> {
         self.tear(at).detached
     }
 
-    /// Does the work of [`SoftBody::release`], and returns all changes.
+    /// Splits nodes like [`SoftBody::release`], and returns all changes.
     pub(crate) fn tear(&mut self, at: &[(Point, u8)]) -> Changes {
         if self.topology.hierarchy.grading() == Grading::Coarse {
             return Changes::default();
         }
         let mut changed: Vec<Point> = Vec::new();
         for &(point, side) in at {
-            // A point is often released several times in sequence: it is examined once.
+            // A point often occurs several times in sequence; it is examined once.
             if self.topology.connectivity.release(point, side) && changed.last() != Some(&point) {
                 changed.push(point);
             }
@@ -81,8 +82,8 @@ impl<D: Dim> SoftBody<D> {
         changes
     }
 
-    /// Returns the elements around the given points, ascending, grouped by the places where they were
-    /// connected before, directly or through others of the group.
+    /// Returns the elements around the given points in groups, ascending within each group. Two elements are
+    /// in one group if they are around the same point, directly or through a chain of such elements.
     fn places_around(&self, points: &[Point]) -> Vec<Vec<ElementId>> {
         let around = |&at: &Point| self.topology.mesh.owners_around(at, D::ALL_CORNERS);
         let elements = points.iter().flat_map(around);
@@ -98,7 +99,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Transfers the state of the old nodes and elements to the new ones; `touched` are the nodes of the
-    /// seated elements.
+    /// elements in `seated`, which are new or changed.
     fn pass_on(&mut self, remodelled: &Remodelled, touched: &[NodeId]) {
         let Remodelled {
             removed,
@@ -163,7 +164,7 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Plastic deformation of new elements, taken from the elements that filled their voxels before.
+    /// Plastic inverses of new elements, taken from the elements that filled their voxels before.
     fn dents_of(&self, remodelled: &Remodelled, new: &[ElementId]) -> Vec<(ElementId, [Vec3; 3])> {
         let blocks = &self.state.blocks;
         if !blocks.has_plastic() {
@@ -195,7 +196,8 @@ impl<D: Dim> SoftBody<D> {
         nodes.chunk_by(|&a, &b| of_node(a) == of_node(b)).collect()
     }
 
-    /// Gives new nodes the weighted state of old ones; reads all before it writes any.
+    /// Gives new nodes the weighted state of old ones. Reads all old states before writing, because ids may
+    /// be reused.
     fn inherit(&mut self, remodelled: &Remodelled) {
         let inherited = &remodelled.inherited;
         let mean = |rows: &IndexVec<NodeId, Row>, from: &[(NodeId, f64)]| {
@@ -271,8 +273,8 @@ mod tests {
     use crate::topology::pieces::Pieces;
     use std::collections::BTreeSet;
 
-    /// Performs many simultaneous releases, near each other and far apart. The pieces must match those of a
-    /// search from scratch.
+    /// Releases many points at once, some near each other and some far apart. The pieces must match those of
+    /// a search from scratch.
     fn check_pieces<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
         let mut body = SoftBody::new(grid, &[Material::default()]).expect("the material is valid");

@@ -39,7 +39,7 @@ impl<D: Dim> SoftBody<D> {
         self.cache.awake_is_stale = true;
     }
 
-    /// Records the positions of all nodes.
+    /// Records the positions of all nodes, at the start of a tick.
     pub(crate) fn note_before(&mut self) {
         let (mesh, before) = (&self.topology.mesh, &mut self.cache.before);
         let both = |(id, &row): (NodeId, &Row)| match mesh.is_alive(id) {

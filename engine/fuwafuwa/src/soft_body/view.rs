@@ -28,9 +28,9 @@ pub struct PieceView {
     pub element_count: u32,
     /// Whether the piece sleeps.
     pub asleep: bool,
-    /// Whether the piece was quarantined: stopped for good because it was no longer finite.
+    /// Whether the piece was quarantined: stopped for good because it became non-finite or too fast.
     pub quarantined: bool,
-    /// Whether the piece was removed; then all other values are 0.
+    /// Whether the piece was removed; its mass, positions and velocity are then 0.
     pub removed: bool,
 }
 
@@ -44,7 +44,7 @@ pub struct Facet {
     pub corners: [Vec3; 4],
     /// Outward unit normal.
     pub normal: Vec3,
-    /// Element of the face.
+    /// Element to which the face belongs.
     pub element: ElementId,
     /// Piece of the element.
     pub piece: PieceId,
@@ -67,7 +67,7 @@ pub struct Outline {
     pub is_torn: Vec<bool>,
 }
 
-/// Drawable view of an element.
+/// View of an element, for drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElementView {
     /// Id of the element.
@@ -80,7 +80,7 @@ pub struct ElementView {
     pub material: u8,
     /// Mask of the children that the element fills in its cell.
     pub children: u8,
-    /// Elastic strain ‖F − R‖; 0 at rest.
+    /// Elastic strain ‖F − R‖: distance of the deformation gradient from its rotation; 0 at rest.
     pub strain: f32,
     /// Positions of the slots of the 3 × 3 (× 3) lattice [m]; slots that the element does not reach hold its
     /// centre.
@@ -92,12 +92,13 @@ pub struct ElementView {
 pub struct ElementFace {
     /// Slots at the corners: two in 2D, four in 3D, in the order of [`face_corners`].
     pub slots: [usize; 4],
-    /// In 3D: whether each side, from a corner to the next, is an edge at which no other face continues in
-    /// the same plane.
+    /// In 3D: whether each side is an edge of the region, because no other face continues beyond it in the
+    /// same plane. Side k leads from corner k to the next one.
     pub is_edge: [bool; 4],
 }
 
-/// Returns the blocks of slots that an element fills: their low corners, and their width in slots.
+/// Returns the squares or cubes that an element fills, one for each child, or one for a cell of level 0:
+/// their low corners and their width, both in slots.
 pub fn blocks<D: Dim>(level: u8, children: u8) -> impl Iterator<Item = (Point, i32)> {
     let whole = (level == 0).then_some(([0; 3], 2));
     let filled = (0..D::CORNERS).filter(move |child| level > 0 && children >> child & 1 == 1);
@@ -105,11 +106,11 @@ pub fn blocks<D: Dim>(level: u8, children: u8) -> impl Iterator<Item = (Point, i
     whole.into_iter().chain(filled)
 }
 
-/// Returns the boundary faces of the region that an element fills, block by block.
+/// Returns the boundary faces of the region that an element fills, child by child.
 ///
 /// ```text
-///     o──o──o        2D: the element fills three of its children. Where two of them meet there is no face;
-///     │     │        [`ring`] goes around the rest, the element to its left.
+///     o──o──o        2D: the element fills three of its children. Where two of them meet there is no face.
+///     │     │        `outline_slots` goes around the region counterclockwise.
 ///     o  o──o
 ///     │  │
 ///     o──o
@@ -124,7 +125,7 @@ pub fn faces<D: Dim>(level: u8, children: u8) -> Vec<ElementFace> {
             }
             let ring = face_corners::<D>(face);
             let is_edge = [0, 1, 2, 3].map(|k| {
-                // Both its ends are on the same end of the axis that leads across it.
+                // Finds the axis, within the plane of the face, that is perpendicular to this side.
                 let (a, b) = (ring[k], ring[(k + 1) % 4]);
                 let mut axes = (0..D::N).filter(|&axis| axis != face / 2);
                 let across = axes.find(|axis| (a ^ b) >> axis & 1 == 0);
@@ -141,8 +142,8 @@ pub fn faces<D: Dim>(level: u8, children: u8) -> Vec<ElementFace> {
     faces
 }
 
-/// Returns the slots around the region that a 2D element fills, in one round. A slot at which children meet
-/// only in a corner occurs twice.
+/// Returns the slots around the region that a 2D element fills, in one counterclockwise round. A slot occurs
+/// twice if two children touch only there.
 pub fn outline_slots(level: u8, children: u8) -> Vec<usize> {
     let mut faces = faces::<Dim2>(level, children);
     let mut at = faces.first().map(|face| face.slots[0]);
@@ -156,7 +157,7 @@ pub fn outline_slots(level: u8, children: u8) -> Vec<usize> {
     ring
 }
 
-/// Returns the block on the other side of a face of a block.
+/// Returns the low corner of the square or cube across a face.
 fn beyond(mut block: Point, face: usize) -> Point {
     block[face / 2] += 2 * (face % 2) as i32 - 1;
     block
@@ -268,7 +269,7 @@ impl<D: Dim> SoftBody<D> {
     /// Returns the closed lines around all pieces of a 2D body; empty in 3D.
     #[inline(never)]
     pub fn outlines(&self) -> Vec<Outline> {
-        // Quads of a 3D surface have no unique successor.
+        // Only in 2D does each surface node have one next node.
         if D::N != 2 {
             return Vec::new();
         }
@@ -457,7 +458,7 @@ mod tests {
     }
 
     #[test]
-    fn ring_encloses_filled_children_once() {
+    fn outline_slots_enclose_filled_children_once() {
         let check = |level, children, expect: &[[i32; 2]]| {
             let ring = outline_slots(level, children);
             let low = ring

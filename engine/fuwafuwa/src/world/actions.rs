@@ -43,8 +43,8 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Rotates a body about a point [m] at once, velocities included; otherwise like [`World::translate`]. In 2D only
-    /// the rotation about the third axis counts.
+    /// Rotates a body and its velocities about a point [m] at once; otherwise like [`World::translate`]. In
+    /// 2D only the rotation about the third axis counts.
     ///
     /// # Errors
     /// As for [`World::translate`].
@@ -78,8 +78,9 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Moves a rigid body to a position [m] and a rotation relative to its form, at once. Its velocity stays, and a
-    /// kinematic or coupled body gets the new pose as its target. The body and sleepers in contact with it wake.
+    /// Sets the position [m] of a rigid body, and its rotation from local to world axes, at once. Its
+    /// velocity stays, and a kinematic or coupled body gets the new pose as its target. The body and sleepers
+    /// in contact with it wake.
     ///
     /// # Errors
     /// [`Error`] if the handle is stale or the position is out of range. The body then stays unchanged.
@@ -273,8 +274,9 @@ impl<D: Dim> World<D> {
     /// ```
     ///
     /// # Errors
-    /// [`Error`] if the handle is stale, a parameter of the motion type is out of range, or the shape does not suit it.
-    /// Also if the body holds a knife and would no longer be kinematic or coupled.
+    /// [`Error`] if the handle is stale, or a parameter of the motion type is out of range. Also if the type
+    /// is dynamic, but the shape is unbounded or not centred on its origin. Also if the body holds a knife
+    /// and would no longer be kinematic or coupled.
     #[inline(never)]
     pub fn set_motion_type(
         &mut self,
@@ -288,8 +290,8 @@ impl<D: Dim> World<D> {
         self.change_rigid(rigid, |body| body.set_motion_type::<D>(motion_type))
     }
 
-    /// Sets the [friction](RigidBody::friction) of a rigid body. Its contacts restart; the body and sleepers in contact
-    /// with it wake.
+    /// Sets the [friction](crate::RigidBody::friction) of a rigid body. Its contacts restart; the body and
+    /// sleepers in contact with it wake.
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, or the coefficient is negative or not finite.
@@ -302,7 +304,8 @@ impl<D: Dim> World<D> {
         })
     }
 
-    /// Sets the [restitution](RigidBody::restitution) of a rigid body; otherwise like [`World::set_friction`].
+    /// Sets the [restitution](crate::RigidBody::restitution) of a rigid body; otherwise like
+    /// [`World::set_friction`].
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, or the coefficient is not 0 to 1.
@@ -319,7 +322,8 @@ impl<D: Dim> World<D> {
         })
     }
 
-    /// Sets whether a rigid body [is a sensor](RigidBody::is_sensor); otherwise like [`World::set_friction`].
+    /// Sets whether a rigid body [is a sensor](crate::RigidBody::is_sensor); otherwise like
+    /// [`World::set_friction`].
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
@@ -354,7 +358,8 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Sets the number for use by the program, see [`SoftBody::user_data`] and [`RigidBody::user_data`].
+    /// Sets the user data of a body, a number that the engine ignores; see [`SoftBody::user_data`] and
+    /// [`RigidBody::user_data`](crate::RigidBody::user_data).
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
@@ -484,8 +489,8 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Changes the pose or fields of a rigid body, discards its contacts, and wakes it together with sleepers in
-    /// contact with its old and its new bounds. If `change` fails, nothing changes.
+    /// Changes the pose or fields of a rigid body, discards its contacts, and wakes it. Also wakes sleepers
+    /// that are in contact with it before or after the change. If `change` fails, nothing changes.
     fn change_rigid(
         &mut self,
         rigid: RigidBodyHandle,

@@ -1,4 +1,4 @@
-//! World settings: gravity, air drag, substeps and tick length.
+//! Configuration of a world: gravity, air drag, substeps and tick length.
 
 use crate::error::{Error, require};
 use crate::foundation::dim::{Dim, DimVector};
@@ -7,22 +7,22 @@ use glam::Vec3;
 
 /// Default tick length [s]; see [`WorldConfig::tick`].
 pub const DEFAULT_TICK: f32 = 1.0 / 60.0;
-/// Minimum number of substeps in 1/60 s, unless the settings allow only fewer. It gives a force-feedback
-/// device 960 force updates a second.
+/// Minimum number of substeps in 1/60 s, unless [`WorldConfig::max_substeps`] is lower. It gives a
+/// force-feedback device 960 force updates a second.
 pub const DEFAULT_SUBSTEPS: u32 = 16;
 /// Smallest value of [`WorldConfig::max_substeps`]. With 8 substeps a soft ball is squashed as much as with 16.
 pub const MIN_SUBSTEPS: u32 = 8;
 /// Shortest tick length [s], equal to the interval between two fracture rounds. Each tick has at least one
-/// round, so shorter ticks would mean more rounds per second.
+/// round, so shorter ticks would change the number of rounds per second.
 pub const MIN_TICK: f32 = 1.0 / 240.0;
 /// Longest tick length [s]. Kinematic targets, embedded spheres and sleep are updated once per tick, and a
 /// longer tick would delay them visibly.
 pub const MAX_TICK: f32 = 1.0 / 30.0;
-/// Fracture and damping rounds per second: one in every four of the usual substeps, and one in the time that
-/// a node takes to give way.
+/// Fracture and damping rounds per second: one for every four of the usual 960 substeps. The interval is
+/// about the time in which an overloaded node fails.
 const ROUNDS: f64 = 240.0;
 
-/// World settings.
+/// Configuration of a world.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
@@ -56,7 +56,7 @@ impl<D: Dim> Default for WorldConfig<D> {
 }
 
 impl<D: Dim> WorldConfig<D> {
-    /// Returns the number of occurrences per tick for a rate per second, at least 1.
+    /// Converts a rate per second to a whole number per tick, at least 1.
     pub(super) fn in_tick(&self, per_second: f64) -> u32 {
         ((f64::from(self.tick) * per_second + 0.5) as u32).max(1)
     }
@@ -66,7 +66,7 @@ impl<D: Dim> WorldConfig<D> {
         self.in_tick(ROUNDS)
     }
 
-    /// Returns the time between two rounds [s].
+    /// Returns the time between two fracture and damping rounds [s].
     pub(super) fn round(&self) -> f32 {
         self.tick / self.rounds() as f32
     }

@@ -13,15 +13,15 @@ use crate::soft_body::SoftBody;
 use glam::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Contacts of a tick, summed by pair. Neighbours in a pair list mostly belong to the same pair of objects, so
-/// the place of the last pair is cached.
+/// Contacts of a tick, summed by pair. Consecutive contact points mostly belong to the same pair of objects,
+/// so the index of the last pair is cached.
 struct ContactSums<D: Dim> {
     places: BTreeMap<[ObjectRef; 2], usize>,
     list: Vec<ContactSum<D>>,
     last: Option<([ObjectRef; 2], usize)>,
 }
 
-/// Sum of a contact, and the largest normal impulse in it [N s].
+/// Contact summed up to now, and the largest normal impulse of its points [N s].
 struct ContactSum<D: Dim> {
     contact: Contact<D>,
     largest: f32,
@@ -132,7 +132,7 @@ impl<D: Dim> World<D> {
         Ok(contacts.filter(move |contact| {
             let pair = contact.pair;
             pair.iter().any(|&object| selector.contains(object))
-                // Objects removed since the last tick are in the list until the next one.
+                // The list may contain objects that were removed since the last tick.
                 && pair.iter().all(|&object| self.exists(object))
         }))
     }
@@ -187,7 +187,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Compares the contacts, in ascending order, with those of the last tick, and reports beginnings and
-    /// ends. Pairs at rest still touch.
+    /// ends. A pair without impulses still touches as long as both objects are at rest.
     fn note_changes(&mut self, contacts: Vec<Contact<D>>) {
         let mut before = std::mem::take(&mut self.touching).into_iter().peekable();
         let mut touching = Vec::with_capacity(contacts.len());
@@ -199,7 +199,7 @@ impl<D: Dim> World<D> {
         };
         for contact in contacts {
             let pair = contact.pair;
-            // A folded piece always touches itself.
+            // Contacts of a piece with itself are no events: a folded piece always touches itself.
             if pair[0] == pair[1] {
                 continue;
             }
@@ -253,7 +253,7 @@ impl<D: Dim> World<D> {
         for (body, soft) in self.bodies.entries() {
             let meets = |(_, rigid): &&(_, &RigidState)| rigid.layers.meet(soft.layers());
             let mut met = sensors.iter().filter(meets).peekable();
-            // The bounds of the pieces serve all sensors.
+            // All sensors use the same piece bounds, computed only if a sensor may detect the body.
             let bounds = met.peek().map(|_| piece_bounds(soft));
             for (&(sensor, rigid), bounds) in met.zip(bounds.iter().cycle()) {
                 let found = pieces_within(soft, bounds, rigid.shape());
@@ -289,7 +289,7 @@ impl<D: Dim> World<D> {
     }
 }
 
-/// Returns the bounding box of the nodes of each piece; that of a piece without nodes overlaps nothing.
+/// Returns the bounding box of the nodes of each piece; the box of a piece without nodes overlaps nothing.
 fn piece_bounds<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, Bounds> {
     let pieces = body.pieces();
     let nothing = [Vec3::INFINITY, Vec3::NEG_INFINITY];
@@ -330,8 +330,8 @@ fn pieces_within<D: Dim>(
     found
 }
 
-/// Returns for each piece whether its box overlaps the box of a shape. That box is enlarged a little, because by
-/// rounding, a point just outside of it can have a negative distance from the shape.
+/// Returns for each piece whether its box overlaps the box of a shape. The box of the shape is enlarged a
+/// little: because of rounding, a point just outside it can have a negative distance from the shape.
 fn pieces_near<D: Dim>(
     bounds: &IndexVec<PieceId, Bounds>,
     [low, high]: Bounds,

@@ -16,7 +16,7 @@ use crate::soft_body::SoftBody;
 use std::ops::Index;
 
 impl<D: Dim> World<D> {
-    /// Adds a body. A body too stiff for the maximum number of substeps is softened, see
+    /// Adds a soft body. If it is too stiff for the maximum number of substeps, it is softened, see
     /// [`SoftBody::stiffness_scale`].
     #[inline(never)]
     pub fn add_soft_body(&mut self, mut body: SoftBody<D>) -> SoftBodyHandle {
@@ -38,8 +38,9 @@ impl<D: Dim> World<D> {
         Ok(self.rigids.insert(rigid))
     }
 
-    /// Sets the target position [m] that a kinematic or coupled rigid body moves to until the end of the next
-    /// tick.
+    /// Sets the target position [m] of a kinematic or coupled rigid body. The target moves there at a
+    /// constant velocity during the next tick. A kinematic body follows exactly, a coupled one as far as its
+    /// spring and contacts allow.
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, the body is fixed or dynamic, or the target is not finite or
@@ -54,7 +55,7 @@ impl<D: Dim> World<D> {
             .set_target_position(position.to_vec3())
     }
 
-    /// Sets the target rotation that a kinematic or coupled rigid body turns to until the end of the next
+    /// Sets the target rotation of a kinematic or coupled rigid body, which reaches it at the end of the next
     /// tick. In 2D only the rotation about the third axis counts.
     ///
     /// # Errors
@@ -69,8 +70,8 @@ impl<D: Dim> World<D> {
             .set_target_rotation::<D>(rotation)
     }
 
-    /// Cuts a body along a blade at once, at any strength of the material, and returns the number of split
-    /// nodes. The splits and the detached pieces are among the events until the next tick.
+    /// Cuts a body along a blade at once, regardless of the strength of its material, and returns the number
+    /// of split nodes. The splits and the detached pieces are among the events until the next tick.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
@@ -94,9 +95,10 @@ impl<D: Dim> World<D> {
         Ok(split_nodes.len())
     }
 
-    /// Returns a body for changes from outside, such as fixing nodes, translating or cutting. The whole body
+    /// Returns a body mutably, for changes such as fixing nodes, translating or cutting. The whole body
     /// wakes, and its change history restarts, so that bookmarks become invalid. Do not assign another body
-    /// to the reference, because it would not be softened; remove the old body and add the new one.
+    /// to the reference: its stiffness would not be adapted to the substeps of the world. Remove the old body
+    /// and add the new one instead.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
@@ -167,7 +169,7 @@ impl<D: Dim> World<D> {
         rigids.map(|(id, rigid)| (id, RigidBodyRef::new(rigid)))
     }
 
-    /// Returns the handle of the `n`-th body in slot order, counted from 0.
+    /// Returns the handle of the `n`-th soft body in slot order, counted from 0.
     pub fn nth_soft_body(&self, n: usize) -> Option<SoftBodyHandle> {
         self.bodies.ids().nth(n)
     }
@@ -181,7 +183,7 @@ impl<D: Dim> World<D> {
         followers.map(|(id, _)| id).nth(n)
     }
 
-    /// Returns the events of the last tick, and of operations since then.
+    /// Returns the events of the last tick, and of calls since then.
     pub fn events(&self) -> &[Event<D>] {
         &self.events
     }
@@ -201,9 +203,9 @@ impl<D: Dim> World<D> {
         hash.number()
     }
 
-    /// Wakes `leaning` pieces, given in ascending order, and the dynamic rigid bodies in the boxes `was`.
-    /// Continues with everything in contact with the woken bodies. The AABB test is conservative, so it may
-    /// wake rigid bodies that were only close.
+    /// Wakes `leaning` pieces, given in ascending order, and dynamic rigid bodies whose bounding boxes
+    /// overlap one of the boxes `was`. Then wakes everything in contact with them, and so on. The AABB test
+    /// is conservative, so it may wake rigid bodies that were only close.
     pub(super) fn wake_leaning(&mut self, leaning: Vec<Hit>, was: Vec<Bounds>) {
         let (mut pieces, mut places) = (leaning, was);
         loop {
@@ -232,7 +234,7 @@ impl<D: Dim> World<D> {
         let sleepers = self.rigids.by_slot().filter(|(_, rigid)| rigid.is_asleep());
         let sleepers: Vec<RigidSlot> = sleepers.map(|(slot, _)| slot).collect();
         self.wake_rigids(&sleepers);
-        // Soft pieces resting on them wake too, because they may lose their support.
+        // Soft pieces that rest on these bodies wake too, because they may lose their support.
         for slot in sleepers {
             let leaning = leaning_on_rigid(self.rigids.at(slot), &self.bodies);
             self.wake(&leaning);
@@ -250,7 +252,7 @@ impl<D: Dim> World<D> {
 impl<D: Dim> Index<SoftBodyHandle> for World<D> {
     type Output = SoftBody<D>;
 
-    /// Returns a soft body.
+    /// Returns a soft body; [`World::soft_body`] returns an error instead of panicking.
     ///
     /// # Panics
     /// If the handle is stale.

@@ -9,7 +9,7 @@ use std::marker::PhantomData;
 /// Callbacks during a tick; none by default. See [`World::step_with`](crate::World::step_with).
 pub struct Hooks<'a, D: Dim> {
     /// External acceleration field, added to gravity: acceleration [m/s²] at a world-space position [m]. It
-    /// acts on everything that is awake. Non-finite values are ignored.
+    /// acts on soft bodies and dynamic rigid bodies that are awake. Non-finite values are ignored.
     pub field: Option<&'a dyn Fn(D::Vector) -> D::Vector>,
     /// Called at the end of each substep.
     pub after_substep: Option<&'a mut dyn FnMut(&Substep<'_, D>)>,
@@ -64,9 +64,9 @@ impl<'a, D: Dim> Substep<'a, D> {
 }
 
 /// Returns a radial field around `centre` [m], for [`Hooks::field`]. It attracts with `strength` [m/s²] up to
-/// the distance `reach` [m], and falls with the square of the distance beyond. A negative strength repels.
-/// Within a hundredth of the reach the field fades to 0. A reach that is not positive and finite gives a zero
-/// field.
+/// the distance `reach` [m], and beyond it with the inverse square of the distance. A negative strength
+/// repels. Closer to the centre than a hundredth of the reach, the field fades to 0. A reach that is not
+/// positive and finite gives a zero field.
 ///
 /// ```
 /// use fuwafuwa::{Vec2, field_around};

@@ -69,8 +69,8 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Removes all pieces below a size, as [`World::remove_piece`] does. In a long game this removes crumbs,
-    /// which cost time and carry nothing.
+    /// Removes all pieces below a size, as [`World::remove_piece`] does. In a long game, use it to remove
+    /// crumbs, which cost computing time.
     ///
     /// ```
     /// use fuwafuwa::{Dim3, Material, PieceSize, SoftBody, VoxelGrid, World, WorldConfig};
@@ -152,7 +152,8 @@ impl<D: Dim> World<D> {
         Ok(removed)
     }
 
-    /// Removes the pieces that `marks` selects; it returns a flag per piece number for each body.
+    /// Removes selected pieces. For each body, `marks` returns a flag per piece number: whether to remove the
+    /// piece.
     fn take_out_where(&mut self, marks: impl Fn(&SoftBody<D>) -> Vec<bool>) -> Removed {
         let mut pieces = Vec::new();
         for (id, body) in self.bodies.entries() {
@@ -210,7 +211,7 @@ impl<D: Dim> World<D> {
     }
 }
 
-/// Returns for each piece number whether the piece is below a size.
+/// Returns a flag for each piece number: whether the piece is smaller than `size`.
 fn is_below<D: Dim>(body: &SoftBody<D>, size: PieceSize) -> Vec<bool> {
     let (mesh, pieces) = (body.mesh(), body.pieces());
     let mut found = vec![0.0; pieces.list.len()];

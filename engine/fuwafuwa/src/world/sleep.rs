@@ -1,8 +1,8 @@
 //! Sleeping of pieces and rigid bodies that have been slow for a while.
 //!
-//! Each piece sleeps and wakes on its own. To all others, a sleeping piece is as immovable as a wall. A
-//! neighbour that moves wakes it, in either direction. So a heap falls asleep from the ground up while its
-//! top still settles, and nothing stays suspended when its support is removed.
+//! Each piece sleeps and wakes on its own. For all other objects, a sleeping piece is as immovable as a wall.
+//! It wakes when an object in contact with it moves, in any direction. A heap therefore falls asleep from the
+//! ground up while its top still settles, and nothing stays suspended when its support is removed.
 
 use crate::contact::solver::Hit;
 use crate::foundation::arena::{BodySlot, RigidSlot};
@@ -17,8 +17,8 @@ use std::collections::BTreeSet;
 /// after 3 ms. Higher values let bodies sleep before contact forces have settled; with lower ones, piles take
 /// longer to sleep.
 const SLEEP_SPEED: f64 = 0.03;
-/// Time below the speed threshold until a piece sleeps [s]. Longer than the turning point of a flight or a
-/// vibration.
+/// Time below the speed threshold until a piece sleeps [s]. Longer than a body stays slow at the top of its
+/// flight or at the turning points of a vibration.
 const SLEEP_TIME: f32 = 0.5;
 
 /// Updates the sleep timers of all pieces, and puts those to sleep that reach [`SLEEP_TIME`]. Pieces in `handled`,
@@ -66,7 +66,7 @@ pub fn fall_asleep_rigid(rigids: &mut RigidBodies, handled: &BTreeSet<RigidSlot>
     }
 }
 
-/// Wakes the pieces in `hits`; returns the pieces that woke.
+/// Wakes those pieces in `hits` that sleep; returns them.
 pub fn wake<D: Dim>(bodies: &mut SoftBodies<D>, hits: &[Hit]) -> Vec<Hit> {
     if hits.is_empty() {
         return Vec::new();
@@ -79,7 +79,8 @@ pub fn wake<D: Dim>(bodies: &mut SoftBodies<D>, hits: &[Hit]) -> Vec<Hit> {
     })
 }
 
-/// Puts to sleep or wakes all pieces for which a condition on body, number and piece holds; returns them.
+/// Puts pieces to sleep, or wakes them, if they satisfy a condition on body, number and piece. Returns these
+/// pieces.
 fn change<D: Dim>(
     bodies: &mut SoftBodies<D>,
     asleep: bool,

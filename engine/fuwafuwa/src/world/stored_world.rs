@@ -13,7 +13,7 @@ use crate::query::query_cache::QueryCache;
 use crate::rigid_body::{RigidBodies, RigidState};
 use crate::soft_body::{SoftBodies, SoftBody};
 
-/// Largest tick counter accepted from a stored world; some 6·10⁸ years of ticks.
+/// Largest tick counter accepted from a stored world; at 60 ticks a second it lasts some 6·10⁸ years.
 const MAX_TICKS: u64 = 1 << 60;
 
 /// Stored fields of a [`World`], in the same order, before any check.
@@ -35,7 +35,7 @@ pub(crate) struct StoredWorld<D: Dim> {
 impl<D: Dim> TryFrom<StoredWorld<D>> for World<D> {
     type Error = Error;
 
-    /// Checks everything that was read, and rebuilds what is not stored.
+    /// Checks the stored fields, and rebuilds the other ones.
     ///
     /// # Errors
     /// [`Error::InvalidSnapshot`] with the violated condition.

@@ -43,8 +43,8 @@ impl<D: Dim> World<D> {
         joints.map(|(id, joint)| (id, JointRef::new(joint)))
     }
 
-    /// Returns the world-space positions of both anchors of a joint [m]. `None` if an attached body is gone,
-    /// which can happen in the tick in which the joint is removed.
+    /// Returns the world-space positions of both anchors of a joint [m]. `None` if an attached body was
+    /// removed; the next tick then removes the joint, too.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
@@ -60,7 +60,8 @@ impl<D: Dim> World<D> {
     /// Removes broken joints, and reports an event for each.
     pub(super) fn part_joints(&mut self, broken: Vec<JointHandle>) {
         for joint in broken {
-            // A joint can be in two lists of the same substep.
+            // A joint can break twice in a substep: when velocities are solved, and when positions are
+            // corrected.
             if let Ok(parted) = self.joints.remove(joint) {
                 self.events.push(Event::JointBroke { joint });
                 self.wake_ends(&parted);

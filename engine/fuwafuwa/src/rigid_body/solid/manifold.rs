@@ -4,11 +4,11 @@ use super::Solid;
 use super::oriented_box::{Brick, Separation, Side};
 use glam::Vec3;
 
-/// Cosine limit for the end of a capsule to be a contact point: its normal must be within 26° of the
-/// manifold's normal. On a face all normals are equal.
+/// Minimum cosine between the normal at an end of a capsule and the normal of the manifold: an end is a
+/// contact point if the angle is below 26°. For a capsule that lies on a face, the angle is 0.
 const ALONG: f32 = 0.9;
-/// Minimum distance of the nearest point of a capsule from its end points, as a share of its radius. A closer
-/// point would be a duplicate.
+/// Minimum distance of the nearest point of a capsule from the other contact points, as a share of its
+/// radius. A closer point would be a duplicate.
 const APART: f32 = 0.5;
 
 /// Contact manifold of two shapes.
@@ -68,13 +68,14 @@ impl Manifold {
     }
 }
 
-/// Returns the contact point between a ball and the surface below it.
+/// Returns the contact point of a ball with a surface of the given normal at the distance `gap` [m] below it.
 fn beneath(centre: Vec3, normal: Vec3, radius: f32, gap: f32, key: u32) -> ManifoldPoint {
     let at = centre - normal * (radius + 0.5 * gap);
     ManifoldPoint { at, gap, key }
 }
 
-/// Returns the manifold of a capsule with any shape except a ball: its nearest point and its ends.
+/// Returns the manifold of a capsule with any shape except a ball. Contact points are the nearest point of
+/// the capsule and the ends of both shapes.
 fn bar(own: &Solid, other: &Solid) -> Manifold {
     let &Solid::Capsule { from, to, radius } = own else {
         return Manifold::default();
@@ -182,7 +183,7 @@ fn around(brick: &Brick, face: usize, is_upper: bool) -> Vec<(Vec3, u32)> {
         .collect()
 }
 
-/// Clips a polygon (in 2D a segment) against the half-space up to `most` [m] in a direction.
+/// Clips a polygon (in 2D a segment), and keeps the part with coordinates up to `most` [m] along a direction.
 fn clipped(polygon: &[(Vec3, u32)], way: Vec3, most: f32, plane: u32) -> Vec<(Vec3, u32)> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     let is_line = polygon.len() == 2;

@@ -4,9 +4,10 @@ use super::Solid;
 use crate::math::rotation::Rotation;
 use glam::Vec3;
 
-/// Bias of the separating-axis test, as a share of the smallest half extent. A face axis of the second box
-/// must exceed the best one of the first box by it, and an edge axis must exceed both. Resting boxes so keep
-/// their contact points, preferably on faces, which have more of them.
+/// Bias of the separating-axis test, as a share of the smallest half extent. A face axis of the second box is
+/// chosen only if its separation exceeds the largest one of the first box by the bias. An edge axis must
+/// exceed the face axes of both boxes by the bias. Resting boxes therefore keep their contact points,
+/// preferably on faces, which have more of them.
 const BEHIND: f32 = 0.01;
 
 /// Box with its centre, half extents and axes.
@@ -32,16 +33,16 @@ pub struct Separation {
 /// Feature that defines a separating axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Side {
-    /// Face of the first box, normal to this axis of it.
+    /// Face of the first box, normal to the axis of this number.
     First(usize),
-    /// Face of the second box, normal to this axis of it.
+    /// Face of the second box, normal to the axis of this number.
     Second(usize),
-    /// Edge of each box, along these axes.
+    /// Edge of each box, along the axes of these numbers.
     Edges(usize, usize),
 }
 
 impl Brick {
-    /// Returns the box of a box-shaped shape.
+    /// Returns the box of an axis-aligned or oriented box; `None` for other shapes.
     pub fn of(shape: &Solid) -> Option<Self> {
         let (centre, half, rotation) = match *shape {
             Solid::Box { centre, half } => (centre, half, Rotation::NONE),

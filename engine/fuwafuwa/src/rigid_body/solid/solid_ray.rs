@@ -50,7 +50,7 @@ impl Solid {
     }
 }
 
-/// Returns where a ray enters and leaves a box around the origin.
+/// Returns the distances at which a ray enters and leaves a box around the origin [m]; none if it misses.
 fn through_box(from: DVec3, way: DVec3, half: Vec3) -> Vec<f64> {
     let (mut enters, mut leaves) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
@@ -71,7 +71,7 @@ fn through_box(from: DVec3, way: DVec3, half: Vec3) -> Vec<f64> {
     }
 }
 
-/// Returns where a ray enters and leaves a ball around the origin.
+/// Returns the distances at which a ray enters and leaves a ball around the origin [m]; none if it misses.
 fn through_ball(from: Vec3, way: DVec3, radius: f32) -> Vec<f64> {
     let from = from.as_dvec3();
     roots(
@@ -81,7 +81,8 @@ fn through_ball(from: Vec3, way: DVec3, radius: f32) -> Vec<f64> {
     )
 }
 
-/// Returns where a ray enters and leaves the cylindrical part of a capsule that begins at the origin.
+/// Returns the distances at which a ray enters and leaves the cylindrical part of a capsule that begins at
+/// the origin [m]; none if it misses.
 fn through_side(from: Vec3, way: DVec3, axis: Vec3, radius: f32) -> Vec<f64> {
     let (from, axis) = (from.as_dvec3(), axis.as_dvec3());
     let squared = axis.dot(axis);

@@ -1,4 +1,4 @@
-//! Blocks of elements, and the evaluation of groups of blocks in the three loops of the kernel.
+//! Batches of elements, and the evaluation of groups of batches in the three loops of the kernel.
 
 use super::force_kernel::{
     BlockView, Moduli, PerLane, Scratch, Uniform, forces, gradient, plain_forces, plain_gradient,
@@ -12,14 +12,14 @@ use crate::soft_body::element_law::Law;
 use fearless_simd::Simd;
 use std::ops::Range;
 
-/// Number of blocks that pass through the three loops of the kernel together. Their scratch of 28 KB fits
-/// into an L1 cache of 32 KB.
+/// Number of batches that pass through the three loops of the kernel together. Their scratch memory of 28 KB
+/// fits into an L1 cache of 32 KB.
 pub const GROUP: usize = 8;
 
 pub const VACANT: u32 = u32::MAX;
 pub const ALL_LANES: u8 = u8::MAX;
 
-/// Block of elements, with the indices of their nodes, forces and stencils.
+/// Batch of elements, with the indices of their nodes, forces and class data.
 #[derive(Clone, Debug)]
 pub struct Batch {
     pub home: BatchKey,
@@ -31,17 +31,17 @@ pub struct Batch {
     pub half_size: Eight,
     /// Quaternion in 3D; cosine and sine in 2D.
     pub rotation: [Eight; 4],
-    /// Plastic state of each lane, if the material is plastic.
+    /// Plastic inverse of each lane, if the material is plastic.
     pub undone: Option<Box<PlasticInverseLanes>>,
     pub node_count: u32,
-    /// Index of its first nodes and forces.
+    /// Index of the first node of the batch, and of the force on that node.
     pub first: u32,
-    /// Start of its stencil in `numbers` or in `pooled`, and its length.
+    /// Start of the class data in `numbers` or `pooled`, and their length.
     pub element_class: u32,
     pub numbers: u32,
 }
 
-/// Properties that the elements of a block have in common.
+/// Properties that the elements of a batch have in common.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BatchKey {
     pub kind: BatchKind,
@@ -51,7 +51,7 @@ pub struct BatchKey {
     pub asleep: bool,
 }
 
-/// Classes of the elements of a block.
+/// Classes of the elements of a batch.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BatchKind {
     /// Whole cells with nodes only in their corners.
@@ -68,7 +68,7 @@ impl BatchKey {
     }
 }
 
-/// Data that all blocks read.
+/// Data that all batches read.
 #[derive(Copy, Clone)]
 pub struct Shared<'a> {
     pub law: Law,
@@ -79,7 +79,7 @@ pub struct Shared<'a> {
     pub nodes: &'a [u32],
 }
 
-/// Some blocks, and the forces that they write; `first` is the index of the first force.
+/// Several batches, and the forces that they write; `first` is the index of the first node.
 pub struct Group<'a> {
     pub blocks: &'a mut [Batch],
     pub forces: &'a mut [f32],
@@ -88,24 +88,25 @@ pub struct Group<'a> {
 }
 
 impl Batch {
-    /// Index after its last force.
+    /// Index after the last node.
     pub fn end(&self) -> usize {
         self.first as usize + self.node_count as usize * LANES
     }
 
-    /// Whether no element of the block is awake.
+    /// Whether no element of the batch is awake.
     #[inline(always)]
     pub fn is_idle(&self) -> bool {
         self.home.asleep || self.vacant == ALL_LANES
     }
 
-    /// Range of its forces within those of a group; `first` is the index of the first force of the group.
+    /// Returns the range of the forces within those of a group; `first` is the index of the first node of the
+    /// group.
     #[inline(always)]
     fn forces<D: Dim>(&self, first: usize) -> Range<usize> {
         (self.first as usize - first) * D::N..(self.end() - first) * D::N
     }
 
-    /// Its stencil: one for all lanes, or one for each.
+    /// Returns the class data: one set for all lanes, or one for each.
     #[inline(always)]
     fn element_class<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
         let places = self.element_class as usize..(self.element_class + self.numbers) as usize;
@@ -116,7 +117,8 @@ impl Batch {
         }
     }
 
-    /// View for the kernel. `forces` are those of the whole group; `first` is the index of the first one.
+    /// Returns the view for the kernel. `forces` are those of the whole group; `first` is the index of its
+    /// first node.
     #[inline(always)]
     fn view<'a, D: Dim>(
         &'a mut self,
@@ -136,7 +138,7 @@ impl Batch {
     }
 }
 
-/// Evaluates the awake blocks of a group.
+/// Evaluates the awake batches of a group.
 #[inline(always)]
 pub fn evaluate_group<D: Dim, S: Simd>(
     simd: S,

@@ -1,4 +1,4 @@
-//! Assignment of elements to blocks and lanes, and its update after a remodelling.
+//! Assignment of elements to batches and lanes, and its update after a remodelling.
 
 use super::batch::{ALL_LANES, Batch, BatchKey, BatchKind, VACANT};
 use super::force_kernel::{numbers, numbers_a_node, symmetric};
@@ -16,8 +16,8 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 impl<D: Dim> ElementBatches<D> {
-    /// Updates the blocks after a remodelling: removes the elements `removed`, and adds or moves the elements
-    /// `seated`, of which some are `asleep`. The cost is proportional to the changes.
+    /// Updates the batches after a remodelling: removes the elements `removed`, and adds or moves the
+    /// elements `seated`, of which some are `asleep`. The cost is proportional to the changes.
     pub fn update(
         &mut self,
         mesh: &Mesh<D>,
@@ -38,9 +38,9 @@ impl<D: Dim> ElementBatches<D> {
         self.insert_pending(mesh, newcomers);
     }
 
-    /// Puts elements to sleep, or wakes them. A block is evaluated as a whole. If all elements of a block
-    /// change, they stay together. If a block splits, the smaller group, at most half of the lanes, moves to
-    /// other blocks.
+    /// Puts elements to sleep, or wakes them. A batch is evaluated as a whole. If all elements of a batch
+    /// change, they stay together. If only some change, the smaller group, at most half of the lanes, moves
+    /// to other batches.
     pub fn set_asleep(&mut self, mesh: &Mesh<D>, elements: &[ElementId], asleep: bool) {
         let mut changing: BTreeMap<u32, u8> = BTreeMap::new();
         for &id in elements {
@@ -67,7 +67,7 @@ impl<D: Dim> ElementBatches<D> {
         self.relocate(mesh, &movers);
     }
 
-    /// Puts a whole block to sleep, or wakes it.
+    /// Puts a whole batch to sleep, or wakes it.
     fn change_key(&mut self, index: u32, asleep: bool) {
         let block = &mut self.blocks[index as usize];
         let home = BatchKey {
@@ -81,7 +81,7 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Moves elements with their state to other blocks; the flag says whether the element sleeps there.
+    /// Moves elements with their state to other batches; the flag says whether the element sleeps there.
     fn relocate(&mut self, mesh: &Mesh<D>, movers: &[(ElementId, bool)]) {
         let state = |&(id, asleep): &(ElementId, bool)| {
             let element = mesh.element(id).expect("only live elements sleep or wake");
@@ -109,7 +109,7 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Collects the state of an element that is to be added to a block.
+    /// Collects the state of an element that is to be added to a batch.
     fn newcomer<'a>(
         &self,
         id: ElementId,
@@ -127,7 +127,7 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Adds elements that are in no block, and updates the indices of the forces on their nodes.
+    /// Adds elements that are in no batch, and updates the indices of the forces on their nodes.
     fn insert_pending(&mut self, mesh: &Mesh<D>, newcomers: Vec<PendingElement>) {
         let nodes = newcomers
             .iter()
@@ -159,8 +159,8 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Returns where in `forces` the force on a node is. The element is given by its block and lane, and the
-    /// node by its number within the element.
+    /// Returns the range of `forces` that holds the force on a node. The element is given by its batch and
+    /// lane, and the node by its number within the element.
     pub(super) fn force_range(&self, index: u32, lane: u8, node: usize) -> Range<usize> {
         let first = self.blocks[index as usize].first as usize;
         let place = (first + node * LANES + lane as usize) * D::N;
@@ -200,8 +200,8 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Adds elements of one class and material that are all asleep or all awake. They go to vacant lanes of
-    /// the class, then eight at a time to new blocks of the class, and the rest to the pool.
+    /// Adds elements of one class and material that are all asleep or all awake. First they fill vacant lanes
+    /// of the class. Then every eight of them get a new batch of the class, and the rest goes to the pool.
     fn insert_class(&mut self, element_class: &ElementClass<D>, mut newcomers: &[PendingElement]) {
         let PendingElement {
             element,
@@ -242,7 +242,7 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Returns a block without elements, for elements with `count` nodes.
+    /// Returns a batch without elements, for elements with `count` nodes.
     fn empty_block(&mut self, home: BatchKey, count: u32) -> u32 {
         let kind = (count, home.is_pool());
         if let Some(index) = self.empty.get_mut(&kind).and_then(Vec::pop) {
@@ -277,13 +277,13 @@ impl<D: Dim> ElementBatches<D> {
         self.blocks.len() as u32 - 1
     }
 
-    /// Initial plastic state of the elements of a block, if their material is plastic.
+    /// Initial plastic inverses of a batch, if its material is plastic.
     fn undone_in(&self, home: BatchKey) -> Option<Box<PlasticInverseLanes>> {
         let flow = self.flows.get(home.material as usize - 1);
         flow.copied().flatten().map(|_| PlasticInverseLanes::none())
     }
 
-    /// Returns the start of the stencil of a class in `numbers`; adds the stencil if necessary.
+    /// Returns the start of the class data in `numbers`; adds the data if necessary.
     fn stencil_of(&mut self, class: u32, numbers: &[f32]) -> u32 {
         let all = &mut self.numbers;
         *self.element_classes.entry(class).or_insert_with(|| {
@@ -292,15 +292,15 @@ impl<D: Dim> ElementBatches<D> {
         })
     }
 
-    /// Puts an element into a vacant lane of a block.
+    /// Puts an element into a vacant lane of a batch.
     fn assign(&mut self, index: u32, newcomer: &PendingElement, numbers: &[f32]) {
         let block = &mut self.blocks[index as usize];
         let is_first = block.vacant == ALL_LANES;
-        assert_ne!(block.vacant, 0, "open blocks have vacant lanes");
+        assert_ne!(block.vacant, 0, "open batches have vacant lanes");
         let lane = block.vacant.trailing_zeros() as usize;
         block.vacant &= !(1 << lane);
         let is_last = block.vacant == 0;
-        // The first element of a block fills the vacant lanes with its numbers, so that they compute finite
+        // The first element of a batch also fills the vacant lanes with its data, so that they compute finite
         // values.
         let lanes = if is_first { 0..LANES } else { lane..lane + 1 };
         let half_size = 0.5 * self.voxel_size * newcomer.element.cell.width() as f32;
@@ -343,7 +343,7 @@ impl<D: Dim> ElementBatches<D> {
     }
 }
 
-/// Element that is to be added to a block.
+/// Element that is to be added to a batch.
 #[derive(Copy, Clone)]
 struct PendingElement<'a> {
     id: ElementId,
@@ -354,7 +354,7 @@ struct PendingElement<'a> {
     undone: PlasticInverse,
 }
 
-/// Returns a stencil in single precision, in the layout of the kernel.
+/// Returns the data of a class in single precision, in the layout of the kernel.
 fn numbers_of<D: Dim>(law: Law, element_class: &ElementClass<D>) -> Vec<f32> {
     let count = element_class.slots.len();
     let mut mean = [0.0; 3];

@@ -1,7 +1,7 @@
-//! Arithmetic of a block, all lanes at once.
+//! Arithmetic of a batch, all lanes at once.
 //!
-//! With x relative to the first node, unit stencil (b, r, w, V) and half size h, the formulas of
-//! [`crate::soft_body::element_law`] become
+//! With x relative to the first node, the data (b, r, w, V) of a class at unit size, and half size h, the
+//! formulas of [`crate::soft_body::element_law`] become
 //!
 //! ```text
 //! F = Σ x bᵀ / (V h)     G = Σ x (w r)ᵀ     c = Σ w x / V     W = Σ w r rᵀ
@@ -9,12 +9,12 @@
 //! f = A b + B (w r) − k w (x − c)
 //! ```
 //!
-//! Small groups of blocks pass through three short loops: gradient, stress and forces. A single long loop
+//! Small groups of batches pass through three short loops: gradient, stress and forces. A single long loop
 //! would need far more registers than exist, and its chain of square roots and divisions would stall the
-//! machine.
+//! processor.
 //!
-//! A plain cell has nodes only in its corners, and so w = 1, b and r of ±1 and no skew: its sums need only
-//! additions and subtractions. Four of five elements are plain.
+//! A plain cell has nodes only in its corners. There w = 1, and the entries of b and r are ±1, so the sums
+//! need only additions and subtractions. Four of five elements are plain.
 
 use super::rotation_extraction::{Matrix, turn};
 use crate::foundation::dim::Dim;
@@ -23,14 +23,14 @@ use crate::math::row::Row;
 use crate::soft_body::element_law::{Elasticity, Law, MIN_VOLUME_RATIO};
 use fearless_simd::prelude::*;
 
-/// Data of one block for the kernel.
+/// Data of one batch for the kernel.
 pub struct BlockView<'a> {
     /// Node k of lane l at k · LANES + l.
     pub nodes: &'a [u32],
     pub half_size: &'a Eight,
     /// Quaternion in 3D; cosine and sine in 2D.
     pub rotation: &'a mut [Eight; 4],
-    /// Forces on the nodes, in their order, with D::N components each.
+    /// Forces on these nodes, in the same order, with D::N components each.
     pub forces: &'a mut [f32],
     /// Mask of the lanes with an inverted element.
     pub inverted: &'a mut u8,
@@ -56,16 +56,16 @@ impl Moduli {
     }
 }
 
-/// Numbers of a stencil: b, w r and w for each node, then the upper half of W, 1/V and the stiffness of the
-/// hourglass modes or of [`Law::Endo2004`]. `get` reads one number, for all lanes or for each.
+/// Data of an element class: b, w r and w for each node, then the upper half of W, 1/V and the stiffness of
+/// the hourglass modes or of [`Law::Endo2004`]. `get` reads one number, for all lanes or for each.
 pub trait Stencils {
     fn get<S: Simd>(&self, simd: S, index: usize) -> Lanes<S>;
 }
 
-/// Stencil of one class for all lanes.
+/// Data of one class for all lanes.
 pub struct Uniform<'a>(pub &'a [f32]);
 
-/// Stencils with a class of its own in each lane.
+/// Data of a class of its own for each lane.
 pub struct PerLane<'a>(pub &'a [Eight]);
 
 impl Stencils for Uniform<'_> {
@@ -82,12 +82,12 @@ impl Stencils for PerLane<'_> {
     }
 }
 
-/// Number of values per node in a stencil.
+/// Number of values per node in the data of a class.
 pub const fn numbers_a_node<D: Dim>() -> usize {
     2 * D::N + 1
 }
 
-/// Number of values in a stencil.
+/// Number of values in the data of a class.
 pub const fn numbers<D: Dim>(nodes: usize) -> usize {
     numbers_a_node::<D>() * nodes + D::N * (D::N + 1) / 2 + 2
 }
@@ -403,7 +403,7 @@ pub(super) fn stress_of<D: Dim, S: Simd>(
     p
 }
 
-/// Index of row i and column j of W in its upper half.
+/// Index of the entry in row i and column j within the upper half of W.
 #[inline(always)]
 pub fn symmetric<D: Dim>(i: usize, j: usize) -> usize {
     let (low, high) = if i < j { (i, j) } else { (j, i) };

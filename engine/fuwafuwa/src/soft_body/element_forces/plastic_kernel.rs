@@ -9,7 +9,7 @@ use crate::soft_body::plasticity::{MAX_FLOW, MIN_FLOW_VOLUME_RATIO, Plasticity};
 use fearless_simd::prelude::*;
 use glam::Vec3;
 
-/// Plastic state G of each lane, by rows.
+/// Plastic inverse G of each lane, by rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlasticInverseLanes(pub [[Eight; 3]; 3]);
 
@@ -178,14 +178,14 @@ fn flown<D: Dim, S: Simd>(
             eased[i][j] *= scale;
         }
     }
-    // Flow back towards the original shape makes the element stiffer; it must not store more energy than
-    // before.
+    // Flow back towards the original shape makes the element stiffer. Flow that would increase the stored
+    // energy is rejected.
     let whole = determinant::<D, S>(elastic);
     let before =
         kneaded_stiffness::<D, S>(simd, g) * density::<D, S>(simd, moduli, &stretch, whole);
     let after =
         kneaded_stiffness::<D, S>(simd, &next) * density::<D, S>(simd, moduli, &eased, whole);
-    // Four conditions must hold; comparisons with NaN are false.
+    // The element flows only if four conditions hold. Comparisons with NaN are false, so NaN prevents flow.
     let (now, then) = (squared::<D, S>(zero, g), squared::<D, S>(zero, &next));
     let room = splat(simd, flow.most_flown) - then;
     let room = if_positive(room, room, now - then);
@@ -221,7 +221,7 @@ fn density<D: Dim, S: Simd>(
         + splat(simd, moduli.young) * below * below)
 }
 
-/// Returns 1 / λ_max(GᵀG), estimated from the trace and the norm.
+/// Returns the stiffness factor 1 / λ_max(GᵀG), estimated from the trace and the norm of GᵀG.
 #[inline(always)]
 fn kneaded_stiffness<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
     let zero = splat(simd, 0.0);

@@ -1,5 +1,5 @@
-//! Snapshots of the blocks. Only the state of each element is saved; the blocks are rebuilt from the mesh,
-//! because the distribution over blocks does not change the result.
+//! Snapshots of the batches. Only the state of each element is saved. The batches are rebuilt from the mesh,
+//! because the distribution over batches does not change the result.
 
 use super::batch::VACANT;
 use super::plastic_kernel::{IDENTITY, PlasticInverse};
@@ -32,8 +32,8 @@ impl<D: Dim> ElementBatches<D> {
         self.saved.as_ref().is_some_and(fits)
     }
 
-    /// Puts the elements of a mesh, some of which are `asleep`, into blocks, and restores the state read from
-    /// a file. The elasticities must be set afterwards.
+    /// Puts the elements of a mesh, some of which are `asleep`, into batches, and restores the state read
+    /// from a file. The elasticities must be set afterwards.
     pub fn restore(
         &mut self,
         mesh: &Mesh<D>,
@@ -101,7 +101,7 @@ impl<D: Dim> ElementBatches<D> {
     }
 }
 
-/// Whether a plastic state is possible: it preserves volume, and is flat in 2D.
+/// Whether a plastic inverse is possible: it preserves volume, and leaves the third axis unchanged in 2D.
 fn is_sound<D: Dim>(dent: &PlasticInverse) -> bool {
     let [x, y, z] = *dent;
     let volume = x.dot(y.cross(z));

@@ -1,4 +1,4 @@
-//! State of the blocks in a snapshot: rotation and last forces of each element.
+//! State of the elements in a snapshot: rotation and last forces of each element.
 
 use super::plastic_kernel::PlasticInverse;
 use crate::foundation::ids::ElementId;
@@ -11,7 +11,7 @@ pub struct SavedElementStates {
     pub law: Law,
     /// For each element its rotation, then the forces on its nodes [N], in their order.
     pub numbers: Vec<f32>,
-    /// Plastic states other than the initial one, by ascending id.
+    /// Plastic inverses other than the identity, by ascending id.
     pub undone: Vec<(ElementId, PlasticInverse)>,
     /// Whether each element was inverted.
     pub inverted: Vec<bool>,
