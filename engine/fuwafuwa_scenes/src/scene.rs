@@ -94,8 +94,7 @@ pub use shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, Obstac
 
 use budget::Budget;
 use error::{FieldError, Origin, require, vector_of};
-use fuwafuwa::{DEFAULT_SUBSTEPS, DEFAULT_TICK, MIN_TICK};
-use fuwafuwa::{Dim, Material, Shape, World, WorldConfig};
+use fuwafuwa::{DEFAULT_TICK, Dim, MIN_TICK, Material, Shape, World, WorldConfig};
 use joint::JointTargets;
 use serde::{Deserialize, Serialize};
 
@@ -394,7 +393,7 @@ fn usual_gravity() -> [f32; 3] {
 }
 
 fn usual_substeps() -> u32 {
-    DEFAULT_SUBSTEPS
+    64
 }
 
 fn usual_tick() -> f32 {

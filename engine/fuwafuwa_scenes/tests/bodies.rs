@@ -2,7 +2,7 @@
 
 mod picture;
 
-use fuwafuwa::{Dim, Dim2, Dim3, SoftBody};
+use fuwafuwa::{Dim, Dim2, Dim3, SoftBody, Vec2};
 use fuwafuwa_scenes::disk::open_scene;
 use fuwafuwa_scenes::{Recording, Scene, SceneError};
 use picture::png_of;
@@ -11,12 +11,8 @@ use std::path::PathBuf;
 fn bodies<D: Dim>(text: &str) -> Vec<SoftBody<D>> {
     let scene = Scene::read("toy.toml", text, &[]).unwrap();
     let world = scene.build::<D>();
-    world
-        .unwrap_or_else(|error| panic!("{error}"))
-        .soft_bodies()
-        .map(|(_, body)| body)
-        .cloned()
-        .collect()
+    let world = world.unwrap_or_else(|error| panic!("{error}"));
+    world.soft_bodies().map(|(_, body)| body.clone()).collect()
 }
 
 /// Returns the materials of a flat body, or of the middle layer of a 3D body; the highest row first.
@@ -137,9 +133,10 @@ fn hand_follows_path_with_each_shape() {
             scene.set_hand_targets(&mut world, tick);
             world.step();
         });
-        let (_, hand) = world.target_followers().next().unwrap();
+        let hand = world.nth_target_follower(0).unwrap();
+        let hand = world.rigid_body(hand).unwrap();
         assert_eq!(hand.shape().inradius(), thick);
-        let (distance, _) = hand.shape().distance([0.0, 2.0, 0.0]);
+        let (distance, _) = hand.shape().distance(Vec2::new(0.0, 2.0));
         assert!((distance + thick - 1.0).abs() < 0.01, "{text}: {distance}");
     }
 }
@@ -190,15 +187,10 @@ at = [0.0, 3.0, 0.0]
     std::fs::write(folder.join("painting.png"), painting(&["rb. ", "rrrr"])).unwrap();
     let scene = open(&folder).unwrap();
     let world = scene.build::<Dim2>().unwrap();
-    assert_eq!(
-        picture(world.soft_bodies().next().unwrap().1),
-        ["21..", "2222"]
-    );
-    assert_eq!(
-        world.soft_bodies().next().unwrap().1.grid().voxel_size(),
-        0.5
-    );
-    assert_eq!(picture(&world[world.nth_soft_body(1).unwrap()]), ["33"]);
+    let [first, second] = [0, 1].map(|n| &world[world.nth_soft_body(n).unwrap()]);
+    assert_eq!(picture(first), ["21..", "2222"]);
+    assert_eq!(first.grid().voxel_size(), 0.5);
+    assert_eq!(picture(second), ["33"]);
 
     // The scene can be recorded, and replayed from the text of the recording.
     let recording = Recording::of::<Dim2>(&scene, 3, |_| {}).unwrap();

@@ -1,8 +1,8 @@
 //! Round trips: text → world → text → world.
 
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Event, Joint, JointAnchor, Layers, Material, RigidBody, Rotation, Shape,
-    SoftBody, VoxelGrid, World, WorldConfig,
+    Dim, Dim2, Dim3, DimVector, Event, Joint, JointAnchor, Layers, Material, RigidBody,
+    RigidBodyRef, Rotation, Shape, SoftBody, Vec2, Vec3, VoxelGrid, World, WorldConfig,
 };
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::NAMED;
@@ -40,7 +40,7 @@ shape = "box"
 n = 6
 width = 0.5
 at = [1.3, 0.5, 0.0]
-turned = [0.0, 0.0, 0.4]
+rotation_vector = [0.0, 0.0, 0.4]
 
 [[obstacle]]
 half_space = { normal = [0.0, 1.0, 0.0], point = [0.0, -0.2, 0.0] }
@@ -49,49 +49,49 @@ half_space = { normal = [0.0, 1.0, 0.0], point = [0.0, -0.2, 0.0] }
 radius = 0.1
 path = [[0.0, -0.5, 0.5, 0.0], [1.0, 1.2, 0.5, 0.0]]
 
-[[rigid]]
+[[rigid_body]]
 ball = { centre = [0.0, 0.0, 0.0], radius = 0.15 }
-drive = "free"
+motion_type = "dynamic"
 mass = 3.0
 at = [0.4, 1.4, 0.0]
 velocity = [0.0, -1.0, 0.0]
-spin = [0.0, 0.0, 2.0]
+angular_velocity = [0.0, 0.0, 2.0]
 restitution = 0.3
 
-[[rigid]]
+[[rigid_body]]
 box = { centre = [0.0, 0.0, 0.0], half = [0.2, 0.1, 0.1] }
-drive = "free"
+motion_type = "dynamic"
 mass = 1.0
 at = [1.6, 1.5, 0.0]
-turned = [0.0, 0.0, 0.5]
+rotation_vector = [0.0, 0.0, 0.5]
 layers = { memberships = 4 }
 user_data = 9
 
-[[rigid]]
+[[rigid_body]]
 capsule = { from = [-0.2, 0.0, 0.0], to = [0.2, 0.0, 0.0], radius = 0.05 }
-drive = "kinematic"
+motion_type = "kinematic"
 at = [-0.6, 1.0, 0.0]
 
-[[rigid]]
+[[rigid_body]]
 box = { centre = [0.5, 0.5, 0.0], half = [0.6, 0.6, 0.6] }
 sensor = true
 
 [[joint]]
-tie = "pin"
-ends = [{ body = 2, at = [1.4, 0.9, 0.0], radius = 0.15 }, { rigid = 2, at = [1.6, 1.5, 0.0] }]
+kind = "pin"
+anchors = [{ body = 2, point = [1.4, 0.9, 0.0], radius = 0.15 }, { rigid_body = 2, point = [1.6, 1.5, 0.0] }]
 
 [[joint]]
-tie = "rope"
+kind = "rope"
 length = 0.8
 breaking_force = 900.0
-ends = [{ body = 1, at = [0.4, 0.9, 0.0] }, { at = [0.4, 1.6, 0.0] }]
+anchors = [{ body = 1, point = [0.4, 0.9, 0.0] }, { point = [0.4, 1.6, 0.0] }]
 
 [[joint]]
-tie = "spring"
+kind = "spring"
 stiffness = 200.0
 damping = 3.0
 length = 0.4
-ends = [{ hand = 1, at = [-0.5, 0.5, 0.0] }, { rigid = 1, at = [0.4, 1.4, 0.0] }]
+anchors = [{ hand = 1, point = [-0.5, 0.5, 0.0] }, { rigid_body = 1, point = [0.4, 1.4, 0.0] }]
 "#;
 
 fn rich(dim: u8) -> String {
@@ -175,28 +175,28 @@ fn build_applies_fields_of_scene() {
         ),
         (layers, 7, 0.5)
     );
-    let rigids: Vec<&RigidBody> = world.rigid_bodies().map(|(_, body)| body).collect();
-    assert!(rigids[2].is_dynamic() && rigids[2].velocity() == [0.0, -1.0, 0.0]);
-    assert_eq!(rigids[2].angular_velocity(), [0.0, 0.0, 2.0]);
-    assert!(rigids[4].follows_target() && rigids[5].is_sensor);
-    assert_eq!(
-        (rigids[3].user_data, rigids[3].layers.filters),
-        (9, u32::MAX)
-    );
-    let [x, y, _] = rigids[3].rotation().apply([1.0, 0.0, 0.0]);
+    let rigids: Vec<RigidBodyRef<Dim2>> = world.rigid_bodies().map(|(_, body)| body).collect();
+    assert!(rigids[2].is_dynamic());
+    assert_eq!(rigids[2].velocity().linear, Vec2::new(0.0, -1.0));
+    assert_eq!(rigids[2].velocity().angular, 2.0);
+    assert!(rigids[4].follows_target() && rigids[5].is_sensor());
+    let (data, filters) = (rigids[3].user_data(), rigids[3].layers().filters);
+    assert_eq!((data, filters), (9, u32::MAX));
+    let Vec2 { x, y } = rigids[3].rotation().apply(Vec2::X);
     assert!((x - 0.5f32.cos()).abs() < 1e-6 && (y - 0.5f32.sin()).abs() < 1e-6);
     assert_eq!(world.joints().count(), 3);
     // The text stays readable where fields suffice.
     let text = Scene::of_world(&world).unwrap().text().unwrap();
     assert!(
-        text.contains("runs = ") && text.contains("drive = \"free\""),
+        text.contains("runs = ") && text.contains("motion_type = \"dynamic\""),
         "{text}"
     );
 }
 
 fn check_torn<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    let at = |x: f32, y: f32, z: f32| D::Vector::from_vec3(Vec3::new(x, y, z));
+    let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.3))
         .unwrap();
@@ -209,22 +209,19 @@ fn check_torn<D: Dim>() {
     let ball = world.add_soft_body(
         SoftBody::new(grid, &[soft])
             .unwrap()
-            .translated([0.0, 1.2, 0.0]),
+            .translated(at(0.0, 1.2, 0.0)),
     );
-    let cube = Shape::Box {
-        centre: [0.2, 2.5, 0.2],
-        half: [0.1; 3],
-    };
-    let turned = Rotation::about([1.0, 1.0, 0.0], 0.4);
+    let cube = Shape::cuboid(D::Vector::splat(0.1)).translated(at(0.2, 2.5, 0.2));
+    let turned = Rotation::about(Vec3::new(1.0, 1.0, 0.0), 0.4);
     world
         .add_rigid_body(RigidBody::dynamic(cube, 4.0).rotated(turned))
         .unwrap();
     let hand = world
-        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at([-1.0, 0.2, 0.2]))
+        .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(at(-1.0, 0.2, 0.2)))
         .unwrap();
     for tick in 0..50 {
         world
-            .set_target_position(hand, [-1.0 + 0.02 * tick as f32, 0.2, 0.2])
+            .set_target_position(hand, at(-1.0 + 0.02 * tick as f32, 0.2, 0.2))
             .unwrap();
         world.step();
     }
@@ -236,24 +233,21 @@ fn check_torn<D: Dim>() {
         ids.map(|id| (id, body.node_state(id))).collect()
     };
     assert_eq!(states(&other), states(&world));
-    for (a, b) in other
-        .rigid_bodies()
-        .map(|(_, body)| body)
-        .zip(world.rigid_bodies())
-    {
-        assert_eq!(
-            (a.position(), a.velocity(), a.rotation()),
-            (b.position(), b.velocity(), b.rotation())
-        );
-        assert_eq!(a.angular_velocity(), b.angular_velocity());
-        assert!(!a.follows_target() || a.target_position() == b.target_position());
-    }
+    let rigids = |world: &World<D>| -> Vec<_> {
+        let bodies = world.rigid_bodies().map(|(_, body)| body);
+        let target = |body: RigidBodyRef<D>| (body.target_position(), body.target_rotation());
+        let follows = |body: RigidBodyRef<D>| body.follows_target().then_some(target(body));
+        bodies
+            .map(|body| (body.definition(), follows(body)))
+            .collect()
+    };
+    assert_eq!(rigids(&other), rigids(&world));
     // The two worlds behave alike afterwards.
     let (mut world, mut other) = (world, other);
     (0..30).for_each(|_| _ = (world.step(), other.step()));
     let centres =
         [&world, &other].map(|world| world.soft_bodies().next().unwrap().1.centre_of_mass());
-    for axis in 0..3 {
+    for axis in 0..D::N {
         assert!(
             (centres[0][axis] - centres[1][axis]).abs() < 0.05,
             "{centres:?}"
@@ -287,32 +281,47 @@ fn error_names_line_and_field() {
         (
             "mass = 3.0\n",
             "",
-            "rigid 1, mass: missing mass [kg], required with drive = \"free\"",
+            "rigid_body 1, mass: missing mass [kg], required with motion_type = \"dynamic\"",
         ),
         (
-            "drive = \"kinematic\"",
-            "drive = \"kinematic\"\nmass = 1.0",
-            "rigid 3, mass: allowed only with drive = \"free\" or \"hand\"",
+            "motion_type = \"kinematic\"",
+            "motion_type = \"kinematic\"\nmass = 1.0",
+            "rigid_body 3, mass: allowed only with motion_type = \"dynamic\" or \"coupled\"",
         ),
         (
-            "drive = \"kinematic\"",
-            "drive = \"magic\"",
+            "motion_type = \"kinematic\"",
+            "motion_type = \"magic\"",
             "unknown variant `magic`",
         ),
         (
-            "body = 2, at",
-            "body = 3, at",
-            "joint 1, ends 1, body: expected 1 to 2, found 3",
+            "angular_velocity = [0.0, 0.0, 2.0]",
+            "angular_velocity = [1.0, 0.0, 2.0]",
+            "rigid_body 1, angular_velocity: expected 0 except on the third axis",
         ),
         (
-            "tie = \"pin\"",
-            "tie = \"pin\"\nlength = 1.0",
-            "joint 1, length: allowed only with tie = \"spring\" or \"rope\"",
+            "sensor = true",
+            "sensor = true\nvelocity = [1.0, 0.0, 0.0]",
+            "rigid_body 4, velocity: not allowed with motion_type = \"fixed\"",
         ),
         (
-            "{ at = [0.4, 1.6, 0.0] }",
-            "{ at = [0.4, 1.6, 0.0], radius = 1.0 }",
-            "joint 2, ends 2, radius: allowed only with a body",
+            "sensor = true",
+            "sensor = true\ntarget_position = [1.0, 0.0, 0.0]",
+            "rigid_body 4, target_position: ",
+        ),
+        (
+            "body = 2, point",
+            "body = 3, point",
+            "joint 1, anchors 1, body: expected 1 to 2, found 3",
+        ),
+        (
+            "kind = \"pin\"",
+            "kind = \"pin\"\nlength = 1.0",
+            "joint 1, length: allowed only with kind = \"spring\" or \"rope\"",
+        ),
+        (
+            "{ point = [0.4, 1.6, 0.0] }",
+            "{ point = [0.4, 1.6, 0.0], radius = 1.0 }",
+            "joint 2, anchors 2, radius: allowed only with a body",
         ),
         (
             "gravity_scale = 0.5",
@@ -320,14 +329,14 @@ fn error_names_line_and_field() {
             "body 1, gravity_scale: expected -100 to 100, found",
         ),
         (
-            "turned = [0.0, 0.0, 0.4]",
-            "turned = [0.1, 0.0, 0.4]",
-            "body 2, turned: expected 0 except on the third axis",
+            "rotation_vector = [0.0, 0.0, 0.4]",
+            "rotation_vector = [0.1, 0.0, 0.4]",
+            "body 2, rotation_vector: expected 0 except on the third axis",
         ),
         (
             "at = [1.6, 1.5, 0.0]\n",
             "at = [1.6, 1.5, 0.0]\nstate = \"%\"\n",
-            "rigid 2, state: expected no other field",
+            "rigid_body 2, state: expected no other field",
         ),
         (
             "shape = \"box\"",
@@ -378,14 +387,10 @@ fn of_world_keeps_joint_positions_after_motion() {
     let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
     let grid = VoxelGrid::<Dim2>::cube(8, 0.5).unwrap();
     let cube = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
-    let at = [0.25, 0.5, 0.0];
-    let end = JointAnchor::SoftBody {
-        body: cube,
-        at,
-        radius: 0.1,
-    };
+    let point = Vec2::new(0.25, 0.5);
+    let on_cube = JointAnchor::on(cube, point).within(0.1);
     world
-        .add_joint(Joint::pin(end, JointAnchor::Point(at)))
+        .add_joint(Joint::pin(on_cube, JointAnchor::Point(point)))
         .unwrap();
     (0..30).for_each(|_| _ = world.step());
     assert!(
