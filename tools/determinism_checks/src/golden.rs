@@ -3,11 +3,9 @@
 //! [`SCENES`] is the only table. The tests of this crate run it natively, on one thread and, with the feature
 //! `parallel`, on several. `cargo xtask wasm` runs it under Node, through the [`exports`](crate::exports). A
 //! changed hash means a changed simulation: give the reason in the commit.
-use fuwafuwa::Law;
-use fuwafuwa::MIN_SUBSTEPS;
 use fuwafuwa::{
-    Blade, Contact, Dim, Dim2, Dim3, Event, Material, ObjectRef, RigidBody, RigidBodyHandle, Shape,
-    SoftBody, VoxelGrid, World, WorldConfig,
+    Blade, Contact, Dim, Dim2, Dim3, DimVector, Event, Grading, Law, MIN_SUBSTEPS, Material,
+    ObjectRef, RigidBody, RigidBodyHandle, Shape, SoftBody, Vec3, VoxelGrid, World, WorldConfig,
 };
 
 /// Simulation without input, and its expected hash.
@@ -55,10 +53,15 @@ pub static SCENES: [Scene; 6] = [
     },
 ];
 
+/// Returns a vector of `D`; in 2D without its third component.
+fn vector<D: Dim>(x: f32, y: f32, z: f32) -> D::Vector {
+    D::Vector::from_vec3(Vec3::new(x, y, z))
+}
+
 /// Creates a world with only a floor.
-fn floor<D: Dim>(settings: WorldConfig) -> World<D> {
-    let mut world = World::new(settings).expect("the scene is valid");
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+fn floor<D: Dim>(settings: WorldConfig<D>) -> World<D> {
+    let mut world = World::<D>::new(settings).expect("the scene is valid");
+    let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
         .expect("the scene is valid");
@@ -68,27 +71,25 @@ fn floor<D: Dim>(settings: WorldConfig) -> World<D> {
 /// Creates a ball above a floor, a wall, and a hand. The caller moves the hand so that it presses the ball
 /// against the wall until the ball tears.
 fn torn_world<D: Dim>(n: usize) -> (World<D>, RigidBodyHandle) {
-    let mut world = floor::<D>(WorldConfig::default());
-    let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
+    let mut world = floor(WorldConfig::default());
+    let wall = Shape::half_space(vector::<D>(-1.0, 0.0, 0.0), vector::<D>(1.1, 0.0, 0.0));
     world
         .add_rigid_body(RigidBody::fixed(wall).with_friction(0.2))
         .expect("the scene is valid");
     let ball = VoxelGrid::ball(n, 1.0).expect("the scene is valid");
     let body = SoftBody::new(ball, &[Material::default()]).expect("the scene is valid");
-    world.add_soft_body(body.translated([0.0, 0.05, 0.0]));
-    let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = RigidBody::coupled(Shape::ball(0.08)).at([-0.3, 0.5, depth]);
+    world.add_soft_body(body.translated(vector::<D>(0.0, 0.05, 0.0)));
+    let hand = RigidBody::coupled(Shape::ball(0.08)).at(vector::<D>(-0.3, 0.5, 0.5));
     let hand = world.add_rigid_body(hand).expect("the scene is valid");
     (world, hand)
 }
 
 fn hash_of_torn_world<D: Dim>(n: usize, ticks: u32) -> u64 {
     let (mut world, hand) = torn_world::<D>(n);
-    let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let mut released = 0;
     for tick in 0..ticks {
         world
-            .set_target_position(hand, [-0.3 + tick as f32 * 0.03, 0.5, depth])
+            .set_target_position(hand, vector::<D>(-0.3 + tick as f32 * 0.03, 0.5, 0.5))
             .expect("the scene is valid");
         released += world.step().nodes_split;
     }
@@ -103,24 +104,22 @@ fn hash_of_heap() -> u64 {
         max_substeps: MIN_SUBSTEPS,
         ..WorldConfig::default()
     };
-    let mut world = floor::<Dim3>(settings);
+    let mut world = floor(settings);
     let ball = VoxelGrid::ball(12, 1.0).expect("the scene is valid");
     let body = SoftBody::new(ball, &[Material::default()]).expect("the scene is valid");
     let ball = world.add_soft_body(body);
     for (height, slant) in [(0.3, 0.2), (0.6, -0.3)] {
-        let blade = Blade {
-            from: [-1.0, height - slant, -1.0],
-            across: [3.0, 3.0 * slant, 0.0],
-            along: [0.0, 0.0, 3.0],
-        };
+        let corner = Vec3::new(-1.0, height - slant, -1.0);
+        let along = Vec3::new(3.0, 3.0 * slant, 0.0);
+        let blade = Blade::parallelogram(corner, along, Vec3::Z * 3.0);
         world.cut(ball, &blade).expect("the scene is valid");
     }
-    let hand = RigidBody::coupled(Shape::ball(0.12)).at([0.4, 1.2, 0.5]);
+    let hand = RigidBody::coupled(Shape::ball(0.12)).at(Vec3::new(0.4, 1.2, 0.5));
     let hand = world.add_rigid_body(hand).expect("the scene is valid");
     let (mut released, mut touched) = (0, 0.0);
     for tick in 0..50 {
         world
-            .set_target_position(hand, [0.4, 1.2 - tick as f32 * 0.03, 0.5])
+            .set_target_position(hand, Vec3::new(0.4, 1.2 - tick as f32 * 0.03, 0.5))
             .expect("the scene is valid");
         let report = world.step();
         assert_eq!(report.substeps, MIN_SUBSTEPS);
@@ -143,12 +142,12 @@ fn hash_of_heap() -> u64 {
 
 /// Returns the hash of a ball with the elastic force of the paper (Endo 2004), without tearing.
 fn hash_of_paper_law<D: Dim>(n: usize) -> u64 {
-    let mut world = floor::<D>(WorldConfig::default());
+    let mut world: World<D> = floor(WorldConfig::default());
     let ball = VoxelGrid::ball(n, 1.0).expect("the scene is valid");
-    let grading = fuwafuwa::Grading::Graded;
-    let body = SoftBody::with_options(ball, &[Material::default()], Law::Endo2004, grading)
+    let materials = [Material::default()];
+    let body = SoftBody::with_options(ball, &materials, Law::Endo2004, Grading::Graded)
         .expect("the scene is valid");
-    world.add_soft_body(body.translated([0.0, 0.05, 0.0]));
+    world.add_soft_body(body.translated(vector::<D>(0.0, 0.05, 0.0)));
     for _ in 0..30 {
         world.step();
     }
