@@ -117,6 +117,8 @@ impl Default for MotionType {
 /// # Ok::<(), fuwafuwa::Error>(())
 /// ```
 #[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct RigidBody<D: Dim> {
     /// Motion type.
     pub motion_type: MotionType,
@@ -147,6 +149,8 @@ pub struct RigidBody<D: Dim> {
 
 /// Force and torque on a rigid body in one substep.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Reaction<D: Dim> {
     /// Contact force [N]. It jumps when something tears.
     pub contact: D::Vector,

@@ -122,7 +122,7 @@ impl<D: Dim> SoftBody<D> {
                 materials: materials.to_vec(),
                 stiffness_scale: 1.0,
                 grid,
-                connectivity: connectivity,
+                connectivity,
                 hierarchy,
                 mesh,
             },

@@ -37,6 +37,8 @@ pub(crate) use joint_state::{JointState, Joints, relax, solve};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Joint<D: Dim> {
     /// Attachment points, on two different objects, at least one of them a body.
     pub anchors: [JointAnchor<D>; 2],
@@ -79,6 +81,8 @@ impl<D: Dim> Joint<D> {
 
 /// Attachment point of a joint. Positions are world-space positions at the time when the joint is added.
 #[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub enum JointAnchor<D: Dim> {
     /// Point of the world [m].
     Point(D::Vector),

@@ -57,6 +57,8 @@ pub(crate) use knife_state::{KnifeState, Knives};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Knife<D: Dim> {
     /// Rigid body that holds the knife, kinematic or coupled. If it is a [sensor](crate::RigidBody::is_sensor), only its
     /// edge touches.

@@ -86,7 +86,7 @@ impl<D: Dim> SoftBody<D> {
     pub(crate) fn find_breakable(&mut self, nodes: &[NodeId]) {
         let Topology {
             grid,
-            connectivity: connectivity,
+            connectivity,
             mesh,
             materials,
             ..
