@@ -1,9 +1,9 @@
 //! Rigid bodies: fixed, kinematic, coupled and dynamic.
 //!
 //! A coupled rigid body follows its target through a spring and a damper, the *virtual coupling* [Colgate
-//! 1995]. Because the body has inertia, the coupling force is smooth, so a force-feedback device should play
-//! it; the raw contact force jumps. Contacts turn only dynamic rigid bodies. Kinematic and coupled ones turn
-//! to their target rotation.
+//! 1995]. Because the body has inertia, the coupling force is smooth, whereas the raw contact force jumps. A
+//! force-feedback device should therefore play the coupling force. Contacts turn only dynamic rigid bodies.
+//! Kinematic and coupled bodies turn to their target rotation.
 
 mod dynamics;
 mod inertia;
@@ -43,8 +43,8 @@ pub enum MotionType {
     Coupled {
         /// Mass [kg], 1e-6 to 1e6, default 2. A lighter body follows faster and feels rougher.
         mass: f32,
-        /// Spring stiffness [N/m], default 3000. Values above a quarter of mass / substep² are reduced to it,
-        /// so that the spring stays stable.
+        /// Spring stiffness [N/m], default 3000. Limited to mass / (4 · substep²), so that the spring stays
+        /// stable.
         stiffness: f32,
         /// Damping ratio, above 0 and up to 10, default 0.9. Below 0.5 the body oscillates around its target.
         damping: f32,
@@ -54,8 +54,8 @@ pub enum MotionType {
     /// Dynamic: moved and turned by gravity and contacts. The shape must be bounded and centred on its
     /// origin, see [`RigidBody::dynamic`].
     Dynamic {
-        /// Mass [kg], 1e-6 to 1e6, with uniform density. A body ten times as heavy as its soft or rigid
-        /// support sinks into it.
+        /// Mass [kg], 1e-6 to 1e6, with uniform density. A body ten times as heavy as the soft or rigid body
+        /// under it sinks into that body.
         mass: f32,
     },
 }
@@ -126,17 +126,19 @@ pub struct RigidBody<D: Dim> {
     pub shape: Shape<D>,
     /// Position of the local origin [m], default 0.
     pub position: D::Vector,
-    /// Rotation from local to world axes. In 2D only the rotation about the third axis counts.
+    /// Rotation from local to world axes. In 2D only the part about the third axis is used.
     pub rotation: Rotation,
-    /// Velocity, default 0. It matters for dynamic bodies only: kinematic and coupled bodies get theirs from
-    /// their target.
+    /// Velocity of a dynamic body, default 0. Ignored for kinematic and coupled bodies, because their
+    /// velocities follow from their targets.
     pub velocity: Velocity<D>,
-    /// Coulomb friction coefficient, default 0.2; 0.5 for dynamic bodies. Contacts with soft bodies use this value
-    /// alone, not that of the material. Contacts between two rigid bodies use the mean of both, except against a
-    /// fixed body. There, a dynamic body uses the value of the fixed body, and a kinematic or coupled body its own.
+    /// Coulomb friction coefficient, default 0.2; 0.5 for dynamic bodies. Contacts with soft bodies use this
+    /// value alone and ignore the friction of the material. Contacts between two rigid bodies use the mean of
+    /// both values. Against a fixed body, a dynamic body uses the value of the fixed body, but a kinematic or
+    /// coupled body uses its own value.
     pub friction: f32,
-    /// Restitution coefficient of contacts between rigid bodies of which one is dynamic, 0 to 1, default 0.
-    /// The larger of both values counts. Soft bodies rebound by their elasticity.
+    /// Restitution coefficient, 0 to 1, default 0. Used in contacts between two rigid bodies of which at
+    /// least one is dynamic; the larger of the two values applies. In contacts with soft bodies, elasticity
+    /// alone determines the rebound.
     pub restitution: f32,
     /// Collision layers.
     pub layers: Layers,
@@ -152,7 +154,7 @@ pub struct RigidBody<D: Dim> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Reaction<D: Dim> {
-    /// Contact force [N]. It jumps when something tears.
+    /// Contact force [N]. Discontinuous when a soft body tears.
     pub contact: D::Vector,
     /// Torque of the contacts and knives about the [position](RigidBodyRef::position) [N m]; in 2D positive is
     /// counterclockwise.
@@ -240,8 +242,8 @@ impl<D: Dim> RigidBody<D> {
         }
     }
 
-    /// Returns the body rotated about a point [m], velocity included. In 2D only the rotation about the third axis
-    /// counts.
+    /// Returns the body rotated about a point [m], velocity included. In 2D only the part of the rotation
+    /// about the third axis is applied.
     #[must_use]
     pub fn rotated_about(self, rotation: Rotation, point: D::Vector) -> Self {
         let rotation = rotation.seen_in::<D>();

@@ -47,16 +47,16 @@ use caches::Cache;
 use glam::DVec3;
 use glam::Vec3;
 
-/// Courant number of a substep: the largest fraction of a voxel that the fastest pressure wave may travel in
-/// it.
+/// Courant number of a substep: the fastest pressure wave travels at most this fraction of a voxel per
+/// substep.
 ///
-/// At rest, the fastest oscillator is a single free voxel. With width s, angular frequency Ω and wave speed
-/// c, it is stable up to a Courant number of 2c / Ωs: 0.73 in 3D and 0.84 in 2D, at a Poisson's ratio of 0.3.
-/// Squashed elements oscillate faster. With 0.6, a ball that is squashed to 40 % and hit at its wave speed
-/// stays stable.
+/// In a body at rest, a single free voxel oscillates fastest. With width s, angular frequency Ω and wave
+/// speed c, it is stable up to a Courant number of 2c / Ωs: 0.73 in 3D and 0.84 in 2D, at a Poisson's ratio
+/// of 0.3. Squashed elements oscillate faster. With 0.6, a ball stays stable if it is squashed to 40 % of its
+/// height and hit at its wave speed.
 const COURANT: f64 = 0.6;
-/// Fraction used of the largest stable lead, see [`SoftBody::damping`]. [`COURANT`] keeps about the same
-/// margin for the square of the substep.
+/// Fraction of the largest stable lead that [`SoftBody::damping`] uses. The margin is about that of the
+/// squared substep, (0.6 / 0.73)², under [`COURANT`] in 3D.
 const LEAD_USED: f64 = 0.7;
 
 /// Arena of the soft bodies of a world.
@@ -323,11 +323,12 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Returns the damping for substeps of `duration` [s]: the lead of the elastic forces [s], and the rate
-    /// [1/s] at which each piece relaxes towards its rigid motion. Forces are evaluated at positions
-    /// extrapolated by the lead.
+    /// [1/s] at which each piece relaxes towards its rigid motion. The lead is the time by which positions
+    /// are extrapolated before forces are evaluated.
     ///
-    /// A lead τ damps the slowest mode ω with a ratio of τω/2. The fastest mode Ω, that of a single voxel, is
-    /// stable if Ω²h (h + 2τ) < 4, that is τ < (4/Ω² − h²) / 2h; [`LEAD_USED`] keeps a margin.
+    /// A lead τ damps the slowest mode, of angular frequency ω, with the ratio τω/2. The fastest mode, of
+    /// angular frequency Ω, is the oscillation of a single voxel. With substeps of length h it is stable if
+    /// Ω²h (h + 2τ) < 4, that is τ < (4/Ω² − h²) / 2h; [`LEAD_USED`] keeps a margin.
     pub(crate) fn damping(&self, duration: f32) -> (f32, f32) {
         let ratio = self.cache.blend.damping;
         let slow = self.cache.blend.slow * self.topology.stiffness_scale.sqrt();

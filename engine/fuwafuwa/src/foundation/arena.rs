@@ -7,7 +7,8 @@ use crate::foundation::ids::{Id, IndexVec, id};
 use std::collections::BTreeSet;
 use std::fmt;
 
-/// Generational handle into an [`Arena`]: a slot, and the number of items that have left the slot before.
+/// Generational handle into an [`Arena`]: the index of a slot, and its generation, the number of items that
+/// were removed from the slot before.
 pub trait Handle: Copy + Ord + fmt::Debug + sealed::Sealed {
     /// Name of the item type, for error texts.
     const KIND: &'static str;
@@ -23,7 +24,7 @@ pub trait Handle: Copy + Ord + fmt::Debug + sealed::Sealed {
 }
 
 mod sealed {
-    /// Restricts [`Handle`](super::Handle) to the types of this module.
+    /// Supertrait that prevents other modules from implementing [`Handle`](super::Handle).
     pub trait Sealed {}
 }
 
@@ -128,7 +129,8 @@ pub struct Arena<K: Handle, T> {
     /// Number of mutable accesses, see [`Arena::revision`].
     #[cfg_attr(feature = "serde", serde(skip))]
     revision: u64,
-    /// Indices of the free slots. They follow from `slots`, so that a loaded arena reuses the same slots.
+    /// Indices of the free slots. Not stored: loading recomputes them from `slots`, so that a loaded arena
+    /// assigns the same slots as the original.
     #[cfg_attr(feature = "serde", serde(skip))]
     free: BTreeSet<usize>,
 }
@@ -155,7 +157,7 @@ impl<K: Handle, T> From<StoredArena<K, T>> for Arena<K, T> {
     }
 }
 
-/// Slot of an [`Arena`]: the number of items that have left it, and the present item.
+/// Slot of an [`Arena`]: its present item, and its generation, the number of items that were removed from it.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Slot<T> {
@@ -220,7 +222,7 @@ impl<K: Handle, T> Arena<K, T> {
         self.iter().next()
     }
 
-    /// Returns the number of items in lower slots, or `None` if the handle is stale.
+    /// Returns the number of items in slots below that of the handle `id`, or `None` if the handle is stale.
     pub fn rank(&self, id: K) -> Option<usize> {
         self.ids().position(|other| other == id)
     }
@@ -255,7 +257,7 @@ impl<K: Handle, T> Arena<K, T> {
         self.id(own)
     }
 
-    /// Removes an item; the others keep their slots.
+    /// Removes an item; all other items keep their slots.
     pub(crate) fn remove(&mut self, id: K) -> Result<T, Error> {
         let (own, _) = id.parts();
         self.get(id)?;
@@ -266,8 +268,8 @@ impl<K: Handle, T> Arena<K, T> {
         slot.item.take().ok_or_else(|| stale::<K>(own))
     }
 
-    /// Returns a number that increases with each mutable access to the arena or to an item. While it is the
-    /// same, no item has changed.
+    /// Returns a number that increases with each mutable access to the arena or to an item. If two calls
+    /// return the same number, no item has changed in between.
     pub(crate) fn revision(&self) -> u64 {
         self.revision
     }
@@ -392,8 +394,9 @@ mod tests {
         assert_eq!(all, [ball, cube, heart]);
     }
 
-    /// Inserts and removes at random. `again` is applied after each operation, for example to store and load
-    /// the arena. The model is a list of items in which insertion scans for the first free slot.
+    /// Inserts and removes items at random, and compares the arena with a plain list in which insertion scans
+    /// for the first free slot. `again` transforms the arena after each operation, for example by storing and
+    /// loading it.
     fn check_slots(again: impl Fn(Arena<SoftBodyHandle, u32>) -> Arena<SoftBodyHandle, u32>) {
         let mut arena = Arena::<SoftBodyHandle, u32>::default();
         let mut model = Vec::<Option<u32>>::new();
@@ -401,7 +404,7 @@ mod tests {
         for number in 0..2000 {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             let (action, choice) = (seed >> 24 & 3, seed as usize >> 8 & 0xffff);
-            // Phases of growth and of shrinking.
+            // Alternates between phases of 250 operations in which the arena mostly grows or mostly shrinks.
             if (action == 0) == (number / 250 % 2 == 0) && !arena.is_empty() {
                 let id = arena.ids().nth(choice % arena.len()).expect("an item");
                 assert_eq!(arena.remove(id).ok(), model[id.slot().index()].take());

@@ -34,7 +34,7 @@ pub trait Dim:
     /// space. With these values, a beam one element thick bends exactly.
     const HOURGLASS: f64;
 
-    /// Number of layers of a grid on the third axis if it should be `voxels` deep: 1 in 2D.
+    /// Returns the number of voxel layers along the third axis of a grid: 1 in 2D, `voxels` in 3D.
     fn depth(voxels: usize) -> usize {
         match Self::N {
             2 => 1,
@@ -60,7 +60,7 @@ mod sealed {
     impl Sealed for glam::Vec3 {}
     impl Sealed for f32 {}
 
-    /// Types that can be stored with the feature `serde`; without the feature, all types.
+    /// Trait of all serialisable types with the feature `serde`, and of all types without the feature.
     #[cfg(feature = "serde")]
     pub trait Stored: serde::Serialize + serde::de::DeserializeOwned {}
     #[cfg(feature = "serde")]
@@ -249,13 +249,13 @@ pub fn add(a: Point, b: Point) -> Point {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// Coordinate-wise multiple.
+/// Multiplies each coordinate by `k`.
 #[inline]
 pub fn scale(a: Point, k: i32) -> Point {
     [a[0] * k, a[1] * k, a[2] * k]
 }
 
-/// Dot product over the components of the dimension. In 2D the third ones are ignored.
+/// Dot product over the components of the dimension. In 2D the third components are ignored.
 #[inline(always)]
 pub(crate) fn inner<D: Dim>(a: Row, b: Row) -> f32 {
     let mut sum = a[0] * b[0];
@@ -273,7 +273,7 @@ pub(crate) fn turning<D: Dim>(mut about: Vec3) -> Vec3 {
     about
 }
 
-/// Returns the voxel on side `octant` of the lattice point `at`.
+/// Returns the voxel in the octant number `octant` around the lattice point `at`.
 #[inline]
 pub fn voxel_around<D: Dim>(at: Point, octant: usize) -> Point {
     let mut voxel = at;
@@ -308,15 +308,17 @@ pub fn neighbourhood<D: Dim>(at: Point, reach: i32) -> impl Iterator<Item = Poin
     points_in(low, high)
 }
 
-/// Returns the corners of a cell around its face 2 · axis + side, counterclockwise as seen from outside. In
-/// 2D there are two, with the inside to their left, and the last two entries are unused.
+/// Returns the corners of a cell's face, with `face` = 2 · axis + side, counterclockwise as seen from
+/// outside. A face in 2D has two corners, and the last two entries are unused. On the way from the first
+/// corner to the second, the cell lies to the left.
 pub fn face_corners<D: Dim>(face: usize) -> [usize; 4] {
     let (axis, side) = (face / 2, face % 2);
     let ring: &[usize] = match D::N {
         2 => &[0, 1],
         _ => &[0, 1, 3, 2],
     };
-    // The other axes, in the order in which the ring turns around the outward normal.
+    // The other axes. In 3D they are ordered so that `ring` runs counterclockwise around the direction of
+    // `axis`.
     let others = match D::N {
         2 => [1 - axis, 2],
         _ => [(axis + 1) % 3, (axis + 2) % 3],

@@ -1,32 +1,32 @@
 //! Union-find: disjoint sets that are only ever merged.
 
-/// Disjoint sets of the numbers from 0 on.
+/// Disjoint sets of the numbers 0, 1, 2, …
 #[derive(Clone, Debug, Default)]
 pub struct DisjointSets {
-    /// Each number points to a lower number of its set, the lowest to itself.
+    /// For each number, a lower number of its set; for the lowest number of a set, the number itself.
     lower: Vec<usize>,
 }
 
 impl DisjointSets {
-    /// Creates `count` numbers, each in its own set.
+    /// Creates the numbers below `count`, each in a set of its own.
     pub fn new(count: usize) -> Self {
         let lower = (0..count).collect();
         Self { lower }
     }
 
-    /// Number of elements in all sets.
+    /// Returns how many numbers there are in all sets together.
     pub fn count(&self) -> usize {
         self.lower.len()
     }
 
-    /// Adds a number in its own set, and returns it.
+    /// Adds the next number, in a set of its own, and returns the number.
     pub fn add(&mut self) -> usize {
         self.lower.push(self.lower.len());
         self.lower.len() - 1
     }
 
-    /// Returns the lowest number in the set of a number; two numbers have the same one if they are in one
-    /// set.
+    /// Returns the lowest number of the set that contains `number`. It identifies the set: the result is
+    /// equal for all numbers of a set.
     pub fn lowest(&mut self, mut number: usize) -> usize {
         while self.lower[number] != number {
             self.lower[number] = self.lower[self.lower[number]];
@@ -35,8 +35,8 @@ impl DisjointSets {
         number
     }
 
-    /// Groups items, one per number, by set. Sets are in the order of their lowest numbers, and items ascend
-    /// within a set.
+    /// Groups `things` by set, where `things[n]` belongs to the number n. Sets are ordered by their lowest
+    /// numbers, and things within a set by their numbers.
     pub fn sort<T: Copy>(&mut self, things: &[T]) -> Vec<Vec<T>> {
         let mut sets: Vec<Vec<T>> = Vec::new();
         let mut set_of = vec![0; self.count()];

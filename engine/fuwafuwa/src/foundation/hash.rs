@@ -81,7 +81,7 @@ macro_rules! hash_state {
 
 pub(crate) use hash_state;
 
-/// Adds some items, and then their number.
+/// Adds the state of each item to a hash, then the number of items.
 pub fn hash_all<'a, T: HashState + 'a>(items: impl Iterator<Item = &'a T>, hash: &mut Hash) {
     let mut count = 0;
     for item in items {
@@ -112,8 +112,9 @@ short_numbers! {
     f32 => f32::to_bits,
 }
 
-/// Adds long numbers in two halves. A multiplication moves a difference upwards only, so changes of the
-/// highest bits of two words could cancel. The quaternions q and −q would then have the same hash.
+/// Hashes a 64-bit number as two halves. The multiplication in [`Hash::add`] carries a difference only to
+/// higher bits, so differences in the highest bits of two 64-bit words could cancel. Without the halves, the
+/// quaternions q and −q would have the same hash.
 impl HashState for u64 {
     #[inline]
     fn hash_state(&self, hash: &mut Hash) {

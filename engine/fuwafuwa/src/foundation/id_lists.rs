@@ -61,8 +61,8 @@ impl<I: Id> IdLists<I> {
         *self.link(place, id.index() as u32) = after;
     }
 
-    /// Whether lists read from a file are valid: `places` lists, and every id below `ids` and in at most one
-    /// list. This implies that every list ends.
+    /// Returns whether lists read from a file are valid: there are `places` lists, every id is below `ids`,
+    /// and no id occurs twice. Lists without repeated ids cannot be cyclic, so iteration ends.
     #[cfg(feature = "serde")]
     pub fn is_valid(&self, places: usize, ids: usize) -> bool {
         let mut seen = vec![false; ids.min(self.next.len())];
@@ -80,7 +80,7 @@ impl<I: Id> IdLists<I> {
         self.first.len() == places && self.first.iter().all(&mut ends)
     }
 
-    /// Returns the link of a list that points to `id`.
+    /// Returns the entry of `first` or `next` that holds `id`, in the list at index `place`.
     fn link(&mut self, place: usize, id: u32) -> &mut u32 {
         let (mut before, mut here) = (END, self.first[place]);
         while here != id {
@@ -94,9 +94,9 @@ impl<I: Id> IdLists<I> {
     }
 }
 
-/// Returns ids below `bound` in ascending order, without duplicates. After a release, most ids occur several
-/// times and close together. A bit set over all ids is then cheaper than sorting, if only the range between
-/// the lowest and highest id is scanned.
+/// Returns ids below `bound` in ascending order, without duplicates. Uses a bit set over all ids, and scans
+/// only the range between the lowest and the highest id. After a release this is cheaper than sorting,
+/// because most ids occur several times and are close together.
 pub fn ascending<I: Id>(ids: impl Iterator<Item = I>, bound: usize) -> Vec<I> {
     let mut words = vec![0u64; bound.div_ceil(64)];
     let (mut first, mut end, mut count) = (words.len(), 0, 0);

@@ -9,8 +9,8 @@ use crate::foundation::ids::NodeId;
 pub const CHUNK_SIZE: usize = if cfg!(test) { 32 } else { 2048 };
 
 /// Smallest number of chunks that are processed on several threads. If other programs use the machine, each
-/// synchronisation of threads can take as long as a tick, and small bodies gain nothing. The nodes of a ball
-/// of 40 voxels across fill this many chunks.
+/// synchronisation of threads can take as long as a tick, and small bodies gain nothing. A ball with a
+/// diameter of 40 voxels has enough nodes for this many chunks.
 #[cfg(feature = "parallel")]
 const MIN_PARALLEL_CHUNKS: usize = if cfg!(test) { 2 } else { 8 };
 
@@ -37,17 +37,17 @@ pub fn chunks<T>(list: &mut [T]) -> impl Iterator<Item = (usize, &mut [T])> {
     firsts.zip(list.chunks_mut(CHUNK_SIZE))
 }
 
-/// Chunk of nodes, and their rows in several lists indexed by node id.
+/// Chunk of nodes, with the rows of these nodes in `N` lists that are indexed by node id.
 pub struct RowChunk<'a, T, const N: usize> {
     /// Nodes, ascending.
     pub nodes: &'a [NodeId],
-    /// Id of the first row in `lists`.
+    /// Node id of the first row in each of `lists`.
     pub first: usize,
-    /// Rows of all ids from `first` to the last node.
+    /// Rows of each list, for all node ids from `first` to the last node of the chunk.
     pub lists: [&'a mut [T]; N],
 }
 
-/// Splits nodes with ascending ids, and their rows, into chunks.
+/// Splits nodes with ascending ids into chunks, and splits `lists`, indexed by node id, accordingly.
 pub fn rows<'a, T, const N: usize>(
     nodes: &'a [NodeId],
     mut lists: [&'a mut [T]; N],

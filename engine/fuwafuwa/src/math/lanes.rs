@@ -61,7 +61,7 @@ pub fn load<S: Simd>(simd: S, values: &Eight) -> Lanes<S> {
     Lanes::load_array_ref(simd, values)
 }
 
-/// Maximum of two numbers per lane; the second one if a number is NaN.
+/// Maximum of `value` and `least` in each lane; `least` if either is NaN.
 #[inline(always)]
 pub fn at_least<S: Simd>(value: Lanes<S>, least: Lanes<S>) -> Lanes<S> {
     value.simd_gt(least).select(value, least)
@@ -79,7 +79,7 @@ pub fn positive<S: Simd>(value: Lanes<S>) -> u8 {
     value.simd_gt(0.0).to_bitmask() as u8
 }
 
-/// Loads the rows at eight indices, and returns their first three columns.
+/// Loads the rows at the eight indices `places`, one row per lane, and returns their first three columns.
 #[inline(always)]
 pub fn gather<S: Simd>(simd: S, rows: &[Row], places: &[u32; LANES]) -> [Lanes<S>; 3] {
     let [a, b, c, d, e, f, g, h] = *places;
@@ -103,7 +103,7 @@ fn row<S: Simd>(simd: S, rows: &[Row], place: u32) -> f32x4<S> {
     f32x4::load_array_ref(simd, rows[place as usize].as_array())
 }
 
-/// First three columns of four rows.
+/// Transposes four rows, and returns the first three columns.
 #[inline(always)]
 fn columns<S: Simd>(a: f32x4<S>, b: f32x4<S>, c: f32x4<S>, d: f32x4<S>) -> [f32x4<S>; 3] {
     let (ac, bd) = (a.zip_low(c), b.zip_low(d));
@@ -113,8 +113,9 @@ fn columns<S: Simd>(a: f32x4<S>, b: f32x4<S>, c: f32x4<S>, d: f32x4<S>) -> [f32x
 
 #[cfg(target_arch = "x86_64")]
 fearless_simd::kernel!(
-    /// [`columns`] for the low and high halves at once, with seven shuffles instead of fourteen. It needs
-    /// intrinsics, because `fearless_simd` has no zip within each half.
+    /// Evaluates [`columns`] for two sets of four rows at once, one in the low and one in the high halves of
+    /// the vectors. This takes seven shuffles instead of fourteen. Uses intrinsics, because `fearless_simd`
+    /// has no zip within each half.
     #[inline(always)]
     fn columns_of_both_halves(avx2: Avx2, a: Eight, b: Eight, c: Eight, d: Eight) -> [Eight; 3] {
         use std::arch::x86_64::*;
@@ -155,7 +156,7 @@ pub fn scatter<S: Simd>(simd: S, columns: [Lanes<S>; 3], components: usize, vect
         store(f, vectors, 20);
         return;
     }
-    // Written out per number: the compiler finds the shuffles of each machine.
+    // Lists every component, because the compiler turns this into the best shuffles of each instruction set.
     store(four(simd, [x[0], y[0], z[0], x[1]]), vectors, 0);
     store(four(simd, [y[1], z[1], x[2], y[2]]), vectors, 4);
     store(four(simd, [z[2], x[3], y[3], z[3]]), vectors, 8);
@@ -166,8 +167,8 @@ pub fn scatter<S: Simd>(simd: S, columns: [Lanes<S>; 3], components: usize, vect
 
 #[cfg(target_arch = "x86_64")]
 fearless_simd::kernel!(
-    /// Interleaves three columns into vectors, in the low and high halves at once. Faster than the generic
-    /// version.
+    /// Interleaves the columns x, y and z of eight vectors, four in the low and four in the high halves of
+    /// the registers. Faster than the portable version in `scatter`.
     #[inline(always)]
     fn vectors_of_both_halves(avx2: Avx2, x: Eight, y: Eight, z: Eight) -> [Eight; 3] {
         use std::arch::x86_64::*;
@@ -188,14 +189,14 @@ fn four<S: Simd>(simd: S, values: [f32; 4]) -> f32x4<S> {
     f32x4::load_array(simd, values)
 }
 
-/// Stores four numbers; stores of eight would cross cache lines half of the time.
+/// Stores four numbers. A store of eight numbers would cross a cache line in half of all cases.
 #[inline(always)]
 fn store<S: Simd>(values: f32x4<S>, numbers: &mut [f32], first: usize) {
     values.store_slice(&mut numbers[first..first + 4]);
 }
 
-/// Sums the rows of four numbers that begin at the given indices, in their order. Unused indices are 0, where
-/// zeros are stored.
+/// Returns the sum of several rows of four numbers, added in the order of `places`. Each place is the index
+/// in `numbers` at which a row begins. Unused places are 0, where `numbers` holds zeros.
 #[inline(always)]
 pub fn sum<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
     let mut sum = row_at(simd, numbers, places[0]);
@@ -205,8 +206,8 @@ pub fn sum<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
     Row::from_array(sum.to_array())
 }
 
-/// Sums the squares of the rows of four numbers that begin at the given indices, per column. Unused indices
-/// are 0, where zeros are stored.
+/// Returns, for each of the four columns, the sum of squares over several rows. Each of `places` is the index
+/// in `numbers` at which a row begins. Unused places are 0, where `numbers` holds zeros.
 #[inline(always)]
 pub fn sum_of_squares<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
     let mut sum = f32x4::splat(simd, 0.0);

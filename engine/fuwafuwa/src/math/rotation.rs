@@ -28,8 +28,8 @@ impl Rotation {
         quaternion: [0.0, 0.0, 0.0, 1.0],
     };
 
-    /// Creates a rotation by an angle [rad] about an axis of any length, counterclockwise as seen from its
-    /// tip. Returns [`Rotation::NONE`] if the axis has no length or a value is not finite.
+    /// Creates a rotation by an angle [rad] about an axis of any length, counterclockwise as seen from the
+    /// tip of the axis. Returns [`Rotation::NONE`] if the axis has length 0 or a value is not finite.
     ///
     /// ```
     /// use fuwafuwa::{Rotation, Vec3};
@@ -51,8 +51,8 @@ impl Rotation {
         Self::about(Vec3::Z, angle)
     }
 
-    /// Creates a rotation from a quaternion x, y, z, w of any length. Returns [`Rotation::NONE`] if it has no
-    /// length or a component is not finite.
+    /// Creates a rotation from a quaternion x, y, z, w of any length. Returns [`Rotation::NONE`] if the
+    /// quaternion has length 0 or a component is not finite.
     pub fn from_quaternion(quaternion: [f32; 4]) -> Self {
         Self::unit(quaternion.map(f64::from))
     }
@@ -62,7 +62,7 @@ impl Rotation {
         self.quaternion.map(|part| part as f32)
     }
 
-    /// Rotates a vector. In 2D only the rotation about the third axis counts.
+    /// Rotates a vector. In 2D only the part of the rotation about the third axis is applied.
     pub fn apply<V: DimVector>(self, vector: V) -> V {
         let turned = self.turn(vector.to_vec3().as_dvec3());
         V::from_vec3(turned.as_vec3())
@@ -83,7 +83,7 @@ impl Rotation {
         Self::unit(product(next.quaternion, self.quaternion))
     }
 
-    /// Axis times angle [rad], with an angle of at most π.
+    /// Returns the rotation vector: the axis times the angle [rad], with an angle of at most π.
     pub fn scaled_axis(self) -> Vec3 {
         let [x, y, z, w] = self.quaternion;
         let (axis, sign) = (DVec3::new(x, y, z), if w < 0.0 { -1.0 } else { 1.0 });
@@ -98,7 +98,8 @@ impl Rotation {
         Vec3::AXES.map(|axis| self.apply(axis))
     }
 
-    /// Whether the quaternion has length 1; one read from a file may not.
+    /// Returns whether the quaternion has length 1. A quaternion that was read from a file may have another
+    /// length.
     pub(crate) fn is_unit(self) -> bool {
         (squared(self.quaternion) - 1.0).abs() < 1e-9
     }
@@ -110,10 +111,11 @@ impl Rotation {
         (centre + turned).as_vec3()
     }
 
-    /// Restricts the rotation to the dimension: in 2D to the third axis.
+    /// Returns the rotation itself in 3D, and only its part about the third axis in 2D.
     pub(crate) fn seen_in<D: Dim>(self) -> Self {
         let [x, y, z, w] = self.quaternion;
-        // Normalising again would change the last bits.
+        // Leaves a rotation that is already about the third axis as it is: normalising it again would change
+        // its last bits.
         match D::N == 2 && (x, y) != (0.0, 0.0) {
             true => Self::unit([0.0, 0.0, z, w]),
             false => self,

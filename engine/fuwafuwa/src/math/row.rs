@@ -5,7 +5,8 @@ use std::iter::Sum;
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
 use std::slice::SliceIndex;
 
-/// Three coordinates and padding, so that a row is one aligned load; in 2D the third is 0.
+/// Vector of three coordinates, padded to four so that it loads with one aligned instruction. In 2D the third
+/// coordinate is 0.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(transparent))]

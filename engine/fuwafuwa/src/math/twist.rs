@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-/// Linear and angular velocity, as the engine computes with it in both dimensions.
+/// Linear and angular velocity of a body, with three components in both 2D and 3D.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Twist {
     /// Linear velocity of the centre of mass [m/s].

@@ -24,7 +24,7 @@ impl<D: Dim> Velocity<D> {
         }
     }
 
-    /// Returns a rotation about the centre of mass [rad/s].
+    /// Returns a velocity of pure rotation about the centre of mass [rad/s].
     pub fn angular(angular: D::Angular) -> Self {
         Self {
             angular,

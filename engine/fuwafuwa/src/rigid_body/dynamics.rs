@@ -16,7 +16,7 @@ impl RigidState {
         matches!(self.motion_type, MotionType::Dynamic { .. })
     }
 
-    /// Returns whether the body is dynamic and sleeps, until something moves against it.
+    /// Returns whether the body is dynamic and asleep.
     pub fn is_asleep(&self) -> bool {
         self.asleep
     }
@@ -59,7 +59,8 @@ impl RigidState {
         !matches!(self.motion_type, MotionType::Fixed) && !self.asleep
     }
 
-    /// Returns the velocity [m/s] of a body point, given relative to the position of the body [m].
+    /// Returns the velocity [m/s] of the point of the body at the offset `lever` [m] from the body's
+    /// position.
     #[inline(always)]
     pub(crate) fn velocity_at(&self, lever: Vec3) -> Vec3 {
         match self.turns() {
@@ -162,21 +163,22 @@ impl RigidState {
         );
         let rotation = self.rotation.then(way);
         if let Some(inertia) = &self.inertia {
-            // Without torque the angular momentum is preserved.
+            // Updates the angular velocity so that the angular momentum is preserved: no torque acts, but the
+            // body has turned relative to its axis of rotation.
             self.angular_velocity =
                 inertia.spin_kept(self.angular_velocity, self.rotation, rotation);
         }
         self.move_to(position, rotation);
     }
 
-    /// Applies an impulse [N s] at a lever arm from the position [m].
+    /// Applies an impulse [N s] at the offset `lever` [m] from the body's position.
     pub(crate) fn kick(&mut self, impulse: Vec3, lever: Vec3) {
         self.velocity += impulse * self.inverse_mass();
         self.twirl(impulse, lever);
     }
 
-    /// Applies a contact impulse [N s] at a lever arm from the position [m], and adds it to the reaction of a
-    /// substep of `duration` [s].
+    /// Applies a contact impulse [N s] at the offset `lever` [m] from the body's position. Adds its force,
+    /// averaged over a substep of `duration` [s], to the reaction of the substep.
     #[inline(always)]
     pub(crate) fn push_at(&mut self, impulse: Vec3, lever: Vec3, duration: f32) {
         self.push(impulse, duration);
@@ -191,7 +193,8 @@ impl RigidState {
         }
     }
 
-    /// Returns the inverse effective mass [1/kg] at a lever arm [m] along a unit direction.
+    /// Returns the inverse effective mass [1/kg] at the offset `lever` [m] from the body's position, along
+    /// the unit direction `way`.
     pub(crate) fn yields(&self, lever: Vec3, way: Vec3) -> f32 {
         let mut gain = self.inverse_mass();
         if self.can_be_turned() {
@@ -202,8 +205,8 @@ impl RigidState {
         gain
     }
 
-    /// Returns the velocity change of the point at a lever arm [m] for an impulse of 1 N s along a unit
-    /// direction [1/kg].
+    /// Returns how much an impulse of 1 N s along the unit direction `way` changes the velocity of the point
+    /// at which it acts [1/kg]. The point is at the offset `lever` [m] from the body's position.
     pub(crate) fn gain(&self, lever: Vec3, way: Vec3) -> Vec3 {
         let gain = way * self.inverse_mass();
         match self.can_be_turned() {

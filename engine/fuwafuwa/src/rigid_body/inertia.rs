@@ -91,23 +91,24 @@ pub fn times(matrix: &Matrix, vector: Vec3) -> Vec3 {
     Vec3::from([0, 1, 2].map(|row: usize| matrix[row].dot(vector)))
 }
 
-// The functions below return moments per unit mass.
+// `cuboid`, `ball` and `bar` return moments of inertia per unit mass [m²].
 
 fn cuboid(half: Vec3) -> Vec3 {
     let [x, y, z] = half.to_array();
     let about = |a: f32, b: f32| (a * a + b * b) / 3.0;
-    // In 2D the third half extent is `f32::MAX`, and only the moment about the third axis is used.
+    // In 2D the third half extent is `f32::MAX`, so the first two moments overflow; only the third one is
+    // used.
     Vec3::new(about(y, z), about(z, x), about(x, y))
 }
 
-/// Returns the moments of a ball; in 2D of a disc.
+/// Returns the moments of inertia of a ball, or in 2D of a disc, per unit mass [m²].
 fn ball<D: Dim>(radius: f32) -> Vec3 {
     let share = if D::N == 2 { 0.5 } else { 0.4 };
     Vec3::splat(share * radius * radius)
 }
 
-/// Returns the moments of a capsule along its own axis, the first one: a cylinder and two half balls; in 2D a
-/// rectangle and two half discs.
+/// Returns the moments of inertia of a capsule along the first axis, per unit mass [m²]. The capsule consists
+/// of a cylinder and two half balls, in 2D of a rectangle and two half discs.
 fn bar<D: Dim>(long: f32, radius: f32) -> Vec3 {
     let squared = radius * radius;
     // `middle` is the distance of the centroid of a half ball from its flat side.
@@ -148,7 +149,7 @@ mod tests {
     use crate::foundation::dim::{Dim2, Dim3};
     use crate::rigid_body::solid::flat;
 
-    /// Compares the moments with a sum over small cells.
+    /// Compares the moments of a shape with a numerical sum over small cubes.
     fn check<D: Dim>(local_shape: Solid) {
         let [low, high] = local_shape.bounds();
         let count = if D::N == 2 { 200 } else { 60 };
@@ -227,7 +228,7 @@ mod tests {
         }
         let off = momentum(spin, rotation) - before;
         assert!(off.length() < 1e-3 * before.length(), "{off:?}");
-        // Rotation about the middle principal axis is unstable [Euler].
+        // Rotation about the middle principal axis is unstable [Euler], so the body must have tumbled.
         assert!(most > 2.0, "{most}");
     }
 }

@@ -31,8 +31,9 @@ pub struct RigidState {
     pub layers: Layers,
     pub is_sensor: bool,
     pub user_data: u64,
-    /// Shape in local coordinates; below, the same shape in world coordinates.
+    /// Shape in local coordinates.
     pub(super) local_shape: Solid,
+    /// Shape in world coordinates, derived from `local_shape` and the pose.
     pub(super) shape: Solid,
     /// Position of the local origin [m].
     pub(crate) position: Vec3,
@@ -42,20 +43,25 @@ pub struct RigidState {
     pub(crate) rotation: Rotation,
     /// Angular velocity [rad/s].
     pub(crate) angular_velocity: Vec3,
-    /// Whether the body sleeps, and its sleep timer: for how long it has been slow [s].
+    /// Whether the body sleeps.
     pub(crate) asleep: bool,
+    /// Sleep timer: time for which the body has been slow [s].
     pub(crate) sleep_timer: f32,
-    /// Position [m] and rotation at the start of the tick.
+    /// Position at the start of the tick [m].
     pub(super) position_before: Vec3,
+    /// Rotation at the start of the tick.
     pub(super) rotation_before: Rotation,
-    /// Moments of inertia, for dynamic bodies only; below, the inverse inertia matrix about the world axes.
+    /// Principal moments of inertia; `None` unless the body is dynamic.
     pub(super) inertia: Option<Inertia>,
+    /// Inverse inertia matrix about the world axes [1/(kg m²)].
     pub(super) inverse_inertia: Matrix,
-    /// Target position [m] and target rotation.
+    /// Target position at the end of the tick [m].
     pub(super) target: Vec3,
+    /// Target rotation at the end of the tick.
     pub(super) target_rotation: Rotation,
-    /// Interpolated target position [m] and its velocity in this tick [m/s].
+    /// Target position in the present substep [m], on the way to `target`.
     pub(super) target_before: Vec3,
+    /// Velocity of the target in this tick [m/s].
     pub(super) target_velocity: Vec3,
     /// Reaction of each substep of the last tick.
     pub(crate) reactions: Vec<ReactionSum>,
@@ -73,7 +79,7 @@ hash_state! {
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReactionSum {
-    /// Contact force [N]; jumps when something tears.
+    /// Contact force [N]; discontinuous when a soft body tears.
     pub contact: Vec3,
     /// Torque of the contacts and knives about the position [N m]; in 2D only the third
     /// component.
@@ -138,10 +144,11 @@ impl RigidState {
         }
     }
 
-    /// Sets the velocities to 0 that a body of this motion type cannot have.
+    /// Clears velocities that the motion type excludes: all of a fixed body, the angular one of a coupled
+    /// body.
     pub(super) fn clear_unused_motion(&mut self) {
         if self.motion_type == MotionType::Fixed {
-            // The body may have been kinematic or coupled before.
+            // The velocities may remain from an earlier motion type, such as kinematic or coupled.
             (self.velocity, self.target_velocity) = (Vec3::ZERO, Vec3::ZERO);
             self.stay();
         }
@@ -153,8 +160,8 @@ impl RigidState {
         }
     }
 
-    /// Sets the motion type in a world of `D`. If the type differs from the present one, the present
-    /// pose becomes the target; other parameters of the same type keep the target.
+    /// Sets the motion type in a world of `D`. If only the parameters of the type change, for example the
+    /// mass, the body keeps its target. A different type replaces the target by the present pose.
     pub(crate) fn set_motion_type<D: Dim>(&mut self, motion_type: MotionType) -> Result<(), Error> {
         let inertia = motion_type.inertia::<D>(&self.local_shape);
         check_motion_type(motion_type, &self.local_shape, inertia.as_ref())?;
@@ -263,8 +270,8 @@ impl RigidState {
         self.reactions.clear();
     }
 
-    /// Ends a tick: the target stops, and the rotation is set to its target. A body that is non-finite or out
-    /// of range is reset to its pose at the start of the tick, at rest.
+    /// Ends a tick: the target stops, and a body with a target takes the target rotation. A body that is
+    /// non-finite or out of range is reset to its pose at the start of the tick, at rest.
     pub(crate) fn end_tick(&mut self) {
         self.target_before = self.target;
         if self.follows_target() && self.rotation != self.target_rotation {
@@ -281,9 +288,9 @@ impl RigidState {
         }
     }
 
-    /// Moves the target by its velocity over `duration` [s], and begins the reaction of this substep.
-    /// Accelerates a coupled body towards the target, and sets the velocity with which a kinematic body
-    /// reaches it.
+    /// Moves the target by its velocity over `duration` [s], and starts a new reaction for this substep.
+    /// Accelerates a coupled body towards the target. Gives a kinematic body the velocity with which it
+    /// reaches the target.
     pub(crate) fn pull(&mut self, duration: f32) {
         self.target_before += self.target_velocity * duration;
         let mut reaction = ReactionSum::default();
@@ -318,7 +325,8 @@ impl RigidState {
         self.reactions.push(reaction);
     }
 
-    /// Applies a contact impulse [N s], and adds it to the reaction of a substep of `duration` [s].
+    /// Applies a contact impulse [N s]. Adds its force, averaged over a substep of `duration` [s], to the
+    /// reaction of the substep.
     #[inline(always)]
     pub(crate) fn push(&mut self, impulse: Vec3, duration: f32) {
         let inverse_mass = self.inverse_mass();

@@ -65,8 +65,8 @@ impl RigidState {
         self.check().is_ok() && self.clone().seen_in::<D>() == *self
     }
 
-    /// Returns the body restricted to `D`, with derived fields computed anew: in 2D, third coordinates are 0
-    /// and rotations are about the third axis.
+    /// Returns the body restricted to `D`, with derived fields recomputed: in 2D, third coordinates become 0
+    /// and rotations keep only the part about the third axis.
     #[cfg(feature = "serde")]
     fn seen_in<D: Dim>(mut self) -> Self {
         self.local_shape = Shape::<D>::of(&self.local_shape).solid();

@@ -108,7 +108,8 @@ impl<D: Dim> Shape<D> {
         Self::of(&self.solid().translated(by.to_vec3()))
     }
 
-    /// Returns the shape rotated about the origin. In 2D only the rotation about the third axis counts.
+    /// Returns the shape rotated about the origin. In 2D only the part of the rotation about the third axis
+    /// is applied.
     #[must_use]
     pub fn rotated(self, by: Rotation) -> Self {
         Self::of(&self.solid().rotated(by.seen_in::<D>()))

@@ -146,8 +146,8 @@ impl Solid {
         }
     }
 
-    /// Returns the axis-aligned bounding box [m]; that of a half-space is infinite. A 2D box has no extent
-    /// along the third axis here.
+    /// Returns the axis-aligned bounding box [m]; that of a half-space is infinite. The bounding box of a 2D
+    /// box has thickness 0 along the third axis, although the box itself is unbounded there.
     pub fn bounds(&self) -> Bounds {
         let around = |from: Vec3, to: Vec3, half: Vec3| {
             let low = [0, 1, 2].map(|axis: usize| from[axis].min(to[axis]) - half[axis]);
@@ -261,8 +261,8 @@ impl Solid {
     }
 }
 
-/// Returns the distance from an oriented box, like [`distance_from_box`]. Not inlined, because it is rare and
-/// would slow down the common cases.
+/// Returns the distance from an oriented box, like [`distance_from_box`]. Not inlined, because oriented boxes
+/// are rare, and the code would slow down the common shapes.
 #[inline(never)]
 fn distance_from_turned(point: Vec3, half: Vec3, rotation: Rotation) -> (f32, Vec3) {
     let own = rotation.inverse().apply(point);
@@ -270,8 +270,8 @@ fn distance_from_turned(point: Vec3, half: Vec3, rotation: Rotation) -> (f32, Ve
     (distance, rotation.apply(normal))
 }
 
-/// Returns how far a half extent reaches along a world axis, with the cosine between both directions; 0 for
-/// the unbounded third axis of a 2D box.
+/// Returns the projection of a half extent [m] onto a world axis. `cosine` is that of the angle between the
+/// box axis and the world axis. Returns 0 for the unbounded third axis of a 2D box.
 fn reach_of(cosine: f32, half: f32) -> f32 {
     match half == f32::MAX {
         true => 0.0,

@@ -50,14 +50,15 @@ impl<D: Dim> SoftBody<D> {
         &mut self.topology.pieces
     }
 
-    /// Returns the mask of the exposed faces of an element, or `None` if the id was never used. The mask of an
-    /// element above level 0 is outdated.
+    /// Returns the mask of the exposed faces of an element, or `None` if the id was never used. Valid for
+    /// elements of level 0 only; larger elements may return an outdated mask.
     #[inline(always)]
     pub(crate) fn exposed_faces(&self, element: ElementId) -> Option<u8> {
         self.cache.bare.get(element.index()).copied()
     }
 
-    /// Returns the mask of the voxels around an exposed element that share a node with it.
+    /// Returns the mask of the voxels around an element that share a node with the element. Valid only if the
+    /// element has exposed faces.
     #[inline(always)]
     pub(crate) fn connected_voxels(&self, element: ElementId) -> u32 {
         self.cache.bound[element]
@@ -101,7 +102,7 @@ impl<D: Dim> SoftBody<D> {
         self.state.gravity_scale = gravity_scale;
     }
 
-    /// Forgets the history of changes, so that all bookmarks become invalid.
+    /// Clears the history of changes, so that all bookmarks become invalid.
     pub(crate) fn forget_history(&mut self) {
         self.cache.history = History::default();
     }

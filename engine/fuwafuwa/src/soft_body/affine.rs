@@ -8,8 +8,8 @@ use crate::topology::element_class::slot_at;
 use crate::topology::mesh::Element;
 use glam::Vec3;
 
-/// Volume ratio below which an element counts as flat. Inverting the motion of a flatter element would
-/// amplify the rounding of positions, about 1e-5 of a voxel, to a hundredth of its width and more.
+/// Volume ratio below which an element counts as flat, so that its motion is not inverted. The inverse would
+/// amplify the rounding of positions from about 1e-5 to more than 1e-2 of a voxel.
 const FLAT: f32 = 0.01;
 
 impl<D: Dim> SoftBody<D> {
@@ -53,7 +53,8 @@ impl<D: Dim> SoftBody<D> {
         let element_class = self.topology.mesh.element_class(element);
         let size = self.topology.grid.voxel_size();
         let half = 0.5 * size * element.cell.width() as f32;
-        // Slot in the low corner of the cell, relative to the volume centroid at rest.
+        // `origin` is the rest position of the cell's low corner, relative to the volume centroid of the
+        // element.
         let steps = Vec3::from(slot_at(element_class.slots[0] as usize).map(|k| k as f32)) * half;
         let origin = element_class.offsets[0].as_vec3() * half - steps;
         let low = element.cell.first_voxel().map(|k| k as f32);
@@ -86,9 +87,9 @@ impl<D: Dim> SoftBody<D> {
         Some(place)
     }
 
-    /// Returns the weight of each node of an element at a point of the undeformed body, in voxels. Linear
-    /// functions are interpolated exactly, so an impulse that is distributed with these weights keeps its
-    /// torque.
+    /// Returns the weight of each node of an element at a point of the undeformed body, in voxels.
+    /// Interpolation with these weights is exact for linear functions. Impulses that are distributed with the
+    /// weights therefore keep their torque.
     pub(crate) fn weights(&self, element: &Element, at: Vec3) -> Vec<(NodeId, f32)> {
         let element_class = self.topology.mesh.element_class(element);
         let half = 0.5 * element.cell.width() as f32;
@@ -108,20 +109,22 @@ impl<D: Dim> SoftBody<D> {
         nodes.map(|(place, &node)| (node, weight(place))).collect()
     }
 
-    /// Velocity [m/s] at the point with these node weights.
+    /// Velocity [m/s] of a point of an element, interpolated with the weights that [`SoftBody::weights`]
+    /// returns for the point.
     pub(crate) fn velocity_of(&self, weights: &[(NodeId, f32)]) -> Vec3 {
         let share = |&(node, weight): &(NodeId, f32)| self.state.velocity[node] * weight;
         weights.iter().map(share).sum::<Row>().xyz()
     }
 
-    /// Maps a position [m] to its rest offset from the centroid of an element [m], in all three coordinates.
+    /// Maps a position [m] to its offset from the centroid of an element before deformation [m]. `None` if
+    /// the element is flat.
     fn offset_at_rest(&self, element: &Element, at: Vec3) -> Option<Vec3> {
         let (centre, undo) = self.inverse_deformation(element)?;
         Some(undo(at - centre))
     }
 
-    /// Returns the centre of an element [m], and the inverse of its deformation: it maps present directions
-    /// to directions at rest. `None` if the element is flat.
+    /// Returns the centre of an element [m], and the inverse of its deformation gradient, as a function from
+    /// world-space vectors to vectors of the undeformed body. `None` if the element is flat.
     pub(crate) fn inverse_deformation(
         &self,
         element: &Element,
@@ -131,7 +134,7 @@ impl<D: Dim> SoftBody<D> {
         if volume.abs() < FLAT {
             return None;
         }
-        // Cramer's rule.
+        // Inverts the deformation gradient by Cramer's rule.
         let columns = [y.cross(z), z.cross(x), x.cross(y)];
         let undo = move |way: Vec3| {
             let by = way * (1.0 / volume);

@@ -7,7 +7,7 @@ use crate::foundation::ids::{IndexVec, NodeId};
 use crate::rigid_body::layers::Layers;
 use crate::soft_body::element_forces::{ElementBatches, Row};
 
-/// Largest absolute factor on gravity for a body. With it, a body falls by 1 m within three ticks.
+/// Largest absolute value of a body's gravity scale. With it, a body falls by 1 m within three ticks.
 pub const MAX_GRAVITY_SCALE: f32 = 100.0;
 
 /// State of a body that changes from substep to substep.
@@ -15,30 +15,34 @@ pub const MAX_GRAVITY_SCALE: f32 = 100.0;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct State<D: Dim> {
-    /// Position [m], velocity [m/s] and mass [kg] of each node.
+    /// Position of each node [m].
     pub position: IndexVec<NodeId, Row>,
+    /// Velocity of each node [m/s].
     pub velocity: IndexVec<NodeId, Row>,
+    /// Mass of each node [kg].
     pub mass: IndexVec<NodeId, f32>,
-    /// Inverse mass [1/kg]; 0 while a node is fixed or sleeps.
+    /// Inverse mass of each node [1/kg]; 0 while the node is fixed or sleeps.
     pub inverse_mass: IndexVec<NodeId, f32>,
+    /// Whether each node is fixed.
     pub fixed: IndexVec<NodeId, bool>,
     /// Damage of each node; at 1 the node is split.
     pub damage: IndexVec<NodeId, f32>,
-    /// Recent releases.
+    /// Cooldowns of the points at which nodes were released recently.
     pub cooldowns: Cooldowns,
-    /// Extrapolated positions at which the damped forces are evaluated.
+    /// Positions extrapolated by the damping lead [m], at which the elastic forces are evaluated.
     pub ahead: IndexVec<NodeId, Row>,
-    /// Factor on gravity.
+    /// Factor on the gravity of the world, default 1.
     pub gravity_scale: f32,
     /// Collision layers.
     pub layers: Layers,
-    /// User data.
+    /// Number for use by the program; the engine ignores it.
     pub user_data: u64,
-    /// Whether nodes were placed from outside since forces were last computed.
+    /// Whether the caller has moved nodes since forces were last computed, so that element rotations must be
+    /// recomputed.
     pub placed: bool,
-    /// Rotation of each element, and the forces of the last substep. Both are state: each substep continues
-    /// from the last rotations, and the last forces decide where the next crack runs. Of the batches,
-    /// snapshots contain only these.
+    /// Batches of elements. Snapshots contain only the rotation and plastic deformation of each element and
+    /// the forces of the last substep. Each substep continues from the last rotations, and the last forces
+    /// decide where the next crack runs.
     pub blocks: ElementBatches<D>,
 }
 

@@ -64,8 +64,8 @@ impl<D: Dim> SoftBody<D> {
         self.rebuild();
     }
 
-    /// Whether position, velocity, extrapolated position and damage of a node are numbers, and lie in the
-    /// plane in 2D.
+    /// Returns whether the position, velocity and extrapolated position of a node are finite, and in 2D have
+    /// third coordinate 0, and whether its damage is not NaN.
     fn is_somewhere(&self, id: NodeId) -> bool {
         let state = &self.state;
         let rows = [&state.position, &state.velocity, &state.ahead].map(|rows| rows[id]);
@@ -73,7 +73,8 @@ impl<D: Dim> SoftBody<D> {
         rows.iter().all(|row| is_flat(row) && row.is_finite()) && !state.damage[id].is_nan()
     }
 
-    /// Whether the mass and the inverse mass of a node are exactly those that follow from its elements.
+    /// Returns whether the mass and the inverse mass of a node are exactly those that follow from its
+    /// elements.
     fn weighs_right(&self, id: NodeId) -> bool {
         self.state.mass[id] == self.mass_of(id)
             && self.state.inverse_mass[id] == self.inverse_mass_of(id)
@@ -101,7 +102,7 @@ impl<D: Dim> Topology<D> {
 }
 
 impl<D: Dim> State<D> {
-    /// Whether every node has a state.
+    /// Returns whether the state has an entry for each of `nodes` nodes.
     fn has_room(&self, nodes: usize) -> bool {
         let rows = [&self.position, &self.velocity, &self.ahead].map(|rows| rows.len());
         let numbers = [&self.mass, &self.inverse_mass, &self.damage].map(|numbers| numbers.len());
@@ -118,7 +119,7 @@ fn ensure(good: bool, what: &str) -> Result<(), InvariantViolation> {
 }
 
 impl Pieces {
-    /// Whether the pieces are those of the mesh, regardless of their numbers.
+    /// Returns whether these pieces are the connected parts of the mesh, in any numbering.
     fn is_sound<D: Dim>(&self, mesh: &Mesh<D>) -> bool {
         let fresh = Self::new(mesh);
         let mut numbers: IndexVec<PieceId, _> = vec![None; fresh.list.len()].into();

@@ -16,17 +16,18 @@ pub struct Cache {
     pub blend: BodyProperties,
     /// Nodes of awake pieces, ascending; outdated while `awake_is_stale`.
     pub awake: Vec<NodeId>,
+    /// Whether `awake` must be recomputed before use.
     pub awake_is_stale: bool,
     /// Nodes at which a crack can start or continue, with their thresholds.
     pub breakable: BreakableNodes,
     /// Mask of the exposed faces of each level-0 element: bit 2 · axis + side.
     pub bare: IndexVec<ElementId, u8>,
-    /// For elements with exposed faces: the surrounding voxels that share a node, see
-    /// [`Connectivity::connected_voxels`](crate::topology::connectivity::Connectivity::connected_voxels).
+    /// Mask of the surrounding voxels that share a node with the element, for elements with exposed faces;
+    /// see [`Connectivity::connected_voxels`](crate::topology::connectivity::Connectivity::connected_voxels).
     pub bound: IndexVec<ElementId, u32>,
-    /// Recent changes.
+    /// History of recent changes, which callers read through bookmarks.
     pub history: History,
-    /// Rigid motion of each piece at the last damping round; every tick begins with one.
+    /// Rigid motion of each piece at the last damping round. Every tick begins with a damping round.
     pub rigid: IndexVec<PieceId, RigidMotionF32>,
     /// Lattice point and position [m] of every node at the start of the tick, by id; NaN for unused ids.
     pub before: Vec<(Point, Row)>,

@@ -1,4 +1,4 @@
-//! Cooldowns after releases: no node nearby fails again before the stress waves have passed.
+//! Cooldowns after releases: nodes near a release cannot fail again before its stress waves have passed.
 
 use crate::foundation::dim::Point;
 use crate::foundation::hash::hash_state;
@@ -7,20 +7,20 @@ use crate::foundation::hash::hash_state;
 /// travels during the cooldown.
 const REACH: i32 = 2;
 
-/// Recent releases, around which nodes cool down.
+/// Points of recent releases, near which nodes cannot fail.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cooldowns {
-    /// Lattice points, and their remaining cooldown [s].
+    /// Lattice points of recent releases, with their remaining cooldown [s].
     points: Vec<(Point, f32)>,
-    /// Number of fracture rounds up to now.
+    /// Number of fracture rounds since the body was created; wraps around.
     pub rounds: u32,
 }
 
 hash_state! { struct Cooldowns { points, rounds } }
 
 impl Cooldowns {
-    /// Advances by one round of `duration` [s].
+    /// Advances all cooldowns by one fracture round of `duration` [s].
     pub fn pass(&mut self, duration: f32) {
         self.rounds = self.rounds.wrapping_add(1);
         self.points.retain_mut(|(_, left)| {
@@ -40,13 +40,13 @@ impl Cooldowns {
         self.points.iter().map(|&(at, _)| at)
     }
 
-    /// Whether a point is near a point with a running cooldown.
+    /// Returns whether a point is within `REACH` of a point with a running cooldown.
     pub fn covers(&self, at: Point) -> bool {
         self.points.iter().any(|&(point, _)| is_near(at, point))
     }
 }
 
-/// Whether a release at one point disturbs the other point.
+/// Returns whether two points are so close that a release at one of them disturbs the other.
 pub fn is_near(a: Point, b: Point) -> bool {
     (0..3).all(|axis| (a[axis] - b[axis]).abs() <= REACH)
 }

@@ -1,9 +1,9 @@
 //! Damping of the internal vibration of pieces towards their rigid motion.
 //!
-//! Two dampers are combined. The elastic forces are evaluated at extrapolated positions (Kelvin–Voigt). This
-//! damps fast modes, but within the stability limit of the substep hardly the slow modes of a body. For the
-//! slow modes, the velocities of each piece relax towards its rigid motion, at the rate 2 ζ ω of a damped
-//! oscillator. Neither damper changes linear or angular momentum.
+//! Two dampers are combined. First, the elastic forces are evaluated at extrapolated positions
+//! (Kelvin–Voigt). This damps fast modes, but the stability limit of the substep leaves slow modes almost
+//! undamped. Second, the velocities of each piece relax towards its rigid motion, at the rate 2 ζ ω of a
+//! damped oscillator; this damps slow modes. Neither damper changes linear or angular momentum.
 
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{IndexVec, PieceId};
@@ -26,17 +26,17 @@ pub struct PieceMotion {
     pub speed_squared: f64,
     /// Number of awake nodes.
     pub nodes: u32,
-    /// Whether the piece has fixed nodes that move; such a piece never sleeps.
+    /// Whether fixed nodes of the piece have a velocity; such a piece never sleeps.
     pub is_driven: bool,
     /// Angular momentum about the centre [kg m²/s].
     angular: DVec3,
-    /// Σ m x xᵀ about the centre [kg m²].
+    /// Σ m x xᵀ, where x is the offset of a node from the centre of mass [kg m²].
     spread: [DVec3; 3],
 }
 
 impl PieceMotion {
-    /// Adds a node at x relative to `origin`; [`PieceMotion::finish`] converts the sums to the centre of
-    /// mass.
+    /// Adds a node at the offset x from the origin of the piece. [`PieceMotion::finish`] converts the sums to
+    /// the centre of mass.
     #[inline(always)]
     fn add<D: Dim>(&mut self, x: DVec3, velocity: DVec3, mass: f64) {
         let (moment, impulse) = (x * mass, velocity * mass);
@@ -57,7 +57,7 @@ impl PieceMotion {
         }
     }
 
-    /// Converts sums about `origin` to the values described at the fields.
+    /// Converts the sums about `origin` to means, and to moments about the centre of mass.
     fn finish(&mut self, origin: DVec3) {
         let share = 1.0 / self.mass;
         let (from, impulse) = (self.centre * share, self.velocity);
@@ -73,7 +73,7 @@ impl PieceMotion {
         self.centre = origin + from;
     }
 
-    /// Returns the rigid motion with the same momentum; zero for a sleeping piece.
+    /// Returns the rigid motion that has the momentum of the piece; zero for a sleeping piece.
     fn rigid(&self) -> RigidMotion {
         if self.nodes == 0 {
             return RigidMotion::default();
@@ -89,10 +89,10 @@ impl PieceMotion {
 pub fn motions<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, PieceMotion> {
     let count = body.topology.pieces.list.len();
     let mut motions: IndexVec<PieceId, _> = vec![PieceMotion::default(); count].into();
-    // Sums are relative to a node of the piece: far from the world origin they would lose digits.
+    // Sums are relative to a node of each piece: relative to a far world origin, they would lose precision.
     let mut origins: IndexVec<PieceId, _> = vec![DVec3::ZERO; count].into();
     let of_node = |id| body.topology.pieces.of_node(id);
-    // Consecutive nodes mostly belong to one piece: its sums stay in registers.
+    // Processes each run of nodes of one piece together, so that the sums of the piece stay in registers.
     for nodes in body.cache.awake.chunk_by(|&a, &b| of_node(a) == of_node(b)) {
         let piece = of_node(nodes[0]);
         let (mut motion, origin) = (motions[piece], &mut origins[piece]);
@@ -114,7 +114,7 @@ pub fn motions<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, PieceMotion> {
     motions
 }
 
-/// Damping of a piece: rates [1/s], or the fractions lost in one round.
+/// Damping of a piece: rates [1/s], or after [`PieceDamping::over`] the fractions lost in one round.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct PieceDamping {
     /// Damping of the motion within the piece.
@@ -137,7 +137,8 @@ impl PieceDamping {
     }
 }
 
-/// Damps the pieces of a body, each with its own `slowing`, and stores their rigid motions.
+/// Damps each piece of a body by its entry of `slowing`, as fractions, and stores the rigid motions of all
+/// pieces.
 pub fn slow_down<D: Dim>(
     body: &mut SoftBody<D>,
     motions: &[PieceMotion],
@@ -154,8 +155,8 @@ pub fn slow_down<D: Dim>(
     {
         return;
     }
-    // The velocity of the centre keeps the share 1 − drag. The angular velocity keeps (1 − drag)(1 − spin),
-    // and the internal motion (1 − drag)(1 − swing): v ← kept v + pace(x).
+    // New velocity of a node: v ← kept v + pace(x). Of the centre's velocity the share 1 − drag remains, of
+    // the angular velocity (1 − drag)(1 − spin), and of the internal motion (1 − drag)(1 − swing).
     let paces: Vec<_> = rigid
         .iter()
         .zip(slowing)

@@ -18,7 +18,7 @@ impl<D: Dim> SoftBody<D> {
         truth.pieces.make_room(&truth.mesh);
     }
 
-    /// Fixes a new node if all nodes from which it inherits were fixed.
+    /// Fixes a new node if all nodes from which its state is interpolated are fixed.
     pub(crate) fn inherit_hold(&mut self, node: NodeId, from: &[(NodeId, f64)]) {
         self.state.fixed[node] = from.iter().all(|&(old, _)| self.state.fixed[old]);
     }
@@ -53,7 +53,7 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Updates the exposed faces of the level-0 elements on these voxels.
+    /// Updates the exposed faces of the level-0 elements that fill some of the given voxels.
     pub(crate) fn expose(&mut self, voxels: &[Point]) {
         for &voxel in voxels
             .iter()
@@ -68,7 +68,7 @@ impl<D: Dim> SoftBody<D> {
             if element.cell.level > 0 {
                 continue;
             }
-            // Seen from its low corner, the voxel lies on the far side of every axis.
+            // Octant of the voxel around its own low corner: the voxel is on the far side along every axis.
             let (around, octant) = (self.topology.connectivity.around(voxel), D::CORNERS - 1);
             let mut bare = 0;
             for axis in 0..D::N {

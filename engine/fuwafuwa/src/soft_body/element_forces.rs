@@ -2,13 +2,13 @@
 //!
 //! Eight elements form a batch, one in each lane. Each lane performs the operations of the scalar formula in
 //! the scalar order, and nothing is summed across lanes, so the vector width of the machine does not change
-//! the result. Tests compare the forces with [`crate::soft_body::element_law`]. An element writes to its own
-//! slots, and a node sums its slots in the order of the octants around it. So neither threads nor numbering
-//! change the result.
+//! the result. Tests compare the forces with [`crate::soft_body::element_law`]. Each element writes its
+//! forces to entries of its own. The force on a node is the sum of its entries, in the order of the octants
+//! around the node. Therefore neither the number of threads nor the numbering of elements changes the result.
 //!
-//! If a class has enough elements, its batches contain no other class. The remaining elements, a fifth of a
-//! body in about a hundred classes, are pooled by their number of nodes; in a pooled batch, each lane has
-//! class data of its own.
+//! If a class has enough elements, its batches contain no other class. The remaining elements are pooled by
+//! their number of nodes; in a pooled batch, each lane has its own class data. About a fifth of a body's
+//! elements, of about a hundred classes, are pooled.
 
 mod batch;
 mod batch_assignment;
@@ -38,12 +38,13 @@ use plastic_kernel::PlasticFlowLimits;
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
-/// Smallest number of batches that are evaluated on several threads. Bodies of this size have about as many
-/// nodes as [`threads`] requires.
+/// Smallest number of batches that are evaluated on several threads. Bodies with this many batches have about
+/// the smallest number of nodes that [`threads`] distributes over threads.
 #[cfg(feature = "parallel")]
 const LEAST_PARALLEL: usize = 1024;
 
-/// Padding after the last force, so that four numbers can be read from its start.
+/// Padding after the last force, so that a load of four numbers that begins at the last force stays in
+/// bounds.
 const PAD: usize = 4;
 
 /// All elements of a body in batches, with their nodal forces.
@@ -55,28 +56,30 @@ pub struct ElementBatches<D: Dim> {
     flows: Vec<Option<PlasticFlowLimits>>,
     voxel_size: f32,
     blocks: Vec<Batch>,
-    /// Batches with vacant lanes.
+    /// Batches with some vacant lanes, by the properties of their elements.
     open: BTreeMap<BatchKey, BTreeSet<u32>>,
     /// Batches without elements, by number of nodes and by whether their lanes have different classes.
     empty: BTreeMap<(u32, bool), Vec<u32>>,
     /// Start of the class data in `numbers`, for each class that has batches of its own.
     element_classes: BTreeMap<u32, u32>,
     numbers: Vec<f32>,
-    /// Class data of pooled lanes.
+    /// Class data of pooled batches, with a separate value for each lane.
     pooled: Vec<Eight>,
     /// Batch and lane of each element, by id; the batch is [`VACANT`] if the element has none.
     assigned: IndexVec<ElementId, (u32, u8)>,
-    /// Indices in `forces` of the forces on each node, by id: one per element, in the order of the octants.
-    /// Unused entries are 0, where a zero force is stored.
+    /// For each node, the indices in `forces` at which the forces of its elements begin, in the order of the
+    /// octants around the node. Unused entries are 0, where `forces` holds a zero force.
     slots: IndexVec<NodeId, [u32; 8]>,
-    /// Nodes of all batches: node k of lane l at k · LANES + l after the first of the batch.
+    /// Node ids of all batches. The id of node k in lane l is at k · LANES + l after the first entry of the
+    /// batch.
     nodes: Vec<u32>,
-    /// Forces on these nodes, with D::N components each. Padding to four components would make up a quarter
-    /// (3D) or half (2D) of the memory traffic of a substep.
+    /// Forces of the elements on the nodes in `nodes`, in the same order, with D::N components each. Not
+    /// padded to four components: the padding would make up a quarter (3D) or half (2D) of the memory traffic
+    /// of a substep.
     forces: Vec<f32>,
     /// Scratch memory that the next evaluation reuses without clearing.
     scratch: Option<Box<[Scratch; GROUP]>>,
-    /// State read from a file, until [`ElementBatches::restore`] distributes it.
+    /// State read from a file, kept until [`ElementBatches::restore`] assigns it to batches.
     #[cfg(feature = "serde")]
     saved: Option<saved_states::SavedElementStates>,
     dim: PhantomData<D>,
@@ -215,7 +218,8 @@ impl<D: Dim> ElementBatches<D> {
         let mut forces = &mut self.forces[LANES * D::N..];
         let mut first = LANES;
         self.blocks.chunks_mut(GROUP).map(move |blocks| {
-            // Batches are in the order of their forces.
+            // Batches are stored in the order of their forces, so the last batch ends the forces of the
+            // group.
             let end = blocks.last().map_or(first, Batch::end);
             let (own, others) = std::mem::take(&mut forces).split_at_mut((end - first) * D::N);
             let group = Group {
@@ -377,7 +381,8 @@ mod tests {
     use crate::topology::grid::VoxelGrid;
     use crate::topology::mesh::Mesh;
 
-    /// Compares the widest lanes with others, on a body with every kind of batch.
+    /// Checks that the lanes of `simd` give the same bits as the widest lanes of this machine, on a body with
+    /// every kind of batch.
     fn check_same_bits<D: Dim, S: Simd>(law: Law, simd: S) {
         let grid = VoxelGrid::<D>::ball(24, 1.0).unwrap();
         let connectivity = Connectivity::new(&grid);
@@ -433,9 +438,9 @@ mod tests {
         assert_eq!(by_best, by_other);
     }
 
-    /// Regression: sleeping elements in a batch with awake ones were evaluated again, so waking depended on
-    /// the distribution over batches. An element that entered a batch also kept the forces of the previous
-    /// one in its lane.
+    /// Regression test of two faults. If a batch had sleeping and awake elements, the sleeping ones were
+    /// evaluated, too, so waking depended on the distribution over batches. A new element of a batch also
+    /// kept the forces of the element that was in its lane before.
     fn check_sleepers<D: Dim>() {
         let grid = VoxelGrid::<D>::ball(16, 1.0).unwrap();
         let connectivity = Connectivity::new(&grid);
@@ -471,7 +476,7 @@ mod tests {
             awake.count()
         };
         let (when_awake, before) = (evaluated(&blocks), states(&blocks));
-        // Elements fall asleep one by one, like crumbs.
+        // Puts elements to sleep one at a time, as when many single-voxel pieces fall asleep independently.
         let sleepers: Vec<ElementId> = all.iter().copied().filter(sleeps).collect();
         for &id in &sleepers {
             blocks.set_asleep(&mesh, &[id], true);
@@ -503,14 +508,16 @@ mod tests {
     #[test]
     fn lanes_of_all_widths_give_same_bits() {
         for law in [Law::CorotationalVem, Law::Endo2004] {
-            // In debug builds with scalar lanes, compilation takes four minutes and several gigabytes.
+            // Skipped in debug builds, in which compiling the scalar lanes takes four minutes and several
+            // gigabytes.
             #[cfg(not(debug_assertions))]
             {
                 let plain = fearless_simd::Fallback::new();
                 check_same_bits::<Dim2, _>(law, plain);
                 check_same_bits::<Dim3, _>(law, plain);
             }
-            // The reference has the widest lanes of this machine, so only narrower ones are compared with it.
+            // Compares only narrower lanes, because the reference already has the widest lanes of this
+            // machine.
             #[cfg(target_arch = "x86_64")]
             {
                 let level = fearless_simd::Level::baseline();

@@ -136,7 +136,7 @@ pub(crate) fn shape_matching_offsets<D: Dim>(
         add_outer(&mut moment, *x, *r);
         spread += r.dot(*r);
     }
-    // In 2D the rotation axis is the third one.
+    // In 2D this entry would be 0. A positive one makes the best rotation one about the third axis.
     (D::N..3).for_each(|axis| moment[axis][axis] = spread);
     let rotation = rotation_of(&moment);
     let stiffness = elasticity.young * volume_of(element_class, half) * D::N as f64 / spread;
@@ -263,16 +263,16 @@ pub fn rotation_of(deformation: &Matrix) -> Matrix {
     from_quaternion(rotation_quaternion(deformation))
 }
 
-/// Returns the rotation of a deformation as a quaternion if `near` is off by about a quarter turn or more,
-/// which is too far for a few iterations.
+/// Returns the rotation of a deformation as a quaternion, but only if the rotation `near` differs from it by
+/// about a quarter turn or more. The iterations of the kernel would not correct such a difference.
 pub fn rotation_if_far_from(near: &Matrix, deformation: &Matrix) -> Option<[f64; 4]> {
     if is_greatest(near, deformation) {
         return None;
     }
     let turned = rotation_quaternion(deformation);
     let gain = trace(&from_quaternion(turned), deformation) - trace(near, deformation);
-    // If `near` is off by the angle a, tr RᵀF is smaller by 2 − 2 cos a in an element without strain, where
-    // ‖F‖ = √3.
+    // In an unstrained element, a rotation that is off by the angle a lowers tr RᵀF by 2 − 2 cos a, and ‖F‖ =
+    // √3. The threshold ‖F‖ then corresponds to 82°.
     (gain > norm(deformation)).then_some(turned)
 }
 
@@ -282,7 +282,7 @@ fn rotation_quaternion(deformation: &Matrix) -> [f64; 4] {
     if is_greatest(&from_quaternion(turned), deformation) {
         return turned;
     }
-    // In 2D the rotation axis is always the third one.
+    // In 2D only the half turn about the third axis needs to be tried.
     let [first, second, third] = deformation;
     let is_flat = [first.z, second.z] == [0.0; 2] && *third == IDENTITY[2];
     for axis in if is_flat { 2..3 } else { 0..3 } {
@@ -330,7 +330,8 @@ fn turn_from(mut turned: [f64; 4], deformation: &Matrix) -> [f64; 4] {
     turned
 }
 
-/// Whether the rotation is the best fit: no eigenvalue of F Rᵀ is above its trace.
+/// Returns whether the rotation R is the best fit to the deformation F: no eigenvalue of F Rᵀ exceeds the
+/// trace of F Rᵀ.
 fn is_greatest(rotation: &Matrix, deformation: &Matrix) -> bool {
     trace(rotation, deformation) > norm(deformation)
 }
@@ -403,7 +404,8 @@ fn add_outer(m: &mut Matrix, a: DVec3, b: DVec3) {
 mod tests {
     use super::*;
 
-    /// Regression: an iteration that started half a turn off did not move, and the body tore itself apart.
+    /// Regression test: the rotation iteration did not move from a start that was half a turn off, and the
+    /// body tore itself apart.
     #[test]
     fn rotation_of_finds_half_turn_about_any_axis() {
         let axes = [
@@ -419,7 +421,7 @@ mod tests {
             for w in [0.0, 1e-9, 1e-3, 0.3] {
                 let length = f64::sqrt(1.0 + w * w);
                 let turned = from_quaternion([x, y, z, w].map(|k| k / length));
-                // R S, by rows.
+                // Product of the rotation and the stretch, by rows.
                 let deformation = turned.map(|row| {
                     let rows = (0..3).map(|k| stretch[k] * row[k]);
                     rows.sum()

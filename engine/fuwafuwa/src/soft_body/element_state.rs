@@ -25,8 +25,8 @@ pub struct ElementState {
     pub energy: f64,
 }
 
-/// Returns the state of an element of width `size` [m] with nodes at `positions` [m]. The forces of
-/// [`crate::soft_body::element_law::forces`] are the negative gradient of its energy.
+/// Returns the state of an element of width `size` [m] with nodes at `positions` [m]. The forces that
+/// [`crate::soft_body::element_law::forces`] returns are the negative gradient of the energy in this state.
 ///
 /// # Panics
 /// If the number of positions is not the number of nodes of the element class.
@@ -135,8 +135,9 @@ impl Energy {
 }
 
 impl<D: Dim> SoftBody<D> {
-    /// Returns the strain, stress and energy of an element, if it is alive. Computed in double precision from
-    /// the positions of the nodes, with the reduced stiffness of the body (see [`SoftBody::stiffness_scale`]).
+    /// Returns the strain, stress and energy of an element, or `None` if the element was removed. Computed in
+    /// double precision from the positions of the nodes, with the reduced stiffness of the body (see
+    /// [`SoftBody::stiffness_scale`]).
     #[inline(never)]
     pub fn element_state(&self, id: ElementId) -> Option<ElementState> {
         let element = self.topology.mesh.element(id)?;
@@ -164,9 +165,9 @@ impl<D: Dim> SoftBody<D> {
         undone.map_or(IDENTITY, |undone| undone.map(|row| row.as_dvec3()))
     }
 
-    /// Plastic strain of an element, if it is alive: 0 without plastic deformation, 0.5 if it was permanently
-    /// compressed to 1 / 1.5 of its width along some axis, or in 2D stretched by as much. 0 for elastic
-    /// materials.
+    /// Plastic strain of an element, or `None` if the element was removed. 0 = no plastic deformation, which
+    /// is always so in elastic materials; 0.5 = permanently compressed along some axis to 1 / 1.5 of its
+    /// width. In 2D, 0.5 may equally be a permanent stretch to 1.5 times the width.
     pub fn plastic_strain(&self, id: ElementId) -> Option<f32> {
         self.topology.mesh.element(id)?;
         let most = 1.0 / plastic_stiffness_factor::<D>(&self.undone(id));

@@ -50,9 +50,10 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Recomputes the rotation of elements that may be far from the orientation of their nodes, because the
-    /// elements are new or the nodes were placed. The iteration in the force evaluation follows only small
-    /// turns, and cannot leave a rotation that is half a turn off. In 2D it finds the rotation directly.
+    /// Recomputes the rotations of elements if they may be far from the orientation of the nodes, because the
+    /// elements are new or nodes were placed. The iteration in the force evaluation follows only small turns,
+    /// and does not correct a rotation that is half a turn off. Has no effect in 2D, where the force
+    /// evaluation finds the rotation directly.
     pub(crate) fn settle(&mut self, elements: &[ElementId]) {
         if D::N == 2 {
             return;
@@ -83,7 +84,7 @@ impl<D: Dim> SoftBody<D> {
     /// would grow from substep to substep. Returns the distance that the fastest node has moved [m].
     pub(crate) fn drift(&mut self, duration: f32, lead: f32) -> f32 {
         let top_speed = self.topology.grid.voxel_size() / duration;
-        // Pieces created since the last damping round have no motion yet.
+        // Gives pieces that were created since the last damping round a rigid motion of zero.
         self.cache
             .rigid
             .resize(self.topology.pieces.list.len(), RigidMotionF32::default());
@@ -95,8 +96,9 @@ impl<D: Dim> SoftBody<D> {
         ];
         let rows = threads::rows(&self.cache.awake, lists.map(|rows| rows.as_mut_slice()));
         let fastest = threads::map(rows, move |rows| {
-            // Slices of equal length need only one bounds check per node. About a tenth of the time of small
-            // bodies is spent in this loop: slices and values in locals are not reloaded for each node.
+            // Slices of equal length need only one bounds check per node, and values in local variables are
+            // not reloaded for each node. This matters because small bodies spend about a tenth of their time
+            // in this loop.
             let count = rows.lists[0].len();
             let [positions, velocities, ahead] = rows.lists.map(|list| &mut list[..count]);
             let mut fastest = 0.0f32;
@@ -104,7 +106,7 @@ impl<D: Dim> SoftBody<D> {
                 let node = id.index() - rows.first;
                 let mut velocity = velocities[node];
                 let squared = inner::<D>(velocity, velocity);
-                // Not `max`, which would make each node depend on the previous one.
+                // A comparison is faster than `max`, with which each node would wait for the previous one.
                 if squared > fastest {
                     fastest = squared;
                 }

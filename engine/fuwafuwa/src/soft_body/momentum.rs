@@ -95,7 +95,8 @@ impl RigidMotion {
         angular: &DVec3,
         inertia: &[DVec3; 3],
     ) -> Self {
-        // Collinear points have no inertia about their line. The small addition keeps the matrix invertible.
+        // Adds a little to the inertia, because that of collinear points is 0 about their line and could not
+        // be inverted.
         let mut inertia = *inertia;
         let little = 1e-9 * (inertia[0][0] + inertia[1][1] + inertia[2][2]) + f64::MIN_POSITIVE;
         (0..3).for_each(|k| inertia[k][k] += little);
@@ -106,7 +107,8 @@ impl RigidMotion {
         }
     }
 
-    /// Multiplies the velocity by one factor, and the angular velocity by another one.
+    /// Returns the motion with its linear velocity multiplied by `velocity` and its angular velocity by
+    /// `spin`.
     pub(crate) fn times(&self, velocity: f64, spin: f64) -> Self {
         Self {
             velocity: self.velocity * velocity,

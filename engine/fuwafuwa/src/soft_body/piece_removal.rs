@@ -1,7 +1,7 @@
 //! Removal of pieces from a body: voxels, connectivity, cells, elements and nodes.
 //!
-//! A piece shares no node with the rest. So the rest keeps its elements, nodes, numbers, masses and motion;
-//! only the neighbours across the crack are gone.
+//! A piece shares no node with other pieces. Therefore the other pieces keep their elements, nodes, numbers,
+//! masses and motion; they lose only the neighbours across the crack.
 
 use crate::foundation::dim::{Dim, Point};
 use crate::foundation::ids::{ElementId, PieceId};
@@ -34,7 +34,7 @@ impl<D: Dim> SoftBody<D> {
         let nodes = truth.mesh.take_out(&truth.connectivity, &elements);
         for &piece in pieces {
             let piece = &mut truth.pieces.list[piece];
-            // A removed piece counts as asleep, so that it never counts as moving.
+            // Marks the piece as asleep, too, so that no code treats a removed piece as moving.
             (piece.removed, piece.asleep) = (true, true);
         }
         let blocks = &mut self.state.blocks;

@@ -30,17 +30,17 @@ impl<D: Dim> SoftBody<D> {
         self.state.gravity_scale
     }
 
-    /// Returns the body translated by `by` [m]. Pieces that are then not finite are quarantined in their
-    /// first tick.
+    /// Returns the body translated by `by` [m]. Pieces whose positions become non-finite are quarantined in
+    /// their first tick.
     #[inline(never)]
     pub fn translated(mut self, by: D::Vector) -> Self {
         self.shift(by.to_vec3());
         self
     }
 
-    /// Returns the body rotated about a point [m], without strain and without tearing. In 2D only
-    /// the rotation about the third axis counts. Pieces that are then not finite are quarantined in their
-    /// first tick.
+    /// Returns the body rotated about a point [m], without strain and without tearing. In 2D only the part of
+    /// the rotation about the third axis is applied. Pieces whose positions become non-finite are quarantined
+    /// in their first tick.
     ///
     /// ```
     /// use fuwafuwa::{SoftBody, Dim2, Material, Rotation, VoxelGrid};
@@ -180,8 +180,8 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Distributes an impulse [N s] over the nodes within `radius` [m] of the point `at`, in proportion to
-    /// their mass, so that all of them gain the same velocity. If there is no node within the radius, the
-    /// nearest one receives it. Fixed and sleeping nodes are skipped.
+    /// their mass, so that these nodes all gain the same velocity. If the radius contains no node, the
+    /// nearest node receives the whole impulse. Fixed and sleeping nodes are skipped.
     pub(crate) fn add_impulse(&mut self, at: Vec3, radius: f32, impulse: Vec3) {
         let nodes = self.topology.mesh.nodes().map(|(id, _)| id);
         let free = nodes.filter(|&id| self.state.inverse_mass[id] > 0.0);

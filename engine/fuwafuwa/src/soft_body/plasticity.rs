@@ -27,8 +27,8 @@ use crate::soft_body::element_law::{
 use crate::topology::element_class::ElementClass;
 use glam::DVec3;
 
-/// Largest plastic strain per evaluation, so that violently torn elements do not jump. Q is correct to first
-/// order; its error is half the square, 2 %.
+/// Largest plastic strain per evaluation; the limit prevents jumps of violently torn elements. Q is correct
+/// to first order, with an error of half the squared strain, here 2 %.
 pub(crate) const MAX_FLOW: f64 = 0.2;
 /// Volume ratio below which an element does not flow, because its deformation is not meaningful; a quarter of
 /// [`MIN_VOLUME_RATIO`].
@@ -107,7 +107,8 @@ pub fn forces_after<D: Dim>(
     forces_of_stress(elasticity, &stress, element_class, size, positions)
 }
 
-/// Returns G after plastic flow, which occurs if the deformation exceeds the yield strain.
+/// Returns the plastic inverse G after plastic flow. G changes only if the elastic strain exceeds the yield
+/// strain.
 pub fn flow<D: Dim>(
     plasticity: Plasticity,
     elasticity: Elasticity,
@@ -147,7 +148,7 @@ pub fn flow<D: Dim>(
     }
     let next = product(undone, &step);
     let volume = determinant(&next);
-    // The third axis is not scaled in 2D.
+    // In 2D the volume is rescaled by two axes only, because the third axis is not deformed.
     let scale = 1.0
         / if D::N == 2 {
             volume.sqrt()
@@ -161,8 +162,8 @@ pub fn flow<D: Dim>(
         }
     }
     let inner = |m: &Matrix| squared(m) - (3 - D::N) as f64;
-    // Flow back towards the original shape makes the element stiffer. Flow that would increase the stored
-    // energy is rejected.
+    // Flow back towards the original shape raises the stiffness factor of the element, and may thereby raise its
+    // energy. Compares the stored energy before and after, so that flow that would increase it is rejected.
     let eased = product(&stretch, &step);
     let eased = [0, 1, 2].map(|i: usize| {
         DVec3::from([0, 1, 2].map(|j: usize| {
@@ -256,12 +257,12 @@ mod tests {
             undone = flow::<D>(CLAY, soft(), &drawn(1.3), &undone);
             assert!((determinant(&undone) - 1.0).abs() < 1e-12);
         }
-        // The remaining elastic strain is the yield strain; the rest has become plastic.
+        // After the flow, the elastic strain that remains is the yield strain; the excess has become plastic.
         let left = elastic_part(&drawn(1.3), &undone)[0][0];
         assert!((left - 1.05).abs() < 2e-3, "{left}");
         assert!(plastic_stiffness_factor::<D>(&undone) <= 1.0);
-        // An element can be compressed to half its width and no further; compression and return restore the
-        // shape.
+        // An element can be compressed to half its width and no further. Compression and stretching back
+        // restore the original shape.
         let mut flat = IDENTITY;
         for step in 0..400 {
             let by = 1.0 - 0.7 * f64::from(step.min(300)) / 300.0;

@@ -14,10 +14,10 @@ use glam::DVec3;
 use glam::Vec3;
 
 impl<D: Dim> SoftBody<D> {
-    /// Splits shared nodes at lattice points: at each point, the octants of its mask no longer share nodes
-    /// with the others. Then remodels the elements around the points [Endo 2004, §3.2]. Positions and
-    /// velocities are transferred; linear and angular momentum are preserved. Returns the detached pieces.
-    /// Has no effect on a body of [`Grading::Coarse`].
+    /// Splits shared nodes. Each entry of `at` is a lattice point and a mask of octants: the voxels in these
+    /// octants no longer share nodes with the other voxels around the point. Then remodels the elements
+    /// around the points [Endo 2004, §3.2]. Positions and velocities are transferred; linear and angular
+    /// momentum are preserved. Returns the detached pieces. Has no effect on a body of [`Grading::Coarse`].
     #[inline(never)]
     pub fn release(&mut self, at: &[(Point, u8)]) -> Vec<PieceId> {
         self.tear(at).detached
@@ -30,7 +30,7 @@ impl<D: Dim> SoftBody<D> {
         }
         let mut changed: Vec<Point> = Vec::new();
         for &(point, side) in at {
-            // A point often occurs several times in sequence; it is examined once.
+            // Lists each point once, although a point often has several consecutive entries.
             if self.topology.connectivity.release(point, side) && changed.last() != Some(&point) {
                 changed.push(point);
             }
@@ -82,8 +82,8 @@ impl<D: Dim> SoftBody<D> {
         changes
     }
 
-    /// Returns the elements around the given points in groups, ascending within each group. Two elements are
-    /// in one group if they are around the same point, directly or through a chain of such elements.
+    /// Returns the elements around the given points, in groups. Two elements are in one group if they are
+    /// around the same point, or connected through a chain of such elements. Ids ascend within each group.
     fn places_around(&self, points: &[Point]) -> Vec<Vec<ElementId>> {
         let around = |&at: &Point| self.topology.mesh.owners_around(at, D::ALL_CORNERS);
         let elements = points.iter().flat_map(around);
@@ -98,8 +98,8 @@ impl<D: Dim> SoftBody<D> {
         joined.sort(&elements)
     }
 
-    /// Transfers the state of the old nodes and elements to the new ones; `touched` are the nodes of the
-    /// elements in `seated`, which are new or changed.
+    /// Transfers the state of the old nodes and elements to the new ones. `touched` are the nodes of all new
+    /// or changed elements.
     fn pass_on(&mut self, remodelled: &Remodelled, touched: &[NodeId]) {
         let Remodelled {
             removed,
@@ -181,9 +181,9 @@ impl<D: Dim> SoftBody<D> {
         new.iter().filter_map(of).collect()
     }
 
-    /// Returns those nodes that are not fixed, sorted by piece.
+    /// Returns those of the given nodes that are neither fixed nor asleep, sorted by piece.
     fn free_by_piece(&self, nodes: impl Iterator<Item = NodeId>) -> Vec<NodeId> {
-        // Fixed nodes keep their velocity; the others of each piece keep its momentum.
+        // Only free nodes take part in the correction of momentum, because fixed nodes keep their velocity.
         let free = |id: &NodeId| self.state.inverse_mass[*id] > 0.0;
         let mut nodes: Vec<NodeId> = nodes.filter(free).collect();
         nodes.sort_by_key(|&id| self.topology.pieces.of_node(id));
@@ -196,8 +196,8 @@ impl<D: Dim> SoftBody<D> {
         nodes.chunk_by(|&a, &b| of_node(a) == of_node(b)).collect()
     }
 
-    /// Gives new nodes the weighted state of old ones. Reads all old states before writing, because ids may
-    /// be reused.
+    /// Interpolates the state of new nodes from old nodes. Reads all old states before writing, because a new
+    /// node may have the id of an old one.
     fn inherit(&mut self, remodelled: &Remodelled) {
         let inherited = &remodelled.inherited;
         let mean = |rows: &IndexVec<NodeId, Row>, from: &[(NodeId, f64)]| {
@@ -237,9 +237,9 @@ impl<D: Dim> SoftBody<D> {
         ascending(nodes, self.topology.mesh.node_capacity())
     }
 
-    /// Adds the rigid motion that restores the momentum `before` about `centre`. Interpolation preserves
-    /// linear momentum, but the angular momentum inside an element changes if new nodes are created between
-    /// its corners, because their masses move.
+    /// Adds the rigid motion that restores the momentum `before` about `centre` to the velocities of `nodes`.
+    /// Interpolation preserves linear momentum. It changes angular momentum if new nodes are created between
+    /// the corners of an element, because part of the mass moves to the new nodes.
     fn restore_momentum(&mut self, nodes: &[NodeId], before: Momentum, centre: DVec3) {
         let missing = before.less(Momentum::of(self.states(nodes), centre));
         let masses = self.states(nodes).map(|(x, _, mass)| (x, mass));

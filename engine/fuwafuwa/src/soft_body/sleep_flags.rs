@@ -8,7 +8,7 @@ use crate::topology::mesh::Node;
 use glam::Vec3;
 
 impl<D: Dim> SoftBody<D> {
-    /// Puts all marked pieces to sleep, or wakes them.
+    /// Puts all pieces to sleep for which `marked` is true, or wakes them.
     pub(crate) fn set_asleep(&mut self, marked: &IndexVec<PieceId, bool>, asleep: bool) {
         let mut elements = Vec::new();
         for (id, element) in self.topology.mesh.elements() {
@@ -50,8 +50,9 @@ impl<D: Dim> SoftBody<D> {
         before.extend(self.state.position.entries().map(both));
     }
 
-    /// Quarantines pieces with a node that is not finite or faster than `top_speed` [m/s]: resets them to the
-    /// recorded positions and puts them to sleep for good. Returns their numbers.
+    /// Quarantines pieces with a node that is not finite or faster than `top_speed` [m/s]: resets their nodes
+    /// to the positions recorded at the start of the tick, and puts the pieces to sleep for good. Returns the
+    /// numbers of these pieces.
     pub(crate) fn quarantine(&mut self, top_speed: f32) -> Vec<PieceId> {
         let mut marked: IndexVec<PieceId, _> = vec![false; self.topology.pieces.list.len()].into();
         for &id in &self.cache.awake {
@@ -76,9 +77,10 @@ impl<D: Dim> SoftBody<D> {
         numbers
     }
 
-    /// Recorded position of a node. A new node, or one whose id was reused, is placed relative to the nearest
-    /// recorded node of its elements, or at its rest position if there is none. Only its own elements count:
-    /// across a crack, lattice neighbours may be far away.
+    /// Position of a node at the start of the tick. A node without a recorded position, because it or its id
+    /// is new, is placed relative to the nearest recorded node of its elements. If there is none, the node is
+    /// placed at its rest position. Nodes of other elements are not used: across a crack, lattice neighbours
+    /// may be far apart.
     fn position_before(&self, id: NodeId, at: Point) -> Row {
         let was = |id: NodeId, at: Point| {
             let known = self.cache.before.get(id.index());

@@ -82,8 +82,8 @@ pub struct ElementView {
     pub children: u8,
     /// Elastic strain ‖F − R‖: distance of the deformation gradient from its rotation; 0 at rest.
     pub strain: f32,
-    /// Positions of the slots of the 3 × 3 (× 3) lattice [m]; slots that the element does not reach hold its
-    /// centre.
+    /// Positions of the slots of the 3 × 3 (× 3) lattice [m]. A slot outside the region that the element
+    /// fills has the position of the element's centre.
     pub slots: [Vec3; 27],
 }
 
@@ -92,13 +92,13 @@ pub struct ElementView {
 pub struct ElementFace {
     /// Slots at the corners: two in 2D, four in 3D, in the order of [`face_corners`].
     pub slots: [usize; 4],
-    /// In 3D: whether each side is an edge of the region, because no other face continues beyond it in the
-    /// same plane. Side k leads from corner k to the next one.
+    /// In 3D: whether each side of the face is an edge of the region, that is, no other face continues in the
+    /// same plane beyond the side. Side k leads from corner k to the next corner.
     pub is_edge: [bool; 4],
 }
 
-/// Returns the squares or cubes that an element fills, one for each child, or one for a cell of level 0:
-/// their low corners and their width, both in slots.
+/// Returns the squares or cubes that an element fills, as their low corners and widths, both in slots. There
+/// is one for each filled child, or a single one for an element of level 0.
 pub fn blocks<D: Dim>(level: u8, children: u8) -> impl Iterator<Item = (Point, i32)> {
     let whole = (level == 0).then_some(([0; 3], 2));
     let filled = (0..D::CORNERS).filter(move |child| level > 0 && children >> child & 1 == 1);
@@ -143,12 +143,12 @@ pub fn faces<D: Dim>(level: u8, children: u8) -> Vec<ElementFace> {
 }
 
 /// Returns the slots around the region that a 2D element fills, in one counterclockwise round. A slot occurs
-/// twice if two children touch only there.
+/// twice if two children touch only at that slot.
 pub fn outline_slots(level: u8, children: u8) -> Vec<usize> {
     let mut faces = faces::<Dim2>(level, children);
     let mut at = faces.first().map(|face| face.slots[0]);
     let mut ring = Vec::new();
-    // If several faces continue here, the last one belongs to another child.
+    // If two faces begin at this slot, takes the last one, which belongs to another child.
     while let Some(next) = faces.iter().rposition(|face| Some(face.slots[0]) == at) {
         let [from, to, ..] = faces.remove(next).slots;
         ring.push(from);
@@ -269,11 +269,12 @@ impl<D: Dim> SoftBody<D> {
     /// Returns the closed lines around all pieces of a 2D body; empty in 3D.
     #[inline(never)]
     pub fn outlines(&self) -> Vec<Outline> {
-        // Only in 2D does each surface node have one next node.
+        // Surface nodes form closed lines only in 2D.
         if D::N != 2 {
             return Vec::new();
         }
-        // Every node of the surface starts one segment and ends one.
+        // For each node, the surface segment that starts there. Every surface node starts one segment and
+        // ends one.
         let mut leaving: IndexVec<NodeId, Option<Facet>> =
             vec![None; self.topology.mesh.node_capacity()].into();
         for facet in self.facets() {
@@ -333,8 +334,8 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Elastic strain ‖F − R‖ of an element, if it is alive; 0.1 is a stretch by a tenth. [Plastic
-    /// strain](SoftBody::plastic_strain) is not included.
+    /// Elastic strain ‖F − R‖ of an element, or `None` if the element was removed; 0.1 is a stretch by a
+    /// tenth. [Plastic strain](SoftBody::plastic_strain) is not included.
     #[inline(never)]
     pub fn strain(&self, id: ElementId) -> Option<f32> {
         Some(self.strain_of(id, self.topology.mesh.element(id)?))
@@ -353,8 +354,8 @@ impl<D: Dim> SoftBody<D> {
         sum.sqrt()
     }
 
-    /// Positions of the slots of an element: those of its nodes, or interpolated between the nodes that
-    /// represent them.
+    /// Positions of the slots of an element [m]. A slot without a node is in the middle between its
+    /// neighbours on an edge, a face or the cell, or at the element's centre if a neighbour is missing.
     fn slot_positions(&self, element: &Element) -> [Vec3; 27] {
         let centre = self.deformation(element).0;
         let mut positions: [Option<Vec3>; 27] = [None; 27];

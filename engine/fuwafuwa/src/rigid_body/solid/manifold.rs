@@ -4,11 +4,13 @@ use super::Solid;
 use super::oriented_box::{Brick, Separation, Side};
 use glam::Vec3;
 
-/// Minimum cosine between the normal at an end of a capsule and the normal of the manifold: an end is a
-/// contact point if the angle is below 26°. For a capsule that lies on a face, the angle is 0.
+/// Minimum cosine between the normal of the manifold and the normal of the other shape at an end of a
+/// capsule. The end becomes a contact point if the angle is below 26°. If a capsule lies flat on a face, the
+/// angle is 0.
 const ALONG: f32 = 0.9;
-/// Minimum distance of the nearest point of a capsule from the other contact points, as a share of its
-/// radius. A closer point would be a duplicate.
+/// Minimum distance between the contact point nearest to the other shape and the contact points at the ends
+/// of a capsule, as a share of the capsule's radius. If an end is closer, the nearest point is left out as a
+/// duplicate.
 const APART: f32 = 0.5;
 
 /// Contact manifold of two shapes.
@@ -24,9 +26,10 @@ pub struct Manifold {
 pub struct ManifoldPoint {
     /// Midpoint between both surfaces [m].
     pub at: Vec3,
-    /// Distance of the surfaces there [m], negative if they overlap.
+    /// Distance between both surfaces at the contact point [m], negative if they overlap.
     pub gap: f32,
-    /// Feature key, equal in the next substep for the same corners and edges.
+    /// Feature key. It stays equal between substeps while the same corners and edges touch, so that the
+    /// solver can start from the previous impulse.
     pub key: u32,
 }
 
@@ -68,14 +71,16 @@ impl Manifold {
     }
 }
 
-/// Returns the contact point of a ball with a surface of the given normal at the distance `gap` [m] below it.
+/// Returns the contact point of a ball with a surface below it. The surface has the unit normal `normal`, and
+/// `gap` [m] is its distance from the ball.
 fn beneath(centre: Vec3, normal: Vec3, radius: f32, gap: f32, key: u32) -> ManifoldPoint {
     let at = centre - normal * (radius + 0.5 * gap);
     ManifoldPoint { at, gap, key }
 }
 
-/// Returns the manifold of a capsule with any shape except a ball. Contact points are the nearest point of
-/// the capsule and the ends of both shapes.
+/// Returns the manifold of a capsule with any shape except a ball. Contact points are the point of the
+/// capsule's segment nearest to the other shape, and the ends of the segment; also the ends of the other
+/// shape if it is a capsule.
 fn bar(own: &Solid, other: &Solid) -> Manifold {
     let &Solid::Capsule { from, to, radius } = own else {
         return Manifold::default();
@@ -142,12 +147,13 @@ fn bricks(own: &Brick, other: &Brick, margin: f32) -> Manifold {
     Manifold { normal, points }
 }
 
-/// Returns the contact points of a box on the face of another box, `ground`. The face is normal to `axis`,
-/// with the outward normal `out`.
+/// Returns the contact points of the box `brick` on a face of the box `ground`. The face is perpendicular to
+/// `axis` and has the outward normal `out`.
 fn on_face(ground: &Brick, axis: usize, out: Vec3, brick: &Brick) -> Vec<ManifoldPoint> {
     let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != axis).collect();
     let level = out.dot(ground.centre) + ground.half[axis];
-    // The face with the normal most opposite to that of the ground face.
+    // Face of `brick` that lies on the ground: its normal is the most opposite to the normal of the ground
+    // face.
     let facing = |k: &usize| brick.axes[*k].dot(out).abs();
     let face = (0..brick.axis_count).max_by(|a, b| facing(a).total_cmp(&facing(b)));
     let face = face.unwrap_or(axis);
@@ -183,7 +189,8 @@ fn around(brick: &Brick, face: usize, is_upper: bool) -> Vec<(Vec3, u32)> {
         .collect()
 }
 
-/// Clips a polygon (in 2D a segment), and keeps the part with coordinates up to `most` [m] along a direction.
+/// Clips a polygon (in 2D a segment) by a plane: keeps the part in which the coordinate along `way` is at
+/// most `most` [m].
 fn clipped(polygon: &[(Vec3, u32)], way: Vec3, most: f32, plane: u32) -> Vec<(Vec3, u32)> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     let is_line = polygon.len() == 2;
@@ -240,7 +247,7 @@ mod tests {
         Solid::Box { centre, half }
     }
 
-    /// Checks the number of points, the smallest gap and the normal, in both orders.
+    /// Checks the number of contact points, the smallest gap and the normal, for both orders of the shapes.
     fn check(a: Solid, b: Solid, count: usize, gap: f32, normal: Vec3) {
         for (first, second, sign) in [(a, b, 1.0), (b, a, -1.0)] {
             let found = first.manifold(&second, 0.1);

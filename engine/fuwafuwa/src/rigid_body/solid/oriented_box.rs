@@ -5,9 +5,9 @@ use crate::math::rotation::Rotation;
 use glam::Vec3;
 
 /// Bias of the separating-axis test, as a share of the smallest half extent. A face axis of the second box is
-/// chosen only if its separation exceeds the largest one of the first box by the bias. An edge axis must
-/// exceed the face axes of both boxes by the bias. Resting boxes therefore keep their contact points,
-/// preferably on faces, which have more of them.
+/// chosen only if its separation exceeds that of the first box's best face axis by the bias. An edge axis is
+/// chosen only if its separation exceeds that of the best face axis by the bias. Faces are preferred because
+/// they give more contact points. The bias keeps resting boxes from switching between axes.
 const BEHIND: f32 = 0.01;
 
 /// Box with its centre, half extents and axes.
@@ -114,7 +114,7 @@ impl Brick {
         for (own, others) in (0..9).map(|pair| (pair / 3, pair % 3)) {
             let way = self.axes[own].cross(other.axes[others]);
             let squared = way.dot(way);
-            // Parallel edges cannot separate boxes that face axes do not separate.
+            // Skips parallel edges: if they separate two boxes, a face axis separates the boxes, too.
             if squared > 1e-6 {
                 let way = way * (1.0 / squared.sqrt());
                 edges = larger(edges, along(way, Side::Edges(own, others)));

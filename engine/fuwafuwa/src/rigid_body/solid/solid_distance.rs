@@ -4,13 +4,14 @@ use super::oriented_box::Brick;
 use super::{Solid, distance_from_box};
 use glam::Vec3;
 
-/// Ternary-search steps for the nearest point of a segment, each of which keeps two thirds. 40 steps leave
-/// 1e-7 of its length, the resolution of single precision.
+/// Number of ternary-search steps for the nearest point of a segment. Each step keeps two thirds of the
+/// interval. After 40 steps, 1e-7 of the segment remains, the resolution of single precision.
 const NARROWINGS: usize = 40;
 
 impl Solid {
     /// Returns the distance to another shape [m], negative if they overlap, and the unit direction from the
-    /// other shape to this one. For oriented boxes corner to corner the distance is a lower bound.
+    /// other shape to this one. The distance is a lower bound between oriented boxes that are nearest at
+    /// their corners.
     pub fn gap(&self, other: &Self) -> (f32, Vec3) {
         match (*self, *other) {
             (Self::Ball { centre, radius }, _) => {
@@ -47,7 +48,7 @@ impl Solid {
                 let separation = both.map(|(own, other)| own.separation(&other));
                 separation.map_or((f32::INFINITY, Vec3::Y), |found| (found.gap, found.normal))
             }
-            // Two half-spaces overlap without bound, so no push can separate them.
+            // Two half-spaces cannot be pushed apart. The infinite distance excludes them from contacts.
             (Self::HalfSpace { normal, .. }, Self::HalfSpace { .. }) => (f32::INFINITY, normal),
         }
     }
@@ -59,9 +60,9 @@ fn turned((gap, normal): (f32, Vec3)) -> (f32, Vec3) {
 }
 
 impl Solid {
-    /// Returns the smallest distance of a segment's points from the shape [m], the normal there, and the
-    /// position on the segment from 0 to 1. A ternary search finds it, because along a segment the distance
-    /// from a convex shape has a single minimum.
+    /// Returns the smallest distance between a segment and the shape [m], the normal at the nearest point,
+    /// and the position of that point on the segment, from 0 to 1. A ternary search is exact enough, because
+    /// along a segment the distance from a convex shape has a single minimum.
     pub(super) fn nearest_of_segment(&self, from: Vec3, to: Vec3) -> (f32, Vec3, f32) {
         let at = |share: f32| self.distance(from + (to - from) * share);
         let (mut low, mut high) = (0.0f32, 1.0f32);
@@ -87,7 +88,7 @@ mod tests {
     use super::*;
     use crate::math::rotation::Rotation;
 
-    /// Checks the gap and the direction, in both orders.
+    /// Checks the gap and the direction between two shapes, in both orders.
     fn check(a: Solid, b: Solid, gap: f32, normal: Vec3) {
         for (first, second, sign) in [(a, b, 1.0), (b, a, -1.0)] {
             let (found, way) = first.gap(&second);

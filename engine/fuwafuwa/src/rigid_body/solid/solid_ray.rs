@@ -149,7 +149,8 @@ mod tests {
                 let at = |far: f32| shape.distance(from + way * far);
                 let begins_inside = at(0.0).0 < 0.0;
                 let Some((far, normal)) = shape.ray(from, way) else {
-                    // A ray that misses never crosses the surface.
+                    // A ray that misses never crosses the surface, so all its points are on the side of the
+                    // first one.
                     assert!((0..400).all(|step| (at(0.02 * step as f32).0 < 0.0) == begins_inside));
                     missed += 1;
                     continue;

@@ -29,15 +29,17 @@ pub struct Batch {
     /// Mask of the lanes that were inverted in the last evaluation.
     pub inverted: u8,
     pub half_size: Eight,
-    /// Quaternion in 3D; cosine and sine in 2D.
+    /// Rotation of each lane: a quaternion in 3D, cosine and sine in 2D.
     pub rotation: [Eight; 4],
-    /// Plastic inverse of each lane, if the material is plastic.
+    /// Plastic inverse of each lane; `None` if the material is elastic.
     pub undone: Option<Box<PlasticInverseLanes>>,
     pub node_count: u32,
-    /// Index of the first node of the batch, and of the force on that node.
+    /// Index of the first node of the batch in the node list of all batches. The force on that node has the same
+    /// index among the forces.
     pub first: u32,
-    /// Start of the class data in `numbers` or `pooled`, and their length.
+    /// Start of the class data in `Shared::numbers`, or in `Shared::pooled` for a pooled batch.
     pub element_class: u32,
+    /// Length of the class data.
     pub numbers: u32,
 }
 
@@ -51,14 +53,14 @@ pub struct BatchKey {
     pub asleep: bool,
 }
 
-/// Classes of the elements of a batch.
+/// Kind of a batch: which element classes it may contain.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BatchKind {
     /// Whole cells with nodes only in their corners.
     Plain,
-    /// One class.
+    /// Elements of a single class.
     Class(u32),
-    /// Any class with this number of nodes.
+    /// Elements of any class with this number of nodes.
     Pool(u32),
 }
 
@@ -79,7 +81,8 @@ pub struct Shared<'a> {
     pub nodes: &'a [u32],
 }
 
-/// Several batches, and the forces that they write; `first` is the index of the first node.
+/// Several batches, evaluated together, and the forces that they write; `first` is the index of the first node
+/// of the first batch.
 pub struct Group<'a> {
     pub blocks: &'a mut [Batch],
     pub forces: &'a mut [f32],
@@ -99,14 +102,15 @@ impl Batch {
         self.home.asleep || self.vacant == ALL_LANES
     }
 
-    /// Returns the range of the forces within those of a group; `first` is the index of the first node of the
-    /// group.
+    /// Returns the range of the batch's forces within the forces of its group. `first` is the index of the
+    /// group's first node.
     #[inline(always)]
     fn forces<D: Dim>(&self, first: usize) -> Range<usize> {
         (self.first as usize - first) * D::N..(self.end() - first) * D::N
     }
 
-    /// Returns the class data: one set for all lanes, or one for each.
+    /// Returns the class data in one of two slices: values that all lanes share, or values for each lane. The
+    /// other slice is empty.
     #[inline(always)]
     fn element_class<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
         let places = self.element_class as usize..(self.element_class + self.numbers) as usize;
@@ -117,8 +121,8 @@ impl Batch {
         }
     }
 
-    /// Returns the view for the kernel. `forces` are those of the whole group; `first` is the index of its
-    /// first node.
+    /// Returns the data of the batch for the kernel. `forces` holds the forces of the whole group; `first` is
+    /// the index of the group's first node.
     #[inline(always)]
     fn view<'a, D: Dim>(
         &'a mut self,

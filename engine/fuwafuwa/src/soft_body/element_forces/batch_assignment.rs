@@ -16,8 +16,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 impl<D: Dim> ElementBatches<D> {
-    /// Updates the batches after a remodelling: removes the elements `removed`, and adds or moves the
-    /// elements `seated`, of which some are `asleep`. The cost is proportional to the changes.
+    /// Updates the batches after a remodelling: takes out the elements `removed`, and adds the elements
+    /// `seated`, or moves them if they are in a batch already. `asleep` tells which elements sleep. The cost
+    /// is proportional to the changes.
     pub fn update(
         &mut self,
         mesh: &Mesh<D>,
@@ -81,7 +82,8 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Moves elements with their state to other batches; the flag says whether the element sleeps there.
+    /// Moves elements with their state to other batches. Each element is given with a flag that says whether
+    /// it sleeps from now on.
     fn relocate(&mut self, mesh: &Mesh<D>, movers: &[(ElementId, bool)]) {
         let state = |&(id, asleep): &(ElementId, bool)| {
             let element = mesh.element(id).expect("only live elements sleep or wake");
@@ -200,8 +202,9 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Adds elements of one class and material that are all asleep or all awake. First they fill vacant lanes
-    /// of the class. Then every eight of them get a new batch of the class, and the rest goes to the pool.
+    /// Adds elements of one class and material that are all asleep or all awake. They first fill vacant lanes
+    /// in batches of the class. Then each group of eight elements gets a new batch of the class. The last
+    /// elements, fewer than eight, join pooled batches.
     fn insert_class(&mut self, element_class: &ElementClass<D>, mut newcomers: &[PendingElement]) {
         let PendingElement {
             element,
@@ -283,7 +286,7 @@ impl<D: Dim> ElementBatches<D> {
         flow.copied().flatten().map(|_| PlasticInverseLanes::none())
     }
 
-    /// Returns the start of the class data in `numbers`; adds the data if necessary.
+    /// Returns the start of a class's data in `self.numbers`; appends the data if they are not there.
     fn stencil_of(&mut self, class: u32, numbers: &[f32]) -> u32 {
         let all = &mut self.numbers;
         *self.element_classes.entry(class).or_insert_with(|| {
@@ -300,8 +303,8 @@ impl<D: Dim> ElementBatches<D> {
         let lane = block.vacant.trailing_zeros() as usize;
         block.vacant &= !(1 << lane);
         let is_last = block.vacant == 0;
-        // The first element of a batch also fills the vacant lanes with its data, so that they compute finite
-        // values.
+        // Copies the data of the first element also into the vacant lanes of the batch, so that these lanes
+        // compute finite values.
         let lanes = if is_first { 0..LANES } else { lane..lane + 1 };
         let half_size = 0.5 * self.voxel_size * newcomer.element.cell.width() as f32;
         let first = block.first as usize;
@@ -323,7 +326,8 @@ impl<D: Dim> ElementBatches<D> {
                 }
             }
         }
-        // Clears the forces of the previous element: fracture may read them before the next evaluation.
+        // Clears the forces that the lane's previous element left, because fracture may read them before the
+        // next evaluation.
         for place in 0..newcomer.element.nodes.len() {
             let force = (first + place * LANES + lane) * D::N;
             self.forces[force..][..D::N].fill(0.0);

@@ -25,12 +25,12 @@ use fearless_simd::prelude::*;
 
 /// Data of one batch for the kernel.
 pub struct BlockView<'a> {
-    /// Node k of lane l at k · LANES + l.
+    /// Node indices of the batch: that of node k in lane l is at k · LANES + l.
     pub nodes: &'a [u32],
     pub half_size: &'a Eight,
-    /// Quaternion in 3D; cosine and sine in 2D.
+    /// Rotation of each lane: a quaternion in 3D, cosine and sine in 2D.
     pub rotation: &'a mut [Eight; 4],
-    /// Forces on these nodes, in the same order, with D::N components each.
+    /// Forces on the nodes in `nodes`, in the same order, with D::N components each.
     pub forces: &'a mut [f32],
     /// Mask of the lanes with an inverted element.
     pub inverted: &'a mut u8,
@@ -56,16 +56,17 @@ impl Moduli {
     }
 }
 
-/// Data of an element class: b, w r and w for each node, then the upper half of W, 1/V and the stiffness of
-/// the hourglass modes or of [`Law::Endo2004`]. `get` reads one number, for all lanes or for each.
+/// Data of an element class: b, w r and w for each node, then the upper half of W, then 1/V, then the
+/// stiffness of the hourglass modes or of [`Law::Endo2004`]. `get` reads the value at an index, for all
+/// lanes.
 pub trait Stencils {
     fn get<S: Simd>(&self, simd: S, index: usize) -> Lanes<S>;
 }
 
-/// Data of one class for all lanes.
+/// Class data of a batch in which all lanes have the same class.
 pub struct Uniform<'a>(pub &'a [f32]);
 
-/// Data of a class of its own for each lane.
+/// Class data of a batch in which each lane may have a different class.
 pub struct PerLane<'a>(pub &'a [Eight]);
 
 impl Stencils for Uniform<'_> {
@@ -100,7 +101,7 @@ pub struct Scratch {
     pub f: [[Eight; 3]; 3],
     moment: [[Eight; 3]; 3],
     centre: [Eight; 3],
-    /// Stress; the rotation under [`Law::Endo2004`].
+    /// Stress of each element. Under [`Law::Endo2004`], which has no stress, the rotation of the element.
     pub stress: [[Eight; 3]; 3],
 }
 
@@ -138,7 +139,8 @@ pub fn plain_gradient<D: Dim, S: Simd>(
         let (d0, s0) = (x[1][i], x[1][i]);
         let (d1, s1) = (x[3][i] - x[2][i], x[3][i] + x[2][i]);
         let f = &mut scratch.f[i];
-        // Pairs along the first axis, then pairs of those; 3D has one more axis.
+        // F from the differences, and c from the sums, of neighbouring corners: first in pairs along the
+        // first axis, then in pairs of pairs along the next axes.
         if D::N == 2 {
             (scale * (d0 + d1)).store_array(&mut f[0]);
             (scale * (s1 - s0)).store_array(&mut f[1]);
@@ -254,7 +256,8 @@ pub fn plain_forces<D: Dim, S: Simd>(
         for j in 0..D::N {
             m[j] = bend * load(simd, &scratch.f[i][j]) - area * load(simd, &scratch.stress[i][j]);
         }
-        // Sign combinations of the axes at each corner, with as few sums as there are corners.
+        // Force at each corner: ± m[0] ± m[1] ± m[2], with the signs of the corner's coordinates. Opposite
+        // corners share a sum.
         if D::N == 2 {
             let (sum, difference) = (m[0] + m[1], m[0] - m[1]);
             force[0][i] -= sum;
@@ -316,7 +319,8 @@ pub fn forces<D: Dim, S: Simd>(
             }
         }
     } else {
-        // Young's modulus times the length h^(d−2).
+        // Factor h^(d−2), which converts Young's modulus to a stiffness per node: 1 in 2D, the half size h in
+        // 3D.
         let length = if D::N == 2 { splat(simd, 1.0) } else { half };
         stiffness = splat(simd, moduli.young) * own_stiffness * length;
         for i in 0..D::N {
@@ -375,7 +379,7 @@ pub(super) fn stress_of<D: Dim, S: Simd>(
     let twice_shear = splat(simd, moduli.twice_shear);
     let pressure = splat(simd, moduli.lame) * stretch - twice_shear;
     let mut cofactor = [[zero; 3]; 3];
-    // The minors of a 2 × 2 matrix are its entries.
+    // Cofactors in 2D: the entries of `f` itself, swapped and signed.
     if D::N == 2 {
         cofactor[0] = [f[1][1], zero - f[1][0], zero];
         cofactor[1] = [zero - f[0][1], f[0][0], zero];

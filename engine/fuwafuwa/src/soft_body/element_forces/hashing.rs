@@ -8,8 +8,8 @@ use crate::foundation::hash::{Hash, HashState};
 
 impl<D: Dim> HashState for ElementBatches<D> {
     fn hash_state(&self, hash: &mut Hash) {
-        // The fields without a name follow from the mesh, the materials and the order of the changes, and do not
-        // affect the result.
+        // Fields bound to `_` are not hashed. They follow from the mesh, the materials and the order of past
+        // changes, and do not affect the result of a simulation.
         let Self {
             law,
             blocks,

@@ -55,9 +55,9 @@ impl PlasticInverseLanes {
     }
 }
 
-/// Second loop for plastic elements: computes the stress like that of the kernel, then applies plastic flow.
-/// Kept out of the kernel, and in separate functions: as one function, it took the compiler minutes with
-/// scalar lanes.
+/// Second loop for plastic elements: computes the stress like that of elastic elements, then applies plastic
+/// flow. Split into several functions outside the elastic kernel: as one function, it took minutes to compile
+/// with scalar lanes.
 #[inline(never)]
 pub fn plastic_stress<D: Dim, S: Simd>(
     simd: S,
@@ -178,14 +178,16 @@ fn flown<D: Dim, S: Simd>(
             eased[i][j] *= scale;
         }
     }
-    // Flow back towards the original shape makes the element stiffer. Flow that would increase the stored
-    // energy is rejected.
+    // Flow back towards the original shape raises the stiffness factor of the element, and may thereby raise its
+    // energy. Compares the stored energy before and after, so that flow that would increase it is rejected.
     let whole = determinant::<D, S>(elastic);
     let before =
         kneaded_stiffness::<D, S>(simd, g) * density::<D, S>(simd, moduli, &stretch, whole);
     let after =
         kneaded_stiffness::<D, S>(simd, &next) * density::<D, S>(simd, moduli, &eased, whole);
-    // The element flows only if four conditions hold. Comparisons with NaN are false, so NaN prevents flow.
+    // The element flows only if four quantities are positive: the room below the plastic limit, the energy
+    // loss, the excess over the minimum volume, and the excess strain. A comparison with NaN is false, so NaN
+    // prevents flow.
     let (now, then) = (squared::<D, S>(zero, g), squared::<D, S>(zero, &next));
     let room = splat(simd, flow.most_flown) - then;
     let room = if_positive(room, room, now - then);
@@ -201,7 +203,7 @@ fn flown<D: Dim, S: Simd>(
     kept
 }
 
-/// Elastic energy density of a stretch in an element with volume ratio `volume`.
+/// Elastic energy density [J/m³] of the symmetric stretch `stretch` in elements with volume ratio `volume`.
 #[inline(always)]
 fn density<D: Dim, S: Simd>(
     simd: S,
@@ -221,7 +223,8 @@ fn density<D: Dim, S: Simd>(
         + splat(simd, moduli.young) * below * below)
 }
 
-/// Returns the stiffness factor 1 / λ_max(GᵀG), estimated from the trace and the norm of GᵀG.
+/// Returns the stiffness factor 1 / λ_max(GᵀG) of elements with plastic inverse G, estimated from the trace
+/// and the norm of GᵀG.
 #[inline(always)]
 fn kneaded_stiffness<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
     let zero = splat(simd, 0.0);
@@ -245,14 +248,14 @@ fn kneaded_stiffness<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
     splat(simd, 1.0) / (mean + (share * spread).sqrt())
 }
 
-/// Returns 1 over the square root (2D) or cube root (3D) of a number near 1.
+/// Returns the inverse square root (2D) or inverse cube root (3D) of a number near 1.
 #[inline(always)]
 fn inverse_root<D: Dim, S: Simd>(simd: S, of: Lanes<S>) -> Lanes<S> {
     let one = splat(simd, 1.0);
     if D::N == 2 {
         return one / of.sqrt();
     }
-    // Newton's iteration: from 1, three rounds are enough for 0.8 to 1.2.
+    // Inverse cube root by Newton's iteration from 1; three rounds are enough for numbers from 0.8 to 1.2.
     let (four, third) = (splat(simd, 4.0), splat(simd, 1.0 / 3.0));
     let mut root = one;
     for _ in 0..3 {
@@ -276,7 +279,7 @@ fn product<D: Dim, S: Simd>(zero: Lanes<S>, a: &Matrix<S>, b: &Matrix<S>) -> Mat
 
 #[inline(always)]
 fn determinant<D: Dim, S: Simd>(m: &Matrix<S>) -> Lanes<S> {
-    // The third axis is unchanged in 2D.
+    // In 2D the third axis is not deformed, so the 2 × 2 determinant is the whole one.
     if D::N == 2 {
         return m[0][0] * m[1][1] - m[0][1] * m[1][0];
     }

@@ -14,8 +14,9 @@ use glam::Vec3;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 impl<D: Dim> ElementBatches<D> {
-    /// Whether a state read from a file matches the elements of a mesh. Its numbers may be arbitrary: pieces
-    /// that become non-finite are quarantined after the tick.
+    /// Returns whether a state read from a file has the right number of entries for the elements of a mesh,
+    /// and valid plastic inverses. Rotations and forces may have any value: pieces that become non-finite are
+    /// quarantined after the tick.
     pub fn is_sound(&self, mesh: &Mesh<D>) -> bool {
         let numbers = |(_, element): (_, &Element)| parts::<D>() + element.nodes.len() * D::N;
         let numbers: usize = mesh.elements().map(numbers).sum();
@@ -101,7 +102,8 @@ impl<D: Dim> ElementBatches<D> {
     }
 }
 
-/// Whether a plastic inverse is possible: it preserves volume, and leaves the third axis unchanged in 2D.
+/// Returns whether a plastic inverse is valid: it preserves volume, and leaves the third axis unchanged in
+/// 2D.
 fn is_sound<D: Dim>(dent: &PlasticInverse) -> bool {
     let [x, y, z] = *dent;
     let volume = x.dot(y.cross(z));

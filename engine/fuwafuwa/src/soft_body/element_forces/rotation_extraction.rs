@@ -16,7 +16,7 @@ pub fn turn<D: Dim, S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) 
     for part in 0..4 {
         q[part] = load(simd, &rotation[part]);
     }
-    // Two iterations follow a body that spins and is squashed at the same time; one iteration lags.
+    // Performs two iterations, because one iteration lags behind a body that spins while it is squashed.
     q = turn_in_space(simd, f, turn_in_space(simd, f, q));
     for part in 0..4 {
         q[part].store_array(&mut rotation[part]);
@@ -24,8 +24,8 @@ pub fn turn<D: Dim, S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) 
     matrix_of(simd, q)
 }
 
-/// Returns the exact rotation in 2D: (cos, sin) ∝ (F₀₀ + F₁₁, F₁₀ − F₀₁). If both vanish, the rotation is
-/// unchanged.
+/// Returns the rotation of a 2D deformation F exactly: (cos, sin) ∝ (F₀₀ + F₁₁, F₁₀ − F₀₁). If both
+/// components vanish, keeps the previous rotation.
 #[inline(always)]
 fn turn_in_plane<S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) -> Matrix<S> {
     let zero = splat(simd, 0.0);
@@ -40,7 +40,7 @@ fn turn_in_plane<S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) -> 
     [[cosine, zero - sine, zero], [sine, cosine, zero], [zero; 3]]
 }
 
-/// Performs one iteration towards the rotation in 3D.
+/// Returns the 3D rotation after one iteration from `q` towards the rotation of the deformation `f`.
 #[inline(always)]
 fn turn_in_space<S: Simd>(simd: S, f: &Matrix<S>, q: [Lanes<S>; 4]) -> [Lanes<S>; 4] {
     let zero = splat(simd, 0.0);

@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SavedElementStates {
     pub law: Law,
-    /// For each element its rotation, then the forces on its nodes [N], in their order.
+    /// For each element its rotation, then the forces on its nodes [N], in the order of the nodes.
     pub numbers: Vec<f32>,
     /// Plastic inverses other than the identity, by ascending id.
     pub undone: Vec<(ElementId, PlasticInverse)>,
-    /// Whether each element was inverted.
+    /// Whether each element was inverted in the last evaluation.
     pub inverted: Vec<bool>,
 }
