@@ -99,9 +99,9 @@ fn plane_pieces(
 
 fn plane_outline(painter: &mut Painter, frame: PaperTransform, line: &Outline, torn: Role) {
     let spots: Vec<PaperPoint> = line.points.iter().map(|&at| frame.spot(at)).collect();
-    for (k, &is_fresh) in line.is_fresh.iter().enumerate() {
+    for (k, &is_torn) in line.is_torn.iter().enumerate() {
         let ends = vec![spots[k], spots[(k + 1) % spots.len()]];
-        let (width, role) = match is_fresh {
+        let (width, role) = match is_torn {
             true => (1.5, torn),
             false => (2.0, Role::Ink),
         };

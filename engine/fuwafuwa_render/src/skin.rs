@@ -110,7 +110,7 @@ impl SkinMesh {
             if element.cell.level == 0 || element.children != Dim2::ALL_CORNERS {
                 continue;
             }
-            let slots = &mesh.stencil(element).slots;
+            let slots = &mesh.element_class(element).slots;
             let corners = [0, 1, 2, 3].map(|index| {
                 let slot = slot_index(scale(corner(index), 2)) as u8;
                 let place = slots.iter().position(|&known| known == slot)?;

@@ -335,7 +335,9 @@ impl Level {
 
 /// Returns the hash of a scene; see [`Level::hash`].
 pub(crate) fn hash_of(scene: &Scene) -> u64 {
-    Hash::of(text_of(scene).as_bytes())
+    // The former name of this key keeps the levels of existing replays, links and logbooks.
+    let text = text_of(scene).replacen("\nmax_substeps = ", "\nmost_substeps = ", 1);
+    Hash::of(text.as_bytes())
 }
 
 pub(crate) fn text_of(scene: &Scene) -> String {

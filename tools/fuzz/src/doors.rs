@@ -6,7 +6,9 @@ use base64::Engine;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
 use fuwafuwa::MAX_EXTENT;
 use fuwafuwa::inspect::Hash;
-use fuwafuwa::{Dim, Dim2, Dim3, Material, SoftBody, VoxelGrid, World, WorldConfig, snapshot};
+use fuwafuwa::{
+    Dim, Dim2, Dim3, Material, SoftBody, Vec3, VoxelGrid, World, WorldConfig, snapshot,
+};
 use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
 use fuwafuwa_scenes::import::{Colours, Model, Picture};
 use fuwafuwa_scenes::scene::BodyText;
@@ -136,7 +138,7 @@ pub fn recording(bytes: &[u8]) -> bool {
         .text()
         .expect("a recording that was read is not too long");
     Recording::read("a.toml", &written).expect("what was stored can be read");
-    recording.goals.truncate(2);
+    recording.targets.truncate(2);
     match recording.scene.dim {
         2 => play::<Dim2>(&recording.scene) && recording.replay::<Dim2>(|_| {}).is_ok(),
         _ => play::<Dim3>(&recording.scene) && recording.replay::<Dim3>(|_| {}).is_ok(),
@@ -193,7 +195,7 @@ fn written(link: &Link) -> Result<String, LinkError> {
 fn begin(level: Level) {
     if is_small(&level) {
         let mut round = AnyRound::new(Arc::new(level));
-        round.step(InputFrame::towards([0.5; 3]));
+        round.step(InputFrame::towards(Vec3::splat(0.5)));
     }
 }
 
@@ -248,11 +250,8 @@ fn go_on<D: Dim>(bytes: &[u8]) -> bool {
     let again =
         snapshot::load::<D>(&snapshot::save(&world)).expect("a saved snapshot can be loaded");
     assert_eq!(again.hash(), world.hash());
-    let voxels: usize = world
-        .soft_bodies()
-        .map(|(_, body)| body)
-        .map(|body| body.grid().solid_count())
-        .sum();
+    let counts = { world.soft_bodies() }.map(|(_, body)| body.grid().solid_count());
+    let voxels: usize = counts.sum();
     if voxels <= FEW_VOXELS {
         step(&mut world);
     }

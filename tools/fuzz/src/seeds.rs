@@ -5,8 +5,8 @@ use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Joint, JointAnchor, JointKind, Knife, Material, RigidBody, Rotation, Shape,
-    SoftBody, VoxelGrid, World, WorldConfig, snapshot,
+    Dim, Dim2, Dim3, DimVector, Joint, JointAnchor, JointKind, Knife, Material, RigidBody,
+    Rotation, Shape, SoftBody, Vec3, VoxelGrid, World, WorldConfig, snapshot,
 };
 use fuwafuwa_scenes::{Recording, Scene, scene};
 use fuwafuwa_surgery::phantom;
@@ -104,8 +104,8 @@ fn small_rounds() -> Vec<Replay> {
         let mut round = AnyRound::new(Arc::new(level));
         for tick in 0..61 {
             let away = 0.01 * tick as f32;
-            let frame = InputFrame::towards([away, 0.5, 0.0]);
-            round.step(frame.with(1, [-away, 0.5, 0.0]));
+            let frame = InputFrame::towards(Vec3::new(away, 0.5, 0.0));
+            round.step(frame.with(1, Vec3::new(-away, 0.5, 0.0)));
         }
         round.replay()
     };
@@ -134,10 +134,11 @@ pub fn procedures() -> Vec<Vec<u8>> {
     let inside = |tool: Tool| {
         let mut procedure = Procedure::new(case.clone()).expect("the phantom can be operated on");
         for tick in 0..3 {
-            let at = [0.0, 0.06 - 0.01 * tick as f32, 0.0];
+            let at = Vec3::new(0.0, 0.06 - 0.01 * tick as f32, 0.0);
+            let rotation = Rotation::about(Vec3::Y, 0.1);
             let input = Input {
                 grips: tick > 1,
-                ..Input::default().at(tool, at, Rotation::about([0.0, 1.0, 0.0], 0.1))
+                ..Input::default().at(tool, at, rotation)
             };
             procedure.step(input).expect("the tool is within the room");
         }
@@ -164,29 +165,23 @@ fn tied<D: Dim>() -> Vec<u8> {
     let ball = VoxelGrid::ball(FEW, 1.0).expect("a small ball is a valid grid");
     let ball = SoftBody::new(ball, &[Material::default()]).expect("the material is given");
     let body = world.add_soft_body(ball);
-    let cube = |height: f32| Shape::Box {
-        centre: [0.5, height, 0.5],
-        half: [0.2; 3],
+    let vector = |x: f32, y: f32, z: f32| D::Vector::from_vec3(Vec3::new(x, y, z));
+    let cube = |height: f32| {
+        let half = D::Vector::splat(0.2);
+        Shape::cuboid(half).translated(vector(0.5, height, 0.5))
     };
-    let turned = Rotation::about([1.0, 2.0, 3.0], 0.4);
-    let mut gate = RigidBody::fixed(cube(-0.5))
+    let turned = Rotation::about(Vec3::new(1.0, 2.0, 3.0), 0.4);
+    let gate = RigidBody::fixed(cube(-0.5))
         .with_friction(0.5)
+        .with_sensor(true)
         .rotated(turned);
-    gate.is_sensor = true;
     world.add_rigid_body(gate).expect("a valid rigid body");
     let free = RigidBody::dynamic(cube(1.3), 1.0).rotated(turned);
     let rigid = world.add_rigid_body(free).expect("a valid rigid body");
-    let ends = [
-        JointAnchor::SoftBody {
-            body,
-            at: [0.5, 1.0, 0.5],
-            radius: 0.3,
-        },
-        JointAnchor::RigidBody {
-            rigid,
-            at: [0.5, 1.1, 0.5],
-        },
-        JointAnchor::Point([0.5, 2.0, 0.5]),
+    let anchors = [
+        JointAnchor::on(body, vector(0.5, 1.0, 0.5)).within(0.3),
+        JointAnchor::on(rigid, vector(0.5, 1.1, 0.5)),
+        JointAnchor::Point(vector(0.5, 2.0, 0.5)),
     ];
     let spring = JointKind::Spring {
         stiffness: 100.0,
@@ -194,19 +189,19 @@ fn tied<D: Dim>() -> Vec<u8> {
         length: 0.5,
     };
     let rope = JointKind::Rope { length: 0.8 };
-    for (first, second, tie) in [(0, 1, JointKind::Pin), (1, 2, spring), (0, 2, rope)] {
-        let joint = Joint::new([ends[first], ends[second]], tie);
+    for (first, second, kind) in [(0, 1, JointKind::Pin), (1, 2, spring), (0, 2, rope)] {
+        let joint = Joint::new([anchors[first], anchors[second]], kind);
         world.add_joint(joint).expect("both anchors exist");
     }
-    let mut holder = RigidBody::coupled(Shape::ball(0.1)).at([0.5, 0.9, 0.5]);
-    holder.is_sensor = true;
+    let holder = RigidBody::coupled(Shape::ball(0.1))
+        .at(vector(0.5, 0.9, 0.5))
+        .with_sensor(true);
     let holder = world.add_rigid_body(holder).expect("a valid rigid body");
-    let edge = [[0.0, 0.0, -0.3], [0.0, 0.0, 0.3]];
-    let knife = Knife::new(holder, edge, [0.0, -1.0, 0.0]);
+    let edge = [-0.3, 0.3].map(|z| vector(0.0, 0.0, z));
+    let knife = Knife::new(holder, edge, -D::Vector::Y);
     world.add_knife(knife).expect("the holder exists");
-    let below = [0.5, 0.5, 0.5];
     world
-        .set_target_position(holder, below)
+        .set_target_position(holder, D::Vector::splat(0.5))
         .expect("the target is near");
     for _ in 0..5 {
         world.step();

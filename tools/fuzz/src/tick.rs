@@ -15,7 +15,7 @@ pub fn play<D: Dim>(scene: &Scene) -> bool {
 /// Plays a tick, and checks that every mesh is consistent afterwards.
 pub fn step<D: Dim>(world: &mut World<D>) {
     world.step();
-    for body in world.soft_bodies() {
+    for (_, body) in world.soft_bodies() {
         let checked = body.mesh().validate(body.grid(), body.connectivity());
         checked.expect("a tick keeps every mesh consistent");
     }

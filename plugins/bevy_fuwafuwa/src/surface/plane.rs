@@ -179,7 +179,7 @@ impl PlaneSurface {
     fn put_up(&mut self, body: &SoftBody<Dim2>, id: ElementId, element: &Element) {
         let material = body.grid().material(body.mesh().first_voxel(element));
         let mut form = Form::default();
-        let slots = &body.mesh().stencil(element).slots;
+        let slots = &body.mesh().element_class(element).slots;
         let mut nodes = [None; 9];
         for (&slot, &node) in slots.iter().zip(&element.nodes) {
             nodes[usize::from(slot)] = Some(node);

@@ -72,7 +72,7 @@ fn disc_mesh_has_a_vertex_per_node_and_keeps_its_buffers() {
         .elements()
         .filter(|(_, element)| element.children != Dim2::ALL_CORNERS);
     let lone = parts.map(|(_, element)| {
-        let lone = closure::<Dim2>(element.children) & !own.stencil(element).mask;
+        let lone = closure::<Dim2>(element.children) & !own.element_class(element).mask;
         lone.count_ones() as usize
     });
     let expect = own.node_count() + lone.sum::<usize>();
