@@ -28,8 +28,8 @@ pub struct Material {
     ///
     /// The tip of a crack is as sharp as a voxel is small, so its tension grows with 1/√voxel. The solver
     /// compares the tension with toughness/√voxel, so that a body tears at the same load at every resolution
-    /// [Griffith 1921]. With a number of a fifth of the strength's number, cracks keep running once they have
-    /// started. With half of the strength's number, only the surface is scuffed.
+    /// [Griffith 1921]. As plain numbers, a toughness of a fifth of the strength gives cracks that keep running
+    /// once they have started. With a toughness of half the strength, only the surface is scuffed.
     pub toughness: f32,
     /// Yield strain. Strain beyond it becomes permanent; volume is preserved. Infinite (default) = purely
     /// elastic, like rubber.

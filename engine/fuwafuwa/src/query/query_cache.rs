@@ -244,8 +244,8 @@ fn cell_bounds<D: Dim>(cell: &FilledCell) -> Bounds {
     around_all(cell.corners.into_iter().take(D::CORNERS))
 }
 
-/// Returns the box around all nodes of a body. It contains all filled cells, even where the surface is folded
-/// in.
+/// Returns the box around all nodes of a body. The box contains all filled cells, even where the surface is
+/// folded in.
 fn body_bounds<D: Dim>(body: &SoftBody<D>) -> Bounds {
     let nodes = body.mesh().nodes();
     around_all(nodes.map(|(node, _)| body.positions()[node].xyz()))

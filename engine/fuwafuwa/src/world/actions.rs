@@ -293,8 +293,8 @@ impl<D: Dim> World<D> {
         self.change_rigid(rigid, |body| body.set_motion_type::<D>(motion_type))
     }
 
-    /// Sets the [friction](crate::RigidBody::friction) coefficient of a rigid body. Its present contacts are
-    /// discarded and detected again. The body and sleeping objects in contact with it wake.
+    /// Sets the [friction](crate::RigidBody::friction) coefficient of a rigid body. The present contacts of
+    /// the body are discarded and detected again. The body and sleeping objects in contact with it wake.
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, or the coefficient is negative or not finite.
@@ -307,8 +307,9 @@ impl<D: Dim> World<D> {
         })
     }
 
-    /// Sets the [restitution](crate::RigidBody::restitution) coefficient of a rigid body. Its present
-    /// contacts are discarded and detected again. The body and sleeping objects in contact with it wake.
+    /// Sets the [restitution](crate::RigidBody::restitution) coefficient of a rigid body. The present
+    /// contacts of the body are discarded and detected again. The body and sleeping objects in contact with
+    /// it wake.
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, or the coefficient is not 0 to 1.
@@ -325,8 +326,8 @@ impl<D: Dim> World<D> {
         })
     }
 
-    /// Sets whether a rigid body [is a sensor](crate::RigidBody::is_sensor). Its present contacts are
-    /// discarded and detected again. The body and sleeping objects in contact with it wake.
+    /// Sets whether a rigid body [is a sensor](crate::RigidBody::is_sensor). The present contacts of the body
+    /// are discarded and detected again. The body and sleeping objects in contact with it wake.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.

@@ -21,8 +21,8 @@ struct ContactSums<D: Dim> {
     last: Option<([ObjectRef; 2], usize)>,
 }
 
-/// Contact of a pair, summed over the points added so far, and the largest normal impulse of these points [N
-/// s].
+/// Contact of a pair, summed over the points added so far, and the largest normal impulse [N s] among these
+/// points.
 struct ContactSum<D: Dim> {
     contact: Contact<D>,
     largest: f32,
