@@ -203,8 +203,8 @@ fn friction_holds_box_only_below_friction_angle() {
     for (angle, holds) in [(0.3f32, true), (0.6, false)] {
         let mut world = world::<Dim3>(-9.81);
         let normal: Vec3 = upright(angle);
-        // A box slides if the tangent of the slope's angle exceeds its friction of 0.5: tan 0.3 = 0.31 holds,
-        // tan 0.6 = 0.68 slides.
+        // The friction coefficient is 0.5: the box rests at the angle 0.3 rad (tangent 0.31) and slides at 0.6 rad
+        // (tangent 0.68).
         let slope = Shape::half_space(normal, Vec3::ZERO);
         world
             .add_rigid_body(RigidBody::fixed(slope).with_friction(0.5))
