@@ -11,7 +11,7 @@ use fuwafuwa::{
 };
 use std::error::Error;
 
-/// Roughly brain tissue: a cut takes 8 J/m².
+/// Returns a material roughly like brain tissue, with a fracture energy of 8 J/m².
 fn organ() -> Material {
     Material {
         elasticity: Elasticity {
@@ -31,8 +31,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut numbers = std::env::args().skip(1);
     let voxels: usize = numbers.next().map_or(Ok(64), |word| word.parse())?;
     let max_substeps: u32 = numbers.next().map_or(Ok(8), |word| word.parse())?;
-    // The simulation is deterministic, so the minimum of three runs is the cost of a tick; the rest is noise
-    // of the machine.
+    // The simulation is deterministic, so runs differ only by the noise of the machine. The minimum of three
+    // runs is taken as the cost of a tick.
     let (mut times, told) = cut(voxels, max_substeps)?;
     for _ in 1..3 {
         let again = cut(voxels, max_substeps)?.0;
@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Returns the time of each tick [ms], and a summary of the cut.
 fn cut(voxels: usize, max_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn Error>> {
     let settings = WorldConfig {
-        // As in a bath, where buoyancy carries most of the organ's weight.
+        // A tenth of normal gravity: buoyancy carries most of the organ's weight, as in a bath.
         gravity: Vec3::NEG_Y,
         max_substeps,
         ..WorldConfig::default()
@@ -62,7 +62,7 @@ fn cut(voxels: usize, max_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn E
     let mut world = World::<Dim3>::new(settings)?;
     let table = Shape::half_space(Vec3::Y, Vec3::ZERO);
     world.add_rigid_body(RigidBody::fixed(table).with_friction(0.8))?;
-    // 0.16 m wide, 0.1 m high.
+    // The organ is 0.16 m wide and 0.1 m high.
     let size = 0.16 / voxels as f32;
     let grid = VoxelGrid::from_centres([voxels; 3], size, |at| {
         let scale = Vec3::new(1.0 / 0.08, 1.0 / 0.05, 1.0 / 0.06);

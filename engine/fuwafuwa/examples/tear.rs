@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         VoxelGrid::ball(64, 1.0)?,
         &[Material::default()],
     )?);
-    // Stronger than the default hand, which gets stuck halfway.
+    // Coupling stronger than the default, with which the hand gets stuck halfway through the disc.
     let strong = MotionType::Coupled {
         mass: 2.0,
         stiffness: 10_000.0,

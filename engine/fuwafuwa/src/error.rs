@@ -73,7 +73,7 @@ impl Error {
         }
     }
 
-    /// Returns the error with the owner of the parameter before its name, such as "material 2".
+    /// Puts `owner`, such as "material 2", before the name of the parameter in an error.
     pub(crate) fn of(self, owner: impl fmt::Display) -> Self {
         match self {
             Self::InvalidParameter {

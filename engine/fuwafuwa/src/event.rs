@@ -14,7 +14,7 @@ use crate::object_ref::{ObjectRef, ObjectSelector};
 pub enum Event<D: Dim> {
     /// A node was split: a crack advanced, or a cut passed here.
     NodeSplit {
-        /// The body.
+        /// Body of the split node.
         body: SoftBodyHandle,
         /// Position of the node [m].
         point: D::Vector,
@@ -23,14 +23,14 @@ pub enum Event<D: Dim> {
     },
     /// A piece was detached from its body.
     PieceDetached {
-        /// The body.
+        /// Body from which the piece was detached.
         body: SoftBodyHandle,
         /// Number of the new piece.
         piece: PieceId,
     },
     /// Two objects pressed on each other during the tick. Sent once per pair and tick, as long as contact
-    /// impulses act; a sleeping pair sends none. For a piece that folds onto itself, both objects of the pair
-    /// are the same.
+    /// impulses act; a sleeping pair sends none. If a piece folds onto itself, both objects of the pair are
+    /// that piece.
     ContactForce(Contact<D>),
     /// Two objects began to touch. The tick also has an [`Event::ContactForce`] with the same contact. Not
     /// sent for a piece that folds onto itself.
@@ -58,13 +58,13 @@ pub enum Event<D: Dim> {
     Cut {
         /// The knife.
         knife: KnifeHandle,
-        /// The body.
+        /// Body that was cut.
         body: SoftBodyHandle,
         /// Middle of the part of the cutting edge that is inside the body [m].
         point: D::Vector,
-        /// Area cut since the last such event of this knife, in all bodies, measured at rest [m²].
+        /// Area cut since the previous [`Event::Cut`] of this knife, in all bodies, measured at rest [m²].
         area: f32,
-        /// Work done since the last such event of this knife, in all bodies [J].
+        /// Work done since the previous [`Event::Cut`] of this knife, in all bodies [J].
         work: f32,
     },
     /// A joint exceeded its breaking force, or one of its bodies was removed. The joint was removed, too.
@@ -74,23 +74,23 @@ pub enum Event<D: Dim> {
     },
     /// A piece fell asleep.
     FellAsleep {
-        /// The body.
+        /// Body of the piece.
         body: SoftBodyHandle,
-        /// Number of the piece.
+        /// Number of the piece that fell asleep.
         piece: PieceId,
     },
     /// A sleeping piece was woken.
     WokeUp {
-        /// The body.
+        /// Body of the piece.
         body: SoftBodyHandle,
-        /// Number of the piece.
+        /// Number of the piece that woke.
         piece: PieceId,
     },
     /// A piece was [removed](crate::World::remove_piece) from the world.
     PieceRemoved {
-        /// The body. If this was its last piece, the handle is stale.
+        /// Body of the removed piece. The handle is stale if this was the last piece.
         body: SoftBodyHandle,
-        /// Number of the piece.
+        /// Number of the removed piece.
         piece: PieceId,
     },
     /// The last piece of a body was removed, and the body with it.
@@ -106,9 +106,9 @@ pub enum Event<D: Dim> {
     /// A piece became non-finite or too fast. It was stopped for good, so that it cannot affect the rest of
     /// the world.
     Quarantined {
-        /// The body.
+        /// Body of the quarantined piece.
         body: SoftBodyHandle,
-        /// Number of the piece.
+        /// Number of the quarantined piece.
         piece: PieceId,
     },
 }
@@ -153,7 +153,7 @@ pub struct Contact<D: Dim> {
     /// Position of the contact point with the largest normal impulse in a substep [m].
     pub point: D::Vector,
     /// Unit normal at `point`, from the second object towards the first. The contact pushes the first object
-    /// along the normal, and the second one against it.
+    /// along the normal, and the second object in the opposite direction.
     pub normal: D::Vector,
     /// Highest approach speed along the normal at any contact point, in any substep [m/s].
     pub speed: f32,

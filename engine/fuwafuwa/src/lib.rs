@@ -37,7 +37,7 @@
 // An axis indexes several vectors at once; zipping them would hide the formula.
 #![allow(clippy::needless_range_loop)]
 
-// In reading order: a module uses those above it.
+// Modules in reading order: each uses mainly those before it.
 mod error;
 mod foundation;
 mod math;

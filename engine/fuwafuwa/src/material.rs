@@ -27,9 +27,9 @@ pub struct Material {
     /// spread.
     ///
     /// The tip of a crack is as sharp as a voxel is small, so its tension grows with 1/√voxel. The solver
-    /// compares it with toughness/√voxel, so that a body tears at the same load at every resolution [Griffith
-    /// 1921]. A fifth of the strength (in these units) gives cracks that keep running once they have started;
-    /// with half of it, surfaces only scuff.
+    /// compares the tension with toughness/√voxel, so that a body tears at the same load at every resolution
+    /// [Griffith 1921]. As plain numbers, a toughness of a fifth of the strength gives cracks that keep running
+    /// once they have started. With a toughness of half the strength, only the surface is scuffed.
     pub toughness: f32,
     /// Yield strain. Strain beyond it becomes permanent; volume is preserved. Infinite (default) = purely
     /// elastic, like rubber.
@@ -37,9 +37,9 @@ pub struct Material {
     /// About 0.05 is clay, which keeps its pressed shape; 0.3 is dough, which gives way slowly. Far below
     /// 0.01 a body flows under its own weight. Ignored under [`Law::Endo2004`](crate::Law::Endo2004).
     pub yield_strain: f32,
-    /// Limit of plastic compression, 1 to 4: the largest factor by which a width can shrink permanently;
-    /// beyond it the material is elastic. Usually about 2. Higher values allow thinner sheets, but also
-    /// flatter elements.
+    /// Limit of plastic compression, 1 to 4: the largest factor by which a width can shrink permanently.
+    /// Beyond the limit, the material is elastic. Usually about 2. Higher values allow thinner sheets, but
+    /// also flatter elements.
     pub plastic_limit: f32,
 }
 

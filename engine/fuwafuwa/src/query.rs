@@ -24,8 +24,8 @@ use query_cache::{BodyTrees, FilledCell, QueryTrees, TreeObject};
 use query_filter::QueryFilter;
 use std::sync::Arc;
 
-/// Ternary-search steps for the closest approach of a triangle to a shape, each of which keeps two thirds. 24
-/// steps leave 6·10⁻⁵ of the edge, less than the tolerance of the primitives.
+/// Number of ternary-search steps for the point of a triangle that is closest to a shape. Each step keeps two
+/// thirds of the interval. 24 steps leave 6·10⁻⁵ of the edge, less than the tolerance of the primitives.
 const NARROWINGS: usize = 24;
 
 /// Ray for [`World::ray_cast`].
@@ -80,7 +80,8 @@ pub struct HitElement {
 
 /// Queries on the present state. The world keeps search trees between queries. The first query after a change
 /// updates them, which visits each exposed face of the bodies that moved. Further queries are cheap, also
-/// from several threads. Of equally distant objects, the first one in the order of [`ObjectRef`] counts.
+/// from several threads. Of equally distant objects, a query returns the first one in the order of
+/// [`ObjectRef`].
 impl<D: Dim> World<D> {
     /// Casts a ray. Returns the first hit on the surface of an object, from outside or inside, within
     /// `max_distance` [m], which may be infinite. Returns `None` if the direction has length 0, a coordinate
@@ -263,7 +264,8 @@ impl<D: Dim> World<D> {
             }
             0.0
         });
-        // A shape that lies completely inside a piece is near no face of it.
+        // A piece that contains the whole shape has no face near it, so pieces at the centre of the shape's
+        // bounding box are added.
         let centre = (low + high) * 0.5;
         if centre.is_finite() {
             found.extend(query.pieces_at(centre));
@@ -296,9 +298,9 @@ impl<'a, D: Dim> Query<'a, D> {
         }
     }
 
-    /// Visits the objects with a cost that may be at most the smallest one found before, see
-    /// [`Tree::search`](bounding_tree::Tree::search). Objects are given by their rank in the order of
-    /// [`ObjectRef`].
+    /// Visits the objects with a cost of at most `limit`, and then of at most the smallest cost that `visit`
+    /// has returned so far; see [`Tree::search`](bounding_tree::Tree::search). `visit` receives the rank of
+    /// an object in the order of [`ObjectRef`] and the cost of its box.
     fn search(
         &self,
         limit: f32,
@@ -315,7 +317,8 @@ impl<'a, D: Dim> Query<'a, D> {
         });
     }
 
-    /// Returns the object of a rank, or [`Found::Filtered`] if the filter rejects its body.
+    /// Returns the object with a rank in the order of [`ObjectRef`], or [`Found::Filtered`] if the filter
+    /// rejects its body.
     fn object(&self, rank: usize) -> Found<'_> {
         match self.trees.objects[rank] {
             TreeObject::Rigid(id) => {
@@ -434,14 +437,15 @@ impl<'a, D: Dim> Query<'a, D> {
 /// Closest hit of a running query.
 struct Closest<D: Dim> {
     hit: Option<QueryHit<D>>,
-    /// Distance of the hit, or the largest distance that counts [m].
+    /// Distance of the closest hit so far [m]; before the first hit, the maximum distance of the query.
     limit: f32,
-    /// Rank of the object of the hit, and index of the face; of equally distant hits, the lowest rank counts.
+    /// Rank of the hit object in the order of [`ObjectRef`], and index of the hit face. Of equally distant
+    /// hits, the one with the lowest rank is kept.
     rank: [usize; 2],
 }
 
 impl<D: Dim> Closest<D> {
-    /// Returns the initial state; `None` if the distance is negative or NaN.
+    /// Returns the state before the first hit; `None` if the distance is negative or NaN.
     fn within(max_distance: f32) -> Option<Self> {
         (max_distance >= 0.0).then_some(Self {
             hit: None,
@@ -450,8 +454,8 @@ impl<D: Dim> Closest<D> {
         })
     }
 
-    /// Keeps a hit if it is closer than the best one, or equally close with a lower rank. `hit` is called only
-    /// in these cases; it returns `None` if the filter rejects the object.
+    /// Keeps a hit if it is closer than the closest hit so far, or equally close with a lower rank. `hit` is
+    /// called only in these cases; it returns `None` if the filter rejects the object.
     fn consider(
         &mut self,
         distance: f32,
@@ -467,15 +471,15 @@ impl<D: Dim> Closest<D> {
     }
 }
 
-/// Sorts found objects, and keeps the lowest element of each.
+/// Sorts overlaps by object, and keeps for each object only the one with the lowest element id.
 fn each_once(mut found: Vec<QueryOverlap>) -> Vec<QueryOverlap> {
     found.sort_by_key(|found| (found.object, found.element));
     found.dedup_by_key(|found| found.object);
     found
 }
 
-/// Returns the cost of a box for a yes-or-no query: 0 if the condition holds and the box is to be visited,
-/// otherwise infinity.
+/// Returns the cost of a box for a query without distances: 0 if the condition holds, so that the search
+/// visits the box, otherwise infinity.
 fn zero_if(condition: bool) -> f32 {
     if condition { 0.0 } else { f32::INFINITY }
 }

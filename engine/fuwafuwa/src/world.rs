@@ -41,9 +41,9 @@ pub(crate) use stored_world::StoredWorld;
 /// cube, which does not roll. At this rate, the rotation falls to an eighth in 0.1 s. A higher rate would
 /// stop the rotation in the air between two bounces.
 const CRUMB_SPIN_LOSS: f32 = 20.0;
-/// Extra drag [1/s] of pieces that touch something and move slower than `SETTLING_SPEED` [m/s]. Without it,
-/// heaps creep for a long time before they fall asleep. A falling body exceeds the speed after 0.5 mm. With a
-/// higher speed, the braking of sliding pieces would be visible.
+/// Extra drag [1/s] of pieces that touch something and move slower than `SETTLING_SPEED` [m/s]. Without this
+/// drag, heaps creep for a long time before they fall asleep. A falling body exceeds the speed after 0.5 mm.
+/// With a higher speed, the braking of sliding pieces would be visible.
 const SETTLING: f32 = 2.0;
 const SETTLING_SPEED: f64 = 0.1;
 /// Node speed above which a piece is quarantined [m/s]. No node moves by more than a voxel in a substep. At
@@ -63,8 +63,9 @@ pub struct World<D: Dim> {
     ticks: u64,
     nearby: Nearby,
     events: Vec<Event<D>>,
-    /// Contacts of the last tick, ascending by pair; below, each sensor with an object inside it, ascending.
+    /// Contacts of the last tick, ascending by pair.
     touching: Vec<Contact<D>>,
+    /// Sensors of the last tick, each with an object inside, ascending by sensor and object.
     inside: Vec<(RigidBodyHandle, ObjectRef)>,
     #[cfg_attr(feature = "serde", serde(skip))]
     contacts: Contacts,
@@ -166,8 +167,8 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns the number of substeps of a tick, as many as the stiffest body requires. In 1/60 s there are
-    /// at least [`DEFAULT_SUBSTEPS`] and at most [`WorldConfig::max_substeps`]; if the two contradict each
-    /// other, the maximum counts.
+    /// at least [`DEFAULT_SUBSTEPS`] and at most [`WorldConfig::max_substeps`]. If the maximum is below the
+    /// minimum, the maximum applies.
     pub fn substeps(&self) -> u32 {
         let longest = self.bodies.iter().map(SoftBody::longest_substep);
         let longest = longest.fold(f64::INFINITY, f64::min);
@@ -258,9 +259,8 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Solves joints, knives and contacts: applies their impulses to the velocities. Returns the sleeping
-    /// pieces and bodies that were hit. They wake at the end of this substep, and until then act as immovable
-    /// walls.
+    /// Solves joints, knives and contacts, and applies their impulses to the velocities. Returns the sleeping
+    /// pieces and bodies that were hit. They act as immovable walls in this substep and wake at its end.
     fn touch(&mut self, duration: f32) -> Hits {
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let nearby = &mut self.nearby;
@@ -277,7 +277,7 @@ impl<D: Dim> World<D> {
         hits
     }
 
-    /// Integrates positions, then removes the velocity that was added only to resolve overlaps.
+    /// Integrates positions, then removes the part of the velocities that was added only to resolve overlaps.
     fn drift(&mut self, duration: f32) {
         let mut furthest = 0.0f32;
         for body in self.bodies.iter_mut() {
@@ -294,8 +294,8 @@ impl<D: Dim> World<D> {
         self.part_joints(broken);
     }
 
-    /// Quarantines pieces that are non-finite or too fast: resets them to their positions before the tick,
-    /// and keeps them there for good.
+    /// Quarantines pieces that are non-finite or too fast: resets their nodes to the positions before the
+    /// tick, and keeps the pieces there for good.
     fn quarantine(&mut self, report: &mut StepReport) {
         for (id, body) in self.bodies.entries_mut() {
             body.refresh_awake();
@@ -377,7 +377,8 @@ impl<D: Dim> World<D> {
         };
         let mut touching: IndexVec<_, IndexVec<_, bool>> = self.bodies.slots().map(none).collect();
         for (body, piece) in self.nearby.pressed(&self.bodies) {
-            // The pair lists date from the last substep, and the slot may have been reused since.
+            // The pair lists are from the last substep. If the slot was reused since, they may name pieces that
+            // the new body does not have; these are skipped.
             if let Some(touches) = touching[body].get_mut(piece.index()) {
                 *touches = true;
             }

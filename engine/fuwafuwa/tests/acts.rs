@@ -14,7 +14,7 @@ fn weightless<D: Dim>() -> WorldConfig<D> {
     }
 }
 
-/// Returns a vector of any dimension; in 2D without its third coordinate.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
@@ -87,7 +87,7 @@ fn rotated_body_stays_at_rest() {
     }
 }
 
-/// Checks that a world, rotated while its body tears, moves like the original.
+/// Checks that a world moves like the original after its body was rotated in the middle of tearing.
 fn check_turned_in_motion<D: Dim>() {
     let rotation = Rotation::in_plane(PI);
     let (mut world, id) = with(weightless(), ball::<D>(16));
@@ -101,7 +101,7 @@ fn check_turned_in_motion<D: Dim>() {
         world.step();
         turned.step();
     }
-    // Rounding can change the path of cracks, so total momentum and energy are compared.
+    // Compares total momentum and energy instead of nodes, because rounding can change the path of cracks.
     let [momentum, other] = [&world, &turned].map(|world| world[id].momentum().linear);
     let energies = [&world, &turned].map(|world| world[id].kinetic_energy());
     assert!(
@@ -223,8 +223,8 @@ fn check_pushed<D: Dim>() {
     assert!((spin - 3.0).abs() < 0.6, "{spin}");
 }
 
-/// A body that is almost asleep stays awake when gravity sets in, even though its speed is below the sleep
-/// threshold at first.
+/// Checks that a body that is almost asleep stays awake when gravity sets in. At first, its speed is still
+/// below the sleep threshold.
 #[test]
 fn gravity_change_resets_sleep_timer() {
     let pulls: [fn(&mut World<Dim2>, SoftBodyHandle); 3] = [
@@ -299,7 +299,7 @@ fn check_sleep<D: Dim>() {
     let before = world[sleeper].clone();
     (0..60).for_each(|_| _ = world.step());
     assert_eq!(apart(&world[sleeper], &before), 0.0);
-    // A body that falls on the sleeping one wakes it.
+    // A second body falls on the sleeping one and wakes it.
     world.add_soft_body(ball::<D>(8).translated(vector(0.0, 1.5, 0.0)));
     let woke = |world: &World<D>| {
         let events = world.events().iter();
@@ -380,7 +380,8 @@ fn check_field<D: Dim>() {
             let body = &world[id];
             body.momentum().linear.x / body.total_mass()
         });
-        // At three times the radius, the field has a ninth of its strength; it acts for a tenth of a second.
+        // The field has 5 m/s² at its reach. The balls are at three times the reach, where a ninth of it acts
+        // on them for a tenth of a second.
         assert!((speeds[0] - 5.0 / 9.0 * 0.1).abs() < 0.01, "{speeds:?}");
         assert!((speeds[0] + speeds[1]).abs() < 0.01, "{speeds:?}");
     }
@@ -392,8 +393,8 @@ fn field_accelerates_towards_centre() {
     check_field::<Dim3>();
 }
 
-/// Checks that pressing a bar on a body one metre to the right of the bar's centre gives a counterclockwise
-/// torque.
+/// Checks the torque on a bar that presses on a body one metre to the right of the bar's centre: it is
+/// counterclockwise.
 fn check_torque<D: Dim>() {
     let (mut world, _) = with(weightless(), ball::<D>(16));
     let bar = Shape::capsule(-D::Vector::X, vector(3.0, 0.0, 0.0), 0.1);
@@ -461,7 +462,7 @@ fn act<D: Dim>(
     }
 }
 
-/// Calls random actions in random order, with non-finite numbers and on removed bodies.
+/// Calls random actions in random order, some with non-finite numbers or with handles of removed bodies.
 fn check_any<D: Dim>(seeds: std::ops::Range<u64>) {
     let numbers = [
         0.0,

@@ -6,12 +6,12 @@ use fuwafuwa::{
 };
 use std::f32::consts::FRAC_PI_2;
 
-/// Returns a vector of the dimension; in 2D the third coordinate is dropped.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
 
-/// Returns an angular velocity in the plane [rad/s].
+/// Returns an angular velocity about the third axis [rad/s].
 fn spin<D: Dim>(speed: f32) -> D::Angular {
     D::Angular::from_vec3(Vec3::Z * speed)
 }
@@ -90,7 +90,8 @@ fn set_velocity_moves_soft_and_rigid_bodies_alike() {
 fn check_impulse<D: Dim>() {
     let (mut world, bodies) = cubes::<D>();
     for body in bodies {
-        // The mass is 100 kg in 2D and 3D. The moment of inertia of a cube is m/6 about its centre.
+        // Both cubes have a mass of 100 kg, so 50 N s give 0.5 m/s. Their moment of inertia about the centre
+        // is m/6 = 16.7 kg m².
         let impulse = Impulse::at(D::Vector::ZERO, vector(50.0, 0.0, 0.0)).within(2.0);
         world.apply_impulse(body, impulse).unwrap();
         assert_near(

@@ -8,7 +8,7 @@ use fuwafuwa::{
 };
 use std::collections::BTreeSet;
 
-/// Returns a vector of any dimension; in 2D without its third coordinate.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
@@ -46,8 +46,8 @@ fn of_body(party: ObjectRef, body: SoftBodyHandle) -> bool {
     matches!(party, ObjectRef::Piece { body: found, .. } if found == body)
 }
 
-/// A ball falls for 0.45 s, bounces, comes to rest, and is lifted. Every contact that begins also ends, and
-/// the first one begins at the speed of the fall.
+/// Checks the contact events of a ball that falls for 0.45 s, bounces, comes to rest, and is lifted. Every
+/// contact that begins also ends. The first contact begins at the speed of the fall.
 fn contacts_begin_and_end<D: Dim>() {
     let (mut world, floor) = floored::<D>();
     let id = ball(&mut world, 1.0);
@@ -76,7 +76,7 @@ fn contacts_begin_and_end<D: Dim>() {
         }
     }
     let (first, speed) = began[0];
-    // √(2 g h), h = 1 m
+    // A free fall from h = 1 m ends at the speed √(2 g h) = 4.43 m/s.
     assert!(
         (26..30).contains(&first) && (speed - 4.43).abs() < 0.3,
         "{first} {speed}"
@@ -127,7 +127,8 @@ fn rigid_contact_event_reports_impulse_and_speed() {
         for event in world.events() {
             match *event {
                 Event::ContactForce(contact) => {
-                    // The floor has the lower handle, so that the normal points towards it.
+                    // The floor has the lower handle and comes first in the pair, so the normal points
+                    // towards the floor.
                     assert_eq!(contact.pair, [floor, id].map(ObjectRef::RigidBody));
                     assert_eq!(contact.normal, Vec3::NEG_Y);
                     impulse += contact.impulse;
@@ -137,7 +138,7 @@ fn rigid_contact_event_reports_impulse_and_speed() {
             }
         }
     }
-    // The box came to rest, so the impulse equals that of gravity in one second.
+    // The box of 1 kg came to rest, so the contact impulses cancel one second of gravity: 9.81 N s.
     assert!((impulse - 9.81).abs() < 0.3, "{impulse}");
     assert!((speed - 4.43).abs() < 0.3, "{speed}");
 }
@@ -150,7 +151,7 @@ fn sensors_tell<D: Dim>() {
     let gate = world.add_rigid_body(gate).unwrap();
     let soft = ball(&mut world, 3.0);
     let free = world.add_rigid_body(crate_of(5.5, 0.2)).unwrap();
-    // Beside the soft ball, so that the rigid one does not bounce off it.
+    // Moves the rigid box to one side, so that it does not bounce off the soft ball.
     world
         .set_pose(free, vector(3.0, 5.5, 0.5), Rotation::NONE)
         .unwrap();
@@ -179,7 +180,8 @@ fn sensor_reports_entered_and_exited_bodies() {
     sensors_tell::<Dim3>();
 }
 
-/// Pieces fly through sensors of all shapes. The events agree with a test of every node against every sensor.
+/// Checks sensors of all shapes with pieces that fly through them: the events agree with a test of every node
+/// against every sensor.
 fn sensors_agree_with_test_of_every_node<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let mut seed = 7u32;
@@ -262,7 +264,8 @@ fn sensor_events_agree_with_test_of_every_node() {
     sensors_agree_with_test_of_every_node::<Dim3>();
 }
 
-/// Two balls, one above the other, collide or not depending on their layers; the floor supports both.
+/// Checks that two balls, one above the other, collide or not depending on their layers. The floor supports
+/// both.
 fn layers_part<D: Dim>() {
     for (filters, meets) in [(u32::MAX, true), (1, false)] {
         let (mut world, _) = floored::<D>();
@@ -281,7 +284,7 @@ fn layers_part<D: Dim>() {
         let [low, high] = [low, high].map(|id| world[id].centre_of_mass()[1]);
         assert_eq!(high - low > 0.5, meets, "{low} {high}");
         assert!(low > 0.3 && high > 0.3);
-        // The box collides with the balls in both cases.
+        // The box collides with the balls even if the balls do not collide with each other.
         assert!(world.rigid_body(crate_id).unwrap().position()[1] > 0.8 || meets);
     }
 }
@@ -319,7 +322,7 @@ fn user_data_persists_until_removal() {
     );
 }
 
-/// Returns the partners of an object.
+/// Returns the objects in contact with an object.
 fn partners<D: Dim>(world: &World<D>, object: ObjectRef) -> Vec<ObjectRef> {
     let contacts = world.contacts_of(object).unwrap();
     contacts
@@ -327,7 +330,7 @@ fn partners<D: Dim>(world: &World<D>, object: ObjectRef) -> Vec<ObjectRef> {
         .collect()
 }
 
-/// A soft ball on the floor carries a box; another ball lies beside it.
+/// Checks the contacts of a soft ball that lies on the floor and carries a box. Another ball lies beside it.
 fn contacts_of_stack<D: Dim>() {
     let (mut world, floor) = floored::<D>();
     let body = ball(&mut world, 0.0);
@@ -359,7 +362,7 @@ fn contacts_of_stack<D: Dim>() {
         let forces = world.events().contains(&Event::ContactForce(*contact));
         assert!(forces, "{contact:?}");
     }
-    // A removed object is listed no more.
+    // Contacts with a removed object are no longer listed.
     world.remove(load).unwrap();
     assert_eq!(partners(&world, lower), [floor]);
     assert!(world.contacts_of(load).is_err());
@@ -391,7 +394,8 @@ fn sleeping_contact_is_listed_and_survives_a_clone() {
     assert!(world.rigid_body(id).unwrap().is_asleep());
     let contact = *world.contacts_of(id).unwrap().next().unwrap();
     assert_eq!(contact.other(id), Some(ObjectRef::RigidBody(floor)));
-    // In the last tick before the sleep, the floor carried 1 kg.
+    // The contact keeps the impulse of the last tick before the box fell asleep, when the floor carried its
+    // mass of 1 kg.
     assert!(
         (contact.impulse / (9.81 / 60.0) - 1.0).abs() < 0.1,
         "{contact:?}"
@@ -408,7 +412,8 @@ fn sleeping_contact_is_listed_and_survives_a_clone() {
     assert_eq!(known, contacts(&world.clone()));
 }
 
-/// Two pieces that press on each other send one event per tick, with the lower piece first.
+/// Checks that two pieces that press on each other send one event per tick, with the piece of the lower
+/// handle first.
 fn pieces_press<D: Dim>() {
     let (mut world, floor) = floored::<D>();
     let bodies = [0.0, 1.02].map(|height| ball(&mut world, height));
@@ -433,7 +438,7 @@ fn pieces_press<D: Dim>() {
         let forces: Vec<&Contact<D>> = forces.collect();
         assert!(forces.len() <= 1, "{forces:?}");
         for contact in forces {
-            // From the upper ball towards the lower one.
+            // The normal points from the upper ball to the lower one, which is the first of the pair.
             assert!(contact.normal[1] < -0.5, "{contact:?}");
             assert!(partners(&world, low).contains(&high));
             assert!(partners(&world, high).contains(&low));

@@ -1,4 +1,4 @@
-//! Crumbs under pressure: none stays embedded in a larger piece.
+//! Crumbs under pressure: no crumb stays embedded in a larger piece.
 
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
@@ -7,13 +7,13 @@ use fuwafuwa::{
 };
 use glam::DVec3;
 
-/// A crumb counts as embedded in a piece if its centre is in an element and at least this far from all faces
-/// [voxels].
+/// Minimum depth of an embedded crumb [voxels]: its centre must lie inside an element of another piece, at
+/// least this far from all faces.
 const DEPTH: f32 = 0.6;
-/// Maximum number of elements in a crumb of these tests.
+/// Maximum number of elements of a piece that these tests count as a crumb.
 const SMALL: u32 = 16;
 
-/// Returns a vector of any dimension; in 2D without its third coordinate.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
@@ -37,7 +37,8 @@ fn is_in_simplex<D: Dim>(points: &[Vec3], at: Vec3) -> bool {
     })
 }
 
-/// Returns whether a point is in a cell, split into simplices between its first and its last corner.
+/// Returns whether a point is in a deformed cell. The cell is split into triangles or tetrahedra that share
+/// the diagonal from its first to its last corner.
 fn is_in_cell<D: Dim>(corners: &[Vec3], at: Vec3) -> bool {
     let simplices: &[[usize; 4]] = match D::N {
         2 => &[[0, 3, 1, 0], [0, 3, 2, 0]],
@@ -56,7 +57,8 @@ fn is_in_cell<D: Dim>(corners: &[Vec3], at: Vec3) -> bool {
     })
 }
 
-/// Returns the crumbs embedded in larger pieces, by body and piece, and the number of all crumbs.
+/// Returns the crumbs embedded in larger pieces, as body index and piece number, and the number of all
+/// crumbs.
 fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
     let views: Vec<_> = world
         .soft_bodies()
@@ -108,8 +110,8 @@ fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
     (inside, crumbs().count())
 }
 
-/// Runs a world and checks its crumbs. None may stay embedded for more than `patience` ticks or be embedded
-/// at the end, and there must be at least `least` crumbs.
+/// Runs a world in which a hand follows `goal`, and checks its crumbs. No crumb may stay embedded for more
+/// than `patience` ticks, or be embedded at the end. There must be at least `least` crumbs at the end.
 fn check<D: Dim>(
     mut world: World<D>,
     ticks: u16,
@@ -159,7 +161,8 @@ fn weightless<D: Dim>() -> World<D> {
     World::new(settings).unwrap()
 }
 
-/// A hand presses dust into a body against a wall, grinds back and forth, and retreats.
+/// Runs a world in which a hand presses dust into a body against a wall, grinds back and forth, and retreats.
+/// Checks that no dust stays embedded.
 fn check_grinding<D: Dim>(n: usize, least: usize) {
     let mut world = weightless::<D>();
     let wall = Shape::half_space(-D::Vector::X, vector(1.05, 0.0, 0.0));
@@ -182,7 +185,7 @@ fn check_grinding<D: Dim>(n: usize, least: usize) {
     check(world, 240, 30, least, |seconds| {
         let in_and_out = seconds.min(0.8) - (seconds - 2.2).max(0.0);
         let turn = 2.0 * (seconds - 0.8).clamp(0.0, 1.4);
-        // Back and forth twice a second.
+        // The hand moves down by 0.15 m and back, twice a second.
         let to_and_fro = 0.3 * ((turn - turn.floor() - 0.5).abs() - 0.5);
         vector(-0.55 + 1.25 * in_and_out, 0.5 + to_and_fro, depth)
     });
@@ -194,8 +197,8 @@ fn dust_leaves_body_after_grinding() {
     check_grinding::<Dim3>(18, 50);
 }
 
-/// A hand pushes a disc against a wall and through it; the crumbs it grinds off do not stay embedded in the
-/// halves.
+/// A hand pushes a disc against a wall and tears it in two. Crumbs that come off the disc must not stay
+/// embedded in the halves.
 #[test]
 fn crumbs_stay_outside_halves_of_torn_disc() {
     let mut world = weightless::<Dim2>();
@@ -213,7 +216,7 @@ fn crumbs_stay_outside_halves_of_torn_disc() {
     });
 }
 
-/// Dust that starts inside a body drifts out slowly, and momentum is preserved.
+/// Checks that dust that starts inside a body drifts out slowly, and that momentum is preserved.
 fn check_way_out<D: Dim>(n: usize) {
     let mut world = World::<D>::new(WorldConfig {
         gravity: D::Vector::ZERO,
@@ -238,7 +241,8 @@ fn check_way_out<D: Dim>(n: usize) {
             let speed = crumb.velocity.length();
             assert!(speed < 1.5, "tick {tick}: {speed} m/s");
         }
-        // Later, the body touches crumbs outside, and slow contacts are damped.
+        // Checks the momentum only in the first ticks: later, crumbs outside touch the body, and their slow
+        // contacts are damped.
         if tick < 10 {
             let bodies = world.soft_bodies();
             let linear = bodies.map(|(_, body)| body.momentum().linear);
@@ -261,7 +265,7 @@ fn embedded_dust_drifts_out_slowly() {
     check_way_out::<Dim3>(16);
 }
 
-/// Returns the speed of a single voxel's nodes [m/s] one second after it was slightly expanded.
+/// Expands a single voxel slightly, and returns the speed of its fastest node [m/s] one second later.
 fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
     const WIDE: usize = 32;
     let elasticity = Elasticity {
@@ -279,7 +283,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
         ..WorldConfig::default()
     };
     let mut world = World::<D>::new(settings).unwrap();
-    // A large body and a single voxel that came off it. The voxel keeps the damping of the large body.
+    // The grid holds a large block and a single separate voxel, which has the damping of the whole body.
     let mut size = [WIDE; 3];
     size[D::N..].fill(1);
     let grid = VoxelGrid::from_fn(size, 1.0 / WIDE as f32, |at| {
@@ -317,7 +321,7 @@ fn crumb_vibration_decays_for_any_material_and_substeps() {
     }
 }
 
-/// Returns the maximum depth in the floor [voxels] of a sleeping crumb that is hit by a heavy block.
+/// Drops a heavy block on a sleeping crumb, and returns the maximum depth of the crumb in the floor [voxels].
 fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
     const VOXEL: f32 = 1.0 / 32.0;
     let settings = WorldConfig {

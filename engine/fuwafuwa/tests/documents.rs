@@ -50,8 +50,8 @@ fn documents_name_existing_paths() {
     }
 }
 
-/// A browser has no files and no paths. Therefore the game opens and saves data through the module
-/// `platform`, by kind and name, and the libraries below the game read bytes.
+/// In a browser there are no files or paths. The game therefore opens and saves data only through its module
+/// `platform`, by kind and name. The libraries below the game read bytes.
 #[test]
 fn files_are_used_only_in_platform_and_command_line_modules() {
     let edges = [

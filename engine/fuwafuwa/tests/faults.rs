@@ -1,4 +1,4 @@
-//! Regression tests: each comment describes the former fault.
+//! Regression tests: a comment that begins with "Regression" describes the former fault.
 
 use fuwafuwa::{
     Blade, Dim, Dim2, Dim3, DimVector, Event, Material, RigidBody, Shape, SoftBody, Vec2, Vec3,
@@ -6,7 +6,7 @@ use fuwafuwa::{
 };
 use std::time::Duration;
 
-/// Returns a vector of any dimension; in 2D without its third coordinate.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
@@ -24,8 +24,8 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     SoftBody::new(grid, &[Material::default()]).expect("the material is valid")
 }
 
-/// A second cut along the same blade released nothing, but reported the released nodes of the first cut
-/// again, with events.
+/// Regression: a second cut along the same blade released nothing, but reported the released nodes of the
+/// first cut again, with events.
 fn check_cut_twice<D: Dim>(n: usize, [blade, across]: [Blade<D>; 2]) {
     let mut world = weightless::<D>();
     let id = world.add_soft_body(ball(n));
@@ -39,7 +39,7 @@ fn check_cut_twice<D: Dim>(n: usize, [blade, across]: [Blade<D>; 2]) {
     assert_eq!(told(&world), first);
     assert_eq!(world[id].pieces().list.len(), 2);
     assert_eq!((world.cut(id, &blade).unwrap(), told(&world)), (0, first));
-    // A crossing blade releases only new nodes.
+    // A blade that crosses the first cut releases only nodes that the first cut left.
     assert!(world.cut(id, &across).unwrap() >= points);
     assert_eq!(world.cut(id, &across).unwrap(), 0);
     assert_eq!(world[id].pieces().list.len(), 4);
@@ -65,14 +65,15 @@ fn place(body: &mut SoftBody<Dim3>, to: impl Fn(Vec3) -> Vec3) {
     }
 }
 
-/// Returns half turns about axes of the grid and about a diagonal, and a rotation of nearly half a turn.
+/// Returns the maps of five rotations of the unit cube: half turns about the grid's axes and about a
+/// diagonal, and one of nearly half a turn.
 fn turns() -> [fn(Vec3) -> Vec3; 5] {
     [
         |Vec3 { x, y, z }| Vec3::new(x, 1.0 - y, 1.0 - z),
         |Vec3 { x, y, z }| Vec3::new(1.0 - x, y, 1.0 - z),
         |Vec3 { x, y, z }| Vec3::new(1.0 - x, 1.0 - y, z),
         |Vec3 { x, y, z }| Vec3::new(y, x, 1.0 - z),
-        // Rotation by the angle with cosine −0.8.
+        // Rotation by about 143°, the angle with the cosine −0.8.
         |Vec3 { x, y, z }| Vec3::new(-0.8 * x - 0.6 * y, 0.6 * x - 0.8 * y, z),
     ]
 }
@@ -83,8 +84,8 @@ fn fastest<D: Dim>(body: &SoftBody<D>) -> f32 {
     speeds.fold(0.0, f32::max)
 }
 
-/// The iteration for the rotation of an element started at the identity and got stuck at half a turn: an
-/// upside-down ball tore itself into 42 pieces.
+/// Regression: the iteration for the rotation of an element started at the identity and got stuck at half a
+/// turn. An upside-down ball tore itself into 42 pieces.
 #[test]
 fn body_stays_whole_when_turned_by_half_turn() {
     for turn in turns() {
@@ -99,8 +100,8 @@ fn body_stays_whole_when_turned_by_half_turn() {
     }
 }
 
-/// For new elements in a rotated body, the iteration got stuck in the same way: a cut through an upside-down
-/// body hurled it about.
+/// Regression: for new elements in a rotated body, the iteration for the element's rotation got stuck at half
+/// a turn. A cut through an upside-down body hurled the body about.
 #[test]
 fn cut_keeps_turned_body_at_rest() {
     for turn in turns() {
@@ -119,8 +120,8 @@ fn cut_keeps_turned_body_at_rest() {
     }
 }
 
-/// A list of all voxels lost each detached voxel from its front, in quadratic time. n = 48 took five times as
-/// long as n = 32, with three times as many voxels, and n = 64 took a minute.
+/// Regression: detached voxels were removed one by one from the front of a list of all voxels, in quadratic
+/// time. A ball of 64 voxels across took a minute.
 #[test]
 #[allow(clippy::disallowed_types)] // the test measures time
 fn crumble_takes_linear_time() {
@@ -151,8 +152,8 @@ fn node_states<D: Dim>(body: &SoftBody<D>) -> Vec<(D::Vector, D::Vector, f32)> {
     nodes.map(|(id, _)| body.node_state(id)).collect()
 }
 
-/// The strength of an unused material in the list counted, so that cracks grew in a body of infinite
-/// strength.
+/// Regression: the strength of a material in the list that no voxel uses was considered, so that cracks grew
+/// in a body of infinite strength.
 #[test]
 fn unused_weaker_material_has_no_effect_on_cracks() {
     let strong = Material {
@@ -182,7 +183,7 @@ fn unused_weaker_material_has_no_effect_on_cracks() {
     assert_eq!(run(&[strong, Material::default()]), (0, states));
 }
 
-/// A non-finite crumb inside another body quarantined that body, too.
+/// Regression: a non-finite crumb inside another body put that body into quarantine, too.
 #[test]
 fn quarantine_spares_ball_around_non_finite_crumb() {
     for nowhere in [f32::NAN, f32::INFINITY, 1e30] {
@@ -206,8 +207,8 @@ fn quarantine_spares_ball_around_non_finite_crumb() {
     }
 }
 
-/// `f32::max` and `f32::min` of 0 and −0 return either zero, depending on the machine. So the result must not
-/// depend on the signs of zeros in the input.
+/// Checks that results do not depend on the signs of zeros in the input. `f32::max` and `f32::min` of 0 and
+/// −0 return either zero, depending on the machine.
 fn check_zeros<D: Dim>(n: usize) {
     let run = |zero: f32| {
         let settings = WorldConfig {
@@ -249,7 +250,7 @@ fn check_zeros<D: Dim>(n: usize) {
     };
     let plain = run(0.0);
     assert!(plain.0 > 0, "nothing tore");
-    // Equality treats 0 and −0 as equal.
+    // The comparison accepts results that differ in the sign of zero, because 0 == −0.
     assert_eq!(run(-0.0), plain);
 }
 

@@ -54,7 +54,7 @@ fn random_shape<D: Dim>(random: &mut Random, n: i32) -> Option<VoxelGrid<D>> {
     .ok()
 }
 
-/// Releases a few single points or whole rectangles, as a crack or a knife would.
+/// Splits connections at a few random points or in a whole rectangle of points, as a crack or a knife would.
 fn random_cut<D: Dim>(sharing: &mut Connectivity<D>, random: &mut Random, n: i32) -> Vec<Point> {
     let axis = random.below(D::N as i32) as usize;
     let side = (0..D::CORNERS).fold(0u8, |mask, octant| {
@@ -81,7 +81,8 @@ fn random_cut<D: Dim>(sharing: &mut Connectivity<D>, random: &mut Random, n: i32
     touched
 }
 
-/// Checks the seeds `0..sequences` on several threads. The size of the body cycles through `sizes`.
+/// Runs `check_one_sequence` for the seeds `0..sequences` on several threads. The size of the body cycles
+/// through `sizes`.
 fn check_remodelling<D: Dim>(sequences: u64, sizes: std::ops::Range<i32>) {
     let threads = 4;
     let sizes = &sizes;
@@ -131,7 +132,8 @@ fn check_one_sequence<D: Dim>(seed: u64, n: i32) {
     assert_uniform_strain_leaves_inner_nodes_at_rest(&mesh, &sharing, seed);
 }
 
-/// Checks that a new node that inherits positions of an affine motion lies at the image of its rest position.
+/// Checks the weights by which new nodes inherit positions: they reproduce the rest position of each new
+/// node, and thus any affine motion.
 fn assert_affine_motion_is_inherited<D: Dim>(
     before: &Mesh<D>,
     after: &Mesh<D>,
@@ -154,7 +156,7 @@ fn assert_affine_motion_is_inherited<D: Dim>(
 }
 
 /// Patch test: under uniform strain, the default law must leave inner nodes without force. The residual is
-/// relative to stress × voxel face.
+/// relative to stress × area of a voxel's face.
 fn assert_uniform_strain_leaves_inner_nodes_at_rest<D: Dim>(
     mesh: &Mesh<D>,
     sharing: &Connectivity<D>,

@@ -8,7 +8,7 @@ use fuwafuwa::{
 };
 use std::f32::consts::TAU;
 
-/// Returns a vector of any dimension; in 2D without its third coordinate.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
@@ -54,7 +54,7 @@ fn broken<D: Dim>(world: &World<D>) -> usize {
     world.events().iter().filter(is_break).count()
 }
 
-/// A pendulum swings for a minute. Its energy never exceeds the initial energy, and it keeps swinging.
+/// Checks that a pendulum never exceeds its initial energy in a minute, and keeps swinging.
 fn no_energy_comes_from<D: Dim>(tie: JointKind) {
     let mut world = world::<D>(-9.81);
     let bob = ball(&mut world, D::Vector::X, 2.0);
@@ -82,7 +82,8 @@ fn no_energy_comes_from<D: Dim>(tie: JointKind) {
         assert!((x * x + y * y).sqrt() < 1.02, "{tick}: {x} {y}");
     }
     assert!(lowest < -0.95, "{lowest}");
-    // For comparison: 2 g l = 19.6 at the lowest point.
+    // `most` is twice the highest energy per mass [m²/s²], initially 0. For comparison, the squared speed at
+    // the lowest point is 2 g l = 19.6 m²/s².
     assert!(most < 0.2, "{most}");
 }
 
@@ -150,7 +151,7 @@ fn it_follows<D: Dim>() {
         world.step();
         let [held, place] = world.joint_anchor_positions(pin).unwrap().unwrap();
         assert!((held - place).length() < 0.02, "{tick}: {held:?} {place:?}");
-        // On the arm, the pin stays where the centre of the nodes was at first.
+        // The pin keeps its place on the arm, where the mean position of the pinned nodes was at first.
         let away = place - way.apply(first);
         assert!(away.length() < 1e-3, "{tick}: {place:?}");
     }
@@ -176,7 +177,7 @@ fn pin_keeps_two_soft_bodies_together() {
     }
     let [held, place] = world.joint_anchor_positions(pin).unwrap().unwrap();
     assert!((held - place).length() < 0.02);
-    // Both bodies now share the momentum.
+    // The pin transmits momentum, but preserves the sum over both bodies.
     let mass = world[a].total_mass();
     let [a, b] = [a, b].map(|id| world[id].momentum().linear.x);
     assert!(
@@ -186,7 +187,8 @@ fn pin_keeps_two_soft_bodies_together() {
     assert!(b < -0.3 * f64::from(mass as f32), "{b}");
 }
 
-/// A mass on an undamped spring: ω² = k/m. Only the implicit step damps the oscillation, slowly.
+/// A mass on an undamped spring oscillates with ω² = k/m. The implicit integration damps the oscillation
+/// slowly.
 #[test]
 fn spring_oscillates_at_natural_frequency() {
     let mut world = world::<Dim3>(0.0);
@@ -220,9 +222,9 @@ fn spring_oscillates_at_natural_frequency() {
     );
 }
 
-/// A mass of 1 kg hangs at rest from parallel springs, all of them from one point to its centre. The springs
-/// stretch by m g / Σk, and each carries its share k / Σk of the weight. h² k / m is up to 0.4 per spring, so
-/// that one pass over the springs would be far from the solution.
+/// Checks that a mass of 1 kg hangs at rest from parallel springs, all of them from one point to its centre.
+/// The springs stretch by m g / Σk, and each carries its share k / Σk of the weight. h² k / m is up to 0.4
+/// per spring, so a single solver pass over the springs would be far from the solution.
 fn parallel_springs_hold_a_mass<D: Dim>() {
     let mut world = world::<D>(-9.81);
     let bob = ball(&mut world, D::Vector::ZERO, 1.0);
@@ -262,7 +264,7 @@ fn parallel_springs_stretch_and_share_load_by_stiffness() {
     parallel_springs_hold_a_mass::<Dim3>();
 }
 
-/// A mass between four springs, two on each side of it: ω² = Σk/m along their axis.
+/// Checks a mass between four springs, two on each side: it oscillates along their axis with ω² = Σk/m.
 fn mass_between_springs_oscillates<D: Dim>() {
     let mut world = world::<D>(0.0);
     let bob = ball(&mut world, vector(0.1, 0.0, 0.0), 2.0);
@@ -304,7 +306,7 @@ fn mass_between_springs_oscillates_at_natural_frequency() {
     mass_between_springs_oscillates::<Dim3>();
 }
 
-/// Two equal stiff springs carry half of a weight of 39.2 N each, 19.6 N.
+/// Two equal stiff springs carry a weight of 39.2 N, 19.6 N each. They break at a limit below that.
 #[test]
 fn parallel_springs_break_above_their_share_of_the_load() {
     for (limit, holds) in [(22.0, true), (18.0, false)] {
@@ -376,7 +378,7 @@ fn chain_of_ten_ropes_keeps_length() {
     assert!(lowest < -2.3, "{lowest}");
 }
 
-/// A heavier body hangs at rest from a vertical chain of pins: nothing moves.
+/// A body that is up to 20 times as heavy as a link hangs from a vertical chain of pins, and nothing moves.
 #[test]
 fn chain_of_pins_stays_at_rest_under_load() {
     for heavy in [1.0, 10.0, 20.0] {
@@ -409,7 +411,7 @@ fn chain_of_pins_stays_at_rest_under_load() {
 fn joint_breaks_above_breaking_force_with_event() {
     for (limit, holds) in [(60.0, true), (30.0, false)] {
         let mut world = world::<Dim3>(-9.81);
-        // Load when hanging: 39.2 N.
+        // The body of 4 kg loads the hanging joint with 39.2 N.
         let bob = ball(&mut world, Vec3::NEG_Y, 4.0);
         let anchor = JointAnchor::on(bob, Vec3::NEG_Y);
         let joint = Joint::pin(anchor, JointAnchor::Point(Vec3::NEG_Y));

@@ -5,7 +5,7 @@ use fuwafuwa::{
     SoftBody, Vec2, VoxelGrid, World, WorldConfig,
 };
 
-/// Drops a soft ball on a kinematic table, which stands still until tick 600 and then rises.
+/// Checks that a soft ball falls asleep on a kinematic table at rest, and wakes when the table rises.
 fn check_rest<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let table = Shape::cuboid(D::Vector::splat(1.0)).translated(D::Vector::Y * -1.0);

@@ -6,7 +6,7 @@ use fuwafuwa::{
     World, WorldConfig,
 };
 
-/// Returns a vector of any dimension; in 2D without its third coordinate.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
@@ -19,7 +19,7 @@ fn weightless<D: Dim>() -> World<D> {
     World::new(settings).unwrap()
 }
 
-/// A block centred above the origin, fixed at its bottom. The cutting edge lies along the third axis.
+/// Adds a block centred above the origin and fixed at its bottom.
 fn block<D: Dim>(
     world: &mut World<D>,
     size: [usize; 3],
@@ -40,7 +40,7 @@ fn block<D: Dim>(
     world.add_soft_body(body)
 }
 
-/// A material that cannot be torn.
+/// Returns a material that cannot be torn.
 fn rubber() -> Material {
     Material {
         strength: f32::INFINITY,
@@ -49,7 +49,7 @@ fn rubber() -> Material {
     }
 }
 
-/// A kinematic hand that holds a knife.
+/// Adds a kinematic hand with a knife that points down. The cutting edge lies along the third axis.
 fn knife<D: Dim>(
     world: &mut World<D>,
     at: D::Vector,
@@ -116,7 +116,7 @@ fn force_in_slab<D: Dim>(
     let mut world = weightless::<D>();
     let body = block(&mut world, size, voxel, Material::default());
     let top = size[1] as f32 * voxel;
-    // Not in a plane of the voxel lattice.
+    // The knife moves between two lattice planes of the voxels.
     let (holder, id) = knife(
         &mut world,
         vector(0.13 * voxel, top + 0.01, 0.0),
@@ -176,7 +176,7 @@ fn knife_force_is_fracture_energy_times_thickness() {
     );
 }
 
-/// Returns the depth to which a knife presses before it cuts [m].
+/// Returns the depth to which a knife presses into a block before it cuts [m].
 fn pressed_before<D: Dim>(size: [usize; 3], radius: f32) -> f32 {
     let voxel = 0.02;
     let mut world = weightless::<D>();
@@ -227,7 +227,7 @@ fn goes_through<D: Dim>(size: [usize; 3], slant: f32) {
     let (holder, id) = knife(&mut world, start, 0.15, 0.0);
     let (mut area, mut most) = (0.0, 0.0f32);
     let end = vector(left + slant, -0.02, 0.0);
-    // The blade points in the direction of motion.
+    // Turns the blade to point in the direction of motion.
     let turned = Rotation::in_plane(libm::atanf(slant / (top + 0.04)));
     world.set_target_rotation(holder, turned).unwrap();
     go(&mut world, holder, end, 0.5, |world| area += cut(world)[0]);
@@ -252,7 +252,7 @@ fn goes_through<D: Dim>(size: [usize; 3], slant: f32) {
         "{area} m² of {}",
         long * depth
     );
-    // The same way back and forth again: nothing is left to cut.
+    // Moves the knife back and forth through the finished cut, where nothing is left to cut.
     let mut again = 0.0;
     go(&mut world, holder, start, 0.5, |world| {
         again += cut(world)[0]
@@ -275,7 +275,7 @@ fn knife_cuts_block_in_two_only_once() {
 
 #[test]
 fn coupled_knife_cuts_only_with_enough_force() {
-    // 8 N/m over 0.16 m: 1.28 N.
+    // A cut takes 8 J/m² × 0.16 m of width = 1.28 N, which lies between the two limits of the coupling force.
     for (pull, cuts) in [(0.8, false), (2.0, true)] {
         let mut world = weightless::<Dim3>();
         let body = block(&mut world, [16, 12, 8], 0.02, Material::default());

@@ -13,7 +13,8 @@ fn ball<D: Dim>(n: usize, law: Law) -> SoftBody<D> {
     SoftBody::with_options(grid, &[Material::default()], law, Grading::Graded).unwrap()
 }
 
-/// Sets the state of every node from its rest position [m], relative to the centre of a body 1 m wide.
+/// Sets position and velocity of every node to those that `state` returns for its rest position [m], relative
+/// to the centre of a body 1 m wide.
 fn arrange<D: Dim>(body: &mut SoftBody<D>, state: impl Fn(Vec3) -> (Vec3, Vec3)) {
     let nodes: Vec<_> = body.mesh().nodes().collect();
     let size = body.grid().voxel_size();
@@ -41,8 +42,8 @@ fn momentum<D: Dim>(body: &SoftBody<D>) -> (DVec3, DVec3) {
     (linear, angular)
 }
 
-/// Compares the element batches in single precision with the law in double precision, on a bent, rotated
-/// body.
+/// Checks the forces on a bent, rotated body: the element batches compute them in single precision, and the
+/// law in double precision.
 fn check_forces_against_the_law<D: Dim>(law: Law) {
     let mut body = ball::<D>(16, law);
     arrange(&mut body, |Vec3 { x, y, z }| {
@@ -54,7 +55,8 @@ fn check_forces_against_the_law<D: Dim>(law: Law) {
         );
         (turned, Vec3::ZERO)
     });
-    // A step of zero length evaluates the forces; several let the rotations converge.
+    // A substep of zero length computes the forces without moving nodes. Several of them let the element
+    // rotations converge.
     for _ in 0..8 {
         body.advance(0.0, D::Vector::ZERO);
     }
@@ -101,7 +103,7 @@ fn element_batches_match_reference_law() {
     }
 }
 
-/// A free ball that spins at 5 rad/s keeps its angular momentum for five seconds.
+/// Checks that a free ball that spins at 5 rad/s keeps its angular momentum for five seconds.
 #[test]
 fn spinning_ball_preserves_angular_momentum() {
     let mut body = ball::<Dim3>(12, Law::CorotationalVem);
@@ -117,7 +119,7 @@ fn spinning_ball_preserves_angular_momentum() {
     assert!((0.999..1.001).contains(&kept), "kept {kept}");
 }
 
-/// Cuts a moving body repeatedly: mass and momentum are preserved.
+/// Checks that mass and momentum of a moving body are preserved when it is cut repeatedly.
 fn check_releases_keep_momentum<D: Dim>(n: i32) {
     let mut body = ball::<D>(n as usize, Law::CorotationalVem);
     arrange(&mut body, |Vec3 { x, y, z }| {

@@ -23,11 +23,12 @@ fn mesh_of<D: Dim>(grid: &VoxelGrid<D>, grading: Grading) -> Mesh<D> {
     mesh
 }
 
-/// §3.1: elements grow from the surface to the centre, so their number grows with the surface.
+/// Paper, §3.1: elements grow from the surface to the centre, so their number is proportional to the surface.
 #[test]
 fn element_count_grows_with_surface() {
     let count = |n| graded(&VoxelGrid::<Dim3>::ball(n, 1.0).unwrap()).element_count();
-    // An independent prototype has 5,048 and 12,368: its elements may be wider than an eighth of the body.
+    // An independent prototype, which does not limit elements to an eighth of the body's width, has 5,048 and
+    // 12,368 elements.
     assert_eq!((count(32), count(48)), (5_048, 12_520));
     let disc = |n| graded(&VoxelGrid::<Dim2>::ball(n, 1.0).unwrap()).element_count() as f64;
     let growth = disc(128) / disc(64);
@@ -37,7 +38,7 @@ fn element_count_grows_with_surface() {
     );
 }
 
-/// Elements stay small relative to a body of any size, because their mass is lumped into their nodes.
+/// Elements stay small relative to a body of any size, because their mass is concentrated in their nodes.
 #[test]
 fn element_width_is_at_most_an_eighth_of_body() {
     for n in [32, 64, 100, 256] {
@@ -48,8 +49,8 @@ fn element_width_is_at_most_an_eighth_of_body() {
     }
 }
 
-/// §3.1: if each element counts its own vertices, n³ voxels have 8n³. Graded from two voxels at the surface,
-/// about 26n² remain.
+/// Paper, §3.1: if each element counts its own vertices, n³ voxels have 8n³ vertices. With elements of two
+/// voxels at the surface and larger ones inside, about 26n² vertices remain.
 #[test]
 fn vertex_count_falls_from_8n3_to_26n2_when_graded() {
     let count = |n, grading| {
@@ -63,7 +64,7 @@ fn vertex_count_falls_from_8n3_to_26n2_when_graded() {
     }
 }
 
-/// Fig. 1: a small disc; each voxel shows the level of its element.
+/// Paper, Fig. 1: a small disc, with the level of each voxel's element as a digit.
 #[test]
 fn disc_is_fine_at_rim_and_coarse_inside() {
     let grid = VoxelGrid::<Dim2>::ball(12, 1.0).unwrap();
@@ -94,8 +95,8 @@ fn disc_is_fine_at_rim_and_coarse_inside() {
     );
 }
 
-/// §3.1: for a regular polyhedron, the paper's force equals that of a linear element with the given Young's
-/// modulus and no lateral contraction. A stretched cube pulls with Y × strain × area.
+/// Paper, §3.1: for a regular polyhedron, the paper's force equals that of a linear element with the given
+/// Young's modulus and no lateral contraction. A stretched cube pulls with Y × strain × area.
 #[test]
 fn laws_reproduce_youngs_modulus_on_cube() {
     fn check<D: Dim>() {
@@ -126,7 +127,8 @@ fn laws_reproduce_youngs_modulus_on_cube() {
     check::<Dim3>();
 }
 
-/// §3.1: swapped vertices return, because the force includes the rotation.
+/// Paper, §3.1: swapped vertices return to their places, because the force takes the element's rotation into
+/// account.
 #[test]
 fn paper_law_pulls_swapped_nodes_back() {
     let stencil = ElementClass::<Dim2>::new(15, cell_corners::<Dim2>()).unwrap();

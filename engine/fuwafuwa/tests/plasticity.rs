@@ -12,7 +12,7 @@ use glam::DVec3;
 mod blades;
 use blades::Blades;
 
-/// Vector of the dimension; in 2D the third coordinate is dropped.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
@@ -31,8 +31,8 @@ fn weightless<D: Dim>() -> WorldConfig<D> {
     }
 }
 
-/// Presses a block between two plates to a share of its height and releases it. Returns its final height,
-/// width and volume, relative to the initial ones.
+/// Presses a block between two plates to a fraction `share` of its height, and releases it. Returns the final
+/// height, width and volume of the block, relative to the initial ones.
 fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, SoftBodyHandle) {
     let mut world = World::<D>::new(weightless()).unwrap();
     let body = SoftBody::new(VoxelGrid::<D>::cube(8, 1.0).unwrap(), &[material]).unwrap();
@@ -101,7 +101,8 @@ fn pressed_clay_stays_deformed_and_rubber_recovers() {
     check_dent::<Dim3>();
 }
 
-/// Positions and velocities of all nodes, for worlds that differ in other respects.
+/// Returns the positions, velocities and masses of all nodes, so that worlds with different materials can be
+/// compared.
 fn node_states<D: Dim>(world: &World<D>) -> Vec<(D::Vector, D::Vector, f32)> {
     let states = |body: &SoftBody<D>| -> Vec<_> {
         let nodes = body.mesh().nodes();
@@ -111,7 +112,7 @@ fn node_states<D: Dim>(world: &World<D>) -> Vec<(D::Vector, D::Vector, f32)> {
     bodies.flat_map(|(_, body)| states(body)).collect()
 }
 
-/// A yield strain that is never reached gives the same bits as an infinite one.
+/// Checks that a yield strain that is never reached gives bit-identical results to an infinite one.
 fn check_same_bits<D: Dim>() {
     let run = |material: Material| {
         let mut world = World::<D>::new(WorldConfig::default()).unwrap();
@@ -149,8 +150,8 @@ fn unreached_yield_strain_gives_same_bits_as_infinite() {
     check_same_bits::<Dim3>();
 }
 
-/// Moves the nodes of a cube at random, and compares the forces and the plastic flow of the fast path with
-/// the reference.
+/// Moves the nodes of a cube at random, and compares the forces and the plastic flow of the element batches
+/// with the reference in double precision.
 fn check_reference<D: Dim>(seed: u32) -> f32 {
     let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(9);
     let mut random = || {
@@ -182,7 +183,7 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
         let deformation = body.element_state(id).unwrap().deformation;
         let before = body.element_state(id).unwrap().energy;
         undone = flow::<D>(plasticity, elasticity, &deformation, &undone);
-        // A substep of zero length moves no node.
+        // A substep of zero length updates forces and plastic flow without moving nodes.
         body.advance(0.0, D::Vector::ZERO);
         let after = body.element_state(id).unwrap().energy;
         assert!(after <= before * (1.0 + 1e-5), "energy {before} to {after}");
@@ -217,8 +218,8 @@ fn fast_path_matches_reference_plasticity() {
     }
 }
 
-/// A clay ball that expands, spins and flows: momentum and angular momentum are preserved, and energy never
-/// grows.
+/// Checks a clay ball that expands, spins and flows: its momentum and angular momentum are preserved, and its
+/// energy never grows.
 fn check_kept<D: Dim>() {
     let clay = Material {
         damping: 0.0,
@@ -279,7 +280,8 @@ fn plastic_flow_preserves_momentum_and_dissipates_energy() {
     check_kept::<Dim3>();
 }
 
-/// A deformed body is cut: new elements inherit the plastic strain of the old ones, and so does a snapshot.
+/// Checks that new elements inherit the plastic strain of the old ones when a deformed body is cut, and that
+/// snapshots contain it.
 fn check_inherited<D: Blades>() {
     let (_, mut world, id) = pressed::<D>(Material::clay(), 0.6);
     let mean = |world: &World<D>| {
@@ -331,7 +333,7 @@ fn plastic_strain_survives_cut_and_snapshot() {
     check_inherited::<Dim3>();
 }
 
-/// Beats clay with a hand from random directions: the state stays bounded.
+/// Strikes clay with a hand from random directions, and checks that the state stays bounded.
 fn check_abuse<D: Dim>(seed: u32) {
     let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(5);
     let mut random = || {
@@ -365,8 +367,8 @@ fn check_abuse<D: Dim>(seed: u32) {
         if tick % 8 == 0 {
             target = Vec3::new(random() * 2.0 - 0.5, random() * 1.2, random());
         }
-        // Limits the speed of the hand to some metres per second. A faster one would hurl away any body, even an
-        // elastic one.
+        // Limits the speed of the hand to some metres per second. A faster hand would hurl away any body,
+        // even an elastic one.
         goal += (target - goal).clamp(Vec3::splat(-0.08), Vec3::splat(0.08));
         let position = D::Vector::from_vec3(goal);
         world.set_target_position(hand, position).unwrap();

@@ -10,7 +10,7 @@ use glam::DVec3;
 mod blades;
 use blades::Blades;
 
-/// Vector of the dimension; in 2D the third coordinate is dropped.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
@@ -22,7 +22,7 @@ fn weightless<D: Dim>() -> WorldConfig<D> {
     }
 }
 
-/// A ball of two materials centred at the origin; material 2 fills a radius of 0.25 m.
+/// Returns a ball of two materials centred at the origin; material 2 fills a radius of 0.25 m.
 fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     let half = Vec3::new(0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 });
     let apart = |at: Vec3| (at - half).length();
@@ -36,7 +36,8 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     body.translated(D::Vector::from_vec3(-half))
 }
 
-/// The ball is rotated, so that no element is aligned with an axis.
+/// Returns a world with a ball, a floor and a capsule. The ball is rotated, so that no element is aligned
+/// with an axis.
 fn world<D: Dim>() -> World<D> {
     let mut world = World::new(weightless()).unwrap();
     world.add_soft_body(ball::<D>(16).rotated_about(Rotation::in_plane(0.4), D::Vector::ZERO));
@@ -51,7 +52,7 @@ fn world<D: Dim>() -> World<D> {
     world
 }
 
-/// Directions all around.
+/// Returns unit vectors that point in all directions.
 fn around<D: Dim>() -> Vec<D::Vector> {
     let turned = |k: usize| {
         let axis = match D::N {
@@ -78,7 +79,8 @@ fn check_rays<D: Dim>() {
         let from = direction * 5.0;
         let inwards = -direction;
         let found = soft_hit(from, inwards, 10.0).unwrap();
-        // The surface consists of voxels, with corners up to two voxel widths from the sphere.
+        // The surface consists of voxel faces, which deviate from the sphere of 0.5 m radius by up to two
+        // voxel widths.
         assert!(
             (found.distance - 4.5).abs() < 2.0 * voxel,
             "{direction:?} {found:?}"
@@ -87,7 +89,7 @@ fn check_rays<D: Dim>() {
         assert_eq!(found.object, ObjectRef::Piece { body, piece });
         assert_eq!(found.element.map(|element| element.material), Some(1));
         assert!(found.normal.dot(direction) > 0.0, "{found:?}");
-        // A ray from inside hits the surface on its way out.
+        // A ray that starts inside the ball hits the surface from inside.
         let out = soft_hit(D::Vector::ZERO, direction, 10.0).unwrap();
         assert!((out.distance - 0.5).abs() < 2.0 * voxel, "{out:?}");
         assert!((out.distance + found.distance - 5.0).abs() < 1e-4);
@@ -99,7 +101,7 @@ fn check_rays<D: Dim>() {
             Some(found.object)
         );
     }
-    // Without a filter, the ray hits the first object.
+    // Without a filter, a ray hits the first object on its way, soft or rigid.
     let first = |from| hit(from, vector(-1.0, 0.0, 0.0)).unwrap();
     let bar = first(vector(9.0, 0.0, 0.0));
     assert!(bar.object.rigid_body().is_some() && bar.element.is_none());
@@ -140,7 +142,7 @@ fn check_nearest<D: Dim>() {
             let at = direction * far;
             let filter = QueryFilter::default().only_soft();
             let found = world.closest_point(at, 9.0, filter).unwrap();
-            // No bare face may be nearer.
+            // No corner of an exposed face may be nearer than the closest point found.
             let (_, body) = world.soft_bodies().next().unwrap();
             let corners = body
                 .facets()
@@ -217,7 +219,7 @@ fn check_overlaps<D: Blades>() {
     assert_eq!(count(&world, probe(0.0, 2.9)), [2, 1], "as far as the bar");
     let needle = Shape::capsule(vector(-3.0, 0.013, 0.0), vector(2.0, 0.013, 0.0), 0.001);
     assert_eq!(count(&world, needle), [0, 1], "through it");
-    // Cut in two, the body counts as two pieces.
+    // After a cut in two, the body is listed as two pieces.
     let blade = D::blade(Vec3::new(0.0, -1.0, -1.0), Vec3::Y * 2.0, Vec3::Z * 2.0);
     world.cut(body, &blade).unwrap();
     assert_eq!(count(&world, probe(0.0, 0.3)), [0, 2], "across the cut");
@@ -229,7 +231,8 @@ fn overlaps_returns_pieces_and_rigid_bodies() {
     check_overlaps::<Dim3>();
 }
 
-/// Two equal boxes side by side, a sensor in front of both, and a soft cube behind the first one.
+/// Returns a world with objects in a row along the first axis: a sensor, two equal boxes and a soft cube. The
+/// second box has other layers.
 fn row<D: Dim>() -> (World<D>, [RigidBodyHandle; 3], SoftBodyHandle) {
     let mut world = World::new(weightless()).unwrap();
     let cuboid = |x| Shape::cuboid(D::Vector::splat(0.5)).translated(vector(x, 0.0, 0.0));
@@ -253,7 +256,8 @@ fn check_filters<D: Blades>() {
     let ray = Ray::new(vector(-5.0, 0.1, 0.0), D::Vector::X);
     let hit = |world: &World<D>, filter: QueryFilter<'_>| {
         let hit = world.ray_cast(ray, 100.0, filter.clone());
-        // All queries respect the filter.
+        // If the ray hits an object through the filter, the other queries must find the same object with that
+        // filter.
         if let Some(hit) = hit {
             let behind = vector(hit.point[0] + 0.1, 0.1, 0.0);
             let probe = Shape::ball(0.05).translated(behind);
@@ -280,7 +284,7 @@ fn check_filters<D: Blades>() {
     let both = all.clone().excluding(first).excluding(second);
     assert_eq!(hit(&world, both.clone()), Some(piece(PieceId(0))));
     assert_eq!(hit(&world, both.excluding(cube)), None);
-    // The layers must match in both directions.
+    // The layers of query and object must match in both directions.
     let only_second = Layers {
         memberships: 0b01,
         filters: 0b10,
@@ -303,7 +307,7 @@ fn check_filters<D: Blades>() {
         hit(&world, all.clone().with_predicate(&is_other)),
         rigid(second)
     );
-    // A predicate may query the world.
+    // The predicate itself queries the world.
     let is_isolated = |object: ObjectRef| {
         let centre = match object.rigid_body() {
             Some(rigid) => world.rigid_body(rigid).unwrap().position(),
@@ -317,7 +321,7 @@ fn check_filters<D: Blades>() {
         hit(&world, all.clone().with_predicate(&is_isolated)),
         rigid(first)
     );
-    // One piece can be excluded, and the other one stays.
+    // Excluding one piece of a cut body leaves the other piece for the ray to hit.
     let blade = D::blade(Vec3::new(4.0, -1.0, -1.0), Vec3::Y * 2.0, Vec3::Z * 2.0);
     world.cut(cube, &blade).unwrap();
     let near = hit(&world, all.clone().only_soft()).unwrap();
@@ -372,7 +376,7 @@ fn distance_to<D: Dim>(corners: [Vec3; 4], origin: Vec3, direction: Vec3) -> Opt
     };
     let [a, b, c, d] = corners.map(Vec3::as_dvec3);
     if D::N == 2 {
-        // A strip along the third axis, wide enough for every ray in the plane.
+        // In 2D, the face is extended along the third axis to a strip, which every ray in the plane can meet.
         let (up, down) = (|at: DVec3| at.with_z(9.0), |at: DVec3| at.with_z(-9.0));
         let halves = [
             triangle(down(a), down(b), up(b)),
@@ -384,7 +388,7 @@ fn distance_to<D: Dim>(corners: [Vec3; 4], origin: Vec3, direction: Vec3) -> Opt
     halves.into_iter().flatten().reduce(f64::min)
 }
 
-/// Answers to all queries, on a grid of points and rays.
+/// Results of all queries for a set of points and rays.
 type Answers<D> = (Vec<Option<QueryHit<D>>>, Vec<Vec<QueryOverlap>>);
 
 fn answers<D: Dim>(world: &World<D>) -> Answers<D> {
@@ -404,8 +408,8 @@ fn answers<D: Dim>(world: &World<D>) -> Answers<D> {
     (hits, overlaps)
 }
 
-/// Compares ray casts with brute force over all exposed faces, and all queries with those of a world that has
-/// no search trees yet.
+/// Checks queries in two ways: all results equal those of a clone, which has no search trees yet, and ray
+/// casts equal brute force over all exposed faces.
 fn check_cache<D: Dim>(world: &World<D>, step: &str) {
     let known = answers(world);
     assert_eq!(known, answers(&world.clone()), "{step}");

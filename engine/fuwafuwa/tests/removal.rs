@@ -13,7 +13,7 @@ use fuwafuwa::{
 mod blades;
 use blades::Blades;
 
-/// Vector of the dimension; in 2D the third coordinate is dropped.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
@@ -30,7 +30,8 @@ fn random(seed: &mut u32, below: usize) -> usize {
     (*seed >> 8) as usize % below
 }
 
-/// Compares the mesh of each body with one graded from scratch, and the world with its snapshot.
+/// Checks that the mesh of each body equals one graded from scratch, and that a snapshot of the world
+/// restores it.
 fn check_whole<D: Dim>(world: &World<D>, what: &str) {
     for (_, body) in world.soft_bodies() {
         let (grid, sharing) = (body.grid(), body.connectivity());
@@ -61,7 +62,8 @@ fn random_blade<D: Blades>(seed: &mut u32) -> Blade<D> {
     D::blade(corner, first, Vec3::Z * 5.0)
 }
 
-/// Cuts, tears, ticks and removals in random order.
+/// Cuts, tears, steps and removes pieces in random order, with checks after each change. Returns the number
+/// of removed pieces.
 fn check_history<D: Blades>(seed: u32, n: usize) -> usize {
     let mut seed_of = seed.wrapping_mul(2_654_435_761).wrapping_add(17);
     let seed = &mut seed_of;
@@ -111,7 +113,7 @@ fn check_history<D: Blades>(seed: u32, n: usize) -> usize {
         check_whole(&world, &what);
         let body = &world[id];
         let pieces: Vec<PieceId> = removed.pieces.iter().map(|&(_, piece)| piece).collect();
-        // After too many changes, `changes_since` returns `None`.
+        // Skips the comparison if `changes_since` returns `None`, as it does after too many changes.
         if let Some(changes) = body.changes_since(&mut bookmark) {
             assert_eq!(changes.removed, pieces, "{what}");
             assert!({ changes.elements.iter() }.all(|&id| body.mesh().element(id).is_none()));
@@ -122,7 +124,7 @@ fn check_history<D: Blades>(seed: u32, n: usize) -> usize {
             pieces.iter().all(|piece| now[piece.index()].removed),
             "{what}"
         );
-        // A tick of the world and one of its loaded snapshot give the same hash.
+        // The world and its loaded snapshot must have the same hash after one more tick.
         let mut loaded = load::<D>(&save(&world)).unwrap();
         world.step();
         loaded.step();
@@ -140,7 +142,7 @@ fn removal_leaves_mesh_as_graded_from_scratch() {
     assert!(solid.sum::<usize>() > 10, "too few pieces were removed");
 }
 
-/// A cube cut into two halves side by side.
+/// Returns a world with a cube that is cut into two halves side by side.
 fn halves<D: Blades>(settings: WorldConfig<D>) -> (World<D>, SoftBodyHandle) {
     let mut world = World::new(settings).unwrap();
     let cube = VoxelGrid::cube(8, 1.0).unwrap();
@@ -181,7 +183,7 @@ fn check_rest_untouched<D: Blades>() {
         piece: PieceId(1),
     }];
     assert_eq!(world.events()[world.events().len() - 1..], events);
-    // A second removal fails.
+    // Removing the same piece again returns an error.
     let error = world.remove_piece(cube, PieceId(1)).unwrap_err();
     assert_eq!(
         error.to_string(),
@@ -254,7 +256,7 @@ fn check_leaning<D: Blades>() {
     let below = world.add_soft_body(cube(8, 0.8).translated(D::Vector::ZERO));
     let blade = D::blade(Vec3::new(0.4, -1.0, -1.0), Vec3::Y * 3.0, Vec3::Z * 3.0);
     world.cut(below, &blade).unwrap();
-    // One cube on each half, one elsewhere.
+    // Three small cubes: one on each half, and one elsewhere on the floor.
     let on_left = world.add_soft_body(cube(3, 0.3).translated(vector(0.05, 0.82, 0.2)));
     let on_right = world.add_soft_body(cube(3, 0.3).translated(vector(0.45, 0.82, 0.2)));
     let far = world.add_soft_body(cube(3, 0.3).translated(vector(5.0, 0.01, 0.0)));
@@ -262,7 +264,8 @@ fn check_leaning<D: Blades>() {
         let mut bodies = world.soft_bodies();
         bodies.all(|(_, body)| body.pieces().list.iter().all(|piece| piece.asleep))
     };
-    // The halves may stay in contact for long; only their support matters here.
+    // The halves may take long to settle against each other. They are put to sleep by hand, because only
+    // their support for the cubes matters.
     (0..40).for_each(|_| _ = world.step());
     for id in [below, on_left, on_right, far] {
         world.put_to_sleep(id).unwrap();
@@ -287,7 +290,8 @@ fn check_leaning<D: Blades>() {
         !asleep(&world, on_right, 0),
         "the cube on the removed half must wake"
     );
-    // The other half touched the removed one, so it wakes as well, and with it the cube on top.
+    // The remaining half touched the removed one, so it wakes, and so does the cube on it. The cube elsewhere
+    // sleeps on.
     assert!(!asleep(&world, on_left, 0) && asleep(&world, far, 0));
     let woken = |event: &Event<D>| matches!(event, Event::WokeUp { body, .. } if *body == on_right);
     assert!(world.events().iter().any(woken));
@@ -374,7 +378,7 @@ fn check_last<D: Blades>() {
     );
     assert!(world.remove_piece(cube, PieceId(1)).is_err());
     world.step();
-    // The slot is free for another body.
+    // Another body can take the slot of the removed one, but the old handle stays stale.
     let ball = SoftBody::new(VoxelGrid::ball(6, 1.0).unwrap(), &[Material::default()]).unwrap();
     let ball = world.add_soft_body(ball);
     (0..30).for_each(|_| _ = world.step());
@@ -467,7 +471,7 @@ fn remove_outside_removes_pieces_and_dynamic_bodies() {
     check_outside::<Dim3>();
 }
 
-/// A reader of changes gets a tear and a removal together.
+/// `changes_since` reports a tear and a removal together if both happened since the bookmark.
 #[test]
 fn changes_since_reports_tear_and_removal_together() {
     let mut world = World::<Dim2>::new(weightless()).unwrap();

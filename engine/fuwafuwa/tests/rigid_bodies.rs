@@ -8,7 +8,7 @@ use fuwafuwa::{
 };
 use std::f32::consts::{FRAC_PI_4, PI};
 
-/// Vector of the dimension; in 2D the third coordinate is dropped.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
@@ -43,7 +43,7 @@ fn ball<D: Dim>(centre: D::Vector) -> Shape<D> {
     Shape::ball(0.3).translated(centre)
 }
 
-/// Returns the normal of a slope that falls to the right at an angle [rad].
+/// Returns the upward normal of a slope that falls to the right at an angle [rad].
 fn upright<V: DimVector>(angle: f32) -> V {
     Rotation::in_plane(-angle).apply(V::Y)
 }
@@ -52,7 +52,7 @@ fn speed<D: Dim>(rigid: RigidBodyRef<'_, D>) -> f32 {
     rigid.velocity().linear.length()
 }
 
-/// Each shape falls tilted and settles on the floor in its lowest position.
+/// Checks that each shape, dropped in a tilted pose, settles on the floor in its lowest position.
 fn all_come_to_rest<D: Dim>() {
     let turned = match D::N {
         2 => Rotation::in_plane(0.5),
@@ -118,8 +118,8 @@ fn tower_of_ten_stands_and_sleeps() {
     a_tower_stands::<Dim3>();
 }
 
-/// Two sleeping towers, each of a box, a soft body and another box on a fixed foot; one of them loses its
-/// foot.
+/// Checks two sleeping towers when the foot of one is removed. Each tower is a fixed foot, a box, a soft body
+/// and another box.
 fn one_of_two_towers_falls<D: Dim>() {
     let mut world = floored::<D>();
     let mut material = Material::default();
@@ -203,7 +203,8 @@ fn friction_holds_box_only_below_friction_angle() {
     for (angle, holds) in [(0.3f32, true), (0.6, false)] {
         let mut world = world::<Dim3>(-9.81);
         let normal: Vec3 = upright(angle);
-        // tan 0.3 = 0.31, tan 0.6 = 0.68
+        // The friction coefficient is 0.5: the box rests at the angle 0.3 rad (tangent 0.31) and slides at 0.6 rad
+        // (tangent 0.68).
         let slope = Shape::half_space(normal, Vec3::ZERO);
         world
             .add_rigid_body(RigidBody::fixed(slope).with_friction(0.5))
@@ -219,7 +220,8 @@ fn friction_holds_box_only_below_friction_angle() {
         }
         let rigid = world.rigid_body(id).unwrap();
         let way = rigid.position()[0] - start[0];
-        // Sliding for 2 s: g (sin − 0.5 cos) t²/2 along the slope.
+        // Horizontal distance of the box after t = 2 s, if it slides with the acceleration g (sin α − 0.5 cos
+        // α) along the slope.
         let along = 9.81 * (normal[0] - 0.5 * normal[1]) * 2.0 * normal[1];
         let expected = if holds { 0.0 } else { along };
         assert!(
@@ -254,7 +256,7 @@ fn ball_bounces_to_height_given_by_restitution() {
     }
 }
 
-/// Returns the linear momentum of dynamic boxes.
+/// Returns the total linear momentum of dynamic boxes of equal mass.
 fn momentum<D: Dim>(world: &World<D>, ids: &[RigidBodyHandle], mass: f32) -> D::Vector {
     ids.iter().fold(D::Vector::ZERO, |sum, &id| {
         sum + world.rigid_body(id).unwrap().velocity().linear * mass
@@ -293,7 +295,7 @@ fn collision_preserves_linear_momentum() {
     assert!(world.rigid_body(ids[1]).unwrap().velocity().angular != Vec3::ZERO);
 }
 
-/// A rigid box on a soft body sinks in a little and settles; neither is pushed away.
+/// Checks that a rigid box sinks a little into a soft body and settles, and that neither is pushed away.
 fn it_lies_on_a_soft_body<D: Dim>(mass: f32) {
     let mut world = floored::<D>();
     let grid = VoxelGrid::<D>::cube(12, 1.0).unwrap();
@@ -372,7 +374,7 @@ fn kinematic_table_rotates_and_carries_box() {
         ))
         .unwrap();
     for tick in 1..=120 {
-        // The rotation begins and ends gently, so that the box does not slip.
+        // The table starts and stops rotating gently, so that the box on it does not slip.
         let share = tick as f32 / 120.0;
         let angle = 0.5 * PI * share * share * (3.0 - 2.0 * share);
         world
@@ -454,7 +456,7 @@ fn add_rigid_body_names_invalid_field() {
     );
 }
 
-/// A sleeping body stops a rigid one, however slowly it approaches.
+/// Checks that a sleeping soft body stops a rigid body that approaches at only 0.1 m/s.
 fn sleepers_hold<D: Dim>() {
     let mut world = world::<D>(0.0);
     let grid = VoxelGrid::<D>::cube(8, 1.0).unwrap();

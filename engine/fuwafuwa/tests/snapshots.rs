@@ -12,12 +12,12 @@ use fuwafuwa::{
 mod blades;
 use blades::Blades;
 
-/// Vector of the dimension; in 2D the third coordinate is dropped.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
 
-/// A ball that falls on a floor, while a hand presses it against a wall and through it.
+/// Returns a world in which a ball falls on a floor, while a hand presses it against a wall until it tears.
 fn torn_world<D: Dim>(n: usize) -> World<D> {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
@@ -66,7 +66,7 @@ fn loaded_world_continues_with_same_bits() {
     check_resumes::<Dim3>(12);
 }
 
-/// A heap of dynamic boxes on a ball, a sensor, a pin, a spring and a rope.
+/// Returns the world of `torn_world` with dynamic boxes, a sensor, a pin, a spring and a rope added.
 fn tied_world<D: Dim>() -> World<D> {
     let mut world = torn_world::<D>(10);
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
@@ -134,7 +134,7 @@ fn loaded_world_continues_with_same_bits_with_joints_and_sensors() {
     check_tied_resumes::<Dim3>();
 }
 
-/// A knife cuts through a falling ball.
+/// Checks that a loaded world continues with the same bits while a knife cuts through a falling ball.
 fn check_cut_resumes<D: Dim>() {
     let mut world = torn_world::<D>(14);
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
@@ -174,7 +174,8 @@ fn loaded_world_continues_with_same_bits_during_cut() {
     check_cut_resumes::<Dim3>();
 }
 
-/// Crumbs of one body, some asleep and some awake, while a hand moves through them; and a body that is cut.
+/// Checks that a loaded world continues with the same bits. A hand moves through crumbs, of which some sleep,
+/// and another body is cut.
 fn check_crumbs_resume<D: Blades>(n: usize) {
     let mut world = torn_world::<D>(2 * n);
     let ball = world.nth_soft_body(0).unwrap();
@@ -215,7 +216,8 @@ fn loaded_world_continues_with_same_bits_with_sleeping_pieces() {
     check_crumbs_resume::<Dim3>(4);
 }
 
-/// Bodies in every state: torn, fixed, moved, quarantined, awake again or asleep.
+/// Checks snapshots of a world with bodies in every state: torn, fixed, moved, quarantined, asleep or awake
+/// again.
 fn check_any_state<D: Dim>(n: usize) {
     let mut world = torn_world::<D>(n);
     let nowhere = VoxelGrid::ball(4, 0.2).unwrap();
@@ -291,8 +293,8 @@ fn load_rejects_damaged_snapshot() {
     }
 }
 
-/// Altered snapshots with a valid checksum do no harm: a list of cells or nodes could be cyclic, and an id
-/// could point out of its table.
+/// Loading a snapshot that was altered and given a valid checksum must not panic or hang. Lists of cells or
+/// nodes could be cyclic, and ids could be out of range.
 #[test]
 fn load_survives_altered_state_with_valid_checksum() {
     let bytes = save(&torn_world::<Dim2>(6));
@@ -315,7 +317,8 @@ fn is_body_invalid<T>(loaded: &Result<T, Error>) -> bool {
     }
 }
 
-/// Returns a snapshot of `state` with the header's version and a valid checksum.
+/// Returns a snapshot with the version and dimensions of `header`, the bytes of `state`, and a valid
+/// checksum.
 fn with_state(header: &[u8], state: Vec<u8>) -> Vec<u8> {
     let mut changed = header[..9].to_vec();
     changed.extend(Hash::of(&state).to_le_bytes());
@@ -350,7 +353,7 @@ fn load_rejects_node_off_plane_or_non_finite() {
     };
     for axis in 0..4 {
         for wrong in [f32::NAN, f32::INFINITY, 0.5] {
-            // Within the plane, any position is valid.
+            // Skips changes within the plane to finite numbers, because they give valid positions.
             if axis < 2 && wrong.is_finite() {
                 continue;
             }
@@ -365,7 +368,7 @@ fn load_rejects_node_off_plane_or_non_finite() {
     assert!(refused > 20, "{refused}");
 }
 
-/// Between two ticks, one body is cut, another one removed and a third put in its place.
+/// The world changes between two ticks: one body is cut, another removed, and a third added in its slot.
 #[test]
 fn loaded_world_continues_with_same_bits_after_changes() {
     let ball = |x: f32| {
@@ -421,7 +424,8 @@ fn loaded_world_continues_with_same_bits_after_changes() {
     }
 }
 
-/// A world with a tearing body, bodies in contact, a sleeping body, a quarantined one and a free slot.
+/// Returns a world with a tearing body, bodies in contact, a sleeping body, a quarantined one and a free
+/// slot.
 fn full_of_all<D: Dim>(n: usize) -> World<D> {
     let mut world = torn_world::<D>(n);
     let small = |at: D::Vector| {
@@ -441,7 +445,8 @@ fn full_of_all<D: Dim>(n: usize) -> World<D> {
     world
 }
 
-/// Random changes of a few bytes; most hit single-precision numbers, where the last byte matters most.
+/// Random number generator that changes a few bytes of a snapshot. Most changed bytes belong to
+/// single-precision numbers, where the last byte has the largest effect.
 struct Changer(u32);
 
 impl Changer {
@@ -469,7 +474,8 @@ impl Changer {
     }
 }
 
-/// Checks that an altered snapshot is refused or can be stepped; returns the number of those stepped.
+/// Checks that altered snapshots are rejected or can be stepped, and returns the number of those that were
+/// stepped.
 fn check_changed<D: Dim>(n: usize, variants: u32) -> u32 {
     let bytes = save(&full_of_all::<D>(n));
     let (header, state) = bytes.split_at(17);
@@ -499,7 +505,7 @@ fn check_changed<D: Dim>(n: usize, variants: u32) -> u32 {
     stepped
 }
 
-/// No memory is reserved for the stated length of a list before its entries are read.
+/// Loading must not reserve memory for the stated length of a list before the entries are read.
 #[test]
 fn load_reserves_no_memory_for_stated_length() {
     let bytes = save(&full_of_all::<Dim2>(6));
@@ -516,7 +522,7 @@ fn load_reserves_no_memory_for_stated_length() {
     }
 }
 
-/// Regression: element batches were loaded unchecked and pointed out of their tables.
+/// Regression: element batches were loaded without checks, and their ids could be out of range.
 #[test]
 fn altered_snapshot_is_rejected_or_steppable() {
     let stepped = [

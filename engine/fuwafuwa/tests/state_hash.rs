@@ -19,12 +19,12 @@ use std::ops::Range;
 mod blades;
 use blades::Blades;
 
-/// Vector of the dimension; in 2D the third coordinate is dropped.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
 
-/// Stored values that do not change the hash, by the end of their path, with the reason.
+/// Stored values that do not change the hash, given by the end of their path, with the reason.
 const WITHOUT_EFFECT: [(&str, &str); 2] = [
     (
         "impulse.dragged.3",
@@ -36,17 +36,18 @@ const WITHOUT_EFFECT: [(&str, &str); 2] = [
     ),
 ];
 
-/// Path components of the items of tuples and arrays.
+/// Names of the items of a tuple or an array in the path of a stored value.
 const INDICES: [&str; 9] = ["0", "1", "2", "3", "4", "5", "6", "7", "8"];
 
-/// Path and position of a stored value, and the bytes of a different value.
+/// Stored value of a world: its path, its position in the bytes of the snapshot, and the bytes of a different
+/// value.
 struct Site {
     path: String,
     place: Range<usize>,
     other: Vec<u8>,
 }
 
-/// Serialiser for postcard's format that records the sites.
+/// Serialiser for postcard's format that also records a [`Site`] for each stored value.
 #[derive(Default)]
 struct Sites {
     bytes: Vec<u8>,
@@ -69,7 +70,7 @@ fn zigzag(number: i64) -> Vec<u8> {
 }
 
 impl Sites {
-    /// Writes a value and records its site; `other` is a different value.
+    /// Writes a value and records its [`Site`]; `other` is the different value for the test.
     fn leaf(&mut self, own: &[u8], other: Vec<u8>) -> Result<(), Error> {
         let first = self.bytes.len();
         self.bytes.extend(own);
@@ -77,7 +78,7 @@ impl Sites {
         Ok(())
     }
 
-    /// Records everything written since `first` as a site; `other` is a different value.
+    /// Records all bytes written since `first` as one [`Site`]; `other` is the different value for the test.
     fn note(&mut self, first: usize, other: Vec<u8>) {
         self.all.push(Site {
             path: self.path.join("."),
@@ -100,13 +101,16 @@ impl Sites {
     }
 }
 
-/// List that is being written. The list without its last item serves as the different value.
+/// Serialiser of a list. The list without its last item serves as its different value.
 struct List<'a> {
     sites: &'a mut Sites,
-    /// Start of the length, of the items and of the last item.
+    /// Position of the list's length in the written bytes.
     first: usize,
+    /// Position of the first item.
     items: usize,
+    /// Position of the last item.
     last: usize,
+    /// Number of items.
     length: u64,
 }
 
@@ -281,7 +285,7 @@ impl<'a> Serializer for &'a mut Sites {
     }
 }
 
-/// Next larger or smaller number; infinite becomes finite.
+/// Returns the next representable number away from zero; 1 if the number is not finite.
 fn next(number: f32) -> f32 {
     match number.is_finite() {
         true => f32::from_bits(number.to_bits() + 1),
@@ -321,7 +325,7 @@ impl ser::SerializeMap for List<'_> {
     }
 }
 
-/// Tuple or array that is being written.
+/// Serialiser of a tuple or an array.
 struct Tuple<'a> {
     sites: &'a mut Sites,
     index: usize,
@@ -382,7 +386,8 @@ fields! {
     SerializeStruct, SerializeStructVariant
 }
 
-/// Returns a snapshot of `state` with the header's version and a valid checksum.
+/// Returns a snapshot with the version and dimensions of `header`, the bytes of `state`, and a valid
+/// checksum.
 fn with_state(header: &[u8], state: &[u8]) -> Vec<u8> {
     let mut changed = header[..9].to_vec();
     changed.extend(Hash::of(state).to_le_bytes());
@@ -390,14 +395,15 @@ fn with_state(header: &[u8], state: &[u8]) -> Vec<u8> {
     changed
 }
 
-/// Whether a world stores a value with a path that ends in `end`, or a list of at least one item.
+/// Returns whether a world stores a value with a path that ends in `end`. An empty list does not count.
 fn stores<D: Dim>(world: &World<D>, end: &str) -> bool {
     let mut sites = Sites::default();
     world.serialize(&mut sites).unwrap();
     sites.all.iter().any(|site| site.path.ends_with(end))
 }
 
-/// Changes each stored value of a world. Counts the changes by path.
+/// Changes each stored value of a world alone, and checks that the hash changes or loading fails. Counts the
+/// changes by path.
 fn check_all_values<D: Dim>(world: &World<D>, counts: &mut BTreeMap<String, u32>) {
     let mut sites = Sites::default();
     world.serialize(&mut sites).unwrap();
@@ -423,8 +429,8 @@ fn check_all_values<D: Dim>(world: &World<D>, counts: &mut BTreeMap<String, u32>
     assert!(missed.is_empty(), "not in the hash: {missed:#?}");
 }
 
-/// Soft and rigid bodies of all kinds with joints, a knife, a sensor, a tearing and plastic body, a body asleep, a
-/// fixed node, layers and free slots.
+/// Returns a world that uses all parts of the state: soft and rigid bodies of all kinds, joints, a knife, a
+/// sensor, a tearing and a plastic body, a sleeping body, a fixed node, layers and free slots.
 fn world_of_everything<D: Blades>(n: usize) -> World<D> {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let depth = if D::N == 3 { 0.2 } else { 0.0 };
@@ -451,7 +457,7 @@ fn world_of_everything<D: Blades>(n: usize) -> World<D> {
         filters: 3,
     };
     world.set_layers(resting, ghost).unwrap();
-    // A coupled body tears the cube.
+    // A coupled hand tears the cube.
     let hand = RigidBody::coupled(Shape::ball(0.08)).at(vector(-0.2, 0.3, depth));
     let hand = world.add_rigid_body(hand).unwrap();
     let holder = RigidBody::kinematic(Shape::ball(0.05)).at(vector(0.5, 0.1, depth));
@@ -502,7 +508,8 @@ fn world_of_everything<D: Blades>(n: usize) -> World<D> {
             assert!(world.cut(cube, &blade).unwrap() > 0);
         }
         world.step();
-        // Only a crack starts a cooldown; a cut does not.
+        // Returns as soon as a node is in its cooldown after a release. Only a growing crack starts a
+        // cooldown; a cut does not.
         if tick > 11 && stores(&world, "state.cooldowns.points") {
             return world;
         }
@@ -510,7 +517,7 @@ fn world_of_everything<D: Blades>(n: usize) -> World<D> {
     panic!("no crack grows");
 }
 
-/// Parts of the state that the world must contain, so that the test covers them.
+/// Ends of paths of stored values that the world must contain, so that the test covers them.
 const COVERED: [&str; 14] = [
     "joints.slots.item.attached.1.Position",
     "joints.slots.item.kind.stiffness",
@@ -534,7 +541,7 @@ fn check_everything<D: Blades>(n: usize) {
     check_all_values(&world, &mut counts);
     let is_torn = |body: &SoftBody<D>| body.pieces().count() > 1;
     assert!(world.soft_bodies().any(|(_, body)| is_torn(body)));
-    // Checks the world again when bodies sleep, some time after the coupled body was removed.
+    // Removes the hand and checks all values again later, when bodies sleep.
     let hand = world.nth_target_follower(0).unwrap();
     world.remove(hand).unwrap();
     for _ in 0..300 {

@@ -5,7 +5,7 @@ use fuwafuwa::{
     Material, RigidBody, Shape, SoftBody, Substep, Vec2, Vec3, VoxelGrid, World, WorldConfig,
 };
 
-/// Vector of the dimension; in 2D the third coordinate is dropped.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
@@ -41,7 +41,7 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     SoftBody::new(VoxelGrid::ball(n, 1.0).unwrap(), &[strong]).unwrap()
 }
 
-/// Steps the world for a time [s] and calls `watch` after each tick.
+/// Steps a world for a time [s] and calls `watch` after each tick.
 fn pass<D: Dim>(world: &mut World<D>, seconds: f32, mut watch: impl FnMut(&World<D>)) {
     let ticks = (seconds / world.config().tick).round() as u32;
     for _ in 0..ticks {
@@ -51,7 +51,7 @@ fn pass<D: Dim>(world: &mut World<D>, seconds: f32, mut watch: impl FnMut(&World
 }
 
 fn check_fall<D: Dim>() {
-    // In half a second a body falls 1.226 m, at any tick.
+    // A body falls 1.226 m in half a second, whatever the length of a tick.
     for tick in TICKS {
         let mut world = world::<D>(tick);
         let ball = world.add_soft_body(ball::<D>(12).translated(vector(0.0, 5.0, 0.0)));
@@ -120,7 +120,8 @@ fn landing_is_independent_of_tick() {
     check_landing::<Dim3>();
 }
 
-/// Returns the number of nodes that a hand releases when it moves through a ball at a given speed.
+/// Returns the number of nodes that a hand splits when it moves through a ball at a speed that does not
+/// depend on the tick.
 fn torn<D: Dim>(tick: f32) -> u32 {
     let mut world = world::<D>(tick);
     let soft = Material {
@@ -175,7 +176,8 @@ fn substeps_per_second_are_independent_of_tick() {
             "tick {tick}: {a_second}"
         );
     }
-    // A body that is too stiff is softened by the same factor at any tick.
+    // A body that is too stiff for the maximum number of substeps is softened by the same factor at any tick
+    // length.
     let scale = |tick| {
         let stiff = Material {
             elasticity: fuwafuwa::inspect::Elasticity::new(5e7, 0.3).unwrap(),
@@ -266,13 +268,13 @@ fn set_config_takes_effect_immediately() {
     near(found / before, kept * kept * kept * kept - 1.0);
 }
 
-/// The hook in each substep receives the same force and torque as the reactions stored at the end of the
-/// tick.
+/// Checks the hook that is called after each substep: it receives the same forces and torques as those stored
+/// at the end of the tick.
 fn check_callback<D: Dim>(tick: f32) {
     let mut world = world::<D>(tick);
     world.add_soft_body(ball::<D>(12));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    // A bar that meets the ball with one end, so that it is pushed and rotated.
+    // The bar meets the ball with one end, so that the contact both pushes and turns it.
     let bar = Shape::capsule(vector(-1.0, 0.0, 0.0), vector(0.3, 0.0, 0.0), 0.1);
     let hand = RigidBody::coupled(bar).at(vector(-0.2, 1.2, depth));
     let hand = world.add_rigid_body(hand).unwrap();
@@ -301,7 +303,8 @@ fn check_callback<D: Dim>(tick: f32) {
             let torque = reaction.torque.to_vec3().z;
             most = most.max(torque);
             if reaction.contact[1] > 1.0 {
-                // The contact is to the right of the hand and pushes up.
+                // The contact is to the right of the hand's centre and pushes up, so its torque is
+                // counterclockwise.
                 assert!(torque > 0.0, "{reaction:?}");
             }
         }

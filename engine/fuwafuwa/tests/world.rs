@@ -5,7 +5,7 @@ use fuwafuwa::{
     PieceView, RigidBody, Shape, SoftBody, Vec2, Vec3, Velocity, VoxelGrid, World, WorldConfig,
 };
 
-/// Vector of the dimension; in 2D the third coordinate is dropped.
+/// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
@@ -191,7 +191,7 @@ fn ball_falls_sleeps_and_wakes_when_touched() {
     check_falls_rests_and_sleeps::<Dim3>(12);
 }
 
-/// Slams a hand through the body at 20 body widths per second.
+/// Moves a hand through the body at 20 body widths per second, and checks that the state stays valid.
 fn check_slam<D: Dim>(n: usize, drive: MotionType) {
     let mut world = World::<D>::new(weightless()).unwrap();
     let soft = world.add_soft_body(ball::<D>(n, Material::default()));
@@ -247,7 +247,7 @@ fn inverted_body_recovers_and_stays_finite() {
     assert!(view.high[0] - view.low[0] < 2.0, "{view:?}");
 }
 
-/// A body that is too stiff for the allowed substeps is softened and reports it.
+/// A body that is too stiff for the allowed substeps is softened, and `stiffness_scale` returns the factor.
 #[test]
 fn too_stiff_body_is_softened() {
     let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
@@ -267,7 +267,8 @@ fn too_stiff_body_is_softened() {
     assert!(view.low[1] > -0.05 && view.high[1] < 1.5, "{view:?}");
 }
 
-/// At ten widths per second, neither a body nor a cloud of crumbs passes through another body.
+/// Checks that neither a body nor a cloud of crumbs passes through another body at ten body widths per
+/// second.
 fn check_no_tunnelling<D: Dim>(n: usize) {
     for crumbles in [false, true] {
         let mut world = World::<D>::new(weightless()).unwrap();
@@ -300,8 +301,8 @@ fn fast_body_does_not_tunnel() {
     check_no_tunnelling::<Dim3>(10);
 }
 
-/// A force-feedback stick is updated 960 times a second. Its force must not jitter while the hand rests on a
-/// body, nor jump between substeps while the hand pushes in.
+/// Checks that the force for a force-feedback stick, updated 960 times a second, is smooth. It must not
+/// jitter while the hand rests on a body, nor jump between substeps while the hand pushes in.
 fn check_smooth_reaction<D: Dim>(n: usize) {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
@@ -321,7 +322,7 @@ fn check_smooth_reaction<D: Dim>(n: usize) {
         world.step();
         let felt = world.rigid_body(hand).unwrap().reactions();
         let up = felt.map(|reaction| reaction.coupling[1]);
-        // The first tick is excluded: the target jumps, which is felt as a jerk.
+        // Leaves out the first tick, before the target starts to move.
         if (1..120).contains(&tick) {
             steps.extend(up);
         } else if tick >= 420 {

@@ -1,4 +1,4 @@
-//! Depth buffer used by [`crate::solid`].
+//! Depth buffer with which [`crate::solid`] renders.
 
 use crate::PaintError;
 use crate::role::{Role, colour};
@@ -14,7 +14,7 @@ pub struct Camera {
     pub eye: Vec3,
     /// Target [m], which appears at the centre of the image.
     pub target: Vec3,
-    /// Width of the view at the target [m].
+    /// Width of the visible region at the distance of the target [m].
     pub across: f32,
 }
 
@@ -29,12 +29,12 @@ pub struct Triangle {
     pub role: Role,
 }
 
-/// Supersampling factor on each axis.
+/// Number of supersampled pixels per image pixel on each axis.
 const FINE: usize = 2;
-/// Direction to the weaker light.
+/// Unit vector towards the weaker of the two lights.
 const FILL: Vec3 = Vec3::new(-0.76, 0.38, 0.53);
 
-/// Depth and light of every supersampled pixel.
+/// Image under construction, with a depth and a reflected light for every supersampled pixel.
 pub struct Canvas {
     width: usize,
     height: usize,
@@ -119,7 +119,8 @@ impl Canvas {
         unit(rightwards * right + upwards * up + away)
     }
 
-    /// Darkens creases: pixels that lie deeper than the mean of two opposite pixels at most `reach` [m] away.
+    /// Darkens creases: pixels that lie deeper than the mean of two opposite pixels around them, at most
+    /// `reach` [m] away.
     pub fn darken_creases(&mut self, reach: f32) {
         const DIRECTIONS: [[f32; 2]; 6] = [
             [1.0, 0.0],
@@ -195,8 +196,8 @@ impl Canvas {
         }
     }
 
-    /// Fills empty pixels below the horizon with a floor at `height` [m], which fades into the paper in the
-    /// distance.
+    /// Fills empty pixels below the horizon with a floor at `height` [m]. In the distance, the floor fades
+    /// into the background.
     pub fn floor(&mut self, height: f32, shadow: &Shadow) {
         let (paper, floor) = (light_of(Role::Paper), light_of(Role::Floor));
         for y in 0..self.height {
@@ -243,8 +244,8 @@ impl Canvas {
     }
 }
 
-/// Returns the light that a surface of a colour reflects from both lights and the sky. Back faces are lit
-/// like front faces.
+/// Returns the light that a surface of a given colour reflects from both lights and the sky. Back faces are
+/// lit like front faces.
 fn shaded(colour: Vec3, normal: Vec3, look: Vec3) -> Vec3 {
     let normal = if normal.dot(look) > 0.0 {
         -normal
@@ -259,7 +260,7 @@ fn shaded(colour: Vec3, normal: Vec3, look: Vec3) -> Vec3 {
 }
 
 fn light_of(role: Role) -> Vec3 {
-    // A square approximates the sRGB transfer curve.
+    // Squaring approximates the conversion from sRGB to linear light.
     let colour = Vec3::from(colour(role).map(f32::from)) / 255.0;
     colour * colour
 }

@@ -5,16 +5,16 @@ use std::error::Error;
 /// Reason why a picture or a film could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PaintError {
-    /// Paper or an image without area, or a shape without a finite size.
+    /// Paper or image without area, or shape without a finite size.
     #[error("{what} has no finite size above zero")]
     NoSize {
-        /// Object without a size.
+        /// Kind of the object without a size.
         what: &'static str,
     },
     /// A film or a strip without frames.
     #[error("a film or a strip needs at least one frame")]
     NoFrame,
-    /// A frame with another size than the first.
+    /// Frame of another size than the first frame.
     #[error("frame {frame} has {found:?} pixels, expected {expected:?} as in the first frame")]
     FrameSize {
         /// Number of the frame, from 1.
@@ -24,10 +24,10 @@ pub enum PaintError {
         /// Width and height of the first frame [px].
         expected: [u32; 2],
     },
-    /// The pixels could not be encoded.
+    /// Failure of an encoder.
     #[error("{format}: {reason}")]
     Packing {
-        /// GIF or PNG.
+        /// Name of the file format: GIF or PNG.
         format: &'static str,
         /// Error of the encoder.
         reason: Box<dyn Error + Send + Sync>,

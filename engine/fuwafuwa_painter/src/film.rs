@@ -7,11 +7,11 @@ use tiny_skia::Pixmap;
 /// Gap between the pictures of a strip [px].
 const GAP: u32 = 12;
 
-/// A GIF that repeats forever, encoded frame by frame, so that a long film needs no more memory than its
-/// file.
+/// Animated GIF that repeats forever. Frames are encoded as they are added, so that a long film needs no more
+/// memory than its file.
 #[derive(Default)]
 pub struct Gif {
-    /// `None` before the first frame, which determines the size.
+    /// Encoder for the size of the first frame; `None` before that frame.
     encoder: Option<Encoder<Vec<u8>>>,
     size: [u32; 2],
     count: usize,
@@ -46,7 +46,7 @@ impl Gif {
                 none.insert(new)
             }
         };
-        // Speed of quantisation, from 1 (slow) to 30 (fast): 10 is hardly worse than 1.
+        // Speed of colour reduction, from 1 (slow) to 30 (fast). At 10, the result is hardly worse than at 1.
         let mut frame = Frame::from_rgba_speed(width, height, &mut pixels.data().to_vec(), 10);
         frame.delay = hundredths;
         encoder.write_frame(&frame).map_err(&failed)

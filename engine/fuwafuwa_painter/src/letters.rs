@@ -1,4 +1,4 @@
-//! A stroke font, so that no font file is needed and all outputs look the same. It has the letters of
+//! Stroke font, built in so that no font file is needed and all outputs look the same. It has the letters of
 //! English, digits and some signs; other characters leave a gap.
 
 use crate::PaperPoint;
@@ -30,7 +30,7 @@ pub fn width(height: f32, text: &str) -> f32 {
     text.chars().map(advance).sum::<f32>() * height / 6.0
 }
 
-/// Width of the letters relative to the grid of their strokes.
+/// Width of a grid column of the letters, relative to the height of a grid row.
 const SLENDER: f32 = 0.78;
 
 fn advance(letter: char) -> f32 {
@@ -39,7 +39,8 @@ fn advance(letter: char) -> f32 {
     width * SLENDER + 1.3
 }
 
-/// Returns the number of empty columns to the left of a letter, and of the columns it fills.
+/// Returns the number of empty grid columns to the left of a letter, and the number of columns that the
+/// letter fills.
 fn room(letter: char) -> (f32, f32) {
     match letter {
         'i' | '.' | ',' | ':' | '!' | '\'' | '|' => (2.0, 0.4),
@@ -101,7 +102,8 @@ fn minus(a: PaperPoint, b: PaperPoint) -> PaperPoint {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// Returns the strokes of a letter on a grid of 4 × 8: pairs of digits x, y; `|` lifts the pen.
+/// Returns the strokes of a letter on a grid of 4 × 8: each pair of digits is a point x, y, and `|` begins a
+/// new stroke.
 fn strokes(letter: char) -> &'static str {
     match letter {
         '0' => "10 30 41 45 36 16 05 01 10",

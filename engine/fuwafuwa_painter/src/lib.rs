@@ -39,7 +39,7 @@ enum Shape {
         outline: Vec<PaperPoint>,
         role: Role,
     },
-    /// A line through points; a closed one also joins the last point to the first.
+    /// Polyline through points. If `closed`, another segment joins the last point to the first.
     Line {
         spots: Vec<PaperPoint>,
         closed: bool,
@@ -52,7 +52,7 @@ enum Shape {
         radius: f32,
         role: Role,
     },
-    /// An image; `at` is its top left corner.
+    /// Image with its top left corner at `at`.
     Image { at: PaperPoint, pixels: Rc<Pixmap> },
 }
 
@@ -140,7 +140,7 @@ impl Painter {
         });
     }
 
-    /// Adds a centred line of text below everything, on an extension of the paper.
+    /// Adds a centred line of text below the picture, for which the paper is extended.
     pub fn caption(&mut self, text: &str) {
         const HEIGHT: f32 = 13.0;
         let [width, height] = self.size().map(|k| k as f32);
@@ -184,14 +184,14 @@ impl Painter {
         self.shapes.push(Shape::Image { at, pixels });
     }
 
-    /// Adds a centred row of named samples as a legend. `y` is its upper edge [px].
+    /// Adds a legend: a centred row of samples, each with its name. `y` is the upper edge of the row [px].
     pub fn legend(&mut self, y: f32, entries: &[(Sample, &str)]) {
         let wide: f32 = entries.iter().map(|(_, name)| entry_width(name)).sum();
         let x = 0.5 * (self.width as f32 - wide + BETWEEN_ENTRIES);
         self.entries([x, y], entries);
     }
 
-    /// Adds a row of named samples that begins at `at`.
+    /// Adds a row of samples, each with its name, that begins at `at`.
     pub fn entries(&mut self, at: PaperPoint, entries: &[(Sample, &str)]) {
         let mut x = at[0];
         for &(sample, name) in entries {
@@ -224,7 +224,7 @@ fn entry_width(name: &str) -> f32 {
 /// Sample next to a name in a legend.
 #[derive(Copy, Clone, Debug)]
 pub enum Sample {
-    /// A filled square: roles of the fill and of the outline.
+    /// Filled square, with the role of its fill and the role of its outline.
     Area(Role, Role),
     /// A dot.
     Dot(Role),

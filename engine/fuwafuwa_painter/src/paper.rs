@@ -1,21 +1,21 @@
-//! Coordinates on the paper.
+//! Coordinates on the paper of a picture.
 
 use fuwafuwa::DimVector;
 
-/// A point on the paper [px], y downwards.
+/// Point on the paper [px]; x points to the right, y down.
 pub type PaperPoint = [f32; 2];
 
-/// Map from the plane, y upwards, to the paper.
+/// Map from world coordinates, with y upwards, to paper coordinates, with y downwards.
 #[derive(Copy, Clone, Debug)]
 pub struct PaperTransform {
-    /// Position of the origin on the paper.
+    /// Paper coordinates of the world's origin.
     pub origin: PaperPoint,
-    /// Scale: pixels per unit.
+    /// Pixels per world unit.
     pub unit: f32,
 }
 
 impl PaperTransform {
-    /// Returns the point on the paper; a third coordinate is ignored.
+    /// Converts a point of the world to paper coordinates; a third coordinate is ignored.
     pub fn spot(self, at: impl DimVector) -> PaperPoint {
         let [x, y] = self.origin;
         [x + at[0] * self.unit, y - at[1] * self.unit]

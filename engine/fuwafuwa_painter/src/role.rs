@@ -4,41 +4,41 @@
 //! blue-yellow axis, so that they can be told apart with most kinds of colour vision. `Added` and `Removed`
 //! have a blue and a vermilion after [Okabe 2008]. Pictures also give these two roles different shapes.
 
-/// Red, green and blue (sRGB), 0 to 255.
+/// Colour as red, green and blue (sRGB), 0 to 255 each.
 pub type Colour = [u8; 3];
 
 /// Meaning of a shape, which determines its colour.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Background.
+    /// Background of a picture.
     Paper,
     /// Text and outlines.
     Ink,
     /// Less important text.
     Faded,
-    /// Guide lines.
+    /// Auxiliary lines of a figure.
     Guide,
     /// A cell of the hierarchy without an element of its own.
     EmptyCell,
-    /// An element of a level, 0 = finest.
+    /// Element of a level; level 0 is the finest.
     Level(u8),
     /// The edge of an element.
     Edge,
     /// A node.
     Node,
-    /// A node in the middle of an edge or a face.
+    /// Mid node: a node in the middle of an edge or a face of an element.
     MidNode,
-    /// Something new.
+    /// Element or node that a change of the mesh added.
     Added,
-    /// Something removed or about to be removed.
+    /// Element or node that a change of the mesh removed or is about to remove.
     Removed,
-    /// Something pointed at.
+    /// Object to which the figure draws attention.
     Marked,
-    /// The faces of a crack.
+    /// Crack faces; in 2D the edges of a crack.
     Crack,
-    /// The surface of a body; in 2D its first material.
+    /// Surface of a body; in 2D also its first material.
     Skin,
-    /// A material of a body, from 1.
+    /// Material of a body, by its number from 1.
     Material(u8),
     /// Surface that was inside before the body tore.
     TornSurface,
@@ -61,7 +61,7 @@ const LEVELS: [Colour; 6] = [
     [0x6A, 0x97, 0xBF],
 ];
 
-/// Colours of a body's second and later materials; they repeat.
+/// Colours of a body's materials from number 2 on; they repeat after the last.
 const MATERIALS: [Colour; 4] = [
     [0xB5, 0x5D, 0x6B],
     [0xF6, 0xCE, 0x8A],

@@ -1,14 +1,14 @@
-//! Soft shadow of bodies on the floor: their silhouette from the light, blurred.
+//! Soft shadow of bodies on the floor: their silhouette, seen from the stronger light and blurred.
 
 use fuwafuwa::glam::Vec3Swizzles;
 use fuwafuwa::{Vec2, Vec3};
 
-/// Unit vector to the stronger light, which casts the shadow.
+/// Unit vector towards the stronger light, which casts the shadow.
 pub const KEY: Vec3 = Vec3::new(0.44, 0.71, 0.55);
-/// Number of cells of the map on each axis.
+/// Number of cells of the shadow map on each axis.
 const CELLS: usize = 256;
 
-/// Map around the bodies of the share of the stronger light that does not reach the floor.
+/// Shadow map of the floor around the bodies: share of the stronger light that the bodies block in each cell.
 pub struct Shadow {
     low: Vec2,
     cell: f32,
@@ -93,14 +93,15 @@ impl Shadow {
             + v * ((1.0 - u) * dark(0, 1) + u * dark(1, 1))
     }
 
-    /// Returns the distance of a point from the centre of the map, in multiples of half the map's width.
+    /// Returns the distance of a point from the centre of the shadow map, in multiples of half the map's
+    /// width.
     pub fn distance(&self, at: Vec3) -> f32 {
         let half = 0.5 * self.cell * CELLS as f32;
         (at.xz() - self.low - half).length() / half
     }
 }
 
-/// Projects a point along the light onto the floor.
+/// Projects a point onto the floor at `height` [m], along the direction of the stronger light.
 fn projected(at: Vec3, height: f32) -> Vec2 {
     let drop = (at.y - height) / KEY.y;
     at.xz() - drop * KEY.xz()

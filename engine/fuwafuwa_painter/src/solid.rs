@@ -14,7 +14,7 @@ use tiny_skia::Pixmap;
 pub struct Scene3d {
     camera: Camera,
     triangles: Vec<Triangle>,
-    /// Lines: end points [m], width [px] and role.
+    /// Lines of the scene: both end points [m], width [px] and role.
     segments: Vec<([Vec3; 2], f32, Role)>,
     floor: Option<f32>,
 }
@@ -85,7 +85,7 @@ impl Scene3d {
         self.ball(from, radius, role);
         self.ball(to, radius, role);
         let along = to - from;
-        // The axis along which `along` extends least is never parallel to `along`.
+        // The axis along which `along` extends least is never parallel to `along`, so the cross product is not 0.
         let least = (0..3).min_by(|&a, &b| along[a].abs().total_cmp(&along[b].abs()));
         let aside = Vec3::AXES[least.expect("there are three axes")];
         let across = unit(along.cross(aside));
@@ -144,8 +144,8 @@ impl Scene3d {
     }
 }
 
-/// Returns a corner of a box relative to its centre. `sides` are −1 or 1, for `axis` and the two axes that
-/// follow.
+/// Returns a corner of a box relative to its centre. Each of `sides` is −1 or 1: the first for `axis`, the
+/// others for the two axes that follow cyclically.
 fn corner(half: Vec3, axis: usize, sides: [f32; 3]) -> Vec3 {
     let mut corner = Vec3::ZERO;
     for (step, side) in sides.into_iter().enumerate() {

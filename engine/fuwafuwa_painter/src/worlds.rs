@@ -14,7 +14,7 @@ pub type DrawPlane = fn(&mut Painter, PaperTransform, &SoftBody<Dim2>);
 /// Function that paints a 3D body.
 pub type DrawSpace = fn(&mut Scene3d, &SoftBody<Dim3>);
 
-/// Number of segments in the round end of a capsule.
+/// Number of line segments that approximate each round end of a capsule.
 const ROUND: usize = 24;
 
 /// Paints a 2D world; `draw` paints each body.
@@ -65,14 +65,14 @@ pub fn plane_skin(painter: &mut Painter, frame: PaperTransform, body: &SoftBody<
                 1 if is_crumb => Role::Crumb,
                 number => Role::Material(number),
             };
-            // An outline of the same colour closes the seams between elements.
+            // The outline has the colour of the element and closes the seams to its neighbours.
             painter.polygon(outline(frame, view), role, role, 1.0);
         },
     );
 }
 
-/// Paints the pieces, the small ones on top. `draw` paints each element and receives whether it is a crumb;
-/// torn edges have the role `torn`.
+/// Paints the pieces of a body, the small ones on top. `draw` paints each element and receives whether it is
+/// a crumb. Edges of cracks get the role `torn`.
 fn plane_pieces(
     painter: &mut Painter,
     frame: PaperTransform,
@@ -126,7 +126,7 @@ pub fn space(solid: &mut Scene3d, world: &World<Dim3>, draw: DrawSpace) {
     for obstacle in obstacles(world) {
         match obstacle.shape() {
             Shape::HalfSpace { normal, offset } if normal.y > 0.99 => solid.floor(offset),
-            // Other half-spaces are not painted: they would hide the bodies.
+            // Half-spaces other than a floor are not painted, because they would hide the bodies.
             Shape::HalfSpace { .. } => {}
             shape => solid_shape(solid, shape, Role::Obstacle),
         }
@@ -224,7 +224,7 @@ fn smoothed(facets: &[Facet]) -> BTreeMap<NodeId, Vec3> {
     places
 }
 
-/// Paints the faces of an element, and the edges between faces of different direction.
+/// Paints the faces of an element, and those of its edges at which two faces of different direction meet.
 fn space_element(solid: &mut Scene3d, view: &ElementView) {
     let mut edges = BTreeSet::new();
     for face in faces::<Dim3>(view.level, view.children) {
@@ -240,7 +240,7 @@ fn space_element(solid: &mut Scene3d, view: &ElementView) {
     }
 }
 
-/// Returns the pieces that consist of a single element.
+/// Returns the crumbs of a body: the pieces that consist of a single element.
 fn crumbs<D: Dim>(body: &SoftBody<D>) -> BTreeSet<PieceId> {
     let views = body.piece_views().into_iter();
     views

@@ -1,15 +1,15 @@
-//! Header of a NIfTI file: layout of its fields, and the range of each.
+//! Header of a NIfTI file: layout of its fields, and the valid range of each.
 //!
 //! The header has 348 bytes in NIfTI-1 and 540 in NIfTI-2, with the same fields at different offsets [Cox
-//! 2004]. The first number is this length, which also reveals the byte order.
+//! 2004]. The first number of a file is the length of the header, which also reveals the byte order.
 
 use crate::placement::{Placement, PlacementForms, Quaternion};
 use fuwafuwa_scenes::import::{FilePosition, PositionedProblem, too_large, unexpected};
 
-/// Maximum number of voxels in a scan, as many as 512 on each axis: half a gigabyte in memory.
+/// Maximum number of voxels in a scan: as many as in 512 × 512 × 512, which take half a gigabyte in memory.
 pub const MAX_VOXELS: u64 = 1 << 27;
 
-/// Length of the longer of the two headers [bytes].
+/// Length of the longer of the two header versions [bytes]: 540 in NIfTI-2, against 348 in NIfTI-1.
 pub const LONGEST: usize = 540;
 
 /// Maximum offset of the first voxel [bytes]. Header extensions lie between the header and the first voxel.
@@ -29,7 +29,8 @@ pub enum NumberFormat {
     F64,
 }
 
-/// Consecutive numbers with a common name: offsets and formats in NIfTI-1 and NIfTI-2.
+/// Header field of one or more consecutive numbers. `at` and `number` hold its offset and format, in NIfTI-1
+/// and in NIfTI-2.
 struct Field {
     name: &'static str,
     at: [usize; 2],
@@ -63,7 +64,7 @@ const QUATERN: Field = field("quatern", (256, F32), (352, F64));
 const QOFFSET: Field = field("qoffset", (268, F32), (376, F64));
 const SROW: Field = field("srow", (280, F32), (400, F64));
 
-/// Checked header.
+/// Values of a header that passed all checks.
 #[derive(Debug)]
 pub struct Header {
     /// Number of voxels on each axis of the scan.
@@ -73,13 +74,13 @@ pub struct Header {
     pub is_big_endian: bool,
     /// Offset of the first voxel [bytes].
     pub offset: usize,
-    /// Slope and intercept: value = slope · stored number + intercept.
+    /// Slope and intercept of the values: value = slope · stored number + intercept.
     pub scale: [f64; 2],
     pub placement: Placement,
 }
 
 impl Header {
-    /// Reads the header from the beginning of a file: its first [`LONGEST`] bytes, or all if it is shorter.
+    /// Reads the header from `bytes`, the first [`LONGEST`] bytes of a file, or all bytes of a shorter file.
     pub fn read(bytes: &[u8]) -> Result<Self, PositionedProblem> {
         let bytes = Bytes::of(bytes)?;
         let size = size(&bytes)?;
@@ -94,7 +95,7 @@ impl Header {
         })
     }
 
-    /// Returns the number of voxels; [`Header::read`] has checked the limit.
+    /// Returns the number of voxels, at most [`MAX_VOXELS`], as [`Header::read`] has checked.
     pub fn voxels(&self) -> usize {
         self.size.iter().product()
     }
@@ -138,10 +139,10 @@ impl NumberFormat {
     }
 }
 
-/// Bytes of a complete header.
+/// Bytes of a complete header, with the version that determines its layout.
 struct Bytes<'a> {
     bytes: &'a [u8],
-    /// 0 for NIfTI-1, 1 for NIfTI-2.
+    /// Index of the version: 0 for NIfTI-1, 1 for NIfTI-2.
     version: usize,
     is_big_endian: bool,
 }
@@ -189,7 +190,7 @@ impl<'a> Bytes<'a> {
         FilePosition::Field(field.name, field.at[self.version] + index * width)
     }
 
-    /// Returns the number at `index` of a field.
+    /// Returns the number at `index` in a field.
     fn number(&self, field: &Field, index: usize) -> f64 {
         let number = field.number[self.version];
         let at = field.at[self.version] + index * number.bytes();
@@ -281,7 +282,8 @@ fn scale(bytes: &Bytes) -> Result<[f64; 2], PositionedProblem> {
 }
 
 fn placement(bytes: &Bytes) -> Result<Placement, PositionedProblem> {
-    // The lowest three bits give the unit of length; most programs that leave it at 0 mean millimetres.
+    // The lowest three bits of the field give the unit of length. Most programs that leave it at 0 mean
+    // millimetres.
     let unit = match bytes.number(&XYZT_UNITS, 0) as i32 & 7 {
         0 | 2 => 1.0,
         1 => 1000.0,

@@ -12,11 +12,11 @@ use std::ops::RangeInclusive;
 /// into a MagicaVoxel model.
 pub const RESOLUTIONS: RangeInclusive<usize> = 8..=256;
 
-/// Minimum resolution of the search for an organ [voxels], even if the final resolution is lower: a coarser
-/// search misses small organs.
+/// Minimum resolution of the search for an organ [voxels], used even if the final resolution is lower. A
+/// coarser search would miss small organs.
 const MIN_SEARCH_RESOLUTION: usize = 64;
 
-/// Maximum number of samples along each axis of a voxel. More hardly change the result.
+/// Maximum number of samples along each axis of a voxel. A higher number hardly changes the result.
 const MAX_SAMPLES: usize = 4;
 
 /// Maximum number of samples along each axis of a voxel during the search.
@@ -42,7 +42,7 @@ impl Default for Options {
     }
 }
 
-/// Reason why scans give no organ.
+/// Reason why no organ could be made from scans.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum OrganError {
     /// The number of scans does not fit the segmentation.
@@ -67,7 +67,7 @@ pub enum OrganError {
     Grid(Error),
 }
 
-/// An organ on the engine's axes: x to the patient's right, y up to the head, z to the back.
+/// Organ on the engine's axes: x points to the patient's right, y to the head, z to the back.
 #[derive(Clone, Debug)]
 pub struct Organ {
     /// Voxels with material numbers from 1; lengths in metres.
@@ -99,12 +99,14 @@ impl Organ {
             return Err(OrganError::Resolution { found: resolution });
         }
         let mut region = Region::of(scans);
-        // A search finer than the voxels of the scan finds nothing more.
+        // Limits the search to the voxels of the scan along the longest side: a finer search finds nothing
+        // more.
         let shown = (region.longest() / finest(scans)).ceil() as usize;
         let searched = resolution
             .max(MIN_SEARCH_RESOLUTION)
             .min(shown.max(*RESOLUTIONS.start()));
-        // The first pass finds the object, the second measures it, and the third samples only its region.
+        // The first pass finds the organ in the whole scan. The second pass measures the organ, and the third
+        // samples only its region at the final resolution.
         let looks = [
             (searched, MAX_SEARCH_SAMPLES),
             (searched, MAX_SEARCH_SAMPLES),
@@ -146,24 +148,26 @@ impl Organ {
         self.counts[usize::from(material)]
     }
 
-    /// Returns the volume of a material [ml].
+    /// Returns the volume of the voxels of a material [ml].
     pub fn millilitres(&self, material: u8) -> f64 {
         let edge = 0.1 * self.lattice.voxel;
         self.voxels(material) as f64 * edge * edge * edge
     }
 
-    /// Returns the length on each of the engine's axes [mm].
+    /// Returns the side lengths of the organ's bounding box along the engine's axes [mm].
     pub fn sides(&self) -> [f64; 3] {
         let [low, high] = self.solid;
         [0, 1, 2].map(|axis: usize| (high[axis] - low[axis] + 1) as f64 * self.lattice.voxel)
     }
 
-    /// Converts a position in the grid, relative to its low corner [m], to patient coordinates, RAS+ [mm].
+    /// Converts a position in the organ's grid, relative to the grid's low corner [m], to patient
+    /// coordinates, RAS+ [mm].
     pub fn patient_at(&self, place: [f64; 3]) -> [f64; 3] {
         self.lattice.patient_at(place.map(|k| 1000.0 * k))
     }
 
-    /// Returns the voxel at a position in the patient, RAS+ [mm]. It may lie outside the grid.
+    /// Returns the voxel of the organ's grid at a position in the patient, RAS+ [mm]. It may lie outside the
+    /// grid.
     pub fn voxel_at(&self, patient: [f64; 3]) -> Point {
         self.lattice.voxel_at(patient)
     }
@@ -232,7 +236,7 @@ struct Lattice {
     size: [usize; 3],
     /// Edge length of a cube [mm].
     voxel: f64,
-    /// Low corner on the engine's axes, RAS+ [mm].
+    /// Patient coordinates, RAS+ [mm], of the corner that is lowest on the engine's axes.
     corner: [f64; 3],
 }
 
@@ -240,7 +244,8 @@ impl Lattice {
     /// Creates the grid over a box, with `across` cubes along the longest side.
     fn over(region: &Region, across: usize) -> Self {
         let voxel = region.longest() / across as f64;
-        // The longest side is a whole number of voxels, up to rounding.
+        // Subtracts a little before rounding up: the longest side is a whole number of voxels, except for
+        // rounding errors.
         let count = |length: f64| ((length / voxel - 1e-6).ceil().max(1.0) as usize).min(across);
         let [right, front, up] = region.extent().to_array();
         let size = [right, up, front].map(count);
@@ -265,7 +270,8 @@ impl Lattice {
         }
     }
 
-    /// Converts a position on the engine's axes [mm] to patient coordinates: z points to the back.
+    /// Converts a position in the grid, on the engine's axes [mm], to patient coordinates. The engine's z
+    /// axis points to the patient's back.
     fn patient_at(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let [right, front, up] = self.corner;
         [right + x, front - z, up + y]

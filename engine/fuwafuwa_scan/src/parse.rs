@@ -61,7 +61,8 @@ impl FromStr for Label {
 }
 
 impl Segmentation {
-    /// Segments by thresholds if there are any, otherwise by labels, otherwise by one map per material.
+    /// Chooses the kind of segmentation: by thresholds if there are any, otherwise by labels if there are
+    /// any, otherwise by one probability map per material.
     pub fn chosen(thresholds: &[Threshold], labels: &[Label]) -> Self {
         match (thresholds, labels) {
             ([], []) => Self::Maps,

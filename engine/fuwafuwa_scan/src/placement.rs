@@ -5,15 +5,16 @@ use std::ops::RangeInclusive;
 /// Allowed spacing of a scan's voxels [mm].
 pub const SPACINGS: RangeInclusive<f64> = 1e-3..=100.0;
 
-/// Maximum distance of the first voxel from the patient's origin on each axis [mm]: beyond it, positions lose
-/// precision.
+/// Maximum distance of the first voxel from the origin of the patient coordinates on each axis [mm]. Beyond
+/// it, positions lose precision.
 const MAX_OFFSET: f64 = 1e6;
 
-/// Minimum volume of a voxel, relative to a box with the same edge lengths; flatter voxels count as
+/// Minimum volume of a voxel, relative to a box with the same edge lengths. Flatter voxels are rejected as
 /// degenerate.
 const LEAST_VOLUME: f64 = 0.05;
 
-/// Tolerance on the squared length of a quaternion's imaginary part, for rounding in single precision.
+/// Amount by which rounding to single precision may raise the squared length of a quaternion's imaginary part
+/// above 1.
 const ROUNDING: f64 = 1e-3;
 
 /// Affine map: rows of a 3 × 3 matrix, each followed by its offset.
@@ -30,15 +31,15 @@ pub struct Placement {
 /// Part of the header that gives the placement.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum PlacementSource {
-    /// A matrix (sform).
+    /// Matrix, the sform of the header.
     Matrix,
-    /// A rotation (qform); used if there is no matrix.
+    /// Rotation, the qform of the header; used if there is no matrix.
     Rotation,
-    /// Only the spacing of voxels. Left and right are then unknown, and the usual orientation is assumed.
+    /// Spacing of voxels only. Left and right are then unknown, and the usual orientation is assumed.
     Spacing,
 }
 
-/// All placement data of a header.
+/// Placement data of a header, in each of the three forms that NIfTI defines.
 pub struct PlacementForms {
     pub sform: Option<Affine>,
     pub qform: Option<Quaternion>,
@@ -49,7 +50,7 @@ pub struct PlacementForms {
 pub struct Quaternion {
     pub imaginary: [f64; 3],
     pub offset: [f64; 3],
-    /// Whether the third axis is reversed.
+    /// Whether the third axis of the scan is reversed.
     pub is_left_handed: bool,
 }
 
@@ -60,8 +61,8 @@ pub struct PlacementProblem {
 }
 
 impl Placement {
-    /// Creates a placement from the first form present: matrix, rotation, spacing. `unit` is the length of
-    /// one unit of the forms [mm].
+    /// Creates a placement from the first form present, in the order matrix, rotation, spacing. `unit` is the
+    /// length of one unit of these forms [mm].
     pub(crate) fn of(forms: &PlacementForms, unit: f64) -> Result<Self, PlacementProblem> {
         let (affine, source) = match (&forms.sform, &forms.qform) {
             (Some(affine), _) => (*affine, PlacementSource::Matrix),
@@ -100,7 +101,7 @@ impl Placement {
 }
 
 impl Quaternion {
-    /// Combines rotation, scaling and offset [Cox 2004, method 2].
+    /// Returns the affine map that combines rotation, spacing and offset [Cox 2004, method 2].
     fn affine(&self, spacing: [f64; 3]) -> Result<Affine, PlacementProblem> {
         let [mut b, mut c, mut d] = self.imaginary;
         let squared = b * b + c * c + d * d;
@@ -185,8 +186,8 @@ fn apply(affine: &Affine, [x, y, z]: [f64; 3]) -> [f64; 3] {
     affine.map(|[a, b, c, offset]| a * x + b * y + c * z + offset)
 }
 
-/// Returns the cofactor of an entry: the minor of the two rows and columns that follow cyclically. In this
-/// order the minor already has the sign of the cofactor.
+/// Returns the cofactor of a matrix entry: the minor of the two rows and the two columns that follow
+/// cyclically. In this cyclic order, the minor already has the sign of the cofactor.
 fn minor(affine: &Affine, row: usize, column: usize) -> f64 {
     let ([r, s], [c, d]) = (after(row), after(column));
     affine[r][c] * affine[s][d] - affine[r][d] * affine[s][c]

@@ -12,7 +12,7 @@ const CHUNK: usize = 1 << 16;
 #[derive(Clone, Debug)]
 pub struct Scan {
     size: [usize; 3],
-    /// Values, the first axis fastest; all finite.
+    /// Values of the voxels, with the first axis fastest; all finite.
     values: Vec<f32>,
     lowest: f32,
     highest: f32,
@@ -122,7 +122,7 @@ fn try_decode(bytes: &[u8], mut progress: impl FnMut(f32)) -> Result<Scan, Posit
     })
 }
 
-/// Reads the values of all voxels. The bytes in `beginning` are already taken from the stream.
+/// Reads the values of all voxels. `beginning` holds the bytes that were already read from the stream.
 fn read(
     header: &Header,
     beginning: &[u8],

@@ -1,4 +1,4 @@
-//! Assignment of materials: by intensity, by label, or by probability maps.
+//! Assignment of materials to positions in a scan: by intensity, by label, or by probability maps.
 
 use crate::scan::Scan;
 use std::collections::BTreeMap;

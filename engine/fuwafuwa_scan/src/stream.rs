@@ -8,21 +8,22 @@ use std::io::Read;
 /// 64-bit numbers and the bytes before them.
 pub const MAX_FILE_BYTES: u64 = (1 << 30) + (1 << 26);
 
-/// Maximum expansion of deflate: decompressed bytes per compressed byte.
+/// Maximum expansion by deflate: number of decompressed bytes per compressed byte.
 const MOST_INFLATED: u64 = 1032;
 
 /// First two bytes of a gzip file.
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 
-/// Maximum number of bytes after the last voxel. Some files are padded, but gigabytes there are an attack.
+/// Maximum number of bytes after the last voxel. Some files end with padding, but longer data is treated as
+/// an attack.
 const MAX_TRAILING: u64 = 1 << 20;
 
-/// The bytes of a file, read from the front.
+/// Bytes of a file, read from front to back.
 pub struct Stream<'a> {
     source: Source<'a>,
-    /// Number of bytes read.
+    /// Number of decompressed bytes read so far.
     at: u64,
-    /// Maximum number of bytes that the file can contain, decompressed.
+    /// Maximum number of bytes that the file can contain after decompression.
     most: u64,
 }
 
@@ -63,7 +64,7 @@ impl<'a> Stream<'a> {
         (expected <= self.most).then_some(()).ok_or_else(missing)
     }
 
-    /// Fills the buffer up to the end of the file, and returns the number of bytes filled.
+    /// Reads until the buffer is full or the file ends, and returns the number of bytes read.
     pub fn fill(&mut self, buffer: &mut [u8]) -> Result<usize, PositionedProblem> {
         let mut filled = 0;
         while filled < buffer.len() {
@@ -82,7 +83,8 @@ impl<'a> Stream<'a> {
         Ok(filled)
     }
 
-    /// Fills the whole buffer; `expected` is the length of the file up to the last voxel, for the error.
+    /// Reads until the buffer is full. If the file ends before, the error names `expected`, the length of the
+    /// file up to the last voxel.
     pub fn fill_all(&mut self, buffer: &mut [u8], expected: u64) -> Result<(), PositionedProblem> {
         let filled = self.fill(buffer)?;
         let missing = || {
@@ -95,7 +97,8 @@ impl<'a> Stream<'a> {
         (filled == buffer.len()).then_some(()).ok_or_else(missing)
     }
 
-    /// Reads the rest of the file, which must be short. At its end, a gzip stream verifies its checksum.
+    /// Reads the remaining bytes, at most `MAX_TRAILING`. At the end of its data, a gzip stream verifies
+    /// its checksum.
     pub fn finish(mut self) -> Result<(), PositionedProblem> {
         let mut buffer = [0; 1 << 12];
         let mut trailing = 0;

@@ -122,7 +122,7 @@ fn error_names_field_expectation_and_value() {
         (with(292, &real(1e30)), "the first voxel within a kilometre"),
         (with(280, &real(0.0)), "voxels 0.001 to 100 mm apart"),
         (with(280, &real(1e9)), "voxels 0.001 to 100 mm apart"),
-        // The second axis is parallel to the first.
+        // Matrix with the second axis parallel to the first.
         (
             with(
                 280,
@@ -137,7 +137,7 @@ fn error_names_field_expectation_and_value() {
             "{found:?} does not contain {expect:?}"
         );
     }
-    // A quaternion with an imaginary part longer than 1.
+    // Rotation by a quaternion with an imaginary part longer than 1.
     let mut bytes = with(252, &[whole(1), whole(0)].concat());
     bytes[256..260].copy_from_slice(&real(1.1));
     let found = error(&bytes).to_string();
@@ -184,7 +184,8 @@ fn decode_stops_at_limit_for_gzip_bomb() {
     }
     let mut bomb = encoder.finish().unwrap();
     assert!(bomb.len() < 100_000);
-    // A decoder that read to the end would report this wrong checksum instead of the limit.
+    // Makes the checksum wrong: a decoder that read to the end would report the checksum instead of the
+    // limit.
     let end = bomb.len() - 8;
     bomb[end..].fill(0xaa);
     match error(&bomb).problem {

@@ -13,6 +13,7 @@ fn distance(patient: [f64; 3], middle: [f64; 3]) -> f64 {
 }
 
 /// Returns a value that falls from 1 to 0 over `across` [mm] around a border, like the blur of a scanner.
+/// `inside` is the depth behind the border [mm].
 fn smeared(inside: f64, across: f64) -> f64 {
     (0.5 + inside / across).clamp(0.0, 1.0)
 }
@@ -40,7 +41,7 @@ fn thresholds_preserve_volume_at_each_resolution() {
 #[test]
 fn maps_choose_most_probable_material_without_gaps() {
     let depth = |patient| 30.0 - distance(patient, [0.0; 3]);
-    // One map as bytes up to 255, the other as fractions.
+    // One probability map has bytes up to 255, and the other has fractions up to 1.
     let grey = File::of(RAS, [2.0; 3], |patient| {
         let inside = smeared(depth(patient), 4.0);
         255.0 * inside * (1.0 - smeared(depth(patient) - 12.0, 4.0))

@@ -6,8 +6,8 @@ use fuwafuwa::{Material, SoftBody};
 use fuwafuwa_scan::{Organ, PlacementSource, Scan};
 use phantom::{Axes, File, Form, HALF, MARKS, RAS, ball, ellipsoid, label, labels, organ};
 
-/// Returns the mean position of the chosen materials, on the engine's axes from the low corner of the grid
-/// [mm].
+/// Returns the mean position of the voxels with chosen materials [mm], on the engine's axes, relative to the
+/// low corner of the grid.
 fn middle(organ: &Organ, is_meant: impl Fn(u8) -> bool) -> [f64; 3] {
     let grid = &organ.grid;
     let meant = grid
@@ -20,7 +20,7 @@ fn middle(organ: &Organ, is_meant: impl Fn(u8) -> bool) -> [f64; 3] {
     })
 }
 
-/// Checks that an organ is the phantom, on the engine's axes, with the patient's size.
+/// Checks that an organ has the orientation, the size and the marks of the phantom.
 fn check(organ: &Organ) -> Result<(), String> {
     let near = |what: &str, found: f64, expected: f64, tolerance: f64| {
         let good = (found - expected).abs() <= tolerance;
@@ -29,16 +29,17 @@ fn check(organ: &Organ) -> Result<(), String> {
     };
     let [right, front, up] = HALF.map(|half| 2.0 * half);
     for (side, expected) in organ.sides().into_iter().zip([right, up, front]) {
-        // At the ends of the ellipsoid, caps thinner than a voxel of the scan are lost.
+        // Caps at the ends of the ellipsoid that are thinner than a voxel of the scan are lost, so the
+        // tolerance is 5 mm.
         near("side [mm]", side, expected, 5.0)?;
     }
-    // Positions are relative to the centre of the whole organ, marks included.
+    // The centre of the whole organ, marks included, is the origin of the expected positions.
     let whole = middle(organ, |material| material != 0);
     for (number, [right, front, up], radius) in MARKS {
         let found = middle(organ, |material| i32::from(material) == number);
         for (axis, expected) in [right, up, -front].into_iter().enumerate() {
             let what = format!("mark {number} on axis {axis} [mm]");
-            // The tolerance is less than the voxel spacing of the scans.
+            // The tolerance of 1 mm is less than the voxel spacing of the scans.
             near(&what, found[axis] - whole[axis], expected, 1.0)?;
         }
         let volume = organ.millilitres(number as u8);
@@ -103,7 +104,7 @@ fn placement_uses_qform_without_sform() {
     let mut file = phantom(RAS, [1.0, 2.0, 2.5]);
     file.form = Form::Qform([0.0; 3], false);
     check_file("RAS", &file);
-    // 30 degrees about the long axis; a quaternion contains the sine and cosine of half the angle.
+    // 30 degrees about the patient's long axis; a quaternion contains the sine and cosine of half the angle.
     let mut file = phantom(oblique(), [2.0; 3]);
     file.form = Form::Qform([0.0, 0.0, 0.5 * (2.0 - 3.0_f64.sqrt()).sqrt()], false);
     assert_eq!(file.scan().placement().source(), PlacementSource::Rotation);
@@ -125,7 +126,7 @@ fn check_detects_mirrored_organ() {
         let wrong = check(&organ).expect_err("one axis is mirrored");
         assert!(wrong.starts_with("mark"), "{wrong}");
     }
-    // With two axes exchanged, the lengths of the sides already differ.
+    // Exchanging two axes of the scan changes the side lengths of the organ, so the check fails.
     let mut file = phantom(RAS, [2.0; 3]);
     file.affine.swap(0, 1);
     assert!(check(&organ(&file.scan(), &labels(), 64)).is_err());
@@ -161,7 +162,7 @@ fn placement_uses_spacing_without_forms() {
 
 #[test]
 fn decode_gives_same_values_for_each_encoding() {
-    // Multiples of the scaling step, so that every number format is exact.
+    // The values are multiples of the scaling step, so that every number format stores them exactly.
     let values: Vec<f64> = (0..24).map(|k| f64::from(k * 5 % 24)).collect();
     let plain = File::small([4, 3, 2], &values);
     let numbers = |scan: &Scan| -> Vec<f32> {

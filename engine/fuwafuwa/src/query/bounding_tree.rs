@@ -9,11 +9,11 @@ const LEAF: usize = 4;
 
 /// Relative margin of a box around its content: ten times the tolerance of the primitives.
 const LITTLE: f32 = 1e-3;
-/// Margin relative to the largest coordinate: some eight units in the last place.
+/// Margin of a box relative to its largest coordinate: some eight units in the last place.
 const ROUNDING: f32 = 1e-6;
 
-/// Growth of the summed widths of all nodes by refitting that makes the tree worth rebuilding. Rotation alone
-/// increases the widths of a box by up to √3.
+/// Factor by which refitting may increase the summed widths of all nodes before a rebuild pays off. Rotation
+/// alone increases the widths of a box by up to √3.
 const WORN: f32 = 2.0;
 
 /// Box without content.
@@ -25,18 +25,18 @@ const EMPTY: Bounds = [Vec3::INFINITY, Vec3::NEG_INFINITY];
 /// the boxes within, not even by rounding, and every item is checked against its own box.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
-    /// Nodes; a parent stands before its children.
+    /// Nodes of the tree; a parent precedes its children.
     nodes: Vec<TreeNode>,
     /// Items, in the order of the leaves.
     items: Vec<TreeItem>,
-    /// Summed widths of all nodes at construction [m].
+    /// Sum of the widths of all nodes when the tree was built [m].
     built_width: f32,
 }
 
 #[derive(Clone, Debug)]
 struct TreeNode {
     bounds: Bounds,
-    /// Range of `items` in a leaf; empty for an inner node.
+    /// Range of `items` that a leaf holds; empty for an inner node.
     leaf: Range<u32>,
     /// Children of an inner node.
     children: [u32; 2],
@@ -45,7 +45,7 @@ struct TreeNode {
 #[derive(Clone, Debug)]
 struct TreeItem {
     bounds: Bounds,
-    /// Index in the list.
+    /// Index of the box in the list from which the tree was built.
     index: u32,
 }
 
@@ -104,7 +104,7 @@ impl Tree {
     }
 
     /// Replaces the boxes by new ones, given in the same order, and keeps the hierarchy. Returns false if the
-    /// nodes have become so wide that searches would be slow. The caller should then build a new tree.
+    /// nodes have become so wide that searches would be slow; the caller should then build a new tree.
     pub fn refit(&mut self, boxes: &[Bounds]) -> bool {
         for item in &mut self.items {
             item.bounds = boxes[item.index as usize];
@@ -133,16 +133,16 @@ impl Tree {
         self.nodes.iter().map(widths).sum()
     }
 
-    /// Visits the items with a finite cost of at most the smallest cost found before, which begins with
-    /// `limit`. `cost` must not be larger for a box than for a box inside it. `visit` receives the index of
-    /// an item and the cost of its box, and returns the cost of its content.
+    /// Visits the items with a finite cost of at most `limit`, or of at most the smallest cost that `visit`
+    /// has returned so far. `cost` must not be larger for a box than for a box inside it. `visit` receives
+    /// the index of an item and the cost of its box, and returns the cost of its content.
     pub fn search(
         &self,
         mut limit: f32,
         cost: impl Fn(&Bounds) -> f32,
         mut visit: impl FnMut(usize, f32) -> f32,
     ) {
-        // Comparisons with NaN are false.
+        // Boxes with a NaN cost are skipped, because comparisons with NaN are false.
         let counts = |cost: f32, limit: f32| cost <= limit && cost < f32::INFINITY;
         let Some(root) = self.nodes.first() else {
             return;
@@ -162,7 +162,7 @@ impl Tree {
             if leaf.is_empty() {
                 let [a, b] =
                     children.map(|child| (child, cost(&self.nodes[child as usize].bounds)));
-                // The last entry on the stack is visited first.
+                // The cheaper child goes last onto the stack, so that it is visited first.
                 let ordered = if b.1 < a.1 { [a, b] } else { [b, a] };
                 stack.extend(ordered.into_iter().filter(|child| counts(child.1, limit)));
             }
@@ -287,7 +287,7 @@ mod tests {
             assert_eq!(best, all.fold(f32::INFINITY, f32::min));
             assert!(visited < 100, "{visited}");
         }
-        // The same boxes in another order fit the tree badly, but the result stays correct.
+        // Refitting to the same boxes in another order makes the nodes wide, but searches stay correct.
         let shuffled: Vec<Bounds> = (0..500).map(|k| boxes[k * 7 % 500]).collect();
         assert!(!tree.refit(&shuffled));
         let (best, _) = nearest(&tree, &shuffled, Vec3::ZERO);

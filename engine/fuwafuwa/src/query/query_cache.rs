@@ -1,9 +1,9 @@
 //! Search trees of a world, kept between queries.
 //!
-//! Each body has a tree over its exposed faces and, once a query requires it, one over its filled cells. A
-//! tree over all objects stands above them. Before a query, the trees of bodies that have changed are brought
-//! up to date: if the same faces have moved, their boxes are refitted; otherwise the tree is rebuilt. The
-//! trees are not part of the state of a world: clones and loaded worlds start without them.
+//! Each body has a tree over its exposed faces and, once a query requires it, a tree over its filled cells. A
+//! tree over all objects stands above the trees of the bodies. Before a query, the trees of bodies that have
+//! changed are updated: if the same faces have moved, their boxes are refitted; otherwise the tree is
+//! rebuilt. The trees are not part of the state of a world: clones and loaded worlds start without them.
 
 use super::bounding_tree::{Tree, around_all, with_margin};
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
@@ -26,7 +26,7 @@ pub struct QueryCache {
     trees: Mutex<Arc<QueryTrees>>,
 }
 
-/// The trees follow from the world, so they are not printed.
+/// The trees can be rebuilt from the world, so `Debug` omits them.
 impl fmt::Debug for QueryCache {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("QueryCache").finish_non_exhaustive()
@@ -43,7 +43,8 @@ impl Clone for QueryCache {
 /// Search trees over all objects of a world.
 #[derive(Debug, Default)]
 pub struct QueryTrees {
-    /// Revisions of the soft and rigid bodies that the trees show; `None` before the first update.
+    /// Revisions of the soft and of the rigid bodies at the last update of the trees; `None` before the first
+    /// update.
     revisions: Option<[u64; 2]>,
     /// Trees of each soft body, by handle.
     pub bodies: Vec<BodyTrees>,
@@ -53,11 +54,11 @@ pub struct QueryTrees {
     pub tree: Tree,
     /// Indices of the objects with finite boxes.
     pub bounded: Vec<u32>,
-    /// Indices of the other objects.
+    /// Indices of the objects without finite boxes, such as half-spaces.
     pub unbounded: Vec<u32>,
 }
 
-/// Soft body, by its index in [`QueryTrees::bodies`], or rigid body.
+/// Object of a world: a soft body, by its index in [`QueryTrees::bodies`], or a rigid body.
 #[derive(Copy, Clone, Debug)]
 pub enum TreeObject {
     Soft(u32),
@@ -68,7 +69,7 @@ pub enum TreeObject {
 #[derive(Debug)]
 pub struct BodyTrees {
     pub body: SoftBodyHandle,
-    /// Topology and positions that the trees show.
+    /// Topology and positions of the body at the last update of the trees.
     bookmark: Bookmark,
     positions: IndexVec<NodeId, Row>,
     /// Box around all nodes.
@@ -243,13 +244,14 @@ fn cell_bounds<D: Dim>(cell: &FilledCell) -> Bounds {
     around_all(cell.corners.into_iter().take(D::CORNERS))
 }
 
-/// Returns the box around all nodes of a body; filled cells are inside, even where the surface is folded in.
+/// Returns the box around all nodes of a body. The box contains all filled cells, even where the surface is
+/// folded in.
 fn body_bounds<D: Dim>(body: &SoftBody<D>) -> Bounds {
     let nodes = body.mesh().nodes();
     around_all(nodes.map(|(node, _)| body.positions()[node].xyz()))
 }
 
-/// Returns the filled cells of a body, by element.
+/// Returns the filled cells of a body, in the order of its elements.
 fn filled_cells<D: Dim>(body: &SoftBody<D>) -> Vec<FilledCell> {
     let mut cells = Vec::new();
     for view in body.element_views() {

@@ -34,7 +34,7 @@ pub struct QueryFilter<'a> {
     predicate: Option<&'a dyn Fn(ObjectRef) -> bool>,
 }
 
-/// Kinds of objects that count.
+/// Kinds of objects that a query considers.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 enum Kinds {
     #[default]
@@ -44,7 +44,7 @@ enum Kinds {
 }
 
 impl<'a> QueryFilter<'a> {
-    /// Excludes a rigid body, a piece, or a soft body with all its pieces. Further calls exclude further
+    /// Excludes a rigid body, a piece, or a soft body with all its pieces. Each call adds to the excluded
     /// objects. A stale handle excludes nothing.
     #[must_use]
     pub fn excluding(mut self, object: impl Into<ObjectSelector>) -> Self {
@@ -89,24 +89,24 @@ impl<'a> QueryFilter<'a> {
         self
     }
 
-    /// Returns whether a rigid body passes the tests of kind, sensor and layers; [`QueryFilter::admits`]
-    /// makes the other tests.
+    /// Returns whether a rigid body has a kind, sensor flag and layers that the filter accepts. Exclusions
+    /// and the predicate are tested by [`QueryFilter::admits`].
     pub(super) fn admits_rigid(&self, rigid: &RigidState) -> bool {
         self.kinds != Kinds::Soft
             && (self.includes_sensors || !rigid.is_sensor)
             && self.meets(rigid.layers)
     }
 
-    /// Returns whether a soft body passes the tests of kind, exclusion and layers; [`QueryFilter::admits`]
-    /// tests its pieces.
+    /// Returns whether the filter accepts the kind and layers of a soft body and does not exclude the whole
+    /// body. Each piece is tested by [`QueryFilter::admits`].
     pub(super) fn admits_body<D: Dim>(&self, id: SoftBodyHandle, body: &SoftBody<D>) -> bool {
         self.kinds != Kinds::Rigid
             && !self.excluded.contains(&ObjectSelector::SoftBody(id))
             && self.meets(body.layers())
     }
 
-    /// Returns whether an object is neither excluded nor rejected by the predicate. Its body must have passed
-    /// the tests above.
+    /// Returns whether an object is neither excluded nor rejected by the predicate. Kind, sensor flag and
+    /// layers must be tested before, by [`QueryFilter::admits_rigid`] or [`QueryFilter::admits_body`].
     pub(super) fn admits(&self, object: ObjectRef) -> bool {
         !self.excluded.iter().any(|own| own.contains(object))
             && self.predicate.is_none_or(|predicate| predicate(object))

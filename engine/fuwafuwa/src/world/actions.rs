@@ -20,9 +20,9 @@ use crate::soft_body::{MAX_GRAVITY_SCALE, SoftBody};
 use glam::Vec3;
 
 impl<D: Dim> World<D> {
-    /// Translates a body `by` [m] at once, through anything in between. The velocity stays, and a kinematic or coupled
-    /// body gets the new pose as its target. The body and sleepers in contact with it wake. Bookmarks of a soft body
-    /// stay valid, because only positions change.
+    /// Translates a body `by` [m] at once, through anything in between. Its velocity stays the same, and a
+    /// kinematic or coupled body gets the new pose as its target. The body and sleeping objects in contact
+    /// with it wake. Bookmarks of a soft body stay valid, because only positions change.
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, or a coordinate is not finite or beyond ±1e6 m.
@@ -43,8 +43,8 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Rotates a body and its velocities about a point [m] at once; otherwise like [`World::translate`]. In
-    /// 2D only the rotation about the third axis counts.
+    /// Rotates a body and its velocities about a point [m] at once. Target, waking and bookmarks are handled
+    /// as by [`World::translate`]. In 2D only the rotation about the third axis counts.
     ///
     /// # Errors
     /// As for [`World::translate`].
@@ -79,8 +79,8 @@ impl<D: Dim> World<D> {
     }
 
     /// Sets the position [m] of a rigid body, and its rotation from local to world axes, at once. Its
-    /// velocity stays, and a kinematic or coupled body gets the new pose as its target. The body and sleepers
-    /// in contact with it wake.
+    /// velocity stays the same, and a kinematic or coupled body gets the new pose as its target. The body and
+    /// sleeping objects in contact with it wake.
     ///
     /// # Errors
     /// [`Error`] if the handle is stale or the position is out of range. The body then stays unchanged.
@@ -103,8 +103,8 @@ impl<D: Dim> World<D> {
         self.change_rigid(rigid, |body| body.place::<D>(position, rotation))
     }
 
-    /// Returns the velocity of a body. For a soft body, this is the rigid motion with the same linear and angular
-    /// momentum.
+    /// Returns the velocity of a body. For a soft body, this is the velocity of the rigid motion with the
+    /// same linear and angular momentum.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
@@ -120,8 +120,9 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Sets the velocity of a soft body or a dynamic rigid body. Each node of a soft body gets the velocity of that
-    /// rigid motion, which ends all vibration; [fixed](SoftBody::fix_node) nodes keep their velocity. The body wakes.
+    /// Sets the velocity of a soft body or a dynamic rigid body. In a soft body, each node gets the velocity of the
+    /// rigid motion at its position, which ends all vibration; [fixed](SoftBody::fix_node) nodes keep their
+    /// velocity. The body wakes.
     ///
     /// ```
     /// use fuwafuwa::{Dim3, RigidBody, Shape, Vec3, World, WorldConfig};
@@ -166,8 +167,9 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Adds to the velocity of a soft body or a dynamic rigid body. All nodes of a soft body gain the velocity of
-    /// that rigid motion, except [fixed](SoftBody::fix_node) nodes. The body wakes.
+    /// Adds a velocity to that of a soft body or a dynamic rigid body. In a soft body, each node gains the
+    /// velocity of the rigid motion at its position, except [fixed](SoftBody::fix_node) nodes. The body
+    /// wakes.
     ///
     /// # Errors
     /// As for [`World::set_velocity`].
@@ -201,8 +203,8 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Applies an impulse to a soft body or a dynamic rigid body. A strong impulse can squash or tear a soft body at
-    /// that point. The body wakes.
+    /// Applies an impulse to a soft body or a dynamic rigid body. A strong impulse can squash or tear a soft body
+    /// near the impulse's point. The body wakes.
     ///
     /// ```
     /// use fuwafuwa::{Dim2, Impulse, Material, SoftBody, Vec2, VoxelGrid, World, WorldConfig};
@@ -258,8 +260,9 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Sets the motion type of a rigid body. If the type differs from the present one, the present pose becomes the target.
-    /// The contacts of the body restart; the body and sleepers in contact with it wake.
+    /// Sets the motion type of a rigid body. If the type differs from the present one, the present pose becomes the
+    /// target. The present contacts of the body are discarded and detected again. The body and sleeping objects in
+    /// contact with it wake.
     ///
     /// ```
     /// use fuwafuwa::{Dim2, MotionType, RigidBody, Shape, Vec2, World, WorldConfig};
@@ -290,8 +293,8 @@ impl<D: Dim> World<D> {
         self.change_rigid(rigid, |body| body.set_motion_type::<D>(motion_type))
     }
 
-    /// Sets the [friction](crate::RigidBody::friction) of a rigid body. Its contacts restart; the body and
-    /// sleepers in contact with it wake.
+    /// Sets the [friction](crate::RigidBody::friction) coefficient of a rigid body. The present contacts of
+    /// the body are discarded and detected again. The body and sleeping objects in contact with it wake.
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, or the coefficient is negative or not finite.
@@ -304,8 +307,9 @@ impl<D: Dim> World<D> {
         })
     }
 
-    /// Sets the [restitution](crate::RigidBody::restitution) of a rigid body; otherwise like
-    /// [`World::set_friction`].
+    /// Sets the [restitution](crate::RigidBody::restitution) coefficient of a rigid body. The present
+    /// contacts of the body are discarded and detected again. The body and sleeping objects in contact with
+    /// it wake.
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, or the coefficient is not 0 to 1.
@@ -322,8 +326,8 @@ impl<D: Dim> World<D> {
         })
     }
 
-    /// Sets whether a rigid body [is a sensor](crate::RigidBody::is_sensor); otherwise like
-    /// [`World::set_friction`].
+    /// Sets whether a rigid body [is a sensor](crate::RigidBody::is_sensor). The present contacts of the body
+    /// are discarded and detected again. The body and sleeping objects in contact with it wake.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
@@ -335,7 +339,7 @@ impl<D: Dim> World<D> {
         })
     }
 
-    /// Sets the collision layers of a body. The body and sleepers in contact with it wake.
+    /// Sets the collision layers of a body. The body and sleeping objects in contact with it wake.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
@@ -389,8 +393,8 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Wakes a body and restarts its sleep timers. It then stays awake for at least half a second, even if it does not
-    /// move. Rigid bodies that are not dynamic never sleep.
+    /// Wakes a body and restarts its sleep timers. The body then stays awake for at least half a second, even
+    /// if it does not move. Rigid bodies that are not dynamic never sleep.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
@@ -446,11 +450,11 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Changes the configuration of the world from the next tick on. Everything wakes. Bodies are softened or stiffened
-    /// for the new maximum number of substeps, see [`SoftBody::stiffness_scale`].
+    /// Changes the configuration of the world from the next tick on. All pieces and rigid bodies wake. Bodies
+    /// are softened or stiffened for the new maximum number of substeps, see [`SoftBody::stiffness_scale`].
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] if a parameter is out of range. Everything then stays unchanged.
+    /// [`Error::InvalidParameter`] if a parameter is out of range. The world then stays unchanged.
     #[inline(never)]
     pub fn set_config(&mut self, config: WorldConfig<D>) -> Result<(), Error> {
         config.check()?;
@@ -469,8 +473,8 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Changes the position or the layers of a body, discards its contacts, and wakes it together with
-    /// sleepers in contact with it.
+    /// Changes the position or the layers of a soft body, discards its contacts, and wakes it. Also wakes the
+    /// sleeping objects that are in contact with the body before or after the change.
     fn displace(
         &mut self,
         id: SoftBodyHandle,
@@ -489,8 +493,9 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Changes the pose or fields of a rigid body, discards its contacts, and wakes it. Also wakes sleepers
-    /// that are in contact with it before or after the change. If `change` fails, nothing changes.
+    /// Changes the pose or fields of a rigid body, discards its contacts, and wakes it. Also wakes the
+    /// sleeping objects that are in contact with the body before or after the change. If `change` fails,
+    /// nothing changes.
     fn change_rigid(
         &mut self,
         rigid: RigidBodyHandle,

@@ -73,9 +73,9 @@ impl<D: Dim> Removable<D> for KnifeHandle {
 }
 
 impl<D: Dim> World<D> {
-    /// Removes a soft body, a rigid body, a joint or a knife, and returns it. Other items keep their handles and
-    /// state; sleepers in contact with a removed body, and the bodies of a removed joint, wake. The rigid body that
-    /// holds a removed knife stays.
+    /// Removes a soft body, a rigid body, a joint or a knife, and returns it. All other objects keep their
+    /// handles and state, except that some wake: sleeping objects in contact with a removed body, and the
+    /// bodies of a removed joint. The rigid body that holds a removed knife stays.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.

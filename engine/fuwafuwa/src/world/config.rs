@@ -10,7 +10,8 @@ pub const DEFAULT_TICK: f32 = 1.0 / 60.0;
 /// Minimum number of substeps in 1/60 s, unless [`WorldConfig::max_substeps`] is lower. It gives a
 /// force-feedback device 960 force updates a second.
 pub const DEFAULT_SUBSTEPS: u32 = 16;
-/// Smallest value of [`WorldConfig::max_substeps`]. With 8 substeps a soft ball is squashed as much as with 16.
+/// Smallest value of [`WorldConfig::max_substeps`]. Half of the default minimum suffices: a soft ball is
+/// squashed no further with 8 substeps than with 16.
 pub const MIN_SUBSTEPS: u32 = 8;
 /// Shortest tick length [s], equal to the interval between two fracture rounds. Each tick has at least one
 /// round, so shorter ticks would change the number of rounds per second.
@@ -34,7 +35,8 @@ pub struct WorldConfig<D: Dim> {
     pub drag: f32,
     /// Maximum number of substeps in 1/60 s, 8 to 1024, default 64; scaled in proportion for other tick
     /// lengths. Soft bodies that require more are softened, see
-    /// [`SoftBody::stiffness_scale`](crate::SoftBody::stiffness_scale). Values below 16 make large soft bodies cheap.
+    /// [`SoftBody::stiffness_scale`](crate::SoftBody::stiffness_scale). Values below 16 reduce the cost of
+    /// large soft bodies.
     pub max_substeps: u32,
     /// Tick length [s], 1/240 to 1/30, default 1/60. It sets how often targets, events and contact changes
     /// are exchanged with the program. Substeps, fracture and damping keep their rates per second; shorter

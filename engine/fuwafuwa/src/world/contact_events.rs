@@ -14,14 +14,15 @@ use glam::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Contacts of a tick, summed by pair. Consecutive contact points mostly belong to the same pair of objects,
-/// so the index of the last pair is cached.
+/// so the index of the previous point's pair is cached.
 struct ContactSums<D: Dim> {
     places: BTreeMap<[ObjectRef; 2], usize>,
     list: Vec<ContactSum<D>>,
     last: Option<([ObjectRef; 2], usize)>,
 }
 
-/// Contact summed up to now, and the largest normal impulse of its points [N s].
+/// Contact of a pair, summed over the points added so far, and the largest normal impulse [N s] among these
+/// points.
 struct ContactSum<D: Dim> {
     contact: Contact<D>,
     largest: f32,
@@ -38,9 +39,9 @@ impl<D: Dim> Default for ContactSums<D> {
 }
 
 impl<D: Dim> ContactSums<D> {
-    /// Adds the normal impulse [N s] and the approach speed [m/s] of a contact point. The closure returns the
-    /// position [m], and the normal from the second object towards the first; it is called only if the
-    /// impulse is the largest of the pair up to now.
+    /// Adds the normal impulse [N s] and the approach speed [m/s] of a contact point to the sum of its pair.
+    /// The closure returns the position [m], and the normal from the second object towards the first. It is
+    /// called only if the impulse is the largest of the pair so far.
     fn add(
         &mut self,
         objects: [ObjectRef; 2],
@@ -132,7 +133,7 @@ impl<D: Dim> World<D> {
         Ok(contacts.filter(move |contact| {
             let pair = contact.pair;
             pair.iter().any(|&object| selector.contains(object))
-                // The list may contain objects that were removed since the last tick.
+                // Contacts with objects that were removed since the last tick are left out.
                 && pair.iter().all(|&object| self.exists(object))
         }))
     }
@@ -186,8 +187,8 @@ impl<D: Dim> World<D> {
         sums.contacts()
     }
 
-    /// Compares the contacts, in ascending order, with those of the last tick, and reports beginnings and
-    /// ends. A pair without impulses still touches as long as both objects are at rest.
+    /// Compares the contacts of this tick, in ascending order, with those of the previous tick, and reports
+    /// beginnings and ends. A pair without impulses still touches as long as both objects are at rest.
     fn note_changes(&mut self, contacts: Vec<Contact<D>>) {
         let mut before = std::mem::take(&mut self.touching).into_iter().peekable();
         let mut touching = Vec::with_capacity(contacts.len());
@@ -242,7 +243,8 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Compares the contents of the sensors with those of the last tick, and reports entries and exits.
+    /// Compares the objects inside each sensor with those in the previous tick, and reports entries and
+    /// exits.
     fn note_sensors(&mut self) {
         let sensors = self.rigids.entries().filter(|(_, rigid)| rigid.is_sensor);
         let sensors: Vec<(RigidBodyHandle, &RigidState)> = sensors.collect();
@@ -253,7 +255,7 @@ impl<D: Dim> World<D> {
         for (body, soft) in self.bodies.entries() {
             let meets = |(_, rigid): &&(_, &RigidState)| rigid.layers.meet(soft.layers());
             let mut met = sensors.iter().filter(meets).peekable();
-            // All sensors use the same piece bounds, computed only if a sensor may detect the body.
+            // Bounds of the pieces, shared by all sensors; computed only if some sensor may detect the body.
             let bounds = met.peek().map(|_| piece_bounds(soft));
             for (&(sensor, rigid), bounds) in met.zip(bounds.iter().cycle()) {
                 let found = pieces_within(soft, bounds, rigid.shape());
@@ -305,8 +307,8 @@ fn piece_bounds<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, Bounds> {
     all
 }
 
-/// Returns the pieces with a node inside a shape. Tests only the nodes of pieces whose box overlaps that of the
-/// shape.
+/// Returns the pieces with a node inside a shape. Tests only the nodes of pieces with a box that overlaps the
+/// box of the shape.
 fn pieces_within<D: Dim>(
     body: &SoftBody<D>,
     bounds: &IndexVec<PieceId, Bounds>,

@@ -97,8 +97,8 @@ impl<D: Dim> World<D> {
 
     /// Returns a body mutably, for changes such as fixing nodes, translating or cutting. The whole body
     /// wakes, and its change history restarts, so that bookmarks become invalid. Do not assign another body
-    /// to the reference: its stiffness would not be adapted to the substeps of the world. Remove the old body
-    /// and add the new one instead.
+    /// to the reference, because the stiffness of that body would not be adapted to the substeps of the
+    /// world. Remove the old body and add the new one instead.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
@@ -107,7 +107,7 @@ impl<D: Dim> World<D> {
         self.bodies.get(body)?;
         self.wake_body(body);
         let body = self.bodies.get_mut(body)?;
-        // Changes from outside are not recorded in the history.
+        // The caller's changes are not recorded, so the history restarts and bookmarks become invalid.
         body.forget_history();
         Ok(body)
     }
@@ -203,9 +203,9 @@ impl<D: Dim> World<D> {
         hash.number()
     }
 
-    /// Wakes `leaning` pieces, given in ascending order, and dynamic rigid bodies whose bounding boxes
-    /// overlap one of the boxes `was`. Then wakes everything in contact with them, and so on. The AABB test
-    /// is conservative, so it may wake rigid bodies that were only close.
+    /// Wakes the pieces in `leaning`, given in ascending order, and the dynamic rigid bodies with bounding
+    /// boxes that overlap one of the boxes `was`. Then wakes everything in contact with them, and so on. The
+    /// AABB test is conservative, so it may wake rigid bodies that were only close.
     pub(super) fn wake_leaning(&mut self, leaning: Vec<Hit>, was: Vec<Bounds>) {
         let (mut pieces, mut places) = (leaning, was);
         loop {
@@ -234,7 +234,7 @@ impl<D: Dim> World<D> {
         let sleepers = self.rigids.by_slot().filter(|(_, rigid)| rigid.is_asleep());
         let sleepers: Vec<RigidSlot> = sleepers.map(|(slot, _)| slot).collect();
         self.wake_rigids(&sleepers);
-        // Soft pieces that rest on these bodies wake too, because they may lose their support.
+        // Soft pieces that rest on the woken rigid bodies wake, too, because they may lose their support.
         for slot in sleepers {
             let leaning = leaning_on_rigid(self.rigids.at(slot), &self.bodies);
             self.wake(&leaning);

@@ -41,7 +41,8 @@ impl<D: Dim> World<D> {
         knives.map(|(id, knife)| (id, KnifeRef::new(knife)))
     }
 
-    /// Opens the faces that cutting edges have passed through.
+    /// Opens the faces between voxels that cutting edges have passed through since the last call, and reports
+    /// the cuts.
     #[inline(never)]
     pub(super) fn cut_along_edges(&mut self, report: &mut StepReport) {
         let round = self.config.round();
@@ -75,7 +76,8 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Solves the contacts between cutting edges and tissue. Returns the sleepers to wake.
+    /// Solves the contacts between cutting edges and tissue. Returns the sleeping pieces that the edges hit,
+    /// which the caller wakes.
     #[inline(never)]
     pub(super) fn hold_edges(&mut self, duration: f32) -> Vec<Hit> {
         let mut woken = Vec::new();

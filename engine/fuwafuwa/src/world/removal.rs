@@ -14,15 +14,15 @@ use crate::soft_body::SoftBody;
 /// Size threshold for [`World::remove_small_pieces`].
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum PieceSize {
-    /// Number of voxels.
+    /// Number of voxels; pieces with fewer are removed.
     Voxels(usize),
-    /// Volume at rest [m³]; in 2D that of a sheet 1 m deep.
+    /// Volume at rest [m³], in 2D that of a sheet 1 m deep; pieces with less are removed.
     Volume(f64),
-    /// Mass [kg].
+    /// Mass [kg]; pieces with less are removed.
     Mass(f64),
 }
 
-/// Result of a removal. The same removals are among the [events](World::events) until the next tick.
+/// Result of a removal. Each removed object is also among the [events](World::events) until the next tick.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Removed {
     /// Removed pieces, ascending by body and number.
@@ -152,8 +152,8 @@ impl<D: Dim> World<D> {
         Ok(removed)
     }
 
-    /// Removes selected pieces. For each body, `marks` returns a flag per piece number: whether to remove the
-    /// piece.
+    /// Removes selected pieces. For each body, `marks` returns a flag per piece number: true if the piece is
+    /// to be removed.
     fn take_out_where(&mut self, marks: impl Fn(&SoftBody<D>) -> Vec<bool>) -> Removed {
         let mut pieces = Vec::new();
         for (id, body) in self.bodies.entries() {

@@ -17,12 +17,12 @@ use std::collections::BTreeSet;
 /// after 3 ms. Higher values let bodies sleep before contact forces have settled; with lower ones, piles take
 /// longer to sleep.
 const SLEEP_SPEED: f64 = 0.03;
-/// Time below the speed threshold until a piece sleeps [s]. Longer than a body stays slow at the top of its
-/// flight or at the turning points of a vibration.
+/// Time below the speed threshold until a piece sleeps [s]. At the top of its flight or at the turning points
+/// of a vibration, a body is slow for a shorter time.
 const SLEEP_TIME: f32 = 0.5;
 
-/// Updates the sleep timers of all pieces, and puts those to sleep that reach [`SLEEP_TIME`]. Pieces in `handled`,
-/// which touch a coupled rigid body, stay awake. Returns the pieces that fell asleep.
+/// Updates the sleep timers of all pieces, and puts those that reach [`SLEEP_TIME`] to sleep. Pieces in
+/// `handled`, which touch a coupled rigid body, stay awake. Returns the pieces that fell asleep.
 pub fn fall_asleep<D: Dim>(
     bodies: &mut SoftBodies<D>,
     motions: &[IndexVec<PieceId, PieceMotion>],
@@ -47,8 +47,8 @@ pub fn fall_asleep<D: Dim>(
     })
 }
 
-/// Updates the sleep timers of dynamic rigid bodies, and puts those to sleep that reach [`SLEEP_TIME`].
-/// Rigid bodies in `handled`, which touch a coupled rigid body, stay awake.
+/// Updates the sleep timers of dynamic rigid bodies, and puts those that reach [`SLEEP_TIME`] to sleep. Rigid
+/// bodies in `handled`, which touch a coupled rigid body, stay awake.
 pub fn fall_asleep_rigid(rigids: &mut RigidBodies, handled: &BTreeSet<RigidSlot>, duration: f32) {
     for (slot, rigid) in rigids.by_slot_mut() {
         if !rigid.is_dynamic() || rigid.asleep {
@@ -66,7 +66,7 @@ pub fn fall_asleep_rigid(rigids: &mut RigidBodies, handled: &BTreeSet<RigidSlot>
     }
 }
 
-/// Wakes those pieces in `hits` that sleep; returns them.
+/// Wakes the sleeping pieces among `hits`, and returns them.
 pub fn wake<D: Dim>(bodies: &mut SoftBodies<D>, hits: &[Hit]) -> Vec<Hit> {
     if hits.is_empty() {
         return Vec::new();
@@ -79,8 +79,8 @@ pub fn wake<D: Dim>(bodies: &mut SoftBodies<D>, hits: &[Hit]) -> Vec<Hit> {
     })
 }
 
-/// Puts pieces to sleep, or wakes them, if they satisfy a condition on body, number and piece. Returns these
-/// pieces.
+/// Puts pieces to sleep or wakes them, as `asleep` says, if `applies` returns true for the body's slot, the
+/// piece number and the piece. Returns the changed pieces.
 fn change<D: Dim>(
     bodies: &mut SoftBodies<D>,
     asleep: bool,

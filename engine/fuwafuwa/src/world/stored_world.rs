@@ -13,7 +13,8 @@ use crate::query::query_cache::QueryCache;
 use crate::rigid_body::{RigidBodies, RigidState};
 use crate::soft_body::{SoftBodies, SoftBody};
 
-/// Largest tick counter accepted from a stored world; at 60 ticks a second it lasts some 6·10⁸ years.
+/// Largest tick counter accepted from a stored world. At 60 ticks a second, a world reaches it after some
+/// 6·10⁸ years.
 const MAX_TICKS: u64 = 1 << 60;
 
 /// Stored fields of a [`World`], in the same order, before any check.

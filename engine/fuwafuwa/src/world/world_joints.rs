@@ -60,8 +60,8 @@ impl<D: Dim> World<D> {
     /// Removes broken joints, and reports an event for each.
     pub(super) fn part_joints(&mut self, broken: Vec<JointHandle>) {
         for joint in broken {
-            // A joint can break twice in a substep: when velocities are solved, and when positions are
-            // corrected.
+            // `broken` may list a joint twice, broken when velocities were solved and again when positions
+            // were corrected. The second removal fails and is ignored.
             if let Ok(parted) = self.joints.remove(joint) {
                 self.events.push(Event::JointBroke { joint });
                 self.wake_ends(&parted);

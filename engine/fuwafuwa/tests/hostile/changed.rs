@@ -181,8 +181,7 @@ fn stale_handle_is_rejected() {
 }
 
 /// Three cubes sleep on each other and a fourth beside them. When the lowest is removed, only the fourth
-/// sleeps on. The topmost must wake, too: its support is slow at first and would not wake it, so it would
-/// hang in the air.
+/// sleeps on. The topmost cube must wake at once: the middle cube falls too slowly at first to wake it.
 #[test]
 fn removal_wakes_only_bodies_in_contact() {
     let mut world = world::<Dim2>();
@@ -216,7 +215,7 @@ fn removal_wakes_only_bodies_in_contact() {
     assert!(sleeps(&world, 3));
 }
 
-/// A plate presses on a ball and later stops at the floor.
+/// Checks that a coupled plate presses a ball down, and that the floor later stops the plate.
 #[test]
 fn coupled_box_and_capsule_push_and_stop_at_floor() {
     for shape in [
@@ -238,7 +237,7 @@ fn coupled_box_and_capsule_push_and_stop_at_floor() {
         assert!(felt.contact.y > 5.0, "{felt:?}");
         let high = world[id].piece_views()[0].high.y;
         assert!(high < 0.9, "{shape:?}: the ball is {high} m high");
-        // Beside the ball, the plate stops on the floor.
+        // Moves the plate to the side of the ball, where only the floor can stop it.
         for _ in 0..60 {
             world
                 .set_target_position(plate, Vec2::new(3.0, 0.4))

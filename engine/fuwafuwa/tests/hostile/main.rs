@@ -179,7 +179,7 @@ fn add_rigid_rejects_out_of_range_hand() {
     assert_finite(&world);
 }
 
-/// Runs a world in which everything is tilted, and returns its hash.
+/// Runs a world with a tilted rigid shape, soft body and hand, and returns its hash.
 fn hash_of_tilted(shape: Shape<Dim2>, tilt: Rotation) -> u64 {
     let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
     let below = RigidBody::fixed(shape).with_friction(0.5);
@@ -260,7 +260,7 @@ fn unused_material_has_no_effect() {
     assert_eq!(states_with(&[usual, stiff]), states_with(&[usual]));
 }
 
-/// An intentional cut is reported like a tear, with its position, but releases no energy.
+/// A cut reports the positions of the released nodes, like a tear, but no released energy.
 #[test]
 fn cut_reports_positions_of_released_nodes() {
     let mut world = world::<Dim2>();

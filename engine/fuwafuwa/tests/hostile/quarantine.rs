@@ -28,8 +28,8 @@ fn non_finite_body_is_quarantined() {
     }
 }
 
-/// Regression: positions were restored by node ids that a release in the same tick had given to other nodes
-/// or to none, which stretched elements to the origin.
+/// Regression: the quarantine restored positions by node id, although a release in the same tick had given
+/// ids to other nodes or freed them. Elements were stretched to the origin.
 #[test]
 fn quarantine_restores_positions_of_torn_piece() {
     let mut world = world::<Dim2>();

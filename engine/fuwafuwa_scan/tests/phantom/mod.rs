@@ -1,4 +1,4 @@
-//! A synthetic patient and scans of it. Left and right, front and back, head and feet differ:
+//! Synthetic patient and scans of it. Left and right, front and back, head and feet differ:
 //!
 //! ```text
 //!   from behind      S             from the left     S
@@ -11,18 +11,18 @@
 
 use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
 
-/// Half axes of the ellipsoid [mm]: to the right, to the front, up. The shape is round, so that voxels at its
-/// border are too large as often as too small.
+/// Half axes of the ellipsoid [mm]: to the right, to the front, up. In a round shape, as many voxels at the
+/// border are too large as too small, so that the volume is right on average.
 pub const HALF: [f64; 3] = [36.0, 48.0, 30.0];
 
-/// Marks: label, centre (RAS+) and radius [mm].
+/// Balls of other materials in the phantom: label, centre (RAS+) and radius [mm].
 pub const MARKS: [(i32, [f64; 3], f64); 3] = [
     (2, [20.0, 0.0, 0.0], 9.0),
     (3, [0.0, 30.0, 0.0], 9.0),
     (4, [0.0, 0.0, 14.0], 9.0),
 ];
 
-/// Returns the label at a position in the patient, RAS+ [mm].
+/// Returns the label of the phantom at a position in the patient, RAS+ [mm].
 pub fn label(patient: [f64; 3]) -> i32 {
     let squared = |middle: [f64; 3]| -> f64 {
         (0..3)
@@ -35,7 +35,7 @@ pub fn label(patient: [f64; 3]) -> i32 {
     mark.map_or(i32::from(is_inside), |mark| mark.0)
 }
 
-/// Directions of a scan's three axes, RAS+.
+/// Unit vectors along the three axes of a scan, in patient coordinates, RAS+.
 pub type Axes = [[f64; 3]; 3];
 
 pub const RAS: Axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -44,7 +44,7 @@ pub const RAS: Axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 #[derive(Copy, Clone)]
 pub enum Form {
     Sform,
-    /// Imaginary part of a quaternion, and whether the third axis is reversed.
+    /// Quaternion: its imaginary part, and whether the third axis is reversed.
     Qform([f64; 3], bool),
     Spacing,
 }
@@ -69,7 +69,8 @@ impl File {
     /// Samples `value` at positions in the patient, RAS+ [mm], in a box around the phantom.
     pub fn of(axes: Axes, spacing: [f64; 3], value: impl Fn([f64; 3]) -> f64) -> Self {
         let size = spacing.map(|k| (124.0 / k) as usize);
-        // The centre of the box is offset from the patient's.
+        // Offsets the centre of the box from the origin of the patient [mm], so that errors of the offset
+        // show.
         let middle = [3.0, -4.0, 2.0];
         let affine = [0, 1, 2].map(|row: usize| {
             let column = |axis: usize| axes[axis][row] * spacing[axis];
@@ -125,8 +126,8 @@ impl File {
             true => bytes[344..348].copy_from_slice(b"n+1\0"),
             false => bytes[4..12].copy_from_slice(b"n+2\0\r\n\x1a\n"),
         }
-        // Formats of the fields: 16-bit or 64-bit integers, single or double precision, 16-bit or 32-bit
-        // codes.
+        // NIfTI datatypes of the fields, in version 1 or 2: 16-bit or 64-bit integers, single or double
+        // precision, and 16-bit or 32-bit form codes.
         let (whole, real, code) = if is_first { (4, 16, 4) } else { (1024, 64, 8) };
         let width = if is_first { [2, 4] } else { [8, 8] };
         let [x, y, z] = self.size.map(|k| k as f64);
@@ -192,7 +193,7 @@ impl File {
         bytes[at..at + number.len()].copy_from_slice(&number);
     }
 
-    /// Encodes a number in a datatype of the standard.
+    /// Encodes a number in a NIfTI `datatype`.
     fn number(&self, value: f64, datatype: i16) -> Vec<u8> {
         let mut bytes = match datatype {
             2 => (value as u8).to_le_bytes().to_vec(),
