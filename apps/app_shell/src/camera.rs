@@ -1,8 +1,7 @@
 //! Camera: mapping between world and screen.
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
-use fuwafuwa::Vector;
-use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
+use fuwafuwa::Vec3;
 use fuwafuwa_render::space;
 use std::f32::consts::TAU;
 
@@ -62,7 +61,7 @@ pub struct View {
 impl CameraRig {
     /// Advances by `seconds`, with the hand at `hand` [m]. `still` selects reduced motion: no lean, no shake,
     /// and no animated return.
-    pub fn follow(&mut self, hand: Vector, arena: [Vector; 2], seconds: f32, still: bool) {
+    pub fn follow(&mut self, hand: Vec3, arena: [Vec3; 2], seconds: f32, still: bool) {
         if self.is_returning {
             let left = match still {
                 true => 0.0,
@@ -76,8 +75,8 @@ impl CameraRig {
             (self.lean, self.shake) = (Vec2::ZERO, 0.0);
             return;
         }
-        let middle = |axis: usize| 0.5 * (arena[0][axis] + arena[1][axis]);
-        let wish = LEAN * vec2(hand[0] - middle(0), hand[1] - middle(1));
+        let away = hand - 0.5 * (arena[0] + arena[1]);
+        let wish = LEAN * vec2(away.x, away.y);
         self.lean += (wish - self.lean) * (PACE * seconds).min(1.0);
         self.shake *= (1.0 - CALM * seconds).max(0.0);
         self.phase += SWING * seconds;
@@ -117,43 +116,44 @@ impl CameraRig {
     }
 
     /// 3D: approximate camera position [m], as if the screen had an aspect ratio of 16:10.
-    pub fn eye(&self, arena: [Vector; 2]) -> Vector {
+    pub fn eye(&self, arena: [Vec3; 2]) -> Vec3 {
         self.space_camera(arena, [16, 10]).eye()
     }
 
-    fn space_camera(&self, arena: [Vector; 2], size: [u32; 2]) -> space::Camera {
+    fn space_camera(&self, arena: [Vec3; 2], size: [u32; 2]) -> space::Camera {
         let fitted = space::Camera::fit(arena[0], arena[1], size);
-        let lower = LOWER.min(LOWER_SHARE * (arena[1][1] - arena[0][1]));
+        let lower = LOWER.min(LOWER_SHARE * (arena[1].y - arena[0].y));
         let swing = self.shake * vec2(self.phase.sin(), (1.3 * self.phase).cos());
         space::Camera {
-            target: plus(fitted.target, [self.lean.x, self.lean.y - lower, 0.0]),
+            target: fitted.target + Vec3::new(self.lean.x, self.lean.y - lower, 0.0),
             distance: CLOSE * fitted.distance,
             azimuth: self.turn,
             elevation: RISE + self.rise,
-            shake: [swing.x, swing.y, 0.0],
+            shake: Vec3::new(swing.x, swing.y, 0.0),
             ..fitted
         }
     }
 
     /// Returns the view of a 3D arena, given by its two opposite corners [m].
-    pub fn view_of_space(&self, rect: Rect, arena: [Vector; 2]) -> View {
+    pub fn view_of_space(&self, rect: Rect, arena: [Vec3; 2]) -> View {
         let camera = self.space_camera(arena, pixels(rect));
-        let [x, y, _] = camera.target;
         View {
             rect,
-            centre: [x, y],
+            centre: [camera.target.x, camera.target.y],
             scale: 0.5 * rect.height() / ((0.5 * camera.fov_y).tan() * camera.distance),
             space: Some(camera),
         }
     }
 
     /// Returns the view of a 2D arena, given by its two opposite corners [m].
-    pub fn view_of_plane(&self, rect: Rect, arena: [Vector; 2]) -> View {
-        let size = vec2(arena[1][0] - arena[0][0], arena[1][1] - arena[0][1]);
+    pub fn view_of_plane(&self, rect: Rect, arena: [Vec3; 2]) -> View {
+        let size = arena[1] - arena[0];
+        let size = vec2(size.x, size.y);
         let size = size + Vec2::splat(2.0 * MARGIN);
         let scale = (rect.width() / size.x).min(rect.height() / size.y);
         let swing = self.shake * vec2(self.phase.sin(), (1.3 * self.phase).cos());
-        let middle = 0.5 * vec2(arena[0][0] + arena[1][0], arena[0][1] + arena[1][1]);
+        let middle = 0.5 * (arena[0] + arena[1]);
+        let middle = vec2(middle.x, middle.y);
         let centre = middle + self.lean + swing;
         let centre = [centre.x, centre.y];
         View {
@@ -172,7 +172,7 @@ fn pixels(rect: Rect) -> [u32; 2] {
 
 impl View {
     /// Returns the screen position of a world point [m].
-    pub fn to_screen(&self, at: Vector) -> Pos2 {
+    pub fn to_screen(&self, at: Vec3) -> Pos2 {
         if let Some(camera) = &self.space {
             // A point behind the camera is placed far off the screen.
             let [x, y] = camera
@@ -182,38 +182,37 @@ impl View {
         }
         let middle = self.rect.center();
         pos2(
-            middle.x + self.scale * (at[0] - self.centre[0]),
-            middle.y - self.scale * (at[1] - self.centre[1]),
+            middle.x + self.scale * (at.x - self.centre[0]),
+            middle.y - self.scale * (at.y - self.centre[1]),
         )
     }
 
     /// Returns the horizontal position of a world point [m] in the view, from -1 (left) to 1 (right).
-    pub fn across(&self, at: Vector) -> f32 {
+    pub fn across(&self, at: Vec3) -> f32 {
         let half = 0.5 * self.rect.width().max(1.0);
         ((self.to_screen(at).x - self.rect.center().x) / half).clamp(-1.0, 1.0)
     }
 
     /// Returns the world point [m] at a screen position; in 3D on the horizontal plane at `height` [m].
-    pub fn to_world(&self, at: Pos2, height: f32) -> Vector {
+    pub fn to_world(&self, at: Pos2, height: f32) -> Vec3 {
         if let Some(camera) = &self.space {
             let point = at - self.rect.min;
             let (eye, towards) = camera.ray([point.x, point.y], pixels(self.rect));
             // A ray that does not hit the plane is cut at `FAR`.
-            let reach = (height - eye[1]) / towards[1];
+            let reach = (height - eye.y) / towards.y;
             let reach = if reach > 0.0 { reach.min(FAR) } else { FAR };
-            let [x, _, z] = plus(eye, scaled(towards, reach));
-            return [x, height, z];
+            return (eye + towards * reach).with_y(height);
         }
         let way = (at - self.rect.center()) / self.scale;
-        [self.centre[0] + way.x, self.centre[1] - way.y, 0.0]
+        Vec3::new(self.centre[0] + way.x, self.centre[1] - way.y, 0.0)
     }
 
     /// Returns the scale at a world point [points/m].
-    pub fn scale_at(&self, at: Vector) -> f32 {
+    pub fn scale_at(&self, at: Vec3) -> f32 {
         let Some(camera) = &self.space else {
             return self.scale;
         };
-        let away = length(minus(at, camera.eye())).max(1e-3);
+        let away = (at - camera.eye()).length().max(1e-3);
         self.scale * camera.distance / away
     }
 
@@ -235,17 +234,17 @@ mod tests {
 
     #[test]
     fn view_2d_inverts_screen_position() {
-        let arena = [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]];
+        let arena = [Vec3::new(-1.6, -1.0, 0.0), Vec3::new(1.6, 1.0, 0.0)];
         let mut camera = CameraRig::default();
         camera.shake(0.01);
-        camera.follow([1.0, 0.5, 0.0], arena, 0.05, false);
+        camera.follow(Vec3::new(1.0, 0.5, 0.0), arena, 0.05, false);
         let view = camera.view_of_plane(
             Rect::from_min_size(pos2(10.0, 20.0), vec2(800.0, 600.0)),
             arena,
         );
-        let position = view.to_world(view.to_screen([0.7, -0.3, 0.0]), 0.0);
-        assert!((position[0] - 0.7).abs() < 1e-4 && (position[1] + 0.3).abs() < 1e-4);
-        camera.follow([1.0, 0.5, 0.0], arena, 0.05, true);
+        let position = view.to_world(view.to_screen(Vec3::new(0.7, -0.3, 0.0)), 0.0);
+        assert!((position.x - 0.7).abs() < 1e-4 && (position.y + 0.3).abs() < 1e-4);
+        camera.follow(Vec3::new(1.0, 0.5, 0.0), arena, 0.05, true);
         assert_eq!(camera.view_of_plane(view.rect, arena).centre, [0.0, 0.0]);
     }
 
@@ -253,7 +252,7 @@ mod tests {
     fn camera_returns_the_shorter_way_until_turned() {
         let mut camera = CameraRig::default();
         let follow = |camera: &mut CameraRig, ticks: usize| {
-            (0..ticks).for_each(|_| camera.follow([0.0; 3], [[0.0; 3]; 2], 0.02, false));
+            (0..ticks).for_each(|_| camera.follow(Vec3::ZERO, [Vec3::ZERO; 2], 0.02, false));
         };
         camera.orbit(TAU + 1.0, 0.3);
         camera.return_to_front();
@@ -270,21 +269,21 @@ mod tests {
         camera.return_to_front();
         camera.orbit(0.0, 0.0);
         follow(&mut camera, 120);
-        assert!(length([camera.azimuth(), camera.rise]) < 1e-3);
+        assert!(camera.azimuth().hypot(camera.rise) < 1e-3);
     }
 
     #[test]
     fn view_3d_inverts_screen_position_at_height() {
-        let arena = [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]];
+        let arena = [Vec3::new(-1.6, 0.0, -1.0), Vec3::new(1.6, 1.6, 1.0)];
         let mut camera = CameraRig::default();
         camera.orbit(0.7, 9.0);
         let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(800.0, 600.0));
         for rise in [0.0, -0.6, -9.0] {
             camera.orbit(0.0, rise);
             let view = camera.view_of_space(rect, arena);
-            let at = [0.7, 0.4, -0.3];
-            let position = view.to_world(view.to_screen(at), at[1]);
-            assert!(length(minus(position, at)) < 1e-2, "{position:?}");
+            let at = Vec3::new(0.7, 0.4, -0.3);
+            let position = view.to_world(view.to_screen(at), at.y);
+            assert!(position.distance(at) < 1e-2, "{position:?}");
         }
         // At the lowest elevation, rays at the upper edge of the screen are nearly horizontal. Left and right
         // must not be swapped, and the points must lie beyond the arena.
@@ -293,8 +292,8 @@ mod tests {
         let view = camera.view_of_space(rect, arena);
         for height in [0.4, 1.4] {
             let [left, right] = [200.0, 700.0].map(|x| view.to_world(pos2(x, 25.0), height));
-            assert!(left[0] < right[0] && left[2] < -1.0, "{left:?} {right:?}");
-            assert_eq!((left[1], right[1]), (height, height));
+            assert!(left.x < right.x && left.z < -1.0, "{left:?} {right:?}");
+            assert_eq!((left.y, right.y), (height, height));
         }
         assert_eq!(camera.azimuth(), 0.0);
     }

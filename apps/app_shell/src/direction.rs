@@ -2,25 +2,26 @@
 //! right and away. In 2D, away is up; in 3D, it is along the floor, away from the camera.
 
 use egui::Vec2;
-use fuwafuwa::Vector;
+use fuwafuwa::Vec3;
 
 /// Converts a direction of the user (right, away) to a direction in the world. `turn` is the azimuth of the
 /// camera, positive to the right [rad]; `None` in 2D.
-pub fn to_world(turn: Option<f32>, lean: Vec2) -> Vector {
+pub fn to_world(turn: Option<f32>, lean: Vec2) -> Vec3 {
     let Some(turn) = turn else {
-        return [lean.x, lean.y, 0.0];
+        return Vec3::new(lean.x, lean.y, 0.0);
     };
     let (sin, cos) = turn.sin_cos();
-    [
+    Vec3::new(
         cos * lean.x - sin * lean.y,
         0.0,
         -sin * lean.x - cos * lean.y,
-    ]
+    )
 }
 
 /// Converts a vector in the world, such as a force [N], to a direction of the user (right, away). Inverse of
 /// [`to_world`], except that in 3D the vertical component is dropped.
-pub fn to_user(turn: Option<f32>, [x, y, z]: Vector) -> [f32; 2] {
+pub fn to_user(turn: Option<f32>, vector: Vec3) -> [f32; 2] {
+    let [x, y, z] = vector.to_array();
     let Some(turn) = turn else {
         return [x, y];
     };
@@ -35,7 +36,7 @@ mod tests {
 
     #[test]
     fn to_user_keeps_components_along_the_floor_as_seen_by_the_camera() {
-        let force = [1.0, 2.0, 3.0];
+        let force = Vec3::new(1.0, 2.0, 3.0);
         assert_eq!(to_user(None, force), [1.0, 2.0]);
         assert_eq!(to_user(Some(0.0), force), [1.0, -3.0]);
         let [right, away] = to_user(Some(FRAC_PI_2), force);

@@ -41,7 +41,7 @@ impl Pace {
     /// Returns whether another tick is due in this frame. If so, its time counts as played: play it, and
     /// report its cost with [`Self::note`].
     pub fn is_due(&mut self) -> bool {
-        let tick = f64::from(TICK);
+        let tick = f64::from(DEFAULT_TICK);
         if self.owed < tick {
             return false;
         }
@@ -139,7 +139,7 @@ mod tests {
             let cost = 1e-3 * f64::from(cost);
             assert!(seen.longest < (1.25 * cost).max(BUDGET) + 4e-3, "{told}");
             assert!(
-                seen.speed > 0.9 * (f64::from(TICK) / (cost + 3e-3)).min(1.0),
+                seen.speed > 0.9 * (f64::from(DEFAULT_TICK) / (cost + 3e-3)).min(1.0),
                 "{told}"
             );
             assert!(seen.uneven < 0.15, "{told}");
