@@ -6,10 +6,9 @@ mod rapier;
 use crate::report::{Progress, table};
 use anyhow::Result;
 use clap::ValueEnum;
-use fuwafuwa::Grading;
-use fuwafuwa::Law;
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
+    Dim, Dim2, Dim3, DimVector, Grading, Law, Material, RigidBody, Shape, SoftBody, Vec3,
+    VoxelGrid, World, WorldConfig,
 };
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::disk::open_scene;
@@ -164,7 +163,7 @@ fn one(measure: Result<Measure>) -> Result<Vec<Measure>> {
 fn element_time<D: Dim>(n: usize, cracks: usize) -> Result<Measure> {
     let mut body = torn::<D>(n, cracks)?;
     let elements = body.mesh().element_count() as f64;
-    let times = timed(400, || body.advance(1.0 / 7680.0, [0.0; 3]));
+    let times = timed(400, || body.advance(1.0 / 7680.0, D::Vector::ZERO));
     let torn = match cracks {
         0 => String::new(),
         _ => format!(", {cracks} cracks"),
@@ -229,8 +228,10 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Ve
             }
             progress.step();
         }
-        let bodies = world.soft_bodies().map(|(_, body)| body);
-        pieces = bodies.map(|body| body.pieces().list.len()).sum();
+        let counts = world
+            .soft_bodies()
+            .map(|(_, body)| body.pieces().list.len());
+        pieces = counts.sum();
     }
     if whole == times.len() {
         let what = format!("scene {name}, time per tick; {pieces} pieces at the end");
@@ -251,19 +252,18 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Ve
 fn pushed_ball<D: Dim>(n: usize) -> Result<Measure> {
     const TICKS: u16 = 60;
     let mut world = World::<D>::new(WorldConfig::default())?;
-    world.add_rigid_body(
-        RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3])).with_friction(0.5),
-    )?;
+    let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
+    world.add_rigid_body(RigidBody::fixed(floor).with_friction(0.5))?;
     world.add_soft_body(SoftBody::new(
         VoxelGrid::ball(n, 1.0)?,
         &[Material::default()],
     )?);
-    let z = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = world.add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at([0.5, 1.2, z]))?;
+    let above = |height: f32| D::Vector::from_vec3(Vec3::new(0.5, height, 0.5));
+    let hand = world.add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at(above(1.2)))?;
     let mut times = Vec::new();
     for tick in 1..=TICKS {
         let down = 0.35 * f32::from(tick) / f32::from(TICKS);
-        world.set_target_position(hand, [0.5, 1.2 - down, z])?;
+        world.set_target_position(hand, above(1.2 - down))?;
         let start = Instant::now();
         world.step();
         times.push(start.elapsed().as_secs_f64());
@@ -278,7 +278,7 @@ fn pushed_ball<D: Dim>(n: usize) -> Result<Measure> {
 /// Measures the peak memory of the process after it has created and advanced a ball 128 voxels across.
 fn memory() -> Result<Measure> {
     let mut body = swinging::<Dim3>(128, Grading::Graded)?;
-    body.advance(1e-4, [0.0; 3]);
+    body.advance(1e-4, Vec3::ZERO);
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     let kilobytes = line.and_then(|line| line.trim().trim_end_matches(" kB").parse().ok());
@@ -305,7 +305,7 @@ fn against_uniform_in<D: Dim>(n: usize, progress: &Progress) -> Result<Vec<Measu
     let tick = |body: &mut SoftBody<D>| {
         let start = Instant::now();
         for _ in 0..16 {
-            body.advance(duration, [0.0; 3]);
+            body.advance(duration, D::Vector::ZERO);
         }
         start.elapsed().as_secs_f64()
     };
@@ -334,13 +334,14 @@ fn against_uniform_in<D: Dim>(n: usize, progress: &Progress) -> Result<Vec<Measu
 
 /// Returns a ball 1 m across, stretched by 5 % so that it oscillates.
 fn swinging<D: Dim>(n: usize, grading: Grading) -> Result<SoftBody<D>> {
-    let grid = VoxelGrid::ball(n, 1.0)?;
+    let grid = VoxelGrid::<D>::ball(n, 1.0)?;
     let mut body =
         SoftBody::with_options(grid, &[Material::default()], Law::CorotationalVem, grading)?;
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
-        let ([x, y, z], ..) = body.node_state(id);
-        body.set_node_state(id, [1.05 * x, y, z], [0.0; 3]);
+        let (mut at, ..) = body.node_state(id);
+        at[0] *= 1.05;
+        body.set_node_state(id, at, D::Vector::ZERO)?;
     }
     Ok(body)
 }

@@ -3,11 +3,8 @@
 use crate::report::{self, Progress};
 use anyhow::{Context, Result};
 use clap::ValueEnum;
-use fuwafuwa::Grading;
-use fuwafuwa::inspect::CellHierarchy;
-use fuwafuwa::inspect::Connectivity;
-use fuwafuwa::inspect::Mesh;
-use fuwafuwa::{Dim, Dim2, Dim3, VoxelGrid};
+use fuwafuwa::inspect::{CellHierarchy, Connectivity, Mesh};
+use fuwafuwa::{Dim, Dim2, Dim3, Grading, VoxelGrid};
 use serde::Serialize;
 use std::process::ExitCode;
 

@@ -2,7 +2,7 @@
 
 use crate::report::Progress;
 use anyhow::{Context, Result};
-use fuwafuwa::{Dim, Dim2, Dim3, World};
+use fuwafuwa::{Dim, Dim2, Dim3, Event, Vec3, World};
 use fuwafuwa_painter::solid::{Camera, Scene3d};
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, Pixmap, film};
@@ -71,7 +71,8 @@ trait Filmed: Dim {
 
 impl Filmed for Dim2 {
     fn painted(world: &World<Self>, scene: &Scene, elements: bool) -> Result<Painter> {
-        let (mut painter, frame) = Painter::for_view(scene.view, WIDTH);
+        let view = scene.view.map(Vec3::from);
+        let (mut painter, frame) = Painter::for_view(view, WIDTH);
         let draw = if elements {
             worlds::plane_elements
         } else {
@@ -84,15 +85,11 @@ impl Filmed for Dim2 {
 
 impl Filmed for Dim3 {
     fn painted(world: &World<Self>, scene: &Scene, elements: bool) -> Result<Painter> {
-        let [low, high] = scene.view;
-        let middle = [0, 1, 2].map(|axis: usize| 0.5 * (low[axis] + high[axis]));
-        let across = high[0] - low[0];
+        let [low, high] = scene.view.map(Vec3::from);
+        let middle = 0.5 * (low + high);
+        let across = high.x - low.x;
         let mut solid = Scene3d::new(Camera {
-            eye: [
-                middle[0] + 1.4 * across,
-                middle[1] + 0.9 * across,
-                middle[2] + 2.0 * across,
-            ],
+            eye: middle + Vec3::new(1.4, 0.9, 2.0) * across,
             target: middle,
             across: 1.15 * across,
         });
@@ -149,7 +146,7 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         progress.step();
         let events = world.events().iter();
         released += events
-            .filter(|event| matches!(event, fuwafuwa::Event::NodeSplit { .. }))
+            .filter(|event| matches!(event, Event::NodeSplit { .. }))
             .count();
         if arguments.film.is_some() && tick % every == 0 {
             let painted = D::painted(world, scene, arguments.elements);
@@ -188,10 +185,8 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         write(path, text.as_bytes())?;
     }
     let pieces = || {
-        world
-            .soft_bodies()
-            .map(|(_, body)| body)
-            .flat_map(|body| body.piece_views())
+        let bodies = world.soft_bodies();
+        bodies.flat_map(|(_, body)| body.piece_views())
     };
     let summary = Summary {
         scene: arguments.scene.clone(),

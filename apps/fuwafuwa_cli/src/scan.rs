@@ -311,8 +311,8 @@ mod tests {
         run(&arguments).unwrap();
         let scene = open_scene(&out.display().to_string(), &[]).unwrap();
         let world = scene.build::<Dim3>().unwrap();
-        let body = world.soft_bodies().map(|(_, body)| body).next();
-        let grid = body.expect("the scene has a body").grid();
+        let (_, body) = world.soft_bodies().next().expect("the scene has a body");
+        let grid = body.grid();
         assert_eq!(grid.solid_count(), 729);
         assert_eq!(grid.material([5; 3]), 2);
         assert!((grid.voxel_size() - 0.002).abs() < 1e-6);

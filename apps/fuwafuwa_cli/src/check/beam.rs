@@ -13,12 +13,8 @@ use super::parallel;
 use super::statics::Statics;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
-use fuwafuwa::Grading;
-use fuwafuwa::inspect::CellHierarchy;
-use fuwafuwa::inspect::Connectivity;
-use fuwafuwa::inspect::Elasticity;
-use fuwafuwa::inspect::Mesh;
-use fuwafuwa::{Dim, Dim2, Dim3, VoxelGrid};
+use fuwafuwa::inspect::{CellHierarchy, Connectivity, Elasticity, Mesh};
+use fuwafuwa::{Dim, Dim2, Dim3, Grading, VoxelGrid};
 
 /// Thickness of a beam [voxels].
 const THICKNESS: usize = 16;
@@ -106,7 +102,7 @@ impl Beam {
         for (_, element) in mesh.elements() {
             let half = 0.5 * f64::from(element.cell.width());
             let face = (1..D::N).fold(1.0, |area, _| area * half);
-            let stencil = mesh.stencil(element);
+            let stencil = mesh.element_class(element);
             for (&node, gradient) in element.nodes.iter().zip(&stencil.gradients) {
                 if mesh.node(node).at[0] == self.length as i32 {
                     load[node.index() * D::N + 1] += gradient[0] * face;

@@ -4,10 +4,9 @@ use super::motion::material;
 use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
-use fuwafuwa::Vector;
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Material, MotionType, NodeId, RigidBody, SoftBody, VoxelGrid, World,
-    WorldConfig,
+    Dim, Dim2, Dim3, DimVector, Material, NodeId, RigidBody, Shape, SoftBody, Vec3, VoxelGrid,
+    World, WorldConfig,
 };
 
 /// Number of dimensions, voxels across, and speed of each hand [m/s]. At the highest speed, the sides of the
@@ -58,7 +57,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
 /// [voxels]. A negative result is the smallest gap.
 fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
     let mut world = World::<D>::new(WorldConfig {
-        gravity: [0.0; 3],
+        gravity: D::Vector::ZERO,
         ..WorldConfig::default()
     })?;
     let material = Material {
@@ -69,11 +68,14 @@ fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
     let (voxel, plane) = (grid.voxel_size(), plane_of(&grid));
     let ring = world.add_soft_body(SoftBody::new(grid, &[material])?);
     let sides = [-1.0, 1.0];
-    let middle_of = |side: f32, apart: f32| [0.5, 0.5 + side * (HAND + 0.5 * apart), plane];
+    let middle_of = |side: f32, apart: f32| {
+        let height = 0.5 + side * (HAND + 0.5 * apart);
+        D::Vector::from_vec3(Vec3::new(0.5, height, plane))
+    };
     let mut hands = Vec::new();
     for side in sides {
-        let hand = RigidBody::coupled(Shape::ball(HAND)).at(middle_of(side, 1.0));
-        hands.push(world.add_rigid_body(hand.with_motion_type(MotionType::Kinematic))?);
+        let hand = RigidBody::kinematic(Shape::ball(HAND)).at(middle_of(side, 1.0));
+        hands.push(world.add_rigid_body(hand)?);
     }
     let holes = sides.map(|side| hole_side(&world[ring], side));
     let (mut apart, mut waited, mut deepest) = (1.0, 0.0, f32::NEG_INFINITY);
@@ -88,7 +90,7 @@ fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
         let report = world.step();
         ensure!(report.quarantined == 0, "the ring was quarantined");
         let [low, high] = holes.each_ref().map(|nodes| places(&world[ring], nodes));
-        let slips = |at: &Vector| (at[2] - plane).abs() > voxel;
+        let slips = |at: &Vec3| (at.z - plane).abs() > voxel;
         ensure!(
             !low.iter().chain(&high).any(slips),
             "one side of the ring slipped past the other"
@@ -111,7 +113,7 @@ fn plane_of<D: Dim>(grid: &VoxelGrid<D>) -> f32 {
 fn hole_side<D: Dim>(body: &SoftBody<D>, side: f32) -> Vec<NodeId> {
     let (voxel, plane) = (body.grid().voxel_size(), plane_of(body.grid()));
     let nodes = body.mesh().nodes().filter(|(id, node)| {
-        let [x, y, z] = body.node_state(*id).0;
+        let [x, y, z] = body.node_state(*id).0.to_vec3().to_array();
         let (x, y) = (x - 0.5, y - 0.5);
         let is_inner = x * x + y * y < 0.36 * 0.36 && (z - plane).abs() < 0.1 * voxel;
         let is_bare = (node.group.count_ones() as usize) < D::CORNERS;
@@ -121,23 +123,24 @@ fn hole_side<D: Dim>(body: &SoftBody<D>, side: f32) -> Vec<NodeId> {
 }
 
 /// Returns the positions of nodes, from left to right.
-fn places<D: Dim>(body: &SoftBody<D>, nodes: &[NodeId]) -> Vec<Vector> {
-    let mut places: Vec<Vector> = nodes.iter().map(|&id| body.node_state(id).0).collect();
-    places.sort_by(|a, b| a[0].total_cmp(&b[0]));
+fn places<D: Dim>(body: &SoftBody<D>, nodes: &[NodeId]) -> Vec<Vec3> {
+    let positions = nodes.iter().map(|&id| body.node_state(id).0);
+    let mut places: Vec<Vec3> = positions.map(DimVector::to_vec3).collect();
+    places.sort_by(|a, b| a.x.total_cmp(&b.x));
     places
 }
 
 /// Returns the maximum height of the `low` line above the `high` line near the middle of the ring [m].
 /// Negative if the low line is below everywhere.
-fn overlap(low: &[Vector], high: &[Vector]) -> f32 {
-    let is_amid = |at: &&Vector| (at[0] - 0.5).abs() < MIDDLE;
+fn overlap(low: &[Vec3], high: &[Vec3]) -> f32 {
+    let is_amid = |at: &&Vec3| (at.x - 0.5).abs() < MIDDLE;
     let mut deepest = f32::NEG_INFINITY;
     for at in high.iter().filter(is_amid) {
         for two in low.windows(2) {
             let [a, b] = [two[0], two[1]];
-            if (a[0]..b[0]).contains(&at[0]) {
-                let line = a[1] + (b[1] - a[1]) * (at[0] - a[0]) / (b[0] - a[0]);
-                deepest = deepest.max(line - at[1]);
+            if (a.x..b.x).contains(&at.x) {
+                let line = a.y + (b.y - a.y) * (at.x - a.x) / (b.x - a.x);
+                deepest = deepest.max(line - at.y);
             }
         }
     }
@@ -150,8 +153,8 @@ mod tests {
 
     #[test]
     fn overlap_is_positive_only_for_crossed_lines() {
-        let line = |y| (0..5u8).map(move |k| [0.3 + 0.1 * f32::from(k), y, 0.0]);
-        let (low, high): (Vec<Vector>, Vec<Vector>) = (line(0.4).collect(), line(0.6).collect());
+        let line = |y| (0..5u8).map(move |k| Vec3::new(0.3 + 0.1 * f32::from(k), y, 0.0));
+        let (low, high): (Vec<Vec3>, Vec<Vec3>) = (line(0.4).collect(), line(0.6).collect());
         assert!((overlap(&low, &high) + 0.2).abs() < 1e-6);
         assert!((overlap(&high, &low) - 0.2).abs() < 1e-6);
     }

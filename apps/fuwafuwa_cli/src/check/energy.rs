@@ -9,19 +9,23 @@
 //! weight w_i and hourglass stiffness k. The extra resistance of an element that is squashed flat is left
 //! out, because the bodies of the checks are never deformed that far.
 
-use fuwafuwa::inspect::vector::{cross, dot, minus, plus, scaled};
-use fuwafuwa::inspect::{Elasticity, Matrix};
-use fuwafuwa::inspect::{ElementClass, Vector64};
-use fuwafuwa::{Dim, NodeId, SoftBody};
+use fuwafuwa::glam::DVec3;
+use fuwafuwa::inspect::{Elasticity, ElementClass, Matrix};
+use fuwafuwa::{Dim, DimVector, NodeId, SoftBody};
 
 /// Returns the elastic energy of a body [J].
 pub fn of_body<D: Dim>(body: &SoftBody<D>) -> f64 {
     let elements = body.mesh().elements().map(|(_, element)| {
-        let place = |&node: &NodeId| body.node_state(node).0.map(f64::from);
-        let positions: Vec<Vector64> = element.nodes.iter().map(place).collect();
+        let place = |&node: &NodeId| body.node_state(node).0.to_vec3().as_dvec3();
+        let positions: Vec<DVec3> = element.nodes.iter().map(place).collect();
         let size = f64::from(element.cell.width()) * f64::from(body.grid().voxel_size());
         let elasticity = body.material(element).elasticity;
-        of_element(elasticity, body.mesh().stencil(element), size, &positions)
+        of_element(
+            elasticity,
+            body.mesh().element_class(element),
+            size,
+            &positions,
+        )
     });
     elements.sum()
 }
@@ -31,37 +35,35 @@ fn of_element<D: Dim>(
     elasticity: Elasticity,
     stencil: &ElementClass<D>,
     size: f64,
-    positions: &[Vector64],
+    positions: &[DVec3],
 ) -> f64 {
     let half = 0.5 * size;
-    let mut deformation = [[0.0; 3]; 3];
-    let mut centre = [0.0; 3];
+    let mut deformation = [DVec3::ZERO; 3];
+    let mut centre = DVec3::ZERO;
     for (k, &at) in positions.iter().enumerate() {
-        centre = plus(centre, scaled(at, stencil.volumes[k] / stencil.volume));
+        centre += at * (stencil.volumes[k] / stencil.volume);
         for i in 0..3 {
             let share = at[i] / (stencil.volume * half);
-            deformation[i] = plus(deformation[i], scaled(stencil.gradients[k], share));
+            deformation[i] += stencil.gradients[k] * share;
         }
     }
     if D::N == 2 {
-        deformation[2] = [0.0, 0.0, 1.0];
+        deformation[2] = DVec3::Z;
     }
     let rotation = rotation_of(&deformation);
     let (mut apart, mut growth) = (0.0, -3.0);
-    for (f, r) in deformation.iter().zip(rotation) {
-        let difference = minus(*f, r);
-        apart += dot(difference, difference);
-        growth += dot(*f, r);
+    for (f, r) in deformation.into_iter().zip(rotation) {
+        apart += (f - r).length_squared();
+        growth += f.dot(r);
     }
     let (shear, lame) = (elasticity.shear_modulus(), elasticity.lame());
     let density = shear * apart + 0.5 * lame * growth * growth;
     let volume = (0..D::N).fold(stencil.volume, |volume, _| volume * half);
 
-    let swerve = |(k, &at): (usize, &Vector64)| {
-        let rest = scaled(stencil.offsets[k], half);
-        let affine = plus(centre, deformation.map(|row| dot(row, rest)));
-        let h = minus(at, affine);
-        stencil.volumes[k] * dot(h, h)
+    let swerve = |(k, &at): (usize, &DVec3)| {
+        let rest = stencil.offsets[k] * half;
+        let affine = centre + DVec3::from(deformation.map(|row| row.dot(rest)));
+        stencil.volumes[k] * (at - affine).length_squared()
     };
     let hourglass_modulus = D::HOURGLASS * stencil.hourglass * elasticity.young;
     let stiffness = (2..D::N).fold(hourglass_modulus, |stiffness, _| stiffness * size);
@@ -75,10 +77,10 @@ fn rotation_of(matrix: &Matrix) -> Matrix {
     let mut rotation = *matrix;
     for _ in 0..30 {
         let [a, b, c] = rotation;
-        let cofactors = [cross(b, c), cross(c, a), cross(a, b)];
-        let determinant = dot(a, cofactors[0]);
+        let cofactors = [b.cross(c), c.cross(a), a.cross(b)];
+        let determinant = a.dot(cofactors[0]);
         for (row, cofactor) in rotation.iter_mut().zip(cofactors) {
-            *row = scaled(plus(*row, scaled(cofactor, 1.0 / determinant)), 0.5);
+            *row = (*row + cofactor * (1.0 / determinant)) * 0.5;
         }
     }
     rotation
@@ -87,26 +89,24 @@ fn rotation_of(matrix: &Matrix) -> Matrix {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::Law;
-    use fuwafuwa::inspect::forces;
-    use fuwafuwa::inspect::{cell_corners, closure};
-    use fuwafuwa::{Dim2, Dim3};
+    use fuwafuwa::inspect::{cell_corners, closure, forces};
+    use fuwafuwa::{Dim2, Dim3, Law};
 
     /// Checks that the force is the negative gradient of the energy, also for elements with mid nodes.
     fn check_slope<D: Dim>(children: u8, slots: u32) {
         let elasticity = Elasticity::new(1000.0, 0.3).unwrap();
         let stencil = ElementClass::<D>::new(children, slots).unwrap();
         let size = 0.5;
-        let bent = |r: &Vector64| {
-            let [x, y, z] = r.map(|k| 0.5 * size * k);
+        let bent = |r: &DVec3| {
+            let [x, y, z] = (*r * (0.5 * size)).to_array();
             let third = if D::N == 3 { z + 0.3 * x } else { 0.0 };
-            [
+            DVec3::new(
                 1.1 * x - 0.3 * y + x * y,
                 0.9 * y + 0.2 * x + 0.7 * x * x,
                 third,
-            ]
+            )
         };
-        let positions: Vec<Vector64> = stencil.offsets.iter().map(bent).collect();
+        let positions: Vec<DVec3> = stencil.offsets.iter().map(bent).collect();
         let found = forces(Law::CorotationalVem, elasticity, &stencil, size, &positions);
         for (node, axis) in (0..positions.len()).flat_map(|k| (0..D::N).map(move |i| (k, i))) {
             let at = |by: f64| {

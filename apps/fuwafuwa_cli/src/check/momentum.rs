@@ -1,13 +1,11 @@
 //! Momentum: releases (splits of nodes) and remodelling must not change the momentum of a body.
 
-use super::motion::{arrange, ball, length, material};
+use super::motion::{arrange, ball, material};
 use super::parallel;
 use super::random::Random;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, anyhow};
-use fuwafuwa::Grading;
-use fuwafuwa::{Dim, Point};
-use fuwafuwa::{Dim2, Dim3};
+use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Grading, Point, Vec3};
 
 /// Number of dimensions and voxels across for each body.
 const BODIES: [(usize, usize); 3] = [(2, 32), (3, 12), (3, 16)];
@@ -40,10 +38,13 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
 /// Returns the relative changes of mass, linear and angular momentum.
 fn drifts<D: Dim>(n: usize, releases: usize) -> Result<[f64; 3]> {
     let mut body = ball::<D>(n, material(), Grading::Graded)?;
-    arrange(&mut body, |[x, y, z]| {
-        let third = if D::N == 3 { 0.3 * x } else { 0.0 };
-        ([x * 1.05, y * 0.95, z], [1.0 + 2.0 * y, 0.5 - x + z, third])
-    });
+    arrange(&mut body, |rest| {
+        let [x, y, z] = rest.to_array();
+        (
+            Vec3::new(x * 1.05, y * 0.95, z),
+            Vec3::new(1.0 + 2.0 * y, 0.5 - x + z, 0.3 * x),
+        )
+    })?;
     let (mass, before) = (body.total_mass(), body.momentum());
     let mut random = Random::new(n as u64);
     for release in 0..releases {
@@ -56,7 +57,7 @@ fn drifts<D: Dim>(n: usize, releases: usize) -> Result<[f64; 3]> {
         let side = far.fold(0, |mask, octant| mask | 1 << octant);
         body.release(&[(at, side)]);
         if release % BETWEEN_STEPS == 0 {
-            body.advance(body.longest_substep() as f32, [0.0; 3]);
+            body.advance(body.longest_substep() as f32, D::Vector::ZERO);
         }
     }
     let mesh = body.mesh().validate(body.grid(), body.connectivity());
@@ -64,8 +65,8 @@ fn drifts<D: Dim>(n: usize, releases: usize) -> Result<[f64; 3]> {
     let change = body.momentum().less(before);
     Ok([
         (body.total_mass() / mass - 1.0).abs(),
-        length(change.linear) / length(before.linear),
-        length(change.angular) / length(before.angular),
+        change.linear.length() / before.linear.length(),
+        change.angular.length() / before.angular.length(),
     ])
 }
 

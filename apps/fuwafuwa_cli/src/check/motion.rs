@@ -1,11 +1,8 @@
 //! Helpers shared by the checks of moving bodies.
 
 use anyhow::Result;
-use fuwafuwa::Grading;
-use fuwafuwa::Law;
-use fuwafuwa::Vector;
 use fuwafuwa::inspect::Elasticity;
-use fuwafuwa::{Dim, Material, NodeId, SoftBody, VoxelGrid};
+use fuwafuwa::{Dim, DimVector, Grading, Law, Material, NodeId, SoftBody, Vec3, VoxelGrid};
 
 /// Returns a soft material without damping that does not tear.
 pub fn material() -> Material {
@@ -33,25 +30,29 @@ pub fn ball<D: Dim>(n: usize, material: Material, grading: Grading) -> Result<So
 }
 
 /// Sets position [m] and velocity [m/s] of every node as a function of its rest position [m], relative to the
-/// centre of a body 1 m across.
-pub fn arrange<D: Dim>(body: &mut SoftBody<D>, state: impl Fn(Vector) -> (Vector, Vector)) {
+/// centre of a body 1 m across. In 2D third coordinates are 0 and ignored.
+///
+/// # Errors
+/// If a position or velocity is not finite.
+pub fn arrange<D: Dim>(body: &mut SoftBody<D>, state: impl Fn(Vec3) -> (Vec3, Vec3)) -> Result<()> {
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
         let (position, velocity) = state(at_rest(body, id));
-        body.set_node_state(id, position, velocity);
+        body.set_node_state(
+            id,
+            D::Vector::from_vec3(position),
+            D::Vector::from_vec3(velocity),
+        )?;
     }
+    Ok(())
 }
 
 /// Returns the rest position of a node relative to the centre of a body 1 m across [m].
-pub fn at_rest<D: Dim>(body: &SoftBody<D>, id: NodeId) -> Vector {
+pub fn at_rest<D: Dim>(body: &SoftBody<D>, id: NodeId) -> Vec3 {
     let (at, size) = (body.mesh().node(id).at, body.grid().voxel_size());
-    [0, 1, 2].map(|axis| match axis {
-        axis if axis < D::N => at[axis] as f32 * size - 0.5,
-        _ => 0.0,
-    })
-}
-
-/// Returns the length of a vector.
-pub fn length(v: [f64; 3]) -> f64 {
-    v.iter().map(|k| k * k).sum::<f64>().sqrt()
+    let mut rest = Vec3::ZERO;
+    for axis in 0..D::N {
+        rest[axis] = at[axis] as f32 * size - 0.5;
+    }
+    rest
 }

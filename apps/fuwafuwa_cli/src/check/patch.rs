@@ -3,14 +3,11 @@
 use super::random::Random;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
-use fuwafuwa::Grading;
-use fuwafuwa::Law;
-use fuwafuwa::inspect::CellHierarchy;
-use fuwafuwa::inspect::Connectivity;
-use fuwafuwa::inspect::Mesh;
-use fuwafuwa::inspect::{Elasticity, forces};
-use fuwafuwa::inspect::{neighbourhood, points_in};
-use fuwafuwa::{Dim, Dim2, Dim3, NodeId, Point, VoxelGrid};
+use fuwafuwa::glam::DVec3;
+use fuwafuwa::inspect::{
+    CellHierarchy, Connectivity, Elasticity, Mesh, forces, neighbourhood, points_in,
+};
+use fuwafuwa::{Dim, Dim2, Dim3, Grading, Law, NodeId, Point, VoxelGrid};
 
 /// Maximum residual force of the default law, relative to stress × face area of a voxel.
 const LIMIT: f64 = 1e-5;
@@ -80,29 +77,33 @@ fn residual<D: Dim>(mesh: &Mesh<D>, sharing: &Connectivity<D>, law: Law) -> Resu
     let elasticity = Elasticity::new(1000.0, 0.3)?;
     let strain = [[1.12, 0.07, 0.0], [-0.21, 0.91, 0.05], [0.0, 0.11, 1.04]];
     let deformed = |at: Point| {
-        let mut x = [0.0; 3];
-        for (i, x) in x.iter_mut().enumerate().take(D::N) {
-            *x = (0..D::N).map(|j| strain[i][j] * f64::from(at[j])).sum();
+        let mut x = DVec3::ZERO;
+        for i in 0..D::N {
+            x[i] = (0..D::N).map(|j| strain[i][j] * f64::from(at[j])).sum();
         }
         x
     };
-    let mut sums = vec![[0.0; 3]; mesh.node_capacity()];
+    let mut sums = vec![DVec3::ZERO; mesh.node_capacity()];
     for (_, element) in mesh.elements() {
         let at = |&node: &NodeId| deformed(mesh.node(node).at);
         let positions: Vec<_> = element.nodes.iter().map(at).collect();
         let size = f64::from(element.cell.width());
-        let all = forces(law, elasticity, mesh.stencil(element), size, &positions);
+        let all = forces(
+            law,
+            elasticity,
+            mesh.element_class(element),
+            size,
+            &positions,
+        );
         for (&node, force) in element.nodes.iter().zip(all) {
-            for (sum, force) in sums[node.index()].iter_mut().zip(force) {
-                *sum += force;
-            }
+            sums[node.index()] += force;
         }
     }
     let stress = 0.2 * elasticity.young;
     let mut worst = 0.0f64;
     for (id, node) in mesh.nodes() {
         if node.group == D::ALL_CORNERS && !sharing.is_open(node.at) {
-            for force in sums[id.index()] {
+            for force in sums[id.index()].to_array() {
                 // f64::max would ignore a NaN.
                 let force = if force.is_nan() { f64::INFINITY } else { force };
                 worst = worst.max(force.abs() / stress);

@@ -5,9 +5,8 @@ use super::motion::{arrange, at_rest, ball, material};
 use super::{energy, parallel};
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
-use fuwafuwa::Grading;
-use fuwafuwa::inspect::vector::{dot, plus, scaled};
-use fuwafuwa::{Dim, Dim2, Dim3, SoftBody};
+use fuwafuwa::glam::DVec3;
+use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Grading, NodeId, SoftBody, Vec3};
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
@@ -69,9 +68,8 @@ fn rings<D: Dim>(n: usize, progress: &Progress) -> Result<[Ring; 2]> {
 fn ring<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<Ring> {
     let mut body = ball::<D>(n, material(), grading)?;
     let bulge = 1.0 + SQUASH / (D::N - 1) as f32;
-    arrange(&mut body, |[x, y, z]| {
-        ([x * bulge, y * (1.0 - SQUASH), z * bulge], [0.0; 3])
-    });
+    let squash = Vec3::new(bulge, 1.0 - SQUASH, bulge);
+    arrange(&mut body, |rest| (rest * squash, Vec3::ZERO))?;
     let steps = (DURATION / body.longest_substep()).ceil() as usize;
     let duration = DURATION / steps as f64;
     let last = steps - (LAST / duration) as usize;
@@ -86,7 +84,7 @@ fn ring<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<Ring>
             sum += advance_and_weigh(&mut body, duration);
             count += 1.0;
         } else {
-            body.advance(duration as f32, [0.0; 3]);
+            body.advance(duration as f32, D::Vector::ZERO);
         }
         let (before, now) = (signal[step], squash_of(&body));
         signal.push(now);
@@ -111,13 +109,13 @@ fn ring<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<Ring>
 /// positions.
 fn advance_and_weigh<D: Dim>(body: &mut SoftBody<D>, duration: f64) -> f64 {
     let stored = energy::of_body(body);
-    let velocity = |body: &SoftBody<D>, id| body.node_state(id).1.map(f64::from);
+    let velocity = |body: &SoftBody<D>, id: NodeId| body.node_state(id).1.to_vec3().as_dvec3();
     let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
-    let before: Vec<[f64; 3]> = ids.iter().map(|&id| velocity(body, id)).collect();
-    body.advance(duration as f32, [0.0; 3]);
+    let before: Vec<DVec3> = ids.iter().map(|&id| velocity(body, id)).collect();
+    body.advance(duration as f32, D::Vector::ZERO);
     let moving = ids.iter().zip(before).map(|(&id, before)| {
-        let mean = scaled(plus(before, velocity(body, id)), 0.5);
-        0.5 * f64::from(body.node_state(id).2) * dot(mean, mean)
+        let mean = (before + velocity(body, id)) * 0.5;
+        0.5 * f64::from(body.node_state(id).2) * mean.length_squared()
     });
     stored + moving.sum::<f64>()
 }
@@ -154,7 +152,7 @@ fn strongest_period(signal: &[f64], duration: f64, about: f64) -> f64 {
 fn squash_of<D: Dim>(body: &SoftBody<D>) -> f64 {
     let (mut sum, mut whole) = (0.0, 0.0);
     for (id, _) in body.mesh().nodes() {
-        let (rest, (at, _, mass)) = (f64::from(at_rest(body, id)[1]), body.node_state(id));
+        let (rest, (at, _, mass)) = (f64::from(at_rest(body, id).y), body.node_state(id));
         sum += f64::from(mass) * rest * (rest - f64::from(at[1]));
         whole += f64::from(mass) * rest * rest;
     }

@@ -3,7 +3,7 @@
 use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
-use fuwafuwa::{Dim, Dim2, Dim3, World};
+use fuwafuwa::{Dim, Dim2, Dim3, DimVector, MotionType, Shape, SoftBody};
 use fuwafuwa_scenes::Scene;
 
 const SCENES: [&str; 2] = ["pile", "pile-3d"];
@@ -57,12 +57,15 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
     let id = world.nth_soft_body(0).expect("the scene has a body");
     let body = &world[id];
     let (before, mass) = (body.piece_views().len(), body.total_mass());
+    let bodies = world.rigid_bodies().map(|(_, body)| body);
+    let fixed = bodies.filter(|body| body.motion_type() == MotionType::Fixed);
+    let walls: Vec<Shape<D>> = fixed.map(|body| body.shape()).collect();
     let mut asleep = f64::INFINITY;
     let mut depth = 0.0f64;
     for tick in 0..(PATIENCE * 60.0) as usize {
         let report = world.step();
         anyhow::ensure!(report.quarantined == 0, "a piece was quarantined");
-        depth = depth.max(deepest(&world));
+        depth = depth.max(deepest(&world[id], &walls));
         let pieces = &world[id].pieces().list;
         if pieces.iter().all(|piece| piece.asleep) {
             asleep = (tick + 1) as f64 / 60.0;
@@ -73,8 +76,8 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
     let views = body.piece_views();
     let size = f64::from(body.grid().voxel_size());
     let outside = views.iter().filter(|view| {
-        let mut obstacles = world.fixed_rigid_bodies();
-        obstacles.any(|obstacle| obstacle.shape().distance(view.centre).0 < 0.0)
+        let centre = D::Vector::from_vec3(view.centre);
+        walls.iter().any(|wall| wall.distance(centre).0 < 0.0)
     });
     let kept = body.total_mass() / mass;
     anyhow::ensure!(
@@ -90,17 +93,12 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
 }
 
 /// Returns the maximum penetration of a node into a wall [m].
-fn deepest<D: Dim>(world: &World<D>) -> f64 {
-    let body = world
-        .soft_bodies()
-        .next()
-        .map(|(_, item)| item)
-        .expect("the scene has a body");
+fn deepest<D: Dim>(body: &SoftBody<D>, walls: &[Shape<D>]) -> f64 {
     let mut deepest = 0.0f32;
     for (id, _) in body.mesh().nodes() {
         let at = body.node_state(id).0;
-        for obstacle in world.fixed_rigid_bodies() {
-            deepest = deepest.max(-obstacle.shape().distance(at).0);
+        for wall in walls {
+            deepest = deepest.max(-wall.distance(at).0);
         }
     }
     f64::from(deepest)

@@ -14,11 +14,8 @@ use super::parallel;
 use super::statics::Statics;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
-use fuwafuwa::Grading;
-use fuwafuwa::inspect::CellHierarchy;
-use fuwafuwa::inspect::Connectivity;
-use fuwafuwa::inspect::Mesh;
-use fuwafuwa::{Dim, Dim2, Dim3, VoxelGrid};
+use fuwafuwa::inspect::{CellHierarchy, Connectivity, Mesh};
+use fuwafuwa::{Dim, Dim2, Dim3, Grading, VoxelGrid};
 
 /// Voxels across the discs.
 const DISCS: [usize; 5] = [16, 32, 64, 128, 256];
@@ -150,7 +147,7 @@ fn sag_between<D: Dim>(
     for (_, element) in mesh.elements() {
         let half = 0.5 * f64::from(element.cell.width());
         let child = (0..D::N).fold(f64::from(material.density), |mass, _| mass * half);
-        let shares = &mesh.stencil(element).volumes;
+        let shares = &mesh.element_class(element).volumes;
         for (&node, share) in element.nodes.iter().zip(shares) {
             load[node.index() * D::N + 1] -= child * share;
         }

@@ -1,14 +1,13 @@
 //! Spin: a rotating free body keeps its angular momentum, and so does each half of a body that was cut.
 
-use super::motion::{arrange, ball, length, material};
+use super::motion::{arrange, ball, material};
 use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
-use fuwafuwa::DEFAULT_TICK;
-use fuwafuwa::Grading;
-use fuwafuwa::inspect::vector::{cross, plus};
+use fuwafuwa::glam::DVec3;
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, Material, PieceId, SoftBody, SoftBodyHandle, World, WorldConfig,
+    Blade, DEFAULT_TICK, Dim, Dim2, Dim3, DimVector, Grading, Material, PieceId, SoftBody,
+    SoftBodyHandle, Vec2, Vec3, World, WorldConfig,
 };
 
 /// Number of dimensions, voxels across, and damping, for each body.
@@ -34,8 +33,8 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     };
     let mut outcomes: Vec<Outcome> = BODIES.iter().zip(found).map(outcome).collect();
     let found = parallel::each(&TORN, progress, |&(dim, n)| match dim {
-        2 => halves::<Dim2>(n),
-        _ => halves::<Dim3>(n),
+        2 => halves(n, &middle_line()),
+        _ => halves(n, &middle_plane()),
     })?;
     for ((dim, n), halves) in TORN.iter().zip(found) {
         let case = |what: &str| format!("{what} {dim}D, n = {n}, kept after {DURATION} s");
@@ -55,18 +54,23 @@ struct Halves {
     both: f64,
 }
 
-/// Cuts a spinning body in two. The halves then fly apart, each spinning like the whole.
-fn halves<D: Dim>(n: usize) -> Result<Halves> {
+/// Returns the blade that cuts a disc in two.
+fn middle_line() -> Blade<Dim2> {
+    Blade::segment(Vec2::new(0.0, -1.5), Vec2::new(0.0, 1.5))
+}
+
+/// Returns the blade that cuts a ball in two.
+fn middle_plane() -> Blade<Dim3> {
+    Blade::parallelogram(Vec3::new(0.0, -1.5, -1.5), 3.0 * Vec3::Y, 3.0 * Vec3::Z)
+}
+
+/// Cuts a spinning body in two along a blade. The halves then fly apart, each spinning like the whole.
+fn halves<D: Dim>(n: usize, blade: &Blade<D>) -> Result<Halves> {
     let (mut world, id) = spinning::<D>(n, material())?;
     let whole = world[id].momentum().angular;
-    let blade = Blade {
-        from: [0.0, -1.5, -1.5],
-        across: [0.0, 3.0, 0.0],
-        along: [0.0, 0.0, 3.0],
-    };
-    let cut = world.cut(id, &blade).unwrap();
+    let cut = world.cut(id, blade)?;
     let step = |world: &mut World<D>, duration: f32| {
-        for _ in 0..(duration / TICK).round() as usize {
+        for _ in 0..(duration / DEFAULT_TICK).round() as usize {
             world.step();
         }
     };
@@ -92,31 +96,30 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
 }
 
 /// Returns the momentum of a piece, and its angular momentum about its centre of mass.
-fn motion<D: Dim>(body: &SoftBody<D>, piece: PieceId) -> ([f64; 3], [f64; 3]) {
+fn motion<D: Dim>(body: &SoftBody<D>, piece: PieceId) -> (DVec3, DVec3) {
     let nodes = body.mesh().nodes().map(|(id, _)| id);
     let nodes = nodes.filter(|&id| body.pieces().of_node(id) == piece);
-    let states: Vec<_> = nodes.map(|id| body.node_state(id)).collect();
-    let (mut mass, mut centre, mut linear) = (0.0, [0.0; 3], [0.0; 3]);
+    let states = nodes.map(|id| body.node_state(id));
+    let states: Vec<(Vec3, Vec3, f32)> = states
+        .map(|(at, velocity, mass)| (at.to_vec3(), velocity.to_vec3(), mass))
+        .collect();
+    let (mut mass, mut centre, mut linear) = (0.0, DVec3::ZERO, DVec3::ZERO);
     for &(at, velocity, node) in &states {
         mass += f64::from(node);
-        for axis in 0..3 {
-            centre[axis] += f64::from(node * at[axis]);
-            linear[axis] += f64::from(node * velocity[axis]);
-        }
+        centre += (node * at).as_dvec3();
+        linear += (node * velocity).as_dvec3();
     }
-    let mut angular = [0.0; 3];
+    let mut angular = DVec3::ZERO;
     for &(at, velocity, node) in &states {
-        let reach = [0, 1, 2].map(|axis| f64::from(at[axis]) - centre[axis] / mass);
-        let push = velocity.map(|k| f64::from(node * k));
-        angular = plus(angular, cross(reach, push));
+        let reach = at.as_dvec3() - centre / mass;
+        angular += reach.cross((node * velocity).as_dvec3());
     }
     (linear, angular)
 }
 
 /// Returns the component of `after` along `before`, relative to the length of `before`.
-fn along_first(before: [f64; 3], after: [f64; 3]) -> f64 {
-    let along: f64 = (0..3).map(|axis| before[axis] * after[axis]).sum();
-    along / (length(before) * length(before))
+fn along_first(before: DVec3, after: DVec3) -> f64 {
+    before.dot(after) / (before.length() * before.length())
 }
 
 fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
@@ -126,7 +129,7 @@ fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
     };
     let (mut world, id) = spinning::<D>(n, material)?;
     let before = world[id].momentum().angular;
-    for _ in 0..(DURATION / TICK).round() as usize {
+    for _ in 0..(DURATION / DEFAULT_TICK).round() as usize {
         world.step();
     }
     let after = world[id].momentum().angular;
@@ -137,21 +140,13 @@ fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
 fn spinning<D: Dim>(n: usize, material: Material) -> Result<(World<D>, SoftBodyHandle)> {
     let mut body = ball::<D>(n, material, Grading::Graded)?;
     // 5 rad/s about (0, 4, 3) / 5; in 2D about z.
-    let spin = if D::N == 3 {
-        [0.0, 4.0, 3.0]
-    } else {
-        [0.0, 0.0, 5.0]
+    let spin = match D::N {
+        2 => Vec3::new(0.0, 0.0, 5.0),
+        _ => Vec3::new(0.0, 4.0, 3.0),
     };
-    arrange(&mut body, |[x, y, z]| {
-        let velocity = [
-            spin[1] * z - spin[2] * y,
-            spin[2] * x - spin[0] * z,
-            spin[0] * y - spin[1] * x,
-        ];
-        ([x, y, z], velocity)
-    });
+    arrange(&mut body, |rest| (rest, spin.cross(rest)))?;
     let mut world = World::<D>::new(WorldConfig {
-        gravity: [0.0; 3],
+        gravity: D::Vector::ZERO,
         drag: 0.0,
         max_substeps: 1024,
         ..WorldConfig::default()
@@ -172,7 +167,7 @@ mod tests {
 
     #[test]
     fn halves_of_a_small_disc_keep_their_angular_momentum() {
-        let halves = halves::<Dim2>(8).unwrap();
+        let halves = halves(8, &middle_line()).unwrap();
         for kept in [halves.spin, halves.momentum, halves.both] {
             assert!((kept - 1.0).abs() < 1.0 - KEPT, "{kept}");
         }

@@ -4,10 +4,10 @@ use super::motion::material;
 use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
-use fuwafuwa::Vector;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim, Dim2, Dim3, Material, RigidBody, Shape, SoftBody, VoxelGrid, World, WorldConfig,
+    Dim, Dim2, Dim3, DimVector, Material, RigidBody, Shape, SoftBody, Vec3, VoxelGrid, World,
+    WorldConfig,
 };
 
 /// Number of bodies in a stack, voxels across each, and width of a body [m].
@@ -49,9 +49,8 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
 
 fn stand<D: Dim>(bodies: usize, duration: f32) -> Result<Stack> {
     let mut world = World::<D>::new(WorldConfig::default())?;
-    world.add_rigid_body(
-        RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3])).with_friction(0.5),
-    )?;
+    let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
+    world.add_rigid_body(RigidBody::fixed(floor).with_friction(0.5))?;
     let material = Material {
         elasticity: Elasticity {
             young: YOUNG,
@@ -62,14 +61,13 @@ fn stand<D: Dim>(bodies: usize, duration: f32) -> Result<Stack> {
     };
     for place in 0..bodies {
         let body = SoftBody::new(VoxelGrid::cube(VOXELS, WIDTH)?, &[material])?;
-        world.add_soft_body(body.translated([0.0, WIDTH * place as f32, 0.0]));
+        world.add_soft_body(body.translated(D::Vector::Y * (WIDTH * place as f32)));
     }
-    let centres = |world: &World<D>| -> Vec<Vector> {
-        let views = world
-            .soft_bodies()
-            .map(|(_, body)| body)
-            .map(|body| body.piece_views());
-        views.map(|pieces| pieces[0].centre).collect()
+    let centres = |world: &World<D>| -> Vec<Vec3> {
+        let bodies = world.soft_bodies();
+        bodies
+            .map(|(_, body)| body.piece_views()[0].centre)
+            .collect()
     };
     let put = centres(&world);
     let mut settled = put.clone();
@@ -82,7 +80,7 @@ fn stand<D: Dim>(bodies: usize, duration: f32) -> Result<Stack> {
             settled.clone_from(&now);
         }
         for place in 0..bodies {
-            let gone = |from: &[Vector], axis: usize| (now[place][axis] - from[place][axis]).abs();
+            let gone = |from: &[Vec3], axis: usize| (now[place][axis] - from[place][axis]).abs();
             let sideways = (0..D::N).filter(|&axis| axis != 1);
             leaning = sideways.fold(leaning, |most, axis| most.max(gone(&put, axis)));
             if tick > (60.0 * SETTLED) as usize {

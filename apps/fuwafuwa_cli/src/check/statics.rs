@@ -5,12 +5,8 @@
 
 use crate::report::Progress;
 use anyhow::{Result, ensure};
-use fuwafuwa::Dim;
-use fuwafuwa::Law;
-use fuwafuwa::inspect::ElementClass;
-use fuwafuwa::inspect::Mesh;
-use fuwafuwa::inspect::Node;
-use fuwafuwa::inspect::{Elasticity, forces};
+use fuwafuwa::inspect::{Elasticity, ElementClass, Mesh, Node, forces};
+use fuwafuwa::{Dim, Law};
 use std::collections::BTreeMap;
 
 /// Relative residual at which the solver stops.
@@ -55,10 +51,10 @@ impl Statics {
         let mut elements = Vec::new();
         let mut diagonal = vec![0.0; held.len()];
         for (_, element) in mesh.elements() {
-            let class = element.stencil;
+            let class = element.element_class;
             let matrix = classes
                 .entry(class)
-                .or_insert_with(|| stiffness(mesh.stencil(element), elasticity));
+                .or_insert_with(|| stiffness(mesh.element_class(element), elasticity));
             let places: Vec<u32> = element
                 .nodes
                 .iter()

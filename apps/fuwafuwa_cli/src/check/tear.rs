@@ -3,7 +3,10 @@
 use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
-use fuwafuwa::{Blade, Dim, Dim2, Dim3, Material, SoftBody, VoxelGrid, World, WorldConfig};
+use fuwafuwa::{
+    Blade, Dim, Dim2, Dim3, DimVector, Material, SoftBody, Vec2, Vec3, VoxelGrid, World,
+    WorldConfig,
+};
 
 /// Number of dimensions, voxels across, and whether it has a notch, for each bar.
 const BARS: [(usize, usize, bool); 10] = [
@@ -27,12 +30,14 @@ const SPEEDS: [f32; 2] = [0.03, 0.01];
 /// in equilibrium at this strain. Around a notch the strain concentrates only after the start, and
 /// overshoots. A notched bar therefore starts below half of its breaking load.
 const STARTS: [f32; 2] = [0.85, 0.08];
+/// Position of the notch along the bar [m], slightly beside a boundary between voxels.
+const NOTCH: f32 = 1.001;
 
 /// Compares loads of unnotched bars with strength × area, and loads of notched bars with each other.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let loads = parallel::each(&BARS, progress, |&(dim, n, notched)| match dim {
-        2 => load::<Dim2>(n, notched),
-        _ => load::<Dim3>(n, notched),
+        2 => load(n, notched.then(notch_line).as_ref()),
+        _ => load(n, notched.then(notch_plane).as_ref()),
     })?;
     let mut outcomes = Vec::new();
     for (&(dim, n, notched), &load) in BARS.iter().zip(&loads) {
@@ -58,36 +63,44 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(outcomes)
 }
 
-/// Pulls at both ends of a bar 1 m wide until it breaks, and returns the maximum load [N].
-fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
-    let length = if notched { 2 } else { 3 };
+/// Returns the blade that notches a 2D bar up to half its width.
+fn notch_line() -> Blade<Dim2> {
+    Blade::segment(Vec2::new(NOTCH, -0.1), Vec2::new(NOTCH, 0.5))
+}
+
+/// Returns the blade that notches a 3D bar up to half its width.
+fn notch_plane() -> Blade<Dim3> {
+    Blade::parallelogram(Vec3::new(NOTCH, -0.1, -0.1), 0.6 * Vec3::Y, 1.2 * Vec3::Z)
+}
+
+/// Pulls at both ends of a bar 1 m wide until it breaks, and returns the maximum load [N]. The blade `notch`
+/// cuts the bar first.
+fn load<D: Dim>(n: usize, notch: Option<&Blade<D>>) -> Result<f64> {
+    let length = if notch.is_some() { 2 } else { 3 };
     let size = [length * n, n, D::depth(n)];
     let grid = VoxelGrid::<D>::from_fn(size, 1.0 / n as f32, |_| 1)?;
     let mut material = Material {
         damping: 0.3,
         ..Material::default()
     };
-    if !notched {
+    if notch.is_none() {
         // Fixed ends cannot contract sideways. Poisson's ratio 0 keeps the strain uniform all the same.
         material.elasticity.poisson = 0.0;
     }
     let mut body = SoftBody::new(grid, &[material])?;
-    if notched {
-        let blade = Blade {
-            from: [0.5 * length as f32 + 0.001, -0.1, -0.1],
-            across: [0.0, 0.6, 0.0],
-            along: [0.0, 0.0, 1.2],
-        };
-        body.cut(&blade);
+    if let Some(notch) = notch {
+        body.cut(notch);
     }
     let last = (length * n) as i32;
     let nodes: Vec<_> = body.mesh().nodes().collect();
-    let (start, speed) = (STARTS[usize::from(notched)], SPEEDS[usize::from(notched)]);
+    let kind = usize::from(notch.is_some());
+    let (start, speed) = (STARTS[kind], SPEEDS[kind]);
     let strain = start * material.strength / material.elasticity.young as f32;
     for &(id, node) in &nodes {
-        let ([x, y, z], _, _) = body.node_state(id);
+        let (mut at, _, _) = body.node_state(id);
+        at[0] *= 1.0 + strain;
         let share = node.at[0] as f32 / last as f32;
-        body.set_node_state(id, [x * (1.0 + strain), y, z], [speed * share, 0.0, 0.0]);
+        body.set_node_state(id, at, D::Vector::X * (speed * share))?;
         if node.at[0] == 0 || node.at[0] == last {
             body.fix_node(id);
         }
@@ -98,21 +111,17 @@ fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
         .map(|&(id, _)| id)
         .collect();
     let mut world = World::<D>::new(WorldConfig {
-        gravity: [0.0; 3],
+        gravity: D::Vector::ZERO,
         drag: 0.0,
         max_substeps: 256,
         ..WorldConfig::default()
     })?;
-    world.add_soft_body(body);
+    let bar = world.add_soft_body(body);
     let mut peak = 0.0f64;
     for _ in 0..6000 {
         world.step();
-        let body = world
-            .soft_bodies()
-            .next()
-            .map(|(_, item)| item)
-            .expect("the world has a body");
-        let load: f64 = held.iter().map(|&id| f64::from(body.force_on(id)[0])).sum();
+        let forces = held.iter().map(|&id| world[bar].force_on(id));
+        let load: f64 = forces.map(|force| f64::from(force[0])).sum();
         peak = peak.max(load);
         if peak > 10.0 && load < 0.3 * peak {
             return Ok(peak);

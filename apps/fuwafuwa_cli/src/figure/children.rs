@@ -1,10 +1,9 @@
 //! Figures 4 and 5: conditions for generating a child element, and the resulting changes.
 
-use super::square::{MIDDLE, Release, draw, draw_nodes, mark, points, views};
+use super::square::{MIDDLE, Release, draw, draw_nodes, mark, points, position_of, views};
 use anyhow::Result;
 use fuwafuwa::Point;
-use fuwafuwa::inspect::Cell;
-use fuwafuwa::inspect::add;
+use fuwafuwa::inspect::{Cell, add};
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, PaperTransform, Role, Sample};
 
@@ -24,7 +23,7 @@ pub fn conditions() -> Result<Painter> {
     for at in [child, add(child, [1, 0, 0]), add(child, [1, 1, 0])] {
         let front = voxel.after.connectivity().is_open(at);
         let role = if front { Role::Removed } else { Role::Added };
-        painter.bright_dot(frame.spot(at.map(|k| k as f32)), 6.5, role);
+        painter.bright_dot(frame.spot(position_of(at)), 6.5, role);
     }
     released(&mut painter, frame, voxel.height);
 
@@ -110,7 +109,7 @@ pub fn children() -> Result<Painter> {
         draw_nodes(&mut painter, frame, &release.before);
         released(&mut painter, frame, height);
 
-        let (frame, after) = (frame_of(1, row), release.opened());
+        let (frame, after) = (frame_of(1, row), release.opened()?);
         let detail = "new children in blue, rebuilt parents in black";
         title(&mut painter, frame, &format!("{name}  after"), detail);
         draw(&mut painter, frame, &after);
@@ -127,7 +126,7 @@ pub fn children() -> Result<Painter> {
             }
         }
         for at in old.difference(&new) {
-            painter.cross(frame.spot(at.map(|k| k as f32)), 5.0, Role::Removed);
+            painter.cross(frame.spot(position_of(*at)), 5.0, Role::Removed);
         }
     }
     let entries = [
@@ -159,13 +158,13 @@ fn title(painter: &mut Painter, frame: PaperTransform, text: &str, detail: &str)
 }
 
 fn released(painter: &mut Painter, frame: PaperTransform, height: i32) {
-    let at = [MIDDLE as f32, height as f32, 0.0];
+    let at = position_of([MIDDLE, height, 0]);
     painter.cross(frame.spot(at), 6.5, Role::Removed);
 }
 
 /// Draws a child that does not exist yet.
 fn square(painter: &mut Painter, frame: PaperTransform, low: Point, width: i32) {
     let corners = [[0, 0, 0], [width, 0, 0], [width, width, 0], [0, width, 0]];
-    let spots = corners.map(|by| frame.spot(add(low, by).map(|k| k as f32)));
+    let spots = corners.map(|by| frame.spot(position_of(add(low, by))));
     painter.polygon(spots.to_vec(), Role::TornSurface, Role::Added, 4.0);
 }

@@ -2,12 +2,8 @@
 
 use super::legend::level_entries;
 use anyhow::Result;
-use fuwafuwa::Grading;
-use fuwafuwa::inspect::CellHierarchy;
-use fuwafuwa::inspect::Mesh;
-use fuwafuwa::inspect::slot_at;
-use fuwafuwa::inspect::{add, corner, points_in, scale};
-use fuwafuwa::{Dim, Dim2, Dim3, Material, NodeId, Point, SoftBody, VoxelGrid};
+use fuwafuwa::inspect::{CellHierarchy, Mesh, add, corner, points_in, scale, slot_at};
+use fuwafuwa::{Dim, Dim2, Dim3, Grading, Material, NodeId, Point, SoftBody, Vec3, VoxelGrid};
 use fuwafuwa_painter::solid::{Camera, Scene3d};
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, PaperTransform, Role, Sample};
@@ -99,17 +95,14 @@ pub fn opened_ball() -> Result<Painter> {
     let (width, height) = (900, 880);
     let body = SoftBody::<Dim3>::new(VoxelGrid::ball(BALL, 1.0)?, &[Material::default()])?;
     let mut solid = Scene3d::new(Camera {
-        eye: [2.6, 2.05, 2.9],
-        target: [0.5, 0.43, 0.5],
+        eye: Vec3::new(2.6, 2.05, 2.9),
+        target: Vec3::new(0.5, 0.43, 0.5),
         across: 1.36,
     });
     solid.floor(0.5 / BALL as f32);
     worlds::space_elements(&mut solid, &body, |view| {
-        let middle = [0, 1, 2].map(|axis: usize| {
-            let slots = view.slots.iter().map(|slot| slot[axis]);
-            slots.sum::<f32>() / view.slots.len() as f32
-        });
-        middle[2] <= 0.5 || middle[0] <= 0.5 && middle[1] <= 0.5
+        let middle = view.slots.iter().sum::<Vec3>() / view.slots.len() as f32;
+        middle.z <= 0.5 || middle.x <= 0.5 && middle.y <= 0.5
     });
     let mut painter = Painter::new(width, height);
     painter.image([0.0; 2], solid.pixels(width, height)?);
@@ -144,7 +137,7 @@ fn draw_level(
     pyramid: &CellHierarchy<Dim2>,
     level: u8,
 ) {
-    let spot = |at: Point| frame.spot(at.map(|k| k as f32 / ACROSS as f32));
+    let spot = |at: Point| frame.spot(Vec3::from(at.map(|k| k as f32)) / ACROSS as f32);
     let square = |at: Point, width: i32| {
         [0, 1, 3, 2].map(|index| spot(scale(add(at, corner(index)), width)))
     };
@@ -176,7 +169,7 @@ fn draw_level(
 fn hanging_nodes(mesh: &Mesh<Dim2>) -> BTreeSet<NodeId> {
     let mut hanging = BTreeSet::new();
     for (_, element) in mesh.elements() {
-        let slots = &mesh.stencil(element).slots;
+        let slots = &mesh.element_class(element).slots;
         for (&node, &slot) in element.nodes.iter().zip(slots) {
             let at = slot_at(usize::from(slot));
             let touching = (0..Dim2::CORNERS)

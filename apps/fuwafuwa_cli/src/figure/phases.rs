@@ -1,12 +1,9 @@
 //! Figure 3: the phases of remodelling after a release, one panel each.
 
-use super::square::{ACROSS, MIDDLE, Release, draw, draw_nodes, mark, points, views};
+use super::square::{ACROSS, MIDDLE, Release, draw, draw_nodes, mark, points, position_of, views};
 use anyhow::Result;
-use fuwafuwa::ElementView;
-use fuwafuwa::inspect::Element;
-use fuwafuwa::inspect::{add, scale};
-use fuwafuwa::inspect::{closure, slot_at};
-use fuwafuwa::{Dim, Dim2, Point};
+use fuwafuwa::inspect::{Element, add, closure, scale, slot_at};
+use fuwafuwa::{Dim, Dim2, ElementView, Point, Vec3};
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, PaperTransform, Role, Sample};
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,7 +15,7 @@ pub fn phases() -> Result<Painter> {
     let (parents, children) = (release.parents(), release.children());
     let nodes_before: BTreeSet<Point> = points(&release.before);
     let nodes_after: BTreeSet<Point> = points(&release.after);
-    let made: BTreeMap<Point, [f32; 3]> = views(&release.before, &parents)
+    let made: BTreeMap<Point, Vec3> = views(&release.before, &parents)
         .into_iter()
         .flat_map(|(element, view)| slots_of(element, &view))
         .filter(|(at, _)| !nodes_before.contains(at))
@@ -32,7 +29,7 @@ pub fn phases() -> Result<Painter> {
             unit: PANEL / ACROSS as f32,
         }
     };
-    let opened = release.opened();
+    let opened = release.opened()?;
     let titles = [
         [
             "a shared node is released",
@@ -86,7 +83,7 @@ pub fn phases() -> Result<Painter> {
         let body = if k < 4 { &release.before } else { &opened };
         draw_nodes(&mut painter, frame(k), body);
     }
-    let tip = [MIDDLE as f32, release.height as f32, 0.0];
+    let tip = position_of([MIDDLE, release.height, 0]);
     painter.bright_dot(frame(0).spot(tip), 6.0, Role::Removed);
     for k in 1..4 {
         for (at, &place) in &made {
@@ -123,7 +120,7 @@ pub fn phases() -> Result<Painter> {
 
 /// Returns the lattice points and positions of the slots that the children of an element touch, with or
 /// without a node.
-fn slots_of(element: &Element, view: &ElementView) -> Vec<(Point, [f32; 3])> {
+fn slots_of(element: &Element, view: &ElementView) -> Vec<(Point, Vec3)> {
     let (low, half) = (element.cell.first_voxel(), element.cell.width() / 2);
     let place = |slot: usize| (add(low, scale(slot_at(slot), half)), view.slots[slot]);
     let filled = closure::<Dim2>(view.children);

@@ -3,11 +3,10 @@
 use super::legend::level_entries;
 use crate::report::Progress;
 use anyhow::Result;
-use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Blade, Dim2, Dim3, Material, MotionType, RigidBody, Shape, SoftBody, VoxelGrid, World,
-    WorldConfig,
+    Blade, DEFAULT_TICK, Dim2, Dim3, Material, RigidBody, Shape, SoftBody, Vec2, Vec3, VoxelGrid,
+    World, WorldConfig,
 };
 use fuwafuwa_painter::solid::{Camera, Scene3d};
 use fuwafuwa_painter::worlds::{self, DrawPlane, DrawSpace};
@@ -31,19 +30,14 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
         ..Material::default()
     };
     let mut world = World::<Dim2>::new(WorldConfig::default())?;
-    world.add_rigid_body(
-        RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3])).with_friction(0.6),
-    )?;
+    let floor = Shape::half_space(Vec2::Y, Vec2::ZERO);
+    world.add_rigid_body(RigidBody::fixed(floor).with_friction(0.6))?;
     for (x, lean) in [(-0.13, 1.0), (1.13, -1.0)] {
-        let wall = Shape::Box {
-            centre: [x - 0.05 * lean, 0.2, 0.0],
-            half: [0.08, 0.2, 1.0],
-        };
+        let wall = Shape::cuboid(Vec2::new(0.08, 0.2)).translated(Vec2::new(x - 0.05 * lean, 0.2));
         world.add_rigid_body(RigidBody::fixed(wall).with_friction(0.4))?;
     }
     world.add_soft_body(SoftBody::new(VoxelGrid::ball(40, 1.0)?, &[material])?);
-    let mut hand = RigidBody::coupled(Shape::ball(0.055)).at([0.46, 1.2, 0.0]);
-    hand.motion_type = MotionType::Kinematic;
+    let hand = RigidBody::kinematic(Shape::ball(0.055)).at(Vec2::new(0.46, 1.2));
     let hand = world.add_rigid_body(hand)?;
 
     let progress = Progress::new();
@@ -55,7 +49,7 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
             skins.push(plane_frame(&world, tick, worlds::plane_skin)?);
         }
         let way = (tick as f32 / (TICKS as f32 * 0.8)).min(1.0);
-        world.set_target_position(hand, [0.46 + 0.05 * way, 1.2 - 1.1 * way, 0.0])?;
+        world.set_target_position(hand, Vec2::new(0.46 + 0.05 * way, 1.2 - 1.1 * way))?;
         world.step();
         progress.step();
     }
@@ -82,12 +76,11 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
         ..Material::default()
     };
     let mut world = World::<Dim3>::new(WorldConfig::default())?;
-    world.add_rigid_body(
-        RigidBody::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3])).with_friction(1.0),
-    )?;
+    let floor = Shape::half_space(Vec3::Y, Vec3::ZERO);
+    world.add_rigid_body(RigidBody::fixed(floor).with_friction(1.0))?;
     let low = -1.0 / ACROSS as f32;
     let body = SoftBody::new(VoxelGrid::ball(ACROSS, 1.0)?, &[material])?;
-    world.add_soft_body(body.translated([0.0, low, 0.0]));
+    let ball = world.add_soft_body(body.translated(Vec3::new(0.0, low, 0.0)));
     let progress = Progress::new();
     progress.expect(TICKS as u64);
     let (mut skins, mut sections) = (Vec::new(), Vec::new());
@@ -95,12 +88,10 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
         if tick % PACE == 0 {
             let way = tick as f32 / TICKS as f32;
             let depth = 1.2 * ((way - 0.1) / 0.6).clamp(0.0, 1.0);
-            let blade = Blade {
-                from: [0.51, 1.0, -0.5],
-                across: [0.0, -depth, 0.0],
-                along: [0.0, 0.0, 2.0],
-            };
-            world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap();
+            let corner = Vec3::new(0.51, 1.0, -0.5);
+            let downwards = Vec3::new(0.0, -depth, 0.0);
+            let blade = Blade::parallelogram(corner, downwards, 2.0 * Vec3::Z);
+            world.cut(ball, &blade)?;
             skins.push(space_frame(&world, tick, worlds::space_skin)?);
             sections.push(space_frame(&world, tick, draw_section)?);
         }
@@ -145,8 +136,8 @@ fn plane_frame(world: &World<Dim2>, tick: usize, draw: DrawPlane) -> Result<Pixm
 
 fn space_frame(world: &World<Dim3>, tick: usize, draw: DrawSpace) -> Result<Pixmap> {
     let mut solid = Scene3d::new(Camera {
-        eye: [1.5, 2.0, 3.7],
-        target: [0.5, 0.42, 0.5],
+        eye: Vec3::new(1.5, 2.0, 3.7),
+        target: Vec3::new(0.5, 0.42, 0.5),
         across: 2.3,
     });
     worlds::space(&mut solid, world, draw);
@@ -157,7 +148,7 @@ fn space_frame(world: &World<Dim3>, tick: usize, draw: DrawSpace) -> Result<Pixm
 }
 
 fn write_time(painter: &mut Painter, tick: usize) {
-    let seconds = format!("{:.1} s", tick as f32 * TICK);
+    let seconds = format!("{:.1} s", tick as f32 * DEFAULT_TICK);
     painter.text([16.0, 16.0], 14.0, Role::Ink, &seconds);
 }
 

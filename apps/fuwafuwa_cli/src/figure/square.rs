@@ -8,10 +8,8 @@
 //! ```
 
 use anyhow::Result;
-use fuwafuwa::ElementView;
-use fuwafuwa::inspect::Cell;
-use fuwafuwa::inspect::Element;
-use fuwafuwa::{Dim, Dim2, Material, Point, SoftBody, VoxelGrid};
+use fuwafuwa::inspect::{Cell, Element};
+use fuwafuwa::{Dim, Dim2, ElementView, Material, Point, SoftBody, Vec2, VoxelGrid};
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, PaperTransform, Role};
 use std::collections::{BTreeMap, BTreeSet};
@@ -49,8 +47,8 @@ impl Release {
         }
         let mut after = before.clone();
         after.release(&[([MIDDLE, height, 0], RIGHT)]);
-        open_crack(&mut before, height);
-        open_crack(&mut after, height);
+        open_crack(&mut before, height)?;
+        open_crack(&mut after, height)?;
         Ok(Self {
             before,
             after,
@@ -59,10 +57,10 @@ impl Release {
     }
 
     /// Returns the body after the release, with the crack opened up to its new tip.
-    pub fn opened(&self) -> SoftBody<Dim2> {
+    pub fn opened(&self) -> Result<SoftBody<Dim2>> {
         let mut body = self.after.clone();
-        open_crack(&mut body, self.height + 1);
-        body
+        open_crack(&mut body, self.height + 1)?;
+        Ok(body)
     }
 
     /// Returns the cells whose element changes or disappears in the release.
@@ -136,8 +134,13 @@ pub fn points(body: &SoftBody<Dim2>) -> BTreeSet<Point> {
     body.mesh().nodes().map(|(_, node)| node.at).collect()
 }
 
+/// Returns the position of a lattice point at rest, in voxels.
+pub fn position_of(at: Point) -> Vec2 {
+    Vec2::new(at[0] as f32, at[1] as f32)
+}
+
 /// Opens the crack below a height like a wedge, so that it becomes visible.
-fn open_crack(body: &mut SoftBody<Dim2>, height: i32) {
+fn open_crack(body: &mut SoftBody<Dim2>, height: i32) -> Result<()> {
     let nodes: Vec<_> = body.mesh().nodes().collect();
     for (id, node) in nodes {
         let is_right = (0..Dim2::CORNERS)
@@ -149,7 +152,8 @@ fn open_crack(body: &mut SoftBody<Dim2>, height: i32) {
         };
         let away = (node.at[0] - MIDDLE).abs() as f32 / MIDDLE as f32;
         let open = GAPE * (height - node.at[1]).max(0) as f32 * (1.0 - away).max(0.0);
-        let rest = node.at.map(|k| k as f32);
-        body.set_node_state(id, [rest[0] + side * open, rest[1], 0.0], [0.0; 3]);
+        let position = position_of(node.at) + Vec2::new(side * open, 0.0);
+        body.set_node_state(id, position, Vec2::ZERO)?;
     }
+    Ok(())
 }
