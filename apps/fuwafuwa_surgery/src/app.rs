@@ -22,6 +22,7 @@ use egui::{
     vec2,
 };
 use force_feedback::Stop;
+use fuwafuwa::Vec3;
 use fuwafuwa_render::Palette;
 use fuwafuwa_scan::{Options, Segmentation};
 use hand::HandInput;
@@ -142,8 +143,7 @@ impl App {
 
     fn begin(&mut self, session: Session) {
         let [low, high] = session.seen;
-        let middle = [0, 1, 2].map(|axis: usize| 0.5 * (low[axis] + high[axis]));
-        self.slices = Some(Slices::new(middle));
+        self.slices = Some(Slices::new(0.5 * (low + high)));
         self.session = Some(session);
     }
 
@@ -301,7 +301,7 @@ impl App {
         if pressed(Key::X)
             && let Some(session) = &mut self.session
         {
-            session.hand.turned = [0.0; 3];
+            session.hand.turned = Vec3::ZERO;
         }
         if pressed(Key::F12) {
             self.cut_forces();
@@ -449,7 +449,7 @@ fn hear_mouse(ctx: &egui::Context, view: &View, session: &mut Session, wishes: &
     if turns {
         session.camera.orbit(-DRAG * delta.x, DRAG * delta.y);
     } else if delta != Vec2::ZERO {
-        wishes.place = Some(view.to_world(at, session.hand.goal[1]));
+        wishes.place = Some(view.to_world(at, session.hand.goal.y));
     }
     if twice {
         session.camera.return_to_front();
@@ -468,12 +468,11 @@ fn hear_keys(ctx: &egui::Context, wishes: &mut HandInput) -> Vec2 {
             along(&[Key::ArrowUp, Key::W], &[Key::ArrowDown, Key::S]),
         );
         wishes.lift += along(&[Key::Q, Key::PageUp], &[Key::Z, Key::PageDown]);
-        let turn = [
+        wishes.turn += Vec3::new(
             along(&[Key::J], &[Key::L]),
             along(&[Key::I], &[Key::K]),
             along(&[Key::U], &[Key::O]),
-        ];
-        wishes.turn = [0, 1, 2].map(|axis: usize| wishes.turn[axis] + turn[axis]);
+        );
         wishes.grips |= input.key_down(Key::Space);
         vec2(along(&[Key::CloseBracket], &[Key::OpenBracket]), 0.0)
     })

@@ -1,10 +1,9 @@
 //! The organ to be operated on: its voxels, their materials, and their position in the patient.
 
-use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim3, Material, NodeId, RigidBody, Shape, SoftBody, SoftBodyHandle, VoxelGrid, World,
-    WorldConfig,
+    DEFAULT_TICK, Dim3, Material, NodeId, RigidBody, Shape, SoftBody, SoftBodyHandle, Vec3,
+    VoxelGrid, World, WorldConfig,
 };
 use fuwafuwa_scan::Organ;
 
@@ -61,9 +60,9 @@ pub struct Table {
     /// Handle of the organ.
     pub organ: SoftBodyHandle,
     /// Region in which tools can move: low and high corner [m].
-    pub room: [[f32; 3]; 2],
+    pub room: [Vec3; 2],
     /// Initial position of the low corner of the organ's grid [m].
-    pub corner: [f32; 3],
+    pub corner: Vec3,
     /// Mass scaling factor of the tissue, at least 1. Heavier tissue is stable with fewer substeps. Stiffness
     /// and weight are unchanged; only motion is slower.
     pub inertia: f32,
@@ -129,38 +128,38 @@ impl Case {
     pub fn place_on_table(&self) -> Result<Table, CaseError> {
         self.check()?;
         let voxel = self.grid.voxel_size();
-        let size = self.grid.size().map(|extent| extent as f32 * voxel);
-        let longest = size.into_iter().fold(0.0, f32::max);
+        let size = Vec3::from(self.grid.size().map(|extent| extent as f32 * voxel));
+        let longest = size.max_element();
         let substeps = SUBSTEPS[usize::from(longest / voxel > FINE as f32 + 0.5)];
         let (body, inertia) = self.body(substeps)?;
-        let corner = [-0.5 * size[0], 0.0, -0.5 * size[2]];
         let [low, _] = bounds(&body);
         // Puts the lowest point of the organ at the height of the table.
-        let mut body = body.translated([corner[0], -low[1], corner[2]]);
+        let corner = Vec3::new(-0.5 * size.x, -low.y, -0.5 * size.z);
+        let mut body = body.translated(corner);
         hold_below(&mut body);
         let mut world = World::new(WorldConfig {
-            gravity: [0.0, -9.81 * AFLOAT / inertia, 0.0],
+            gravity: Vec3::new(0.0, -9.81 * AFLOAT / inertia, 0.0),
             drag: DRAG,
             max_substeps: substeps,
             ..WorldConfig::default()
         })?;
-        let top = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        let top = Shape::half_space(Vec3::Y, Vec3::ZERO);
         world.add_rigid_body(RigidBody::fixed(top).with_friction(0.6))?;
         let organ = world.add_soft_body(body);
         let (around, above) = (0.35 * longest, 0.6 * longest);
         let room = [
-            [corner[0] - around, 0.0, corner[2] - around],
-            [
-                -corner[0] + around,
-                size[1] - low[1] + above,
-                -corner[2] + around,
-            ],
+            Vec3::new(corner.x - around, 0.0, corner.z - around),
+            Vec3::new(
+                -corner.x + around,
+                size.y - low.y + above,
+                -corner.z + around,
+            ),
         ];
         Ok(Table {
             world,
             organ,
             room,
-            corner: [corner[0], -low[1], corner[2]],
+            corner,
             inertia,
         })
     }
@@ -168,7 +167,7 @@ impl Case {
     /// Returns the organ as a body that is stable with the given number of substeps, and its mass scaling
     /// factor.
     fn body(&self, substeps: u32) -> Result<(SoftBody<Dim3>, f32), CaseError> {
-        let wanted = f64::from(TICK) / f64::from(substeps);
+        let wanted = f64::from(DEFAULT_TICK) / f64::from(substeps);
         let ratio = wanted / self.longest_substep()?;
         // With k times the mass, waves are √k times as slow, so k is the square of the ratio. The factor
         // 1.001 allows for rounding.
@@ -205,9 +204,9 @@ impl Case {
     }
 
     /// Converts a point in the grid, relative to its low corner [m], to the patient's RAS+ coordinates [mm].
-    pub fn patient_at(&self, place: [f32; 3]) -> [f64; 3] {
+    pub fn patient_at(&self, place: Vec3) -> [f64; 3] {
         let [right, front, up] = self.corner;
-        let [x, y, z] = place.map(|k| 1000.0 * f64::from(k));
+        let [x, y, z] = (1000.0 * place.as_dvec3()).to_array();
         [right + x, front - z, up + y]
     }
 }
@@ -242,24 +241,19 @@ pub fn tissues(count: usize) -> Vec<Material> {
 }
 
 /// Returns the low and high corner of the bounding box of a body's nodes [m].
-pub(crate) fn bounds(body: &SoftBody<Dim3>) -> [[f32; 3]; 2] {
-    let mut bounds = [[f32::MAX; 3], [f32::MIN; 3]];
-    for (id, _) in body.mesh().nodes() {
-        let (at, ..) = body.node_state(id);
-        for axis in 0..3 {
-            bounds[0][axis] = bounds[0][axis].min(at[axis]);
-            bounds[1][axis] = bounds[1][axis].max(at[axis]);
-        }
-    }
-    bounds
+pub(crate) fn bounds(body: &SoftBody<Dim3>) -> [Vec3; 2] {
+    let positions = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);
+    positions.fold([Vec3::MAX, Vec3::MIN], |[low, high], at| {
+        [low.min(at), high.max(at)]
+    })
 }
 
 /// Fixes the nodes that lie in the mould.
 fn hold_below(body: &mut SoftBody<Dim3>) {
     let [low, high] = bounds(body);
-    let top = low[1] + HELD * (high[1] - low[1]);
+    let top = low.y + HELD * (high.y - low.y);
     let nodes = body.mesh().nodes().map(|(id, _)| id);
-    let below = nodes.filter(|&id| body.node_state(id).0[1] <= top);
+    let below = nodes.filter(|&id| body.node_state(id).0.y <= top);
     let below: Vec<NodeId> = below.collect();
     below.into_iter().for_each(|id| body.fix_node(id));
 }

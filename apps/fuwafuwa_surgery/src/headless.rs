@@ -88,7 +88,7 @@ fn by_itself(
     costs: &mut Vec<f64>,
 ) -> Result<Procedure, String> {
     let trainee = Trainee::new(&procedure, options.seed);
-    let most = (options.seconds.clamp(0.0, 3600.0) / TICK) as usize;
+    let most = (options.seconds.clamp(0.0, 3600.0) / DEFAULT_TICK) as usize;
     let ticks = trainee.ticks().min(most);
     for tick in 0..ticks {
         bar.set_position((1000 * tick / ticks) as u64);
@@ -125,7 +125,10 @@ fn told(procedure: &Procedure, laid: f32, mut costs: Vec<f64>) -> String {
         let last = costs.len().saturating_sub(1) as f64;
         1e3 * costs.get((share * last) as usize).copied().unwrap_or(0.0)
     };
-    let late = costs.iter().filter(|cost| **cost > f64::from(TICK)).count();
+    let late = costs
+        .iter()
+        .filter(|cost| **cost > f64::from(DEFAULT_TICK))
+        .count();
     format!(
         "{} elements, loaded in {laid:.1} s; processor time of {} ticks, without the first: median {:.1} ms, 99th percentile {:.1} ms, \
          maximum {:.1} ms, {late} longer than {:.1} ms",
@@ -134,6 +137,6 @@ fn told(procedure: &Procedure, laid: f32, mut costs: Vec<f64>) -> String {
         at(0.5),
         at(0.99),
         at(1.0),
-        1e3 * TICK,
+        1e3 * DEFAULT_TICK,
     )
 }

@@ -1,7 +1,7 @@
 //! Measurements of each tick of a procedure, and volumes of the pieces.
 
 use crate::tools::Tool;
-use fuwafuwa::{Dim3, SoftBody, Vector};
+use fuwafuwa::{Dim3, SoftBody, Vec3};
 
 /// Measurements of a tick.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -9,13 +9,13 @@ pub struct Sample {
     /// Tool in the hand.
     pub tool: Tool,
     /// Position of the tool [m].
-    pub at: Vector,
+    pub at: Vec3,
     /// Mean force of the tissue on the tool [N].
-    pub force: Vector,
+    pub force: Vec3,
     /// Peak force within the tick [N].
     pub peak: f32,
     /// Mean torque on the tool about its working point [N m].
-    pub torque: Vector,
+    pub torque: Vec3,
     /// Total cut area since the start [m²].
     pub area: f64,
     /// Total work of the knife for all cuts since the start [J].
@@ -70,9 +70,4 @@ pub fn parts(body: &SoftBody<Dim3>, voxel: f64) -> Vec<PieceVolume> {
 pub fn pieces(body: &SoftBody<Dim3>) -> u32 {
     let list = &body.pieces().list;
     list.len() as u32
-}
-
-/// Returns the magnitude of a force or torque.
-pub fn size(vector: Vector) -> f32 {
-    fuwafuwa::inspect::vector::length(vector)
 }

@@ -3,9 +3,10 @@
 use crate::case::{Case, CaseError, Table, bounds};
 use crate::measures::{self, Sample};
 use crate::tools::{HeldTool, Tool, clearance};
-use fuwafuwa::DEFAULT_TICK;
-use fuwafuwa::inspect::vector::{length, minus, plus, scaled};
-use fuwafuwa::{Dim3, Error, Event, RigidBody, Rotation, SoftBody, StepReport, Vector, World};
+use fuwafuwa::{
+    DEFAULT_TICK, Dim3, Error, Event, Reaction, RigidBodyRef, Rotation, SoftBody, StepReport, Vec3,
+    World,
+};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -55,18 +56,18 @@ impl Default for Input {
 impl Input {
     /// Returns the input with the given tool, target position [m] and rotation; the other fields are kept.
     #[must_use]
-    pub fn at(self, tool: Tool, goal: Vector, rotation: Rotation) -> Self {
+    pub fn at(self, tool: Tool, goal: Vec3, rotation: Rotation) -> Self {
         Self {
             tool,
-            goal: goal.map(|k| (k / STEP).round() as i32),
+            goal: goal.to_array().map(|k| (k / STEP).round() as i32),
             turn: rotation.quaternion().map(|k| (k * PARTS).round() as i16),
             ..self
         }
     }
 
     /// Returns the target position [m].
-    pub fn place(&self) -> Vector {
-        self.goal.map(|k| k as f32 * STEP)
+    pub fn place(&self) -> Vec3 {
+        Vec3::from(self.goal.map(|k| k as f32 * STEP))
     }
 
     /// Returns the target rotation.
@@ -81,7 +82,7 @@ pub struct Procedure {
     table: Table,
     held: HeldTool,
     /// Target position of the tool [m]. It follows the input at limited speed.
-    goal: Vector,
+    goal: Vec3,
     rotation: Rotation,
     inputs: Vec<Input>,
     samples: Vec<Sample>,
@@ -96,11 +97,7 @@ impl Procedure {
     pub fn new(case: Arc<Case>) -> Result<Self, CaseError> {
         let mut table = case.place_on_table()?;
         let [low, high] = table.room;
-        let goal = [
-            0.5 * (low[0] + high[0]),
-            entry(&table),
-            0.5 * (low[2] + high[2]),
-        ];
+        let goal = (0.5 * (low + high)).with_y(entry(&table));
         let rotation = Rotation::NONE;
         let held = HeldTool::new(
             &mut table.world,
@@ -168,7 +165,7 @@ impl Procedure {
     }
 
     /// Returns the rigid body of the tool.
-    pub fn tool(&self) -> &RigidBody {
+    pub fn tool(&self) -> RigidBodyRef<'_, Dim3> {
         self.held.rigid(&self.table.world)
     }
 
@@ -193,7 +190,7 @@ impl Procedure {
     }
 
     /// Returns the low and high corner of the organ's current bounding box [m].
-    pub fn span(&self) -> [Vector; 2] {
+    pub fn span(&self) -> [Vec3; 2] {
         bounds(self.organ())
     }
 
@@ -212,7 +209,7 @@ impl Procedure {
         if tool == self.held.tool() {
             return Ok(());
         }
-        self.goal[1] = self.entry();
+        self.goal.y = self.entry();
         let Table { world, organ, .. } = &mut self.table;
         let next = HeldTool::new(world, *organ, tool, self.goal, self.rotation)?;
         std::mem::replace(&mut self.held, next).put_away(world)
@@ -221,15 +218,14 @@ impl Procedure {
     /// Moves the target of the tool towards the input, at limited speed and within the room.
     fn follow(&mut self, input: &Input) {
         let [low, high] = self.table.room;
-        let wanted = input.place();
-        let wanted = [0, 1, 2].map(|axis: usize| wanted[axis].clamp(low[axis], high[axis]));
-        let way = minus(wanted, self.goal);
-        let share = (FASTEST * TICK / length(way).max(1e-9)).min(1.0);
-        self.goal = plus(self.goal, scaled(way, share));
+        let way = input.place().clamp(low, high) - self.goal;
+        let share = (FASTEST * DEFAULT_TICK / way.length().max(1e-9)).min(1.0);
+        self.goal += way * share;
         let way = self.rotation.inverse().then(input.rotation()).scaled_axis();
-        let angle = length(way);
-        self.rotation = match angle > SPIN * TICK {
-            true => self.rotation.then(Rotation::about(way, SPIN * TICK)),
+        self.rotation = match way.length() > SPIN * DEFAULT_TICK {
+            true => self
+                .rotation
+                .then(Rotation::about(way, SPIN * DEFAULT_TICK)),
             false => input.rotation(),
         };
     }
@@ -237,12 +233,10 @@ impl Procedure {
     fn measure(&self, report: &StepReport) -> Sample {
         let before = self.samples.last().copied().unwrap_or_default();
         let tool = self.tool();
-        let reactions = tool.reactions();
-        let mean = |of: fn(&fuwafuwa::Reaction) -> Vector| {
-            let sum = reactions
-                .iter()
-                .fold([0.0; 3], |sum, felt| plus(sum, of(felt)));
-            scaled(sum, 1.0 / reactions.len().max(1) as f32)
+        let mean = |of: fn(Reaction<Dim3>) -> Vec3| {
+            let reactions = tool.reactions();
+            let share = 1.0 / reactions.len().max(1) as f32;
+            reactions.map(of).sum::<Vec3>() * share
         };
         let (mut area, mut work) = (0.0, 0.0);
         for event in self.table.world.events() {
@@ -256,9 +250,9 @@ impl Procedure {
             }
         }
         let force = mean(|felt| felt.contact);
-        let is_within = self.held.tool() == Tool::Knife && force != [0.0; 3];
+        let is_within = self.held.tool() == Tool::Knife && force != Vec3::ZERO;
         let far = match is_within && before.tool == Tool::Knife {
-            true => f64::from(length(minus(tool.position(), before.at))),
+            true => f64::from(tool.position().distance(before.at)),
             false => 0.0,
         };
         Sample {
@@ -268,9 +262,9 @@ impl Procedure {
             tool: self.held.tool(),
             at: tool.position(),
             force,
-            peak: reactions
-                .iter()
-                .map(|felt| length(felt.contact))
+            peak: tool
+                .reactions()
+                .map(|felt| felt.contact.length())
                 .fold(0.0, f32::max),
             torque: mean(|felt| felt.torque),
             released: before.released + report.nodes_split,
@@ -283,6 +277,6 @@ impl Procedure {
 fn entry(table: &Table) -> f32 {
     let organ = &table.world[table.organ];
     let [low, high] = bounds(organ);
-    let above = (ENTRY * (high[1] - low[1])).max(clearance(organ));
-    (high[1] + above).clamp(table.room[0][1], table.room[1][1])
+    let above = (ENTRY * (high.y - low.y)).max(clearance(organ));
+    (high.y + above).clamp(table.room[0].y, table.room[1].y)
 }

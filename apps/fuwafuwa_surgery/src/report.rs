@@ -1,6 +1,6 @@
 //! Report of a procedure: a table of all ticks (CSV), plots (SVG), and a summary.
 
-use crate::measures::{PieceVolume, Sample, size};
+use crate::measures::{PieceVolume, Sample};
 use crate::procedure::Procedure;
 use fuwafuwa::DEFAULT_TICK;
 use plotters::prelude::*;
@@ -30,9 +30,9 @@ pub fn csv(samples: &[Sample]) -> String {
     let mut text = String::from(HEADER);
     text.push('\n');
     for (tick, sample) in samples.iter().enumerate() {
-        let [x, y, z] = sample.at.map(|k| 1000.0 * k);
-        let [fx, fy, fz] = sample.force;
-        let [tx, ty, tz] = sample.torque.map(|k| 1000.0 * k);
+        let [x, y, z] = (1000.0 * sample.at).to_array();
+        let [fx, fy, fz] = sample.force.to_array();
+        let [tx, ty, tz] = (1000.0 * sample.torque).to_array();
         let seconds = seconds(tick);
         let tool = sample.tool.name().to_lowercase();
         // Writing to a String cannot fail.
@@ -69,7 +69,7 @@ pub fn svg(samples: &[Sample]) -> Result<String, Box<dyn Error>> {
             (
                 "mean per tick",
                 RED,
-                of(|sample| f64::from(size(sample.force))),
+                of(|sample| f64::from(sample.force.length())),
             ),
             ("peak", LINE, of(|sample| f64::from(sample.peak))),
         ];
@@ -166,7 +166,7 @@ fn label(value: &f64) -> String {
 
 /// Returns the time at the end of a tick [s]. The first tick has index 0.
 fn seconds(tick: usize) -> f32 {
-    (tick + 1) as f32 * TICK
+    (tick + 1) as f32 * DEFAULT_TICK
 }
 
 /// Returns a summary of the procedure in a few lines.
@@ -177,7 +177,7 @@ pub fn summary(procedure: &Procedure, parts: &[PieceVolume]) -> String {
     let mut text = format!(
         "{}: {:.1} s, peak force {strongest:.2} N, {:.0} mm² cut over {:.0} mm with {:.1} mJ, {} nodes released\n",
         procedure.case().name,
-        procedure.ticks() as f32 * TICK,
+        procedure.ticks() as f32 * DEFAULT_TICK,
         1e6 * last.area,
         1e3 * last.path,
         1e3 * last.work,

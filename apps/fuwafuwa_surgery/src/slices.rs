@@ -11,8 +11,7 @@
 //! Many workstations show axial and coronal slices mirrored. Letters at the edges of every slice name the
 //! directions.
 
-use fuwafuwa::inspect::vector::{minus, plus, scaled};
-use fuwafuwa::{Dim3, ElementId, SoftBody, Vector};
+use fuwafuwa::{Dim3, ElementId, SoftBody, Vec2, Vec3};
 
 /// Orientation of a slice.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -29,7 +28,7 @@ pub enum Cut {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Patch {
     /// Three or four corners in page coordinates (right, up) [m].
-    pub corners: Vec<[f32; 2]>,
+    pub corners: Vec<Vec2>,
     /// Material number.
     pub material: u8,
     /// Strain ‖F − R‖ of the element: deformation gradient minus its rotation (dimensionless).
@@ -42,9 +41,9 @@ pub struct Slice {
     /// Cross-sections of elements.
     pub patches: Vec<Patch>,
     /// Segments in which the plane cuts the original surface.
-    pub rim: Vec<[[f32; 2]; 2]>,
+    pub rim: Vec<[Vec2; 2]>,
     /// Segments in which the plane cuts surfaces created by cutting or tearing.
-    pub cracks: Vec<[[f32; 2]; 2]>,
+    pub cracks: Vec<[Vec2; 2]>,
 }
 
 /// Six tetrahedra that fill a block with eight corners. They share the diagonal from the first to the last
@@ -91,11 +90,11 @@ impl Cut {
     }
 
     /// Returns the page coordinates (right, up) of a point [m].
-    pub fn on_page(self, [x, y, z]: Vector) -> [f32; 2] {
+    pub fn on_page(self, at: Vec3) -> Vec2 {
         match self {
-            Self::Axial => [x, -z],
-            Self::Coronal => [x, y],
-            Self::Sagittal => [z, y],
+            Self::Axial => Vec2::new(at.x, -at.z),
+            Self::Coronal => Vec2::new(at.x, at.y),
+            Self::Sagittal => Vec2::new(at.z, at.y),
         }
     }
 }
@@ -160,7 +159,7 @@ impl Slice {
     }
 
     /// Returns the material at page coordinates [m], or `None` outside the organ.
-    pub fn material_at(&self, at: [f32; 2]) -> Option<u8> {
+    pub fn material_at(&self, at: Vec2) -> Option<u8> {
         let patch = self.patches.iter().find(|patch| patch.holds(at));
         patch.map(|patch| patch.material)
     }
@@ -177,20 +176,16 @@ impl Patch {
         let [first, ..] = self.corners[..] else {
             return 0.0;
         };
-        let doubled = |pair: &[[f32; 2]]| {
-            let [a, b] = [minus(pair[0], first), minus(pair[1], first)];
-            a[0] * b[1] - a[1] * b[0]
-        };
+        let doubled = |pair: &[Vec2]| (pair[0] - first).perp_dot(pair[1] - first);
         0.5 * self.corners.windows(2).map(doubled).sum::<f32>().abs()
     }
 
     /// Returns whether a point is inside, that is, on the same side of all edges.
-    fn holds(&self, at: [f32; 2]) -> bool {
+    fn holds(&self, at: Vec2) -> bool {
         let count = self.corners.len();
         let sides = (0..count).map(|k| {
             let [a, b] = [self.corners[k], self.corners[(k + 1) % count]];
-            let ([x, y], [u, v]) = (minus(b, a), minus(at, a));
-            x * v - y * u
+            (b - a).perp_dot(at - a)
         });
         let (mut left, mut right) = (true, true);
         for side in sides {
@@ -202,16 +197,16 @@ impl Patch {
 }
 
 /// Returns the intersection of the line between two points with a plane between them.
-fn crossing(a: Vector, b: Vector, axis: usize, at: f32) -> Vector {
+fn crossing(a: Vec3, b: Vec3, axis: usize, at: f32) -> Vec3 {
     let share = (at - a[axis]) / (b[axis] - a[axis]);
-    plus(a, scaled(minus(b, a), share.clamp(0.0, 1.0)))
+    a + (b - a) * share.clamp(0.0, 1.0)
 }
 
 /// Returns the polygon in which a plane cuts a tetrahedron: three or four corners in order, or none.
-fn section(corners: [Vector; 4], axis: usize, at: f32) -> Vec<Vector> {
-    let (above, below): (Vec<Vector>, Vec<Vector>) =
+fn section(corners: [Vec3; 4], axis: usize, at: f32) -> Vec<Vec3> {
+    let (above, below): (Vec<Vec3>, Vec<Vec3>) =
         corners.into_iter().partition(|corner| corner[axis] >= at);
-    let cross = |a: Vector, b: Vector| crossing(a, b, axis, at);
+    let cross = |a: Vec3, b: Vec3| crossing(a, b, axis, at);
     match (&above[..], &below[..]) {
         (&[a], others) | (others, &[a]) => others.iter().map(|&other| cross(a, other)).collect(),
         (&[a, b], &[c, d]) => vec![cross(a, c), cross(a, d), cross(b, d), cross(b, c)],
@@ -220,7 +215,7 @@ fn section(corners: [Vector; 4], axis: usize, at: f32) -> Vec<Vector> {
 }
 
 /// Returns the segment in which a plane cuts a triangle.
-fn segment(corners: [Vector; 3], axis: usize, at: f32) -> Option<[Vector; 2]> {
+fn segment(corners: [Vec3; 3], axis: usize, at: f32) -> Option<[Vec3; 2]> {
     let is_above = corners.map(|corner| corner[axis] >= at);
     let alone = (0..3)
         .find(|&k| is_above[k] != is_above[(k + 1) % 3] && is_above[k] != is_above[(k + 2) % 3])?;
@@ -234,20 +229,20 @@ mod tests {
 
     #[test]
     fn section_of_a_tetrahedron_is_a_triangle_or_a_quad() {
-        let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
         assert_eq!(section(corners, 2, 0.5).len(), 3);
         assert_eq!(section(corners, 2, 2.0).len(), 0);
-        let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]];
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::new(0.0, 1.0, 1.0), Vec3::Z];
         let quad = Patch {
             corners: section(corners, 2, 0.5)
                 .into_iter()
-                .map(|[x, y, _]| [x, y])
+                .map(Vec3::truncate)
                 .collect(),
             material: 1,
             strain: 0.0,
         };
         // The quad is a square with sides of 0.5.
         assert!((quad.area() - 0.25).abs() < 1e-6, "{quad:?}");
-        assert!(quad.holds([0.25, 0.25]) && !quad.holds([0.6, 0.25]));
+        assert!(quad.holds(Vec2::new(0.25, 0.25)) && !quad.holds(Vec2::new(0.6, 0.25)));
     }
 }

@@ -10,10 +10,9 @@
 //!
 //! The position of a tool is its working point: the middle of the edge, the tip, the middle of the bar.
 
-use fuwafuwa::inspect::vector::plus;
 use fuwafuwa::{
     Dim3, Error, Joint, JointAnchor, JointHandle, Knife, KnifeHandle, MotionType, RigidBody,
-    RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle, Vector, World,
+    RigidBodyHandle, RigidBodyRef, Rotation, Shape, SoftBody, SoftBodyHandle, Vec3, World,
 };
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +21,7 @@ const DRIVE: MotionType = MotionType::Coupled {
     mass: 0.1,
     stiffness: 500.0,
     damping: 1.0,
-    limit: 30.0,
+    max_force: 30.0,
 };
 
 /// Friction coefficient of steel on wet tissue.
@@ -93,17 +92,17 @@ impl HeldTool {
         world: &mut World<Dim3>,
         organ: SoftBodyHandle,
         tool: Tool,
-        at: Vector,
+        at: Vec3,
         rotation: Rotation,
     ) -> Result<Self, Error> {
         let thinnest = thinnest(world.soft_body(organ)?);
-        let mut rigid = RigidBody::new(form(tool, thinnest), DRIVE)
+        let rigid = RigidBody::new(form(tool, thinnest), DRIVE)
             .at(at)
-            .rotated(rotation);
-        rigid.friction = FRICTION;
-        // The box of a knife has no contact: the engine's `Knife` cuts with its edge and has contact at its
-        // flat sides.
-        rigid.is_sensor = tool == Tool::Knife;
+            .rotated(rotation)
+            .with_friction(FRICTION)
+            // The box of a knife has no contact: the engine's `Knife` cuts with its edge and has contact at its
+            // flat sides.
+            .with_sensor(tool == Tool::Knife);
         let holder = world.add_rigid_body(rigid)?;
         Ok(Self {
             tool,
@@ -141,9 +140,12 @@ impl HeldTool {
             world.remove(edge)?;
         }
         let [half, height, _] = BLADE;
-        let edge = [[-half, 0.0, 0.0], [half, 0.0, 0.0]];
-        let mut knife = Knife::new(self.holder, edge, [0.0, -1.0, 0.0]);
-        (knife.radius, knife.height) = (1e-6 * f32::from(dull), height);
+        let edge = [-half, half].map(|x| Vec3::new(x, 0.0, 0.0));
+        let knife = Knife {
+            radius: 1e-6 * f32::from(dull),
+            height,
+            ..Knife::new(self.holder, edge, Vec3::NEG_Y)
+        };
         self.edge = Some((world.add_knife(knife)?, dull));
         Ok(())
     }
@@ -154,8 +156,12 @@ impl HeldTool {
     }
 
     /// Returns the rigid body of the tool.
-    pub fn rigid<'a>(&self, world: &'a World<Dim3>) -> &'a RigidBody {
-        world.rigid_body(self.holder).unwrap()
+    ///
+    /// # Panics
+    /// If the tool is not in this world.
+    pub fn rigid<'a>(&self, world: &'a World<Dim3>) -> RigidBodyRef<'a, Dim3> {
+        let rigid = world.rigid_body(self.holder);
+        rigid.expect("a tool stays in its world until it is put away")
     }
 
     /// Returns whether the tool holds tissue.
@@ -170,7 +176,7 @@ impl HeldTool {
     pub fn send(
         &self,
         world: &mut World<Dim3>,
-        goal: Vector,
+        goal: Vec3,
         rotation: Rotation,
     ) -> Result<(), Error> {
         world.set_target_position(self.holder, goal)?;
@@ -200,17 +206,10 @@ impl HeldTool {
             self.open(world);
         } else if begins
             && self.tool == Tool::Forceps
-            && let Some(at) = nearest(world, organ, self.rigid(world))
+            && let Some(at) = nearest(world.soft_body(organ)?, &self.rigid(world).shape())
         {
-            let soft = JointAnchor::SoftBody {
-                body: organ,
-                at,
-                radius: JAW,
-            };
-            let rigid = JointAnchor::RigidBody {
-                rigid: self.holder,
-                at,
-            };
+            let soft = JointAnchor::on(organ, at).within(JAW);
+            let rigid = JointAnchor::on(self.holder, at);
             let joint = Joint::pin(soft, rigid).with_breaking_force(SLIPS);
             self.grip = Some(world.add_joint(joint)?);
         }
@@ -227,39 +226,30 @@ impl HeldTool {
     /// Returns the pulling force of the grip [N].
     pub fn pull(&self, world: &World<Dim3>) -> f32 {
         let joint = self.grip.and_then(|grip| world.joint(grip).ok());
-        joint.map_or(0.0, Joint::force)
+        joint.map_or(0.0, |joint| joint.force())
     }
 
     /// Returns the shapes that are drawn but have no contact: shafts and handles.
-    pub fn looks(&self, world: &World<Dim3>) -> Vec<Shape> {
+    pub fn looks(&self, world: &World<Dim3>) -> Vec<Shape<Dim3>> {
         let rigid = self.rigid(world);
         let (at, rotation) = (rigid.position(), rigid.rotation());
-        let place = |own: Vector| plus(at, rotation.apply(own));
-        let bar = |from: Vector, to: Vector, radius: f32| Shape::Capsule {
-            from: place(from),
-            to: place(to),
-            radius,
+        let place = |[x, y]: [f32; 2]| at + rotation.apply(Vec3::new(x, y, 0.0));
+        let bar = |from: [f32; 2], to: [f32; 2], radius: f32| {
+            Shape::capsule(place(from), place(to), radius)
         };
         match self.tool {
             Tool::Knife => {
                 let [half, height, _] = BLADE;
-                let end = [half + 0.8 * HANDLE, height + 0.5 * HANDLE, 0.0];
-                vec![bar([half - 0.002, height, 0.0], end, 0.0032)]
+                let end = [half + 0.8 * HANDLE, height + 0.5 * HANDLE];
+                vec![bar([half - 0.002, height], end, 0.0032)]
             }
             Tool::Forceps => {
                 let apart = if self.is_closed { 0.0005 } else { 0.004 };
                 let arm = |side: f32| {
+                    let middle = [side * 0.007, 0.5 * HANDLE];
                     [
-                        bar(
-                            [side * apart, 0.0, 0.0],
-                            [side * 0.007, 0.5 * HANDLE, 0.0],
-                            0.0013,
-                        ),
-                        bar(
-                            [side * 0.007, 0.5 * HANDLE, 0.0],
-                            [0.0, HANDLE, 0.0],
-                            0.0018,
-                        ),
+                        bar([side * apart, 0.0], middle, 0.0013),
+                        bar(middle, [0.0, HANDLE], 0.0018),
                     ]
                 };
                 [arm(-1.0), arm(1.0)].concat()
@@ -267,8 +257,8 @@ impl HeldTool {
             Tool::Hook => {
                 let [half, _] = BAR;
                 vec![
-                    bar([-half, 0.0, 0.0], [-half, 0.6 * HANDLE, 0.0], 0.0015),
-                    bar([-half, 0.6 * HANDLE, 0.0], [-half, HANDLE, 0.0], 0.0045),
+                    bar([-half, 0.0], [-half, 0.6 * HANDLE], 0.0015),
+                    bar([-half, 0.6 * HANDLE], [-half, HANDLE], 0.0045),
                 ]
             }
         }
@@ -288,35 +278,26 @@ pub(crate) fn clearance(organ: &SoftBody<Dim3>) -> f32 {
 
 /// Returns the contact shape of a tool with its working point at the origin. `thinnest` is the minimum radius
 /// [m].
-fn form(tool: Tool, thinnest: f32) -> Shape {
+fn form(tool: Tool, thinnest: f32) -> Shape<Dim3> {
     match tool {
         Tool::Knife => {
             let [half, height, thin] = BLADE;
-            Shape::Box {
-                centre: [0.0, 0.5 * height, 0.0],
-                half: [half, 0.5 * height, thin],
-            }
+            let blade = Shape::cuboid(Vec3::new(half, 0.5 * height, thin));
+            blade.translated(Vec3::new(0.0, 0.5 * height, 0.0))
         }
-        Tool::Forceps => Shape::Ball {
-            centre: [0.0; 3],
-            radius: TIP.max(thinnest),
-        },
+        Tool::Forceps => Shape::ball(TIP.max(thinnest)),
         Tool::Hook => {
             let [half, radius] = BAR;
-            Shape::Capsule {
-                from: [-half, 0.0, 0.0],
-                to: [half, 0.0, 0.0],
-                radius: radius.max(thinnest),
-            }
+            let end = Vec3::new(half, 0.0, 0.0);
+            Shape::capsule(-end, end, radius.max(thinnest))
         }
     }
 }
 
 /// Returns the position of the node nearest to the surface of a tip [m], if it is within [`REACH`].
-fn nearest(world: &World<Dim3>, organ: SoftBodyHandle, tip: &RigidBody) -> Option<Vector> {
-    let body = world.soft_body(organ).ok()?;
-    let places = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);
-    let away = |place: &Vector| tip.shape().distance(*place).0;
+fn nearest(organ: &SoftBody<Dim3>, tip: &Shape<Dim3>) -> Option<Vec3> {
+    let places = organ.mesh().nodes().map(|(id, _)| organ.node_state(id).0);
+    let away = |place: &Vec3| tip.distance(*place).0;
     let nearest = places.min_by(|a, b| away(a).total_cmp(&away(b)))?;
     (away(&nearest) <= REACH).then_some(nearest)
 }

@@ -3,16 +3,14 @@
 
 use crate::procedure::{Input, Procedure};
 use crate::tools::Tool;
-use fuwafuwa::DEFAULT_TICK;
-use fuwafuwa::inspect::vector::{minus, plus, scaled};
-use fuwafuwa::{Rotation, Vector};
+use fuwafuwa::{DEFAULT_TICK, Rotation, Vec3};
 
 /// Straight motion between two points.
 #[derive(Clone, Debug)]
 struct Leg {
     tool: Tool,
-    from: Vector,
-    to: Vector,
+    from: Vec3,
+    to: Vec3,
     rotation: Rotation,
     grips: bool,
     ticks: usize,
@@ -29,7 +27,7 @@ pub struct Trainee {
 /// Sequence of motions under construction.
 struct Plan {
     legs: Vec<Leg>,
-    at: Vector,
+    at: Vec3,
     random: fastrand::Rng,
 }
 
@@ -37,12 +35,12 @@ impl Trainee {
     /// Creates the trainee for the organ of a new procedure. The seed selects its motions.
     pub fn new(procedure: &Procedure, seed: u64) -> Self {
         let [low, high] = procedure.span();
-        let middle = scaled(plus(low, high), 0.5);
-        let size = minus(high, low);
-        let above = high[1] + 0.15 * size[1];
+        let middle = (low + high) * 0.5;
+        let size = high - low;
+        let above = high.y + 0.15 * size.y;
         let mut plan = Plan {
             legs: Vec::new(),
-            at: [middle[0], above, middle[2]],
+            at: middle.with_y(above),
             random: fastrand::Rng::with_seed(seed),
         };
         let dull = plan.random.u16(20..=600);
@@ -66,7 +64,7 @@ impl Trainee {
         for leg in &self.legs {
             if left < leg.ticks {
                 let share = left as f32 / leg.ticks as f32;
-                let place = plus(leg.from, scaled(minus(leg.to, leg.from), share));
+                let place = leg.from + (leg.to - leg.from) * share;
                 let input = base.at(leg.tool, place, leg.rotation);
                 let grips = leg.grips;
                 return Input { grips, ..input };
@@ -89,60 +87,72 @@ impl Plan {
     }
 
     /// Adds a straight motion to a point at a speed [m/s].
-    fn go(&mut self, tool: Tool, to: Vector, rotation: Rotation, grips: bool, speed: f32) {
-        let far = fuwafuwa::inspect::vector::length(minus(to, self.at));
+    fn go(&mut self, tool: Tool, to: Vec3, rotation: Rotation, grips: bool, speed: f32) {
+        let far = to.distance(self.at);
         self.legs.push(Leg {
             tool,
             from: self.at,
             to,
             rotation,
             grips,
-            ticks: (far / speed / TICK).ceil().max(1.0) as usize,
+            ticks: (far / speed / DEFAULT_TICK).ceil().max(1.0) as usize,
         });
         self.at = to;
     }
 
     /// Lowers the knife into the organ and draws it along.
-    fn cut(&mut self, middle: Vector, size: Vector, above: f32) {
+    fn cut(&mut self, middle: Vec3, size: Vec3, above: f32) {
         let heading = self.between(-1.5, 1.5);
-        let turned = Rotation::about([0.0, 1.0, 0.0], heading);
-        let way = turned.apply([self.between(0.25, 0.45) * size[0], 0.0, 0.0]);
-        let x = middle[0] + self.between(-0.15, 0.15) * size[0];
-        let z = middle[2] + self.between(-0.15, 0.15) * size[2];
-        let deep = above - self.between(0.35, 0.6) * size[1];
-        let from = minus([x, above, z], scaled(way, 0.5));
-        let to = plus(from, way);
+        let turned = Rotation::about(Vec3::Y, heading);
+        let way = turned.apply(Vec3::new(self.between(0.25, 0.45) * size.x, 0.0, 0.0));
+        let x = middle.x + self.between(-0.15, 0.15) * size.x;
+        let z = middle.z + self.between(-0.15, 0.15) * size.z;
+        let deep = above - self.between(0.35, 0.6) * size.y;
+        let from = Vec3::new(x, above, z) - way * 0.5;
+        let to = from + way;
         self.go(Tool::Knife, from, turned, false, 0.2);
-        self.go(Tool::Knife, [from[0], deep, from[2]], turned, false, 0.05);
-        self.go(Tool::Knife, [to[0], deep, to[2]], turned, false, 0.04);
+        self.go(Tool::Knife, from.with_y(deep), turned, false, 0.05);
+        self.go(Tool::Knife, to.with_y(deep), turned, false, 0.04);
         self.go(Tool::Knife, to, turned, false, 0.1);
     }
 
     /// Presses the hook into the organ and draws it along.
-    fn push_aside(&mut self, middle: Vector, size: Vector, above: f32) {
-        let x = middle[0] + self.between(-0.2, 0.2) * size[0];
-        let z = middle[2] + self.between(-0.2, 0.2) * size[2];
-        let deep = above - self.between(0.25, 0.45) * size[1];
-        let turned = Rotation::about([0.0, 1.0, 0.0], self.between(-1.5, 1.5));
-        let aside = self.between(-0.15, 0.15) * size[0];
-        self.go(Tool::Hook, [x, above, z], turned, false, 0.2);
-        self.go(Tool::Hook, [x, deep, z], turned, false, 0.06);
-        self.go(Tool::Hook, [x + aside, deep, z], turned, false, 0.04);
-        self.go(Tool::Hook, [x, above, z], turned, false, 0.15);
+    fn push_aside(&mut self, middle: Vec3, size: Vec3, above: f32) {
+        let x = middle.x + self.between(-0.2, 0.2) * size.x;
+        let z = middle.z + self.between(-0.2, 0.2) * size.z;
+        let deep = above - self.between(0.25, 0.45) * size.y;
+        let turned = Rotation::about(Vec3::Y, self.between(-1.5, 1.5));
+        let aside = self.between(-0.15, 0.15) * size.x;
+        self.go(Tool::Hook, Vec3::new(x, above, z), turned, false, 0.2);
+        self.go(Tool::Hook, Vec3::new(x, deep, z), turned, false, 0.06);
+        self.go(
+            Tool::Hook,
+            Vec3::new(x + aside, deep, z),
+            turned,
+            false,
+            0.04,
+        );
+        self.go(Tool::Hook, Vec3::new(x, above, z), turned, false, 0.15);
     }
 
     /// Grips the top of the organ and pulls.
-    fn pull_up(&mut self, procedure: &Procedure, middle: Vector, size: Vector, above: f32) {
-        let x = middle[0] + self.between(-0.2, 0.2) * size[0];
-        let z = middle[2] + self.between(-0.2, 0.2) * size[2];
-        let top = top_at(procedure, [x, z]).unwrap_or(middle[1]);
+    fn pull_up(&mut self, procedure: &Procedure, middle: Vec3, size: Vec3, above: f32) {
+        let x = middle.x + self.between(-0.2, 0.2) * size.x;
+        let z = middle.z + self.between(-0.2, 0.2) * size.z;
+        let top = top_at(procedure, [x, z]).unwrap_or(middle.y);
         let none = Rotation::NONE;
-        self.go(Tool::Forceps, [x, above, z], none, false, 0.2);
-        self.go(Tool::Forceps, [x, top - 0.002, z], none, false, 0.06);
-        let up = top + self.between(0.1, 0.25) * size[1];
-        let aside = x + self.between(-0.1, 0.1) * size[0];
-        self.go(Tool::Forceps, [aside, up, z], none, true, 0.04);
-        self.go(Tool::Forceps, [x, above, z], none, false, 0.15);
+        self.go(Tool::Forceps, Vec3::new(x, above, z), none, false, 0.2);
+        self.go(
+            Tool::Forceps,
+            Vec3::new(x, top - 0.002, z),
+            none,
+            false,
+            0.06,
+        );
+        let up = top + self.between(0.1, 0.25) * size.y;
+        let aside = x + self.between(-0.1, 0.1) * size.x;
+        self.go(Tool::Forceps, Vec3::new(aside, up, z), none, true, 0.04);
+        self.go(Tool::Forceps, Vec3::new(x, above, z), none, false, 0.15);
     }
 }
 
@@ -151,6 +161,6 @@ fn top_at(procedure: &Procedure, [x, z]: [f32; 2]) -> Option<f32> {
     let organ = procedure.organ();
     let reach = 1.5 * organ.grid().voxel_size();
     let nodes = organ.mesh().nodes().map(|(id, _)| organ.node_state(id).0);
-    let near = nodes.filter(|at| (at[0] - x).abs() < reach && (at[2] - z).abs() < reach);
-    near.map(|at| at[1]).reduce(f32::max)
+    let near = nodes.filter(|at| (at.x - x).abs() < reach && (at.z - z).abs() < reach);
+    near.map(|at| at.y).reduce(f32::max)
 }

@@ -1,6 +1,6 @@
 //! Procedures without a window stay valid, replay identically, and cut as expected.
 
-use fuwafuwa::{Rotation, Vector};
+use fuwafuwa::{Rotation, Vec3};
 use fuwafuwa_surgery::measures::parts;
 use fuwafuwa_surgery::phantom;
 use fuwafuwa_surgery::procedure::{Input, Procedure};
@@ -23,13 +23,13 @@ fn check(procedure: &Procedure, what: &str) {
     for view in organ.piece_views() {
         assert!(!view.quarantined, "{what}: a piece is quarantined");
         let numbers = [view.centre, view.velocity, view.low, view.high];
-        let is_finite = numbers.as_flattened().iter().all(|k| k.is_finite());
+        let is_finite = numbers.iter().all(|vector| vector.is_finite());
         assert!(is_finite || view.element_count == 0, "{what}: {view:?}");
     }
     let sample = procedure.samples().last().unwrap();
     let numbers = [sample.at, sample.force, sample.torque];
     assert!(
-        numbers.as_flattened().iter().all(|k| k.is_finite()),
+        numbers.iter().all(|vector| vector.is_finite()),
         "{what}: {sample:?}"
     );
     assert!(
@@ -103,25 +103,21 @@ fn replay_is_identical_and_detects_changed_input() {
 }
 
 /// Moves the tool from its position along a path at a speed [m/s]. Returns the maximum force on the way [N].
-fn go(procedure: &mut Procedure, input: Input, way: &[Vector], pace: f32) -> f32 {
+fn go(procedure: &mut Procedure, input: Input, way: &[Vec3], pace: f32) -> f32 {
     let begun = procedure.samples().len();
     let here = procedure.tool().position();
-    let way: Vec<Vector> = [here].into_iter().chain(way.iter().copied()).collect();
+    let way: Vec<Vec3> = [here].into_iter().chain(way.iter().copied()).collect();
     for pair in way.windows(2) {
-        let far =
-            fuwafuwa::inspect::vector::length(fuwafuwa::inspect::vector::minus(pair[1], pair[0]));
-        let ticks = (far / pace * 60.0).ceil().max(1.0) as usize;
+        let way = pair[1] - pair[0];
+        let ticks = (way.length() / pace * 60.0).ceil().max(1.0) as usize;
         for tick in 1..=ticks {
             let share = tick as f32 / ticks as f32;
-            let at = [0, 1, 2].map(|k: usize| pair[0][k] + share * (pair[1][k] - pair[0][k]));
-            let next = input.at(input.tool, at, input.rotation());
+            let next = input.at(input.tool, pair[0] + share * way, input.rotation());
             procedure.step(next).unwrap();
         }
     }
     let samples = &procedure.samples()[begun..];
-    let forces = samples
-        .iter()
-        .map(|sample| fuwafuwa::inspect::vector::length(sample.force));
+    let forces = samples.iter().map(|sample| sample.force.length());
     forces.fold(0.0, f32::max)
 }
 
@@ -130,7 +126,7 @@ fn with(tool: Tool, dull: u16) -> Input {
         dull,
         ..Input::default()
     };
-    input.at(tool, [0.0; 3], Rotation::NONE)
+    input.at(tool, Vec3::ZERO, Rotation::NONE)
 }
 
 #[test]
@@ -139,7 +135,11 @@ fn dull_knife_cuts_less_and_presses_more() {
     for dull in [20, 800] {
         let mut procedure = procedure(28);
         let input = with(Tool::Knife, dull);
-        let way = [[-0.02, 0.1, 0.02], [-0.02, 0.04, 0.02], [0.03, 0.04, 0.02]];
+        let way = [
+            Vec3::new(-0.02, 0.1, 0.02),
+            Vec3::new(-0.02, 0.04, 0.02),
+            Vec3::new(0.03, 0.04, 0.02),
+        ];
         felt.push(go(&mut procedure, input, &way, 0.06));
         let last = procedure.samples().last().unwrap();
         // The edge is 3 cm long and moves about 3 cm down and 5 cm sideways, so the cut has several cm². A
@@ -157,8 +157,8 @@ fn dull_knife_cuts_less_and_presses_more() {
 fn forceps_hold_and_release_tissue() {
     let mut procedure = procedure(20);
     let input = with(Tool::Forceps, 0);
-    let top = procedure.organ().piece_views()[0].high[1];
-    let at = |y: f32| [0.02, y, 0.0];
+    let top = procedure.organ().piece_views()[0].high.y;
+    let at = |y: f32| Vec3::new(0.02, y, 0.0);
     go(
         &mut procedure,
         input,
@@ -174,7 +174,7 @@ fn forceps_hold_and_release_tissue() {
         &[at(top - 0.003), at(top + 0.015)],
         0.04,
     );
-    let raised = procedure.organ().piece_views()[0].high[1] - top;
+    let raised = procedure.organ().piece_views()[0].high.y - top;
     assert!(procedure.held().grips() && raised > 0.004, "{raised} m");
     assert!(
         procedure.held().pull(procedure.world()) > 0.05,
@@ -200,11 +200,11 @@ fn forceps_hold_and_release_tissue() {
 #[test]
 fn hook_feels_contact_force() {
     let mut procedure = procedure(20);
-    let top = procedure.organ().piece_views()[0].high[1];
-    let way = [[0.0, top + 0.02, 0.0], [0.0, top - 0.015, 0.0]];
+    let top = procedure.organ().piece_views()[0].high.y;
+    let way = [top + 0.02, top - 0.015].map(|y| Vec3::new(0.0, y, 0.0));
     go(&mut procedure, with(Tool::Hook, 0), &way, 0.05);
     let last = procedure.samples().last().unwrap();
-    assert!(last.force[1] > 0.1, "{:?}", last.force);
+    assert!(last.force.y > 0.1, "{:?}", last.force);
     assert_eq!((last.area, last.tool), (0.0, Tool::Hook));
 }
 
@@ -213,20 +213,20 @@ fn blunt_tools_do_not_slip_between_nodes_of_coarse_organs() {
     for resolution in [20, 28, 36] {
         for tool in [Tool::Forceps, Tool::Hook] {
             let mut procedure = procedure(resolution);
-            let top = procedure.organ().piece_views()[0].high[1];
-            let way = [[0.021, top + 0.01, 0.003], [0.021, top - 0.012, 0.003]];
+            let top = procedure.organ().piece_views()[0].high.y;
+            let way = [top + 0.01, top - 0.012].map(|y| Vec3::new(0.021, y, 0.003));
             go(&mut procedure, with(tool, 0), &way, 0.03);
             let tip = procedure.tool();
             let organ = procedure.organ();
             let places = organ.mesh().nodes().map(|(id, _)| organ.node_state(id).0);
             let over = places.filter(|&place| {
-                let away = fuwafuwa::inspect::vector::minus(place, tip.position());
-                away[1] > 0.002 && away[0].hypot(away[2]) < 0.002
+                let away = place - tip.position();
+                away.y > 0.002 && away.x.hypot(away.z) < 0.002
             });
             let force = procedure.samples().last().unwrap().force;
             let what = format!("{tool:?} at {resolution} voxels");
             assert_eq!(over.count(), 0, "{what}: nodes are above the pressed tip");
-            assert!(force[1] > 0.08, "{what}: {force:?} N");
+            assert!(force.y > 0.08, "{what}: {force:?} N");
         }
     }
 }
@@ -237,8 +237,8 @@ fn tools_enter_clear_of_the_coarsest_organ() {
         for tool in Tool::ALL {
             let mut procedure = procedure(resolution);
             let height = procedure.entry();
-            let upright = Rotation::about([0.0, 0.0, 1.0], 1.57);
-            let input = Input::default().at(tool, [0.0, height, 0.0], upright);
+            let upright = Rotation::about(Vec3::Z, 1.57);
+            let input = Input::default().at(tool, Vec3::new(0.0, height, 0.0), upright);
             for _ in 0..40 {
                 procedure.step(input).unwrap();
             }
@@ -258,8 +258,8 @@ fn tools_enter_clear_of_the_coarsest_organ() {
 fn csv_and_svg_contain_the_measurements() {
     let mut procedure = procedure(12);
     for tick in 0..50 {
-        let input =
-            with(Tool::Hook, 0).at(Tool::Hook, [0.0, 0.1, 0.001 * tick as f32], Rotation::NONE);
+        let place = Vec3::new(0.0, 0.1, 0.001 * tick as f32);
+        let input = with(Tool::Hook, 0).at(Tool::Hook, place, Rotation::NONE);
         procedure.step(input).unwrap();
     }
     let table = report::csv(procedure.samples());
@@ -276,7 +276,7 @@ fn csv_and_svg_contain_the_measurements() {
     }
     assert_eq!((lines[50][0], lines[50][1]), ("50", "0.8333"));
     let z: f64 = lines[50][5].parse().unwrap();
-    let found = 1000.0 * f64::from(procedure.samples()[49].at[2]);
+    let found = 1000.0 * f64::from(procedure.samples()[49].at.z);
     assert!((z - found).abs() < 1e-3, "{z} {found}");
     let plots = report::svg(procedure.samples()).unwrap();
     assert!(plots.starts_with("<svg") && plots.contains("force on the tool [N]"));

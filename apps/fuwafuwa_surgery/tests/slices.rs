@@ -4,7 +4,7 @@
 #[path = "../../../engine/fuwafuwa_scan/tests/phantom/mod.rs"]
 mod phantom;
 
-use fuwafuwa::{Blade, SoftBody};
+use fuwafuwa::{Blade, Dim3, SoftBody, Vec2, Vec3};
 use fuwafuwa_scan::{Scan, Segmentation};
 use fuwafuwa_surgery::case::{Case, Table};
 use fuwafuwa_surgery::phantom::{GROWTH, HALF, case};
@@ -17,16 +17,16 @@ fn table() -> (Case, Table) {
 }
 
 /// Returns the world position [m] of a point in the patient, RAS+ [mm].
-fn place(case: &Case, table: &Table, [right, front, up]: [f64; 3]) -> [f32; 3] {
+fn place(case: &Case, table: &Table, [right, front, up]: [f64; 3]) -> Vec3 {
     let own = [
         right - case.corner[0],
         up - case.corner[2],
         case.corner[1] - front,
     ];
-    [0, 1, 2].map(|axis: usize| table.corner[axis] + (own[axis] / 1000.0) as f32)
+    table.corner + Vec3::from(own.map(|k| (k / 1000.0) as f32))
 }
 
-fn organ(table: &Table) -> &SoftBody<fuwafuwa::Dim3> {
+fn organ(table: &Table) -> &SoftBody<Dim3> {
     &table.world[table.organ]
 }
 
@@ -43,16 +43,16 @@ fn growth_appears_at_its_anatomical_position() {
         // The growth lies in the patient's right half, in front and above. Axial and coronal slices show it
         // right of the middle; the sagittal slice, seen from the left, shows it left of the middle, where the
         // front is.
-        let beside = page[0] - whole[0];
-        let above = page[1] - whole[1];
+        let beside = page.x - whole.x;
+        let above = page.y - whole.y;
         match cut {
             Cut::Axial | Cut::Coronal => assert!(beside > 0.015 && above > 0.008, "{cut:?}"),
             Cut::Sagittal => assert!(beside < -0.015 && above > 0.008),
         }
         // The position mirrored at the middle shows no growth.
-        let other = [whole[0] - beside, page[1]];
+        let other = Vec2::new(whole.x - beside, page.y);
         assert_ne!(slice.material_at(other), Some(3), "{cut:?}");
-        assert_eq!(slice.material_at([page[0] + 1.0, page[1]]), None);
+        assert_eq!(slice.material_at(page + Vec2::X), None);
     }
 }
 
@@ -64,16 +64,17 @@ fn slice_area_matches_the_deformed_organ() {
     // Area of the ellipse in which a plane 8 mm below the centre cuts the ellipsoid [m²].
     let share = 1.0 - (8.0 / up).powi(2);
     let ellipse = (1e-6 * std::f64::consts::PI * right * front * share) as f32;
-    let area = Slice::of(organ(&table), Cut::Axial, at[1]).area();
+    let area = Slice::of(organ(&table), Cut::Axial, at.y).area();
     assert!((area / ellipse - 1.0).abs() < 0.03, "{area} {ellipse}");
     // Stretches the organ by a tenth along x.
     let body = table.world.soft_body_mut(table.organ).unwrap();
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
-        let ([x, y, z], ..) = body.node_state(id);
-        body.set_node_state(id, [1.1 * x, y, z], [0.0; 3]);
+        let (at, ..) = body.node_state(id);
+        let stretched = at.with_x(1.1 * at.x);
+        body.set_node_state(id, stretched, Vec3::ZERO).unwrap();
     }
-    let slice = Slice::of(organ(&table), Cut::Axial, at[1]);
+    let slice = Slice::of(organ(&table), Cut::Axial, at.y);
     assert!((slice.area() / (1.1 * area) - 1.0).abs() < 1e-3);
     let strains = slice.patches.iter().map(|patch| patch.strain);
     assert!(
@@ -87,34 +88,27 @@ fn slice_area_matches_the_deformed_organ() {
 fn closed_cut_is_visible() {
     let (case, mut table) = table();
     let at = place(&case, &table, [10.0, 0.0, 0.0]);
-    assert!(
-        Slice::of(organ(&table), Cut::Axial, at[1])
-            .cracks
-            .is_empty()
-    );
-    let blade = Blade {
-        from: [at[0] + 0.0003, at[1] - 0.01, at[2] - 0.02],
-        across: [0.0, 0.1, 0.0],
-        along: [0.0, 0.0, 0.04],
-    };
+    assert!(Slice::of(organ(&table), Cut::Axial, at.y).cracks.is_empty());
+    let corner = at + Vec3::new(0.0003, -0.01, -0.02);
+    let blade = Blade::parallelogram(corner, 0.1 * Vec3::Y, 0.04 * Vec3::Z);
     table.world.cut(table.organ, &blade).unwrap();
-    let slice = Slice::of(organ(&table), Cut::Axial, at[1]);
+    let slice = Slice::of(organ(&table), Cut::Axial, at.y);
     assert!(slice.cracks.len() > 20, "{}", slice.cracks.len());
     let voxel = case.grid.voxel_size();
     for end in slice.cracks.as_flattened() {
-        assert!((end[0] - at[0]).abs() < 1.5 * voxel, "{end:?}");
-        assert!((end[1] + at[2]).abs() < 0.02 + 1.5 * voxel, "{end:?}");
+        assert!((end.x - at.x).abs() < 1.5 * voxel, "{end:?}");
+        assert!((end.y + at.z).abs() < 0.02 + 1.5 * voxel, "{end:?}");
     }
     // The slice of the cut organ has the same area as that of the uncut one.
     let whole = Slice::of(
         &SoftBody::new(case.grid.clone(), &case.tissues).unwrap(),
         Cut::Axial,
-        at[1] - table.corner[1],
+        at.y - table.corner.y,
     );
     assert!((slice.area() / whole.area() - 1.0).abs() < 1e-3);
     // A slice beside the cut shows no cracks.
     assert!(
-        Slice::of(organ(&table), Cut::Sagittal, at[0] - 0.02)
+        Slice::of(organ(&table), Cut::Sagittal, at.x - 0.02)
             .cracks
             .is_empty()
     );
@@ -153,9 +147,9 @@ fn scan_with_left_axis_shows_right_on_the_right() {
         let slice = Slice::of(body, cut, mark[cut.axis()]);
         assert_eq!(slice.material_at(cut.on_page(mark)), Some(2), "{cut:?}");
         assert_eq!(slice.material_at(cut.on_page(mirrored)), Some(1), "{cut:?}");
-        assert!(cut.on_page(mark)[0] > cut.on_page(mirrored)[0]);
+        assert!(cut.on_page(mark).x > cut.on_page(mirrored).x);
         assert_eq!(cut.letters()[1], "R");
     }
-    let right = case.patient_at([0, 1, 2].map(|k: usize| mark[k] - table.corner[k]));
+    let right = case.patient_at(mark - table.corner);
     assert!((right[0] - 14.0).abs() < 1e-3, "{right:?}");
 }

@@ -7,7 +7,6 @@ use app_shell::Theme;
 use app_shell::widgets::fitted;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, Ui, pos2, vec2};
 use fuwafuwa::DEFAULT_TICK;
-use fuwafuwa::inspect::vector::length;
 
 /// Time span of the plots [s].
 const SPAN: f32 = 20.0;
@@ -29,7 +28,7 @@ const CURVES: [Curve; 2] = [
         unit: "N",
         colour: RED,
         least: 1.0,
-        value: |sample| length(sample.force),
+        value: |sample| sample.force.length(),
     },
     Curve {
         name: "Cut",
@@ -57,7 +56,7 @@ pub fn show(ui: &mut Ui, session: &Session, theme: &Theme) {
 fn draw(ui: &Ui, rect: Rect, curve: &Curve, samples: &[Sample], theme: &Theme) {
     let painter = ui.painter().with_clip_rect(rect);
     painter.rect_filled(rect, 12.0, theme.card);
-    let seen = &samples[samples.len().saturating_sub((SPAN / TICK) as usize)..];
+    let seen = &samples[samples.len().saturating_sub((SPAN / DEFAULT_TICK) as usize)..];
     let most = seen.iter().map(curve.value).fold(0.0, f32::max);
     let top = (1.15 * most).max(curve.least);
     let room = rect.shrink2(vec2(10.0, 8.0));
@@ -66,7 +65,7 @@ fn draw(ui: &Ui, rect: Rect, curve: &Curve, samples: &[Sample], theme: &Theme) {
     let newest = samples.len();
     let first = newest - seen.len();
     let at = |(place, sample): (usize, &Sample)| -> Pos2 {
-        let ago = (newest - first - place) as f32 * TICK / SPAN;
+        let ago = (newest - first - place) as f32 * DEFAULT_TICK / SPAN;
         let high = (curve.value)(sample) / top;
         pos2(
             room.right() - ago * room.width(),
@@ -92,10 +91,10 @@ fn numbers(ui: &Ui, rect: Rect, session: &Session, theme: &Theme) {
     let sample = session.last();
     let mut rows = vec![format!(
         "{:.1} s   knife path in tissue {:.0} mm",
-        session.procedure().ticks() as f32 * TICK,
+        session.procedure().ticks() as f32 * DEFAULT_TICK,
         1e3 * sample.path
     )];
-    let torque = 1e3 * length(sample.torque);
+    let torque = 1e3 * sample.torque.length();
     rows.push(format!(
         "torque {torque:.1} mN m   work {:.1} mJ",
         1e3 * sample.work

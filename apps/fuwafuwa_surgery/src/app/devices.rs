@@ -5,7 +5,7 @@ use app_shell::direction::{to_user, to_world};
 use app_shell::{Forces, Pads};
 use egui::Vec2;
 use force_feedback::{Ability, Settings, State, Stop};
-use fuwafuwa::Vector;
+use fuwafuwa::Vec3;
 use sticks::{Change, Control, Device, DeviceId, Direction, PadButton, Snapshot, radial_dead_zone};
 
 /// Deflection of a stick below which it counts as centred, and above which it counts as full; fractions of
@@ -65,7 +65,7 @@ impl Devices {
     pub fn hear(
         &mut self,
         wishes: &mut HandInput,
-        [low, high]: [Vector; 2],
+        [low, high]: [Vec3; 2],
         turn: f32,
         seconds: f32,
     ) -> (Vec<DeviceAction>, Vec2) {
@@ -92,18 +92,13 @@ impl Devices {
             let pushes = report.is_some_and(|report| report.ability == Ability::Force);
             if pushes {
                 let lean = to_world(Some(turn), Vec2::from(device.aim()));
-                wishes.place = Some([0, 1, 2].map(|axis: usize| {
-                    let [low, high] = [low[axis], high[axis]];
-                    0.5 * (low + high) + 0.5 * lean[axis] * (high - low)
-                }));
+                wishes.place = Some(0.5 * (low + high) + 0.5 * lean * (high - low));
             } else {
                 wishes.lean += asked.lean;
             }
             wishes.lift += asked.lift;
             wishes.grips |= asked.grips;
-            for axis in 0..3 {
-                wishes.turn[axis] += asked.turn[axis];
-            }
+            wishes.turn += asked.turn;
         }
         self.said = now;
         (presses, look.clamp(Vec2::splat(-1.0), Vec2::splat(1.0)))
@@ -111,7 +106,7 @@ impl Devices {
 
     /// Sends the contact force [N] to the device that moved the hand last. `turn` is the camera's azimuth
     /// [rad], by which the force is rotated. If `silence` is given, all devices are silent for that reason.
-    pub fn feel(&mut self, contact: Vector, turn: f32, silence: Option<Stop>) {
+    pub fn feel(&mut self, contact: Vec3, turn: f32, silence: Option<Stop>) {
         self.forces.attend(&self.said, &self.pads, |_| {
             Some(Settings {
                 full: FULL,
@@ -176,7 +171,7 @@ impl Devices {
 struct DeviceInput {
     lean: Vec2,
     lift: f32,
-    turn: Vector,
+    turn: Vec3,
     look: Vec2,
     grips: bool,
 }
@@ -197,7 +192,7 @@ impl DeviceInput {
                 Self {
                     lean,
                     lift: up - down,
-                    turn: [around, tilt, over],
+                    turn: Vec3::new(around, tilt, over),
                     look: Vec2::from(radial_dead_zone(pad.right, DEAD, RIM)),
                     grips: button(PadButton::South) > 0.0,
                 }
@@ -207,7 +202,7 @@ impl DeviceInput {
                 Self {
                     lean,
                     lift: button(9) - button(10),
-                    turn: [button(4) - button(5), tilt, over],
+                    turn: Vec3::new(button(4) - button(5), tilt, over),
                     look: Vec2::new(button(7) - button(6), 0.0),
                     grips: button(0) > 0.0,
                 }
@@ -216,7 +211,7 @@ impl DeviceInput {
     }
 
     fn is_anything(&self) -> bool {
-        self.lean != Vec2::ZERO || self.lift != 0.0 || self.turn != [0.0; 3] || self.grips
+        self.lean != Vec2::ZERO || self.lift != 0.0 || self.turn != Vec3::ZERO || self.grips
     }
 }
 

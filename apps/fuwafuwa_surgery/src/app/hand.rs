@@ -4,8 +4,7 @@ use crate::procedure::{BLUNTEST, Input};
 use crate::tools::Tool;
 use app_shell::direction::to_world;
 use egui::Vec2;
-use fuwafuwa::inspect::vector::{plus, scaled};
-use fuwafuwa::{Rotation, Vector};
+use fuwafuwa::{Rotation, Vec3};
 use std::f32::consts::PI;
 
 /// Speed of the hand at full deflection of a key or stick [m/s]: horizontally and vertically.
@@ -18,7 +17,7 @@ const TURN: f32 = 1.5;
 #[derive(Clone, Debug, Default)]
 pub struct HandInput {
     /// Target position for the hand [m]; its height is ignored. `None` keeps the position.
-    pub place: Option<Vector>,
+    pub place: Option<Vec3>,
     /// Horizontal velocity to the right and away from the camera; length 1 is full speed.
     pub lean: Vec2,
     /// Upward speed; 1 is full speed.
@@ -26,7 +25,7 @@ pub struct HandInput {
     /// Immediate change of height [m].
     pub wheel: f32,
     /// Turning speed about three axes: yaw to the left, pitch up, roll to the left; 1 is full speed.
-    pub turn: Vector,
+    pub turn: Vec3,
     /// Whether the forceps close.
     pub grips: bool,
 }
@@ -39,34 +38,31 @@ pub struct Hand {
     /// Edge radius of the knife [µm].
     pub dull: u16,
     /// Target position [m].
-    pub goal: Vector,
+    pub goal: Vec3,
     /// Yaw, pitch and roll [rad].
-    pub turned: Vector,
+    pub turned: Vec3,
     grips: bool,
 }
 
 impl Hand {
     /// Creates a hand at a position [m] with a tool.
-    pub fn at(goal: Vector, tool: Tool) -> Self {
+    pub fn at(goal: Vec3, tool: Tool) -> Self {
         Self {
             tool,
             dull: Input::default().dull,
             goal,
-            turned: [0.0; 3],
+            turned: Vec3::ZERO,
             grips: false,
         }
     }
 
     /// Creates a hand at a position [m] with the tool and rotation of the last input.
-    pub fn holding(goal: Vector, last: &Input) -> Self {
-        let rotation = last.rotation();
-        let [x, y, z] =
-            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| rotation.apply(axis));
-        let up = (-z[1]).clamp(-1.0, 1.0).asin();
-        let turned = [z[0].atan2(z[2]), up, x[1].atan2(y[1])];
+    pub fn holding(goal: Vec3, last: &Input) -> Self {
+        let [x, y, z] = last.rotation().axes();
+        let up = (-z.y).clamp(-1.0, 1.0).asin();
         Self {
             dull: last.dull,
-            turned,
+            turned: Vec3::new(z.x.atan2(z.z), up, x.y.atan2(y.y)),
             grips: last.grips,
             ..Self::at(goal, last.tool)
         }
@@ -76,35 +72,32 @@ impl Hand {
     pub fn take(&mut self, tool: Tool, height: f32) {
         if tool != self.tool {
             self.tool = tool;
-            self.goal[1] = height;
+            self.goal.y = height;
         }
     }
 
     /// Moves the hand for `seconds` within a room, given by two opposite corners [m]. `turn` is the azimuth
     /// of the camera [rad].
-    pub fn pass(&mut self, wishes: &HandInput, [low, high]: [Vector; 2], turn: f32, seconds: f32) {
-        if let Some([x, _, z]) = wishes.place {
-            self.goal = [x, self.goal[1], z];
+    pub fn pass(&mut self, wishes: &HandInput, [low, high]: [Vec3; 2], turn: f32, seconds: f32) {
+        if let Some(place) = wishes.place {
+            self.goal = place.with_y(self.goal.y);
         }
         let lean = wishes.lean * (1.0 / wishes.lean.length().max(1.0));
-        self.goal = plus(self.goal, to_world(Some(turn), lean * PACE * seconds));
-        self.goal[1] += wishes.wheel + RISE * wishes.lift.clamp(-1.0, 1.0) * seconds;
-        for axis in 0..3 {
-            self.goal[axis] = self.goal[axis].clamp(low[axis], high[axis]);
-        }
-        let by = scaled(wishes.turn, TURN * seconds);
-        let [around, up, over] = plus(self.turned, by);
+        self.goal += to_world(Some(turn), lean * PACE * seconds);
+        self.goal.y += wishes.wheel + RISE * wishes.lift.clamp(-1.0, 1.0) * seconds;
+        self.goal = self.goal.clamp(low, high);
+        let [around, up, over] = (self.turned + wishes.turn * (TURN * seconds)).to_array();
         // Yaw is unlimited; pitch and roll stop at half a turn, upside down.
-        self.turned = [wrapped(around), up.clamp(-PI, PI), over.clamp(-PI, PI)];
+        self.turned = Vec3::new(wrapped(around), up.clamp(-PI, PI), over.clamp(-PI, PI));
         self.grips = wishes.grips;
     }
 
     /// Returns the rotation of the tool.
     pub fn rotation(&self) -> Rotation {
-        let [around, up, over] = self.turned;
-        let over = Rotation::about([0.0, 0.0, 1.0], over);
-        let up = Rotation::about([1.0, 0.0, 0.0], up);
-        over.then(up).then(Rotation::about([0.0, 1.0, 0.0], around))
+        let [around, up, over] = self.turned.to_array();
+        let over = Rotation::about(Vec3::Z, over);
+        let up = Rotation::about(Vec3::X, up);
+        over.then(up).then(Rotation::about(Vec3::Y, around))
     }
 
     /// Returns the input for a tick.
@@ -127,10 +120,10 @@ fn wrapped(angle: f32) -> f32 {
 mod tests {
     use super::*;
 
-    const ROOM: [Vector; 2] = [[-0.1, 0.0, -0.1], [0.1, 0.2, 0.1]];
+    const ROOM: [Vec3; 2] = [Vec3::new(-0.1, 0.0, -0.1), Vec3::new(0.1, 0.2, 0.1)];
 
     fn hand() -> Hand {
-        Hand::at([0.0, 0.1, 0.0], Tool::Hook)
+        Hand::at(Vec3::new(0.0, 0.1, 0.0), Tool::Hook)
     }
 
     #[test]
@@ -143,52 +136,55 @@ mod tests {
         };
         // Seen from the patient's right (+x), away from the camera means to the patient's left (−x).
         hand.pass(&wishes, ROOM, 0.5 * PI, 0.5);
-        assert!((hand.goal[0] + 0.03).abs() < 1e-6 && hand.goal[2].abs() < 1e-6);
-        assert_eq!(hand.goal[1], 0.0);
-        let place = Some([9.0, 9.0, 0.05]);
+        assert!((hand.goal.x + 0.03).abs() < 1e-6 && hand.goal.z.abs() < 1e-6);
+        assert_eq!(hand.goal.y, 0.0);
+        let place = Some(Vec3::new(9.0, 9.0, 0.05));
         let wishes = HandInput {
             place,
             ..HandInput::default()
         };
         hand.pass(&wishes, ROOM, 0.0, 0.0);
-        assert_eq!(hand.goal, [0.1, 0.0, 0.05]);
+        assert_eq!(hand.goal, Vec3::new(0.1, 0.0, 0.05));
     }
 
     #[test]
     fn take_raises_the_hand_to_the_entry_height() {
         let mut hand = hand();
         hand.take(Tool::Hook, 0.2);
-        assert_eq!(hand.goal[1], 0.1);
+        assert_eq!(hand.goal.y, 0.1);
         hand.take(Tool::Forceps, 0.2);
-        assert_eq!((hand.goal[1], hand.input().tool), (0.2, Tool::Forceps));
+        assert_eq!((hand.goal.y, hand.input().tool), (0.2, Tool::Forceps));
     }
 
     #[test]
     fn yaw_rotates_about_the_vertical_axis() {
         let mut hand = hand();
         let wishes = HandInput {
-            turn: [1.0, 0.0, 0.0],
+            turn: Vec3::X,
             ..HandInput::default()
         };
         hand.pass(&wishes, ROOM, 0.0, 0.5 * PI / TURN);
-        let [x, y, z] = hand.input().rotation().apply([1.0, 0.0, 0.0]);
-        assert!(x.abs() < 1e-3 && y.abs() < 1e-3 && (z + 1.0).abs() < 1e-3);
+        let turned = hand.input().rotation().apply(Vec3::X);
+        assert!(turned.abs_diff_eq(Vec3::NEG_Z, 1e-3), "{turned}");
     }
 
     #[test]
     fn holding_restores_rotation_and_sharpness() {
-        let turned = [[0.3, -0.8, 0.5], [-2.9, 1.2, 3.0], [0.0; 3]];
+        let turned = [
+            Vec3::new(0.3, -0.8, 0.5),
+            Vec3::new(-2.9, 1.2, 3.0),
+            Vec3::ZERO,
+        ];
         for turned in turned {
             let before = Hand {
                 turned,
                 dull: 7,
-                ..Hand::at([0.0; 3], Tool::default())
+                ..Hand::at(Vec3::ZERO, Tool::default())
             };
             let after = Hand::holding(before.goal, &before.input());
-            for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] {
+            for axis in [Vec3::X, Vec3::Y] {
                 let [was, is] = [&before, &after].map(|hand| hand.rotation().apply(axis));
-                let apart = was.iter().zip(is).map(|(a, b)| (a - b).abs());
-                assert!(apart.fold(0.0, f32::max) < 1e-3, "{was:?} {is:?}");
+                assert!(was.abs_diff_eq(is, 1e-3), "{was} {is}");
             }
             assert_eq!(after.dull, 7);
         }

@@ -3,7 +3,6 @@
 use super::session::Session;
 use app_shell::{SpaceStage, View};
 use egui::{Align2, Color32, FontId, Painter, Rect, Stroke, Ui, vec2};
-use fuwafuwa::inspect::vector::{length, plus, scaled};
 use fuwafuwa_render::palette::rgb;
 use fuwafuwa_render::{Frame, Palette, Prop};
 
@@ -62,12 +61,12 @@ pub fn show(
 /// Draws an arrow for the force of the tissue on the tool, with its magnitude.
 fn draw_force(painter: &Painter, session: &Session, view: &View) {
     let sample = session.last();
-    let newtons = length(sample.force);
+    let newtons = sample.force.length();
     if newtons < WEAK {
         return;
     }
     let metres = view.space.map_or(1.0, |camera| camera.distance) * LONG;
-    let tip = plus(sample.at, scaled(sample.force, metres));
+    let tip = sample.at + sample.force * metres;
     let (from, to) = (view.to_screen(sample.at), view.to_screen(tip));
     let way = to - from;
     for (wide, colour) in [(9.0, Color32::from_white_alpha(200)), (5.0, RED)] {

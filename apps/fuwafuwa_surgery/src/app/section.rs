@@ -4,8 +4,7 @@ use super::pictures::RED;
 use crate::procedure::Procedure;
 use crate::slices::{Cut, Slice};
 use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
-use fuwafuwa::Vector;
-use fuwafuwa::inspect::vector::minus;
+use fuwafuwa::{Vec2, Vec3};
 use fuwafuwa_render::{Colour, Palette};
 
 /// Background of a slice.
@@ -30,7 +29,7 @@ pub enum Shown {
 /// Three orthogonal slices.
 pub struct Slices {
     /// Point through which all slices pass [m].
-    through: Vector,
+    through: Vec3,
     /// Whether that point follows the tool.
     pub follows: bool,
     /// Quantity shown by colours.
@@ -42,7 +41,7 @@ pub struct Slices {
 
 impl Slices {
     /// Creates slices through a point [m].
-    pub fn new(through: Vector) -> Self {
+    pub fn new(through: Vec3) -> Self {
         Self {
             through,
             follows: true,
@@ -70,13 +69,7 @@ impl Slices {
 
     /// Draws the slices below each other. Pressing on a slice moves the planes of the other two to that
     /// point.
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        procedure: &Procedure,
-        seen: [Vector; 2],
-        colours: &Palette,
-    ) {
+    pub fn show(&mut self, ui: &mut Ui, procedure: &Procedure, seen: [Vec3; 2], colours: &Palette) {
         let all = ui.available_size();
         let height = (all.y - 2.0 * ui.spacing().item_spacing.y) / 3.0;
         for (number, cut) in Cut::ALL.into_iter().enumerate() {
@@ -125,7 +118,7 @@ impl Slices {
             painter.text(at, align, words, FontId::proportional(size), PALE);
         };
         let (rect, name) = (page.rect.shrink(7.0), page.cut.name());
-        let place = minus(self.through, procedure.table().corner);
+        let place = self.through - procedure.table().corner;
         let place = place_in_words(page.cut, procedure.case().patient_at(place));
         let title = format!("{name}  {place}");
         text(rect.left_bottom(), Align2::LEFT_BOTTOM, title, 16.0);
@@ -169,38 +162,38 @@ struct Page {
     rect: Rect,
     cut: Cut,
     /// Page coordinates at the centre of `rect` [m], and scale [points/m].
-    middle: [f32; 2],
+    middle: Vec2,
     scale: f32,
 }
 
 impl Page {
-    fn new(rect: Rect, cut: Cut, [low, high]: [Vector; 2]) -> Self {
+    fn new(rect: Rect, cut: Cut, [low, high]: [Vec3; 2]) -> Self {
         let [a, b] = [cut.on_page(low), cut.on_page(high)];
-        let size = [0, 1].map(|k: usize| (b[k] - a[k]).abs());
+        let size = (b - a).abs();
         let room = rect.shrink2(ROOM);
         Self {
             rect,
             cut,
-            middle: [0, 1].map(|k: usize| 0.5 * (a[k] + b[k])),
-            scale: (room.width() / size[0]).min(room.height() / size[1]),
+            middle: 0.5 * (a + b),
+            scale: (room.width() / size.x).min(room.height() / size.y),
         }
     }
 
-    fn at(&self, [x, y]: [f32; 2]) -> Pos2 {
-        let [u, v] = [x - self.middle[0], y - self.middle[1]];
+    fn at(&self, page: Vec2) -> Pos2 {
+        let way = self.scale * (page - self.middle);
         let centre = self.rect.center();
-        pos2(centre.x + self.scale * u, centre.y - self.scale * v)
+        pos2(centre.x + way.x, centre.y - way.y)
     }
 
     /// Sets two coordinates of `place` to those of a screen position. The coordinate perpendicular to the
     /// slice is kept.
-    fn point(&self, at: Pos2, place: &mut Vector) {
+    fn point(&self, at: Pos2, place: &mut Vec3) {
         let way = (at - self.rect.center()) / self.scale;
-        let [u, v] = [self.middle[0] + way.x, self.middle[1] - way.y];
+        let [u, v] = [self.middle.x + way.x, self.middle.y - way.y];
         match self.cut {
-            Cut::Axial => (place[0], place[2]) = (u, -v),
-            Cut::Coronal => (place[0], place[1]) = (u, v),
-            Cut::Sagittal => (place[2], place[1]) = (u, v),
+            Cut::Axial => (place.x, place.z) = (u, -v),
+            Cut::Coronal => (place.x, place.y) = (u, v),
+            Cut::Sagittal => (place.z, place.y) = (u, v),
         }
     }
 }
@@ -211,21 +204,17 @@ mod tests {
 
     #[test]
     fn point_inverts_the_page_mapping() {
-        let seen = [[-0.05, 0.0, -0.07], [0.05, 0.12, 0.07]];
+        let seen = [Vec3::new(-0.05, 0.0, -0.07), Vec3::new(0.05, 0.12, 0.07)];
         let rect = Rect::from_min_size(pos2(20.0, 30.0), vec2(300.0, 200.0));
         for cut in Cut::ALL {
             let page = Page::new(rect, cut, seen);
-            let mut place = [0.01, 0.02, 0.03];
-            let at = [0.011, 0.05, -0.02];
+            let before = Vec3::new(0.01, 0.02, 0.03);
+            let mut place = before;
+            let at = Vec3::new(0.011, 0.05, -0.02);
             page.point(page.at(cut.on_page(at)), &mut place);
-            for axis in 0..3 {
-                let expected = if axis == cut.axis() {
-                    [0.01, 0.02, 0.03][axis]
-                } else {
-                    at[axis]
-                };
-                assert!((place[axis] - expected).abs() < 1e-5, "{cut:?} {place:?}");
-            }
+            let mut expected = at;
+            expected[cut.axis()] = before[cut.axis()];
+            assert!(place.abs_diff_eq(expected, 1e-5), "{cut:?} {place:?}");
         }
         assert_eq!(place_in_words(Cut::Sagittal, [-12.4, 1.0, 2.0]), "L 12 mm");
         assert_eq!(place_in_words(Cut::Coronal, [0.0, 3.0, 0.0]), "A 3 mm");

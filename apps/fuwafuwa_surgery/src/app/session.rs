@@ -5,8 +5,7 @@ use crate::measures::{PieceVolume, Sample, parts};
 use crate::procedure::Procedure;
 use crate::record::{Playback, Recording};
 use app_shell::{CameraRig, Clock, Pace};
-use fuwafuwa::Vector;
-use fuwafuwa::inspect::vector::{minus, plus};
+use fuwafuwa::Vec3;
 use std::sync::Arc;
 
 /// Ticks between two measurements of the volumes of the pieces.
@@ -31,9 +30,9 @@ pub struct Session {
     /// Camera of the main view.
     pub camera: CameraRig,
     /// Region of the main view: low and high corner [m].
-    pub seen: [Vector; 2],
+    pub seen: [Vec3; 2],
     /// Region of the slices: low and high corner [m].
-    pub sliced: [Vector; 2],
+    pub sliced: [Vec3; 2],
     /// Whether the procedure is paused.
     pub is_paused: bool,
     /// Pieces as of the last measurement.
@@ -195,8 +194,10 @@ impl Session {
 }
 
 /// Returns a box enlarged by fractions of its size, given for the sides, below and above.
-fn around([low, high]: [Vector; 2], [sides, below, above]: [f32; 3]) -> [Vector; 2] {
-    let share = |k: [f32; 3]| [0, 1, 2].map(|axis: usize| k[axis] * (high[axis] - low[axis]));
-    let least = minus(low, share([sides, below, sides]));
-    [least, plus(high, share([sides, above, sides]))]
+fn around([low, high]: [Vec3; 2], [sides, below, above]: [f32; 3]) -> [Vec3; 2] {
+    let size = high - low;
+    [
+        low - Vec3::new(sides, below, sides) * size,
+        high + Vec3::new(sides, above, sides) * size,
+    ]
 }
