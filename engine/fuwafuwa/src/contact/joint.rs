@@ -133,9 +133,9 @@ impl<D: Dim> JointAnchor<D> {
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointKind {
-    /// Pin: keeps the anchors together and lets them rotate. If an anchor on a soft body is pinned to a rigid
-    /// body or to a point of the world, the latter anchor moves to the soft body's anchor when the joint is
-    /// added. So nothing jumps. In all other cases, anchors that are apart are drawn together.
+    /// Pin: keeps the anchors together and lets them rotate. If one anchor is on a soft body and the other is
+    /// not, the other anchor moves to the soft body's anchor when the joint is added. So nothing jumps. In
+    /// all other cases, anchors that are apart are drawn together.
     Pin,
     /// Spring with a rest length.
     Spring {

@@ -29,8 +29,8 @@ const SCATTER: f32 = 0.4;
 pub struct BreakableNode {
     /// Mask of the octants that share the node.
     pub group: u8,
-    /// Mask of the octants whose voxel, separated alone from the others at this node, would become a crumb or
-    /// hang by one face.
+    /// Mask of octants: each has a voxel that would become a crumb, or hang by one face, if it alone were
+    /// separated from the node.
     pub crumbs: u8,
     /// Number of the weakest material around the node.
     pub material: u8,

@@ -7,12 +7,12 @@ use crate::math::row::Row;
 use fearless_simd::prelude::*;
 use std::ops::Range;
 
-/// 1.5 · 2²³. All single-precision numbers within 2²² of this value are integers, so adding a smaller number
+/// 1.5 · 2²³. Around this value, single precision represents only integers. So adding a number of at most 2²²
 /// to it rounds that number.
 const LARGE: f32 = 12_582_912.0;
 
-/// Points sorted into the bins of a periodic grid. Points whose distance is a multiple of the grid's extent
-/// share a bin. So a few bins cover coordinates of up to two million bin widths.
+/// Points sorted into the bins of a periodic grid. Two points share a bin if they are a multiple of the
+/// grid's extent apart. So a few bins cover coordinates of up to two million bin widths.
 #[derive(Clone, Debug)]
 pub struct Bins {
     /// Inverse width of a bin [1/m].

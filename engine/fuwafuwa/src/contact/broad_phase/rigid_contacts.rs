@@ -45,7 +45,7 @@ pub struct Passed {
 pub struct RigidTouches {
     /// Points, ascending by bodies and key.
     pub list: Vec<RigidTouch>,
-    /// Contacts of all substeps of this tick so far, for the events.
+    /// Contacts of the past substeps of this tick, for the events.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub passed: Vec<Passed>,
 }

@@ -6,9 +6,9 @@ use crate::foundation::hash::hash_state;
 use crate::foundation::ids::IndexVec;
 use crate::foundation::threads::{self, CHUNK_SIZE};
 
-/// Search margin of contacts [voxels]. A pair is found before the spheres touch if their gap shrinks by at
-/// most (0.3 − CLOSE) / AHEAD, a sixth of a voxel, in a substep. This speed is a quarter of the wave speed.
-/// Faster spheres overlap first and are then pushed out.
+/// Search margin of contacts [voxels]. A pair is found before its spheres touch if the gap shrinks by at most
+/// a sixth of a voxel in a substep: (0.3 − CLOSE) / AHEAD. This speed is a quarter of the wave speed. Faster
+/// spheres overlap first and are then pushed out.
 pub const MARGIN: f32 = 0.3;
 
 /// Pair of spheres that may touch.

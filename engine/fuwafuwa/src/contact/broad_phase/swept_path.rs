@@ -83,8 +83,8 @@ impl SweptSphere {
         let apart = self.path.from - other.path.from;
         let apart = apart + closing * span.middle;
         let reach = widened(self.radius + other.radius);
-        // Rejects pairs that are too far apart to meet, whatever the direction of motion: most pairs. The
-        // comparison is false for NaN.
+        // Rejects most pairs: those too far apart to meet in any direction of motion. The comparison is false
+        // for NaN.
         let furthest = reach + self.sweep + other.sweep;
         let is_near = apart.dot(apart) <= furthest * furthest;
         if !is_near || self.asleep && other.asleep {

@@ -114,8 +114,8 @@ impl JointState {
         Ok(())
     }
 
-    /// Moves an anchor of a rigid body or of the world to the soft body's anchor that it is pinned to, so
-    /// that nothing jumps at the first step.
+    /// If a pin connects a soft body to a rigid body or to the world, moves the anchor of the latter to the
+    /// soft body's anchor. So nothing jumps at the first step.
     fn meet_soft_ends<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
         let is_soft = self.attached.each_ref().map(AttachedAnchor::is_soft);
         for (own, other) in [(0, 1), (1, 0)] {

@@ -19,7 +19,7 @@ impl<D: Dim> VoxelGrid<D> {
     pub fn ball(n: usize, diameter: f32) -> Result<Self, Error> {
         let centre = n as f32 * 0.5;
         // The minimum of 0.9 voxels serves balls one or two voxels across. The voxels of a 2 × 2 × 2 grid are
-        // 0.87 from its centre, so all of them are solid. Balls from three voxels on have a radius of at least 1.
+        // 0.87 from its centre, so all of them are solid. Larger balls have a radius of at least 1.
         let radius = (centre - 0.5).max(0.9);
         Self::from_fn(Self::cube_size(n), diameter / n as f32, |at| {
             let squared: f32 = at[..D::N]
