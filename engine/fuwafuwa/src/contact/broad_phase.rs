@@ -1,9 +1,10 @@
 //! Broad phase: finds pairs that may touch, ahead of time, with a margin for their motion.
 //!
 //! All nodes can touch rigid shapes (`node_pairs`). Soft bodies touch each other through *contact spheres*
-//! (`contact_spheres`). Every surface element is of level 0, so one ball of a voxel's width at its centre is
-//! enough. `sphere_pairs` finds the spheres that may meet soon. `embedded_spheres` finds spheres that were
-//! forced into another piece. Objects that move farther than their margin are searched again.
+//! (`contact_spheres`). Every surface element is one voxel wide, so a single ball of that width at the centre
+//! of the element is enough. `sphere_pairs` finds the spheres that may meet soon. `embedded_spheres` finds
+//! spheres that were forced into another piece. If an object moves farther than its margin, its pairs are
+//! searched again.
 
 mod bins;
 mod contact_sphere;
@@ -38,14 +39,14 @@ pub use supported_bodies::{
     bounds_of, leaning_on_body, leaning_on_pieces, leaning_on_rigid, sleeping_in,
 };
 
-/// Speed of a touching object above which a sleeper wakes [m/s]: five times the sleep speed threshold. With
-/// less, a heap would keep itself awake. Between spheres, the distance moved in the last substep counts
-/// instead of the velocity. The velocity does not yet contain the contacts, and deep in a heap it can be as
-/// high for a resting body.
+/// Speed of a touching object above which a sleeper wakes [m/s]: five times the sleep speed threshold. With a
+/// lower value, a heap would keep itself awake. Contact spheres are tested by their mean speed in the last
+/// substep. Their present velocity does not yet include the contacts, so it can exceed this limit in a heap
+/// at rest.
 pub const WAKE_SPEED: f32 = 0.15;
 
-/// Objects that may touch. A new tick needs only the impulses, the `met_in_front` flags and the order of the
-/// spheres from the last one; it rebuilds everything else.
+/// Objects that may touch. A new tick takes only the impulses, the `met_in_front` flags and the order of the
+/// spheres from the last tick, and rebuilds everything else.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Nearby {
@@ -60,9 +61,10 @@ pub struct Nearby {
     /// Spheres embedded in another piece.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub captives: Captives,
-    /// Remaining time of the tick [s], and whether embedded spheres were searched in this tick.
+    /// Remaining time of the tick [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     left: f32,
+    /// Whether embedded spheres were searched in this tick.
     #[cfg_attr(feature = "serde", serde(skip))]
     knows_captives: bool,
 }
@@ -72,8 +74,8 @@ hash_state! {
 }
 
 impl Nearby {
-    /// Starts a tick of `duration` [s]: clears the sums of the last tick. Bodies may have changed in any way
-    /// since then.
+    /// Starts a tick of `duration` [s]: clears the impulse sums of the last tick. The caller may have changed
+    /// the bodies in any way between the two ticks.
     pub fn start_tick<D: Dim>(&mut self, bodies: &SoftBodies<D>, duration: f32) {
         self.nodes.start_tick();
         self.rigids.start_tick();
@@ -86,7 +88,7 @@ impl Nearby {
         (self.left, self.knows_captives) = (duration, false);
     }
 
-    /// Updates the lists after a body was torn.
+    /// Updates nodes, contact spheres and embedded spheres after a tear of a body.
     pub fn tear<D: Dim>(&mut self, slot: BodySlot, body: &SoftBody<D>, changes: &Changes) {
         self.nodes.tear(slot, &changes.nodes);
         let changed = &mut self.pairs.changed;
@@ -94,7 +96,7 @@ impl Nearby {
         self.captives.tear(&self.spheres);
     }
 
-    /// Removes a body; its slot may be reused.
+    /// Removes a soft body from all lists; its slot may be reused.
     pub fn remove_body(&mut self, slot: BodySlot) {
         let is_of_it = |&sphere: &SphereId| self.spheres.body_of(sphere) == slot;
         self.pairs
@@ -104,7 +106,7 @@ impl Nearby {
         self.spheres.remove_body(slot);
     }
 
-    /// Removes `elements` of a body, given in ascending order, and their nodes.
+    /// Removes `elements` of a body, given in ascending order, and their nodes from all lists.
     pub fn remove_elements<D: Dim>(
         &mut self,
         slot: BodySlot,
@@ -120,8 +122,8 @@ impl Nearby {
         nodes.retain(|pair| pair.body != slot || is_there(pair.node));
     }
 
-    /// Discards pairs from a file that refer to nothing in the world. All other data may stay as read,
-    /// because a new tick rebuilds it.
+    /// After a world was read from a file, discards pairs of objects that do not exist. Other data needs no
+    /// check, because a new tick rebuilds it.
     #[cfg(feature = "serde")]
     pub fn keep_known<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
         self.nodes.keep_known(bodies, rigids);
@@ -139,19 +141,21 @@ impl Nearby {
         nodes.chain(pairs).for_each(Impulse::flatten::<D>);
     }
 
-    /// Removes a rigid body.
+    /// Removes all pairs and contact points of a rigid body.
     pub fn remove_rigid(&mut self, slot: RigidSlot) {
         self.nodes.list.retain(|pair| pair.rigid != slot);
         self.rigids.remove(slot);
     }
 
-    /// Updates the lists after pieces woke, given by body and number in ascending order.
+    /// Marks the nodes and contact spheres of woken pieces for a new search. `pieces` holds body and piece
+    /// number, ascending.
     pub fn wake<D: Dim>(&mut self, pieces: &[(BodySlot, PieceId)], bodies: &SoftBodies<D>) {
         self.nodes.wake(pieces, bodies);
         self.spheres.wake(pieces, &mut self.pairs.changed);
     }
 
-    /// Accounts for a substep of `duration` [s] in which no node moved farther than `distance` [m].
+    /// Reduces the remaining time and the margins by a substep of `duration` [s] in which no node moved
+    /// farther than `distance` [m].
     pub fn pass(&mut self, duration: f32, distance: f32) {
         self.left -= duration;
         self.nodes.pass(distance);
@@ -175,7 +179,8 @@ impl Nearby {
         self.spheres.take_velocities(bodies);
     }
 
-    /// Iterates over pieces that press on something, by body and number, possibly repeated.
+    /// Iterates over the pieces with a contact that has a normal impulse, as body and piece number, possibly
+    /// repeated.
     pub fn pressed<D: Dim>(
         &self,
         bodies: &SoftBodies<D>,

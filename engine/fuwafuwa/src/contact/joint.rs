@@ -1,8 +1,8 @@
 //! Joints: pins, springs and ropes between soft bodies, rigid bodies and points of the world.
 //!
-//! Each joint connects two *anchors*. In every substep it applies the impulse of its kind, solved for all
-//! axes together. As with contacts, the correction of position errors adds no velocity [Catto 2023]. Springs
-//! are integrated implicitly and are stable at any stiffness.
+//! Each joint connects two *anchors*. In every substep a joint applies an impulse, solved for all axes
+//! together. As with contacts, the correction of position errors adds no velocity [Catto 2023]. Springs are
+//! integrated implicitly and are stable at any stiffness.
 
 mod attached_anchor;
 mod joint_end;
@@ -40,7 +40,7 @@ pub(crate) use joint_state::{JointState, Joints, relax, solve};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Joint<D: Dim> {
-    /// Attachment points, on two different objects, at least one of them a body.
+    /// Attachment points, on two different objects. At least one of these objects is a soft or rigid body.
     pub anchors: [JointAnchor<D>; 2],
     /// Behaviour: pin, spring or rope.
     pub kind: JointKind,
@@ -137,9 +137,9 @@ impl<D: Dim> JointAnchor<D> {
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointKind {
-    /// Pin: keeps the anchors together and lets them rotate. When a soft anchor is pinned to a rigid body or
-    /// to a point of the world, the other anchor moves to it, so that nothing jumps. In all other cases,
-    /// anchors that are apart are drawn together.
+    /// Pin: keeps the anchors together and lets them rotate. If one anchor is on a soft body and the other is
+    /// not, the other anchor moves to the soft body's anchor when the joint is added. So nothing jumps. In
+    /// all other cases, anchors that are apart are drawn together.
     Pin,
     /// Spring with a rest length.
     Spring {

@@ -28,17 +28,18 @@ use rigid_contact_rows::{find_free, find_hands};
 use solver_velocities::Motion;
 use std::collections::BTreeSet;
 
-/// A crumb is behind a contact sphere of a surface if the cosine of its direction from the sphere, measured
-/// against the inward normal, exceeds this limit. A smaller value would include crumbs that lie on the body.
-/// In the hollow between four spheres, beside a corner of a 3D body, the cosine is 0.17; pressed in by a
-/// sixth of a voxel it is 0.3.
+/// Cosine above which a crumb is behind a contact sphere of a surface: cosine of the angle between the inward
+/// normal and the direction from the sphere to the crumb. A smaller limit would include crumbs that lie on
+/// the body. A crumb in the hollow between four spheres, beside a corner of a 3D body, has a cosine of 0.17.
+/// If the crumb is pressed in by a sixth of a voxel, its cosine is 0.3.
 const BEHIND: f32 = 0.3;
-/// Minimum length of a sphere's outward vector, as a share of its radius, for its direction to be used. At an
-/// undeformed flat face the vector is as long as the radius, so elements pressed to a fifth are excluded.
+/// Minimum length of a sphere's outward vector, as a share of the sphere's radius. The direction of a shorter
+/// vector is not used. At an undeformed flat face the vector is as long as the radius, so the limit excludes
+/// elements pressed to a fifth of their height.
 const SHORTEST_WAY_OUT: f32 = 0.2;
-/// Gaps below which a sleeper wakes: between a node and a rigid body, in voxels, and between two spheres, in
-/// sums of their radii.
+/// Gap between a node and a rigid body below which a sleeper wakes [voxels].
 const WAKING_NODE: f32 = 2.0 * CLOSE;
+/// Gap between two contact spheres below which a sleeper wakes, as a share of the sum of the radii.
 const WAKING_SPHERE: f32 = CLOSE;
 
 /// Contacts of one substep.
@@ -111,7 +112,8 @@ impl Contacts {
                     continue;
                 }
                 let (at, velocity) = (body.positions()[node], body.velocities()[node]);
-                // Most nodes cannot reach a wall in this substep, in any direction.
+                // Skips nodes that are too slow to reach a resting rigid shape in this substep, in any
+                // direction: most nodes.
                 let reachable = (pair.clear - travel).max(0.0) / (AHEAD * duration);
                 if !moves && inner::<D>(velocity, velocity) < reachable * reachable {
                     continue;
@@ -127,7 +129,7 @@ impl Contacts {
                 let approach = inner::<D>(relative, normal);
                 if !is_close(gap, approach, size, duration) {
                     pair.impulse.release();
-                    // With a small margin for rounding.
+                    // Subtracts slightly more than the gap of an active contact, to allow for rounding.
                     pair.clear = travel + gap - 1.1 * CLOSE * size;
                     continue;
                 }
@@ -146,7 +148,8 @@ impl Contacts {
                     }
                 }
                 let inverse_mass = body.inverse_masses()[node] + rigid.yields_near(at.xyz());
-                // A sleeping node is a wall for dynamic rigid bodies; all others have no contact with it.
+                // A sleeping node acts as a fixed obstacle for a dynamic rigid body. Skips its contacts with
+                // all other rigid bodies.
                 if body.inverse_masses()[node] == 0.0 && !rigid.is_dynamic() {
                     continue;
                 }
@@ -187,7 +190,7 @@ impl Contacts {
         let layers = |sphere: &ContactSphere| bodies.at(sphere.body).layers();
         let meet = |both: [&ContactSphere; 2]| layers(both[0]).meet(layers(both[1]));
         let (all, captives) = (&nearby.spheres, &nearby.captives);
-        // A local slice, because access through the table would load its pointer again for each pair.
+        // Borrows the centres as a slice: indexing the `IndexVec` would load its pointer again for each pair.
         let centres = all.centres.as_slice();
         let widths = bodies.iter().map(|body| body.grid().voxel_size());
         let widest = widths.fold(0.0, f32::max);
@@ -203,7 +206,8 @@ impl Contacts {
                     squared > furthest * furthest
                 };
                 let both = pair.both(&all.list);
-                // Most pairs are too far apart, so the rest of their data is not read.
+                // Skips pairs that are too far apart, which are most pairs, before any more of their data is
+                // read.
                 if is_beyond(widest) || is_beyond(both[0].radius + both[1].radius) {
                     pair.met_in_front = false;
                     pair.impulse.release();
@@ -216,7 +220,8 @@ impl Contacts {
                 }
                 let touching = both[0].radius + both[1].radius;
                 if captives.is_inside(pair.spheres, both) {
-                    // Counts as a meeting from outside, so that a sphere that escapes is not pulled in again.
+                    // Treats an embedded sphere as having met the surface from outside. So once the sphere
+                    // has escaped, contacts push it away and do not pull it in again.
                     pair.met_in_front = true;
                     pair.impulse.release();
                     continue;
@@ -297,8 +302,8 @@ impl Contacts {
         for row in &self.free {
             row.start(rigids, duration);
         }
-        // Solved only once, before the other contacts: a sphere that is stuck inside must not force its way
-        // out.
+        // Escape contacts are solved only once, and before all other contacts. So a sphere that is stuck
+        // inside a piece does not force its way out.
         for exit in &self.exits {
             exit.solve::<D>(motion);
         }
@@ -381,7 +386,7 @@ impl Contacts {
 }
 
 impl Hits {
-    /// Adds more hits.
+    /// Adds hits; keeps both lists sorted and without duplicates.
     pub fn add(&mut self, pieces: Vec<Hit>, rigids: Vec<RigidSlot>) {
         if !pieces.is_empty() || !rigids.is_empty() {
             self.pieces.extend(pieces);
@@ -398,8 +403,10 @@ impl Hits {
     }
 }
 
-/// If a crumb is behind a sphere of a surface, returns the outward normal of the surface, with the sign that
-/// pushes the first sphere, and the negative distance of the crumb along it [m].
+/// If one sphere is a crumb behind the surface sphere of the other, returns a unit normal and a distance;
+/// otherwise `None`. The normal points out of the surface, or into it if the crumb is the second sphere, so
+/// that it always pushes the first sphere. The distance of the crumb along the outward normal is negative
+/// [m].
 fn behind_surface<D: Dim>(
     bodies: &SoftBodies<D>,
     [a, b]: [&ContactSphere; 2],

@@ -16,9 +16,11 @@ use std::marker::PhantomData;
 /// Cutting segment in 2D, or cutting parallelogram in 3D.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Blade<D: Dim> {
-    /// Corner [m], and the two edges that begin there [m]. In 2D the second edge is the third axis.
+    /// Corner [m].
     corner: Vec3,
+    /// First edge from the corner [m].
     across: Vec3,
+    /// Second edge from the corner [m]; in 2D the unit vector of the third axis.
     along: Vec3,
     dim: PhantomData<D>,
 }
@@ -87,8 +89,8 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Opens faces, each given by the voxel on its low side and its axis. Returns the positions at which
-    /// nodes were released [m], and the changes.
+    /// Opens faces between voxels, each given by the voxel on its low side and its axis. Returns the
+    /// positions of the released nodes [m], and the changes of the body.
     pub(crate) fn open(&mut self, opened: &BTreeSet<(Point, usize)>) -> (Vec<Vec3>, Changes) {
         let mut points: BTreeSet<Point> = BTreeSet::new();
         for &(voxel, axis) in opened {
@@ -153,8 +155,8 @@ impl<D: Dim> SoftBody<D> {
         ))
     }
 
-    /// Returns masks of the octants to release at a point so that the given faces open: one mask for each
-    /// side that separates, none if the faces are open already.
+    /// Returns the releases at a lattice point that open the given faces, as masks of octants: one mask for
+    /// each side that separates. Returns none if the faces are open already.
     fn sides(&self, at: Point, opened: &BTreeSet<(Point, usize)>) -> Vec<u8> {
         let around = self.connectivity().around(at);
         let mut groups = around.middle();
@@ -180,7 +182,8 @@ impl<D: Dim> SoftBody<D> {
     }
 }
 
-/// Returns a corner of the face of a voxel on the positive side of `axis`; `corner` counts from 0.
+/// Returns a lattice point: corner number `corner`, from 0, of the face on the high side of a voxel along
+/// `axis`.
 fn corner_of_face<D: Dim>(voxel: Point, axis: usize, corner: usize) -> Point {
     let mut at = voxel;
     at[axis] += 1;

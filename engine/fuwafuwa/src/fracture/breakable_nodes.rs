@@ -19,8 +19,9 @@ use crate::topology::mesh::{Mesh, Node};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Largest random increase of the strength of a smooth surface, as a share of it. The scatter keeps a row of
-/// equally loaded nodes from failing all at once. A crack tip is a single node and needs no scatter.
+/// Largest random increase of the strength of a smooth surface, relative to that strength. The scatter
+/// prevents a row of equally loaded nodes from failing all at once. A crack tip is a single node and needs no
+/// scatter.
 const SCATTER: f32 = 0.4;
 
 /// Node at which a crack can start or continue.
@@ -28,13 +29,14 @@ const SCATTER: f32 = 0.4;
 pub struct BreakableNode {
     /// Mask of the octants that share the node.
     pub group: u8,
-    /// Octants with a voxel that would become a crumb, or hang by one face, if it were separated alone.
+    /// Mask of octants: each has a voxel that would become a crumb, or hang by one face, if it alone were
+    /// separated from the node.
     pub crumbs: u8,
     /// Number of the weakest material around the node.
     pub material: u8,
     /// Tension that the node withstands [Pa].
     pub threshold: f32,
-    /// Index of its list of cuts.
+    /// Index of the node's list of cuts in [`BreakableNodes`].
     cuts: u32,
 }
 
@@ -43,15 +45,16 @@ pub struct BreakableNode {
 pub struct NodeCut {
     /// Axis across the opened faces.
     pub axis: u8,
-    /// Octants that are separated, on the far side of the axis.
+    /// Mask of the octants on the far side of the opened faces: the voxels that the cut separates from the
+    /// others.
     pub side: u8,
     /// Number of opened faces.
     pub faces: u8,
-    /// Octants with a voxel that would be alone on its side of the cut.
+    /// Mask of the octants whose voxel would be alone on its side of the cut.
     pub single_voxel_octants: u8,
 }
 
-/// For each axis, the octants on its near side with a closed face across the axis.
+/// For each axis, mask of the octants on the near side of a closed face across that axis.
 type Closed = [u8; 3];
 
 /// Breakable nodes of a body.
@@ -116,7 +119,7 @@ impl BreakableNodes {
             .iter_mut()
             .zip(faces)
             .for_each(|(closed, faces)| *closed &= faces);
-        // At a crack tip, some voxels still share a node but no longer a face.
+        // At a crack tip, some voxels of the group share the node, but the face between them is open.
         let is_tip = closed != faces;
         let octants = (0..D::CORNERS).filter(|octant| group >> octant & 1 == 1);
         let numbers = octants.map(|octant| grid.material(voxel_around::<D>(at, octant)));
@@ -157,8 +160,8 @@ impl BreakableNodes {
     }
 }
 
-/// Returns all cuts that divide the group by opening all, half or a quarter of the closed faces across one
-/// axis.
+/// Returns all cuts that divide the group `group` by opening all, half or a quarter of its closed faces
+/// across one axis.
 fn cuts<D: Dim>(closed: Closed, group: u8) -> impl Iterator<Item = NodeCut> {
     (0..D::N).flat_map(move |axis| {
         let others = 3usize.pow(D::N as u32 - 1);
@@ -181,8 +184,8 @@ fn cuts<D: Dim>(closed: Closed, group: u8) -> impl Iterator<Item = NodeCut> {
     })
 }
 
-/// Returns the octants that the ternary digits of `choice` select, one digit for each axis other than `axis`:
-/// 0 = both sides, 1 = near side, 2 = far side.
+/// Returns the mask of the octants that `choice` selects. Each ternary digit of `choice` stands for one axis
+/// other than `axis`: 0 = both sides of that axis, 1 = near side, 2 = far side.
 fn part_of<D: Dim>(axis: usize, mut choice: usize) -> u8 {
     let mut part = D::ALL_CORNERS;
     for other in (0..D::N).filter(|&other| other != axis) {
@@ -196,8 +199,8 @@ fn part_of<D: Dim>(axis: usize, mut choice: usize) -> u8 {
     part
 }
 
-/// Returns the octants that stay connected to the far sides of the opened faces; `None` if a near side is
-/// among them, because the cut then divides nothing.
+/// Returns the octants that stay connected to the far side of any opened face. Returns `None` if the near
+/// side of an opened face is among them, because the cut then divides nothing.
 fn side_of<D: Dim>(mut closed: Closed, axis: usize, opened: u8) -> Option<u8> {
     closed[axis] &= !opened;
     let near = opened;
@@ -218,8 +221,8 @@ fn side_of<D: Dim>(mut closed: Closed, axis: usize, opened: u8) -> Option<u8> {
     }
 }
 
-/// Returns whether the voxel of an octant would become a crumb or hang by one face: at most one of its faces
-/// away from the point is closed.
+/// Returns whether the voxel of an octant would become a crumb or hang by one face if it were separated at
+/// the point. This is so if, away from the point, at most one of its faces is closed.
 fn would_crumble<D: Dim>(around: &PointNeighbourhood<D>, octant: usize) -> bool {
     let is_held = |axis: &usize| around.is_far_face_closed(octant, *axis);
     (0..D::N).filter(is_held).count() <= 1
@@ -242,7 +245,7 @@ mod tests {
     use crate::foundation::dim::{Dim2, Dim3};
     use crate::soft_body::SoftBody;
 
-    /// After any releases, the updated breakable nodes must match a search from scratch.
+    /// Checks that breakable nodes updated after random releases equal those of a search from scratch.
     fn check_upkeep<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
         let mut body = SoftBody::new(grid, &[Material::default()]).expect("the material is valid");

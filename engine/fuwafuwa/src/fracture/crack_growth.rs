@@ -9,6 +9,7 @@
 //!       A │ B
 //! ```
 //!
+//! T is the pull across the cut, with the part Tₙ along the normal n of the cut and the part Tₛ in its plane.
 //! The tension σ is compared with the strength at a smooth surface, and with the toughness at the tip of a
 //! crack. A node fails if it is overloaded for some milliseconds.
 
@@ -40,23 +41,23 @@ pub struct Failure {
     pub energy: f32,
 }
 
-/// Time until a node fails under 1.5 times its threshold tension [s]. If shorter, impacts shatter the
-/// surface; if longer, fast rigid bodies push through without cutting.
+/// Time until a node fails under 1.5 times its threshold tension [s]. With a shorter time, impacts shatter
+/// the surface; with a longer one, fast rigid bodies push through without cutting.
 const DAMAGE_TIME: f32 = 0.004;
-/// Time in which a damaged node heals once it is no longer overloaded [s]. Longer than the time to failure,
+/// Time in which a damaged node heals once it is no longer overloaded [s]. It is longer than [`DAMAGE_TIME`],
 /// so that oscillating loads can break nodes too.
 const HEALING_TIME: f32 = 4.0 * DAMAGE_TIME;
-/// Upper limit of the overload that counts for damage, so that a short impact does not count like a sustained
-/// pull.
+/// Upper limit of the overload, tension / threshold − 1, with which damage grows. So a short impact does less
+/// damage than a sustained pull.
 const MAX_OVERLOAD: f32 = 3.0;
 /// Factor on the threshold of cuts that separate a single voxel. Without it, cracks leave a trail of crumbs.
 const CRUMB_FACTOR: f32 = 1.3;
-/// Duration of the cooldown after a release, as the number of voxels that a wave travels in it: across the
-/// surroundings and back.
+/// Duration of the cooldown after a release, given by the number of voxels that a wave travels in this time.
+/// The wave reaches the nodes around the release and returns.
 const COOLDOWN_VOXELS: f64 = 4.0;
 
-/// Updates the damage of all breakable nodes after `duration` [s], and returns those that fail now, the worst
-/// first. No two of them are near each other, except along the front of a crack.
+/// Updates the damage of all breakable nodes after `duration` [s], and returns the nodes that fail now, the
+/// most overloaded first. No two of these nodes are near each other, except along the front of one crack.
 pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
     body.cooldowns_mut().pass(duration);
     if !body.can_tear() {
@@ -69,13 +70,13 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
         let nodes = body.breakable_nodes().among(first..first + damage.len());
         on_widest_lanes!(simd => for (id, node) in nodes {
             let damage = &mut damage[id.index() - first];
-            // Undamaged nodes are examined only in every other round.
+            // Tests undamaged nodes only in every second call, to save time.
             if body.pieces().sleeps(id)
                 || *damage == 0.0 && (id.0 ^ body.cooldowns().rounds) & 1 == 1
             {
                 continue;
             }
-            // Most nodes are far from failure.
+            // A fast test excludes most nodes, which are far from failure.
             let failure = match is_surely_intact(simd, body, id, node) {
                 true => None,
                 false => worst_cut(body, id, node),
@@ -103,9 +104,10 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
     chosen
 }
 
-/// Returns those failures that have no worse failure nearby; `found` is sorted, the worst first. Neighbours
-/// in one plane are kept together: they form the front of one crack, in 3D a line, which advances as a whole.
-/// If they had to wait for each other, cracks would advance too slowly, and the load would start new ones.
+/// Returns those failures that have no worse failure nearby; `found` is sorted, the worst first. Failures in
+/// one plane are all kept: they form the front of one crack, in 3D a line, which advances as a whole. If one
+/// node per neighbourhood had to wait for another, cracks would advance too slowly, and the load would start
+/// new ones.
 fn without_worse_neighbour(found: Vec<Failure>) -> Vec<Failure> {
     let mut chosen: Vec<Failure> = Vec::new();
     for failure in found {
@@ -120,8 +122,9 @@ fn without_worse_neighbour(found: Vec<Failure>) -> Vec<Failure> {
     chosen
 }
 
-/// Returns whether no cut through a breakable node can be overloaded. No pull is larger than half the sum of
-/// all forces, with (Σ|f|)² ≤ n Σ|f|² and a margin for rounding; every cut opens at least one face.
+/// Returns whether no cut through a breakable node can be overloaded. The pull of a cut is at most half the
+/// sum of all force magnitudes |f| of the n elements, with (Σ|f|)² ≤ n Σ|f|². A small margin allows for
+/// rounding. The area is that of one face, the least that a cut opens.
 #[inline(always)]
 fn is_surely_intact<D: Dim, S: Simd>(
     simd: S,

@@ -2,18 +2,18 @@
 //! material's toughness.
 //!
 //! *Samples* are spaced along an edge. Each sample tracks its rest position in the body, and a solver row
-//! holds the material there like dry friction. Below a limit force the material moves with the edge and is
-//! compressed. At the limit the edge advances, and the faces between voxels that the area swept by the
-//! samples crosses are opened.
+//! holds the material at the sample like dry friction. Below a limit force, the material moves with the edge
+//! and is compressed. At the limit, the edge advances. The samples then sweep an area, and the faces between
+//! voxels that this area crosses are opened.
 //!
 //! ```text
 //!     force per metre of edge = G + 2 r σ      G = toughness² / Y   [Irwin 1957]
 //! ```
 //!
-//! G is the fracture energy per square metre of crack, and r the radius of the edge. In front of a dull edge
-//! a strip of its width fails at the strength σ, too [Atkins 2009, ch. 9]. Sideways, the flat of the blade
-//! resists with at most σ times its height, per metre of edge. Material that was cut before does not resist
-//! the edge.
+//! G is the fracture energy per square metre of crack, Y Young's modulus, r the radius of the edge, and σ the
+//! strength. The term 2 r σ stands for a strip in front of a dull edge, as wide as the edge, which fails as
+//! well [Atkins 2009, ch. 9]. Against sideways motion, the flat of the blade resists with at most σ times its
+//! height, per metre of edge. Material that was cut before does not resist the edge.
 
 mod cutting_edge;
 mod edge_row;
@@ -60,11 +60,11 @@ pub(crate) use knife_state::{KnifeState, Knives};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Knife<D: Dim> {
-    /// Rigid body that holds the knife, kinematic or coupled. If it is a [sensor](crate::RigidBody::is_sensor), only its
-    /// edge touches.
+    /// Rigid body that holds the knife, kinematic or coupled. If it is a
+    /// [sensor](crate::RigidBody::is_sensor), it touches nothing except with the edge.
     pub holder: RigidBodyHandle,
-    /// Ends of the edge in local coordinates of the holder [m]. In 2D only their
-    /// midpoint counts, and the body is a sheet 1 m deep.
+    /// Ends of the edge in local coordinates of the holder [m]. In 2D only the midpoint of the edge is used,
+    /// and soft bodies are sheets 1 m thick.
     pub edge: [D::Vector; 2],
     /// Cutting direction in local coordinates of the holder, within 30° of a right angle to the edge. Its
     /// length does not matter, but must be 0.01 to 100.

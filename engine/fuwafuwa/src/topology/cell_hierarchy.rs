@@ -3,8 +3,8 @@
 //! One rule determines the initial cells and every later change [Endo 2004, §3.2, Figs. 2 and 4]. A voxel at
 //! an open point, or where materials meet, is a cell of level 0. A cell of level l exists if it contains or
 //! touches a cell of level l − 1. A cell fills those of its children that are solid and do not exist as
-//! cells. Every face-connected part of them is one element. All cells of the topmost level exist: this limits
-//! the size of elements to an eighth of the grid.
+//! cells. The filled children of a cell form one element for each face-connected part. All cells of the
+//! topmost level exist: this limits the size of elements to an eighth of the grid.
 //!
 //! Cracks only grow, so cells are only added. An update after a release starts at the voxels around the
 //! released point, goes up level by level, and ends at the first level without new cells. The cost of a cut
@@ -37,7 +37,7 @@ impl Cell {
         1 << self.level
     }
 
-    /// Returns the cell of the next level that contains this one.
+    /// Returns the cell of the next coarser level that contains this cell.
     #[inline]
     pub fn parent(self) -> Self {
         Self {
@@ -93,11 +93,12 @@ pub struct CellIndexing {
 
 hash_state! { struct CellIndexing { levels, count } }
 
-/// Limits the width of a cell to 1 / `WIDEST` of the longest axis of its grid; small levels are exempt.
+/// Limits the width of a cell to 1 / `WIDEST` of the longest axis of its grid. Levels up to `SMALL_LEVEL` are
+/// exempt.
 ///
 /// The mass of an element of width H lies in its nodes, so its second moment ∫ x² dm is too large by H²/6 per
-/// unit of mass. However fine the voxels, a disc of diameter D with cells up to H = D/4 vibrates 3 % too
-/// slowly. With H = D/8 it is 1 %, for a dozen elements more.
+/// unit of mass. A disc of diameter D with cells up to H = D/4 therefore vibrates 3 % too slowly, however
+/// fine its voxels. With H = D/8 the error is 1 %, at the cost of a dozen more elements.
 const WIDEST: i32 = 8;
 /// Levels up to this one are exempt from [`WIDEST`]. Otherwise small bodies would not be graded at all: level
 /// 1 would need a grid of 16 voxels across, and level 2 one of 32.
@@ -230,8 +231,8 @@ impl<D: Dim> CellHierarchy<D> {
         number.is_some_and(|number| self.exists[number])
     }
 
-    /// Returns the mask of the children that a cell fills itself: solid, and not existing as cells. At level
-    /// 0 every bit is set.
+    /// Returns the mask of the children that a cell fills itself: those that are solid and do not exist as
+    /// cells. At level 0, where cells have no children, every bit is set.
     pub fn filled(&self, grid: &VoxelGrid<D>, cell: Cell) -> u8 {
         if !self.exists(cell) {
             return 0;
@@ -279,8 +280,8 @@ impl<D: Dim> CellHierarchy<D> {
             .filter(|&cell| self.exists(cell))
     }
 
-    /// Updates the cells after the groups at the `changed` points have changed. Returns the new cells, level
-    /// by level in ascending order [Endo 2004, §3.2, phase 1].
+    /// Updates the cells after the voxel groups at the `changed` points have changed. Returns the new cells,
+    /// level by level in ascending order [Endo 2004, §3.2, phase 1].
     pub fn refine(
         &mut self,
         grid: &VoxelGrid<D>,
@@ -325,8 +326,8 @@ impl<D: Dim> CellHierarchy<D> {
     }
 
     /// Removes the cells of removed voxels, and the cells that existed only because of them. The result
-    /// equals a hierarchy built from scratch. A cell that keeps some of its voxels stays: they touched the
-    /// removed ones at open points, so they have finer cells of their own, which require it.
+    /// equals a hierarchy built from scratch. A cell stays if some of its voxels remain. These voxels touched
+    /// the removed ones at open points, so they have finer cells of their own, which require the cell.
     pub(crate) fn take_out(
         &mut self,
         grid: &VoxelGrid<D>,
@@ -334,7 +335,8 @@ impl<D: Dim> CellHierarchy<D> {
         voxels: &[Point],
     ) {
         if self.grading == Grading::Coarse {
-            // Bodies with this grading have no cells of level 0, from which the update below starts.
+            // Rebuilds the hierarchy: a body with this grading has no cells of level 0, from which the update
+            // below starts.
             *self = Self::new(grid, connectivity, self.grading);
             return;
         }
@@ -396,8 +398,8 @@ pub fn parts<D: Dim>(mask: u8) -> impl Iterator<Item = u8> {
             return None;
         }
         let mut part = left & left.wrapping_neg();
-        // Repeated, because a child found late may connect children tested before it. A path has at most as
-        // many steps as there are children.
+        // Repeats the pass, because a child found late may connect children tested before it. The number of
+        // passes is that of the children, the longest possible path.
         for _ in 0..D::CORNERS {
             let known = part;
             for child in (0..D::CORNERS).filter(|child| known >> child & 1 == 1) {

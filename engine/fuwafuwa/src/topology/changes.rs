@@ -21,7 +21,7 @@ pub struct Changes {
 /// history: a reader that starts with it must read the whole body once.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bookmark {
-    /// [`History::number`]; 0 = no history.
+    /// Number of the history, see [`History::number`]; 0 = no history.
     history: u64,
     /// Number of changes that have been read.
     tears: u64,
@@ -32,7 +32,7 @@ pub struct Bookmark {
 pub(crate) struct History {
     /// Number of the history, unique within the program, so that two bodies cannot be confused.
     number: u64,
-    /// Number of changes before the first one that is kept.
+    /// Number of older changes that were dropped.
     forgotten: u64,
     kept: VecDeque<Changes>,
     /// Number of ids in `kept`.
@@ -40,7 +40,7 @@ pub(crate) struct History {
 }
 
 impl Changes {
-    /// Returns the number of ids.
+    /// Returns the number of node, element and piece ids in total.
     fn size(&self) -> usize {
         self.nodes.len() + self.elements.len() + self.detached.len() + self.removed.len()
     }
@@ -48,7 +48,7 @@ impl Changes {
 
 impl Default for History {
     fn default() -> Self {
-        // The simulation does not depend on this number.
+        // A global counter is allowed here, because the simulation does not depend on this number.
         static COUNT: AtomicU64 = AtomicU64::new(1);
         Self {
             number: COUNT.fetch_add(1, Ordering::Relaxed),
@@ -67,8 +67,8 @@ impl Clone for History {
 }
 
 impl History {
-    /// Appends a change. Drops the oldest ones while there are more than `most` ids: then reading the whole
-    /// body is faster.
+    /// Appends a change. Drops the oldest changes while the history has more than `most` ids, because reading
+    /// the whole body is then faster.
     pub fn add(&mut self, changes: &Changes, most: usize) {
         self.kept.push_back(changes.clone());
         self.size += changes.size();
@@ -89,7 +89,8 @@ impl History {
         }
     }
 
-    /// Returns all changes since `bookmark`, each id once, ascending. Returns `None` if they are not known.
+    /// Returns all changes since `bookmark`, each id once, ascending. Returns `None` if some of these changes
+    /// were dropped, or if the bookmark belongs to another history.
     pub fn since(&self, bookmark: Bookmark) -> Option<Changes> {
         if bookmark.history != self.number {
             return None;
@@ -137,7 +138,8 @@ mod tests {
         assert_eq!(history.since(own), Some(changes(&[2, 3, 5])));
         own = history.end();
         assert_eq!(history.since(own), Some(changes(&[])));
-        // Changes are dropped: a reader that has read the last one continues, any other must start again.
+        // Some changes are dropped: a reader that has read the last dropped change can continue, any other
+        // must read the whole body.
         let late = own;
         history.add(&changes(&[1, 4]), 3);
         assert_eq!(history.since(late), Some(changes(&[1, 4])));

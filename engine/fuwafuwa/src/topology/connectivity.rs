@@ -18,12 +18,13 @@ use crate::foundation::id_lists::ascending;
 use crate::foundation::ids::id;
 use crate::topology::grid::VoxelGrid;
 use std::marker::PhantomData;
-/// Name of an octant without a voxel.
+/// Name in [`Groups`] of an octant without a voxel.
 const EMPTY: u32 = 15;
 
-/// Partition of the voxels around one lattice point; a group is named by its lowest octant.
+/// Partition of the voxels around one lattice point into groups that share a node.
 ///
-/// Four bits per octant, 15 = no voxel.
+/// Each octant has four bits for the name of its group: the lowest octant of the group, or 15 without a
+/// voxel.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Groups(u32);
@@ -119,11 +120,11 @@ impl Groups {
         }
     }
 
-    /// Returns the mask of the octants that have a name.
+    /// Returns the mask of the octants whose group has this name.
     #[inline]
     fn named(self, name: u32) -> u8 {
-        // Four bits per octant, all 0 where the name matches. They are reduced to one bit per octant, and
-        // these bits are made adjacent.
+        // XOR leaves four zero bits in each octant with this name. The steps below reduce the four bits to
+        // one and move these bits next to each other.
         let mut other = self.0 ^ (name * 0x1111_1111);
         other |= other >> 2;
         other |= other >> 1;
@@ -310,7 +311,8 @@ impl<D: Dim> Connectivity<D> {
                 octants.for_each(|octant| named.put(octant, name));
                 named
             });
-            // Only voxels have groups, and no group is larger than before any release.
+            // Checks that exactly the octants with a voxel have groups, and that no group is larger than
+            // before any release.
             let is_part = |group: u8| {
                 let of = whole.group_of(group.trailing_zeros() as usize);
                 group & !of == 0
@@ -323,8 +325,8 @@ impl<D: Dim> Connectivity<D> {
             && self.clone().normalise(self.points().collect()).is_empty()
     }
 
-    /// Regroups the voxels at each point of `work` by closed faces only, and continues wherever that changes
-    /// neighbours. Returns the changed points, ascending and without duplicates.
+    /// Regroups the voxels at each point of `work` by closed faces only. Continues with the neighbours of
+    /// each point that changed. Returns the changed points, ascending and without duplicates.
     #[inline(never)]
     pub fn normalise(&mut self, mut work: Vec<Point>) -> Vec<Point> {
         let mut changed = Vec::new();
@@ -367,15 +369,15 @@ impl<D: Dim> PointNeighbourhood<D> {
         self.is_closed_from(D::SLOTS / 2, octant, axis)
     }
 
-    /// Returns whether the face across `axis` of the voxel in `octant` is closed, on the side away from the
-    /// point.
+    /// Of the two faces across `axis` of the voxel in `octant`, returns whether the one away from the point
+    /// is closed.
     #[inline]
     pub fn is_far_face_closed(&self, octant: usize, axis: usize) -> bool {
         let from = Self::towards(D::SLOTS / 2, octant, axis);
         self.is_closed_from(from, octant ^ 1 << axis, axis)
     }
 
-    /// Returns, for each axis, the octants on its near side with a closed face across the axis.
+    /// Returns, for each axis, the mask of the octants on the near side of a closed face across that axis.
     pub fn closed_faces(&self) -> [u8; 3] {
         let mut closed = [0; 3];
         for axis in 0..D::N {
@@ -394,7 +396,7 @@ impl<D: Dim> PointNeighbourhood<D> {
         if groups != Groups::joined(D::ALL_CORNERS) {
             return groups != Groups::NONE;
         }
-        // If all points around are full, no face is open; this holds for most points of a body.
+        // Fast test for most points of a body: if all points around are full and uncut, no face is open.
         let is_open = |(faces, far): (u8, u8)| faces != D::ALL_CORNERS & !far;
         !self.is_whole()
             && self
@@ -420,14 +422,14 @@ impl<D: Dim> PointNeighbourhood<D> {
         groups
     }
 
-    /// Returns whether every point around is full and forms one group.
+    /// Returns whether the point and all its neighbours have eight (in 2D four) voxels in one group.
     fn is_whole(&self) -> bool {
         let full = Groups::joined(D::ALL_CORNERS);
         self.groups[..D::SLOTS].iter().all(|&groups| groups == full)
     }
 
-    /// Does the work of [`PointNeighbourhood::is_closed`], seen from the point at index `place` of `groups`. All corners
-    /// of the face must have an entry.
+    /// Implements [`PointNeighbourhood::is_closed`], seen from the point at index `place` of `groups`. All
+    /// corners of the face must have an entry in `groups`.
     #[inline]
     fn is_closed_from(&self, place: usize, octant: usize, axis: usize) -> bool {
         (0..D::CORNERS / 2).all(|corner| {
@@ -443,7 +445,8 @@ impl<D: Dim> PointNeighbourhood<D> {
         })
     }
 
-    /// Returns the index of the next point along an axis, on the side of an octant.
+    /// Returns the index in `groups` of the next point along an axis, on the side of that axis where `octant`
+    /// is.
     #[inline]
     fn towards(place: usize, octant: usize, axis: usize) -> usize {
         if octant >> axis & 1 == 1 {

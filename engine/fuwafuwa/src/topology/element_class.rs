@@ -76,7 +76,7 @@ pub struct ElementClass<D: Dim> {
     /// Rest offset of each node from the volume centroid.
     pub offsets: Vec<DVec3>,
     /// ∂V/∂x of each node at rest: an exact gradient for every polygon or polyhedron [Beirao da Veiga 2013].
-    /// Σ x bᵀ = V F for every affine motion.
+    /// With the gradient b of each node, Σ x bᵀ = V F for every affine motion.
     pub gradients: Vec<DVec3>,
     /// Part of the volume that belongs to each node.
     pub volumes: Vec<f64>,
@@ -267,7 +267,8 @@ mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
 
-    /// Checks Σ x bᵀ = V·I of a class that carries at least the corners of the outline of its children.
+    /// Checks that Σ x bᵀ = V·I, with the offsets x, gradients b and volume V of a class. The class must
+    /// carry at least the corners of the outline of its children.
     fn check_gradient_is_exact<D: Dim>(children: u8, slots: u32) {
         let element_class = ElementClass::<D>::new(children, slots).unwrap();
         for i in 0..D::N {
@@ -312,10 +313,12 @@ mod tests {
         let (square, cube) = (cell_corners::<Dim2>(), cell_corners::<Dim3>());
         check::<Dim2>(15, square, 1.0);
         check::<Dim3>(255, cube, 1.0);
-        // A single child is a plain cell of half the width: |h|² is 16 times smaller, x² only 4 times.
+        // A single child is a plain cell of half the width: |h|² is 16 times smaller and x² only 4 times, so
+        // the stiffness is 4.
         check::<Dim2>(1, closure::<Dim2>(1), 4.0);
         check::<Dim3>(1, closure::<Dim3>(1), 4.0);
-        // With all edge middles, corners keep a quarter of the volume, and the term ½ x_a² adds 15/256.
+        // With all edge middles, corners keep a quarter of the volume. The term ½ x_a² adds 15/256 to Σ V_i
+        // |h_i|².
         let middles = [[1, 0, 0], [0, 1, 0], [2, 1, 0], [1, 2, 0]];
         let all = middles
             .iter()

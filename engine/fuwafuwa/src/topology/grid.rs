@@ -12,8 +12,8 @@ mod shapes;
 /// Largest number of voxels on one axis. At this distance from the origin, single precision still resolves
 /// 1/10000 of a voxel.
 pub const MAX_EXTENT: usize = 1024;
-/// Largest number of voxels in the box of a grid, solid or not. They take 64 MiB, and eight corners of each
-/// can be numbered with 32 bits.
+/// Largest number of voxels in the box of a grid, solid or not. Such a box takes 64 MiB, and 32 bits can
+/// number eight corners of each voxel.
 pub const MAX_VOXELS: usize = 1 << 26;
 /// Valid edge lengths of a voxel [m]. Beyond them, volumes and positions leave the range of single precision.
 pub const VOXEL_SIZES: RangeInclusive<f32> = 1e-6..=1e3;
@@ -26,7 +26,7 @@ pub struct VoxelGrid<D: Dim> {
     size: Point,
     voxel_size: f32,
     materials: Vec<u8>,
-    /// Whether each voxel was removed later; empty if no voxel was.
+    /// Whether each voxel was removed with its piece; empty if no voxel was.
     taken_out: Vec<bool>,
     dim: PhantomData<D>,
 }

@@ -63,12 +63,12 @@ pub struct Mesh<D: Dim> {
     elements: IndexVec<ElementId, Option<Element>>,
     nodes: IndexVec<NodeId, Node>,
     element_classes: Vec<ElementClass<D>>,
-    /// Whether every lattice point of the surface is a node, regardless of the size of its elements.
+    /// Whether every lattice point of the surface is a node, regardless of the size of the elements there.
     dense_surface: bool,
     places: CellIndexing,
     /// Elements of each cell, by the index of the cell.
     by_cell: IdLists<ElementId>,
-    /// Owner of each voxel as its element id + 1, by the index of its level-0 cell; 0 where there is no
+    /// Element that owns each voxel, as element id + 1 at the index of the voxel's level-0 cell; 0 without an
     /// element.
     owners: Vec<u32>,
     /// Nodes at each lattice point, by the index of the point.
@@ -238,7 +238,8 @@ impl<D: Dim> Mesh<D> {
         counts
     }
 
-    /// Returns the number of vertices if every element counts its own, as in [Endo 2004, §3.1].
+    /// Returns the number of vertices that the mesh would have if no elements shared vertices, as counted in
+    /// [Endo 2004, §3.1].
     #[inline(never)]
     pub fn independent_vertex_count(&self) -> usize {
         self.elements()

@@ -1,9 +1,10 @@
 //! Pieces of a body: connected sets of elements.
 //!
-//! Elements that share a node belong to one piece. A release can divide a piece only at the points that it
-//! changed. So both sides are searched from there at the same pace, until they meet or one of them is
-//! exhausted: the exhausted side is the new piece. The cost is proportional to the smaller side. If many
-//! points were released at once, a search that meets an earlier one continues from there.
+//! Elements that share a node belong to one piece. A release can divide a piece only at the released points.
+//! At each such point, one search starts on each side of the new crack. All searches advance at the same pace
+//! until they meet or one has no more elements to visit: the elements of that search are a new piece. The
+//! cost is proportional to the smaller side. If many points were released at once, a search that meets an
+//! earlier one continues with its results.
 
 use crate::foundation::dim::Dim;
 use crate::foundation::disjoint_sets::DisjointSets;
@@ -39,18 +40,20 @@ pub struct Pieces {
     pub list: IndexVec<PieceId, Piece>,
     of_element: IndexVec<ElementId, PieceId>,
     of_node: IndexVec<NodeId, PieceId>,
-    /// Scratch of [`Pieces::detach`]: mark of the last search that visited each element and node.
+    /// Mark of the last search that visited each element; scratch memory of [`Pieces::detach`].
     #[cfg_attr(feature = "serde", serde(skip))]
     seen: IndexVec<ElementId, u32>,
+    /// Mark of the last search that visited each node; scratch memory of [`Pieces::detach`].
     #[cfg_attr(feature = "serde", serde(skip))]
     node_seen: IndexVec<NodeId, u32>,
+    /// Highest mark that a search has used so far.
     #[cfg_attr(feature = "serde", serde(skip))]
     marked: u32,
 }
 
 hash_state! { struct Pieces { list, of_element, of_node } skip { seen, node_seen, marked } }
 
-/// Search along one side of a release.
+/// Search through the elements on one side of a released point.
 struct Search {
     /// Index of this side among the sides of all releases.
     place: usize,
@@ -60,14 +63,16 @@ struct Search {
 
 /// State of the search along the sides of all simultaneous releases.
 struct Sides {
-    /// Mark in [`Pieces::seen`] of the elements of side 0; side k has this mark plus k.
+    /// Mark in [`Pieces::seen`] of the elements found from side 0; those found from side k have this mark
+    /// plus k.
     first: u32,
-    /// Connected sides.
+    /// Sets of sides that are known to be connected with each other.
     joined: DisjointSets,
-    /// Searches that are running, and searches that stopped because no other side was left to meet.
+    /// Searches that are still running.
     running: VecDeque<Search>,
+    /// Searches that stopped because no other side was left to meet.
     resting: Vec<Search>,
-    /// Detached pieces.
+    /// Pieces detached so far.
     born: Vec<PieceId>,
 }
 
@@ -158,13 +163,14 @@ impl Pieces {
         self.of_node[node] = self.of_node[from];
     }
 
-    /// Assigns a seated element to the piece of its nodes.
+    /// Assigns a new or changed element to the piece of its nodes.
     pub fn adopt(&mut self, element: ElementId, nodes: &[NodeId]) {
         self.of_element[element] = self.of_node[nodes[0]];
     }
 
-    /// Determines whether the elements around each place of a release are still connected. Every part that is
-    /// not connected to the rest of its piece becomes a new piece. Returns the numbers of the new pieces.
+    /// Determines whether the elements around each released point are still connected; `places` lists these
+    /// elements for each point. Every part that is not connected to the rest of its piece becomes a new
+    /// piece. Returns the numbers of the new pieces.
     pub fn detach<D: Dim>(&mut self, mesh: &Mesh<D>, places: &[Vec<ElementId>]) -> Vec<PieceId> {
         if self.marked > u32::MAX / 2 {
             self.marked = 0;
@@ -182,8 +188,9 @@ impl Pieces {
         for around in places {
             self.part_at(mesh, around, &mut sides);
         }
-        // A detached piece may have been the only connection between two sides that share no place. Each of
-        // them shares a place with that piece, so these places are searched again, together.
+        // A detached piece may have been the only connection between two sides at different points. The
+        // detached piece has elements at both points, so all points with elements of detached pieces are
+        // searched again, as one.
         let is_off = |&id: &ElementId| self.of_element(id) >= first_born;
         let beside_off = places.iter().filter(|around| around.iter().any(is_off));
         let around: Vec<ElementId> = beside_off.flatten().copied().collect();
@@ -192,20 +199,21 @@ impl Pieces {
         sides.born
     }
 
-    /// Does the work of [`Pieces::detach`] at one place.
+    /// Implements [`Pieces::detach`] for the elements around one released point.
     fn part_at<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[ElementId], sides: &mut Sides) {
         let mut by_piece: BTreeMap<PieceId, Vec<Vec<ElementId>>> = BTreeMap::new();
         for side in sides_of(mesh, around) {
             let of_piece = by_piece.entry(self.of_element(side[0]));
             of_piece.or_default().push(side);
         }
-        // Elements that are connected right here need no search.
+        // Searches only pieces with several sides here: elements that are connected at this point need no
+        // search.
         for starts in by_piece.into_values().filter(|starts| starts.len() > 1) {
             self.follow(mesh, starts, sides);
         }
     }
 
-    /// Searches along the sides of one piece until they have met or are exhausted.
+    /// Runs one search on each side of a piece until all sides have met or only one is left.
     fn follow<D: Dim>(&mut self, mesh: &Mesh<D>, starts: Vec<Vec<ElementId>>, sides: &mut Sides) {
         let first = sides.first;
         let mut known = Vec::new();
@@ -238,7 +246,8 @@ impl Pieces {
         while sides.running.len() > 1 {
             turn %= sides.running.len();
             let Some(id) = sides.running[turn].next.pop_front() else {
-                // Small pieces are exhausted first, near the front of the queue, where removal is cheap.
+                // Removal from the queue is cheap here, because small pieces are searched completely while
+                // they are near its front.
                 let alone = sides
                     .running
                     .remove(turn)
@@ -263,7 +272,8 @@ impl Pieces {
                     *seen = mark;
                     sides.running[turn].found.push(near);
                     let next = &mut sides.running[turn].next;
-                    // Searches meet soonest through the coarse interior.
+                    // Visits coarser elements first, because searches meet soonest through the coarse
+                    // interior.
                     let level = |id| mesh.element(id).map(|element| element.cell.level);
                     if level(near) > level(id) {
                         next.push_front(near);
@@ -298,8 +308,9 @@ impl Pieces {
 }
 
 impl Sides {
-    /// Handles a search, at index `turn`, that found something with the `mark` of a search. If that is the
-    /// search of another side, merges it into the one at `turn`. Returns the new index of that one.
+    /// Handles a search, at index `turn`, that found an element or node with the mark `mark` of some search.
+    /// If the mark belongs to another side, merges the search of that side into the search at `turn`. Returns
+    /// the new index of the merged search.
     fn meet(&mut self, turn: usize, mark: u32) -> usize {
         let own = self.joined.lowest(self.running[turn].place);
         let other = self.joined.lowest((mark - self.first) as usize);
@@ -316,7 +327,8 @@ impl Sides {
             (_, Some(place)) => Some(self.resting.swap_remove(place)),
             _ => None,
         };
-        // The other side is a detached piece already, and this side belongs to it.
+        // If the other side has no search any more, it is a detached piece, and this side belongs to that
+        // piece.
         let Some(met) = met else {
             return turn;
         };

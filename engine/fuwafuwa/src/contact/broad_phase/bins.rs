@@ -7,23 +7,27 @@ use crate::math::row::Row;
 use fearless_simd::prelude::*;
 use std::ops::Range;
 
-/// 1.5 · 2²³. Single-precision numbers within 2²² of this value are integers, so adding it rounds to an
-/// integer.
+/// 1.5 · 2²³. Around this value, single precision represents only integers. So adding a number of at most 2²²
+/// to it rounds that number.
 const LARGE: f32 = 12_582_912.0;
 
-/// Points in the bins of a periodic grid. Points that are a multiple of the grid's extent apart share a bin,
-/// so a few bins serve bodies that are up to two million bins away.
+/// Points sorted into the bins of a periodic grid. Two points share a bin if they are a multiple of the
+/// grid's extent apart. So a few bins cover coordinates of up to two million bin widths.
 #[derive(Clone, Debug)]
 pub struct Bins {
     /// Inverse width of a bin [1/m].
     inverse: f32,
-    /// log₂ of the number of bins on each axis, and the bit mask of that number: the number minus 1.
+    /// log₂ of the number of bins on each axis.
     bits: usize,
+    /// Bit mask that wraps a bin coordinate to the periodic grid: the number of bins on an axis, minus 1.
     mask: i32,
-    /// The points at `start[b]..start[b + 1]` are in bin b, ascending by number.
+    /// Index of the first point of each bin: the points at `start[b]..start[b + 1]` are in bin b, ascending
+    /// by number.
     start: Vec<u32>,
+    /// Numbers of the points in bin order.
     numbers: Vec<u32>,
-    /// Positions in bin order, axis by axis [m]; padded, so that eight can be read from the last index on.
+    /// Positions in bin order, axis by axis [m]; padded, so that a SIMD read of eight values may start at any
+    /// index.
     places: [Vec<f32>; 3],
 }
 
@@ -36,7 +40,8 @@ impl Bins {
         let bits = wanted.div_ceil(D::N).max(2);
         let places = || vec![0.0; points.len() + LANES];
         let mut bins = Self {
-            // A little wider than `width`, so that rounding keeps points within a width in adjacent bins.
+            // The bins are slightly wider than `width`. So points within `width` of each other are in the
+            // same or in adjacent bins in spite of rounding.
             inverse: 0.999 / width,
             bits,
             mask: (1 << bits) - 1,
@@ -63,7 +68,7 @@ impl Bins {
         bins
     }
 
-    /// Iterates over the ranges of the bins that are not empty.
+    /// Iterates over the index ranges of the bins that contain points.
     pub fn filled(&self) -> impl Iterator<Item = Range<usize>> + '_ {
         let ends = self.start.windows(2);
         let ranges = ends.map(|ends| ends[0] as usize..ends[1] as usize);
@@ -90,11 +95,12 @@ impl Bins {
     }
 
     /// Finds the pairs of points within `reach` [m] of each other, and calls `visit` with their indices in
-    /// bin order. `reach` may be at most the width of a bin. Only pairs that the search of `bins` finds are
-    /// visited: all ranges of [`Bins::shares`] together give each pair once.
+    /// bin order. `reach` may be at most the width of a bin. A call searches only from the given `bins`:
+    /// calls with all ranges of [`Bins::shares`] together visit each pair once.
     ///
     /// `is_out` receives the index of a point and the first of eight further indices. It returns a mask of
-    /// those among the eight to skip. Two ranges of points for which `is_idle` is true are not compared.
+    /// those among the eight to skip. Two bins are not compared if `is_idle` is true for the index ranges of
+    /// both.
     #[inline(always)]
     pub fn pairs<D: Dim, S: Simd>(
         &self,
@@ -105,7 +111,7 @@ impl Bins {
         is_out: impl Fn(usize, usize) -> u64,
         mut visit: impl FnMut(usize, usize),
     ) {
-        // Of two adjacent bins only one searches the other.
+        // Each bin searches only the bins ahead of it, so that two adjacent bins are compared once.
         let ahead: &[[i32; 2]] = match D::N {
             2 => &[[1, 0]],
             _ => &[[1, 0], [-1, 1], [0, 1], [1, 1]],
@@ -164,7 +170,7 @@ impl Bins {
         near: &mut Vec<u32>,
     ) {
         near.clear();
-        // With a small margin for rounding.
+        // Half the width of the search box, slightly enlarged for rounding.
         let mut aside = Row::ZERO;
         aside[..D::N].fill(1.01 * reach);
         let low = self.square(&(at - aside));
@@ -206,7 +212,7 @@ impl Bins {
             let (x, y, z) = (along(0), along(1), along(2));
             let squared = x * x + y * y + z * z;
             let mut lanes = squared.simd_le(reach * reach).to_bitmask();
-            // The last lanes may belong to another bin.
+            // Masks out lanes beyond the range, which may hold points of another bin.
             let left = range.end - first;
             if left < LANES {
                 lanes &= (1 << left) - 1;
@@ -242,11 +248,11 @@ impl Bins {
         self.start[first] as usize..self.start[last + 1] as usize
     }
 
-    /// Returns the coordinates of the bin, before they wrap around the grid.
+    /// Returns the coordinates of the bin of a point, not yet wrapped to the periodic grid.
     #[inline(always)]
     fn square(&self, at: &Row) -> Point {
-        // Adding `LARGE` leaves the rounded number in the lowest bits. This is faster than a checked
-        // conversion.
+        // Adding `LARGE` leaves the coordinate, rounded to whole bins, in the lowest bits. This is faster
+        // than a checked conversion.
         let whole = |along: f32| (along * self.inverse + LARGE).to_bits() as i32;
         [whole(at[0]), whole(at[1]), whole(at[2])]
     }

@@ -6,13 +6,13 @@ use crate::foundation::ids::{ElementId, Id, IndexVec, NodeId, PieceId, id};
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
 
-/// Maximum distance of neighbours in a piece on each axis at rest [voxels]. It covers the search distance of
-/// resting spheres, 1 + MARGIN + 2 SLACK = 2 voxels. With less, adjacent surface elements would be listed as
-/// pairs all the time.
+/// Maximum distance on each axis, at rest, of two spheres that count as neighbours in a piece [voxels]. The
+/// search for all pairs skips neighbours. It reaches 1 + MARGIN + 2 SLACK = 2 voxels between resting spheres.
+/// With a smaller value here, it would list adjacent surface elements all the time.
 pub const NEAR: u16 = 2;
 
 id! {
-    /// Number of a contact sphere among those of all bodies.
+    /// Number of a contact sphere among the spheres of all bodies.
     pub SphereId
 }
 
@@ -34,17 +34,18 @@ pub struct ContactSphere {
     pub radius: f32,
     /// Whether the piece sleeps.
     pub asleep: bool,
-    /// Bare faces: bit 2 · axis + side.
+    /// Mask of the bare faces of the voxel; the bit of a face is 2 · axis + side, with side 1 = far.
     bare: u8,
     /// Voxel of the element.
     voxel: [i16; 3],
-    /// Neighbouring voxels that share a node with this one: bit x + 3 y + 9 z, with coordinates from 0 to 2.
+    /// Mask of the voxels around the sphere's voxel that share a node with that voxel. Bit x + 3 y + 9 z
+    /// stands for the offset (x, y, z) − 1.
     bound: u32,
-    /// Corner nodes; only the first four in 2D.
+    /// Corner nodes of the element; in 2D only the first four are used.
     pub nodes: [NodeId; 8],
 }
 
-/// Returns the mean of the rows of a sphere's corner nodes.
+/// Returns the mean over a sphere's corner nodes of a quantity that `rows` holds for each node.
 #[inline(always)]
 pub fn mean<D: Dim, I: Id>(rows: &IndexVec<I, Row>, nodes: &[I; 8]) -> Row {
     let mut sum = rows[nodes[0]];
@@ -108,19 +109,20 @@ impl ContactSphere {
         self.bare.count_ones() as usize == 2 * D::N
     }
 
-    /// Returns whether a bare face has no bare face opposite, so that the sphere has an outward direction.
+    /// Returns whether the sphere has an outward direction: whether on some axis exactly one face of its
+    /// voxel is bare.
     pub fn leads_out(&self) -> bool {
         (self.bare ^ self.bare >> 1) & 0b1_0101 != 0
     }
 
-    /// Returns the vector from the centre out of the body through the bare faces [m]; 0 for a crumb or a
-    /// sheet.
+    /// Returns the sum of the vectors from the centre of the element to its bare faces [m], which points out
+    /// of the body. It is 0 if every bare face has a bare face opposite, as in a crumb or a sheet.
     pub fn outward<D: Dim>(&self, position: &IndexVec<NodeId, Row>) -> Row {
         let mut sum = Row::ZERO;
         for corner in 0..D::CORNERS {
             let is_bare = |axis: usize, side: usize| f32::from(self.bare >> (2 * axis + side) & 1);
-            // Each bare face adds the vector from the centre of the element to the centre of the face, which
-            // is half the vector between opposite faces.
+            // Each bare face adds the vector from the centre of the element to the centre of that face. This
+            // vector is half the vector from the opposite face to the bare one.
             let weight: f32 = (0..D::N)
                 .map(|axis| {
                     let out = is_bare(axis, 1) - is_bare(axis, 0);
@@ -154,8 +156,8 @@ pub struct Site {
 
 impl Site {
     /// Returns whether the body itself keeps two spheres apart, so that no contact is required. This is true
-    /// for neighbours that share a node, and for spheres one voxel apart if each shares a node with the same
-    /// voxel between them.
+    /// for neighbours that share a node. It is also true for spheres a and b with one voxel u between them if
+    /// a shares a node with u, and b with u.
     ///
     /// ```text
     ///   a─u─b   held      a┃b   not held: opposite crack faces,     a┃ ┃b   not held: a slot
@@ -179,10 +181,11 @@ impl Site {
     }
 }
 
-/// Table for [`Site::is_held_to`]: a mask and a rotation for each offset of up to two voxels per axis,
-/// indexed x + 5 y + 25 z from −2. The mask holds the voxels that are around both spheres and can connect
-/// them, seen from the first. For direct neighbours it holds only the second voxel, because each sphere's own
-/// bits include its voxel. The rotation aligns the bits of the second sphere with those of the first.
+/// Table for [`Site::is_held_to`], for each offset of the second voxel from the first, up to two voxels per
+/// axis. The index of an offset is x + 5 y + 25 z, counted from −2. Each entry holds a mask and a rotation.
+/// The mask selects, among the voxels around the first voxel, those that can connect both. For direct
+/// neighbours it selects only the second voxel, because the mask [`Site::bound`] of a sphere includes its own
+/// voxel. The rotation aligns the second sphere's `bound` with that of the first.
 const COMMON: [(u32, u32); 125] = common();
 
 const fn common() -> [(u32, u32); 125] {
@@ -209,5 +212,5 @@ const fn common() -> [(u32, u32); 125] {
     all
 }
 
-/// Bit of the voxel itself in a mask.
+/// Bit of a sphere's own voxel in a mask of the 27 voxels around the sphere.
 const MIDDLE: i32 = 13;

@@ -1,5 +1,5 @@
-//! Contact spheres of all bodies and their motion. They are in the order in which they appeared at the
-//! surface, so that a tear moves none of them in the list.
+//! Contact spheres of all bodies and their motion. The spheres are listed in the order in which they appeared
+//! at the surface, so a tear never renumbers spheres.
 
 use super::contact_sphere::{ContactSphere, NEAR, SphereId};
 use crate::foundation::arena::BodySlot;
@@ -14,35 +14,37 @@ use crate::topology::changes::{Bookmark, Changes};
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spheres {
-    /// Body and element of each sphere. They define the order of the list when it is rebuilt.
+    /// Body and element of each sphere. When the list is rebuilt, it keeps the order of these keys.
     keys: IndexVec<SphereId, Key>,
-    /// Spheres: the first ones by body and element, then those that appeared at the surface later.
+    /// Contact spheres: first those of the initial surface, by body and element, then those that appeared at
+    /// the surface later.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub list: IndexVec<SphereId, ContactSphere>,
-    /// Sphere of each voxel, by body and voxel index; [`SphereId::NONE`] inside.
+    /// Sphere of each voxel, by body and voxel index; [`SphereId::NONE`] for a voxel without a sphere.
     #[cfg_attr(feature = "serde", serde(skip))]
     by_voxel: IndexVec<BodySlot, Vec<SphereId>>,
-    /// Pairs on opposite crack faces: neighbours in a piece that the piece does not keep apart.
+    /// Pairs of spheres on opposite crack faces: neighbours in a piece that only contacts keep apart.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub crack_faces: Vec<[SphereId; 2]>,
-    /// Bookmark up to which the changes of each body have been applied.
+    /// For each body, bookmark of the last change that the list contains.
     #[cfg_attr(feature = "serde", serde(skip))]
     followed: IndexVec<BodySlot, Bookmark>,
     /// Awake spheres.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub awake: Vec<SphereId>,
-    /// Centres [m]; those of sleepers date from the start of the tick.
+    /// Centres of the spheres [m]; those of sleeping spheres are updated only at the start of a tick.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub centres: IndexVec<SphereId, Row>,
-    /// Awake spheres in pairs or escape contacts, as a list and as a flag per sphere.
+    /// Close spheres: awake spheres in pairs or escape contacts.
     #[cfg_attr(feature = "serde", serde(skip))]
     close: Vec<SphereId>,
+    /// Whether each sphere is in `close`.
     #[cfg_attr(feature = "serde", serde(skip))]
     is_close: IndexVec<SphereId, bool>,
-    /// For close spheres: velocity without contacts in this substep [m/s], and squared distance moved in the
-    /// last substep [m²].
+    /// Velocity of each close sphere in this substep, before contacts are solved [m/s].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub velocities: IndexVec<SphereId, Row>,
+    /// Squared distance that each close sphere moved in the last substep [m²].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub moved: IndexVec<SphereId, f32>,
 }
@@ -63,12 +65,12 @@ impl Spheres {
         self.keys.len()
     }
 
-    /// Returns the body slot of a sphere, even before the list is rebuilt.
+    /// Returns the body slot of a sphere; works also before a new tick rebuilds the list.
     pub fn body_of(&self, sphere: SphereId) -> BodySlot {
         self.keys[sphere].0
     }
 
-    /// Removes a body; its slot may be reused.
+    /// Removes the spheres of a body, so that its slot may be reused.
     pub fn remove_body(&mut self, slot: BodySlot) {
         for key in self.keys.iter_mut().filter(|(body, _)| *body == slot) {
             *key = (BodySlot::NONE, ElementId(u32::MAX));
@@ -76,7 +78,8 @@ impl Spheres {
         self.followed.clear();
     }
 
-    /// Removes `elements` of a body, given in ascending order; their ids may be reused.
+    /// Removes the spheres of `elements` of a body, given in ascending order, so that these ids may be
+    /// reused.
     pub fn remove_elements(&mut self, slot: BodySlot, elements: &[ElementId]) {
         for key in self.keys.iter_mut().filter(|(body, _)| *body == slot) {
             if elements.binary_search(&key.1).is_ok() {
@@ -86,9 +89,9 @@ impl Spheres {
         self.followed.clear();
     }
 
-    /// Starts a tick: applies the tears since the last one and adds newly sleeping spheres to `changed`. If a
-    /// body may have changed in another way, rebuilds the list and returns the new number of each old sphere:
-    /// [`SphereId::NONE`] if the sphere is gone.
+    /// Starts a tick: applies the tears since the last tick, and adds spheres that fell asleep or woke to
+    /// `changed`. If a body may have changed in another way, rebuilds the list and returns the new number of
+    /// each old sphere: [`SphereId::NONE`] if the sphere is gone.
     pub fn start_tick<D: Dim>(
         &mut self,
         bodies: &SoftBodies<D>,
@@ -103,7 +106,8 @@ impl Spheres {
             let body = bodies.at(sphere.body);
             let was_asleep = sphere.asleep;
             sphere.asleep = body.pieces().list[sphere.piece].asleep;
-            // The list contains no pairs of two sleepers, so the pairs of this sphere are searched again.
+            // Pairs of two sleeping spheres are not listed. So the pairs of a sphere that fell asleep or woke
+            // are searched again.
             if sphere.asleep != was_asleep {
                 changed.push(id);
             }
@@ -112,7 +116,8 @@ impl Spheres {
                 *centre = sphere.mean::<D>(body.positions());
             }
         }
-        // A world read from a file starts with these values, and must behave like the original.
+        // Resets the values that a file does not contain, so that a world read from a file behaves like the
+        // original.
         self.close.clear();
         self.is_close.fill(false);
         self.velocities.fill(Row::ZERO);
@@ -138,8 +143,8 @@ impl Spheres {
         true
     }
 
-    /// Rebuilds the list: known spheres that still exist, in their order, then the others by body and
-    /// element.
+    /// Rebuilds the list: spheres that still exist keep their order, and new spheres follow by body and
+    /// element. Returns the new number of each old sphere.
     fn list_anew<D: Dim>(&mut self, bodies: &SoftBodies<D>) -> IndexVec<SphereId, SphereId> {
         let known = std::mem::take(&mut self.keys);
         self.list.clear();
@@ -206,7 +211,7 @@ impl Spheres {
             let Some(sphere) = ContactSphere::of(slot, body, id) else {
                 continue;
             };
-            // A voxel never leaves the surface, so its sphere keeps its number.
+            // A voxel at the surface stays there, so its sphere keeps its number when the element changes.
             let own = &mut self.by_voxel[slot][body.grid().index(sphere.voxel())];
             if *own == SphereId::NONE {
                 *own = self.list.next_id();
@@ -270,7 +275,8 @@ impl Spheres {
         }
     }
 
-    /// Wakes the spheres of pieces, given by body and number in ascending order, and adds them to `changed`.
+    /// Wakes the spheres of `pieces` and adds them to `changed`. `pieces` holds body and piece number,
+    /// ascending.
     pub fn wake(&mut self, pieces: &[(BodySlot, PieceId)], changed: &mut Vec<SphereId>) {
         for (id, sphere) in self.list.entries_mut() {
             if sphere.asleep && pieces.binary_search(&(sphere.body, sphere.piece)).is_ok() {
@@ -281,7 +287,8 @@ impl Spheres {
         }
     }
 
-    /// Sets the spheres that contacts may use in the next substeps.
+    /// Sets the close spheres: those in pairs or escape contacts, whose centres and velocities are updated in
+    /// each substep.
     pub fn note_close(&mut self, close: impl Iterator<Item = SphereId>) {
         let was_close = self.is_close.clone();
         self.is_close.fill(false);
@@ -328,7 +335,7 @@ impl Spheres {
         sphere.mean::<D>(bodies.at(sphere.body).velocities())
     }
 
-    /// Returns whether the body itself keeps two spheres apart.
+    /// Returns whether the body itself keeps two spheres apart, so that no contact is required.
     pub fn holds(&self, a: SphereId, b: SphereId) -> bool {
         let [a, b] = [a, b].map(|id| self.list[id].site());
         a.is_held_to(&b)

@@ -19,7 +19,8 @@ use crate::soft_body::{SoftBodies, SoftBody};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
-/// Search radius for exits [voxels]. Few embedded spheres are deeper; for those all exits are compared.
+/// Depth up to which exits are found in nearby bins [voxels]. For the few spheres that are embedded deeper,
+/// all exits are compared.
 const EXIT_REACH: f32 = 2.0;
 
 /// Sphere with its centre inside another piece.
@@ -69,8 +70,8 @@ impl Captives {
         if small.is_empty() {
             return;
         }
-        // A sphere inside a surface element is close to the sphere of that element, so testing the pairs is
-        // enough.
+        // First finds spheres inside surface elements. Such a sphere is close to the contact sphere of that
+        // element, so testing the listed pairs is enough.
         for pair in pairs {
             let [a, b] = pair.both(&spheres.list);
             let [at, other] = pair.spheres.map(|sphere| spheres.centres[sphere]);
@@ -90,14 +91,15 @@ impl Captives {
                 }
             }
         }
-        // All deeper spheres are inside inner elements. Most pieces are skipped, because no smaller sphere is
-        // in their bounding box.
+        // Then finds spheres inside inner elements. A piece is skipped if its bounding box contains no sphere
+        // of a smaller piece; this excludes most pieces.
         for (sphere, &centre) in spheres.list.iter().zip(&spheres.centres) {
             pieces[sphere.body][sphere.piece].extend(&centre);
         }
         let placed = |&sphere: &SphereId| (sphere, own(&pieces, sphere), spheres.centres[sphere]);
         let mut placed: Vec<(SphereId, u32, Row)> = small.iter().map(placed).collect();
-        // Sorted along the first axis, in which a box covers one range. Non-finite centres are in no box.
+        // Sorts the spheres along the first axis, so that each bounding box covers one range of them.
+        // Non-finite centres are removed, because no box contains them.
         placed.retain(|(.., centre)| centre[0].is_finite());
         placed.sort_unstable_by(|(.., a), (.., b)| a[0].total_cmp(&b[0]));
         let mut near: Vec<SphereId> = Vec::new();
@@ -150,8 +152,9 @@ impl Captives {
         }
     }
 
-    /// Updates the host pieces after a tear. The piece of its exit becomes the host piece of an embedded
-    /// sphere. Until the next tick, the sphere has ordinary contacts with the other fragments.
+    /// Updates the host pieces after a tear. The host piece of an embedded sphere is now the fragment that
+    /// contains the sphere's exit. Until the next tick, the sphere has ordinary contacts with all other
+    /// fragments.
     pub fn tear(&mut self, spheres: &Spheres) {
         for captive in &self.list {
             let exit = &spheres.list[captive.exit];
@@ -170,13 +173,13 @@ impl Captives {
     }
 }
 
-/// Possible exits of a host piece.
+/// Surface spheres of one host piece through which an embedded sphere can get out.
 struct Exits {
-    /// Exits, ascending.
+    /// Numbers of the exit spheres, ascending.
     list: Vec<SphereId>,
     centres: Vec<Row>,
     bins: Bins,
-    /// Search radius in the bins [m].
+    /// Radius within which the bins are searched for an exit [m].
     reach: f32,
 }
 
@@ -198,7 +201,7 @@ impl Exits {
         }
     }
 
-    /// Returns the exit nearest to a position [m]; the first of several equally near ones.
+    /// Returns the exit nearest to a position [m], or the first of several exits at that distance.
     fn nearest<D: Dim>(&self, at: Row) -> Option<SphereId> {
         let nearer = |nearest: (f32, u32), number: u32| {
             let apart = self.centres[number as usize] - at;
@@ -217,19 +220,20 @@ impl Exits {
     }
 }
 
-/// Element without a bare face, and a ball around it.
+/// Inner element, which has no bare face, and a ball around its nodes.
 struct Inner {
     level: u8,
     element: ElementId,
-    /// Piece of the element, and the number of elements in that piece.
+    /// Piece of the element.
     captor: HostPiece,
+    /// Number of elements in that piece.
     count: u32,
     centre: Row,
     radius: f32,
 }
 
-/// Returns the elements without a bare face that reach into a box, in pieces with `has_inner`, ascending by
-/// level.
+/// Returns the inner elements that overlap the box `within`, ascending by level. Includes only pieces with
+/// `has_inner`.
 fn inner_elements<D: Dim>(bodies: &SoftBodies<D>, pieces: &Extents, within: &Extent) -> Vec<Inner> {
     let mut found = Vec::new();
     for (slot, body) in bodies.by_slot() {
@@ -262,7 +266,8 @@ fn inner_elements<D: Dim>(bodies: &SoftBodies<D>, pieces: &Extents, within: &Ext
     found
 }
 
-/// Returns the median radius [m], so that a few widely stretched elements do not make the bins too wide.
+/// Returns the median radius of the elements [m], which becomes the width of the bins. A few widely stretched
+/// elements do not affect the median.
 fn usual_radius(elements: &[Inner]) -> f32 {
     let mut radii: Vec<f32> = elements.iter().map(|inner| inner.radius).collect();
     let middle = radii.len() / 2;
@@ -272,16 +277,17 @@ fn usual_radius(elements: &[Inner]) -> f32 {
 /// Extents of all pieces of all bodies.
 type Extents = IndexVec<BodySlot, IndexVec<PieceId, Extent>>;
 
-/// Extent of a piece.
+/// Number of elements and bounding box of a piece.
 #[derive(Copy, Clone, Debug)]
 struct Extent {
     /// Number of elements.
     count: u32,
-    /// Whether the piece has elements without a bare face. A search clears the flag if no smaller sphere is
-    /// in the box.
+    /// Whether the piece has inner elements, which have no bare face. [`Captives::find`] clears the flag if
+    /// the box contains no sphere of a smaller piece.
     has_inner: bool,
-    /// Box around the centres of its contact spheres [m].
+    /// Low corner of the box around the centres of the piece's contact spheres [m].
     low: Row,
+    /// High corner of the box [m].
     high: Row,
 }
 
@@ -317,7 +323,7 @@ impl Extent {
     }
 }
 
-/// Returns the extents of the pieces of a body, by number, without their boxes.
+/// Returns the extents of the pieces of a body, by piece number, with empty boxes.
 fn extents<D: Dim>(body: Option<&SoftBody<D>>) -> IndexVec<PieceId, Extent> {
     let Some(body) = body else {
         return IndexVec::default();
@@ -385,8 +391,8 @@ mod tests {
         assert!(near > 100 && far > 100, "{near} near, {far} far");
     }
 
-    /// Regression test: bins as wide as the widest element made every element test all crumbs if one element
-    /// was stretched.
+    /// Regression test: the bins once were as wide as the widest element. A single stretched element then
+    /// made every element test all crumbs.
     #[test]
     fn usual_radius_ignores_stretched_elements() {
         let inner = |radius| Inner {

@@ -5,16 +5,16 @@ use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::soft_body::element_forces::Row;
 
-/// Impulses of a contact in the last substep [N s], and sums over the tick. The sums are cleared at the start
-/// of the next tick, so they are no state.
+/// Impulses of a contact in the last substep [N s], and sums over the tick. The hash of the state omits the
+/// sums, because each tick begins by clearing them.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Impulse {
-    /// Normal impulse.
+    /// Normal impulse in the last substep [N s].
     pub pressed: f32,
-    /// Friction impulse.
+    /// Friction impulse in the last substep [N s].
     pub dragged: Row,
-    /// Sum of the normal impulses since the start of the tick.
+    /// Sum of the normal impulses since the start of the tick [N s].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub total: f32,
     /// Highest approach speed since the start of the tick [m/s].
@@ -33,7 +33,7 @@ impl Impulse {
 
 #[cfg(feature = "serde")]
 impl Impulse {
-    /// Clears the components of the friction impulse that do not exist in this dimension.
+    /// Clears the unused components of the friction impulse: the fourth one, and in 2D also the third.
     pub fn flatten<D: Dim>(&mut self) {
         let aside = self.dragged[D::N..].iter_mut();
         aside

@@ -1,4 +1,5 @@
-//! Nodes that may touch rigid shapes. All nodes count, so that a flattened element lets nothing through.
+//! Nodes that may touch rigid shapes. Inner nodes are tested too, so that no rigid body passes through a
+//! flattened element.
 
 use super::bins::Bins;
 use super::known_impulse::Impulse;
@@ -13,14 +14,15 @@ use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
 use std::ops::Range;
 
-/// Distances [voxels] that a node (`SLACK`) and a moving rigid body (`HAND_SLACK`) may move beyond the
-/// prediction from their velocity before they are searched again. Larger values mean longer lists, smaller
-/// ones more searches. Rigid bodies have more, because the coupling force accelerates them strongly.
+/// Distance that a node may move beyond the motion predicted from its velocity before it is searched again
+/// [voxels]. A larger value makes the lists longer, a smaller one searches more often.
 const SLACK: f32 = 0.4;
+/// The same distance for a moving rigid body [voxels]. It is larger than [`SLACK`], because the coupling
+/// force accelerates hands strongly.
 const HAND_SLACK: f32 = 1.0;
 
-/// Width of a bin [voxels]. All nodes of a bin are tested against a rigid shape together, and one by one only
-/// if the shape is near the bin.
+/// Width of a bin [voxels]. A rigid shape is first tested against whole bins, and only in nearby bins against
+/// each node.
 const SQUARE: f32 = 4.0;
 
 /// Node that may touch a rigid shape.
@@ -35,8 +37,8 @@ pub struct NodePair {
     pub node: NodeId,
     /// Impulses of the contact.
     pub impulse: Impulse,
-    /// Until [`NodePairs::travel`] reaches this value [m], the node cannot come close to a shape that does not
-    /// move.
+    /// Value of [`NodePairs::travel`] up to which the node cannot touch the rigid body, if that body does not
+    /// move [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub clear: f32,
 }
@@ -47,8 +49,8 @@ hash_state! { struct NodePair { rigid, body, node, impulse } skip { clear } }
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NodePairs {
-    /// Pairs, ascending by rigid body, soft body and node; sleeping nodes included. Which pairs without an impulse
-    /// are listed depends on the last search, so they are no state.
+    /// Pairs, ascending by rigid body, soft body and node; sleeping nodes included. Only pairs with an
+    /// impulse are part of the hashed state: the others depend on the time of the last search.
     #[cfg_attr(feature = "serde", serde(serialize_with = "serialize_known"))]
     pub list: Vec<NodePair>,
     /// Upper bound of the distance that any node has moved since the last full search [m].
@@ -58,7 +60,7 @@ pub struct NodePairs {
     /// [m], by body and node.
     #[cfg_attr(feature = "serde", serde(skip))]
     anchors: IndexVec<BodySlot, IndexVec<NodeId, Row>>,
-    /// Distance that all nodes may still move before one may exceed its allowed distance [m].
+    /// Distance that each node may still move before one of them may exceed its allowed distance [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     spare: f32,
     /// Allowed and actual movement of each rigid body [m]; empty if a full search is due.
@@ -97,7 +99,7 @@ struct Leeway {
 }
 
 impl NodePairs {
-    /// Starts a tick: clears the sums of the last one and requests a full search.
+    /// Starts a tick: clears the impulse sums of the last tick and requests a full search.
     pub fn start_tick(&mut self) {
         for pair in &mut self.list {
             (pair.impulse.total, pair.impulse.speed) = (0.0, 0.0);
@@ -111,8 +113,8 @@ impl NodePairs {
         self.leeways.clear();
     }
 
-    /// Discards pairs without an existing rigid body, soft body or node, and restores the order without
-    /// duplicates.
+    /// Discards pairs without an existing rigid body, soft body or node. Sorts the remaining pairs and
+    /// removes duplicates.
     #[cfg(feature = "serde")]
     pub fn keep_known<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
         let is_known =
@@ -122,13 +124,13 @@ impl NodePairs {
         self.list.dedup_by_key(|pair| pair.key());
     }
 
-    /// Notes removed and added nodes of a body.
+    /// Marks removed and added nodes of a body for the next search.
     pub fn tear(&mut self, body: BodySlot, nodes: &[NodeId]) {
         self.changed.extend(nodes.iter().map(|&node| (body, node)));
     }
 
-    /// Notes the nodes of woken pieces, given by body and number in ascending order, because they can touch
-    /// fixed bodies again.
+    /// Marks the nodes of woken pieces for the next search, because they can touch fixed bodies again.
+    /// `pieces` holds body and piece number, ascending.
     pub fn wake<D: Dim>(&mut self, pieces: &[(BodySlot, PieceId)], bodies: &SoftBodies<D>) {
         for (slot, body) in bodies.by_slot() {
             if pieces.iter().all(|&(body, _)| body != slot) {
@@ -143,7 +145,7 @@ impl NodePairs {
         }
     }
 
-    /// Accounts for a move in which no node moved farther than `distance` [m].
+    /// Reduces the remaining margins after a substep in which no node moved farther than `distance` [m].
     pub fn pass(&mut self, distance: f32) {
         self.travel += distance;
         self.spare -= distance;
@@ -245,7 +247,7 @@ impl NodePairs {
                     };
                     near.extend(body.mesh().nodes().map(|(node, _)| node).filter(is_near));
                 }
-                // Found bin by bin, so not in order.
+                // Sorts the nodes, which were found bin by bin.
                 near.sort_unstable();
                 found.extend(near.iter().map(|&node| (own, *slot, node)));
             }
@@ -253,8 +255,8 @@ impl NodePairs {
         self.merge(&found, |pair| pair.has_touched(bodies));
     }
 
-    /// Adds the nodes that have exceeded their allowed distance to the changed ones, and updates the spare
-    /// distance of the others.
+    /// Adds nodes that have exceeded their allowed distance to `changed`, and updates `spare` for the other
+    /// nodes.
     fn find_strayed<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         let mut spare = f32::INFINITY;
         for (slot, body) in bodies.by_slot() {
@@ -291,12 +293,14 @@ impl NodePairs {
         self.spare = if most < self.spare { most } else { self.spare };
     }
 
-    /// Returns the distance from a wall within which a node is listed [m]; `size` is the voxel size [m].
+    /// Returns the distance from a resting rigid shape within which a node is paired with that shape [m];
+    /// `size` is the voxel size [m].
     fn reach(&self, body: BodySlot, node: NodeId, size: f32) -> f32 {
         self.anchors[body][node][3] + MARGIN * size
     }
 
-    /// Merges the found pairs with the old ones that stay. Known pairs keep their impulses.
+    /// Replaces the list by the `found` pairs and those old pairs for which `stays` is true. Pairs that were
+    /// listed before keep their impulses.
     fn merge(&mut self, found: &[Key], stays: impl Fn(&NodePair) -> bool) {
         let old = std::mem::take(&mut self.list);
         let mut old = old.into_iter().peekable();
@@ -328,8 +332,8 @@ impl NodePair {
         (self.rigid, self.body, self.node)
     }
 
-    /// Returns whether the pair touched in this tick. Such a pair is kept for the events even if it is far
-    /// apart now.
+    /// Returns whether the node touched the rigid body in this tick. The events of the tick report such a
+    /// pair, so it stays listed even if it is far apart now.
     fn has_touched<D: Dim>(&self, bodies: &SoftBodies<D>) -> bool {
         self.impulse.total > 0.0 && bodies.at(self.body).mesh().is_alive(self.node)
     }
@@ -342,17 +346,18 @@ impl NodePair {
     }
 }
 
-/// Awake nodes of a body, grouped in bins. Most bins as a whole are out of reach of a rigid shape, even in a
-/// body torn into many pieces.
+/// Awake nodes of a body, grouped in bins. A rigid shape is tested against each bin as a whole: most bins are
+/// out of its reach, even in a body torn into many pieces.
 struct Squares {
-    /// Nodes by their numbers in the bins, each with the distance from a shape within which it is listed [m].
+    /// Nodes by their numbers in the bins, each with the distance from a shape within which it is paired with
+    /// the shape [m].
     nodes: Vec<(NodeId, f32)>,
     bins: Bins,
     list: Vec<Square>,
 }
 
-/// Range of nodes in the bins, a ball around them, and the largest distance at which one of them is listed
-/// [m].
+/// Nodes of one bin: their index range, a ball around them, and the largest distance at which one of them is
+/// paired with a shape [m].
 struct Square {
     points: Range<usize>,
     centre: Row,
@@ -427,7 +432,8 @@ mod tests {
     use glam::Vec3;
     use std::collections::BTreeSet;
 
-    /// Tears a body and moves its nodes at random between two walls, and compares the list with all nodes.
+    /// Tears a body, moves its nodes at random between two walls, and checks the list of pairs against a test
+    /// of all nodes.
     fn check<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("the ball has voxels");
         let body =

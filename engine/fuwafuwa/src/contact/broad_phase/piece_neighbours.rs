@@ -18,11 +18,12 @@ use std::ops::Range;
 pub struct Neighbours {
     /// Number of each body's first piece among the pieces of all bodies.
     first: IndexVec<BodySlot, u32>,
-    /// Piece numbers of the spheres.
+    /// Piece of each sphere, numbered among the pieces of all bodies.
     pieces: Vec<u32>,
     /// Voxel coordinates, axis by axis.
     voxels: [Vec<u16>; 3],
-    /// Number of awake spheres before each index.
+    /// Number of awake spheres before each index. If it is equal at both ends of a range, all spheres in the
+    /// range sleep.
     awake: Vec<u32>,
 }
 
@@ -47,7 +48,7 @@ impl Neighbours {
             count += body.map_or(0, |body| body.pieces().list.len()) as u32;
         }
         neighbours.awake.push(0);
-        // Padding, so that eight can be read from the last index on.
+        // Pads the columns, so that a SIMD read of eight values may start at any index.
         neighbours.pieces.resize(travellers.len() + LANES, u32::MAX);
         for column in &mut neighbours.voxels {
             column.resize(travellers.len() + LANES, 0);
@@ -80,14 +81,15 @@ impl Neighbours {
         }
     }
 
-    /// Returns whether all spheres in a range sleep. Such ranges are not compared with each other, so in a
-    /// sleeping heap only spheres near awake ones are.
+    /// Returns whether all spheres in a range sleep. Two such ranges are not compared, so a sleeping heap
+    /// costs comparisons only near awake spheres.
     #[inline(always)]
     pub fn are_asleep(&self, places: &Range<usize>) -> bool {
         self.awake[places.start] == self.awake[places.end]
     }
 
-    /// Returns a mask of the spheres, of eight from `first` on, that are neighbours of a sphere.
+    /// Returns the mask of those among the eight spheres from index `first` on that are neighbours of the
+    /// sphere at `own`.
     #[inline(always)]
     pub fn of_eight<S: Simd>(&self, simd: S, own: PieceSite, first: usize) -> u64 {
         let eight = first..first + LANES;
@@ -96,7 +98,8 @@ impl Neighbours {
         if same == 0 {
             return 0;
         }
-        // Coordinates below the lower limit wrap around to large values.
+        // Distance above the lower limit of a neighbour's coordinate. Below that limit it wraps around to a
+        // large value, which fails the test.
         let along = |axis: usize| {
             let column = u16x8::from_slice(simd, &self.voxels[axis][eight.clone()]);
             column - u16x8::splat(simd, own.voxel[axis].wrapping_sub(NEAR))

@@ -1,5 +1,5 @@
-//! Contact points between rigid bodies, at least one of them dynamic. The key of the touching corner or edge
-//! identifies a point from substep to substep.
+//! Contact points between two rigid bodies, at least one of which is dynamic. The key of the touching corner
+//! or edge identifies a point from substep to substep.
 
 use super::known_impulse::Impulse;
 use crate::foundation::arena::RigidSlot;
@@ -14,7 +14,7 @@ use glam::Vec3;
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidTouch {
-    /// The dynamic body and the other one.
+    /// Slots of the dynamic body and of the body that it touches.
     pub both: [RigidSlot; 2],
     /// Key of the touching corner or edge crossing: identifies the point in the next substep.
     pub key: u32,
@@ -24,10 +24,10 @@ pub struct RigidTouch {
 
 hash_state! { struct RigidTouch { both, key, impulse } }
 
-/// Contact at a point in one substep.
+/// Contact point that pressed in one substep, kept for the events of the tick.
 #[derive(Copy, Clone, Debug)]
 pub struct Passed {
-    /// The dynamic body and the other one.
+    /// Slots of the dynamic body and of the body that it touches.
     pub both: [RigidSlot; 2],
     /// Normal impulse [N s].
     pub impulse: f32,
@@ -45,7 +45,7 @@ pub struct Passed {
 pub struct RigidTouches {
     /// Points, ascending by bodies and key.
     pub list: Vec<RigidTouch>,
-    /// Contacts of this tick.
+    /// Contacts of the past substeps of this tick, for the events.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub passed: Vec<Passed>,
 }
@@ -59,7 +59,7 @@ impl RigidTouch {
 }
 
 impl RigidTouches {
-    /// Starts a tick: clears the contacts of the last one.
+    /// Starts a tick: clears the contacts of the last tick.
     pub fn start_tick(&mut self) {
         self.passed.clear();
     }
@@ -79,13 +79,14 @@ impl RigidTouches {
         self.list.sort_by_key(RigidTouch::order);
     }
 
-    /// Removes a rigid body.
+    /// Removes all contact points of a rigid body.
     pub fn remove(&mut self, slot: RigidSlot) {
         self.list.retain(|touch| !touch.both.contains(&slot));
         self.passed.retain(|passed| !passed.both.contains(&slot));
     }
 
-    /// Discards points of bodies that do not exist, and restores the order without duplicates.
+    /// Discards contact points of bodies that do not exist. Sorts the remaining points and removes
+    /// duplicates.
     #[cfg(feature = "serde")]
     pub fn keep_known<D: Dim>(&mut self, rigids: &RigidBodies) {
         let is_known =

@@ -6,8 +6,8 @@ use crate::foundation::hash::hash_state;
 use crate::foundation::ids::IndexVec;
 use crate::foundation::threads::{self, CHUNK_SIZE};
 
-/// Search margin of contacts [voxels]. Contacts with a gap that shrinks by up to a sixth of a voxel in a
-/// substep, (0.3 − CLOSE) / AHEAD, are known in advance. This speed is a quarter of the wave speed. Faster
+/// Search margin of contacts [voxels]. A pair is found before its spheres touch if the gap shrinks by at most
+/// a sixth of a voxel in a substep: (0.3 − CLOSE) / AHEAD. This speed is a quarter of the wave speed. Faster
 /// spheres overlap first and are then pushed out.
 pub const MARGIN: f32 = 0.3;
 
@@ -19,15 +19,15 @@ pub struct SpherePair {
     pub spheres: [SphereId; 2],
     /// Impulses of the contact.
     pub impulse: Impulse,
-    /// Whether the spheres have met from outside. If one is now behind the surface of the other, it was
-    /// forced there.
+    /// Whether the spheres have met from outside. If so, and one sphere is now behind the surface of the
+    /// other, that sphere was forced there and is pushed back out.
     pub met_in_front: bool,
 }
 
 hash_state! { struct SpherePair { spheres, impulse, met_in_front } }
 
-/// Merges the found pairs with old ones that stay: those of unchanged spheres, and those that touched in this
-/// tick, which the events require. Known pairs keep their impulses.
+/// Replaces `list` by the `found` pairs and some old pairs: those of unchanged spheres, and those that
+/// touched in this tick, which its events report. Pairs that were listed before keep their impulses.
 pub fn merge(
     list: &mut Vec<SpherePair>,
     found: &[Vec<[SphereId; 2]>],
@@ -75,7 +75,8 @@ pub fn renumber(list: &mut Vec<SpherePair>, numbers: &IndexVec<SphereId, SphereI
     list.sort_unstable_by_key(|pair| pair.spheres);
 }
 
-/// Splits two lists of pairs, both ascending by their first spheres, at the same spheres.
+/// Splits two lists of pairs into shares for threads. Both lists ascend by the first sphere of a pair, and
+/// are split at the same spheres.
 fn shares<'a>(
     mut found: &'a mut [[SphereId; 2]],
     mut old: &'a [SpherePair],
@@ -108,7 +109,7 @@ impl SpherePair {
         }
     }
 
-    /// Returns whether the pair has something to remember: an impulse, or a meeting from outside.
+    /// Returns whether the pair must be stored: it has an impulse, or its spheres have met from outside.
     pub fn is_known(&self) -> bool {
         self.impulse.is_known() || self.met_in_front
     }
@@ -159,7 +160,7 @@ mod tests {
             met_in_front: true,
         };
         let mut pairs = vec![pair([0, 1], 1.0), pair([0, 2], 2.0), pair([1, 3], 3.0)];
-        // Sphere 2 becomes the first, and sphere 1 is gone.
+        // Sphere 0 gets number 1, sphere 1 is removed, and sphere 2 gets number 0.
         let numbers = vec![SphereId(1), SphereId::NONE, SphereId(0)];
         renumber(&mut pairs, &numbers.into());
         assert_eq!(pairs.len(), 1);

@@ -1,9 +1,10 @@
 //! Pairs of contact spheres that may touch.
 //!
-//! Spheres are searched along their predicted motion: a straight *path*, from which they may deviate by a
-//! slack. The faster things move, the shorter the paths hold. Only spheres that exceed their slack, wake or
-//! appear at the surface are searched again. Therefore no pair is missed at any finite speed. A full search
-//! skips neighbours within a piece; those on opposite crack faces are listed separately.
+//! Spheres are searched along their predicted motion: a straight *path*, from which a sphere may deviate by a
+//! slack. At higher speeds, the paths are valid for a shorter time. A sphere is searched again only if it
+//! exceeds its slack, wakes, or appears at the surface. Therefore no pair is missed at any finite speed. A
+//! full search skips neighbours within a piece; pairs of spheres on opposite crack faces are listed
+//! separately.
 //!
 //! ```text
 //!    ●──────────┤        two paths make a pair if their spheres, enlarged by their slack,
@@ -25,32 +26,33 @@ use crate::math::lanes::on_widest_lanes;
 use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
 
-/// At most 1 / `LONG_SHARE` of the spheres may have long paths. `LONGEST_SHORT` is half the length of the
-/// longest short path, as a share of the search distance. If speeds are higher, the paths end sooner. Short
-/// paths are searched bin by bin; each long path searches its own surroundings.
+/// At most 1 / `LONG_SHARE` of the spheres may have long paths. If more spheres are fast, all paths are ended
+/// sooner. Short paths are searched bin by bin; each long path searches its own surroundings.
 const LONG_SHARE: usize = 32;
+/// Half the length of the longest short path, as a share of the search distance.
 const LONGEST_SHORT: f32 = 0.125;
 /// Maximum duration of the paths [s]. In this time, gravity takes a falling sphere 5 cm off its path.
 const LONGEST_TIME: f32 = 0.1;
-/// A full search is faster than separate searches for more than 1 / `MANY` of the awake spheres. Sorting a
-/// sphere into bins takes as long as `COMPARED` comparisons.
+/// A full search is faster than separate searches if more than 1 / `MANY` of the awake spheres must be
+/// searched.
 const MANY: usize = 4;
+/// Number of comparisons of two spheres that take as long as sorting one sphere into the bins.
 const COMPARED: usize = 12;
 
-/// Marks a sphere that is found through the bins. It stands in place of the sphere's index among the loose
-/// ones.
+/// Entry in `loose_at` of a sphere that is found through the bins, and so has no index among the loose
+/// spheres.
 const BINNED: u32 = u32::MAX;
 
-/// Number of spheres that a thread searches at a time; below `CHUNK_SIZE`, because each search visits several
-/// bins.
+/// Number of spheres that a thread searches at a time. It is smaller than `CHUNK_SIZE`, because the search of
+/// each sphere visits several bins.
 const LOOKS: usize = CHUNK_SIZE / 8;
 
-/// Pairs of spheres that may touch while their paths hold.
+/// Pairs of spheres that may touch before their paths end.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpherePairs {
-    /// Pairs, ascending. Pairs with nothing to remember are no state, because the last search determines
-    /// which of them are listed.
+    /// Pairs, ascending. Only pairs with an impulse or a meeting from outside are part of the hashed state:
+    /// the others depend on the last search.
     #[cfg_attr(feature = "serde", serde(serialize_with = "serialize_known"))]
     pub list: Vec<SpherePair>,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -61,16 +63,16 @@ pub struct SpherePairs {
     /// Bins of the midpoints of all paths; `None` if a full search is due.
     #[cfg_attr(feature = "serde", serde(skip))]
     bins: Option<Bins>,
-    /// Time of these midpoints, counted from the last full search [s].
+    /// Time of the midpoints of the paths in the bins, counted from the last full search [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     binned_at: f32,
     /// Swept spheres in bin order.
     #[cfg_attr(feature = "serde", serde(skip))]
     binned: Vec<SweptSphere>,
-    /// Mean velocity of the moving spheres [m/s], relative to which paths are short or long, and half the
-    /// length of the longest short path [m].
+    /// Mean velocity of the moving spheres [m/s]. Paths are short or long relative to this motion.
     #[cfg_attr(feature = "serde", serde(skip))]
     frame: Row,
+    /// Half the length of the longest short path [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     short: f32,
     /// Spheres that are not found through the bins: those with long paths, or with paths newer than the bins.
@@ -85,20 +87,22 @@ pub struct SpherePairs {
     /// Spheres to search again, in addition to those that exceed their slack.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub changed: Vec<SphereId>,
-    /// Time since the last full search [s], and the duration of the paths, counted from that search [s].
+    /// Time since the last full search [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     elapsed: f32,
+    /// Duration of the paths, counted from the last full search [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     duration: f32,
-    /// Search distance of the largest spheres, and slack of the smallest ones [m].
+    /// Search distance between two of the largest spheres [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     reach: f32,
+    /// Slack of the smallest spheres [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     least_stray: f32,
-    /// Distance that all spheres may still deviate before one may exceed its slack [m], and the highest speed
-    /// along a path [m/s].
+    /// Distance that each sphere may still deviate before one of them may exceed its slack [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     spare: f32,
+    /// Highest speed along any path [m/s].
     #[cfg_attr(feature = "serde", serde(skip))]
     pace: f32,
 }
@@ -136,8 +140,8 @@ fn serialize_known<S: serde::Serializer>(list: &[SpherePair], to: S) -> Result<S
 }
 
 impl SpherePairs {
-    /// Starts a tick: clears the sums of the last one. Requests a full search if the spheres were listed
-    /// again.
+    /// Starts a tick: clears the impulse sums of the last tick. Requests a full search if the list of spheres
+    /// was rebuilt.
     pub fn start_tick(&mut self, is_listed_anew: bool) {
         if is_listed_anew {
             self.bins = None;
@@ -149,7 +153,8 @@ impl SpherePairs {
         }
     }
 
-    /// Accounts for a substep [s] in which no node moved farther than `distance` [m].
+    /// Reduces the remaining margins after a substep of `duration` [s] in which no node moved farther than
+    /// `distance` [m].
     pub fn pass(&mut self, duration: f32, distance: f32) {
         self.elapsed += duration;
         self.spare -= distance + self.pace * duration;
@@ -188,8 +193,7 @@ impl SpherePairs {
         true
     }
 
-    /// Adds the spheres that have exceeded their slack to the changed ones, and updates the spare distance of
-    /// the others.
+    /// Adds spheres that have exceeded their slack to `changed`, and updates `spare` for the other spheres.
     fn find_strayed(&mut self, spheres: &Spheres) {
         let mut spare = f32::INFINITY;
         for &sphere in &spheres.awake {
@@ -233,7 +237,7 @@ impl SpherePairs {
         self.pace = if speed > self.pace { speed } else { self.pace };
     }
 
-    /// Returns a sphere with its path.
+    /// Returns the swept sphere of a sphere: the sphere with its path.
     fn traveller(&self, sphere: SphereId, spheres: &Spheres) -> SweptSphere {
         let ContactSphere { radius, asleep, .. } = spheres.list[sphere];
         SweptSphere {
@@ -245,7 +249,7 @@ impl SpherePairs {
         }
     }
 
-    /// Searches all pairs.
+    /// Starts a new path for each sphere and searches all pairs.
     fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &SoftBodies<D>) {
         let count = spheres.list.len();
         self.changed.clear();
@@ -287,7 +291,8 @@ impl SpherePairs {
         bins
     }
 
-    /// Computes the search distance, the slack, the duration of the paths and the length of short paths.
+    /// Computes the search distance, the slack, the duration of all paths, and the maximum length of a short
+    /// path.
     fn measure(&mut self, spheres: &Spheres) {
         let radii = spheres.list.iter().map(|sphere| sphere.radius);
         let (smallest, largest) = radii.fold((f32::MAX, 0.0f32), |(low, high), radius| {
@@ -307,7 +312,7 @@ impl SpherePairs {
         self.short = most * self.span().half;
     }
 
-    /// Returns the speed of a path relative to the frame [m/s].
+    /// Returns the speed of a sphere's path relative to `frame` [m/s], the mean velocity of all spheres.
     fn speed(&self, sphere: SphereId) -> f32 {
         (self.paths[sphere].velocity - self.frame).length()
     }
@@ -319,7 +324,7 @@ impl SpherePairs {
         self.loose_at[traveller.sphere] == BINNED
     }
 
-    /// Returns the pairs with two short paths, except neighbours in a piece.
+    /// Returns the pairs of spheres that both have short paths, except neighbours in a piece.
     fn short_pairs<D: Dim>(&self, bins: &Bins, neighbours: &Neighbours) -> Vec<Vec<[SphereId; 2]>> {
         let (span, reach) = (self.span(), self.reach + 2.0 * self.short);
         threads::map(bins.shares(), |share| {
@@ -342,7 +347,7 @@ impl SpherePairs {
         })
     }
 
-    /// Returns the pairs on opposite crack faces that come close.
+    /// Returns the pairs of spheres on opposite crack faces that come close.
     fn lips(&self, spheres: &Spheres) -> Vec<Vec<[SphereId; 2]>> {
         // Index of each sphere in bin order.
         let mut order: IndexVec<SphereId, u32> = vec![0; self.binned.len()].into();
@@ -362,7 +367,7 @@ impl SpherePairs {
         })
     }
 
-    /// Returns the pairs with a long path, except neighbours in a piece.
+    /// Returns the pairs in which at least one sphere has a long path, except neighbours in a piece.
     fn long_pairs<D: Dim>(
         &self,
         bins: &Bins,
@@ -410,7 +415,8 @@ impl SpherePairs {
         })
     }
 
-    /// Searches the pairs of the changed spheres again, given in ascending order; other pairs stay.
+    /// Searches the pairs of the `changed` spheres again, which are given in ascending order. Pairs of two
+    /// unchanged spheres stay.
     fn find_again<D: Dim>(
         &mut self,
         changed: &[SphereId],
@@ -427,8 +433,8 @@ impl SpherePairs {
         }
         if changed.len() * (self.loose.len() + changed.len()) > COMPARED * count {
             self.bins = Some(self.bin::<D>(spheres));
-            // If there are still too many loose spheres, they are fast, and a full search must shorten the
-            // paths.
+            // If too many spheres are still loose after the new sort into bins, they are fast. A full search
+            // then shortens all paths.
             if changed.len() * self.loose.len() > COMPARED * count {
                 self.find_all(spheres, bodies);
                 return;
@@ -452,8 +458,8 @@ impl SpherePairs {
                     true => other.sphere > sphere,
                     false => true,
                 };
-                // Shifted back by the motion of the frame since the bins were built. Relative to the frame,
-                // the binned spheres hardly move.
+                // The bins are older than this search, and their spheres have since moved by about the motion
+                // of `frame`. Shifts the search position back by this motion.
                 let shift = this.frame * (span.middle - this.binned_at);
                 let at = own.path.at(span.middle) - shift;
                 let reach = this.reach + this.short + own.sweep;
@@ -475,7 +481,7 @@ impl SpherePairs {
             found
         });
         merge(&mut self.list, &found, &is_changed);
-        // `find_strayed` has updated the spare distance for the other spheres.
+        // Includes the slack of the new paths; `find_strayed` has computed `spare` for the other spheres.
         self.spare = self.spare.min(self.least_stray);
     }
 
@@ -506,7 +512,8 @@ impl SpherePairs {
         Span { middle: half, half }
     }
 
-    /// Sets the frame to the mean velocity; 0 if any sphere sleeps, because sleepers rest in the world.
+    /// Sets `frame` to the mean velocity of all spheres, or to 0 if any sphere sleeps and so rests in the
+    /// world.
     fn set_frame(&mut self, spheres: &Spheres) {
         self.frame = Row::ZERO;
         if spheres.awake.len() < spheres.list.len() {
@@ -514,7 +521,7 @@ impl SpherePairs {
         }
         let sum = self.paths.iter().map(|path| path.velocity).sum::<Row>();
         let mean = sum * (1.0 / self.paths.len() as f32);
-        // A piece with a non-finite velocity is quarantined after the tick; until then the frame is at rest.
+        // If a velocity is not finite, `frame` stays 0 until the piece is quarantined after the tick.
         if mean.is_finite() {
             self.frame = mean;
         }

@@ -1,6 +1,6 @@
-//! Sleepers that must wake because something that they touch is removed or moved. They touch it directly or
-//! through other sleepers. A sleeper wakes by itself only if something that it touches moves quickly, and a
-//! body that loses its support is slow at first.
+//! Finds sleeping pieces and rigid bodies that must wake because their support is removed or moved. They
+//! touch the support directly or through other sleepers. A quick motion of a touching object would wake them
+//! anyway, but a body that loses its support is slow at first.
 
 use super::bins::Bins;
 use super::contact_sphere::ContactSphere;
@@ -43,8 +43,8 @@ pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &RigidBodies) -> Vec<Rigid
     sleepers.map(|(slot, _)| slot).collect()
 }
 
-/// Returns the sleepers in contact with a rigid body, directly or through others, ascending by body and
-/// number.
+/// Returns the sleeping pieces in contact with a rigid body, directly or through other sleeping pieces. The
+/// result ascends by body and piece number.
 pub fn leaning_on_rigid<D: Dim>(rigid: &RigidState, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let mut leaning = BTreeSet::new();
     for (slot, body) in bodies.by_slot() {
@@ -60,8 +60,8 @@ pub fn leaning_on_rigid<D: Dim>(rigid: &RigidState, bodies: &SoftBodies<D>) -> V
     Sleepers::of(bodies).with_those_on(leaning)
 }
 
-/// Returns the sleepers in contact with a body that is not in `bodies`, directly or through others, ascending
-/// by body and number.
+/// Returns the sleeping pieces in contact with a body that is not in `bodies`, directly or through other
+/// sleeping pieces. The result ascends by body and piece number.
 pub fn leaning_on_body<D: Dim>(body: &SoftBody<D>, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let sleepers = Sleepers::of(bodies);
     let mut leaning = BTreeSet::new();
@@ -72,8 +72,8 @@ pub fn leaning_on_body<D: Dim>(body: &SoftBody<D>, bodies: &SoftBodies<D>) -> Ve
     sleepers.with_those_on(leaning)
 }
 
-/// Returns the sleepers in contact with some pieces, directly or through others, without these pieces.
-/// Argument and result are in ascending order.
+/// Returns the sleeping pieces in contact with any of `pieces`, directly or through other sleeping pieces,
+/// except `pieces` themselves. Both lists ascend by body and piece number.
 pub fn leaning_on_pieces<D: Dim>(pieces: &[Sleeper], bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let sleepers = Sleepers::of(bodies);
     let is_one = |piece: &Sleeper| pieces.binary_search(piece).is_ok();
@@ -94,12 +94,12 @@ pub fn leaning_on_pieces<D: Dim>(pieces: &[Sleeper], bodies: &SoftBodies<D>) -> 
     leaning
 }
 
-/// Contact spheres of all sleepers.
+/// Contact spheres of all sleeping pieces.
 struct Sleepers<D: Dim> {
     spheres: Vec<ContactSphere>,
     centres: Vec<Row>,
     bins: Bins,
-    /// Largest radius [m].
+    /// Largest radius of these spheres [m].
     largest: f32,
     dim: PhantomData<D>,
 }
@@ -124,7 +124,7 @@ impl<D: Dim> Sleepers<D> {
         }
     }
 
-    /// Returns the pieces that touch a sphere, possibly repeated.
+    /// Returns the sleeping pieces that touch a sphere, possibly repeated.
     fn touching(&self, at: Row, radius: f32) -> Vec<Sleeper> {
         let (mut near, furthest) = (Vec::new(), reach(radius, self.largest));
         on_widest_lanes!(simd => self.bins.near::<D, _>(simd, at, furthest, |_| 0, &mut near));
@@ -136,7 +136,8 @@ impl<D: Dim> Sleepers<D> {
         pieces.collect()
     }
 
-    /// Returns some pieces and all sleepers in contact with them, directly or through others; ascending.
+    /// Returns the pieces `some` and all sleeping pieces in contact with them, directly or through other
+    /// sleeping pieces, ascending.
     fn with_those_on(&self, some: BTreeSet<Sleeper>) -> Vec<Sleeper> {
         let mut own: BTreeMap<Sleeper, Vec<usize>> = BTreeMap::new();
         for (number, sphere) in self.spheres.iter().enumerate() {

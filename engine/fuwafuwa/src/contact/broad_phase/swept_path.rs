@@ -4,18 +4,18 @@ use super::contact_sphere::SphereId;
 use super::sphere_pair::MARGIN;
 use crate::soft_body::element_forces::Row;
 
-/// Slack: how far a sphere may deviate from its path [voxels]. Larger values mean longer lists, smaller ones
-/// more searches.
+/// Slack: distance by which a sphere may deviate from its path [voxels]. A larger value makes the lists
+/// longer, a smaller one searches more often.
 pub const SLACK: f32 = 0.35;
 
-/// Share of the predicted velocity that is the sphere's mean velocity along its last path; the remainder is
-/// its present velocity. Vibrating spheres return, so their mean velocity predicts them better.
+/// Weight of a sphere's mean velocity along its last path in the predicted velocity; the present velocity has
+/// weight 1 − `AS_BEFORE`. The mean velocity predicts vibrating spheres better, because they return.
 const AS_BEFORE: f32 = 0.8;
 
-/// Straight path of a sphere while its pairs hold.
+/// Predicted straight path of a sphere, valid until its pairs are searched again.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Path {
-    /// Position extrapolated to the time of the last full search [m].
+    /// Position on the path, extrapolated to the time of the last full search [m].
     pub from: Row,
     /// Velocity [m/s].
     pub velocity: Row,
@@ -44,8 +44,8 @@ impl Start {
         time: f32::NAN,
     };
 
-    /// Returns the predicted velocity of a sphere [m/s] from this start of its last path, its position `here`
-    /// [m] at the time `now` [s], and its present velocity [m/s].
+    /// Returns the predicted velocity of a sphere [m/s]. `self` is the start of the sphere's last path,
+    /// `here` its position [m] at the time `now` [s], and `velocity` its present velocity [m/s].
     pub fn expected(&self, here: Row, now: f32, velocity: Row) -> Row {
         let passed = now - self.time;
         if passed > 0.0 {
@@ -68,7 +68,7 @@ pub struct Span {
 #[derive(Copy, Clone, Debug)]
 pub struct SweptSphere {
     pub path: Path,
-    /// Upper bound of half the length of its path, relative to the common frame of all spheres [m].
+    /// Upper bound of half the length of the path [m], relative to the mean velocity of all spheres.
     pub sweep: f32,
     pub radius: f32,
     pub sphere: SphereId,
@@ -83,7 +83,8 @@ impl SweptSphere {
         let apart = self.path.from - other.path.from;
         let apart = apart + closing * span.middle;
         let reach = widened(self.radius + other.radius);
-        // Most pairs are too far apart for any direction of motion. The comparison is false for NaN.
+        // Rejects most pairs: those too far apart to meet in any direction of motion. The comparison is false
+        // for NaN.
         let furthest = reach + self.sweep + other.sweep;
         let is_near = apart.dot(apart) <= furthest * furthest;
         if !is_near || self.asleep && other.asleep {

@@ -1,4 +1,5 @@
-//! Joint anchors: a point of the world, a point of a rigid body, or the mean of some nodes.
+//! Joint anchors: a point of the world, a point of a rigid body, or the mean position of some nodes of a soft
+//! body.
 
 use super::joint_end::{JointEnd, Woken};
 use crate::error::Error;
@@ -22,8 +23,8 @@ pub enum AttachedAnchor {
     Position(Vec3),
     /// Point of a rigid body in local coordinates [m].
     RigidBody(RigidBodyHandle, Vec3),
-    /// Corners of voxels of a soft body: each a voxel, and the lattice point of its corner node. When the
-    /// body tears there, the anchor follows the voxel.
+    /// Voxel corners of a soft body, each given by a voxel and the lattice point of the corner. The anchor is
+    /// at the mean of the nodes there. If the body tears at a corner, the anchor stays on the voxel's side.
     Soft(SoftBodyHandle, Vec<(Point, Point)>),
 }
 
@@ -71,7 +72,8 @@ impl AttachedAnchor {
         matches!(self, Self::Soft(..))
     }
 
-    /// Moves an anchor that is not soft to a world-space point [m].
+    /// Moves an anchor of a rigid body or of the world to a world-space point [m]; does nothing to an anchor
+    /// of a soft body.
     pub fn stand_at(&mut self, at: Vec3, rigids: &RigidBodies) {
         match self {
             Self::Position(place) => *place = at,
@@ -84,7 +86,7 @@ impl AttachedAnchor {
         }
     }
 
-    /// Returns the present state of the anchor; `None` if its body or all of its voxels are gone.
+    /// Returns the present state of the anchor; `None` if its body or all of the attached voxels are gone.
     pub fn grip<D: Dim>(
         &self,
         bodies: &SoftBodies<D>,
@@ -198,8 +200,8 @@ impl AttachedAnchor {
     }
 }
 
-/// Returns the node of each corner: in the element of the voxel, the node nearest to the lattice point. Skips
-/// removed voxels.
+/// Returns a node for each corner: of all nodes of the voxel's element, the node nearest to the lattice point
+/// of the corner. Skips removed voxels.
 fn nodes<'a, D: Dim>(
     body: &'a SoftBody<D>,
     corners: &'a [(Point, Point)],
@@ -209,7 +211,7 @@ fn nodes<'a, D: Dim>(
         let element = mesh.element_at(voxel)?;
         let apart = |node: NodeId| {
             let at = mesh.node(node).at;
-            // In 64 bits, so that the difference cannot overflow: a file may contain any lattice point.
+            // Subtracts in 64 bits to avoid overflow, because a file may contain any lattice point.
             let along = |axis: usize| i64::from(at[axis]) - i64::from(point[axis]);
             (0..D::N).map(|axis| along(axis).abs()).sum::<i64>()
         };
@@ -221,7 +223,8 @@ fn nodes<'a, D: Dim>(
     })
 }
 
-/// Returns the corners of a body within `radius` [m] of a point, or the nearest corner if there is none.
+/// Returns the voxel corners of a body within `radius` [m] of a point, or the nearest corner if none is that
+/// near.
 fn corners_near<D: Dim>(body: &SoftBody<D>, at: Vec3, radius: f32) -> Vec<(Point, Point)> {
     let distance = |node: NodeId| {
         let apart = body.positions()[node].xyz() - at;

@@ -10,17 +10,18 @@ use crate::rigid_body::RigidBodies;
 use crate::soft_body::SoftBodies;
 use glam::Vec3;
 
-/// Warm-starting factor of pins and springs, the same as for contacts. Chains of pins with a heavy end swing
-/// more with other values.
+/// Warm-starting factor of pins and springs, equal to that of contacts. With other values, chains of pins
+/// with a heavy end swing more.
 const WARM_START: f32 = 0.9;
-/// Share of the position error of pins and ropes that is corrected per substep, the same as for overlaps of
-/// contacts, and the maximum correction speed [m/s]. Twice the share is unstable.
+/// Share of the position error of pins and ropes that is corrected per substep, equal to the share of an
+/// overlap that contacts resolve. Twice this value is unstable.
 const DRAW: f32 = 0.2;
+/// Maximum speed at which a position error is corrected [m/s].
 const DRAW_SPEED: f32 = 2.0;
-/// A sleeper wakes if its pin or rope is stretched by `WAKE_STRETCH` [m]. It also wakes if the force of its
-/// spring changes by more than the share `WAKE_SHARE`, plus the force of a stretch by `WAKE_STRETCH`. Smaller
-/// changes are not visible. A sleeper wakes in any case if the other anchor moves faster than `WAKE_SPEED`.
+/// Length by which a pin or rope must be stretched to wake a sleeper [m]. Smaller changes are not visible.
 const WAKE_STRETCH: f32 = 0.002;
+/// Share by which the force of a spring must change to wake a sleeper, in addition to the force of an
+/// elongation by [`WAKE_STRETCH`].
 const WAKE_SHARE: f32 = 0.02;
 
 impl JointState {
@@ -67,7 +68,7 @@ impl JointState {
         }
     }
 
-    /// Applies one solver iteration; with `draws` it also corrects position errors.
+    /// Applies one solver iteration; corrects position errors, too, if `draws` is true.
     pub(super) fn solve<D: Dim>(
         &mut self,
         bodies: &mut SoftBodies<D>,
@@ -90,7 +91,8 @@ impl JointState {
                 };
                 solved::<D>(&yields, -(relative + draw))
             }
-            // Only position corrections are removed from the velocity, and a spring makes none.
+            // If `draws` is false, this pass removes the velocity of position corrections. A spring has made
+            // no position correction.
             JointKind::Spring { .. } if !draws => Vec3::ZERO,
             JointKind::Spring {
                 stiffness,
@@ -110,10 +112,12 @@ impl JointState {
         }
     }
 
-    /// Returns the change of the impulse of an implicit spring in one iteration [Catto 2011]. The accumulated
-    /// impulse λ obeys λ = −(k x + k h v' + c v') h, where v' is the relative velocity after the substep. With
-    /// the softness γ = 1/(h (c + h k)) this reads v' + h k γ x + γ λ = 0, and an iteration solves it for the
-    /// change of λ. Without the term γ λ every iteration would add the whole impulse again.
+    /// Returns the change of the impulse of an implicit spring in one iteration [Catto 2011].
+    ///
+    /// The accumulated impulse is λ = −(k x + k h v' + c v') h, with the stiffness k, the damping c, the
+    /// elongation x, the substep h, and the relative velocity v' after the substep. With the softness γ =
+    /// 1/(h (c + h k)) this reads v' + h k γ x + γ λ = 0. An iteration solves this equation for the change of
+    /// λ. Without the term γ λ, every iteration would add the whole impulse again.
     fn spring(
         &self,
         apart: Vec3,
@@ -132,7 +136,7 @@ impl JointState {
         way * (-(relative.dot(way) + push + pulled) / under)
     }
 
-    /// Returns the impulse of a rope, which pulls and never pushes.
+    /// Returns the change of the impulse of a rope in one iteration. A rope pulls and never pushes.
     fn rope(
         &self,
         apart: Vec3,
@@ -204,7 +208,8 @@ fn along(yields: &[Vec3; 3], way: Vec3) -> f32 {
     way.dot(yields.map(|row| row.dot(way)).into())
 }
 
-/// Returns the impulse for a change of velocity; 0 if nothing can move.
+/// Returns the impulse that changes the relative velocity of the anchors by `velocity`; 0 if neither anchor
+/// can move.
 fn solved<D: Dim>(yields: &[Vec3; 3], velocity: Vec3) -> Vec3 {
     let [x, y, mut z] = *yields;
     // In 2D the third row of the matrix is 0; a unit row makes the matrix invertible.

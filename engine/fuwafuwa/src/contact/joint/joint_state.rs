@@ -114,8 +114,8 @@ impl JointState {
         Ok(())
     }
 
-    /// For a pin between a soft anchor and another one, moves the other to the soft anchor, so that nothing
-    /// jumps at the first step.
+    /// If a pin connects a soft body to a rigid body or to the world, moves the anchor of the latter to the
+    /// soft body's anchor. So nothing jumps at the first step.
     fn meet_soft_ends<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
         let is_soft = self.attached.each_ref().map(AttachedAnchor::is_soft);
         for (own, other) in [(0, 1), (1, 0)] {
@@ -231,8 +231,8 @@ pub(crate) fn solve<D: Dim>(
     (broken, woken)
 }
 
-/// Removes, after the position update, the velocity that was added to correct pins and ropes. Returns the
-/// joints that exceeded their breaking force.
+/// After the position update, removes the velocity by which pins and ropes corrected position errors. Returns
+/// the joints that exceeded their breaking force.
 pub(crate) fn relax<D: Dim>(
     joints: &mut Joints,
     bodies: &mut SoftBodies<D>,
@@ -247,7 +247,7 @@ pub(crate) fn relax<D: Dim>(
     }
     for (id, joint) in joints.entries_mut() {
         if !joint.yields(bodies, rigids) {
-            // Nothing attached can move, so the joint keeps its last force.
+            // Keeps the last force of a joint if none of its attached bodies can move.
             continue;
         }
         joint.force = flat::<D>(joint.impulse).length() / duration;

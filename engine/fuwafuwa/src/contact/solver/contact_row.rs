@@ -4,17 +4,19 @@ use crate::contact::broad_phase::Impulse;
 use crate::foundation::dim::{Dim, inner};
 use crate::soft_body::element_forces::Row;
 
-/// Warm-starting factor, applied to the impulses of the last substep. 1 is unstable, and with 0 piles never
-/// settle.
+/// Warm-starting factor, applied to the impulses of the last substep. A factor of 1 is unstable; with 0,
+/// heaps never settle.
 const WARM_START: f32 = 0.9;
-/// Share of an overlap that is resolved per substep, and the maximum speed at which it is resolved [m/s]
-/// [Catto 2023]. Larger values throw overlapping bodies apart; smaller ones let heaps sink into each other.
+/// Share of an overlap that is resolved per substep [Catto 2023]. A larger value throws overlapping bodies
+/// apart; a smaller one lets heaps sink into each other.
 const PUSH_OUT: f32 = 0.2;
+/// Maximum speed at which an overlap is resolved [m/s].
 pub const PUSH_OUT_SPEED: f32 = 0.5;
 
-/// A contact is active if its gap is below `CLOSE` [voxels] now or within `AHEAD` substeps at the present
-/// speed. The extra half substep allows for other contacts that make the gap close faster.
+/// Gap below which a contact is active [voxels], now or within `AHEAD` substeps at the present speed.
 pub const CLOSE: f32 = 0.05;
+/// Number of substeps after which the gap is predicted to find active contacts. The extra half substep allows
+/// for other contacts that make the gap close faster.
 pub const AHEAD: f32 = 1.5;
 
 /// Contact in one substep.
@@ -54,7 +56,8 @@ impl Contact {
         }
     }
 
-    /// Returns the contact with a pair index and a warm start from the pair's impulse.
+    /// Returns the contact with the index of its pair in the broad phase and with a warm start from the
+    /// impulse of that pair.
     #[inline(always)]
     pub fn known_as<D: Dim>(mut self, pair: usize, impulse: &Impulse) -> Self {
         self.pair = pair as u32;
@@ -67,8 +70,8 @@ impl Contact {
         self
     }
 
-    /// Returns whether the contact has no normal impulse and requires none at this relative velocity. This is
-    /// true for most contacts that are merely close.
+    /// Returns whether the contact can be skipped in this iteration: it has no normal impulse and requires
+    /// none at this relative velocity. This is true for most contacts that do not touch yet.
     #[inline(always)]
     pub fn is_idle<D: Dim>(&self, relative: Row) -> bool {
         self.normal_impulse == 0.0 && inner::<D>(relative, self.normal) >= self.min_normal_velocity
@@ -125,7 +128,8 @@ impl Impulse {
     /// Clears the impulses after the two sides have separated.
     #[inline(always)]
     pub fn release(&mut self) {
-        // Most pairs never touched, and without normal impulse there is no friction.
+        // Writes only if there is an impulse to clear: most pairs never touched. Without a normal impulse
+        // there is no friction impulse.
         if self.pressed > 0.0 {
             (self.pressed, self.dragged) = (0.0, Row::ZERO);
         }

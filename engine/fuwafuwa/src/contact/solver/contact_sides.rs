@@ -15,7 +15,7 @@ id! {
 pub struct NodeContact {
     pub contact: Contact,
     pub node: NodeRow,
-    /// Rigid body, if it moves, and the lever arm of the node from its position [m].
+    /// Rigid body, if it moves, and the lever arm from the position of that body to the node [m].
     pub mover: Option<(RigidSlot, Vec3)>,
 }
 
@@ -33,25 +33,26 @@ pub type SphereNodeRows = [NodeRow; 8];
 #[derive(Copy, Clone, Debug)]
 pub struct FreeContact {
     pub contact: Contact,
-    /// The dynamic body and the other one.
+    /// Slots of the dynamic body and of the body that it touches.
     pub both: [RigidSlot; 2],
     /// Lever arms of the point from the position of each body [m].
     pub levers: [Vec3; 2],
     /// Tangential effective mass [kg]: a lower bound over all tangents.
     pub across: f32,
-    /// Position of the point [m], and the approach speed there [m/s].
+    /// Position of the point [m].
     pub at: Vec3,
+    /// Approach speed at the point [m/s].
     pub speed: f32,
-    /// Separation speed of a bounce [m/s].
+    /// Separation speed after a bounce [m/s]; 0 without a bounce.
     pub bounce: f32,
     /// Key of the touching corner or edge crossing.
     pub key: u32,
 }
 
-/// Contact of a kinematic or coupled rigid body with a fixed or another such body.
+/// Contact of a kinematic or coupled rigid body with a fixed, kinematic or coupled one.
 #[derive(Copy, Clone, Debug)]
 pub struct HandContact {
     pub contact: Contact,
-    /// The kinematic or coupled body and the other one.
+    /// Slots of the kinematic or coupled body and of the body that it touches.
     pub both: [RigidSlot; 2],
 }

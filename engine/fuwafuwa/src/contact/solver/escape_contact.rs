@@ -20,8 +20,8 @@ pub struct EscapeContact {
 }
 
 impl EscapeContact {
-    /// Returns the escape contact that moves an embedded sphere to the front of its exit; `None` if neither
-    /// can move, or if a position or velocity is invalid.
+    /// Returns the escape contact that moves an embedded sphere to the front of its exit. Returns `None` if
+    /// neither sphere can move, or if a position or velocity is not finite or too large.
     pub fn new<D: Dim>(
         captive: &EmbeddedSphere,
         bodies: &SoftBodies<D>,
@@ -38,8 +38,8 @@ impl EscapeContact {
         let speed = PUSH_OUT_SPEED.min(way.length() / duration);
         let [first, second] = both.map(|sphere| sphere.inverse_mass(bodies));
         let inverse_mass = first + second;
-        // An embedded sphere that is too fast must not accelerate its host piece. The comparisons are false
-        // for NaN.
+        // Skips an embedded sphere that is too fast, because it would accelerate its host piece. The
+        // comparisons are false for NaN.
         let relative = spheres.velocities[a] - spheres.velocities[b];
         let most = (both[0].radius + both[1].radius) / duration;
         let squared = |row: Row| inner::<D>(row, row);
@@ -51,12 +51,12 @@ impl EscapeContact {
         })
     }
 
-    /// Applies the escape velocity.
+    /// Gives the embedded sphere its escape velocity relative to the exit.
     pub fn solve<D: Dim>(&self, motion: &mut Motion) {
         self.push::<D>(self.velocity, motion);
     }
 
-    /// Removes, after the position update, the velocity of the escape.
+    /// After the position update, stops the embedded sphere relative to its exit.
     pub fn relax<D: Dim>(&self, motion: &mut Motion) {
         self.push::<D>(Row::ZERO, motion);
     }

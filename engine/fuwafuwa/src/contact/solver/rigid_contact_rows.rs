@@ -1,5 +1,5 @@
-//! Contacts between rigid bodies. Kinematic and coupled bodies touch each other and fixed bodies at one
-//! point; dynamic bodies use a manifold.
+//! Contacts between rigid bodies. A contact of a dynamic body has a manifold of several points. All other
+//! contacts, of kinematic or coupled bodies with each other or with fixed bodies, have one point.
 
 use super::contact_row::{AHEAD, CLOSE, Contact, is_close};
 use super::contact_sides::{FreeContact, HandContact};
@@ -11,8 +11,8 @@ use crate::rigid_body::{MotionType, RigidBodies, RigidState};
 use crate::soft_body::element_forces::Row;
 use glam::Vec3;
 
-/// Approach speed below which contacts do not bounce [m/s], so that bodies can fall asleep. It is the speed
-/// of a fall by 13 mm, fifty times the gain from gravity in a substep.
+/// Approach speed below which contacts do not bounce [m/s], so that bodies can fall asleep. A body reaches
+/// this speed in a fall by 13 mm. Gravity adds a fiftieth of this speed in a substep.
 const BOUNCE_SPEED: f32 = 0.5;
 
 /// Finds the contacts of kinematic and coupled bodies with fixed bodies and with each other.
@@ -94,7 +94,7 @@ pub fn find_free<D: Dim>(
     hits
 }
 
-/// Returns the distance at which a contact of a body may matter within a substep [m].
+/// Returns the distance from a body within which a contact may become active in this substep [m].
 fn margin(rigid: &RigidState, duration: f32) -> f32 {
     CLOSE * rigid.shape().inradius().min(1.0) + margin_of_other(rigid, duration)
 }
@@ -165,7 +165,7 @@ fn touch<D: Dim>(
     }
 }
 
-/// Returns two unit tangents of a normal; in 2D only the first one counts.
+/// Returns two unit tangents of a normal; in 2D the second one is 0.
 fn tangents<D: Dim>(normal: Vec3) -> [Vec3; 2] {
     if D::N == 2 {
         return [Vec3::new(normal[1], -normal[0], 0.0), Vec3::ZERO];

@@ -10,24 +10,25 @@ use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
 use glam::Vec3;
 
-/// Number of nodes in a chunk, which is copied as a whole. Larger chunks copy more unused nodes, smaller ones
-/// cost more tests.
+/// Number of nodes in a chunk. A chunk with any node in contact is copied as a whole. Larger chunks copy more
+/// unused nodes; smaller ones cost more tests.
 const STRETCH: usize = 16;
 
 /// Velocities of the nodes in contact [m/s], with the inverse mass [1/kg] as the fourth component, so that an
 /// impulse reads one row.
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
-    /// Rows; unspecified where no contact uses them.
+    /// Velocity and inverse mass of each node; valid only in chunks with a node in contact.
     rows: IndexVec<NodeRow, Row>,
     /// Row of the first node of each body, always at the start of a chunk.
     first: IndexVec<BodySlot, NodeRow>,
-    /// Whether any node of a chunk is in contact; in a large body few are.
+    /// Whether any node of a chunk is in contact. Other chunks, which are most chunks of a large body, are
+    /// not copied.
     is_touched: Vec<bool>,
 }
 
 impl Motion {
-    /// Prepares the rows, none of them in contact.
+    /// Prepares one row for each node and marks all nodes as without contact.
     pub fn clear<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         self.first.clear();
         let mut count = 0;
@@ -60,7 +61,7 @@ impl Motion {
         grip
     }
 
-    /// Copies the velocities from the bodies.
+    /// Copies the velocities of nodes in contact from the bodies.
     pub fn load<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         for (slot, body) in bodies.by_slot() {
             let first = self.first[slot].index();
@@ -80,7 +81,7 @@ impl Motion {
         }
     }
 
-    /// Copies the velocities back to the bodies.
+    /// Copies the velocities of nodes in contact back to the bodies.
     pub fn store<D: Dim>(&self, bodies: &mut SoftBodies<D>) {
         for (slot, body) in bodies.by_slot_mut() {
             let first = self.first[slot].index();
@@ -139,14 +140,15 @@ impl Motion {
     }
 }
 
-/// Returns the velocity of a rigid body at a lever arm [m/s]. Not inlined, because it is rare and would slow
-/// down the other contacts.
+/// Returns the velocity of a rigid body at a lever arm [m/s]. The function is not inlined: its calls are
+/// rare, and its code would slow down the other contacts.
 #[inline(never)]
 fn velocity((mover, lever): (RigidSlot, Vec3), rigids: &RigidBodies) -> Row {
     Row::from(rigids.at(mover).velocity_at(lever))
 }
 
-/// Applies an impulse to a rigid body at a lever arm [m]. Not inlined, because it is rare.
+/// Applies an impulse to a rigid body at a lever arm [m]. The function is not inlined, because its calls are
+/// rare.
 #[inline(never)]
 fn push((mover, lever): (RigidSlot, Vec3), rigids: &mut RigidBodies, impulse: Row, duration: f32) {
     rigids.at_mut(mover).push_at(impulse.xyz(), lever, duration);

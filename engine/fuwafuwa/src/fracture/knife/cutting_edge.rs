@@ -11,29 +11,30 @@ use crate::soft_body::{SoftBodies, SoftBody};
 use glam::Vec3;
 
 /// Edge samples per width of the smallest voxel, so that no voxel slips between two samples, even at an
-/// oblique edge. With one sample for two voxels, area and work of a cut are wrong by more than 10 %.
+/// oblique edge. With half a sample per voxel, the area and work of a cut are wrong by more than 10 %.
 const SAMPLES_PER_VOXEL: f32 = 2.0;
-/// Stretched elements are found up to this ratio of their length to that at rest.
+/// Ratio of stretched length to rest length up to which the elements near a sample are found.
 const STRETCH: f32 = 1.5;
-/// Maximum movement of a sample in rest coordinates between two sweeps: `MOST_STRETCH` times its movement in
-/// the world, plus `MOST_JUMP` voxels. A larger jump means that the sample entered other tissue. The values
-/// are twice [`STRETCH`] and a tolerance of two voxels.
+/// Factor in the maximum movement of a sample in rest coordinates between two sweeps: `MOST_STRETCH` times
+/// its movement in the world, plus `MOST_JUMP` voxels. A larger jump means that the sample entered other
+/// tissue, so it cuts nothing. The factor is twice [`STRETCH`].
 const MOST_STRETCH: f64 = 3.0;
+/// Constant term of the maximum movement in rest coordinates [voxels]: a tolerance of two voxels.
 const MOST_JUMP: f64 = 2.0;
 
-/// Part of a body that an edge has passed through.
+/// Cut that an edge has made in one body since the last sweep.
 pub struct Cut {
     pub body: SoftBodyHandle,
     pub faces: Faces,
-    /// Swept area where the material was whole, at rest [m²].
+    /// Area that was swept through uncut material, measured at rest [m²].
     pub area: f64,
     /// Middle of the part of the edge that is inside the body [m].
     pub at: Vec3,
 }
 
 impl KnifeState {
-    /// Updates the positions of the samples in the bodies. `ahead` is the time until the next search for
-    /// nearby elements [s].
+    /// Finds, for each sample of the edge, the body that contains the sample and the rest position there.
+    /// `ahead` is the time until elements near the samples are searched again [s].
     pub(crate) fn follow<D: Dim>(
         &mut self,
         bodies: &SoftBodies<D>,
@@ -51,8 +52,8 @@ impl KnifeState {
         }
     }
 
-    /// Returns what the edge has passed through in the last `since` seconds, for each body that it is or was
-    /// in.
+    /// Returns the cuts that the edge made in the last `since` seconds: one for each body that the edge is in
+    /// or has just left.
     pub(crate) fn pass<D: Dim>(
         &mut self,
         bodies: &SoftBodies<D>,
@@ -86,7 +87,7 @@ impl KnifeState {
     /// Returns the length of edge that a sample represents [m].
     pub(super) fn share<D: Dim>(&self, stance: &EdgePose, place: usize) -> f32 {
         let last = self.samples.len() - 1;
-        // In 2D the edge is a point, and the body 1 m thick.
+        // In 2D the edge is a point that cuts a sheet 1 m thick.
         if D::N == 2 {
             return 1.0;
         }
@@ -116,10 +117,11 @@ impl KnifeState {
     fn take_samples<D: Dim>(&mut self, stance: &EdgePose, bodies: &SoftBodies<D>) {
         let sizes = bodies.iter().map(|body| body.grid().voxel_size());
         let least = sizes.fold(f32::INFINITY, f32::min);
-        // In local coordinates, because the length of the rotated edge fluctuates by rounding.
+        // Measures the edge in local coordinates, because the length of the rotated edge fluctuates by
+        // rounding.
         let long = (self.edge[1] - self.edge[0]).length();
         let asked = (SAMPLES_PER_VOXEL * long / least).ceil() as usize;
-        // In 2D the edge is a point.
+        // In 2D the edge is a point with a single sample.
         let count = match D::N {
             2 => 1,
             _ => asked.clamp(1, MOST_SAMPLES) + 1,
@@ -146,7 +148,7 @@ impl KnifeState {
         self.near.iter_mut().for_each(Vec::clear);
         let from = stance.position + stance.levers[0];
         let long = stance.long();
-        // In 2D a single sample is near all listed elements.
+        // In 2D the infinite spacing assigns all listed elements to the only sample.
         let spacing = match D::N {
             2 => f32::INFINITY,
             _ => long / (self.samples.len() - 1) as f32,
@@ -187,8 +189,8 @@ impl KnifeState {
         }
     }
 
-    /// Returns the body and the rest position of a sample: near its last position, at its neighbours, or in
-    /// nearby elements.
+    /// Returns the body that contains a sample, and the rest position there. Tries the last position of the
+    /// sample, then the positions of adjacent samples, then nearby elements.
     fn find<D: Dim>(
         &self,
         bodies: &SoftBodies<D>,
@@ -223,7 +225,7 @@ impl KnifeState {
         tried.find_map(|(id, voxel)| Some((id, Spot::find(bodies.get(id).ok()?, at, voxel)?)))
     }
 
-    /// Returns the area that the edge has swept through a body since the last sweep.
+    /// Returns the cut of the edge in one body since the last sweep.
     fn swath_in<D: Dim>(
         &self,
         stance: &EdgePose,
@@ -279,7 +281,7 @@ impl KnifeState {
         let all = 0..rows.len();
         let mut within: Vec<usize> = all.clone().filter(|&place| is_inside(place)).collect();
         if within.is_empty() {
-            // The edge has just left the body.
+            // If the edge has just left the body, uses all samples with a path through it.
             within = all.filter(|&place| rows[place].is_some()).collect();
         }
         let middle = within.get(within.len() / 2).copied().unwrap_or(0);
@@ -291,8 +293,8 @@ impl KnifeState {
         }
     }
 
-    /// Returns the start and end of a sample's path in rest coordinates [voxels] since the last sweep, if it
-    /// has been in the body.
+    /// Returns the start and end of a sample's path through a body since the last sweep, in rest coordinates
+    /// [voxels]. Returns `None` if neither the sample nor an adjacent one is or was in the body.
     fn way_in<D: Dim>(
         &self,
         stance: &EdgePose,
@@ -305,12 +307,13 @@ impl KnifeState {
         let mut others = beside.into_iter().flatten();
         let (inside, passed) = (sample.inside_of(id), sample.passed_in(id));
         let of_neighbour = || others.find_map(|other| self.samples.get(other)?.inside_of(id));
-        // A sample outside of the body is extrapolated from tissue nearby.
+        // For a sample outside of the body, extrapolates the deformation at its last position or at an
+        // adjacent sample.
         let base = inside.or(passed).or_else(of_neighbour)?;
         let size = body.grid().voxel_size();
         let at = self.place(stance, place);
         let now = inside.map_or_else(|| base.extend(body, at), |spot| Some(spot.at))?;
-        // The motion of the tissue counts, too: tissue that moves against a resting edge is cut.
+        // Includes the motion of the tissue: tissue that moves against a resting edge is cut.
         let tissue = base.velocity(body)? * since;
         let before = || base.extend(body, sample.before + tissue);
         let before = passed.map_or_else(before, |spot| Some(spot.at))?;
@@ -324,7 +327,7 @@ impl KnifeState {
         let travel = (at - sample.before).length() + tissue.length();
         let reach = f64::from(travel / size);
         let is_jump = way.length() > MOST_STRETCH * reach + MOST_JUMP;
-        // Moving backwards through its own cut opens nothing.
+        // A sample that moves backwards through its own cut opens no faces.
         let forth = way.dot(toward) / toward.length().max(1e-9);
         let is_drawn_back = forth < 0.0 && 2.0 * forth * forth > way.dot(way);
         match is_jump || is_drawn_back {

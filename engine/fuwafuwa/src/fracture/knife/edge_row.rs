@@ -10,24 +10,26 @@ use crate::rigid_body::{RigidBodies, RigidState};
 use crate::soft_body::{SoftBodies, SoftBody};
 use glam::Vec3;
 
-/// Solver iterations over all rows per substep. Neighbouring samples push the same nodes; with 2 iterations a
-/// cut does not separate the parts.
+/// Solver iterations over all rows per substep. Several are required because adjacent samples push the same
+/// nodes. With 2 iterations, the two sides of a cut stay connected.
 const ROUNDS: usize = 8;
 
-/// Share of the limit from which on the impulse of a row counts as at the limit; allows for rounding.
+/// Share of its limit from which on the impulse of a row counts as having reached the limit; below 1 to allow
+/// for rounding.
 const AT_LIMIT: f32 = 0.98;
 
 /// Solver row of one sample.
 struct EdgeRow {
     body: SoftBodyHandle,
-    /// Nodes and their weights.
+    /// Nodes of the element around the sample, with their interpolation weights.
     weights: Vec<(NodeId, f32)>,
     /// Inverse effective mass of the tissue [1/kg].
     gain: f32,
     /// Lever arm from the position of the holder [m].
     lever: Vec3,
-    /// Limits of the impulse in the cutting direction and sideways in the substep [N s], and the impulses.
+    /// Limits of the impulse in the substep, in the cutting direction and sideways [N s].
     limits: [f32; 2],
+    /// Impulses in the cutting direction and sideways [N s].
     impulse: [f32; 2],
 }
 

@@ -7,7 +7,8 @@ use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
 use glam::Vec3;
 
-/// Maximum number of intervals between samples. It suffices for 256 voxels, a quarter of the largest grid.
+/// Maximum number of intervals between the samples of an edge. It suffices for an edge 256 voxels long, a
+/// quarter of the width of the largest grid.
 pub const MOST_SAMPLES: usize = 512;
 
 /// Element that a sample may enter.
@@ -15,8 +16,9 @@ pub const MOST_SAMPLES: usize = 512;
 pub struct Near {
     pub body: SoftBodyHandle,
     pub voxel: Point,
-    /// A node of the element, and the reach of the element from it [m].
+    /// Node of the element.
     pub node: NodeId,
+    /// Distance from that node within which the element may contain the sample [m].
     pub reach: f32,
 }
 
@@ -24,28 +26,29 @@ pub struct Near {
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sample {
-    /// Body and rest position that the sample is in.
+    /// Body that contains the sample, and the rest position of the sample there.
     pub inside: Option<(SoftBodyHandle, Spot)>,
-    /// Body and rest position up to which the swept area was counted. A sweep leaves the value unchanged
-    /// while tissue holds the sample.
+    /// Body and rest position of the sample at the end of the last sweep: the swept area up to there is
+    /// already counted. Stays unchanged while tissue holds the sample.
     pub passed: Option<(SoftBodyHandle, Spot)>,
     /// World-space position at the last sweep [m].
     pub before: Vec3,
-    /// Whether the sample has advanced through tissue since the last sweep, and whether through whole tissue.
+    /// Whether the sample has advanced through tissue since the last sweep.
     pub slid: bool,
+    /// Whether the sample has advanced through uncut tissue since the last sweep.
     pub cut: bool,
 }
 
 hash_state! { struct Sample { inside, passed, before, slid, cut } }
 
 impl Sample {
-    /// Returns the rest position in a body at the last sweep.
+    /// Returns the rest position of the sample in `body` at the last sweep.
     pub fn passed_in(&self, body: SoftBodyHandle) -> Option<Spot> {
         let passed = self.passed.filter(|(own, _)| *own == body);
         passed.map(|(_, spot)| spot)
     }
 
-    /// Returns the present rest position in a body.
+    /// Returns the present rest position of the sample in `body`.
     pub fn inside_of(&self, body: SoftBodyHandle) -> Option<Spot> {
         let inside = self.inside.filter(|(own, _)| *own == body);
         inside.map(|(_, spot)| spot)

@@ -25,17 +25,19 @@ pub struct KnifeState {
     pub radius: f32,
     pub height: f32,
     pub(super) samples: Vec<Sample>,
-    /// Elements near each sample, and whether these lists are up to date.
+    /// Elements near each sample.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) near: Vec<Vec<Near>>,
+    /// Whether the lists in `near` are up to date.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) knows_near: bool,
-    /// Force [N] and torque [N m] on the knife in the last substep; the torque is about the position of the
-    /// holder.
+    /// Force of the tissue on the knife in the last substep [N].
     pub(super) force: Vec3,
+    /// Torque of the tissue on the knife in the last substep [N m], about the position of the holder.
     pub(super) torque: Vec3,
-    /// Area cut [m²] and work done [J] since the last event.
+    /// Area cut since the last event [m²].
     pub(super) area: f64,
+    /// Work done since the last event [J].
     pub(super) work: f64,
 }
 
@@ -113,7 +115,7 @@ impl KnifeState {
         };
     }
 
-    /// Checks that all parameters are in range for a world of `D`.
+    /// Checks that all parameters are in range for a world of dimension `D`.
     pub(crate) fn check<D: Dim>(&self, rigids: &RigidBodies) -> Result<(), Error> {
         let holder = rigids.get(self.holder)?;
         let expected = "a kinematic or coupled rigid body";
@@ -152,7 +154,7 @@ impl KnifeState {
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound<D: Dim>(&self) -> bool {
         let numbers = [self.force, self.torque];
-        // The holder may have been removed; the simulation handles that.
+        // Does not check the holder: it may have been removed, which the simulation handles.
         self.check_numbers::<D>().is_ok()
             && numbers.into_iter().all(Vec3::is_finite)
             && self.work.is_finite()

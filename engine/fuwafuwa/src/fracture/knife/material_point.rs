@@ -10,7 +10,7 @@ use glam::Vec3;
 /// Maximum number of elements visited from the starting voxel.
 const STEPS: usize = 6;
 /// Distance outside of a cell [voxels] up to which a point counts as inside. Neighbouring elements deform
-/// differently, so without this tolerance a point could be outside of both.
+/// differently, so without this tolerance a point between two cells could be outside of both.
 const LITTLE: f32 = 0.25;
 
 /// Point that moves with the material of a body.
@@ -26,8 +26,8 @@ pub struct Spot {
 hash_state! { struct Spot { voxel, at } }
 
 impl Spot {
-    /// Finds a world-space point [m] in a body, starting from a voxel. Returns `None` if the point is not in
-    /// the body or too far from the start.
+    /// Finds the material point at a world-space position [m], starting from a voxel. Returns `None` if the
+    /// position is not in the body or too far from the start.
     pub fn find<D: Dim>(body: &SoftBody<D>, at: Vec3, from: Point) -> Option<Self> {
         let mesh = body.mesh();
         let mut voxel = from;
@@ -53,8 +53,8 @@ impl Spot {
         None
     }
 
-    /// Returns the rest position of a world-space point [m], extrapolated with the deformation of the element
-    /// at this point.
+    /// Returns the rest position of a world-space position [m], extrapolated with the deformation of the
+    /// element that contains this material point.
     pub fn extend<D: Dim>(&self, body: &SoftBody<D>, at: Vec3) -> Option<Vec3> {
         body.at_rest(body.mesh().element_at(self.voxel)?, at)
     }
@@ -83,8 +83,9 @@ impl Spot {
         element.is_some_and(|element| (body.affine_map(element)(self.at) - at).length() <= half)
     }
 
-    /// Returns whether the material in front of an edge is whole: whether the next face that it opens is
-    /// closed. `along` is the direction of the edge and `toward` the cutting direction [voxels].
+    /// Returns whether the material in front of an edge is uncut: whether the next face that the edge would
+    /// open is still closed. `along` is the direction of the edge and `toward` the cutting direction
+    /// [voxels].
     pub fn is_whole_ahead<D: Dim>(&self, body: &SoftBody<D>, along: Vec3, toward: Vec3) -> bool {
         let ahead = self.at + toward * 0.5;
         let Some(voxel) = voxel_of::<D>(ahead).filter(|&at| body.grid().is_solid(at)) else {

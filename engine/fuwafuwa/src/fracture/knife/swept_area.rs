@@ -1,8 +1,10 @@
-//! Area that an edge sweeps through the rest lattice of a body, and the faces between voxels that it crosses.
+//! Area that an edge sweeps through the rest lattice of a body, and the faces between voxels that this area
+//! crosses.
 //!
-//! A face between two voxels is crossed if the line between their centres is. For each axis, the lines along
-//! it are tested like the pixels of a rasteriser that views the swept area along the axis. Neighbouring
-//! triangles leave no gap, so neither does the swept area.
+//! The area crosses the face between two voxels if it crosses the line between their centres. For each axis,
+//! the lines through the voxel centres along that axis are tested, like the pixels of a rasteriser that looks
+//! along the axis. The area is made of triangles that leave no gap between them, so no crossed face is
+//! missed.
 
 use crate::foundation::dim::{Dim, Point};
 use glam::DVec3;
@@ -14,8 +16,8 @@ pub type RestPosition = DVec3;
 /// Faces, each given by the voxel on its low side and its axis.
 pub type Faces = BTreeSet<(Point, usize)>;
 
-/// Adds the faces of a grid of `size` [voxels] that a quadrilateral patch crosses. Its corners are given in
-/// order around the outline.
+/// Adds the faces of a grid of `size` [voxels] that a quadrilateral patch crosses. The corners of the patch
+/// are given in order around its outline.
 pub fn go_through<D: Dim>([a, b, c, d]: [RestPosition; 4], size: Point, faces: &mut Faces) {
     for triangle in [[a, b, c], [a, c, d]] {
         for axis in 0..D::N {
@@ -36,7 +38,7 @@ pub fn area([a, b, c, d]: [RestPosition; 4]) -> f64 {
     half(b - a, c - a) + half(c - a, d - a)
 }
 
-/// Adds the faces across an axis that a triangle crosses.
+/// Finds the faces that a triangle crosses, among the faces normal to `axis`, and adds them to `faces`.
 fn go_along(triangle: [RestPosition; 3], axis: usize, size: Point, faces: &mut Faces) {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let seen = triangle.map(|corner| [corner[u], corner[v]]);
@@ -52,7 +54,7 @@ fn go_along(triangle: [RestPosition; 3], axis: usize, size: Point, faces: &mut F
                 side(seen[2], seen[0], middle),
                 side(seen[0], seen[1], middle),
             ];
-            // A point on an edge counts for both triangles, so that none is missed.
+            // A line through a common edge of two triangles is counted for both, so that no face is missed.
             if shares.iter().any(|share| share * double < 0.0) {
                 continue;
             }
@@ -67,8 +69,8 @@ fn go_along(triangle: [RestPosition; 3], axis: usize, size: Point, faces: &mut F
     }
 }
 
-/// Returns a number with a sign that tells on which side of the line from `a` to `b` a point is. Swapping `a`
-/// and `b` changes only the sign, so neighbouring triangles agree.
+/// Returns a number whose sign tells on which side of the line from `a` to `b` the point is. Swapping `a` and
+/// `b` changes exactly the sign, so two triangles agree about points near their common edge.
 fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     let is_forward = a <= b;
     let (low, high) = if is_forward { (a, b) } else { (b, a) };
@@ -76,8 +78,8 @@ fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     if is_forward { turn } else { -turn }
 }
 
-/// Returns the voxels along an axis, of `count` in all, with centres between the smallest and the largest of
-/// the coordinates.
+/// Returns the range of the voxels along an axis whose centres lie between the smallest and the largest of
+/// three coordinates. The range is limited to the `count` voxels of the grid.
 fn middles(along: [f64; 3], count: i32) -> std::ops::RangeInclusive<i32> {
     let low = along.into_iter().fold(f64::INFINITY, f64::min);
     let high = along.into_iter().fold(f64::NEG_INFINITY, f64::max);

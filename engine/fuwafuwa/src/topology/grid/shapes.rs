@@ -18,7 +18,8 @@ impl<D: Dim> VoxelGrid<D> {
     #[inline(never)]
     pub fn ball(n: usize, diameter: f32) -> Result<Self, Error> {
         let centre = n as f32 * 0.5;
-        // Larger than the 0.87 of the corner voxels of 2 × 2 × 2, smaller than the 1 of three voxels.
+        // The minimum of 0.9 voxels serves balls one or two voxels across. The voxels of a 2 × 2 × 2 grid are
+        // 0.87 from its centre, so all of them are solid. Larger balls have a radius of at least 1.
         let radius = (centre - 0.5).max(0.9);
         Self::from_fn(Self::cube_size(n), diameter / n as f32, |at| {
             let squared: f32 = at[..D::N]
@@ -46,7 +47,7 @@ impl<D: Dim> VoxelGrid<D> {
     #[inline(never)]
     pub fn ring(n: usize, diameter: f32) -> Result<Self, Error> {
         let size = [n, n, D::depth(n.div_ceil(4))];
-        // In half voxels; leaves one free on each side, like a ball.
+        // Outer radius in half voxels; it leaves half a voxel free on each side, like the radius of a ball.
         let outer = n as f32 - 1.0;
         let tube = 0.25 * outer;
         Self::from_fn(size, diameter / n as f32, |voxel| {
@@ -143,7 +144,7 @@ mod tests {
         assert_eq!(picture(VoxelGrid::<Dim3>::ring(9, 1.0)), ring);
         let torus = VoxelGrid::<Dim3>::ring(33, 1.0).unwrap();
         assert_eq!(torus.size(), [33, 33, 9]);
-        // The section of the tube is round, and the same on both sides.
+        // The cross-section of the tube has the expected height: 5 of the 9 layers.
         let tube = (0..9).map(|z| torus.is_solid([1, 16, z]));
         assert_eq!(tube.filter(|&solid| solid).count(), 5);
         let heart = [

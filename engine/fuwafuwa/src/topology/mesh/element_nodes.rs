@@ -1,4 +1,4 @@
-//! Seating of elements: an element gets the nodes, and so the class, that follow from its surroundings.
+//! Nodes of elements: an element gets the nodes, and so the class, that follow from its surroundings.
 
 use super::remodel::Past;
 use super::{Element, InvariantViolation, Mesh, Node};
@@ -10,7 +10,7 @@ use crate::topology::element_class::{ElementClass, cell_corners, slot_at};
 
 impl<D: Dim> Mesh<D> {
     /// Gives an element the nodes and the class that follow from its surroundings; returns false if nothing
-    /// changed. A new node inherits its state from `past`, if given.
+    /// changed. If `past` is given, a new node inherits its state from there.
     pub(super) fn seat(
         &mut self,
         id: ElementId,
@@ -45,7 +45,7 @@ impl<D: Dim> Mesh<D> {
             count += 1;
         }
         let seated = &seated[..count];
-        // The nodes determine the slots, and so the class.
+        // Equal nodes imply equal slots and so an equal class: nothing has changed.
         if self.alive(id).nodes == seated {
             return Ok(false);
         }
@@ -73,7 +73,8 @@ impl<D: Dim> Mesh<D> {
     /// Returns whether an element other than `id` has `node` as a corner of its cell. The node must not be a
     /// corner of the cell of `id` itself.
     fn is_node_beside(&self, id: ElementId, node: Node) -> bool {
-        // Only cells up to this level can have a corner at this point.
+        // Only a cell up to level `highest` can have a corner at this point, because its corners are
+        // multiples of its width.
         let [x, y, z] = node.at;
         let highest = (x | y | z).trailing_zeros();
         self.owners_around(node.at, node.group)
@@ -128,9 +129,10 @@ fn seat_of<D: Dim>(cell: Cell, children: u8, slot: usize) -> Option<(Point, usiz
     Some((at, octant))
 }
 
-/// Children that have each slot as a corner.
+/// For each slot, mask of the children that have the slot as a corner.
 const TOUCHING: [u8; 27] = {
-    // Along one axis: the near child, both, the far one.
+    // Masks of the children for slot coordinates 0, 1 and 2 along each axis: near children, all children, far
+    // children.
     let along = [
         [0b0101_0101, 0b1111_1111, 0b1010_1010],
         [0b0011_0011, 0b1111_1111, 0b1100_1100],

@@ -19,7 +19,7 @@ pub struct Remodelled {
     pub seated: Vec<ElementId>,
     /// New nodes, and the sources of their state.
     pub inherited: Vec<Inheritance>,
-    /// Old nodes with weights, grouped by new node.
+    /// Old nodes with their weights, for all entries of `inherited`; grouped by new node.
     pub shares: Vec<(NodeId, f64)>,
     /// Nodes that no element carries any more.
     pub abandoned: Vec<NodeId>,
@@ -36,7 +36,7 @@ pub struct Remodelled {
 pub struct Inheritance {
     /// New node.
     pub node: NodeId,
-    /// Range of its entries in [`Remodelled::shares`].
+    /// Range in [`Remodelled::shares`] of the old nodes and weights for the new node.
     pub from: Range<usize>,
 }
 
@@ -150,8 +150,9 @@ impl<D: Dim> Mesh<D> {
         gone
     }
 
-    /// Returns the elements that may need other nodes, ascending: those in `refitted` cells, those around the
-    /// `changed` points, and those around the corners of `born` cells. New nodes appear only at these places.
+    /// Returns the elements that may need other nodes, ascending. These are the elements in `refitted` cells,
+    /// around the `changed` points, and around the corners of `born` cells. New nodes appear only at these
+    /// places.
     fn elements_touched(
         &self,
         connectivity: &Connectivity<D>,
@@ -164,7 +165,7 @@ impl<D: Dim> Mesh<D> {
             (0..D::CORNERS).map(corner_of)
         };
         let corners = born.iter().flat_map(corners);
-        // Without duplicates, because neighbouring cells share corners.
+        // Removes duplicate points, because neighbouring cells share corners.
         let points = connectivity.each_once(changed.iter().copied().chain(corners));
         let around = |at| self.owners_around(at, D::ALL_CORNERS);
         let places = refitted.iter().filter_map(|&cell| self.places.index(cell));
@@ -210,15 +211,15 @@ pub struct Past {
     pub replaced: Vec<(ElementId, Element)>,
     /// New nodes, and the sources of their state.
     pub inherited: Vec<Inheritance>,
-    /// Old nodes with weights, grouped by new node.
+    /// Old nodes with their weights, for all entries of `inherited`; grouped by new node.
     shares: Vec<(NodeId, f64)>,
 }
 
 impl Past {
-    /// Adds a new node at `at` next to `voxel`, and computes the old nodes and weights from which it
-    /// inherits. Their source is that child of the old owner which contains the voxel: the slots at its
-    /// corners are interpolated linearly to `at`. A slot without a node is itself interpolated from its
-    /// neighbours.
+    /// Adds a new node at `at` next to `voxel`, and computes the old nodes and weights from which the new
+    /// node inherits its state. The source is the child that contains the voxel, in the element that owned
+    /// the voxel before. The slots at the corners of this child are interpolated linearly to `at`. A slot
+    /// without a node is itself interpolated from adjacent slots.
     pub fn inherit<D: Dim>(
         &mut self,
         mesh: &Mesh<D>,
@@ -260,7 +261,7 @@ impl Past {
         Ok(())
     }
 
-    /// Returns the old owner of a voxel, and the child that contains the voxel.
+    /// Returns the element that owned a voxel before the remodelling, and the child that contains the voxel.
     fn owner<'a, D: Dim>(
         &'a self,
         mesh: &'a Mesh<D>,
@@ -300,7 +301,7 @@ impl Past {
     }
 }
 
-/// Distributes `weight` of a slot to the node of the slot. Without a node, adjacent slots share the weight,
+/// Adds `weight` to the node of a slot. If the slot has no node, distributes the weight to adjacent slots,
 /// recursively. The shares of the current new node start at index `first`.
 fn collect_shares<D: Dim>(
     element_class: &ElementClass<D>,

@@ -28,7 +28,7 @@ fn start_tick<D: Dim>(spheres: &mut Spheres, pairs: &mut SpherePairs, bodies: &S
     }
 }
 
-/// Compares the list with a test of all pairs of spheres.
+/// Checks the list of pairs against a test of all pairs of spheres.
 fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &SoftBodies<D>, when: &str) {
     assert!(pairs.list.is_sorted_by(|a, b| a.spheres < b.spheres));
     let all = &spheres.list;
@@ -70,7 +70,7 @@ fn check<D: Dim>(n: usize) {
     let (mut spheres, mut pairs) = (Spheres::default(), SpherePairs::default());
     let (mut again, mut whole) = (0, 0);
     for tick in 0..20 {
-        // Alternately a third and nearly all of them sleep.
+        // In even ticks about a third of the crumbs sleep, in odd ticks nearly all.
         let most = if tick % 2 == 0 { 0.2 } else { -0.45 };
         let sleepers: Vec<bool> = (0..count).map(|_| random(&mut seed) > most).collect();
         let sleepers = sleepers.into();
