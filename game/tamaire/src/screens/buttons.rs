@@ -82,7 +82,7 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
 /// Shows a button; returns whether the mouse is over it.
 fn one(game: &mut Game, ui: &Ui, button: ScreenButton, name: &str, icon: Icon) -> bool {
     let (theme, rect) = (game.theme(), button.rect);
-    // Cannot get the keyboard focus, since keys for these actions exist.
+    // The button cannot get the keyboard focus, since its action has a key.
     let response = ui.interact(rect, egui::Id::unique(name), Sense::CLICK);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
     note_hovered(ui, &response);
