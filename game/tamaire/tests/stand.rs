@@ -18,11 +18,11 @@ use tempfile::TempDir;
 const TAMAIRE: &str = env!("CARGO_BIN_EXE_tamaire");
 /// Number of times that the game is killed or stopped, unless `KILLS` is set.
 const KILLS: usize = 54;
-/// Number of crashes within ten minutes that a stand survives; it gives up after one more.
+/// Number of crashes within ten minutes that a stand survives. After one more crash the stand gives up.
 const BORNE: usize = 9;
 /// Every ninth time the game is stopped instead of killed.
 const STOPPED: usize = 9;
-/// Timeout for everything that the test waits for.
+/// Longest time that the test waits for any single condition.
 const LONG: Duration = Duration::from_secs(60);
 const SIZE: (u32, u32) = (640, 400);
 /// Number of colours above which the game counts as drawn; an empty screen has one.
