@@ -52,7 +52,7 @@ const KEYS: [Key; 16] = [
     Key::X,
 ];
 
-/// Dropped file.
+/// File dropped onto the window.
 type AnyFile = Arc<dyn DroppedFile + Send + Sync>;
 
 /// Game with simulated players.
@@ -143,7 +143,7 @@ impl egui::Plugin for OfEgui {
     }
 }
 
-/// File as reported by the window.
+/// Dropped file as the window reports it.
 #[derive(Debug)]
 struct Dropped(PathBuf);
 

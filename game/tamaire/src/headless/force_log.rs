@@ -25,8 +25,8 @@ const COLUMNS: &str = "seconds,row,player,\
 /// are.
 pub struct ForceLog {
     file: File,
-    /// Rows of the current tick. They are written at once, so that a killed run leaves complete ticks in the
-    /// file.
+    /// Rows of the current tick. They are written together, so that the file of a killed run ends with a
+    /// complete tick.
     rows: Vec<u8>,
     /// Simulated stick and pad of each player.
     feels: [[ForceController; 2]; PLAYERS],
@@ -36,7 +36,7 @@ pub struct ForceLog {
     settings: force_feedback::Settings,
     /// Number of device updates since the start, one in each [`PERIOD`].
     updates: u64,
-    /// First write error, if any. Nothing is written after it.
+    /// First write error, if any. Nothing is written after this error.
     written: io::Result<()>,
 }
 

@@ -1,4 +1,4 @@
-//! Drawing of a round: world, particles and faces.
+//! Drawing of a round: world, particles, and drawn faces of the bodies.
 
 use super::feelings::Feeling;
 use super::rest_frame::{camera, face_at_rest, frame};
