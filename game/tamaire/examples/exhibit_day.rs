@@ -1,9 +1,9 @@
 //! Simulates days of a public stand, as fast as the machine can.
 //!
 //! Simulated visitors come, hesitate, play alone or in pairs, press buttons at random, leave in the middle of
-//! a round, and try again. Staff opens its pages. Each hour of the stand is reported. At the end, the logbook
-//! must contain all rounds that ended, each round must be reproducible, and memory and frame times must not
-//! have grown.
+//! a round, and try again. Simulated staff open the staff pages. Each hour of the stand is reported. At the
+//! end, the logbook must contain all rounds that ended, each round must be reproducible, and memory and frame
+//! times must not have grown.
 //!
 //! Most frames are laid out but not drawn, because drawing in software takes longer than everything else.
 //!
@@ -32,18 +32,19 @@ use tamaire::platform::{Files, Sound, StandFolder, TextFile, memory};
 use tamaire_logbook::{Error, Logbook, Round};
 use tamaire_play::{Bot, BotKind, Playback, Replay};
 
-/// Duration of a frame in the game [s], which contains six ticks.
+/// Game time of a frame [s], equal to six ticks.
 const STEP: f64 = 0.1;
 /// One frame in 50 is drawn.
 const DRAWN: u64 = 50;
 const SIZE: egui::Vec2 = vec2(640.0, 400.0);
-/// Counts allocations on the heap. The memory of the process is too coarse: it changes by blocks of the
-/// operating system and of the software adapter.
+/// Counts allocations on the heap. The memory of the whole process is too coarse a measure: it changes by
+/// blocks of the operating system and of the software adapter.
 #[global_allocator]
 static HEAP: PeakAlloc = PeakAlloc;
 
-/// Permitted growth of memory and frame time between the first and the last hour [%].
+/// Permitted growth of the memory in use between the first and the last hour [%].
 const MORE_MEMORY: f64 = 5.0;
+/// Permitted growth of the frame time between the first and the last hour [%].
 const SLOWER: f64 = 10.0;
 /// Frames in a minute.
 const MINUTE: u64 = (60.0 / STEP) as u64;
@@ -61,11 +62,11 @@ enum Manner {
     Pair(BotKind),
     /// Plays with the pad, moving in circles.
     Pad,
-    /// Holds the corner and enters this PIN, right or wrong.
+    /// Holds the hidden corner of the screen, as staff does, and enters this PIN, right or wrong.
     Staff(&'static str),
     /// Presses buttons at random.
     Mashes,
-    /// Touches the stand, watches, and goes.
+    /// Touches the stand, watches, and leaves.
     Looks,
 }
 
@@ -95,16 +96,17 @@ struct Day {
     frames: u64,
     /// Duration of each frame in this hour [ms].
     times: Vec<f64>,
-    /// Memory in each minute of this hour [MB]: in use on heap and GPU, and held by the process.
+    /// Memory in use on heap and GPU in each minute of this hour [MB].
     used: Vec<f64>,
+    /// Memory held by the process in each minute of this hour [MB].
     held: Vec<f64>,
-    /// Medians of each hour: memory in use, memory held, frame time.
+    /// Medians of each hour: memory in use [MB], memory held by the process [MB], frame time [ms].
     hours: Vec<[f64; 3]>,
     visitors: u64,
     wins: u64,
-    /// Number of observed ends of visitors' rounds.
+    /// Number of visitors' rounds whose end was observed.
     ended: u64,
-    /// Ticks of the current round of a visitor, and whether it is won.
+    /// Ticks of the current round of a visitor, and whether the round is won.
     round: Option<(u64, bool)>,
     /// Maximum time from a visitor's arrival to the first frame in which the hand can move [ms].
     welcome: f64,
@@ -142,7 +144,7 @@ impl Day {
         }
     }
 
-    /// Adds the events of the current visitor in a frame.
+    /// Adds the input events of the current visitor for one frame.
     fn act(&mut self, events: &mut Vec<Event>) {
         let Some(visitor) = &mut self.visitor else {
             self.quiet -= STEP;
@@ -230,11 +232,11 @@ impl Day {
         let was_there = self.is_played();
         let began = ThreadTime::now();
         self.window.step();
-        // A screen would throttle the frames. The software adapter is slower than the stand, so its work
-        // would pile up.
+        // Waits for the software adapter, which is slower than a stand's. Its work would pile up, since no
+        // screen throttles the frames.
         let waited = self.gpu.device.poll(PollType::wait_indefinitely());
         waited.expect("the GPU works");
-        // Thread time, so that other processes do not count.
+        // Measures the time of this thread, so that other processes do not count.
         let time = 1000.0 * began.elapsed().as_secs_f64();
         self.times.push(time);
         if !was_there && self.is_played() {
@@ -313,7 +315,7 @@ fn tap(events: &mut Vec<Event>, key: Key) {
     }
 }
 
-/// Holds the corner for four seconds, then enters a digit every second frame.
+/// Holds the hidden corner of the screen for four seconds, then enters a digit of the PIN every second frame.
 fn knock(events: &mut Vec<Event>, frame: usize, number: &str) {
     const HELD: usize = (4.0 / STEP) as usize;
     let corner = pos2(SIZE.x - 20.0, 20.0);
@@ -388,7 +390,7 @@ fn reproduces(round: &Round) -> bool {
     outcome.map(|outcome| outcome.route) == round.route
 }
 
-/// Opens a stand with a configuration of its own in an offscreen window drawn by `gpu`.
+/// Opens a stand in an offscreen window drawn by `gpu`. Its configuration and its logbook are in `folder`.
 fn open(folder: &Path, gpu: RenderState) -> Harness<'static, App> {
     let text = DEFAULT_CONFIG.replace(
         "#folder = \"/var/lib/tam\"",
@@ -479,8 +481,8 @@ fn main() -> ExitCode {
     println!(
         "{ended} rounds and {wins_seen} wins were observed; {astray} rounds cannot be reproduced"
     );
-    // Frames miss a round of a few ticks, and a win that is followed by a restart within the same frame. So
-    // the logbook may contain more.
+    // Counting once per frame misses a round of a few ticks, and a win that is followed by a restart within
+    // the same frame. So the logbook may contain more rounds and wins than were counted.
     let mut is_good = wins >= wins_seen && rounds >= ended && astray == 0;
     if let [first, .., last] = hours.as_slice() {
         let [used, held, frame] = [0, 1, 2].map(|at| 100.0 * (last[at] / first[at] - 1.0));

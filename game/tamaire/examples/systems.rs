@@ -1,5 +1,5 @@
-//! Measures the cost of a frame without simulation and rendering: input, rules, camera, effects, feelings and
-//! sounds.
+//! Measures the cost of a frame without simulation and rendering: input, rules, camera, effects, expressions
+//! of bodies, and sounds.
 //!
 //! ```text
 //! cargo run --release -p tamaire --example systems
@@ -13,7 +13,8 @@ use tamaire::platform::{Files, Sound};
 use tamaire_play::{Bot, BotKind, Round};
 
 fn main() {
-    // Rounds are deterministic, so the minimum of three measures each frame without disturbances.
+    // Repeats the same deterministic round three times. The minimum time of each frame is the one without
+    // disturbances.
     let mut rest = round();
     for _ in 0..2 {
         for (least, found) in rest.iter_mut().zip(round()) {
@@ -31,7 +32,7 @@ fn main() {
     );
 }
 
-/// Returns the cost of each frame of a round without its simulation.
+/// Returns the cost of each frame of a round, minus the cost of simulating it.
 fn round() -> Vec<Duration> {
     let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
     game.start(0);
@@ -41,7 +42,7 @@ fn round() -> Vec<Duration> {
     while game.bout.won.is_none() && rest.len() < 40 * 60 {
         game.controls.devices.pointer = game.bout.round().ask(&mut bot).goal(0);
         let whole = time(|| game.update(DEFAULT_TICK));
-        // The same tick without the game.
+        // Simulates the same tick in a second round, outside of the game.
         let played = game.bout.round().frames();
         let Some(&frame) = played.get(beside.frames().len()) else {
             continue;

@@ -28,9 +28,9 @@ use tamaire::platform::{Files, Sound};
 
 /// Initial time of the game [s].
 const AHEAD: f64 = 10.0 * 86_400.0;
-/// Settling time [min], which also lasts until each level was started and photographed once; and permitted
-/// growth afterwards, as a share.
+/// Minimum settling time [min]. Settling also lasts until each level was started and photographed once.
 const SETTLED: usize = 15;
+/// Permitted growth of a measured figure after settling, as a fraction.
 const GROWTH: f64 = 0.05;
 /// Keys that are pressed at random.
 const KEYS: [Key; 16] = [
@@ -52,7 +52,7 @@ const KEYS: [Key; 16] = [
     Key::X,
 ];
 
-/// Dropped file.
+/// File dropped onto the window.
 type AnyFile = Arc<dyn DroppedFile + Send + Sync>;
 
 /// Game with simulated players.
@@ -143,7 +143,7 @@ impl egui::Plugin for OfEgui {
     }
 }
 
-/// File as reported by the window.
+/// Dropped file as the window reports it.
 #[derive(Debug)]
 struct Dropped(PathBuf);
 
@@ -230,11 +230,12 @@ impl Soak {
         bytes.samples.push(cost.bytes as f64 / 1000.0);
     }
 
-    /// Performs occasional actions outside of the input.
+    /// Performs occasional actions that are not input events, for example changing the screen or the window
+    /// size.
     fn manage(&mut self, ctx: &egui::Context) {
         let game = &mut self.app.game;
         let mut plugged = vec![self.pad.clone()];
-        // Unplugged for a second each minute.
+        // The pad is unplugged for one second in each minute.
         plugged.retain(|_| !self.began.elapsed().as_secs().is_multiple_of(60));
         game.controls.pads = Pads::of(Snapshot { devices: plugged });
         if self.frames % 400 == 399 {
@@ -246,7 +247,8 @@ impl Soak {
                 3 => game.keep_replay(),
                 4 => game.keep_clip(),
                 _ => {
-                    // The first photo of a level allocates memory that is reused later.
+                    // The first photo of a level allocates memory that later photos reuse, so it is taken
+                    // while the memory settles.
                     if is_first {
                         game.keep_photo();
                     }
@@ -295,7 +297,7 @@ impl Soak {
         if minute >= self.minutes {
             ctx.send_viewport_cmd(ViewportCommand::Close);
         } else if ctx.input(|input| input.viewport().close_requested()) {
-            // The player pressed Quit.
+            // The simulated player pressed Quit, but the window stays open until the end of the test.
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
         }
     }
@@ -407,7 +409,7 @@ fn main() -> ExitCode {
                 println!("{} grew by {:.1} %", figure.name, 100.0 * growth);
                 growth
             });
-            // NaN, if nothing was measured, fails the test.
+            // If nothing was measured, the growth is NaN, which fails the test.
             let is_flat = growths.iter().all(|growth| *growth <= GROWTH);
             ExitCode::from(u8::from(!is_flat))
         }

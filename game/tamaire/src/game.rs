@@ -131,8 +131,8 @@ impl Game {
             { damage.as_ref() }.is_some_and(|damage| damage.aside.is_some())
         };
         if is_aside(&settings_damage) {
-            // A copy of the damaged file was put aside. Overwriting the file makes the message appear only
-            // once.
+            // The damaged settings were copied to another file. Overwriting the damaged file prevents a
+            // second message at the next start.
             game.keep_settings();
         }
         if is_aside(&records_damage) {
@@ -210,7 +210,8 @@ impl Game {
         self.arrive();
     }
 
-    /// Updates the state after a change of the visible screen.
+    /// Adapts the state to a newly visible screen; for example, ends single steps, key binding and device
+    /// tests.
     fn arrive(&mut self) {
         self.bout.slow &= self.screens.has(Screen::Play);
         self.bout.stepping = false;

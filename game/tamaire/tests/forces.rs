@@ -102,7 +102,7 @@ impl Table {
         });
     }
 
-    /// Waits without running frames until the force on the first stick is zero; returns the time since
+    /// Waits until the force on the first stick is zero, without running frames. Returns the time since
     /// `start`.
     fn zero_since(&self, start: Instant) -> Duration {
         while !self.told(0).is_some_and(|output| output.is_zero()) {
@@ -150,8 +150,8 @@ fn stick_is_pushed_back_by_body() {
     let mut table = Table::with(1);
     table.game.start(0);
     table.hears_nothing(0);
-    // The stick sets a position: beyond the body's surface it is pushed back, more the further it goes. On a
-    // busy machine the thread may miss a whole push, so the round is repeated.
+    // The stick sets the position of the hand. Beyond the body's surface, the stick is pushed back more the
+    // further it goes. On a busy machine the device thread may miss a whole push, so the round is repeated.
     let mut frame = 0;
     table.until("pushed to the left", |table| {
         if frame == 100 {
@@ -183,12 +183,12 @@ fn stick_force_3d_follows_camera_orientation() {
         let mut share = 0.0;
         table.until("pushed back", |table| {
             share += if share < 1.0 { 0.01 } else { 0.0 };
-            // Path of the hand from in front of the ball to its centre [m], and the deflection of the stick
-            // that leads there.
+            // Path of the hand from in front of the ball to the ball's centre [m], and the deflection of the
+            // stick that moves the hand there.
             let [x, z] = [-0.6, 0.7 - 1.1 * share];
             let [right, away]: [f32; 2] = [[-z, -x / 1.6], [x / 1.6, -z]][axis];
             let long = right.hypot(away);
-            // Compensates the dead zone.
+            // Compensates the dead zone of the stick.
             let more = (0.15 + 0.8 * long) / long;
             table.devices[0].axes = vec![more * right, -more * away];
             table.plug_in();
@@ -230,8 +230,8 @@ fn force_ends_on_pause_menu_new_round_and_lost_focus() {
     }
 }
 
-/// Checks that a force ends within 20 ms. The fastest of 20 tries counts, because a busy machine delays
-/// others.
+/// Checks that a force ends within 20 ms in at least one of 20 tries. A busy machine may delay the other
+/// tries.
 fn check_quick(mut once: impl FnMut() -> Duration) {
     let most = Duration::from_millis(20);
     let quick = (0..20).map(|_| once()).find(|time| *time <= most);
@@ -246,14 +246,14 @@ fn force_ends_on_win() {
     let bot = tamaire_play::BotKind::NAMED[0].1;
     let mut bot = tamaire_play::Bot::new(bot, 1);
     table.until("won", |table| {
-        // The bot plays with the stick, which sets positions.
+        // The bot plays with the stick, whose position sets the position of the hand.
         pushed |= table.told(0).is_some_and(|output| !output.is_zero());
         let round = table.game.bout.round();
         let [low, high] = round.level().arena();
         let goal = round.ask(&mut bot).goal(0).expect("the bot has a target");
         let middle = 0.5 * (low + high);
         let Vec3 { x, y, .. } = (goal - middle) / (0.5 * (high - low));
-        // Compensates the dead zone.
+        // Compensates the dead zone of the stick.
         let lean = x.hypot(y).max(1e-3);
         let share = (0.15 + 0.8 * lean) / lean;
         table.devices[0].axes = vec![share * x, -share * y];
@@ -344,7 +344,7 @@ fn force_of_each_hand_goes_to_its_player() {
     table
         .game
         .act(Action::Join, InputSource::Stick(DeviceId(1)));
-    // The second hand starts far above the body and stays there.
+    // The second hand stays at its start position, far above the body, so its stick gets no force.
     table.until_pushed(0);
     assert_eq!(table.told(1), None);
     // The second hand pushes into the body from above.
@@ -427,7 +427,7 @@ fn stick_can_be_tried_and_measured() {
     table.game.settings.haptics = 0.5;
     table.frame();
 
-    // This stick has swapped and reversed motors, and moves as it is pushed.
+    // The simulated stick has swapped and reversed motors, and moves as it is pushed.
     table.game.go(Screen::Forces);
     table.lean(0, 0.0);
     table.game.trial = Some(Trial::measure(DeviceId(0)));

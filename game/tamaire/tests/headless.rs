@@ -382,7 +382,7 @@ fn force_log_records_substeps_and_device_updates() {
     };
     let (substeps, updates) = (of("substep"), of("device"));
 
-    // 960 substeps and 250 device updates a second.
+    // The table has 960 substeps and 250 device updates a second.
     let seconds = number(substeps[substeps.len() - 1], "seconds");
     assert!(
         (substeps.len() as f64 - 960.0 * seconds).abs() <= 1.0,
@@ -390,8 +390,8 @@ fn force_log_records_substeps_and_device_updates() {
     );
     assert!((updates.len() as f64 - 250.0 * seconds).abs() <= 10.0);
 
-    // The hand pushes to the right, so the stick is pushed to the left. The force changes smoothly except
-    // when it ends.
+    // The hand pushes the body to the right, so the stick is pushed to the left. The force on the stick
+    // changes smoothly except when the force ends.
     let least = |rows: &[&Vec<&str>], name| {
         let values = rows.iter().map(|row| number(row, name));
         values.fold(0.0, f64::min)
@@ -433,7 +433,7 @@ fn round_3d_is_reported_recorded_and_filmed() {
     assert!(told["inside"].as_f64().unwrap() >= 0.5, "{told}");
     let ticks = told["ticks"].as_u64().unwrap();
 
-    // Eight substeps a tick; a hand that comes from the side is pushed along all axes.
+    // The table has eight substeps a tick. A hand that comes from the side is pushed along all axes.
     let table = fs::read_to_string(folder.path().join("forces.csv")).unwrap();
     let rows: Vec<Vec<&str>> = table
         .lines()

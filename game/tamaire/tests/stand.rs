@@ -16,13 +16,14 @@ use tamaire_logbook::{Error, Event, Kind, Logbook, Round};
 use tempfile::TempDir;
 
 const TAMAIRE: &str = env!("CARGO_BIN_EXE_tamaire");
-/// Number of times that the game is killed or stopped, unless `KILLS` is set.
+/// Number of times that the game is killed or suspended. The environment variable `KILLS` overrides the
+/// number.
 const KILLS: usize = 54;
-/// Number of crashes within ten minutes that a stand survives; it gives up after one more.
+/// Number of crashes within ten minutes that a stand survives. After one more crash the stand gives up.
 const BORNE: usize = 9;
-/// Every ninth time the game is stopped instead of killed.
+/// Every ninth time the game is suspended (SIGSTOP) instead of killed.
 const STOPPED: usize = 9;
-/// Timeout for everything that the test waits for.
+/// Longest time that the test waits for any single condition.
 const LONG: Duration = Duration::from_secs(60);
 const SIZE: (u32, u32) = (640, 400);
 /// Number of colours above which the game counts as drawn; an empty screen has one.
@@ -261,7 +262,7 @@ fn stand_restarts_killed_game_without_losing_rounds() {
         if kill % STOPPED == STOPPED - 1 {
             stopped += 1;
             stand.signal("-STOP");
-            // A stopped game stays visible until it is replaced.
+            // A suspended game stays visible until the supervisor replaces it.
             let began = Instant::now();
             screen.wait_until(false);
             screen.wait_until(true);

@@ -94,7 +94,7 @@ pub(super) fn rest(file: &Path) -> ExitCode {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
         game.settings = settings;
         game.public = Some(PublicMode::default());
-        // This screen has no round behind it, so that no round runs.
+        // The settings screen shows no round, so no round is simulated.
         game.go(Screen::Settings);
         (game, Box::new(CrashScreen::default()))
     })

@@ -58,7 +58,8 @@ impl Studio {
         }
     }
 
-    /// Size of the picture of a moment [px]: the given size, plus the caption strip if it has a caption.
+    /// Size of the picture of a moment [px]: the given size, plus the caption strip if the moment has a
+    /// caption.
     pub fn size(moment: &Moment, [width, height]: [u32; 2]) -> [u32; 2] {
         let below = if moment.caption.is_some() {
             CAPTION

@@ -24,7 +24,7 @@ pub struct CurrentRound {
     pub view: Option<View>,
     /// Meaning of the element colours. `None` = the skin is shown instead.
     pub elements: Option<ElementColour>,
-    /// Depth to which bodies are cut open in the element view (space only).
+    /// Depth to which 3D bodies are cut open in the element view.
     pub opening: Cutaway,
     /// Whether slow motion is on.
     pub slow: bool,
@@ -82,7 +82,7 @@ impl CurrentRound {
         self.session.round()
     }
 
-    /// Whether the round is in space and is being played.
+    /// Whether the round is in 3D and is being played.
     pub fn is_played_in_space(&self) -> bool {
         self.session.is_played() && self.turn().is_some()
     }
@@ -92,7 +92,7 @@ impl CurrentRound {
         self.session.is_played() && self.round().level().scene().hand.len() > 1
     }
 
-    /// Rotation of the camera around the vertical axis, to the right [rad]. `None` in the plane.
+    /// Rotation of the camera around the vertical axis, to the right [rad]. `None` in 2D.
     pub fn turn(&self) -> Option<f32> {
         let is_space = matches!(self.round(), AnyRound::Space(_));
         is_space.then(|| self.camera.azimuth())

@@ -18,7 +18,7 @@ impl ScreenButton {
     /// Returns the input source for which the button acts.
     pub fn seat(&self) -> InputSource {
         match self.action {
-            // The first finger has a hand already, so joining is for the second one.
+            // The first finger already moves a hand, so the second finger joins.
             Action::Join => InputSource::Finger,
             _ => InputSource::Pointer,
         }
@@ -69,7 +69,7 @@ impl Controls {
         self.latch.release();
         self.scan.start();
         self.devices.taken = None;
-        // In space the second finger raises the hand of the first one, so it cannot be a player.
+        // In 3D the second finger raises the hand of the first player, so it cannot move a second hand.
         if is_space && self.players.second() == Some(InputSource::Finger) {
             self.players.join(InputSource::Finger);
         }

@@ -12,15 +12,15 @@ use tamaire_play::PLAYERS;
 /// Time without movement after which a device without force feedback stops rumbling [s].
 const RESTED: f32 = 1.5;
 
-/// Duration of the movement of an idle stick that attracts visitors [s].
+/// Duration of the gentle movement by which an idle stick attracts visitors [s].
 const CALL: f64 = 1.6;
-/// Time from the start of one such movement to the next [s].
+/// Time from the start of one gentle movement of an idle stick to the start of the next [s].
 const CALLS: f64 = 24.0;
-/// Strength of the movement, as a fraction of full force.
+/// Strength of the gentle movement of an idle stick, as a fraction of full force.
 const GENTLE: f32 = 0.12;
 
 impl Game {
-    /// Sends force feedback to the devices, or the reason why they get none.
+    /// Sends force feedback to the devices. A device that gets none is given the reason.
     pub(super) fn drive_forces(&mut self, seconds: f32) {
         self.pass_trial(seconds);
         let (settings, trial) = (&self.settings, &self.trial);
@@ -69,7 +69,7 @@ impl Game {
             (TrialStatus::Known(Some(found)), Some(device)) => {
                 let known = self.settings.calibrations.entry(device.about.guid.clone());
                 let known = known.or_default();
-                // The measurement does not determine the gain, so the old one is kept.
+                // The measurement does not determine the gain of the device, so the previous gain is kept.
                 let gain = known.gain;
                 *known = Calibration { gain, ..found };
                 self.keep_settings();
@@ -114,7 +114,7 @@ impl Game {
         })
     }
 
-    /// Whether the game moves idle sticks now, or did a moment ago.
+    /// Whether the game moves idle sticks to attract visitors now, or did so a moment ago.
     pub fn is_calling(&self) -> bool {
         self.calls && self.time % CALLS < 2.0 * CALL
     }

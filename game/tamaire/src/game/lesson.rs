@@ -1,12 +1,12 @@
-//! Tutorial: hints for players who are new to levels in space.
+//! Tutorial: hints for players who are new to 3D levels.
 
 use fuwafuwa::Vec3;
 
-/// Movement of the hand along the floor after which the hint about it counts as tried [m].
+/// Movement of the hand along the floor after which the hint about moving counts as followed [m].
 const MOVED: f32 = 0.2;
-/// Movement of the hand up or down after which the hint about it counts as tried [m].
+/// Movement of the hand up or down after which the hint about raising counts as followed [m].
 const RAISED: f32 = 0.12;
-/// Rotation of the camera after which the hint about it counts as tried [rad].
+/// Rotation of the camera after which the hint about turning counts as followed [rad].
 const TURNED: f32 = 0.2;
 /// Time for which hints are shown in a round [s].
 const LONG: f32 = 45.0;
@@ -14,8 +14,8 @@ const LONG: f32 = 45.0;
 /// Progress of the tutorial.
 #[derive(Clone, Debug, Default)]
 pub struct Tutorial {
-    /// Whether the player has tried to move the hand, to raise it, and to turn the camera. Kept across
-    /// rounds.
+    /// Whether the player has tried to move the hand, to raise it, and to turn the camera. The values are
+    /// kept across rounds.
     tried: [bool; 3],
     /// Time for which hints have been shown in this round [s].
     seconds: f32,
@@ -27,7 +27,7 @@ impl Tutorial {
         self.seconds = 0.0;
     }
 
-    /// Returns whether to show each hint: move, raise, look around.
+    /// Returns whether to show each of the three hints: move the hand, raise the hand, turn the camera.
     pub(super) fn missing(&self) -> [bool; 3] {
         self.tried.map(|tried| !tried && self.seconds < LONG)
     }

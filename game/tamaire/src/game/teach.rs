@@ -1,20 +1,21 @@
-//! Hints for players who are new to levels in space.
+//! Hints for players who are new to 3D levels.
 
 use super::{Game, Screen};
 use crate::input::{Action, InputMethod};
 use fuwafuwa::Vec3;
 
 impl Game {
-    /// Returns the hints about moving, raising and turning, and whether each is still to be shown. They are
-    /// worded for the input method used last. There are none in the plane, outside of play, and for players
-    /// who have won in space. With scanning on, the only hint explains the switch.
+    /// Returns the hints about moving the hand, raising it and turning the camera, each with whether to show
+    /// it. The texts suit the input method used last. There are no hints in 2D, outside of a round, and for
+    /// players who have won a 3D level. With scanning on, the only hint explains the switch.
     pub fn lesson(&self) -> Vec<(String, bool)> {
         if self.settings.scanning.is_on() {
             let is_played = self.screen() == Screen::Play && self.bout.session.is_played();
             let told = self.words().how_by_switch.to_string();
             return Vec::from_iter(is_played.then_some((told, !self.controls.scan.is_known())));
         }
-        // In the element view the wheel cuts deeper, so the hints would be wrong.
+        // In the element view the mouse wheel cuts bodies open instead of raising the hand, so the hints
+        // would be wrong.
         if !self.is_played_in_space() || self.has_won_in_space() || self.bout.elements.is_some() {
             return Vec::new();
         }

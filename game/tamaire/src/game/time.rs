@@ -72,8 +72,8 @@ impl Game {
             turn: self.bout.turn(),
         };
         let still = self.settings.reduced_motion;
-        // In menus the same keys and sticks move the focus. After a win, input is ignored so that the body is
-        // not torn any more.
+        // Keys and sticks move the hand only during a round; in menus they move the focus. After a win, input
+        // is ignored so that the body is not torn any more.
         let is_won = self.bout.round().progress().outcome.is_some();
         let in_round = self.screen() == Screen::Play && !is_won;
         let view = self.bout.view;
@@ -112,7 +112,8 @@ impl Game {
                 }
                 let bindings = &settings.bindings;
                 let frame = players.frame(devices, bindings, &manner, &targets, DEFAULT_TICK);
-                // Scrolling counts once, however many ticks are played in this frame.
+                // Clears the height by which the player has scrolled. Scrolling then counts once, however
+                // many ticks are played in this frame.
                 devices.lift = 0.0;
                 frame
             },
@@ -140,7 +141,7 @@ impl Game {
         }
     }
 
-    /// Tells the player once if the machine is too slow for the round, which is known after two seconds.
+    /// Tells the player once if the machine is too slow for the round. The speed is known after two seconds.
     fn tell_if_slow(&mut self) {
         const LEAST_TICKS: u64 = 120;
         const LEAST: f64 = 0.8;
@@ -163,7 +164,8 @@ impl Game {
         self.bout.cheered += seconds;
         if self.bout.session.is_played() && self.bout.won.is_none() {
             let level = self.bout.round().level().clone();
-            // A shared round may have a different level under a known name.
+            // A round from a link may have a different level under a known name. A win in such a level is not
+            // recorded.
             let is_known = self.listed(&level).is_some();
             let is_best = is_known && self.records.note(&level, &outcome);
             self.bout.won = Some((outcome, is_best));

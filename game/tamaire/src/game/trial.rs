@@ -4,9 +4,9 @@ use crate::settings::FULL;
 use force_feedback::{Calibration, Measured, Measurement, Settings, State, StickMode};
 use sticks::{DeviceId, Snapshot};
 
-/// Deflection beyond which a stick counts as at its rim, where it gives a tear impulse.
+/// Deflection beyond which a stick under test is at its rim and gives a tear impulse.
 const RIM: f32 = 0.95;
-/// Deflection below which the stick has left the rim again.
+/// Deflection below which a stick under test has left its rim and can give another tear impulse.
 const BACK: f32 = 0.85;
 
 /// A device under test or measurement.

@@ -25,8 +25,8 @@ const COLUMNS: &str = "seconds,row,player,\
 /// are.
 pub struct ForceLog {
     file: File,
-    /// Rows of the current tick. They are written at once, so that a killed run leaves complete ticks in the
-    /// file.
+    /// Rows of the current tick. They are written together, so that the file of a killed run ends with a
+    /// complete tick.
     rows: Vec<u8>,
     /// Simulated stick and pad of each player.
     feels: [[ForceController; 2]; PLAYERS],
@@ -36,7 +36,7 @@ pub struct ForceLog {
     settings: force_feedback::Settings,
     /// Number of device updates since the start, one in each [`PERIOD`].
     updates: u64,
-    /// First write error, if any. Nothing is written after it.
+    /// First write error, if any. Nothing is written after this error.
     written: io::Result<()>,
 }
 
@@ -176,8 +176,7 @@ fn numbers(all: &[f32]) -> String {
     rounded.map(|k| k.to_string()).collect::<Vec<_>>().join(",")
 }
 
-/// Rotation of the camera for the conversion of forces [rad]: 0 (from the front) in space, `None` in the
-/// plane.
+/// Rotation of the camera for the conversion of forces [rad]: 0 (from the front) in 3D, `None` in 2D.
 fn turn(round: &AnyRound) -> Option<f32> {
     matches!(round, AnyRound::Space(_)).then_some(0.0)
 }
@@ -206,7 +205,7 @@ mod tests {
         for tick in 1..=3 {
             round.step(InputFrame::default());
             log.note(&round);
-            // Read before `finish`, as if the run were killed now.
+            // The table is read before `finish`, as if the program were killed now.
             let table = std::fs::read_to_string(&path).unwrap();
             let last = format!(
                 "\n{:.6},substep,0,",

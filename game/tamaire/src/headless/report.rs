@@ -23,7 +23,7 @@ pub struct Report {
     /// Game time until the round was won or given up [s].
     seconds: f32,
     ticks: u64,
-    /// Mass of the largest piece of each body, as a fraction of its mass at the start.
+    /// Sum of the masses of each body's largest piece, relative to this sum at the start.
     kept: f32,
     /// Fraction of the mass that is at rest in the basket.
     inside: f32,

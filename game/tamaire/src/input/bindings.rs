@@ -95,12 +95,13 @@ impl Default for Bindings {
             (Action::Raise, vec![stick(9)]),
             (Action::Lower, vec![stick(10)]),
             (Action::Join, vec![pad(PadButton::Back), stick(11)]),
-            // Few sticks have more than twelve buttons, so the actions that a round does not require are
-            // bound to the last ones.
+            // Few sticks have more than twelve buttons. Actions that a round does not require are therefore
+            // bound to the last of these buttons.
             (Action::Step, vec![pad(PadButton::LeftShoulder), stick(12)]),
             (Action::Deeper, vec![pad(PadButton::RightStick)]),
             (Action::Shallower, vec![pad(PadButton::LeftStick)]),
-            // Not bound on pads: a child could press it by accident, and pads have no forces, only rumble.
+            // Cutting forces is not bound on pads: a child could press the button by accident, and pads only
+            // rumble.
             (Action::CutForces, vec![stick(8)]),
         ];
         Self {
@@ -163,7 +164,7 @@ impl Bindings {
     }
 
     /// Binds a button to an action like [`Self::bind_key`]. A pad button is exchanged only for a pad button,
-    /// and a button of another stick only for such a button.
+    /// and a button of a stick without a pad layout only for another button of such a stick.
     pub fn bind_button(&mut self, action: Action, control: Control) {
         let button = PadKey::of(control);
         let kind = button.is_of_stick();
@@ -216,8 +217,8 @@ fn find<K: PartialEq>(map: &BTreeMap<Action, Vec<K>>, key: &K) -> Option<Action>
     found.map(|(&action, _)| action)
 }
 
-/// Binds `key` to an action, in place of its keys for which `is_alike` is true. Another action that loses its
-/// last such key gets the first of the replaced ones.
+/// Binds `key` to an action. The key replaces all keys of the action for which `is_alike` is true. Another
+/// action that loses its last such key gets the first of the replaced keys.
 fn bind<K: PartialEq + Clone>(
     map: &mut BTreeMap<Action, Vec<K>>,
     action: Action,
@@ -247,14 +248,14 @@ mod tests {
         let mut bindings = Bindings::default();
         bindings.bind_key(Action::Retry, Key::F);
         assert_eq!(bindings.of_key(Key::F), Some(Action::Retry));
-        // Slow motion had only F, so it gets the old key of the other action.
+        // F was the only key of slow motion. Slow motion therefore gets R, the old key of the restart action.
         assert_eq!(bindings.of_key(Key::R), Some(Action::Slow));
         bindings.bind_button(Action::Pause, Control::Pad(PadButton::North));
         assert_eq!(
             bindings.of_button(Control::Pad(PadButton::North)),
             Some(Action::Pause)
         );
-        // Only the pad button is exchanged, and plain sticks keep their bindings.
+        // Pausing and restarting exchange only their pad buttons; the bindings of plain sticks stay.
         let start = Control::Pad(PadButton::Start);
         assert_eq!(bindings.of_button(start), Some(Action::Retry));
         assert_eq!(bindings.of_button(Control::Button(3)), Some(Action::Retry));

@@ -38,7 +38,7 @@ pub struct Devices {
     pub taken: Option<ScanAction>,
     /// Keys that are held.
     pub keys: BTreeSet<Key>,
-    /// Height by which the wheel or a second finger has raised the hand since the last tick, in space [m].
+    /// Height by which the wheel or a second finger has raised the hand in 3D since the last tick [m].
     pub lift: f32,
     /// Sticks and pads.
     pub sticks: Snapshot,

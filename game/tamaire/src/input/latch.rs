@@ -12,7 +12,7 @@ impl StickyKeys {
     /// Presses a key: it stays down, or is released if it was down. Keys of the opposite action are released.
     pub fn press(&mut self, key: Key, bindings: &Bindings) {
         let Some(opposite) = bindings.of_key(key).and_then(opposite) else {
-            // The action is not continuous.
+            // Only keys of continuous actions, such as moving, stay down.
             return;
         };
         self.0

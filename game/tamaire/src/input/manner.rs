@@ -13,13 +13,13 @@ pub struct InputMapping {
     pub stick_sets_position: bool,
     /// Low and high corner of the box to which goals are limited [m].
     pub arena: [Vec3; 2],
-    /// In space: rotation of the camera to the right [rad]. "Away from the player" then means along the
-    /// floor, away from the camera. `None` in the plane.
+    /// In 3D: rotation of the camera to the right [rad]. "Away from the player" then means along the floor,
+    /// away from the camera. `None` in 2D.
     pub turn: Option<f32>,
 }
 
 impl InputMapping {
-    /// Clamps a position to the arena. In the plane the third axis is ignored.
+    /// Clamps a position to the arena. In 2D the third axis is ignored.
     pub(super) fn clamp_to_arena(&self, mut position: Vec3) -> Vec3 {
         let [low, high] = self.arena;
         let axes = if self.turn.is_some() { 3 } else { 2 };
@@ -30,7 +30,8 @@ impl InputMapping {
         position
     }
 
-    /// Converts a stick position to a position in the arena [m]. In space the height is `height` [m].
+    /// Converts a stick position to a position in the arena [m]. In 3D the height of the result is `height`
+    /// [m].
     pub(super) fn position_of(&self, stick: [f32; 2], height: f32) -> Vec3 {
         let [low, high] = self.arena;
         let way = to_world(self.turn, Vec2::from(stick));

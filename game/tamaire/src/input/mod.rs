@@ -36,9 +36,9 @@ pub enum InputMethod {
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Action {
-    /// Moves the hand upwards; in space, away from the camera.
+    /// Moves the hand upwards; in 3D, away from the camera.
     Up,
-    /// Moves the hand downwards; in space, towards the camera.
+    /// Moves the hand downwards; in 3D, towards the camera.
     Down,
     /// Moves the hand to the left.
     Left,
@@ -56,17 +56,17 @@ pub enum Action {
     Step,
     /// Lets a second player join with this device, or leave.
     Join,
-    /// In space: raises the hand off the floor.
+    /// In 3D: raises the hand off the floor.
     Raise,
-    /// In space: lowers the hand.
+    /// In 3D: lowers the hand.
     Lower,
-    /// In space: turns the camera to the left.
+    /// In 3D: turns the camera to the left.
     TurnLeft,
-    /// In space: turns the camera to the right.
+    /// In 3D: turns the camera to the right.
     TurnRight,
-    /// In space: cuts bodies open further in the element view.
+    /// In 3D: cuts bodies open further in the element view.
     Deeper,
-    /// In space: cuts bodies open less far in the element view.
+    /// In 3D: cuts bodies open less far in the element view.
     Shallower,
     /// Stops all force feedback and rumble.
     CutForces,

@@ -16,7 +16,7 @@ const PACE: f32 = 2.0;
 /// Speed factor for play with one switch. A switch cannot control the force gradually; at this speed a body
 /// gives way without tearing.
 const SWITCHED: f32 = 0.4;
-/// Speed of raising and lowering the hand's goal in space at default sensitivity [m/s].
+/// Speed of raising and lowering the hand's goal in 3D at default sensitivity [m/s].
 const RISE: f32 = 1.2;
 
 /// Players and the goals of their hands.
@@ -41,7 +41,7 @@ pub struct Players {
 struct Asked {
     /// Requested position [m].
     position: Option<Vec3>,
-    /// Requested direction: to the right, and up (in space: away from the camera). Length 1 = full speed.
+    /// Requested direction: to the right, and up (in 3D: away from the camera). Length 1 = full speed.
     lean: Vec2,
     /// Requested speed of raising the hand, from -1 to 1 (full speed).
     lift: f32,
@@ -87,7 +87,7 @@ impl Players {
 
     /// Prepares for a new round: the goals follow the hands until there is input.
     pub fn start(&mut self) {
-        // A stick that is still deflected from the last round counts only when it moves.
+        // A stick that is still deflected from the last round has no effect until it moves.
         *self = Self {
             second: self.second,
             leans: std::mem::take(&mut self.leans),
@@ -119,7 +119,7 @@ impl Players {
                 self.goals[1] = None;
                 continue;
             }
-            // The level may have only one hand.
+            // In a level with a single hand, the second player is ignored.
             let Some(&here) = hands.get(player) else {
                 continue;
             };

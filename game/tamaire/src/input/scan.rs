@@ -5,7 +5,7 @@ use egui::Vec2;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::TAU;
 
-/// Number of steps in which the offered direction goes around once.
+/// Number of scanning steps in which the offered direction turns around once.
 const TURN: f32 = 5.0;
 
 /// Speed of scanning.
@@ -45,9 +45,9 @@ impl Scanning {
 pub enum ScanAction {
     /// Moves the hand in a direction (right, away; unit length) while the switch is pressed.
     Move(Vec2),
-    /// In space: raises the hand while the switch is pressed.
+    /// In 3D: raises the hand while the switch is pressed.
     Raise,
-    /// In space: lowers the hand while the switch is pressed.
+    /// In 3D: lowers the hand while the switch is pressed.
     Lower,
     /// Pauses the round.
     Pause,
@@ -164,7 +164,7 @@ mod tests {
             scan.pass(is_pressed, true, 0.1, false);
             taken.push(scan.is_taken);
         }
-        // The first press started the round.
+        // The first press started the round, so it selects no action.
         assert_eq!(taken, [false, false, true, true, true, false, false, false]);
     }
 

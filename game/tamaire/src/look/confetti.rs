@@ -28,8 +28,9 @@ pub struct Confetti {
 struct ConfettiPiece {
     at: Vec3,
     velocity: Vec2,
-    /// Rotation and angular velocity [rad, rad/s].
+    /// Rotation angle of the piece [rad].
     angle: f32,
+    /// Angular velocity of the piece [rad/s].
     angular_velocity: f32,
     kind: usize,
     left: f32,

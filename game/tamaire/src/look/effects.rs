@@ -15,11 +15,11 @@ const DUST: usize = 3;
 const LOOKED_UP: usize = 8;
 /// Hand force above which a body winces [N].
 const HURTS: f32 = 350.0;
-/// Distance that the hand must travel until the start hint fades [m].
+/// Distance of the hand from its start position at which the start hint fades [m].
 const MOVED: f32 = 0.12;
 /// Air drag of particles [1/s].
 const DRAG: f32 = 1.5;
-/// Upward velocity of new particles, given as a duration [s] by which gravity is multiplied.
+/// Duration that is multiplied by gravity to get the upward velocity of new particles [s].
 const THROWN: f32 = 0.35;
 /// Factors on the normal and the tangential velocity of a particle that bounces off a wall.
 const BOUNCE: [f32; 2] = [0.45, 0.7];
@@ -64,7 +64,7 @@ pub struct Effects {
     pub specks: Vec<DustParticle>,
     /// Confetti after a win.
     pub confetti: Confetti,
-    /// Feeling of each body, in the order of the world's bodies.
+    /// Feeling of each body (expression and position of its drawn face), in the order of the world's bodies.
     pub feelings: Vec<Feeling>,
     /// Total contact force between hands and bodies [N], smoothed over some ticks.
     pub pressure: f32,
@@ -118,7 +118,7 @@ impl Effects {
         let world = round.world();
         let bodies = world.soft_bodies();
         if world.ticks() <= self.tick || self.feelings.len() != bodies.clone().count() {
-            // A new round has begun.
+            // A new round has begun, so all effects restart.
             let eye = (D::N == 3).then(|| camera.eye(round.level().arena()));
             *self = Self {
                 feelings: bodies.map(|(_, body)| Feeling::new(body, eye)).collect(),

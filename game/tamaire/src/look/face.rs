@@ -1,5 +1,5 @@
-//! Face of a body, made of flat marks. In 2D the marks are painted directly, in 3D they are projected onto
-//! the skin.
+//! Drawn face of a body, made of coloured polygons. In 2D the polygons are painted directly, in 3D they are
+//! projected onto the skin.
 
 use app_shell::View;
 use egui::{Color32, Painter, Pos2, Shape, Stroke};
@@ -8,47 +8,48 @@ use fuwafuwa::{PieceId, Vec2, Vec3};
 use fuwafuwa_render::{Mark, Sticker};
 use std::f32::consts::{PI, TAU};
 
-/// Line width in units of the face size.
+/// Line width of a drawn face, in units of the face's size.
 const LINE: f32 = 0.07;
-/// Minimum line width on the screen [points].
+/// Minimum line width of a drawn face on the screen [points].
 const THIN: f32 = 1.5;
-/// Minimum size of a face on the screen [points]; a smaller one is not drawn.
+/// Minimum size of a drawn face on the screen [points]. Smaller faces are not drawn.
 const LEAST: f32 = 5.0;
 
-/// Expression of a face.
+/// Expression of a body's drawn face.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Mood {
-    /// Relaxed, looking around.
+    /// Expression of a relaxed body that looks around.
     Calm,
-    /// Squeezed or in pain.
+    /// Expression of a body that is squeezed or in pain.
     Wince,
-    /// Just torn.
+    /// Expression of a body that was just torn.
     Shock,
-    /// In the basket.
+    /// Expression of a body in the basket.
     Beam,
 }
 
-/// Current face of a body.
+/// Current drawn face of a body.
 #[derive(Copy, Clone, Debug)]
 pub struct Face {
     /// Index of the body in the world.
     pub body: usize,
-    /// Piece that carries the face.
+    /// Piece that carries the drawn face.
     pub piece: PieceId,
-    /// Centre [m]; in 3D inside the body.
+    /// Centre of the drawn face [m]. In 3D the centre is inside the body.
     pub at: Vec3,
-    /// Axes to the right (as seen), up, and outwards. Their length is the size of the face [m].
+    /// Axes of the drawn face: to the right as seen, up, and outwards. The length of each axis is the size of
+    /// the face [m].
     pub axes: [Vec3; 3],
-    /// Expression.
+    /// Expression of the drawn face.
     pub mood: Mood,
-    /// Eyelids, from 0 (open) to 1 (shut).
+    /// Closing of the eyelids, from 0 (open) to 1 (shut).
     pub blink: f32,
     /// Point that the eyes look at [m].
     pub look_at: Vec3,
 }
 
 impl Face {
-    /// Paints the face in a 2D view.
+    /// Paints the drawn face in a 2D view.
     pub fn paint(&self, painter: &Painter, view: &View) {
         let [right, up, _] = self
             .axes
@@ -67,7 +68,7 @@ impl Face {
         }
     }
 
-    /// Returns the face as a sticker on the skin of a 3D body.
+    /// Returns the drawn face as a [`Sticker`], which the renderer projects onto the skin of a 3D body.
     pub fn sticker(&self) -> Sticker {
         Sticker {
             body: self.body,
@@ -78,7 +79,7 @@ impl Face {
         }
     }
 
-    /// Returns the marks of the face; `line` is the line width in units of the face size.
+    /// Returns the polygons of the drawn face. `line` is the line width in units of the face's size.
     fn marks(&self, line: f32) -> Vec<Mark> {
         let mut pen = Pen {
             line,
@@ -134,7 +135,7 @@ impl Face {
         }
     }
 
-    /// Gaze direction of an eye, from −1 to 1 to the right and up.
+    /// Gaze direction of the eye at `eye`: x to the right and y up, each from −1 to 1.
     fn gaze(&self, eye: Vec2) -> Vec2 {
         let by = self.look_at - self.at;
         let way = self
@@ -167,14 +168,15 @@ impl Face {
     }
 }
 
-/// Colour of outlines, pupils and mouths, and of eyeballs.
+/// Colour of outlines, pupils and mouths in drawn faces.
 const INK: [f32; 4] = rgb(74, 44, 42);
+/// Colour of eyeballs and glints in drawn faces.
 const WHITE: [f32; 4] = [1.0; 4];
-/// Height of an eyeball above the face, in units of the face size.
+/// Height of an eyeball above the surface of the drawn face, in units of the face's size.
 const EYEBALL: f32 = 0.13;
 
 struct Pen {
-    /// Line width in units of the face size.
+    /// Line width in units of the size of the drawn face.
     line: f32,
     marks: Vec<Mark>,
 }
@@ -190,7 +192,7 @@ impl Pen {
         });
     }
 
-    /// Fills an outline on an eyeball.
+    /// Fills an outline that lies on an eyeball.
     fn on_eyeball(&mut self, outline: Vec<[f32; 2]>, colour: [f32; 4]) {
         self.area(outline, colour, 0.02);
         if let Some(mark) = self.marks.last_mut() {
@@ -204,7 +206,8 @@ impl Pen {
             let along = pair[1] - pair[0];
             let turn = along.y.atan2(along.x);
             let corners = (0..16).map(|step| {
-                // First half a circle around the end of the line, then half a circle around its beginning.
+                // The first eight corners form half a circle around the end of the line, the last eight
+                // around its beginning.
                 let end = pair[1 - step / 8];
                 let angle = turn - 0.5 * PI + PI * (step - step / 8) as f32 / 7.0;
                 (end + vec2(angle.cos(), angle.sin()) * (0.5 * self.line)).to_array()
@@ -235,7 +238,7 @@ impl Pen {
 /// Draws a drop of sweat at the temple.
 fn draw_sweat(pen: &mut Pen) {
     let drop = |size: f32| {
-        // Counterclockwise from the tip.
+        // Corners of the drop, counterclockwise from its tip.
         let outline = [
             [0.0, 0.20],
             [-0.08, 0.02],

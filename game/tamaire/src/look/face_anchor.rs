@@ -1,104 +1,112 @@
-//! Position of a face on the skin of a 3D body.
+//! Position of the drawn face (eyes and mouth) on the skin of a 3D body.
 //!
-//! The face sticks to the skin and rolls with it. It shrinks and reappears at a better place if too much of
-//! the skin below it is torn or if it is turned away from the camera.
+//! A drawn face sticks to the skin and rolls with the body. If too much of the skin below it is torn, or if
+//! it is turned away from the camera, the face shrinks and reappears at a better place.
 
 use fuwafuwa::{Dim, DimVector, IndexVec, PieceId, Point, SoftBody, Vec3};
 use fuwafuwa_render::anchor_at;
 use std::f32::consts::PI;
 
-/// Axes of an upright face: to the right, up, and towards a camera in front.
+/// Axes of an upright drawn face: to the right, up, and towards a camera in front of the body.
 pub(super) const UPRIGHT: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
 
-/// Full size of a face, in radii of a ball with the volume of its piece.
+/// Full size of a drawn face. Unit: radius of a ball with the volume of the piece that carries the face.
 const LARGE: f32 = 0.55;
-/// Factors on the size, tried in this order until the face fits on the skin.
+/// Factors on the full size of a drawn face. They are tried in this order until enough of the face lies on
+/// original skin.
 const FITS: [f32; 4] = [1.0, 0.8, 0.6, 0.45];
-/// Radius of the skin that a face covers, in units of the face's size.
+/// Radius of the area of skin that a drawn face covers, in units of the face's size.
 const WIDE: f32 = 0.9;
-/// Maximum height of the skin above or below the middle of the face, in units of the face's size. Skin beyond
-/// it does not count as covered.
+/// Maximum height of skin above or below the centre of a drawn face, in units of the face's size. Skin at a
+/// greater height does not count as covered by the face.
 const DEEP: f32 = 0.6;
-/// Shares of original skin below a face. At a new place the face gets smaller until the first is reached;
-/// below the second it leaves its place.
+/// Limits on the share of a drawn face that lies on original skin. At a new place the face is shrunk until
+/// its share exceeds the first limit. A face whose share falls to the second limit moves to another place.
 const COVERED: [f32; 2] = [0.82, 0.68];
-/// Mass ratio at which a face leaves its piece for a heavier one.
+/// Ratio of the heaviest piece's mass to that of the piece that carries the drawn face. Above this ratio the
+/// face moves to a heavy piece.
 const HEAVIER: f32 = 1.6;
-/// Maximum number of pieces searched for a place; all of them are heavy according to [`HEAVIER`].
+/// Maximum number of pieces on which a place for the drawn face is searched. All of them are heavy enough
+/// according to [`HEAVIER`].
 const PIECES: usize = 4;
-/// Advantage in score that another place must have.
+/// Difference by which the score of another place must exceed that of the current place before the drawn face
+/// moves.
 const BETTER: f32 = 0.1;
-/// Minimum interval between two searches for a place [s].
+/// Minimum interval between two searches for a better place of the drawn face [s].
 const AGAIN: f32 = 0.5;
-/// Maximum number of places that are scored. A second pass scores as many near the best of them.
+/// Maximum number of skin places that one pass of the search scores. A second pass scores up to this number
+/// near the best place of the first pass.
 const PLACES: usize = 120;
-/// Upward tilt of the ideal direction of a face, relative to the direction to the camera. The bars of a
-/// basket are low and would hide a face that looks down.
+/// Upward component that is added to the unit direction from a drawn face to the camera. The sum is the ideal
+/// direction of the face. The bars of a basket are low and would hide a face that looks down.
 const ABOVE: f32 = 0.4;
-/// Cosine below which a face counts as turned away from the camera, or as tilted.
+/// Cosine below which a drawn face counts as turned away (angle to the ideal direction) or as tilted (angle
+/// to the upright orientation).
 const LOST: f32 = 0.6;
-/// Time that a face stays turned away or tilted before it moves to another place [s].
+/// Time for which a drawn face must be turned away or tilted before it moves to another place [s].
 const PATIENCE: f32 = 0.12;
-/// Angular speed above which a face that is turned away stays, because it may soon be visible again [rad/s].
+/// Angular speed above which a drawn face that is turned away keeps its place, because it may soon be visible
+/// again [rad/s].
 const FAST: f32 = 3.0;
-/// Angular speed below which a tilted face moves to another place [rad/s].
+/// Angular speed below which a drawn face that is only tilted moves to another place [rad/s].
 const CALM: f32 = 0.8;
-/// Time by which the rotation of a body is predicted [s]: a face moves to the place that will face the camera
-/// then.
+/// Time by which the rotation of a body is predicted when a place for its drawn face is chosen [s]. The
+/// chosen place will face the camera after this time.
 const AHEAD: f32 = 0.4;
-/// Weight of the axis of rotation in the ideal direction: places near the axis stay visible for longer.
+/// Weight of the body's axis of rotation in the ideal direction of its drawn face. Places near the axis stay
+/// visible for longer.
 const NEAR_AXIS: f32 = 0.4;
-/// Duration of shrinking before a face moves [s].
+/// Time in which a drawn face shrinks before it moves to another place [s].
 const SHRINK: f32 = 0.08;
-/// Duration of reappearing at the new place [s].
+/// Time in which a drawn face grows at its new place [s].
 const RISE: f32 = 0.14;
-/// Depth of the face's centre inside the body, in units of the face's size. The centre is below all skin that
-/// the face covers.
+/// Depth of a drawn face's centre inside the body, in units of the face's size. At this depth the centre is
+/// below all skin that the face covers.
 const INSIDE: f32 = 0.8;
-/// Minimum radius of the part of the body whose rotation turns the face [voxels].
+/// Minimum radius of the part of a body whose rotation a drawn face follows [voxels].
 const LEAST_REACH: f32 = 3.0;
 
-/// Position of a face on the skin of a 3D body.
+/// Position of a drawn face on the skin of a 3D body.
 #[derive(Clone, Debug, Default)]
 pub struct FaceAnchor {
-    /// Centre, inside the body [m].
+    /// Centre of the drawn face, inside the body [m].
     pub at: Vec3,
-    /// Unit axes: to the right, up, and outwards.
+    /// Unit axes of the drawn face: to the right, up, and outwards.
     pub axes: [Vec3; 3],
-    /// Size [m]; 0 if there is no skin left for it.
+    /// Size of the drawn face [m]; 0 if no skin is left for the face.
     pub size: f32,
-    /// Piece that carries the face.
+    /// Piece that carries the drawn face.
     pub piece: PieceId,
-    /// Approximate centre of the piece [m].
+    /// Approximate centre of the piece that carries the drawn face [m].
     pub middle: Vec3,
     place: Option<SkinPlace>,
     next: Option<SkinPlace>,
-    /// Full size of a face on the piece [m].
+    /// Full size of a drawn face on the piece that carries it [m].
     full: f32,
-    /// Progress of reappearing, 0 to 1.
+    /// Progress of growing at a new place, 0 (invisible) to 1 (complete).
     up: f32,
-    /// Angular velocity of the face, smoothed [rad/s].
+    /// Angular velocity of the drawn face, smoothed over time [rad/s].
     spin: Vec3,
-    /// Time since the face turned away from the camera or tilted [s].
+    /// Time for which the drawn face has been turned away from the camera or tilted [s].
     turned_away_seconds: f32,
-    /// Time until the next search for another place [s].
+    /// Time until the next search for a better place of the drawn face is allowed [s].
     wait: f32,
 }
 
-/// Place on the original skin, in the rest shape of the body.
+/// Place of a drawn face on the original skin, in the rest shape of the body.
 #[derive(Copy, Clone, Debug)]
 struct SkinPlace {
-    /// Voxel below this place. Its element tells which piece the place belongs to after tears.
+    /// Voxel below the place. After a tear, the voxel's element tells to which piece the place belongs.
     voxel: Point,
-    /// Rest position of the centre of the voxel's side [voxels].
+    /// Rest position of the place, which is the centre of a side of the voxel [voxels].
     rest: Vec3,
-    /// Axes of the face, relative to the rotation of the body around the place.
+    /// Axes of the drawn face, relative to the rotation of the body around the place.
     worn: [Vec3; 3],
-    /// Size factor, one of [`FITS`].
+    /// Factor on the full size of the drawn face, one of [`FITS`].
     fit: f32,
 }
 
-/// Side of a voxel that is part of the original skin.
+/// Voxel side on the original skin, where a drawn face can be placed.
 struct SkinFace {
     voxel: Point,
     rest: Vec3,
@@ -106,12 +114,12 @@ struct SkinFace {
     normal: Vec3,
 }
 
-/// Original skin of a piece as a camera sees it; a face sticks to one place of it.
+/// Original skin of a piece, with the camera for which a place of the drawn face is searched.
 struct PieceSkin {
     spots: Vec<SkinFace>,
     piece: PieceId,
     middle: Vec3,
-    /// Full size of a face on the piece [m].
+    /// Full size of a drawn face on the piece [m].
     full: f32,
     voxel: f32,
     eye: Option<Vec3>,
@@ -120,7 +128,7 @@ struct PieceSkin {
 }
 
 impl FaceAnchor {
-    /// Chooses the place that the camera at `eye` sees best.
+    /// Creates the anchor of a drawn face, at the place that the camera at `eye` [m] sees best.
     pub fn new<D: Dim>(body: &SoftBody<D>, eye: Option<Vec3>) -> Self {
         let mut anchor = Self {
             axes: UPRIGHT,
@@ -132,8 +140,8 @@ impl FaceAnchor {
         anchor
     }
 
-    /// Advances by `seconds`. Searches for another place only if `looks` is set, because the search takes
-    /// time.
+    /// Advances the drawn face by `seconds`. A better place is searched only if `looks` is set, because the
+    /// search takes time.
     pub fn follow<D: Dim>(
         &mut self,
         body: &SoftBody<D>,
@@ -170,7 +178,7 @@ impl FaceAnchor {
         };
     }
 
-    /// Moves the face with the skin.
+    /// Updates position, axes and size of the drawn face from the deformed skin.
     fn update_position<D: Dim>(&mut self, body: &SoftBody<D>) {
         let voxel = body.grid().voxel_size();
         let found = self.place.and_then(|place| {
@@ -189,11 +197,11 @@ impl FaceAnchor {
         self.piece = piece;
         let size = place.fit * self.full;
         self.at = at - self.axes[2] * (INSIDE * size);
-        // The size overshoots while the face reappears.
+        // While a drawn face reappears, it is briefly larger than its final size.
         self.size = size * self.up * (1.0 + 0.6 * self.up * (1.0 - self.up));
     }
 
-    /// Keeps the current place if it is good; otherwise searches for a better one.
+    /// Searches for a better place, unless the current place of the drawn face is good.
     fn check_place<D: Dim>(&mut self, body: &SoftBody<D>, eye: Option<Vec3>) {
         let masses = masses(body);
         let largest = largest(&masses);
@@ -289,8 +297,8 @@ impl PieceSkin {
         }
     }
 
-    /// Ideal outward direction of a face at `at`, as a unit vector. Takes the predicted rotation of the body
-    /// into account.
+    /// Ideal outward direction of a drawn face at `at` [m], as a unit vector. The direction takes the
+    /// predicted rotation of the body into account.
     fn ideal_direction(&self, at: Vec3) -> Vec3 {
         let wish = self.eye.map_or(UPRIGHT[2], |eye| ideal_direction(at, eye));
         let early = wish - self.spin.cross(wish) * AHEAD;
@@ -299,7 +307,7 @@ impl PieceSkin {
         early * (1.0 / early.length())
     }
 
-    /// Share of a face of this size that lies on original skin, 0 to 1.
+    /// Share of a drawn face of `size` [m] that lies on original skin, 0 to 1.
     fn cover(&self, at: Vec3, out: Vec3, size: f32) -> f32 {
         let radius = WIDE * size;
         let mut area = 0.0;
@@ -316,8 +324,8 @@ impl PieceSkin {
         (area / (PI * radius * radius)).min(1.0)
     }
 
-    /// Score of a place. It is high if the face is large, on original skin, turned to the camera, and in the
-    /// middle of the visible side.
+    /// Score of a place. It is high for a drawn face that is large, on original skin, turned to the camera,
+    /// and in the middle of the visible side.
     fn score(&self, at: Vec3, out: Vec3, fit: f32, covered: f32) -> f32 {
         let wish = self.ideal_direction(self.middle);
         let by = at - self.middle;
@@ -325,7 +333,7 @@ impl PieceSkin {
         fit * covered + 0.5 * out.dot(wish) - 0.2 * LARGE * aside / self.full.max(1e-9)
     }
 
-    /// Returns the best place: voxel side, score, size factor, and outward direction.
+    /// Returns the best place for a drawn face: voxel side, score, size factor, and outward direction.
     fn best(&self) -> Option<(&SkinFace, f32, f32, Vec3)> {
         let wish = self.ideal_direction(self.middle);
         let turned = self.spots.iter();
@@ -340,8 +348,8 @@ impl PieceSkin {
 
     fn best_of<'a>(&self, spots: &[&'a SkinFace]) -> Option<(&'a SkinFace, f32, f32, Vec3)> {
         let judged = spots.iter().step_by(1 + spots.len() / PLACES).map(|spot| {
-            // Single voxel faces point along the axes; the average over the surroundings gives the direction
-            // of the skin.
+            // The normal of a single voxel side is parallel to an axis. The mean normal of the surroundings
+            // gives the direction of the skin.
             let near = self.spots.iter().filter(|other| {
                 let by = other.at - spot.at;
                 by.dot(by) < (0.6 * self.full).powi(2) && other.normal.dot(spot.normal) > -0.5
@@ -360,8 +368,8 @@ impl PieceSkin {
         judged.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Returns where to put a face at `spot`, upright as seen from the camera; `None` if the body there is too
-    /// small to define a rotation.
+    /// Returns the place of a drawn face at `spot`, upright as seen from the camera. `None` if the body
+    /// around `spot` is too small to define a rotation.
     fn place<D: Dim>(
         &self,
         body: &SoftBody<D>,
@@ -381,27 +389,29 @@ impl PieceSkin {
     }
 }
 
-/// Ideal outward direction of a face at `at`, as a unit vector: towards the camera, tilted upwards.
+/// Ideal outward direction of a drawn face at `at` [m], as a unit vector: towards the camera at `eye`, tilted
+/// upwards.
 fn ideal_direction(at: Vec3, eye: Vec3) -> Vec3 {
     let by = eye - at;
     let high = by + Vec3::Y * (ABOVE * by.length());
     high * (1.0 / high.length().max(1e-9))
 }
 
-/// Axes of a face with outward direction `out` that is upright for a camera in the direction `towards`.
+/// Axes of a drawn face with outward direction `out`, upright as seen by a camera in the direction `towards`.
 fn upright(out: Vec3, towards: Vec3) -> [Vec3; 3] {
-    // At the top of a body, the upper edge of a face points away from the camera.
+    // On top of a body, where `out` points up, the upper edge of the face points away from the camera.
     let back = towards * (0.1 / towards.length().max(1e-9));
     square([Vec3::ZERO, UPRIGHT[1] - back, out])
 }
 
-/// Cosines of the face's angles to the ideal direction and to the upright orientation.
+/// Cosines of two angles of a drawn face: to the ideal direction, and to the upright orientation.
 fn seen(at: Vec3, axes: [Vec3; 3], eye: Vec3) -> [f32; 2] {
     let up = upright(axes[2], eye - at)[1];
     [axes[2].dot(ideal_direction(at, eye)), axes[1].dot(up)]
 }
 
-/// Orthonormal axes: the third keeps its direction, the second is kept as far as possible, the first follows.
+/// Returns orthonormal axes. The third axis keeps its direction, the second is kept as far as possible, and
+/// the first is perpendicular to both.
 pub(super) fn square([_, up, out]: [Vec3; 3]) -> [Vec3; 3] {
     let unit = |of: Vec3| of * (1.0 / of.length().max(1e-9));
     let out = unit(out);
@@ -409,7 +419,7 @@ pub(super) fn square([_, up, out]: [Vec3; 3]) -> [Vec3; 3] {
     [right, out.cross(right), out]
 }
 
-/// Returns the piece with the largest mass; of equal ones the first.
+/// Returns the piece with the largest mass. Of several such pieces, returns the first.
 pub(super) fn largest(masses: &IndexVec<PieceId, f32>) -> PieceId {
     let heavier = |best, piece| match masses[piece] > masses[best] {
         true => piece,

@@ -1,54 +1,56 @@
-//! Feelings of a body, and the position of its face.
+//! Feelings of a body, and the position of its drawn face.
 
 use super::Mood;
 use super::face_anchor::{FaceAnchor, UPRIGHT, largest, masses, square};
 use fuwafuwa::{DEFAULT_TICK, Dim, DimVector, NodeId, PieceId, SoftBody, Vec3};
 use fuwafuwa_render::anchor;
 
-/// Duration of the shock after a tear [s]; a body that is still being torn afterwards winces.
+/// Duration of the shocked expression after a tear [s]. A body that is still being torn afterwards winces.
 const SHOCK: f32 = 0.6;
-/// Time without a tear after which a new tear shocks again [s].
+/// Time without a tear after which a new tear causes the shocked expression again [s].
 const CALMED: f32 = 0.5;
-/// Thresholds of the mean strain: a body above the first winces until it is below the second.
+/// Thresholds of a body's mean strain. The body winces from the first threshold until its strain is below the
+/// second.
 const HURTS: [f32; 2] = [0.065, 0.045];
-/// Interval at which the strain and the position of the face are evaluated [ticks].
+/// Interval at which the strain of a body and the position of its drawn face are evaluated [ticks].
 const LOOK: u64 = 5;
-/// Advantage in depth that another node must have to carry a 2D face instead of the current one [voxels].
+/// Difference in depth by which another node must exceed the node that carries a 2D drawn face, before the
+/// face moves there [voxels].
 const LAZY: f32 = 2.0;
-/// Maximum number of distances computed in the search for a node that carries the face.
+/// Maximum number of distances computed in the search for a node that carries the drawn face.
 const MOST_LOOKS: usize = 4_000_000;
 /// Maximum number of elements sampled for the mean strain.
 const MOST_ELEMENTS: usize = 1500;
-/// Minimum size of a face [m]; a smaller one is unreadable.
+/// Minimum size of a drawn face [m]. Smaller faces would be unreadable and are hidden.
 const LEAST: f32 = 0.03;
-/// Rate at which a face moves to a new place [1/s].
+/// Rate at which a drawn face moves to a new place [1/s].
 const GLIDE: f32 = 7.0;
-/// Rate at which a face changes its size [1/s].
+/// Rate at which a drawn face changes its size [1/s].
 const GROW: f32 = 6.0;
-/// Rate at which a face turns [1/s].
+/// Rate at which a drawn face turns [1/s].
 const TURN: f32 = 25.0;
 
-/// Feelings of a body, and the position of its face.
+/// Feelings of a body, and the position of its drawn face.
 #[derive(Clone, Debug)]
 pub struct Feeling {
-    /// Expression.
+    /// Expression of the body's drawn face.
     pub mood: Mood,
     /// Time since the expression last changed [s].
     pub age: f32,
-    /// Centre of the face [m]; in 3D inside the body.
+    /// Centre of the drawn face [m]. In 3D the centre is inside the body.
     pub at: Vec3,
-    /// Approximate centre of the piece [m].
+    /// Approximate centre of the piece that carries the drawn face [m].
     pub middle: Vec3,
-    /// Unit axes of the face: to the right (as seen), up, and outwards.
+    /// Unit axes of the drawn face: to the right as seen, up, and outwards.
     pub axes: [Vec3; 3],
-    /// About half the width of the face [m]; 0 if the body has crumbled to dust.
+    /// About half the width of the drawn face [m]; 0 if the body has crumbled to dust.
     pub size: f32,
-    /// Piece that carries the face.
+    /// Piece that carries the drawn face.
     pub piece: PieceId,
-    /// 3D: anchor of the face on the skin.
+    /// In 3D: anchor of the drawn face on the skin.
     anchor: Option<FaceAnchor>,
     seat: Option<Seat>,
-    /// 2D: offset from the seat to the current position of the face [m]. It decays to zero.
+    /// In 2D: offset from the seat to the current position of the drawn face [m]. The offset decays to zero.
     seat_offset: Vec3,
     strain: f32,
     shock: f32,
@@ -56,13 +58,13 @@ pub struct Feeling {
     seconds_since_tear: f32,
 }
 
-/// Seat of a 2D face: a node deep inside the largest piece.
+/// Seat of a 2D drawn face: a node deep inside the largest piece.
 #[derive(Copy, Clone, Debug, PartialEq)]
 struct Seat {
     node: NodeId,
-    /// Rest position of the node. If it differs, another node now has the same index.
+    /// Rest position of the seat's node. A node with this index at another rest position is a different node.
     rest: [i32; 3],
-    /// Distance from the skin at rest [voxels].
+    /// Distance of the seat from the skin in the rest shape [voxels].
     depth: f32,
 }
 
@@ -77,12 +79,13 @@ pub struct MoodInput {
     pub pressed: bool,
     /// Whether the body is in the basket.
     pub is_in_basket: bool,
-    /// 3D: camera position [m].
+    /// In 3D: camera position [m].
     pub eye: Option<Vec3>,
 }
 
 impl Feeling {
-    /// Creates the feeling of an undisturbed body. In 3D the face is turned towards `eye` [m], if given.
+    /// Creates the feeling of an undisturbed body. In 3D the drawn face is turned towards `eye` [m], if
+    /// given.
     pub fn new<D: Dim>(body: &SoftBody<D>, eye: Option<Vec3>) -> Self {
         let mut feeling = Self {
             mood: Mood::Calm,
@@ -106,7 +109,7 @@ impl Feeling {
         feeling
     }
 
-    /// Advances by one tick.
+    /// Advances the feeling and the drawn face by one tick.
     pub fn update<D: Dim>(&mut self, body: &SoftBody<D>, fate: MoodInput) {
         if fate.tick.is_multiple_of(LOOK) {
             self.strain = strain(body);
@@ -124,7 +127,7 @@ impl Feeling {
         self.feel(fate);
     }
 
-    /// 3D: copies position, axes and size of the face from its anchor on the skin.
+    /// In 3D: copies position, axes and size of the drawn face from its anchor on the skin.
     fn stick(&mut self) {
         if let Some(anchor) = &self.anchor {
             (self.at, self.axes, self.piece) = (anchor.at, anchor.axes, anchor.piece);
@@ -162,7 +165,7 @@ impl Feeling {
         }
     }
 
-    /// 2D: moves the face smoothly towards its seat.
+    /// In 2D: moves the drawn face smoothly towards its seat.
     fn sit<D: Dim>(&mut self, body: &SoftBody<D>, seconds: f32) {
         if self.seat.is_none() {
             self.choose_seat(body);
@@ -179,7 +182,8 @@ impl Feeling {
         self.middle = self.at;
         self.piece = body.pieces().of_node(seat.node);
         let turned = [0, 1, 2].map(|k| self.axes[k] + (frame.axes[k] - self.axes[k]) * share(TURN));
-        // Interpolating across half a turn gives axes of almost zero length.
+        // Interpolating across half a turn gives axes of almost zero length, so the drawn face then turns at
+        // once.
         self.axes = match turned[2].length().min(turned[1].length()) > 0.1 {
             true => square(turned),
             false => frame.axes,
@@ -190,7 +194,7 @@ impl Feeling {
         self.size += (size - self.size) * share(GROW);
     }
 
-    /// Searches for a better seat; the face glides there from its current position.
+    /// Searches for a better seat. The drawn face glides there from its current position.
     fn choose_seat<D: Dim>(&mut self, body: &SoftBody<D>) {
         let before = self.seat.filter(|&seat| is_there(body, seat));
         let after = best_seat(body, before.map(|seat| seat.node));
@@ -216,8 +220,8 @@ fn largest_piece<D: Dim>(body: &SoftBody<D>) -> PieceId {
     largest(&masses(body))
 }
 
-/// Returns the node of the largest piece that is deepest inside and near the centre. The node `now` is kept
-/// unless another one is clearly better.
+/// Returns the best seat of a 2D drawn face: the node of the largest piece that is deepest inside and near
+/// the centre. The current node `now` is kept unless another one is clearly better.
 fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>) -> Option<Seat> {
     let (mesh, pieces) = (body.mesh(), body.pieces());
     let piece = largest_piece(body);
@@ -242,7 +246,7 @@ fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>) -> Option<Seat> {
         let rest = node.at;
         let away = Vec3::from(rest.map(|k| k as f32)) - middle;
         let lazy = if now == Some(id) { LAZY } else { 0.0 };
-        // Prefers nodes above the centre: a ring has its face at the top.
+        // Prefers nodes above the centre, so that a ring has its drawn face at the top.
         let bonus = lazy - 0.3 * away.length() + 0.05 * away.y;
         // Stops early once this node cannot win any more, because the search runs often.
         let enough = best.map_or(0.0, |(score, _)| (score - bonus).max(0.0));
@@ -262,7 +266,8 @@ fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>) -> Option<Seat> {
     best.map(|(_, seat)| seat)
 }
 
-/// Mean strain of the largest piece, weighted by volume. Many elements are only sampled.
+/// Mean strain of the largest piece, weighted by volume. In a large piece only some of the elements are
+/// sampled.
 fn strain<D: Dim>(body: &SoftBody<D>) -> f32 {
     let piece = largest_piece(body);
     let (mut sum, mut volume) = (0.0, 0.0);

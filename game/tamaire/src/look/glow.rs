@@ -1,5 +1,5 @@
-//! Progress at the basket. While a body rests inside, a line closes around the basket; after a win the bars
-//! glow.
+//! Progress shown at the basket. While a body rests inside, a line grows around the basket until it closes.
+//! After a win the bars of the basket glow.
 
 use super::DrawOptions;
 use app_shell::View;
@@ -7,10 +7,10 @@ use egui::{Color32, Painter, Pos2, Rect, Shape as Drawn, Stroke, pos2, vec2};
 use fuwafuwa::{Dim2, MotionType, Shape, Vec2};
 use tamaire_play::Round;
 
-/// Colour of the glow.
+/// Colour of the glowing bars of a basket.
 const GOLD: Color32 = Color32::from_rgb(255, 205, 70);
 
-/// Draws the line and the glow.
+/// Draws the progress line around the basket and, after a win, the glow of its bars.
 pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &DrawOptions) {
     let (progress, view) = (round.progress(), &look.view);
     let held = round.share_held();

@@ -21,7 +21,7 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &DrawOptions) {
     }
 }
 
-/// Draws the hint of a 3D round: only the ring, because texts explain the controls.
+/// Draws the hint of a 3D round: only the ring around the hand, because texts explain the controls.
 pub(super) fn draw_ring_of_space(painter: &Painter, round: &Round<Dim3>, look: &DrawOptions) {
     if let Some(hand) = hand_to_show(round, look) {
         draw_ring(painter, hand, look);

@@ -29,7 +29,7 @@ pub struct Maps {
 struct Picture {
     level: Arc<Level>,
     texture: TextureId,
-    /// Faces in a 2D level. In 3D they are part of the texture.
+    /// Drawn faces of the bodies in a 2D level. In 3D they are part of the texture.
     faces: Vec<Face>,
 }
 

@@ -1,4 +1,4 @@
-//! Appearance of a round: faces, effects, and thumbnails of levels.
+//! Appearance of a round: drawn faces of the bodies, effects, and thumbnails of levels.
 
 mod confetti;
 mod draw_options;

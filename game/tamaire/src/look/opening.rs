@@ -2,24 +2,24 @@
 
 use std::f32::consts::TAU;
 
-/// Smallest remaining share of a body while the cut moves by itself.
+/// Smallest share of a 3D body that stays visible while the cutaway moves by itself.
 const LEAST: f32 = 0.4;
-/// Period of the automatic movement [s].
+/// Period of the cutaway's automatic movement [s].
 const PERIOD: f32 = 9.0;
-/// Smallest remaining share when a player moves the cut.
+/// Smallest share of a 3D body that stays visible when a player moves the cutaway.
 const FEWEST: f32 = 0.05;
 
 /// Cutaway that shows the inside of 3D bodies in the element view.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Cutaway {
-    /// Start of the automatic movement [s since the start of the game].
+    /// Start of the cutaway's automatic movement, counted from the start of the game [s].
     since: f64,
-    /// Remaining share of a body chosen by the player, 0 to 1; `None` while the cut moves by itself.
+    /// Visible share of a body that the player has chosen, 0 to 1. `None` while the cutaway moves by itself.
     wish: Option<f32>,
 }
 
 impl Cutaway {
-    /// Starts the automatic movement with whole bodies.
+    /// Starts the cutaway's automatic movement with whole bodies.
     pub fn begin(time: f64) -> Self {
         Self {
             since: time,
@@ -27,8 +27,8 @@ impl Cutaway {
         }
     }
 
-    /// Remaining share of a body, 0 to 1. `still` selects reduced motion: one half instead of the automatic
-    /// movement.
+    /// Visible share of a body, 0 to 1: the player's choice, otherwise that of the automatic movement. With
+    /// reduced motion (`still`), one half replaces the automatic movement.
     pub fn share(&self, time: f64, still: bool) -> f32 {
         let swing = 0.5 + 0.5 * (TAU * (time - self.since) as f32 / PERIOD).cos();
         let by_itself = if still {
@@ -39,8 +39,8 @@ impl Cutaway {
         self.wish.unwrap_or(by_itself)
     }
 
-    /// Cuts away the share `more` in addition and stops the automatic movement. A negative value shows more
-    /// of the body.
+    /// Reduces the visible share of bodies by `more` and stops the cutaway's automatic movement. A negative
+    /// `more` shows more of the bodies.
     pub fn cut(&mut self, more: f32, time: f64, still: bool) {
         let share = self.share(time, still) - more;
         self.wish = Some(share.clamp(FEWEST, 1.0));

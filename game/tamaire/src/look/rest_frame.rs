@@ -7,7 +7,7 @@ use fuwafuwa::Vec2;
 use fuwafuwa_render::{Basket, Camera, DimCamera, Frame};
 use tamaire_play::Round;
 
-/// Returns the render frame of a round without effects, stickers or ghost.
+/// Returns the render frame of a round without effects, drawn faces or ghost.
 pub(super) fn frame<'a, C: DimCamera>(
     camera: C,
     round: &Round<C::Dim>,
@@ -37,7 +37,7 @@ pub(super) fn camera(view: &View) -> Camera {
     }
 }
 
-/// Returns the face of a body looking straight ahead, scaled by `size` (1 = normal).
+/// Returns the drawn face of a body looking straight ahead, scaled by `size` (1 = normal).
 pub(super) fn face_at_rest(body: usize, feeling: &Feeling, size: f32) -> Face {
     Face {
         body,

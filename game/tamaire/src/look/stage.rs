@@ -1,4 +1,4 @@
-//! Drawing of a round: world, particles and faces.
+//! Drawing of a round: world, particles, and drawn faces of the bodies.
 
 use super::feelings::Feeling;
 use super::rest_frame::{camera, face_at_rest, frame};
@@ -24,7 +24,7 @@ pub struct Stage {
     renderer: Arc<Mutex<Renderer>>,
     space: SpaceStage,
     ages: Ages,
-    /// Level of the round that `ages` follows, and the last tick seen.
+    /// Round whose elements `ages` follows: its level and the last tick seen.
     followed: Option<(Arc<Level>, u64)>,
     maps: Maps,
     time: f64,
@@ -137,8 +137,8 @@ impl Stage {
         look.effects.confetti.draw(painter, view);
     }
 
-    /// Updates the ages of elements for the element view. They restart with each round, since a new world has
-    /// no remodelled elements.
+    /// Updates the ages of elements for the element view. The ages restart with each round, since a new world
+    /// has no remodelled elements.
     fn follow_ages<D: Dim>(&mut self, round: &Round<D>, look: &DrawOptions) {
         let ticks = round.world().ticks();
         let goes_on = self
@@ -183,7 +183,7 @@ fn particles(look: &DrawOptions) -> Vec<Particle> {
     let world = &look.theme.world;
     let specks = look.effects.specks.iter().map(|speck| {
         let own = world.material(speck.material);
-        // Same share of the fresh colour as on torn surfaces.
+        // Particles of fresh material get the same share of the fresh colour as torn surfaces.
         let share = if speck.is_fresh { 0.7 } else { 0.0 };
         let [red, green, blue] = [0, 1, 2].map(|k| own[k] + share * (world.fresh[k] - own[k]));
         Particle {
@@ -195,7 +195,7 @@ fn particles(look: &DrawOptions) -> Vec<Particle> {
     specks.collect()
 }
 
-/// Returns the faces of all bodies; none in the element view.
+/// Returns the drawn faces of all bodies, and none in the element view.
 fn faces<D: Dim>(round: &Round<D>, look: &DrawOptions) -> Vec<Face> {
     if look.elements.is_some() {
         return Vec::new();
@@ -237,7 +237,8 @@ fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
         for outline in body.outlines() {
             let points = outline.points.iter().map(|&at| view.to_screen(at));
             let points: Vec<Pos2> = points.collect();
-            // Single segments, because the mitres of a polyline would shoot out where a crack turns back.
+            // Draws single segments, because the mitres of a polyline would stick out where a crack turns
+            // back.
             for (index, &point) in points.iter().enumerate() {
                 let next = points[(index + 1) % points.len()];
                 painter.line_segment([point, next], stroke);

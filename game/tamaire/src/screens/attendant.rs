@@ -6,8 +6,8 @@ use egui::{Context, Ui};
 
 /// Controls the game at a public stand, where visitors have no menus.
 pub trait StandController {
-    /// Called in every pass of the event loop, even if nothing is drawn. It tells the supervisor that the
-    /// program is alive.
+    /// Tells the supervisor that the program is alive. Called in every pass of the event loop, even if
+    /// nothing is drawn.
     fn live(&mut self, _: &Context) {}
 
     /// Advances by a frame of `seconds`.

@@ -14,7 +14,7 @@ type Icon = fn(&Painter, Pos2, f32, Color32);
 
 /// Height of the upper row [points].
 pub(super) const HIGH: f32 = 44.0;
-/// Gap between the elements of a row [points].
+/// Gap between buttons and labels of a row [points].
 pub(super) const GAP: f32 = 8.0;
 /// Distance of buttons from the edge of the window [points].
 pub(super) const EDGE: f32 = 15.0;
@@ -82,7 +82,7 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
 /// Shows a button; returns whether the mouse is over it.
 fn one(game: &mut Game, ui: &Ui, button: ScreenButton, name: &str, icon: Icon) -> bool {
     let (theme, rect) = (game.theme(), button.rect);
-    // Cannot get the keyboard focus, since keys for these actions exist.
+    // The button cannot get the keyboard focus, since its action has a key.
     let response = ui.interact(rect, egui::Id::unique(name), Sense::CLICK);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
     note_hovered(ui, &response);
@@ -100,7 +100,7 @@ fn one(game: &mut Game, ui: &Ui, button: ScreenButton, name: &str, icon: Icon) -
     response.hovered()
 }
 
-/// Translucent background for elements over a round.
+/// Colour of the translucent background of buttons and labels over a round.
 pub(super) fn pale(theme: &Theme) -> Color32 {
     theme.card.gamma_multiply(0.72)
 }

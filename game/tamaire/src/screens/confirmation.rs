@@ -2,17 +2,17 @@
 
 use egui::{Id, Ui};
 
-/// Time window in which a second press confirms [s].
+/// Time after the first press in which a second press confirms an action [s].
 const PATIENCE: f64 = 6.0;
 
-/// Whether a press on `what` now would be the second one and confirm.
+/// Whether a press on `what` now would be the second one and confirm the action.
 pub(super) fn is_pending(ui: &Ui, what: &str) -> bool {
     let now = ui.input(|input| input.time);
     let asked: Option<(String, f64)> = ui.data(|data| data.get_temp(id()));
     asked.is_some_and(|(asked, when)| asked == what && now - when < PATIENCE)
 }
 
-/// Starts the time window for `what`; `None` cancels a pending one.
+/// Notes a first press on `what`, which starts the time window. `None` cancels a pending confirmation.
 pub(super) fn set_pending(ui: &Ui, what: Option<&str>) {
     let now = ui.input(|input| input.time);
     ui.data_mut(|data| match what {

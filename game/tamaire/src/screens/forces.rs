@@ -246,7 +246,7 @@ fn draw_bar(
     }
 }
 
-/// Shows the buttons that try and measure a device.
+/// Shows the buttons that start a test or a measurement of a device.
 fn show_acts(ui: &mut Ui, theme: &Theme, game: &mut Game, device: &Device, report: Option<Report>) {
     let said = game.words();
     let ability = report.map_or(Ability::Nothing, |report| report.ability);

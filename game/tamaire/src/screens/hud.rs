@@ -11,7 +11,8 @@ use fuwafuwa_render::frame::ElementColour;
 
 /// Height of a line of the 3D instructions [points at scale 1].
 const LINE: f32 = 34.0;
-/// Height of the bottom edge at a public stand, which holds a button in the lower left corner [points].
+/// Height of the strip at the lower edge of the screen at a public stand, which holds the language button
+/// [points].
 pub(super) const STAND: f32 = 92.0;
 /// Radius of the jar that shows the fill level of the basket [points at scale 1].
 const JAR: f32 = 36.0;
@@ -208,8 +209,8 @@ fn draw_legend(row: &mut ChipRow, theme: &Theme, colour: ElementColour) {
     }
 }
 
-/// Draws the fill level of the basket as a jar with a target line: pale for mass inside, strong for mass at
-/// rest. A ring closes while the level is held.
+/// Draws the fill level of the basket as a jar with a target line. The mass inside is pale, the mass at rest
+/// is strong. A ring closes while the mass at rest stays above the target.
 fn draw_jar(ui: &Ui, middle: Pos2, scale: f32, game: &Game) {
     let theme = game.theme();
     let round = game.bout.round();
@@ -231,7 +232,7 @@ fn draw_jar(ui: &Ui, middle: Pos2, scale: f32, game: &Game) {
     let point = |angle: f32| middle + glass * vec2(angle.sin(), angle.cos());
     let fill = theme.material(1);
     let levels = [
-        // Required share, share inside, and share at rest.
+        // Required share of the mass, share inside the basket, and share at rest in the basket.
         (rules.share, 0.16),
         (smooth("within", progress.within), 0.45),
         (smooth("inside", progress.inside), 1.0),

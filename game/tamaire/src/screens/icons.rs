@@ -1,4 +1,4 @@
-//! Icons.
+//! Icons of buttons, badges and routes.
 
 use super::widgets::words;
 use app_shell::Theme;
@@ -96,7 +96,7 @@ pub(super) fn again(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     );
 }
 
-/// Draws a large element beside small ones.
+/// Draws the icon of the element view: a large element beside small ones.
 pub(super) fn elements(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     for (x, y, side) in [(-4.5, 0.0, 9.0), (5.0, -4.75, 7.0), (5.0, 4.75, 7.0)] {
         let square = Rect::from_center_size(

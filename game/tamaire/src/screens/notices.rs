@@ -11,7 +11,7 @@ pub(super) fn show(game: &Game, ui: &Ui) {
     let screen = ui.max_rect();
     let above = match game.screen() {
         Screen::Play => hud::height(game, ui),
-        // Below the headline and the back button.
+        // On these screens, notices are below the headline and the back button.
         Screen::Levels | Screen::Settings | Screen::Forces | Screen::Licences | Screen::Replays => {
             92.0
         }
@@ -22,7 +22,8 @@ pub(super) fn show(game: &Game, ui: &Ui) {
     let font = FontId::proportional(18.0 * scale);
     let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("notices"));
     let painter = ui.ctx().layer_painter(layer);
-    // Cut forces are shown by a chip during a round, and by a button on the forces screen.
+    // The notice about cut forces is hidden during a round, where a chip says so, and on the forces screen,
+    // where a button says so.
     let is_said = matches!(game.screen(), Screen::Play | Screen::Forces);
     let is_cut = game.forces.is_cut() && !is_said;
     let lasting = is_cut.then(|| (game.words().cut_now.to_string(), 1.0));

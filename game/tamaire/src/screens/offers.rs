@@ -13,7 +13,8 @@ const RING: f32 = 58.0;
 const ARROW: f32 = 21.0;
 /// Radius of the disc behind a sign [points].
 const DISC: f32 = 21.0;
-/// Distance of the point whose position on the screen gives the direction of an arrow [m].
+/// Distance from the hand to a point in the offered direction [m]. The point's position on the screen gives
+/// the direction of the arrow.
 const AHEAD: f32 = 0.1;
 
 /// Draws the offered action, highlighted while the switch is pressed.
@@ -56,7 +57,7 @@ fn tone(theme: &Theme, is_taken: bool) -> Color32 {
     if is_taken { theme.accent } else { theme.ink }
 }
 
-/// Draws an arrow on the ring that points outwards.
+/// Draws an arrow on the ring around the hand. The arrow points outwards, in the direction `way`.
 fn arrow(painter: &Painter, middle: Pos2, way: Vec2, scale: f32, tone: Color32) {
     let point = |out: f32, aside: f32| middle + scale * (out * way + aside * way.rot90());
     let corners = vec![

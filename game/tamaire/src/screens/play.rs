@@ -23,7 +23,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     view.centre[1] -= 0.1 * share * view.height();
     game.bout.view = Some(view);
     let theme = game.theme();
-    // Until the first level has been won, it shows how to push the body into the basket.
+    // Until the first level has been won, the hint shows how to push the body into the basket.
     let is_first = game
         .levels
         .first()

@@ -18,7 +18,7 @@ const PICTURE: Vec2 = vec2(111.0, 74.0);
 const COLUMNS: usize = 3;
 /// Minimum width of the text beside the buttons [points].
 const LEAST_TEXT: f32 = 200.0;
-/// Gap between elements of a row [points].
+/// Gap between thumbnail, text and buttons of a row [points].
 const GAP: f32 = 10.0;
 
 /// Action that the player has chosen for a replay.

@@ -133,8 +133,8 @@ fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &
     }
 }
 
-/// Shows the buttons; returns the chosen action. The main button leads to the next level once all goals of
-/// this one are reached.
+/// Shows the buttons of the result and returns the chosen action. The main button leads to the next level if
+/// all goals of the current level are reached; otherwise it restarts the level.
 fn buttons(ui: &mut Ui, theme: &Theme, said: &Words, is_reached: bool) -> Option<Act> {
     let mut wanted: Option<Act> = None;
     let width = 2.0 * 200.0 + GAP;

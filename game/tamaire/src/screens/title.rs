@@ -61,11 +61,12 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     }
 }
 
-/// Shows a button in the corner that switches to another language, under that language's own name.
+/// Shows a button in the upper right corner that switches to another language. Its text is that language's
+/// own name.
 fn switch_language(game: &mut Game, ui: &mut Ui) {
     let size = vec2(128.0, 40.0);
     let corner = ui.max_rect().right_top();
-    // In a portrait window the title is below the corner.
+    // In a portrait window the title is below the language button, so the button is nearer to the corner.
     let is_upright = ui.max_rect().width() < ui.max_rect().height();
     let inwards = if is_upright {
         vec2(-16.0, 14.0)

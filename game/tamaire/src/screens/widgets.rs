@@ -200,7 +200,7 @@ pub fn choice<T: Copy + PartialEq>(
 /// Shows a row with a name on the left and its widget on the right.
 pub fn row<R>(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
     let all = ui.available_width();
-    // In a narrow row the name is above.
+    // In a narrow row the name is above its widget.
     let is_above = all < LEAST_ROW;
     let width = if is_above { all } else { 0.4 * all };
     let head = |ui: &mut Ui, height: f32| {
@@ -250,7 +250,8 @@ pub fn header_to_open(ui: &mut Ui, game: &mut Game, text: &str) -> Response {
     back
 }
 
-/// Shows a header with contents on the right, and returns their result, too.
+/// Shows a header with the contents `right` at its right end. Returns the back button's response and the
+/// result of `right`.
 fn header_with<R>(
     ui: &mut Ui,
     theme: &Theme,
@@ -261,7 +262,8 @@ fn header_with<R>(
     let room = vec2(ui.available_width(), 56.0);
     let layout = Layout::left_to_right(Align::Center);
     let inner = ui.allocate_ui_with_layout(room, layout, |ui| {
-        // The next widget may be far to the right, where egui's search downwards does not find it.
+        // The next widget may be far to the right, where egui's downward search does not find it. So the
+        // arrow keys move the focus from the back button in the order of the widgets.
         let id = ui.next_auto_id();
         if ui.memory(|memory| memory.has_focus(id)) {
             step_through(ui);
@@ -296,8 +298,9 @@ pub fn page_rect(ui: &Ui) -> Rect {
     rect
 }
 
-/// Shows the scrolling part of a screen: a column of at most `width` points with room for focus rings, which
-/// fades where it continues. The scroll position is stored under `name`.
+/// Shows the scrolling part of a screen: a column of at most `width` points with room for focus rings. The
+/// column fades at an edge where contents are scrolled out of sight. The scroll position is stored under
+/// `name`.
 pub fn page(ui: &mut Ui, name: &str, width: f32, contents: impl FnOnce(&mut Ui)) {
     let area = egui::ScrollArea::vertical()
         .id_salt(name)
@@ -322,7 +325,8 @@ pub fn page(ui: &mut Ui, name: &str, width: f32, contents: impl FnOnce(&mut Ui))
     let seen = seen.with_min_x(ui.clip_rect().left());
     let above = output.state.clamped_offset().y;
     let below = output.content_size.y - seen.height() - above;
-    // Edge and its inward direction. The fade is shorter where less is scrolled out of sight.
+    // For the upper and the lower edge of a page: its position, its inward direction, and the height of the
+    // contents beyond it. The fade at an edge is at most this high.
     for (edge, inwards, more) in [(seen.top(), 1.0, above), (seen.bottom(), -1.0, below)] {
         let far = edge + inwards * FADE.min(more.max(0.0));
         let mut mesh = egui::Mesh::default();
@@ -340,9 +344,9 @@ pub fn page(ui: &mut Ui, name: &str, width: f32, contents: impl FnOnce(&mut Ui))
 /// Margin around a column [points].
 const AROUND: f32 = 12.0;
 
-/// Shows a [`column`] that hides little of the world, with its horizontal position from 0 (left) to 1
-/// (right). In a portrait window the world is in the middle, and the column is above it if the flag is set,
-/// otherwise below it.
+/// Shows a [`column`] that hides little of the world. In a landscape window `across` is its horizontal
+/// position, from 0 (left) to 1 (right). In a portrait window the column is above the world if `is_above` is
+/// set, otherwise below it.
 pub fn column_beside<R>(
     ui: &mut Ui,
     width: f32,

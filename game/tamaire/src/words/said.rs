@@ -106,12 +106,12 @@ pub struct Words {
     pub no_sticks: &'static str,
     pub join_hint: &'static str,
     pub how_in_space: fn(InputMethod, &[String; 3]) -> [String; 3],
-    /// Hint how to look deeper into bodies in 3D, with the names of the keys for deeper and back. `None` for
-    /// an input that has no such control.
+    /// Hint that explains how to cut deeper into bodies in 3D. Its second argument names the keys that cut
+    /// deeper and less deep. `None` for an input method without such keys.
     pub look_inside: fn(InputMethod, &[String; 2]) -> Option<String>,
     pub watching: &'static str,
-    /// Message that names the saved data that could not be read, and the location of the unchanged copy, if
-    /// there is one.
+    /// Message that names the saved data that could not be read. If there is an unchanged copy, the message
+    /// also names its location.
     pub damaged: fn(&str, Option<&str>) -> String,
     pub not_written: &'static str,
     pub full: &'static str,

@@ -1,4 +1,4 @@
-//! Mouse and keyboard.
+//! Tests of mouse and keyboard.
 
 use crate::window::*;
 use app_shell::Pads;
@@ -48,7 +48,7 @@ fn retry_key_restarts_round_at_once() {
     assert!(ticks(&window) >= 29);
     window.key_press(Key::R);
     window.step();
-    // The key goes down in the first frame and up in the second.
+    // The key is down in the first frame and up in the second, so the restarted round has at most two ticks.
     assert!(ticks(&window) <= 2, "{} ticks", ticks(&window));
     frames(&mut window, 5);
     assert!(ticks(&window) >= 5, "the round continues");
@@ -113,7 +113,7 @@ fn round_is_won_saved_watched_raced_and_deleted() {
     game(&mut window).go(Screen::Title);
     game(&mut window).go(Screen::Replays);
 
-    // A replay of another version, and a manipulated one.
+    // Neither a replay of another version of the game nor a manipulated replay is accepted.
     fs::write(
         &path,
         saved.replacen(&format!("version = {VERSION}"), "version = 999", 1),
@@ -269,7 +269,7 @@ fn any_key_can_be_bound() {
         );
         assert_eq!(game.controls.rebinding, None, "{key:?}");
     }
-    // Escape keeps the binding and does not leave the screen.
+    // During the choice of a new key, Escape keeps the old binding and does not leave the screen.
     let row = row(&window);
     click(&mut window, &row);
     press(&mut window, Key::Escape);
@@ -339,7 +339,7 @@ fn full_screen_key_toggles_and_is_saved() {
     let mut window = window(Files::in_folder(folder.path()));
     for wanted in [true, false, true] {
         window.key_press(Key::F11);
-        // The viewport command follows within two frames.
+        // The viewport command for full screen follows within two frames.
         let asked = (0..2).any(|_| {
             frames(&mut window, 1);
             let root = &window.output().viewport_output[&egui::ViewportId::ROOT];

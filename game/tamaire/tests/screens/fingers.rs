@@ -1,4 +1,4 @@
-//! Touch buttons for actions that keys and pads have buttons for.
+//! Tests of touch buttons, for actions that have buttons on keyboards and pads.
 
 use crate::window::*;
 use egui::TouchPhase::{End, Move, Start};
@@ -103,7 +103,7 @@ fn thumb_buttons_3d_raise_hand_and_look_deeper() {
         let game = &window.state().game;
         game.bout.opening.share(game.time, false)
     };
-    // The cut moves by itself at first.
+    // The cutaway through bodies moves by itself until the player cuts deeper.
     frames(&mut window, 120);
     let whole = share(&window);
     let deeper = place(&window, Action::Deeper).expect("the button is shown");

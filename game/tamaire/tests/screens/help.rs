@@ -1,4 +1,4 @@
-//! Accessibility: easier levels, and play with a single switch.
+//! Tests of accessibility: easier levels, and play with a single switch.
 
 use crate::window::*;
 use egui::Key;
@@ -47,7 +47,7 @@ fn assisted_wins_are_recorded_separately() {
     window.get_by_label_contains("s, easier play");
 }
 
-/// Waits until the switch would press the button with this name, then presses it.
+/// Waits until the button with this name has the focus in the scanning cycle, then presses the switch.
 fn choose(window: &mut Window, name: &str) {
     let patience = 60 * 60;
     for _ in 0..patience {
@@ -67,7 +67,7 @@ fn tap(window: &mut Window) {
     frames(window, 3);
 }
 
-/// Waits until an action that is wanted is offered in a round.
+/// Waits until scanning offers an action for which `is_wanted` is true.
 fn wait_for(window: &mut Window, is_wanted: impl Fn(ScanAction) -> bool) {
     for _ in 0..60 * 60 {
         let game = game(window);

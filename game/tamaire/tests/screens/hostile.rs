@@ -152,7 +152,7 @@ fn round_pauses_when_focus_is_lost() {
     };
     focus(&mut window, false);
     assert_eq!(screen(&window), Screen::Title);
-    // A round starts without focus, too; only losing the focus pauses it.
+    // A round also starts in a window without focus; only losing the focus pauses a round.
     game(&mut window).start(0);
     frames(&mut window, 5);
     assert_eq!(screen(&window), Screen::Play);

@@ -1,4 +1,4 @@
-//! Saved data, and what can go wrong with it.
+//! Tests of saved data, and of failures in saving and loading them.
 
 use crate::window::*;
 use app_shell::Pads;
@@ -252,7 +252,7 @@ fn replay_names_avoid_existing_entries() {
         assert!(replays.join(format!("{name}.tamaire")).is_file(), "{name}");
     }
     drop(window);
-    // This game deliberately saves nothing, and does not wait for anything.
+    // A game without storage saves nothing, and does not wait for anything.
     let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
     game.keep_replay();
     assert_eq!(game.files.finish().len(), 1);

@@ -73,7 +73,7 @@ fn damaged_model_is_named_and_round_continues() {
     point_at(&mut window, -1.0, 0.7);
     let levels = window.state().game.levels.len();
     let mut size = whole.clone();
-    // The number of voxels is made far larger than the file.
+    // The stated number of voxels is made far larger than the number that the file contains.
     let count = whole
         .windows(4)
         .position(|word| word == b"XYZI")

@@ -40,7 +40,7 @@ impl Table {
         frames(&mut self.window, count);
     }
 
-    /// Presses and releases a button of the last pad, each for two frames.
+    /// Presses a button of the last pad for two frames, then releases the button for two frames.
     pub fn tap(&mut self, button: PadButton) {
         self.button(button).press();
         self.frames(2);

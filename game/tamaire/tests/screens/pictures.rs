@@ -1,4 +1,4 @@
-//! Appearance, compared with the pictures in `tests/snapshots`.
+//! Tests of the appearance, which is compared with the pictures in `tests/snapshots`.
 
 use crate::hostile::drop_file;
 use crate::pads::about;
@@ -15,13 +15,14 @@ use tamaire::platform::Files;
 use tamaire::words::Language;
 use tamaire_play::{BotKind, Outcome, Route};
 
-/// Tolerance for a pixel, some ten of 256 grey levels. Drivers differ in antialiasing and colour mixing.
+/// Permitted difference of a pixel, some ten of 256 grey levels. Drivers differ in antialiasing and colour
+/// mixing.
 const STEP: f32 = 50.0;
-/// Number of pixels that may exceed [`STEP`]. More do if an element moved or is missing, or if the language
-/// is wrong.
+/// Permitted number of pixels that differ by more than [`STEP`]. The number is higher if a part of the screen
+/// moved or is missing, or if the language is wrong.
 const PIXELS: usize = 800;
 
-/// Size of detailed pictures [points], smaller to limit the size of the files.
+/// Window size for detailed pictures [points], small to limit the size of the files.
 const SMALLER: Vec2 = vec2(592.0, 370.0);
 
 /// Outcome of an earlier win.
@@ -45,7 +46,7 @@ fn picture(window: &mut Window, name: &str) {
 fn pictures(window: &mut Window, name: &str) {
     for (language, tag) in [(Language::English, "en"), (Language::Japanese, "ja")] {
         game(window).settings.language = language;
-        // The layout needs one frame to appear and one to be measured.
+        // A new layout takes one frame to appear and one to be measured.
         frames(window, 3);
         picture(window, &format!("{name}_{tag}"));
     }
@@ -66,7 +67,7 @@ fn screens_match_pictures() {
     pictures(&mut window, "settings");
     game(&mut window).controls.pads = sticks_and_pads();
     game(&mut window).go(Screen::Forces);
-    // The thread of the devices reports their abilities.
+    // The device thread reports the abilities of the devices within these frames.
     frames(&mut window, 5);
     pictures(&mut window, "forces");
     game(&mut window).controls.pads = Pads::none();
@@ -139,7 +140,7 @@ fn touch_buttons_match_pictures() {
     }
 }
 
-/// A stick with force feedback and a rumbling pad, neither of them in use.
+/// Returns a stick with force feedback and a pad with rumble, both at rest.
 fn sticks_and_pads() -> Pads {
     let mut stick = Device::at_rest(DeviceId(1), about("Force Stick 3D"), 4, 12, 1);
     stick.axes = vec![0.6, -0.4, 0.2, -1.0];

@@ -70,7 +70,8 @@ fn mouse_sets_floor_position_and_wheel_raises_hand() {
     point_at(&mut window, -1.2, 0.7);
     wheel(&mut window, 250.0);
     assert_near(goal(&window, 0), [-1.2, height + 0.5, 0.7]);
-    // The height is kept over a long way on which the hand lags behind, and when the camera turns.
+    // The target keeps its height while the hand lags behind over a long distance, and while the camera
+    // turns.
     point_at(&mut window, 1.2, 0.75);
     assert_near(goal(&window, 0), [1.2, height + 0.5, 0.75]);
     game(&mut window).bout.camera.orbit(1.2, 0.3);
@@ -88,7 +89,7 @@ fn mouse_sets_position_on_shelf() {
     let mut window = window(Files::nowhere());
     start(&mut window, "hoop");
     let height = goal(&window, 0).y;
-    // On the shelf, over the hole in it, and on the shelf behind the hole.
+    // Points on the shelf, over the hole in the shelf, and on the shelf behind the hole.
     for [x, z] in [[-1.3, 0.3], [0.7, 0.1], [0.7, -0.7]] {
         let view = window.state().game.bout.view.expect("the world is visible");
         window.hover_at(view.to_screen(Vec3::new(x, 0.55, z)));
@@ -140,7 +141,7 @@ fn keys_move_hand_relative_to_camera() {
         let before = goal(window, 0);
         window.key_down(key);
         frames(window, 1);
-        // The camera turns only when the window is drawn.
+        // The camera turns only when the window is drawn, so its key is held for frames instead of ticks.
         match key {
             Key::CloseBracket => frames(window, count - 1),
             _ => wait(window, count - 2),
@@ -163,7 +164,7 @@ fn keys_move_hand_relative_to_camera() {
     assert!(x.abs() < 0.08 && y.abs() < 0.01 && z < -0.2, "{x} {y} {z}");
     let Vec3 { x, y, z } = hold(&mut window, Key::S, 10);
     assert!(x > 0.2 && y.abs() < 0.01 && z.abs() < 0.08, "{x} {y} {z}");
-    // In 2D the same keys have no effect.
+    // In 2D the key that raises the hand has no effect.
     start(&mut window, "classic");
     let still = hold(&mut window, Key::Q, 10);
     assert_near(still, Vec3::ZERO);
@@ -290,7 +291,7 @@ fn second_finger_does_not_move_hand_after_first_lifts() {
     wait(&mut window, 60);
     let before = goal(&window, 0);
     touch(&mut window, 0, TouchPhase::End, here);
-    // A browser now reports the remaining finger as the mouse.
+    // A browser reports the finger that remains on the screen as the mouse.
     window.event(Event::PointerMoved(there));
     touch(&mut window, 1, TouchPhase::Move, there);
     wait(&mut window, 60);

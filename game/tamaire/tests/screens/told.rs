@@ -1,4 +1,4 @@
-//! Instructions for 3D levels are shown until they were followed.
+//! Tests of the instructions for 3D levels, each of which is shown until the player has followed it.
 
 use crate::pads::{Table, about, pad};
 use crate::space::{in_space, point_at, wait};
@@ -35,7 +35,7 @@ pub fn tells(window: &Window, what: &str) -> bool {
 #[test]
 fn instructions_3d_disappear_once_followed() {
     let mut window = in_space();
-    // Reduced motion removes lines at once.
+    // With reduced motion, lines disappear at once instead of fading out.
     game(&mut window).settings.reduced_motion = true;
     wait(&mut window, 60);
     let told = ["Move: mouse", "wheel, or Q Z", "right mouse button, or [ ]"];
@@ -110,7 +110,7 @@ fn instructions_fit_into_smallest_window() {
         game(&mut window).settings.text_size = text_size;
         start(&mut window, "classic-3d");
         let bindings = &mut game(&mut window).settings.bindings;
-        // Longest key names.
+        // Keys with the longest names are bound, so that the texts are as long as possible.
         for (action, key) in [
             (Action::Raise, Key::BrowserBack),
             (Action::Lower, Key::Questionmark),

@@ -34,7 +34,7 @@ pub fn open(files: Files, size: egui::Vec2, pixels: f32) -> Window {
         App::new(context, game).expect("a GPU or a software adapter is available")
     });
     frames(&mut window, 2);
-    // In its first two frames, the harness does not yet know the game's zoom.
+    // The size is set after two frames, because the harness does not know the game's zoom before.
     let zoom = window.ctx.zoom_factor();
     window.set_size(size / zoom);
     // The mouse is away from all buttons, so that no button is hovered.

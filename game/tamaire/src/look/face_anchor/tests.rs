@@ -28,7 +28,7 @@ fn deform(world: &mut World<Dim3>, body: SoftBodyHandle, to: impl Fn(PieceId, Ve
     }
 }
 
-/// Returns the share of the face that lies on original skin.
+/// Returns the share of the drawn face that lies on original skin.
 fn covered(anchor: &FaceAnchor, body: &SoftBody<Dim3>) -> f32 {
     let skin = PieceSkin::of(body, anchor.piece, &masses(body), Some(EYE));
     let size = anchor.size;
@@ -101,7 +101,7 @@ fn anchor_returns_to_camera_after_body_turned() {
         let before = anchor.clone();
         anchor.follow(&world[body], Some(EYE), tick % 5 == 0, DEFAULT_TICK);
         least = least.min(anchor.size);
-        // The face never moves to another place while it is visible.
+        // The drawn face never moves to another place while it is visible.
         let leap = tick > 0 && (anchor.axes[2] - before.axes[2]).length() > 0.1;
         assert!(!leap || anchor.size < 0.05, "{anchor:?}");
     }
@@ -133,7 +133,7 @@ fn anchor_leaves_skin_that_was_cut_off() {
     }
     assert!(!is_gone(anchor.piece) && anchor.size > 0.08, "{anchor:?}");
     assert!(covered(&anchor, &world[body]) > 0.7, "{anchor:?}");
-    // The face stays at the new place.
+    // The drawn face stays at its new place.
     let place = anchor.place.expect("the face has a place").voxel;
     for tick in 0..120 {
         anchor.follow(&world[body], Some(EYE), tick % 5 == 0, DEFAULT_TICK);

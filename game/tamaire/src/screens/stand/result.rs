@@ -13,7 +13,7 @@ use tamaire_sound::Menu;
 
 /// Width of the card [points].
 const WIDE: f32 = 470.0;
-/// Gap between the elements of the card [points].
+/// Gap between texts and buttons of the card [points].
 const GAP: f32 = 12.0;
 /// Maximum side length of the QR code [points].
 const CODE: f32 = 360.0;

@@ -66,7 +66,8 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: StaffPage, ui: &mu
                 StaffPage::Settings => (said.end, StaffAction::See(StaffPage::End)),
                 StaffPage::End => (said.end, StaffAction::End),
             };
-            // The action of a page is as wide as one and a half page buttons.
+            // Width of a page button. The button for the action of the current page is one and a half times
+            // as wide.
             let width = (ui.available_width() - 5.0 * GAP) / 4.5;
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = GAP;
