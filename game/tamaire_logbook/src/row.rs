@@ -72,7 +72,7 @@ pub enum RoundEnd {
     Retried,
     /// The player chose another level or left.
     Left,
-    /// The program was closed during the round.
+    /// The program ended while the round was still going on.
     Cut,
 }
 
